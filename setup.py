@@ -1,7 +1,7 @@
-"""Makes taut._core with CMake, and puts models and experiments beside it; pyproject.toml has the rest.
+"""Builds taut._core with CMake and packages it with models and experiments; all other settings are in pyproject.toml.
 
-TAUT_BUILT: a folder in which the target taut_python is built already (build/release): nothing is compiled.
-CMAKE_ARGS: more arguments for CMake, where there is something to compile.
+TAUT_BUILT: build folder (build/release) with the target taut_python; then nothing is compiled.
+CMAKE_ARGS: further arguments for CMake, if anything is compiled.
 """
 
 import os
@@ -49,5 +49,5 @@ class BuildWithCMake(build_ext):
         return folder
 
 
-(ROOT / "build").mkdir(exist_ok=True)  # for what pyproject.toml puts there
+(ROOT / "build").mkdir(exist_ok=True)  # for files that pyproject.toml places there
 setup(version=version(), ext_modules=[Extension("taut._core", [])], cmdclass={"build_ext": BuildWithCMake})

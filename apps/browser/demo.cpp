@@ -14,7 +14,7 @@ namespace {
 using viewer::Json;
 using viewer::Session;
 
-/// There is one page, and it drives.
+/// Client number of the only page, which is also the driver of the run.
 constexpr int kClient = 1;
 
 void Add(const std::vector<Diagnostic>& diagnostics, bool error, Json& found) {

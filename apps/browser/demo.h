@@ -1,5 +1,5 @@
-/// What runs in a browser: a live run that a page drives by the messages of the viewer, from files
-/// that the page gives. One thread, and the page calls again and again.
+/// Live run for the browser demo, compiled to WebAssembly. A page drives it with the viewer's
+/// messages and supplies the files. Single-threaded: the page calls `Turn` repeatedly.
 #pragma once
 
 #include <memory>
@@ -13,29 +13,30 @@ namespace taut::browser {
 
 class Demo {
  public:
-  /// What is wrong with an experiment or a model, as JSON:
-  /// {"good": bool, "kind": "experiment" | "model" | "", "files": [path], "found": [{"file",
-  /// "line", "column", "error", "what", "hint"}]}. Not good: with errors. `files`: all that was
-  /// read.
+  /// Checks an experiment or a model. Returns JSON: {"good": bool, "kind": "experiment" | "model" |
+  /// "", "files": [path], "found": [{"file", "line", "column", "error", "what", "hint"}]}. `good`
+  /// is false if there are errors; `files` lists all files that were read.
   static std::string Check(const std::string& path);
 
-  /// Runs a file from its start, in place of what ran before. The answer of `Check`, with what
-  /// finding the start said; if it is not good, what ran before goes on.
+  /// Runs a file from its start, in place of the previous run. Returns JSON as `Check` does,
+  /// including the diagnostics of finding the start; if the file is not good, the previous run
+  /// continues.
   std::string Open(const std::string& path, std::vector<double> mark_at_s, bool paused);
 
-  /// A message of the page. Empty, or why it is none.
+  /// Passes a message from the page to the run. Returns an error message, or an empty string if the
+  /// message was accepted.
   std::string Post(std::string_view message);
 
-  /// Goes on for some milliseconds; in how many it wants to be called again [ms].
+  /// Advances the run for some milliseconds. Returns the time until the next call is due [ms].
   double Turn();
 
-  /// JSON texts since the last call, in order: an array of messages.
+  /// Returns the JSON messages since the last call, in order, as one array.
   std::string TakeMessages();
-  /// The newest frame's bytes; null: none since the last call.
+  /// Returns the bytes of the newest frame; null if there is none since the last call.
   std::shared_ptr<const std::string> TakeFrame();
 
-  /// {"path", "time_s", "hash", "touched", "set": {name: value}, "marks": [{"time_s", "hash"}]}, or
-  /// null where nothing runs.
+  /// Returns {"path", "time_s", "hash", "touched", "set": {name: value}, "marks": [{"time_s",
+  /// "hash"}]} as JSON, or null if nothing runs.
   std::string State() const;
 
  private:

@@ -1,5 +1,5 @@
-// What the page's worker calls (web/src/demo/core.ts). Texts that are returned are valid until the
-// next call.
+// C interface of the browser demo for the page's worker (web/src/demo/core.ts). Returned texts are
+// valid until the next call.
 #include <memory>
 #include <sstream>
 #include <string>
@@ -18,7 +18,7 @@ const char* Return(std::string text) {
   return answer.c_str();
 }
 
-/// Numbers with blanks between them.
+/// Parses numbers separated by blanks.
 std::vector<double> Numbers(const char* text) {
   std::vector<double> numbers;
   std::istringstream in(text);
@@ -42,7 +42,7 @@ double taut_turn() { return demo.Turn(); }
 
 const char* taut_messages() { return Return(demo.TakeMessages()); }
 
-/// The bytes of the newest frame, 0: none since the last call.
+/// Returns the size of the newest frame in bytes; 0 if there is none since the last call.
 const char* taut_frame() {
   frame = demo.TakeFrame();
   return frame ? frame->data() : nullptr;

@@ -1,4 +1,4 @@
-// `taut analyze`: what holds a structure up.
+// Command `taut analyze`: statics, load cases and modes of a structure.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,9 +29,9 @@ struct AnalyzeArguments {
   int modes = 10;
   bool strict = false, backwards = false, form = false, linear = false;
   PoseArguments pose;
-  InverseArguments inverse;       ///< Of `--inverse`; its `json` of all.
-  FormArguments forms;            ///< Of `--form`; its `out` of shapes, too.
-  LinearArguments linear_system;  ///< Of `--linear` and `--response`.
+  InverseArguments inverse;       ///< For `--inverse`; its `json` applies to all analyses.
+  FormArguments forms;            ///< For `--form`; its `out` also applies to shapes.
+  LinearArguments linear_system;  ///< For `--linear` and `--response`.
 };
 
 const std::map<std::string, HoldingCost> kCosts{{"force_density", HoldingCost::kForceDensity},
@@ -39,21 +39,22 @@ const std::map<std::string, HoldingCost> kCosts{{"force_density", HoldingCost::k
                                                 {"energy", HoldingCost::kEnergy}};
 
 struct Loaded {
-  ExperimentSpec experiment;  ///< Of a model alone: its robot and little else.
+  ExperimentSpec experiment;  ///< For a model: default experiment with its robot.
   std::vector<LoadCaseSpec> cases;
   bool model = false;
-  /// Of `--pose`, in which the robot then is, and the rest lengths it has in the file.
+  /// Pose from `--pose`, which `robot` then has, and the rest lengths in the file.
   std::optional<Pose> pose;
   std::vector<double> file_rest_m;
 };
 
-/// A model or an experiment, checked as `taut check` does.
+/// Loads a model or an experiment and checks it as `taut check` does.
 std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overrides,
                            Diagnostics& out) {
   const std::optional<std::string> kind = FileKind(args.path, out);
   if (!kind) return std::nullopt;
   if (*kind != "model" && *kind != "experiment") {
-    out.Error({args.path, 0, 0}, "is a " + *kind, "analyze takes a model or an experiment");
+    out.Error("file.wrong_kind", {args.path, 0, 0}, "is a " + *kind,
+              "analyze takes a model or an experiment");
     return std::nullopt;
   }
   Loaded loaded;
@@ -76,13 +77,14 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
     loaded.pose = ReadPose(args.pose, experiment.robot, out);
     if (!loaded.pose) return std::nullopt;
   }
-  // What is in each other is statics' business only where it stands.
+  // Overlaps of bodies are checked at the analyzed pose only.
   const RobotSpec there = loaded.pose ? RobotAt(experiment.robot, *loaded.pose) : experiment.robot;
   if (!CheckStart(there, StartKind::kSettled, out)) return std::nullopt;
   return loaded;
 }
 
-/// Those asked for; of a file without any, its own weight, or, where nothing holds the robot, none.
+/// Selects the load cases on the command line, or else all of the file; in a file without load
+/// cases the weight, or no load if nothing holds the robot in the world.
 bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::string>& notes,
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
@@ -97,7 +99,7 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
   for (const std::string& name : args.load_cases) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      out.Error({args.path, 0, 0}, "there is no load case \"" + name + "\"",
+      out.Error("load_case.unknown", {args.path, 0, 0}, "there is no load case \"" + name + "\"",
                 names.empty() ? "load_cases of an experiment" : DidYouMean(name, names));
       continue;
     }
@@ -115,7 +117,8 @@ bool CheckSupportsOf(const std::string& file, const ModelDef& def,
   for (const LoadCaseSpec& one : cases) {
     const SupportCheck check = CheckSupports(def, one);
     if (!check.missing.empty()) {
-      out.Error({file, 0, 0}, "load case " + one.name + ": " + check.missing, check.fix);
+      out.Error("analysis.supports_missing", {file, 0, 0},
+                "load case " + one.name + ": " + check.missing, check.fix);
       continue;
     }
     if (!IsHeld(def) || !def.planes.empty()) continue;
@@ -127,7 +130,7 @@ bool CheckSupportsOf(const std::string& file, const ModelDef& def,
   return out.ok();
 }
 
-/// What holds a structure up, as tables or JSON, and shapes to look at.
+/// Prints equilibria, members and modes as tables or JSON and writes shapes for the viewer.
 int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult result) {
   result.forces = AnalyseForces(result.robot.def);
   result.cases = SolveCases(result.robot.def, loaded.cases, args.modes > 0);
@@ -143,7 +146,8 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
   for (const CaseResult& one : result.cases) {
     const std::string far = one.at.found ? one.move.Warning() : "";
     if (far.empty()) continue;
-    found.Warning({args.path, 0, 0}, "load case " + one.loads.name + ": " + far,
+    found.Warning("analysis.large_displacement", {args.path, 0, 0},
+                  "load case " + one.loads.name + ": " + far,
                   "the supports allow a large rotation, or a mechanism moves");
   }
   if (!Pass(found, args.strict)) exit = Fail(found, kFailed);
@@ -166,7 +170,7 @@ int Analyze(const AnalyzeArguments& args) {
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   ExperimentSpec& experiment = loaded->experiment;
   if (args.linear) {
-    // A model that nothing holds is looked at without weight, as in statics.
+    // A model that nothing holds is analyzed without weight, as in statics.
     if (loaded->model && !IsHeld(experiment.robot.def)) {
       experiment.robot.def.gravity_m_per_s2 = {};
     }

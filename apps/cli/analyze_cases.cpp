@@ -1,5 +1,4 @@
-// Load cases of `taut analyze`: where the robot stands under each, and what its members carry
-// there.
+// Load cases of `taut analyze`: equilibrium and member forces under each.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +7,8 @@
 namespace taut::cli {
 namespace {
 
-constexpr double kBears_m = 1e-6;  ///< So near ground bears what it is found to bear.
+constexpr double kBears_m =
+    1e-6;  ///< Distance from the ground within which a point can carry load.
 
 bool IsFixed(const ModelDef& def, int body) {
   return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
@@ -30,7 +30,7 @@ MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equili
   return {at.cable_tension_n, at.bar_force_n, StrutForces(weighed, forces)};
 }
 
-/// Against the cables that end in the world.
+/// Returns the forces that hold the cables that end in the world, one per point.
 std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
   const auto same = [](const Vec3& a, const Vec3& b) {
     return std::fabs(a.x - b.x) + std::fabs(a.y - b.y) + std::fabs(a.z - b.z) < 1e-9;
@@ -55,11 +55,11 @@ std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
   return ends;
 }
 
-/// Between which limits forces lie that friction and redundant supports leave open; nothing where
-/// they leave none.
+/// Returns the intervals of forces that friction and redundant supports leave undetermined; nothing
+/// if all forces are determined.
 std::optional<CaseResult::Open> OpenForces(ModelDef def, const LoadCaseSpec& loads) {
   LoadCaseSpec there = loads;
-  there.cables.clear();  // the pose has these rest lengths
+  there.cables.clear();  // already contained in the pose
   for (const LoadCaseSpec::Settlement& settled : loads.settlements) {
     JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
     Vec3& in_world = IsFixed(def, joint.body_a) ? joint.from_m : joint.to_m;
@@ -117,7 +117,7 @@ std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCa
     result.open = OpenForces(result.def, loads);
     result.move = LargestMove(def, result.at.pose);
     LoadCaseSpec there = loads;
-    there.cables.clear();  // the pose has these rest lengths
+    there.cables.clear();  // already contained in the pose
     result.least_stiffness_n_per_m = LeastStiffness(result.def, there);
     if (with_modes) result.modes = FindModes(result.def, there);
   }

@@ -1,5 +1,5 @@
-// What `taut analyze` says of a structure by itself: what its members can carry without loads, and
-// how it can move without any of them changing its length.
+// Self-stresses and mechanisms in the output of `taut analyze`: the member forces without loads,
+// and the motions that change no member's length.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace taut::cli {
 namespace {
 
-constexpr std::size_t kMostStates = 6;  ///< Columns of a table of self-stresses.
+constexpr std::size_t kMostStates = 6;  ///< Maximum number of columns of a table of self-stresses.
 
 std::string GapText(const RankGap& rank) {
   return fmt::format("{} (singular values {:.3g} kept, {:.3g} dropped{})", rank.rank,
@@ -63,7 +63,7 @@ std::string Prestress(const ForceAnalysis& f) {
   return text;
 }
 
-/// Force densities, a column a state.
+/// Formats force densities, one column per state of self-stress.
 std::string States(const ModelDef& def, const ForceAnalysis& f) {
   const std::size_t shown = std::min(f.self_stress.size(), kMostStates);
   if (shown == 0) return {};

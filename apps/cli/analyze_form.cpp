@@ -1,4 +1,4 @@
-// `taut analyze --form`: the form that a robot's cables give it.
+// `taut analyze --form`: form finding from cable tensions or force densities.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/// `taut analyze --form`.
+/// Form finding from cable tensions or force densities (`taut analyze --form`).
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace taut::cli {
 
-/// Of every cable; nothing: the tensions described.
+/// Tension or force density of every cable; if neither is set, the tensions in the file.
 struct FormArguments {
   std::optional<double> tension_n, force_density_n_per_m;
   std::string out;  ///< Model file to write; empty: none.
 };
 
-/// Prints the form that cables under these forces give the robot. Returns the exit status.
+/// Prints the equilibrium shape under the given cable forces. Returns the exit status.
 int FindFormOf(const std::string& file, const RobotSpec& robot, bool weight,
                const FormArguments& args);
 

@@ -1,4 +1,4 @@
-// `taut analyze --inverse`: the forces that hold a robot in its pose and cost least.
+// `taut analyze --inverse`: cable forces of least cost that hold a robot in its pose.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// `taut analyze --inverse`.
+/// Inverse statics (`taut analyze --inverse`).
 #pragma once
 
 #include <string>
@@ -10,13 +10,14 @@
 
 namespace taut::cli {
 
-inline constexpr double kTouch_m = 1e-3;  ///< So near the ground bears.
+inline constexpr double kTouch_m =
+    1e-3;  ///< Distance from the ground within which a point can carry load.
 
 struct InverseArguments {
   HoldingCost minimise = HoldingCost::kForceDensity;
-  CableBounds bounds;  ///< Of every cable.
+  CableBounds bounds;  ///< Limits for every cable.
   bool json = false;
-  std::vector<double> calibration_rest_m;  ///< Per cable, or empty: as described.
+  std::vector<double> calibration_rest_m;  ///< Per cable; empty: as in the file.
 };
 
 inline const char* HoldingCostName(HoldingCost cost) {
@@ -31,7 +32,8 @@ inline const char* HoldingCostName(HoldingCost cost) {
   return "";
 }
 
-/// Prints what holds the robot as described under each of the cases. Returns the exit status.
+/// Prints the cable forces that hold the robot in its described pose under each load case. Returns
+/// the exit status.
 int Inverse(const std::string& file, const RobotSpec& robot, const std::vector<LoadCaseSpec>& cases,
             const std::vector<std::string>& notes, const InverseArguments& args);
 

@@ -1,3 +1,4 @@
+// JSON output of `taut analyze`.
 #include <nlohmann/json.hpp>
 
 #include "analyze_names.h"
@@ -135,7 +136,7 @@ Json IntervalJson(const ForceInterval& limits) {
   return {{"low_n", limits.low_n}, {"high_n", limits.high_n}, {"uncertain_n", limits.uncertain_n}};
 }
 
-/// Infinite ends are null.
+/// Returns the open forces as JSON; an infinite limit is null.
 Json OpenJson(const CaseResult& result) {
   const CaseResult::Open& open = *result.open;
   Json json{{"undetermined", open.forces.undetermined},

@@ -1,3 +1,5 @@
+// `taut analyze --linear` and `--response`: linearization about the rest state, frequency
+// responses.
 #include "analyze_linear.h"
 
 #include <fmt/format.h>
@@ -17,7 +19,8 @@ std::vector<std::string> NamesOf(const std::vector<LinearSignal>& signals) {
   return names;
 }
 
-/// The number of a signal; nothing and a complaint if the system has none of that name.
+/// Returns the index of a signal; nothing, and an error in `out`, if the system has no signal of
+/// this name.
 std::optional<int> Find(const std::vector<LinearSignal>& signals, const std::string& name,
                         const char* kind, const std::string& file, Diagnostics& out) {
   const std::optional<int> found = FindSignal(signals, name);
@@ -25,7 +28,7 @@ std::optional<int> Find(const std::vector<LinearSignal>& signals, const std::str
     const std::vector<std::string> names = NamesOf(signals);
     const std::string_view closest = ClosestMatch(name, names);
     out.Error(
-        {file, 0, 0}, fmt::format("there is no {} \"{}\"", kind, name),
+        "linear.unknown_name", {file, 0, 0}, fmt::format("there is no {} \"{}\"", kind, name),
         closest.empty() && !names.empty()
             ? fmt::format("one of {} is \"{}\"; --json lists all", names.size(), names.front())
             : DidYouMean(name, names));
@@ -33,7 +36,7 @@ std::optional<int> Find(const std::vector<LinearSignal>& signals, const std::str
   return found;
 }
 
-/// Evenly spaced by their logarithms.
+/// Returns frequencies evenly spaced on a logarithmic scale [Hz].
 std::vector<double> Frequencies(double from_hz, double to_hz, int points) {
   std::vector<double> all_hz;
   for (int i = 0; i < points; ++i) {
@@ -45,7 +48,8 @@ std::vector<double> Frequencies(double from_hz, double to_hz, int points) {
   return all_hz;
 }
 
-/// Of all pairs asked for; false and complaints about names.
+/// Computes the responses of all requested pairs of signals. Returns false, with errors in `out`,
+/// if a name is unknown.
 bool Respond(const LinearArguments& args, double to_hz, LinearResult& result, Diagnostics& out) {
   const StateSpace& system = result.system;
   const std::vector<double> all_hz = Frequencies(args.from_hz, to_hz, args.points);

@@ -1,4 +1,4 @@
-/// `taut analyze --linear`, `--response`: the robot as a linear system about its rest.
+/// Linear system of a robot about its rest state (`taut analyze --linear`, `--response`).
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct LinearArguments {
   std::string file;                                            ///< HDF5 file to write; empty: none.
   std::vector<std::pair<std::string, std::string>> responses;  ///< Input, output.
   double from_hz = 0.1;
-  std::optional<double> to_hz;  ///< Nothing: half the tick's frequency.
+  std::optional<double> to_hz;  ///< Nothing: half the tick frequency.
   int points = 40;
   bool csv = false;
 };
@@ -39,8 +39,8 @@ std::string LinearTables(const LinearResult& result, int most_modes);
 std::string LinearJson(const LinearResult& result);
 std::string ResponsesCsv(const LinearResult& result);
 
-/// Prints the linear system of an experiment's robot about its rest, near `from` if that is given,
-/// and writes it if asked for. Returns the exit status.
+/// Prints the linear system of an experiment's robot about its rest state, near `from` if given,
+/// and writes it if requested. Returns the exit status.
 int Linear(const std::string& file, const ExperimentSpec& experiment,
            const std::optional<Pose>& from, const std::vector<std::string>& notes, int most_modes,
            bool json, const LinearArguments& args);

@@ -1,4 +1,4 @@
-// How `taut analyze --linear`, `--response` print what they have found.
+// Text and JSON output of `taut analyze --linear` and `--response`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,8 @@ const char* DerivativesName(Derivatives derivatives) {
   return derivatives == Derivatives::kExact ? "exact" : "differences";
 }
 
-/// "node/*/force_x" of all such signals: a robot has hundreds.
+/// Returns the pattern of a signal's name, such as "node/*/force_x": a robot has hundreds of
+/// signals.
 std::string PatternOf(const std::string& name) {
   const std::size_t first = name.find('/');
   const std::size_t last = name.rfind('/');
@@ -50,10 +51,10 @@ std::string Signals(const StateSpace& system) {
   return table.Text();
 }
 
-/// What neither comes back nor goes away: a robot that may be anywhere. Round-off parts z = 1, 1
-/// into pairs that seem to swing.
+/// Returns whether a mode neither decays nor grows, as a translation of a free robot. Round-off
+/// splits z = 1, 1 into pairs that look like oscillations.
 bool IsNeutral(const LinearMode& mode) { return std::abs(mode.z - 1.0) < 1e-6; }
-/// What creeps back, or is gone at once.
+/// Returns whether a mode oscillates; others creep back or decay at once.
 bool Swings(const LinearMode& mode) { return mode.frequency_hz > 0 && mode.damping < 0.99; }
 
 std::string ModeTable(const LinearResult& result, int most) {
@@ -61,7 +62,7 @@ std::string ModeTable(const LinearResult& result, int most) {
   table.Add({"", "Hz", "of critical", "times"});
   int swings = 0, neutral = 0, grow = 0;
   for (const LinearMode& mode : result.modes) {
-    // Of a pair that is conjugate only one is told.
+    // Only one of a conjugate pair is listed.
     if (IsNeutral(mode)) {
       neutral += mode.z.imag() > 0 ? 2 : 1;
       continue;

@@ -1,4 +1,4 @@
-/// Words of what `taut analyze` prints.
+/// Names and phrases in the output of `taut analyze`.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ inline std::string BodyName(const ModelDef& def, int body) {
   return body < 0 ? "world" : def.bodies[static_cast<std::size_t>(body)].name;
 }
 
-/// With the number of its part, where it has several.
+/// Returns the member's name, with the number of its part if it has several.
 inline std::string StaticMemberName(const ModelDef& def, const StaticMember& member) {
   const auto at = static_cast<std::size_t>(member.index);
   const std::string part = " " + std::to_string(member.part + 1);
@@ -30,7 +30,7 @@ inline std::string StaticMemberName(const ModelDef& def, const StaticMember& mem
   return "";
 }
 
-/// How an equilibrium was found, where it was not the plain way.
+/// Describes how an equilibrium was found; empty for a plain Newton solve.
 inline const char* WayText(EquilibriumWay way) {
   switch (way) {
     case EquilibriumWay::kNewton:
@@ -43,11 +43,12 @@ inline const char* WayText(EquilibriumWay way) {
   return "";
 }
 
-/// The body whose centre of mass moves farthest; where all stay, the one that turns most. -1: none.
+/// Returns the body with the largest displacement of its center of mass; if none moves, the largest
+/// rotation; -1: none.
 inline int MovesMost(const Mode& mode) {
   for (const std::vector<Vec3>* const way : {&mode.translation_m, &mode.turn_rad}) {
     int most = -1;
-    double largest = 1e-18;  // squared; of round-off
+    double largest = 1e-18;  // squared; above round-off
     for (std::size_t b = 0; b < way->size(); ++b) {
       const Vec3& t = (*way)[b];
       const double size = t.x * t.x + t.y * t.y + t.z * t.z;

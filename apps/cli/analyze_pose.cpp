@@ -1,3 +1,4 @@
+// Pose from a recording, for `taut analyze --pose`.
 #include "analyze_pose.h"
 
 #include <fmt/format.h>
@@ -14,12 +15,12 @@ namespace taut::cli {
 std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, Diagnostics& out) {
   const SourceRef at{args.file, 0, 0};
   if (std::filesystem::is_directory(args.file)) {
-    out.Error(at, "is a folder", "its trace: " + args.file + "/trace.h5");
+    out.Error("file.is_folder", at, "is a folder", "its trace: " + args.file + "/trace.h5");
     return std::nullopt;
   }
   if (args.file.ends_with(".yaml")) {
     out.Error(
-        at, "is no recording",
+        "trace.not_a_recording", at, "is no recording",
         "a pose is a row of a trace (.h5, .csv, .csv.gz); a model in another pose is analysed "
         "by itself");
     return std::nullopt;
@@ -30,7 +31,7 @@ std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, 
   std::size_t row = time_s.empty() ? 0 : time_s.size() - 1;
   if (args.at_s && !time_s.empty()) {
     if (*args.at_s < time_s.front() || *args.at_s > time_s.back()) {
-      out.Error(at, fmt::format("has nothing at {:g} s", *args.at_s),
+      out.Error("trace.time_outside", at, fmt::format("has nothing at {:g} s", *args.at_s),
                 fmt::format("it goes from {:g} s to {:g} s", time_s.front(), time_s.back()));
       return std::nullopt;
     }

@@ -1,4 +1,4 @@
-/// `taut analyze --pose`: where the robot is looked at.
+/// Pose to analyze (`taut analyze --pose`).
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 namespace taut::cli {
 
 struct PoseArguments {
-  std::string file;            ///< A recording; empty: as described.
-  std::optional<double> at_s;  ///< Which of its rows; nothing: the last.
+  std::string file;            ///< A recording; empty: pose as described.
+  std::optional<double> at_s;  ///< Time of the row; nothing: the last row.
 };
 
-/// The pose in a recording's row that is nearest to the time asked for. Nothing and complaints if
-/// it has none.
+/// Returns the pose in the recording's row that is nearest to the requested time. Nothing, with
+/// errors in `out`, if it has none.
 std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::cli

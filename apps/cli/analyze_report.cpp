@@ -1,3 +1,4 @@
+// Tables of `taut analyze`.
 #include "analyze_report.h"
 
 #include <fmt/format.h>
@@ -53,7 +54,7 @@ void AddCells(const Vec3& f, const Vec3& t, std::vector<std::string>& row) {
   for (const double x : {t.x, t.y, t.z}) row.push_back(Fixed(x, 4));
 }
 
-/// What holds the robot in the world: supports, anchors, ground.
+/// Formats the forces that hold the robot in the world: supports, anchors, ground.
 std::string Reactions(const CaseResult& result) {
   Table table({"held by", "force x", "y", "z", "torque x", "y", "z"});
   table.Add({"", "N", "N", "N", "N m", "N m", "N m"});
@@ -84,7 +85,8 @@ std::string Limit(double force_n) {
   return std::isfinite(force_n) ? Fixed(force_n, 3) : "no limit";
 }
 
-/// Forces that friction and redundant supports leave open: each by itself between its limits.
+/// Formats the forces that friction and redundant supports leave undetermined, each with its
+/// limits.
 std::string OpenForces(const CaseResult& result) {
   const CaseResult::Open& open = *result.open;
   std::string text = fmt::format("\nFriction and supports leave {} forces open; each by itself\n",
@@ -104,7 +106,7 @@ std::string OpenForces(const CaseResult& result) {
   }
   for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
     const std::string& name = result.def.joints[j].name;
-    if (IsBar(result.def.joints[j])) continue;  // its rest length says what it carries
+    if (IsBar(result.def.joints[j])) continue;  // determined by its rest length
     add(name + ", x", open.forces.joint_x[j]);
     add(name + ", y", open.forces.joint_y[j]);
     add(name + ", z", open.forces.joint_z[j]);
@@ -129,7 +131,8 @@ std::string ModeTable(const CaseResult& result, int most) {
   return text + (number == 0 ? "" : table.Text());
 }
 
-/// Slack cables, least safety factor, first slack cable, largest displacement, least stiffness.
+/// Summarizes a load case: slack cables, least safety factor, first slack cable, largest
+/// displacement, least stiffness.
 std::string Verdict(const CaseResult& result) {
   std::string slack;
   for (const MemberLoad& load : result.members) {

@@ -1,4 +1,4 @@
-/// What `taut analyze` has found, and how it prints it.
+/// Results of `taut analyze` and their output as tables and JSON.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,20 @@
 
 namespace taut::cli {
 
-/// A load case: where the robot stands under it, what its members carry there.
+/// Equilibrium and member forces under a load case.
 struct CaseResult {
   LoadCaseSpec loads;
   Equilibrium at;
-  ModelDef def;  ///< As it stands.
+  ModelDef def;  ///< In the equilibrium pose.
   std::vector<MemberLoad> members;
   std::vector<Reaction> anchors;
-  /// What holds cables that end in the world, a place each.
+  /// Force that holds cables that end in the world, one per point.
   struct End {
-    std::string name;  ///< Of the node there.
+    std::string name;  ///< Name of the node at this point.
     Vec3 point_m, force_n;
   };
   std::vector<End> ends;
-  /// Forces that friction and redundant supports leave open there.
+  /// Forces that friction and redundant supports leave undetermined, with their intervals.
   struct Open {
     std::vector<TouchDef> touches;
     ForceIntervals forces;
@@ -41,28 +41,28 @@ struct CaseResult {
   const MemberLoad* FirstSlack() const;
 };
 
-/// Each of the cases by itself.
+/// Solves each load case independently of the others.
 std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCaseSpec>& cases,
                                    bool with_modes);
 
 struct AnalysisResult {
   std::string file;
   RobotSpec robot;
-  std::vector<std::string> notes;  ///< Of what a reader should know, in sentences.
-  ForceAnalysis forces;            ///< As described.
+  std::vector<std::string> notes;  ///< Complete sentences for the reader.
+  ForceAnalysis forces;            ///< In the described pose.
   std::vector<CaseResult> cases;
-  bool Found() const;  ///< Whether every case has an equilibrium.
+  bool Found() const;  ///< Returns whether every case has an equilibrium.
 };
 
-/// What members can carry by themselves.
+/// Formats the states of self-stress and the mechanisms.
 std::string ForceTables(const ModelDef& def, const ForceAnalysis& forces);
 
-/// `most_modes`: of each case at most so many rows.
+/// Formats all results; `most_modes`: maximum number of modes listed per load case.
 std::string AnalysisTables(const AnalysisResult& result, int most_modes);
-/// All of it, in full precision.
+/// Returns all results as JSON, in full precision.
 std::string AnalysisJson(const AnalysisResult& result, int most_modes);
 
-/// Joints that hold the robot in the world: of them the loads are reactions.
+/// Returns whether a joint holds the robot in the world; its loads are then reactions.
 bool IsSupport(const ModelDef& def, const JointDef& joint);
 
 }  // namespace taut::cli

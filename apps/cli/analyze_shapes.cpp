@@ -1,3 +1,4 @@
+// Modes, mechanisms and states of self-stress as runs for the viewer (`taut analyze --out`).
 #include "analyze_shapes.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
   write(folder, experiment, {}, result.forces);
   for (const CaseResult& one : result.cases) {
     if (!one.modes) continue;
-    ExperimentSpec there = experiment;  // modes are about the equilibrium
+    ExperimentSpec there = experiment;  // modes are small motions about the equilibrium
     there.robot = RobotAt(experiment.robot, one.at.pose);
     const std::string where = result.cases.size() == 1
                                   ? folder

@@ -1,4 +1,4 @@
-/// `taut analyze --out`: shapes to look at.
+/// Shapes to view (`taut analyze --out`).
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace taut::cli {
 
-/// Writes modes, mechanisms and states of self-stress as runs below `folder` and says which on
-/// stdout, or stderr if that has JSON. Modes of several load cases have a folder a case. Returns
-/// the exit status.
+/// Writes modes, mechanisms and states of self-stress as runs below `folder` and lists them on
+/// stdout, or on stderr if stdout has JSON. Modes of several load cases get one folder per case.
+/// Returns the exit status.
 int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
                 const AnalysisResult& result, int most_modes, bool json);
 

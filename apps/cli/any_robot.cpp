@@ -38,7 +38,8 @@ void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args) {
 
 namespace {
 
-/// Where an experiment's robot starts; nothing and complaints, or `exit` alone if interrupted.
+/// Returns the start pose of an experiment's robot; nothing with errors in `out`, or with `exit`
+/// alone if interrupted.
 std::optional<Pose> StartOf(const ExperimentSpec& experiment, Diagnostics& out, int& exit) {
   CatchInterrupts();
   const auto settled = FindSettledStart(experiment, out, [] { return !interrupt_asked.load(); });
@@ -61,7 +62,8 @@ std::optional<RobotSpec> LoadPlacedRobot(const PlacedRobotArguments& args, int& 
   if (!overrides) return std::nullopt;
   const auto kind = FileKind(args.path, found);
   if (kind && *kind != "model" && *kind != "experiment") {
-    found.Error({args.path, 0, 0}, "is a " + *kind, "a model or an experiment is needed");
+    found.Error("file.wrong_kind", {args.path, 0, 0}, "is a " + *kind,
+                "a model or an experiment is needed");
   }
   if (!found.ok()) return fail(kBadInput);
   ExperimentSpec experiment;

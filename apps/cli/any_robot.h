@@ -1,4 +1,4 @@
-/// The robot of a model file or of an experiment file.
+/// Robot from a model file or an experiment file.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,11 +12,12 @@
 
 namespace taut::cli {
 
-/// Nothing and complaints of a file that has none, as a gait.
+/// Loads the robot of a model or an experiment. Nothing, with errors in `out`, for other files,
+/// such as gaits.
 std::optional<RobotSpec> LoadAnyRobot(const std::string& path, const Overrides& overrides,
                                       Diagnostics& out);
 
-/// A robot and where it is: what exports have in common.
+/// Robot and pose: arguments common to all exports.
 struct PlacedRobotArguments {
   std::string path;
   std::vector<std::string> set;
@@ -25,8 +26,9 @@ struct PlacedRobotArguments {
 };
 void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args);
 
-/// The robot where it starts, settled if its experiment says so, or in the pose that was asked for.
-/// Nothing after complaints on stderr; then `exit` is the status. Warnings are printed.
+/// Loads the robot in its start pose, settled if its experiment has that option, or in the
+/// requested pose. Returns nothing after errors on stderr; then `exit` is the status. Prints
+/// warnings.
 std::optional<RobotSpec> LoadPlacedRobot(const PlacedRobotArguments& args, int& exit);
 
 }  // namespace taut::cli

@@ -1,3 +1,4 @@
+// Command `taut check`: validation of models, experiments and gaits.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -29,14 +30,16 @@ struct CheckArguments {
   std::string svg, out;
 };
 
-/// All that was found, on stderr as text and, if asked for, on stdout as JSON.
+/// Prints all diagnostics on stderr as text and, if requested, on stdout as JSON. Returns the exit
+/// status.
 int Bad(const CheckArguments& args, const Diagnostics& found) {
   const int exit = Fail(found, kBadInput);
   if (args.json) fmt::print("{}\n", ErrorsJson(args.path, found));
   return exit;
 }
 
-/// The network that the experiment's own gait has, or the one that a new gait would have.
+/// Prints the oscillator network of the experiment's gait, or the network that a new gait would
+/// have.
 int Couplings(const CheckArguments& args, const RobotSpec& robot,
               const ExperimentSpec* experiment) {
   CpgSymmetry symmetry = args.symmetry;
@@ -56,7 +59,7 @@ int Couplings(const CheckArguments& args, const RobotSpec& robot,
   return WriteNamed(args.svg, CouplingSvg(robot, *graph));
 }
 
-/// A gait by itself; whether it fits a robot, the experiment that plays it says.
+/// Checks a gait file; its experiment determines whether it fits a robot.
 int CheckGait(const CheckArguments& args, Diagnostics& found) {
   auto gait = LoadGait(args.path, found);
   if (!gait || !Pass(found, args.strict)) return Bad(args, found);
@@ -68,8 +71,8 @@ int CheckGait(const CheckArguments& args, Diagnostics& found) {
   return kOk;
 }
 
-/// What is to settle: an experiment's robot as that says, or on its ground if it says nothing; a
-/// model alone without weight.
+/// Returns the experiment for settling: with an experiment's options, or on its ground if it has
+/// none; a model is settled without weight.
 ExperimentSpec ToSettle(const RobotSpec& robot, const ExperimentSpec* experiment) {
   ExperimentSpec to_settle;
   if (experiment) {
@@ -82,7 +85,7 @@ ExperimentSpec ToSettle(const RobotSpec& robot, const ExperimentSpec* experiment
   return to_settle;
 }
 
-/// The settled robot as a model file.
+/// Writes the settled robot as a model file.
 int WriteModel(const CheckArguments& args, const RobotSpec& robot) {
   Diagnostics found;
   const std::optional<std::string> text =
@@ -119,7 +122,7 @@ int Check(const CheckArguments& args) {
   } else {
     robot = LoadRobot(args.path, *overrides, found);
   }
-  // What the simulator refuses is wrong, too.
+  // Cases that the simulator refuses are errors, too.
   if (!robot) return Bad(args, found);
   const ExperimentSpec* const of = experiment ? &*experiment : nullptr;
   const StartKind described = of ? of->start : StartKind::kAsDescribed;

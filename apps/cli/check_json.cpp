@@ -1,3 +1,4 @@
+// JSON output of `taut check`.
 #include <nlohmann/json.hpp>
 
 #include "check_report.h"
@@ -102,20 +103,21 @@ Json AnchorsJson(const ModelDef& def, const std::vector<BodyForce>& forces) {
   return anchors;
 }
 
-/// `kind`: the key of what each says.
+/// Converts diagnostics to JSON; `kind`: key for the text of each.
 Json ToJson(const std::vector<Diagnostic>& found, const char* kind) {
   Json list = Json::array();
   for (const Diagnostic& d : Sorted(found)) {
     list.push_back({{"file", d.at.file},
                     {"line", d.at.line},
                     {"column", d.at.column},
+                    {"id", d.id},
                     {kind, d.what},
                     {"hint", d.hint}});
   }
   return list;
 }
 
-/// Names may hold any bytes that the file had; JSON wants UTF-8.
+/// Replaces invalid UTF-8: names may contain any bytes of the file.
 std::string Dump(const Json& json) {
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -1,3 +1,4 @@
+// Tables of `taut check`.
 #include "check_report.h"
 
 #include <fmt/format.h>
@@ -14,7 +15,7 @@
 namespace taut::cli {
 namespace {
 
-constexpr int kMostCollisions = 20;  ///< A longer list of what may collide says nothing.
+constexpr int kMostCollisions = 20;  ///< A longer list of possible collisions is useless.
 
 std::string Counted(long long count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -99,7 +100,7 @@ std::string Loads(const ModelDef& def) {
   return table.Text();
 }
 
-/// What joints carry, and what then is left to turn and move bodies.
+/// Formats the loads of the joints and the net forces and torques that remain on the bodies.
 std::string Joints(const ModelDef& def) {
   const auto name = [&](int body) { return body == kWorld ? "world" : def.bodies[body].name; };
   const std::vector<JointLoad> loads = StartJointLoads(def);
@@ -128,7 +129,7 @@ std::string Joints(const ModelDef& def) {
          left.Text();
 }
 
-/// What rods carry along them and what anchored bodies are held with, if there are any.
+/// Formats the axial forces of rods and the forces that hold anchored bodies, if there are any.
 std::string RodsAndAnchors(const ModelDef& def) {
   const std::vector<BodyForce> forces = StartForces(def, StartJointLoads(def));
   std::string text;

@@ -1,4 +1,4 @@
-/// What `taut check` prints about a robot.
+/// Output of `taut check` about a robot and its experiment.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 
 namespace taut::cli {
 
-/// Aligned tables: bodies, cables, loads at the start, what may collide.
+/// Formats aligned tables: bodies, cables, loads at the start, possible collisions.
 std::string RobotTables(const RobotSpec& robot);
 
-/// One line on what an experiment does, and its controllers, events and phases.
+/// Formats one line on the experiment, and its controllers, events and phases.
 std::string ExperimentTables(const ExperimentSpec& experiment);
 
-/// The same facts for programs, and the warnings. `experiment` may be null, and `settled`: what
-/// settling did.
+/// Returns the same facts and the warnings as JSON. `experiment` and `settled` (the result of
+/// settling) may be null.
 std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
                       const Diagnostics& found, const StartChange* settled);
 
-/// The errors and warnings of a file for programs.
+/// Returns the errors and warnings of a file as JSON.
 std::string ErrorsJson(const std::string& path, const Diagnostics& found);
 
 }  // namespace taut::cli

@@ -41,7 +41,7 @@ WordText DescribeWord(const CLI::Option& option) {
   return word;
 }
 
-/// A table of two columns; what does not fit into the first has a line of its own.
+/// Formats a row of two columns; a left text that is too long gets a separate line.
 std::string Row(const std::string& left, const std::string& right) {
   const std::string begin = "  " + left;
   const std::string text = Wrapped(right, kColumn, kWidth - kColumn) + "\n";

@@ -1,5 +1,5 @@
-/// What there is to say of a command: read once from its table of flags, written as a help text, a
-/// page of the manual and completions of shells. None of these has a text of its own.
+/// Description of a command, read from its CLI11 flags. Help text, manual page and shell
+/// completions are all generated from it.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,47 +9,47 @@
 
 namespace taut::cli {
 
-/// A flag, or an argument that has its place.
+/// Flag or positional argument.
 struct WordText {
   std::string name;    ///< "--step_s", "FILE".
   std::string letter;  ///< "-h"; empty: none.
-  /// What stands behind a flag: "S", "FILE", "FOLDER", "index|none|segments". Of an argument the
-  /// words it may be, if there are only some. Empty: nothing.
+  /// Placeholder of a flag's value: "S", "FILE", "FOLDER", "index|none|segments". For an argument:
+  /// its allowed words, if there is a fixed set. Empty: no value.
   std::string value;
   std::string help;
   bool needed = false, repeats = false;
 
-  /// The words that the value may be; empty: any.
+  /// Returns the allowed words of the value; empty: any.
   std::vector<std::string> Choices() const;
 };
 
 struct CommandText {
   std::string name;  ///< "taut gait export".
   std::string what;  ///< A sentence.
-  std::string more;  ///< Examples, and what else is good to know.
+  std::string more;  ///< Examples and further information.
   std::vector<WordText> arguments, flags;
   std::vector<CommandText> commands;
 
-  /// The last word of its name.
+  /// Returns the last word of the command's name.
   std::string Word() const;
 
-  /// The last words of its commands, in their order.
+  /// Returns the last words of its subcommands, in order.
   std::vector<std::string> CommandWords() const;
 };
 
-/// What is hidden (an empty group) is left out.
+/// Describes a command; hidden flags (with an empty group) are omitted.
 CommandText Describe(const CLI::App& command);
 
-/// "taut run [FLAGS] EXPERIMENT".
+/// Returns the usage line: "taut run [FLAGS] EXPERIMENT".
 std::string UsageLine(const CommandText& command);
 
-/// What `--help` prints.
+/// Returns the text printed by `--help`.
 std::string HelpText(const CommandText& command);
 
-/// What `taut` alone prints: what it is, its commands, some examples.
+/// Returns the text printed by `taut` without arguments: purpose, commands, examples.
 std::string OverviewText(const CommandText& taut);
 
-/// `text` in lines of at most `width` characters, all but the first begun by `indent` spaces.
+/// Wraps `text` at `width` characters; all lines but the first are indented by `indent` spaces.
 std::string Wrapped(const std::string& text, std::size_t indent, std::size_t width);
 
 }  // namespace taut::cli

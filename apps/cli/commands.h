@@ -1,4 +1,5 @@
-/// The subcommands of `taut`: parse, call the library, print, return the exit status.
+/// Subcommands of `taut`: each parses its arguments, calls the library, prints, and returns the
+/// exit status.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,13 +9,13 @@ namespace taut::cli {
 /// Exit statuses, the same for every subcommand (docs/cli.md).
 enum Exit : int {
   kOk = 0,
-  kFailed = 1,    ///< The command ran and the answer is no, or it could not finish.
-  kUsage = 2,     ///< The command line itself is wrong.
-  kBadInput = 3,  ///< A file has errors; all of them were printed.
+  kFailed = 1,    ///< The command ran and the result is negative, or it could not finish.
+  kUsage = 2,     ///< The command line is wrong.
+  kBadInput = 3,  ///< A file has errors, all of which were printed.
   kInterrupted = 130,
 };
 
-/// Each adds one subcommand to `app`; when it ran, `exit_code` holds its status.
+/// Each function adds one subcommand to `app`; after it has run, `exit_code` holds its status.
 void AddAnalyze(CLI::App& app, int& exit_code);
 void AddCheck(CLI::App& app, int& exit_code);
 void AddRun(CLI::App& app, int& exit_code);

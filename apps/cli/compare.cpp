@@ -1,3 +1,4 @@
+// Command `taut compare`: comparison of two traces.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -22,7 +23,7 @@ struct CompareArguments {
   bool json = false;
 };
 
-/// "before=25:30". Nothing if it is not like that.
+/// Parses "before=25:30"; nothing if the text has another form.
 std::optional<TimeWindow> ParsePhase(const std::string& text) {
   const std::size_t equals = text.find('='), colon = text.find(':', equals);
   if (equals == 0 || equals == text.npos || colon == text.npos) return std::nullopt;
@@ -62,7 +63,7 @@ int RunCompare(CompareArguments given) {
   }
   if (!given.limits.max_error_percent && !given.limits.max_rmse) return kOk;
   const std::vector<std::string> exceeded = ExceededLimits(comparison, given.limits);
-  std::FILE* to = given.json ? stderr : stdout;  // what is on stdout then stays JSON
+  std::FILE* to = given.json ? stderr : stdout;  // keeps stdout pure JSON
   for (const std::string& sentence : exceeded) fmt::print(to, "FAIL: {}\n", sentence);
   if (exceeded.empty()) fmt::print(to, "PASS: within the limits\n");
   return exceeded.empty() ? kOk : kFailed;

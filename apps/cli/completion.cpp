@@ -1,3 +1,4 @@
+// Shell completion scripts for bash, zsh and fish (`taut help`).
 #include <fmt/format.h>
 
 #include <functional>
@@ -14,7 +15,7 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Between single quotes of bash and zsh; `Fish` for fish.
+/// Quotes a text for bash and zsh, in single quotes; `Fish` quotes for fish.
 std::string Sh(const std::string& text) { return "'" + Replaced(text, "'", "'\\''") + "'"; }
 std::string Fish(const std::string& text) {
   return "'" + Replaced(Replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
@@ -24,13 +25,13 @@ std::string Spaced(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, " "));
 }
 
-/// Calls `act` for a command and for all below it.
+/// Calls `act` for a command and all its subcommands, recursively.
 void ForEach(const CommandText& command, const std::function<void(const CommandText&)>& act) {
   act(command);
   for (const CommandText& one : command.commands) ForEach(one, act);
 }
 
-// bash: tables of what follows a flag, of flags, and of what may stand in a command's place.
+// bash: tables of the values of flags, of flags, and of the words that may follow a command.
 
 std::string BashValue(const WordText& word) {
   if (!word.Choices().empty()) return "_taut_words " + Sh(Spaced(word.Choices()));
@@ -92,13 +93,13 @@ std::string Bash(const CommandText& taut) {
          "complete -F _taut taut\n";
 }
 
-// zsh: a function a command, which calls those of its commands.
+// zsh: one function per command, which calls the functions of its subcommands.
 
 std::string ZshFunction(const CommandText& command) {
   return "_" + Replaced(command.name, " ", "_");
 }
 
-/// In brackets and between colons.
+/// Escapes a text for use in brackets and between colons.
 std::string ZshText(const std::string& text) {
   std::string out = Replaced(text, "\\", "\\\\");
   for (const char* special : {"[", "]", ":"}) {
@@ -152,9 +153,9 @@ std::string Zsh(const CommandText& taut) {
          functions + "_taut \"$@\"\n";
 }
 
-// fish: a line a word, with the condition under which it may stand.
+// fish: one line per word, with the condition under which it is offered.
 
-/// Whether all words of the command's name are there.
+/// Returns the condition that all words of the command's name are present.
 std::string FishCondition(const CommandText& command) {
   std::string condition, words = command.name;
   for (std::size_t at; (at = words.find(' ')) != words.npos;) {

@@ -1,4 +1,4 @@
-// `taut export`: a robot for other programs.
+// Command `taut export`: conversion of robots for other programs.
 #include "export.h"
 
 namespace taut::cli {

@@ -1,4 +1,4 @@
-/// The commands of `taut export`, each in its file, and a line in export.cpp.
+/// Subcommands of `taut export`. Each has a file of this name, and a line in export.cpp.
 #pragma once
 
 #include "commands.h"

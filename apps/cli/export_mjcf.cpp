@@ -1,3 +1,4 @@
+// `taut export mjcf`: a robot as a MuJoCo model.
 #include <fmt/format.h>
 
 #include <map>

@@ -1,4 +1,4 @@
-// `taut export shape`: what a robot looks like, for slides and printers.
+// `taut export shape`: geometry of a robot, for slides and 3D printers.
 #include <fmt/format.h>
 
 #include <map>
@@ -26,7 +26,7 @@ struct ShapeArguments {
   ShapeOptions options;
 };
 
-/// What was asked for, or what the file's name says.
+/// Returns the requested format, or the format of the file's extension.
 std::optional<Format> FormatOf(const ShapeArguments& args) {
   if (args.format) return args.format;
   if (args.out.ends_with(".stl")) return Format::kStl;

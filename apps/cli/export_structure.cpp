@@ -1,4 +1,4 @@
-// `taut export structure`: points, bars and strings for tools of tensegrity statics.
+// `taut export structure`: nodes, bars and strings for tensegrity statics tools.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -54,7 +54,7 @@ std::string CsvOf(const Matrix& matrix) {
   return text;
 }
 
-/// A row a component, a column a node.
+/// Returns the connectivity matrix: one row per member, one column per node.
 template <class Of>
 Matrix PerNode(const PinJointed& structure, const Of& of) {
   Matrix m(3, static_cast<int>(structure.nodes.size()));
@@ -65,7 +65,7 @@ Matrix PerNode(const PinJointed& structure, const Of& of) {
   return m;
 }
 
-/// The matrices by the names of their files.
+/// Returns the matrices by file name.
 std::vector<std::pair<std::string, Matrix>> MatricesOf(const PinJointed& s) {
   const auto bars = static_cast<std::size_t>(s.bars);
   Matrix q(static_cast<int>(s.members.size()), 1);
@@ -174,7 +174,7 @@ std::string TableOf(const ModelDef& def, const PinJointed& s) {
                      s.clusters.size() - static_cast<std::size_t>(s.bars), members.Text());
 }
 
-/// Everything into a folder, which may be there already.
+/// Writes all files into a folder, which may exist.
 int WriteFolder(const std::string& folder, const ModelDef& def, const PinJointed& s) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -195,7 +195,7 @@ int WriteFolder(const std::string& folder, const ModelDef& def, const PinJointed
   return kOk;
 }
 
-/// Brings it to the equilibrium that `taut analyze` finds from there.
+/// Moves the robot to the equilibrium that `taut analyze` finds from its pose.
 bool Rest(bool weightless, ModelDef& def) {
   LoadCaseSpec loads;
   loads.weight = !weightless && IsHeld(def);

@@ -1,3 +1,4 @@
+// Command `taut fit`: system identification.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -34,7 +35,7 @@ void Show(ProgressLine& line, const IdentifyProgress& p) {
                         p.iterations, p.chi2, p.computed));
 }
 
-/// What `--check` says of a fit that has no mistakes.
+/// Prints the result of `--check` for a fit without errors.
 void PrintCheck(const Identification& fit) {
   const FitProblem& train = fit.train();
   fmt::print("{}: {} numbers from {} data in {} groups", fit.spec().name, train.parameters.size(),
@@ -50,7 +51,7 @@ std::string MemoryIn(const std::string& folder) {
   return (fs::path(folder) / "fit.sqlite").string();
 }
 
-/// How to look at each experiment before and after.
+/// Prints the commands that show each experiment before and after the fit.
 void PrintLooks(const Identification& fit, const std::string& folder) {
   fmt::print("Before and after, side by side:\n");
   for (const FitExperiment& one : fit.spec().experiments) {
@@ -77,7 +78,7 @@ bool CheckProfiles(const Identification& fit, const std::vector<std::string>& as
   return true;
 }
 
-/// Every experiment with what was found, runs to look at, the page, and the summary last.
+/// Writes every experiment with its estimates, runs to view, the report page, and the summary last.
 bool WriteOutcome(const Identification& fit, const FitOutcome& outcome, const fs::path& folder,
                   Diagnostics& out) {
   for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
@@ -103,7 +104,7 @@ int FailOfInput(const Identification& fit) {
   return kFailed;
 }
 
-/// Of a fit that is ready: rank 0's part.
+/// Runs a fit that is ready: rank 0's part.
 int Search(const FitArguments& args, const Identification& fit, const std::string& folder) {
   Diagnostics found;
   const bool depends = CheckDependence(fit, found);
@@ -127,7 +128,8 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
   const FitOutcome outcome = RunFit(fit, how);
   line.Clear();
   if (!fit.memory_error().empty()) {
-    found.Error({MemoryIn(folder)}, "cannot be written: " + fit.memory_error());
+    found.Error("fit.memory_not_writable", {MemoryIn(folder)},
+                "cannot be written: " + fit.memory_error());
     return Fail(found, kFailed);
   }
   if (!fit.input_error().empty()) return FailOfInput(fit);
@@ -149,11 +151,11 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
   return Judge(outcome.verdict);
 }
 
-/// What rank 0 has before it begins: the folder, the memory, nothing asked that is not there.
+/// Preparations of rank 0: the folder, its files in memory, and validated options.
 struct Ready {
   std::unique_ptr<FolderLock> lock;
   std::unique_ptr<Identification> fit;
-  int exit = kOk;  ///< Why it is not ready.
+  int exit = kOk;  ///< Exit status if it is not ready.
 };
 
 Ready Begin(const FitArguments& args, const FitSpec& spec, const std::string& folder, int threads,
@@ -168,7 +170,8 @@ Ready Begin(const FitArguments& args, const FitSpec& spec, const std::string& fo
     return std::move(ready);
   };
   if (args.resume && !fs::exists(MemoryIn(folder), ignored)) {
-    found.Error({MemoryIn(folder)}, "there is nothing to go on from", "without --resume it begins");
+    found.Error("fit.nothing_to_resume", {MemoryIn(folder)}, "there is nothing to go on from",
+                "without --resume it begins");
     return end(kBadInput);
   }
   if (first && !args.check) {
@@ -195,7 +198,7 @@ int Run(const FitArguments& args) {
   const auto cluster = Cluster::Join(found);
   if (!cluster) return Fail(found, kFailed);
   const bool first = cluster->rank() == 0;
-  // The processes of a cluster have a core each, unless told otherwise.
+  // Processes of a cluster use one core each unless `--threads` is given.
   const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
   const auto spec = LoadFit(args.path, *overrides, found);
   const bool passed = first ? Pass(found, args.strict) : Passes(found, args.strict);
@@ -210,8 +213,9 @@ int Run(const FitArguments& args) {
   if (!read) return first ? Fail(found, kBadInput) : kBadInput;
   if (!ready.fit) return ready.exit;
   if (!agree) {
-    if (!first) return kFailed;  // rank 0 says why
-    found.Error({args.path}, "the processes of the cluster have read different fits",
+    if (!first) return kFailed;  // rank 0 prints the reason
+    found.Error("cluster.different_fits", {args.path},
+                "the processes of the cluster have read different fits",
                 "does every machine see the same files, and the same taut?");
     return Fail(found, kFailed);
   }
@@ -223,7 +227,7 @@ int Run(const FitArguments& args) {
     ready.fit->SpreadBy(cluster->Spread(local, &interrupt_asked), cluster->size());
   }
   const int exit = Search(args, *ready.fit, folder);
-  ready.fit.reset();  // the others go home before the cluster ends
+  ready.fit.reset();  // releases the other processes before the cluster ends
   return exit;
 }
 

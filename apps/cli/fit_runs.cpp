@@ -1,3 +1,4 @@
+// Runs of each experiment before and after a fit, for the viewer.
 #include "fit_runs.h"
 
 #include <filesystem>
@@ -14,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Writes one of the two. A run that fails, as one that blows up, is there to be looked at, too.
+/// Writes one of the two runs. A run that fails, for example by divergence, is written too, for
+/// inspection.
 bool WriteOne(const Identification& fit, std::size_t e, const ExperimentSpec& experiment,
               const std::string& folder, Diagnostics& out) {
   if (fit.spec().experiments[e].forward != FitForward::kDynamic) {
@@ -33,7 +35,8 @@ std::optional<std::vector<std::string>> WriteBeforeAndAfter(const Identification
                                                             const std::string& folder,
                                                             Diagnostics& out) {
   std::vector<std::string> reports;
-  std::string no_pages;  // without pages there is no report, but the runs can be viewed
+  std::string
+      no_pages;  // without the viewer's pages there is no report, but the runs can be viewed
   const bool pages = viewer::FindWebFolder(no_pages).has_value();
   for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
     const FitExperiment& one = fit.spec().experiments[e];

@@ -1,4 +1,4 @@
-/// What a fit leaves to look at: each experiment before and after.
+/// Runs of each experiment before and after a fit, for the viewer.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,11 @@
 
 namespace taut::cli {
 
-/// For each experiment of a fit, whose fitted ones (`fitted_NAME.yaml`) are in `folder` already,
-/// the folders `untuned_NAME` and `fitted_NAME` there, as runs, and in the latter a report of both
-/// where the viewer's pages are there to make it. The paths of these reports from `folder`, empty
-/// without one; nothing and a complaint if a run cannot be written or was interrupted.
+/// Writes for each experiment the runs `untuned_NAME` and `fitted_NAME` in `folder`, and in the
+/// latter a report of both if the viewer's pages are installed. The fitted experiments
+/// (`fitted_NAME.yaml`) must exist in `folder`. Returns the paths of these reports relative to
+/// `folder`, empty without one; nothing, with an error in `out`, if a run cannot be written or was
+/// interrupted.
 std::optional<std::vector<std::string>> WriteBeforeAndAfter(const Identification& fit,
                                                             const std::string& folder,
                                                             Diagnostics& out);

@@ -1,3 +1,4 @@
+// Command `taut gait`: creation, inspection and conversion of gaits.
 #include <fmt/format.h>
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// Gaits and oscillator networks as tables, JSON and SVG.
 #include "gait_report.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 namespace taut::cli {
 namespace {
 
-constexpr int kLargestMatrix = 24;  // oscillators that fit a terminal
+constexpr int kLargestMatrix = 24;  // number of oscillators that fits a terminal
 
 std::string Name(const RobotSpec& robot, const CouplingGraph& graph, int oscillator) {
   const int cable = graph.cables[static_cast<std::size_t>(oscillator)];
@@ -45,7 +46,8 @@ std::string Matrix(const RobotSpec& robot, const CouplingGraph& graph, int width
   return out + '\n';
 }
 
-/// "outer_top_2" is on joint 2. Cables without a number are all on one.
+/// Returns the number of the joint: "outer_top_2" is on joint 2. Cables without a number share one
+/// joint.
 int Joint(const std::string& name) {
   const std::size_t bar = name.rfind('_');
   int joint = 0;

@@ -1,4 +1,4 @@
-/// Gaits and the networks of their oscillators, for people, programs and pages.
+/// Gaits and their oscillator networks as tables, JSON and SVG.
 #pragma once
 
 #include <string>
@@ -8,17 +8,18 @@
 
 namespace taut::cli {
 
-/// Every number of a gait by name: one line each, and as a JSON list.
+/// Returns every number of a gait with its name: as one line each, and as a JSON list.
 std::string GaitTable(GaitSpec& gait);
 std::string GaitJson(GaitSpec& gait);
 
-/// Counts, who is coupled to how many, the groups, and for small networks the whole matrix.
+/// Formats the counts, the couplings per oscillator, the groups, and for small networks the whole
+/// matrix.
 std::string CouplingTables(const RobotSpec& robot, const CouplingGraph& graph);
 
-/// The same facts for programs: every coupling with its cables and its group.
+/// Returns the same facts as JSON: every coupling with its cables and its group.
 std::string CouplingJson(const RobotSpec& robot, const CouplingGraph& graph);
 
-/// A drawing: a ring of oscillators a joint, a line a coupled pair.
+/// Draws the network: one ring of oscillators per joint, one line per coupled pair.
 std::string CouplingSvg(const RobotSpec& robot, const CouplingGraph& graph);
 
 }  // namespace taut::cli

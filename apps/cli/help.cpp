@@ -1,3 +1,4 @@
+// Command `taut help`: help texts, manual page and shell completions.
 #include <fmt/format.h>
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// `taut import`: robots of other programs as models of taut.
+// Command `taut import`: conversion of other programs' robots to taut models.
 #include "import.h"
 
 #include <cstdlib>
@@ -41,7 +41,8 @@ class TemporaryFolder {
 void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
                    Diagnostics& out) {
   const auto not_checked = [&](const std::string& why) {
-    out.Warning({imported_file, 0, 0}, "cannot check the model: " + why, "run `taut check`");
+    out.Warning("import.not_checked", {imported_file, 0, 0}, "cannot check the model: " + why,
+                "run `taut check`");
   };
   const TemporaryFolder folder;
   if (folder.path().empty()) return not_checked("no temporary folder");
@@ -53,13 +54,13 @@ void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_fi
     }
   }
   for (const Diagnostic& reason : found.items()) {
-    // Errors in the model have a line. This one is about the temporary file itself.
+    // Errors in the model have a line. This one concerns the temporary file, not its contents.
     if (reason.at.file == path && reason.at.line == 0) {
       not_checked("its temporary file " + reason.what);
       continue;
     }
-    out.Warning({imported_file, 0, 0}, "`taut check` refuses the model: " + reason.what,
-                reason.hint);
+    out.Warning("import.model_refused", {imported_file, 0, 0},
+                "`taut check` refuses the model: " + reason.what, reason.hint);
   }
 }
 

@@ -1,4 +1,4 @@
-/// The commands of `taut import`, each in its file, and a line in import.cpp.
+/// Subcommands of `taut import`. Each has a file of this name, and a line in import.cpp.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@ namespace taut::cli {
 void AddImportMjcf(CLI::App& group, int& exit_code);
 void AddImportNtrt(CLI::App& group, int& exit_code);
 
-/// Warns of each reason for which `taut check` refuses an imported model, at the imported file.
+/// Reports, at the imported file, each reason for which `taut check` would refuse the imported
+/// model, as a warning.
 void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
                    Diagnostics& out);
 

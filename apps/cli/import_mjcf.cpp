@@ -1,3 +1,4 @@
+// `taut import mjcf`: a MuJoCo model as a taut model.
 #include <fmt/format.h>
 
 #include <cstdio>

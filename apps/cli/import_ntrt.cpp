@@ -1,3 +1,4 @@
+// `taut import ntrt`: an NTRT model as a taut model.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -42,7 +43,8 @@ std::string Report(const NtrtImport& import, const std::string& out) {
   return text;
 }
 
-/// What files do not say, a person can tell from how large the robot would be.
+/// Prints the robot's size in each unit of length, because the files have no unit and a person can
+/// recognize the right one.
 int AskForUnit(const ImportNtrtArguments& args) {
   Diagnostics found;
   const auto import = ImportNtrt(args.path, {1.0, args.like_ntrt, ""}, found);

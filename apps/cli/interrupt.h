@@ -1,5 +1,5 @@
-/// Being asked to stop: by Ctrl-C (SIGINT), by `kill` (SIGTERM), by a terminal that is closed
-/// (SIGHUP; not under nohup). What was done by then is saved.
+/// Interrupt by Ctrl-C (SIGINT), `kill` (SIGTERM), or closing the terminal (SIGHUP; not under
+/// nohup). Commands save the results so far.
 #pragma once
 
 #include <atomic>
@@ -8,7 +8,7 @@ namespace taut::cli {
 
 extern std::atomic<bool> interrupt_asked;
 
-/// From here on such a signal sets `interrupt_asked` and ends nothing.
+/// Installs handlers: such a signal sets `interrupt_asked` and terminates nothing.
 void CatchInterrupts();
 
 }  // namespace taut::cli

@@ -12,7 +12,7 @@ inline nlohmann::ordered_json ToJson(const Vec3& v) {
   return nlohmann::ordered_json::array({v.x, v.y, v.z});
 }
 
-/// null if there is none.
+/// Returns null for no value.
 inline nlohmann::ordered_json ToJson(const std::optional<double>& x) {
   return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json();
 }

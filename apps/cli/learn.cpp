@@ -1,3 +1,4 @@
+// Command `taut learn`: searches for the best parameters of a controller.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -73,7 +74,7 @@ int ListParameters(const LearnArguments& args, const Overrides& overrides) {
   return kOk;
 }
 
-/// What all processes of a cluster must agree on.
+/// Returns the data on which all processes of a cluster must agree.
 std::string Agreed(const StudySpec& study) {
   return std::string(kVersion) + "\n" + StudyText(study) + ResolvedYaml(study.experiment);
 }
@@ -104,7 +105,7 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   const auto cluster = Cluster::Join(found);
   if (!cluster) return Fail(found, kFailed);
   const auto study = LoadStudy(args.path, overrides, found);
-  // The processes of a cluster have a core each, unless told otherwise.
+  // Processes of a cluster use one core each unless `--threads` is given.
   const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
   const bool good = study && CheckStart(study->experiment.robot, study->experiment.start, found);
   const bool passed = cluster->rank() == 0 ? Pass(found, args.strict) : Passes(found, args.strict);
@@ -113,13 +114,14 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   CatchInterrupts();
   const bool agree = cluster->Agree(local ? Agreed(*study) : "");
   if (cluster->rank() > 0) {
-    if (!agree || !local) return local ? kFailed : kBadInput;  // rank 0 says why
+    if (!agree || !local) return local ? kFailed : kBadInput;  // rank 0 prints the reason
     cluster->Serve(*local);
     return kOk;
   }
   if (!local) return Fail(found, kBadInput);
   if (!agree) {
-    found.Error({args.path}, "the processes of the cluster have read different studies",
+    found.Error("cluster.different_studies", {args.path},
+                "the processes of the cluster have read different studies",
                 "does every machine see the same files, and the same taut?");
     return Fail(found, kFailed);
   }

@@ -1,3 +1,4 @@
+// Best results of a study's folder, as table, JSON and replay.
 #include "learn_show.h"
 
 #include <fmt/format.h>
@@ -96,10 +97,11 @@ int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
   }
   if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
     if (study->taut_version == kVersion) {
-      found.Error({folder}, "the replay ends in another state than the logged run",
+      found.Error("replay.different_state", {folder},
+                  "the replay ends in another state than the logged run",
                   "another build of taut can give other numbers");
     } else {
-      found.Warning({folder},
+      found.Warning("replay.different_state", {folder},
                     fmt::format("the replay ends in another state than the run of taut {}",
                                 study->taut_version),
                     fmt::format("numbers of taut {} differ, see CHANGELOG.md", kVersion));
@@ -117,7 +119,7 @@ int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json)
   if (json) {
     nlohmann::json list = nlohmann::json::array();
     for (const Evaluation* evaluation : top) list.push_back(Json(*study, *evaluation));
-    // A text may have been written by anybody; JSON wants UTF-8.
+    // Texts in records may contain invalid UTF-8, which JSON does not allow.
     fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     return kOk;
   }

@@ -1,4 +1,4 @@
-/// What `taut learn` shows of a study's folder.
+/// Output of `taut learn` from a study's folder: best results, replay, damaged records.
 #pragma once
 
 #include <string>
@@ -6,13 +6,14 @@
 
 namespace taut::cli {
 
-/// Runs the winner once more: trace, summary, inputs and report in the folder's best/.
+/// Runs the best candidate once more and writes trace, summary, inputs and report to the folder's
+/// best/.
 int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet);
 
-/// A table (or JSON) of the best `count`.
+/// Prints the best `count` results as a table or JSON.
 int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json);
 
-/// What was damaged and not used, a line each on stderr.
+/// Lists the damaged records that were skipped, one line each, on stderr.
 void WarnOfDamage(const std::string& folder, const std::vector<std::string>& skipped);
 
 }  // namespace taut::cli

@@ -1,3 +1,4 @@
+// Command `taut list`: models, experiments and other files that come with taut.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Entry point of the `taut` command.
 #include <cxxabi.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -23,8 +24,8 @@ namespace {
 
 const std::string kVersionText = std::string("taut ") + kVersion;
 
-/// What all commands and theirs have in common: the version may be asked for anywhere (help texts
-/// name that once), and a flag that takes no value is not given one (CLI11 reads `--csv=3` as yes).
+/// Sets options of all commands and subcommands: `--version` everywhere (listed in the help text of
+/// `taut` only), and no value for flags that take none (CLI11 reads `--csv=3` as yes).
 void SetUpCommands(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
     command->set_version_flag("-V,--version", kVersionText)->group("");
@@ -35,8 +36,8 @@ void SetUpCommands(CLI::App& app) {
   }
 }
 
-/// Where nothing may be thrown, as while an object goes or in a thread, missing memory ends the
-/// program at once. What it had written is as after a kill: complete or declared unfinished.
+/// Terminates the program when memory runs out where exceptions are not allowed, as in destructors
+/// and threads. Its output files are then as after a kill: complete, or marked as unfinished.
 [[noreturn]] void EndAtOnce() {
   const std::type_info* const thrown = abi::__cxa_current_exception_type();
   if (thrown == nullptr || *thrown != typeid(std::bad_alloc)) std::abort();
@@ -97,17 +98,17 @@ int Run(int argc, char** argv) {
   return exit_code;
 }
 
-/// Runs, and says what went wrong where no command could.
+/// Runs the command and reports exceptions that no command handles.
 int RunGuarded(int argc, char** argv) {
   GuardStreams();
   std::set_terminate(EndAtOnce);
-  // A file that reaches a limit of its size is an error of writing, not the end of the program.
+  // Exceeding the file size limit becomes a write error instead of the end of the program.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return FinishOutput(Run(argc, argv));
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "error: not enough memory\n");
-  } catch (const std::system_error& error) {  // threads cannot start
+  } catch (const std::system_error& error) {  // no thread can be started
     fmt::print(stderr, "error: {}\n", error.what());
   }
   return kFailed;

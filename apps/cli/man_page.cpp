@@ -1,3 +1,4 @@
+// Manual page taut(1) in roff.
 #include <fmt/format.h>
 
 #include <sstream>
@@ -8,7 +9,7 @@
 namespace taut::cli {
 namespace {
 
-/// A text as roff reads it: hyphens that can be copied, and no line that is a request.
+/// Escapes a text for roff: hyphens can be copied, and no line is taken as a request.
 std::string Roff(const std::string& text) {
   std::string out;
   if (!text.empty() && (text[0] == '.' || text[0] == '\'')) out = "\\&";
@@ -24,7 +25,7 @@ std::string Roff(const std::string& text) {
   return out;
 }
 
-/// Lines that are indented are shown as they are: examples.
+/// Formats lines; indented lines are examples and keep their layout.
 std::string Lines(const std::string& text) {
   std::string out;
   bool example = false;
@@ -50,7 +51,7 @@ std::string Section(const CommandText& command) {
   std::string out = ".SS " + Roff(UsageLine(command)) + "\n" + Roff(command.what) + "\n";
   for (const WordText& argument : command.arguments) out += Word(argument);
   for (const WordText& flag : command.flags) {
-    if (flag.name != "--help") out += Word(flag);  // it is told once, of taut
+    if (flag.name != "--help") out += Word(flag);  // documented once, for `taut`
   }
   if (!command.more.empty()) out += ".PP\n" + Lines(command.more);
   for (const CommandText& one : command.commands) out += Section(one);

@@ -1,4 +1,4 @@
-/// The page of the manual and the completions of shells, made of the same table as help texts.
+/// Manual page and shell completions, generated from the same description as help texts.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,14 @@
 
 namespace taut::cli {
 
-/// taut(1), for man.
+/// Returns the page taut(1) in roff.
 std::string ManPage(const CommandText& taut);
 
-/// "bash", "zsh", "fish".
+/// Supported shells: "bash", "zsh", "fish".
 const std::vector<std::string>& Shells();
 
-/// What completes commands, flags, choices, files and folders. Nothing: an unknown shell.
+/// Returns a script that completes commands, flags, choices, files and folders; nothing for an
+/// unknown shell.
 std::optional<std::string> Completion(const CommandText& taut, const std::string& shell);
 
 }  // namespace taut::cli

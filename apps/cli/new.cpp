@@ -1,3 +1,4 @@
+// Command `taut new`: files to start from.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -22,7 +23,8 @@ struct NewArguments {
   std::string kind, name, model;
 };
 
-/// A file that comes with taut; what is missing shows when the new file is read.
+/// Returns the path of a file that comes with taut; reading the new file reports it if it is
+/// missing.
 std::string Shipped(const std::string& folder, const std::string& file) {
   return ShippedFolderOf(folder).value_or(folder) + "/" + file;
 }
@@ -32,7 +34,7 @@ std::string Schema(const std::string& kind) {
   return folder ? *folder + "/" + kind + ".schema.json" : "";
 }
 
-/// The text of the new file, and what to do with it.
+/// Returns the text of the new file; `next`: command that uses it.
 std::string Text(const NewArguments& args, std::string& next) {
   const std::string schema = Schema(args.kind);
   if (args.kind == "model") {

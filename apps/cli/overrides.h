@@ -1,4 +1,4 @@
-/// Arguments that several subcommands take.
+/// Arguments and validators common to several subcommands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,23 +13,24 @@
 
 namespace taut::cli {
 
-/// `--set name=value`. Nothing, after a message on stderr, if one is not `name=value`.
+/// Parses `--set name=value`. Returns nothing, after a message on stderr, if one is not
+/// `name=value`.
 std::optional<Overrides> ParseOverrides(const std::vector<std::string>& set);
 
-/// A check of numbers. CLI11's own lets NaN pass and prints 1e-9 as 0.000000.
+/// Returns a validator for numbers. CLI11's own accepts NaN and prints 1e-9 as 0.000000.
 std::function<std::string(const std::string&)> NumberWithin(double least, double most);
 
-/// The same of whole numbers.
+/// Same as `NumberWithin` for integers.
 std::function<std::string(const std::string&)> WholeNumberWithin(std::uint64_t least,
                                                                  std::uint64_t most);
 
-/// A check of words.
+/// Returns a validator for a choice of words.
 std::function<std::string(const std::string&)> OneOf(std::vector<std::string> words);
 
-/// "index|none|segments": how help texts write a choice.
+/// Returns a choice in the form of help texts: "index|none|segments".
 std::string Alternatives(const std::vector<std::string>& words);
 
-/// A flag whose value is one of some words. `words` must outlive the parser.
+/// Adds a flag whose value is one of the words. `words` must outlive the parser.
 template <class T>
 CLI::Option* AddChoice(CLI::App& command, const std::string& flag, T& value,
                        const std::map<std::string, T>& words, const std::string& help) {
@@ -41,7 +42,7 @@ CLI::Option* AddChoice(CLI::App& command, const std::string& flag, T& value,
       ->check(OneOf(names));
 }
 
-/// A check of names.
+/// Validates a name; returns an error message, or an empty string.
 std::string CheckName(const std::string& text);
 
 }  // namespace taut::cli

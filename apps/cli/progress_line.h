@@ -1,4 +1,4 @@
-/// What long work says of itself on stderr.
+/// Progress line on stderr for long commands.
 #pragma once
 
 #include <chrono>
@@ -6,13 +6,13 @@
 
 namespace taut::cli {
 
-/// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
+/// Progress line: rewritten in place on a terminal, printed every ten seconds elsewhere.
 class ProgressLine {
  public:
-  /// `at_once`: the first one needs no waiting for.
+  /// `at_once`: the first line is due immediately.
   ProgressLine(bool quiet, bool at_once);
 
-  /// Whether it is time for another.
+  /// Returns whether the next line is due.
   bool Due() const;
   void Show(const std::string& text);
   void Clear() const;

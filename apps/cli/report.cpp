@@ -1,3 +1,4 @@
+// Command `taut report`: report pages of runs.
 #include <fmt/format.h>
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// Connection of the `taut robot` commands to a robot: model, calibration, port, orderly end.
 #include "robot.h"
 
 #include <fmt/format.h>
@@ -94,7 +95,8 @@ std::string DeviceOf(const RobotArguments& args, Diagnostics& out) {
   const auto found = link::VirtualRobot::Find(out);
   if (found) return found->device();
   if (out.ok())
-    out.Error({}, "no virtual robot runs", "`taut robot hold --port virtual` starts one");
+    out.Error("robot.no_virtual_robot", {}, "no virtual robot runs",
+              "`taut robot hold --port virtual` starts one");
   return {};
 }
 
@@ -150,7 +152,7 @@ bool RobotDesk::SetUp(const RobotArguments& args, const ExperimentSpec* experime
   options.motors = static_cast<int>(cables_.size());
   options.cables = cables_;
   options.on_fault = kOnFault.at(args.on_fault);
-  // Where robot and PC are the same machine, a reply that does not come is only late.
+  // A virtual robot runs on the same machine, so that a missing reply is only late.
   if (virtual_robot() != nullptr) options.patience_s = 0.5;
   driver_ = std::make_unique<link::Driver>(*line_->port, options);
   driver_->on_cycle = [this](const link::State& state) { AfterCycle(state); };
@@ -168,7 +170,7 @@ bool RobotDesk::SetUp(const RobotArguments& args, const ExperimentSpec* experime
   if (calibration_) add(link::SettingsFor(*calibration_, robot_));
   if (ours) link::WaitUntil(*line_->port, line_->port->now_s() + kBoot_s);
   if (!driver_->Configure(settings, found)) return false;
-  driver_->Cycle(1);  // what sensors say
+  driver_->Cycle(1);  // sensor readings
   if (ours) {
     for (std::size_t m = 0; m < cables_.size(); ++m) {
       const auto cable = std::find_if(robot_.def.cables.begin(), robot_.def.cables.end(),
@@ -247,7 +249,8 @@ std::optional<int> RobotDesk::MotorOf(const std::string& cable) const {
 std::optional<int> RobotDesk::MotorOf(const std::string& cable, Diagnostics& out) const {
   const auto motor = MotorOf(cable);
   if (!motor) {
-    out.Error({}, "there is no actuated cable \"" + cable + "\"", DidYouMean(cable, cables_));
+    out.Error("cable.not_actuated", {}, "there is no actuated cable \"" + cable + "\"",
+              DidYouMean(cable, cables_));
   }
   return motor;
 }
@@ -288,7 +291,7 @@ void RobotDesk::RunWhile(const std::function<bool()>& go_on) {
 bool RobotDesk::ClearFaults(Diagnostics& out) {
   driver_->ClearFaults();
   driver_->Cycle(3);
-  if (!driver_->state().link.connected) out.Error({}, "the adapter is gone");
+  if (!driver_->state().link.connected) out.Error("adapter.lost", {}, "the adapter is gone");
   return out.ok();
 }
 

@@ -1,4 +1,4 @@
-/// `taut robot`: what its commands have in common.
+/// Common parts of the commands of `taut robot`: arguments, connection, orderly end.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,46 +21,46 @@
 namespace taut::cli {
 
 struct RobotArguments {
-  std::string port = "/dev/ttyACM0";  ///< "virtual": an emulated one.
-  std::string model;                  ///< Empty: Tetraspine3 with motors, as it comes with taut.
+  std::string port = "/dev/ttyACM0";  ///< "virtual": an emulated robot.
+  std::string model;                  ///< Empty: the Tetraspine3 with motors that comes with taut.
   std::string calibration;
-  std::vector<std::string> set;  ///< Parameters of model and experiment.
+  std::vector<std::string> set;  ///< Overrides of parameters of the model and the experiment.
   int encoder_lines = 16;
   std::string on_fault = "hold";
   bool clear_faults = false, dry_run = false, json = false, quiet = false;
 };
 
-/// Flags of the robot commands.
+/// Adds the flags common to all robot commands.
 void AddPort(CLI::App& command, RobotArguments& args);
 void AddModelFile(CLI::App& command, RobotArguments& args);
-/// The model file and its parameters.
+/// Adds the flags of the model file and its parameters.
 void AddModel(CLI::App& command, RobotArguments& args);
 void AddCalibration(CLI::App& command, RobotArguments& args);
-/// Flags of commands that give motors power.
+/// Adds the flags of commands that power motors.
 void AddDriving(CLI::App& command, RobotArguments& args);
 void AddJson(CLI::App& command, RobotArguments& args);
 
-/// A robot's port, which is this command's alone while it lives.
+/// Port of a robot, held exclusively during its lifetime.
 struct RobotLine {
-  /// Where no virtual robot runs yet, `virtual_words` say with which experiment or model to start
-  /// one. Nothing and a complaint if there is no port to be had.
+  /// Opens the port. If no virtual robot runs yet, `virtual_words` contain the experiment or model
+  /// to start one with. Returns nothing, with an error in `out`, if no port is available.
   static std::optional<RobotLine> Open(const RobotArguments& args,
                                        std::vector<std::string> virtual_words, Diagnostics& out);
 
-  std::unique_ptr<link::VirtualRobot> virtual_robot;  ///< Null: a real one.
+  std::unique_ptr<link::VirtualRobot> virtual_robot;  ///< Null for a real robot.
   std::string device;
   std::unique_ptr<link::Port> port;
   std::unique_ptr<link::StopListener> stops;
 };
 
-/// A robot that this command alone drives. Ctrl-C and `taut robot estop` stop its motors, whatever
-/// the command is about.
+/// A robot under exclusive control of this command. Ctrl-C and `taut robot estop` stop its motors
+/// in any state of the command.
 class RobotDesk {
  public:
-  /// Reads model and calibration, opens the port, asks the boards and sets `settings` on them.
-  /// `experiment`: instead of the model. Null, after messages on stderr: `exit` says how to end. A
-  /// virtual robot that was started for it begins well: set as its model says, references set, no
-  /// faults.
+  /// Reads model and calibration, opens the port, queries the boards and sends them their settings.
+  /// `experiment`: replaces the model. Returns null after messages on stderr; then `exit` is the
+  /// status. A virtual robot that was started for this command begins ready: settings from its
+  /// model, references set, no faults.
   static std::unique_ptr<RobotDesk> Open(const RobotArguments& args,
                                          const ExperimentSpec* experiment, int& exit);
   ~RobotDesk();
@@ -69,10 +69,10 @@ class RobotDesk {
   const RobotSpec& robot() const { return robot_; }
   const std::vector<std::string>& cables() const { return cables_; }
   std::optional<int> MotorOf(const std::string& cable) const;
-  /// The same; a complaint if no motor has that cable.
+  /// Same, with an error in `out` if no motor has this cable.
   std::optional<int> MotorOf(const std::string& cable, Diagnostics& out) const;
   const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
-  /// Whether an interrupt or a stop request has arrived; the motors stop.
+  /// Returns whether an interrupt or a stop request has arrived; the motors stop.
   bool stop_asked() const { return stop_asked_; }
   /// Polls for an interrupt or a stop request: for loops that may run without cycles.
   bool LookForStop();
@@ -89,7 +89,8 @@ class RobotDesk {
   /// Calls End and, if all boards confirmed, prints "Motors are off." as the last line of stdout.
   bool EndAndReport(bool quiet);
 
-  /// After each cycle, and what happens; also where `taut robot` prints it.
+  /// `on_cycle` is called after each cycle; `on_event` at each event, which `taut robot` also
+  /// prints.
   std::function<void(const link::State&)> on_cycle;
   std::function<void(double time_s, const std::string& text)> on_event;
 
@@ -112,14 +113,14 @@ class RobotDesk {
   std::optional<link::PowerReport> power_;
 };
 
-/// The device behind `--port`, where somebody may drive it already: for those who only stop it.
-/// Empty and a complaint if there is none.
+/// Returns the device of `--port` for commands that only stop it, even if another program drives
+/// it. Empty, with an error in `out`, if there is none.
 std::string DeviceOf(const RobotArguments& args, Diagnostics& out);
 
-/// The model that `--model` means.
+/// Returns the path of the model of `--model`.
 std::string ModelPath(const RobotArguments& args);
 
-// Each adds one command to `taut robot`.
+// Each function adds one command to `taut robot`.
 void AddRobotScan(CLI::App& robot, int& exit_code);
 void AddRobotStatus(CLI::App& robot, int& exit_code);
 void AddRobotRun(CLI::App& robot, int& exit_code);

@@ -1,5 +1,5 @@
-// taut robot calibrate: what a count is worth, from what somebody hangs on a cable or measures of
-// it.
+// `taut robot calibrate`: scales of load cells and encoders, from weights hung on a cable or
+// lengths measured by hand.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace taut::cli {
 namespace {
 
-/// Of a reading: at 100 a second.
+/// Number of readings of a measurement, at 100 per second.
 constexpr int kReadings = 100;
 /// Timeout; a hundred readings take 1 s.
 constexpr double kPatience_s = 5;
@@ -33,7 +33,7 @@ struct Mean {
   double value = 0, deviation = 0;
 };
 
-/// A line from a person. False: there is nobody, or Ctrl-C.
+/// Waits for a line from the user. Returns false at the end of input or after Ctrl-C.
 bool WaitForPerson(const std::string& text) {
   fmt::print("{} Then press Enter. ", text);
   std::fflush(stdout);
@@ -41,7 +41,7 @@ bool WaitForPerson(const std::string& text) {
   return static_cast<bool>(std::getline(std::cin, line)) && !interrupt_asked;
 }
 
-/// Readings of the load cell [counts]. False: it was broken off, or the board is gone.
+/// Reads the load cell [counts]. Returns false after an interrupt or if the board is gone.
 bool ReadLoadCell(RobotDesk& desk, int motor, Mean& out) {
   const link::MotorFigures& figures = desk.driver().figures(motor);
   std::vector<double> counts;
@@ -81,7 +81,8 @@ std::string Today() {
   return {text, std::strftime(text, sizeof text, "%Y-%m-%d", &parts)};
 }
 
-/// Puts what was measured into the file: beside what it had of other cables, and of this one.
+/// Merges the measurement into the calibration file; values of other cables, and other values of
+/// this cable, are kept.
 int Keep(const CalibrateArguments& args, const RobotDesk& desk, const CableCalibration& measured) {
   Diagnostics found;
   Calibration all;
@@ -181,7 +182,7 @@ int Encoder(const CalibrateArguments& args) {
   };
   if (!WaitForPerson(fmt::format("Mark the cable {} where it enters.", args.cable))) return kFailed;
   const auto before = counts();
-  // The board's count is of 16 bits: it has to be followed on the way.
+  // The board counts in 16 bits: the driver must follow the count to unwrap it.
   if (!WaitForPerson(
           fmt::format("Wind in {:g} m by hand, within what 32 767 counts are.", args.way_m))) {
     return kFailed;

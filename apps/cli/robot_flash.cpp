@@ -1,4 +1,4 @@
-// taut robot flash: the firmware into a board, by avrdude.
+// `taut robot flash`: writes firmware and identity into a board with avrdude.
 #include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,7 +22,8 @@ struct FlashArguments {
   bool fuses = false, keep_identity = false, dry_run = false;
 };
 
-/// That of --hex, of the installed taut, or of the tree that it was built in.
+/// Returns the path of the firmware: `--hex`, or else the file of the installed taut or of the
+/// build tree.
 std::string HexPath(const FlashArguments& args) {
   if (!args.hex.empty()) return args.hex;
   return FindBesideProgram({"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex"})
@@ -33,7 +34,7 @@ std::vector<std::string> Words(const FlashArguments& args, const std::string& he
   std::vector<std::string> words{"avrdude",       "-p", "atmega328p", "-c",
                                  args.programmer, "-P", args.port};
   if (args.programmer == "arduino") words.insert(words.end(), {"-b", std::to_string(args.baud)});
-  // Before the program: a chip without an identity never drives anything.
+  // Before the program: a chip without identity never powers a motor.
   if (args.fuses) words.insert(words.end(), {"-U", "efuse:w:0xFC:m"});
   words.insert(words.end(), {"-U", "flash:w:" + hex + ":i"});
   if (!args.keep_identity) {
@@ -47,12 +48,13 @@ int Flash(const FlashArguments& args) {
   const std::string hex = HexPath(args);
   std::error_code error;
   if (hex.empty() || !fs::is_regular_file(hex, error)) {
-    found.Error({hex.empty() ? "firmware" : hex}, "there is no such firmware",
+    found.Error("firmware.unknown", {hex.empty() ? "firmware" : hex}, "there is no such firmware",
                 "it is built where avr-g++ is (docs/hardware/firmware.md), or --hex names one");
     return Fail(found, kBadInput);
   }
   if (args.fuses && args.programmer == "arduino") {
-    found.Error({}, "a bootloader cannot set fuses", "--programmer usbasp or the like");
+    found.Error("firmware.bootloader_sets_no_fuses", {}, "a bootloader cannot set fuses",
+                "--programmer usbasp or the like");
     return Fail(found, kBadInput);
   }
   std::vector<std::string> words = Words(args, hex);
@@ -71,11 +73,13 @@ int Flash(const FlashArguments& args) {
   }
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    found.Error({}, "avrdude did not end well");
+    found.Error("firmware.avrdude_failed", {}, "avrdude did not end well");
   } else if (WEXITSTATUS(status) == 127) {
-    found.Error({}, "there is no avrdude", "Debian's package avrdude has it");
+    found.Error("firmware.avrdude_missing", {}, "there is no avrdude",
+                "Debian's package avrdude has it");
   } else if (WEXITSTATUS(status) != 0) {
-    found.Error({}, fmt::format("avrdude failed with {}", WEXITSTATUS(status)),
+    found.Error("firmware.avrdude_failed", {},
+                fmt::format("avrdude failed with {}", WEXITSTATUS(status)),
                 "is it this port, and does nobody else have it open?");
   }
   if (!found.ok()) return Fail(found, kFailed);

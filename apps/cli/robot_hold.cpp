@@ -1,4 +1,4 @@
-// taut robot hold, release, estop, log: power, no power, and looking on.
+// `taut robot hold`, `release`, `estop`, `log`: power the motors, remove power, stop, record.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -14,9 +14,9 @@
 namespace taut::cli {
 namespace {
 
-/// Between two lines about how it is.
+/// Interval of status lines [s].
 constexpr double kReport_s = 1.0;
-/// Timeout of a stop request; the driving program waits for its boards' confirmation.
+/// Timeout of a stop request [s]; the driving program waits for its boards' confirmation.
 constexpr double kStopPatience_s = 0.9;
 constexpr double kHoldConfirm_s = 0.5;
 constexpr int kStops = 3;
@@ -84,7 +84,8 @@ int Release(const RobotArguments& args) {
   return kOk;
 }
 
-/// Straight at the bus, whoever drives: his frames may be lost by it, and his boards stop.
+/// Sends stop frames directly on the bus, even if another program drives it: frames of that program
+/// may be lost, and its boards stop.
 int StopDirectly(const std::string& device, int boards) {
   Diagnostics found;
   const auto port = link::OpenSerialPort(device, link::PortUse::kStop, found);

@@ -1,4 +1,4 @@
-// taut robot scan, status: what is there and how it is. Nothing moves.
+// `taut robot scan`, `status`: devices on the bus and their state, without motion.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 struct Found {
   int address = 0;
-  std::optional<board::Info> info;  ///< If it speaks as a board does.
+  std::optional<board::Info> info;  ///< If it answers as a board.
 };
 
 Json InfoJson(const board::Info& info) {
@@ -26,7 +26,7 @@ Json InfoJson(const board::Info& info) {
           {"boots", info.nonce}};
 }
 
-/// The adapter, and all that acknowledges an address.
+/// Prints the adapter and all addresses that acknowledge.
 int Scan(const RobotArguments& args) {
   Diagnostics found;
   const auto line = RobotLine::Open(args, {"--model", ModelPath(args)}, found);
@@ -35,12 +35,12 @@ int Scan(const RobotArguments& args) {
   link::UsbIss adapter(*line->port);
   const auto info = adapter.Identify();
   if (!info || !adapter.SetMode()) {
-    found.Error({device}, "nothing answers as a USB-ISS does");
+    found.Error("adapter.no_answer", {device}, "nothing answers as a USB-ISS does");
     return Fail(found, kFailed);
   }
   link::Requests requests(adapter);
   std::vector<Found> all;
-  // Others are reserved by the bus's specification.
+  // The I2C specification reserves the other addresses.
   for (int address = 0x08; address <= 0x77; ++address) {
     if (!adapter.Test(static_cast<std::uint8_t>(address))) continue;
     Found one{address, std::nullopt};
@@ -120,7 +120,7 @@ int Status(const RobotArguments& args) {
   const auto desk = RobotDesk::Open(args, nullptr, exit);
   if (!desk) return exit;
   link::Driver& driver = desk->driver();
-  // The byte that says faults and temperatures has its turn every sixteenth cycle.
+  // The status byte with faults and temperatures is multiplexed: its turn is every sixteenth cycle.
   driver.Cycle(board::kMores + 2);
   const link::State state = driver.state();
   Diagnostics found;

@@ -1,4 +1,4 @@
-/// What a command of `taut robot` leaves in a folder.
+/// Files of a `taut robot` command: trace and events.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace taut::cli {
 
-/// A row a cycle into a trace, what happens into events.jsonl beside it.
+/// Records one trace row per cycle, and the events in events.jsonl.
 class RobotRecording {
  public:
-  /// Null and a complaint if the files cannot be made. Times count from `begun_s` of the driver's
-  /// clock.
+  /// Creates the files. Returns null, with an error in `out`, on failure. Times count from
+  /// `begun_s` on the driver's clock.
   static std::unique_ptr<RobotRecording> Start(const std::string& trace_path,
                                                const std::string& events_path,
                                                const std::vector<std::string>& cables,
@@ -23,7 +23,7 @@ class RobotRecording {
   void BeginAt(double time_s) { begun_s_ = time_s; }
   void Take(const link::State& state);
   void Event(double time_s, const std::string& text);
-  /// False and a complaint if anything of it could not be written.
+  /// Returns false, with an error in `out`, if not everything could be written.
   bool Finish(Diagnostics& out);
   std::int64_t rows() const { return rows_; }
 

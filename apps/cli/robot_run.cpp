@@ -1,4 +1,4 @@
-// taut robot run: an experiment on a robot, in real time.
+// `taut robot run`: an experiment on a robot, in real time.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -84,8 +84,8 @@ int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& exper
   metadata.emplace_back(kRunIdKey, folder.id());
   metadata.emplace_back("plant", "robot at " + args.port);
   if (!args.calibration.empty()) metadata.emplace_back("calibration", args.calibration);
-  // All that takes time comes before motors have power, or is done behind: boards that hear nothing
-  // for 0.1 s give up. So power comes with the first step.
+  // All slow work comes before the motors have power, or in another thread: boards time out after
+  // 0.1 s without a command. Therefore power comes with the first step.
   const std::vector<ChannelInfo> channels = RunChannels(experiment, &plant);
   auto trace = CreateHdf5Trace(folder.Path("trace.h5"), channels, metadata, found);
   if (!trace || !folder.Prepare(ResolvedYaml(experiment), found) || !folder.Begin(found)) {
@@ -105,7 +105,7 @@ int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& exper
       shown_s = progress.time_s;
       ShowProgress(progress, driver.state(), terminal);
     }
-    // Without an adapter there are no cycles.
+    // No cycles run without an adapter.
     if (view && !driver.state().link.connected) view->AfterCycle(driver.state());
     return !desk.LookForStop();
   };

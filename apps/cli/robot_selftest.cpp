@@ -1,4 +1,4 @@
-// taut robot selftest: whether boards, sensors and, if asked for, motors do what they should.
+// `taut robot selftest`: checks of boards, sensors and, on request, motors.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct SelftestArguments : RobotArguments {
   double duty = 0.5, time_s = 0.1;
 };
 
-// Of the converter: what an amplifier at an end of its range shows.
+// Converter readings of an amplifier at the limits of its range.
 constexpr double kLeast_counts = 3, kMost_counts = 734;
 constexpr int kLeastMove_counts = 5;
 
@@ -61,7 +61,7 @@ void LookAtSensors(RobotDesk& desk, std::vector<Finding>& findings) {
   }
 }
 
-/// Each motor in turn winds in for a moment, and back; all others brake.
+/// Winds each motor in for a moment, and back, in turn; all others brake.
 bool MoveMotors(RobotDesk& desk, const SelftestArguments& args, std::vector<Finding>& findings,
                 Diagnostics& found) {
   link::Driver& driver = desk.driver();
@@ -91,8 +91,9 @@ bool MoveMotors(RobotDesk& desk, const SelftestArguments& args, std::vector<Find
          fmt::format("wound in {} counts, {:+.2f} N; out {} counts", in, after_n - before_n, -out),
          in >= kLeastMove_counts && out <= -kLeastMove_counts});
     if (driver.state().stage != link::Stage::kActive) {
-      found.Error({}, "the robot stopped while " + desk.cables()[static_cast<std::size_t>(m)] +
-                          " was moved");
+      found.Error(
+          "robot.stopped", {},
+          "the robot stopped while " + desk.cables()[static_cast<std::size_t>(m)] + " was moved");
       return false;
     }
   }

@@ -1,4 +1,4 @@
-// taut robot set, reference: what boards keep.
+// `taut robot set`, `reference`: values stored in the boards.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct SetArguments : RobotArguments {
   bool store = false, defaults = false;
 };
 
-/// The motors that are meant: all where none is named.
+/// Returns the motors of the named cables; all motors if none is named.
 std::vector<int> MotorsOf(const RobotDesk& desk, const std::vector<std::string>& cables,
                           Diagnostics& out) {
   std::vector<int> motors;
@@ -66,7 +66,7 @@ int List(RobotDesk& desk, const std::vector<int>& motors, bool json, Diagnostics
   return kOk;
 }
 
-/// One action of all boards, with the boots that they had when they were asked who they are.
+/// Sends one action to all boards, with their boot numbers from the identification.
 bool DoOnAll(RobotDesk& desk, board::Action action, Diagnostics& found) {
   link::Driver& driver = desk.driver();
   for (std::size_t b = 0; b < driver.state().boards.size(); ++b) {
@@ -109,7 +109,7 @@ int Set(const SetArguments& args) {
       if (!desk->driver().requests().Set(setting, found)) return Fail(found, kFailed);
       const auto read = desk->driver().requests().Get(setting.place, found);
       if (!read || *read != setting.value) {
-        found.Error({}, "a board does not keep what it was told");
+        found.Error("board.setting_not_kept", {}, "a board does not keep what it was told");
         return Fail(found, kFailed);
       }
       ++done;
@@ -124,7 +124,7 @@ int Set(const SetArguments& args) {
   return kOk;
 }
 
-/// "outer_top_1=0.24" of `reference`.
+/// One argument of `reference`, such as "outer_top_1=0.24".
 struct ReferenceText {
   std::string cable;
   double rest_length_m = 0;
@@ -139,7 +139,8 @@ std::optional<ReferenceText> ParseReference(const std::string& text, Diagnostics
                     std::from_chars(number, end, reference.rest_length_m).ptr == end &&
                     reference.rest_length_m >= 0 && reference.rest_length_m <= 2;
   if (good) return reference;
-  out.Error({}, text + ": not of the form CABLE=REST_LENGTH_M", "as outer_top_1=0.24, 0 to 2 m");
+  out.Error("robot.bad_reference", {}, text + ": not of the form CABLE=REST_LENGTH_M",
+            "as outer_top_1=0.24, 0 to 2 m");
   return std::nullopt;
 }
 
@@ -150,7 +151,8 @@ int Reference(const SetArguments& args, bool as_model) {
     if (const auto one = ParseReference(text, found)) references.push_back(*one);
   }
   if (args.values.empty() && !as_model) {
-    found.Error({}, "nothing to reference", "CABLE=REST_LENGTH_M ..., or --as_model");
+    found.Error("robot.nothing_to_reference", {}, "nothing to reference",
+                "CABLE=REST_LENGTH_M ..., or --as_model");
   }
   if (!found.ok()) return Fail(found, kBadInput);
   if (args.dry_run) {

@@ -1,3 +1,4 @@
+// Robot control page: commands from browsers to the boards, state to the browsers.
 #include "robot_view.h"
 
 #include <fmt/format.h>
@@ -17,14 +18,14 @@ using board::Mode;
 using link::Stage;
 using Kind = viewer::RobotCommand::Kind;
 
-/// Whoever armed and went away leaves nothing armed.
+/// Time after which arming expires [s], so that an abandoned page leaves nothing armed.
 constexpr double kArmed_s = 20;
-/// For boards to obey: a few cycles.
+/// Time for the boards to follow a command [s]: a few cycles.
 constexpr double kObey_s = 0.5;
-/// Each cycle has room for one.
+/// Limit of queued gains; one is sent per cycle.
 constexpr int kMaxGainsUnderWay = 200;
 
-/// What keeps a board from being given power; empty: nothing.
+/// Returns the reason why the boards cannot be powered; empty if they can.
 std::string WhyNotWell(const link::State& state) {
   if (!state.link.connected) return "the adapter is gone";
   if (state.stopping) return "an emergency stop has not been cleared";
@@ -80,7 +81,7 @@ std::unique_ptr<RobotView> RobotView::Open(RobotDesk& desk, const std::string& p
   what.recorder = std::move(options.recorder);
   what.record_at_once = options.record_at_once;
   view->session_ = std::make_shared<viewer::RobotSession>(options.title, std::move(what));
-  options.server.ends_on_signals = false;  // they turn motors off first
+  options.server.ends_on_signals = false;  // the desk turns motors off first
   view->server_ =
       std::make_unique<viewer::Server>(*view->session_, viewer::ReadWebFiles(*web), options.server);
   if (!view->server_->Listen(error)) {
@@ -169,7 +170,7 @@ void RobotView::GivePower(int client, bool impedance, const link::State& state) 
   if (state.stage != Stage::kReady && state.stage != Stage::kActive) {
     return session_->Refuse(client, "arm first: motors get power in two steps");
   }
-  // From any other mode all hold first: then offsets are captured where nothing moves.
+  // From any other mode, hold first: then the offsets are captured at rest.
   if (const std::string why = WhyNotWell(state); !why.empty() || !driver.Go(Mode::kHold)) {
     return session_->Refuse(client, "not enabled: " + (why.empty() ? "boards are not off" : why));
   }
@@ -206,7 +207,7 @@ void RobotView::AskForGain() {
   const auto [motor, gain] = unknown_gains_->back();
   unknown_gains_->pop_back();
   if (!desk_.driver().state().boards[static_cast<std::size_t>(motor / board::kMotors)].there) {
-    unknown_gains_->insert(unknown_gains_->begin(), {motor, gain});  // when it is
+    unknown_gains_->insert(unknown_gains_->begin(), {motor, gain});  // once it is back
     return;
   }
   desk_.driver().Request(motor / board::kMotors, AskingFor(board::Request::kAsk, motor, gain, 0),

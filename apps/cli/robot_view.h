@@ -1,6 +1,6 @@
-/// A page in browsers for a robot that this command drives: `taut view --robot`, `taut robot run
-/// --view`. The thread that drives shows what boards say and does what browsers ask for, between
-/// cycles; the server has a thread of its own.
+/// Browser page for a robot that this command drives: `taut view --robot`, `taut robot run --view`.
+/// Between cycles, the driving thread publishes the boards' state and executes the browsers'
+/// requests; the server has a separate thread.
 #pragma once
 
 #include <memory>
@@ -20,34 +20,35 @@ struct RobotViewOptions {
   std::string title;
   viewer::ServerOptions server;
   bool experiment = false;
-  std::string recording;  ///< The folder that the command itself records into.
+  std::string recording;  ///< Folder of the command's own recording.
   std::unique_ptr<viewer::RobotRecorder> recorder;
   bool record_at_once = false;
 };
 
-/// Whether a page that moves motors may be served there; else says why not.
+/// Returns whether a page that moves motors may be served at this address; otherwise prints the
+/// reason.
 bool IsSafeToServe(const viewer::ServerOptions& options);
 
 class RobotView {
  public:
-  /// Serves, and says where. Null after messages on stderr; `exit` says how to end. The desk
-  /// outlives it.
+  /// Starts the server and prints its address. Returns null after messages on stderr; then `exit`
+  /// is the status. The desk must outlive the view.
   static std::unique_ptr<RobotView> Open(RobotDesk& desk, const std::string& port,
                                          RobotViewOptions options, int& exit);
   ~RobotView();
 
-  /// After each cycle, from within it, and now and then where there is none.
+  /// To be called after each cycle, within its thread, and regularly while there are no cycles.
   void AfterCycle(const link::State& state);
   void Event(double time_s, const std::string& text) { session_->Event(time_s, text); }
   void BeginAt(double time_s) { session_->BeginAt(time_s); }
-  /// Nobody looks any more. False if not all that was to be recorded is there.
+  /// Ends the server. Returns false if the recording is incomplete.
   bool End();
 
  private:
-  /// What was asked for and waits for the boards.
+  /// A request that waits for the boards.
   struct Pending {
     int client = 0;
-    bool impedance = false;  ///< After holding.
+    bool impedance = false;  ///< Mode after holding.
     double until_s = 0;
   };
 
@@ -61,10 +62,10 @@ class RobotView {
 
   RobotDesk& desk_;
   const bool experiment_;
-  /// Shared with answers that boards owe: they may come when nobody looks any more.
+  /// Shared with pending replies of the boards, which may arrive after the view has ended.
   std::shared_ptr<viewer::RobotSession> session_;
   std::shared_ptr<int> gains_under_way_ = std::make_shared<int>(0);
-  /// Motor and gain that no board has said yet; one is asked for in each cycle.
+  /// Motor and gain of values not yet read from a board; one is requested per cycle.
   std::shared_ptr<std::vector<std::pair<int, int>>> unknown_gains_ =
       std::make_shared<std::vector<std::pair<int, int>>>();
   std::unique_ptr<viewer::Server> server_;

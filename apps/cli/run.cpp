@@ -1,3 +1,4 @@
+// Command `taut run`: simulation of an experiment.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -41,7 +42,7 @@ struct RunArguments {
   bool json = false;
 };
 
-/// One line that is rewritten on a terminal, a line every ten seconds elsewhere.
+/// Progress line: rewritten in place on a terminal, printed every ten seconds elsewhere.
 class RunProgressLine {
  public:
   explicit RunProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
@@ -67,7 +68,7 @@ class RunProgressLine {
   double last_s_ = 0;
 };
 
-/// The result beside the trace that the experiment names.
+/// Compares the result with the reference trace of the experiment.
 void CompareWith(const std::string& reference, const std::string& result, bool quiet,
                  Diagnostics& out) {
   const std::optional<Trace> a = ReadTraceOfRun(result, out), b = ReadTraceOfRun(reference, out);
@@ -75,28 +76,30 @@ void CompareWith(const std::string& reference, const std::string& result, bool q
   fmt::print("\n{}", ComparisonTable(Compare(*a, *b, {}), result, reference));
 }
 
-/// Of a replay: the log's, unless somebody wants less.
+/// Returns the duration of a replay: the log's duration, or less on request.
 double DurationOf(const ExperimentSpec& experiment, const Trace& log, bool asked) {
   const double of_log_s = log.time_s.back() - log.time_s.front();
   return asked ? std::min(experiment.duration_s, of_log_s) : of_log_s;
 }
 
-/// What would keep the robot's last pose from being written, before it takes a run to find out.
+/// Checks before the run whether the robot's last pose can be written.
 void CheckFinalPose(const RunArguments& args, const RobotSpec& robot, Diagnostics& out) {
   if (args.final_pose.empty()) return;
   ModelYaml(robot, "", out);
   const fs::path folder = fs::absolute(args.final_pose).parent_path();
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
-    out.Error({args.final_pose, 0, 0}, "cannot write: there is no folder " + folder.string());
+    out.Error("file.no_folder", {args.final_pose, 0, 0},
+              "cannot write: there is no folder " + folder.string());
   }
 }
 
-/// The robot as it is at the end, as a model file. False if there was an error.
+/// Writes the robot in its last pose as a model file. Returns false on an error.
 bool WriteFinalPose(const RunArguments& args, const ExperimentSpec& experiment,
                     const RunSummary& summary, Diagnostics& out) {
   if (summary.status.bits & kStatusNonFinite) {
-    out.Error({}, "the state is no longer finite: no pose was written to " + args.final_pose);
+    out.Error("run.state_not_finite", {},
+              "the state is no longer finite: no pose was written to " + args.final_pose);
     return false;
   }
   const std::string heading = fmt::format(
@@ -122,7 +125,7 @@ int Run(const RunArguments& args) {
   if (args.duration_s >= 0) experiment->duration_s = args.duration_s;
   if (args.has_seed) experiment->seed = args.seed;
 
-  // Before anything is written over an earlier run.
+  // Before any file of an earlier run is overwritten.
   std::optional<Trace> log;
   std::unique_ptr<Plant> plant;
   if (!args.replay.empty()) {
@@ -137,7 +140,7 @@ int Run(const RunArguments& args) {
   CheckFinalPose(args, experiment->robot, found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   if (args.strict && !plant && experiment->start != StartKind::kAsDescribed) {
-    // The run will find it again; by then its folder would have been touched.
+    // The run computes it again, but would have changed its folder before an error.
     if (!FindSettledStart(*experiment, found)) return Fail(found, kFailed);
     if (!Pass(found, true)) return Fail(found, kBadInput);
   }

@@ -1,3 +1,4 @@
+// Command `taut schema`: JSON schemas of the file formats.
 #include "taut/schema.h"
 
 #include <fmt/format.h>

@@ -17,7 +17,7 @@ const std::vector<std::string>& ShippedKinds() {
 std::optional<std::string> ShippedFolderOf(const std::string& kind) {
   const auto shipped = ShippedFolder();
   if (!shipped) return std::nullopt;
-  // share/taut of a build is a link into the source tree: show users the folder itself.
+  // In a build, share/taut is a link into the source tree: messages show the folder itself.
   std::error_code failed;
   const fs::path folder = fs::canonical(fs::path(*shipped) / kind, failed);
   return failed ? std::nullopt : std::optional(folder.string());

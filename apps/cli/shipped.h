@@ -1,4 +1,4 @@
-/// The files that come with taut: robots, experiments, gaits, studies, fits.
+/// Files that come with taut: robots, experiments, gaits, studies, fits.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,12 +12,13 @@
 namespace taut::cli {
 
 struct ShippedFile {
-  std::string kind;  ///< A word of `ShippedKinds`.
+  std::string kind;  ///< One of `ShippedKinds`.
   std::string path;
   FileHead head;
 };
 
-/// "models", "experiments", "gaits", "studies", "fits": the folders.
+/// Returns the kinds, which are also their folders: "models", "experiments", "gaits", "studies",
+/// "fits".
 const std::vector<std::string>& ShippedKinds();
 
 /// Returns the folder of a kind: of the installed taut, or of the source tree of a build.
@@ -27,7 +28,7 @@ std::optional<std::string> ShippedFolderOf(const std::string& kind);
 CLI::Option* AddInput(CLI::App& command, const std::string& name, std::string& path,
                       const std::string& meaning);
 
-/// The files of a kind, by name.
+/// Returns the files of a kind, sorted by name.
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out);
 
 }  // namespace taut::cli

@@ -1,4 +1,5 @@
-// `taut size`: what a run asks of motors and springs, and which of a catalogue bear it.
+// `taut size`: demands of a run on motors and springs, and components of a catalogue that meet
+// them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ struct SizeArguments {
   bool json = false, strict = false;
 };
 
-/// Which of the catalogue go with a cable, in the catalogue's order.
+/// Suitability of the catalogue's components for a cable, in the order of the catalogue.
 struct Choice {
   const CableDemand* cable;
   std::vector<Fit> motors, springs;
@@ -75,7 +76,7 @@ std::string DemandTable(const RunDemand& run) {
   return table.Text();
 }
 
-/// A column each, with the smallest factor and what it is of.
+/// Formats one column per component: the smallest safety factor and its quantity.
 std::string FitTable(const std::vector<Choice>& choices, std::vector<Fit> Choice::*fits) {
   std::vector<std::string> head{"cable"};
   for (const Choice& choice : choices) {
@@ -96,7 +97,7 @@ std::string FitTable(const std::vector<Choice>& choices, std::vector<Fit> Choice
   return table.Text();
 }
 
-/// Names of what fits every cable that asks for one.
+/// Returns the names of components that suit every cable that needs one.
 std::vector<std::string> FitAll(const std::vector<Choice>& choices, std::vector<Fit> Choice::*fits,
                                 std::size_t count) {
   std::vector<std::string> names;
@@ -113,7 +114,7 @@ std::vector<std::string> FitAll(const std::vector<Choice>& choices, std::vector<
   return names;
 }
 
-/// Cables that something of the catalogue is for, and for which nothing of it will do.
+/// Returns the cables that need a component and for which the catalogue has none.
 std::vector<std::string> Without(const std::vector<Choice>& choices,
                                  std::vector<Fit> Choice::*fits) {
   std::vector<std::string> names;
@@ -181,12 +182,13 @@ std::string SizeJson(const RunDemand& run, const Catalogue* catalogue,
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-/// That every motor has a spool.
+/// Checks that every motor has a spool.
 bool HaveSpools(const SizeArguments& args, const Catalogue& catalogue, Diagnostics& out) {
   if (args.spool_radius_m) return true;
   for (const CatalogueMotor& motor : catalogue.motors) {
     if (motor.spool_radius_m) continue;
-    out.Error({args.catalogue, 0, 0}, "motor " + motor.name + " has no spool_radius_m",
+    out.Error("catalogue.motor_without_spool", {args.catalogue, 0, 0},
+              "motor " + motor.name + " has no spool_radius_m",
               "give it one, or all: --spool_radius_m");
   }
   return out.ok();
@@ -202,7 +204,7 @@ int Size(const SizeArguments& args) {
   const auto run = DemandOfRun(args.folder, found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   if (catalogue) {
-    // Who fits is named lightest first.
+    // Lists suitable components with the lightest first.
     std::stable_sort(catalogue->motors.begin(), catalogue->motors.end(),
                      [](const CatalogueMotor& a, const CatalogueMotor& b) {
                        return a.mass_kg.value_or(INFINITY) < b.mass_kg.value_or(INFINITY);

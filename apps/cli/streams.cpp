@@ -17,20 +17,20 @@ namespace {
 
 struct Stream {
   int descriptor;
-  int error = 0;  ///< The first; 0: all that was printed has arrived.
+  int error = 0;  ///< First error number; 0: all output was written.
 };
 
 Stream output{STDOUT_FILENO}, errors{STDERR_FILENO};
 bool output_is_news = false;
 
-/// Takes all in any case: an error is remembered and is nobody's business until the end.
+/// Accepts all data: an error is stored and reported only at the end.
 ssize_t Put(void* cookie, const char* text, std::size_t size) {
   Stream& stream = *static_cast<Stream*>(cookie);
   for (std::size_t done = 0; done < size;) {
     const ssize_t count = write(stream.descriptor, text + done, size - done);
     if (count >= 0) {
       done += static_cast<std::size_t>(count);
-    } else if (errno == EAGAIN) {  // another program has set the terminal so
+    } else if (errno == EAGAIN) {  // another program has made the terminal non-blocking
       pollfd room{stream.descriptor, POLLOUT, 0};
       poll(&room, 1, -1);
     } else if (errno != EINTR) {
@@ -41,7 +41,7 @@ ssize_t Put(void* cookie, const char* text, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
-/// `mode` as of setvbuf. In want of memory the stream stays what it was.
+/// `mode`: as of setvbuf. Without memory for a new stream, the old one stays.
 void Guard(std::FILE*& file, Stream& stream, int mode) {
   std::FILE* const guarded = fopencookie(&stream, "w", {nullptr, Put, nullptr, nullptr});
   if (guarded == nullptr) return;
@@ -52,11 +52,12 @@ void Guard(std::FILE*& file, Stream& stream, int mode) {
 }  // namespace
 
 void GuardStreams() {
-  // A closed descriptor would be given to the next file that is opened, a trace perhaps, and that
-  // would be printed into. In its place stands one that cannot be written to.
+  // The next file that is opened, perhaps a trace, would get a closed descriptor, and printing
+  // would write into it. A descriptor that cannot be written to takes its place.
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
-    open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // the lowest that is free
+    open("/dev/null",
+         descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // uses the lowest free descriptor
   }
   std::signal(SIGPIPE, SIG_IGN);
   Guard(stdout, output, isatty(STDOUT_FILENO) == 1 ? _IOLBF : _IOFBF);
@@ -68,7 +69,7 @@ void OutputIsNews() { output_is_news = true; }
 int FinishOutput(int exit_code) {
   std::fflush(stdout);
   if (output.error == 0) return exit_code;
-  if (output.error != EPIPE) {  // who has closed a pipe knows
+  if (output.error != EPIPE) {  // closing a pipe early is intentional
     fmt::print(stderr, "{}: standard output cannot be written: {}\n",
                output_is_news ? "warning" : "error", std::strerror(output.error));
   }

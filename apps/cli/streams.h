@@ -1,18 +1,18 @@
-/// Standard output and error of a program that goes on when they are gone: closed, on a full disk,
-/// a pipe that nobody reads. What a command computes does not depend on who listens.
+/// Standard output and error that tolerate failures: closed streams, a full disk, a pipe without
+/// reader. Results of a command do not depend on them.
 #pragma once
 
 namespace taut::cli {
 
-/// To be called before anything is opened or printed. From then on printing never fails or throws.
+/// Must be called before anything is opened or printed. After it, printing never fails or throws.
 void GuardStreams();
 
-/// Says that what this command prints is about files that it writes: if it cannot be printed,
-/// nothing that was asked for is lost.
+/// Declares that the output of this command only describes files that it writes: if it cannot be
+/// printed, no result is lost.
 void OutputIsNews();
 
-/// Prints what is left. The status to end with: `exit_code`, or that of a failure if what was asked
-/// for was to be printed and has not arrived.
+/// Flushes the output. Returns the exit status: `exit_code`, or a failure if the output is the
+/// result and could not be written.
 int FinishOutput(int exit_code);
 
 }  // namespace taut::cli

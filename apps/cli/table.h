@@ -1,4 +1,4 @@
-/// Tables for a terminal.
+/// Text tables for terminals.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace taut::cli {
 
-/// Columns as wide as their widest cell; the first one to the left, the others to the right. A
-/// table of more than 60 rows ends with how many are missing.
+/// Table with columns as wide as their widest cell; the first is aligned left, the others right.
+/// After 60 rows it ends with the number of omitted rows.
 class Table {
  public:
   explicit Table(std::vector<std::string> head) { rows_.push_back(std::move(head)); }
@@ -20,7 +20,7 @@ class Table {
   std::size_t added_ = 0;
 };
 
-/// With so many decimals; what is nothing but round-off is 0, and 0 has no sign.
+/// Formats `x` with `digits` decimals; pure round-off becomes 0, and 0 has no sign.
 std::string Fixed(double x, int digits);
 
 }  // namespace taut::cli

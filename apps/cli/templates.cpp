@@ -1,3 +1,4 @@
+// Templates of files for `taut new`.
 #include "templates.h"
 
 #include <fmt/format.h>
@@ -5,14 +6,14 @@
 namespace taut::cli {
 namespace {
 
-/// What every file begins with.
+/// Returns the head of a file: format, name, schema.
 std::string Head(const std::string& kind, const std::string& name, const std::string& schema) {
   const std::string editor =
       schema.empty() ? "" : "# yaml-language-server: $schema=" + schema + "\n";
   return fmt::format("{0}taut: 1\nkind: {1}\nname: {2}\n", editor, kind, name);
 }
 
-/// A path as YAML reads it, whatever is in it.
+/// Quotes a path for YAML, with any characters.
 std::string Quoted(const std::string& path) {
   std::string out = "'";
   for (const char c : path) out += c == '\'' ? "''" : std::string(1, c);

@@ -1,11 +1,11 @@
-/// Files to start from, which run as they are.
+/// Templates of model, experiment, gait, study and fit files, which run unchanged.
 #pragma once
 
 #include <string>
 
 namespace taut::cli {
 
-/// `schema`: the format's JSON schema, for editors; empty: none. `from`: the model of an
+/// `schema`: path of the format's JSON schema, for editors; empty: none. `from`: the model of an
 /// experiment, the experiment of a study.
 std::string NewModel(const std::string& name, const std::string& schema);
 std::string NewExperiment(const std::string& name, const std::string& schema,

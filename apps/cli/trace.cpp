@@ -1,4 +1,4 @@
-// `taut trace`: recordings.
+// Command `taut trace`: tools for recordings.
 #include "trace.h"
 
 namespace taut::cli {

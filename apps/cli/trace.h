@@ -1,4 +1,4 @@
-/// The commands of `taut trace`, each in its file, and a line in trace.cpp.
+/// Subcommands of `taut trace`. Each has a file of this name, and a line in trace.cpp.
 #pragma once
 
 #include "commands.h"

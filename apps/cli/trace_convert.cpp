@@ -28,7 +28,7 @@ struct ConvertArguments {
   bool quiet = false;
 };
 
-/// The robot that was recorded, from the inputs beside its trace. Nothing if there are none.
+/// Returns the recorded robot, from the inputs in the trace's folder; nothing if there are none.
 std::optional<ModelDef> RobotOf(const std::string& trace, Diagnostics& out) {
   const std::string inputs = BesideTrace(trace, "inputs", ".yaml");
   std::error_code error;
@@ -55,7 +55,8 @@ int Convert(const ConvertArguments& args) {
   if (mcap) robot = RobotOf(path, found);
   if (!found.ok()) return Fail(found, kBadInput);
   if (trace->unfinished) {
-    found.Warning({path, 0, 0}, "was not finished", "what is there is converted");
+    found.Warning("trace.unfinished", {path, 0, 0}, "was not finished",
+                  "what is there is converted");
   }
   Pass(found, false);
 

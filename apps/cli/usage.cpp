@@ -1,3 +1,4 @@
+// Error messages for wrong command lines, with suggestions.
 #include "usage.h"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ std::string Joined(const std::vector<std::string>& words, const char* last) {
   return out;
 }
 
-/// Flags that begin like the word, else the one that looks like it. Empty: none does.
+/// Returns the flags that begin with the word, else the most similar one; empty if there is none.
 std::string MeantFlags(const CommandText& command, std::string word) {
   std::vector<std::string> all, longer;
   for (const WordText& flag : command.flags) all.push_back(flag.name);
@@ -42,7 +43,8 @@ bool IsFlag(const std::string& word) {
          !CLI::detail::lexical_cast(word, number);
 }
 
-/// What a command did not know: a flag, a command of its own, an argument too many. False: nothing.
+/// Explains an unknown flag, an unknown command or an extra argument. Returns false if there is
+/// none.
 bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   const std::vector<std::string> unknown = app.remaining();
   const auto flag = std::find_if(unknown.begin(), unknown.end(), IsFlag);
@@ -66,7 +68,7 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   return true;
 }
 
-/// An argument that has to be there and is not. False: none.
+/// Explains a missing argument. Returns false if there is none.
 bool ExplainMissing(const CLI::App& app, const CommandText& command) {
   if (!command.commands.empty()) {
     fmt::print(stderr, "error: {} needs a command: {}\n", command.name,
@@ -88,8 +90,8 @@ bool ExplainMissing(const CLI::App& app, const CommandText& command) {
   return false;
 }
 
-/// A flag without its value, with one too many, or given twice. `said` is CLI11's message, which
-/// begins with the flag, now and then without its hyphens.
+/// Explains a flag without its value, with an extra value, or given twice. `said`: CLI11's message,
+/// which begins with the flag, sometimes without its hyphens.
 std::string Mismatch(const CommandText& command, const std::string& said) {
   const std::string name = said.substr(0, said.find_first_of(": ="));
   for (const WordText& flag : command.flags) {

@@ -1,17 +1,17 @@
-/// What is wrong with a command line, in words that name what would have been right.
+/// Error messages for wrong command lines, with the correct alternatives.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace taut::cli {
 
-/// The command that was named last: of "taut gait export x" the export.
+/// Returns the last named command: for "taut gait export x" the command `export`.
 const CLI::App& NamedCommand(const CLI::App& app);
 
-/// Says on stderr why `app` did not parse. Returns the exit status.
+/// Explains on stderr why `app` did not parse. Returns the exit status.
 int ExplainUsage(const CLI::App& app, const CLI::ParseError& error);
 
-/// Says that `command` has no command of that name. Returns the exit status.
+/// Reports that `command` has no subcommand `word`. Returns the exit status.
 int NoSuchCommand(const CLI::App& command, const std::string& word);
 
 }  // namespace taut::cli

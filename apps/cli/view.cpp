@@ -1,3 +1,4 @@
+// Command `taut view`: 3D view of live runs, recordings and robots in a browser.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,14 +38,14 @@ struct ViewArguments {
   double speed = 1, step_s = 0;
   bool max = false, settled = false, paused = false;
   viewer::ServerOptions server;
-  ViewRobotArguments robot;  ///< Its `port` empty: no robot.
+  ViewRobotArguments robot;  ///< Its `port` is empty without a robot.
 };
 
 bool IsTrace(const std::string& path) {
   return path.ends_with(".h5") || path.ends_with(".csv") || path.ends_with(".csv.gz");
 }
 
-/// A replay. Nothing: `exit` says how to end.
+/// Creates a replay. Returns null on an error; then `exit` is the status.
 std::unique_ptr<Session> MakeReplay(const ViewArguments& args, int& exit) {
   Diagnostics found;
   auto recorded = viewer::Recorded::Load(args.file, args.compare, found);
@@ -56,7 +57,8 @@ std::unique_ptr<Session> MakeReplay(const ViewArguments& args, int& exit) {
   return nullptr;
 }
 
-/// A live run of an experiment or of a model alone. Nothing: `exit` says how to end.
+/// Creates a live run of an experiment or a model. Returns null on an error; then `exit` is the
+/// status.
 std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   Diagnostics found;
   exit = kUsage;
@@ -89,11 +91,12 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   options.record = viewer::RecordInto(args.out);
   options.tell = Tell;
   auto session = viewer::LiveSession::Create(model ? "model" : "live", experiment, options, found);
-  fmt::print(stderr, "{}", found.Format());  // a start that settles far off is a warning
+  fmt::print(stderr, "{}",
+             found.Format());  // a settled start far from the described pose is only a warning
   return session;
 }
 
-/// A dashboard, where nothing else fits.
+/// Serves the control page of a robot after checking that no other arguments conflict.
 int Dashboard(const ViewArguments& args) {
   if (!args.file.empty() || !args.compare.empty() || args.settled || args.paused || args.max ||
       args.speed != 1 || args.step_s > 0) {

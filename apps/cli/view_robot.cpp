@@ -1,3 +1,4 @@
+// `taut view --robot`: control page of a robot.
 #include "view_robot.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr char kFolder[] = "runs/robot_view";
 
-/// Each recording has a folder of its own: OUT, OUT_2, OUT_3, ...
+/// Recorder with one folder per recording: OUT, OUT_2, OUT_3, ...
 class FolderRecorder final : public viewer::RobotRecorder {
  public:
   FolderRecorder(std::string out, std::vector<std::string> cables, TraceMetadata metadata)
@@ -58,7 +59,8 @@ class FolderRecorder final : public viewer::RobotRecorder {
   }
 
  private:
-  /// What was named is replaced, as by other commands; what was not stays.
+  /// Returns the next folder. A folder named on the command line is replaced, as by other commands;
+  /// all others are kept.
   std::string NextFolder() {
     path_ = out_.empty() ? kFolder : out_;
     const bool named = !out_.empty() && count_++ == 0;
@@ -101,7 +103,7 @@ int ViewRobot(ViewRobotArguments args) {
   desk->on_cycle = [&](const link::State& state) { view->AfterCycle(state); };
   desk->on_event = [&](double time_s, const std::string& text) { view->Event(time_s, text); };
   desk->RunWhile([&] {
-    // Without an adapter there are no cycles; update the page all the same.
+    // No cycles run without an adapter; the page is updated nevertheless.
     if (!driver.state().link.connected) view->AfterCycle(driver.state());
     return true;
   });

@@ -1,4 +1,4 @@
-/// `taut view --robot`: a page to drive a robot from.
+/// Control page of a robot (`taut view --robot`).
 #pragma once
 
 #include <string>
@@ -9,11 +9,12 @@
 namespace taut::cli {
 
 struct ViewRobotArguments : RobotArguments {
-  std::string out;  ///< Empty: records when a browser asks for it.
+  std::string
+      out;  ///< Folder of recordings, which starts at once; empty: a browser starts the recording.
   viewer::ServerOptions server;
 };
 
-/// Until Ctrl-C; the exit status.
+/// Runs until Ctrl-C. Returns the exit status.
 int ViewRobot(ViewRobotArguments args);
 
 }  // namespace taut::cli

@@ -9,7 +9,8 @@
 namespace taut::cli {
 namespace {
 
-/// The token that the environment names, else the random one. One that is easily guessed is none.
+/// Replaces the random token by the environment variable, if set. Returns false if it is too easily
+/// guessed.
 bool TokenOf(const char* variable, std::string& token) {
   const char* named = std::getenv(variable);
   if (named == nullptr || *named == '\0') return true;

@@ -1,4 +1,4 @@
-/// What all commands with a page in a browser have in common: tokens, and where to open it.
+/// Tokens and addresses of commands that serve a page to browsers.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace taut::cli {
 
-/// Tokens that the environment names, else the random ones that stand there. False, after a message
-/// on stderr, if they are no good.
+/// Replaces the random tokens by those in the environment. Returns false, after a message on
+/// stderr, if they are invalid.
 bool TokensOf(viewer::ServerOptions& options);
 
-/// The two addresses, and what is dangerous about them. `ends`: what Ctrl-C does.
+/// Prints the two addresses and a warning about their dangers. `ends`: effect of Ctrl-C.
 void SayAddresses(const std::string& title, const viewer::ServerOptions& options,
                   std::uint16_t port, const std::string& ends);
 
-/// On the terminal, if there still is one.
+/// Prints to the terminal, if there still is one.
 void Tell(const std::string& text);
 
 }  // namespace taut::cli

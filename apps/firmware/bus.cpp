@@ -13,13 +13,14 @@ namespace {
 constexpr uint8_t kListen = 1 << TWINT | 1 << TWEA | 1 << TWEN | 1 << TWIE;
 constexpr uint8_t kLongestTransferTicks = 25;
 
-// Two messages, one of them being filled; the interrupt fills `inbox[filling]`.
+// Two message buffers; the interrupt fills `inbox[filling]`.
 Message inbox[2];
-volatile uint8_t filling, waiting;  // `waiting`: how many are full, 0 .. 2
+volatile uint8_t filling, waiting;  // `waiting`: number of full buffers, 0 to 2
 volatile uint8_t lost;
 volatile bool fill_to_all;
-// Where the next byte goes, and for how many more there is room; a pointer rather than an index
-// costs the interrupt 20 cycles less, which all ticks have that a broadcast meets.
+// Address of the next byte, and the number of bytes that still fit. With a pointer instead of an
+// index the interrupt takes 20 cycles less; a broadcast delays the ticks of all boards by this
+// interrupt.
 uint8_t* volatile fill_at;
 volatile uint8_t fill_room;
 volatile bool dropping;
@@ -52,10 +53,10 @@ void Finish() {
 
 }  // namespace
 
-// Short: SCL stays low while it runs, and all six boards hold it.
+// Must be short: SCL stays low while it runs, which blocks the bus of all six boards.
 ISR(TWI_vect) {
   const uint8_t status = TWSR & TW_NO_INFO;
-  if (status == TW_SR_GCALL_DATA_ACK || status == TW_SR_DATA_ACK) {  // most of all there is
+  if (status == TW_SR_GCALL_DATA_ACK || status == TW_SR_DATA_ACK) {  // the most frequent case
     const uint8_t byte = TWDR;
     const uint8_t room = fill_room;
     if (room != 0) {
@@ -92,7 +93,7 @@ ISR(TWI_vect) {
       TWCR = kListen | 1 << TWSTO;
       in_transfer = false;
       return;
-    default:  // a read that ended, a byte that was not taken
+    default:  // end of a read, or a byte that was not acknowledged
       in_transfer = false;
   }
   TWCR = kListen;
@@ -101,13 +102,13 @@ ISR(TWI_vect) {
 void StartBus(uint8_t address) {
   own_address = address;
   in_transfer = false;
-  TWAR = static_cast<uint8_t>(address << 1 | 1);  // and the general call
+  TWAR = static_cast<uint8_t>(address << 1 | 1);  // lowest bit: answer the general call
   TWCR = kListen;
 }
 
 const Message* NextMessage() {
   if (waiting == 0) return nullptr;
-  // the oldest: of two the one that will be filled next, of one the other
+  // the oldest: `filling` if both buffers are full, else the other one
   return &inbox[waiting == 2 ? filling : filling ^ 1];
 }
 
@@ -125,7 +126,7 @@ uint8_t TakeLost() {
 }
 
 bool Publish(const uint8_t (&frame)[kFrameSize], bool is_reply) {
-  // the one that is neither published nor, then, being sent: sending can only be what was published
+  // the frame that is not published; it can be in transmission only if it was published before
   const uint8_t next = published ^ 1;
   bool busy = false;
   ATOMIC_BLOCK(ATOMIC_FORCEON) { busy = in_transfer && sending == next && sent < kFrameSize; }

@@ -1,4 +1,4 @@
-// The board's side of the bus: an I2C slave that hears the general call.
+// I2C slave of a motor board, with general call (broadcast).
 #pragma once
 
 #include <stddef.h>
@@ -7,24 +7,25 @@
 #include "taut/board/protocol.h"
 
 struct Message {
-  // One more than a message may have: one that is too long is seen to be.
+  // One byte more than the longest valid message, so that a longer one is detected.
   uint8_t bytes[taut::board::kMaxMessageSize + 1];
   uint8_t size;
   bool to_all;
 };
 
 void StartBus(uint8_t address);
-// The oldest message that waits; null: none. To be given back by `DropMessage`.
+// Returns the oldest waiting message; null if there is none. Release it with `DropMessage`.
 const Message* NextMessage();
 void DropMessage();
-// Messages that found no room since the last call.
+// Returns the number of messages lost for lack of a buffer since the last call.
 uint8_t TakeLost();
 
-// What the next read gets; a read under way goes on with what it began. False: not now, a read is
-// under way that began two frames ago.
+// Sets the frame for the next read; a read in progress continues with its frame. Returns false, and
+// publishes nothing, while a read is in progress that began two frames ago.
 bool Publish(const uint8_t (&frame)[taut::board::kFrameSize], bool is_reply);
-// Whether the reply that was published has been read.
+// Returns whether the published reply has been read.
 bool ReplyWasRead();
 
-// Every tick: true if the bus hung in the middle of a transfer and was begun anew.
+// To be called every tick. Returns true if the bus hung in the middle of a transfer and was
+// restarted.
 bool RecoverBus();

@@ -10,7 +10,7 @@ void StartDrive() {
   DDRB |= kDirection1 | kPwmPins;
   PORTB |= kDriverFaultPin;  // open drain
   TCCR1A = 1 << COM1A1 | 1 << COM1B1;
-  TCCR1B = 1 << WGM13 | 1 << CS10;  // mode 8: phase and frequency correct, top ICR1
+  TCCR1B = 1 << WGM13 | 1 << CS10;  // mode 8: phase and frequency correct PWM, top ICR1
   ICR1 = taut::board::kFullWidth;   // 16 MHz / (2 * 400) = 20 kHz, counting up and down
   OCR1A = OCR1B = 0;
 }
@@ -20,7 +20,7 @@ void SetWidth(uint8_t motor, int16_t signed_width) {
   const uint16_t width = static_cast<uint16_t>(winds ? signed_width : -signed_width);
   if (motor == 0) {
     if (winds != ((PORTD & kDirection0) != 0)) {
-      OCR1A = 0;  // the new direction never drives with the old width
+      OCR1A = 0;  // so that the new direction is never driven with the old width
       if (winds)
         PORTD |= kDirection0;
       else

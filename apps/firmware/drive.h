@@ -1,10 +1,10 @@
-// The motors' driver: 20 kHz, as Pololu's library for the MC33926 does it; duty 0 brakes.
+// Motor driver MC33926: PWM at 20 kHz, as in Pololu's library; duty 0 brakes.
 #pragma once
 
 #include <stdint.h>
 
 void StartDrive();
-// Of motor 0 or 1, -kFullWidth .. kFullWidth, winding in positive.
+// Sets the PWM width of motor 0 or 1, from -kFullWidth to kFullWidth; positive winds in.
 void SetWidth(uint8_t motor, int16_t width);
 void SetPower(bool on);
 bool DriverSaysFault();

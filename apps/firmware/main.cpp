@@ -1,5 +1,5 @@
-// The firmware of a motor board: an ATmega328P at 16 MHz (Arduino Nano). What it decides is in
-// include/taut/board; here is what belongs to the chip.
+// Firmware of a motor board: hardware layer and main loop for an ATmega328P at 16 MHz (Arduino
+// Nano). The hardware-independent logic is in include/taut/board.
 #include <avr/interrupt.h>
 #include <avr/sleep.h>
 #include <avr/wdt.h>
@@ -14,17 +14,18 @@
 
 using namespace taut::board;
 
-// Seen by whoever looks from outside (an emulator, a debugger); the loop has them for itself.
+// Global so that emulators and debuggers can read them; only the main loop accesses them.
 Board board;
 Inputs inputs;
 
 namespace {
 
 volatile uint8_t ticks_due;
-bool asked_anew;  // the reply is another one than that which was published
+bool asked_anew;  // a request after the last publication may have changed the reply
 uint8_t reset_cause __attribute__((section(".noinit")));
 
-// The watchdog goes on running after it has bitten, sooner than memory could be initialised.
+// After a reset by the watchdog, it stays on with a timeout shorter than the initialization of
+// memory; hence disabled in .init3.
 void KeepCause() __attribute__((naked, used, section(".init3")));
 void KeepCause() {
   reset_cause = MCUSR;
@@ -60,14 +61,16 @@ void RunTick(uint8_t elapsed) {
   Tick(inputs, board);
   for (uint8_t m = 0; m < kMotors; ++m) SetWidth(m, board.loops[m].width);
   SetPower(IsPowered(board));
-  // what the clock shows: 4 us a count since the tick was due, unless the next one is due, too
+  // loop time in units of 8 us: the timer counts 4 us each since the tick was due; 125 more if the
+  // next tick is already due
   const uint8_t eighths =
       ticks_due == 0 ? static_cast<uint8_t>(TCNT2 / 2) : static_cast<uint8_t>(125 + TCNT2 / 2);
   if (eighths > board.loop_8us) board.loop_8us = eighths;
   GPIOR0 = kMarkTickDone | static_cast<uint8_t>(board.mode);
 }
 
-// A reply stays until it has been read; then statuses follow again.
+// Publishes the reply, or else the status. A reply stays until it has been read; then statuses
+// follow.
 void PublishFrame() {
   static bool reply_is_out = false;
   if (reply_is_out && ReplyWasRead()) {
@@ -78,7 +81,7 @@ void PublishFrame() {
   if (reply ? reply_is_out && !asked_anew : !board.status_due) return;
   uint8_t frame[kFrameSize];
   MakeFrame(board, frame);
-  if (!Publish(frame, reply)) return;  // the next tick tries again
+  if (!Publish(frame, reply)) return;  // retried at the next tick
   reply_is_out = reply;
   if (reply) {
     asked_anew = false;
@@ -131,7 +134,8 @@ int main() {
       DropMessage();
     }
     PublishFrame();
-    // Sleeps unless something came meanwhile; the instruction after sei runs before any interrupt.
+    // Sleeps unless a tick or a message arrived in the meantime; the instruction after sei runs
+    // before any interrupt.
     cli();
     if (ticks_due == 0 && NextMessage() == nullptr) {
       sleep_enable();

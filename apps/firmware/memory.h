@@ -1,10 +1,11 @@
-// What a board keeps in its EEPROM: which board it is, how often it began, its parameters.
+// EEPROM of a board: its identity, number of boots and parameters.
 #pragma once
 
 #include "taut/board/board.h"
 
-// Reads identity and parameters, counts the boot. Takes some 14 ms; before the watchdog runs.
+// Reads identity and parameters and counts the boot. Takes about 14 ms; to be called before the
+// watchdog is enabled.
 taut::board::Boot ReadMemory(taut::board::Parameters& parameters);
 
-// Works on what `board.memory` wants; a byte each call at most, so that no tick waits.
+// Executes the request in `board.memory`, at most one byte per call, so that no tick is delayed.
 void StepMemory(taut::board::Board& board);

@@ -1,4 +1,4 @@
-// What is wired to which pin of the Arduino Nano (docs/hardware/firmware.md).
+// Pin assignment of the Arduino Nano (docs/hardware/firmware.md).
 //
 //   D2, D3    INT0, INT1   encoder A of motor 0, 1 (any edge)
 //   D4, D5    PD4, PD5     encoder B of motor 0, 1
@@ -12,18 +12,17 @@
 
 #include <avr/io.h>
 
-constexpr uint8_t kEncoderB[2] = {1 << PD4, 1 << PD5};  // of PIND
-constexpr uint8_t kEnable = 1 << PD6;                   // of PORTD
-constexpr uint8_t kDirection0 = 1 << PD7;               // of PORTD
-constexpr uint8_t kDirection1 = 1 << PB0;               // of PORTB
-constexpr uint8_t kPwmPins = 1 << PB1 | 1 << PB2;       // of PORTB
-constexpr uint8_t kDriverFaultPin = 1 << PB4;           // of PINB
+constexpr uint8_t kEncoderB[2] = {1 << PD4, 1 << PD5};  // in PIND
+constexpr uint8_t kEnable = 1 << PD6;                   // in PORTD
+constexpr uint8_t kDirection0 = 1 << PD7;               // in PORTD
+constexpr uint8_t kDirection1 = 1 << PB0;               // in PORTB
+constexpr uint8_t kPwmPins = 1 << PB1 | 1 << PB2;       // in PORTB
+constexpr uint8_t kDriverFaultPin = 1 << PB4;           // in PINB
 
-// What GPIOR0, which is wired to nothing, shows whoever looks from outside: an emulator, a
-// debugger.
+// Progress marks in GPIOR0, a register without a pin, for emulators and debuggers.
 enum Mark : uint8_t {
-  kMarkTick = 0x10,      // a tick begins; low half: the mode
-  kMarkTickDone = 0x20,  // its duties are set; low half: the mode in which it ended
-  kMarkIdle = 0x30,      // all that it brought is done
-  kMarkMessage = 0x40,   // a message is looked at
+  kMarkTick = 0x10,      // start of a tick; low half: mode
+  kMarkTickDone = 0x20,  // duties of the tick are set; low half: mode at its end
+  kMarkIdle = 0x30,      // all work of the tick is done
+  kMarkMessage = 0x40,   // start of processing a message
 };

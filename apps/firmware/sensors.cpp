@@ -14,7 +14,7 @@ volatile uint16_t encoder[2];
 }  // namespace
 
 ISR(ADC_vect) {
-  const uint16_t counts = ADC;  // before the channel changes
+  const uint16_t counts = ADC;  // must precede the change of channel
   const uint8_t channel = ADMUX & 1;
   converted[channel] = counts;
   if (channel == 0) {
@@ -23,7 +23,7 @@ ISR(ADC_vect) {
   }
 }
 
-// Any edge of A: with A and B alike it turns one way. Two counts a line.
+// Any edge of A: equal levels of A and B mean one direction. Two counts per line.
 ISR(INT0_vect) {
   const uint8_t pins = PIND;
   if (((pins & 1 << PD2) != 0) == ((pins & kEncoderB[0]) != 0)) {
@@ -46,7 +46,7 @@ void StartSensors() {
   ADCSRA = 1 << ADEN | 1 << ADIE | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // 125 kHz
   DIDR0 = 1 << ADC0D | 1 << ADC1D;
   EICRA = 1 << ISC00 | 1 << ISC10;
-  EIFR = 1 << INTF0 | 1 << INTF1;  // edges of before, seen by interrupts that were off
+  EIFR = 1 << INTF0 | 1 << INTF1;  // discards edges that arrived while interrupts were off
   EIMSK = 1 << INT0 | 1 << INT1;
 }
 

@@ -1,12 +1,13 @@
-// Load cells and encoders.
+// Load cells and encoders of a motor board.
 #pragma once
 
 #include <stdint.h>
 
 void StartSensors();
-// Converts both load cells, one after the other (0.21 ms); called at the start of a tick.
+// Starts the conversions of both load cells, one after the other (0.21 ms); called at the start of
+// a tick.
 void StartConversions();
-// As converted last.
+// Returns the last conversion [counts].
 uint16_t LoadCell(uint8_t motor);
-// Modulo 2^16.
+// Returns the encoder's count, modulo 2^16.
 uint16_t Encoder(uint8_t motor);

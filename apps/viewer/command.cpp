@@ -53,7 +53,7 @@ bool Fits(const nlohmann::json& value, const MessageField& field) {
   return false;
 }
 
-/// Whether `json` has the fields of messages of this type and no others.
+/// Returns whether `json` has exactly the fields of messages of this type.
 bool CheckFields(const nlohmann::json& json, const std::string& type, std::string& error) {
   bool known = false;
   std::size_t found = 1;  // "type"
@@ -81,7 +81,7 @@ bool CheckFields(const nlohmann::json& json, const std::string& type, std::strin
   return known && found == json.size();
 }
 
-/// What a number must be within; the types are checked by then.
+/// Checks the ranges of numbers; their types have been checked.
 bool CheckRanges(const Command& command, std::string& error) {
   const auto within = [&](const char* what, double value, double least, double most) {
     if (value >= least && value <= most) return true;

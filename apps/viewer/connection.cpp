@@ -28,7 +28,8 @@ void Connection::Accept(const http::request<http::empty_body>& request) {
 
 void Connection::Read() {
   stream_.async_read(received_, [self = shared_from_this()](beast::error_code failed, std::size_t) {
-    // A message that is too long closes the connection by itself, with a code that says so.
+    // A message above the size limit closes the connection automatically, with the corresponding
+    // code.
     if (failed || self->closing_) return self->Finished();
     const std::string text = beast::buffers_to_string(self->received_.data());
     self->received_.consume(self->received_.size());
@@ -50,7 +51,7 @@ void Connection::SendText(std::string text) {
 
 void Connection::SendFrame(std::shared_ptr<const std::string> frame) {
   if (!open_ || closing_) return;
-  frame_ = std::move(frame);  // the newest replaces one that has not been sent
+  frame_ = std::move(frame);  // replaces a frame that has not been sent yet
   Write();
 }
 

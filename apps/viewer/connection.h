@@ -1,5 +1,5 @@
-/// One WebSocket client. Texts are sent in order and all of them; of frames and of what a robot
-/// says of itself only the newest.
+/// WebSocket connection of one client. All texts are sent in order; of frames and robot statuses,
+/// only the newest.
 #pragma once
 
 #include <deque>
@@ -15,12 +15,13 @@ class Connection : public std::enable_shared_from_this<Connection> {
  public:
   struct Handlers {
     std::function<void(Connection&)> opened;
-    /// A text of the client; false and a reason: the connection is closed with it.
+    /// Handles a text from the client. If it returns false with a reason, the connection is closed
+    /// with it.
     std::function<bool(Connection&, const std::string&, std::string&)> received;
     std::function<void(Connection&)> closed;
   };
 
-  /// Closes the connection if more than `max_unread_bytes` of texts wait.
+  /// Closes the connection if more than `max_unread_bytes` of unsent texts accumulate.
   Connection(tcp::socket socket, int client, bool may_drive, std::size_t max_unread_bytes,
              Handlers handlers);
 

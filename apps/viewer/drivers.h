@@ -1,4 +1,4 @@
-/// Who may drive: one client at a time, and everybody knows who.
+/// Control of the session: one client at a time may drive, and all clients are informed.
 #pragma once
 
 #include <string>
@@ -7,11 +7,12 @@ namespace taut::viewer {
 
 class Drivers {
  public:
-  int driver() const noexcept { return driver_; }  ///< 0: nobody.
+  int driver() const noexcept { return driver_; }  ///< 0: no client.
 
-  /// Whether the command may be passed on. Whoever asks first while nobody drives, drives.
+  /// Returns whether a command of this type from this client is accepted. If no client drives, the
+  /// first that sends one drives.
   bool Allow(int client, const std::string& type) {
-    // An emergency stop asks for no control, and takes none.
+    // An emergency stop is accepted from every client and does not change the driver.
     if (type == "want_series" || type == "stop") return true;
     if (type == "take_control" || driver_ == 0) driver_ = client;
     return driver_ == client;

@@ -1,4 +1,4 @@
-/// The present as a client gets it: the binary message of web/protocol/messages.json.
+/// Present state for clients: the binary message of web/protocol/messages.json.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace taut::viewer {
 
-/// What a frame shows. What is not known is NaN.
+/// Content of a frame. Unknown values are NaN.
 struct Frame {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -26,7 +26,7 @@ struct Frame {
     Vec3 point_m, force_n;
   };
   struct Bend {
-    int cable = -1;  ///< Ghosts' are behind the scene's.
+    int cable = -1;  ///< Ghosts' cables follow the cables of the scene.
     Vec3 point_m{kUnknown, kUnknown, kUnknown};
   };
 
@@ -36,27 +36,29 @@ struct Frame {
   };
 
   double time_s = 0;
-  double now_s = 0;  ///< Of the run; later than `time_s` while its past is looked at.
+  double now_s =
+      0;  ///< Present time of the run; later than `time_s` while a past moment is displayed.
   double real_time_factor = 0, speed = 1;
   bool paused = false;
   int driver = 0;
   Energy energy{kUnknown, kUnknown, kUnknown};
   int run = 0;
-  double contact_count = 0;  ///< May be known where the contacts are not.
+  double contact_count = 0;  ///< May be known without the contacts.
   std::vector<Body> bodies;
   std::vector<Cable> cables;
   std::vector<Contact> contacts;
   std::vector<OutsideForce> pushes;
-  std::vector<double> values;  ///< Of channels of a program's own (taut/page.h).
-  std::vector<Body> ghosts;    ///< Of compared runs; NaN while a run has no row.
-  std::vector<Bend> bends;     ///< Of cables that lie against what they come to, along each.
-  std::vector<Span> spans;     ///< Of cables with friction, along each; not of ghosts.
+  std::vector<double> values;  ///< Channels of a user's program (taut/page.h).
+  std::vector<Body> ghosts;    ///< Bodies of compared runs; NaN while a run has no row.
+  std::vector<Bend> bends;     ///< Bends of wrapped cables, in order along each cable.
+  std::vector<Span>
+      spans;  ///< Spans of cables with friction, in order along each cable; not of ghosts.
 };
 
-/// Every number of the frame in the order of the definition.
+/// Returns all numbers of the frame in the order of the protocol.
 std::vector<double> FrameNumbers(const Frame& frame);
 
-/// The binary message: those numbers as Float64, little endian.
+/// Returns the binary message: these numbers as Float64, little endian.
 std::string FrameMessage(const Frame& frame);
 
 }  // namespace taut::viewer

@@ -7,7 +7,7 @@
 namespace taut::viewer {
 namespace {
 
-/// Numbers of a row besides those of bodies and cables.
+/// Columns of a row in addition to bodies and cables.
 enum System { kKinetic, kGravity, kElastic, kContacts, kRealTimeFactor, kSystemValues };
 constexpr std::size_t kBodyValues = 7, kCableValues = 4;
 
@@ -99,7 +99,7 @@ void History::Clear() {
 }
 
 void History::Take(const Frame& frame, const std::vector<double>& row) {
-  due_s_ = frame.time_s + period_s_ * (1 - 1e-9);  // times are sums of steps
+  due_s_ = frame.time_s + period_s_ * (1 - 1e-9);  // tolerance: times are sums of steps
   time_s_.push_back(frame.time_s);
   std::size_t at = 0;
   const auto put = [&](double value) { columns_[at++].push_back(value); };
@@ -193,7 +193,7 @@ std::vector<double> History::Row(std::size_t row) const {
 }
 
 Json History::SeriesOf(const std::string& channel, double t0, double t1, std::size_t points) const {
-  // A pyramid would have to grow with every row; so few rows are looked through as fast.
+  // A pyramid would have to grow with every row; scanning so few rows is as fast.
   static const Pyramid no_levels{{}};
   const auto series = [&](const std::vector<double>& column) {
     return SeriesJson(channel, 0, no_levels.Get(time_s_, column, t0, t1, points));

@@ -1,4 +1,4 @@
-/// What a live run has shown so far, for plots of the time before a page came and for a look back.
+/// Past states of a live run, for plots of the time before a page was opened, and for looking back.
 #pragma once
 
 #include <optional>
@@ -12,43 +12,44 @@
 
 namespace taut::viewer {
 
-/// Rows of equal distance in simulated time. When there are too many, every second one goes and
-/// the distance doubles: the whole run stays, more coarsely the longer it lasts.
+/// Rows at equal intervals of simulated time. When memory is full, every second row is removed and
+/// the interval doubles: the whole run stays, with decreasing resolution.
 class History {
  public:
   static constexpr std::size_t kMaxBytes = 128u << 20;
 
-  /// `period_s`: simulated time between rows, for a start. `has_set_point`: by cable. `recorded`:
-  /// the channels of the rows that `Take` gets; kept are those that frames do not have.
+  /// `period_s`: initial simulated time between rows. `has_set_point`: per cable. `recorded`:
+  /// channels of the rows passed to `Take`; only those missing in frames are stored.
   History(const ModelDef& def, const std::vector<bool>& has_set_point, double period_s,
           const std::vector<ChannelInfo>& recorded = {}, std::size_t max_bytes = kMaxBytes);
 
-  /// Of the run that begins now.
+  /// Removes all rows, for a new run.
   void Clear();
-  /// Whether the moment is far enough from the last one taken.
+  /// Returns whether the interval since the last row has passed.
   bool IsDue(double time_s) const { return time_s >= due_s_; }
-  /// Times rise. `row`: of the recorded channels at that time.
+  /// Adds a row; times must increase. `row`: the recorded channels at this time.
   void Take(const Frame& frame, const std::vector<double>& row = {});
 
   std::size_t size() const { return time_s_.size(); }
   double time_s(std::size_t row) const { return time_s_[row]; }
-  /// The last row at or before a time; 0 before the first.
+  /// Returns the last row at or before a time; 0 before the first.
   std::size_t RowAt(double time_s) const;
-  /// The row to look at for a time that is past: nothing where `now_s`, the present, is meant.
+  /// Returns the row for a past time; nothing if the time is the present, `now_s`.
   std::optional<std::size_t> PastRow(double time_s, double now_s) const;
-  /// So many rows on from a row, or from the present (nothing); nothing: that is the present.
+  /// Returns the row `count` rows after `row`, or after the present (nothing); nothing for the
+  /// present.
   std::optional<std::size_t> Step(std::optional<std::size_t> row, int count, double now_s) const;
-  /// Of `frame` stays what is no history: speed, pause, driver.
+  /// Sets the state of `frame` to a row; speed, pause and driver stay.
   void Show(std::size_t row, Frame& frame) const;
-  /// Of the recorded channels, as `Take` got it.
+  /// Returns the recorded channels of a row, as passed to `Take`.
   std::vector<double> Row(std::size_t row) const;
 
   const std::vector<ChannelInfo>& channels() const { return channels_; }
-  /// SeriesData of a channel; null if there is none.
+  /// Returns the SeriesData of a channel; null if it does not exist.
   Json SeriesOf(const std::string& channel, double t0, double t1, std::size_t points) const;
 
  private:
-  /// Lists of any length, one a row.
+  /// Lists of variable length, one per row.
   template <class T>
   struct Lists {
     std::vector<T> items;
@@ -59,7 +60,7 @@ class History {
     std::size_t bytes() const { return items.size() * sizeof(T) + ends.size() * sizeof(ends[0]); }
   };
 
-  /// The row that the present is, or would be.
+  /// Returns the index of the present in the rows, whether or not it is stored.
   std::size_t PresentRow(double now_s) const;
   void AddColumn(std::string name, std::string unit, bool is_channel = true);
   void Thin();
@@ -69,7 +70,8 @@ class History {
   std::size_t bodies_, cables_, max_bytes_;
   double first_period_s_, period_s_, due_s_ = 0;
   std::vector<double> time_s_;
-  /// All that a frame holds, channel or not; then the recorded channels at `recorded_` of a row.
+  /// All values of frames, including some that are not channels; then the recorded channels, whose
+  /// indices in a row are in `recorded_`.
   std::vector<std::vector<double>> columns_;
   std::vector<std::size_t> recorded_, columns_of_row_;
   NodeChannels nodes_;

@@ -9,7 +9,7 @@ namespace {
 
 std::string_view View(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// The value of `name` in "a=1&b=2" or "a=1; b=2"; empty if it is not there.
+/// Returns the value of `name` in "a=1&b=2" or "a=1; b=2"; empty if it is missing.
 std::string_view ValueOf(std::string_view list, std::string_view name, char separator) {
   while (!list.empty()) {
     const std::size_t end = list.find(separator);
@@ -23,7 +23,7 @@ std::string_view ValueOf(std::string_view list, std::string_view name, char sepa
   return {};
 }
 
-/// Takes as long for a guess that is nearly right as for one that is not.
+/// Compares in constant time, so that the duration does not reveal how much of a guess is right.
 bool SameSecret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -40,7 +40,7 @@ std::string_view Query(const HttpRequest& request) {
   return mark == target.npos ? std::string_view() : target.substr(mark + 1);
 }
 
-/// "localhost" of "localhost:8080", "[::1]" of "[::1]:8080".
+/// Returns "localhost" for "localhost:8080", "[::1]" for "[::1]:8080".
 std::string_view HostName(std::string_view host) {
   const std::size_t colon = host.rfind(':');
   const std::size_t bracket = host.rfind(']');
@@ -70,15 +70,17 @@ Access AccessOf(std::string_view token, const ServerOptions& options) {
   return SameSecret(token, options.watch_token) ? Access::kWatch : Access::kNone;
 }
 
-/// Browsers send a cookie to every port of a machine, so that each server needs its own.
+/// Returns a name with the port: browsers send a cookie to every port of a machine, so that each
+/// server needs a different name.
 std::string CookieName(const ServerOptions& options) {
   return fmt::format("taut_token_{}", options.port);
 }
 
-/// Whether the request is meant for this server and comes from its own pages.
+/// Returns whether the request addresses this server and comes from its pages.
 bool IsOurs(const HttpRequest& request, const ServerOptions& options) {
   const std::string_view host = View(request[http::field::host]);
-  // A name that leads here although it is not ours is how foreign pages reach local servers.
+  // Prevents DNS rebinding: foreign pages reach local servers under a name that resolves to this
+  // machine.
   if (IsLoopback(options.address)) {
     const std::string_view name = HostName(host);
     if (name != "localhost" && name != "127.0.0.1" && name != "[::1]" && name != options.address) {
@@ -148,13 +150,13 @@ HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
   HttpResponse response = Begin(request);
   response.result(http::status::ok);
   response.set(http::field::content_type, std::string(MimeType(path)));
-  // Nothing is ever fetched from elsewhere. The page holds its own script.
+  // Nothing is loaded from other sites. The page contains its script inline.
   response.set("Content-Security-Policy",
                "default-src 'self'; script-src 'self' 'unsafe-inline'; img-src 'self' data: "
                "blob:; media-src 'self' blob:; "
                "style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; base-uri 'none'; "
                "form-action 'none'; frame-ancestors 'none'");
-  // So that a reload without the query, and what the page asks for, come in, too.
+  // Lets a reload without the query, and the requests of the page, pass.
   response.set(http::field::set_cookie,
                fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", CookieName(options),
                            access == Access::kDrive ? options.drive_token : options.watch_token));

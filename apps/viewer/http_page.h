@@ -1,4 +1,4 @@
-/// What the server answers to plain HTTP.
+/// Responses to plain HTTP requests.
 #pragma once
 
 #include <string>
@@ -13,13 +13,13 @@ using HttpResponse = http::response<http::string_body>;
 
 enum class Access { kNone, kWatch, kDrive };
 
-/// What the browser that sends this may do: by the token that it has, if it names this machine and
-/// no other site's page is behind it.
+/// Returns the rights of a request: from its token, if it addresses this machine and no other
+/// site's page sent it.
 Access AccessOf(const HttpRequest& request, const ServerOptions& options);
 
 HttpResponse Refusal(const HttpRequest& request, http::status status, const std::string& text);
 
-/// The file asked for, or what is wrong.
+/// Returns the requested file, or an error response.
 HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
                     const ServerOptions& options);
 

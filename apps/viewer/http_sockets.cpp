@@ -40,7 +40,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
 
  private:
   void Answer(const HttpRequest& request) {
-    if (list_ == nullptr) return;  // dropped while the request was on its way to here
+    if (list_ == nullptr) return;  // dropped while the request was arriving
     MoveTo(all_.answered_);
     response_ = all_.serve_(request, stream_);
     if (!response_) return Close();
@@ -54,7 +54,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
                       });
   }
 
-  /// To the end of the list: who has got on waits anew.
+  /// Moves the socket to the end of a list: after progress it waits from the start.
   void MoveTo(List& list) {
     if (list_ == nullptr) return;
     list.splice(list.end(), *std::exchange(list_, &list), place_);
@@ -62,7 +62,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
 
   beast::tcp_stream stream_;
   HttpSockets& all_;
-  List* list_ = nullptr;  ///< Nothing: closed.
+  List* list_ = nullptr;  ///< Null: closed.
   List::iterator place_;
   beast::flat_buffer buffer_{64 * 1024};
   std::optional<http::request_parser<http::empty_body>> parser_;

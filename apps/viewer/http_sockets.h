@@ -1,5 +1,5 @@
-/// Sockets that speak plain HTTP, each until it closes or becomes a WebSocket. There is a limit to
-/// them, and requests that never end do not lock others out: they are dropped for new ones.
+/// Sockets with plain HTTP, each until it closes or becomes a WebSocket. Their number is limited;
+/// unfinished requests do not block others, because new requests replace them.
 #pragma once
 
 #include <functional>
@@ -14,15 +14,15 @@ namespace taut::viewer {
 
 class HttpSockets {
  public:
-  /// Answers a request, or takes its socket over: then there is no answer.
+  /// Answers a request, or takes over its socket and returns nothing.
   using Serve = std::function<std::optional<HttpResponse>(const HttpRequest&, beast::tcp_stream&)>;
 
   HttpSockets(const ServerOptions& options, Serve serve)
       : options_(options), serve_(std::move(serve)) {}
 
   void Add(tcp::socket socket);
-  /// Closes the one whose request is the longest unfinished; if all are being answered, the one
-  /// that takes the longest. Nothing if there is none.
+  /// Closes the socket with the longest unfinished request; if all requests are being answered, the
+  /// one with the longest answer. No effect without sockets.
   void DropOldest();
 
  private:
@@ -31,7 +31,7 @@ class HttpSockets {
 
   const ServerOptions& options_;
   Serve serve_;
-  List asking_, answered_;  ///< Those that have waited longest come first.
+  List asking_, answered_;  ///< Longest waiting first.
 };
 
 }  // namespace taut::viewer

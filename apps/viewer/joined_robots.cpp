@@ -17,7 +17,7 @@ bool Same(const Quat& a, const Quat& b) {
   return a.w == b.w && a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/// Two half spaces with one surface.
+/// Returns whether two half spaces have the same surface.
 bool Same(const PlaneDef& a, const PlaneDef& b) {
   return Same(a.normal, b.normal) &&
          std::abs(Dot(a.normal, a.point_m) - Dot(b.normal, b.point_m)) < 1e-12;
@@ -50,7 +50,7 @@ void AddUnlessThere(std::vector<T>& list, T part) {
   std::abort();
 }
 
-/// A list may be left out; else it has one entry each.
+/// Checks that a list is empty or has one entry per element.
 template <class T>
 void CheckLength(const std::vector<T>& list, std::size_t wanted, const char* name, int robot) {
   if (list.empty() || list.size() == wanted) return;

@@ -1,4 +1,4 @@
-/// Robots side by side, as one that the page can show.
+/// Several robots side by side, merged into one model for display.
 #pragma once
 
 #include <string>
@@ -12,19 +12,19 @@ namespace taut::viewer {
 
 class JoinedRobots {
  public:
-  /// As `Page::Add`.
+  /// Same as `Page::Add`.
   int Add(const ModelDef& robot, const std::string& name, const Vec3& at_m);
 
   std::size_t size() const { return robots_.size(); }
-  /// All of them, with names that tell them apart. Not to be compiled: materials may differ.
+  /// Returns the merged model, with unique names. Not for compilation: materials may differ.
   const ModelDef& def() const { return joined_; }
 
-  /// By cable: whether it was set with a set point.
+  /// Returns per cable whether it was given a set point.
   std::vector<bool> HasSetPoint() const;
 
-  /// As `Page::Set`: checked, then kept.
+  /// Same as `Page::Set`: checks the state, then stores it.
   void Set(int robot, const RobotMoment& moment);
-  /// Bodies, cables, contacts and pushes, as they were set last.
+  /// Sets bodies, cables, contacts and pushes to the last states.
   void Fill(Frame& frame) const;
 
  private:

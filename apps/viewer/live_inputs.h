@@ -1,4 +1,4 @@
-/// From a file to what a live run shows.
+/// Inputs of a live run from an experiment or a model file.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,12 @@ namespace taut::viewer {
 
 struct LiveInputs {
   ExperimentSpec experiment;
-  bool model = false;  ///< A model by itself, without weight and ground; it waits to be dragged.
+  bool model =
+      false;  ///< A model alone: without weight and ground, paused until the user drags it.
 };
 
-/// Reads an experiment or a model. Nothing and diagnostics if it cannot be run. `settled`: it
-/// begins at rest, where the robot settles.
+/// Reads an experiment or a model. Returns nothing, with errors in `out`, if it cannot run.
+/// `settled`: the run begins at the settled pose.
 std::optional<LiveInputs> LoadLiveInputs(const std::string& path, const Overrides& overrides,
                                          bool settled, Diagnostics& out);
 

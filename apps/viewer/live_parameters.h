@@ -1,4 +1,4 @@
-/// What sliders may change in a live run.
+/// Parameters of a live run that sliders change.
 #pragma once
 
 #include <map>
@@ -14,7 +14,8 @@ namespace taut::viewer {
 struct LiveParameter {
   std::string name, unit;
   double value = 0, min = 0, max = 0;
-  /// A parameter of the files: a change starts the experiment anew. Else `kind` and `index`.
+  /// A parameter of the files, whose change restarts the experiment. Otherwise `kind` and `index`
+  /// apply.
   bool restarts = false;
   Parameter kind = Parameter::kFrictionScale;
   int index = 0;
@@ -22,17 +23,17 @@ struct LiveParameter {
 
 using NamedValues = std::map<std::string, double>;
 
-/// The parameters of experiment and model.
+/// Returns the parameters of experiment and model files.
 NamedValues ParametersOfFiles(const ExperimentSpec& experiment);
 
-/// Friction, gravity, masses, stiffnesses and dampings; then the parameters of the files, whose
-/// range is from nothing to four times the value that they had when they were `given`.
+/// Returns friction, gravity, masses, stiffnesses and dampings; then the parameters of the files,
+/// with ranges from zero to four times their `given` values.
 std::vector<LiveParameter> Parameters(const LiveRun& run, const ExperimentSpec& experiment,
                                       const NamedValues& given);
 std::optional<LiveParameter> FindParameter(const LiveRun& run, const ExperimentSpec& experiment,
                                            const NamedValues& given, const std::string& name);
 
-/// Parameter[] and Control[] of web/protocol/messages.json.
+/// Returns Parameter[] and Control[] of web/protocol/messages.json.
 Json ParametersJson(const LiveRun& run, const ExperimentSpec& experiment, const NamedValues& given);
 Json ControlsJson(const LiveRun& run);
 

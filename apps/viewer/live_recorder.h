@@ -1,4 +1,4 @@
-/// What keeps a live run while it goes on; Recording (recording.h) keeps it on the disk.
+/// Interface for recorders of a live run; Recording (recording.h) writes files.
 #pragma once
 
 #include <functional>
@@ -13,18 +13,19 @@ class LiveRecorder {
  public:
   virtual ~LiveRecorder() = default;
 
-  virtual void Restart(LiveRun& run, const ExperimentSpec& experiment) = 0;  ///< The next part.
-  virtual void Take(LiveRun& run) = 0;  ///< The present row, if it is due.
+  virtual void Restart(LiveRun& run,
+                       const ExperimentSpec& experiment) = 0;  ///< Begins the next part.
+  virtual void Take(LiveRun& run) = 0;  ///< Records the present row, if it is due.
   virtual void Event(double time_s, const std::string& text) = 0;
   virtual void FlushOld() = 0;
-  /// Completes the present part. False: something is missing, of any part.
+  /// Completes the present part. Returns false if data of any part are missing.
   virtual bool Finish() = 0;
-  /// What those should know who look at it: since when and why nothing is kept. Empty: all is well.
+  /// Returns a notice for viewers: since when and why nothing is recorded. Empty: recording works.
   virtual const std::string& notice() const = 0;
 };
 
-/// Begins to keep a run at its start; nothing and diagnostics if that cannot be. `say` gets what
-/// people should know: what is not kept, and what is again.
+/// Starts to record a run from its start. Returns null, with errors in the diagnostics, on failure.
+/// `say` receives notices for the user: recording has stopped, or has resumed.
 using MakeRecorder = std::function<std::unique_ptr<LiveRecorder>(
     LiveRun& run, const ExperimentSpec& experiment, std::function<void(const std::string&)> say,
     Diagnostics& out)>;

@@ -1,5 +1,4 @@
-/// Restarts of a live run that were asked for and are still to be made: resets, and parameters of
-/// the files. However many there are, one restart does for all of them.
+/// Pending restarts of a live run: resets and changes of file parameters, merged into one restart.
 #pragma once
 
 #include <chrono>
@@ -18,14 +17,14 @@ class Restarts {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// What the files are read with.
+  /// Inputs for reading the files.
   struct Inputs {
-    std::string path;                ///< Of the experiment.
-    Overrides overrides;             ///< Of its parameters; those that are set join them.
-    double step_s = 0;               ///< Instead of the experiment's; 0: as that says.
-    std::optional<StartKind> start;  ///< Instead of the experiment's.
+    std::string path;                ///< Path of the experiment.
+    Overrides overrides;             ///< Overrides of its parameters; later changes are added.
+    double step_s = 0;               ///< Replaces the experiment's step; 0: no change.
+    std::optional<StartKind> start;  ///< Replaces the experiment's start.
   };
-  /// A change that cannot be: the files say why.
+  /// A change that the files do not allow, with the reason.
   struct Refusal {
     int client = 0;
     std::string why;
@@ -42,14 +41,14 @@ class Restarts {
   void Set(int client, const std::string& parameter, double value) {
     asked_.push_back({client, parameter, value});
   }
-  /// What the present run's files are read with.
+  /// Returns the inputs of the present run.
   const Inputs& inputs() const { return inputs_; }
   bool pending() const { return !asked_.empty() || !groups_.empty(); }
 
-  /// Finds the start that all of them ask for; of two values of a parameter the later one counts. A
-  /// change that cannot be is refused, and what was set before it stays. The deadline is for those
-  /// who make many such changes; a start by itself takes as long as it takes, or until `go_on` says
-  /// no. A start comes only once nothing is pending.
+  /// Computes the start that results from all pending changes; the last value of a parameter
+  /// counts. Invalid changes are refused, and the earlier value stays. The deadline limits the
+  /// processing of many such changes; computing a single start is not limited, except by `go_on`
+  /// returning false. Returns a start only once nothing is pending.
   std::optional<Start> Make(const ExperimentSpec& present, Clock::time_point deadline,
                             const std::function<bool()>& go_on);
   std::vector<Refusal> TakeRefusals() { return std::exchange(refused_, {}); }
@@ -66,7 +65,7 @@ class Restarts {
 
   Inputs inputs_;
   Group asked_;
-  std::deque<Group> groups_;  ///< To be tried, each as one; a group that fails is tried in halves.
+  std::deque<Group> groups_;  ///< Each is tried as a whole; a group that fails is split in halves.
   std::optional<Start> found_;
   std::vector<Refusal> refused_;
 };

@@ -15,11 +15,11 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
 constexpr microseconds kFramePeriod{16667};
-/// How long steps are made without a look at the commands.
+/// Duration of stepping between checks for commands.
 constexpr milliseconds kSlice{5};
 constexpr milliseconds kIdlePeriod{250};
-/// Simulated time between the moments that are kept. At full speed fewer, so that keeping them
-/// takes no time worth mentioning.
+/// Simulated time between stored moments. At full speed fewer are stored, so that their cost is
+/// negligible.
 constexpr double kHistoryPeriodS = 0.01, kFastHistoryPeriodS = 0.02;
 
 }  // namespace
@@ -35,7 +35,7 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
   if (options.record) {
     const auto say = [self = session.get()](const std::string& text) {
       self->SayEvent(self->run_->time_s(), text);
-      self->scene_changed_ = true;  // has the notice for those who come later
+      self->scene_changed_ = true;  // the scene contains the notice, for clients that connect later
       self->options_.tell(text);
     };
     session->recording_ = options.record(*session->run_, experiment, say, out);
@@ -93,7 +93,7 @@ void LiveSession::Handle(int client, const Command& command) {
 
 bool LiveSession::Drive(int client, const Command& command, std::string& error) {
   const std::string& type = command.type;
-  // These wait for more of their kind; anything else is about the run that they lead to.
+  // These accumulate; any other command refers to the run that results from them.
   if (type == "set_parameter") return SetParameter(client, command, error);
   if (type == "reset") {
     restarts_.Reset(client);
@@ -130,7 +130,7 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
       return false;
     }
     const Vec3& v = command.vector;
-    past_row_.reset();  // hands hold what is, not what was
+    past_row_.reset();  // drags act on the present, not on a past moment
     if (type == "drag") {
       if (!dragging_) Log(fmt::format("drag {}", command.name));
       dragging_ = touched_ = true;
@@ -151,7 +151,7 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
 }
 
 bool LiveSession::SetParameter(int client, const Command& command, std::string& error) {
-  if (!given_.contains(command.name)) Restart();  // it may be one of the run that comes
+  if (!given_.contains(command.name)) Restart();  // it may be a parameter of the next run
   const std::optional<LiveParameter> parameter =
       FindParameter(*run_, experiment_, given_, command.name);
   if (!parameter) {
@@ -289,7 +289,7 @@ void LiveSession::StepUntil(double time_s, Clock::time_point deadline) {
 
 Session::Clock::time_point LiveSession::Work() {
   const Clock::time_point start = Clock::now();
-  // One restart a picture is enough, however many are asked for.
+  // At most one restart per picture, for any number of requests.
   if (idle() && start - shown_wall_ >= kFramePeriod) Restart(start + kFramePeriod);
   if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
   if (!pace_.paused()) {

@@ -1,4 +1,4 @@
-/// A live run, in real time or at another speed.
+/// Live run for the viewer, in real time or at another speed.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ namespace taut::viewer {
 
 struct LiveOptions {
   Restarts::Inputs inputs;  ///< Read again when a parameter of the files changes.
-  double speed = 1;         ///< Simulated seconds a second; 0: as fast as it can.
+  double speed = 1;         ///< Simulated seconds per second; 0: as fast as possible.
   bool paused = false;
-  MakeRecorder record;  ///< Nothing: nothing is recorded.
-  /// Lines for the terminal: what is not recorded, and what is again. Called on the session's
+  MakeRecorder record;  ///< Null: no recording.
+  /// Prints lines to the terminal about interruptions of the recording. Called on the session's
   /// thread and by Finish.
   std::function<void(const std::string&)> tell = [](const std::string&) {};
 };
 
-/// A run's state at a time, to be set beside that of `taut run` with the same inputs.
+/// State of a run at a time, for comparison with `taut run` of the same inputs.
 struct StateMark {
   double time_s = 0;
   std::uint64_t hash = 0;  ///< `World::Hash`.
@@ -36,7 +36,7 @@ struct StateMark {
 
 class LiveSession final : public Session {
  public:
-  /// Shows `experiment`. Nothing and diagnostics if it cannot start.
+  /// Creates a session for `experiment`. Returns null, with errors in `out`, if it cannot start.
   static std::unique_ptr<LiveSession> Create(const std::string& mode,
                                              const ExperimentSpec& experiment,
                                              const LiveOptions& options, Diagnostics& out);
@@ -44,16 +44,18 @@ class LiveSession final : public Session {
 
   bool Finish() override;
 
-  // --- where there is no thread: between turns ------------------------------------------------
-  /// Nothing where no simulation is behind it.
+  // --- for sessions without a thread: between turns ------------------------------------------
+  /// Returns the present state; nothing if no simulation runs.
   std::optional<StateMark> State() const;
-  /// Times in rising order at which to mark the state, of this run and those that begin anew.
+  /// Sets the times, in increasing order, at which to record the state, for this run and after
+  /// restarts.
   void MarkAt(std::vector<double> times_s);
-  /// Marks that this run has come to, one for each of those times.
+  /// Returns the states recorded in this run, one for each of these times that it has reached.
   const std::vector<StateMark>& marks() const { return marks_; }
-  /// Whether somebody pushed, pulled or tuned since the start: no files say how it came here.
+  /// Returns whether the user pushed, pulled or tuned since the start, so that the files do not
+  /// reproduce the state.
   bool touched() const { return touched_; }
-  /// Parameters that were set, with which the files were read.
+  /// Returns the parameters that the user changed and with which the files were read.
   const Overrides& overrides() const { return restarts_.inputs().overrides; }
 
  private:
@@ -81,15 +83,15 @@ class LiveSession final : public Session {
 
   LiveOptions options_;
   Restarts restarts_;
-  ExperimentSpec experiment_;  ///< As read; `run_` may have been changed by hand since.
-  /// Parameters of the files as they were at first: what the ranges of sliders follow from.
+  ExperimentSpec experiment_;  ///< As read; `run_` may differ after manual changes.
+  /// Initial values of the files' parameters, which determine the ranges of sliders.
   std::map<std::string, double> given_;
   std::unique_ptr<LiveRun> run_;
   std::unique_ptr<LiveRecorder> recording_;
-  std::vector<bool> has_set_point_;  ///< By cable: under impedance control.
+  std::vector<bool> has_set_point_;  ///< Per cable: under impedance control.
   std::optional<History> history_;
-  std::optional<std::size_t> past_row_;  ///< What is shown; nothing: the present.
-  Frame moment_;                         ///< Kept, so that taking a moment allocates little.
+  std::optional<std::size_t> past_row_;  ///< Displayed row; nothing: the present.
+  Frame moment_;                         ///< Reused, to reduce allocations.
   int run_number_ = 1;
   bool end_told_ = false, broken_told_ = false, dragging_ = false;
   std::size_t overloads_told_ = 0;  ///< Number of logged items of LiveRun::Overloads.

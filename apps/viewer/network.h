@@ -1,4 +1,4 @@
-/// Short names for the parts of Boost that speak to browsers.
+/// Short names for the parts of Boost.Beast and Boost.Asio used by the server.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>

@@ -3,7 +3,7 @@
 namespace taut::viewer {
 namespace {
 
-/// v turned by the unit quaternion q: v + 2 w (u x v) + 2 u x (u x v), where u is its vector part.
+/// Rotates v by the unit quaternion q: v + 2 w (u x v) + 2 u x (u x v), where u is its vector part.
 Vec3 Turned(const Quat& q, const Vec3& v) {
   const Vec3 t{2 * (q.y * v.z - q.z * v.y), 2 * (q.z * v.x - q.x * v.z),
                2 * (q.x * v.y - q.y * v.x)};
@@ -16,8 +16,8 @@ Vec3 Turned(const Quat& q, const Vec3& v) {
 NodeChannels::NodeChannels(const ModelDef& def) {
   static const char* const kNames[] = {"/position_x_m", "/position_y_m", "/position_z_m"};
   for (const NodeDef& node : def.nodes) {
-    if (node.body == kWorld) continue;  // stays where it is
-    // bodies are described at t = 0, not turned
+    if (node.body == kWorld) continue;  // fixed in the world
+    // at t = 0 the axes of bodies are parallel to W
     const Vec3& c = def.bodies[static_cast<std::size_t>(node.body)].com_m;
     const Vec3& p = node.position_m;
     for (int axis = 0; axis < 3; ++axis) {

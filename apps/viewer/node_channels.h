@@ -1,4 +1,4 @@
-/// Where nodes are, as channels that nobody has to record: they follow from the poses of bodies.
+/// Positions of nodes as derived channels, computed from the recorded poses of bodies.
 #pragma once
 
 #include <array>
@@ -12,25 +12,25 @@
 
 namespace taut::viewer {
 
-/// node/<name>/position_{x,y,z}_m of every node that is on a body.
+/// Channels node/<name>/position_{x,y,z}_m of all nodes on bodies.
 class NodeChannels {
  public:
   NodeChannels() = default;
   explicit NodeChannels(const ModelDef& def);
 
-  /// A body's pose over time: position [m] and orientation (w, x, y, z).
+  /// Pose of a body over time: position [m] and orientation (w, x, y, z).
   using Poses = std::array<const std::vector<double>*, 7>;
 
   struct Place {
     int body = 0;
     int axis = 0;
-    Vec3 p_BN;  ///< From the body's centre of mass to the node, in the body's frame [m].
+    Vec3 p_BN;  ///< From the body's center of mass to the node, in the body's frame [m].
   };
 
   const std::vector<ChannelInfo>& channels() const { return channels_; }
-  /// Nothing if that is no such channel.
+  /// Returns nothing for other channel names.
   std::optional<Place> Find(const std::string& name) const;
-  /// The channel row by row: one component of p_WN = p_WB + q_WB p_BN.
+  /// Returns the channel row by row: one component of p_WN = p_WB + q_WB p_BN.
   static std::vector<double> Column(const Place& place, const Poses& poses);
 
  private:

@@ -6,10 +6,10 @@
 namespace taut::viewer {
 namespace {
 
-/// Wall-clock time that a run may be behind [s].
+/// Largest lag of a run behind the wall clock that is still caught up [s].
 constexpr double kMaxBehindS = 0.1;
 constexpr std::chrono::milliseconds kMeasuredFor{500};
-/// Longer than anybody waits, and short enough for the clock's numbers.
+/// Effectively infinite, yet within the range of the clock's type.
 constexpr double kLongestWaitS = 1e6;
 
 double Seconds(Pace::Clock::duration span) { return std::chrono::duration<double>(span).count(); }

@@ -63,7 +63,7 @@ struct Page::Impl {
 
 std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   const auto check = [&](bool good, const std::string& what) {
-    if (!good) out.Error({}, "PageOptions: " + what);
+    if (!good) out.Error("page.bad_option", {}, "PageOptions: " + what);
   };
   const auto finite = [](double value) { return std::isfinite(value); };
   check(finite(options.speed) && options.speed >= 0,
@@ -74,7 +74,7 @@ std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
         fmt::format("address \"{}\" is none; 127.0.0.1 is this machine", options.address));
   std::string error;
   const auto web = viewer::FindWebFolder(error, options.web_folder);
-  if (!web) out.Error({}, error);
+  if (!web) out.Error("page.not_made", {}, error);
   if (!out.ok()) return nullptr;
 
   viewer::ServerOptions where;
@@ -83,7 +83,7 @@ std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   where.ends_on_signals = false;
   auto impl = std::make_unique<Impl>(options, where, viewer::ReadWebFiles(*web));
   if (!impl->server.Listen(error)) {
-    out.Error({}, error);
+    out.Error("page.not_made", {}, error);
     return nullptr;
   }
   impl->url = viewer::Url(where, impl->server.port(), where.drive_token);

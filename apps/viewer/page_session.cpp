@@ -9,7 +9,7 @@ namespace taut::viewer {
 namespace {
 
 constexpr std::chrono::microseconds kFramePeriod{16667};
-/// A page that hears nothing for longer may think that nobody is there.
+/// Interval of frames while idle; without them a page assumes that the connection is lost.
 constexpr std::chrono::milliseconds kIdlePeriod{250};
 
 }  // namespace
@@ -52,7 +52,7 @@ void PageSession::Show(Frame frame) {
   std::unique_lock lock(own_mutex_);
   if (now_ && frame.time_s < now_->time_s) {
     ++run_;
-    now_.reset();  // of a run that is over; nobody looks back in it while this one waits
+    now_.reset();  // from the previous run, whose history ends with the restart
   }
   asked_s_ = frame.time_s;
   if (!now_) {
@@ -94,7 +94,7 @@ void PageSession::Handle(int client, const Command& command) {
 
 bool PageSession::Drive(const Command& command) {
   const std::string& type = command.type;
-  if (type == "drop") return true;  // a hand that has gone; it held nothing
+  if (type == "drop") return true;  // a dragging client has left; a page has no drags
   const std::lock_guard lock(own_mutex_);
   changed_ = true;
   if (type == "pause") {

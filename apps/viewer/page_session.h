@@ -1,5 +1,5 @@
-/// What a program of a user's own shows: it says what is, the session shows it, keeps it to look
-/// back, and makes the program wait.
+/// Session for a user's program (taut/page.h): displays the program's states, stores them for
+/// looking back, and delays the program to keep the pace.
 #pragma once
 
 #include <condition_variable>
@@ -21,9 +21,9 @@ class PageSession final : public Session {
   ~PageSession() override { Stop(); }
 
   // --- for the program, from one thread ------------------------------------------------------
-  /// From now on frames are of these robots and of channels of the program's own. Begins anew.
+  /// Restarts the session: frames now contain these robots and the program's channels.
   void Begin(const JoinedRobots& robots, const std::vector<ChannelInfo>& values);
-  /// As `Page::Show`. Header fields that are about time and pace are the session's.
+  /// Same as `Page::Show`. The session sets the header fields of time and pace.
   void Show(Frame frame);
 
  private:
@@ -33,16 +33,16 @@ class PageSession final : public Session {
   void Wait(std::unique_lock<std::mutex>& lock, double time_s);
 
   const double history_period_s_;
-  // All below belongs to the lock: the program and the session's thread use it.
+  // All members below are protected by the mutex: the program and the session's thread use them.
   std::mutex own_mutex_;
   std::condition_variable goes_on_;
   Pace pace_;
   std::optional<Json> new_scene_;
   std::optional<History> history_;
-  std::optional<Frame> now_;  ///< Of the last `Show`.
-  double asked_s_ = 0;        ///< Of the last call of `Show`, which may wait still.
+  std::optional<Frame> now_;  ///< Set by the last `Show`.
+  double asked_s_ = 0;        ///< Time of the last call of `Show`, which may still wait.
   std::optional<std::size_t> past_row_;
-  int steps_left_ = 0;  ///< So many calls pass while paused.
+  int steps_left_ = 0;  ///< Number of calls of `Show` that may pass while paused.
   int run_ = 0;
   bool changed_ = false;
   Clock::time_point shown_wall_;

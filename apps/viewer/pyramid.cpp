@@ -37,7 +37,7 @@ Pyramid::Block Pyramid::Range(const std::vector<double>& column, std::size_t fir
                               std::size_t last) const {
   Block range;
   while (first < last) {
-    // the largest stored block that begins here and does not go too far
+    // the largest stored block that begins here and ends within the range
     std::size_t size = 1, level = 0;
     while (level < levels_.size() && first % (size * kFan) == 0 && first + size * kFan <= last) {
       size *= kFan;

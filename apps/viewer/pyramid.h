@@ -1,4 +1,5 @@
-/// A channel at many resolutions, so that a plot of any span costs what its points cost.
+/// Minimum-maximum pyramid of a channel, so that the cost of a plot depends on its number of points
+/// only, not on the time span.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +11,29 @@ namespace taut::viewer {
 /// Blocks of `level` rows each; see SeriesData in web/protocol/messages.json.
 struct Series {
   std::size_t level = 1;
-  std::vector<double> time_s, first;  ///< Of each block's first row.
+  std::vector<double> time_s, first;  ///< For the first row of each block.
   std::vector<double> min, max;
 };
 
-/// Least and greatest of blocks of 4, 16, 64, ... rows of one column. The column itself stays where
-/// it is. Rows that are not numbers do not count; a block of such rows is NaN.
+/// Minima and maxima of blocks of 4, 16, 64, ... rows of a column. Does not copy the column. Rows
+/// that are NaN do not count; a block of such rows is NaN.
 class Pyramid {
  public:
   explicit Pyramid(const std::vector<double>& column);
 
-  /// The rows with times within t0 .. t1 and one beyond each end, in blocks that begin at
-  /// multiples of their size: at most `points` + 2 of them. `time_s` and `column` are those of the
-  /// trace.
+  /// Returns the rows with times within t0 to t1 and one beyond each end, in blocks that begin at
+  /// multiples of their size: at most `points` + 2 blocks. `time_s` and `column` must be the
+  /// trace's columns.
   Series Get(const std::vector<double>& time_s, const std::vector<double>& column, double t0,
              double t1, std::size_t points) const;
 
  private:
   struct Block {
-    double min = std::numeric_limits<double>::infinity(), max = -min;  ///< Of nothing.
+    double min = std::numeric_limits<double>::infinity(), max = -min;  ///< Of an empty block.
     void Take(const Block& other);
   };
   static Block Row(double value);
-  /// Rows first .. last - 1.
+  /// Returns the block of rows first to last - 1.
   Block Range(const std::vector<double>& column, std::size_t first, std::size_t last) const;
 
   std::vector<std::vector<Block>> levels_;

@@ -22,7 +22,8 @@ std::string ReadText(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Whether a trace can be of this experiment: all its bodies and cables have a name there.
+/// Returns whether a trace can belong to this experiment: all its bodies and cables are in the
+/// experiment.
 bool Belongs(const Trace& trace, const ExperimentSpec& experiment) {
   std::vector<std::string> known;
   for (const BodyDef& body : experiment.robot.def.bodies) known.push_back("body/" + body.name);
@@ -45,7 +46,7 @@ std::unique_ptr<Recorded> Recorded::LoadAlone(const std::string& path, Diagnosti
   auto trace = ReadTraceOfRun(path, out);
   if (!trace) return nullptr;
   if (trace->time_s.empty()) {
-    out.Error({path}, "has no rows: there is nothing to show");
+    out.Error("trace.no_rows", {path}, "has no rows: there is nothing to show");
     return nullptr;
   }
   auto recorded = std::make_unique<Recorded>();
@@ -73,8 +74,9 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path,
   }
   bool good = recorded != nullptr;
   if (others.size() > kMaxComparedRuns) {
-    out.Error({path}, fmt::format("is compared with {} runs, the most are {}", others.size(),
-                                  kMaxComparedRuns));
+    out.Error(
+        "report.too_many_runs", {path},
+        fmt::format("is compared with {} runs, the most are {}", others.size(), kMaxComparedRuns));
     good = false;
   }
   std::vector<std::unique_ptr<Recorded>> compared;
@@ -114,7 +116,7 @@ void Recorded::FindInputs() {
   inputs_ = ReadText(inputs);
   nodes_ = NodeChannels(experiment_->robot.def);
   const double end_s = trace_.time_s.back();
-  // Of a live run that was reset (inputs_2.yaml) nobody knows how long it was meant to be.
+  // The planned duration is unknown for parts of a live run after a reset (inputs_2.yaml).
   const bool planned = inputs.filename() == "inputs.yaml";
   if (planned && end_s < experiment_->duration_s * (1 - 1e-9) - 1e-9) {
     notice_ = fmt::format("the trace ends at {:g} s of {:g} s", end_s, experiment_->duration_s);
@@ -263,7 +265,8 @@ void Recorded::AddBends(std::size_t row, int first, std::vector<Frame::Bend>& be
 
 void Recorded::AddGhost(double time_s, int first_cable, Frame& frame) const {
   const std::vector<double>& times = trace_.time_s;
-  // A row holds until the next would come; a row that is one of both runs may differ by a rounding.
+  // A row is valid until the next is due; times of the same row in two runs may differ by
+  // round-off.
   constexpr double kRoundingS = 1e-9;
   const double row_s =
       times.size() < 2 ? 0 : (times.back() - times.front()) / static_cast<double>(times.size() - 1);
@@ -302,13 +305,13 @@ Frame Recorded::FrameOf(std::size_t row) const {
   AddBends(row, 0, frame.bends);
   for (std::size_t c = 0; c < cables_.size(); ++c) {
     for (const auto* const tension : cables_[c].spans) {
-      if (std::isnan((*tension)[row])) break;  // not so many now
+      if (std::isnan((*tension)[row])) break;  // fewer spans in this row
       frame.spans.push_back({static_cast<int>(c), (*tension)[row]});
     }
   }
   auto cables = static_cast<int>(cables_.size());
   for (const auto& run : compared_) {
-    if (!run->has_poses()) continue;  // it has no ghost
+    if (!run->has_poses()) continue;  // no ghost without poses
     run->AddGhost(frame.time_s, cables, frame);
     cables += static_cast<int>(run->cables_.size());
   }

@@ -23,7 +23,7 @@ std::string Recording::Path(const char* name, const char* end) const {
   return (std::filesystem::path(folder_) / (name + suffix + end)).string();
 }
 
-/// Somebody who makes room may have moved the folder away: then there is a new one.
+/// Creates the folder again if the user has moved it away to free space.
 bool Recording::TakeFolder(Diagnostics& out) {
   if (lock_ && lock_->Holds()) return true;
   ours_ = false;
@@ -44,13 +44,14 @@ bool Recording::Begin(LiveRun& run, const ExperimentSpec& experiment, Diagnostic
 
 bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagnostics& out) {
   const auto fail = [&](const NewFile& file) {
-    out.Error({file.path()}, "cannot be written: " + file.why());
+    out.Error("file.not_writable", {file.path()}, "cannot be written: " + file.why());
     return false;
   };
   const std::string id = NewRunId();
   TraceMetadata metadata = RunMetadata(experiment);
   metadata.emplace_back(kRunIdKey, id);
-  // All that needs room first, without a name: where there is none, old files of these names stay.
+  // Files that need space are first created without a name: if there is none, existing files of
+  // these names stay.
   NewFile inputs(Path("inputs", ".yaml"));
   if (!inputs.Create() || !inputs.Write(InputsOfRun(id, ResolvedYaml(experiment))) ||
       !inputs.Sync()) {
@@ -62,12 +63,12 @@ bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagn
   if (!writer_) return false;
   rate_hz_ = experiment.record.rate_hz;
   rows_ = 1;
-  if (!writer_->Append(time_s_, run.Row().data())) {  // with its first row it has its name
-    out.Error({}, writer_->error());
+  if (!writer_->Append(time_s_, run.Row().data())) {  // the file gets its name with the first row
+    out.Error("trace.not_written", {}, writer_->error());
     return false;
   }
   identity_ = IdentityOf(Path("trace", ".h5"));
-  inputs.Leave();  // if a step below fails, the next reader completes it with these inputs
+  inputs.Leave();  // if a step below fails, the next reader completes the run with these inputs
   // Files of `taut run` in this folder belong to another run.
   if (!ours_ && !RemoveRunBefore(folder_, {"trace.h5", "inputs.yaml", "events.jsonl"}, out)) {
     return false;
@@ -119,7 +120,7 @@ bool Recording::Finish() {
   return complete_;
 }
 
-/// What is written into a file that somebody has removed goes nowhere, without an error.
+/// Checks the file's identity, because writing into a deleted file causes no error.
 bool Recording::IsThere() {
   if (IdentityOf(Path("trace", ".h5")) == identity_) return true;
   Fail(Path("trace", ".h5") + ": is no longer there");

@@ -1,5 +1,5 @@
-/// What a live session leaves behind: traces with the hands' forces as channels, what was done as
-/// events, and the inputs.
+/// Files of a live session: traces with the users' forces as channels, user actions as events, and
+/// the inputs.
 #pragma once
 
 #include <cstdint>
@@ -14,19 +14,19 @@
 
 namespace taut::viewer {
 
-/// A folder of parts, each a run from its start to a restart or the end: trace.h5, events.jsonl and
-/// inputs.yaml, then trace_2.h5, events_2.jsonl, inputs_2.yaml ... A part in which nothing happened
-/// is replaced by the next.
+/// A folder of parts, each from a start to a restart or the end: trace.h5, events.jsonl and
+/// inputs.yaml, then trace_2.h5, events_2.jsonl, inputs_2.yaml ... A part without any event is
+/// replaced by the next.
 ///
-/// Where something cannot be written nothing is recorded from then on, and what has been stays; the
-/// next restart begins the next part if that is possible again. Both are said, once.
+/// If a file cannot be written, recording stops and existing files stay; the next restart begins
+/// the next part if writing is possible again. Each of the two is reported once.
 class Recording final : public LiveRecorder {
  public:
-  /// However many restarts there are: the last of these parts is replaced by those that follow it.
+  /// Limit for many restarts: the last of these parts is replaced by each later one.
   static constexpr int kMaxParts = 16;
 
-  /// The first part, in an existing folder. `say` gets what people should know: what is not
-  /// recorded, and what is again.
+  /// Starts the first part, in an existing folder. `say` receives notices for the user: recording
+  /// has stopped, or has resumed.
   static std::unique_ptr<Recording> Start(const std::string& folder, LiveRun& run,
                                           const ExperimentSpec& experiment,
                                           std::function<void(const std::string&)> say,
@@ -38,9 +38,9 @@ class Recording final : public LiveRecorder {
   void FlushOld() override;
   bool Finish() override;
 
-  /// Since when and why nothing is recorded; empty while all is well.
+  /// Returns since when and why nothing is recorded; empty while recording works.
   const std::string& failure() const { return failure_; }
-  /// That, or in the part after it that there is something missing.
+  /// Returns the failure, or in the part after it a notice that data are missing.
   const std::string& notice() const override { return failure_.empty() ? resumed_ : failure_; }
 
  private:
@@ -64,12 +64,12 @@ class Recording final : public LiveRecorder {
   double rate_hz_ = 0, time_s_ = 0;
   std::int64_t rows_ = 0, event_count_ = 0;
   std::string failure_, resumed_;
-  std::string since_;  ///< The moment of the failure.
-  bool ours_ = false;  ///< No pieces of another run are in the folder.
+  std::string since_;  ///< Time of the failure.
+  bool ours_ = false;  ///< The folder contains no files of another run.
   bool complete_ = true;
 };
 
-/// Recordings in this folder; empty: nothing is recorded.
+/// Returns a factory of recordings in this folder; an empty folder: no recording.
 MakeRecorder RecordInto(const std::string& folder);
 
 }  // namespace taut::viewer

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::chrono::microseconds kReplayFramePeriod{16667};
 constexpr std::chrono::milliseconds kIdlePeriod{1000};
-/// "As fast as it can" makes no sense for a replay.
+/// Fastest replay; unlimited speed makes no sense for a recording.
 constexpr double kMaxSpeed = 100;
 
 }  // namespace
@@ -53,7 +53,7 @@ void ReplaySession::Handle(int client, const Command& command) {
     Anchor(now_s);
     paused_ = true;
   } else if (type == "resume") {
-    Anchor(now_s >= times.back() ? times.front() : now_s);  // at the end: once more
+    Anchor(now_s >= times.back() ? times.front() : now_s);  // restarts at the end
     paused_ = false;
   } else if (type == "seek") {
     Anchor(command.value);

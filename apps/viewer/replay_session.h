@@ -1,4 +1,4 @@
-/// A trace, played back.
+/// Replay of a trace.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ class ReplaySession final : public Session {
   double speed_;
   bool paused_ = true, changed_ = true;
   std::size_t row_ = 0;
-  // The time shown is the second plus speed times the wall-clock time since the first.
+  // The displayed time is the last member plus speed times the wall-clock time since the first.
   Clock::time_point anchor_wall_, shown_wall_;
   double anchor_s_ = 0;
 };

@@ -36,8 +36,8 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-/// What a report plots. How bodies turn, contacts and the places of bends are in its frames;
-/// velocities would only make it larger.
+/// Returns whether a report plots a channel. Orientations, contacts and bends are contained in its
+/// frames; velocities would only enlarge it.
 bool IsPlotted(const ChannelInfo& channel) {
   if (channel.name.starts_with("contact/")) return false;
   if (channel.name.starts_with("cable/") &&
@@ -57,8 +57,8 @@ void AppendNumbers(const std::vector<double>& numbers, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
 }
 
-/// The Rows of web/protocol/messages.json: every row of what is plotted if those are at most
-/// `max_numbers`, else the smallest blocks that are.
+/// Returns the Rows of web/protocol/messages.json: all rows of the plotted channels if they have at
+/// most `max_numbers` numbers, else the smallest blocks within this limit.
 Json RowsOf(const Recorded& recorded, const Trace& trace, int source, std::size_t max_numbers) {
   const std::vector<ChannelInfo> channels = Plotted(trace.channels);
   const std::size_t rows = trace.time_s.size();
@@ -97,7 +97,7 @@ void AddFrames(const Recorded& recorded, Json& report) {
   std::size_t pushes = 0, contacts = 0, bends = 0, spans = 0;
   for (std::size_t i = 0; i < frames; ++i) {
     const double share = frames == 1 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
-    // Times near a row may lie a rounding before it.
+    // The time of a row may be reached only within round-off.
     all.push_back(recorded.FrameOf(recorded.RowAt(times.front() + share * span_s + 1e-9)));
     pushes = std::max(pushes, all.back().pushes.size());
     contacts = std::max(contacts, all.back().contacts.size());
@@ -107,7 +107,7 @@ void AddFrames(const Recorded& recorded, Json& report) {
   std::string bytes;
   std::size_t values = 0;
   for (Frame& frame : all) {
-    // all frames have one size; what was added has no force, or is of no cable
+    // all frames must have the same size; added entries have no force, or no cable
     frame.pushes.resize(pushes);
     frame.contacts.resize(contacts);
     frame.bends.resize(bends);
@@ -156,7 +156,7 @@ Json ReportOf(const Recorded& recorded, std::size_t max_numbers) {
     const Recorded& run = *recorded.compared()[k];
     report["scene"]["compared"][k]["channels"] = ToJson(Plotted(run.trace().channels));
     report["rows"].push_back(RowsOf(recorded, run.trace(), static_cast<int>(k + 1), share));
-    // that run minus this one, which all runs are seen from
+    // difference to this run, the common reference
     report["comparisons"].push_back(
         Json::parse(ComparisonJson(Compare(run.trace(), recorded.trace(), options), run.run_name(),
                                    recorded.run_name()),
@@ -174,7 +174,7 @@ std::optional<std::string> ReportPage(const Json& report, const std::string& pag
   std::string data;
   for (const char c : Dump(report)) {
     if (c == '<') {
-      data += "\\u003c";  // nothing in the data can end the element that holds it
+      data += "\\u003c";  // so that no data can end the surrounding element
     } else {
       data += c;
     }
@@ -188,15 +188,16 @@ bool WriteReport(const std::string& trace, const std::vector<std::string>& compa
   std::string error;
   const std::optional<std::string> folder = FindWebFolder(error);
   if (!folder) {
-    out.Error({path}, "the report cannot be made: " + error);
+    out.Error("report.not_made", {path}, "the report cannot be made: " + error);
     return false;
   }
   const auto recorded = Recorded::Load(trace, compare, out);
   if (!recorded) return false;
-  if (!recorded->notice().empty()) out.Warning({trace}, recorded->notice());
+  if (!recorded->notice().empty()) out.Warning("trace.notice", {trace}, recorded->notice());
   const auto page = ReportPage(ReportOf(*recorded), ReadText(*folder + "/report.html"));
   if (!page) {
-    out.Error({*folder + "/report.html"}, "is not the page that reports are made of",
+    out.Error("report.foreign_page", {*folder + "/report.html"},
+              "is not the page that reports are made of",
               "build the viewer's pages again: script/build");
     return false;
   }

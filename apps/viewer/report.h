@@ -1,4 +1,4 @@
-/// A run as one HTML file that opens from disk: the viewer's page with the data inside.
+/// Report of a run as one HTML file that opens from disk: the viewer's page with the data embedded.
 #pragma once
 
 #include <optional>
@@ -9,20 +9,20 @@
 
 namespace taut::viewer {
 
-/// Numbers of traces that a report holds at most, besides its frames: 24 MB, in base64 32. Runs
-/// that are compared share them.
+/// Limit of the numbers from traces in a report, besides its frames: 24 MB, in base64 32 MB.
+/// Compared runs share it.
 inline constexpr std::size_t kMaxReportNumbers = 3'000'000;
 
-/// The Report of web/protocol/messages.json. A trace with more numbers than its share of
-/// `max_numbers` is in it as blocks of rows.
+/// Returns the Report of web/protocol/messages.json. A trace with more numbers than its share of
+/// `max_numbers` is reduced to blocks of rows.
 Json ReportOf(const Recorded& recorded, std::size_t max_numbers = kMaxReportNumbers);
 
-/// The page `page` with the data in its empty <script id="taut-report">. Nothing if it has none.
+/// Inserts the data into the empty <script id="taut-report"> of `page`. Returns nothing if the page
+/// has no such element.
 std::optional<std::string> ReportPage(const Json& report, const std::string& page);
 
-/// Reads the trace at `trace` (and what is beside it), writes the report to `path`. False and
-/// diagnostics if that fails.
-/// `compare`: as `Recorded::Load` takes it.
+/// Reads the trace at `trace` (and the other files of its folder) and writes the report to `path`.
+/// Returns false, with errors in the diagnostics, on failure. `compare`: as for `Recorded::Load`.
 bool WriteReport(const std::string& trace, const std::vector<std::string>& compare,
                  const std::string& path, Diagnostics& out);
 

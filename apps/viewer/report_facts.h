@@ -1,4 +1,4 @@
-/// What a reader of a report wants to know first: what was run, in words.
+/// Description of a run in words, for the top of a report.
 #pragma once
 
 #include "scene.h"
@@ -6,7 +6,7 @@
 
 namespace taut::viewer {
 
-/// Texts by what they are about, in the order in which they are read.
+/// Returns texts by topic, in reading order.
 Json FactsOf(const ExperimentSpec& experiment);
 
 }  // namespace taut::viewer

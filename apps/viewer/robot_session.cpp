@@ -15,9 +15,9 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kRobotFramePeriod{50}, kStatusPeriod{100};
-/// Less than a cycle: all of them are kept, whenever they end.
+/// Shorter than a cycle, so that every cycle is stored.
 constexpr double kHistoryPeriod_s = 0.005;
-/// A minute of cycles: what waits for a disk that stands still.
+/// Limit of unsaved states, a minute of cycles, while the disk is blocked.
 constexpr std::size_t kMaxStates = 6000;
 constexpr std::size_t kMaxCommands = 1000;
 constexpr std::size_t kEvents = 40;
@@ -154,10 +154,10 @@ bool RobotSession::TakeAtOnce(int client, const Command& command) {
   const bool stop = wanted->kind == RobotCommand::Kind::kStop;
   const std::lock_guard lock(own_mutex_);
   if (stop) {
-    // What was asked for before is not what is wanted any more.
+    // A stop cancels all earlier commands.
     commands_.clear();
   } else if (commands_.size() >= kMaxCommands) {
-    return true;  // nobody drives any more
+    return true;  // the client no longer drives
   }
   commands_.push_back(*wanted);
   return true;
@@ -178,7 +178,7 @@ void RobotSession::Handle(int client, const Command& command) {
     }
     return SayError(client, fmt::format("there is no channel \"{}\"", command.name));
   }
-  if (command.type == "drop") return;  // a hand that has gone; it held nothing
+  if (command.type == "drop") return;  // a dragging client has left; a robot has no drags
   if (command.type == "robot_gain") {
     return SayError(client, fmt::format("no motor drives a cable \"{}\"", command.name));
   }
@@ -312,7 +312,7 @@ Json RobotSession::MakeScene() const {
   std::vector<ChannelInfo> channels;
   for (const ChannelInfo& channel : history_->channels()) {
     const auto begins = [&](const char* word) { return channel.name.rfind(word, 0) == 0; };
-    // Nobody measures these; bodies and nodes only where they are told.
+    // Not measured on a robot; bodies and nodes are available only from a virtual robot.
     if (begins("system/") || begins("real_time_factor")) continue;
     if (options_.truth.empty() && (begins("body/") || begins("node/"))) continue;
     if (begins("cable/")) {

@@ -1,6 +1,6 @@
-/// A robot that somebody drives: he shows what boards say, the session passes it on and brings back
-/// what browsers ask for. The thread that drives never waits for files, sockets or browsers: all
-/// that it shares is copied under a lock that is held for a swap.
+/// Session for a robot: passes the boards' state to browsers and returns their commands to the
+/// thread that drives the robot. The driving thread never waits for files, sockets or browsers: all
+/// shared data are copied under a lock that is held for a swap only.
 #pragma once
 
 #include <atomic>
@@ -19,36 +19,37 @@
 
 namespace taut::viewer {
 
-/// Where every cycle goes while somebody wants it. Used by the session's thread alone, which may
-/// wait for the disk.
+/// Recorder of all cycles, started and ended by clients. Used by the session's thread only, which
+/// may wait for the disk.
 class RobotRecorder {
  public:
   virtual ~RobotRecorder() = default;
-  /// The folder; empty and a reason if it cannot begin. `time_s` will be its 0.
+  /// Begins a recording at `time_s`, its time 0. Returns the folder; empty, with a reason, on
+  /// failure.
   virtual std::string Begin(double time_s, std::string& why) = 0;
   virtual void Take(const link::State& state) = 0;
   virtual void Event(double time_s, const std::string& text) = 0;
-  /// False and a reason if not all of it could be written.
+  /// Ends the recording. Returns false, with a reason, if data are missing.
   virtual bool End(std::string& why) = 0;
 };
 
 struct RobotSessionOptions {
   RobotSpec robot;
-  std::vector<std::string> cables;  ///< Of the motors.
+  std::vector<std::string> cables;  ///< Per motor.
   std::string port;
-  std::string truth;        ///< Socket on which a virtual robot tells its pose; empty: none does.
-  bool experiment = false;  ///< One drives it: browsers may only take power.
-  std::string recording;    ///< The folder that somebody else records into; empty: none.
-  std::unique_ptr<RobotRecorder> recorder;  ///< Null: browsers may not record.
+  std::string truth;        ///< Socket on which a virtual robot publishes its pose; empty: none.
+  bool experiment = false;  ///< An experiment drives: browsers may only turn power off.
+  std::string recording;    ///< Folder of a recording outside this session; empty: none.
+  std::unique_ptr<RobotRecorder> recorder;  ///< Null: browsers cannot record.
   bool record_at_once = false;
 };
 
-/// What a browser wants of the robot.
+/// Command from a browser to the robot.
 struct RobotCommand {
   enum class Kind { kStop, kOff, kArm, kHold, kImpedance, kClearFaults, kGain };
   Kind kind = Kind::kOff;
   int client = 0;
-  int motor = 0;  ///< kGain, and what follows.
+  int motor = 0;  ///< For kGain, as are the following members.
   int gain = 0;   ///< A `board::MotorParameter` below `board::kGains`.
   double value = 0;
 };
@@ -59,18 +60,19 @@ class RobotSession final : public Session {
   ~RobotSession() override;
 
   // --- for the thread that drives ------------------------------------------------------------
-  /// After each cycle, and now and then where there is none: `state.time_s` then stays.
+  /// To be called after each cycle, and regularly while there are none; `state.time_s` is then
+  /// constant.
   void Show(const link::State& state);
   void Event(double time_s, const std::string& text);
-  /// A run begins: times are from now on since this one, plots begin anew.
+  /// Begins a run at `time_s`, the new origin of times; plots restart.
   void BeginAt(double time_s);
-  /// In the order in which they came, but for stops, which come first.
+  /// Returns the commands in order of arrival, but stops first.
   std::vector<RobotCommand> TakeCommands();
-  /// What a client asked for was not done.
+  /// Informs a client that its command was not executed.
   void Refuse(int client, const std::string& why);
-  /// A board has said what a gain is.
+  /// Sets a gain as read from a board.
   void SetGain(int motor, int gain, double value);
-  /// What a board said to a kGain; `good`: its value is now this.
+  /// Passes a board's reply to a kGain; `good`: the gain now has this value.
   void AnswerGain(const RobotCommand& command, bool good, const std::string& text);
 
   bool Finish() override;
@@ -80,14 +82,14 @@ class RobotSession final : public Session {
     double time_s;
     std::string text;
   };
-  /// What the driving thread has left for the session's.
+  /// Data passed from the driving thread to the session's thread.
   struct Left {
     std::vector<link::State> states;
     std::vector<Happening> events;
     std::vector<Outgoing> errors;
     std::vector<Json> answers;
     std::optional<double> begins_s;
-    std::size_t lost = 0;  ///< States for which there was no room.
+    std::size_t lost = 0;  ///< Number of states dropped for lack of space.
   };
 
   bool TakeAtOnce(int client, const Command& command) override;
@@ -109,15 +111,15 @@ class RobotSession final : public Session {
   std::vector<std::size_t> cable_of_motor_;
   std::vector<bool> has_set_point_;
 
-  // Belongs to the lock.
+  // Protected by this mutex:
   std::mutex own_mutex_;
   Left left_;
   std::vector<RobotCommand> commands_;
   Gains gains_;
 
-  std::atomic<Clock::rep> shown_at_{0};  ///< When a new state came last.
+  std::atomic<Clock::rep> shown_at_{0};  ///< Time of the last new state.
 
-  // The session's thread's.
+  // For the session's thread only:
   link::RobotLog log_;
   TruthReader truth_;
   std::optional<History> history_;
@@ -126,7 +128,7 @@ class RobotSession final : public Session {
   Frame moment_;
   std::vector<Frame::Body> described_;
   std::vector<Happening> last_events_;
-  std::string recording_;  ///< Empty: not by us.
+  std::string recording_;  ///< Empty: not recorded by this session.
   bool all_recorded_ = true, begun_ = false, true_pose_ = false;
   int run_ = 1;
   Clock::time_point status_wall_;

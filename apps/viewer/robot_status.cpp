@@ -72,10 +72,10 @@ std::vector<std::string> AlarmsOf(const link::State& state, const std::vector<st
   if (state.stopping) alarms.push_back("emergency stop: motors stay off until faults are cleared");
   if (!state.link.connected) {
     alarms.push_back(fmt::format("the adapter at {} is gone: what is shown is old", port));
-    return alarms;  // of boards nobody hears
+    return alarms;  // boards that do not answer
   }
   if (age_s > kSilence_s) alarms.push_back(fmt::format("no cycle for {:.1f} s", age_s));
-  // What is the same for several is said once.
+  // Alarms common to several boards are merged.
   std::vector<std::size_t> absent, faulty, timed_out, stopped;
   for (std::size_t b = 0; b < state.boards.size(); ++b) {
     const link::BoardView& board = state.boards[b];

@@ -1,4 +1,4 @@
-/// How a robot is, as RobotStatus of web/protocol/messages.json says it.
+/// State of a robot as RobotStatus of web/protocol/messages.json.
 #pragma once
 
 #include <string>
@@ -12,12 +12,11 @@ namespace taut::viewer {
 /// Values of `board::kGains` gains, by motor; NaN: not known yet.
 using Gains = std::vector<std::vector<double>>;
 
-/// All that is wrong, in words, what matters most first. `age_s`: since a cycle ended, by the
-/// wall's clock.
+/// Returns all alarms as text, most important first. `age_s`: wall-clock time since the last cycle.
 std::vector<std::string> AlarmsOf(const link::State& state, const std::vector<std::string>& cables,
                                   const std::string& port, double age_s);
 
-/// Without time, alarms, recording and events.
+/// Returns the status without time, alarms, recording and events.
 Json StatusJson(const link::State& state, const std::vector<std::string>& cables,
                 const Gains& gains);
 

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The last parts of a path, as many as asked for or there are.
+/// Returns the last `parts` components of a path, or all if it has fewer.
 std::string Tail(const std::string& path, std::size_t parts) {
   const fs::path whole = fs::absolute(path).lexically_normal();
   fs::path tail;
@@ -51,7 +51,7 @@ std::vector<std::string> RunNames(const std::vector<NamedTrace>& traces) {
     }
     if (names == before) break;
   }
-  // What still has one name is one file.
+  // Runs that still share a name are the same file.
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto end = names.begin() + static_cast<std::ptrdiff_t>(i);
     const std::string name = names[i];

@@ -1,4 +1,4 @@
-/// What to call runs that are shown beside each other.
+/// Distinct names for runs that are shown together.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace taut::viewer {
 
-/// What a trace's metadata say under a key; empty if nothing.
+/// Returns a value from a trace's metadata; empty if it has none.
 std::string Said(const Trace& trace, std::string_view key);
 
 struct NamedTrace {
@@ -17,8 +17,8 @@ struct NamedTrace {
   std::string path;
 };
 
-/// For each what it says of itself, and its folder and file: every run's is a trace.h5. Where two
-/// would have one name, as much more of their paths as tells them apart.
+/// Returns for each run the name in its metadata, with folder and file, since all traces are named
+/// trace.h5. Equal names are extended by as many path components as make them distinct.
 std::vector<std::string> RunNames(const std::vector<NamedTrace>& traces);
 
 }  // namespace taut::viewer

@@ -10,7 +10,7 @@ namespace {
 
 Vec3 Minus(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
-/// A point of W at t = 0 in its body's frame.
+/// Converts a point in W at t = 0 to its body's frame.
 Json InBody(const ModelDef& def, int body, const Vec3& point_m) {
   if (body == kWorld) return ToJson(point_m);
   return ToJson(Minus(point_m, def.bodies[static_cast<std::size_t>(body)].com_m));
@@ -83,7 +83,7 @@ Json Cables(const ModelDef& def) {
   return cables;
 }
 
-/// As messages.json spells it.
+/// Returns the spelling of messages.json.
 const char* KindText(JointKind kind) {
   switch (kind) {
     case JointKind::kBall:
@@ -122,7 +122,7 @@ Json Joints(const ModelDef& def) {
   return joints;
 }
 
-/// Of a large field only so many corners are drawn.
+/// Limit of the corners drawn of a large height field.
 constexpr int kMostCorners = 250'000;
 
 void AddField(const HeightFieldDef& field, Json& terrain) {
@@ -207,7 +207,7 @@ Json Empty() {
   return scene;
 }
 
-/// "segment_0" of "body/segment_0/position_x_m"; empty if the name is not like that.
+/// Returns "segment_0" for "body/segment_0/position_x_m"; empty for names of another form.
 std::string Between(const std::string& name, const std::string& prefix, const std::string& suffix) {
   if (name.size() <= prefix.size() + suffix.size() || name.compare(0, prefix.size(), prefix) != 0 ||
       name.compare(name.size() - suffix.size(), suffix.size(), suffix) != 0) {

@@ -1,4 +1,4 @@
-/// What there is to see, as the Scene of web/protocol/messages.json.
+/// Scene of web/protocol/messages.json: geometry, names and channels of a model or a trace.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,23 +12,23 @@
 
 namespace taut::viewer {
 
-using Json = nlohmann::ordered_json;  // keys in the order in which they are set; NaN prints as null
+using Json = nlohmann::ordered_json;  // keeps the order of keys; NaN becomes null
 
 Json ToJson(const Vec3& v);
 Json ToJson(const Quat& q);
 Json ToJson(const std::vector<ChannelInfo>& channels);
 
-/// The SeriesData of web/protocol/messages.json.
+/// Returns the SeriesData of web/protocol/messages.json.
 Json SeriesJson(const std::string& channel, int source, const Series& series);
 
-/// The scene of a model with an experiment's surroundings and phases; no parameters, controls,
-/// channels.
+/// Returns the scene of an experiment: its model, surroundings and phases, without parameters,
+/// controls and channels.
 Json SceneOf(const ExperimentSpec& experiment);
 
-/// The scene of a trace whose model is not known: bodies are small spheres, cables have no place.
+/// Returns the scene of a trace without model: bodies are small spheres, cables have no position.
 Json SceneOf(const Trace& trace);
 
-/// JSON text; a text that is not UTF-8 gets replacement characters.
+/// Returns JSON text; invalid UTF-8 is replaced.
 std::string Dump(const Json& json);
 
 }  // namespace taut::viewer

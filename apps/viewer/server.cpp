@@ -21,7 +21,7 @@
 namespace taut::viewer {
 namespace {
 
-/// Those who may only watch leave room for those who may drive.
+/// Watchers are limited further, so that clients who may drive find a place.
 constexpr std::size_t kMaxClients = 64, kMaxWatchers = 48;
 
 }  // namespace
@@ -30,7 +30,7 @@ struct Server::Impl {
   Impl(Session& the_session, WebFiles the_files, ServerOptions the_options)
       : session(the_session), files(std::move(the_files)), options(std::move(the_options)) {}
 
-  /// Takes a WebSocket over, answers anything else.
+  /// Takes over WebSockets, answers all other requests.
   std::optional<HttpResponse> Serve(const HttpRequest& request, beast::tcp_stream& stream) {
     const std::string target(request.target().substr(0, request.target().find('?')));
     const Access access = AccessOf(request, options);
@@ -53,7 +53,7 @@ struct Server::Impl {
         sockets.Add(std::move(socket));
         return Accept();
       }
-      // Out of file descriptors, most likely: try again once some are free.
+      // Out of file descriptors, most likely: retry once some are free.
       sockets.DropOldest();
       pause.expires_after(std::chrono::milliseconds(100));
       pause.async_wait([this](beast::error_code) { Accept(); });
@@ -109,7 +109,7 @@ struct Server::Impl {
     clients.erase(who.client());
     const int before = drivers.driver();
     drivers.Leave(who.client());
-    // A hand that has gone holds nothing.
+    // Ends a drag whose client has left.
     if (before == who.client() && session.mode() != "replay") {
       Command drop;
       drop.type = "drop";
@@ -128,19 +128,19 @@ struct Server::Impl {
     for (const auto& [id, client] : Clients()) client->SendText(text);
   }
 
-  /// A copy: sending may close a connection, which takes it out of `clients`.
+  /// Returns a copy: sending may close a connection, which removes it from `clients`.
   std::map<int, std::shared_ptr<Connection>> Clients() const { return clients; }
 
   void EndOnSignals();
 
-  /// Runs on the session's thread.
+  /// Called on the session's thread.
   void Wake() {
     if (woken.exchange(true)) return;
     asio::post(io, [this] { Fetch(); });
   }
 
   void Fetch() {
-    woken = false;  // before fetching: what comes later wakes again
+    woken = false;  // before fetching: later messages wake again
     for (Outgoing& message : session.TakeMessages()) {
       if (message.client == 0) {
         ToAll(message.text);
@@ -232,7 +232,7 @@ void Server::Impl::EndOnSignals() {
   signals.add(SIGTERM);
   struct sigaction hangup {};
   sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) signals.add(SIGHUP);  // nohup stays nohup
+  if (hangup.sa_handler != SIG_IGN) signals.add(SIGHUP);  // respects nohup
   signals.async_wait([this](beast::error_code failed, int) {
     if (!failed) io.stop();
   });

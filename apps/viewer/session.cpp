@@ -8,11 +8,12 @@ namespace taut::viewer {
 
 namespace {
 
-/// More than any person makes; less than would hurt.
+/// Limit of waiting commands: more than any user causes, few enough for memory.
 constexpr std::size_t kMaxWaiting = 100000;
-/// Answers of up to a megabyte; a page asks for a few at a time.
+/// Limit of waiting series requests, with answers of up to a megabyte; a page sends a few at a
+/// time.
 constexpr int kMaxSeriesWaiting = 256;
-/// How long commands are done without showing anything.
+/// Longest processing of commands without an update of the display.
 constexpr std::chrono::milliseconds kCommandSlice{10};
 
 }  // namespace
@@ -34,7 +35,7 @@ void Session::Stop() {
   }
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
-  wake_ = nullptr;  // whom it wakes may be gone before the session is
+  wake_ = nullptr;  // the object that it wakes may be destroyed before the session
 }
 
 bool Session::idle() const {

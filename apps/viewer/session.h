@@ -1,6 +1,6 @@
-/// What is shown, on a thread of its own or turn by turn: a live run or a replay. The server asks
-/// for the newest frame and never makes the session wait; commands are kept until they are done, or
-/// until the session is told to stop.
+/// Base of the viewer's sessions (live run, replay, page, robot), on a separate thread or turn by
+/// turn. The server fetches the newest frame and never makes the session wait; commands are queued
+/// until they are executed or the session stops.
 #pragma once
 
 #include <atomic>
@@ -22,9 +22,9 @@
 
 namespace taut::viewer {
 
-/// A text for one client, or for all.
+/// A text for one client or for all.
 struct Outgoing {
-  int client = 0;  ///< 0: everyone.
+  int client = 0;  ///< 0: all clients.
   std::string text;
 };
 
@@ -33,31 +33,31 @@ class Session {
   using Clock = std::chrono::steady_clock;
 
   explicit Session(std::string mode, std::string title);
-  virtual ~Session();  ///< A derived class calls Stop in its own destructor.
+  virtual ~Session();  ///< A derived class must call Stop in its destructor.
 
   const std::string& mode() const noexcept { return mode_; }
   const std::string& title() const noexcept { return title_; }
 
-  /// Starts the thread. `wake` is called from it when there is something to fetch; it must return
-  /// at once.
+  /// Starts the thread, which calls `wake` when there is something to fetch; `wake` must return at
+  /// once.
   void Start(std::function<void()> wake);
-  /// Instead of a thread: does what commands ask for and goes on for a little while (some
-  /// milliseconds). Returns when it wants to be called again at the latest.
+  /// Replaces the thread: executes commands and advances for some milliseconds. Returns the latest
+  /// time of the next call.
   Clock::time_point Turn();
-  /// Waits for what is being done just now; commands that wait are forgotten.
+  /// Waits for the operation in progress; discards waiting commands.
   void Stop();
-  /// After Stop: completes what the session leaves behind. False if not all of it is there.
+  /// After Stop: completes the session's output. Returns false if data are missing.
   virtual bool Finish() { return true; }
 
-  /// What a client is told first.
+  /// Returns the first message for a client.
   Json Hello(int client, int driver) const;
 
-  // --- for the server, from any thread; none of them waits for the session's work ------------
-  /// False if so many commands wait that something must be wrong with who sends them.
+  // --- for the server, thread-safe; none of them waits for the session's work ---------------
+  /// Queues a command. Returns false if the queue is full.
   bool Post(int client, Command command);
-  std::shared_ptr<const std::string> frame() const;  ///< The newest; nothing before the first.
-  std::string scene() const;                         ///< The message; empty if there is none.
-  /// The newest of a robot; nothing where there is none.
+  std::shared_ptr<const std::string> frame() const;  ///< The newest frame; null before the first.
+  std::string scene() const;                         ///< The scene message; empty if there is none.
+  /// Returns the newest robot status; null without a robot.
   std::shared_ptr<const std::string> status() const;
   std::vector<Outgoing> TakeMessages();
   void SetDriver(int client);
@@ -65,17 +65,16 @@ class Session {
  protected:
   // --- for derived classes, on the session's thread -----------------------------------------
   virtual void Handle(int client, const Command& command) = 0;
-  /// Goes on for a little while (a few milliseconds) and publishes; returns when it wants to be
-  /// called again at the latest.
+  /// Advances for a few milliseconds and publishes; returns the latest time of the next call.
   virtual Clock::time_point Work() = 0;
 
-  /// What must not wait for the session's work: called on the server's thread, returns at once.
-  /// False: the command is handled as all others.
+  /// Handles commands that must not wait for the session's work. Called on the server's thread;
+  /// must return at once. Returns false if the command is to be queued.
   virtual bool TakeAtOnce(int /*client*/, const Command& /*command*/) { return false; }
 
-  /// Whether Stop was called. What takes long looks at it and ends.
+  /// Returns whether Stop was called. Long operations poll it and end.
   bool stopping() const noexcept { return stop_; }
-  /// Whether no command waits.
+  /// Returns whether no command waits.
   bool idle() const;
 
   void Publish(Frame frame);

@@ -14,7 +14,7 @@ namespace taut::viewer {
 namespace {
 
 constexpr std::chrono::milliseconds kRetry{500};
-/// A line is a few kB. Who sends more without an end is no virtual robot.
+/// Limit of a line, which has a few kB. A sender of longer lines is not a virtual robot.
 constexpr std::size_t kMaxLine = 1 << 20;
 
 std::optional<Frame::Body> BodyOf(const nlohmann::json& numbers) {
@@ -56,7 +56,7 @@ void TruthReader::Connect() {
 void TruthReader::TakeLine(const std::string& line) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   if (!json.is_object() || !json.contains("bodies") || !json["bodies"].is_array()) return;
-  if (json.contains("format")) return;  // the names
+  if (json.contains("format")) return;  // line with the names
   std::vector<Frame::Body> pose;
   for (const nlohmann::json& numbers : json["bodies"]) {
     const auto body = BodyOf(numbers);
@@ -79,7 +79,7 @@ const std::vector<Frame::Body>* TruthReader::Read() {
     }
     rest_.append(bytes, static_cast<std::size_t>(count));
   }
-  // Of several lines the last whole one counts.
+  // Only the last complete line is used.
   if (const std::size_t end = rest_.rfind('\n'); end != rest_.npos) {
     const std::size_t before = end == 0 ? rest_.npos : rest_.rfind('\n', end - 1);
     const std::size_t begin = before == rest_.npos ? 0 : before + 1;

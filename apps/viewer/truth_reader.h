@@ -1,7 +1,5 @@
-/// Where the virtual robot says that it is (docs/formats/truth.md). Never waits: what has come is
-/// read, and a reader that lost its robot tries again.
-///
-/// Threads: belongs to one at a time.
+/// Reader of the virtual robot's true pose (docs/formats/truth.md). Never blocks; reconnects after
+/// the connection is lost. Not thread-safe.
 #pragma once
 
 #include <chrono>
@@ -15,13 +13,14 @@ namespace taut::viewer {
 
 class TruthReader {
  public:
-  /// `path`: of the socket. `bodies`: as many as the model has.
+  /// `path`: of the socket. `bodies`: number of bodies of the model.
   TruthReader(std::string path, std::size_t bodies);
   ~TruthReader();
   TruthReader(const TruthReader&) = delete;
   TruthReader& operator=(const TruthReader&) = delete;
 
-  /// The bodies of the last whole line; nothing before the first, and once nobody speaks.
+  /// Returns the bodies of the last complete line; null before the first, and after the connection
+  /// is lost.
   const std::vector<Frame::Body>* Read();
 
  private:

@@ -34,7 +34,7 @@ WebFiles ReadWebFiles(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, failed)) {
     if (!entry.is_regular_file(failed)) continue;
     const std::string name = "/" + fs::relative(entry.path(), folder, failed).generic_string();
-    if (name == "/report.html") continue;  // the template of reports is no page
+    if (name == "/report.html") continue;  // template of reports, not served
     std::ifstream file(entry.path(), std::ios::binary);
     files[name] = std::string(std::istreambuf_iterator<char>(file), {});
   }

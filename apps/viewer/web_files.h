@@ -1,4 +1,4 @@
-/// Where the pages are that web/ is built into.
+/// Location and content of the built pages of web/.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,12 @@
 
 namespace taut::viewer {
 
-/// The folder of the pages: $TAUT_WEB, or web beside the program, or share/taut/web of an installed
-/// one, or `otherwise`. Nothing if none of them has an index.html; `error` says what to do.
+/// Returns the folder of the pages: $TAUT_WEB, or web in the program's folder, or share/taut/web of
+/// an installation, or `otherwise`. Returns nothing, with advice in `error`, if none of them has an
+/// index.html.
 std::optional<std::string> FindWebFolder(std::string& error, const std::string& otherwise = "");
 
-/// Every file of the folder, by the path that a browser asks for.
+/// Returns all files of the folder by request path.
 WebFiles ReadWebFiles(const std::string& folder);
 
 }  // namespace taut::viewer

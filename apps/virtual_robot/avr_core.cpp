@@ -10,9 +10,9 @@ namespace taut::virtual_robot {
 namespace {
 
 constexpr std::uint8_t kPaint = 0xC5;
-/// An instruction that jumps to itself, at the end of the flash.
+/// Address of an endless loop (rjmp .-2), at the end of the flash.
 constexpr std::uint32_t kTrapAddress = AvrProgram::kFlashBytes - 2;
-/// How many cycles simavr may run without looking at its timers if none is due.
+/// Cycles that simavr may run without processing its timers if none is due.
 constexpr std::uint64_t kRunLimit = 100'000;
 
 constexpr std::uint8_t Bit(int bit) { return static_cast<std::uint8_t>(1U << bit); }
@@ -35,9 +35,9 @@ AvrCore::AvrCore(const AvrProgram& program)
   avr_loadcode(avr_, flash.data(), static_cast<std::uint32_t>(flash.size()), 0);
   avr_->codeend = AvrProgram::kFlashBytes;
   LoadEeprom(0, program.eeprom);
-  // That of the library sleeps for real; behind it, simavr wakes a cycle after what is due. A core
-  // that falls asleep with the instruction that ends a run finds the stop behind it already, and
-  // would jump to what is next.
+  // The library's function really sleeps; after it, simavr wakes one cycle after the due time. A
+  // core that falls asleep with the last instruction of a run finds the stop in the past, and would
+  // jump to the next timer.
   avr_->sleep = [](avr_t* avr, avr_cycle_count_t most) {
     const std::uint64_t stop = std::max(avr->cycle, Hooks::Self(avr).stop_cycle_);
     if (avr->cycle + most > stop) avr->cycle = stop - most;
@@ -51,7 +51,7 @@ AvrCore::AvrCore(const AvrProgram& program)
 
 AvrCore::~AvrCore() {
   avr_terminate(avr_);
-  std::free(avr_);  // NOLINT: simavr has allocated it so
+  std::free(avr_);  // NOLINT: allocated by simavr with malloc
 }
 
 std::uint64_t AvrCore::cycle() const { return avr_->cycle; }
@@ -59,7 +59,7 @@ std::uint64_t AvrCore::cycle() const { return avr_->cycle; }
 void AvrCore::RunUntil(std::uint64_t cycle) {
   if (avr_->cycle >= cycle) return;
   stop_cycle_ = cycle;
-  // A core that sleeps is woken by this at the latest; it would jump to simavr's next timer.
+  // Wakes a sleeping core, which would otherwise jump to simavr's next timer.
   avr_cycle_timer_register(avr_, cycle - avr_->cycle, &Hooks::Stop, this);
   while (avr_->cycle < cycle) {
     asleep_ = avr_->state == cpu_Sleeping;
@@ -71,8 +71,8 @@ void AvrCore::RunUntil(std::uint64_t cycle) {
     }
     CatchUp();
   }
-  // What is due in this cycle, simavr would look at first thing in the next run, which is after
-  // whoever asked for this one has looked: a core that sleeps has jumped here.
+  // A sleeping core has jumped to this cycle. simavr would process timers due in it only at the
+  // start of the next run, after the caller has read the state.
   const bool sleeps = avr_->state == cpu_Sleeping;
   avr_cycle_timer_process(avr_);
   if (!sleeps) return;
@@ -93,17 +93,17 @@ void AvrCore::Reset(std::uint8_t cause, bool power_on) {
     causes_ = 0;
   }
   wanted_cause_ = cause;
-  avr_->run = avr_callback_run_raw;  // a watchdog that had just bitten put another one there
+  avr_->run = avr_callback_run_raw;  // a watchdog reset in progress replaces this function
   avr_reset(avr_);
   AfterReset();
 }
 
 void AvrCore::AfterReset() {
   reset_seen_ = false;
-  // avr_reset puts these back to what makes the core slow, and encoders storms of interrupts.
+  // avr_reset restores values that make the core slow and cause interrupt storms of the encoders.
   avr_->run_cycle_limit = kRunLimit;
   for (std::uint8_t line = 0; line < 2; ++line) avr_extint_set_strict_lvl_trig(avr_, line, 0);
-  // It forgets the pins, too, and raising a level that a pin already has does nothing.
+  // avr_reset also clears the pins, and raising a level that a pin already has does nothing.
   avr_->data[port_b_->r_pin] = port_b_->external.pull_value;
   avr_->data[port_d_->r_pin] = port_d_->external.pull_value;
   const std::uint8_t by_watchdog = avr_->data[kMcusr];
@@ -131,7 +131,7 @@ void AvrCore::Hang() {
 void AvrCore::SetPin(char port, int bit, bool high) {
   avr_ioport_t& p = port == 'B' ? *port_b_ : *port_d_;
   const std::uint8_t mask = Bit(bit);
-  // Else every write to the port would raise pins with a pull-up to high again.
+  // Otherwise every write to the port would raise pins with a pull-up to high.
   p.external.pull_mask |= mask;
   if (high) {
     p.external.pull_value |= mask;
@@ -143,7 +143,7 @@ void AvrCore::SetPin(char port, int bit, bool high) {
 
 void AvrCore::SchedulePins(const std::vector<PinLevel>& levels) {
   for (const PinLevel& level : levels) {
-    // Two encoders come one after the other, each in order.
+    // Two encoders are scheduled one after the other, each in order.
     const auto later = [](const PinLevel& a, const PinLevel& b) { return a.cycle < b.cycle; };
     levels_.insert(std::upper_bound(levels_.begin(), levels_.end(), level, later), level);
   }

@@ -1,5 +1,5 @@
-/// An ATmega328P by libsimavr 1.6, with what that gets wrong made good. What each correction is for
-/// stands in docs/hardware/virtual_robot.md.
+/// ATmega328P on libsimavr 1.6, with corrections of its errors, which
+/// docs/hardware/virtual_robot.md explains.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct avr_ioport_t;
 
 namespace taut::virtual_robot {
 
-/// A level that a pin gets from outside.
+/// Level of a pin set from outside.
 struct PinLevel {
   std::uint64_t cycle = 0;
   char port = 'D';
@@ -26,7 +26,7 @@ struct PinLevel {
   bool high = false;
 };
 
-/// One thread calls it. Cycles are the core's own; they go on through resets.
+/// Emulated microcontroller. Not thread-safe. Cycles are counted by the core, across resets.
 class AvrCore {
  public:
   explicit AvrCore(const AvrProgram& program);
@@ -36,21 +36,22 @@ class AvrCore {
 
   avr_t& avr() { return *avr_; }
   std::uint64_t cycle() const;
-  /// Runs until `cycle` or a few beyond, as instructions end.
+  /// Runs until `cycle`, or a few cycles beyond, at the end of an instruction.
   void RunUntil(std::uint64_t cycle);
-  /// Begins anew. With `power_on`, memory has been lost.
+  /// Resets the core. `power_on`: its memory is lost.
   void Reset(std::uint8_t cause, bool power_on);
-  /// Interrupts off, and round in a circle.
+  /// Puts the core into an endless loop with interrupts off.
   void Hang();
 
   void SetPin(char port, int bit, bool high);
-  /// In order of cycles, after all that came before; those in the past happen at once.
+  /// Schedules levels in order of cycles, after all earlier ones; levels in the past are set at
+  /// once.
   void SchedulePins(const std::vector<PinLevel>& levels);
-  /// What was scheduled happens now, all at once: nobody looks.
+  /// Sets all scheduled levels at once, for a core that does not run.
   void SettlePins();
-  /// What a pin drives; false if it is an input.
+  /// Returns the level that a pin drives; false if it is an input.
   bool Drives(char port, int bit) const;
-  /// The part of the time for which the output of Timer 1 is high, channel 0 (A) or 1 (B).
+  /// Returns the duty of a Timer 1 output, channel 0 (A) or 1 (B): the fraction of time at high.
   double PwmDuty(int channel) const;
   std::uint8_t Memory(std::uint16_t address) const;
   void SetMemory(std::uint16_t address, std::uint8_t value);
@@ -58,37 +59,40 @@ class AvrCore {
   std::vector<std::uint8_t> Eeprom() const;
   int DeepestStack() const;
 
-  std::function<int(int channel)> adc_code;  ///< When a conversion begins; 0..1023.
+  std::function<int(int channel)>
+      adc_code;  ///< Called at the start of a conversion; returns 0 to 1023.
   std::function<void(std::uint8_t value)> on_marker;
-  /// After a reset, before the first instruction. The causes are those of MCUSR.
+  /// Called after a reset, before the first instruction. The causes are the bits of MCUSR.
   std::function<void(std::uint8_t cause)> on_reset;
-  std::function<void(const std::string& text)> on_message;  ///< simavr's warnings and errors.
-  /// The program left its memory, or sleeps with interrupts off. Simavr would stop for good; here
-  /// as on hardware the watchdog may end it.
+  std::function<void(const std::string& text)>
+      on_message;  ///< Receives simavr's warnings and errors.
+  /// Called when the program leaves its memory, or sleeps with interrupts off. simavr would stop
+  /// for good; here, as on hardware, the watchdog may end this state.
   std::function<void()> on_crash;
 
  private:
-  struct Hooks;  ///< Functions that simavr calls.
+  struct Hooks;  ///< Callbacks of simavr.
   friend struct Hooks;
 
   void AfterReset();
-  /// Entering an interrupt takes cycles of which simavr knows nothing: what was due in them happens
-  /// before its first instruction.
+  /// Processes timers that became due while an interrupt was entered, before its first instruction;
+  /// simavr does not count these cycles.
   void CatchUp();
   void StartPinTimer();
 
   avr_t* avr_;
   avr_ioport_t *port_b_, *port_d_;
   std::uint32_t free_memory_;
-  std::deque<PinLevel> levels_;  ///< Still to come.
+  std::deque<PinLevel> levels_;  ///< Scheduled levels.
   std::uint64_t stop_cycle_ = 0;
   bool reset_seen_ = false, asleep_ = false, entered_ = false;
-  std::uint8_t causes_ = 0;  ///< MCUSR, which only its reader and loss of power clear.
+  std::uint8_t causes_ = 0;  ///< MCUSR, cleared only by the program and by loss of power.
   std::uint8_t wanted_cause_ = 0;
-  std::uint8_t temp_ = 0;                        ///< The high byte that all of Timer 1 shares.
-  std::uint16_t compare_[2] = {0, 0}, top_ = 0;  ///< As the timer has them.
-  int converting_ = 0, converted_ = 0;           ///< Of the ADC: under way, and the last.
-  bool result_locked_ = false;                   ///< From reading ADCL until ADCH.
+  std::uint8_t temp_ = 0;  ///< High byte register shared by all 16-bit registers of Timer 1.
+  std::uint16_t compare_[2] = {0, 0}, top_ = 0;  ///< Values in the timer.
+  int converting_ = 0,
+      converted_ = 0;           ///< ADC results: of the conversion in progress, and the last one.
+  bool result_locked_ = false;  ///< Between reads of ADCL and ADCH.
 };
 
 }  // namespace taut::virtual_robot

@@ -9,12 +9,12 @@
 namespace taut::virtual_robot {
 namespace {
 
-// What an interrupt costs the core before its first instruction, and more if it slept (data sheet,
-// "Interrupt Response Time"). simavr takes nothing.
+// Cycles before the first instruction of an interrupt, and additional cycles from sleep (data
+// sheet, "Interrupt Response Time"). simavr counts none.
 constexpr int kEntryCycles = 4, kWakeCycles = 4;
 
-constexpr std::uint8_t kAdsc = 0x40;   // of ADCSRA: a conversion is under way
-constexpr std::uint8_t kAdlar = 0x20;  // of ADMUX: the result stands to the left
+constexpr std::uint8_t kAdsc = 0x40;   // in ADCSRA: conversion in progress
+constexpr std::uint8_t kAdlar = 0x20;  // in ADMUX: left-adjusted result
 constexpr int kBandgapChannel = 14;
 constexpr int kBandgapCode = 1100 * 1024 / 5000;
 
@@ -36,8 +36,8 @@ void AvrCore::Hooks::Install(AvrCore& core) {
   OnWrite(avr, kMcusr, WriteCauses, &core);
   OnRead(avr, kAdcl, ReadResultLow, &core);
   OnRead(avr, kAdch, ReadResultHigh, &core);
-  // Timer 1 makes the PWM and nothing else. simavr's would fire three times a period of 50 us, and
-  // counts that period wrong; what counts is what the registers hold.
+  // Timer 1 generates the PWM only. simavr's timer would fire three times per period of 50 us, and
+  // counts this period wrong; only the registers matter.
   for (const std::uint16_t address : {kTccr1a, kTccr1b, kTccr1c}) {
     OnWrite(avr, address, WritePlain, &core);
   }
@@ -66,7 +66,7 @@ void AvrCore::Hooks::Log(avr_t* avr, int level, const char* format, va_list argu
   std::string plain;
   for (const char* c = text; *c; ++c) {
     if (*c == '\033') {
-      while (*c && *c != 'm') ++c;  // a colour
+      while (*c && *c != 'm') ++c;  // a color code
       if (!*c) break;
     } else if (*c != '\n') {
       plain += *c;
@@ -83,7 +83,7 @@ avr_cycle_count_t AvrCore::Hooks::Pins(avr_t* avr, avr_cycle_count_t /*when*/, v
   const PinLevel level = core.levels_.front();
   core.levels_.pop_front();
   core.SetPin(level.port, level.bit, level.high);
-  // Two edges in one instant would be one to the core's flags; simavr wants a later time, too.
+  // The core's flags would merge two edges in the same cycle; simavr also requires a later time.
   if (core.levels_.empty()) return 0;
   return std::max<avr_cycle_count_t>(core.levels_.front().cycle, avr->cycle + 1);
 }
@@ -143,7 +143,7 @@ void AvrCore::Hooks::WriteMarker(avr_t* avr, avr_io_addr_t address, std::uint8_t
 void AvrCore::Hooks::WriteCauses(avr_t* avr, avr_io_addr_t address, std::uint8_t value,
                                  void* self) {
   AvrCore& core = *static_cast<AvrCore*>(self);
-  core.causes_ &= value;  // a program can clear these bits, not set them
+  core.causes_ &= value;  // a program can clear these bits, but not set them
   avr->data[address] = core.causes_;
 }
 

@@ -1,4 +1,4 @@
-/// The functions that simavr calls for an AvrCore.
+/// Callbacks of simavr for an AvrCore.
 #pragma once
 
 #include <cstdarg>

@@ -10,14 +10,15 @@
 namespace taut::virtual_robot {
 namespace {
 
-// Executable and Linkable Format, 32 bits, as the System V ABI has it; offsets into its structures.
+// Executable and Linkable Format, 32 bits, according to the System V ABI; offsets into its
+// structures.
 constexpr std::size_t kMostBytes = 8U << 20U;
 constexpr int kMachineAvr = 83;
 constexpr std::uint32_t kLoad = 1, kSymbolTable = 2;
-// Where avr-gcc's linker pretends that the memories of the chip begin.
+// Virtual addresses at which avr-gcc's linker places the chip's memories.
 constexpr std::uint32_t kEepromBase = 0x81'0000, kMemoryBase = 0x80'0000;
 
-/// Little-endian numbers of a file, 0 beyond its end.
+/// Little-endian numbers of a file; 0 beyond its end.
 class Image {
  public:
   explicit Image(const std::string& bytes) : bytes_(bytes) {}
@@ -47,7 +48,7 @@ class Image {
   const std::string& bytes_;
 };
 
-/// Puts a segment where it belongs. False: it does not fit.
+/// Copies a segment to its address. Returns false if it does not fit.
 bool Place(const std::vector<std::uint8_t>& bytes, std::size_t at, std::size_t size,
            std::vector<std::uint8_t>& memory) {
   if (at + bytes.size() > size) return false;
@@ -56,7 +57,7 @@ bool Place(const std::vector<std::uint8_t>& bytes, std::size_t at, std::size_t s
   return true;
 }
 
-/// The address of a symbol; nothing if there is none of that name.
+/// Returns the address of a symbol; nothing if it does not exist.
 std::optional<std::uint32_t> FindSymbol(const Image& image, std::string_view name) {
   const std::uint32_t sections = image.At(32, 4), entry = image.At(46, 2), count = image.At(48, 2);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -81,7 +82,7 @@ std::shared_ptr<const AvrProgram> ReadAvrProgram(const std::string& path, Diagno
       base::ReadInputFile(path, kMostBytes, "a program for an ATmega328P is smaller", out);
   if (!bytes) return nullptr;
   const auto refuse = [&](std::string what, std::string hint) {
-    out.Error({path}, std::move(what), std::move(hint));
+    out.Error("firmware.not_readable", {path}, std::move(what), std::move(hint));
     return nullptr;
   };
   const Image image(*bytes);
@@ -101,7 +102,7 @@ std::shared_ptr<const AvrProgram> ReadAvrProgram(const std::string& path, Diagno
     if (!image.Has(offset, size)) return refuse("is cut short", "copy it again");
     const std::vector<std::uint8_t> segment = image.Copy(offset, size);
     if (load_at < kMemoryBase) {
-      // Two bytes stay free for the emulator's own use.
+      // Two bytes are reserved for the emulator's endless loop.
       if (!Place(segment, load_at, AvrProgram::kFlashBytes - 2, program->flash)) {
         return refuse("does not fit into 32 kB of flash", "");
       }

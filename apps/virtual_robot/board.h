@@ -1,12 +1,12 @@
-/// One board of the robot: an ATmega328P at 16 MHz as an Arduino Nano has it, run by libsimavr,
-/// with what that library lacks or gets wrong made good (docs/hardware/virtual_robot.md lists it).
+/// Emulated motor board: an Arduino Nano (ATmega328P at 16 MHz) on libsimavr, with corrections for
+/// errors and gaps of that library (listed in docs/hardware/virtual_robot.md).
 ///
-/// Pins, all seen from outside:
+/// Pins, as seen from outside:
 ///
-///   D2, D3    encoder A of motor 0, 1        D12       fault of the drivers, low is a fault
+///   D2, D3    encoder A of motor 0, 1        D12       fault of the drivers, low: fault
 ///   D4, D5    encoder B                      A0, A1    load cells
-///   D7, D8    direction, high winds in       A4, A5    two-wire bus
-///   D9, D10   PWM                            D6        drivers on, high is on
+///   D7, D8    direction, high: winds in      A4, A5    two-wire bus
+///   D9, D10   PWM                            D6        driver enable, high: on
 #pragma once
 
 #include <array>
@@ -24,14 +24,14 @@
 
 namespace taut::virtual_robot {
 
-/// Why a core began anew: the bits of MCUSR.
+/// Cause of a reset: the bits of MCUSR.
 enum class ResetCause : std::uint8_t { kPowerOn = 1, kExternal = 2, kBrownOut = 4, kWatchdog = 8 };
 const char* Name(ResetCause cause);
 
 struct BoardOptions {
-  int id = 0;                          ///< 0..5; byte 0 of the EEPROM.
-  std::vector<std::uint8_t> eeprom{};  ///< What follows it; the rest is 0xFF.
-  double drift_ppm = 0;                ///< How fast the crystal is.
+  int id = 0;                          ///< 0 to 5; byte 0 of the EEPROM.
+  std::vector<std::uint8_t> eeprom{};  ///< The following bytes; the rest is 0xFF.
+  double drift_ppm = 0;                ///< Frequency error of the crystal; positive: fast.
 };
 
 /// A change of the two lines of an encoder.
@@ -40,60 +40,65 @@ struct EncoderEdge {
   bool a = false, b = false;
 };
 
-/// One thread calls it.
+/// Emulated board. Not thread-safe.
 class Board {
  public:
-  /// Switched on at time 0.
+  /// Powers the board on at time 0.
   Board(std::shared_ptr<const AvrProgram> program, const BoardOptions& options);
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
   int id() const { return id_; }
-  /// Runs until the first instruction that ends at `until` or later.
+  /// Runs to the end of the first instruction that ends at `until` or later.
   void RunUntil(Time until);
   I2cSlave& bus_side() { return *twi_; }
 
-  // What the plant reads.
+  // Outputs to the plant.
   MotorDrive Drive(int motor) const;
 
-  // What the plant writes.
-  /// Changes of encoder `motor`, from the end of the last `RunUntil` on, in order, up to 64.
+  // Inputs from the plant.
+  /// Sets the changes of encoder `motor`, from the end of the last `RunUntil` on, in order, up to
+  /// 64.
   void SetEncoderEdges(int motor, const std::vector<EncoderEdge>& edges);
-  /// True: something is wrong with the drivers.
+  /// `fault`: sets the fault input of the drivers.
   void SetDriverFault(bool fault);
-  /// The code, 0..1023, that a conversion beginning at a time finds at pin A0 + channel.
+  /// Returns the code, 0 to 1023, of a conversion that begins at this time at pin A0 + channel.
   std::function<int(int channel, Time at)> adc_code;
 
-  // What watchers hear.
-  /// The program wrote GPIOR0, which on hardware does nothing; the cycle is exact.
+  // Notifications.
+  /// Called when the program writes GPIOR0, which has no effect on hardware; the cycle is exact.
   std::function<void(std::uint64_t cycle, std::uint8_t value)> on_marker;
   std::function<void(Time at, ResetCause cause)> on_reset;
-  std::function<void(Time at, const std::string& what)> on_trouble;  ///< A crash, a warning.
+  std::function<void(Time at, const std::string& what)>
+      on_trouble;  ///< Reports crashes and warnings.
 
-  // Faults.
+  // Injected faults.
   void SetDrift(Time now, double ppm);
-  /// Without power nothing answers and no pin drives. With it, the core begins anew.
+  /// Without power, the board does not answer and drives no pin. When power returns, the core
+  /// restarts.
   void SetPower(Time now, bool on);
-  /// Held in reset while the supply is too low; then it begins anew, its memory kept.
+  /// Holds the core in reset while the supply is too low; then it restarts with its memory
+  /// preserved.
   void SetBrownOut(Time now, bool low);
-  /// The program hangs with interrupts off.
+  /// Makes the program hang with interrupts off.
   void Hang();
   bool running() const { return powered_ && !brown_out_; }
 
-  // What a debugger would see.
+  // Debugger access.
   std::uint64_t cycle() const;
   Time now() const;
-  std::uint8_t Memory(std::uint16_t address) const;           ///< Of the data space, 0x000..0x8FF.
-  void SetMemory(std::uint16_t address, std::uint8_t value);  ///< 0x100..0x8FF.
+  std::uint8_t Memory(std::uint16_t address) const;  ///< Address in the data space, 0x000 to 0x8FF.
+  void SetMemory(std::uint16_t address, std::uint8_t value);  ///< 0x100 to 0x8FF.
   std::uint8_t last_marker() const { return marker_; }
   std::uint8_t stack_probe() const;  ///< GPIOR1.
-  /// The most bytes that the stack ever held since power came: memory is painted before.
+  /// Returns the largest number of bytes on the stack since power-on, from a pattern painted into
+  /// memory before.
   int DeepestStack() const;
-  int StaticMemory() const;  ///< Bytes of variables.
+  int StaticMemory() const;  ///< Returns the bytes of variables.
   std::vector<std::uint8_t> Eeprom() const;
   std::uint64_t resets() const { return resets_; }    ///< Since time 0.
-  std::uint64_t crashes() const { return crashes_; }  ///< Ways to hang that simavr knows.
+  std::uint64_t crashes() const { return crashes_; }  ///< Hangs that simavr detects.
 
  private:
   void Reset(Time now, ResetCause cause);
@@ -105,7 +110,7 @@ class Board {
   BoardClock clock_;
   std::unique_ptr<AvrCore> core_;
   std::unique_ptr<TwiSlave> twi_;
-  std::array<EncoderEdge, 2> encoder_{};  ///< As the core will have seen it last.
+  std::array<EncoderEdge, 2> encoder_{};  ///< State after the scheduled edges.
   bool powered_ = true, brown_out_ = false;
   std::uint8_t marker_ = 0;
   std::uint64_t resets_ = 0, crashes_ = 0;

@@ -57,14 +57,15 @@ bool BoardsPlant::SetUp(Diagnostics& out) {
       return false;
     }
   }
-  driver_.Off();  // a board that has begun anew is not armed: told to hold, it would only complain
+  driver_.Off();  // a board that has restarted is not armed and would report an error at a hold
+                  // command
   driver_.ClearFaults();
   driver_.Cycle(1);
   return true;
 }
 
 bool BoardsPlant::Recover(Diagnostics& out) {
-  // Who has timed out, or has a fault, takes no mode until that is cleared.
+  // A board with a timeout or a fault accepts no mode until it is cleared.
   if (driver_.Go(board::Mode::kHold)) {
     driver_.ClearFaults();
     driver_.Cycle(3);
@@ -76,7 +77,7 @@ bool BoardsPlant::Recover(Diagnostics& out) {
 
 bool BoardsPlant::Prepare(Diagnostics& out) {
   motors_.SetHeld(true);
-  robot_.AdvanceTo(100 * kMillisecond);  // the boards begin
+  robot_.AdvanceTo(100 * kMillisecond);  // time for the boards to boot
   if (!SetUp(out)) return false;
   late_before_ = CountLateTicks();
   if (!plant_.Hold(out)) return false;
@@ -95,7 +96,7 @@ int BoardsPlant::CountLateTicks() {
 }
 
 int BoardsPlant::LateTicks() {
-  driver_.Cycle(1);  // none is under way
+  driver_.Cycle(1);  // no cycle is in progress
   return CountLateTicks() - late_before_;
 }
 

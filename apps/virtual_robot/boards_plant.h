@@ -1,5 +1,5 @@
-/// A robot whose cables emulated boards control, as a plant (taut/plant.h): the driver and its
-/// plant, in the robot's own time, on a robot whose true state is known.
+/// Plant (taut/plant.h) whose cables are controlled by emulated boards: the link's driver and
+/// plant, in the robot's virtual time, on a robot whose true state is known.
 #pragma once
 
 #include <limits>
@@ -17,29 +17,30 @@ namespace taut::virtual_robot {
 
 struct BoardsOptions {
   RobotOptions robot;
-  std::optional<Calibration> calibration;      ///< What the PC believes of cells, encoders and
-                                               ///< springs, in place of what is so.
-  std::vector<link::ParameterValue> settings;  ///< Of all boards and motors, after all of that.
-  double recover_s = std::numeric_limits<double>::infinity();  ///< By the experiment's clock: when
-                                                               ///< `Recover` is called.
+  std::optional<Calibration> calibration;  ///< The PC's assumptions about load cells, encoders and
+                                           ///< springs; empty: the true values.
+  std::vector<link::ParameterValue> settings;  ///< For all boards and motors, applied last.
+  double recover_s =
+      std::numeric_limits<double>::infinity();  ///< Experiment time at which `Recover` is called.
 };
 
-/// One lane. The robot is held on a stand until `Prepare` is through: boards began, parameters set,
-/// references set, armed, holding.
+/// Plant with one lane. A stand holds the robot until `Prepare` is complete: boards booted,
+/// parameters and references set, armed, holding.
 class BoardsPlant final : public taut::Plant {
  public:
-  /// The experiment's impedance controller says what the boards are told. Both outlive it.
+  /// The experiment's impedance controller determines the commands to the boards. `experiment` and
+  /// `motors` must outlive the plant.
   BoardsPlant(const ExperimentSpec& experiment, MotorPlant& motors, const BoardsOptions& options);
 
-  /// False and complaints if a board does not answer or refuses.
+  /// Returns false, with errors in `out`, if a board does not answer or refuses.
   bool Prepare(Diagnostics& out);
 
-  /// After a fault, as an operator would have it: configures all anew, sets references to what the
-  /// cables really are, clears faults, arms and goes on. False and complaints if a board does not
-  /// play along. The experiment's clock stands still meanwhile.
+  /// Recovers after a fault, as an operator would: configures everything again, sets references to
+  /// the true lengths of the cables, clears faults, arms and continues. Returns false, with errors
+  /// in `out`, if a board does not follow. The experiment's time stands still meanwhile.
   bool Recover(Diagnostics& out);
 
-  /// The truth, not what boards sense.
+  /// Returns the true state, not the boards' measurements.
   const Observation& Observe() override;
   Commands& commands() override { return plant_.commands(); }
   void Advance(const double* step_s, const double* to_s) override;
@@ -49,16 +50,16 @@ class BoardsPlant final : public taut::Plant {
 
   link::Driver& driver() { return driver_; }
   const link::State& heard() const { return driver_.state(); }
-  /// By the driver's clock, where the experiment's time is 0.
+  /// Returns the driver's time at which the experiment's time is 0.
   double started_s() const { return plant_.started_s(); }
-  /// Ticks of all boards that came late since the experiment began; asks them.
+  /// Returns the number of late ticks of all boards since the experiment began; queries the boards.
   int LateTicks();
-  /// Frames that came with a wrong checksum, or not at all, since then.
+  /// Returns the number of frames since then that were missing or had a wrong checksum.
   std::int64_t bad_frames() const { return link::BadFrames(heard()); }
   Robot& robot() { return robot_; }
-  /// The largest tension of any cable with a motor, at any step of the plant so far.
+  /// Returns the largest tension of any cable with a motor, over all steps of the plant.
   double most_n() const { return most_n_; }
-  /// Whether it was asked to recover, and did.
+  /// Returns whether a requested recovery was made.
   bool recovered() const { return recovered_; }
   const Diagnostics& recovery() const { return recovery_; }
 
@@ -77,7 +78,7 @@ class BoardsPlant final : public taut::Plant {
   link::RobotPlant plant_;
   Observation seen_;
   double time_s_ = 0;
-  int late_before_ = 0;  ///< Ticks, while the boards were set up.
+  int late_before_ = 0;  ///< Ticks during the setup of the boards.
   double most_n_ = 0;
   bool asked_to_recover_ = false, recovered_ = false;
   Diagnostics recovery_;

@@ -79,7 +79,7 @@ FaultState FaultSchedule::State() const {
       case FaultKind::kHostKilled:
         state.host_killed = true;
         break;
-      case FaultKind::kFirmwareHang:  // these are things that happen, not states
+      case FaultKind::kFirmwareHang:  // these are events, not states
       case FaultKind::kBusError:
       case FaultKind::kCutCable:
         break;

@@ -1,4 +1,4 @@
-/// Which faults of a script act at a time.
+/// Schedule of a fault script: active faults at a time.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,8 @@
 
 namespace taut::virtual_robot {
 
-/// What is wrong. Of several faults that set one thing, the one that began last wins.
+/// Combined effect of the active faults. If several set the same quantity, the last one that began
+/// wins.
 struct FaultState {
   struct OfBoard {
     std::optional<double> drift_ppm;
@@ -30,10 +31,10 @@ struct FaultState {
 class FaultSchedule {
  public:
   FaultSchedule(std::vector<FaultSpec> faults, int boards, int motors);
-  FaultSchedule(const FaultSchedule&) = delete;  // states point into it
+  FaultSchedule(const FaultSchedule&) = delete;  // states point into the schedule
   FaultSchedule& operator=(const FaultSchedule&) = delete;
 
-  /// When something begins or ends next; `kNever` after the last.
+  /// Returns the time of the next begin or end; `kNever` after the last.
   Time NextAt() const { return next_ < changes_.size() ? changes_[next_].at : kNever; }
 
   struct Change {
@@ -41,9 +42,9 @@ class FaultSchedule {
     bool begins = false;
     const FaultSpec* fault = nullptr;
   };
-  /// All that begins or ends up to `now`, in order; ends come before beginnings.
+  /// Returns all begins and ends up to `now`, in order; ends precede begins at the same time.
   std::vector<Change> TakeUntil(Time now);
-  /// With what was taken.
+  /// Returns the state after all changes taken so far.
   FaultState State() const;
 
  private:
@@ -53,7 +54,7 @@ class FaultSchedule {
   std::size_t next_ = 0;
 };
 
-/// "board_loss of board 2", as logs say it.
+/// Returns the text for logs, such as "board_loss of board 2".
 std::string FaultText(const FaultSpec& fault);
 
 }  // namespace taut::virtual_robot

@@ -9,7 +9,8 @@
 namespace taut::virtual_robot {
 namespace {
 
-constexpr std::uint32_t kNoiseStream = 0x4932'4300;  // of the robot's seed; another one a use
+constexpr std::uint32_t kNoiseStream =
+    0x4932'4300;  // stream of the robot's seed; different for each use
 constexpr int kBitsPerByte = 9;
 
 }  // namespace
@@ -38,8 +39,8 @@ Time I2cBus::Duration(const BusStep& step) const {
 Time I2cBus::SafeUntil(Time now) const {
   if (phase_ == Phase::kIdle) return kNever;
   if (phase_ == Phase::kReady) return now + Duration(steps_[next_]);
-  // After what is on its way: nobody knows before it happens whether a byte that is written will
-  // be acknowledged, and if not, a stop comes a bit later.
+  // Limit after the scheduled step: whether a written byte is acknowledged is not known in advance,
+  // and if it is not, a stop follows after one bit.
   const bool may_stop = steps_[next_].kind != BusStep::Kind::kRead || next_ + 1 == steps_.size();
   return event_.at + (may_stop ? timing_.bit : Duration(steps_[next_ + 1]));
 }
@@ -63,7 +64,8 @@ void I2cBus::Step(Time now) {
       if (now - happened_ >= timing_.timeout) Finish(BusOutcome::kStuck, now);
       return;
     }
-    if (std::exchange(blocked_, false)) free = std::max(free, now);  // nobody saw when it ended
+    if (std::exchange(blocked_, false))
+      free = std::max(free, now);  // the end of the blocking was not observed
     Put(free);
   }
 }
@@ -91,7 +93,7 @@ void I2cBus::Put(Time at) {
     stretch_.bytes += 1;
     stretch_.sum += at - happened_;
     stretch_.longest = std::max(stretch_.longest, at - happened_);
-    // Whoever sends a one lets go of the line: the wires are the AND of all that send.
+    // Sending a one releases the line: the wires carry the AND of all senders.
     std::uint8_t byte = writes ? step.byte : 0xFF;
     for (const I2cSlave* slave : slaves_) byte &= slave->NextByte();
     event_.kind = address_follows_ ? BusEvent::Kind::kAddress : BusEvent::Kind::kByte;

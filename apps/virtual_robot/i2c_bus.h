@@ -1,8 +1,8 @@
-/// A two-wire bus with one master, whose clock every slave may stretch, bit-exact in time.
+/// Emulated I2C bus with one master and clock stretching by slaves, bit-exact in time.
 ///
-/// The bus runs ahead of its slaves: it knows when the next thing happens on the wires before it
-/// happens, tells the slaves (`I2cSlave::Schedule`), lets them run up to that time and a little
-/// beyond, and then asks what they answered and since when they let go of the clock.
+/// The bus runs ahead of its slaves: it knows the time of the next event on the wires in advance,
+/// schedules it in the slaves (`I2cSlave::Schedule`), lets them run up to this time and a little
+/// beyond, and then reads their answers and the times at which they released the clock.
 #pragma once
 
 #include <cstdint>
@@ -13,49 +13,50 @@
 
 namespace taut::virtual_robot {
 
-/// What a slave sees on the wires.
+/// Event on the wires for a slave.
 struct BusEvent {
   enum class Kind {
     kStart,    ///< Start or repeated start.
     kAddress,  ///< The ninth clock of an address byte.
     kByte,     ///< The ninth clock of any other byte.
     kStop,
-    kError  ///< A start or stop where none may be: all state machines fall out of their transfer.
+    kError  ///< An illegal start or stop: all state machines abort their transfer.
   };
   Kind kind = Kind::kStart;
   Time at = 0;
-  std::uint8_t byte = 0;      ///< As it was on the wires.
-  bool master_reads = false;  ///< The master listens to this byte ...
-  bool master_acked = false;  ///< ... and asks for another one.
+  std::uint8_t byte = 0;      ///< As on the wires.
+  bool master_reads = false;  ///< The master reads this byte ...
+  bool master_acked = false;  ///< ... and requests another one.
 };
 
-/// Somebody on the bus. Called by the bus's thread.
+/// A slave on the bus. Called by the bus's thread.
 class I2cSlave {
  public:
   virtual ~I2cSlave() = default;
-  /// Something that will happen; at most one is on its way at a time.
+  /// Schedules an event; at most one is pending at a time.
   virtual void Schedule(const BusEvent& event) = 0;
   virtual bool Powered() const = 0;
-  /// Whether it keeps the clock low now, and until when it last did. Not before the last event.
+  /// `HoldsClock` returns whether the slave holds the clock low, `ReleasedAt` when it last released
+  /// it. Not before the last event.
   virtual bool HoldsClock() const = 0;
   virtual Time ReleasedAt() const = 0;
-  /// Whether it pulled the data line low in the ninth clock of the last event.
+  /// Returns whether the slave pulled the data line low in the ninth clock of the last event.
   virtual bool Acked() const = 0;
-  /// What it puts on the wires with the next byte, all ones if nothing.
+  /// Returns the next byte that the slave sends; all ones if none.
   virtual std::uint8_t NextByte() const = 0;
 };
 
-/// One thing that a master does.
+/// One step of a master's transfer.
 struct BusStep {
   enum class Kind { kStart, kWrite, kRead, kStop };
   Kind kind = Kind::kStart;
-  std::uint8_t byte = 0;    ///< To write. After a start: address << 1, | 1 to read.
-  bool acknowledge = true;  ///< Of a byte that is read: more is wanted.
+  std::uint8_t byte = 0;    ///< Byte to write. After a start: address << 1, | 1 to read.
+  bool acknowledge = true;  ///< Acknowledge the read byte: more bytes are wanted.
 };
 
 enum class BusOutcome {
   kDone,
-  kNoAcknowledge,  ///< A byte that was written found nobody.
+  kNoAcknowledge,  ///< No slave acknowledged a written byte.
   kStuck,          ///< A line stayed low for longer than `BusTiming::timeout`.
   kError           ///< An illegal start or stop in between.
 };
@@ -63,17 +64,17 @@ enum class BusOutcome {
 struct BusResult {
   BusOutcome outcome = BusOutcome::kDone;
   std::vector<std::uint8_t> read;
-  int written = 0;  ///< Bytes that were acknowledged, addresses included.
+  int written = 0;  ///< Number of acknowledged bytes, including addresses.
   Time ended = 0;
 };
 
 struct BusTiming {
   Time bit = 2'500 * kNanosecond;  ///< 400 kHz.
-  Time byte_gap = 0;               ///< Between two bytes, by the master itself [?].
+  Time byte_gap = 0;               ///< Gap between two bytes, caused by the master [?].
   Time timeout = 25 * kMillisecond;
 };
 
-/// How long the clock was held, over all bytes.
+/// Statistics of clock stretching over all bytes.
 struct StretchStats {
   std::uint64_t bytes = 0;
   Time sum = 0, longest = 0;
@@ -83,29 +84,30 @@ class I2cBus {
  public:
   explicit I2cBus(std::uint64_t seed) : seed_(seed) {}
 
-  /// In the order in which they are asked. They outlive the bus.
+  /// Attaches a slave; slaves answer in this order. They must outlive the bus.
   void Attach(I2cSlave& slave) { slaves_.push_back(&slave); }
 
-  /// Begins a transfer now. None is under way. The steps end with a stop where one is to be sent;
-  /// where a byte finds nobody, what is left is skipped up to the next stop, if `stop_after_nack`.
+  /// Begins a transfer now; none may be in progress. The steps end with a stop, if one is to be
+  /// sent. If no slave acknowledges a byte, the remaining steps are skipped up to the next stop, if
+  /// `stop_after_nack`.
   void Begin(Time now, std::vector<BusStep> steps, const BusTiming& timing,
              bool stop_after_nack = true);
   bool Busy() const { return busy_; }
-  /// The master is gone: nothing more comes after what is on its way. Slaves learn of no stop.
+  /// Removes the master: nothing follows the scheduled event. Slaves see no stop.
   void Abandon(Time now);
-  /// Of the last transfer, once it is over.
+  /// Returns the result of the last transfer, once it has ended.
   const BusResult& result() const { return result_; }
 
-  /// Looks at what the slaves did up to `now` and goes on.
+  /// Reads the slaves' answers up to `now` and continues.
   void Step(Time now);
-  /// How far slaves may run before the next `Step`: until then they learn all that happens. Beyond
-  /// `now`, which is that of the last `Step`.
+  /// Returns the time up to which slaves may run before the next `Step`, with all events until then
+  /// scheduled. Later than `now`, which is the time of the last `Step`.
   Time SafeUntil(Time now) const;
 
-  // Faults.
-  /// Each bit on the wires, of bytes and acknowledgements, is turned over with this probability.
+  // Injected faults.
+  /// Flips each bit on the wires, of bytes and acknowledgements, with this probability.
   void SetNoise(double flips_per_bit) { flips_per_bit_ = flips_per_bit; }
-  /// Within the next byte there will be an illegal start.
+  /// Inserts an illegal start into the next byte.
   void DisturbNextByte() { disturb_ = true; }
   void HoldDataLow(bool low) { data_low_ = low; }
   void HoldClockLow(bool low) { clock_low_ = low; }
@@ -117,10 +119,10 @@ class I2cBus {
  private:
   enum class Phase { kIdle, kReady, kScheduled };
 
-  void Put(Time at);  ///< Puts the next step on the wires, to happen from `at` on.
-  void Look();        ///< At the answers to what has happened.
+  void Put(Time at);  ///< Puts the next step on the wires, at `at` or later.
+  void Look();        ///< Reads the answers to the last event.
   void Finish(BusOutcome outcome, Time at);
-  bool Flip();  ///< Whether noise turns this bit over.
+  bool Flip();  ///< Returns whether noise flips this bit.
   std::uint8_t Noisy(std::uint8_t byte);
   Time Duration(const BusStep& step) const;
 
@@ -131,15 +133,15 @@ class I2cBus {
   std::size_t next_ = 0;
   bool busy_ = false, stop_after_nack_ = true, address_follows_ = false;
   Phase phase_ = Phase::kIdle;
-  Time happened_ = 0;  ///< When the last step ended.
-  BusEvent event_;     ///< On its way, while `kScheduled`.
+  Time happened_ = 0;  ///< End of the last step.
+  BusEvent event_;     ///< The scheduled event, while `kScheduled`.
   BusResult result_;
   StretchStats stretch_;
 
   double flips_per_bit_ = 0;
   std::uint64_t drawn_ = 0, flipped_ = 0;
   bool abandoned_ = false, disturb_ = false, data_low_ = false, clock_low_ = false;
-  bool blocked_ = false;  ///< A line that a fault held low kept the next step waiting.
+  bool blocked_ = false;  ///< A line held low by a fault delayed the next step.
 };
 
 }  // namespace taut::virtual_robot

@@ -8,13 +8,14 @@ namespace taut::virtual_robot {
 namespace {
 
 constexpr Time kPeriod = 10 * kMillisecond;
-constexpr int kBoardsPerRequest = 3;  // whose frames fit into one reply of the adapter
+constexpr int kBoardsPerRequest =
+    3;  // number of boards whose frames fit into one reply of the adapter
 constexpr int kArmingCycles = 6;
 
 }  // namespace
 
 bool LoadHost::Start() {
-  robot_.AdvanceTo(100 * kMillisecond);      // the boards begin
+  robot_.AdvanceTo(100 * kMillisecond);      // time for the boards to boot
   const Bytes mode{0x5A, 0x02, 0x70, 0x04};  // 400 kHz
   if (robot_.Transfer(mode) != Bytes{0xFF, 0x00}) return false;
   for (int i = 0; i < 2 * kArmingCycles; ++i) Cycle();

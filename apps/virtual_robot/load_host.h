@@ -1,5 +1,5 @@
-/// A host that keeps bus and boards as busy as that of a walking robot does, and looks at no
-/// answer: for measuring how fast the emulation is.
+/// Synthetic host for speed measurements of the emulation: loads bus and boards like a walking
+/// robot, and ignores all replies.
 #pragma once
 
 #include "apps/virtual_robot/robot.h"
@@ -10,9 +10,11 @@ class LoadHost {
  public:
   explicit LoadHost(Robot& robot) : robot_(robot) {}
 
-  /// Sets the adapter's mode and arms the boards into impedance control. False: no answer.
+  /// Sets the adapter's mode and arms the boards into impedance control. Returns false if there is
+  /// no answer.
   bool Start();
-  /// 10 ms: a broadcast, then a frame of each board in as few requests as the adapter takes.
+  /// Runs a cycle of 10 ms: a broadcast, then a frame from each board in as few requests as the
+  /// adapter allows.
   void Cycle();
 
   double mean_cycle_s() const { return cycles_ > 0 ? sum_s_ / cycles_ : 0.0; }

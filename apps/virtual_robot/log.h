@@ -1,4 +1,4 @@
-/// What happened, a line each, in the order in which it did.
+/// Log of the emulation, one line per event in chronological order.
 #pragma once
 
 #include <functional>
@@ -12,10 +12,10 @@ namespace taut::virtual_robot {
 /// `who`: "board 3", "usb", "fault", "plant".
 using LogSink = std::function<void(Time at, std::string_view who, std::string_view what)>;
 
-/// `0.012345678 board 3: reset by the watchdog`, with a line feed.
+/// Formats `0.012345678 board 3: reset by the watchdog`, with a line feed.
 std::string LogLine(Time at, std::string_view who, std::string_view what);
 
-/// Two digits a byte, with spaces between them.
+/// Formats two digits per byte, separated by spaces.
 std::string Hex(const unsigned char* bytes, std::size_t count);
 
 }  // namespace taut::virtual_robot

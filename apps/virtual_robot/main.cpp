@@ -1,4 +1,5 @@
-// taut_virtual_robot: the boards of a robot, emulated, behind a pseudo-terminal or at full speed.
+// taut_virtual_robot: emulated boards of a robot behind a pseudo-terminal, in real time, or at full
+// speed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,7 +29,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// As those of `taut` (docs/cli.md).
+/// Same as for `taut` (docs/cli.md).
 enum Exit : int { kOk = 0, kFailed = 1, kUsage = 2, kBadInput = 3 };
 
 struct Arguments {
@@ -45,8 +46,8 @@ struct Arguments {
   bool frames = false, run = false, quiet = false, csv = false, stand = false, with_parent = false;
 };
 
-/// The firmware that came with this program: beside it where both were built, in share/taut where
-/// they were installed. Empty: none did.
+/// Returns the path of the default firmware: in the program's folder for a build, in share/taut for
+/// an installation; empty if there is none.
 std::string OwnFirmware() {
   return FindBesideProgram({"firmware/taut_board.elf", "../share/taut/firmware/taut_board.elf"})
       .value_or("");
@@ -60,7 +61,7 @@ int Fail(const Diagnostics& found) {
   return kBadInput;
 }
 
-/// "name=value", as taut's own flag of that name.
+/// Parses "name=value", like taut's `--set`.
 std::optional<Overrides> ParseSet(const std::vector<std::string>& set) {
   Overrides overrides;
   for (const std::string& one : set) {
@@ -74,7 +75,7 @@ std::optional<Overrides> ParseSet(const std::vector<std::string>& set) {
   return overrides;
 }
 
-/// A file of lines, or nothing if none is wanted.
+/// A text file of log lines; optional.
 class LogFile {
  public:
   bool Open(const std::string& path) {
@@ -101,7 +102,7 @@ class LogFile {
   std::FILE* file_ = nullptr;
 };
 
-/// How fast this machine is: the boards with a host that keeps them busy, without waiting.
+/// Measures the speed of this machine: runs the boards under full load without waiting.
 int Measure(Robot& robot, double seconds) {
   LoadHost host(robot);
   if (!host.Start()) {
@@ -143,7 +144,7 @@ std::unique_ptr<MotorPlant> LoadPlant(const Arguments& arguments, const Override
   return MotorPlant::Make(*robot, found);
 }
 
-/// What the boards and what is around them are like.
+/// Returns the options of boards and surroundings.
 RobotOptions OptionsOf(const Arguments& arguments, Diagnostics& found) {
   RobotOptions options;
   options.program = ReadAvrProgram(arguments.firmware, found);
@@ -188,10 +189,10 @@ int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
                      stop_asked, found);
 }
 
-/// By then boards answer: they take 4 ms to begin.
+/// Time after which boards answer: they take 4 ms to boot.
 constexpr Time kBegun = 10 * kMillisecond;
 
-/// In real time, behind a terminal, until it is asked to stop.
+/// Runs in real time behind a terminal until interrupted.
 int RunInRealTime(const Arguments& arguments, MotorPlant& plant, Robot& robot, const LogSink& log) {
   Diagnostics found;
   std::unique_ptr<TruthServer> truth;
@@ -208,8 +209,8 @@ int RunInRealTime(const Arguments& arguments, MotorPlant& plant, Robot& robot, c
     if (stand) stand->Step(now);
     if (truth) truth->Step(now);
   };
-  robot.AdvanceTo(kBegun);  // whoever reads the path may talk to them at once
-  // fputs: whoever reads may be gone, which is no reason to end without tidying up.
+  robot.AdvanceTo(kBegun);  // a reader of the path may talk to the boards at once
+  // fputs does not throw: a reader that has gone is no reason to end without cleanup.
   PacedOptions paced;
   paced.link = arguments.link;
   paced.slip_s = arguments.slip_s;

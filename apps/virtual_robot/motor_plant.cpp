@@ -7,7 +7,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// What is left of a cable that was cut, as a stiffness: forces below rounding.
+/// Stiffness of a cut cable: forces below round-off.
 constexpr double kNoStiffness_n_per_m = 1e-12;
 
 }  // namespace
@@ -22,16 +22,17 @@ std::unique_ptr<MotorPlant> MotorPlant::Make(const RobotSpec& robot, Diagnostics
     if (cable.actuator.kind == ActuatorDef::Kind::kNone) continue;
     if (cable.actuator.kind != ActuatorDef::Kind::kDcMotor) {
       const SourceRef at = i < robot.cable_sources.size() ? robot.cable_sources[i] : file;
-      out.Error(at, "the actuator of cable " + cable.name + " is no motor",
+      out.Error("actuator.not_a_motor", at, "the actuator of cable " + cable.name + " is no motor",
                 "boards drive motors: `actuator: {dc_motor: {}}`");
     }
     cables.push_back(static_cast<int>(i));
     names.push_back(cable.name);
   }
   if (cables.empty()) {
-    out.Error(file, "no cable has a motor", "a virtual robot needs 1 to 12 of them");
+    out.Error("robot.no_motors", file, "no cable has a motor",
+              "a virtual robot needs 1 to 12 of them");
   } else if (cables.size() > kMostMotors) {
-    out.Error(file, std::to_string(cables.size()) + " cables have a motor",
+    out.Error("robot.too_many_motors", file, std::to_string(cables.size()) + " cables have a motor",
               "six boards drive 12 at most");
   }
   if (out.items().size() != errors_before) return nullptr;

@@ -1,4 +1,4 @@
-/// taut's physics as what the boards stand on: a world whose actuated cables are wound by motors.
+/// Plant of the virtual robot: a taut simulation whose actuated cables are wound by motors.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,11 @@ namespace taut::virtual_robot {
 
 class MotorPlant : public Plant {
  public:
-  static constexpr int kMostMotors = 12;  ///< Two a board, and six addresses.
+  static constexpr int kMostMotors = 12;  ///< Two per board, for six addresses.
 
-  /// The robot as its model describes it, with its motors off. Nothing and complaints if the model
-  /// does not compile, has no motor or too many, or an actuator that is none.
+  /// Creates the robot in its described pose, with its motors off. Returns null, with errors in
+  /// `out`, if the model does not compile, has no motor or too many, or an actuator that is not a
+  /// motor.
   static std::unique_ptr<MotorPlant> Make(const RobotSpec& robot, Diagnostics& out);
 
   int motor_count() const override { return static_cast<int>(cables_.size()); }
@@ -25,11 +26,11 @@ class MotorPlant : public Plant {
   double RotorAngle(int motor) const override;
   void CutCable(int motor) override;
 
-  /// The cables that motors wind, in the model's order.
+  /// Returns the cables with motors, in the model's order.
   const std::vector<std::string>& cable_names() const { return names_; }
   const Batch& batch() const { return batch_; }
   Batch& batch() { return batch_; }
-  /// On a stand: nothing moves, and load cells feel what they feel at the start.
+  /// Holds the robot on a stand: nothing moves, and load cells measure the forces at the start.
   void SetHeld(bool held) { held_ = held; }
   bool held() const { return held_; }
   int cable(int motor) const { return cables_.at(static_cast<std::size_t>(motor)); }
@@ -38,7 +39,7 @@ class MotorPlant : public Plant {
   MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cables,
              std::vector<std::string> names);
 
-  Batch batch_;  ///< Of one world.
+  Batch batch_;  ///< With one world.
   std::vector<int> cables_;
   std::vector<std::string> names_;
   std::vector<bool> cut_;

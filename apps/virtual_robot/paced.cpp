@@ -13,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Replies leave between two slices of time, so that they are late by a slice at most.
+// Replies are sent between two slices of time, so that they are late by one slice at most.
 constexpr Time kSlice = 250 * kMicrosecond;
 constexpr double kLongestWait_s = 0.001;
 
@@ -59,7 +59,7 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
   };
   while (!stop) {
     catch_up();
-    // An adapter that was pulled out takes its device with it.
+    // An unplugged adapter removes its device.
     if (!robot.usb_connected()) {
       pty.reset();
     } else if (!pty && !open()) {
@@ -68,7 +68,7 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
     if (!pty) {
       std::this_thread::sleep_for(std::chrono::duration<double>(kLongestWait_s));
     } else if (pty->Wait(kLongestWait_s)) {
-      // A frame comes at the time at which it is read, and the robot catches up to it first.
+      // The time of a frame is the time of its reading; the robot catches up to it first.
       const Bytes burst = pty->Read();
       catch_up();
       robot.HostWrites(burst);

@@ -1,4 +1,4 @@
-/// The robot in real time behind a pseudo-terminal.
+/// Real-time operation of the virtual robot behind a pseudo-terminal.
 #pragma once
 
 #include <atomic>
@@ -12,18 +12,17 @@ namespace taut::virtual_robot {
 
 struct PacedOptions {
   std::string link;  ///< Symbolic link to the terminal; may be empty.
-  std::function<void(const std::string&)> on_path;  ///< Whenever the terminal is another one.
-  /// Told when the emulation is late by more than `late_s`, at most once a second.
+  std::function<void(const std::string&)> on_path;  ///< Called whenever the terminal changes.
+  /// Called when the emulation is late by more than `late_s`, at most once per second.
   std::function<void(double late_s)> on_late;
   double late_s = 0.05;
-  /// By more than this the robot's time does not catch up but leaves out: for who drives it from
-  /// the same busy machine, and would be late for boards that hurry.
+  /// Largest lag that is caught up; the robot's time skips the rest. For drivers on the same busy
+  /// machine, which would be too late for boards that catch up fast.
   double slip_s = 1;
 };
 
-/// Runs until `stop`, as fast as the clock on the wall; where the machine cannot, the robot's time
-/// is late and catches up, or, beyond `slip_s`, leaves out. False and a complaint if there is no
-/// terminal to be had.
+/// Runs in wall-clock time until `stop`; on a slow machine the robot's time lags and catches up, or
+/// skips time beyond `slip_s`. Returns false, with an error, if no terminal is available.
 bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>& stop,
               Diagnostics& out);
 

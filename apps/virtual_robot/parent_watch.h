@@ -1,4 +1,4 @@
-/// Ends a program with the one that started it.
+/// Ends the program when its parent process ends.
 #pragma once
 
 #include <atomic>
@@ -6,9 +6,9 @@
 
 namespace taut::virtual_robot {
 
-/// Sets `stop`, which outlives it, within 20 ms of the end of the process that was the parent when
-/// this was made. A signal at the parent's death (prctl) would come with the end of the thread that
-/// started this program, too.
+/// Sets `stop`, which must outlive it, within 20 ms of the end of the process that was the parent
+/// at construction. The signal at the parent's death (prctl) would also arrive when the thread that
+/// started this program ends.
 class ParentWatch {
  public:
   explicit ParentWatch(std::atomic<bool>& stop);

@@ -14,7 +14,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// Makes `link` lead to `target`; at every moment it leads somewhere.
+/// Replaces `link` atomically by a symbolic link to `target`.
 std::string MakeLink(const std::string& target, const std::string& link) {
   struct stat there {};
   if (lstat(link.c_str(), &there) == 0 && !S_ISLNK(there.st_mode)) {
@@ -42,7 +42,7 @@ Pty::Pty(Pty&& other) noexcept
 Pty::~Pty() {
   if (master_ < 0) return;
   char target[256] = {};
-  // Somebody else may have made it lead elsewhere since.
+  // Another program may have replaced the link since.
   if (!link_.empty() && readlink(link_.c_str(), target, sizeof target - 1) > 0 && path_ == target) {
     unlink(link_.c_str());
   }
@@ -55,14 +55,16 @@ std::optional<Pty> Pty::Open(const std::string& link, Diagnostics& out) {
   char name[128] = {};
   if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 ||
       ptsname_r(master, name, sizeof name) != 0) {
-    out.Error({"pseudo-terminal"}, std::string("cannot be opened: ") + std::strerror(errno));
+    out.Error("pseudo_terminal.not_opened", {"pseudo-terminal"},
+              std::string("cannot be opened: ") + std::strerror(errno));
     if (master >= 0) close(master);
     return std::nullopt;
   }
   const int slave = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
   termios settings{};
   if (slave < 0 || tcgetattr(slave, &settings) != 0) {
-    out.Error({name}, std::string("cannot be opened: ") + std::strerror(errno));
+    out.Error("pseudo_terminal.not_opened", {name},
+              std::string("cannot be opened: ") + std::strerror(errno));
     if (slave >= 0) close(slave);
     close(master);
     return std::nullopt;
@@ -72,7 +74,8 @@ std::optional<Pty> Pty::Open(const std::string& link, Diagnostics& out) {
   if (!link.empty()) {
     const std::string why = MakeLink(name, link);
     if (!why.empty()) {
-      out.Error({link}, "cannot become a link to " + std::string(name) + ": " + why,
+      out.Error("pseudo_terminal.not_linked", {link},
+                "cannot become a link to " + std::string(name) + ": " + why,
                 "name a place where nothing is yet");
       close(slave);
       close(master);

@@ -1,4 +1,4 @@
-/// A pseudo-terminal in place of the adapter's serial port.
+/// Pseudo-terminal in place of the adapter's serial port.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace taut::virtual_robot {
 
-/// One thread calls it.
+/// Not thread-safe.
 class Pty {
  public:
-  /// Opens one and, if `link` is not empty, makes a symbolic link to it: a name that stays the
-  /// same. A link that is there is replaced, anything else is not. Nothing and a complaint if that
-  /// fails.
+  /// Opens a pseudo-terminal and, if `link` is not empty, creates a symbolic link to it as a
+  /// constant name. An existing link is replaced, other files are not. Returns nothing, with an
+  /// error, on failure.
   static std::optional<Pty> Open(const std::string& link, Diagnostics& out);
   ~Pty();
   Pty(Pty&& other) noexcept;
@@ -24,19 +24,19 @@ class Pty {
   Pty(const Pty&) = delete;
   Pty& operator=(const Pty&) = delete;
 
-  const std::string& path() const { return path_; }  ///< "/dev/pts/7".
+  const std::string& path() const { return path_; }  ///< Example: "/dev/pts/7".
 
-  /// Waits for bytes, at most so long; they are left for `Read`. True: there are some.
+  /// Waits for bytes, at most `seconds`; leaves them for `Read`. Returns true if there are any.
   bool Wait(double seconds) const;
-  /// What there is, in one piece: what the other side wrote at one go, if it is not long.
+  /// Returns the available bytes in one piece: a short write of the other side arrives whole.
   std::vector<std::uint8_t> Read() const;
-  /// Bytes for which the other side leaves no room are lost.
+  /// Writes bytes; drops those for which the other side has no space.
   void Write(std::span<const std::uint8_t> bytes) const;
 
  private:
   Pty(int master, int slave, std::string path, std::string link);
 
-  int master_, slave_;  ///< The other end is kept open, so that clients may come and go.
+  int master_, slave_;  ///< The slave side is kept open, so that clients may come and go.
   std::string path_, link_;
 };
 

@@ -9,7 +9,8 @@
 namespace taut::virtual_robot {
 namespace {
 
-constexpr std::uint32_t kLoadCellStream = 0x4C43'0000;  // of the seed, and the motor's number
+constexpr std::uint32_t kLoadCellStream =
+    0x4C43'0000;  // stream of the seed, plus the motor's number
 
 std::string Who(int board) { return "board " + std::to_string(board); }
 
@@ -93,7 +94,7 @@ void Robot::StepPlant() {
   plant_.Advance(ToSeconds(options_.plant_period), drives_);
   for (int motor = 0; motor < motors; ++motor) {
     const auto index = static_cast<std::size_t>(motor);
-    // What turned in the past period, the boards see in the next one.
+    // Boards see a rotation of the past period in the next one.
     const auto edges = encoders_[index].Turn(plant_.RotorAngle(motor), options_.plant_period, now_);
     if (edges.empty() || state_.motors[index].stuck_encoder) continue;
     boards_[index / 2]->SetEncoderEdges(motor % 2, edges);

@@ -1,5 +1,5 @@
-/// Six boards, their bus, the adapter to the computer and what they move, in lock step and in
-/// virtual time: nothing here looks at a clock, and two runs are the same to the byte.
+/// Virtual robot: boards, bus, adapter and plant in lock step and in virtual time. It uses no real
+/// clock; two runs are identical to the byte.
 #pragma once
 
 #include <cstdint>
@@ -22,25 +22,26 @@
 namespace taut::virtual_robot {
 
 struct RobotOptions {
-  std::shared_ptr<const AvrProgram> program;  ///< Of all boards.
-  std::uint64_t seed = 1;                     ///< Of all noise.
-  std::vector<double> drift_ppm{};            ///< A board each; 0 for those beyond the end.
-  std::vector<std::uint8_t> eeprom{};         ///< Of all boards, behind their identity.
+  std::shared_ptr<const AvrProgram> program;  ///< For all boards.
+  std::uint64_t seed = 1;                     ///< For all noise.
+  std::vector<double> drift_ppm{};            ///< One per board; 0 for boards beyond the end.
+  std::vector<std::uint8_t> eeprom{};         ///< For all boards, after their identity byte.
   LoadCellOptions load_cell{};
   EncoderOptions encoder{};
   UsbIssOptions usb{};
-  /// How often the plant moves on and boards see it: 20 to 100 us. What turned in a period, the
-  /// encoders show in the next.
+  /// Step of the plant and of its exchange with the boards: 20 to 100 us. Encoders show the
+  /// rotation of a period in the next one.
   Time plant_period = 100 * kMicrosecond;
   std::vector<FaultSpec> faults{};
   LogSink log{};            ///< May be empty.
-  bool log_frames = false;  ///< What goes over USB, too.
+  bool log_frames = false;  ///< Log the USB frames, too.
 };
 
-/// One thread calls it.
+/// The robot as a whole. Not thread-safe.
 class Robot {
  public:
-  /// Switched on at time 0, with a board for two motors of the plant, which outlives it.
+  /// Powers the robot on at time 0, with one board for two motors of `plant`, which must outlive
+  /// it.
   Robot(Plant& plant, const RobotOptions& options);
   ~Robot();
   Robot(const Robot&) = delete;
@@ -52,11 +53,11 @@ class Robot {
   std::function<void(Time now)> after_plant_step;
 
   // The computer's side of the adapter.
-  /// Writes at one go. Lost while nobody is there who could write, or nothing to write to.
+  /// Writes bytes at once. They are lost while the adapter is unplugged or unpowered.
   void HostWrites(std::span<const std::uint8_t> burst);
-  /// What has come back by now.
+  /// Returns the reply received so far.
   std::optional<Bytes> HostReads();
-  /// Writes, and lets time pass until the reply is there. Nothing: there was none in time.
+  /// Writes, and advances time until the reply arrives. Returns nothing after a timeout.
   std::optional<Bytes> Transfer(std::span<const std::uint8_t> frame,
                                 Time timeout = 500 * kMillisecond);
   bool host_alive() const { return !state_.host_killed; }
@@ -66,7 +67,8 @@ class Robot {
   Board& board(int index) { return *boards_.at(static_cast<std::size_t>(index)); }
   I2cBus& bus() { return bus_; }
   UsbIss& usb() { return usb_; }
-  /// As the boards have it, without supply or with a fault of the drivers: off.
+  /// Returns the drive of a motor: from its board; off without supply or during a fault of the
+  /// drivers.
   MotorDrive Drive(int motor) const;
 
  private:
@@ -84,11 +86,11 @@ class Robot {
   I2cBus bus_;
   UsbIss usb_;
   FaultSchedule faults_;
-  FaultState state_;  ///< As it was applied last.
+  FaultState state_;  ///< As applied last.
   std::vector<Encoder> encoders_;
   std::vector<MotorDrive> drives_;
-  std::vector<std::uint64_t> conversions_;  ///< A motor each.
-  std::vector<double> stuck_at_;            ///< Forces that cells last showed [N].
+  std::vector<std::uint64_t> conversions_;  ///< One per motor.
+  std::vector<double> stuck_at_;            ///< Forces last shown by the load cells [N].
 };
 
 }  // namespace taut::virtual_robot

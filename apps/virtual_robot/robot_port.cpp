@@ -6,7 +6,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// How long a reply may lie there before anybody looks.
+/// Polling interval for replies.
 constexpr Time kLook = 250 * kMicrosecond;
 
 }  // namespace
@@ -31,7 +31,7 @@ link::Bytes RobotPort::Read() {
 }
 
 void RobotPort::Wait(double until_s) {
-  // A time that rounds to now would wait for nothing for ever.
+  // A time that rounds to the present would wait for nothing, forever.
   const Time until = std::max(FromSeconds(until_s), robot_.now() + kMicrosecond);
   while (robot_.now() < until) {
     Look();

@@ -1,4 +1,4 @@
-/// The adapter of an emulated robot as a port of the driver, in the robot's own time.
+/// Adapter of an emulated robot as a port of the link's driver, in the robot's virtual time.
 #pragma once
 
 #include "apps/virtual_robot/robot.h"
@@ -6,15 +6,15 @@
 
 namespace taut::virtual_robot {
 
-/// One thread calls it.
+/// Not thread-safe.
 class RobotPort final : public link::Port {
  public:
-  /// The robot outlives it.
+  /// The robot must outlive the port.
   explicit RobotPort(Robot& robot) : robot_(robot) {}
 
   bool Write(std::span<const std::uint8_t> frame) override;
   link::Bytes Read() override;
-  /// Lets the robot's time pass.
+  /// Advances the robot's time.
   void Wait(double until_s) override;
   double now_s() const override { return ToSeconds(robot_.now()); }
   bool is_open() const override { return open_ && robot_.usb_connected(); }
@@ -25,7 +25,7 @@ class RobotPort final : public link::Port {
 
   Robot& robot_;
   link::Bytes arrived_;
-  bool open_ = true;  ///< A device that went has to be opened again.
+  bool open_ = true;  ///< A device that disappeared must be opened again.
 };
 
 }  // namespace taut::virtual_robot

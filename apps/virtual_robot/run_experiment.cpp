@@ -1,3 +1,4 @@
+// Experiments on emulated boards in virtual time (`taut_virtual_robot --run`).
 #include "apps/virtual_robot/run_experiment.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace {
 
 enum Exit : int { kGood = 0, kFailed = 1, kBadInput = 3, kInterrupted = 130 };
 
-/// How long the ticks of all boards take, once they are in impedance control.
+/// Statistics of the boards' tick durations in impedance control.
 class TickTimes {
  public:
   explicit TickTimes(Robot& robot)
@@ -50,14 +51,13 @@ class TickTimes {
   std::int64_t ticks_ = 0;
 };
 
-/// What happens: to the PC, which its driver says, and to boards and bus, which only an emulation
-/// knows.
+/// Events of the PC, from its driver, and of boards and bus, from the emulation.
 class Events {
  public:
   void Add(double at_s, std::string_view who, std::string_view what) {
     all_.push_back({at_s, std::string(who), std::string(what)});
   }
-  /// events.jsonl, in the order in which it happened. `started_s`: the experiment's time 0.
+  /// Writes events.jsonl in chronological order. `started_s`: the experiment's time 0.
   bool Write(const std::string& path, double started_s, Diagnostics& out) {
     std::stable_sort(all_.begin(), all_.end(),
                      [](const Event& a, const Event& b) { return a.at_s < b.at_s; });
@@ -76,7 +76,7 @@ class Events {
   std::vector<Event> all_;
 };
 
-/// The log as it was, and what it says but for frames among the events.
+/// Adds all log lines, except USB frames, to the events as well.
 BoardsOptions WithLogInto(Events& events, BoardsOptions options) {
   options.robot.log = [&events, log = options.robot.log](Time at, std::string_view who,
                                                          std::string_view what) {
@@ -88,7 +88,7 @@ BoardsOptions WithLogInto(Events& events, BoardsOptions options) {
 
 using Writers = std::vector<std::unique_ptr<TraceWriter>>;
 
-/// A trace in a run's folder: NAME.h5 and, if it is wanted, NAME.csv.
+/// Creates the traces in a run's folder: NAME.h5 and, on request, NAME.csv.
 Writers CreateTraces(const std::string& path, bool csv, const std::vector<ChannelInfo>& channels,
                      const TraceMetadata& metadata, Diagnostics& out) {
   Writers all;
@@ -97,7 +97,7 @@ Writers CreateTraces(const std::string& path, bool csv, const std::vector<Channe
   return all;
 }
 
-/// boards.json: what a run says of boards and bus.
+/// Writes boards.json: statistics of boards and bus.
 bool WriteFigures(const std::string& path, BoardsPlant& plant, const TickTimes& times,
                   Diagnostics& out) {
   const int overruns = plant.LateTicks();
@@ -175,12 +175,12 @@ int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
   };
   auto summary = RunExperiment(experiment, how, out);
   if (shown) fmt::print(stderr, "\n");
-  plant.driver().on_cycle = {};  // what follows is no longer the run
+  plant.driver().on_cycle = {};  // the following cycles no longer belong to the run
   plant.driver().on_event = {};
-  fmt::print(stderr, "{}", plant.recovery().Format());  // the run is what it is
+  fmt::print(stderr, "{}", plant.recovery().Format());  // warnings only; the run is valid
   if (out.ok()) events.Write(folder->Path("events.jsonl"), plant.started_s(), out);
   for (const auto& trace : host_traces) {
-    if (!trace->Finish()) out.Error({}, trace->error());
+    if (!trace->Finish()) out.Error("trace.not_written", {}, trace->error());
   }
   if (!summary) return Fail(out, kFailed);
   summary->run = folder->id();

@@ -1,4 +1,4 @@
-/// An experiment on the emulated boards, in virtual time, into a run folder.
+/// Experiments on emulated boards in virtual time, recorded in a run folder.
 #pragma once
 
 #include <atomic>
@@ -9,12 +9,12 @@
 namespace taut::virtual_robot {
 
 struct ExperimentRun {
-  std::string out;  ///< The run's folder; `runs/NAME_on_boards` if empty.
+  std::string out;  ///< The run's folder; empty: `runs/NAME_on_boards`.
   bool quiet = false;
-  bool csv = false;  ///< Traces as text, too.
+  bool csv = false;  ///< Write traces as CSV, too.
 };
 
-/// Exit status: 0 good, 1 failed, 3 bad input, 130 broken off.
+/// Returns the exit status: 0 good, 1 failed, 3 bad input, 130 interrupted.
 int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
                 const ExperimentRun& run, const std::atomic<bool>& stop, Diagnostics& out);
 

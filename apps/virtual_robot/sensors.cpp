@@ -13,7 +13,7 @@ constexpr double kTurn = 6.283185307179586476925286766559;
 int LoadCellCode(const LoadCellOptions& options, double force_n, double noise) {
   const double counts =
       options.zero_counts + force_n / options.n_per_count + noise * options.noise_counts;
-  // The first code begins half a count above nothing (data sheet, "ADC Accuracy Definitions").
+  // The first code begins half a count above zero (data sheet, "ADC Accuracy Definitions").
   const double code = std::floor(std::min(counts, options.saturation_counts) + 0.5);
   return static_cast<int>(std::clamp(code, 0.0, 1023.0));
 }
@@ -24,7 +24,7 @@ Encoder::Encoder(const EncoderOptions& options, double angle_rad)
       state_(static_cast<std::int64_t>(std::floor(position_))) {}
 
 EncoderEdge Encoder::Edge(std::int64_t state, Time at) {
-  const auto phase = static_cast<unsigned>(state & 3);  // A leads B where the angle grows
+  const auto phase = static_cast<unsigned>(state & 3);  // A leads B for increasing angle
   return {at, phase == 1 || phase == 2, phase >= 2};
 }
 

@@ -1,5 +1,4 @@
-/// The sensors of a motor's cable: a load cell with its amplifier at an input of the converter, and
-/// an encoder on the motor's shaft.
+/// Sensor models: load cell with amplifier at a converter input, and encoder on the motor's shaft.
 #pragma once
 
 #include <cstdint>
@@ -9,32 +8,32 @@
 
 namespace taut::virtual_robot {
 
-/// Numbers of the robot of the paper (Mirletz, Park, Quinn, SunSpiral 2015, eq. 7):
-/// force = n_per_count (code - zero_counts).
+/// Values of the paper's robot (Mirletz, Park, Quinn, SunSpiral 2015, eq. 7): force = n_per_count
+/// (code - zero_counts).
 struct LoadCellOptions {
   double n_per_count = 0.1567;
   double zero_counts = 4.9363 / 0.1567;  ///< 31.5
-  /// Where the amplifier on its 5 V ends, not the converter: 111.2 N.
+  /// Limit of the amplifier with its 5 V supply, below the converter's range: 111.2 N.
   double saturation_counts = 741;
   double noise_counts = 0.7;  ///< Standard deviation of a conversion [?].
 };
 
-/// What the converter makes of a force, with noise `noise` standard deviations away.
+/// Returns the converter's code for a force, with a noise of `noise` standard deviations.
 int LoadCellCode(const LoadCellOptions& options, double force_n, double noise);
 
 struct EncoderOptions {
-  int lines = 16;  ///< Four states each: 64 a turn of the shaft.
+  int lines = 16;  ///< Four states each: 64 per turn of the shaft.
 };
 
-/// Follows a shaft and says when its lines change.
+/// Follows a shaft and computes the edges of its lines.
 class Encoder {
  public:
   Encoder(const EncoderOptions& options, double angle_rad);
 
-  /// The shaft has turned to `angle_rad` at a steady rate from `from` to `to`; the changes come as
-  /// late as they did in between, from `at` on.
+  /// Advances the shaft to `angle_rad` at a constant rate; returns the edges with their delays in
+  /// `duration`, shifted to begin at `at`.
   std::vector<EncoderEdge> Turn(double angle_rad, Time duration, Time at);
-  /// The lines as they are.
+  /// Returns the present levels of the lines.
   EncoderEdge Now(Time at) const { return Edge(state_, at); }
   std::int64_t states() const { return state_; }  ///< Counted from angle 0.
 

@@ -1,5 +1,5 @@
-/// The headers of libsimavr, which are C, and no better than other outside headers under our
-/// warnings. GPL-3: nothing but the virtual robot may include this.
+/// Wrapper of libsimavr's C headers, with compiler warnings disabled. GPL-3: only the virtual robot
+/// may include this file.
 #pragma once
 
 #pragma GCC diagnostic push
@@ -51,7 +51,7 @@ enum Register : std::uint16_t {
   kTwamr = 0xBD
 };
 
-/// The peripheral of a kind that `avr` has; null if none.
+/// Returns the peripheral of a kind in `avr`; null if there is none.
 inline avr_io_t* FindPeripheral(avr_t& avr, const char* kind) {
   for (avr_io_t* one = avr.io_port; one; one = one->next) {
     const char *a = one->kind, *b = kind;
@@ -61,7 +61,7 @@ inline avr_io_t* FindPeripheral(avr_t& avr, const char* kind) {
   return nullptr;
 }
 
-/// simavr refuses to replace a register's handlers by its own functions; its tables do not.
+/// Sets a register's write handler in simavr's tables; its functions refuse to replace one.
 inline void OnWrite(avr_t& avr, std::uint16_t address, avr_io_write_t handler, void* self) {
   avr.io[AVR_DATA_TO_IO(address)].w.c = handler;
   avr.io[AVR_DATA_TO_IO(address)].w.param = self;

@@ -23,7 +23,7 @@ void Stand::Step(Time now) {
     return;
   }
   if (driven_since_ < 0) driven_since_ = now;
-  // A driver that is on for a moment only, as in a test of it, holds nothing yet.
+  // A driver that is on only briefly, as in its test, does not hold the robot yet.
   if (now - driven_since_ < kDrivenFor) return;
   plant_.SetHeld(false);
   if (log_) log_(now, "stand", "let go: the drivers of all boards have been on for 0.1 s");

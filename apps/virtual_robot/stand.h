@@ -1,4 +1,4 @@
-/// A stand that holds the robot until its boards do.
+/// Stand that holds the robot until its boards do.
 #pragma once
 
 #include "apps/virtual_robot/log.h"
@@ -7,15 +7,16 @@
 
 namespace taut::virtual_robot {
 
-/// One thread calls it, that of the robot.
+/// For use on the robot's thread only.
 class Stand {
  public:
-  /// The motor drivers of all boards have to be on for so long, without a break.
+  /// Time for which the motor drivers of all boards must be on without interruption.
   static constexpr Time kDrivenFor = 100 * kMillisecond;
 
-  /// Holds the plant from now on. What is given outlives it; `log` may be empty.
+  /// Holds the plant from now on. The arguments must outlive the stand; `log` may be empty.
   Stand(MotorPlant& plant, const Robot& robot, LogSink log);
-  /// After each step of the plant: lets go, once and for good, when all boards hold their motors.
+  /// To be called after each step of the plant: releases the robot, once and for good, when all
+  /// boards hold their motors.
   void Step(Time now);
 
  private:
@@ -24,7 +25,7 @@ class Stand {
   MotorPlant& plant_;
   const Robot& robot_;
   LogSink log_;
-  Time driven_since_ = -1;  ///< Not all of them are on, while negative.
+  Time driven_since_ = -1;  ///< Negative: not all of them are on.
 };
 
 }  // namespace taut::virtual_robot

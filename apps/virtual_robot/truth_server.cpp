@@ -20,10 +20,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kWaitingClients = 16;
 
-/// NaN and infinity, which JSON does not know, become null.
+/// Formats JSON; NaN and infinity, which JSON lacks, become null.
 std::string Line(const Json& json) { return json.dump() + '\n'; }
 
-/// `text` of each of them.
+/// Applies `text` to each element.
 template <class List, class F>
 Json Array(const List& of, F&& text) {
   Json array = Json::array();
@@ -33,7 +33,7 @@ Json Array(const List& of, F&& text) {
 
 int NewSocket() { return socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0); }
 
-/// Removes a socket that a program left behind which is gone. Why not, if something else is there.
+/// Removes a socket left by a program that has ended. Returns a reason if anything else is there.
 std::string MakeRoom(const std::string& path, const sockaddr_un& address) {
   struct stat there {};
   if (lstat(path.c_str(), &there) != 0) return errno == ENOENT ? "" : std::strerror(errno);
@@ -91,24 +91,28 @@ std::unique_ptr<TruthServer> TruthServer::Open(const std::string& path, const Mo
                                                Diagnostics& out) {
   sockaddr_un address{};
   if (!UnixAddress(path, &address)) {
-    out.Error({path}, fmt::format("cannot become a socket: a path of 1 to {} bytes is wanted",
-                                  sizeof address.sun_path - 1));
+    out.Error("socket.bad_path", {path},
+              fmt::format("cannot become a socket: a path of 1 to {} bytes is wanted",
+                          sizeof address.sun_path - 1));
     return nullptr;
   }
   if (const std::string why = MakeRoom(path, address); !why.empty()) {
-    out.Error({path}, "cannot become a socket: " + why, "name a place where nothing is yet");
+    out.Error("socket.not_made", {path}, "cannot become a socket: " + why,
+              "name a place where nothing is yet");
     return nullptr;
   }
   const int listener = NewSocket();
   if (listener < 0 ||
       bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    out.Error({path}, std::string("cannot become a socket: ") + std::strerror(errno));
+    out.Error("socket.not_made", {path},
+              std::string("cannot become a socket: ") + std::strerror(errno));
     if (listener >= 0) close(listener);
     return nullptr;
   }
   std::unique_ptr<TruthServer> server(new TruthServer(listener, path, plant));
   if (listen(listener, kWaitingClients) != 0) {
-    out.Error({path}, std::string("cannot be listened at: ") + std::strerror(errno));
+    out.Error("socket.not_listening", {path},
+              std::string("cannot be listened at: ") + std::strerror(errno));
     return nullptr;
   }
   return server;
@@ -126,7 +130,7 @@ TruthServer::TruthServer(int listener, std::string path, const MotorPlant& plant
 TruthServer::~TruthServer() {
   for (const Client& client : clients_) close(client.socket);
   close(listener_);
-  // Somebody else may have put something there since.
+  // Another program may have replaced the socket since.
   struct stat there {};
   if (lstat(path_.c_str(), &there) == 0 && there.st_dev == device_ && there.st_ino == inode_) {
     unlink(path_.c_str());
@@ -149,12 +153,12 @@ void TruthServer::Step(Time now) {
 void TruthServer::TakeIn() {
   for (;;) {
     const int socket = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
-    if (socket < 0) return;  // nobody, or no room for more: they wait
+    if (socket < 0) return;  // no client, or no capacity: clients wait
     clients_.push_back({socket, header_});
   }
 }
 
-/// False: it is gone, or has not read for so long that it may go.
+/// Returns false if the client is gone, or has not read for too long.
 bool TruthServer::Send(Client& client, const std::string& line) {
   client.pending += line;
   const ssize_t sent = send(client.socket, client.pending.data(), client.pending.size(),

@@ -1,5 +1,5 @@
-/// What the robot truly does, for whoever wants to watch: lines of JSON from a socket of the
-/// machine (docs/formats/truth.md).
+/// Server for the true state of the virtual robot: JSON lines on a Unix domain socket
+/// (docs/formats/truth.md).
 #pragma once
 
 #include <cstddef>
@@ -13,27 +13,28 @@
 
 namespace taut::virtual_robot {
 
-/// The first line of a stream: what the numbers of the others belong to.
+/// Returns the first line of a stream: the names for the numbers of the other lines.
 std::string TruthHeader(const MotorPlant& plant);
-/// A line of the stream: the robot as it is at `now`.
+/// Returns a line of the stream: the robot's state at `now`.
 std::string TruthFrame(const MotorPlant& plant, Time now);
 
-/// One thread calls it, that of the robot, and never waits for a client.
+/// For use on the robot's thread only; never waits for a client.
 class TruthServer {
  public:
-  static constexpr Time kPeriod = 20 * kMillisecond;  ///< From frame to frame.
-  /// What a client may leave unread beyond what the system keeps for it; then it is dropped.
+  static constexpr Time kPeriod = 20 * kMillisecond;  ///< Between frames.
+  /// Limit of unsent data for a client in addition to the system's buffer; beyond it the client is
+  /// dropped.
   static constexpr std::size_t kMostPending_bytes = std::size_t{1} << 20;
 
-  /// Listens at `path`. A socket there that nobody listens at is replaced; anything else is not.
-  /// Nothing and a complaint if that fails. The plant outlives it.
+  /// Listens at `path`. An abandoned socket there is replaced, other files are not. Returns null,
+  /// with an error in `out`, on failure. The plant must outlive the server.
   static std::unique_ptr<TruthServer> Open(const std::string& path, const MotorPlant& plant,
                                            Diagnostics& out);
   ~TruthServer();
   TruthServer(const TruthServer&) = delete;
   TruthServer& operator=(const TruthServer&) = delete;
 
-  /// After each step of the plant: takes in who has come and sends what is due.
+  /// To be called after each step of the plant: accepts clients and sends due frames.
   void Step(Time now);
   std::size_t client_count() const { return clients_.size(); }
 

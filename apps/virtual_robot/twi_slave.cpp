@@ -9,8 +9,8 @@ namespace {
 // Bits of TWCR.
 constexpr std::uint8_t kTwint = 0x80, kTwea = 0x40, kTwsto = 0x10, kTwwc = 0x08, kTwen = 0x04,
                        kTwie = 0x01;
-constexpr std::uint8_t kGeneralCallEnable = 0x01;  // of TWAR
-constexpr std::uint8_t kPrescaler = 0x03;          // of TWSR
+constexpr std::uint8_t kGeneralCallEnable = 0x01;  // in TWAR
+constexpr std::uint8_t kPrescaler = 0x03;          // in TWSR
 
 }  // namespace
 
@@ -58,8 +58,8 @@ void TwiSlave::Schedule(const BusEvent& event) {
   if (at > avr_.cycle) {
     avr_cycle_timer_register(&avr_, at - avr_.cycle, Fire, this);
   } else {
-    // Within the cycle or the instruction that the core has ended: it may not run again before
-    // the bus looks.
+    // Within the cycle or instruction that the core has ended: it may not run again before the bus
+    // reads the state.
     pending_ = false;
     Handle(event);
   }
@@ -82,7 +82,7 @@ void TwiSlave::Handle(const BusEvent& event) {
         Raise(kTwiStop, true);
       } else {
         state_ = State::kIdle;
-        // What the program has not looked at yet, it looks at before the address goes on.
+        // The program processes a pending event before the address continues.
         holds_ = Enabled(kTwint);
       }
       return;
@@ -161,7 +161,8 @@ void TwiSlave::WriteControl(avr_t* avr, std::uint16_t address, std::uint8_t valu
     slave.Release();
     return;
   }
-  if ((value & kTwsto) != 0) slave.state_ = State::kIdle;  // a slave lets go; no stop is sent
+  if ((value & kTwsto) != 0)
+    slave.state_ = State::kIdle;  // a slave releases the lines; no stop is sent
   if ((value & kTwint) != 0) {
     slave.shift_ = avr->data[kTwdr];
     slave.last_byte_ = (value & kTwea) == 0;

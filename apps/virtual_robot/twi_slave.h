@@ -1,6 +1,6 @@
-/// The two-wire interface of an ATmega328P as a slave, register by register (data sheet, chapter
-/// "2-wire Serial Interface"). It replaces that of simavr 1.6, which knows no general call, sends
-/// one byte a read, never reports a stop and cannot stretch the clock.
+/// I2C slave interface of an ATmega328P at register level (data sheet, chapter "2-wire Serial
+/// Interface"). Replaces the one of simavr 1.6, which has no general call, sends one byte per read,
+/// never reports a stop and cannot stretch the clock.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@ namespace taut::virtual_robot {
 /// Status codes, TWSR without the prescaler.
 enum TwiStatus : std::uint8_t {
   kTwiBusError = 0x00,
-  kTwiAddressed = 0x60,  ///< To be written to; acknowledged.
-  kTwiCalled = 0x70,     ///< By a general call; acknowledged.
-  kTwiData = 0x80,       ///< A byte came and was acknowledged ...
+  kTwiAddressed = 0x60,  ///< Addressed for writing; acknowledged.
+  kTwiCalled = 0x70,     ///< Addressed by general call; acknowledged.
+  kTwiData = 0x80,       ///< Byte received and acknowledged ...
   kTwiDataNoAck = 0x88,  ///< ... or not.
   kTwiCallData = 0x90,
   kTwiCallDataNoAck = 0x98,
-  kTwiStop = 0xA0,  ///< A stop or a repeated start ended it.
+  kTwiStop = 0xA0,  ///< A stop or a repeated start ended the transfer.
   kTwiAddressedToSend = 0xA8,
-  kTwiSent = 0xB8,       ///< A byte went and was acknowledged ...
+  kTwiSent = 0xB8,       ///< Byte sent and acknowledged ...
   kTwiSentNoAck = 0xC0,  ///< ... or not: the master has enough.
-  kTwiLastSent = 0xC8,   ///< Acknowledged although TWEA had said that it was the last.
+  kTwiLastSent = 0xC8,   ///< Acknowledged although TWEA marked it as the last byte.
   kTwiIdle = 0xF8
 };
 
-/// Belongs to one core, whose registers and time it lives in.
+/// Slave of one core, in the core's registers and time.
 class TwiSlave : public I2cSlave {
  public:
-  /// Takes the registers TWCR, TWSR and TWDR of `avr`; it outlives the slave. Times are those of
-  /// `clock`.
+  /// Handles the registers TWCR, TWSR and TWDR of `avr`, which must outlive the slave. Times are
+  /// relative to `clock`.
   TwiSlave(avr_t& avr, const BoardClock& clock);
   TwiSlave(const TwiSlave&) = delete;
   TwiSlave& operator=(const TwiSlave&) = delete;
@@ -45,7 +45,7 @@ class TwiSlave : public I2cSlave {
   bool Acked() const override { return powered_ && acked_; }
   std::uint8_t NextByte() const override;
 
-  /// After every reset of the core, which has set all registers to zero and forgotten all timers.
+  /// Must be called after every reset of the core, which clears all registers and timers.
   void AfterReset();
   void SetPowered(bool powered);
 
@@ -66,7 +66,7 @@ class TwiSlave : public I2cSlave {
 
   avr_t& avr_;
   const BoardClock& clock_;
-  avr_twi_t* twi_ = nullptr;  ///< simavr's, for its interrupt vector.
+  avr_twi_t* twi_ = nullptr;  ///< simavr's object, for its interrupt vector.
   State state_ = State::kIdle;
   BusEvent event_;
   bool pending_ = false;

@@ -26,7 +26,7 @@ enum DirectError : std::uint8_t {
   kUnderflow = 0x03,
   kUnknownPart = 0x04
 };
-constexpr std::uint8_t kIoChange = 0x10;  // sets pins; what else there is stays as it is
+constexpr std::uint8_t kIoChange = 0x10;  // sets pins; does not change the mode otherwise
 constexpr std::size_t kMostWritten = 60, kMostRead = 64, kDirectBuffer = 60;
 constexpr std::size_t kMostWrittenAfterTwo = 59, kMostReadAfterOne = 60;  // registers
 constexpr int kFirstWithTest = 5, kFirstThatStops = 8;
@@ -45,9 +45,9 @@ void Read(Steps& steps, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) steps.push_back({Kind::kRead, 0, i + 1 < count});
 }
 
-/// The time of a bit in a mode; 0 if the mode is none of a two-wire bus.
+/// Returns the bit time of a mode; 0 if it is not an I2C mode.
 Time BitTime(std::uint8_t mode) {
-  switch (mode & 0xFE) {  // the last bit adds a serial port
+  switch (mode & 0xFE) {  // the lowest bit adds a serial port
     case 0x20:
       return kSecond / 20'000;
     case 0x30:
@@ -65,7 +65,7 @@ Time BitTime(std::uint8_t mode) {
   }
 }
 
-/// How long the frame is that sets a mode; 0 if there is no such mode.
+/// Returns the length of the frame that sets a mode; 0 if there is no such mode.
 std::size_t ModeFrameLength(std::uint8_t mode) {
   if (BitTime(mode) != 0) return (mode & 1) != 0 ? 5 : 4;
   if (mode == 0x00 || mode == 0x10 || (mode >= 0x90 && mode <= 0x93)) return 4;
@@ -91,7 +91,7 @@ void UsbIss::PowerCycle() {
 Time UsbIss::NextAt() const { return due_; }
 
 void UsbIss::Receive(Time now, std::span<const std::uint8_t> burst) {
-  // What it was about before it was pulled out may still be on the bus.
+  // A transfer from before it was unplugged may still be on the bus.
   if (phase_ != Phase::kIdle || bus_.Busy() || burst.empty()) {
     ++ignored_;
     return;
@@ -110,7 +110,7 @@ void UsbIss::Step(Time now) {
   } else if (phase_ == Phase::kOnBus && !bus_.Busy()) {
     const Bytes answer = Answer(command_, bus_.result());
     reply_.insert(reply_.end(), answer.begin(), answer.end());
-    NextCommand(bus_.result().ended);  // which may have been some microseconds ago
+    NextCommand(bus_.result().ended);  // possibly some microseconds ago
   }
 }
 
@@ -151,7 +151,8 @@ Bytes UsbIss::Answer(const Command& command, const BusResult& result) const {
       return {done ? kAcknowledge : kRefusal};
     case Command::Answer::kBytes: {
       Bytes bytes = result.read;
-      bytes.resize(command.bytes, 0xFF);  // nobody there reads as ones: there is no error to send
+      bytes.resize(command.bytes,
+                   0xFF);  // a missing slave reads as ones: the frame has no error code
       return bytes;
     }
     case Command::Answer::kDirect:

@@ -1,6 +1,6 @@
-/// The USB-ISS of Devantech, a converter from a serial port to a two-wire bus, as its documents
-/// describe it (docs/hardware/virtual_robot.md has the table, and what of it is assumed). Bytes in,
-/// bytes out; what it does on the bus takes the time that it takes there.
+/// Emulated USB-ISS by Devantech, a converter from serial port to I2C, according to its
+/// documentation (table and assumptions: docs/hardware/virtual_robot.md). Commands take the time of
+/// their bus transfers.
 #pragma once
 
 #include <cstdint>
@@ -16,33 +16,33 @@ namespace taut::virtual_robot {
 using Bytes = std::vector<std::uint8_t>;
 
 struct UsbIssOptions {
-  /// Of the adapter's own program. Before 8, a byte that nobody acknowledged left the bus without a
-  /// stop in I2C_DIRECT.
+  /// Firmware version of the adapter. Before 8, a byte without acknowledgement left the bus without
+  /// a stop in I2C_DIRECT.
   int firmware_version = 8;
   std::string serial_number{"00000001"};  ///< Eight characters.
-  // From the host's write to the adapter's program, and back [?]: nobody has published numbers.
+  // From the host's write to the adapter's program, and back [?]: no published values.
   Time request_latency = 250 * kMicrosecond;
   Time reply_latency = 250 * kMicrosecond;
   Time byte_gap = 0;  ///< Between two bytes on the bus [?].
 };
 
-/// One thread calls it.
+/// The adapter. Not thread-safe.
 class UsbIss {
  public:
-  /// The bus outlives it.
+  /// The bus must outlive the adapter.
   UsbIss(I2cBus& bus, UsbIssOptions options);
 
-  /// What the host wrote at one go. A frame that is not complete, or that nobody knows, is ignored
-  /// without a reply, and so is one that comes before the reply to the last.
+  /// Receives one write of the host. A frame that is incomplete, unknown, or arrives before the
+  /// reply to the previous one is ignored without a reply.
   void Receive(Time now, std::span<const std::uint8_t> burst);
-  /// Looks at the bus and goes on. Called after each `I2cBus::Step`.
+  /// Checks the bus and continues. Must be called after each `I2cBus::Step`.
   void Step(Time now);
-  /// The reply, once it has reached the host.
+  /// Returns the reply, once it has reached the host.
   std::optional<Bytes> TakeReply(Time now);
-  /// When something happens next by itself; `kNever` while only the bus is waited for.
+  /// Returns the time of the adapter's next event; `kNever` while it waits only for the bus.
   Time NextAt() const;
 
-  /// It was pulled out and put in again: it forgets its mode, and what it was about.
+  /// Unplugs and reconnects the adapter: its mode and its transfer are lost.
   void PowerCycle();
 
   std::uint64_t ignored() const { return ignored_; }  ///< Frames without a reply.
@@ -54,14 +54,15 @@ class UsbIss {
   struct Command {
     enum class Answer { kFixed, kStatus, kBytes, kDirect };
     Answer answer = Answer::kFixed;
-    Bytes fixed;            ///< The answer; of `kDirect` an error, if not empty.
-    std::size_t bytes = 0;  ///< To read: as many are answered.
+    Bytes fixed;            ///< Constant answer; for `kDirect` an error code, if not empty.
+    std::size_t bytes = 0;  ///< Number of bytes to read and return.
     std::vector<BusStep> steps;
     bool stop_after_nack = true;
   };
   enum class Phase { kIdle, kTravelling, kOnBus, kReplying };
 
-  /// The command at the front of `rest_`, which gets shorter. Nothing: not complete, or unknown.
+  /// Parses the command at the front of `rest_` and removes it. Returns nothing if it is incomplete
+  /// or unknown.
   std::optional<Command> Parse();
   std::optional<Command> ParseIss(std::span<const std::uint8_t> frame, std::size_t* used);
   std::optional<Command> ParseTransfer(std::span<const std::uint8_t> frame,

@@ -1,6 +1,6 @@
-/// A robot of which nothing more is said than how it is built: what holds it, what loads it.
+/// Default load case and experiment for a model file without an experiment.
 ///
-/// Threads: all functions are pure; any number may run at once.
+/// Threads: all functions are pure; any number may run concurrently.
 #pragma once
 
 #include "taut/model_def.h"
@@ -8,15 +8,16 @@
 
 namespace taut {
 
-/// Whether something keeps the robot in the world: ground, or a joint or a cable to what stands
-/// still.
+/// Returns whether the world can support the robot: the model has a ground plane, or a joint or a
+/// cable that ends at the world or at a fixed body.
 bool IsHeld(const ModelDef& def);
 
-/// The load of a structure of which nobody says any: its own weight, or, where nothing holds it,
-/// none.
+/// Returns the default load case of a structure: its own weight ("own_weight") if `IsHeld`, else no
+/// load ("unloaded").
 LoadCaseSpec OwnWeight(const ModelDef& def);
 
-/// An experiment that has the robot and nothing else, and begins settled.
+/// Returns an experiment with this robot, its name and its files, and nothing else; it starts
+/// settled.
 ExperimentSpec ExperimentWith(RobotSpec robot);
 
 }  // namespace taut

@@ -1,8 +1,8 @@
-/// Bodies of many worlds where a batch keeps them, without a copy: what `Batch::Cables` is for
-/// cables.
+/// Direct access to the body positions and velocities of a batch, without a copy: the counterpart
+/// of `Batch::Cables` for bodies.
 ///
-/// Threads: as functions of a batch that are not const; reading where the rows point to as those
-/// that are.
+/// Threads: these functions count as non-const functions of the batch; reading through the returned
+/// pointers counts as a const one.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace taut {
 
-/// Bodies of the worlds that share a register: number i (x, y, z) of body b of world
-/// `first_world + j` is at [(3 * b + i) * lanes + j]. Points into the batch: what is read there is
-/// always of now, also of bodies that a motion moves.
+/// Bodies of the worlds that share a SIMD register: component i (x, y, z) of body b of world
+/// `first_world + j` is at [(3 * b + i) * lanes + j]. The pointers lead into the batch, so the
+/// values are always current, also of kinematic bodies.
 struct BodyRows {
   int lanes = 1, first_world = 0;
-  const double* position_m = nullptr;        ///< Of the centres of mass, in W.
-  const double* velocity_m_per_s = nullptr;  ///< Of the same, in W.
+  const double* position_m = nullptr;        ///< Centers of mass, in W.
+  const double* velocity_m_per_s = nullptr;  ///< Velocities of the centers of mass, in W.
 };
 
-/// All bodies of group `group` (`Batch::groups`); out of range it is a mistake of the caller, as in
-/// `Batch`.
+/// Returns the rows of all bodies of group `group`, 0 <= group < `Batch::groups`. An index out of
+/// range ends the program, as in `Batch`.
 BodyRows RowsOfBodies(Batch& batch, int group) noexcept;
 
-/// By how many numbers a row of a group lies before the same row of the next one: what
-/// `Batch::Cables` and `RowsOfBodies` give of group g is g times this behind what they give of
-/// group 0. 0 if there is one group. Never changes.
+/// Returns the distance, in doubles, between the same row of successive groups: a pointer from
+/// `Batch::Cables` or `RowsOfBodies` for group g is g times this behind the pointer for group 0.
+/// 0 if there is one group. Constant for the life of the batch.
 std::ptrdiff_t GroupStride(Batch& batch) noexcept;
 
 }  // namespace taut

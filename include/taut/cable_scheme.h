@@ -1,4 +1,4 @@
-/// Time integration schemes of cables (docs/theory/cables.md, section 3).
+/// Time integration schemes of cables: explicit and implicit (docs/theory/cables.md, section 3).
 #pragma once
 
 #include <vector>
@@ -8,18 +8,19 @@
 namespace taut {
 
 enum class CableScheme {
-  kExplicit,  ///< Soft: an explicit force.
-  /// Stiff, with wheels, edges, friction, a direct-current motor, joints or a motion in its group:
-  /// implicit tension, fixed directions (those of the middle of the step). Undamped cables may gain
-  /// energy from transverse motion, and (12) limits the tension (`kStatusStepTooLong`).
+  kExplicit,  ///< Soft cable: explicit force.
+  /// Stiff cable with wheels, edges, friction, a direct-current motor, joints or a kinematic body
+  /// in its group: implicit tension along fixed directions, taken at the middle of the step.
+  /// Undamped cables may gain energy from transverse motion, and (12) limits the tension
+  /// (`kStatusStepTooLong`).
   kAlong,
   kImplicit,  ///< Implicit in tension and direction: any stiffness and tension; conserves energy.
-  /// kImplicit with a second stage: damped vibrations that the step does not resolve decay.
+  /// kImplicit with a second stage, which damps vibrations that the step does not resolve.
   kImplicitDamped
 };
 
-/// Returns the scheme of each cable for the model's masses, stiffnesses and dampings at steps of
-/// `step_s` > 0. It depends on these alone, never on the state.
+/// Returns the scheme of each cable at steps of `step_s` > 0. It depends only on the step and on
+/// the model's masses, stiffnesses and dampings, never on the state.
 std::vector<CableScheme> CableSchemes(const Model& model, double step_s);
 
 }  // namespace taut

@@ -1,7 +1,7 @@
-/// Calibration files: what was measured of a robot's load cells, encoders and springs
+/// Calibration files: measured constants of a robot's load cells, encoders and springs
 /// (docs/formats/calibration.md).
 ///
-/// Threads: any number may call these functions at once.
+/// Threads: any number may call these functions concurrently.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@
 
 namespace taut {
 
-/// Of one cable; what was not measured is absent.
+/// Calibration of one cable; quantities that were not measured are absent.
 struct CableCalibration {
   std::string cable;
-  std::string measured;  ///< The day, as 2026-11-23.
-  std::string how;       ///< In a sentence.
+  std::string measured;  ///< Date of the measurement, as 2026-11-23.
+  std::string how;       ///< Method of the measurement, in a sentence.
   std::optional<double> load_cell_n_per_count{}, load_cell_counts_at_zero{};
   std::optional<double> encoder_m_per_count{}, rest_length_at_reference_m{};
   std::optional<double> stiffness_n_per_m{};
@@ -25,16 +25,16 @@ struct CableCalibration {
 struct Calibration {
   std::string name, description;
   std::vector<CableCalibration> cables;
-  std::vector<std::string> files{};  ///< That were read, the file itself first.
+  std::vector<std::string> files{};  ///< All files read, the calibration first.
 };
 
-/// Reads a calibration of a robot with these actuated cables; empty: whatever they are called.
-/// Nothing if there was any error.
+/// Reads the calibration of a robot whose actuated cables are `cables`; with an empty list any
+/// cable names are accepted. Returns nothing, and adds diagnostics, on any error.
 std::optional<Calibration> LoadCalibration(const std::string& path,
                                            const std::vector<std::string>& cables,
                                            Diagnostics& out);
 
-/// The text of a file that `LoadCalibration` reads as the same numbers.
+/// Returns the text of a calibration file. `LoadCalibration` reads the same numbers from it.
 std::string CalibrationYaml(const Calibration& calibration);
 
 }  // namespace taut

@@ -1,7 +1,6 @@
-/// Catalogues: motors and springs that one may buy, to size a robot with
-/// (docs/formats/catalogue.md).
+/// Catalogs of commercial motors and springs, for sizing a robot (docs/formats/catalogue.md).
 ///
-/// Threads: any number may call these functions at once.
+/// Threads: any number may call these functions concurrently.
 #pragma once
 
 #include <optional>
@@ -12,37 +11,38 @@
 
 namespace taut {
 
-/// A motor with its gear and a spool on it.
+/// Motor with gear and spool.
 struct CatalogueMotor {
   std::string name;
   double gear_ratio = 1.0;               ///< Turns of the motor per turn of the spool, > 0.
-  double gear_efficiency = 1.0;          ///< Of winding in, 0..1.
-  std::optional<double> spool_radius_m;  ///< To the cable's middle, > 0.
-  // Of the motor, before the gear:
-  double rated_torque_n_m = 0.0;                      ///< That it bears for ever, > 0.
+  double gear_efficiency = 1.0;          ///< While winding in, 0..1.
+  std::optional<double> spool_radius_m;  ///< To the cable's center line, > 0.
+  // At the motor shaft, before the gear:
+  double rated_torque_n_m = 0.0;                      ///< Continuous torque, > 0.
   double peak_torque_n_m = 0.0;                       ///< > 0.
-  double max_speed_rad_per_s = 0.0;                   ///< Under rated torque, > 0.
-  std::optional<double> rated_power_w, peak_power_w;  ///< Of its shaft, > 0.
+  double max_speed_rad_per_s = 0.0;                   ///< At the rated torque, > 0.
+  std::optional<double> rated_power_w, peak_power_w;  ///< Continuous and peak shaft power, > 0.
   std::optional<double> mass_kg;
 };
 
 struct CatalogueSpring {
   std::string name;
   double stiffness_n_per_m = 0.0;  ///< > 0.
-  double largest_travel_m = 0.0;   ///< > 0.
-  double largest_force_n = 0.0;    ///< > 0.
+  double largest_travel_m = 0.0;   ///< Largest extension, > 0.
+  double largest_force_n = 0.0;    ///< Largest tension, > 0.
 };
 
 struct Catalogue {
   std::string name, description;
-  double factor = 1.0;               ///< What there is over what is needed: at least so much.
-  double stiffness_tolerance = 0.1;  ///< How far a spring's stiffness may be off, as a share.
+  double factor = 1.0;  ///< Safety factor: smallest ratio of available to required value.
+  /// Largest difference of a spring's stiffness from the cable's, relative to the cable's.
+  double stiffness_tolerance = 0.1;
   std::vector<CatalogueMotor> motors;
   std::vector<CatalogueSpring> springs;
-  std::vector<std::string> files{};  ///< That were read, the file itself first.
+  std::vector<std::string> files{};  ///< All files read, the catalog first.
 };
 
-/// Nothing if there was any error.
+/// Reads a catalog. Returns nothing, and adds diagnostics, on any error.
 std::optional<Catalogue> LoadCatalogue(const std::string& path, Diagnostics& out);
 
 }  // namespace taut

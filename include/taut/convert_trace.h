@@ -1,7 +1,7 @@
-/// Recordings for other programs: as CSV, and as MCAP, which Foxglove, PlotJuggler and Rerun open
-/// (docs/export.md, section 3).
+/// Export of traces to CSV, and to MCAP for Foxglove, PlotJuggler and Rerun (docs/export.md,
+/// section 3).
 ///
-/// Threads: any number may call these functions at once.
+/// Threads: any number may call these functions concurrently.
 #pragma once
 
 #include <functional>
@@ -15,27 +15,30 @@
 
 namespace taut {
 
-/// Of a trace some channels, those that fit any of the patterns with `*` (none: all), and rows that
-/// are `period_s` apart at least, on a grid from the first on (0: all). Nothing, and a complaint at
-/// `path`, if no channel fits.
+/// Selects channels and rows of a trace. Channels: all that match any of the patterns with `*` (no
+/// patterns: all channels). Rows: at least `period_s` apart, on a grid that starts at the first row
+/// (0: all rows). Returns nothing and adds an error at `path` if no channel matches.
 std::optional<Trace> SelectFrom(Trace trace, const std::vector<std::string>& channels,
                                 double period_s, const std::string& path, Diagnostics& out);
 
 enum class Conversion { kDone, kStopped, kFailed };
 
-/// Is asked now and then, with the share that is done; false: to stop.
+/// Progress callback, called every few hundred rows with the completed share (0..1). Returning
+/// false stops the conversion.
 using GoOn = std::function<bool(double share)>;
 
-/// Both write a file that takes its name when all of it is on the disk: one that was stopped, or
-/// that there was no room for, leaves what had the name before. `kFailed`: with a complaint.
+/// Writes a CSV file. The file appears under `path` only when it is complete and on the disk; if
+/// the conversion stops or the disk is full, an older file of that name remains. Returns `kFailed`
+/// and adds an error if the file cannot be written. `WriteTraceMcap` does the same.
 Conversion WriteTraceCsv(const Trace& trace, const std::string& path, const GoOn& go_on,
                          Diagnostics& out);
 
-/// A topic for each first part of channels' names (`/cable`, `/body`), with a message a row; where
-/// the trace has places and turns of bodies `/tf` with their frames, and where `robot`, as it was
-/// described when it was recorded, is not null `/scene/robot` with its shapes, once, and
-/// `/scene/cables`, if all of its bodies that move are there. Times are those of the trace, from
-/// 1970 on; of one that begins before 0 from its first row.
+/// Writes an MCAP file with one topic for each first part of channel names (`/cable`, `/body`) and
+/// one message per row. If the trace contains positions and orientations of bodies, `/tf` has their
+/// frames. If also `robot` (as described when the trace was recorded) is not null,
+/// `/scene/robot` has its shapes, once, and, if the trace contains all moving bodies,
+/// `/scene/cables` its cables. Times are the trace's, counted from 1970; in a trace that begins
+/// before 0, from its first row.
 Conversion WriteTraceMcap(const Trace& trace, const ModelDef* robot, const std::string& path,
                           const GoOn& go_on, Diagnostics& out);
 

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace taut {
@@ -14,11 +15,35 @@ struct SourceRef {
   int column = 0;
 };
 
-/// One error or warning: its place, the problem, and a hint how to fix it.
+/// Stable identifier of a kind of message: the subject, a dot and the problem, such as
+/// `cable.both_ends_fixed`. Texts may change from version to version, identifiers do not.
+/// tests/messages.txt lists all of them.
+class MessageId {
+ public:
+  /// Accepts literals only; a literal that is no identifier does not compile.
+  consteval MessageId(const char* text) : text_(text) {  // NOLINT(google-explicit-constructor)
+    bool has_dot = false, is_word = false;
+    for (const char c : text_) {
+      const bool is_letter =
+          (c >= 'a' && c <= 'z') || (is_word && (c == '_' || (c >= '0' && c <= '9')));
+      if (!is_letter && !(c == '.' && is_word && !has_dot)) throw "not a message identifier";
+      has_dot = has_dot || c == '.';
+      is_word = is_letter;
+    }
+    if (!has_dot || !is_word) throw "not a message identifier";
+  }
+  constexpr std::string_view text() const noexcept { return text_; }
+
+ private:
+  std::string_view text_;
+};
+
+/// One error or warning: its identifier, its place, the problem, and a hint how to fix it.
 struct Diagnostic {
   SourceRef at;
   std::string what;
-  std::string hint;  ///< May be empty.
+  std::string hint;     ///< May be empty.
+  std::string_view id;  ///< Text of a MessageId.
   /// The file cannot be opened or read, so its contents are unknown, not wrong.
   bool unreadable = false;
 };
@@ -27,11 +52,14 @@ struct Diagnostic {
 /// caller decides.
 class Diagnostics {
  public:
-  void Error(SourceRef at, std::string what, std::string hint = {});
+  void Error(MessageId id, SourceRef at, std::string what, std::string hint = {});
   /// Adds an error about a file that cannot be opened or read.
-  void Unreadable(SourceRef at, std::string what, std::string hint = {});
+  void Unreadable(MessageId id, SourceRef at, std::string what, std::string hint = {});
   /// Adds a warning: the input is valid, but probably not intended. Warnings do not change results.
-  void Warning(SourceRef at, std::string what, std::string hint = {});
+  void Warning(MessageId id, SourceRef at, std::string what, std::string hint = {});
+  /// Adds an error or a warning of other diagnostics, with its identifier.
+  void AddError(Diagnostic error) { items_.push_back(std::move(error)); }
+  void AddWarning(Diagnostic warning) { warnings_.push_back(std::move(warning)); }
   /// Turns all warnings so far into errors (`--strict`).
   void WarningsToErrors();
 

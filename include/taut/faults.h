@@ -1,7 +1,7 @@
-/// Fault scripts: what goes wrong with a robot's electronics, and when
+/// Fault injection scripts: faults of a robot's electronics against time
 /// (docs/hardware/virtual_robot.md).
 ///
-/// Threads: any number may read scripts at once.
+/// Threads: any number may read scripts concurrently.
 #pragma once
 
 #include <limits>
@@ -14,20 +14,20 @@
 namespace taut {
 
 enum class FaultKind {
-  kClockDrift,       ///< A board's crystal is fast or slow.
+  kClockDrift,       ///< A board's clock runs fast or slow.
   kBoardLoss,        ///< A board loses power.
-  kBrownOut,         ///< A board is held in reset.
-  kFirmwareHang,     ///< A board's program hangs with interrupts off.
-  kBusNoise,         ///< Bits on the bus turn over.
+  kBrownOut,         ///< Low supply voltage holds a board in reset.
+  kFirmwareHang,     ///< A board's firmware hangs with interrupts off.
+  kBusNoise,         ///< Bits on the bus flip.
   kBusError,         ///< An illegal start within the next byte on the bus.
   kBusStuck,         ///< A line of the bus is held low.
-  kCutCable,         ///< A cable is cut, for good.
-  kStuckLoadCell,    ///< A load cell shows one force whatever it feels.
-  kStuckEncoder,     ///< An encoder stands whatever the shaft does.
-  kDriverFault,      ///< The motor drivers of a board say that something is wrong.
-  kMotorSupplyLoss,  ///< The supply of all motors is off; the boards keep theirs.
-  kUsbLoss,          ///< The adapter is pulled out of the computer.
-  kHostKilled        ///< The program on the computer is gone.
+  kCutCable,         ///< A cable is cut, permanently.
+  kStuckLoadCell,    ///< A load cell reads a constant force.
+  kStuckEncoder,     ///< An encoder stops counting.
+  kDriverFault,      ///< The motor drivers of a board report a fault.
+  kMotorSupplyLoss,  ///< All motors lose their supply; the boards keep theirs.
+  kUsbLoss,          ///< The adapter is unplugged from the computer.
+  kHostKilled        ///< The program on the computer ends.
 };
 
 enum class BusLine { kData, kClock };
@@ -35,26 +35,27 @@ enum class BusLine { kData, kClock };
 struct FaultSpec {
   FaultKind kind = FaultKind::kClockDrift;
   double at_s = 0;
-  double for_s = std::numeric_limits<double>::infinity();  ///< Then all is as it was.
-  int board = -1;                                          ///< Of those that concern one board.
-  int cable = -1;  ///< Index in the actuated cables, in the model's order.
+  /// Duration, after which the previous state returns.
+  double for_s = std::numeric_limits<double>::infinity();
+  int board = -1;  ///< Index of the board, for faults of one board.
+  int cable = -1;  ///< Index among the actuated cables, in the model's order.
   double drift_ppm = 0;
-  double flips_per_bit = 0;
+  double flips_per_bit = 0;  ///< Probability.
   BusLine line = BusLine::kData;
-  std::optional<double> force_n{};  ///< Of a stuck load cell; what it showed last if there is none.
+  std::optional<double> force_n{};  ///< Reading of a stuck load cell. Absent: the last reading.
 };
 
 struct FaultScript {
   std::string name, description;
-  std::vector<FaultSpec> faults;   ///< As in the file.
-  std::vector<std::string> files;  ///< That were read, the script first.
+  std::vector<FaultSpec> faults;   ///< In the order of the file.
+  std::vector<std::string> files;  ///< All files read, the script first.
 };
 
-/// Names of the kinds, as files spell them.
+/// Returns the name of a kind as used in files.
 const char* FaultName(FaultKind kind);
 
-/// Reads a fault script for a robot with these actuated cables, two of them a board. Returns
-/// nothing if there was any error.
+/// Reads a fault script for a robot whose actuated cables are `cables`, two per board. Returns
+/// nothing, and adds diagnostics, on any error.
 std::optional<FaultScript> LoadFaults(const std::string& path,
                                       const std::vector<std::string>& cables, Diagnostics& out);
 

@@ -1,7 +1,7 @@
-/// Files that are there complete or not at all, and folders that one process writes to.
+/// Atomic file replacement, and folder locks between processes.
 ///
-/// Threads: any number may call these functions at once. Processes: two that write the same file
-/// leave the whole text of one of them.
+/// Threads: any number may call these functions concurrently. If two processes write the same file,
+/// it contains the complete text of one of them.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,17 @@
 
 namespace taut {
 
-/// Writes `text` to `path`. At every moment, also after a kill or a power cut, the file is the old
-/// one or the new one: the text goes to another file beside it (`<path>.<process>.part`), to the
-/// disk, and then gets the name. A symbolic link at `path` is replaced, what it points to stays as
-/// it is. What is no file (a pipe, a terminal, all below /dev) is written to as it is. False and a
-/// complaint if that fails.
+/// Writes `text` to `path` atomically. At any time, also after a kill or a power failure, the file
+/// is the old one or the new one: the text is written to a file in the same folder
+/// (`<path>.<process>.part`), flushed to the disk and then renamed. A symbolic link at `path` is
+/// replaced and its target stays unchanged. Pipes, terminals and everything below /dev are written
+/// directly. Returns false and adds an error on failure.
 bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out);
 
-/// A file that takes its name once it is complete. Until then, an older file of that name stays.
+/// File that gets its final name once it is complete. Until then, an older file of that name stays.
 ///
-/// Belongs to one thread at a time. After a function has returned false, `why()` is the reason.
+/// Thread-compatible: one thread at a time. After a function has returned false, `why()` is the
+/// reason.
 class NewFile {
  public:
   explicit NewFile(std::string path) : path_(std::move(path)) {}
@@ -34,7 +35,7 @@ class NewFile {
   /// Creates the file in the folder of its path, under a unique name that no link points to.
   bool Create();
   const std::string& path() const { return path_; }
-  /// Where it is until it is published.
+  /// Returns the temporary path, valid until the file is published.
   const std::string& made_at() const { return made_at_; }
 
   bool Write(std::string_view bytes);
@@ -63,20 +64,22 @@ struct FileIdentity {
   std::uint64_t device = 0, file = 0;  ///< 0, 0: no file.
   bool operator==(const FileIdentity&) const = default;
 };
+/// Returns the identity of the file at `path`; {0, 0} without a file.
 FileIdentity IdentityOf(const std::string& path);
 
-/// The right to write into a folder, which one process at a time has. It ends with the object or
-/// with the process, however that ends; the empty file `.lock` stays.
+/// Lock on a folder, held by one process at a time, for exclusive writing. It ends with the object
+/// or with the process, also if that crashes; the empty file `.lock` stays.
 class FolderLock {
  public:
-  /// Makes the folder where there is none. Null and a complaint if it cannot be made or written, or
-  /// if another process has the right.
+  /// Locks a folder, and creates it if it is missing. Returns null and adds an error if it cannot
+  /// be created or written, or if another process holds the lock.
   static std::unique_ptr<FolderLock> Take(const std::string& folder, Diagnostics& out);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// False once the folder was deleted or replaced by another, which is then somebody else's.
+  /// Returns false once the folder was deleted or replaced by another one, which this lock does not
+  /// cover.
   bool Holds() const;
 
  private:

@@ -1,8 +1,8 @@
-/// Fits as files describe them: which numbers of experiments to find from which measurements
-/// (docs/fit.md).
+/// Fit files (system identification): measurements, estimated parameters, priors, residuals and
+/// search settings (docs/fit.md).
 ///
-/// Threads: any number may call these functions at once, each with diagnostics of its own. A spec
-/// is plain data.
+/// Threads: any number may call these functions concurrently, each with separate diagnostics. A
+/// spec is plain data.
 #pragma once
 
 #include <cstdint>
@@ -17,51 +17,51 @@
 
 namespace taut {
 
-/// What is made of an experiment, to be set beside its data.
+/// Forward model: computation of the values that are compared with the data.
 enum class FitForward {
-  kDynamic,    ///< A run of it.
-  kStatic,     ///< The rest that it comes to at each of its set points, one after the other.
-  kLoadCases,  ///< The rest under each of its load cases; row i of the data is that of case i.
+  kDynamic,    ///< Simulation of the experiment.
+  kStatic,     ///< Equilibrium at each set point, each from the previous one.
+  kLoadCases,  ///< Equilibrium under each load case; row i of the data belongs to case i.
 };
 
-/// One measurement: the experiment that says what was done, and what came of it.
+/// Measurement: the experiment file that describes the test, and the data file with its results.
 struct FitExperiment {
   std::string name;
   std::string experiment_file;
-  std::string data_file;       ///< A trace; empty: only the experiment's references.
-  std::string map_file;        ///< Gives the data the names of taut; empty: none.
-  std::string setpoints_file;  ///< Times of set points on the data's clock; empty: the
-                               ///< experiment's own.
-  bool train = true;           ///< Else it is held out, for a verdict.
+  std::string data_file;  ///< Trace; empty: only the experiment's reference values.
+  std::string map_file;   ///< Mapping of the data to taut's names and units; empty: none.
+  /// Times of set points on the data's clock; empty: the experiment's set points.
+  std::string setpoints_file;
+  bool train = true;  ///< False: held out for validation.
   FitForward forward = FitForward::kDynamic;
-  Overrides set;              ///< As `set:` says, the user's `--set` behind it.
-  ExperimentSpec experiment;  ///< With `set`, before anything is fitted.
+  Overrides set;              ///< Overrides by `set:`, followed by the user's `--set`.
+  ExperimentSpec experiment;  ///< With `set` applied, before the fit.
   SourceRef at, data_at, setpoints_at;
 };
 
-/// What is known of a number before the data is looked at.
+/// Bounds, prior, start and scale of an estimate.
 struct FitRange {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  std::optional<double> mean, sd;  ///< Of the prior; without `sd` there is none.
+  std::optional<double> mean, sd;  ///< Prior; absent without `sd`.
   double start = 0.0;
-  double scale = 0.0;  ///< About how far it moves, > 0: the unit of steps.
+  double scale = 0.0;  ///< Typical change, > 0: the unit of steps.
 };
 
-/// A number that is found.
+/// Estimated number.
 struct FitEstimate {
   enum class Kind {
-    kParameter,  ///< Of the experiments or their models.
-    kOffset,     ///< Added to what is computed of some channels, in their unit.
-    kGain,       ///< A factor on what is computed of some channels.
-    kDelay,      ///< By how many seconds the data's clock says later what happened.
+    kParameter,  ///< Parameter of the experiments or their models.
+    kOffset,     ///< Offset added to computed channels, in their unit.
+    kGain,       ///< Factor on computed channels, before the offset.
+    kDelay,      ///< Delay of the data's clock against the run [s].
   };
   Kind kind = Kind::kParameter;
   std::string name;       ///< "k12_n_per_m", "offset body/v/position_z_m", "delay t0".
-  std::string unit;       ///< Empty: not known.
-  std::string parameter;  ///< Of kParameter.
-  std::string channels;   ///< Pattern, of kOffset and kGain.
-  std::vector<std::size_t> experiments;  ///< That it acts on.
+  std::string unit;       ///< Empty: unknown.
+  std::string parameter;  ///< Name, for kParameter.
+  std::string channels;   ///< Pattern, for kOffset and kGain.
+  std::vector<std::size_t> experiments;  ///< Indices of the experiments it applies to.
   FitRange range;
   SourceRef at;
 };
@@ -69,49 +69,52 @@ struct FitEstimate {
 enum class FitStatistic { kMean, kMax, kMin, kRows };
 enum class RobustLoss { kSquares, kHuber, kCauchy };
 
-/// What is compared: channels of the data, or the references of the experiments.
+/// Compared values: channels of the data, or reference values of the experiments.
 struct FitResidual {
   std::string channels;                                ///< Pattern; empty: references.
-  std::optional<ReferenceSpec::Statistic> references;  ///< Which; nothing: all.
-  double sd = 1.0;                                     ///< What it is known to, in its unit.
-  double relative_sd = 0.0;                            ///< More of it: this share of the value.
+  std::optional<ReferenceSpec::Statistic> references;  ///< Absent: all.
+  double sd = 1.0;           ///< Standard deviation, in the channel's unit.
+  double relative_sd = 0.0;  ///< Relative to the measured value; the larger of both counts.
   FitStatistic statistic = FitStatistic::kMean;
-  std::optional<std::string> phase;                           ///< A window by the timeline's name,
-  std::optional<std::pair<double, double>> span_s;            ///< on the experiment's clock,
-  std::optional<std::pair<double, double>> after_setpoint_s;  ///< or after each set point.
+  std::optional<std::string> phase;                           ///< Window: a phase of the timeline,
+  std::optional<std::pair<double, double>> span_s;            ///< a span on the experiment's clock,
+  std::optional<std::pair<double, double>> after_setpoint_s;  ///< or a span after each set point.
   std::vector<std::size_t> experiments;
   RobustLoss loss = RobustLoss::kSquares;
-  double loss_sd = 0.0;  ///< From where on a residual counts less, in `sd`.
+  double loss_sd = 0.0;  ///< Width of the loss, in `sd`; larger residuals count less.
   SourceRef at;
 };
 
+/// Grouping of residuals with correlated errors.
 enum class FitGroups { kExperiment, kChannel, kWindow };
 
 struct FitSearch {
-  int starts = 1;           ///< The first from where the experiments are.
-  double step = 0.1;        ///< Of differences, in scales.
-  int iterations = 50;      ///< At most, of each start.
-  std::uint64_t seed = 0;   ///< Of the other starts.
-  int folds = 0;            ///< Of cross-validation over groups; 0: none.
-  double tolerance = 1e-6;  ///< Relative fall of the cost that is none.
+  int starts = 1;           ///< Number of starts; the first has the experiments' values.
+  double step = 0.1;        ///< Step of the difference quotients, in scales.
+  int iterations = 50;      ///< Limit per start.
+  std::uint64_t seed = 0;   ///< Seed of the other starts.
+  int folds = 0;            ///< Folds of cross-validation over groups; 0: none.
+  double tolerance = 1e-6;  ///< Relative change of the cost at which the search ends.
 };
 
-/// What may be measured next, for `--design`.
+/// Candidate measurement for `--design`.
 struct FitCandidate {
   std::string name;
   std::vector<FitResidual> residuals;
 };
 
-/// Whether data agree with themselves: bodies to which a load is applied, and which nothing holds
-/// but members whose forces are compared. What was measured of these is to carry what is applied.
+/// Consistency check of measured forces: on loaded bodies that only members with measured forces
+/// support, the measured forces must balance the applied load (docs/theory/identification.md, eq.
+/// F.15a).
 struct FitCarried {
   std::string name;
-  std::vector<std::string> bodies;  ///< Patterns.
-  Vec3 direction;                   ///< Of the load, in W; a unit vector.
+  std::vector<std::string> bodies;  ///< Name patterns.
+  Vec3 direction;                   ///< Direction of the load, in W; unit vector.
   std::vector<std::size_t> experiments;
   SourceRef at;
 };
 
+/// Contents of a fit file.
 struct FitSpec {
   std::string name;
   std::string description;
@@ -122,15 +125,16 @@ struct FitSpec {
   std::vector<FitCarried> carried;
   FitGroups groups = FitGroups::kExperiment;
   FitSearch search;
-  std::vector<std::string> files;  ///< That were read, the fit first.
+  std::vector<std::string> files;  ///< All files read, the fit first.
 };
 
-/// Reads a fit and its experiments, not the data. Returns nothing if there was any error.
+/// Reads a fit file and its experiments, not the data. Returns nothing, and adds diagnostics, on
+/// any error.
 std::optional<FitSpec> LoadFit(const std::string& path, const Overrides& overrides,
                                Diagnostics& out);
 
-/// The fit in numbers, a line each fact, without its experiments: two with the same text, the same
-/// experiments and the same data find the same.
+/// Returns the settings of a fit as text, one per line, without the contents of its experiments:
+/// fits with the same text, the same experiments and the same data have the same result.
 std::string FitText(const FitSpec& fit);
 
 }  // namespace taut

@@ -1,8 +1,8 @@
-/// Forms that forces hold: nets from their force densities, and robots from those or the tensions
-/// of their cables (docs/theory/inverse_statics.md, section 5).
+/// Form finding: equilibrium shapes of nets from force densities, and of robots from force
+/// densities or tensions of their cables (docs/theory/inverse_statics.md, section 5).
 ///
-/// SI units, W frame. Wrong inputs are complaints. Threads: all functions are pure; any number may
-/// run at once.
+/// SI units, W frame. Invalid inputs are reported as errors. Threads: all functions are pure; any
+/// number may run concurrently.
 #pragma once
 
 #include <array>
@@ -16,54 +16,55 @@
 
 namespace taut {
 
-/// Points and straight members between them, which pull or push along their line.
+/// Pin-jointed net: nodes, and straight members that pull or push along their line.
 struct FormNet {
-  std::vector<Vec3> nodes_m;  ///< Where the search begins; of fixed ones, where they are.
-  std::vector<bool> fixed;    ///< Per node; empty: none is.
-  std::vector<std::array<int, 2>> members;  ///< Its two nodes.
+  std::vector<Vec3> nodes_m;                ///< Start of the search; fixed nodes: their places.
+  std::vector<bool> fixed;                  ///< Per node; empty: none fixed.
+  std::vector<std::array<int, 2>> members;  ///< Two nodes each.
 };
 
-/// Where the nodes are if members have these force densities, force over length, tension > 0, under
-/// loads per node (empty: none). Fixed nodes are needed: without them see `FindFreeForm`.
+/// Returns the node places [m] at which the net is in equilibrium with these force densities (force
+/// / length, per member, tension > 0) under loads per node [N] (empty: none), by the force density
+/// method (eq. 7). Requires fixed nodes; without them use `FindFreeForm`. Returns nothing and adds
+/// errors on failure.
 std::optional<std::vector<Vec3>> FindNetForm(const FormNet& net,
                                              const std::vector<double>& force_density_n_per_m,
                                              const std::vector<Vec3>& loads_n, Diagnostics& out);
 
 struct FreeForm {
   bool found = false;
-  std::string why;                                  ///< If not.
+  std::string why;                                  ///< Reason, if not found.
   std::vector<double> group_force_density_n_per_m;  ///< Per group; the first is 1 or -1.
   std::vector<Vec3> nodes_m;
-  double residual = 0;  ///< What is left at a node, of the largest force at one.
-  /// Whether no stiffness is needed to make it stable, only prestress: the matrix of force
-  /// densities has no negative eigenvalue, and no more than four that are zero.
+  double residual = 0;  ///< Largest residual at a node, relative to the largest member force.
+  /// Super-stability: prestress stabilizes the form at any stiffness. The force density matrix has
+  /// no negative eigenvalue and exactly four zero ones.
   bool super_stable = false;
 };
 
-/// The form of a net without fixed nodes in which members of a group have the same force density,
-/// which is found, too, as near as may be to where the nodes are. Of the forms that the force
-/// densities allow, all that are affine to each other, it is the nearest to the start in least
-/// squares. `group`: per member, from 0 on.
+/// Finds the form of a net without fixed nodes, and the force density of each group of members,
+/// close to the given nodes. All forms with these densities are affine images of each other; the
+/// result is the nearest to the start in least squares. `group`: group of each member, from 0 on.
 FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnostics& out);
 
 struct FormOptions {
-  /// Per cable, one of the two, > 0; bodies keep their forms.
+  /// Per cable, > 0; set one of the two. Bodies keep their shapes.
   std::vector<double> force_density_n_per_m, tension_n;
   bool weight = false;   ///< Whether gravity acts.
-  bool contact = false;  ///< Whether planes bear what stands on them.
+  bool contact = false;  ///< Whether planes support bodies.
 };
 
 struct Form {
   bool found = false;
-  std::string why;  ///< If not.
-  /// The robot as described there, with the rest lengths that its cables have to have.
+  std::string why;  ///< Reason, if not found.
+  /// The robot with the form as its described pose and the required rest lengths of its cables.
   RobotSpec robot;
-  Equilibrium equilibrium;  ///< Of `robot`: where it stays.
+  Equilibrium equilibrium;  ///< Equilibrium of `robot`.
 };
 
-/// The stable form that the robot's cables give its bodies if they have these force densities or
-/// tensions, found by relaxation from where it is described. All cables pull, so that it is a
-/// prestress that they can have.
+/// Finds the stable form of a robot with these force densities or tensions of its cables, from the
+/// described pose (`FindEquilibrium`). All cables are in tension in the result, so the prestress is
+/// feasible.
 Form FindForm(const RobotSpec& robot, const FormOptions& options, Diagnostics& out);
 
 }  // namespace taut

@@ -1,12 +1,12 @@
-/// Which forces hold a robot in a pose: those that cost least, with the rest lengths and motor
-/// commands that make them, and between which limits forces lie where several sets of them hold it
-/// (docs/theory/inverse_statics.md).
+/// Inverse statics: least cable tensions, rest lengths and motor commands that hold a robot in a
+/// pose, and intervals of statically indeterminate forces (docs/theory/inverse_statics.md).
 ///
-/// SI units, W frame; the pose is that in which the model is described (`RobotAt` gives a model in
-/// another one). Bodies bear their loads; cables pull; joints, supports and bars carry what they
-/// must; what touches pushes, with Coulomb's friction.
+/// SI units, W frame; the pose is the described pose of the model (`RobotAt` returns a model in
+/// another one). Cables pull; joints, supports and bars transmit any force; contacts push, with
+/// Coulomb friction.
 ///
-/// Wrong options are complaints. Threads: all functions are pure; any number may run at once.
+/// Invalid options are reported as errors. Threads: all functions are pure; any number may run
+/// concurrently.
 #pragma once
 
 #include <limits>
@@ -20,27 +20,27 @@
 
 namespace taut {
 
-/// A place where a body touches what pushes it.
+/// Contact point of a body.
 struct TouchDef {
   int body = 0;
-  int other = kWorld;     ///< The other body, which is pushed back.
-  Vec3 point_m, normal;   ///< The normal points to `body`; unit vector.
-  double friction = 0.0;  ///< Coefficient at rest, >= 0.
+  int other = kWorld;     ///< The other body, which gets the opposite force.
+  Vec3 point_m, normal;   ///< Normal: unit vector toward `body`.
+  double friction = 0.0;  ///< Static friction coefficient, >= 0.
 };
 
-/// Where spheres, rods, boxes and convex bodies that collide are within `within_m` of the terrain's
-/// planes, or in them. A rod has two such places, a box up to eight; those of a body's parts that
-/// are at the same place are one.
+/// Finds the contact points of colliding spheres, rods, boxes and convex bodies within `within_m`
+/// of the terrain's planes, or below them. A rod has up to two points, a box up to eight;
+/// coincident points of a body are merged.
 std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m);
 
-/// Of a cable, all that hold.
+/// Bounds of a cable's tension and force density; all apply.
 struct CableBounds {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  double at_least_n = 0.0, at_most_n = kNone;              ///< Of its tension, >= 0.
-  double at_least_n_per_m = 0.0, at_most_n_per_m = kNone;  ///< Of its force density.
+  double at_least_n = 0.0, at_most_n = kNone;              ///< Tension, >= 0.
+  double at_least_n_per_m = 0.0, at_most_n_per_m = kNone;  ///< Force density.
 };
 
-/// Of which the sum over the cables is to be least.
+/// Objective: term that is summed over the cables and minimized (eq. 3).
 enum class HoldingCost {
   kTension,       ///< T^2
   kEnergy,        ///< T^2 / (2 k)
@@ -49,13 +49,13 @@ enum class HoldingCost {
 
 struct HoldingOptions {
   HoldingCost minimise = HoldingCost::kForceDensity;
-  std::vector<CableBounds> bounds;  ///< Per cable; empty: that none pushes.
+  std::vector<CableBounds> bounds;  ///< Per cable; empty: tensions >= 0 only.
   std::vector<TouchDef> touches;
-  /// Per cable, the rest lengths from which motors count; empty: as described.
+  /// Per cable, rest lengths at a motor command of 0; empty: the described ones.
   std::vector<double> calibration_rest_m;
 };
 
-/// What forces cannot balance at a body, in W; the torque about its centre of mass.
+/// Residual force and torque on a body, in W; the torque about its center of mass.
 struct Unbalanced {
   int body = 0;
   Vec3 force_n, torque_n_m;
@@ -63,61 +63,63 @@ struct Unbalanced {
 
 struct HoldingForces {
   bool found = false;
-  std::string why;  ///< If not.
+  std::string why;  ///< Reason, if not found.
   std::vector<double> cable_tension_n, cable_force_density_n_per_m;
   std::vector<double> rest_length_m;  ///< l - T / k.
-  std::vector<double> command_m;      ///< From the calibration on; lengthening is positive.
-  std::vector<double> bar_force_n;    ///< Per joint, tension > 0; 0 of those that are no bars.
-  std::vector<double> bar_rest_m;     ///< Per joint, l - N / k; 0 likewise.
+  std::vector<double> command_m;      ///< Relative to the calibration; lengthening is positive.
+  std::vector<double> bar_force_n;    ///< Per joint, tension > 0; 0 for joints other than bars.
+  std::vector<double> bar_rest_m;     ///< Per joint, l - N / k; 0 for joints other than bars.
   std::vector<JointLoad> joint_loads;
-  std::vector<Vec3> touch_force_n;  ///< On `body`; of `HoldingOptions::touches`.
-  std::vector<int> at_bound;        ///< Cables that would go beyond a bound.
-  double cost = 0;                  ///< Of `minimise` [N^2, J, N^2/m^2].
-  double residual_n = 0;            ///< What the largest force on a body is off by rounding.
-  /// If not found: what the nearest forces leave, in least squares, torques by the body's reach.
-  /// The most first; none: rounding alone.
+  std::vector<Vec3> touch_force_n;  ///< On `body`; per entry of `HoldingOptions::touches`.
+  std::vector<int> at_bound;        ///< Cables whose tension is at a bound.
+  double cost = 0;                  ///< Value of `minimise` [N^2, J, N^2/m^2].
+  double residual_n = 0;            ///< Largest imbalance on a body, due to rounding.
+  /// If not found: residuals of the least-squares solution (torques divided by the body's reach),
+  /// largest first; empty if only rounding errors remain.
   std::vector<Unbalanced> left;
-  std::vector<std::string> notes;  ///< What takes no part, and what no cable can do.
+  std::vector<std::string> notes;  ///< Ignored parts of the model, and infeasible rest lengths.
 };
 
-/// The forces that hold the robot as described and cost least. Tensions do not follow from rest
-/// lengths here, nor bars' forces from theirs: the result says which those have to be. A load
-/// case's lengthenings count as warmth does: rest lengths have them, commands do not. It may not
-/// have settlements: they are part of the pose.
+/// Computes the forces of least cost that hold the robot in the described pose. Rest lengths of
+/// cables and bars are results, not inputs. Lengthenings of the load case are treated as thermal:
+/// part of the rest lengths, not of the commands. The load case must not have settlements, which
+/// are part of the pose.
 HoldingForces FindHoldingForces(const ModelDef& def, const LoadCaseSpec& loads,
                                 const HoldingOptions& options, Diagnostics& out);
 
-/// Between which a force may be; infinite where nothing limits it, as in a jam.
+/// Interval of a force; infinite without a limit, as in a jam.
 struct ForceInterval {
   double low_n = 0, high_n = 0;
-  /// The ends are true ones or up to this much too far out.
+  /// The interval is never too short; its ends may be too far out by up to this.
   double uncertain_n = 0;
 };
 
 struct IntervalOptions {
   std::vector<TouchDef> touches;
-  /// Whether cables and bars have the forces that follow from their rest lengths, as described.
-  /// Else they have any that hold, cables within `bounds`.
+  /// Whether forces of cables and bars follow from their described rest lengths; otherwise they are
+  /// unknown, cables within `bounds`.
   bool known_tensions = true;
-  std::vector<CableBounds> bounds;  ///< Per cable; empty: that none pushes.
-  /// What may be left unbalanced, as a share of the largest load.
+  std::vector<CableBounds> bounds;  ///< Per cable; empty: tensions >= 0 only.
+  /// Allowed imbalance, relative to the largest load.
   double tolerance = 1e-6;
 };
 
 struct ForceIntervals {
-  bool found = false;                ///< Whether any forces hold it.
-  std::string why;                   ///< If not.
-  int undetermined = 0;              ///< Of how many forces it does not say what they are.
-  std::vector<ForceInterval> touch;  ///< Normal forces, per touch.
-  std::vector<ForceInterval> cable;  ///< Tensions; of known ones both ends are the same.
-  std::vector<ForceInterval> joint_x, joint_y,
-      joint_z;                   ///< Forces of joints on their body b, in W.
+  bool found = false;                ///< Whether any admissible forces hold the pose.
+  std::string why;                   ///< Reason, if not found.
+  int undetermined = 0;              ///< Degree of static indeterminacy (dimension of y in eq. 2).
+  std::vector<ForceInterval> touch;  ///< Normal forces, per contact point.
+  std::vector<ForceInterval> cable;  ///< Tensions; both ends are equal for known ones.
+  /// Forces of joints on their body b, in W.
+  std::vector<ForceInterval> joint_x, joint_y, joint_z;
   std::vector<Unbalanced> left;  ///< As in `HoldingForces`.
   std::vector<std::string> notes;
 };
 
-/// The limits of the forces that can hold the robot as described, each by itself, by linear
-/// programming with planes at the friction cones that are added until the cones are exact.
+/// Computes the interval of each force over all admissible forces that hold the robot in the
+/// described pose, each force separately: the ends may not be attained together. Method: linear
+/// programming with tangent planes of the friction cones, added until the cones are accurate
+/// (Kelley's cutting-plane method).
 ForceIntervals FindForceIntervals(const ModelDef& def, const LoadCaseSpec& loads,
                                   const IntervalOptions& options, Diagnostics& out);
 

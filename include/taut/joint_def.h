@@ -1,5 +1,6 @@
-/// Joints: what of one body's motion relative to another's is held, and what acts on the rest
-/// (docs/theory/joints.md). A support is a joint with the world.
+/// Joints and supports: constraints on the motion of one body relative to another, with joint
+/// limits, springs, dampers and friction (docs/theory/joints.md). A support is a joint with the
+/// world.
 #pragma once
 
 #include <optional>
@@ -10,68 +11,76 @@
 
 namespace taut {
 
-/// What a joint leaves free of the motion of its body b relative to its body a. `axis`, and two
-/// directions across it, are fixed in a.
+/// Degrees of freedom that a joint leaves to its body b relative to its body a. `axis` and two
+/// directions normal to it are fixed in a.
 enum class JointKind {
-  kBall,         ///< All turns.
-  kHinge,        ///< Turns about the axis.
-  kWeld,         ///< Nothing.
+  kBall,         ///< All rotations.
+  kHinge,        ///< Rotation about the axis.
+  kWeld,         ///< None.
   kPrismatic,    ///< Sliding along the axis.
-  kCylindrical,  ///< Sliding along the axis, and turns about it.
-  kPlanar,       ///< Sliding across the axis, and turns about it.
-  kLine,         ///< All turns; b's point slides along the axis through a's.
-  kPlane,        ///< All turns; b's point slides in the plane through a's that is across the axis.
-  kDistance,     ///< All but the distance of the two points.
+  kCylindrical,  ///< Sliding along the axis and rotation about it.
+  kPlanar,       ///< Sliding normal to the axis and rotation about it.
+  kLine,         ///< All rotations; b's point slides on the line along the axis through a's point.
+  kPlane,  ///< All rotations; b's point slides in the plane normal to the axis through a's point.
+  kDistance,  ///< All but the distance between the two points.
 };
 
-/// A joint's coordinate, if it has one that is free: the angle of a hinge [rad], how far a
-/// prismatic joint, a cylindrical one or a line has slid [m], the length of a distance [m]; of a
-/// ball the angle between its axis in a and that in b [rad]. A slide is that from a's point to b's;
-/// angles are 0 in the pose that is described, but for `turned`, and of a hinge count turns. Forces
-/// are torques [N m] where it is an angle.
+/// Definition of a joint between two bodies, or between a body and the world.
+///
+/// Coordinate of a joint (none for kinds without `HasCoordinate`):
+///  - hinge: angle [rad], counting full turns;
+///  - prismatic, cylindrical, line: displacement along the axis from a's point to b's point [m];
+///  - distance: distance between the points [m];
+///  - ball: angle between the axis in a and the axis in b [rad].
+/// Angles are 0 in the described pose if `turned` is the identity. Forces of a coordinate that is
+/// an angle are torques [N m], other forces are in N.
 struct JointDef {
-  /// Points that a joint holds together may be this far apart at first; the first step closes it.
+  /// Largest initial distance between points that a joint holds together [m]; the first step closes
+  /// it.
   static constexpr double kClosed_m = 1e-6;
 
   std::string name;
   JointKind kind = JointKind::kBall;
-  int body_a = kWorld, body_b = 0;  ///< b is a body; not both are fixed.
-  Vec3 from_m, to_m;                ///< A point of a and one of b, in W.
+  int body_a = kWorld, body_b = 0;  ///< b is a body; at most one of the two is fixed.
+  Vec3 from_m, to_m;                ///< Point of a and point of b, in W.
   Vec3 axis{0.0, 0.0, 1.0};         ///< Unit vector in W.
-  /// How b's axes are turned against a's, in W: not at all, but where a robot is described in
-  /// another pose than that in which the axes are one.
+  /// Rotation of b's axes relative to a's axes in the described pose, in W. Identity, unless the
+  /// robot is described in a pose in which these axes do not coincide.
   Quat turned;
-  bool collides = false;  ///< Whether its bodies touch each other.
+  bool collides = false;  ///< Whether its two bodies can touch each other.
 
-  // Of the coordinate:
-  std::optional<double> least, most;  ///< Stops; of a ball `most` alone.
-  double restitution = 0.0;           ///< Of the stops, 0..1.
-  // Of the coordinate, too, but of a ball of all its turns, about every axis alike: of b's turn
-  // against a, as a vector of up to half a turn, and of its rate.
-  double friction = 0.0;                  ///< Largest dry friction, >= 0.
+  // Properties of the coordinate:
+  std::optional<double> least, most;  ///< Joint limits; a ball has only `most`.
+  double restitution = 0.0;           ///< Coefficient of restitution at the limits, 0..1.
+  // Also of the coordinate, except for a ball: there they act on all rotations, about every axis
+  // alike, that is on the rotation vector of b relative to a (up to half a turn) and on its rate.
+  double friction = 0.0;                  ///< Largest dry friction [N or N m], >= 0.
   double stiffness = 0.0, damping = 0.0;  ///< Of a spring and a damper, >= 0.
-  double rest = 0.0;                      ///< Where the spring is at rest; of a ball 0.
-  MemberDef member = {};                  ///< Of a bar.
+  double rest = 0.0;      ///< Coordinate at which the spring is unloaded; 0 for a ball.
+  MemberDef member = {};  ///< Section and limits of a bar.
   bool operator==(const JointDef&) const = default;
 };
 
-/// Whether it is an elastic bar: a distance with a spring, which pulls and pushes.
+/// Returns whether a joint is an elastic bar: a distance joint with a spring, which pulls and
+/// pushes.
 inline bool IsBar(const JointDef& j) noexcept {
   return j.kind == JointKind::kDistance && j.stiffness > 0.0;
 }
 
-/// Whether a distance joint holds its length: if nothing else says what that may be.
+/// Returns whether a distance joint keeps its length: it has neither limits nor a spring.
 inline bool HoldsLength(const JointDef& j) noexcept {
   return !j.least && !j.most && j.stiffness == 0.0;
 }
 
-/// What a kind holds of b's motion against a. Of a distance nothing that has an axis.
+/// Motions of b relative to a that a kind of joint constrains. A distance joint, which has no axis,
+/// constrains none of these four.
 struct HeldMotions {
-  bool along = false;   ///< Sliding along the axis,
-  bool across = false;  ///< and across it, in all directions.
-  bool swing = false;   ///< Turns of the axis,
-  bool twist = false;   ///< and about it.
+  bool along = false;   ///< Sliding along the axis.
+  bool across = false;  ///< Sliding in all directions normal to the axis.
+  bool swing = false;   ///< Rotation of the axis.
+  bool twist = false;   ///< Rotation about the axis.
 };
+/// Returns the motions that a kind of joint constrains.
 constexpr HeldMotions HeldBy(JointKind kind) noexcept {
   switch (kind) {
     case JointKind::kBall:
@@ -96,20 +105,20 @@ constexpr HeldMotions HeldBy(JointKind kind) noexcept {
   return {};
 }
 
-/// How far the two points are apart in directions that the joint holds [m].
+/// Returns the distance between a joint's two points along the directions that it constrains [m].
 double HeldGap(const JointDef& joint) noexcept;
 
-/// Two bodies that do not touch each other.
+/// Pair of bodies without contacts between them.
 struct ApartDef {
   int body_a = 0, body_b = 0;
 };
 
-/// Whether one number says how far it has moved, or several have to.
+/// Returns whether one coordinate describes the position of a joint.
 inline bool HasCoordinate(JointKind kind) noexcept {
   return kind != JointKind::kWeld && kind != JointKind::kPlanar && kind != JointKind::kPlane;
 }
 
-/// Whether a joint's coordinate is an angle.
+/// Returns whether a joint's coordinate is an angle.
 inline bool IsAngle(JointKind kind) noexcept {
   return kind == JointKind::kHinge || kind == JointKind::kBall;
 }

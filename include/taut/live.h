@@ -1,5 +1,5 @@
-/// An experiment that a person plays with: advanced step by step, pushed, dragged and tuned while
-/// it runs. Left alone, it goes through the same bits as `RunExperiment`.
+/// Interactive run: steps an experiment while forces, drags and parameter changes act on it.
+/// Without interaction it is bit-identical to `RunExperiment`.
 #pragma once
 
 #include <functional>
@@ -14,74 +14,79 @@
 
 namespace taut {
 
-/// A force on a node from outside, in W.
+/// External force on a node, in W.
 struct OutsideForce {
   int node = 0;
   Vec3 force_n;
 };
 
-/// How a cable's command can be changed by hand.
+/// Adjustable command of a cable.
 struct LiveControl {
   int cable = 0;
   std::optional<ImpedanceGains> impedance;  ///< Under impedance control; else by rest length.
-  double rest_length_m = 0;                 ///< The present command.
+  double rest_length_m = 0;                 ///< Present command.
 };
 
-/// A hand that holds a node by a spring and a damper.
+/// Interactive drag: a spring and damper pulls a node toward a target point.
 struct HandSpec {
   int node = 0;
   Vec3 target_m;  ///< In W.
 };
 
-/// Threads: any number may call const functions of a run at once; the others need it for
-/// themselves. Runs do not know of each other.
+/// A running interactive experiment.
+///
+/// Threads: any number may call const functions of a run at once; other functions need exclusive
+/// access to it. Runs are independent of each other.
 class LiveRun {
  public:
-  /// Brings the experiment to its start. Diagnostics as from `RunExperiment`; nothing as from it,
-  /// or if `go_on`, which is asked again and again, says no before the start is found. `brought`:
-  /// controllers and sensors that act beside the experiment's.
+  /// Brings the experiment to its start. Reports diagnostics as `RunExperiment` does. Returns null
+  /// in the same cases, or if `go_on`, which is polled repeatedly, returns false before the start
+  /// is found. `brought`: custom controllers and sensors in addition to the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on = {},
                                         const Brought& brought = {});
   virtual ~LiveRun() = default;
 
-  /// One step of the integrator; the experiment's end is no limit. False, and nothing done, once
-  /// the state is not finite.
+  /// Advances by one step of the integrator; it may pass the experiment's end. Returns false,
+  /// without a step, once the state is not finite.
   virtual bool Step() = 0;
 
   virtual double time_s() const = 0;
   virtual const ExperimentSpec& experiment() const = 0;
-  /// Of one lane, 0. Valid until the next step.
+  /// Returns the observation of the only lane, 0. Valid until the next step.
   virtual const Observation& Observe() const = 0;
   virtual const Commands& commands() const = 0;
-  /// Null where no simulation is behind it.
+  /// Returns null if the plant is not a simulation.
   virtual const World* world() const = 0;
-  /// Members that have exceeded a limit so far, as in a summary.
+  /// Returns members that have exceeded a limit so far, as in a summary.
   virtual std::vector<Overload> Overloads() const = 0;
-  /// What pushed and dragged in the last step: the experiment's events and hands. Zeros left out.
+  /// Returns forces of the last step by the experiment's pushes and drags and by interaction,
+  /// without zeros.
   virtual std::vector<OutsideForce> OutsideForces() const = 0;
 
-  // --- what a person may do ----------------------------------------------------------------
-  /// Nothing: lets go. The spring's stiffness is `DragStiffness()`.
+  // --- interaction -------------------------------------------------------------------------------
+  /// Sets or, with nothing, releases the interactive drag. Its spring has the stiffness
+  /// `DragStiffness()`.
   virtual void SetHand(const std::optional<HandSpec>& hand) = 0;
-  /// 200 N per metre and kilogram of the model, so that any robot can be lifted [N/m]. Less where
-  /// the node's body is too light for that at the experiment's step.
+  /// Returns the stiffness of the interactive drag [N/m]: 200 N/m per kilogram of the model, so
+  /// that any robot can be lifted; less if the node's body is too light for it at the experiment's
+  /// step.
   virtual double DragStiffness() const = 0;
-  /// A constant force from now on, for `duration_s`.
+  /// Applies a constant force for `duration_s` from the present time on.
   virtual void Push(const OutsideForce& push, double duration_s) = 0;
   virtual void SetParameter(Parameter parameter, int index, double value) = 0;
   virtual double GetParameter(Parameter parameter, int index) const = 0;
-  /// Cables with an actuator.
+  /// Returns the commands of all cables with an actuator.
   virtual std::vector<LiveControl> Controls() const = 0;
-  /// Takes the control's gains, or its rest length if it has none. False if the cable has no such
-  /// control.
+  /// Sets a cable's gains, or its rest length if `control` has no gains. Returns false if the cable
+  /// has no such control.
   virtual bool SetControl(const LiveControl& control) = 0;
 
   // --- recording ---------------------------------------------------------------------------
-  /// The channels that an experiment records which asks for none, those of contacts if it asks for
-  /// them, then hand/drag/... and hand/push/...: which node (-1: none) and the force on it.
+  /// Returns the default channels of an experiment, channels of contacts if it records contacts,
+  /// then hand/drag/... and hand/push/...: node (-1: none) and force on it.
   virtual const std::vector<ChannelInfo>& channels() const = 0;
-  /// The present row; valid until the next call.
+  /// Returns the present row; valid until the next call.
   virtual const std::vector<double>& Row() = 0;
 };
 

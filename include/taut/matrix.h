@@ -1,4 +1,4 @@
-/// A matrix of numbers. Nothing of an algebra: libraries bring their own.
+/// Dense matrix of doubles, without linear algebra: use a library for that.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// Row after row. An index that is out of range is a mistake of the program that calls.
+/// Matrix in row-major order. An index out of range is an error of the caller.
 struct Matrix {
   int rows = 0, columns = 0;
   std::vector<double> values;

@@ -1,26 +1,26 @@
-/// Of what a cable, a bar or a rod is made, and what it bears: for `taut/analysis.h`.
+/// Cross section, material and limits of a cable, bar or rod, for `taut/analysis.h`.
 #pragma once
 
 namespace taut {
 
-/// How a member's own mass counts where modes are worked out. Where it is stepped it is lumped.
+/// Distribution of a member's mass in modal analysis. In a step it is always lumped.
 enum class MemberMass {
-  kLumped,      ///< Half of it at each end.
-  kConsistent,  ///< Spread along it, which moves as its ends do.
+  kLumped,      ///< Half at each end.
+  kConsistent,  ///< Distributed along the member, which moves linearly between its ends.
 };
 
-/// A member's section and limits; 0: not known. The step looks at none of it: the stiffness and the
-/// masses that follow from it stand where those of other members do.
+/// Section and limits of a member; 0: not known. The step uses none of them: the stiffness and
+/// masses that follow from them are stored with the other stiffnesses and masses of the model.
 struct MemberDef {
   double area_m2 = 0.0;            ///< Of its cross section, >= 0.
   double young_pa = 0.0;           ///< E, >= 0.
-  double second_moment_m4 = 0.0;   ///< Least of its section, for Euler's load, >= 0.
-  double buckling_length_m = 0.0;  ///< Between the points that cannot bend aside, >= 0.
-  double yield_pa = 0.0;           ///< Stress that it bears either way, >= 0.
+  double second_moment_m4 = 0.0;   ///< Smallest second moment of area, for Euler's load, >= 0.
+  double buckling_length_m = 0.0;  ///< Between points with lateral support, >= 0.
+  double yield_pa = 0.0;           ///< Yield stress in tension and compression, >= 0.
   double strength_n = 0.0;         ///< Tension at which it breaks, >= 0.
-  double expansion_per_k = 0.0;    ///< Strain per degree.
-  double mass_kg = 0.0;  ///< Of a cable or a bar: its own, which the bodies at its ends contain,
-                         ///< half each. >= 0.
+  double expansion_per_k = 0.0;    ///< Coefficient of thermal expansion.
+  /// Of a cable or bar: its mass, of which the bodies at its ends contain half each; >= 0.
+  double mass_kg = 0.0;
   MemberMass mass = MemberMass::kLumped;
   bool operator==(const MemberDef&) const = default;
 };

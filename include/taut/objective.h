@@ -1,4 +1,4 @@
-/// What a study or a learner wants more of.
+/// Objectives of studies and reinforcement learning: measure, penalties and failure conditions.
 #pragma once
 
 #include <optional>
@@ -7,28 +7,29 @@
 
 namespace taut {
 
-/// What the score of a world is before penalties; more is better.
+/// Score of a world before penalties; more is better.
 enum class Measure {
-  kDistance,           ///< Horizontal way of the centre of mass from `from_s` to the end [m].
-  kHeading,            ///< The part of that way along `direction` [m]; backwards is negative.
-  kDistancePerEnergy,  ///< Distance by the motors' work [m/J]: tension times winding in.
-  kNearer,             ///< How much nearer to the goal the watched body is than at `from_s` [m].
-  kTracking,           ///< Minus the root mean square of tension less set point [N].
-  kNone,               ///< 0: only penalties count, or what a program says.
+  kDistance,  ///< Horizontal displacement of the center of mass from `from_s` to the end [m].
+  kHeading,   ///< Component of this displacement along `direction` [m]; backwards is negative.
+  kDistancePerEnergy,  ///< Distance divided by the motors' work [m/J]: tension times winding-in
+                       ///< length.
+  kNearer,             ///< Decrease of the watched body's distance to the goal since `from_s` [m].
+  kTracking,           ///< Negative root mean square of tension minus set point [N].
+  kNone,               ///< 0: only penalties or a custom score count.
 };
 
-/// Takes `penalty_per_n` for every newton by which the largest tension of the world exceeds a
-/// limit.
+/// Penalty on tension: subtracts `penalty_per_n` for each newton by which the largest tension of
+/// the world exceeds a limit.
 struct TensionLimit {
   double limit_n = 0.0;
   double penalty_per_n = 0.0;
 };
 
-/// A world has fallen once a body is tilted, or the centre of mass is, beyond these. Looked at
-/// every 0.1 s.
+/// Fall condition: a world has fallen once the tilt of a body or the height of the center of mass
+/// is outside these limits. Checked every 0.1 s.
 struct FallSpec {
-  double max_tilt_rad = 3.141592653589793;           ///< Of any body against its start, 0 to pi.
-  std::optional<double> min_height_m, max_height_m;  ///< Of the centre of mass, world z.
+  double max_tilt_rad = 3.141592653589793;  ///< Of any body relative to its start, 0 to pi.
+  std::optional<double> min_height_m, max_height_m;  ///< Of the center of mass, world z.
   double penalty = 0.0;
 };
 
@@ -38,7 +39,7 @@ struct ObjectiveSpec {
   double from_s = 0.0;
   std::optional<TensionLimit> tension_limit;
   std::optional<FallSpec> fall;
-  double max_speed_m_per_s = 100.0;  ///< Of a body: beyond it a world counts as blown up.
+  double max_speed_m_per_s = 100.0;  ///< Of a body: a world with a faster body counts as diverged.
 };
 
 }  // namespace taut

@@ -1,5 +1,5 @@
-/// Optimisers that ask for batches of points and are told their scores. What an optimiser asks for
-/// is a function of its settings, its seed and the scores it was told: to resume one, tell it the
+/// Black-box optimizers: `Ask` returns a batch of points, `Tell` takes their scores. The points are
+/// a function of settings, seed and previous scores only, so an optimizer is resumed by passing the
 /// same scores again.
 #pragma once
 
@@ -13,27 +13,28 @@
 
 namespace taut {
 
-/// In [0, 1]^n: every parameter in widths of its bounds.
+/// Point in [0, 1]^n: each parameter as a fraction of the range between its bounds.
 using UnitPoint = std::vector<double>;
 
 class Optimizer {
  public:
   virtual ~Optimizer() = default;
 
-  /// The points to evaluate next, at least one.
+  /// Returns the points to evaluate next, at least one.
   virtual std::vector<UnitPoint> Ask() = 0;
-  /// Their scores, in the same order; more is better, NaN is a failure.
+  /// Takes the scores of these points, in the same order; more is better, NaN is a failure.
   virtual void Tell(const std::vector<double>& scores) = 0;
 };
 
 struct OptimizerStart {
-  UnitPoint point;              ///< Where to begin.
-  std::optional<double> score;  ///< Of that; nothing if it has not been evaluated.
+  UnitPoint point;              ///< Start of the search.
+  std::optional<double> score;  ///< Of `point`; nothing if it has not been evaluated.
   std::uint64_t seed = 0;
-  std::uint32_t stream = 0;  ///< Several optimisers of one seed use one each.
+  /// Number of the random stream; optimizers with the same seed use different ones.
+  std::uint32_t stream = 0;
 };
 
-/// The optimiser that a search names.
+/// Returns the optimizer of a search.
 std::unique_ptr<Optimizer> MakeOptimizer(const SearchSpec& search, const OptimizerStart& start);
 
 }  // namespace taut

@@ -1,12 +1,12 @@
-/// The wall between what controls and what is controlled: an observation in, a command out, a
-/// clock. Who controls, records, learns or shows sees a plant and cannot tell whether a simulated
-/// world, the worlds that share a register, a log or a robot is behind it. A plant may be several
-/// robots alike, side by side: its lanes. One robot is one lane.
+/// Controller and plant interface: a plant provides observations and a clock and takes commands.
+/// Controllers, recorders, learners and displays do not depend on the kind of plant: a simulated
+/// world, the worlds that share a SIMD register, a recording, or a real robot. A plant consists of
+/// one or more equal robots, its lanes.
 ///
-/// Rows hold cable c of lane j at [c * lanes + j].
+/// Rows (arrays of a plant) contain cable c of lane j at index [c * lanes + j].
 ///
-/// Threads: whoever moves a plant on has it, its controllers and its sensors for himself. Plants do
-/// not know of each other.
+/// Threads: the thread that advances a plant has exclusive access to the plant, its controllers and
+/// its sensors. Plants are independent of each other.
 #pragma once
 
 #include <cstddef>
@@ -28,88 +28,98 @@ namespace plant {
 class LaneState;
 }
 
-/// Some lanes: lane j is bit j.
+/// Set of lanes: lane j is bit j.
 using Lanes = std::uint32_t;
 
+/// Returns whether a set contains a lane.
 constexpr bool Has(Lanes lanes, int lane) noexcept { return (lanes >> lane & 1u) != 0; }
+/// Returns the set of lanes 0 to `count` - 1.
 constexpr Lanes AllLanes(int count) noexcept { return static_cast<Lanes>((1ull << count) - 1); }
 
-// --- what is seen -------------------------------------------------------------------------------
+// --- observations --------------------------------------------------------------------------------
 
-/// What is wrong with a cable's sensors or its actuator. Bits; 0 is good.
+/// Fault bits of a cable's sensors and actuator; 0: none.
 enum FaultBits : std::uint32_t {
   kFaultNone = 0,
-  kFaultNoReading = 1u << 0,  ///< No reading came: the last one stands there.
-  kFaultSensor = 1u << 1,     ///< A reading that cannot be true.
-  kFaultActuator = 1u << 2,   ///< The actuator does not do what it was told.
+  kFaultNoReading = 1u << 0,  ///< No new reading: the last one is kept.
+  kFaultSensor = 1u << 1,     ///< Impossible reading.
+  kFaultActuator = 1u << 2,   ///< The actuator does not follow its command.
 };
 
-/// Where bodies are, for those who know: a simulation, a log that has them; hardly a robot.
+/// Poses and velocities of bodies. Available in simulations and in recordings that contain them,
+/// but usually not for a real robot.
 class Bodies {
  public:
   virtual ~Bodies() = default;
+  /// Returns the state of a body: SI units, in W.
   virtual BodyState Body(int lane, int body) const = 0;
   virtual Vec3 NodePosition(int lane, int node) const = 0;  ///< [m], in W.
   virtual Vec3 NodeVelocity(int lane, int node) const = 0;  ///< [m/s], in W.
 };
 
-/// What is known of a plant at a moment. Points into the plant.
+/// Observation: measured quantities of a plant at one time. Its pointers refer to data of the
+/// plant.
 struct Observation {
   int lanes = 1;
-  const double* time_s = nullptr;  ///< Of each lane's clock.
-  ReadingRows cables;
-  /// A row: what the shafts of motors say of the rest lengths, which differs from them where gears
-  /// have backlash; null: nothing else.
+  const double* time_s = nullptr;  ///< Per lane: time of its clock [s].
+  ReadingRows cables;              ///< Rows: readings of the cables.
+  /// Row: rest lengths by the angle of the motors' shafts [m], which differ from the rest lengths
+  /// if gears have backlash; null: equal.
   const double* shaft_m = nullptr;
-  const std::uint32_t* faults = nullptr;  ///< `FaultBits`, a row; null: nobody looks for any.
-  const Bodies* bodies = nullptr;         ///< Null: nobody knows.
-  /// Two rows, x and y of lane j at [j] and [lanes + j]: the horizontal unit vector towards the
-  /// goal, as a compass and a beacon say it (`GoalSpec`); null: nobody senses it.
+  const std::uint32_t* faults = nullptr;  ///< Row: `FaultBits`; null: faults are not detected.
+  const Bodies* bodies = nullptr;         ///< Null: not known.
+  /// Horizontal unit vector toward the goal in the frame of `GoalSpec::frame`, as measured with a
+  /// compass and a beacon (`GoalSpec`): x of lane j at [j], y at [lanes + j]; null: not measured.
   const double* goal = nullptr;
 
+  /// Returns the readings of one cable in one lane.
   CableState Cable(int cable, int lane = 0) const {
     const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(cable) * lanes + lane;
     return MapReadings([at](const double* row) { return row[at]; }, cables);
   }
 };
 
-// --- what is commanded --------------------------------------------------------------------------
+// --- commands ------------------------------------------------------------------------------------
 
-/// What a cable's actuator is to do.
+/// Command mode of a cable's actuator.
 enum class CommandMode : unsigned char {
-  kRestLength,  ///< Go to `rest_length_m`.
-  kTension,     ///< Bring the tension to `set_point_n`, if it has a law of its own for that, as a
-                ///< board has; else go to `rest_length_m`.
-  kHold,        ///< Stay where it is.
-  kOff,         ///< No power: a `dc_motor` runs down, or its cable drives it back. What nothing can
-                ///< turn from outside stays where it is.
+  kRestLength,  ///< Move to `rest_length_m`.
+  kTension,  ///< Control the tension to `set_point_n`, if the actuator has a controller for that,
+             ///< as a board has; else move to `rest_length_m`.
+  kHold,     ///< Keep the present rest length.
+  kOff,  ///< No power: a `dc_motor` slows down, or its cable drives it back. Actuators that cannot
+         ///< be back-driven keep their rest length.
 };
 
-/// What controllers say to the plant and to each other. Held until changed. Rows of the plant.
+/// Commands of controllers to the plant and to subsequent controllers, as rows of the plant. Values
+/// persist until changed.
 struct Commands {
   int lanes = 1;
-  double* rest_length_m = nullptr;           ///< Set points of the rest lengths.
-  double* set_point_n = nullptr;             ///< Of the tension, where a law has one; else 0.
-  double* velocity_input_m_per_s = nullptr;  ///< V0 of that law, a gait's part included.
-  double* signal = nullptr;     ///< What a gait says: a velocity [m/s] or a length [m]; else 0.
-  CommandMode* mode = nullptr;  ///< At first `kRestLength`.
-  /// Per lane: which of their gaits controllers play (`GaitInputSpec`); -1: as the experiment has
-  /// it.
+  double* rest_length_m = nullptr;  ///< Set points of the rest lengths [m].
+  /// Set points of the tensions [N], if the control law has any; else 0.
+  double* set_point_n = nullptr;
+  /// V0 of impedance control [m/s], including a gait's part.
+  double* velocity_input_m_per_s = nullptr;
+  double* signal = nullptr;     ///< Output of a gait: velocity [m/s] or length [m]; else 0.
+  CommandMode* mode = nullptr;  ///< Initially `kRestLength`.
+  /// Per lane: number of the gait that controllers play (`GaitInputSpec`); -1: as in the
+  /// experiment.
   int* gait = nullptr;
 };
 
-// --- what is controlled -------------------------------------------------------------------------
+// --- plants --------------------------------------------------------------------------------------
 
-/// A simulation, and what nobody else knows or can do.
+/// Additional quantities and functions of a simulated plant; units and frames as in `Batch`.
 class World : public Bodies {
  public:
-  virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;  ///< As `Batch` has it.
+  /// As `Batch::SetNodeForce`.
+  virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;
   virtual Vec3 NodeForce(int lane, int node) const = 0;
-  virtual double BodyMass(int lane, int body) const = 0;  ///< [kg]
+  virtual double BodyMass(int lane, int body) const = 0;  ///< In kg.
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
-  virtual double CableFrictionLoss(int lane, int cable) const = 0;  ///< As `Batch`:
+  virtual double CableFrictionLoss(int lane, int cable) const = 0;  ///< These as in `Batch`:
   virtual std::vector<double> CableSpanTensions(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
   virtual std::vector<CablePoint> CablePath(int lane, int cable) const = 0;
@@ -121,103 +131,115 @@ class World : public Bodies {
   virtual std::uint64_t Hash(int lane) const = 0;
 };
 
+/// System under control.
 class Plant {
  public:
   virtual ~Plant() = default;
 
-  /// As it is now; valid until `Advance`.
+  /// Returns the present observation; valid until `Advance`.
   virtual const Observation& Observe() = 0;
+  /// Returns the commands, for controllers to change.
   virtual Commands& commands() = 0;
 
-  /// Moves every lane's clock on by `step_s[lane]`, to `to_s[lane]` (which is more exact than a
-  /// sum), under the commands as they are. A simulation computes, a robot waits, a log turns pages.
-  /// A lane whose step is 0 stands still.
+  /// Advances the clock of lane j by `step_s[j]` to `to_s[j]` (which is more exact than a sum)
+  /// under the present commands. A simulation computes, a robot waits, a recording moves to a later
+  /// row. Lanes with step 0 do not advance.
   virtual void Advance(const double* step_s, const double* to_s) = 0;
 
-  /// The lane's clock is at 0 again, its commands are those of a start. (Its state is who knows
-  /// where: whoever calls has put it there.)
+  /// Sets a lane's clock to 0 and its commands to their initial values. The caller has set the
+  /// lane's state before.
   virtual void Restart(int lane) = 0;
 
-  /// A lane's clock and its commands, as a controller's `Carry`; its state is for who asks.
+  /// Saves or restores a lane's clock and commands, like `Controller::Carry`. It does not include
+  /// the state of the simulated world.
   virtual void Carry(plant::LaneState& state) { (void)state; }
 
-  /// False: this lane goes on no more. Its state is not finite, its log is over, nobody answers.
+  /// Returns whether a lane is running. False if its state is not finite, its recording has ended,
+  /// or its robot does not answer.
   virtual bool Goes(int lane) const = 0;
 
-  /// Null where the plant is no simulation.
+  /// Returns the simulated world, or null if the plant is not a simulation.
   virtual World* world() noexcept { return nullptr; }
 };
 
-/// A simulated plant: the lanes of a batch of one group, whose clocks all start at 0. The batch
-/// outlives it.
+/// Returns a simulated plant: the lanes of a batch with one group. All clocks start at 0. The batch
+/// must outlive it.
 std::unique_ptr<Plant> PlantOf(Batch& batch);
 
-/// A log as a plant of one lane: it shows what was recorded of the robot's cables
-/// (`cable/NAME/...`) and, where all of them were, bodies; commands go nowhere. So a controller
-/// says what it would have done. A quantity that a row lacks, or that is not finite there, stays
-/// what it was, with `kFaultNoReading`. Times count from the first row. Trace and robot outlive it.
-/// Null and a complaint if the log has no row, or nothing of these cables.
+/// Returns a plant of one lane that replays a recording: its observations are the recorded readings
+/// of the robot's cables (`cable/NAME/...`) and, if all bodies were recorded, bodies; commands have
+/// no effect. Use it to compute the commands that a controller would have issued. A quantity that
+/// is missing or not finite in a row keeps its previous value and sets `kFaultNoReading`. Times
+/// count from the first row. Trace and robot must outlive it. Returns null with an error if the
+/// recording has no row or no channel of these cables.
 std::unique_ptr<Plant> ReplayOf(const Trace& trace, const RobotSpec& robot, Diagnostics& out);
 
-// --- what a program may bring -------------------------------------------------------------------
+// --- custom controllers and sensors --------------------------------------------------------------
 
-/// Who acts in which lanes now.
+/// Lanes in which a controller or sensor acts now.
 struct Tick {
   Lanes due = 0;
-  /// Per lane, how many ticks it had before since its start. 0: the first, what it remembers of
-  /// the lane is of somebody else.
+  /// Per lane: number of previous ticks since its start. 0: first tick; discard all memory of the
+  /// lane, since it belongs to an earlier run.
   const std::int64_t* number = nullptr;
 };
 
-/// What controllers and sensors are made for. The lanes' variants are there while they are made.
+/// Context for the construction of controllers and sensors. The variants in `lanes` exist only
+/// during construction.
 struct ControlSetup {
   const ExperimentSpec& experiment;
-  std::span<const RolloutWorld* const> lanes;  ///< One variant of the experiment a lane.
+  std::span<const RolloutWorld* const> lanes;  ///< Variant of the experiment, one per lane.
 };
 
-/// A control law. It acts at the ticks of its own clock, which the physics step does not change,
-/// and sees all lanes at once; what it writes for lanes that are not due is not kept from the
-/// plant, so it writes to `tick.due` only.
+/// Controller: computes commands from observations at the ticks of a clock that does not depend on
+/// the physics step. It processes all lanes at once, and must write only lanes of `tick.due`: the
+/// plant does not protect commands of other lanes.
 class Controller {
  public:
   virtual ~Controller() = default;
   virtual ClockSpec clock() const = 0;
+  /// Computes the commands of the lanes in `tick.due`.
   virtual void Act(const Tick& tick, const Observation& seen, Commands& commands) = 0;
-  /// A lane begins anew, as this variant. Its next tick is its first.
+  /// Restarts a lane as another variant. Its next tick is its first.
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
-  /// A lane goes on under other numbers of these controllers, which are the experiment's otherwise:
-  /// what it remembers stays, phases go on without a jump. Called before a tick; allocates nothing.
+  /// Changes parameters of a lane: `controllers` differ from the experiment's in numbers only. The
+  /// lane's memory is kept, and phases continue without a jump. Called before a tick; allocates
+  /// nothing.
   virtual void Retune(int lane, const std::vector<ControllerSpec>& controllers) {
     (void)lane, (void)controllers;
   }
-  /// What a lane remembers, for environments that save and restore theirs. (taut's own do.)
+  /// Saves or restores a lane's memory, for environments that save and restore episodes.
+  /// Controllers of taut implement it.
   virtual void Carry(plant::LaneState& state) { (void)state; }
 
-  // --- what a person may change while it runs, in lane 0; a law that has none of it leaves it ---
-  /// The gains of a cable, if it has such.
+  // --- interactive changes in lane 0; controllers without such quantities keep these defaults ----
+  /// Returns the gains of a cable, if it has any.
   virtual std::optional<ImpedanceGains> Gains(int cable) const { return (void)cable, std::nullopt; }
+  /// Sets the gains of a cable. Returns false if it has none.
   virtual bool SetGains(const ImpedanceGains& gains) { return (void)gains, false; }
-  /// Holds a cable at a rest length from the next tick on, whatever its program said.
+  /// Holds a cable at a rest length [m] from the next tick on, instead of its program. Returns
+  /// false if not supported.
   virtual bool Hold(int cable, double rest_length_m) {
     return (void)cable, (void)rest_length_m, false;
   }
 };
 
-/// What stands between a plant and its controllers. Samples at the ticks of its clock.
+/// Sensor model between a plant and its controllers. Samples at the ticks of its clock.
 class SensorModel {
  public:
   virtual ~SensorModel() = default;
   virtual ClockSpec clock() const = 0;
+  /// Samples the lanes in `tick.due`. `exact`: observation of the plant.
   virtual void Sample(const Tick& tick, const Observation& exact) = 0;
-  /// What the controllers see; valid until the next sample.
+  /// Returns the controllers' observation; valid until the next sample.
   virtual const Observation& seen() const = 0;
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
-  virtual void Carry(plant::LaneState& state) { (void)state; }  ///< As a controller's.
+  virtual void Carry(plant::LaneState& state) { (void)state; }  ///< As in `Controller`.
 };
 
-/// Controllers that act after the experiment's own, in this order, and may overrule them; sensors
-/// that see what the experiment's sensors show. Makers are called once for every plant, from the
-/// thread that runs it.
+/// Custom controllers, which act after the experiment's controllers in this order and may overrule
+/// them, and custom sensors, whose input is the output of the experiment's sensors. Factories are
+/// called once per plant, from the thread that runs it.
 struct Brought {
   std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> controllers;
   std::function<std::unique_ptr<SensorModel>(const ControlSetup&)> sensors;

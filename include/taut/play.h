@@ -1,4 +1,4 @@
-/// A gait played without a robot moving: what it commands, tick by tick.
+/// Gait playback without a robot: commands of a gait at each tick.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,9 @@
 
 namespace taut {
 
-/// The velocities that a gait commands a robot's cables, at 0, 1 / rate, ... up to `duration_s`.
-/// Feedback is left out: nothing is felt. Nothing if the gait does not fit the robot.
+/// Returns the velocities [m/s] that a gait commands to a robot's cables at times 0, 1 / rate, ...
+/// up to `duration_s`. Feedback is omitted, since nothing is measured. Returns nothing, with
+/// diagnostics, if the gait does not fit the robot.
 std::optional<TableGait> PlayGait(const GaitSpec& gait, const RobotSpec& robot, double rate_hz,
                                   double duration_s, Diagnostics& out);
 

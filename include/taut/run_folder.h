@@ -1,12 +1,12 @@
-/// The folder that a run writes (docs/cli.md): trace.h5, perhaps trace.csv, inputs.yaml,
-/// summary.json, perhaps report.html. A run is one transaction: its folder has one writer, all
-/// pieces carry the run's id, and readers refuse pieces of different runs. The run before stays
-/// complete until the new trace has its first row on the disk, which replaces the old trace. Then
-/// the other old pieces are removed, the summary first; inputs.yaml is replaced last. If a writer
-/// is killed in between, the next reader or writer completes the replacement.
+/// Folder of a run, written as one transaction (docs/cli.md): trace.h5, optionally trace.csv,
+/// inputs.yaml, summary.json, optionally report.html. A folder has one writer, all files carry the
+/// run's id, and readers refuse files of different runs. The previous run stays complete until the
+/// new trace has its first row on the disk, which replaces the old trace. Then the other old files
+/// are removed, the summary first; inputs.yaml is replaced last. If a writer is killed in between,
+/// the next reader or writer completes the replacement.
 ///
-/// Threads: a `RunFolder` belongs to one thread at a time; the functions may be called by any
-/// number at once.
+/// Threads: a `RunFolder` is used by one thread at a time; any number may call the functions at
+/// once.
 #pragma once
 
 #include <memory>
@@ -20,28 +20,30 @@
 
 namespace taut {
 
-/// The key under which a trace's metadata and a summary have the run's id.
+/// Key of the run's id in a trace's metadata and in a summary.
 inline constexpr char kRunIdKey[] = "run";
 
-/// 16 hexadecimal digits that no other run has.
+/// Returns a unique id of 16 hexadecimal digits.
 std::string NewRunId();
 
-/// `inputs.yaml` of a run: the experiment's text after a first line with the id.
+/// Returns the content of a run's `inputs.yaml`: the experiment's text after a first line with the
+/// id.
 std::string InputsOfRun(const std::string& id, const std::string& experiment);
 
 /// Removes unnamed files of a killed writer. The caller must be the folder's writer.
 void RemoveLeftovers(const std::string& folder);
 
-/// Removes from a folder whose writer the caller is the pieces of the run before, the summary
-/// first, but for those in `kept`: the caller replaces these, each at once. False and a complaint
-/// if one cannot be removed.
+/// Removes the files of the previous run, the summary first, except for those in `kept`, which the
+/// caller replaces atomically. The caller must be the folder's writer. Returns false, with an
+/// error, if one cannot be removed.
 bool RemoveRunBefore(const std::string& folder, const std::vector<std::string>& kept,
                      Diagnostics& out);
 
+/// Writer of a run's folder.
 class RunFolder {
  public:
-  /// Makes the folder and becomes its only writer. `more`: names of what will be written there
-  /// besides the pieces above. Null and a complaint if that fails.
+  /// Creates the folder and becomes its only writer. `more`: names of further files of the run.
+  /// Returns null, with an error, if that fails.
   static std::unique_ptr<RunFolder> Open(const std::string& folder,
                                          const std::vector<std::string>& more, Diagnostics& out);
   ~RunFolder();
@@ -49,23 +51,23 @@ class RunFolder {
   const std::string& id() const { return id_; }
   std::string Path(const std::string& name) const;
 
-  /// Puts the text of the experiment on the disk, still without a name. False and a complaint if
-  /// there is no room: then what the folder holds is still all of the run before.
+  /// Writes the experiment's text to the disk, still without a name. Returns false, with an error,
+  /// if there is no space; the folder then still contains all of the previous run.
   bool Prepare(const std::string& experiment, Diagnostics& out);
 
-  /// Begins the run: removes the pieces of the run before, the summary first, except for `traces`,
-  /// which are of this run already. Then publishes inputs.yaml, if it was prepared; logs of a robot
-  /// have none. Returns false, with a diagnostic, if that fails.
+  /// Begins the run: removes the files of the previous run, the summary first, except for `traces`,
+  /// which belong to this run already. Then publishes inputs.yaml, if it was prepared; logs of a
+  /// robot have none. Returns false, with a diagnostic, if that fails.
   bool Begin(Diagnostics& out, const std::vector<std::string>& traces = {});
 
-  /// Returns a writer that begins the run as soon as `last` has its first row, so that the run
-  /// before stays complete until then. `traces`: names of all traces of the run; `last` must get
-  /// each row after the others. The folder must outlive the writer.
+  /// Returns a writer that begins the run as soon as `last` has its first row, so that the previous
+  /// run stays complete until then. `traces`: names of all traces of the run; `last` must get each
+  /// row after the others. The folder must outlive the writer.
   std::unique_ptr<TraceWriter> BeginWith(std::unique_ptr<TraceWriter> last,
                                          std::vector<std::string> traces);
 
-  /// The run's last word, once its traces are finished. False and a complaint if it cannot be
-  /// written or the folder is no longer ours.
+  /// Writes the summary, once all traces are finished, and thereby ends the run. Returns false,
+  /// with an error, if it cannot be written or the folder has been deleted or replaced.
   bool Finish(const std::string& summary_json, Diagnostics& out);
 
  private:
@@ -73,21 +75,21 @@ class RunFolder {
             std::unique_ptr<FolderLock> lock);
 
   std::string folder_, id_;
-  std::vector<std::string> more_;  ///< Removed at the beginning, too.
+  std::vector<std::string> more_;  ///< Also removed at the start of a run.
   std::unique_ptr<FolderLock> lock_;
   std::unique_ptr<NewFile> inputs_;
 };
 
-/// The path of what a run wrote beside its trace: of `trace.h5`, "summary" and ".json" it is
-/// `summary.json`, of `trace_2.h5` (a live run that was reset) `summary_2.json`.
+/// Returns the path of another file of a trace's run: for `trace.h5`, "summary" and ".json" it is
+/// `summary.json`, for `trace_2.h5` (a live run that was reset) `summary_2.json`.
 std::string BesideTrace(const std::string& trace, const std::string& name, const std::string& end);
 
-/// Where the trace of a run is: of a run's folder the one in it (`trace.h5`; without one, that in
-/// CSV), of anything else the path itself.
+/// Returns the path of a run's trace: for a run's folder, the trace in it (`trace.h5`, else the CSV
+/// trace); for other paths, the path itself.
 std::string TraceOfRun(const std::string& path);
 
-/// As `ReadTrace`, and refuses a trace beside which there are inputs or a summary of another run. A
-/// trace in CSV has no id, so there only the other two are held against each other.
+/// Reads a trace as `ReadTrace` does, but refuses it if inputs or a summary in its folder belong to
+/// another run. A CSV trace has no id, so for it only inputs and summary are compared.
 std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out);
 
 }  // namespace taut

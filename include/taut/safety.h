@@ -1,4 +1,4 @@
-/// How far members are from what they bear: Euler's load, yield, strength, slack
+/// Safety factors of members against buckling, yield and breaking, and slackening of cables
 /// (docs/theory/loads.md, section 4).
 ///
 /// Threads: any number may call these functions at once.
@@ -15,7 +15,7 @@ namespace taut {
 
 enum class MemberKind {
   kCable,
-  kBar,  ///< A joint that is one (`IsBar`).
+  kBar,  ///< A joint that is an elastic bar (`IsBar`).
   kRod,  ///< A body that is one straight rod (`StrutForces`).
 };
 
@@ -25,39 +25,40 @@ struct MemberLimits {
   std::optional<double> yield_n;     ///< Yield stress times area, in tension and compression.
   std::optional<double> strength_n;  ///< Tension at which it breaks.
 };
-/// `length_m`: buckling length of a bar or rod whose model sets none.
+/// Returns the load limits of a member. `length_m`: buckling length of a bar or rod if its model
+/// has none.
 MemberLimits LimitsOf(const MemberDef& member, MemberKind kind, double length_m);
 
-/// What members carry, tension positive.
+/// Forces of members, tension positive.
 struct MemberForces {
   std::vector<double> cable_tension_n;  ///< Per cable.
-  std::vector<double> bar_force_n;      ///< Per joint; of those that are no bars 0.
+  std::vector<double> bar_force_n;      ///< Per joint; 0 for joints that are not bars.
   std::vector<StrutForce> struts;
 };
 
-/// What a member bears over what it carries: above 1 it holds. Nothing where a figure for it is not
-/// known or nothing of the kind is carried.
+/// Safety factors of a member: limit divided by force; it fails below 1. Empty if the limit is not
+/// known or the member carries no such force.
 struct MemberLoad {
   MemberKind kind = MemberKind::kCable;
-  int index = 0;  ///< The cable, the joint or the body.
+  int index = 0;  ///< Of the cable, joint or body.
   std::string name;
-  double least_n = 0, greatest_n = 0;  ///< Along a rod; else the same.
-  bool slack = false;                  ///< A cable without tension.
-  std::optional<double> buckling;      ///< pi^2 E I / Lb^2 over its compression; Lb is its length
-                                       ///< where the model says none.
-  std::optional<double> yield;         ///< Yield stress times area over the larger force.
-  std::optional<double> strength;      ///< Over its tension.
-  /// Of a cable that has less tension than unloaded: how many times the load until it is slack,
-  /// if tension falls in proportion.
+  double least_n = 0, greatest_n = 0;  ///< Along a rod; else equal.
+  bool slack = false;                  ///< Cable without tension.
+  /// pi^2 E I / Lb^2 over compression; Lb: its length if the model has none.
+  std::optional<double> buckling;
+  std::optional<double> yield;     ///< Yield stress times area over the larger force.
+  std::optional<double> strength;  ///< Strength over tension.
+  /// For a cable with less tension than without the load: factor on the load at which it goes
+  /// slack, if tension decreases linearly with the load.
   std::optional<double> slackening;
-  /// The smallest safety factor (buckling, yield, strength) and its name; nothing without one.
-  /// Slack is not a failure and does not count: see `slackening`.
+  /// Return the smallest safety factor (buckling, yield, strength) and its name; nothing if there
+  /// is none. Slack cables have not failed and do not count: see `slackening`.
   std::optional<double> Least() const;
   std::string LeastOf() const;
 };
 
-/// Cables first, then bars, then rods. `def`: as it stands under these forces. `unloaded`: the same
-/// members without the load, if that is known.
+/// Returns the safety factors of all members: cables, then bars, then rods. `def`: in the pose
+/// under these forces. `unloaded`: forces of the same members without the load, if known.
 std::vector<MemberLoad> MemberLoads(const ModelDef& def, const MemberForces& now,
                                     const MemberForces* unloaded = nullptr);
 
@@ -68,7 +69,7 @@ enum class MemberLimit {
   kBuckling,  ///< Euler's load, under compression.
 };
 
-/// A member that exceeded a limit during a run. The simulation goes on as if it held.
+/// A member that exceeded a limit during a run. The simulation continues with the member intact.
 struct Overload {
   MemberKind kind = MemberKind::kCable;
   std::string name;
@@ -78,9 +79,9 @@ struct Overload {
   double first_time_s = 0;  ///< Time at which it first exceeded the limit.
 };
 
-/// "cable", "bar" or "rod".
+/// Returns "cable", "bar" or "rod".
 const char* NameOf(MemberKind kind) noexcept;
-/// "strength", "yield" or "buckling".
+/// Returns "strength", "yield" or "buckling".
 const char* NameOf(MemberLimit limit) noexcept;
 
 /// Describes an overload in a sentence without a period: cable a carried 17.14 N, more than its

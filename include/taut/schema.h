@@ -1,4 +1,4 @@
-/// What the formats allow, for editors and for documents.
+/// JSON schemas of the file formats, for editors and documents.
 ///
 /// Threads: any number may call these functions at once.
 #pragma once
@@ -10,12 +10,12 @@
 
 namespace taut {
 
-/// "model", "experiment", "gait", "study", "fit", "faults", "calibration"
-/// and "catalogue".
+/// Returns the names of the formats: "model", "experiment", "gait", "study", "fit", "faults",
+/// "calibration" and "catalogue".
 const std::vector<std::string>& FormatNames();
 
-/// The JSON schema (2020-12) of a format: all of its keys with their types, ranges, defaults and
-/// meanings. A key with a unit has it as `unit`. Nothing if there is no such format.
+/// Returns the JSON schema (2020-12) of a format: all keys with types, ranges, defaults and
+/// meanings. Keys with a unit have the property `unit`. Returns nothing if there is no such format.
 std::optional<std::string> FormatSchema(std::string_view format);
 
 }  // namespace taut

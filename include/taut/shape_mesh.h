@@ -1,5 +1,5 @@
-/// What a robot looks like, for slides and for printing: closed triangles, as STL and as glTF
-/// (docs/export.md, section 2).
+/// Triangle meshes of a robot for rendering and 3D printing, as STL and glTF (docs/export.md,
+/// section 2).
 ///
 /// SI units, W frame. Threads: all functions are pure; any number may run at once.
 #pragma once
@@ -12,33 +12,33 @@
 
 namespace taut {
 
-/// Closed surfaces: each edge has two triangles, counter-clockwise seen from outside.
+/// Closed surface: each edge has two triangles; triangles are counterclockwise seen from outside.
 struct ShapeMesh {
   enum class Kind { kRod, kSphere, kBox, kHull, kCable, kSlackCable };
   Kind kind = Kind::kRod;
-  std::string name;  ///< The shape's or the cable's.
+  std::string name;  ///< Of the shape or cable.
   int body = kWorld;
   std::vector<Vec3> corners_m;  ///< In W.
-  std::vector<Vec3> normals;    ///< Per corner, of what is round; empty: faces are flat.
+  std::vector<Vec3> normals;    ///< Per corner, on round surfaces; empty: flat faces.
   std::vector<std::array<int, 3>> triangles;
 };
 
 struct ShapeOptions {
-  double cable_radius_m = 0.002;  ///< Of cables, which have none of their own; 0: no cables.
+  double cable_radius_m = 0.002;  ///< Of cables, since models need not define one; 0: no cables.
 };
 
-/// Rods (with round ends, as they touch), spheres, boxes and hulls of all bodies, then cables, as
-/// straight cylinders from one place to the next. Round surfaces are faceted so that they enclose
-/// exactly the volume of what they stand for. Terrain is left out.
+/// Returns the meshes of rods (with round ends, as in contacts), spheres, boxes and hulls of all
+/// bodies, then of cables as straight cylinders between adjacent points. Facets of round surfaces
+/// enclose exactly the volume of the true shape. Terrain is omitted.
 std::vector<ShapeMesh> ShapesOf(const ModelDef& def, const ShapeOptions& options = {});
 
-/// A binary STL file: a triangle after the other, coordinates times `scale` in single precision,
-/// no names. What overlaps stays so.
+/// Returns a binary STL file: triangles with coordinates times `scale` in single precision, without
+/// names. Overlapping parts are not merged.
 std::string StlOf(const ModelDef& def, const std::vector<ShapeMesh>& shapes, double scale = 1.0);
 
-/// A binary glTF 2.0 file (.glb): a node a body, in it one a shape, with their names; a node with
-/// all cables; a material a kind. Up is y there, as glTF has it: the node above all turns z to y
-/// and has the scale.
+/// Returns a binary glTF 2.0 file (.glb): one node per body with one child per shape, with their
+/// names; one node for all cables; one material per kind. In glTF, y points up: the root node
+/// rotates z to y and has the scale.
 std::string GlbOf(const ModelDef& def, const std::vector<ShapeMesh>& shapes, double scale = 1.0);
 
 }  // namespace taut

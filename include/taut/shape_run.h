@@ -1,7 +1,7 @@
-/// Shapes of a structure as runs to look at: modes and mechanisms that swing, states of self-stress
-/// as tensions (`taut view`, `taut report`).
+/// Animations of structural analysis: vibration modes and mechanisms as swinging runs, states of
+/// self-stress as tensions (`taut view`, `taut report`).
 ///
-/// Threads: any number may write at once, each a folder of its own.
+/// Threads: any number may write at once, each to a different folder.
 #pragma once
 
 #include <string>
@@ -13,38 +13,39 @@
 
 namespace taut {
 
-/// A motion, or nothing but tensions.
+/// A displacement shape, or only tensions.
 struct Shape {
   std::string name, description;  ///< Of the run.
-  /// Per body of the model, or empty: as `Mode` has them. Of a swing's amplitude.
+  /// Per body of the model: translation [m] and rotation vector [rad] at the amplitude of the
+  /// swing, as in `Mode`; or empty.
   std::vector<Vec3> translation_m, turn_rad;
-  /// Per cable, or empty: those of the model's springs where they are.
+  /// Per cable; empty: tensions of the model's springs in each pose.
   std::vector<double> tension_n;
 };
 
 struct ShapeLook {
-  double size = 0.08;     ///< Largest way of a swing, as a share of the robot's size. > 0
-  double period_s = 2.0;  ///< Of a swing as it is shown. > 0
+  double size = 0.08;     ///< Largest displacement relative to the robot's size, > 0.
+  double period_s = 2.0;  ///< Displayed period of a swing, > 0.
   int periods = 2;        ///< >= 1
-  double rate_hz = 30.0;  ///< Rows a second. > 0
+  double rate_hz = 30.0;  ///< Rows per second, > 0.
 };
 
-/// How far a robot reaches: the diagonal of the box that its nodes, centres of mass and ends of
-/// cables fill [m].
+/// Returns the size of a robot: diagonal of the bounding box of its nodes, centers of mass and
+/// cable ends [m].
 double SizeOf(const ModelDef& def);
 
-/// The robot as described, swung by `share` (-1..1) of a shape's amplitude, which is the shape
-/// times `amplitude`. Turns are turns, however large.
+/// Returns the described pose displaced by `share` (-1..1) times `amplitude` times the shape.
+/// Rotations of any size are exact rotations, not linearized.
 Pose SwungBy(const ModelDef& def, const Shape& shape, double amplitude, double share);
 
-/// Writes a folder as a run does: `experiment`'s robot as it is described, swinging. False and a
-/// complaint if that fails.
+/// Writes the folder of a run in which the experiment's robot swings about its described pose.
+/// Returns false, with an error, if that fails.
 bool WriteShapeRun(const std::string& folder, const ExperimentSpec& experiment, const Shape& shape,
                    const ShapeLook& look, Diagnostics& out);
 
-/// The same for each of some modes ("mode_1", ...), mechanisms ("mechanism_1", ...) and states of
-/// self-stress ("self_stress_1", ...), in folders of these names below `folder`, which are
-/// returned. Rigid motions are left out. Tensions of a self-stress are per cent of the largest.
+/// Writes one such folder per mode ("mode_1", ...; at most `most_modes`), mechanism ("mechanism_1",
+/// ...) and state of self-stress ("self_stress_1", ...), without rigid motions, below `folder`.
+/// Returns the written folders. Tensions of a self-stress are in percent of the largest.
 std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
                                         const Modes& modes, const ForceAnalysis& forces,
                                         int most_modes, const ShapeLook& look, Diagnostics& out);

@@ -1,4 +1,4 @@
-/// Files that come with taut (models, experiments, gaits, ...), found wherever taut is installed.
+/// Lookup of shipped files (models, experiments, gaits, ...), wherever taut is installed.
 ///
 /// Threads: any number may call these functions at once.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace taut {
 
-/// Path of the running program; empty if the system does not provide it.
+/// Returns the path of the running program; empty if the system does not provide it.
 std::string RunningProgram();
 
 /// Returns the first of these paths that exists, relative to the folder of the running program.

@@ -1,5 +1,5 @@
-/// How an experiment begins: what a start is refused for, the rest that a robot settles to, how far
-/// that is from what is described; and poses as models.
+/// Start of an experiment: check for overlaps, settling to static equilibrium, comparison with the
+/// described pose; poses as models.
 ///
 /// Threads: as in taut/run.h.
 #pragma once
@@ -15,43 +15,45 @@
 
 namespace taut {
 
-/// All that a start can be refused for before it is prepared: that the model compiles, and that
-/// nothing is deeper in the terrain or in another body than half its thickness (`Overlap`), as
-/// described. What is in each other less gets a warning, if it starts so: it is pushed out without
-/// speed, and a robot that settles first has none of it. False if there was an error.
+/// Checks a start before it is prepared: the model must compile, and no body may penetrate the
+/// terrain or another body by more than half its thickness (`Overlap`) in the described pose.
+/// Smaller penetrations give a warning, unless the robot settles first: they are pushed out without
+/// velocity, and a settled robot has none. Returns false after an error.
 bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out);
 
-/// Brings a world to rest: rest lengths fixed, motion taken out whenever the kinetic energy peaks,
-/// until no node gains more than 1e-9 m/s in a step. Time does not pass. False if that takes more
-/// than `max_steps`, or once `go_on`, which is asked before every step, says no.
+/// Brings a world to static equilibrium by kinetic damping: with fixed rest lengths, sets all
+/// velocities to 0 at each peak of the kinetic energy, until no node gains more than 1e-9 m/s in a
+/// step. Time does not advance. Returns false after `max_steps`, or if `go_on`, which is called
+/// before every step, returns false.
 bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>& go_on = {},
             int max_steps = 200000);
 
-/// Where a robot is, without its velocities.
+/// Pose of a robot, without velocities.
 struct Pose {
-  std::vector<BodyState> bodies;       ///< Velocities are not looked at.
+  std::vector<BodyState> bodies;       ///< Velocities are ignored.
   std::vector<double> rest_lengths_m;  ///< Per cable.
 };
 
-/// The robot in a pose that it has come to, at rest: as if it had been described there.
+/// Returns the robot at rest in a pose, as if it had been described there.
 RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose);
 
-/// What settling has made of a robot.
+/// Effect of settling on a robot.
 struct StartChange {
-  int taut_cables = 0;                                    ///< How many are taut as described.
-  std::vector<std::string> slack_cables;                  ///< Those of them that are slack now.
+  int taut_cables = 0;                    ///< Number of taut cables in the described pose.
+  std::vector<std::string> slack_cables;  ///< Names of cables that were taut and are slack now.
   double max_tension_n = 0, described_max_tension_n = 0;  ///< Largest k (l - L) of any cable.
-  /// The farthest that any node is from where it was described, after the rigid motion of all of
-  /// them together (the best in least squares) is taken out.
+  /// Largest distance of a node from its described position, after removal of the best common rigid
+  /// motion (least squares).
   double largest_displacement_m = 0;
   std::string displaced_node;
-  double size_m = 0;  ///< Twice the largest distance of a node from the centre of all, described.
-  /// Names of bodies that press on each other and did not touch as described.
+  /// Twice the largest distance of a node from the center of all nodes, in the described pose.
+  double size_m = 0;
+  /// Names of bodies that press on each other now, but did not touch in the described pose.
   std::vector<std::pair<std::string, std::string>> new_contacts;
 };
 
-/// Warnings of a start that is hardly meant: cables that went slack, a robot that is no longer the
-/// one described (docs/formats/checks.md).
+/// Warns of a probably unintended start: cables that went slack, or a robot far from its described
+/// shape (docs/formats/checks.md).
 void WarnOfStart(const StartChange& change, Diagnostics& out);
 
 struct SettledStart {
@@ -59,9 +61,10 @@ struct SettledStart {
   StartChange change;
 };
 
-/// Where the robot of an experiment settles that begins `settled` or `settled_floating`, without
-/// the start's noise. Nothing and diagnostics as from `RunExperiment`, or if `go_on`, which is
-/// asked again and again, says no before it is found. Warns as `WarnOfStart`.
+/// Returns the pose at which a robot settles whose experiment starts `settled` or
+/// `settled_floating`, without the start's noise. Returns nothing, with diagnostics as from
+/// `RunExperiment`, if there is none, or if `go_on`, which is polled repeatedly, returns false
+/// before it is found. Warns as `WarnOfStart` does.
 std::optional<SettledStart> FindSettledStart(const ExperimentSpec& experiment, Diagnostics& out,
                                              const std::function<bool()>& go_on = {});
 

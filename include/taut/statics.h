@@ -1,6 +1,7 @@
-/// What a model is like before it moves: lengths and tensions of its cables, the forces on its
-/// bodies and in its joints, its principal inertias, what may touch what. Made from the plain
-/// description alone.
+/// Statics of a described model: lengths and tensions of cables, loads on bodies and joints,
+/// principal moments of inertia, colliding shapes. Computed from the `ModelDef` only.
+///
+/// SI units, W frame.
 #pragma once
 
 #include <cstddef>
@@ -10,57 +11,63 @@
 
 namespace taut {
 
-/// The angle about the wheel of attachment `i` as described, from the point before it to that
-/// behind it, with all turns, counter-clockwise about its axis [rad].
+/// Returns the wrap angle at the wheel of attachment `i` in the described pose [rad]: from the
+/// point before it to the point after it, including full turns, counterclockwise about the wheel's
+/// axis.
 double WheelStartAngle(const CableDef& cable, std::size_t i);
 
-/// Between the ends, along all attachments and round wheels [m].
+/// Returns the path length between a cable's ends, along all attachments and around wheels [m].
 double CableLength(const CableDef& cable);
 
-/// k (l - L), 0 when slack [N].
+/// Returns the elastic tension k (l - L), 0 when slack [N].
 double CableTension(const CableDef& cable);
 
-/// What acts on a body at the start.
+/// Loads on a body in the described pose.
 struct BodyLoad {
   Vec3 cable_force_n;     ///< Sum over all cables, in W.
-  Vec3 cable_torque_n_m;  ///< The same about the body's centre of mass, in W.
+  Vec3 cable_torque_n_m;  ///< The same about the body's center of mass, in W.
   Vec3 weight_n;          ///< In W.
 };
 
-/// Per body of `def`. Fixed bodies carry loads, too: what holds them has to.
+/// Returns the loads of each body of `def`. Fixed bodies have loads too, for their supports to
+/// carry.
 std::vector<BodyLoad> StartLoads(const ModelDef& def);
 
-/// What a joint does to its body b, at `to_m`, in W; to its body a the opposite. Of a support: what
-/// holds the robot there.
+/// Force and torque of a joint on its body b at `to_m`, in W; on its body a the opposite. Of a
+/// support: the reaction on the robot.
 struct JointLoad {
   Vec3 force_n;
   Vec3 torque_n_m;  ///< About `to_m`.
 };
 
-/// A joint's directions that `StartJointLoads` works out at most: time grows with their cube.
+/// Largest number of constrained directions for `StartJointLoads`: its time grows with the third
+/// power.
 inline constexpr std::size_t kMostHeldDirections = 2000;
 
-/// Per joint of `def`: by what it holds and by its spring, against cables and weight, at rest and
-/// touching nothing (docs/theory/joints.md, eq. 12). In equilibrium that is statics; else what acts
-/// in the moment when the robot is let go. Loads that may be shared in many ways are shared in one.
-/// Neither friction nor stops take part. Empty if joints hold more than kMostHeldDirections.
+/// Returns the loads of each joint of `def`, by its constraints and its spring, under cable forces
+/// and weight, at rest and without contacts (docs/theory/joints.md, eq. 12). In equilibrium these
+/// are the static loads; else the loads at the moment when the robot is released. If the
+/// distribution of loads is statically indeterminate, one of the possible distributions. Friction
+/// and joint limits are ignored. Empty if joints constrain more than kMostHeldDirections
+/// directions.
 std::vector<JointLoad> StartJointLoads(const ModelDef& def);
 
-/// Of cables, weight and `joints` together: what accelerates a body, or has to hold a fixed one.
+/// Resultant of cables, weight and joint loads: accelerates a body, or must be carried by the
+/// support of a fixed body.
 struct LeftLoad {
   Vec3 force_n;     ///< In W.
-  Vec3 torque_n_m;  ///< About the body's centre of mass, in W.
+  Vec3 torque_n_m;  ///< About the body's center of mass, in W.
 };
-/// Per body of `def`. `joints`: per joint.
+/// Returns the resultant of each body of `def`. `joints`: one per joint.
 std::vector<LeftLoad> LeftAtStart(const ModelDef& def, const std::vector<JointLoad>& joints);
 
-/// Moments about the principal axes, ascending [kg m^2].
+/// Returns the principal moments of inertia, ascending [kg m^2].
 Vec3 PrincipalMoments(const Inertia& inertia_kg_m2);
 
-/// Sum over the bodies that move [kg].
+/// Returns the total mass of the moving bodies [kg].
 double TotalMass(const ModelDef& def);
 
-/// How many shapes of a body may touch something.
+/// Number of colliding shapes of a body.
 struct ShapeCount {
   int capsules = 0, spheres = 0, boxes = 0, hulls = 0;
   int total() const noexcept { return capsules + spheres + boxes + hulls; }

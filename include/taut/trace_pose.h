@@ -1,6 +1,6 @@
-/// A pose of a robot from a recording.
+/// Pose of a robot from a trace.
 ///
-/// Threads: any number may call this at once.
+/// Threads: any number may call this function at once.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace taut {
 
-/// The pose that a row of a recording shows, in W: places of centres of mass [m] and turns of
-/// bodies from where `robot` has them (`body/NAME/position_x_m`, ..., `orientation_w`, ...), rest
-/// lengths [m] where the recording has them, else as described. Nothing, and complaints at `at`
-/// about all that is missing or no number; a warning where recorded lengths of cables are others
-/// than those in this pose.
+/// Returns the pose of a robot in a row of a trace, in W: positions of centers of mass [m] and
+/// rotations of bodies from their pose in `robot` (`body/NAME/position_x_m`, ..., `orientation_w`,
+/// ...), rest lengths [m] if recorded, else as described. Returns nothing, with errors at `at`, if
+/// values are missing or not numbers. Warns if recorded lengths of cables differ from the lengths
+/// in this pose.
 std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std::size_t row,
                                 const SourceRef& at, Diagnostics& out);
 

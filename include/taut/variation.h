@@ -1,11 +1,11 @@
-/// How worlds of one experiment may differ: factors on the model, other starts.
+/// Domain randomization: factors on model parameters, and noise of the start.
 #pragma once
 
 #include <vector>
 
 namespace taut {
 
-/// A factor on a parameter of the model as compiled, for what is not known for sure.
+/// Factor on a parameter of the compiled model, for uncertain parameters.
 struct ScaleSpec {
   enum class Quantity { kFriction, kMass, kStiffness, kDamping };
   Quantity quantity = Quantity::kFriction;
@@ -13,18 +13,19 @@ struct ScaleSpec {
   double factor = 1.0;     ///< > 0.
 };
 
-/// How far the start is from what is described; drawn from the seed, evenly.
+/// Noise of the start, relative to the described start; uniform, drawn from the seed.
 struct StartNoise {
-  /// The whole robot by up to this along x and along y, either way, and as much upwards or
-  /// downwards as the highest of what is below it; a goal goes along.
+  /// Displacement of the whole robot along x and along y, up to this in both directions [m]. Its
+  /// height changes with the highest terrain below it; a goal moves with it.
   double place_m = 0.0;
-  double position_m = 0.0;   ///< Each body by up to this along x and y, and upwards.
-  double heading_rad = 0.0;  ///< The whole robot about the vertical, by up to this either way.
-  double goal_rad = 0.0;     ///< The goal about the vertical through W's origin, likewise.
-  bool any_pose = false;     ///< The whole robot turned about its centre of mass, anyhow.
+  double position_m = 0.0;  ///< Displacement of each body, up to this along x, y and upward.
+  /// Rotation of the whole robot about the vertical, up to this in both directions.
+  double heading_rad = 0.0;
+  double goal_rad = 0.0;  ///< Rotation of the goal about the vertical through W's origin, likewise.
+  bool any_pose = false;  ///< Uniform random rotation of the whole robot about its center of mass.
 };
 
-/// By how much worlds differ that are drawn, evenly.
+/// Ranges of random worlds, uniform.
 struct VariationSpec {
   double friction = 0, mass = 0, stiffness = 0, damping = 0;  ///< Factors within 1 +- this.
   StartNoise start;

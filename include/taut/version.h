@@ -1,4 +1,4 @@
-/// The version of taut. It stands here and nowhere else: CMake and script/release read it.
+/// Version of taut, defined only here: CMake and script/release read it.
 #pragma once
 
 namespace taut {

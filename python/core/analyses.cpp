@@ -1,4 +1,4 @@
-// What holds a structure up.
+// Statics of structures: `taut.analyze` and `taut.Analysis`.
 #include "taut/analysis.h"
 
 #include <memory>
@@ -15,10 +15,10 @@ namespace taut::python {
 namespace {
 
 struct Analysis {
-  RobotSpec robot;  ///< As described.
+  RobotSpec robot;  ///< In the described pose.
   LoadCaseSpec loads;
   Equilibrium at;
-  RobotSpec there;  ///< As it stands.
+  RobotSpec there;  ///< In the equilibrium pose.
   std::optional<Modes> modes;
   std::optional<double> least_stiffness_n_per_m;
   Move move;
@@ -31,20 +31,20 @@ LoadCaseSpec CaseOf(const ExperimentSpec& experiment, const std::string& name, D
     if (one.name == name) return one;
   }
   const std::vector<std::string> names = NamesOf(experiment.load_cases);
-  said.Error({experiment.files.empty() ? "" : experiment.files[0]},
+  said.Error("load_case.unknown", {experiment.files.empty() ? "" : experiment.files[0]},
              "there is no load case \"" + name + "\"",
              names.empty() ? "load_cases of an experiment" : DidYouMean(name, names));
   return {};
 }
 
-/// Needs no GIL and lets it go.
+/// Computes the analysis without the GIL, which it releases.
 void Solve(const ExperimentSpec& experiment, Analysis& found) {
   const Released others;
   found.forces = AnalyseForces(experiment.robot.def);
   found.at = FindEquilibrium(experiment.robot.def, found.loads);
   found.there = RobotAt(experiment.robot, found.at.pose);
   LoadCaseSpec there = found.loads;
-  there.cables.clear();  // the pose has these rest lengths
+  there.cables.clear();  // already contained in the pose
   found.tangent = FindTangent(found.there.def, there);
   if (!found.at.found) return;
   found.modes = FindModes(found.there.def, there);
@@ -63,17 +63,19 @@ std::shared_ptr<Analysis> Analyse(const ExperimentSpec& experiment,
   const std::string named = "load case " + found->loads.name + ": ";
   if (said.ok()) {
     const SupportCheck supports = CheckSupports(experiment.robot.def, found->loads);
-    if (!supports.missing.empty()) said.Error(file, named + supports.missing, supports.fix);
+    if (!supports.missing.empty())
+      said.Error("analysis.supports_missing", file, named + supports.missing, supports.fix);
   }
   Tell(said);
   Solve(experiment, *found);
   Diagnostics after;
-  if (!found->move.Warning().empty()) after.Warning(file, named + found->move.Warning());
+  if (!found->move.Warning().empty())
+    after.Warning("analysis.large_displacement", file, named + found->move.Warning());
   Tell(after);
   return found;
 }
 
-/// (kind, name, part), as docs/python.md has it.
+/// Returns the members as (kind, name, part), see docs/python.md.
 py::list MembersOf(const Analysis& a) {
   const ModelDef& def = a.robot.def;
   py::list members;
@@ -90,7 +92,7 @@ py::list MembersOf(const Analysis& a) {
   return members;
 }
 
-/// A row a motion, of what `of` takes from it: (motions, bodies, 3).
+/// Returns an array (motions, bodies, 3) of the member `of` of each motion.
 Rows<double> MotionsOf(const std::vector<Mode>& modes, std::size_t bodies,
                        std::vector<Vec3> Mode::*of) {
   Rows<double> a(
@@ -102,7 +104,7 @@ Rows<double> MotionsOf(const std::vector<Mode>& modes, std::size_t bodies,
   return a;
 }
 
-/// A row a state of self-stress: (states, members).
+/// Returns an array (states, members) of the member `of` of each state of self-stress.
 Rows<double> StatesOf(const ForceAnalysis& forces, std::vector<double> SelfStress::*of) {
   Rows<double> a({static_cast<py::ssize_t>(forces.self_stress.size()),
                   static_cast<py::ssize_t>(forces.members.size())});
@@ -117,16 +119,17 @@ using Type = py::class_<Analysis, std::shared_ptr<Analysis>>;
 
 void AddEquilibrium(Type& type) {
   type.def_property_readonly(
-      "found", [](const Analysis& a) { return a.at.found; }, "Whether there is an equilibrium.");
+      "found", [](const Analysis& a) { return a.at.found; }, "Whether an equilibrium was found.");
   type.def_property_readonly(
-      "why", [](const Analysis& a) { return a.at.why; }, "If there is none; else empty.");
+      "why", [](const Analysis& a) { return a.at.why; },
+      "Reason if no equilibrium was found; else empty.");
   type.def_property_readonly("load_case", [](const Analysis& a) { return a.loads.name; });
   type.def_property_readonly(
       "left_out", [](const Analysis& a) { return a.at.left_out; },
-      "What of the model takes no part, in words.");
+      "Parts of the model that the analysis ignores, in words.");
   type.def_property_readonly(
       "robot", [](const Analysis& a) { return std::make_shared<RobotSpec>(a.there); },
-      "The `Robot` as it stands in equilibrium.");
+      "The `Robot` in its equilibrium pose.");
   type.def_property_readonly(
       "body_position_m",
       [](const Analysis& a) {
@@ -134,7 +137,7 @@ void AddEquilibrium(Type& type) {
         for (const BodyState& b : a.at.pose.bodies) all.push_back(b.position_m);
         return ArrayOf(all);
       },
-      "(bodies, 3) float64: of the centres of mass, in W [m].");
+      "(bodies, 3) float64: positions of the centers of mass in W, in equilibrium [m].");
   type.def_property_readonly(
       "body_orientation",
       [](const Analysis& a) {
@@ -146,13 +149,14 @@ void AddEquilibrium(Type& type) {
         }
         return all;
       },
-      "(bodies, 4) float64: w, x, y, z from the orientation as described, in W.");
+      "(bodies, 4) float64: rotations from the described pose to equilibrium, as unit quaternions "
+      "w, x, y, z, in W.");
   type.def_property_readonly(
       "tension_n", [](const Analysis& a) { return ArrayOf(a.at.cable_tension_n); },
-      "(cables,) float64 [N]; of one that friction parts, of its first span.");
+      "(cables,) float64: tensions [N]; of a cable with friction, the tension of its first span.");
   type.def_property_readonly(
       "bar_force_n", [](const Analysis& a) { return ArrayOf(a.at.bar_force_n); },
-      "(joints,) float64: tension > 0; 0 of joints that are no bars [N].");
+      "(joints,) float64: axial forces of bars, tension > 0 [N]; 0 for other joints.");
   type.def_property_readonly(
       "joint_force_n",
       [](const Analysis& a) {
@@ -160,8 +164,8 @@ void AddEquilibrium(Type& type) {
         for (const JointLoad& load : a.at.joint_loads) all.push_back(load.force_n);
         return ArrayOf(all);
       },
-      "(joints, 3) float64: on a joint's second body, in W; of a support what holds the robot "
-      "[N].");
+      "(joints, 3) float64: forces on the second body of each joint, in W [N]; for a support, the "
+      "force that holds the robot.");
   type.def_property_readonly(
       "joint_torque_n_m",
       [](const Analysis& a) {
@@ -169,38 +173,35 @@ void AddEquilibrium(Type& type) {
         for (const JointLoad& load : a.at.joint_loads) all.push_back(load.torque_n_m);
         return ArrayOf(all);
       },
-      "(joints, 3) float64: about the joint's point on that body [N m].");
+      "(joints, 3) float64: torques on the second body, about the joint's point on it, in W [N "
+      "m].");
   type.def_property_readonly(
       "contacts", [](const Analysis& a) { return ContactsOf(a.at.contacts); },
-      "What bears on the ground, as of `Batch.contacts`; normal forces alone.");
+      "Contacts that carry load, as a dict in the form of `Batch.contacts`; normal forces only.");
   type.def_property_readonly(
       "residual_n", [](const Analysis& a) { return a.at.residual_n; },
-      "The largest force that is left on a body [N].");
+      "Largest residual force on a body [N].");
   type.def_property_readonly(
       "largest_move_m", [](const Analysis& a) { return a.move.distance_m; },
-      "The largest distance between a node or a center of mass as described and in equilibrium, of "
-      "`largest_move_of` [m]; without the rigid motion that fits best where nothing holds the "
-      "robot "
-      "in the world.");
+      "Largest displacement of a node or a center of mass, `largest_move_of`, from the described "
+      "pose to equilibrium [m]. Without supports, the best-fitting rigid motion is subtracted.");
   type.def_property_readonly("largest_move_of", [](const Analysis& a) { return a.move.name; });
   type.def_property_readonly(
       "least_stiffness_n_per_m", [](const Analysis& a) { return a.least_stiffness_n_per_m; },
-      "The smallest u^T K u over the sum of the squared displacements of all points, over all "
-      "free motions u "
-      "except rigid motions [N/m]; negative: unstable. None without equilibrium "
-      "or such a motion.");
+      "Least stiffness: smallest u^T K u divided by the sum of the squared displacements of all "
+      "points, over all free motions u except rigid motions [N/m]. Negative: unstable. None "
+      "without equilibrium or without such a motion.");
   type.def_property_readonly(
       "stiffness", [](const Analysis& a) { return ArrayOf(a.tangent.stiffness); },
-      "(6 * moving, 6 * moving) float64: minus the derivative of the forces there, by x, y, z of "
-      "the "
-      "centre of mass and turns about W's axes, body by body of those that move [N/m, N, N "
-      "m/rad].");
+      "(6 * moving, 6 * moving) float64: tangent stiffness matrix in equilibrium, the negative "
+      "derivative of the forces; per moving body x, y, z of the center of mass and rotations about "
+      "W's axes [N/m, N, N m/rad].");
   type.def_property_readonly(
       "mass", [](const Analysis& a) { return ArrayOf(a.tangent.mass); },
-      "Of the same shape and order [kg, kg m, kg m^2].");
+      "Mass matrix, in the order of `stiffness` [kg, kg m, kg m^2].");
   type.def_property_readonly(
       "moving_bodies", [](const Analysis& a) { return a.tangent.bodies; },
-      "Numbers of the bodies that `stiffness` and `mass` are of.");
+      "Indices of the bodies in `stiffness` and `mass`.");
 }
 
 void AddModes(Type& type) {
@@ -215,8 +216,9 @@ void AddModes(Type& type) {
         for (const Mode& mode : modes(a)) all.push_back(mode.frequency_hz);
         return ArrayOf(all);
       },
-      "(modes,) float64: of small undamped vibrations about the equilibrium [Hz]; 0 of rigid ones "
-      "and mechanisms, less than 0 of unstable ones. Rigid ones first, then rising.");
+      "(modes,) float64: natural frequencies of small undamped vibrations about the equilibrium "
+      "[Hz]; 0 for rigid motions and mechanisms, negative for unstable modes. Rigid motions first, "
+      "then ascending.");
   type.def_property_readonly(
       "mode_kinds",
       [=](const Analysis& a) {
@@ -224,27 +226,27 @@ void AddModes(Type& type) {
         for (const Mode& mode : modes(a)) kinds.append(NameOf(mode.kind));
         return kinds;
       },
-      "\"rigid\", \"mechanism\", \"elastic\" or \"unstable\", by mode.");
+      "Kind of each mode: \"rigid\", \"mechanism\", \"elastic\" or \"unstable\".");
   type.def_property_readonly(
       "mode_translation_m",
       [=](const Analysis& a) {
         return MotionsOf(modes(a), a.robot.def.bodies.size(), &Mode::translation_m);
       },
-      "(modes, bodies, 3) float64: scaled so that the largest of a mode is 1 m; a turn by a body's "
-      "reach counts as one.");
+      "(modes, bodies, 3) float64: translations of the mode shapes [m]. The largest displacement "
+      "of a mode is 1 m; rotations count as angle times the body's reach.");
   type.def_property_readonly(
       "mode_turn_rad",
       [=](const Analysis& a) {
         return MotionsOf(modes(a), a.robot.def.bodies.size(), &Mode::turn_rad);
       },
-      "(modes, bodies, 3) float64, to the same scale.");
+      "(modes, bodies, 3) float64: rotations of the mode shapes, at the same scale [rad].");
 }
 
 void AddForces(Type& type) {
-  type.def_property_readonly("members", &MembersOf,
-                             "(kind, name, part) of all that can carry a force, as described: "
-                             "\"cable\" and its span, \"bar\", \"joint\" and which of its "
-                             "directions, \"ground\" and the body.");
+  type.def_property_readonly(
+      "members", &MembersOf,
+      "Members in the described pose, as (kind, name, part): \"cable\" with its span, \"bar\", "
+      "\"joint\" with one of its directions, \"ground\" with the body.");
   type.def_property_readonly(
       "member_force_n",
       [](const Analysis& a) {
@@ -252,26 +254,27 @@ void AddForces(Type& type) {
         for (const StaticMember& member : a.forces.members) all.push_back(member.force_n);
         return ArrayOf(all);
       },
-      "(members,) float64: as described, not in equilibrium [N], [N m].");
+      "(members,) float64: member forces in the described pose, not in equilibrium [N, N m].");
   type.def_property_readonly(
       "equilibrium_matrix", [](const Analysis& a) { return ArrayOf(a.forces.matrix); },
-      "(motions, members) float64: times forces gives loads; its transpose says how fast members "
-      "get "
-      "longer [1], [m].");
+      "(motions, members) float64: equilibrium matrix, which maps member forces to loads; its "
+      "transpose maps motions to elongations of members [1, m].");
   type.def_property_readonly(
-      "rank", [](const Analysis& a) { return a.forces.rank.rank; }, "Of `equilibrium_matrix`.");
+      "rank", [](const Analysis& a) { return a.forces.rank.rank; },
+      "Rank of `equilibrium_matrix`.");
   type.def_property_readonly(
       "rigid", [](const Analysis& a) { return a.forces.rigid; },
-      "Number of rigid motions that no member resists; motions of an anchored point are "
+      "Number of rigid motions that no member resists. Motions of an anchored point count as "
       "mechanisms.");
   type.def_property_readonly(
       "self_stress_n", [](const Analysis& a) { return StatesOf(a.forces, &SelfStress::force_n); },
-      "(states, members) float64: independent forces that members have among themselves without "
-      "loads; tension > 0. A feasible one first, if there is any.");
+      "(states, members) float64: independent states of self-stress, member forces in equilibrium "
+      "without loads; tension > 0 [N, N m]. The first is feasible if a feasible one exists.");
   type.def_property_readonly(
       "self_stress_density_n_per_m",
       [](const Analysis& a) { return StatesOf(a.forces, &SelfStress::density_n_per_m); },
-      "(states, members) float64: by length, of cables and bars; else 0.");
+      "(states, members) float64: force densities of cables and bars, force over length [N/m]; 0 "
+      "for other members.");
   type.def_property_readonly(
       "self_stress_feasible",
       [](const Analysis& a) {
@@ -280,36 +283,33 @@ void AddForces(Type& type) {
         for (const SelfStress& state : a.forces.self_stress) *to++ = state.feasible;
         return all;
       },
-      "(states,) bool: all cables in tension, no contact that pulls.");
+      "(states,) bool: all cables in tension, no contact pulls.");
   type.def_property_readonly(
       "mechanism_translation_m",
       [](const Analysis& a) {
         return MotionsOf(a.forces.mechanisms, a.robot.def.bodies.size(), &Mode::translation_m);
       },
-      "(mechanisms, bodies, 3) float64: ways to move without any member changing its length, but "
-      "as "
-      "a whole; scaled like modes.");
+      "(mechanisms, bodies, 3) float64: translations of the infinitesimal mechanisms, motions that "
+      "change no member's length, without rigid motions [m]; scaled as mode shapes.");
   type.def_property_readonly(
       "mechanism_turn_rad",
       [](const Analysis& a) {
         return MotionsOf(a.forces.mechanisms, a.robot.def.bodies.size(), &Mode::turn_rad);
       },
-      "(mechanisms, bodies, 3) float64.");
+      "(mechanisms, bodies, 3) float64: rotations of the mechanisms, at the same scale [rad].");
   type.def_property_readonly(
       "mechanism_stiffness_n_per_m",
       [](const Analysis& a) { return ArrayOf(a.forces.mechanism_stiffness); },
-      "(mechanisms,) float64: what the first feasible self-stress gives them to resist with, "
-      "rising; "
-      "all positive: stable by prestress. Empty without a feasible state.");
+      "(mechanisms,) float64: stiffness of the mechanisms under the first feasible self-stress, "
+      "ascending [N/m]; all positive: prestress stability. Empty without a feasible state.");
 }
 
 }  // namespace
 
 void AddAnalyses(py::module_& module) {
-  Type type(
-      module, "Analysis",
-      "What `taut.analyze` gives: where a robot stands under a load, how it swings there, what "
-      "its members can carry by themselves as described.");
+  Type type(module, "Analysis",
+            "Result of `taut.analyze`: equilibrium under a load case with its modes; self-stresses "
+            "and mechanisms of the described pose.");
   AddEquilibrium(type);
   AddModes(type);
   AddForces(type);
@@ -318,9 +318,10 @@ void AddAnalyses(py::module_& module) {
            (a.at.found ? ">" : ": no equilibrium>");
   });
   const char* const words =
-      "The statics of a structure, as `taut analyze` computes them. `load_case`: a name of the "
-      "experiment's `load_cases`; None: the robot's weight, or no load if nothing holds the robot "
-      "in the world. Other Python threads run meanwhile.";
+      "Analyzes the statics of a structure, as `taut analyze` does: equilibrium, least stiffness, "
+      "modes, self-stresses, mechanisms. `load_case`: name of one of the experiment's "
+      "`load_cases`; None: the robot's weight, or no load if nothing holds the robot in the world. "
+      "Returns a `taut.Analysis`. Other Python threads run meanwhile.";
   module.def("analyze", &Analyse, py::arg("experiment"), py::arg("load_case") = py::none(), words);
   module.def(
       "analyze",

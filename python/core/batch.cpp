@@ -1,5 +1,5 @@
-// Many worlds of one model. Whatever takes long lets other Python threads run; a lock a batch keeps
-// them out of each other's way.
+// `taut.Batch`: many worlds of one model. Long calls release the GIL; a lock per batch serializes
+// calls from several Python threads.
 #include "taut/batch.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ const std::pair<const char*, Parameter> kParameters[] = {
     {"gravity_y_m_per_s2", Parameter::kGravityY},
     {"gravity_z_m_per_s2", Parameter::kGravityZ}};
 
-/// A parameter by its name, and a place of it that there is; else ValueError or IndexError.
+/// Returns the parameter of a name, and a valid index; raises ValueError or IndexError otherwise.
 std::pair<Parameter, int> ParameterOf(const Worlds& worlds, const std::string& name,
                                       py::ssize_t index) {
   std::string all;
@@ -61,7 +61,7 @@ void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
 }
 
 void AddStates(BatchType& type) {
-  // One a line: name, how many, width, what is put there, its words.
+  // One per line: name, count, width, values, docstring.
   const auto bodies = [&](const char* name, py::ssize_t width, auto put, const char* words) {
     type.def(
         name,
@@ -73,23 +73,24 @@ void AddStates(BatchType& type) {
   };
   bodies(
       "body_position_m", 3, [](const BodyState& s, double* to) { Put(s.position_m, to); },
-      "(worlds, bodies, 3) float64: centres of mass in W [m]. `out`: an array to write into.");
+      "(worlds, bodies, 3) float64: positions of the centers of mass, in W [m]. `out`: existing "
+      "array for the result.");
   bodies(
       "body_orientation", 4,
       [](const BodyState& s, double* to) {
         const Quat& q = s.orientation;
         to[0] = q.w, to[1] = q.x, to[2] = q.y, to[3] = q.z;
       },
-      "(worlds, bodies, 4) float64: unit quaternions w, x, y, z from the orientation at the start, "
-      "in W.");
+      "(worlds, bodies, 4) float64: rotations from the initial orientations, as unit quaternions "
+      "w, x, y, z, in W.");
   bodies(
       "body_velocity_m_per_s", 3,
       [](const BodyState& s, double* to) { Put(s.velocity_m_per_s, to); },
-      "(worlds, bodies, 3) float64: of the centres of mass, in W [m/s].");
+      "(worlds, bodies, 3) float64: velocities of the centers of mass, in W [m/s].");
   bodies(
       "body_angular_velocity_rad_per_s", 3,
       [](const BodyState& s, double* to) { Put(s.angular_velocity_rad_per_s, to); },
-      "(worlds, bodies, 3) float64, in W [rad/s].");
+      "(worlds, bodies, 3) float64: angular velocities, in W [rad/s].");
 
   const auto cables = [&](const char* name, double CableState::*field, const char* words) {
     type.def(
@@ -102,14 +103,16 @@ void AddStates(BatchType& type) {
         py::arg("out") = py::none(), words);
   };
   cables("cable_length_m", &CableState::length_m,
-         "(worlds, cables) float64: between the ends, along all attachments [m].");
+         "(worlds, cables) float64: path lengths between the ends of each cable, along all "
+         "attachments [m].");
   cables("cable_rate_m_per_s", &CableState::rate_m_per_s,
-         "(worlds, cables) float64: of the length.");
-  cables("rest_length_m", &CableState::rest_length_m, "(worlds, cables) float64 [m].");
+         "(worlds, cables) float64: rates of the cable lengths [m/s].");
+  cables("rest_length_m", &CableState::rest_length_m,
+         "(worlds, cables) float64: rest lengths [m].");
   cables("tension_n", &CableState::tension_n,
-         "(worlds, cables) float64: what a load cell feels, spring and damper [N].");
+         "(worlds, cables) float64: tensions as measured by a load cell, spring and damper [N].");
   cables("elastic_n", &CableState::elastic_n,
-         "(worlds, cables) float64: max(0, k (l - L)) alone [N].");
+         "(worlds, cables) float64: spring part of the tensions, max(0, k (l - L)) [N].");
   type.def(
       "rest_length_target_m",
       [](Worlds& worlds, const py::object& out) {
@@ -117,7 +120,8 @@ void AddStates(BatchType& type) {
           *to = b.RestLengthTarget(w, i);
         });
       },
-      py::arg("out") = py::none(), "(worlds, cables) float64: the actuators' targets [m].");
+      py::arg("out") = py::none(),
+      "(worlds, cables) float64: rest-length targets of the actuators [m].");
   const auto nodes = [&](const char* name, Vec3 (Batch::*read)(int, int) const, const char* words) {
     type.def(
         name,
@@ -127,8 +131,10 @@ void AddStates(BatchType& type) {
         },
         py::arg("out") = py::none(), words);
   };
-  nodes("node_position_m", &Batch::NodePosition, "(worlds, nodes, 3) float64, in W [m].");
-  nodes("node_velocity_m_per_s", &Batch::NodeVelocity, "(worlds, nodes, 3) float64, in W [m/s].");
+  nodes("node_position_m", &Batch::NodePosition,
+        "(worlds, nodes, 3) float64: positions of the nodes, in W [m].");
+  nodes("node_velocity_m_per_s", &Batch::NodeVelocity,
+        "(worlds, nodes, 3) float64: velocities of the nodes, in W [m/s].");
   type.def(
       "time_s",
       [](Worlds& worlds) {
@@ -161,7 +167,8 @@ void AddCommands(BatchType& type) {
         });
       },
       py::arg("rest_length_m"), py::arg("world") = py::none(),
-      "The actuators' targets from here on: (worlds, cables), or (cables,) of one world [m].");
+      "Sets the rest-length targets of the actuators, until changed: an array (worlds, cables), or "
+      "(cables,) for one `world` [m].");
   type.def(
       "set_node_force",
       [](Worlds& worlds, py::ssize_t world, py::ssize_t node, const py::object& force_n) {
@@ -172,7 +179,7 @@ void AddCommands(BatchType& type) {
         worlds.With([&](Batch& b) { b.SetNodeForce(w, n, force); });
       },
       py::arg("world"), py::arg("node"), py::arg("force_n"),
-      "A force on a node for all following steps: (3,) in W [N].");
+      "Sets an external force on a node, until changed: (3,), in W [N].");
   type.def(
       "set_parameter",
       [](Worlds& worlds, const std::string& name, const py::object& values, py::ssize_t index) {
@@ -191,9 +198,10 @@ void AddCommands(BatchType& type) {
         if (!wrong.empty()) throw py::value_error(wrong);
       },
       py::arg("name"), py::arg("values"), py::arg("index") = 0,
-      "A number of the model for each world, (worlds,): body_mass_kg (index: of the body; its "
-      "inertia scales with it), cable_stiffness_n_per_m, cable_damping_n_s_per_m (index: of the "
-      "cable), friction_scale, gravity_x_m_per_s2, gravity_y_m_per_s2, gravity_z_m_per_s2.");
+      "Sets a model parameter to `values`, (worlds,), one per world. Names: body_mass_kg (`index`: "
+      "body; its inertia scales with the mass), cable_stiffness_n_per_m, cable_damping_n_s_per_m "
+      "(`index`: cable), friction_scale, gravity_x_m_per_s2, gravity_y_m_per_s2, "
+      "gravity_z_m_per_s2.");
   type.def(
       "parameter",
       [](Worlds& worlds, const std::string& name, py::ssize_t index) {
@@ -205,13 +213,13 @@ void AddCommands(BatchType& type) {
         });
         return a;
       },
-      py::arg("name"), py::arg("index") = 0, "What `set_parameter` sets: (worlds,) float64.");
-  type.def(
-      "step", &Step, py::arg("step_s"), py::arg("count") = 1,
-      py::arg("rest_length_target_m") = py::none(),
-      "Advances every world by `count` steps of `step_s`, under new targets for the rest lengths, "
-      "(worlds, cables) [m], if they are given. Other Python threads run meanwhile. Ctrl-C ends "
-      "it between two steps.");
+      py::arg("name"), py::arg("index") = 0,
+      "Returns a model parameter of `set_parameter`: (worlds,) float64.");
+  type.def("step", &Step, py::arg("step_s"), py::arg("count") = 1,
+           py::arg("rest_length_target_m") = py::none(),
+           "Advances every world by `count` steps of `step_s` [s]. `rest_length_target_m`: "
+           "optional new rest-length targets, (worlds, cables) [m]. Other Python threads run "
+           "meanwhile. Ctrl-C ends the call between two steps.");
 }
 
 void AddSnapshots(BatchType& type) {
@@ -222,7 +230,7 @@ void AddSnapshots(BatchType& type) {
         const auto bytes = worlds.Look([&](Batch& b) { return b.Save(w); });
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
-      py::arg("world") = 0, "All that determines a world's future, as bytes.");
+      py::arg("world") = 0, "Returns the complete state of a world as bytes.");
   type.def(
       "restore",
       [](Worlds& worlds, const py::bytes& snapshot, std::optional<py::ssize_t> world) {
@@ -239,15 +247,15 @@ void AddSnapshots(BatchType& type) {
         if (!all) throw py::value_error("snapshot: not one of this model");
       },
       py::arg("snapshot"), py::arg("world") = 0,
-      "Puts a world where `save` was called, to the bit; None: all worlds. ValueError if it is of "
-      "another model.");
+      "Restores a world, bit-identically, from the result of `save`; `world` None: all worlds. "
+      "Raises ValueError for a state of another model.");
   type.def(
       "hash",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
         return worlds.Look([&](Batch& b) { return b.Hash(w); });
       },
-      py::arg("world") = 0, "Of a world's state: the same bits, the same number.");
+      py::arg("world") = 0, "Returns a hash of a world's state; equal for bit-identical states.");
   type.def(
       "status",
       [](Worlds& worlds) {
@@ -258,7 +266,7 @@ void AddSnapshots(BatchType& type) {
         });
         return a;
       },
-      "(worlds,) uint32: 0 is good; else bits of taut.Status.");
+      "(worlds,) uint32: condition bits of each world, see `taut.Status`; 0: no error.");
   type.def(
       "contacts",
       [](Worlds& worlds, py::ssize_t world) {
@@ -267,39 +275,38 @@ void AddSnapshots(BatchType& type) {
         return ContactsOf(touching);
       },
       py::arg("world") = 0,
-      "What touched in the last step: a dict of arrays, a row a point: bodies (n, 2), -1 the "
-      "world; "
-      "point_m, normal (from the second body to the first), force_n on the first (n, 3), in W; "
-      "gap_m (n,).");
+      "Returns the contacts of the last step as a dict of arrays with one row per point: bodies "
+      "(n, 2), -1: the world; point_m, normal (from the second body to the first), force_n on the "
+      "first body (n, 3), all in W; gap_m (n,).");
 }
 
 }  // namespace
 
 void AddBatch(py::module_& module) {
-  BatchType type(
-      module, "Batch",
-      "Many worlds of one model, stepped together, as described at first. Arrays are copies, made "
-      "in "
-      "one pass; `out=` writes into one that is there. The same bits on any number of threads and "
-      "lanes. Several Python threads may use one batch: they wait for each other.");
+  BatchType type(module, "Batch",
+                 "Many worlds of one model, stepped together; they start in the described pose. "
+                 "Arrays are copies, unless `out=` names an existing array for the result. Results "
+                 "are bit-identical for any number of threads and lanes. Several Python threads "
+                 "may use one batch; calls wait for each other.");
   type.def(py::init([](const RobotSpec& robot, int worlds, int threads,
                        const std::optional<std::string>& simd) {
              return std::make_shared<Worlds>(robot.def, worlds, threads, simd);
            }),
            py::arg("robot"), py::arg("worlds") = 1, py::arg("threads") = 1,
            py::arg("simd") = py::none(),
-           "Of a `Robot`. `threads`: 0 is one a core. `simd`: scalar, sse2, neon, avx2 or avx512; "
-           "None is the "
-           "widest that this machine has, or scalar for one world.");
+           "Creates `worlds` worlds of a `Robot`. `threads`: number of threads; 0: one per core. "
+           "`simd`: \"scalar\", \"sse2\", \"neon\", \"avx2\" or \"avx512\"; None: the widest on "
+           "this machine, or scalar for one world.");
   type.def(py::init([](const ExperimentSpec& experiment, int worlds, int threads,
                        const std::optional<std::string>& simd) {
              return std::make_shared<Worlds>(experiment.robot.def, worlds, threads, simd);
            }),
            py::arg("experiment"), py::arg("worlds") = 1, py::arg("threads") = 1,
            py::arg("simd") = py::none(),
-           "Of an `Experiment`'s robot on its ground, without its controllers and timeline.");
+           "Creates worlds of an `Experiment`'s robot on its ground, without its controllers and "
+           "timeline.");
   type.def_property_readonly("worlds", &Worlds::worlds);
-  type.def_property_readonly("lanes", &Worlds::lanes, "Worlds that share a register.");
+  type.def_property_readonly("lanes", &Worlds::lanes, "Number of worlds per SIMD register.");
   AddStates(type);
   AddCommands(type);
   AddSnapshots(type);

@@ -1,4 +1,4 @@
-// Robots and experiments out of files.
+// `taut.Robot`, `taut.Experiment` and `taut.load`: robots and experiments from files.
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,7 +29,7 @@ py::object Load(const std::string& given, const py::kwargs& set) {
     if (kind == "model") robot = LoadRobot(path, overrides, said);
   }
   if (kind && kind != "experiment" && kind != "model") {
-    said.Error({path, 1, 1}, "a file of the kind \"" + *kind + "\"",
+    said.Error("file.wrong_kind", {path, 1, 1}, "a file of the kind \"" + *kind + "\"",
                "taut.load reads models and experiments");
   }
   if (!experiment && !robot) Refuse(said);
@@ -43,10 +43,11 @@ py::object Load(const std::string& given, const py::kwargs& set) {
 void AddDescriptions(py::module_& module) {
   using Robot = RobotSpec;
   py::class_<Robot, std::shared_ptr<Robot>>(
-      module, "Robot", "A robot as a model file describes it, in numbers. Made by `taut.load`.")
+      module, "Robot",
+      "A robot as described by a model file, with all numbers resolved. Returned by `taut.load`.")
       .def_property_readonly(
           "bodies", [](const Robot& r) { return NamesOf(r.def.bodies); },
-          "Names, in the order of all arrays.")
+          "Names of the bodies, in the order of all arrays.")
       .def_property_readonly(
           "nodes", [](const Robot& r) { return NamesOf(r.def.nodes); }, "Names.")
       .def_property_readonly(
@@ -55,10 +56,10 @@ void AddDescriptions(py::module_& module) {
           "joints", [](const Robot& r) { return NamesOf(r.def.joints); }, "Names.")
       .def_property_readonly(
           "parameters", [](const Robot& r) { return r.parameters; },
-          "Named parameters as resolved, in the file's units (SI).")
+          "Named parameters after resolution, in the file's units (SI).")
       .def_property_readonly(
           "files", [](const Robot& r) { return r.files; },
-          "Every file that was read, the model first.")
+          "Paths of all files read, the model first.")
       .def("__repr__", [](const Robot& r) {
         return Representation("Robot", r.files.empty() ? "" : r.files[0], r.def);
       });
@@ -66,13 +67,13 @@ void AddDescriptions(py::module_& module) {
   using Experiment = ExperimentSpec;
   py::class_<Experiment, std::shared_ptr<Experiment>>(
       module, "Experiment",
-      "A robot, its ground, controllers and timeline as an experiment file describes them. Made by "
-      "`taut.load`.")
+      "A robot with its ground, controllers and timeline, as described by an experiment file. "
+      "Returned by `taut.load`.")
       .def_readonly("name", &Experiment::name)
       .def_readonly("description", &Experiment::description)
       .def_property_readonly(
           "robot", [](const Experiment& e) { return std::make_shared<Robot>(e.robot); },
-          "The robot as placed, with the experiment's terrain: a copy.")
+          "The robot in its place, with the experiment's terrain: a copy.")
       .def_readonly("step_s", &Experiment::step_s, "Time step [s].")
       .def_property(
           "duration_s", [](const Experiment& e) { return e.duration_s; },
@@ -84,30 +85,30 @@ void AddDescriptions(py::module_& module) {
           "Seed of all random numbers.")
       .def_property_readonly(
           "parameters", [](const Experiment& e) { return e.parameters; },
-          "The experiment's own named parameters as resolved (SI).")
+          "The experiment's named parameters after resolution, without those of its model (SI).")
       .def_property_readonly(
           "load_cases", [](const Experiment& e) { return NamesOf(e.load_cases); },
-          "Names, for `taut.analyze`.")
+          "Names of the load cases, for `taut.analyze`.")
       .def_property_readonly(
           "files", [](const Experiment& e) { return e.files; },
-          "Every file that was read, the experiment first.")
+          "Paths of all files read, the experiment first.")
       .def_property_readonly(
           "input_hash", [](const Experiment& e) { return e.input_hash; },
-          "Of the bytes of all files and of the overrides.")
+          "Hash of the bytes of all files and of the overrides.")
       .def(
           "to_yaml", [](const Experiment& e) { return ResolvedYaml(e); },
-          "The experiment and its robot in numbers, as one text that `taut.load` reads back to the "
-          "same bits.")
+          "Returns the experiment and its robot as one YAML text with all numbers resolved, which "
+          "`taut.load` reads back bit-identically.")
       .def("__repr__",
            [](const Experiment& e) { return Representation("Experiment", e.name, e.robot.def); });
 
   module.def("data_folder", &DataFolder, "Folder of the files that come with taut, or None.");
   module.def("load", &Load, py::arg("path"),
-             "Reads a model or an experiment file; keyword arguments set its named parameters, as "
-             "numbers or expressions:\n\n"
-             "    taut.load(\"experiments/push_20n.yaml\", stiffness_n_per_m=300)\n\n"
-             "Raises `taut.InputError`, whose `items` say file, line, column, what is wrong and a "
-             "hint, all mistakes at once. Warns with `taut.InputWarning`.");
+             "Reads a model or an experiment file. Keyword arguments set its named parameters, as "
+             "numbers or expressions:\n\n    taut.load(\"experiments/push_20n.yaml\", "
+             "stiffness_n_per_m=300)\n\nReturns a `Robot` or an `Experiment`. Raises one "
+             "`taut.InputError` for all errors; its `items` contain file, line, column, message "
+             "and hint. Issues warnings as `taut.InputWarning`.");
 }
 
 }  // namespace taut::python

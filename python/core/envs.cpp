@@ -1,4 +1,4 @@
-// Environments for learners, under taut.gym.
+// Environments for reinforcement learning, beneath taut.gym.
 #include <pybind11/functional.h>
 
 #include <algorithm>
@@ -123,7 +123,7 @@ class Environments {
     Rethrow();
   }
 
-  /// Of the present episodes, or of those before: seeds, steps, rewards, ends.
+  /// Returns seeds, steps, rewards and ends of the present or of the last episodes.
   py::tuple Episodes(bool last) {
     const py::ssize_t n = worlds();
     py::array_t<std::uint64_t> seeds(n);
@@ -145,9 +145,8 @@ class Environments {
   }
 
  private:
-  /// Calls f(rows, observations), or the five arguments of `judge`, with copies, which stay as they
-  /// are for callers that keep them; copies back what may be written. What f raises comes out of
-  /// the call that led to it.
+  /// Calls f(rows, observations), or `judge` with five arguments, with copies, which callers may
+  /// keep; copies writable arrays back. Exceptions of f are raised by the call that led to it.
   void Call(const py::object& f, const EnvView& view, bool judges) {
     const Acquired mine;
     if (raised_) return;
@@ -162,7 +161,7 @@ class Environments {
     } catch (...) {
       raised_ = std::current_exception();
     }
-    // A child of fork() within f has none of the threads that the step goes on with.
+    // A child of fork() within f lacks the threads that the step needs.
     if (owner().Forked()) {
       Rethrow();
       owner().CheckProcess();
@@ -195,7 +194,7 @@ class Environments {
                                          static_cast<py::ssize_t>(from.size() / worlds)};
     return py::array_t<T>(shape, from.data());
   }
-  /// numpy lets a callback give its array another size or kind.
+  /// Checks the array, because numpy lets a callback change its size or data type.
   template <class T>
   static void TakeBack(const py::array_t<T>& from, std::span<T> to, const char* what) {
     if (!py::isinstance<Rows<T>>(from) || static_cast<std::size_t>(from.size()) != to.size()) {
@@ -219,7 +218,7 @@ class Environments {
 void AddEnvironments(py::module_& module) {
   using E = Environments;
   py::class_<E, std::shared_ptr<E>> type(module, "Environments",
-                                         "What taut.gym stands on: arrays in, arrays out.");
+                                         "Array interface beneath the classes of taut.gym.");
   type.def(py::init<const ExperimentSpec&, int, int, const std::optional<std::string>&,
                     const std::string&, bool, const py::object&, int, const py::object&,
                     const py::object&>(),

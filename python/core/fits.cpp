@@ -1,4 +1,4 @@
-// Numbers of models and experiments out of measurements, and what they are worth.
+// System identification: `taut.fit` and `taut.Fitted`.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -15,18 +15,20 @@
 namespace taut::python {
 namespace {
 
-/// A fit that is done. `fit` computes no more: what could stop it is gone.
+/// A completed fit. `fit` is used for no further computation, since its stop function no longer
+/// exists.
 struct Fitted {
   std::unique_ptr<Identification> fit;
   FitOutcome outcome;
 };
 
-/// The experiment `number` with what was found; as the file that `taut fit` writes.
+/// Returns experiment `number` with the estimated parameters, identical to the file written by
+/// `taut fit`.
 std::shared_ptr<ExperimentSpec> ExperimentOf(const Fitted& f, py::ssize_t number) {
   const auto& all = f.fit->spec().experiments;
   const auto e =
       static_cast<std::size_t>(Index(number, static_cast<int>(all.size()), "experiment"));
-  Overrides set = all[e].set;  // of two of a name the later one counts
+  Overrides set = all[e].set;  // the last value of a name counts
   const FitProblem& problem = f.fit->train();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const FitEstimate& estimate = f.fit->spec().estimates[f.fit->estimates()[i]];
@@ -43,7 +45,7 @@ std::shared_ptr<ExperimentSpec> ExperimentOf(const Fitted& f, py::ssize_t number
   return std::make_shared<ExperimentSpec>(std::move(*experiment));
 }
 
-/// Complaints about names that no parameter has.
+/// Reports names that no parameter has.
 void CheckProfiles(const Identification& fit, const std::vector<std::string>& profiles,
                    Diagnostics& said) {
   const std::vector<std::string> names = NamesOf(fit.train().parameters);
@@ -51,7 +53,8 @@ void CheckProfiles(const Identification& fit, const std::vector<std::string>& pr
     if (name.find('*') != name.npos || std::find(names.begin(), names.end(), name) != names.end()) {
       continue;
     }
-    said.Error({}, "profiles: nothing is called \"" + name + "\"", DidYouMean(name, names));
+    said.Error("profile.unknown_name", {}, "profiles: nothing is called \"" + name + "\"",
+               DidYouMean(name, names));
   }
 }
 
@@ -62,7 +65,7 @@ struct Asked {
   OutcomeOptions how;
 };
 
-/// All of it, on a thread of its own. Nothing where `said` has errors.
+/// Runs the whole fit on a separate thread. Returns null if `said` has errors.
 std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
                                const std::atomic<bool>& stop, Diagnostics& said) {
   const auto spec = LoadFit(InputPath(asked.path), overrides, said);
@@ -81,7 +84,7 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
   if (!fitted->fit) return nullptr;
   const auto unreadable = [&] {
     const std::string why = fitted->fit->input_error();
-    if (!why.empty()) said.Error({}, why);
+    if (!why.empty()) said.Error("fit.failed", {}, why);
     return !why.empty();
   };
   CheckProfiles(*fitted->fit, asked.how.profiles, said);
@@ -90,10 +93,10 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
   fitted->outcome = RunFit(*fitted->fit, asked.how);
   if (unreadable()) return nullptr;
   if (const std::string why = fitted->fit->memory_error(); !why.empty()) {
-    said.Error({options.memory_file}, "cannot be written: " + why);
+    said.Error("fit.memory_not_writable", {options.memory_file}, "cannot be written: " + why);
   }
   if (!fitted->outcome.interrupted && !fitted->outcome.why.empty()) {
-    said.Error({asked.path}, "no fit: " + fitted->outcome.why);
+    said.Error("fit.failed", {asked.path}, "no fit: " + fitted->outcome.why);
   }
   return fitted;
 }
@@ -134,7 +137,7 @@ std::shared_ptr<Fitted> Fit(const std::string& path, const std::optional<std::st
   return fitted;
 }
 
-/// An n x n matrix that is kept row by row; empty if there is none.
+/// Returns an n x n matrix from numbers stored row by row; empty if there are none.
 py::array Square(const std::vector<double>& numbers, std::size_t n) {
   const auto side = static_cast<py::ssize_t>(numbers.size() == n * n ? n : 0);
   return Rows<double>({side, side}, numbers.data());
@@ -144,7 +147,8 @@ py::array Square(const std::vector<double>& numbers, std::size_t n) {
 
 void AddFits(py::module_& module) {
   py::class_<Fitted, std::shared_ptr<Fitted>>(
-      module, "Fitted", "What `taut.fit` gives: what was found, and what it is worth.")
+      module, "Fitted",
+      "Result of `taut.fit`: estimated parameters with their uncertainty, and the verdict.")
       .def_property_readonly(
           "values",
           [](const Fitted& f) {
@@ -155,7 +159,7 @@ void AddFits(py::module_& module) {
             }
             return values;
           },
-          "By parameter, in its unit.")
+          "Dict of the estimates, each in the unit of its parameter.")
       .def_property_readonly(
           "standard_errors",
           [](const Fitted& f) {
@@ -167,38 +171,39 @@ void AddFits(py::module_& module) {
             }
             return errors;
           },
-          "By parameter: the larger of that by the derivatives and that by groups left out; inf "
-          "where data say nothing.")
+          "Dict of the standard errors by parameter: the larger of the error from derivatives and "
+          "the error from omitted groups; inf if the data do not determine the parameter.")
       .def_property_readonly(
           "covariance",
           [](const Fitted& f) {
             return Square(f.outcome.verdict.identifiability.covariance,
                           f.fit->train().parameters.size());
           },
-          "(parameters, parameters) float64, in their units, in the order of `values`; inf where "
-          "data say nothing.")
+          "(parameters, parameters) float64: covariance matrix in the parameters' units, in the "
+          "order of `values`; inf for parameters that the data do not determine.")
       .def_property_readonly(
           "correlation",
           [](const Fitted& f) {
             return Square(f.outcome.verdict.identifiability.correlation,
                           f.fit->train().parameters.size());
           },
-          "(parameters, parameters) float64; 0 with what has no finite error.")
+          "(parameters, parameters) float64: correlation matrix; 0 for parameters without a finite "
+          "error.")
       .def_property_readonly(
           "good",
           [](const Fitted& f) { return f.outcome.verdict.judgement == FitJudgement::kGood; },
-          "Whether there is nothing against it: what `taut fit` says by its exit status.")
+          "Whether the fit is accepted, as in the exit status of `taut fit`.")
       .def_property_readonly(
           "sentences", [](const Fitted& f) { return f.outcome.verdict.sentences; },
-          "For a reader: the judgement first, then why.")
+          "Verdict in sentences: the judgement first, then the reasons.")
       .def_property_readonly(
           "json", [](const Fitted& f) { return OutcomeJson(*f.fit, f.outcome); },
-          "All there is to say, as `taut fit` writes it into summary.json.")
+          "All results as JSON text, as in the summary.json of `taut fit`.")
       .def_property_readonly(
           "text", [](const Fitted& f) { return OutcomeText(*f.fit, f.outcome); },
-          "The tables that `taut fit` prints.")
+          "The tables printed by `taut fit`.")
       .def("experiment", &ExperimentOf, py::arg("number") = 0,
-           "An experiment of the fit with the parameters that were found, for `taut.run`.")
+           "Returns an experiment of the fit with the estimated parameters, for `taut.run`.")
       .def("__repr__", [](const Fitted& f) {
         return "<taut.Fitted \"" + f.fit->spec().name + "\": " +
                (f.outcome.verdict.sentences.empty() ? "" : f.outcome.verdict.sentences[0]) + ">";
@@ -207,11 +212,12 @@ void AddFits(py::module_& module) {
   module.def("fit", &Fit, py::arg("fit"), py::arg("folder") = py::none(), py::arg("threads") = 0,
              py::arg("profiles") = std::vector<std::string>{}, py::arg("design") = false,
              py::arg("progress") = py::none(),
-             "Finds numbers of models and experiments from measurements as `taut fit` does, to the "
-             "same bits. `folder` keeps what was computed, so that after Ctrl-C the same call goes "
-             "on; None keeps nothing. `profiles`: names of parameters, or \"*\". Keyword arguments "
-             "set named parameters. `progress(what, iterations, chi2)` is called a few times a "
-             "second.");
+             "Estimates parameters of models and experiments from measurements, bit-identically to "
+             "`taut fit`. `folder`: stores intermediate results, so that the same call resumes "
+             "after Ctrl-C; None: stores nothing. `profiles`: names of parameters for profile "
+             "likelihoods, or \"*\" for all. Keyword arguments set named parameters. `threads`: "
+             "number of threads; 0: one per core. `progress(what, iterations, chi2)` is called a "
+             "few times per second. Returns a `taut.Fitted`, also for a rejected fit: see `good`.");
 }
 
 }  // namespace taut::python

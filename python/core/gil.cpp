@@ -10,11 +10,12 @@ namespace taut::python {
 
 namespace {
 
-/// Longest waits at the end for computing threads, and for callbacks, which may sleep forever.
+/// Longest waits at the end of the program: for computing threads, and for callbacks, which may
+/// sleep forever.
 constexpr std::chrono::seconds kLongestWork{10}, kLongestCall{1};
 
 std::atomic<int> computing{0}, calling{0};
-std::atomic<std::thread::id> ends_it;  ///< The thread that ends the program; no thread before.
+std::atomic<std::thread::id> ends_it;  ///< The thread that ends the program; before, no thread.
 
 }  // namespace
 
@@ -45,7 +46,7 @@ void EndOfProgram::Begin() {
 }
 
 void EndOfProgram::Register() {
-  // Threads that compute do not exist in a forked child.
+  // Computing threads do not exist in a forked child.
   pthread_atfork(nullptr, nullptr, [] { computing = calling = 0; });
   pybind11::module_::import("atexit").attr("register")(pybind11::cpp_function(&Begin));
 }

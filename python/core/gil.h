@@ -1,5 +1,5 @@
-/// The interpreter's lock (GIL), released and taken back, also while the interpreter ends. Stands
-/// in for pybind11's gil_scoped_release and gil_scoped_acquire, by which a daemon thread that is at
+/// Release and acquisition of the interpreter's lock (GIL), safe also during interpreter shutdown.
+/// Replaces pybind11's gil_scoped_release and gil_scoped_acquire, with which a daemon thread at
 /// work when the program ends aborts it.
 #pragma once
 
@@ -9,21 +9,21 @@
 
 namespace taut::python {
 
-/// The end of the program with daemon threads that still compute. They use static variables and the
-/// interpreter, which are destroyed then. So Python's atexit calls EndOfProgram::Begin(), which
-/// waits for these threads; each of them sleeps as soon as it next releases or takes the GIL.
+/// Shutdown of a program whose daemon threads still compute. They use static variables and the
+/// interpreter, which are then destroyed. Therefore Python's atexit calls EndOfProgram::Begin(),
+/// which waits for these threads; each of them sleeps as soon as it next releases or takes the GIL.
 class EndOfProgram {
  public:
   /// Registers Begin() with Python's module atexit. The GIL must be held.
   static void Register();
-  /// Returns true if the program ends, on another thread than this one.
+  /// Returns whether another thread is ending the program.
   static bool Reached();
   /// Change the counts of threads that compute without the GIL, and of threads in callbacks.
   static void Compute(int change);
   static void Call(int change);
   /// Sleeps until the process has ended.
   [[noreturn]] static void Sleep();
-  /// At the end of a thread's work: once the program ends, the thread sleeps.
+  /// To be called at the end of a thread's work: puts it to sleep if the program is ending.
   static void SleepIfReached() {
     if (!Reached()) return;
     Compute(-1);
@@ -35,7 +35,7 @@ class EndOfProgram {
 };
 
 /// Returns f(), which calls C functions of Python and makes no objects with destructors. Up to 3.13
-/// CPython ends a thread by pthread_exit() if it wants the lock while the interpreter ends. That
+/// CPython ends a thread by pthread_exit() if it requests the lock while the interpreter ends. This
 /// unwinds the stack, through destructors that are noexcept or need the lock. Such a thread sleeps
 /// instead, as it does from 3.14 on.
 template <class F>
@@ -47,7 +47,7 @@ auto OrSleep(F f) {
   }
 }
 
-/// Other Python threads run during its lifetime. The GIL must be held.
+/// Releases the GIL during its lifetime, so that other Python threads run. The GIL must be held.
 class Released {
  public:
   Released() {
@@ -55,7 +55,7 @@ class Released {
       PyEval_SaveThread();
       EndOfProgram::Sleep();
     }
-    EndOfProgram::Compute(+1);  // before the GIL is free, so that Begin() waits
+    EndOfProgram::Compute(+1);  // before the GIL is released, so that Begin() waits
     state_ = PyEval_SaveThread();
   }
   ~Released() {
@@ -96,7 +96,7 @@ class Acquired {
   PyGILState_STATE state_;
 };
 
-/// f(arguments...); throws error_already_set if it raises. The GIL must be held.
+/// Calls f(arguments...); throws error_already_set if it raises. The GIL must be held.
 template <class... Arguments>
 pybind11::object CallPython(const pybind11::object& f, Arguments&&... arguments) {
   const pybind11::tuple all = pybind11::make_tuple(std::forward<Arguments>(arguments)...);
@@ -105,8 +105,8 @@ pybind11::object CallPython(const pybind11::object& f, Arguments&&... arguments)
   return pybind11::reinterpret_steal<pybind11::object>(result);
 }
 
-/// Runs handlers of signals that have come. True if one raised (Ctrl-C): its exception is set. The
-/// GIL must be held.
+/// Runs the handlers of pending signals. Returns true if one raised (Ctrl-C), with its exception
+/// set. The GIL must be held.
 inline bool SignalRaised() {
   return OrSleep([] { return PyErr_CheckSignals(); }) != 0;
 }

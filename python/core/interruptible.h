@@ -1,4 +1,4 @@
-/// Long work that Ctrl-C ends.
+/// Long computations that Ctrl-C can end.
 #pragma once
 
 #include <atomic>
@@ -6,10 +6,10 @@
 
 namespace taut::python {
 
-/// Does `work` on a thread of its own, while other Python threads go on and this one looks for
-/// Ctrl-C and calls `look`, with the GIL, a few times a second. When either raises, `stop` becomes
-/// true: `work` has to end, and what was raised is raised here once it has. `work` touches nothing
-/// of Python's. The GIL must be held.
+/// Runs `work` on a separate thread while other Python threads run; this thread checks for Ctrl-C
+/// and calls `look`, with the GIL, a few times per second. If either raises, `stop` becomes true:
+/// `work` must return, and the exception is raised after it has. `work` must not use Python
+/// objects. The GIL must be held.
 void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& work,
                    const std::function<void()>& look = {});
 

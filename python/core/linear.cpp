@@ -1,4 +1,4 @@
-// The simulated robot as a linear system.
+// `taut.linear_system`: linearization of the simulated robot.
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -48,7 +48,7 @@ Rows<double> ValuesOf(const std::vector<LinearSignal>& signals) {
   return ArrayOf(at);
 }
 
-/// The number of a signal; KeyError, which names the closest, if there is none.
+/// Returns the index of a signal; raises KeyError, with the closest name, if there is none.
 int NumberOf(const std::vector<LinearSignal>& signals, const std::string& name, const char* kind) {
   if (const auto found = FindSignal(signals, name)) return *found;
   const std::vector<std::string> names = NamesOf(signals);
@@ -88,18 +88,18 @@ void AddSignals(Type& type, const char* name, std::vector<LinearSignal> StateSpa
       name, [of](const StateSpace& s) { return NamesOf(s.*of); }, words);
   type.def_property_readonly((one + "_units").c_str(),
                              [of](const StateSpace& s) { return UnitsOf(s.*of); });
-  type.def_property_readonly((one + "_at").c_str(),
-                             [of](const StateSpace& s) { return ValuesOf(s.*of); },
-                             "At the equilibrium, in their units; of small turns 0.");
+  type.def_property_readonly(
+      (one + "_at").c_str(), [of](const StateSpace& s) { return ValuesOf(s.*of); },
+      "(n,) float64: values at the equilibrium, in their units; 0 for small rotations.");
 }
 
 }  // namespace
 
 void AddLinear(py::module_& module) {
-  py::class_<StateSpace, System> type(module, "LinearSystem",
-                                      "The robot about its rest, a tick at a time: x' = A x + B u, "
-                                      "y = C x + D u, of changes x, u, y "
-                                      "from their values there. SI units.");
+  py::class_<StateSpace, System> type(
+      module, "LinearSystem",
+      "Robot linearized about its rest state, in discrete time with one tick per step: x' = A x + "
+      "B u, y = C x + D u, where x, u, y are deviations from the equilibrium. SI units.");
   const auto matrix = [&](const char* name, Matrix StateSpace::*of, const char* words) {
     type.def_property_readonly(
         name, [of](const StateSpace& s) { return ArrayOf(s.*of); }, words);
@@ -109,27 +109,31 @@ void AddLinear(py::module_& module) {
   matrix("C", &StateSpace::C, "(outputs, states) float64.");
   matrix("D", &StateSpace::D, "(outputs, inputs) float64.");
   AddSignals(type, "states", &StateSpace::states, "Names.");
-  AddSignals(type, "inputs", &StateSpace::inputs, "Names: node/NAME/force_x ...");
-  AddSignals(type, "outputs", &StateSpace::outputs, "Names: node/NAME/position_x ...");
+  AddSignals(type, "inputs", &StateSpace::inputs, "Names of the inputs: node/NAME/force_x ...");
+  AddSignals(type, "outputs", &StateSpace::outputs,
+             "Names of the outputs: node/NAME/position_x ...");
   type.def_readonly("period_s", &StateSpace::period_s,
-                    "Of a tick: the controllers', or a step [s].");
-  type.def_readonly("remarks", &StateSpace::remarks, "What is left out, in sentences.");
+                    "Period of a tick: of the controllers, or a step [s].");
+  type.def_readonly("remarks", &StateSpace::remarks,
+                    "Omissions of the linearization, in sentences.");
   type.def_readonly("disagreement", &StateSpace::disagreement,
-                    "The largest difference from the other way of finding it, as a share.");
+                    "Largest difference of an entry between exact derivatives and finite "
+                    "differences, relative to the largest entry of its kind.");
   type.def("response", &Respond, py::arg("input"), py::arg("output"), py::arg("frequencies_hz"),
-           "What a sine of an input does to an output: magnitude and phase [rad], an array each.");
+           "Returns magnitude and phase [rad] of an output's response to a sinusoidal input, each "
+           "an array over `frequencies_hz` [Hz].");
 
   const char* const words =
-      "The simulated robot as a linear system about the rest that it comes to under its "
-      "controllers, as `taut analyze --linear` writes it. `differences`: derivatives by "
-      "differences "
-      "of steps, not by the chain rule. RuntimeError says why where there is none. Ctrl-C ends it.";
+      "Linearizes the simulated robot about the rest state that it reaches under its controllers, "
+      "as `taut analyze --linear` does. `differences`: finite differences of steps instead of "
+      "exact derivatives. Returns a `taut.LinearSystem`. Raises RuntimeError, with the reason, if "
+      "there is no linear system. Ctrl-C ends the call.";
   module.def("linear_system", &Find, py::arg("experiment"), py::arg("differences") = false, words);
   module.def(
       "linear_system",
       [](const RobotSpec& robot, bool differences) {
         ExperimentSpec alone = ExperimentWith(robot);
-        // Nothing holds it: without weight, as in statics.
+        // A robot without supports is linearized without weight, as in statics.
         if (!IsHeld(robot.def)) alone.robot.def.gravity_m_per_s2 = {};
         return Find(alone, differences);
       },

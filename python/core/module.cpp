@@ -7,9 +7,9 @@ namespace {
 
 namespace py = pybind11;
 
-/// For an object that has been made by `__new__` alone, or whose subclass has not called
-/// `super().__init__()` yet, pybind11 allocates memory and takes what is in there for the object.
-/// It asks this hook for the memory.
+/// Raises an exception for uninitialized objects: if an object was created by `__new__` alone, or
+/// its subclass has not called `super().__init__()` yet, pybind11 would allocate memory through
+/// this hook and use its contents as the object.
 void* RaiseNotInitialized(std::size_t) {
   throw py::type_error("this object is not initialized: its __init__() has not been called");
 }
@@ -27,7 +27,7 @@ void RefuseWhatIsNotInitialized(const py::module_& module) {
 }  // namespace
 
 PYBIND11_MODULE(_core, module) {
-  module.doc() = "The simulator; use it through `import taut`.";
+  module.doc() = "C++ part of the simulator; use it through `import taut`.";
   module.attr("version") = taut::kVersion;
   taut::python::AddDescriptions(module);
   taut::python::AddBatch(module);

@@ -1,4 +1,5 @@
-/// Something of C++ that one thread at a time may use, for all threads of Python.
+/// Exclusive ownership of a C++ object that one thread at a time may use, shared by all Python
+/// threads.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -20,18 +21,19 @@ namespace taut::python {
 template <class T>
 class Owner {
  public:
-  /// `what`, with its verb, is how errors call it: "this batch was".
+  /// `what`: subject and verb for error messages: "this batch was".
   Owner(std::unique_ptr<T> owned, const char* what) : owned_(std::move(owned)), what_(what) {}
-  /// A forked child leaves its copy alone: the threads that its destructor waits for are not there.
+  /// A forked child does not destroy its copy: the threads that the destructor waits for do not
+  /// exist there.
   ~Owner() {
     if (Forked()) static_cast<void>(owned_.release());
   }
   Owner(const Owner&) = delete;
   Owner& operator=(const Owner&) = delete;
 
-  /// f(T&) with it for itself, while other Python threads go on. While it waits for its turn,
-  /// Ctrl-C ends it. RuntimeError in a callback or a signal handler of a call that has it already.
-  /// The GIL must be held.
+  /// Calls f(T&) with exclusive access, while other Python threads run. Ctrl-C ends the wait for
+  /// access. Raises RuntimeError within a callback or a signal handler of a call that already has
+  /// access. The GIL must be held.
   template <class F>
   auto With(F f) {
     CheckProcess();
@@ -43,21 +45,21 @@ class Owner {
     return Locked(f);
   }
 
-  /// The same for f that only reads, which callbacks and signal handlers may do, too.
+  /// Same for an f that only reads, which is also allowed in callbacks and signal handlers.
   template <class F>
   auto Look(F f) {
     CheckProcess();
     return InUseHere() ? f(*owned_) : Locked(f);
   }
 
-  /// For what never changes.
+  /// Returns the object for access to its constant parts.
   const T& peek() const { return *owned_; }
 
-  /// Whether this is a child process of the one that made it.
+  /// Returns whether this process is a child of the process that created the object.
   bool Forked() const { return getpid() != pid_; }
 
-  /// Throws in a forked child: it has none of the threads, and a lock that they held is held for
-  /// ever.
+  /// Throws in a forked child: the object's threads do not exist there, and a lock that they held
+  /// is held forever.
   void CheckProcess() const {
     if (!Forked()) return;
     throw std::runtime_error(std::string(what_) +
@@ -88,7 +90,7 @@ class Owner {
 
   std::unique_ptr<T> owned_;
   std::timed_mutex mutex_;
-  std::atomic<std::thread::id> user_;  ///< Of the mutex; none: a thread's id of no thread.
+  std::atomic<std::thread::id> user_;  ///< Of the mutex; without one, the id of no thread.
   const char* what_;
   const pid_t pid_ = getpid();
 };

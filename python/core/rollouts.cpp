@@ -1,4 +1,5 @@
-// Variants of an experiment, side by side and scored, without traces.
+// `taut.rollout` and `taut.tunables`: variants of an experiment, run in parallel and scored,
+// without traces.
 #include "taut/rollout.h"
 
 #include <algorithm>
@@ -20,11 +21,11 @@
 namespace taut::python {
 namespace {
 
-/// A world as Python says it: names of numbers, and its seed.
+/// A world as given in Python: values by name, and its seed.
 using World = std::vector<std::pair<std::string, double>>;
 using Given = std::pair<std::optional<std::uint64_t>, World>;
 
-/// What `taut.tunables` lists: name, unit, value, least, greatest.
+/// Returns the rows of `taut.tunables`: name, unit, value, least, greatest.
 py::list TunablesOf(const ExperimentSpec& experiment) {
   std::vector<ControllerSpec> controllers = experiment.controllers;
   std::vector<ScaleSpec> scales = TunableScales(experiment.robot);
@@ -35,7 +36,7 @@ py::list TunablesOf(const ExperimentSpec& experiment) {
   return all;
 }
 
-/// The numbers of all worlds put into the experiment; all that is wrong with them in `said`.
+/// Applies the values of all worlds to the experiment; reports all errors in `said`.
 std::vector<RolloutWorld> WorldsOf(const ExperimentSpec& experiment,
                                    const std::vector<Given>& given, Diagnostics& said) {
   std::vector<ControllerSpec> controllers = experiment.controllers;
@@ -54,15 +55,16 @@ std::vector<RolloutWorld> WorldsOf(const ExperimentSpec& experiment,
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end()) {
         const std::string_view close = ClosestMatch(name, names);
-        said.Error({}, where + "nothing is called \"" + name + "\"",
+        said.Error("tunable.unknown_name", {}, where + "nothing is called \"" + name + "\"",
                    close.empty() ? "taut.tunables(experiment) has all names"
                                  : "did you mean \"" + std::string(close) + "\"?");
         continue;
       }
       const Tunable& tunable = tunables[static_cast<std::size_t>(found - names.begin())];
       if (!std::isfinite(value) || value < tunable.min || value > tunable.max) {
-        said.Error({}, fmt::format("{}{} must be a number within {}..{} {}, got {}", where, name,
-                                   tunable.min, tunable.max, tunable.unit, value));
+        said.Error("tunable.out_of_range", {},
+                   fmt::format("{}{} must be a number within {}..{} {}, got {}", where, name,
+                               tunable.min, tunable.max, tunable.unit, value));
         continue;
       }
       study.parameters.push_back({name, tunable.unit, {name}, tunable.min, tunable.max, false});
@@ -74,7 +76,7 @@ std::vector<RolloutWorld> WorldsOf(const ExperimentSpec& experiment,
   return worlds;
 }
 
-/// Columns, by name: taut/_results.py makes one array of them.
+/// Returns the columns by name, from which taut/_results.py makes one structured array.
 py::dict Columns(const std::vector<RolloutResult>& results) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto column = [&](auto of) {
@@ -106,8 +108,8 @@ py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_
   options.simd = SimdOf(simd);
   Diagnostics said, of_objective;
   const auto objective = ReadObjective(objective_text, "", experiment, of_objective);
-  // Where they stand in a text that Python has made of a dict is nobody's business.
-  for (const Diagnostic& d : of_objective.items()) said.Error({}, d.what, d.hint);
+  // Omits the position, which refers to a text generated from the dict.
+  for (const Diagnostic& d : of_objective.items()) said.AddError({{}, d.what, d.hint, d.id});
   const std::vector<RolloutWorld> worlds = WorldsOf(experiment, given, said);
   CheckStart(experiment.robot, experiment.start, said);
   Tell(said);

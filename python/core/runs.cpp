@@ -1,4 +1,4 @@
-// Running experiments, and traces in memory.
+// `taut.run`, `taut.read_trace` and `taut.Trace`: runs of experiments, with traces in memory.
 #include "taut/run.h"
 
 #include <pybind11/functional.h>
@@ -15,7 +15,7 @@
 namespace taut::python {
 namespace {
 
-/// Keeps every row.
+/// Trace writer that keeps every row in memory.
 class InMemory : public TraceWriter {
  public:
   explicit InMemory(Trace& trace) : trace_(trace) { trace.values.resize(trace.channels.size()); }
@@ -45,7 +45,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   Diagnostics said;
   Ran ran{std::make_shared<Trace>(), {}};
   std::optional<RunSummary> summary;
-  bool stopped = false;  // by an exception of Python's, Ctrl-C for one
+  bool stopped = false;  // by a Python exception, such as Ctrl-C
   WarnOfStep(experiment, said);
   if (CheckRecord(experiment, said)) {
     const Released others;
@@ -88,7 +88,7 @@ SharedTrace ReadRun(const std::string& path) {
   return std::make_shared<Trace>(std::move(*trace));
 }
 
-/// A view of numbers that a trace has; it keeps the trace alive and cannot be written.
+/// Returns a read-only view of a trace's numbers, which keeps the trace alive.
 py::array View(const std::vector<double>& numbers, const py::object& owner) {
   py::array_t<double> a(static_cast<py::ssize_t>(numbers.size()), numbers.data(), owner);
   a.attr("setflags")(py::arg("write") = false);
@@ -106,12 +106,13 @@ std::size_t ChannelOf(const Trace& trace, const std::string& name) {
 }  // namespace
 
 void AddRuns(py::module_& module) {
-  py::class_<Trace, SharedTrace>(module, "Trace",
-                                 "Channels against time, as a run records them: `trace[\"cable/a/"
-                                 "tension_n\"]`. `to_pandas()` and `to_xarray()` for more.")
+  py::class_<Trace, SharedTrace>(
+      module, "Trace",
+      "Channels against time, recorded by a run: `trace[\"cable/a/tension_n\"]`. `to_pandas()` and "
+      "`to_xarray()` convert to tables.")
       .def_property_readonly(
           "channels", [](const Trace& t) { return NamesOf(t.channels); },
-          "Names, which end with quantity and unit.")
+          "Names of the channels, which end with quantity and unit.")
       .def_property_readonly(
           "units",
           [](const Trace& t) {
@@ -119,7 +120,7 @@ void AddRuns(py::module_& module) {
             for (const ChannelInfo& c : t.channels) units[py::str(c.name)] = c.unit;
             return units;
           },
-          "By channel: \"N\", \"m\", ...")
+          "Dict of the units by channel: \"N\", \"m\", ...")
       .def_property_readonly(
           "metadata",
           [](const Trace& t) {
@@ -127,10 +128,10 @@ void AddRuns(py::module_& module) {
             for (const auto& [key, value] : t.metadata) all[py::str(key)] = value;
             return all;
           },
-          "How it came to be: version, step, seed, hash of the inputs ...")
+          "Dict of the origin of the trace: version, step, seed, hash of the inputs ...")
       .def_property_readonly(
           "time_s", [](const py::object& self) { return View(self.cast<Trace&>().time_s, self); },
-          "(rows,) float64 [s]; not a copy, read only.")
+          "(rows,) float64: times [s]. A read-only view.")
       .def_readonly("unfinished", &Trace::unfinished)
       .def("__getitem__",
            [](const py::object& self, const std::string& name) {
@@ -141,15 +142,15 @@ void AddRuns(py::module_& module) {
            [](const Trace& t, const std::string& name) { return t.Find(name).has_value(); })
       .def("__len__", [](const Trace& t) { return t.time_s.size(); });
 
-  py::class_<Ran>(module, "Run", "What `taut.run` gives.")
+  py::class_<Ran>(module, "Run", "Result of `taut.run`.")
       .def_readonly("trace", &Ran::trace)
       .def_property_readonly(
           "state_hash", [](const Ran& r) { return r.summary.state_hash; },
-          "Of the world at the end: what `taut run` prints.")
+          "Hash of the world's state at the end, as printed by `taut run`.")
       .def_property_readonly("simulated_s", [](const Ran& r) { return r.summary.simulated_s; })
       .def_property_readonly(
           "status", [](const Ran& r) { return r.summary.status_text; },
-          "Empty if all went well; else what failed.")
+          "Empty for a good run; else the errors.")
       .def_property_readonly(
           "overloads",
           [](const Ran& r) {
@@ -166,7 +167,7 @@ void AddRuns(py::module_& module) {
             }
             return all;
           },
-          "Members that carried more than they bear, as in summary.json.")
+          "Members whose load exceeded a limit, as in summary.json.")
       .def_property_readonly(
           "max_tension_n",
           [](const Ran& r) {
@@ -174,15 +175,16 @@ void AddRuns(py::module_& module) {
             for (const CableSummary& c : r.summary.cables) all[py::str(c.name)] = c.tension.max_n;
             return all;
           },
-          "By cable: the largest over every step, not only recorded rows [N].");
+          "Dict of the largest tension by cable, over all steps, not only recorded rows [N].");
 
   module.def(
       "run", &Run, py::arg("experiment"), py::arg("threads") = 1, py::arg("progress") = py::none(),
-      "Runs an experiment from start to end, as `taut run` does, to the same bits. "
-      "`progress(time_s, duration_s)` is called a few times a second. Ctrl-C ends it. Raises "
-      "`taut.InputError` if it cannot start.");
+      "Runs an experiment from start to end, bit-identically to `taut run`. `threads`: number of "
+      "threads. `progress(time_s, duration_s)` is called a few times per second. Returns a "
+      "`taut.Run`. Ctrl-C ends the call. Raises `taut.InputError` if the experiment cannot start.");
   module.def("read_trace", &ReadRun, py::arg("path"),
-             "Reads a recorded trace: .h5, .csv or .csv.gz, or the folder of a run.");
+             "Reads a recorded trace: .h5, .csv or .csv.gz, or the folder of a run. Returns a "
+             "`taut.Trace`.");
 }
 
 }  // namespace taut::python

@@ -1,4 +1,5 @@
-// Sequences of targets, worlds side by side: what a controller that looks ahead tries out.
+// `Batch.rollout`: sequences of rest-length targets in parallel worlds, for model predictive
+// control.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -69,7 +70,7 @@ bool Signals::Raised() {
 bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const double> targets_m,
                      Signals& signals) {
   constexpr std::chrono::milliseconds kShort{25}, kLong{100};
-  constexpr int kFirst = 4096;  // steps of one world, some tens of milliseconds
+  constexpr int kFirst = 4096;  // steps of one world, which take some tens of milliseconds
   int piece = std::max(1, kFirst / batch.worlds());
   while (count > 0) {
     const auto start = std::chrono::steady_clock::now();
@@ -89,14 +90,13 @@ bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const dou
 }
 
 void AddSequences(BatchType& type) {
-  type.def(
-      "rollout", &Rollout, py::arg("rest_length_target_m"), py::arg("step_s"), py::arg("count") = 1,
-      py::arg("start") = py::none(), py::arg("out") = py::none(),
-      "Steps each world through its sequence of targets, (worlds, ticks, cables) [m], each "
-      "held for `count` steps of `step_s`. `start`: the result of `save` with which all worlds "
-      "begin; None: their present states. Returns body_position_m after every tick, (worlds, "
-      "ticks, bodies, 3) [m]; afterwards the batch is in its last state. Other Python threads run "
-      "meanwhile; Ctrl-C ends it between two steps.");
+  type.def("rollout", &Rollout, py::arg("rest_length_target_m"), py::arg("step_s"),
+           py::arg("count") = 1, py::arg("start") = py::none(), py::arg("out") = py::none(),
+           "Steps each world through its sequence of rest-length targets, (worlds, ticks, cables) "
+           "[m], each held for `count` steps of `step_s` [s]. `start`: result of `save` from which "
+           "all worlds begin; None: their present states. Returns body_position_m after every "
+           "tick, (worlds, ticks, bodies, 3) [m]; the batch stays in its last state. Other Python "
+           "threads run meanwhile; Ctrl-C ends the call between two steps.");
 }
 
 }  // namespace taut::python

@@ -1,4 +1,4 @@
-// Searches: run, gone on with, read back.
+// `taut.learn` and `taut.read_study`: searches, run, resumed or read.
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -25,20 +25,20 @@ Found FoundIn(const std::string& folder, bool skip_damaged) {
     result = ReadStudyFolder(folder, said, skip_damaged);
   }
   for (const std::string& skipped : result ? result->skipped : std::vector<std::string>{}) {
-    said.Warning({folder}, skipped);
+    said.Warning("study.skipped_rows", {folder}, skipped);
   }
   Tell(said);
   return std::make_shared<StudyResult>(std::move(*result));
 }
 
-/// The study's progress, written by its threads and read by Python's.
+/// Progress of the study, written by its threads and read by Python's.
 class Progress {
  public:
   void Set(const LearnProgress& now) {
     const std::lock_guard lock(mutex_);
     now_ = now;
   }
-  /// To Python's function, if there is anything new.
+  /// Calls the Python function if there is progress.
   void Tell(const py::object& progress) {
     LearnProgress now;
     {
@@ -88,7 +88,7 @@ Found Learn(const std::string& path, const std::optional<std::string>& folder, i
   return FoundIn(options.folder, skip_damaged);
 }
 
-/// Of a number of the log; the best if None.
+/// Returns the evaluation of an index; the best for None.
 const Evaluation& EvaluationOf(const StudyResult& r, std::optional<py::ssize_t> which) {
   if (which) {
     const int count = static_cast<int>(r.evaluations.size());
@@ -102,12 +102,12 @@ const Evaluation& EvaluationOf(const StudyResult& r, std::optional<py::ssize_t> 
 
 void AddStudies(py::module_& module) {
   py::class_<StudyResult, Found>(module, "Study",
-                                 "A study's folder, read back: what `taut.learn` and "
-                                 "`taut.read_study` give. Rows are evaluations, in their order.")
+                                 "Results in a study's folder, from `taut.learn` or "
+                                 "`taut.read_study`. Rows are evaluations, in their order.")
       .def_readonly("name", &StudyResult::name)
       .def_property_readonly(
           "parameters", [](const StudyResult& r) { return NamesOf(r.parameters); },
-          "Names of what was varied.")
+          "Names of the varied parameters.")
       .def_property_readonly(
           "units",
           [](const StudyResult& r) {
@@ -115,7 +115,7 @@ void AddStudies(py::module_& module) {
             for (const StudyParameter& p : r.parameters) units[py::str(p.name)] = p.unit;
             return units;
           },
-          "By parameter.")
+          "Dict of the units by parameter.")
       .def_property_readonly(
           "values",
           [](const StudyResult& r) {
@@ -127,7 +127,7 @@ void AddStudies(py::module_& module) {
             }
             return a;
           },
-          "(evaluations, parameters) float64, in their units: a copy.")
+          "(evaluations, parameters) float64: values in their units. A copy.")
       .def_property_readonly(
           "scores",
           [](const StudyResult& r) {
@@ -135,7 +135,7 @@ void AddStudies(py::module_& module) {
             for (const Evaluation& e : r.evaluations) scores.push_back(e.score);
             return ArrayOf(scores);
           },
-          "(evaluations,) float64: more is better, NaN has failed.")
+          "(evaluations,) float64: scores, more is better; NaN: the evaluation failed.")
       .def_property_readonly(
           "failed",
           [](const StudyResult& r) {
@@ -143,7 +143,7 @@ void AddStudies(py::module_& module) {
             for (const Evaluation& e : r.evaluations) failed.append(e.failed);
             return failed;
           },
-          "By evaluation why it failed; empty if it did not.")
+          "Reason of failure per evaluation; empty for a success.")
       .def_property_readonly(
           "best",
           [](const StudyResult& r) {
@@ -154,7 +154,7 @@ void AddStudies(py::module_& module) {
             }
             return best;
           },
-          "The best's values by parameter. ValueError if every evaluation failed.")
+          "Dict of the best parameters. Raises ValueError if every evaluation failed.")
       .def_property_readonly(
           "best_score", [](const StudyResult& r) { return EvaluationOf(r, std::nullopt).score; })
       .def(
@@ -164,19 +164,20 @@ void AddStudies(py::module_& module) {
                 r.ExperimentWith(EvaluationOf(r, evaluation).values));
           },
           py::arg("evaluation") = py::none(),
-          "The experiment with the numbers of an evaluation; None: of the best. For `taut.run`.")
+          "Returns the experiment with the parameters of an evaluation, by index; None: of the "
+          "best. For `taut.run`.")
       .def("__len__", [](const StudyResult& r) { return r.evaluations.size(); });
 
   module.def(
       "learn", &Learn, py::arg("study"), py::arg("folder") = py::none(), py::arg("threads") = 0,
       py::arg("progress") = py::none(), py::arg("skip_damaged") = false,
-      "Searches as `taut learn` does, to the same bits, or goes on where it was stopped: what "
-      "is found is in `folder` at once (None: runs/NAME). Keyword arguments set named "
-      "parameters of the study, its experiment or model. `threads`: 0 is one a core. "
-      "`progress(evaluations, budget, best_score)` is called a few times a second. After "
-      "Ctrl-C the same call goes on.");
+      "Searches for the best parameters, bit-identically to `taut learn`, or resumes an "
+      "interrupted search. Results are written to `folder` at once (None: runs/NAME). Keyword "
+      "arguments set named parameters of the study, its experiment or model. `threads`: number of "
+      "threads; 0: one per core. `progress(evaluations, budget, best_score)` is called a few times "
+      "per second. Returns a `taut.Study`. After Ctrl-C the same call resumes.");
   module.def("read_study", &FoundIn, py::arg("folder"), py::arg("skip_damaged") = false,
-             "Reads the results in a study's folder.");
+             "Reads the results in a study's folder. Returns a `taut.Study`.");
 }
 
 }  // namespace taut::python

@@ -15,7 +15,7 @@ py::list Items(const std::vector<Diagnostic>& said) {
   const py::object item = py::module_::import("taut._errors").attr("Complaint");
   py::list items;
   for (const Diagnostic& d : Sorted(said)) {
-    items.append(item(d.at.file, d.at.line, d.at.column, d.what, d.hint));
+    items.append(item(d.at.file, d.at.line, d.at.column, d.what, d.hint, std::string(d.id)));
   }
   return items;
 }

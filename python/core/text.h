@@ -1,4 +1,4 @@
-/// What the parts of the Python module share.
+/// Conversions and checks common to the parts of the Python module.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ namespace taut::python {
 
 namespace py = pybind11;
 
-/// Fills `module` with its part. One a file.
+/// Each function adds one file's part to `module`.
 void AddDescriptions(py::module_& module);
 void AddBatch(py::module_& module);
 void AddRuns(py::module_& module);
@@ -34,25 +34,26 @@ void AddFits(py::module_& module);
 void AddAnalyses(py::module_& module);
 void AddLinear(py::module_& module);
 
-/// The folder of the files that come with taut, if there is one.
+/// Returns the folder of the files that come with taut, if it exists.
 std::optional<std::string> DataFolder();
-/// A path to an input file, looked up in that folder if it is not in the current one (`FindInput`).
+/// Returns the path of an input file, searched in that folder if it is not in the current one
+/// (`FindInput`).
 std::string InputPath(const std::string& path);
 
-/// Raises `taut.InputError` with all that is wrong, if anything is; tells warnings by
-/// `warnings.warn` as `taut.InputWarning`. The GIL must be held.
+/// Raises `taut.InputError` with all errors, if there are any; issues warnings by `warnings.warn`
+/// as `taut.InputWarning`. The GIL must be held.
 void Tell(const Diagnostics& said);
 
-/// Raises `taut.InputError` in any case.
+/// Raises `taut.InputError` unconditionally.
 [[noreturn]] void Refuse(const Diagnostics& said);
 
-/// Python's keyword arguments as overrides: `edge_m=0.3`, `tau="2 * pi"`.
+/// Converts Python's keyword arguments to overrides: `edge_m=0.3`, `tau="2 * pi"`.
 Overrides OverridesOf(const py::kwargs& values);
 
-/// An instruction set by its name, nothing for None; else ValueError.
+/// Returns the instruction set of a name, nothing for None; raises ValueError otherwise.
 std::optional<Simd> SimdOf(const std::optional<std::string>& name);
 
-/// `value`; ValueError, which names `what`, unless it is a positive number.
+/// Returns `value`; raises ValueError, which contains `what`, unless it is a positive number.
 inline double Positive(double value, const char* what) {
   if (!(value > 0) || !std::isfinite(value)) {
     throw py::value_error(fmt::format("{}: {}; expected a positive number", what, value));
@@ -60,38 +61,39 @@ inline double Positive(double value, const char* what) {
   return value;
 }
 
-/// A seed: a whole number, no bool, below 2^64; else ValueError.
+/// Returns a seed: an integer, not a bool, from 0 to 2^64 - 1; raises ValueError otherwise.
 std::uint64_t Seed(const py::object& given);
 
-/// A number of threads: 0 (one a core) to 1024, as `--threads` of the command; else ValueError.
+/// Returns a number of threads: 0 (one per core) to 1024, as for `--threads` of the command; raises
+/// ValueError otherwise.
 int Threads(py::ssize_t threads);
 
-/// An index that is less than `count`, those below 0 counted from the end; else IndexError, which
-/// names `what`.
+/// Returns an index below `count`; negative ones count from the end. Raises IndexError, which
+/// contains `what`, otherwise.
 int Index(py::ssize_t index, int count, const char* what);
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// "(3, 4)".
+/// Formats a shape: "(3, 4)".
 std::string ShapeText(const std::vector<py::ssize_t>& shape);
 
-/// `given` if it is an array of exactly this shape; else ValueError, which names both. `what` is
-/// what the caller calls it.
+/// Returns `given` as an array of exactly this shape; raises ValueError with both shapes otherwise.
+/// `what`: the argument's name.
 Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
-/// The same, of finite numbers; else ValueError, which names the first that is not.
+/// Same, for finite numbers; the ValueError contains the first number that is not finite.
 Array Finite(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
-/// ValueError, which names what is there and what is expected, unless `given` is an array of
-/// exactly this kind and shape, contiguous, and writeable if it is to be `written`. `what` is what
-/// the caller calls it.
+/// Raises ValueError, with the actual and the expected properties, unless `given` is a contiguous
+/// array of exactly this kind and shape, and writeable if it is to be `written`. `what`: the
+/// argument's name.
 void CheckArray(const py::object& given, const py::dtype& kind,
                 const std::vector<py::ssize_t>& shape, const char* what, bool written);
 
 template <class T>
 using Rows = py::array_t<T, py::array::c_style>;
 
-/// `given` as it is, if it is as `CheckArray` asks.
+/// Returns `given` itself if it passes `CheckArray`.
 template <class T>
 Rows<T> Exactly(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what,
                 bool written) {
@@ -99,33 +101,34 @@ Rows<T> Exactly(const py::object& given, const std::vector<py::ssize_t>& shape, 
   return py::reinterpret_borrow<Rows<T>>(given);
 }
 
-/// `out`, exactly a float64 array of this shape that can be written; a new one if it is None.
+/// Returns `out`, which must be a writeable float64 array of exactly this shape; a new array if it
+/// is None.
 inline Rows<double> Output(const py::object& out, const std::vector<py::ssize_t>& shape) {
   return out.is_none() ? Rows<double>(shape) : Exactly<double>(out, shape, "out", true);
 }
 
 inline void Put(const Vec3& v, double* to) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-/// A new array (count,).
+/// Returns a new array (count,).
 inline Rows<double> ArrayOf(const std::vector<double>& numbers) {
   return Rows<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
-/// A new array (count, 3).
+/// Returns a new array (count, 3).
 inline Rows<double> ArrayOf(const std::vector<Vec3>& vectors) {
   Rows<double> a({static_cast<py::ssize_t>(vectors.size()), py::ssize_t{3}});
   double* to = a.mutable_data();
   for (const Vec3& v : vectors) Put(v, to), to += 3;
   return a;
 }
-/// A new array (rows, columns).
+/// Returns a new array (rows, columns).
 inline Rows<double> ArrayOf(const Matrix& m) {
   return Rows<double>({m.rows, m.columns}, m.values.data());
 }
 
-/// A dict of arrays, as `Batch.contacts` gives it.
+/// Returns a dict of arrays in the form of `Batch.contacts`.
 py::dict ContactsOf(const std::vector<ContactState>& touching);
 
-/// Of things that have names, in their order.
+/// Returns the names of the elements, in order.
 template <class List>
 std::vector<std::string> NamesOf(const List& list) {
   std::vector<std::string> names;

@@ -1,4 +1,4 @@
-/// What `taut.Batch` is in C++, for the files that give it its methods.
+/// C++ part of `taut.Batch`, for the files that add its methods.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,14 +18,14 @@
 
 namespace taut::python {
 
-/// ValueError for a number of worlds that nothing can hold, for which integers would overflow.
+/// Raises ValueError for a number of worlds that would overflow integers.
 inline void CheckWorlds(int worlds) {
   constexpr int kMost = 1'000'000'000;
   if (worlds >= 1 && worlds <= kMost) return;
   throw py::value_error(fmt::format("worlds: {}; expected 1 to {}", worlds, kMost));
 }
 
-/// Threads: any of Python's; they wait for each other.
+/// Worlds of a batch. Thread-safe: calls from several Python threads wait for each other.
 class Worlds {
  public:
   Worlds(const ModelDef& def, int worlds, int threads, const std::optional<std::string>& simd) {
@@ -47,12 +47,12 @@ class Worlds {
     owned_ = std::make_unique<Owner<Batch>>(std::move(batch), "this batch was");
   }
 
-  /// f(Batch&), which may change it; as in `Owner`.
+  /// Calls f(Batch&), which may change the batch; see `Owner`.
   template <class F>
   auto With(F f) {
     return owned_->With(f);
   }
-  /// f(Batch&), which only reads.
+  /// Calls f(Batch&), which only reads.
   template <class F>
   auto Look(F f) {
     return owned_->Look(f);
@@ -66,8 +66,8 @@ class Worlds {
   py::ssize_t cables() const { return static_cast<py::ssize_t>(def().cables.size()); }
   py::ssize_t nodes() const { return static_cast<py::ssize_t>(def().nodes.size()); }
 
-  /// An array (worlds, count, width), or (worlds, count) if the width is 1: put(batch, world,
-  /// index, numbers).
+  /// Returns an array (worlds, count, width), or (worlds, count) if the width is 1, filled by
+  /// put(batch, world, index, numbers).
   template <class Put>
   py::array_t<double> Read(const py::object& out, py::ssize_t count, py::ssize_t width, Put put) {
     std::vector<py::ssize_t> shape{worlds(), count};
@@ -86,10 +86,10 @@ class Worlds {
   std::unique_ptr<Owner<Batch>> owned_;
 };
 
-/// Runs signal handlers of Python, at most ten times a second.
+/// Runs Python's signal handlers, at most ten times per second.
 class Signals {
  public:
-  /// Whether one raised (Ctrl-C); its exception is set. The GIL must not be held.
+  /// Returns whether a handler raised (Ctrl-C), with its exception set. The GIL must not be held.
   bool Raised();
 
  private:
@@ -97,15 +97,16 @@ class Signals {
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kBetween;
 };
 
-/// `Batch::Step` in pieces of a fraction of a second, to the same bits: under `targets_m` (worlds,
-/// cables), or the present ones if it is empty. False if a signal handler raised between two
-/// pieces: the worlds are then some steps short of `count`. The GIL must not be held.
+/// Steps the batch in pieces of a fraction of a second, bit-identically to `Batch::Step`, under
+/// `targets_m` (worlds, cables), or under the present targets if it is empty. Returns false if a
+/// signal handler raised between two pieces: the worlds are then some steps short of `count`. The
+/// GIL must not be held.
 bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const double> targets_m,
                      Signals& signals);
 
 using BatchType = py::class_<Worlds, std::shared_ptr<Worlds>>;
 
-/// Give the type its part: rows that are no copies; sequences of targets, whole.
+/// `AddRows` adds the views of memory to the type, `AddSequences` the rollout of target sequences.
 void AddRows(py::module_& module, BatchType& type);
 void AddSequences(BatchType& type);
 

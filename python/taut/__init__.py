@@ -1,11 +1,11 @@
-"""taut: tensegrity robots, simulated.
+"""Simulation of tensegrity robots.
 
     import taut
     ran = taut.run(taut.load("experiments/push_20n.yaml"))
     print(ran.trace["cable/outer_top_1/tension_n"].max())
 
-SI units everywhere; the unit is at the end of a name. Frame W: z upwards. Arrays of many worlds have
-the shape (worlds, ...).
+SI units throughout; names of quantities end with the unit. World frame W: right-handed, z up. Arrays of many worlds
+have the shape (worlds, ...).
 """
 
 import enum as _enum

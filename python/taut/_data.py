@@ -1,4 +1,4 @@
-"""Where the files are that come with taut."""
+"""Location of the files that come with taut."""
 
 import os
 import pathlib
@@ -8,10 +8,11 @@ from taut import _core
 
 
 def data_path(*parts: Union[str, "os.PathLike[str]"]) -> str:
-    """The folder with `models`, `experiments`, `gaits`, `studies` and `fits` that come with taut, or what is below
-    it: `taut.data_path("models", "prism3.yaml")`. `taut.load`, `taut.learn` and `taut.fit` look there for a relative
-    path that the current folder does not have. It is share/taut inside the installed package, or else above
-    it: in the prefix, in the build. FileNotFoundError if there is none, or no such file in it."""
+    """Returns the folder with the `models`, `experiments`, `gaits`, `studies` and `fits` that come with taut, or a
+    path in it: `taut.data_path("models", "prism3.yaml")`. `taut.load`, `taut.learn` and `taut.fit` search it for
+    relative paths that do not exist in the current folder. It is share/taut inside the installed package, or above
+    it in the installation prefix or the build folder. Raises FileNotFoundError if the folder or the file does not
+    exist."""
     folder = _core.data_folder()
     if folder is None:
         raise FileNotFoundError(f"the files that come with taut are neither beside {_core.__file__} nor in a "

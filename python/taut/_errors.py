@@ -1,17 +1,19 @@
-"""What is wrong with an input, as data."""
+"""Errors and warnings about input files, as data."""
 
 import warnings
 from typing import NamedTuple
 
 
 class Complaint(NamedTuple):
-    """One complaint. `line` and `column` count from 1; 0: not known."""
+    """One error or warning. `line` and `column` count from 1; 0: unknown. `what` is the message, `hint` a possible
+    remedy. `id` is a stable identifier that does not change with the wording."""
 
     file: str
     line: int
     column: int
     what: str
     hint: str
+    id: str = ""
 
     def __str__(self):
         at = self.file + (f":{self.line}:{self.column}" if self.line else "")
@@ -19,7 +21,7 @@ class Complaint(NamedTuple):
 
 
 class InputError(ValueError):
-    """An input that cannot be used: `items` has all that is wrong with it, as `Complaint`s."""
+    """An input has errors: `items` lists all of them as `Complaint` objects."""
 
     def __init__(self, items):
         self.items = list(items)
@@ -30,7 +32,7 @@ class InputError(ValueError):
 
 
 class InputWarning(UserWarning):
-    """What can be used, but is hardly meant."""
+    """An input is valid, but probably a mistake."""
 
 
 def warn(complaint):

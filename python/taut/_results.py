@@ -1,4 +1,4 @@
-"""Results of the module in C++ as tables, dicts and arrays with names."""
+"""Results of the C++ module as tables, dicts and structured arrays."""
 
 import json
 import numbers
@@ -15,7 +15,7 @@ World = Mapping[str, Any]
 
 
 def _plain(thing):
-    """What json does not know: numbers and arrays of numpy's."""
+    """Converts NumPy numbers and arrays for json."""
     if hasattr(thing, "tolist"):
         return thing.tolist()
     raise TypeError(f"objective: {thing!r} is no number, text, list or dict")
@@ -39,20 +39,21 @@ def _world(number: int, world: World):
 
 def rollout(experiment: Experiment, objective: Objective, worlds: Union[int, Sequence[World]], *, threads: int = 1,
             simd: Optional[str] = None, progress: Optional[Callable[[int, int], object]] = None) -> npt.NDArray[np.void]:
-    """Variants of an experiment, side by side and scored along the way, without traces.
+    """Runs variants of an experiment in parallel and scores them, without traces.
 
         taut.rollout(experiment, {"measure": "heading", "direction": [1, 0, 0], "from_s": 2},
                      [{"model.friction": 0.5}, {"model.friction": 1.5, "seed": 7}])
 
-    `objective`: what a study has under its key of that name (docs/formats/study.md), as a dict, or a measure alone:
-    "distance". `worlds`: a dict each of numbers by the names that `taut.tunables` lists, and of the "seed"; what is
-    not there is as in the experiment. A number n: n worlds, whose seeds are the experiment's, that plus 1, ...
+    `objective`: dict with the keys of a study's objective (docs/formats/study.md), or the name of a measure:
+    "distance". `worlds`: one dict per world, with values of parameters by name (listed by `taut.tunables`) and
+    optionally its "seed"; all others are as in the experiment. A number n: n worlds with the seeds seed, seed + 1, ...
+    of the experiment. `threads`: number of threads; 0: one per core. `progress(done, worlds)` is called a few times
+    per second.
 
-    A structured array (worlds,): `score` (more is better; NaN: it failed), `failed` (why; else empty), `distance_m`,
-    `along_m`, `energy_j`, `max_tension_n`, `tracking_n`, `fell_s` (NaN: it did not), `state_hash`. A world goes
-    through the bits that `taut.run` of it alone goes through. `threads`: 0 is one a core.
-    `progress(done, worlds)` is called a few times a second. Other Python threads go on meanwhile; Ctrl-C ends it.
-    Raises `taut.InputError` with all that is wrong with objective and worlds.
+    Returns a structured array (worlds,): `score` (more is better; NaN: the world failed), `failed` (reason, or empty),
+    `distance_m`, `along_m`, `energy_j`, `max_tension_n`, `tracking_n`, `fell_s` (NaN: no fall), `state_hash`. Each
+    world is bit-identical to `taut.run` of it alone. Other Python threads run meanwhile; Ctrl-C ends the call. Raises
+    one `taut.InputError` for all errors in objective and worlds.
     """
     if isinstance(objective, str):
         objective = {"measure": objective}
@@ -71,8 +72,8 @@ def rollout(experiment: Experiment, objective: Objective, worlds: Union[int, Seq
 
 
 def tunables(experiment: Experiment) -> npt.NDArray[np.void]:
-    """All numbers of an experiment that worlds of `taut.rollout` and studies may differ in: a structured array of
-    `name`, `unit`, `value`, `least`, `greatest`, as `taut learn --parameters` lists them."""
+    """Returns all parameters of an experiment that worlds of `taut.rollout` and studies may vary: a structured array
+    of `name`, `unit`, `value`, `least`, `greatest`, as listed by `taut learn --parameters`."""
     found = _core.tunables(experiment)
     name, unit = (max([1, *map(len, column)]) for column in ([one[0] for one in found], [one[1] for one in found]))
     return np.array(found, [("name", f"U{name}"), ("unit", f"U{unit}"), ("value", "f8"), ("least", "f8"),
@@ -80,8 +81,8 @@ def tunables(experiment: Experiment) -> npt.NDArray[np.void]:
 
 
 def study_to_pandas(study: Study) -> Any:
-    """A pandas.DataFrame: a row an evaluation, a column a parameter, `score` and `failed` at the end; `attrs` has
-    the parameters' units."""
+    """Returns a pandas.DataFrame with one row per evaluation and one column per parameter, followed by `score` and
+    `failed`; `attrs` contains the parameters' units."""
     import pandas
 
     frame = pandas.DataFrame(study.values, columns=study.parameters)
@@ -92,14 +93,14 @@ def study_to_pandas(study: Study) -> Any:
 
 
 def fit_data(fitted: Fitted) -> dict[str, Any]:
-    """All there is to say as `taut fit` writes it into summary.json: `judgement`, `sentences`, `parameters` with
-    their verdicts, `chi2`, `correlation`, `points` ... (docs/fit.md)."""
+    """All results as a dict, as in the summary.json of `taut fit`: `judgement`, `sentences`, `parameters` with their
+    verdicts, `chi2`, `correlation`, `points` ... (docs/fit.md)."""
     return json.loads(fitted.json)
 
 
 def fit_to_pandas(fitted: Fitted) -> Any:
-    """A pandas.DataFrame of what was compared: a row a datum, with `experiment`, `channel`, `where`, `time_s`,
-    `measured`, `sd`, `untuned`, `fitted`, and `held_out`."""
+    """Returns a pandas.DataFrame of the compared data, one row per datum: `experiment`, `channel`, `where`, `time_s`
+    [s], `measured`, `sd`, `untuned`, `fitted`, and `held_out`."""
     import pandas
 
     points = fit_data(fitted)["points"]

@@ -1,4 +1,4 @@
-"""What of Gymnasium taut.gym needs where Gymnasium is not."""
+"""Replacements for the parts of Gymnasium that taut.gym uses, for machines without Gymnasium."""
 
 import enum
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class AutoresetMode(enum.Enum):
-    """When a world whose episode is over begins its next one."""
+    """Time at which a world starts its next episode after the end of one."""
 
     NEXT_STEP = "NextStep"
     SAME_STEP = "SameStep"
@@ -14,7 +14,7 @@ class AutoresetMode(enum.Enum):
 
 
 class Box:
-    """Numbers between bounds: what of Gymnasium's Box people use."""
+    """Space of numbers between bounds: the commonly used part of Gymnasium's Box."""
 
     def __init__(self, low, high, shape=None, dtype=np.float32, seed=None):
         self.shape = tuple(shape) if shape is not None else np.shape(low)
@@ -31,7 +31,7 @@ class Box:
         return bool(x.shape == self.shape and (x >= self.low).all() and (x <= self.high).all())
 
     def sample(self):
-        """Evenly between the bounds; normal where there are none."""
+        """Returns a random sample: uniform between finite bounds, normal without bounds."""
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = np.where(bounded, self.low, 0.0), np.where(bounded, self.high, 1.0)
         drawn = np.where(bounded, self._random.uniform(low, high), self._random.normal(size=self.shape))

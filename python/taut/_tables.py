@@ -1,8 +1,9 @@
-"""Traces as tables of other libraries, which are imported only here."""
+"""Conversion of traces to tables of pandas and xarray, which are imported only here."""
 
 
 def to_pandas(trace):
-    """A pandas.DataFrame: a column a channel, time_s as the index; `attrs` has the trace's metadata."""
+    """Returns a pandas.DataFrame with one column per channel and time_s [s] as the index; `attrs` contains the trace's
+    metadata."""
     import pandas
 
     frame = pandas.DataFrame({name: trace[name] for name in trace.channels},
@@ -12,9 +13,9 @@ def to_pandas(trace):
 
 
 def to_xarray(trace):
-    """An xarray.Dataset: channels kind/NAME/quantity become variables `kind_quantity` with the
-    dimensions time_s and kind (cable, body, ...); all others variables of time_s alone, `/` as `_`.
-    Each variable's `attrs` has its unit; those of the set have the trace's metadata."""
+    """Returns an xarray.Dataset. Channels kind/NAME/quantity become variables `kind_quantity` with the
+    dimensions time_s and kind (cable, body, ...); all others become variables of time_s alone, with `/` replaced by
+    `_`. The `attrs` of a variable contain its unit, the `attrs` of the set the trace's metadata."""
     import numpy
     import xarray
 
@@ -28,7 +29,7 @@ def to_xarray(trace):
     variables = {}
     for name in alone:
         variables[name.replace("/", "_")] = ("time_s", trace[name], {"units": units[name]})
-    # Not all of a kind need have every quantity: a dimension for each set of names that there is.
+    # Elements of a kind may have different quantities: each distinct set of names becomes a dimension.
     names_of = {}
     for (kind, quantity), members in parts.items():
         names = tuple(member for member, _ in members)

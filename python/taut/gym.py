@@ -1,13 +1,13 @@
-"""Environments as people who train policies expect them: Gymnasium's interface, with or without it.
+"""Environments for reinforcement learning with Gymnasium's interface, which does not require Gymnasium.
 
     envs = taut.gym.make_vec("experiments/learn_spine.yaml", num_envs=256, threads=0)
     observations, infos = envs.reset(seed=1)
     observations, rewards, terminated, truncated, infos = envs.step(actions)
 
-Where gymnasium is installed (0.29 or newer), these are its VectorEnv and Env, with its spaces; else classes of the
-same methods and attributes. `AutoresetMode` is Gymnasium's from 1.1 on; before, an enum with the same members. The
-experiment's `environment` defines actions, observations and rewards (docs/environments.md). A world gives the same bits
-for the same seed and actions, independent of all other worlds.
+If gymnasium is installed (0.29 or newer), the classes derive from its VectorEnv and Env and use its spaces; else they
+have the same methods and attributes. `AutoresetMode` is Gymnasium's from 1.1 on; before, an enum with the same members.
+The experiment's `environment` defines actions, observations and rewards (docs/environments.md). For the same seed and
+actions a world is bit-identical, independent of all other worlds.
 """
 
 import enum as _enum
@@ -24,7 +24,7 @@ _EnvBase: _Any = object
 try:
     import gymnasium as _gymnasium
 except ModuleNotFoundError as _error:
-    if _error.name != "gymnasium":  # one that is installed, but cannot be imported
+    if _error.name != "gymnasium":  # an installed module that cannot be imported
         raise
     from taut._spaces import AutoresetMode, Box, batch_space as _batch_space
 else:
@@ -60,7 +60,7 @@ def _experiment(experiment, set_):
 
 
 def _seed(seed, worlds=1):
-    """Returns `seed` if it and the next `worlds` - 1 whole numbers are valid seeds; else raises ValueError."""
+    """Returns `seed` if it and the next `worlds` - 1 integers are valid seeds; else raises ValueError."""
     below = 2**64 - worlds + 1
     whole = isinstance(seed, _numbers.Integral) and not isinstance(seed, bool)
     if not whole or not 0 <= int(seed) < below:
@@ -69,17 +69,17 @@ def _seed(seed, worlds=1):
 
 
 class VectorEnv(_VectorBase):
-    """Many worlds, an episode each. Arrays are (num_envs, n); actions are -1..1.
+    """Many worlds with one episode each. Arrays have the shape (num_envs, n); actions are from -1 to 1.
 
-    `copy=False`: `step` and `reset` return the same arrays again and again, which saves their making.
-    Callbacks see all worlds at once: `observe(rows, observations)` fills the last `own_observations` columns;
+    `copy=False`: `step` and `reset` return the same arrays every time, which saves allocations.
+    Callbacks receive all worlds at once: `observe(rows, observations)` fills the last `own_observations` columns;
     `judge(rows, observations, actions, rewards, terminated)` changes the last two. Their arrays are copies that they
-    may keep; only changes made before they return count. Rows of worlds whose `rows` is 0 are not to be looked at.
-    Callbacks may call `time_s`, `hash` and `experiment`; what changes the environment raises RuntimeError there.
-    Threads: they wait for each other.
+    may keep; only changes made before they return count. Ignore rows of worlds whose `rows` is 0.
+    Callbacks may call `time_s`, `hash` and `experiment`; calls that change the environment raise RuntimeError there.
+    Thread-safe: calls from several threads wait for each other.
     """
 
-    is_vector_env = True  # Gymnasium before 1.0 asks for it
+    is_vector_env = True  # required by Gymnasium before 1.0
     render_mode = None
     spec = None
 
@@ -115,32 +115,33 @@ class VectorEnv(_VectorBase):
 
     @property
     def action_channels(self):
-        """What 1 stands for, with its unit in its name: cable/NAME/rest_length_m."""
+        """Names of the actions' channels, which end with the unit: cable/NAME/rest_length_m."""
         return self._core.action_channels
 
     @property
     def action_scales(self):
-        """How much of it, by number of the action."""
+        """Change of the channel's quantity for an action of 1, per action, in its unit."""
         return self._core.action_scales
 
     @property
     def observation_channels(self):
-        """Names of trace channels, then own/0, own/1 ..."""
+        """Names of the observations: trace channels, then own/0, own/1 ..."""
         return self._core.observation_channels
 
     @property
     def period_s(self):
-        """From action to action."""
+        """Time between actions [s]."""
         return self._core.period_s
 
     @property
     def episode_steps(self):
-        """After which an episode is truncated."""
+        """Number of steps after which an episode is truncated."""
         return self._core.episode_steps
 
     def reset(self, *, seed=None, options=None):
-        """All episodes anew, or those of `options={"reset_mask": bool[num_envs]}`. World i gets seed + i, or
-        seed[i]; None: each goes on with the seed that follows from its last."""
+        """Starts new episodes in all worlds, or in the worlds of `options={"reset_mask": bool[num_envs]}`. World i gets
+        the seed seed + i, or seed[i]; None: each continues with the seed that follows from its last one. Returns
+        observations and infos."""
         self._open()
         options = dict(options or {})
         mask = options.pop("reset_mask", None)
@@ -160,7 +161,7 @@ class VectorEnv(_VectorBase):
         return observations, {}
 
     def step(self, actions):
-        """One period of all worlds: observations, rewards, terminated, truncated, infos."""
+        """Advances all worlds by one period: returns observations, rewards, terminated, truncated, infos."""
         self._open()
         actions = _np.ascontiguousarray(actions, dtype=self._dtype)
         observations, rewards = self._new(self._observations), self._new(self._rewards)
@@ -184,26 +185,26 @@ class VectorEnv(_VectorBase):
         return {"final_obs": final, "_final_obs": ended, "final_info": of_episode, "_final_info": ended}
 
     def experiment(self, world):
-        """The present episode of a world as an experiment: `taut.run` of it goes through the same bits, without
+        """Returns the present episode of a world as an experiment: `taut.run` of it is bit-identical, without
         actions."""
         return self._core.experiment(world)
 
     def hash(self, world=0):
-        """Of a world's state."""
+        """Returns a hash of a world's state."""
         return self._core.hash(world)
 
     def time_s(self, world=0):
-        """Of a world's episode."""
+        """Returns the time of a world's episode [s]."""
         return self._core.time_s(world)
 
     def save(self, world=0):
-        """A world with its episode, as bytes: for searches that try several futures from one present."""
+        """Returns a world and its episode as bytes, for searches that try several futures from one state."""
         self._open()
         return self._core.save(world)
 
     def restore(self, snapshot, world=0):
-        """Goes on from where `save` was called, in any world of environments of the same experiment and options,
-        through the bits that would have followed. `taut.InputError` if the bytes are something else."""
+        """Restores the result of `save`, bit-identically, into any world of environments of the same experiment and
+        options. Raises `taut.InputError` for other bytes."""
         self._open()
         self._core.restore(snapshot, world)
 
@@ -220,12 +221,12 @@ class VectorEnv(_VectorBase):
     def _fresh(self, array):
         return array.copy() if self._copy else array
 
-    def _new(self, array):  # all of which is going to be written
+    def _new(self, array):  # every element will be written
         return _np.empty_like(array) if self._copy else array
 
 
 class Env(_EnvBase):
-    """One world, as a gymnasium.Env. For training take `make_vec`: it is many times as fast."""
+    """One world, as a gymnasium.Env. For training use `make_vec`: it is many times as fast."""
 
     metadata: dict = {"render_modes": []}
     render_mode = None
@@ -238,7 +239,7 @@ class Env(_EnvBase):
         self.observation_space = self._one.single_observation_space
 
     def reset(self, *, seed=None, options=None):
-        """A new episode: observation and infos."""
+        """Starts a new episode: returns observation and infos."""
         if _EnvBase is not object:
             super().reset(seed=seed)
         if options:
@@ -247,25 +248,25 @@ class Env(_EnvBase):
         return observations[0], {}
 
     def step(self, action):
-        """One period: observation, reward, terminated, truncated, infos."""
+        """Advances by one period: returns observation, reward, terminated, truncated, infos."""
         observations, rewards, over, cut, infos = self._one.step(_np.asarray(action)[None])
         infos = {key: value[0] for key, value in infos.items() if not key.startswith("_")}
         return observations[0], float(rewards[0]), bool(over[0]), bool(cut[0]), infos
 
     def experiment(self):
-        """The present episode as an experiment."""
+        """Returns the present episode as an experiment."""
         return self._one.experiment(0)
 
     def hash(self):
-        """Of the state."""
+        """Returns a hash of the state."""
         return self._one.hash(0)
 
     def save(self):
-        """The world with its episode, as bytes."""
+        """Returns the world and its episode as bytes."""
         return self._one.save(0)
 
     def restore(self, snapshot):
-        """Goes on from where `save` was called, in environments of the same experiment."""
+        """Restores the result of `save`, in environments of the same experiment and options."""
         self._one.restore(snapshot, 0)
 
     def render(self):
@@ -276,5 +277,6 @@ class Env(_EnvBase):
 
 
 def make_vec(experiment, num_envs=1, **how):
-    """A `VectorEnv` of an experiment, which is a path or what `taut.load` gave; see there for more."""
+    """Creates a `VectorEnv` of an experiment, given by path or as the result of `taut.load`; for the arguments see
+    `VectorEnv`."""
     return VectorEnv(experiment, num_envs, **how)

@@ -1,3 +1,4 @@
+// Default experiment and load case for a model file without an experiment.
 #include "taut/alone.h"
 
 #include <utility>

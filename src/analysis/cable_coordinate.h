@@ -1,4 +1,5 @@
-/// The length of a cable along its path, with its derivatives.
+/// Length of a cable along its path, through eyelets and round wheels, with first and second
+/// derivatives.
 #pragma once
 
 #include <vector>
@@ -11,17 +12,18 @@ namespace taut::analysis {
 
 class CableCoordinate {
  public:
-  /// `anchors`: of its attachments.
+  /// `anchors`: one per attachment of the cable.
   CableCoordinate(const CableDef& cable, std::vector<Anchor> anchors);
 
-  /// Of a cable with wheels second derivatives are differences of the exact first ones.
+  /// Returns the path length [m] and its derivatives. Second derivatives of cables with wheels are
+  /// central differences of the exact first ones.
   Coordinate At(const Placement& at, bool with_hessian) const;
   bool has_wheels() const { return !wheels_.empty(); }
-  /// Lengths of its spans: from one attachment to the next, round no wheel [m].
+  /// Returns the straight distances between successive attachments, without arcs on wheels [m].
   std::vector<double> SpansAt(const Placement& at) const;
 
  private:
-  /// A wheel of the path; its axis as described.
+  /// Wheel of the path; its axis in the described pose.
   struct WheelAt {
     std::size_t attachment;
     Vec3 axis;
@@ -40,8 +42,8 @@ class CableCoordinate {
 
   std::vector<Anchor> anchors_;
   std::vector<WheelAt> wheels_;
-  std::vector<int> bodies_;  ///< That it hangs on and that move.
-  std::vector<int> local_;   ///< Which of `bodies_`, per attachment, or -1.
+  std::vector<int> bodies_;  ///< Moving bodies that the cable is attached to.
+  std::vector<int> local_;   ///< Index into `bodies_` per attachment, or -1.
 };
 
 }  // namespace taut::analysis

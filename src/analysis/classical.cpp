@@ -1,4 +1,5 @@
-// Rods as members between points: the count of the literature (Pellegrino and Calladine, 1986).
+// Pin-jointed count of mechanisms and self-stresses with rods as members between points (Pellegrino
+// and Calladine, 1986).
 #include <cmath>
 
 #include "analysis/members.h"
@@ -29,7 +30,7 @@ class Counter {
  private:
   static Eigen::Index Index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-  /// Whether every body is a point or a rod.
+  /// Returns whether every body is a point or a rod; collects the rods.
   bool FindRods() {
     for (std::size_t b = 0; b < s_.bodies.size(); ++b) {
       std::vector<std::size_t> own;
@@ -47,7 +48,7 @@ class Counter {
     return true;
   }
 
-  /// Of an anchor, or none if it does not move.
+  /// Returns the index of an anchor's place; nothing if the anchor does not move.
   std::optional<std::size_t> PlaceAt(const Anchor& at) const {
     for (std::size_t p = 0; p < places_.size(); ++p) {
       const Vec3 apart = places_[p].at_m - at.at_m;

@@ -1,4 +1,4 @@
-// Static equilibrium: what Minimise finds, in the words of taut/analysis.h.
+// Static equilibrium: converts the result of Minimise to the types of taut/analysis.h.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,8 @@ LoadCaseSpec Share(const LoadCaseSpec& loads, double share) {
   return part;
 }
 
-/// What of the question has no meaning for the model; empty if all has.
+/// Returns an error message for options or loads that the model does not allow; empty if all are
+/// valid.
 std::string WrongWith(const ModelDef& def, const LoadCaseSpec& loads,
                       const EquilibriumOptions& options) {
   const auto outside = [](int index, std::size_t count) {
@@ -94,7 +95,7 @@ class Finder {
     Lower();
   }
 
-  /// What nothing holds in the air is put down: how far it falls is no matter of statics.
+  /// Lowers an unsupported robot onto the plane: statics does not depend on the height of its fall.
   void Lower() {
     if (structure_.held_by_world || def_.planes.size() != 1 || structure_.touches.empty()) return;
     double least_m = structure_.GapAt(0, search_.at).value;
@@ -105,7 +106,7 @@ class Finder {
     for (Vec3& center : search_.at.center_m) center = center - least_m * def_.planes[0].normal;
   }
 
-  /// What no pose can balance.
+  /// Returns an error message if the resultant of weight and loads cannot be balanced in any pose.
   std::string Impossible() const {
     Vec3 sum;
     double largest = 0;
@@ -156,14 +157,14 @@ class Finder {
     search_ = first;
   }
 
-  /// With as many linear systems as at first.
+  /// Repeats the search with as many linear systems as the first one.
   void Again() {
     SearchLimits limits = limits_;
     limits.most_iterations += search_.iterations;
     Minimise(structure_, limits, search_);
   }
 
-  /// Loads, settlements and lengthenings little by little; half as much where that fails.
+  /// Adds loads, settlements and lengthenings in steps, halved where one fails.
   void InSteps() {
     double done = 0, by = 0.1;
     Search last = search_;
@@ -209,7 +210,8 @@ class Finder {
     return e;
   }
 
-  /// What is in each other there, deeper than as described, and would push: only planes do, here.
+  /// Returns an error message if shapes overlap in the found pose by more than in the described
+  /// one. Contacts other than with planes exert no forces here, so such a pose is invalid.
   std::string Entered(const Pose& pose) const {
     if (!options_.contact) return "";
     constexpr double kDeeper_m = 1e-6;

@@ -1,4 +1,5 @@
-// What a structure carries by itself (docs/theory/statics.md, section 2).
+// States of self-stress, infinitesimal mechanisms and prestress stability of a structure
+// (docs/theory/statics.md, section 2).
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -31,7 +32,7 @@ class Analysis {
 
     const Eigen::MatrixXd full = FullMatrix();
     out_.matrix = PlainOf(effective_.transpose() * full);
-    // Cut where all motions are lengths, so that metres do not decide.
+    // The rank is determined where all motions are lengths, so that it does not depend on the unit.
     const Eigen::MatrixXd scaled = s_.Effective(s_.start, true);
     const Split split = SplitOf(scaled.transpose() * full);
     out_.rank = split.rank;
@@ -54,10 +55,11 @@ class Analysis {
     return full;
   }
 
-  /// Motions that change no member length: rigid motions and mechanisms. What is across `matrix`
-  /// works on forces, the dual of motions; they are the same columns in lengths.
+  /// Computes the motions that change no member length: rigid motions and mechanisms. The left null
+  /// space of `matrix` consists of forces, the dual of motions; with motions scaled to lengths both
+  /// have the same columns.
   void FindMotions(const Split& split, const Eigen::MatrixXd& scaled) {
-    // Rigid motions in the coordinates of `scaled`, whose columns are across each other.
+    // Rigid motions in the coordinates of `scaled`, whose columns are mutually orthogonal.
     const Eigen::MatrixXd to_scaled =
         (scaled.transpose() * scaled).diagonal().cwiseInverse().asDiagonal() * scaled.transpose();
     const Eigen::MatrixXd rigid = to_scaled * WholeMotions(def_, s_);
@@ -71,7 +73,7 @@ class Analysis {
     }
   }
 
-  /// By length where there is one.
+  /// Returns forces divided by member length, where the member has one.
   Eigen::VectorXd ByLength(const Eigen::VectorXd& forces) const {
     Eigen::VectorXd density = forces;
     for (std::size_t m = 0; m < members_.size(); ++m) {
@@ -81,7 +83,8 @@ class Analysis {
     return density;
   }
 
-  /// The self-stress nearest to none in which cables have a density of 1 N/m or more: eq. 7.
+  /// Returns the self-stress of least norm with a force density of at least 1 N/m in every cable
+  /// (eq. 7); empty if there is none.
   Eigen::VectorXd Feasible(const Eigen::MatrixXd& null) const {
     QuadraticProgram program;
     Eigen::MatrixXd densities(null.rows(), null.cols());
@@ -156,7 +159,8 @@ class Analysis {
     out_.self_stress.push_back(out);
   }
 
-  /// What rods carry: the classical state with the same forces in all else.
+  /// Adds the force densities of rods: the state of self-stress of the pin-jointed count that has
+  /// the same forces in all other members.
   void AddRods(const Eigen::VectorXd& state, SelfStress& out) const {
     if (!classical_) return;
     const Eigen::MatrixXd& null = classical_->null;
@@ -181,7 +185,7 @@ class Analysis {
     out_.mechanism_stiffness.assign(values.data(), values.data() + values.size());
   }
 
-  /// Motions without their rigid part.
+  /// Removes the rigid part of motions, orthogonally in the metric.
   Eigen::MatrixXd AcrossRigid(const Eigen::MatrixXd& motions) const {
     if (rigid_.cols() == 0 || motions.cols() == 0) return motions;
     const Eigen::MatrixXd weight = rigid_.transpose() * metric_ * rigid_;

@@ -15,7 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = HoldingUnknown::Kind;
 
-/// A cable that is an unknown has no tension of its own, a bar that is one holds its length.
+/// Returns the model with unknown forces removed: unknown cables have no tension, unknown bars hold
+/// their length.
 ModelDef Freed(const ModelDef& def, bool known_tensions) {
   ModelDef freed = def;
   if (known_tensions) return freed;

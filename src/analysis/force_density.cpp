@@ -1,4 +1,4 @@
-// Nets by force densities (docs/theory/inverse_statics.md, section 5).
+// Form finding of nets by the force density method (docs/theory/inverse_statics.md, section 5).
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -18,18 +18,19 @@ bool Check(const FormNet& net, Diagnostics& out) {
   const std::size_t before = out.items().size();
   const int nodes = static_cast<int>(net.nodes_m.size());
   if (!net.fixed.empty() && net.fixed.size() != net.nodes_m.size()) {
-    out.Error({}, "the net does not say of every node whether it is fixed");
+    out.Error("net.supports_unknown", {}, "the net does not say of every node whether it is fixed");
   }
   for (std::size_t m = 0; m < net.members.size(); ++m) {
     const auto& [a, b] = net.members[m];
     if (a < 0 || b < 0 || a >= nodes || b >= nodes || a == b) {
-      out.Error({}, "member " + std::to_string(m) + " is not between two nodes of the net");
+      out.Error("net.member_outside", {},
+                "member " + std::to_string(m) + " is not between two nodes of the net");
     }
   }
   return out.items().size() == before;
 }
 
-/// Sum over the members of q (e_a - e_b) (e_a - e_b)'.
+/// Returns the force density matrix: sum over the members of q (e_a - e_b) (e_a - e_b)'.
 MatrixXd DensityMatrix(const FormNet& net, const std::vector<double>& q) {
   const Index n = static_cast<Index>(net.nodes_m.size());
   MatrixXd d = MatrixXd::Zero(n, n);
@@ -55,8 +56,8 @@ std::vector<Vec3> ToPlaces(const MatrixXd& x) {
   return places;
 }
 
-/// Force densities of groups and coordinates that go with each other: |D(a) X| least in turns, over
-/// the groups' densities a, |a| = 1, and over X, orthonormal and across (1, ..., 1).
+/// Form finding without fixed nodes: minimizes |D(a) X| alternately over the groups' force
+/// densities a, |a| = 1, and over the coordinates X, orthonormal and orthogonal to (1, ..., 1).
 class FreeSearch {
  public:
   FreeSearch(const FormNet& net, const std::vector<int>& group, int groups)
@@ -68,7 +69,7 @@ class FreeSearch {
     MatrixXd start = Places(net_);
     const Eigen::RowVector3d middle = start.colwise().mean();
     start.rowwise() -= middle;
-    // The constraint of 1 as a basis of what is across it.
+    // Basis of the orthogonal complement of (1, ..., 1).
     const MatrixXd across =
         MatrixXd(Eigen::HouseholderQR<MatrixXd>(MatrixXd::Ones(n, 1)).householderQ())
             .rightCols(n - 1);
@@ -104,7 +105,8 @@ class FreeSearch {
     return DensityMatrix(net_, q);
   }
 
-  /// The densities that leave least at nodes that are at x; of a member, sum_m a (x_a - x_b).
+  /// Returns the densities with the least imbalance for nodes at x; member m contributes a (x_a -
+  /// x_b).
   VectorXd Densities(const MatrixXd& x) const {
     const Index n = x.rows();
     MatrixXd forces = MatrixXd::Zero(3 * n, groups_);
@@ -136,7 +138,7 @@ class FreeSearch {
       form.why = "the members of the first group bear nothing";
       return form;
     }
-    a /= Matrix(a).trace() < 0 ? -std::fabs(a[0]) : std::fabs(a[0]);  // what pulls is positive
+    a /= Matrix(a).trace() < 0 ? -std::fabs(a[0]) : std::fabs(a[0]);  // tension is positive
     const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(Matrix(a));
     const VectorXd& values = modes.eigenvalues();
     const double largest = values.cwiseAbs().maxCoeff();
@@ -179,18 +181,20 @@ std::optional<std::vector<Vec3>> FindNetForm(const FormNet& net,
   if (!Check(net, out)) return std::nullopt;
   const std::size_t before = out.items().size();
   if (force_density_n_per_m.size() != net.members.size()) {
-    out.Error({}, "there are " + std::to_string(force_density_n_per_m.size()) +
-                      " force densities for " + std::to_string(net.members.size()) + " members");
+    out.Error("net.wrong_number_of_densities", {},
+              "there are " + std::to_string(force_density_n_per_m.size()) +
+                  " force densities for " + std::to_string(net.members.size()) + " members");
   }
   if (!loads_n.empty() && loads_n.size() != net.nodes_m.size()) {
-    out.Error({}, "there are " + std::to_string(loads_n.size()) + " loads for " +
-                      std::to_string(net.nodes_m.size()) + " nodes");
+    out.Error("net.wrong_number_of_loads", {},
+              "there are " + std::to_string(loads_n.size()) + " loads for " +
+                  std::to_string(net.nodes_m.size()) + " nodes");
   }
   std::vector<Index> free, fixed;
   for (std::size_t i = 0; i < net.nodes_m.size(); ++i) {
     (IsFixed(net, i) ? fixed : free).push_back(static_cast<Index>(i));
   }
-  if (fixed.empty()) out.Error({}, "no node of the net is fixed");
+  if (fixed.empty()) out.Error("net.no_fixed_node", {}, "no node of the net is fixed");
   if (out.items().size() > before) return std::nullopt;
   if (free.empty()) return net.nodes_m;
 
@@ -203,7 +207,7 @@ std::optional<std::vector<Vec3>> FindNetForm(const FormNet& net,
   const MatrixXd known = right(free, Eigen::all) - d(free, fixed) * x(fixed, Eigen::all);
   const Eigen::FullPivLU<MatrixXd> factors(MatrixXd(d(free, free)));
   if (!factors.isInvertible()) {
-    out.Error({}, "these force densities do not hold every node of the net",
+    out.Error("net.not_held", {}, "these force densities do not hold every node of the net",
               "some node hangs on nothing, or tensions and compressions cancel");
     return std::nullopt;
   }
@@ -217,11 +221,12 @@ FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnos
   if (!Check(net, out)) return none;
   const std::size_t before = out.items().size();
   if (group.size() != net.members.size()) {
-    out.Error({}, "there are " + std::to_string(group.size()) + " groups for " +
-                      std::to_string(net.members.size()) + " members");
+    out.Error("net.wrong_number_of_groups", {},
+              "there are " + std::to_string(group.size()) + " groups for " +
+                  std::to_string(net.members.size()) + " members");
   }
   if (std::find(net.fixed.begin(), net.fixed.end(), true) != net.fixed.end()) {
-    out.Error({}, "the net has fixed nodes", "FindNetForm finds its form");
+    out.Error("net.has_fixed_nodes", {}, "the net has fixed nodes", "FindNetForm finds its form");
   }
   int groups = 0;
   for (const int g : group) groups = std::max(groups, g + 1);
@@ -231,7 +236,7 @@ FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnos
   }
   const bool negative = std::any_of(group.begin(), group.end(), [](int g) { return g < 0; });
   if (negative || groups == 0 || std::find(has.begin(), has.end(), false) != has.end()) {
-    out.Error({}, "groups must be numbers from 0 on, each with a member");
+    out.Error("net.bad_groups", {}, "groups must be numbers from 0 on, each with a member");
   }
   if (out.items().size() > before) return none;
   return FreeSearch(net, group, groups).Run();

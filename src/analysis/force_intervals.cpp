@@ -1,5 +1,5 @@
-// Between which limits forces lie that friction and redundant supports leave open
-// (docs/theory/inverse_statics.md, section 4).
+// Intervals of forces that friction and redundant supports leave indeterminate, by linear programs
+// with cutting planes (docs/theory/inverse_statics.md, section 4).
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -26,12 +26,12 @@ using Eigen::VectorXd;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kFirstPlanes = 8;
 constexpr int kMostCuts = 40;
-/// How far friction may be beyond its cone, as a share of the largest load.
+/// Largest excess of friction beyond its cone, as a share of the largest load.
 constexpr double kOnCone = 1e-8;
 
 class Intervals {
  public:
-  /// `largest_n`: what counts as the largest load, if it is more than what has to be balanced.
+  /// `largest_n`: reference for tolerances, if larger than the largest load to be balanced [N].
   Intervals(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options,
             double largest_n)
       : def_(def),
@@ -71,7 +71,7 @@ class Intervals {
     return limits;
   }
 
-  /// The least of goal . x, of forces in units of the largest load, within planes at the cones.
+  /// Minimizes goal . x, with forces in units of the largest load, within planes at the cones.
   analysis::QuadraticAnswer Least(const VectorXd& goal, const Angles& angles, ConeSide side) const {
     const ForceLimits limits = Limits(angles, side);
     analysis::QuadraticProgram program;
@@ -81,7 +81,7 @@ class Intervals {
     if (program.gradient.norm() < 1e-12 * goal.norm()) program.gradient.setZero();
     if (limits.rows.rows() > 0) {
       program.inequalities = limits.rows * all_.free;
-      // What balances to a tolerance only may miss a limit by as much.
+      // An imbalance up to the tolerance allows a limit to be missed by as much.
       program.at_least = (limits.at_least - limits.rows * all_.particular) / load_ -
                          VectorXd::Constant(limits.at_least.size(), Slack());
     }
@@ -90,8 +90,8 @@ class Intervals {
   double Slack() const { return 2 * all_.left_n / load_ + 1e-12; }
   VectorXd Forces(const VectorXd& y) const { return all_.particular + load_ * (all_.free * y); }
 
-  /// Planes where these forces are beyond their cones, or wherever there is friction, if `all`.
-  /// False: they are within, so that there is nothing to cut.
+  /// Adds cutting planes where these forces exceed their cones, or, if `all`, wherever there is
+  /// friction. Returns false if there is nothing to cut.
   bool Cut(const VectorXd& x, Angles& angles, bool all = false) const {
     bool cut = false;
     for (std::size_t t = 0; t < options_.touches.size(); ++t) {
@@ -108,8 +108,8 @@ class Intervals {
     return cut;
   }
 
-  /// The least value of a force, -infinity if there is none; from outside and, `inner`, from inside
-  /// the cones. Nothing: no forces hold.
+  /// Returns the least value of a force from the outer cones, -infinity if unbounded; `inner`
+  /// receives the least value from the inner cones. Nothing if no forces balance.
   std::optional<double> LeastOf(const VectorXd& goal, double* inner) {
     double value = 0;
     VectorXd x = VectorXd::Zero(balance_.size());
@@ -130,7 +130,7 @@ class Intervals {
       *inner = value;
       if (std::isfinite(value)) {
         Angles angles = angles_;
-        Cut(x, angles, true);  // the inner planes meet where the forces are
+        Cut(x, angles, true);  // inner planes meet at these forces
         const analysis::QuadraticAnswer answer = Least(goal, angles, ConeSide::kInner);
         *inner =
             answer.outcome == QuadraticOutcome::kSolved ? goal.dot(Forces(answer.x)) : kInfinity;
@@ -170,7 +170,7 @@ class Intervals {
 
   void Joints(ForceIntervals& out) {
     const std::size_t joints = def_.joints.size();
-    // A joint's force is linear in x: its value without unknowns, and what each adds.
+    // A joint's force is linear in x: its value without unknowns, plus the part of each unknown.
     const std::vector<JointLoad> known = balance_.JointLoads(VectorXd::Zero(balance_.size()));
     std::vector<VectorXd> x(joints, VectorXd::Zero(balance_.size())), y = x, z = x;
     for (Index i = 0; i < balance_.size(); ++i) {
@@ -196,7 +196,8 @@ class Intervals {
   Angles angles_;
 };
 
-/// Bodies that unknown forces join; per body the first of its island, -1 of those that stand still.
+/// Islands of bodies that unknown forces connect: per body the first body of its island, -1 for
+/// static bodies.
 class Islands {
  public:
   Islands(const ModelDef& def, const IntervalOptions& options) {
@@ -211,7 +212,7 @@ class Islands {
       }
     }
   }
-  /// The first body of each.
+  /// Returns the first body of each island.
   std::vector<int> All() const {
     std::vector<int> all;
     for (std::size_t b = 0; b < first_.size(); ++b) {
@@ -234,8 +235,8 @@ class Islands {
   std::vector<int> first_;
 };
 
-/// The largest of the forces that are known by themselves: where they balance, what is left of them
-/// is round-off.
+/// Returns the largest known force [N]. Where known forces balance, the residual is rounding
+/// relative to it.
 double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
   double largest_n = 0;
   const auto note = [&](double force_n) { largest_n = std::max(largest_n, std::fabs(force_n)); };
@@ -251,7 +252,8 @@ double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
   return largest_n;
 }
 
-/// Each island by itself, all else held: programs grow faster than their size.
+/// Solves island by island with all other bodies fixed: the cost of a program grows faster than its
+/// size.
 class InParts {
  public:
   InParts(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options)
@@ -312,7 +314,7 @@ class InParts {
       out.found = false;
       return;
     }
-    out.cable = one.cable;  // known ones
+    out.cable = one.cable;  // known tensions
     for (std::size_t i = 0; i < touches.size(); ++i) out.touch[touches[i]] = one.touch[i];
     for (std::size_t i = 0; i < joints.size(); ++i) {
       out.joint_x[joints[i]] = one.joint_x[i];
@@ -334,7 +336,8 @@ ForceIntervals FindForceIntervals(const ModelDef& def, const LoadCaseSpec& loads
                                   const IntervalOptions& options, Diagnostics& out) {
   const std::size_t before = out.items().size();
   analysis::CheckHolding(def, loads, options.touches, options.bounds, out);
-  if (!(options.tolerance >= 0)) out.Error({}, "the tolerance must be a number of at least 0");
+  if (!(options.tolerance >= 0))
+    out.Error("force_intervals.bad_tolerance", {}, "the tolerance must be a number of at least 0");
   if (out.items().size() > before) {
     ForceIntervals none;
     none.why = "the options are wrong";

@@ -1,4 +1,4 @@
-// What forces may be: bounds of cables, friction cones by planes; and where a body touches planes.
+// Bounds of cable tensions, friction cones as planes, and contacts of bodies with planes.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,7 +18,7 @@ using Kind = HoldingUnknown::Kind;
 
 bool IsUnit(const Vec3& a) { return std::fabs(Dot(a, a) - 1) < 1e-6; }
 
-/// NaN fails, too.
+/// Returns whether the bounds are valid; false for NaN.
 bool IsBound(double least, double most) { return least >= 0 && std::isfinite(least) && most >= 0; }
 
 }  // namespace
@@ -92,40 +92,48 @@ void CheckHolding(const ModelDef& def, const LoadCaseSpec& loads,
     const std::string what = "touch " + std::to_string(i);
     const auto is_body = [&](int body) { return body >= kWorld && body < bodies; };
     if (!is_body(touch.body) || !is_body(touch.other) || touch.body == touch.other) {
-      out.Error({}, what + " is not between two bodies, or a body and the world");
+      out.Error("contact.bad_bodies", {},
+                what + " is not between two bodies, or a body and the world");
     }
-    if (!IsUnit(touch.normal)) out.Error({}, "the normal of " + what + " is no unit vector");
+    if (!IsUnit(touch.normal))
+      out.Error("contact.bad_normal", {}, "the normal of " + what + " is no unit vector");
     if (!(touch.friction >= 0) || !std::isfinite(touch.friction)) {
-      out.Error({}, "the friction of " + what + " must be a number of at least 0");
+      out.Error("contact.bad_friction", {},
+                "the friction of " + what + " must be a number of at least 0");
     }
   }
   if (!bounds.empty() && bounds.size() != def.cables.size()) {
-    out.Error({}, "there are " + std::to_string(bounds.size()) + " bounds for " +
-                      std::to_string(def.cables.size()) + " cables");
+    out.Error("bounds.wrong_number", {},
+              "there are " + std::to_string(bounds.size()) + " bounds for " +
+                  std::to_string(def.cables.size()) + " cables");
   } else {
     for (std::size_t i = 0; i < bounds.size(); ++i) {
       const CableBounds& b = bounds[i];
       const std::string& name = def.cables[i].name;
       if (!IsBound(b.at_least_n, b.at_most_n) || !IsBound(b.at_least_n_per_m, b.at_most_n_per_m)) {
-        out.Error({}, "the bounds of cable " + name + " must be numbers of at least 0");
+        out.Error("bounds.negative", {},
+                  "the bounds of cable " + name + " must be numbers of at least 0");
         continue;
       }
       const double length = CableLength(def.cables[i]);
       const double least = std::max(b.at_least_n, b.at_least_n_per_m * length);
       const double most = std::min(b.at_most_n, b.at_most_n_per_m * length);
       if (least > most) {
-        out.Error({}, "cable " + name + " is to have at least " + std::to_string(least) +
-                          " N and at most " + std::to_string(most) + " N");
+        out.Error("bounds.empty", {},
+                  "cable " + name + " is to have at least " + std::to_string(least) +
+                      " N and at most " + std::to_string(most) + " N");
       }
     }
   }
   if (!loads.settlements.empty()) {
-    out.Error({}, "load case " + loads.name + " moves supports, but the pose is given",
+    out.Error("load_case.moves_supports", {},
+              "load case " + loads.name + " moves supports, but the pose is given",
               "describe the pose that they have then");
   }
   for (const LoadCaseSpec::NodeForce& force : loads.forces) {
     if (force.node < 0 || force.node >= static_cast<int>(def.nodes.size())) {
-      out.Error({}, "load case " + loads.name + " has a force on no node of the model");
+      out.Error("load_case.force_on_no_node", {},
+                "load case " + loads.name + " has a force on no node of the model");
     }
   }
 }
@@ -144,7 +152,7 @@ std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m) {
       const double friction = sim::Combined(def, material, plane.material).static_friction;
       const TouchDef touch{body, kWorld, place - (radius + gap) * plane.normal, plane.normal,
                            friction};
-      // Rods of a body that end in the same place touch there once.
+      // Rods of a body that end in the same point have one contact there.
       constexpr double kSamePlaceM = 1e-9;
       const auto same = [&touch](const TouchDef& t) {
         const Vec3 away = t.point_m - touch.point_m, turned = t.normal - touch.normal;

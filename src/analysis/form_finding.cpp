@@ -1,4 +1,5 @@
-// Robots that their cables bring into form (docs/theory/inverse_statics.md, section 5).
+// Form finding of robots from force densities or tensions of their cables
+// (docs/theory/inverse_statics.md, section 5).
 #include "taut/form_finding.h"
 
 #include <cmath>
@@ -9,7 +10,7 @@
 namespace taut {
 namespace {
 
-/// A cable whose tension is its force density times its length.
+/// Returns the model with cables whose tension is force density times length.
 ModelDef WithDensities(const ModelDef& def, const std::vector<double>& density_n_per_m) {
   ModelDef pulled = def;
   for (std::size_t i = 0; i < pulled.cables.size(); ++i) {
@@ -24,18 +25,21 @@ bool Check(const RobotSpec& robot, const FormOptions& options, Diagnostics& out)
   const std::vector<CableDef>& cables = robot.def.cables;
   const bool densities = !options.force_density_n_per_m.empty();
   if (densities == !options.tension_n.empty()) {
-    out.Error({}, "a form needs force densities or tensions of the cables, one of both");
+    out.Error("form_finding.densities_or_tensions", {},
+              "a form needs force densities or tensions of the cables, one of both");
     return false;
   }
   const std::vector<double>& given = densities ? options.force_density_n_per_m : options.tension_n;
   if (given.size() != cables.size()) {
-    out.Error({}, "there are " + std::to_string(given.size()) + " numbers for " +
-                      std::to_string(cables.size()) + " cables");
+    out.Error("form_finding.wrong_number", {},
+              "there are " + std::to_string(given.size()) + " numbers for " +
+                  std::to_string(cables.size()) + " cables");
     return false;
   }
   for (std::size_t i = 0; i < given.size(); ++i) {
     if (given[i] > 0 && std::isfinite(given[i])) continue;
-    out.Error({}, "cable " + cables[i].name + " must have a force density or tension above 0");
+    out.Error("form_finding.not_positive", {},
+              "cable " + cables[i].name + " must have a force density or tension above 0");
   }
   return out.items().size() == before;
 }
@@ -100,7 +104,7 @@ class FormSearch {
     return density;
   }
 
-  /// Whether a cable has drawn its ends into one place.
+  /// Returns whether a cable has pulled its ends into one point; `why` receives the message.
   bool Collapsed(const Pose& pose, std::string& why) const {
     const ModelDef there = ModelAt(robot_.def, pose);
     double longest = 0;
@@ -114,7 +118,7 @@ class FormSearch {
     return false;
   }
 
-  /// L = l - q l / k.
+  /// Sets rest lengths L = l - q l / k.
   bool SetRestLengths(const std::vector<double>& density, Pose& pose, Diagnostics& out) const {
     const std::size_t before = out.items().size();
     const ModelDef there = ModelAt(robot_.def, pose);
@@ -123,7 +127,8 @@ class FormSearch {
       const double length = CableLength(cable), tension = density[i] * length;
       pose.rest_lengths_m[i] = length - tension / cable.stiffness_n_per_m;
       if (pose.rest_lengths_m[i] > 0) continue;
-      out.Error(i < robot_.cable_sources.size() ? robot_.cable_sources[i] : SourceRef{},
+      out.Error("form_finding.cable_too_soft",
+                i < robot_.cable_sources.size() ? robot_.cable_sources[i] : SourceRef{},
                 "cable " + cable.name + " is too soft: with " + std::to_string(tension) +
                     " N it would be longer than the " + std::to_string(length) + " m it has",
                 "ask for less tension, or give it more stiffness");

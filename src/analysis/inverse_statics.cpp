@@ -1,4 +1,5 @@
-// Forces that hold a pose at the least cost (docs/theory/inverse_statics.md, section 2).
+// Inverse statics: forces that hold a pose at the least cost (docs/theory/inverse_statics.md,
+// section 2).
 #include "taut/inverse_statics.h"
 
 #include <Eigen/Core>
@@ -17,12 +18,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Planes at a friction cone: with so many, what is possible within them is 0.5 % short of it.
+/// Number of planes per friction cone. With 32 inner planes, up to 0.5 % of the friction is lost.
 constexpr int kPlanes = 32;
-/// What may be left unbalanced, as a share of the largest load.
+/// Largest imbalance, as a share of the largest load.
 constexpr double kBalanced = 1e-9;
 
-/// The weight of T^2 in what is least.
+/// Returns the weight of T^2 in the objective.
 double WeightOf(HoldingCost cost, double stiffness, double length) {
   switch (cost) {
     case HoldingCost::kTension:
@@ -67,7 +68,8 @@ class Holding {
   }
 
  private:
-  /// In units of the largest load and of the largest weight, in what is free.
+  /// Solves the program for the free coordinates, in units of the largest load and the largest
+  /// weight.
   bool Least(VectorXd& x, std::string& why) {
     const ForceBalance::Solutions all = balance_.Solve();
     const double load = balance_.LargestLoad();
@@ -167,9 +169,10 @@ HoldingForces FindHoldingForces(const ModelDef& def, const LoadCaseSpec& loads,
   analysis::CheckHolding(def, loads, options.touches, options.bounds, out);
   if (!options.calibration_rest_m.empty() &&
       options.calibration_rest_m.size() != def.cables.size()) {
-    out.Error({}, "there are " + std::to_string(options.calibration_rest_m.size()) +
-                      " rest lengths of the calibration for " + std::to_string(def.cables.size()) +
-                      " cables");
+    out.Error("inverse_statics.wrong_number_of_rest_lengths", {},
+              "there are " + std::to_string(options.calibration_rest_m.size()) +
+                  " rest lengths of the calibration for " + std::to_string(def.cables.size()) +
+                  " cables");
   }
   if (out.items().size() > before) {
     HoldingForces none;

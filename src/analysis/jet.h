@@ -1,5 +1,5 @@
-/// Numbers with their exact first and second derivatives: what a joint measures, as its two bodies
-/// move a little (docs/theory/statics.md, eq. 3).
+/// Automatic differentiation (jets): numbers with exact first and second derivatives, for joint
+/// coordinates as functions of small motions of two bodies (docs/theory/statics.md, eq. 3).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace taut::analysis {
 
-/// With respect to twelve motions: six of one body, then six of another.
+/// Number with derivatives with respect to twelve motions: six of one body, then six of the other.
 struct Jet {
   static constexpr int kMotions = 12;
   using Gradient = Eigen::Matrix<double, kMotions, 1>;
@@ -44,7 +44,7 @@ inline Jet operator*(const Jet& a, const Jet& b) {
   return {a.value * b.value, a.value * b.gradient + b.value * a.gradient,
           a.value * b.hessian + b.value * a.hessian + cross + cross.transpose()};
 }
-/// f(a), with the function's value and its first and second derivative there.
+/// Returns f(a), given f and its first and second derivative at a.
 inline Jet Apply(const Jet& a, double f, double first, double second) {
   return {f, first * a.gradient,
           first * a.hessian + second * (a.gradient * a.gradient.transpose())};
@@ -53,7 +53,7 @@ inline Jet Sqrt(const Jet& a) {
   const double root = std::sqrt(a.value);
   return Apply(a, root, 0.5 / root, -0.25 / (root * a.value));
 }
-/// The angle from x to (x, y).
+/// Returns the angle of (x, y) from the x axis.
 inline Jet Atan2(const Jet& y, const Jet& x) {
   const double r2 = x.value * x.value + y.value * y.value;
   const double fx = -y.value / r2, fy = x.value / r2;

@@ -8,7 +8,7 @@
 namespace taut::analysis {
 namespace {
 
-/// One of a joint's two bodies and how it moves: six motions from `first` on.
+/// One of the two bodies of a joint; its six motions start at index `first`.
 struct Side {
   Anchor anchor;
   const Placement* at;
@@ -19,7 +19,8 @@ struct Side {
     if (!moves()) return JetVec::Of({});
     return {Jet::Motion(first + 3), Jet::Motion(first + 4), Jet::Motion(first + 5)};
   }
-  /// Of the body, in W as described; turned by exp(theta), to the second order.
+  /// Returns a direction of the body, given in the described pose, in W, rotated by exp(theta) to
+  /// second order.
   JetVec Direction(const Vec3& described) const {
     JetVec now = JetVec::Of(ArmOf({anchor.body, described}, *at));
     if (!moves()) return now;
@@ -44,7 +45,7 @@ struct Sides {
     return Sqrt(Dot(apart, apart));
   }
 
-  /// Of the bodies that move.
+  /// Returns the coordinate over the moving bodies only.
   Coordinate Local(const Jet& jet) const {
     Coordinate c;
     c.value = jet.value;
@@ -69,7 +70,7 @@ struct Sides {
   }
 };
 
-/// exp(theta) as a quaternion, to the second order: (1 - |theta|^2 / 8, theta / 2).
+/// exp(theta) as a quaternion, to second order: (1 - |theta|^2 / 8, theta / 2).
 struct JetQuat {
   Jet w;
   JetVec v;
@@ -82,8 +83,9 @@ JetQuat operator*(const JetQuat& p, const JetQuat& q) {
   return {p.w * q.w - Dot(p.v, q.v), p.w * q.v + q.w * p.v + Cross(p.v, q.v)};
 }
 
-/// The square of the angle between a ball's bodies: (2 asin(s))^2 of s^2, the square of the vector
-/// part of their turn. Smooth at 0, where a series stands for it.
+/// Returns the square of the angle between the bodies of a ball joint: (2 asin(s))^2 as a function
+/// of s^2, the square of the vector part of their relative rotation. Smooth at 0, where a series
+/// replaces it.
 Jet SquaredTurn(const PlacedJoint& joint, const Sides& sides) {
   const Quat now = sides.b.turn() * joint.def.turned * Conjugate(sides.a.turn());
   const JetQuat turn = SmallTurn(sides.b, 1) *
@@ -91,7 +93,7 @@ Jet SquaredTurn(const PlacedJoint& joint, const Sides& sides) {
                        SmallTurn(sides.a, -1);
   const Jet s2 = Dot(turn.v, turn.v);
   const double x = std::fmin(s2.value, 1.0);
-  if (x < 1e-4) {  // what is left out is below x^4 of it
+  if (x < 1e-4) {  // relative truncation error below x^4
     return Apply(s2, 4 * x * (1 + x * (1.0 / 3 + x * (8.0 / 45 + x * 4.0 / 35))),
                  4 * (1 + x * (2.0 / 3 + x * (8.0 / 15 + x * 16.0 / 35))),
                  4 * (2.0 / 3 + x * (16.0 / 15 + x * 48.0 / 35)));
@@ -127,7 +129,7 @@ Jet Held(const PlacedJoint& joint, HeldRow row, const Sides& sides) {
   return sides.Distance() - Jet::Of(std::sqrt(Dot(described, described)));
 }
 
-/// Of a hinge's angle, as far as half a turn from where it is described.
+/// Returns the angle of a hinge, up to half a turn from the described pose.
 Jet HingeAngle(const PlacedJoint& joint, const Sides& sides) {
   const JointAxes axes = AxesOf(joint.def);
   const Quat& turned = joint.def.turned;

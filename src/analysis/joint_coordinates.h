@@ -1,4 +1,4 @@
-/// What joints hold, and what their springs measure, with derivatives.
+/// Constraint rows and spring energies of joints, with derivatives.
 #pragma once
 
 #include "analysis/coordinate.h"
@@ -7,23 +7,23 @@
 
 namespace taut::analysis {
 
-/// A joint with its two points.
+/// Joint with its two points.
 struct PlacedJoint {
   JointDef def;
-  Anchor a, b;  ///< `body` of each: among those that move, or -1.
+  Anchor a, b;  ///< `body` of each: index among the moving bodies, or -1.
 };
 
-/// How far a row is from what it holds [m] or [rad].
+/// Returns the violation of a constraint row [m or rad].
 Coordinate HeldAt(const PlacedJoint& joint, HeldRow row, const Placement& at);
 
-/// The length of a distance [m].
+/// Returns the length of a distance joint [m].
 Coordinate DistanceAt(const PlacedJoint& joint, const Placement& at);
 
-/// The energy of a joint's spring [J]; also of a bar.
+/// Returns the energy of a joint's spring, or of a bar [J].
 Coordinate SpringEnergyAt(const PlacedJoint& joint, const Placement& at);
 
-/// What a change of `c`, by `force` a unit, does to the joint's body b, with the force at its point
-/// b. A support has all in b; so has a joint whose body b moves.
+/// Returns the load on the joint's body b due to a change of `c` with `force` per unit; the force
+/// acts at point b. For supports and for joints whose body b moves, this is the whole load.
 Wrench LoadOf(const PlacedJoint& joint, const Coordinate& c, double force, const Placement& at);
 
 }  // namespace taut::analysis

@@ -1,3 +1,5 @@
+// Sizing of rods and cables of least mass for yield, buckling and slenderness
+// (docs/theory/inverse_statics.md, section 6).
 #include "taut/member_sizing.h"
 
 #include <algorithm>
@@ -13,10 +15,10 @@ class Checks {
       : task_(task), out_(out), before_(out.items().size()) {}
   void Positive(double value, const char* what) {
     if (value > 0 && std::isfinite(value)) return;
-    out_.Error({}, task_.name + ": " + what + " must be a number above 0");
+    out_.Error("sizing.not_positive", {}, task_.name + ": " + what + " must be a number above 0");
   }
   void True(bool holds, const char* what) {
-    if (!holds) out_.Error({}, task_.name + ": " + what);
+    if (!holds) out_.Error("sizing.bad_task", {}, task_.name + ": " + what);
   }
   void Common() {
     Positive(task_.material.yield_pa, "the yield stress");
@@ -48,7 +50,7 @@ SizedMember OfRadius(const SizingTask& task, double radius_m, double inner_share
   return sized;
 }
 
-/// pi R^2 (1 - c^2) yield = factor |N|.
+/// Returns R from the yield condition pi R^2 (1 - c^2) yield = factor |N|.
 double YieldRadius(const SizingTask& task, double inner_share) {
   double largest = 0;
   for (const double force : task.force_n) largest = std::max(largest, std::fabs(force));
@@ -59,8 +61,8 @@ double YieldRadius(const SizingTask& task, double inner_share) {
 
 }  // namespace
 
-// Euler: pi^2 E I / l^2 = factor N with I = pi R^4 (1 - c^4) / 4; slenderness: l / i with
-// i = R sqrt(1 + c^2) / 2.
+// Euler: pi^2 E I / l^2 = factor N with I = pi R^4 (1 - c^4) / 4; slenderness: l / i with i = R
+// sqrt(1 + c^2) / 2.
 std::optional<SizedMember> LightestRod(const SizingTask& task, Diagnostics& out) {
   Checks checks(task, out);
   checks.Common();
@@ -105,7 +107,7 @@ std::optional<SizedMember> LightestCable(const SizingTask& task, Diagnostics& ou
       "a cable cannot be pressed");
   if (!checks.ok()) return std::nullopt;
   SizedMember sized = OfRadius(task, YieldRadius(task, 0), 0);
-  sized.member.second_moment_m4 = 0;  // it bends as it likes
+  sized.member.second_moment_m4 = 0;  // a cable has no bending stiffness
   sized.member.strength_n = task.material.yield_pa * sized.member.area_m2;
   if (sized.radius_m > 0) sized.limit = SizingLimit::kYield;
   return sized;

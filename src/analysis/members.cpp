@@ -9,8 +9,8 @@
 namespace taut::analysis {
 namespace {
 
-/// The spans of a cable between places with friction, each as a cable of its own; a wheel with
-/// friction does not part it, since it is not known here how its arc is shared.
+/// Returns the spans of a cable between attachments with friction, each as a separate cable. A
+/// wheel with friction does not divide the cable, since the division of its arc is unknown here.
 std::vector<CableDef> SpansOf(const CableDef& cable) {
   std::vector<CableDef> spans;
   CableDef span = cable;
@@ -26,7 +26,8 @@ std::vector<CableDef> SpansOf(const CableDef& cable) {
   return spans;
 }
 
-/// A touching point pushes where its gap opens.
+/// Returns the coordinate with the opposite sign of its derivatives: positive forces of contact
+/// points push, which opens the gap.
 Coordinate Opposite(Coordinate c) {
   c.gradient = -c.gradient;
   c.hessian = -c.hessian;
@@ -118,7 +119,7 @@ Parts PartsOf(const Eigen::MatrixXd& space, const Eigen::MatrixXd& part) {
   const Eigen::MatrixXd span = SpanOf(part);
   if (space.cols() == 0 || span.cols() == 0) return {space.leftCols(0), space};
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(space.transpose() * span, Eigen::ComputeFullU);
-  Eigen::Index in = 0;  // cosines of the angles between them: 1 where they share a direction
+  Eigen::Index in = 0;  // cosines of the principal angles: 1 where the spaces share a direction
   while (in < svd.singularValues().size() && svd.singularValues()[in] > 1 - 1e-9) ++in;
   const Eigen::MatrixXd turned = space * svd.matrixU();
   return {turned.leftCols(in), turned.rightCols(space.cols() - in)};

@@ -1,4 +1,5 @@
-/// Members of a structure as described, each with what it measures.
+/// Members of a structure in the described pose with their coordinates, and the rank and null
+/// spaces of the equilibrium matrix.
 #pragma once
 
 #include <vector>
@@ -9,36 +10,36 @@ namespace taut::analysis {
 
 struct MemberTerm {
   StaticMember member;
-  Coordinate at;  ///< Its length, or how far it is from what it holds.
+  Coordinate at;  ///< Length of the member, or violation of its constraint.
 };
 
-/// Cables and bars, then what joints hold and planes bear, `near_m` from them. A contact's force
-/// counts along its gap's opposite, so that it pushes if it is positive.
+/// Returns cables and bars, then joint rows and contacts of points within `near_m` of planes. The
+/// coordinate of a contact is minus its gap, so that a positive force pushes.
 std::vector<MemberTerm> MembersOf(const ModelDef& def, const Structure& structure, double near_m);
 
-/// 3 x motions: how a point moves.
+/// Returns the 3 x motions Jacobian of a point's position.
 Eigen::MatrixXd MovesOf(const Structure& structure, const Anchor& point);
 
-/// Places at which something acts, each once.
+/// Returns the distinct points of moving bodies at which something acts.
 std::vector<Anchor> PlacesOf(const ModelDef& def, const Structure& structure);
 
-/// Rank of a matrix, cut at 1e-9 of its largest singular value, and the forces that it makes
-/// nothing of.
+/// Rank of a matrix, cut at 1e-9 of its largest singular value, and its two null spaces.
 struct Split {
   RankGap rank;
-  Eigen::MatrixXd null;  ///< Of the columns: orthonormal.
-  Eigen::MatrixXd left;  ///< Of the rows.
+  Eigen::MatrixXd null;  ///< Null space of the columns, orthonormal.
+  Eigen::MatrixXd left;  ///< Null space of the rows (left null space), orthonormal.
 };
 Split SplitOf(const Eigen::MatrixXd& matrix);
 
-/// Of `space`, orthonormal columns: those that lie in the span of `part`, and what is across them.
+/// Division of `space` (orthonormal columns) into directions within the span of `part` and
+/// directions orthogonal to it.
 struct Parts {
   Eigen::MatrixXd in, across;
 };
 Parts PartsOf(const Eigen::MatrixXd& space, const Eigen::MatrixXd& part);
 
-/// Nothing if a body is neither a point nor a rod, or if a cable goes round wheels, or joints hold
-/// turns. The null space is of its members: those of `members` in their order, then rods.
+/// Pin-jointed count. Nothing if a body is neither a point nor a rod, a cable passes over wheels,
+/// or joints constrain rotations. The null space refers to `members` in their order, then rods.
 struct Classical {
   ClassicalCount count;
   Eigen::MatrixXd null;
@@ -47,7 +48,7 @@ struct Classical {
 std::optional<Classical> ClassicalOf(const ModelDef& def, const Structure& structure,
                                      const std::vector<MemberTerm>& members);
 
-/// The shape of a motion of all bodies, scaled as `Mode` says.
+/// Returns the shape of a motion of all bodies, scaled as described at `Mode`.
 Mode ShapeOf(const ModelDef& def, const Structure& structure, Eigen::VectorXd motions);
 
 }  // namespace taut::analysis

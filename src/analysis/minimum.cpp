@@ -1,3 +1,5 @@
+// Search for an equilibrium: Newton's method in a trust region with an augmented Lagrangian, and
+// dynamic relaxation (docs/theory/statics.md, section 4).
 #include "analysis/minimum.h"
 
 #include <Eigen/Eigenvalues>
@@ -7,8 +9,8 @@
 namespace taut::analysis {
 namespace {
 
-/// The energy with what holds as springs that are shifted until they are at rest where they should
-/// be: eq. 13.
+/// Augmented Lagrangian: energy of the structure plus constraints as springs, which are shifted
+/// until the constraints hold (eq. 13).
 class Augmented {
  public:
   Augmented(const Structure& structure, Reactions& holding)
@@ -37,7 +39,7 @@ class Augmented {
     return energy;
   }
 
-  /// Takes the springs' forces for what holds. By how much it was off [m].
+  /// Sets the reactions to the springs' forces. Returns the largest violation before the shift [m].
   double Shift(const Placement& at) {
     double apart = 0;
     for (std::size_t r = 0; r < s_.rows.size(); ++r) {
@@ -65,7 +67,7 @@ class Augmented {
   }
 
  private:
-  static constexpr double kStiffer = 100;  ///< Than the stiffest member.
+  static constexpr double kStiffer = 100;  ///< Ratio to the stiffest member.
   static Eigen::Index Index(std::size_t i) { return static_cast<Eigen::Index>(i); }
   bool Turns(std::size_t row) const {
     const HeldRow r = s_.rows[row].row;
@@ -82,7 +84,7 @@ class Augmented {
   double penalty_, reach2_;
 };
 
-/// The largest force that takes part, by which what is left is measured.
+/// Returns the largest force that takes part, the reference for residuals [N].
 double LargestForce(const Structure& s, const Placement& at) {
   double largest = 0;
   for (const Structure::Cable& cable : s.cables) {
@@ -100,8 +102,8 @@ double LargestForce(const Structure& s, const Placement& at) {
   return largest;
 }
 
-/// The step of a trust region, in the eigenvectors of the second derivative: against negative
-/// curvature as against positive.
+/// Trust-region step in the eigenvectors of the Hessian; negative curvature is treated like
+/// positive, so the step goes down along it (eq. 14).
 struct Spectrum {
   Eigen::VectorXd values, slopes;
   Eigen::MatrixXd vectors;
@@ -131,13 +133,14 @@ struct Spectrum {
   }
 };
 
-/// The least energy under the springs' present shift.
+/// Minimization of the energy at the present shift of the springs.
 class Inner {
  public:
   Inner(const Structure& s, const Augmented& energy, const SearchLimits& limits, Search& search)
       : s_(s), energy_(energy), limits_(limits), search_(search), radius_(0.1 * s.size_m) {}
 
-  /// Until what is left is below `goal_n`, or nothing gets better, or `most` linear systems.
+  /// Runs until the residual is below `goal_n`, there is no more progress, or `most` linear systems
+  /// are used up.
   void Run(double goal_n, int most) {
     most = std::min(limits_.most_iterations, search_.iterations + most);
     Eigen::VectorXd gradient;
@@ -149,7 +152,8 @@ class Inner {
       const Eigen::VectorXd slope = basis.transpose() * gradient;
       search_.left_n = slope.size() == 0 ? 0 : slope.cwiseAbs().maxCoeff();
       if (search_.left_n <= kFine * goal_n || (search_.left_n <= goal_n && last)) return;
-      last = search_.left_n <= goal_n;  // good enough; one more makes it as good as digits allow
+      // Converged; one more step reaches the precision of rounding.
+      last = search_.left_n <= goal_n;
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(basis.transpose() * hessian *
                                                                   basis);
       const Spectrum spectrum{solver.eigenvalues(), solver.eigenvectors().transpose() * slope,
@@ -176,7 +180,7 @@ class Inner {
       Eigen::VectorXd gradient_to;
       Eigen::MatrixXd hessian_to;
       const double then = energy_.Energy(to, gradient_to, &hessian_to);
-      // Where energies differ by rounding only, what is left decides.
+      // Where energies differ by rounding only, the residual decides.
       const double noise =
           kRounding * (std::fabs(now) + std::fabs(then)) +
           kRounding * spectrum.values.cwiseAbs().maxCoeff() * s_.size_m * s_.size_m;
@@ -197,7 +201,7 @@ class Inner {
     return false;
   }
 
-  /// Beyond anything that a structure does.
+  /// Returns whether a body has moved farther than any structure can (1000 times the size).
   bool Left() {
     for (std::size_t b = 0; b < search_.at.center_m.size(); ++b) {
       const Vec3 way = search_.at.center_m[b] - s_.start.center_m[b];
@@ -217,9 +221,9 @@ class Inner {
 
 void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
   constexpr int kMostInVain = 60;
-  // Where a robot rolls or slides far, it gets on faster if what holds it is known by the way.
+  // Robots that roll or slide far converge faster if the reactions are updated in between.
   constexpr int kLong = 25;
-  constexpr double kClosed = 1e-12;  ///< Of the structure's size.
+  constexpr double kClosed = 1e-12;  ///< Share of the structure's size.
   Augmented energy(s, search.holding);
   search.balanced = search.runs_away = false;
   const bool held = !s.rows.empty() || !s.touches.empty();
@@ -242,7 +246,8 @@ void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
 
 void Relax(const Structure& s, int steps, Search& search) {
   Augmented energy(s, search.holding);
-  const double stiffness = 400 * s.stiffness_n_per_m;  // with what holds; a step of 1
+  // Including the constraints' springs; unit time step.
+  const double stiffness = 400 * s.stiffness_n_per_m;
   Eigen::VectorXd gradient, velocity = Eigen::VectorXd::Zero(0);
   double before = 0;
   for (int step = 0; step < steps; ++step) {

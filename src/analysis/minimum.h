@@ -1,20 +1,21 @@
-/// The search for a placement in which everything balances (docs/theory/statics.md, section 4).
+/// Search for an equilibrium by Newton's method in a trust region, or by dynamic relaxation
+/// (docs/theory/statics.md, section 4).
 #pragma once
 
 #include "analysis/structure.h"
 
 namespace taut::analysis {
 
-/// How far a search is: a placement, what holds it there, and what is left.
+/// State of a search: placement, reactions and residual.
 struct Search {
   Placement at;
   Reactions holding;
-  double left_n = 0;     ///< The largest force on any motion, turns by their body's reach.
-  double apart_m = 0;    ///< The largest violation of what is held or may not be entered.
-  double largest_n = 0;  ///< Of all forces that take part.
+  double left_n = 0;     ///< Largest force on any motion; torques divided by the body's reach.
+  double apart_m = 0;    ///< Largest violation of a constraint or a contact.
+  double largest_n = 0;  ///< Largest force that takes part.
   int iterations = 0;    ///< Linear systems so far.
   bool balanced = false;
-  bool runs_away = false;  ///< It has left for good.
+  bool runs_away = false;  ///< The structure moves away without end.
 };
 
 struct SearchLimits {
@@ -22,12 +23,13 @@ struct SearchLimits {
   int most_iterations = 500;
 };
 
-/// From `search.at` and `search.holding` on, by a trust region in the energy of members, loads and,
-/// as an augmented Lagrangian, of what holds.
+/// Minimizes the energy of members and loads plus an augmented Lagrangian of constraints and
+/// contacts, starting at `search.at` and `search.holding`, by Newton's method in a trust region.
 void Minimise(const Structure& structure, const SearchLimits& limits, Search& search);
 
-/// The same by dynamic relaxation: from rest, with masses that suit the stiffness, all motion taken
-/// out whenever its energy peaks. Crude and sure; `Minimise` has the last word.
+/// Approaches the equilibrium by dynamic relaxation: starts at rest, with masses that suit the
+/// stiffness, and zeroes velocities at each peak of the kinetic energy. Crude but robust; finish
+/// with `Minimise`.
 void Relax(const Structure& structure, int steps, Search& search);
 
 }  // namespace taut::analysis

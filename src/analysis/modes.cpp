@@ -1,4 +1,5 @@
-// Modes: K v = omega^2 M v in what is free to move (docs/theory/statics.md, section 5).
+// Natural frequencies and mode shapes: K v = omega^2 M v in the subspace of free motions
+// (docs/theory/statics.md, section 5).
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -35,10 +36,11 @@ Mode ShapeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape) {
 
 namespace {
 
-/// What is not rigid: its eigenvalues, zeros told from others by the gap.
+/// Adds all modes that are not rigid. Eigenvalues up to kZero of the largest count as zero:
+/// mechanisms.
 void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixXd& basis,
                    const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass, Modes& out) {
-  constexpr double kZero = 1e-12;  ///< Of the largest eigenvalue.
+  constexpr double kZero = 1e-12;  ///< Share of the largest eigenvalue.
   if (basis.cols() == 0) return;
   const Eigen::LLT<Eigen::MatrixXd> root(basis.transpose() * mass * basis);
   if (root.info() != Eigen::Success) {

@@ -1,4 +1,4 @@
-// A rigid body as a truss: its rods, and what else keeps its points apart.
+// Rigid body as a truss: its rods, and braces that keep its points apart.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,8 @@
 namespace taut::analysis {
 namespace {
 
-constexpr double kFlat = 1e-7;  // of the body's size: what is nearer to a line or a plane is on it
+// Share of the body's size: points nearer to a line or plane count as on it.
+constexpr double kFlat = 1e-7;
 
 class Builder {
  public:
@@ -22,7 +23,7 @@ class Builder {
     for (const CapsuleDef& rod : def_.capsules) {
       if (rod.body == body_) AddRod(rod);
     }
-    if (IsPinned(def_, body_)) return out_;  // stands still as it is
+    if (IsPinned(def_, body_)) return out_;  // a static body needs no masses or braces
     SpreadMass();
     Brace();
     return out_;
@@ -41,7 +42,8 @@ class Builder {
     return reach;
   }
 
-  /// How far a place is along a line, if it is on it between its ends.
+  /// Returns the position of a place along a line, as a share; nothing if it is not between the
+  /// line's ends.
   std::optional<double> Along(int place, const Vec3& from, const Vec3& to) const {
     const Vec3 way = to - from, there = At(place) - from;
     const double length2 = Dot(way, way), share = Dot(there, way) / length2;
@@ -50,7 +52,7 @@ class Builder {
     return share;
   }
 
-  /// A bar from one point to the next.
+  /// Adds a bar between each two successive places.
   void Chain(PinMember::Kind kind, const std::string& name, const std::vector<int>& all,
              const MemberDef& section) {
     for (std::size_t i = 1; i < all.size(); ++i) {
@@ -59,7 +61,7 @@ class Builder {
                            all[i - 1], all[i], section});
     }
   }
-  /// False if the two are held apart already.
+  /// Returns false if the two places have a connection already.
   bool Tie(int a, int b) { return tied_.insert({std::min(a, b), std::max(a, b)}).second; }
 
   void AddRod(const CapsuleDef& rod) {
@@ -75,8 +77,8 @@ class Builder {
     Chain(PinMember::Kind::kRod, rod.name, chain, rod.member);
   }
 
-  /// Masses at the places that have the body's mass and its centre, the smallest; where there are
-  /// none the centre becomes a place.
+  /// Distributes the body's mass over its places, with the same center of mass and least squared
+  /// masses. If that is impossible, the center of mass becomes a place.
   void SpreadMass() {
     if (places_.OfBody(body_).empty()) return;
     for (int round = 0; round < 2; ++round) {
@@ -101,7 +103,7 @@ class Builder {
     }
   }
 
-  /// The farthest from what `spanned` spans; none if all are on it.
+  /// Returns the place farthest from the span of `spanned`; nothing if all are within it.
   std::optional<int> Farthest(const std::vector<int>& all, const std::vector<int>& spanned,
                               double reach) const {
     const Eigen::Vector3d origin = Of(At(spanned.front()));
@@ -121,7 +123,7 @@ class Builder {
     return farthest;
   }
 
-  /// Points beside a line or a plane, so that there are four corners of a tetrahedron.
+  /// Adds points outside of a line or plane to complete the four corners of a tetrahedron.
   void AddBeside(std::vector<int>& corners, double reach) {
     const Eigen::Vector3d origin = Of(At(corners.front()));
     while (corners.size() < 4) {
@@ -150,7 +152,7 @@ class Builder {
       if (!next) break;
       corners.push_back(*next);
     }
-    // Two points, three in a plane and four in space are rigid by the distances between them.
+    // The distances between two points, three in a plane or four in space make them rigid.
     if (all.size() > corners.size()) AddBeside(corners, reach);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) AddBrace(corners[j], corners[i]);

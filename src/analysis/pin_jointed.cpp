@@ -1,4 +1,4 @@
-// A robot as points, bars and strings (docs/export.md, section 1).
+// Pin-jointed model of a robot: points, bars and strings (docs/export.md, section 1).
 #include "taut/pin_jointed.h"
 
 #include <Eigen/Dense>
@@ -20,14 +20,14 @@ namespace {
 using analysis::Of;
 using analysis::To;
 
-constexpr double kTouch_m = 1e-3;    // the ground bears what is so near
-constexpr double kBalanced = 1e-6;   // of the largest force
-constexpr double kNoLength = 1e-12;  // of a string [m]
+constexpr double kTouch_m = 1e-3;    // ground contact up to this gap
+constexpr double kBalanced = 1e-6;   // share of the largest force
+constexpr double kNoLength = 1e-12;  // length of a string that counts as zero [m]
 
-/// A member between places; as long as those are apart.
+/// Member between places; its length is their distance.
 struct Draft {
   PinMember member;
-  bool known = true;  ///< Whether its force is.
+  bool known = true;  ///< Whether its force is known.
   double tension_n = 0;
 };
 
@@ -56,13 +56,14 @@ class Maker {
     const double tension_n = CableTension(cable);
     double on_wheels_m = 0;
     for (const auto& wheel : path.wheels()) on_wheels_m += wheel.arc;
-    std::vector<int> ends;    // places, two a string
-    std::vector<int> starts;  // strings with which clusters begin
+    std::vector<int> ends;    // places, two per string
+    std::vector<int> starts;  // first string of each cluster
     for (int i = 1, before = 0; i < path.count(); ++i) {
       const std::size_t at = path.attachment(i);
       const bool on_wheel = cable.attachments[at].wheel.has_value();
       const bool arc = on_wheel && path.attachment(i - 1) == at;
-      if (on_wheel && ArcAt(path, arc ? i - 1 : i) <= 0) continue;  // it passes by
+      if (on_wheel && ArcAt(path, arc ? i - 1 : i) <= 0)
+        continue;  // the cable does not touch this wheel
       if (!arc) {
         if (starts.empty() || cable.attachments[path.attachment(before)].friction > 0) {
           starts.push_back(static_cast<int>(ends.size() / 2));
@@ -92,7 +93,7 @@ class Maker {
     return places_.At(cable.attachments[path.attachment(point)].body, path.points()[point].p);
   }
 
-  /// `rest_m` and all of the stiffness are shared out by length.
+  /// Divides `rest_m` and the compliance of the cable among its strings by length.
   void AddStrings(const CableDef& cable, const std::vector<int>& ends,
                   const std::vector<int>& starts, double rest_m, double share, double tension_n) {
     double all_m = 0;
@@ -175,7 +176,7 @@ class Maker {
     bars_.push_back(draft);
   }
 
-  /// What touches a plane does so where its push goes through, if that is a place of its own.
+  /// Adds contacts with planes: at the place on the line of the contact force, else at a new one.
   void AddGround() {
     for (const TouchDef& touch : FindTouches(def_, kTouch_m)) {
       int at = -1;
@@ -255,7 +256,8 @@ class Maker {
     return m.length_m > kNoLength ? Of((1 / m.length_m) * Way(m)) : Eigen::Vector3d::Zero().eval();
   }
 
-  /// What is left at the nodes by loads and known forces, and by unknown ones of 1 N.
+  /// Computes unknown member forces in least squares from the imbalance of loads and known forces
+  /// and from the effect of unit forces [N].
   void Solve() {
     const Eigen::Index rows = 3 * static_cast<Eigen::Index>(out_.nodes.size());
     Eigen::VectorXd left = Eigen::VectorXd::Zero(rows);
@@ -292,7 +294,7 @@ class Maker {
     at_nodes.segment<3>(3 * member.from) += pull;
     at_nodes.segment<3>(3 * member.to) -= pull;
   }
-  /// Without what supports and the ground take.
+  /// Removes the components that supports and the ground bear.
   Eigen::MatrixXd Unheld(Eigen::MatrixXd at_nodes) const {
     for (std::size_t n = 0; n < out_.nodes.size(); ++n) {
       auto rows = at_nodes.middleRows<3>(3 * static_cast<Eigen::Index>(n));
@@ -316,7 +318,7 @@ class Maker {
       cluster.length_m += member.length_m;
       cluster.rest_length_m += member.rest_length_m;
       cluster.force_n = member.force_n;
-      // Springs one behind the other.
+      // Springs in series.
       const double k = member.stiffness_n_per_m, sum = cluster.stiffness_n_per_m;
       if (k > 0) cluster.stiffness_n_per_m = sum > 0 ? sum * k / (sum + k) : k;
       out_.members.push_back(member);

@@ -1,4 +1,4 @@
-// Points of bodies and the nodes that they are.
+// Points of bodies and their nodes in the pin-jointed model.
 #include "analysis/pin_nodes.h"
 
 #include <Eigen/Eigenvalues>
@@ -12,7 +12,7 @@
 namespace taut::analysis {
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // of the size
+constexpr double kSamePlace = 1e-9;  // share of the size
 constexpr double kAligned = 1e-9;
 
 double SizeOf(const ModelDef& def) {
@@ -92,7 +92,7 @@ std::string PinPlaces::NameOf(int place) const {
 }
 
 PinPlaces::Nodes PinPlaces::Number() const {
-  // In the order of the model's nodes, as a person numbers them; then all others.
+  // In the order of the model's nodes, then all others.
   std::vector<int> order;
   for (const NodeDef& node : def_.nodes) {
     for (std::size_t p = 0; p < places_.size(); ++p) {
@@ -124,7 +124,7 @@ PinPlaces::Nodes PinPlaces::Number() const {
     out.held[Index(node)] += held_[p];
   }
   for (std::size_t n = 0; n < out.nodes.size(); ++n) {
-    // All that lies in what is held, however often.
+    // Projector onto the held directions, independent of how often each is held.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(out.held[n]);
     Eigen::Matrix3d onto = Eigen::Matrix3d::Zero();
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-/// The points of a robot in the words of the literature, and what is rigid between them.
+/// Nodes of the pin-jointed model of a robot, and the bars that make its bodies rigid.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,16 +11,16 @@
 
 namespace taut::analysis {
 
-/// Points of bodies, which joints may make one node of.
+/// Points of bodies; joints merge points into one node.
 class PinPlaces {
  public:
   explicit PinPlaces(const ModelDef& def);
 
-  /// The place of a body at this point: what is there already, or a new one.
+  /// Returns the place of a body at this point; creates it if missing.
   int At(int body, const Vec3& point_m);
-  /// From here on both are one node.
+  /// Merges two places into one node.
   void Join(int a, int b);
-  /// Where a support holds a place: along `axis`, or across it.
+  /// Adds a support at a place: along `axis`, or in the two directions across it.
   void Hold(int place, const Vec3& axis, bool along);
 
   const Vec3& point_m(int place) const { return places_[Index(place)].point_m; }
@@ -29,11 +29,11 @@ class PinPlaces {
   double size_m() const { return size_m_; }
   void Call(int place, std::string name) { places_[Index(place)].name = std::move(name); }
 
-  /// To be called once all places are there and joined.
+  /// Result of `Number`, to be called once all places exist and are joined.
   struct Nodes {
     std::vector<PinNode> nodes;
     std::vector<int> of_place;
-    std::vector<Eigen::Matrix3d> held;  ///< Per node: the directions that something holds.
+    std::vector<Eigen::Matrix3d> held;  ///< Per node: projector onto the held directions.
   };
   Nodes Number() const;
 
@@ -41,7 +41,7 @@ class PinPlaces {
   struct Place {
     int body;
     Vec3 point_m;
-    std::string name;  ///< Of a place that no node of the model names.
+    std::string name;  ///< Name of a place that is not a node of the model.
   };
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
   int Root(int place) const;
@@ -55,10 +55,10 @@ class PinPlaces {
   std::vector<Eigen::Matrix3d> held_;
 };
 
-/// Whether it stands still or moves by a program: what hangs at it is pinned.
+/// Returns whether a body is static or kinematic; its points are pinned.
 bool IsPinned(const ModelDef& def, int body);
 
-/// What keeps the points of a body apart.
+/// Bars and masses that represent a body.
 struct PinBody {
   struct Bar {
     PinMember::Kind kind;
@@ -70,7 +70,8 @@ struct PinBody {
   std::vector<std::pair<int, double>> mass_kg;  ///< By place.
 };
 
-/// Adds places to `places` where a body has not enough of them to be rigid or to have its mass.
+/// Represents a body by bars and masses. Adds places to `places` where the body has too few to be
+/// rigid or to have its mass.
 PinBody PinBodyOf(const ModelDef& def, int body, PinPlaces& places);
 
 }  // namespace taut::analysis

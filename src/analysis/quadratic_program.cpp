@@ -1,14 +1,14 @@
-// The dual method of D. Goldfarb, A. Idnani, "A numerically stable dual method for solving strictly
-// convex quadratic programs", Mathematical Programming 27 (1983) 1-33: from the minimum without
-// constraints, the most violated one comes in at a time, and those whose multipliers would turn
-// negative go, so that every step ends at the minimum under the constraints that it keeps. It needs
-// no point to begin with and never cycles, degenerate or not. Ours differs in that rows are scaled
-// to length one, in that redundant equations are left out, and in a last refinement with the active
-// set that was found.
+// Dual active-set method of D. Goldfarb, A. Idnani, "A numerically stable dual method for solving
+// strictly convex quadratic programs", Mathematical Programming 27 (1983) 1-33. It starts at the
+// unconstrained minimum and adds the most violated constraint in each step; constraints whose
+// multipliers would become negative are removed. Every step ends at the minimum under its active
+// constraints. It needs no feasible start and never cycles, also on degenerate programs.
+// Differences here: rows are scaled to length one, redundant equations are left out, and the result
+// is refined with the final active set.
 //
-// Programs that are not strictly convex go through R. T. Rockafellar's proximal point method
+// Programs that are not strictly convex are solved by R. T. Rockafellar's proximal point method
 // ("Monotone operators and the proximal point algorithm", SIAM J. Control Optim. 14 (1976)
-// 877-898), which ends after finitely many steps where the program is linear.
+// 877-898), which ends after finitely many steps on linear programs.
 #include "analysis/quadratic_program.h"
 
 #include <Eigen/Cholesky>
@@ -24,14 +24,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// What of a direction is left of it that the active constraints do not determine, at least.
+/// Least share of a row that is independent of the active constraints.
 constexpr double kIndependent = 1e-10;
-/// Of a Hessian that can be trusted to be strictly convex.
+/// Least reciprocal condition number of a Hessian that counts as strictly convex.
 constexpr double kWellConditioned = 1e-11;
 
-/// Equations first, then inequalities, each of length one.
+/// Equations first, then inequalities, each scaled to length one.
 struct Rows {
-  MatrixXd normals;  ///< A column each.
+  MatrixXd normals;  ///< One column per row.
   VectorXd offsets, lengths;
   int equations = 0;
 
@@ -59,7 +59,7 @@ struct Rows {
 
 class DualActiveSet {
  public:
-  /// `factor`: of the Hessian.
+  /// `factor`: Cholesky factor of the Hessian.
   DualActiveSet(const MatrixXd& hessian, const Eigen::LLT<MatrixXd>& factor,
                 const VectorXd& gradient, const Rows& rows)
       : hessian_(hessian),
@@ -95,7 +95,8 @@ class DualActiveSet {
     return QuadraticOutcome::kFailed;
   }
 
-  /// Of a solution, or of the proof that there is none; of rows as they were given.
+  /// Returns the multipliers of the solution, or of the proof of infeasibility, for rows without
+  /// scaling.
   VectorXd Multipliers() const {
     VectorXd all = VectorXd::Zero(rows_.count());
     for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -111,7 +112,7 @@ class DualActiveSet {
  private:
   int size() const { return static_cast<int>(active_.size()); }
   double Slack(int row) const { return rows_.normals.col(row).dot(x_) - rows_.offsets[row]; }
-  /// Rounding of a slack, where x has come from.
+  /// Returns the rounding error of a slack, which grows with the largest x on the way.
   double Tolerance(int row) const {
     return 1e-11 * (rows_.normals.col(row).cwiseAbs().dot(x_.cwiseAbs()) +
                     std::fabs(rows_.offsets[row])) +
@@ -134,7 +135,7 @@ class DualActiveSet {
     return worst;
   }
 
-  /// How x and the active multipliers change while a row's own multiplier grows by one.
+  /// Rates of change of x and of the active multipliers per unit of a row's own multiplier.
   struct Direction {
     VectorXd d, z, r;
     bool independent = false;
@@ -155,7 +156,7 @@ class DualActiveSet {
     const Direction to = Toward(row);
     const double slack = Slack(row);
     if (!to.independent) {
-      if (std::fabs(slack) <= 100 * Tolerance(row)) return true;  // follows from the others
+      if (std::fabs(slack) <= 100 * Tolerance(row)) return true;  // depends on the others
       Refute(row, slack < 0 ? 1.0 : -1.0, to.r);
       return false;
     }
@@ -166,13 +167,13 @@ class DualActiveSet {
     return true;
   }
 
-  /// Makes a violated inequality hold. False: it cannot.
+  /// Makes a violated inequality hold. Returns false if that is impossible.
   bool Include(int row) {
     double own = 0;
     while (steps < most_steps_) {
       const Direction to = Toward(row);
       double longest = kInfinity;
-      int first = -1;  // to go
+      int first = -1;  // constraint to remove
       for (int k = 0; k < size(); ++k) {
         if (active_[static_cast<std::size_t>(k)] < rows_.equations || to.r[k] <= 0) continue;
         const double t = std::fmax(0.0, multipliers_[static_cast<std::size_t>(k)]) / to.r[k];
@@ -182,7 +183,7 @@ class DualActiveSet {
           to.independent ? -Slack(row) / to.z.dot(rows_.normals.col(row)) : kInfinity;
       if (first < 0 && !to.independent) {
         if (!Contradicts(row, to.r)) {
-          implied_[static_cast<std::size_t>(row)] = true;  // violated by rounding alone
+          implied_[static_cast<std::size_t>(row)] = true;  // violated by rounding only
           return true;
         }
         Refute(row, 1.0, to.r);
@@ -201,7 +202,8 @@ class DualActiveSet {
     return false;
   }
 
-  /// Whether a row that is a sum of the active ones is against them, by more than rounding.
+  /// Returns whether a row that is a linear combination of the active ones contradicts them by more
+  /// than rounding.
   bool Contradicts(int row, const VectorXd& r) const {
     double gain = rows_.offsets[row], largest = std::fabs(gain);
     for (int k = 0; k < size(); ++k) {
@@ -211,7 +213,8 @@ class DualActiveSet {
     return gain > 1e-12 * largest;
   }
 
-  /// The row is a sum of the active ones, which forbid it.
+  /// Stores the multipliers of the proof of infeasibility: the row is a linear combination of the
+  /// active ones, which forbid it.
   void Refute(int row, double sign, const VectorXd& r) {
     refuted_ = row, refuted_sign_ = sign;
     for (int k = 0; k < size(); ++k) multipliers_[static_cast<std::size_t>(k)] = -sign * r[k];
@@ -247,8 +250,8 @@ class DualActiveSet {
     ++steps;
   }
 
-  /// x and the multipliers from the active set anew: what many steps have gathered of rounding
-  /// goes.
+  /// Recomputes x and the multipliers from the active set, which removes the accumulated rounding
+  /// errors.
   void Refine() {
     const int q = size();
     const Eigen::Index n = x_.size();
@@ -272,13 +275,14 @@ class DualActiveSet {
   std::vector<int> active_;
   std::vector<double> multipliers_;
   std::vector<bool> is_active_;
-  std::vector<bool> implied_;  ///< Hold by the active ones; looked at no more while those stay.
-  double farthest_ = 0;        ///< The largest component that x had.
+  /// Rows that follow from the active ones; skipped until one of those is removed.
+  std::vector<bool> implied_;
+  double farthest_ = 0;  ///< Largest component that x has had.
   int refuted_ = -1, most_steps_ = 0;
   double refuted_sign_ = 0;
 };
 
-/// With a Hessian that has a factor.
+/// Solves a program whose Hessian has a Cholesky factor.
 QuadraticAnswer SolveStrictly(const MatrixXd& hessian, const Eigen::LLT<MatrixXd>& factor,
                               const VectorXd& gradient, const Rows& rows) {
   DualActiveSet search(hessian, factor, gradient, rows);
@@ -292,7 +296,7 @@ QuadraticAnswer SolveStrictly(const MatrixXd& hessian, const Eigen::LLT<MatrixXd
   return answer;
 }
 
-/// Whether the value falls for ever along `d`, and nothing is in the way.
+/// Returns whether the objective decreases without bound along `d` within all constraints.
 bool IsRay(const QuadraticProgram& p, const Rows& rows, const VectorXd& d) {
   constexpr double kRounding = 1e-8;
   const double curvature = (p.hessian * d).norm(), largest = p.hessian.norm();
@@ -306,7 +310,7 @@ bool IsRay(const QuadraticProgram& p, const Rows& rows, const VectorXd& d) {
   return true;
 }
 
-/// x_k+1: the least of the program's value plus e |x - x_k|^2 / 2.
+/// Proximal point method: x_k+1 minimizes the objective plus e |x - x_k|^2 / 2.
 QuadraticAnswer SolveByProximity(const QuadraticProgram& p, const Rows& rows) {
   constexpr int kMostRounds = 60;
   constexpr double kFirst = 0.1, kLeast = 1e-6, kCloser = 1e-11;

@@ -1,5 +1,5 @@
-/// A model as statics sees it: bodies that move, members with energies, directions that are held,
-/// points that may touch planes, loads (docs/theory/statics.md, section 1).
+/// Structure for statics: moving bodies, members with energies, constraint rows of joints, points
+/// that may touch planes, and loads (docs/theory/statics.md, section 1).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@
 
 namespace taut::analysis {
 
-/// What holds: forces of held rows and of touching points. A row's is that of eq. 2; a point's is
-/// how hard the plane pushes, >= 0.
+/// Reactions: multipliers y of constraint rows as in eq. 2, and contact forces z >= 0 of touching
+/// points [N].
 struct Reactions {
   Eigen::VectorXd rows, touches;
 };
@@ -30,12 +30,12 @@ class Structure {
     std::size_t joint;
     HeldRow row;
   };
-  /// A point, with a ball about it, above a plane.
+  /// Point with a sphere around it that may touch a plane.
   struct Touch {
     Anchor point;
     int plane;
     Vec3 normal;
-    double offset_m;  ///< Of the gap normal . p - offset.
+    double offset_m;  ///< Offset in the gap normal . p - offset.
     double radius_m;
   };
   struct Load {
@@ -47,27 +47,28 @@ class Structure {
   Structure(const ModelDef& def, const LoadCaseSpec& loads, bool contact);
 
   int motions() const { return 6 * static_cast<int>(bodies.size()); }
-  /// A model's body among those that move, or -1.
+  /// Returns the index of a model's body among the moving ones, or -1.
   int Moving(int body) const { return body < 0 ? -1 : moving_[static_cast<std::size_t>(body)]; }
   Anchor AnchorAt(int body, const Vec3& place_m) const;
 
   double Tension(const Cable& cable, double length_m) const;
-  /// The potential energy of members and loads, its gradient, the opposite of their forces, and its
-  /// second derivative, if that is not null.
+  /// Returns the potential energy of members and loads [J], with its gradient (minus their forces)
+  /// and, unless null, its Hessian.
   double Energy(const Placement& at, Eigen::VectorXd& gradient, Eigen::MatrixXd* hessian) const;
   Coordinate RowAt(std::size_t row, const Placement& at) const;
   Coordinate GapAt(std::size_t touch, const Placement& at) const;
-  /// Adds those that hold, to the derivatives of the energy.
+  /// Adds the reactions to the derivatives of the energy.
   void AddReactions(const Placement& at, const Reactions& holding, Eigen::VectorXd& gradient,
                     Eigen::MatrixXd* hessian) const;
 
-  /// Turns of body `b` that nothing resists, as columns in W: of bodies on which all hangs at the
-  /// centre of mass, of rods about their axis. By geometry.
+  /// Returns the rotations of body `b` that nothing resists, as columns in W, from geometry: of
+  /// bodies on which all forces act at the center of mass, and of rods about their axis.
   Eigen::MatrixXd FreeTurns(std::size_t b, const Placement& at) const;
-  /// All other motions, orthonormal; turns by the reach of their body, so that all are lengths [m].
+  /// Returns a basis of all other motions, orthonormal unless `scaled`: then coordinates of
+  /// rotations are angles times the reach of the body, so that all are lengths [m].
   Eigen::MatrixXd Effective(const Placement& at, bool scaled) const;
 
-  std::vector<int> bodies;  ///< Of the model, that move.
+  std::vector<int> bodies;  ///< Indices of the moving bodies in the model.
   Placement start;
   std::vector<Cable> cables;
   std::vector<PlacedJoint> joints;
@@ -75,10 +76,10 @@ class Structure {
   std::vector<Touch> touches;
   std::vector<Load> loads;
   std::vector<Vec3> weight_n;    ///< Per moving body.
-  std::vector<double> reach_m;   ///< The farthest that something acts on a moving body.
-  double size_m = 0;             ///< Of all of it.
-  double stiffness_n_per_m = 0;  ///< The largest of any member.
-  bool held_by_world = false;    ///< Whether a member or a joint ends at what does not move.
+  std::vector<double> reach_m;   ///< Largest distance at which something acts on a moving body.
+  double size_m = 0;             ///< Diagonal of the structure's bounding box.
+  double stiffness_n_per_m = 0;  ///< Largest stiffness of any member.
+  bool held_by_world = false;    ///< Whether a member or a joint ends at a static point.
   std::vector<std::string> left_out;
 
  private:
@@ -88,19 +89,20 @@ class Structure {
   void AddLoads(const LoadCaseSpec& load_case);
   void AddTouches();
   void Measure();
-  /// Something acts on a body there.
+  /// Records that something acts on a body at this point.
   void Acts(const Anchor& anchor);
-  /// A body's turns of a direction are resisted; of all, if it is zero.
+  /// Records that rotations of a direction fixed in the body are resisted; all rotations if it is
+  /// zero.
   void ResistsTurns(const Anchor& anchor, const Vec3& direction);
 
   const ModelDef& def_;
   std::vector<int> moving_;
   std::vector<Eigen::Matrix3d> arms_;      ///< Sum of |a|^2 - a a^T, per moving body.
-  std::vector<Eigen::Matrix3d> resisted_;  ///< The same of directions.
-  std::vector<Eigen::MatrixXd> free_;      ///< Turns, as described.
+  std::vector<Eigen::Matrix3d> resisted_;  ///< The same sum for directions.
+  std::vector<Eigen::MatrixXd> free_;      ///< Free rotations in the described pose.
 };
 
-/// Of a left-out list: one line for each kind.
+/// Returns the parts of a model that statics ignores, one line per kind.
 std::vector<std::string> WhatIsLeftOut(const ModelDef& def);
 
 }  // namespace taut::analysis

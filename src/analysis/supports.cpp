@@ -69,7 +69,7 @@ std::string AxisName(const Vec3& axis) {
   return Text(axis, 1);
 }
 
-/// Describes rigid motions in words.
+/// Describes rigid motions in text.
 class Words {
  public:
   Words(const Structure& s, const Component& component, const Eigen::MatrixXd& twists)
@@ -140,7 +140,7 @@ struct LoadWork {
   double scale_n = 0;  ///< Sum of the loads' magnitudes.
 };
 
-/// Computes the part of weight and loads.
+/// Computes the part due to weight and loads.
 LoadWork WorkOfLoads(const Structure& s, const Component& component,
                      const Eigen::MatrixXd& twists) {
   const Eigen::Index count = twists.cols();
@@ -150,7 +150,7 @@ LoadWork WorkOfLoads(const Structure& s, const Component& component,
     const Eigen::MatrixXd moves =
         twists.topRows(3) - CrossMatrix(place - component.middle_m) * turns;
     work.force += moves.transpose() * Of(force);
-    // The place of a point along exp(t (v, w)) has the second derivative w x (v + w x r).
+    // A point's position along exp(t (v, w)) has the second derivative w x (v + w x r).
     for (Eigen::Index i = 0; i < count; ++i) {
       for (Eigen::Index j = 0; j < count; ++j) {
         const Vec3 bends =
@@ -233,7 +233,7 @@ Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size
 
 SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
-  // As described: a settling support moves the structure with it.
+  // In the described pose: a settling support moves the structure with it.
   LoadCaseSpec dead = loads;
   dead.settlements.clear(), dead.cables.clear(), dead.bars.clear();
   const Structure s(def, dead, true);

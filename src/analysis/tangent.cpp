@@ -1,3 +1,4 @@
+// Tangent stiffness and mass matrix of a structure (docs/theory/statics.md, section 3).
 #include "analysis/tangent.h"
 
 #include "analysis/members.h"
@@ -127,7 +128,7 @@ Eigen::MatrixXd MovesOf(const Structure& s, const Anchor& point) {
 
 namespace {
 
-/// Eq. 12: takes halves out of the ends, puts a bar's consistent mass along the spans.
+/// Eq. 12: removes half of a bar's mass from each end and adds its consistent mass along the spans.
 void Spread(const Structure& s, double mass_kg, const std::vector<Anchor>& points,
             Eigen::MatrixXd& mass) {
   std::vector<Eigen::MatrixXd> moves;

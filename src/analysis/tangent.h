@@ -1,5 +1,5 @@
-/// Stiffness and mass of a structure where it is, in Eigen's matrices (docs/theory/statics.md,
-/// section 3), for what is made of them.
+/// Stiffness and mass matrices of a structure in the described pose, as Eigen matrices
+/// (docs/theory/statics.md, section 3).
 #pragma once
 
 #include "analysis/structure.h"
@@ -7,8 +7,8 @@
 
 namespace taut::analysis {
 
-/// The forces of what holds that leave the least unbalanced as described: rows, and points within
-/// `near_m` of planes, none of which pulls.
+/// Returns the reactions that minimize the imbalance in the described pose: of joint rows, and of
+/// points within `near_m` of planes, none of which pulls.
 Reactions ReactionsAsDescribed(const Structure& structure, double near_m);
 
 /// Tangent stiffness in the described pose, including the geometric part of the reactions.
@@ -18,20 +18,21 @@ struct HeldStiffness {
 };
 HeldStiffness StiffnessAsDescribed(const Structure& structure);
 
-/// As described, with the consistent mass of members that have one.
+/// Returns the mass matrix in the described pose, with consistent mass of members that have one.
 Eigen::MatrixXd MassMatrix(const ModelDef& def, const Structure& structure);
 
-/// Directions that rows and bearing points hold, orthonormal, a column each: of all motions.
+/// Returns the directions that joint rows and bearing points hold, as orthonormal columns over all
+/// motions.
 Eigen::MatrixXd HeldDirections(const Structure& structure, const Reactions& holding);
 
-/// What forces make of the stiffness.
+/// Returns the geometric stiffness: the part that depends on member forces, loads and reactions.
 Eigen::MatrixXd GeometricStiffness(const Structure& structure, const Reactions& holding);
 
-/// How near a plane a point touches it, as a share of the size.
+/// Largest gap of a touching point, as a share of the structure's size.
 inline constexpr double kNearPlane = 1e-7;
 
-/// An orthonormal basis of the columns' span, and how sharp it is cut: singular values above 1e-9
-/// of the largest count.
+/// Returns an orthonormal basis of the span of the columns; singular values above 1e-9 of the
+/// largest count.
 Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns);
 Matrix PlainOf(const Eigen::MatrixXd& m);
 Eigen::MatrixXd EigenOf(const Matrix& m);

@@ -1,4 +1,5 @@
-// Which motions count: all but those that are trivially free; and what of a model takes no part.
+// Effective motions of a structure (all except rotations that nothing resists), and the parts of a
+// model that statics ignores.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,10 @@
 
 namespace taut::analysis {
 
-// A turn w moves a point at a by w x a, in all by w (sum of |a|^2 - a a^T) w: where that is
-// nothing, nothing resists it.
+// A rotation w moves a point at a by w x a, with the sum of squares w (sum of |a|^2 - a a^T) w over
+// all points: nothing resists rotations in the null space of this matrix.
 Eigen::MatrixXd Structure::FreeTurns(std::size_t b, const Placement& at) const {
-  constexpr double kOnAxis = 1e-7;  ///< Of the structure's size: some rounding of its square.
+  constexpr double kOnAxis = 1e-7;  ///< Share of the structure's size; its square is near rounding.
   const Eigen::Matrix3d all = arms_[b] + size_m * size_m * resisted_[b];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(all);
   Eigen::MatrixXd turns(3, 0);
@@ -33,7 +34,7 @@ Eigen::MatrixXd Structure::Effective(const Placement& at, bool scaled) const {
     columns += 3;
     const Eigen::MatrixXd free = FreeTurns(b, at);
     const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - free * free.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(kept);  // of 0 and 1
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(kept);  // eigenvalues 0 and 1
     const double reach = reach_m[b] > 1e-8 * size_m ? reach_m[b] : size_m;
     for (Eigen::Index i = free.cols(); i < 3; ++i) {
       Eigen::Vector3d turn = solver.eigenvectors().col(i);

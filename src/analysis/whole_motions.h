@@ -12,11 +12,11 @@ struct Component {
   std::vector<std::size_t> bodies;  ///< Indices among moving bodies.
   Vec3 middle_m;                    ///< Mean of their centers of mass.
   std::vector<Vec3> held_points_m;  ///< Ends of cables, bars and distances in the world.
-  std::vector<Vec3> held_axes;      ///< Of wheels in the world.
+  std::vector<Vec3> held_axes;      ///< Axes of wheels in the world.
   std::vector<Vec3> joints_m;       ///< Points of other joints with the world.
 
   bool IsHeld() const { return !held_points_m.empty() || !joints_m.empty(); }
-  bool Has(int moving) const;  ///< A body among those that move, or -1.
+  bool Has(int moving) const;  ///< `moving`: index among the moving bodies, or -1.
 };
 
 /// Returns the connected components in the order of their first bodies.

@@ -1,6 +1,7 @@
-/// Mistakes of ours. TAUT_ASSERT(condition) says where and what, and ends the program, in builds
-/// with the CMake option TAUT_ASSERTS (CONTRIBUTING.md); in others it costs nothing. No input and
-/// no state of a world may reach one. Without the standard library: the step includes it.
+/// Assertions of internal invariants. TAUT_ASSERT(condition) prints the condition and its place and
+/// ends the program, in builds with the CMake option TAUT_ASSERTS (CONTRIBUTING.md); in others it
+/// costs nothing. No input and no state of a world may violate one. Without the standard library:
+/// the step includes it.
 #pragma once
 
 #ifdef TAUT_ASSERTS
@@ -14,7 +15,7 @@ namespace taut::base {
 
 #else
 
-// Still has to compile.
+// The condition must still compile.
 #define TAUT_ASSERT(condition) ((void)sizeof(!(condition)))
 
 #endif

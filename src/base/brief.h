@@ -7,7 +7,7 @@
 
 namespace taut::base {
 
-/// Four digits: what was calculated and is to be looked at, not read back.
+/// Returns a number with four digits, for computed values that are displayed only.
 inline std::string Brief(double number) {
   char text[32];
   return {text, ToChars(text, text + sizeof text, number, 4).ptr};

@@ -1,5 +1,4 @@
-/// Numbers, texts and lists of them as bytes, between processes of one build on one kind of
-/// machine.
+/// Serialization of numbers, texts and lists between processes of one build on one kind of machine.
 #pragma once
 
 #include <cstring>
@@ -26,7 +25,7 @@ class ByteWriter {
   std::string bytes;
 };
 
-/// Reads zeros behind the end.
+/// Beyond the end, values read as zeros.
 class ByteReader {
  public:
   explicit ByteReader(const std::string& bytes) : bytes_(bytes) {}
@@ -49,7 +48,8 @@ class ByteReader {
     items.resize(Size());
     for (T& item : items) Get(item);
   }
-  /// Of what follows: no more than there are bytes, as every item has one at least.
+  /// Reads the size of the following list. Returns 0 if it exceeds the remaining bytes, since every
+  /// item has at least one.
   std::size_t Size() {
     std::size_t size = 0;
     Get(size);

@@ -7,7 +7,7 @@
 namespace taut {
 namespace {
 
-/// Edit distance: insertions, deletions, substitutions and swaps of neighbours cost one each
+/// Edit distance: insertions, deletions, substitutions and swaps of neighbors cost one each
 /// (optimal string alignment).
 int EditDistance(std::string_view a, std::string_view b) {
   std::vector<int> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -32,7 +32,7 @@ int EditDistance(std::string_view a, std::string_view b) {
 namespace {
 
 auto Key(const Diagnostic& d) {
-  return std::tie(d.at.file, d.at.line, d.at.column, d.what, d.hint);
+  return std::tie(d.at.file, d.at.line, d.at.column, d.what, d.hint, d.id);
 }
 
 std::string Line(const Diagnostic& d, std::string_view kind) {
@@ -67,17 +67,17 @@ std::string Printable(std::string_view text) {
   return out;
 }
 
-void Diagnostics::Error(SourceRef at, std::string what, std::string hint) {
-  items_.push_back({std::move(at), std::move(what), std::move(hint)});
+void Diagnostics::Error(MessageId id, SourceRef at, std::string what, std::string hint) {
+  AddError({std::move(at), std::move(what), std::move(hint), id.text()});
 }
 
-void Diagnostics::Unreadable(SourceRef at, std::string what, std::string hint) {
-  Error(std::move(at), std::move(what), std::move(hint));
+void Diagnostics::Unreadable(MessageId id, SourceRef at, std::string what, std::string hint) {
+  Error(id, std::move(at), std::move(what), std::move(hint));
   items_.back().unreadable = true;
 }
 
-void Diagnostics::Warning(SourceRef at, std::string what, std::string hint) {
-  warnings_.push_back({std::move(at), std::move(what), std::move(hint)});
+void Diagnostics::Warning(MessageId id, SourceRef at, std::string what, std::string hint) {
+  AddWarning({std::move(at), std::move(what), std::move(hint), id.text()});
 }
 
 void Diagnostics::WarningsToErrors() {
@@ -131,7 +131,7 @@ std::string DidYouMean(std::string_view word, const std::vector<std::string>& ca
   const std::string_view best = ClosestMatch(word, candidates);
   if (!best.empty()) return "did you mean \"" + std::string(best) + "\"?";
   if (candidates.empty()) return {};
-  // Two more are no reason to leave out three.
+  // Up to 14 names are listed in full: leaving out only two would save little.
   constexpr std::size_t kMostNamed = 12, kMost = 14;
   const std::size_t named = candidates.size() <= kMost ? candidates.size() : kMostNamed;
   std::string out = "one of:";

@@ -15,23 +15,25 @@ std::unique_ptr<FolderLock> FolderLock::Take(const std::string& folder, Diagnost
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    out.Error({folder}, "cannot make this folder: " + error.message());
+    out.Error("folder.not_made", {folder}, "cannot make this folder: " + error.message());
     return nullptr;
   }
   const std::string path = (std::filesystem::path(folder) / ".lock").string();
   const int descriptor = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
   std::unique_ptr<FolderLock> lock(new FolderLock(path, descriptor));
   if (descriptor < 0) {
-    out.Error({folder}, std::string("cannot be written to: ") + std::strerror(errno));
+    out.Error("folder.not_writable", {folder},
+              std::string("cannot be written to: ") + std::strerror(errno));
   } else if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     if (errno == EWOULDBLOCK) {
-      out.Error({folder}, "another process is writing into this folder",
+      out.Error("folder.locked", {folder}, "another process is writing into this folder",
                 "wait for it, stop it, or give `--out` another folder");
     } else {
-      out.Error({path}, std::string("cannot be locked: ") + std::strerror(errno));
+      out.Error("folder.lock_failed", {path},
+                std::string("cannot be locked: ") + std::strerror(errno));
     }
   } else if (!lock->Holds()) {
-    out.Error({folder}, "was deleted just now");
+    out.Error("folder.deleted", {folder}, "was deleted just now");
   } else {
     return lock;
   }

@@ -1,4 +1,4 @@
-/// A fingerprint of texts and numbers.
+/// Hash (fingerprint) of texts and numbers.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,13 @@ class Fnv1a {
       hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 1099511628211u;
     }
   }
-  /// With its length, so that the border between two texts counts, too.
+  /// Adds a text with its length, so that the border between two texts matters.
   void AddText(std::string_view text) {
     Add(std::to_string(text.size()) + ":");
     Add(text);
   }
-  /// To the bit, but for the sign of zero and the kind of NaN, which files do not keep.
+  /// Adds the bits of a number, except the sign of zero and the kind of NaN, which files do not
+  /// preserve.
   void AddNumber(double x) {
     AddText(x != x ? "nan" : std::to_string(__builtin_bit_cast(std::uint64_t, x + 0.0)));
   }
@@ -30,7 +31,7 @@ class Fnv1a {
   std::uint64_t hash_ = 14695981039346656037u;
 };
 
-/// 16 hexadecimal digits.
+/// Returns 16 hexadecimal digits.
 std::string HashText(std::uint64_t hash);
 
 }  // namespace taut::base

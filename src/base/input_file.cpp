@@ -11,11 +11,11 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
                                          const std::string& hint, Diagnostics& out,
                                          NamedBy named_by) {
   const auto refuse = [&](std::string what, const std::string& hint_of = {}) {
-    out.Error({path, 0, 0}, std::move(what), hint_of);
+    out.Error("file.not_readable", {path, 0, 0}, std::move(what), hint_of);
     return std::nullopt;
   };
   const auto unreadable = [&](std::string what, int error) {
-    out.Unreadable({path, 0, 0}, std::move(what) + std::strerror(error));
+    out.Unreadable("file.not_readable", {path, 0, 0}, std::move(what) + std::strerror(error));
     return std::nullopt;
   };
   std::error_code ignored;

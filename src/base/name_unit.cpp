@@ -9,7 +9,7 @@
 namespace taut::base {
 namespace {
 
-/// "s^2" of "s2". Empty if a word is no unit.
+/// Returns the unit of a word, such as "s^2" for "s2"; empty if it is not a unit.
 std::string UnitOfWord(std::string_view word) {
   constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
       {"m", "m"},   {"s", "s"},     {"kg", "kg"}, {"n", "N"},     {"j", "J"},
@@ -27,8 +27,8 @@ std::string UnitOfWord(std::string_view word) {
   return {};
 }
 
-/// Many names end in a letter that counts or is a component: body_a, orientation_w. It is a unit
-/// where the word before says of what.
+/// Many names end in a letter that is an index or a component: body_a, orientation_w. The letter is
+/// a unit only after the name of its quantity.
 bool IsOnlyLetter(std::string_view word, std::string_view before) {
   constexpr std::string_view kLetters[] = {"a", "v", "w", "k", "c"};
   constexpr std::string_view kQuantities[] = {"current", "voltage", "power", "temperature"};

@@ -1,4 +1,4 @@
-/// Units as names of keys and channels end with them.
+/// Units as suffixes of the names of keys and channels.
 #pragma once
 
 #include <string>
@@ -6,17 +6,17 @@
 
 namespace taut::base {
 
-/// "N s" over "m" of damping_n_s_per_m. Nothing over "m" of weight_per_m, where what is counted or
-/// a unit that is not known stands before "per". Both are empty if a name ends with no unit.
+/// For damping_n_s_per_m: "N s" over "m". For weight_per_m: nothing over "m", because a count or an
+/// unknown unit precedes "per". Both are empty if a name ends without a unit.
 struct NameUnit {
   std::string over, under;
 
-  /// "N s/m"; "1/m" where nothing is over it.
+  /// Returns text such as "N s/m"; "1/m" with nothing over it.
   std::string Text() const;
 };
 
-/// The first word of a name says what is measured. A unit is all the words at the end that are of
-/// one: kg_per_m ends with m and is no m.
+/// Returns the unit of a name. The first word names the quantity; the unit consists of all words at
+/// the end that are units: kg_per_m ends with m but is not a length.
 NameUnit UnitAtEnd(std::string_view name);
 
 }  // namespace taut::base

@@ -12,17 +12,17 @@
 namespace taut {
 namespace {
 
-/// Whether the name is of something that can only be written to, not replaced.
+/// Returns true if the path is a device or pipe, which can be written to but not replaced.
 bool IsDevice(const std::string& path) {
   for (const char* open_already : {"/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/"}) {
-    if (path.starts_with(open_already)) return true;  // a link, to a file perhaps
+    if (path.starts_with(open_already)) return true;  // a link, possibly to a file
   }
   struct stat info {};
   return lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISLNK(info.st_mode) &&
          !S_ISDIR(info.st_mode);
 }
 
-/// There are files that cannot be synchronised, pipes for instance: that is no error.
+/// Files that cannot be synchronized, such as pipes, are not an error.
 bool SyncDescriptor(int descriptor) {
   return fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
 }
@@ -32,7 +32,7 @@ bool SyncFolderOf(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int descriptor =
       open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return true;  // one may write into a folder that one may not read
+  if (descriptor < 0) return true;  // a folder may be writable but not readable
   const bool good = SyncDescriptor(descriptor);
   const int error = errno;
   close(descriptor);
@@ -90,7 +90,7 @@ bool NewFile::WriteAllOrNone(std::string_view bytes) {
   struct stat before {};
   if (fstat(descriptor_, &before) != 0) return Fail();
   if (Write(bytes)) return true;
-  // Cut off behind what was there, and write where it ends. What cannot be cut off is no file.
+  // Truncate to the previous size and continue there. Devices and pipes cannot be truncated.
   if (ftruncate(descriptor_, before.st_size) == 0) lseek(descriptor_, before.st_size, SEEK_SET);
   return false;
 }
@@ -108,7 +108,7 @@ bool NewFile::Sync() { return SyncDescriptor(descriptor_) || Fail(); }
 bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out) {
   NewFile file(path);
   if (file.Create() && file.Write(text) && file.Publish()) return true;
-  out.Error({path}, "cannot be written: " + file.why());
+  out.Error("file.not_writable", {path}, "cannot be written: " + file.why());
   return false;
 }
 

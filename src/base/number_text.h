@@ -1,6 +1,7 @@
-/// Numbers from text and back as std::from_chars and std::to_chars do it, also where the standard
-/// library has those of whole numbers only (the libc++ of emscripten 3.1.6): number_text.cpp passes
-/// them on, number_text_by_hand.cpp does without. The same results to the last bit and character.
+/// Conversion of numbers from and to text as by std::from_chars and std::to_chars, also where the
+/// standard library supports integers only (libc++ of emscripten 3.1.6). number_text.cpp forwards
+/// to the library, number_text_by_hand.cpp replaces it; their results are identical to the last bit
+/// and character.
 #pragma once
 
 #include <charconv>
@@ -8,17 +9,17 @@
 
 namespace taut::base {
 
-/// The number that the text begins with, rounded to nearest. No blanks and no plus sign before it.
-/// Out of range: `number` stays.
+/// Parses the number at the beginning of the text, rounded to nearest. No blanks and no plus sign
+/// before it. Out of range: `number` is not changed.
 std::from_chars_result FromChars(const char* begin, const char* end, double& number) noexcept;
 template <class Integer, std::enable_if_t<std::is_integral_v<Integer>, int> = 0>
 std::from_chars_result FromChars(const char* begin, const char* end, Integer& number) noexcept {
   return std::from_chars(begin, end, number);
 }
 
-/// The shortest text that `FromChars` makes the same number of.
+/// Writes the shortest text that `FromChars` reads as the same number.
 std::to_chars_result ToChars(char* begin, char* end, double number) noexcept;
-/// So many digits, at most 17, as printf's %g.
+/// Writes `digits` digits, at most 17, as printf's %g.
 std::to_chars_result ToChars(char* begin, char* end, double number, int digits) noexcept;
 
 }  // namespace taut::base

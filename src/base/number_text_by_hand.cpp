@@ -1,4 +1,5 @@
-// On strtod and snprintf, which round to nearest (glibc's and musl's do), in the C locale.
+// Conversion of numbers by strtod and snprintf, which round to nearest (in glibc and musl), in the
+// C locale.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,7 +21,7 @@ bool Follows(const char* at, const char* end, const char* word) {
   return true;
 }
 
-/// Where the number ends that begins at `begin`; `begin` if none does.
+/// Returns the end of the number that begins at `begin`; `begin` if there is none.
 const char* EndOfNumber(const char* begin, const char* end) {
   const char* at = begin;
   if (at != end && *at == '-') ++at;
@@ -28,7 +29,7 @@ const char* EndOfNumber(const char* begin, const char* end) {
   if (Follows(at, end, "inf")) return at + 3;
   if (Follows(at, end, "nan")) {
     at += 3;
-    // nan(...), whatever the letters say
+    // nan(...), with any letters, digits or underscores
     if (at == end || *at != '(') return at;
     const char* close = at + 1;
     while (close != end && (IsDigit(*close) || *close == '_' ||
@@ -60,15 +61,16 @@ std::to_chars_result Put(char* begin, char* end, const char* text, std::size_t s
   return {std::copy_n(text, size, begin), {}};
 }
 
-/// d.ddde+dd with the fewest digits that mean `number`, which is finite and not negative.
+/// Returns d.ddde+dd with the fewest digits that identify `number`, which is finite and not
+/// negative.
 std::string ShortestScientific(double number) {
   char text[40];
   const auto means = [&] { return std::strtod(text, nullptr) == number; };
   for (int places = 0;; ++places) {
     std::snprintf(text, sizeof text, "%.*e", places, number);
     if (places == 16 || means()) return text;
-    // Below a power of two numbers lie closer than above it: there, what is nearest may mean
-    // another number, while the next one up does not.
+    // Below a power of two, numbers are closer than above it: the nearest decimal may identify
+    // another number, while the next larger decimal identifies this one.
     int exponent = 0;
     if (std::frexp(number, &exponent) != 0.5) continue;
     char* last = std::strchr(text, 'e') - 1;
@@ -114,7 +116,7 @@ std::to_chars_result ToChars(char* begin, char* end, double number) noexcept {
   if (e > 2) digits.append(scientific, 2, e - 2);
   const int exponent = std::atoi(scientific.c_str() + e + 1);
   const int count = static_cast<int>(digits.size());
-  // Without an exponent, where that is no longer.
+  // Without an exponent, if that is not longer.
   std::string plain;
   if (exponent >= count - 1) {
     char whole[400];

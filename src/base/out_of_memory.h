@@ -1,9 +1,9 @@
-/// Where memory that was asked for by hand is not to be had.
+/// Error of a failed explicit memory allocation.
 #pragma once
 
 namespace taut::base {
 
-/// Throws std::bad_alloc. By itself, because who calls it may be compiled without exceptions
+/// Throws std::bad_alloc. In a separate file, because callers may be compiled without exceptions
 /// (cmake/browser.cmake).
 [[noreturn]] void OutOfMemory();
 

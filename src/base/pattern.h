@@ -8,13 +8,15 @@
 
 namespace taut::base {
 
-/// `*` stands for any characters, also none and slashes; everything else for itself.
+/// Returns true if `pattern` matches `name`. `*` matches any characters, also none and slashes;
+/// every other character matches itself.
 bool Fits(std::string_view pattern, std::string_view name);
 
-/// Any of the patterns; an empty list fits everything.
+/// Returns true if any of the patterns matches; an empty list matches everything.
 bool FitsAny(const std::vector<std::string>& patterns, std::string_view name);
 
-/// What the one `*` of `pattern` stands for; "" if the pattern has none and is the name itself.
+/// Returns the part of `name` that the only `*` of `pattern` matches; "" if the pattern has none
+/// and is equal to the name.
 std::optional<std::string_view> Wildcard(std::string_view pattern, std::string_view name);
 
 }  // namespace taut::base

@@ -11,13 +11,13 @@
 namespace taut::base {
 namespace {
 
-/// How long a thread looks before it sleeps. Falling asleep and waking take 50 us together, so that
-/// a thread never looks for much longer than it would have taken to wake. Soon it gives way to
-/// whoever wants its core: that may be the very thread that it waits for. Not at once, since it may
-/// then be gone for milliseconds, and the next call is often a few microseconds away.
+/// Spin time before a thread sleeps. Falling asleep and waking take 50 us together, so spinning
+/// costs little more than waking. After 10 us the thread yields its core, which the thread that it
+/// waits for may need. It does not yield at once, since that may cost milliseconds, and the next
+/// call is often a few microseconds away.
 constexpr std::chrono::microseconds kLooking{60}, kGivingWay{10};
 
-/// A moment, in which another thread of the core gets on.
+/// Pauses briefly and lets another hardware thread of the core run.
 void Pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
@@ -65,7 +65,7 @@ void ThreadPool::RunErased(void* context, Call call) {
   state_.store(((before >> 32) + 1) << 32 | kOpen);
   Ring(idle_sleepers_, start_);
   Guarded(0);
-  // Who has not joined by now will not: this round's context is about to end.
+  // Threads that have not joined by now must not: this round's context is about to end.
   state_.fetch_and(~kOpen);
   WaitUntil([](std::uint64_t state) { return (state & kJoined) == 0; }, caller_sleeps_, done_);
   if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
@@ -89,7 +89,7 @@ void ThreadPool::Work(int thread) {
         },
         idle_sleepers_, start_);
     if ((state & kStop) != 0) return;
-    // The whole word is compared, so nobody joins a round that has closed since.
+    // The whole word is compared, so no thread joins a round that has closed since.
     if (!state_.compare_exchange_strong(state, state + 1)) continue;
     seen = state >> 32;
     Guarded(thread);
@@ -114,8 +114,9 @@ std::uint64_t ThreadPool::WaitUntil(const Good& good, std::atomic<int>& sleepers
       if (looked > kGivingWay) std::this_thread::yield();
     }
   }
-  // Either whoever changes `state_` next sees a sleeper and takes the mutex to ring, or the change
-  // comes before the look below: both sides write first and then read, in one order for all.
+  // No wake-up is lost: either the thread that changes `state_` next sees a sleeper and takes the
+  // mutex to ring, or the change precedes the check below. Both sides write first and then read, in
+  // one sequentially consistent order.
   std::unique_lock lock(mutex_);
   sleepers.fetch_add(1);
   bell.wait(lock, [&] { return good(state = state_.load()); });
@@ -125,7 +126,7 @@ std::uint64_t ThreadPool::WaitUntil(const Good& good, std::atomic<int>& sleepers
 
 void ThreadPool::Ring(const std::atomic<int>& sleepers, std::condition_variable& bell) {
   if (sleepers.load() == 0) return;
-  // Who counts as a sleeper holds the mutex until it sleeps.
+  // A thread that counts as a sleeper holds the mutex until it sleeps.
   { const std::lock_guard lock(mutex_); }
   bell.notify_all();
 }

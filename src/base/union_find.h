@@ -1,4 +1,4 @@
-/// Disjoint sets: what is joined, directly or through others, has the same root.
+/// Union-find (disjoint sets): joined elements, directly or through others, have the same root.
 #pragma once
 
 #include <numeric>
@@ -13,7 +13,7 @@ class UnionFind {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  /// The smallest member of i's set.
+  /// Returns the smallest member of i's set.
   int Root(int i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

@@ -1,4 +1,4 @@
-/// Names of one kind, each once.
+/// Unique names, made by numbering duplicates.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@ namespace taut::base {
 
 class UniqueNames {
  public:
-  /// `name`, or where that is taken or empty, the first of name_2, name_3 ... that is not.
+  /// Returns `name`, or if it is taken or empty, the first of name_2, name_3 ... that is free.
   std::string Take(const std::string& name) {
     std::string base = name.empty() ? "unnamed" : name;
     const auto [first, fresh] = taken_.try_emplace(base, 1);
@@ -21,7 +21,7 @@ class UniqueNames {
   }
 
  private:
-  /// Names, and how often each was asked for: where the search for a free one begins.
+  /// Names and their number of uses, where the search for a free name begins.
   std::map<std::string, int> taken_;
 };
 

@@ -1,4 +1,4 @@
-/// The address of a socket that has a place among files.
+/// Address of a Unix domain socket in the file system.
 #pragma once
 
 #include <sys/un.h>
@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// False if the path is empty or too long for one (`sizeof to->sun_path`).
+/// Returns false if the path is empty or too long for an address (`sizeof to->sun_path`).
 inline bool UnixAddress(const std::string& path, sockaddr_un* to) {
   *to = {};
   to->sun_family = AF_UNIX;

@@ -14,7 +14,7 @@ bool StartedByLauncher() {
 
 namespace {
 
-/// Hands everything on.
+/// Passes all candidates to the local evaluator.
 class Same final : public Evaluator {
  public:
   explicit Same(Evaluator& local) : local_(local) {}

@@ -1,4 +1,4 @@
-/// The cluster that is one process.
+/// Cluster of a single process.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-/// Candidates, trials and other work as bytes, between processes of one build on one kind of
-/// machine.
+/// Serialization of candidates, trials and other work between processes of the same build on the
+/// same kind of machine.
 #pragma once
 
 #include <span>

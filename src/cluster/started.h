@@ -1,9 +1,9 @@
-/// Whether this process is one of several.
+/// Detection of processes that MPI launchers started.
 #pragma once
 
 namespace taut::cluster {
 
-/// mpirun of Open MPI or MPICH, or srun with PMIx or PMI-2, started it.
+/// Returns whether mpirun of Open MPI or MPICH, or srun with PMIx or PMI-2, started this process.
 bool StartedByLauncher();
 
 }  // namespace taut::cluster

@@ -1,3 +1,4 @@
+// Cluster of MPI processes: rank 0 distributes candidates and work, all ranks evaluate.
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
@@ -15,10 +16,10 @@ namespace {
 using cluster::Bytes;
 
 constexpr int kAnswersTag = 1;
-/// How long rank 0 waits for the others once it was told to stop.
+/// Time that rank 0 waits for the others after a request to stop.
 constexpr auto kPatience = std::chrono::seconds(5);
 
-/// From rank 0 to all.
+/// Broadcasts bytes from rank 0 to all ranks.
 void Broadcast(Bytes& bytes) {
   auto size = static_cast<long long>(bytes.size());
   MPI_Bcast(&size, 1, MPI_LONG_LONG, 0, MPI_COMM_WORLD);
@@ -26,7 +27,7 @@ void Broadcast(Bytes& bytes) {
   MPI_Bcast(bytes.data(), static_cast<int>(size), MPI_CHAR, 0, MPI_COMM_WORLD);
 }
 
-/// What a rank has of candidates or pieces: even, contiguous shares, so that lanes are filled.
+/// Returns a rank's share of candidates or pieces: even and contiguous, so that lanes are filled.
 std::pair<std::size_t, std::size_t> Share(std::size_t count, int rank, int size) {
   const auto at = [&](int r) {
     return count * static_cast<std::size_t>(r) / static_cast<std::size_t>(size);
@@ -44,7 +45,8 @@ std::vector<Evaluator::Trial> TryAll(std::span<const Evaluator::Candidate> candi
   return trials;
 }
 
-/// What rank 0 has of the others: hands out work, takes what came of it, sends them home at last.
+/// Connection of rank 0 to the other ranks: distributes work, collects results, and releases the
+/// ranks at the end.
 class Others {
  public:
   Others(const std::atomic<bool>* stop, int size) : stop_(stop), size_(size) {}
@@ -56,8 +58,8 @@ class Others {
   Others& operator=(const Others&) = delete;
 
   void HandOut(Bytes work) const { Broadcast(work); }
-  /// From whichever rank is ready. Looks rather than waits, so that it can be stopped: then, after
-  /// some patience, there is an error.
+  /// Receives from the next rank that is ready. Polls instead of blocking, so that it can be
+  /// stopped: an error follows after kPatience.
   Bytes Take(int& rank) {
     MPI_Status status;
     std::chrono::steady_clock::time_point told{};

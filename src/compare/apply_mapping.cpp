@@ -1,4 +1,4 @@
-// What mappings do to traces and tables.
+// Application of mappings to traces and tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std
       break;
     }
     if (!names.insert(channel.name).second) {
-      out.Error({path}, fmt::format("the mapping makes two channels {}", channel.name));
+      out.Error("mapping.duplicate_channel", {path},
+                fmt::format("the mapping makes two channels {}", channel.name));
       good = false;
     }
   }
@@ -49,7 +50,8 @@ std::optional<Trace> ReadMapped(const std::string& path, const Mapping& mapping,
         return base::Wildcard(rule.from, name).has_value();
       });
       if (fits) continue;
-      out.Error({mapping_path}, fmt::format("{} has no column \"{}\"", path, rule.from),
+      out.Error("mapping.no_column", {mapping_path},
+                fmt::format("{} has no column \"{}\"", path, rule.from),
                 DidYouMean(rule.from, names));
       good = false;
     }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
 
-/// Finite rows of a trace in a range, at times that the other one's channel covers.
+/// Finite rows of a trace in a range, at times that the other trace's channel covers.
 struct SharedRows {
   std::vector<double> time_s, values;
 };
@@ -46,8 +46,8 @@ WindowStatistics StatisticsOf(const SharedRows& rows) {
   return result;
 }
 
-/// Sets the results that depend on differences at the times of the common clock, whose rows are
-/// usually `usual_s` apart.
+/// Sets the results that depend on differences at the times of the common clock, whose usual row
+/// distance is `usual_s`.
 void CompareRows(const CommonClock& clock, double usual_s, const std::vector<double>& a,
                  const std::vector<double>& b, ChannelComparison& result) {
   std::vector<double> time_s, differences;
@@ -72,15 +72,16 @@ void CompareRows(const CommonClock& clock, double usual_s, const std::vector<dou
   result.rmse = std::sqrt(WeightedMean(differences, weights));
   result.missing_s = 0;
   for (const auto& [from_s, to_s] : GapSpans(time_s, gaps)) result.missing_s += to_s - from_s;
-  // Beyond the first and the last row that count, where clocks differ by less than two steps.
+  // Time before the first and after the last finite row; less than two steps may come from the
+  // clocks.
   const double least_s = 2 * usual_s;
   for (const double end_s : {time_s.front() - clock.from_s, clock.to_s - time_s.back()}) {
     if (end_s > least_s) result.missing_s += end_s;
   }
 }
 
-/// Evenly spaced times over the clock's span: a lag is a number of rows only if rows are even. As
-/// far apart as the clock's rows usually are, so that a gap does not make them sparse.
+/// Returns evenly spaced times over the clock's span, because a lag in rows requires even spacing.
+/// The distance is the clock's usual row distance, so that gaps do not make rows sparse.
 std::vector<double> EvenTimes(const CommonClock& clock, double usual_s) {
   const double first = clock.time_s.front(), last = clock.time_s.back();
   const std::size_t rows = clock.time_s.size();

@@ -1,4 +1,4 @@
-/// Comparison of one channel of two traces on one clock.
+/// Comparison of one channel of two traces on a common clock.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,11 @@
 
 namespace taut::compare {
 
-/// Of a / |b| in percent; NaN if b is 0.
+/// Returns 100 (a - b) / |b| in percent; NaN if b is 0.
 double Percent(double a, double b);
 
-/// Compares channel after channel. A reference to all that it is given, which outlives it.
+/// Compares channels one by one. Stores references to the constructor's arguments, which must
+/// outlive it.
 class ChannelComparer {
  public:
   ChannelComparer(const Trace& a, const Trace& b, const CompareOptions& options,
@@ -32,7 +33,7 @@ class ChannelComparer {
   };
   std::vector<double> OnClock(const std::vector<double>& time_s, const std::vector<double>& values,
                               const std::vector<bool>& gaps, bool resample, RowRange rows) const;
-  /// The columns as they are, of quaternions with signs of b that are those of a.
+  /// Returns the unchanged columns; for quaternions the signs of b are aligned with a.
   const Columns& ColumnsOf(std::size_t in_a, std::size_t in_b);
   void SetLag(const Columns& columns, ChannelComparison& result) const;
 
@@ -41,13 +42,13 @@ class ChannelComparer {
   const CompareOptions& options_;
   const CommonClock& clock_;
   std::vector<bool> gaps_a_, gaps_b_, gaps_clock_;
-  double usual_s_;  ///< Distance of the clock's rows.
+  double usual_s_;  ///< Usual distance of the clock's rows.
   std::vector<double> even_s_;
   bool uneven_ = false;
   double step_s_ = 0.0;
   RowRange rows_a_, rows_b_;
   std::vector<Pair> quaternions_;
-  std::optional<std::size_t> turned_;  ///< Whose columns these are.
+  std::optional<std::size_t> turned_;  ///< Quaternion whose columns are in `columns_`.
   std::array<Columns, 4> columns_;
   Columns single_;
 };

@@ -9,7 +9,7 @@
 namespace taut::compare {
 namespace {
 
-/// Times closer than this are the same row: what the digits of a CSV file may lose.
+/// Compares times up to a tolerance, because CSV files may round them.
 bool SameTimes(const std::vector<double>& a, RowRange rows_a, const std::vector<double>& b,
                RowRange rows_b) {
   if (rows_a.end - rows_a.begin != rows_b.end - rows_b.begin) return false;
@@ -67,7 +67,7 @@ std::vector<double> Interpolate(const std::vector<double>& time_s,
     } else if (next == time_s.size() || time_s[next - 1] == at) {
       result.push_back(values[next - 1]);
     } else if (gaps[next - 1]) {
-      // Times of a CSV file lose digits: next to a row is on it.
+      // CSV files may round times: a time within the tolerance of a row is on it.
       const bool on_next = time_s[next] - at <= TimeTolerance(at);
       const bool on_last = at - time_s[next - 1] <= TimeTolerance(at);
       result.push_back(on_next   ? values[next]

@@ -5,7 +5,7 @@
 namespace taut {
 namespace {
 
-using Json = nlohmann::ordered_json;  // keys in the order in which they are set; NaN prints as null
+using Json = nlohmann::ordered_json;  // insertion order of keys; NaN becomes null
 
 Json ToJson(const Extreme& extreme) {
   return {{"value", extreme.value}, {"time_s", extreme.time_s}};

@@ -16,7 +16,7 @@
 namespace taut {
 namespace {
 
-/// A number in `width` columns, with as many digits as are worth reading.
+/// Returns a number in `width` columns with its significant digits.
 std::string Cell(double value, int width) {
   if (!std::isfinite(value)) return fmt::format("{:>{}}", "-", width);
   const double size = std::abs(value);
@@ -25,7 +25,7 @@ std::string Cell(double value, int width) {
   return fmt::format("{:>{}.{}f}", value + 0.0, width, size == 0.0 ? 0 : decimals);  // no "-0"
 }
 
-/// The value, without a sign if that many decimals show a zero: no "-0.000".
+/// Returns the value, without a sign if that many decimals show a zero: no "-0.000".
 double Shown(double value, int decimals) {
   return std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;
 }
@@ -35,8 +35,8 @@ std::string Fixed(double value, int width, int decimals) {
   return fmt::format("{:>{}.{}f}", Shown(value, decimals), width, decimals);
 }
 
-/// "cable/a/tension_n" is row "a" under heading "cable/*/tension_n"; "system/com_x_m" has no
-/// middle and is row "com_x_m" under "system/*".
+/// Splits a name: "cable/a/tension_n" is row "a" under heading "cable/*/tension_n";
+/// "system/com_x_m" has no middle and is row "com_x_m" under "system/*".
 std::pair<std::string, std::string> HeadingAndRow(const std::string& name) {
   const std::size_t first = name.find('/');
   if (first == name.npos) return {"", name};
@@ -75,7 +75,7 @@ std::string GroupTitle(const Group& group) {
   return one_unit ? fmt::format("{} [{}]", group.heading, unit) : group.heading;
 }
 
-/// ">0.5" if the search ended there: the delay may be longer.
+/// Returns ">0.5" if the search ended there: the delay may be longer.
 std::string LagCell(const ChannelComparison& channel, int width) {
   if (!channel.lag_at_limit) return Fixed(channel.lag_s, width, 3);
   const char* beyond = channel.lag_s < 0.0 ? "<" : ">";
@@ -96,7 +96,7 @@ void AppendGroup(const Group& group, std::string& out) {
   }
 }
 
-/// Mean, min and max of both and their differences, for one phase.
+/// Appends mean, min and max of both and their differences, for one phase.
 void AppendPhase(const Group& group, const TimeWindow& phase, std::size_t index, std::string& out) {
   out += fmt::format("\n{}, {}: {:g} .. {:g} s\n", GroupTitle(group), phase.name, phase.from_s,
                      phase.to_s);
@@ -120,7 +120,7 @@ std::string SpanText(const TraceSpan& span) {
                      span.last_s, span.step_s);
 }
 
-/// When only one of the two has rows.
+/// Appends the times at which only one of the two has rows.
 void AppendAlone(const TraceSpan& one, const TraceSpan& other, const char* which,
                  std::string& out) {
   if (one.rows == 0 || other.rows == 0) return;
@@ -136,7 +136,7 @@ void AppendAlone(const TraceSpan& one, const TraceSpan& other, const char* which
   if (!parts.empty()) out += fmt::format("only {} covers {}\n", which, parts);
 }
 
-/// Gaps between rows, the longest first if there are many.
+/// Appends gaps between rows, the longest first if there are many.
 void AppendGaps(const TraceSpan& span, const char* which, std::string& out) {
   if (span.gaps_s.empty()) return;
   auto gaps = span.gaps_s;
@@ -155,7 +155,7 @@ void AppendGaps(const TraceSpan& span, const char* which, std::string& out) {
   out += fmt::format("gaps of {}, not compared: {}{}\n", which, spans, more);
 }
 
-/// The channels that miss more of the common time than the gaps of the traces.
+/// Appends the channels whose missing part of the common time exceeds the gaps of the traces.
 void AppendMissing(const Comparison& comparison, std::string& out) {
   double known_s = 0;
   for (const TraceSpan* span : {&comparison.a, &comparison.b}) {
@@ -182,7 +182,7 @@ void AppendMissing(const Comparison& comparison, std::string& out) {
   if (missing.size() > kMost) out += fmt::format("  and {} more\n", missing.size() - kMost);
 }
 
-/// Names that differ in the middle only become one, with their number: "cable/*/damping_n (12)".
+/// Merges names that differ in the middle only, with their number: "cable/*/damping_n (12)".
 std::vector<std::string> Abridged(const std::vector<std::string>& names) {
   std::vector<std::pair<std::string, int>> counts;
   std::vector<std::string> first;

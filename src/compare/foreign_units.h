@@ -1,4 +1,4 @@
-/// Units that measurements come in.
+/// Conversion of units of measured data to SI.
 #pragma once
 
 #include <optional>
@@ -8,12 +8,12 @@
 
 namespace taut {
 
-/// A unit is `factor` of the unit `si`.
+/// One unit equals `factor` times the unit `si`.
 struct ForeignUnit {
   std::string name, si;
   double factor;
 };
-/// Nothing: not known.
+/// Returns nothing for an unknown unit.
 std::optional<ForeignUnit> FindUnit(std::string_view name);
 std::vector<std::string> UnitNames();
 

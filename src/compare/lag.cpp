@@ -15,7 +15,7 @@ struct Moments {
   double count = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
   double size_a = 0.0, size_b = 0.0;  ///< Largest magnitudes.
 
-  /// Pearson's correlation. A constant, up to round-off, is not like anything.
+  /// Returns Pearson's correlation; NaN if either signal is constant up to round-off.
   double Correlation() const {
     constexpr double kRoundOff = 1e-12;
     const double least_a = kRoundOff * size_a, least_b = kRoundOff * size_b;
@@ -24,7 +24,7 @@ struct Moments {
   }
 };
 
-/// Of `count` rows, those left out at which either is not finite.
+/// Returns the moments of `count` rows, without rows at which either value is not finite.
 Moments FiniteMoments(const double* a, const double* b, std::size_t count) {
   Moments m;
   double mean_a = 0.0, mean_b = 0.0;
@@ -48,8 +48,8 @@ Moments FiniteMoments(const double* a, const double* b, std::size_t count) {
   return m;
 }
 
-/// Correlations of a fixed stretch of a with b, shifted. Where every row is finite, a's part is
-/// worked out once and the sums run in four strands, which compilers turn into vectors.
+/// Correlations of a fixed range of a with shifted b. If every row is finite, a's part is computed
+/// once and the sums have four accumulators, which compilers vectorize.
 class Correlator {
  public:
   Correlator(const std::vector<double>& a, const std::vector<double>& b, std::size_t begin,

@@ -1,5 +1,5 @@
-// Mapping files: JSON, read strictly. Vectors and quaternions become plain rules for their
-// components, so that applying a mapping knows only rules.
+// Mapping files: JSON, read strictly. Vectors and quaternions become rules for their components, so
+// that a mapping consists of rules only.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,14 +20,14 @@ constexpr const char* kAxisNames[] = {"x", "y", "z"};
 constexpr std::size_t kMaxBytes = 10'000'000;
 constexpr std::string_view kAxisMark = "{axis}";
 
-/// Which axis of the file an axis of taut is, and whether it points the other way.
+/// Axis of the file that corresponds to an axis of taut, and its sign.
 struct Axis {
   int of_file = 0;
   double sign = 1.0;
 };
 using Axes = std::array<Axis, 3>;
 
-/// +1 for a rotation, -1 for a mirror, 0 if an axis is missing.
+/// Returns +1 for a rotation, -1 for a reflection, 0 if an axis is missing.
 double Handedness(const Axes& axes) {
   const int i = axes[0].of_file, j = axes[1].of_file, k = axes[2].of_file;
   const double order = 0.5 * ((j - i) * (k - i) * (k - j));  // 1 or -1 for a permutation
@@ -54,14 +54,15 @@ class MappingReader {
   }
 
  private:
-  /// JSON lets a later key overwrite an earlier one; here that is an error.
+  /// Parses the text. Duplicate keys, which JSON allows, are an error here.
   Json Parse(const std::string& text) {
     std::vector<std::set<std::string>> keys;
     const auto watch = [&](int, Json::parse_event_t event, Json& value) {
       if (event == Json::parse_event_t::object_start) keys.emplace_back();
       if (event == Json::parse_event_t::object_end) keys.pop_back();
       if (event == Json::parse_event_t::key && !keys.back().insert(value).second) {
-        Error("", fmt::format("key \"{}\" occurs twice in one object", std::string(value)));
+        Error("mapping.duplicate_key", "",
+              fmt::format("key \"{}\" occurs twice in one object", std::string(value)));
       }
       return true;
     };
@@ -69,7 +70,7 @@ class MappingReader {
       return Json::parse(text, watch);
     } catch (const Json::exception& failure) {
       const std::string what = failure.what();  // "[json...] parse error at line 1, ...: ..."
-      Error("", "is not JSON: " + what.substr(what.find("] ") + 2));
+      Error("mapping.not_json", "", "is not JSON: " + what.substr(what.find("] ") + 2));
       return {};
     }
   }
@@ -81,10 +82,11 @@ class MappingReader {
       return;
     }
     if (root.value("version", Json()) != 1) {
-      Error("version", "is not 1, the version of mapping files that this taut reads");
+      Error("mapping.unknown_version", "version",
+            "is not 1, the version of mapping files that this taut reads");
     }
     if (root.contains("description") && !root["description"].is_string()) {
-      Error("description", "is not a text");
+      Error("mapping.description_no_text", "description", "is not a text");
     }
     if (root.contains("table")) Table(root["table"]);
     ReadAxes(root);
@@ -105,15 +107,16 @@ class MappingReader {
       const bool negative = text.starts_with('-');
       const std::string letter = text.substr(negative ? 1 : 0);
       if (letter != "x" && letter != "y" && letter != "z") {
-        Error(fmt::format("axes.{}", kAxisNames[i]), "is none of x, y, z, -x, -y, -z");
+        Error("mapping.bad_axis", fmt::format("axes.{}", kAxisNames[i]),
+              "is none of x, y, z, -x, -y, -z");
         return;
       }
       axes_[i] = {letter[0] - 'x', negative ? -1.0 : 1.0};
     }
     if (Handedness(axes_) == 0.0) {
-      Error("axes", "names an axis twice");
+      Error("mapping.duplicate_axis", "axes", "names an axis twice");
     } else if (Handedness(axes_) < 0.0) {
-      Error("axes", "is a mirror image, not a rotation");
+      Error("mapping.mirrored_axes", "axes", "is a mirror image, not a rotation");
     }
   }
 
@@ -121,7 +124,8 @@ class MappingReader {
     Mapping::Rule result{Pattern(rule, "from", at), Pattern(rule, "to", at), Unit(rule, at),
                          Number(rule, "scale", at, 1.0), Number(rule, "offset", at, 0.0)};
     result.scale *= FromUnit(rule, result, at);
-    if (StarsDiffer(result)) Error(at, "one of \"from\" and \"to\" has a `*`, the other not");
+    if (StarsDiffer(result))
+      Error("mapping.unpaired_star", at, "one of \"from\" and \"to\" has a `*`, the other not");
     mapping_.rules.push_back(std::move(result));
   }
 
@@ -132,7 +136,8 @@ class MappingReader {
       const Json& given = rule["offset"];
       if (!given.is_array() || given.size() != 3 ||
           !std::all_of(given.begin(), given.end(), [](const Json& j) { return j.is_number(); })) {
-        Error(at + ".offset", "is not a list of three numbers, along taut's x, y and z");
+        Error("mapping.bad_offset", at + ".offset",
+              "is not a list of three numbers, along taut's x, y and z");
         return;
       }
       for (std::size_t i = 0; i < 3; ++i) offset[i] = given[i];
@@ -141,7 +146,7 @@ class MappingReader {
     if (good_) AddComponents(whole, scale, offset);
   }
 
-  /// How many of the result's unit one of `from_unit` is.
+  /// Returns the factor from `from_unit` to the result's unit.
   double FromUnit(const Json& rule, const Mapping::Rule& whole, const std::string& at) {
     if (!rule.contains("from_unit")) return 1.0;
     const std::string name = Text(rule, "from_unit", at);
@@ -155,10 +160,11 @@ class MappingReader {
   double UnitIn(const std::string& name, const std::string& wanted, const std::string& at) {
     const auto unit = FindUnit(name);
     if (!unit) {
-      Error(at, fmt::format("is \"{}\", which is no unit that taut knows", name),
+      Error("mapping.unknown_unit", at,
+            fmt::format("is \"{}\", which is no unit that taut knows", name),
             DidYouMean(name, UnitNames()));
     } else if (unit->si != wanted) {
-      Error(at, fmt::format("is {}, and the result is in {}", name, wanted));
+      Error("mapping.wrong_unit", at, fmt::format("is {}, and the result is in {}", name, wanted));
     }
     return unit ? unit->factor : 1.0;
   }
@@ -172,12 +178,12 @@ class MappingReader {
     }
     const double skip = Number(json, "skip_lines", "table", 0.0);
     if (!(skip >= 0 && skip <= 1e6 && skip == static_cast<int>(skip))) {
-      Error("table.skip_lines", "is not a whole number of lines");
+      Error("mapping.bad_skip_lines", "table.skip_lines", "is not a whole number of lines");
     } else {
       table.skip_lines = static_cast<int>(skip);
     }
     if (json.contains("header") && !json["header"].is_boolean()) {
-      Error("table.header", "is neither true nor false");
+      Error("mapping.bad_header", "table.header", "is neither true nor false");
     } else {
       table.header = json.value("header", true);
     }
@@ -190,14 +196,17 @@ class MappingReader {
     table.name_columns = Texts(json, "names");
     if (json.contains("value")) table.value_column = Text(json, "value", "table");
     if (json.contains("names") != json.contains("value")) {
-      Error("table", "has one of \"names\" and \"value\", the other not",
+      Error("mapping.names_without_value", "table",
+            "has one of \"names\" and \"value\", the other not",
             "they say where the channel and its number are, one a row");
     }
     if (!table.header && table.columns.empty()) {
-      Error("table.columns", "is missing", "where no header names the columns, the mapping does");
+      Error("mapping.no_columns", "table.columns", "is missing",
+            "where no header names the columns, the mapping does");
     }
     if (!json.contains("time")) {
-      Error("table.time", "is missing", "{\"column\": \"t\", \"unit\": \"ms\"} or {\"row_s\": 1}");
+      Error("mapping.no_time", "table.time", "is missing",
+            "{\"column\": \"t\", \"unit\": \"ms\"} or {\"row_s\": 1}");
     } else if (IsObject(json["time"], "table.time",
                         {"column", "unit", "zero", "offset_s", "row_s"})) {
       Clock(json["time"], table);
@@ -207,7 +216,8 @@ class MappingReader {
   std::string Separator(const Json& json) {
     std::string text = json.is_string() ? json.get<std::string>() : "";
     if (text == "," || text == ";" || text == "\t" || text == " " || text == "|") return text;
-    Error("table.separator", "is none of \",\", \";\", \"|\", \"\\t\" and \" \"");
+    Error("mapping.bad_separator", "table.separator",
+          "is none of \",\", \";\", \"|\", \"\\t\" and \" \"");
     return {};
   }
 
@@ -216,7 +226,7 @@ class MappingReader {
     const Json& list = json[key];
     if (!list.is_array() || list.empty() ||
         !std::all_of(list.begin(), list.end(), [](const Json& j) { return j.is_string(); })) {
-      Error("table." + key, "is not a list of texts");
+      Error("mapping.bad_list", "table." + key, "is not a list of texts");
       return {};
     }
     return list.get<std::vector<std::string>>();
@@ -226,9 +236,10 @@ class MappingReader {
     table.offset_s = Number(json, "offset_s", "table.time", 0.0);
     if (json.contains("row_s")) {
       table.row_s = Number(json, "row_s", "table.time", 1.0);
-      if (!(*table.row_s > 0)) Error("table.time.row_s", "is not above 0");
+      if (!(*table.row_s > 0)) Error("mapping.bad_row_s", "table.time.row_s", "is not above 0");
       for (const char* other : {"column", "unit", "zero"}) {
-        if (json.contains(other)) Error("table.time", fmt::format("has both row_s and {}", other));
+        if (json.contains(other))
+          Error("mapping.two_times", "table.time", fmt::format("has both row_s and {}", other));
       }
       return;
     }
@@ -241,14 +252,14 @@ class MappingReader {
       table.zero.reset();
     } else if (json.contains("zero")) {
       if (!json["zero"].is_number()) {
-        Error("table.time.zero", "is neither a number nor \"first\"");
+        Error("mapping.bad_zero", "table.time.zero", "is neither a number nor \"first\"");
         return;
       }
       table.zero = json["zero"];
     }
   }
 
-  /// A rotation's vector part turns with the axes, its scalar part stays.
+  /// A rotation's vector part changes with the axes, its scalar part does not.
   void Quaternion(const Json& rule, const std::string& at) {
     const Mapping::Rule whole = AxisRule(rule, at);
     if (!good_) return;
@@ -270,10 +281,12 @@ class MappingReader {
     for (const auto& [key, text] : {std::pair("from", result.from), std::pair("to", result.to)}) {
       const std::size_t mark = text.find(kAxisMark);
       if (mark == text.npos || text.find(kAxisMark, mark + 1) != text.npos) {
-        Error(fmt::format("{}.{}", at, key), "does not have one {axis}, where x, y and z go");
+        Error("mapping.no_axis_place", fmt::format("{}.{}", at, key),
+              "does not have one {axis}, where x, y and z go");
       }
     }
-    if (StarsDiffer(result)) Error(at, "one of \"from\" and \"to\" has a `*`, the other not");
+    if (StarsDiffer(result))
+      Error("mapping.unpaired_star", at, "one of \"from\" and \"to\" has a `*`, the other not");
     return result;
   }
 
@@ -284,7 +297,7 @@ class MappingReader {
   std::string Pattern(const Json& rule, const char* key, const std::string& at) {
     std::string text = Text(rule, key, at);
     if (std::count(text.begin(), text.end(), '*') > 1) {
-      Error(fmt::format("{}.{}", at, key), "has more than one `*`");
+      Error("mapping.several_stars", fmt::format("{}.{}", at, key), "has more than one `*`");
     }
     return text;
   }
@@ -298,11 +311,13 @@ class MappingReader {
     if (found != object.end() && found->is_string() && !found->get<std::string>().empty()) {
       std::string text = *found;
       if (std::any_of(text.begin(), text.end(), base::IsControl)) {
-        Error(fmt::format("{}.{}", at, key), "has a control character in it");
+        Error("mapping.control_character", fmt::format("{}.{}", at, key),
+              "has a control character in it");
       }
       return text;
     }
-    Error(fmt::format("{}.{}", at, key), found == object.end() ? "is missing" : "is not a text");
+    Error("mapping.missing_text", fmt::format("{}.{}", at, key),
+          found == object.end() ? "is missing" : "is not a text");
     return {};
   }
 
@@ -310,18 +325,19 @@ class MappingReader {
     const auto found = object.find(key);
     if (found == object.end()) return otherwise;
     if (found->is_number()) return *found;
-    Error(fmt::format("{}.{}", at, key), "is not a number");
+    Error("mapping.not_a_number", fmt::format("{}.{}", at, key), "is not a number");
     return otherwise;
   }
 
   bool IsObject(const Json& json, const std::string& at, const std::vector<std::string>& keys) {
     if (!json.is_object()) {
-      Error(at, "is not an object { ... }");
+      Error("mapping.not_an_object", at, "is not an object { ... }");
       return false;
     }
     for (const auto& [key, value] : json.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      Error(at.empty() ? key : at + "." + key, "is not known here", DidYouMean(key, keys));
+      Error("mapping.unknown_key", at.empty() ? key : at + "." + key, "is not known here",
+            DidYouMean(key, keys));
     }
     return true;
   }
@@ -330,15 +346,15 @@ class MappingReader {
   void ForEach(const Json& root, const char* key, const std::vector<std::string>& keys,
                const Use& use) {
     if (!root.contains(key)) return;
-    if (!root[key].is_array()) return Error(key, "is not a list [ ... ]");
+    if (!root[key].is_array()) return Error("mapping.not_a_list", key, "is not a list [ ... ]");
     for (std::size_t i = 0; i < root[key].size(); ++i) {
       const std::string at = fmt::format("{}[{}]", key, i);
       if (IsObject(root[key][i], at, keys)) use(root[key][i], at);
     }
   }
 
-  void Error(const std::string& at, const std::string& what, std::string hint = {}) {
-    out_.Error({path_}, at.empty() ? what : at + " " + what, std::move(hint));
+  void Error(MessageId id, const std::string& at, const std::string& what, std::string hint = {}) {
+    out_.Error(id, {path_}, at.empty() ? what : at + " " + what, std::move(hint));
     good_ = false;
   }
 

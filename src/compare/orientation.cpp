@@ -21,7 +21,7 @@ bool Complete(const std::array<double, 4>& q) {
   return std::isfinite(q[0]) && std::isfinite(q[1]) && std::isfinite(q[2]) && std::isfinite(q[3]);
 }
 
-/// Whether every complete row has unit length to 1 %, and there is one.
+/// Returns true if every complete row has unit length to 1 %, and there is one.
 bool HasUnitLength(const Trace& trace, const QuaternionChannels& at) {
   bool any = false;
   for (std::size_t row = 0; row < trace.time_s.size(); ++row) {

@@ -1,4 +1,4 @@
-/// From actions to commands, for the lanes of a group.
+/// Conversion of actions to commands, for the lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,19 @@ class Actions {
  public:
   explicit Actions(const Plan& plan);
 
-  /// A lane begins an episode; its commands are those of the start. Actions count `delay` periods
-  /// later, before that as 0.
+  /// Begins an episode of a lane from the commands of the start. Actions take effect `delay`
+  /// periods later; until then they are 0.
   void Begin(int lane, const Commands& commands, int delay);
 
-  /// The next action of a lane; null: zeros. False if a number of it is not finite: that is 0.
+  /// Stores the next action of a lane; null: zeros. Returns false if a number is not finite; it is
+  /// replaced by 0.
   template <class T>
   bool Read(int lane, const T* action);
-  /// Once all lanes have theirs: what they command, and how controllers go on.
+  /// Applies the actions of all lanes to commands and controllers, once all have been read.
   void Apply(plant::Loop& loop);
 
-  /// A lane's actions, as a controller's `Carry`; the loop's controllers get the numbers that they
-  /// had. Into a lane that has begun its episode.
+  /// Serializes a lane's actions, like a controller's `Carry`. On reading, which requires `Begin`,
+  /// it also restores the numbers of the loop's controllers.
   void Carry(plant::LaneState& state, plant::Loop& loop);
 
  private:
@@ -33,16 +34,17 @@ class Actions {
     return ring_[(slot * count_ + i) * lanes_ + lane];
   }
 
-  /// A row an action: what acts now.
+  /// Returns the actions in effect, one row per action.
   const double* Acting() const noexcept { return slots_ > 1 ? now_.data() : ring_.data(); }
 
   const Plan& plan_;
   std::size_t count_, lanes_, slots_;
-  std::size_t next_ = 0;            ///< The slot of the actions that are read.
-  std::vector<double> ring_;        ///< Clamped actions of the last periods: a row each.
+  std::size_t next_ = 0;            ///< Slot of the next actions.
+  std::vector<double> ring_;        ///< Clamped actions of the last periods, one row per action.
   std::vector<std::size_t> delay_;  ///< Per lane.
-  std::vector<double> command_m_;   ///< A row an action: rest length without it, or at a rate.
-  std::vector<double> now_;         ///< What acts now, where actions may be late.
+  std::vector<double> command_m_;   ///< One row per action: rest length without the action, or
+                                    ///< accumulated by a rate.
+  std::vector<double> now_;         ///< Actions in effect, if actions may be delayed.
   Tuning tuning_;
 };
 

@@ -1,3 +1,4 @@
+// Checks of environments: periods on the grid of steps, actions and observed channels.
 #include <charconv>
 #include <cmath>
 #include <set>
@@ -12,14 +13,14 @@
 namespace taut {
 namespace {
 
-/// The shortest text that reads back as the same number.
+/// Returns the shortest text that reads back as the same number.
 std::string Shown(double x) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof(text), x).ptr};
 }
 
-/// Steps are exactly of the wanted length only where everything falls on their grid: then all lanes
-/// take the same steps, wherever their episodes are (src/plant/schedule.h).
+/// All lanes take the same steps, at any time of their episodes, only if all times are multiples of
+/// the step (src/plant/schedule.h).
 constexpr double kRounding = 1e-9;
 
 bool IsWhole(double ratio) {
@@ -33,14 +34,18 @@ class Clocks {
 
   void Check() {
     const double period_s = spec_.period_s, step_s = experiment_.step_s;
-    if (!(period_s > 0)) return Error("must be positive, got " + Shown(period_s), "");
+    if (!(period_s > 0))
+      return Error("environment.period_not_positive", "must be positive, got " + Shown(period_s),
+                   "");
     if (!IsWhole(period_s / step_s) || period_s < 0.5 * step_s) {
-      Error("must be a whole multiple of the step, got " + Shown(period_s / step_s) + " steps",
+      Error("environment.period_not_whole",
+            "must be a whole multiple of the step, got " + Shown(period_s / step_s) + " steps",
             "step_s is " + Shown(step_s));
     }
     const double periods = experiment_.duration_s / period_s;
     if (!IsWhole(periods) || periods < 0.5) {
-      Error("must go into duration_s a whole number of times, got " + Shown(periods),
+      Error("environment.period_not_whole",
+            "must go into duration_s a whole number of times, got " + Shown(periods),
             "an episode lasts duration_s, " + Shown(experiment_.duration_s) + " s");
     }
     for (const ControllerSpec& controller : experiment_.controllers) {
@@ -61,7 +66,8 @@ class Clocks {
  private:
   void Check(const ClockSpec& clock, const std::string& whose) {
     if (!IsWhole(spec_.period_s / clock.period_s)) {
-      Error("must be a whole multiple of the period of " + whose + ", " + Shown(clock.period_s) +
+      Error("environment.period_not_whole",
+            "must be a whole multiple of the period of " + whose + ", " + Shown(clock.period_s) +
                 " s",
             "so that each action meets the same ticks");
     }
@@ -73,13 +79,13 @@ class Clocks {
   }
   void OnGrid(double time_s, const std::string& what) {
     if (IsWhole(time_s / experiment_.step_s)) return;
-    out_.Error(spec_.at,
+    out_.Error("environment.period_not_whole", spec_.at,
                "environment: " + what + " is no whole number of steps, " + Shown(time_s) + " s",
                "step_s is " + Shown(experiment_.step_s) +
                    "; worlds whose steps differ cannot share a register");
   }
-  void Error(const std::string& what, const std::string& hint) {
-    out_.Error(spec_.period_at.line > 0 ? spec_.period_at : spec_.at,
+  void Error(MessageId id, const std::string& what, const std::string& hint) {
+    out_.Error(id, spec_.period_at.line > 0 ? spec_.period_at : spec_.at,
                "environment.period_s " + what, hint);
   }
 
@@ -88,7 +94,7 @@ class Clocks {
   Diagnostics& out_;
 };
 
-/// Of those that no file has checked: a program may have made the experiment.
+/// Checks actions of experiments from programs, which no file reader has checked.
 void CheckNumbers(const ExperimentSpec& experiment, Diagnostics& out) {
   const EnvironmentSpec& spec = *experiment.environment;
   std::vector<ControllerSpec> controllers = experiment.controllers;
@@ -98,7 +104,7 @@ void CheckNumbers(const ExperimentSpec& experiment, Diagnostics& out) {
     if (!number.at_start) known.insert(number.name);
   }
   const auto error = [&](const std::string& what) {
-    out.Error(spec.at, "environment.actions: " + what);
+    out.Error("environment.bad_action", spec.at, "environment.actions: " + what);
   };
   for (const EnvironmentAction& action : spec.actions) {
     if (action.by && action.numbers.empty()) error("one with `by` and no number");
@@ -129,7 +135,8 @@ std::optional<ExperimentSpec> LoadExperimentAndChannels(const std::string& path,
 bool CheckEnvironment(const ExperimentSpec& experiment, Diagnostics& out) {
   const std::size_t before = out.items().size();
   if (!experiment.environment) {
-    out.Error(experiment.files.empty() ? SourceRef{} : SourceRef{experiment.files[0]},
+    out.Error("environment.missing",
+              experiment.files.empty() ? SourceRef{} : SourceRef{experiment.files[0]},
               "the experiment has no `environment`",
               "such as environment: {actions: [{cables: driven, rest_length_m: 0.05}], "
               "observations: [\"cable/*/tension_n\"]}");

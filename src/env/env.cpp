@@ -1,3 +1,4 @@
+// Vectorized reinforcement-learning environment on groups of SIMD lanes and threads.
 #include "taut/env.h"
 
 #include <algorithm>
@@ -63,7 +64,7 @@ class LaneEnv final : public Env {
     }
     const int worlds = plan_->options.worlds, lanes = plan_->lanes;
     groups_.resize(static_cast<std::size_t>((worlds + lanes - 1) / lanes));
-    auto make = [&](int, std::size_t g) {  // a thread's own memory is near it
+    auto make = [&](int, std::size_t g) {  // allocates memory near the thread that uses it
       const int count = std::min(lanes, worlds - static_cast<int>(g) * lanes);
       groups_[g] = std::make_unique<Group>(*plan_, observed_, of_channels, count);
     };
@@ -109,7 +110,7 @@ class LaneEnv final : public Env {
     const auto saved = env::Unsealed(Kind(), snapshot, out);
     if (!saved) return false;
     if (group.Restore(LaneOf(world), *saved)) return true;
-    out.Error({}, "the snapshot's state is not one of this model");
+    out.Error("snapshot.other_model", {}, "the snapshot's state is not one of this model");
     return false;
   }
 
@@ -138,7 +139,7 @@ class LaneEnv final : public Env {
     return GroupOf(__func__, world).batch().Hash(LaneOf(world));
   }
 
-  /// All worlds to their first episodes.
+  /// Resets all worlds to their first episodes.
   bool Begin(Diagnostics& out) {
     std::vector<std::uint64_t> seeds(static_cast<std::size_t>(worlds()));
     for (std::size_t i = 0; i < seeds.size(); ++i) {
@@ -152,7 +153,7 @@ class LaneEnv final : public Env {
     sim::CheckIndex(function, "world", world, worlds());
     return *groups_[static_cast<std::size_t>(world / plan_->lanes)];
   }
-  /// What snapshots of environments must have in common.
+  /// Returns a hash of the properties that compatible snapshots share.
   std::uint64_t Kind() {
     if (kind_ == 0) kind_ = env::KindOf(*plan_);
     return kind_;
@@ -189,7 +190,7 @@ class LaneEnv final : public Env {
     pool_.ForEach(groups_.size(), work);
     std::sort(failures.begin(), failures.end());
     for (const auto& [world, what] : failures) {
-      out.Error({}, "world " + std::to_string(world) + " has " + what);
+      out.Error("snapshot.bad_world", {}, "world " + std::to_string(world) + " has " + what);
     }
     return failures.empty();
   }
@@ -292,7 +293,8 @@ class LaneEnv final : public Env {
     if (plan_->options.observe) plan_->options.observe(ViewOf(rows, observations));
   }
 
-  /// Of episodes that have begun, after which nobody looks at what the caller made of them.
+  /// Writes the observations of episodes that have just begun; changes by callbacks are not checked
+  /// again after this.
   template <class T>
   void ObserveBegun(std::span<T> observations) const {
     if (!plan_->options.observe) return;
@@ -307,12 +309,12 @@ class LaneEnv final : public Env {
   const ExperimentSpec observed_;
   std::vector<ChannelInfo> action_channels_, observation_channels_;
   std::vector<double> action_scales_;
-  std::uint64_t kind_ = 0;  ///< 0: nobody has asked yet.
+  std::uint64_t kind_ = 0;  ///< 0: not computed yet.
   env::Starts starts_;
   base::ThreadPool pool_;
-  std::vector<env::Place> places_;  ///< A thread.
+  std::vector<env::Place> places_;  ///< Per thread.
   std::vector<std::unique_ptr<Group>> groups_;
-  std::vector<std::uint8_t> stepped_, begun_, all_;  ///< A world.
+  std::vector<std::uint8_t> stepped_, begun_, all_;  ///< Per world.
 };
 
 bool Any(const StartNoise& noise) {

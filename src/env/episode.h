@@ -1,4 +1,5 @@
-/// An episode: what its seed makes of the experiment.
+/// Random draw of an episode (domain randomization): seed, model variation, slope of gravity and
+/// delays.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,8 @@
 namespace taut::env {
 
 struct Episode {
-  std::uint64_t raw_seed = 0;  ///< From which the next one's follows.
-  std::uint64_t seed = 0;      ///< As it counts.
+  std::uint64_t raw_seed = 0;  ///< The next episode's seed follows from it.
+  std::uint64_t seed = 0;      ///< Effective seed.
   RolloutWorld world;
   Vec3 gravity_m_per_s2;                        ///< In W.
   int action_delay = 0, observation_delay = 0;  ///< In periods.
@@ -17,10 +18,11 @@ struct Episode {
 
 Episode DrawEpisode(const Plan& plan, std::uint64_t raw_seed);
 
-/// That of a world's next episode, if nobody gives one.
+/// Returns the default seed of a world's next episode.
 std::uint64_t FollowingSeed(std::uint64_t raw_seed) noexcept;
 
-/// Makes an experiment the one that runs the episode alone; it is the plan's, or another episode's.
+/// Changes an experiment so that it runs the episode alone. `experiment`: the plan's, or one set
+/// for another episode.
 void SetEpisode(const Episode& episode, ExperimentSpec& experiment);
 
 }  // namespace taut::env

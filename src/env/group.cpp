@@ -8,7 +8,7 @@
 namespace taut::env {
 namespace {
 
-/// Pointers to as many variants as there are lanes: the experiment itself, until episodes begin.
+/// Returns one pointer per lane to the experiment's world, until episodes begin.
 std::vector<const RolloutWorld*> AllAs(const RolloutWorld& world, int lanes) {
   return std::vector<const RolloutWorld*>(static_cast<std::size_t>(lanes), &world);
 }
@@ -43,7 +43,8 @@ bool Group::Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place
     worlds_[Index(j)].begins = true;
   };
   put(lane);
-  // Nobody looks at those behind the last world; they are kept from falling for ever.
+  // Surplus lanes behind the last world restart with the first one, so that they do not fall
+  // without end.
   for (int j = count_; lane == 0 && j < plan_.lanes; ++j) put(j);
   Slot& own = worlds_[Index(lane)];
   own.last = own.now;
@@ -79,7 +80,7 @@ void Group::Carry(plant::LaneState& state) {
   for (EpisodeState* episode : {&own.now, &own.last}) {
     state.Values(episode->seed, episode->steps, episode->reward, episode->end);
   }
-  actions_.Carry(state, loop_);  // controllers have their numbers before what they remember
+  actions_.Carry(state, loop_);  // restores the controllers' numbers before their internal state
   loop_.Carry(state);
   judge_.Carry(state);
   observer_.Carry(state);
@@ -128,7 +129,7 @@ void Group::BeginNext(int lane, Starts& starts, Place& place) {
     if (Begin(lane, seed, starts, place, failed)) return;
   }
   const bool good = Begin(lane, present, starts, place, failed);
-  TAUT_ASSERT(good);  // it had that start before
+  TAUT_ASSERT(good);  // this start has succeeded before
 }
 
 void Group::Advance(Place& place) {
@@ -189,7 +190,7 @@ bool Group::Finish(const GroupRows<T>& rows, Starts& starts, Place& place) {
     for (int i = 0; plan_.options.observe && i < width_; ++i) {
       if (!std::isfinite(row[i])) row[i] = 0;
     }
-    if (rows.stepped[j] == 0) {  // a callback has nothing to say here
+    if (rows.stepped[j] == 0) {  // callbacks do not apply here
       rows.rewards[j] = 0;
       rows.terminated[j] = own.now.end > EpisodeEnd::kTime ? 1 : 0;
       continue;

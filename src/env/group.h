@@ -1,4 +1,4 @@
-/// The worlds of an environment that share a register, with their episodes.
+/// Worlds of an environment that share a SIMD register, with their episodes, rewards and resets.
 #pragma once
 
 #include <atomic>
@@ -17,37 +17,38 @@
 
 namespace taut::env {
 
-/// The rows of one group in what a caller of `Step` gave.
+/// Rows of one group in the arrays passed to `Step`.
 template <class T>
 struct GroupRows {
   const T* actions = nullptr;
   T* observations = nullptr;
-  T* final_observations = nullptr;  ///< Null: not asked for.
+  T* final_observations = nullptr;  ///< Null: not requested.
   double* rewards = nullptr;
   std::uint8_t *terminated = nullptr, *truncated = nullptr;
   std::uint8_t* stepped = nullptr;  ///< Whether the world took its action.
-  std::uint8_t* begun = nullptr;    ///< Whether `Finish` began an episode, whose first row it is.
+  /// Whether `Finish` began an episode, so that the observation is its first.
+  std::uint8_t* begun = nullptr;
 };
 
 class Group {
  public:
-  /// Its first `count` lanes are worlds from `first_world` on; those behind them do as the first.
+  /// The first `count` lanes are worlds; surplus lanes repeat the first one.
   Group(const Plan& plan, const ExperimentSpec& observed, const std::vector<ChannelInfo>& channels,
         int count);
 
   int count() const noexcept { return count_; }
   int width() const noexcept { return width_; }
 
-  /// Puts a world at the start of an episode. False, and why, if there is none: then it is as it
-  /// was. After one or several `Settle` makes them known.
+  /// Resets a world to the start of an episode. If there is no such start, returns false with the
+  /// reason in `failed` and leaves the world unchanged. Call `Settle` after one or several resets.
   bool Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place, std::string& failed);
   void Settle();
 
-  /// A period: acts, steps, judges, observes.
+  /// Performs a period: actions, steps, rewards, termination, observations.
   template <class T>
   void Step(const GroupRows<T>& rows, Starts& starts, Place& place);
-  /// What rewards and ends have become, callbacks included, is booked; episodes begin anew. True if
-  /// some did in this step.
+  /// Books rewards and ends of episodes, including changes by callbacks, and begins new episodes.
+  /// Returns whether any episode began in this step.
   template <class T>
   bool Finish(const GroupRows<T>& rows, Starts& starts, Place& place);
   template <class T>
@@ -55,9 +56,9 @@ class Group {
     observer_.Emit(lane, row);
   }
 
-  /// A world with its episode.
+  /// Serializes a world with its episode.
   std::vector<std::uint8_t> Save(int lane);
-  /// False, and nothing has changed, if the state in it is not one of the model.
+  /// Restores a world. Returns false, without changes, if the state does not belong to the model.
   bool Restore(int lane, std::span<const std::uint8_t> saved);
 
   const EpisodeState& state(int lane) const { return worlds_[Index(lane)].now; }
@@ -71,12 +72,12 @@ class Group {
   struct Slot {
     Episode episode;
     EpisodeState now, last;
-    bool waits = false;       ///< Its episode is over, the next one begins in the next step.
-    bool good_action = true;  ///< Of this step.
-    bool begins = false;      ///< `Settle` has to know it.
+    bool waits = false;       ///< Its episode is over; the next one begins in the next step.
+    bool good_action = true;  ///< Whether all numbers of this step's action were finite.
+    bool begins = false;      ///< `Settle` has to initialize it.
   };
 
-  /// All but the state of the batch.
+  /// Serializes everything except the state of the batch.
   void Carry(plant::LaneState& state);
 
   static std::size_t Index(int lane) noexcept { return static_cast<std::size_t>(lane); }

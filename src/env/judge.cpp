@@ -112,7 +112,7 @@ Judge::Verdict Judge::Look(int lane, std::int64_t number, bool good_action) {
   const Vec3 center_m = needs_center_ ? Center(j) : Vec3{};
   Verdict verdict;
   verdict.end = EndOf(j, number, good_action, center_m);
-  if (Failed(verdict.end)) {  // how far a robot flies that blows up is worth nothing
+  if (Failed(verdict.end)) {  // the distance of a robot whose simulation failed does not count
     verdict.reward = -reward_.failure_penalty;
     return verdict;
   }

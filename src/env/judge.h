@@ -1,4 +1,4 @@
-/// What steps are worth and when episodes end, for the lanes of a group.
+/// Rewards and terminations of episodes, for the lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,17 @@ namespace taut::env {
 
 class Judge {
  public:
-  /// `bodies`: read before `Begin` and before `Look`.
+  /// `bodies`: call its `Read` before `Begin` and before `Look`.
   Judge(const Plan& plan, const plant::Loop& loop, const LaneBodies& bodies);
 
-  /// An episode begins: the lane's world is at its start.
+  /// Begins an episode; the lane's world is at its start.
   void Begin(int lane, const RolloutWorld& world);
 
-  /// What an episode came to so far, as a controller's `Carry`. Into a lane that has begun it.
+  /// Serializes an episode's accumulated values, like a controller's `Carry`. Reading requires
+  /// `Begin`.
   void Carry(plant::LaneState& state);
 
-  /// Whether it wants to see every step: `Measure` after each, of all lanes.
+  /// Returns whether `Measure` must be called after each step of all lanes.
   bool measures() const noexcept { return measures_; }
   void Measure();
 
@@ -30,7 +31,7 @@ class Judge {
     double reward = 0;
     EpisodeEnd end = EpisodeEnd::kNone;
   };
-  /// After the period with this number, from 1 on, of a lane.
+  /// Returns the reward and end of the period with this number, from 1, of a lane.
   Verdict Look(int lane, std::int64_t number, bool good_action);
 
  private:
@@ -39,12 +40,12 @@ class Judge {
   double Progress(std::size_t lane, const Vec3& center_m) const;
   Vec3 Center(std::size_t lane) const;
 
-  /// What a lane's episode came to so far.
+  /// Accumulated values of a lane's episode.
   struct Account {
-    bool started = false;  ///< Its way counts.
+    bool started = false;  ///< Whether its motion counts already.
     Vec3 start_m, goal_m;
     double start_to_goal_m = 0;
-    double progress_m = 0, tension_penalty = 0, work_j = 0;  ///< That was paid for.
+    double progress_m = 0, tension_penalty = 0, work_j = 0;  ///< Already included in rewards.
   };
 
   const Plan& plan_;
@@ -55,7 +56,7 @@ class Judge {
   const plant::LaneKernel& kernel_;
   bool measures_, needs_center_;
   double cos_max_tilt_;
-  std::vector<double> motor_;  ///< Per cable: 1 if it has one.
+  std::vector<double> motor_;  ///< Per cable: 1 if it has a motor.
   std::vector<double> rest_before_m_, wound_j_, max_tension_n_, unused_;  ///< Rows of the kernel.
   std::vector<double> mass_kg_;                                           ///< [lane][body]
   std::vector<Account> accounts_;

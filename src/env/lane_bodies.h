@@ -1,4 +1,4 @@
-/// Where the bodies of all lanes of a group are.
+/// Poses and velocities of the bodies of all lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace taut::env {
 
 class LaneBodies {
  public:
-  /// The only group of `batch`, which outlives this.
+  /// `batch` must have one group and outlive this object.
   explicit LaneBodies(Batch& batch)
       : batch_(batch),
         kernel_(plant::LaneKernelOf(batch.lanes())),
@@ -30,7 +30,7 @@ class LaneBodies {
     }
   }
 
-  /// As they are now.
+  /// Reads the present states.
   void Read() {
     kernel_.bodies(from_, rows_.data());
     for (const int body : moved_) {
@@ -47,7 +47,8 @@ class LaneBodies {
   Vec3 velocity_m_per_s(std::size_t lane, std::size_t body) const noexcept {
     return At(lane, body, 7);
   }
-  /// All lanes' numbers of a channel, by its place among `BodyChannels`. Stays where it is.
+  /// Returns the values of a channel for all lanes, by its index in `BodyChannels`. The pointer
+  /// stays valid.
   const double* Row(std::size_t body, std::size_t channel) const noexcept {
     return rows_.data() + (kNumbers * body + channel) * lanes_;
   }
@@ -72,7 +73,7 @@ class LaneBodies {
   std::size_t lanes_, count_;
   std::vector<double> rows_;
   plant::BodyRows from_;
-  std::vector<int> moved_;  ///< Bodies with motions.
+  std::vector<int> moved_;  ///< Kinematic bodies.
 };
 
 }  // namespace taut::env

@@ -9,7 +9,7 @@
 namespace taut::env {
 namespace {
 
-/// Where the rows of cables stand that traces have of every cable.
+/// Returns the rows of the cable quantities that traces contain for every cable.
 std::map<std::string, const double*> CableRowsOf(const plant::Loop& loop) {
   const ReadingRows& now = loop.exact().cables;
   const Commands& commands = loop.commands();
@@ -88,7 +88,8 @@ Observer::Observer(const Plan& plan, const ExperimentSpec& observed,
 void Observer::Next() { now_ = (now_ + 1) % slots_; }
 
 void Observer::Take(Lanes lanes, int count) {
-  const Observation* const exact = senses_ ? &loop_.exact() : nullptr;  // rows of cables are of now
+  const Observation* const exact =
+      senses_ ? &loop_.exact() : nullptr;  // updates the rows of cables
   for (int j = 0; recorder_ && j < count; ++j) {
     if (!Has(lanes, j)) continue;
     const std::vector<double>& row = recorder_->Row(
@@ -98,7 +99,7 @@ void Observer::Take(Lanes lanes, int count) {
     }
   }
   double* const now = &ring_[now_ * count_ * lanes_];
-  const bool all = lanes == AllLanes(count);  // lanes behind the last world, too
+  const bool all = lanes == AllLanes(count);  // including lanes behind the last world
   double* const to = all ? now : fresh_.data();
   const bool in_float = kernel_.collect(rows_.data(), static_cast<int>(count_), to);
   in_float_[now_] = in_float && (all || in_float_[now_] != 0) ? 1 : 0;
@@ -123,12 +124,12 @@ void Observer::Carry(plant::LaneState& state) {
       state.Value(At((now_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));
     }
   }
-  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);  // nobody has looked
+  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);  // range not known
 }
 
 namespace {
 
-/// A double may be beyond what a float can be.
+/// Clamps a number to the range of T; a double may be too large for a float.
 template <class T>
 T Number(double x) {
   constexpr double kMost = std::numeric_limits<T>::max();

@@ -1,4 +1,4 @@
-/// What is observed of the lanes of a group: channels by their names, gathered over lanes.
+/// Observations of the lanes of a group: channels selected by name, gathered over lanes.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +14,29 @@
 
 namespace taut::env {
 
-/// An experiment whose traces have the observed channels, and no others.
+/// Returns an experiment whose traces contain exactly the observed channels.
 ExperimentSpec Observed(const ExperimentSpec& experiment);
 
 class Observer {
  public:
-  /// `channels`: of a recorder of `observed`. Both outlive it, and so do the loop and `bodies`,
-  /// which have been read before `Take`.
+  /// `channels`: from a recorder of `observed`. Both must outlive this object, as must the loop and
+  /// `bodies`. Call `bodies.Read` before `Take`.
   Observer(const Plan& plan, const ExperimentSpec& observed,
            const std::vector<ChannelInfo>& channels, plant::Loop& loop, const LaneBodies& bodies);
 
-  void Next();  ///< A period is over: all lanes are to be seen anew.
-  /// Whether `Take` looks at cables as they are, which are then best read while the step's memory
-  /// is still near.
+  void Next();  ///< Advances to the next period; call `Take` for all lanes after it.
+  /// Returns whether `Take` reads present cable values, which are best computed while the step's
+  /// memory is still in the cache.
   bool senses() const noexcept { return senses_; }
-  /// Sees some of the first `count` lanes. What is not finite, as a place of a contact that is not
-  /// there, is seen as 0.
+  /// Observes some of the first `count` lanes. Values that are not finite, such as the position of
+  /// a missing contact, become 0.
   void Take(Lanes lanes, int count);
-  /// An episode begins with what `Take` has seen of it; observations come `delay` periods later.
+  /// Begins an episode with the values of the last `Take`; observations are delayed by `delay`
+  /// periods.
   void Begin(int lane, int delay);
 
-  /// What was seen in the last periods, as a controller's `Carry`. Into a lane that has begun.
+  /// Serializes the observations of the last periods, like a controller's `Carry`. Reading requires
+  /// `Begin`.
   void Carry(plant::LaneState& state);
 
   template <class T>
@@ -49,15 +51,14 @@ class Observer {
   plant::Loop& loop_;
   std::size_t count_, lanes_, slots_, now_ = 0;
   const plant::LaneKernel& kernel_;
-  /// Per column, where its row stands: of the plant, of the bodies, or of `others_`.
+  /// Per column: its row in the plant, the bodies or `others_`.
   std::vector<const double*> rows_;
-  std::vector<std::size_t> other_columns_;     ///< Of what `recorder_` has.
-  std::vector<double> others_;                 ///< Its rows.
-  std::unique_ptr<plant::Recorder> recorder_;  ///< Null: nothing else is observed.
-  bool senses_ =
-      false;  ///< Something is observed of which nobody else makes sure that it is of now.
+  std::vector<std::size_t> other_columns_;     ///< Columns from `recorder_`.
+  std::vector<double> others_;                 ///< Their rows.
+  std::unique_ptr<plant::Recorder> recorder_;  ///< Null if there are no other channels.
+  bool senses_ = false;  ///< Whether an observed quantity needs an explicit update to the present.
   std::vector<double> ring_, fresh_;
-  std::vector<std::uint8_t> in_float_;  ///< A slot: all its numbers are within those of a float.
+  std::vector<std::uint8_t> in_float_;  ///< Per slot: all numbers fit into a float.
   std::vector<std::size_t> delay_;      ///< Per lane.
 };
 

@@ -1,4 +1,4 @@
-/// What a thread has for itself, whichever group it works on.
+/// Working memory of a thread, shared by all groups it processes.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace taut::env {
 
 struct Place {
-  std::unique_ptr<Workplace> starts;  ///< Made when the thread first prepares one.
+  std::unique_ptr<Workplace> starts;  ///< Created when the thread first prepares a start.
   Aligned<char> scratch;              ///< For a step of any group's batch.
 };
 
@@ -20,8 +20,8 @@ inline Aligned<char> ScratchFor(Batch& batch) {
   return AllocateAligned<char>(of.kernel->scratch_bytes(of.view));
 }
 
-/// While it lives a group's batch steps in the thread's scratch, which is still in the core's cache
-/// from the group before; its own is for who reads.
+/// Lends the thread's scratch memory, still in the core's cache from the previous group, to a
+/// group's batch for its lifetime. The batch's memory remains for readers.
 class BorrowedScratch {
  public:
   BorrowedScratch(Place& place, Batch& batch) : own_(BatchInside::Of(batch)), lent_(place.scratch) {

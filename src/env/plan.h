@@ -1,4 +1,4 @@
-/// What all worlds of an environment have in common.
+/// Common settings of all worlds of an environment.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@ namespace taut::env {
 
 struct Plan {
   ExperimentSpec experiment;
-  EnvironmentSpec spec;         ///< Of the experiment.
-  EnvironmentVariation varied;  ///< Nothing, if the caller wants no randomisation.
+  EnvironmentSpec spec;         ///< From the experiment.
+  EnvironmentVariation varied;  ///< Empty if the caller wants no randomization.
   EnvOptions options;
   std::shared_ptr<const Model> model;
   Simd simd = Simd::kScalar;
   int lanes = 1;
   std::int64_t steps_per_period = 1, episode_steps = 1;
   int most_action_delay = 0, most_observation_delay = 0;  ///< In periods.
-  bool start_varies = false;  ///< Whether starts of two seeds may differ.
+  bool start_varies = false;                              ///< Whether starts depend on the seed.
 
   std::size_t action_count() const noexcept { return spec.actions.size(); }
   std::size_t cable_count() const noexcept { return experiment.robot.def.cables.size(); }
   std::size_t body_count() const noexcept { return experiment.robot.def.bodies.size(); }
 };
 
-/// How many times `part_s` goes into `whole_s`: a whole number, to rounding.
+/// Returns whole_s / part_s, rounded to the nearest integer.
 std::int64_t Times(double whole_s, double part_s) noexcept;
 
 }  // namespace taut::env

@@ -1,4 +1,4 @@
-/// What is around the snapshot of a world, so that only what was written here is read.
+/// Envelope of a world's snapshot with kind and checksum, to reject foreign or damaged data.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace taut::env {
 
-/// The same for environments that understand each other's snapshots.
+/// Returns a hash that is equal for environments with compatible snapshots.
 std::uint64_t KindOf(const Plan& plan);
 
 std::vector<std::uint8_t> Sealed(std::uint64_t kind, const std::vector<std::uint8_t>& saved);
-/// What was sealed. Nothing, and a complaint, if it is of another kind or not as it was.
+/// Returns the contents. Nothing, with an error, if they are of another kind or damaged.
 std::optional<std::span<const std::uint8_t>> Unsealed(std::uint64_t kind,
                                                       std::span<const std::uint8_t> sealed,
                                                       Diagnostics& out);

@@ -36,7 +36,7 @@ std::shared_ptr<const std::vector<std::uint8_t>> Starts::Of(const Episode& episo
   if (!place) place = std::make_unique<Workplace>(plan_);
   auto start = place->Prepare(episode, failed);
   if (keeps && start) {
-    const std::lock_guard lock(mutex_);  // two threads may have prepared it: it is the same
+    const std::lock_guard lock(mutex_);  // two threads may have prepared the same start
     start = kept_.emplace(key, std::move(start)).first->second;
   }
   return start;

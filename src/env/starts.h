@@ -1,4 +1,4 @@
-/// The starts of episodes, prepared when they are first needed.
+/// Cache of episode starts, prepared when they are first needed.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace taut::env {
 
-/// Where a thread prepares starts: one world, and the experiment that is prepared.
+/// Workspace of a thread for preparing starts: one world, and its experiment.
 class Workplace {
  public:
   explicit Workplace(const Plan& plan);
-  /// Nothing, and why, if there is no such start.
+  /// Returns the snapshot of a start; nothing, with the reason in `failed`, if it does not exist.
   std::shared_ptr<const std::vector<std::uint8_t>> Prepare(const Episode& episode,
                                                            std::string& failed);
 
@@ -26,13 +26,13 @@ class Workplace {
   ExperimentSpec experiment_;
 };
 
-/// Snapshots of starts, kept where seeds come again (`EnvironmentVariation::starts`, or a start
-/// that no seed changes). Threads: any number at once, each with a workplace of its own.
+/// Snapshots of starts, kept if seeds recur (`EnvironmentVariation::starts`, or starts independent
+/// of the seed). Thread-safe, with one workspace per thread.
 class Starts {
  public:
   explicit Starts(const Plan& plan) : plan_(plan) {}
 
-  /// `place`: the thread's, made when it is first needed.
+  /// `place`: the thread's workspace, created when needed.
   std::shared_ptr<const std::vector<std::uint8_t>> Of(const Episode& episode,
                                                       std::unique_ptr<Workplace>& place,
                                                       std::string& failed);

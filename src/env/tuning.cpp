@@ -25,10 +25,11 @@ Tuning::Tuning(const Plan& plan) {
     for (std::size_t i = 0; i < actions.size(); ++i) {
       for (const std::string& name : actions[i].numbers) {
         const auto found = by_name.find(name);
-        TAUT_ASSERT(found != by_name.end());  // `CheckEnvironment` has looked
+        TAUT_ASSERT(found != by_name.end());  // checked by `CheckEnvironment`
         const Tunable& tunable = found->second;
         if (&lane == &lanes_[0]) {
-          const double base = *tunable.value;  // never cut: 0 is what the experiment does
+          // Not clamped: action 0 must reproduce the experiment.
+          const double base = *tunable.value;
           moved_.push_back({i, lane.numbers.size(), base, *actions[i].by,
                             std::min(tunable.min, base), std::max(tunable.max, base)});
         }

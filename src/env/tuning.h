@@ -1,4 +1,4 @@
-/// Numbers of controllers and gaits that actions move, for the lanes of a group.
+/// Numbers of controllers and gaits that actions change, for the lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -13,21 +13,21 @@ class Tuning {
  public:
   explicit Tuning(const Plan& plan);
 
-  /// A lane begins an episode: its controllers have been restarted with the experiment's numbers.
+  /// Begins an episode of a lane whose controllers were restarted with the experiment's numbers.
   void Begin(int lane);
-  /// Its numbers under an action, an element per action of the plan. To the loop go those that have
-  /// changed. Allocates nothing.
+  /// Sets a lane's numbers from an action with one element per action of the plan, `stride` apart.
+  /// Only changed controllers are passed to the loop. Allocates no memory.
   void Set(int lane, const double* action, std::size_t stride, plant::Loop& loop);
   bool none() const noexcept { return moved_.empty(); }
 
  private:
   struct Moved {
-    std::size_t action, number;  ///< Of the plan's actions; of `Lane::numbers`.
+    std::size_t action, number;  ///< Index among the plan's actions; index in `Lane::numbers`.
     double base, by, least, most;
   };
   struct Lane {
     std::vector<ControllerSpec> controllers;
-    std::vector<double*> numbers;  ///< Into `controllers`.
+    std::vector<double*> numbers;  ///< Pointers into `controllers`.
   };
 
   std::vector<Moved> moved_;

@@ -1,4 +1,4 @@
-/// Where a cable goes.
+/// Path of a cable as a polyline.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace taut::exporting {
 
-/// Its places in W, arcs on wheels in steps of ten degrees.
+/// Returns the points in W, with arcs on wheels in steps of ten degrees.
 std::vector<Vec3> CablePoints(const CableDef& cable);
 
 }  // namespace taut::exporting

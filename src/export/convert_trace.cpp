@@ -19,13 +19,13 @@ constexpr std::size_t kAskEvery = 256;   // rows
 constexpr double kMostSeconds = 1.8e10;  // in 64 bits of nanoseconds
 constexpr char kNoGroup[] = "values";    // the topic of names without a slash
 
-/// Asks seldom enough to cost nothing.
+/// Calls `go_on` at every 256th row, where its cost is negligible.
 bool GoesOn(const GoOn& go_on, std::size_t row, std::size_t rows) {
   return !go_on || row % kAskEvery != 0 ||
          go_on(static_cast<double>(row) / static_cast<double>(rows));
 }
 
-/// A topic of channels.
+/// Channels of one topic.
 struct Group {
   std::string name;
   exporting::MessageTree messages;
@@ -107,7 +107,7 @@ class ToMcap {
   trace::McapWriter file_;
   std::vector<exporting::BodyChannels> bodies_;
   std::optional<exporting::CableLines> cables_;
-  std::uint16_t frames_ = 0, shapes_ = 0, lines_ = 0;  ///< 0: there are none.
+  std::uint16_t frames_ = 0, shapes_ = 0, lines_ = 0;  ///< 0: none.
   std::vector<Group> groups_;
   std::string json_;
 };
@@ -121,7 +121,7 @@ std::optional<Trace> SelectFrom(Trace trace, const std::vector<std::string>& cha
   const double first_s = next_s;
   for (std::size_t row = 0; row < trace.time_s.size(); ++row) {
     const double time_s = trace.time_s[row];
-    // Rows on the grid are there, whatever rounding has made of their times.
+    // Accept rows on the grid despite rounding of their times.
     if (period_s > 0 && time_s < next_s - 1e-6 * period_s) continue;
     rows.push_back(row);
     if (period_s > 0) {
@@ -140,7 +140,7 @@ std::optional<Trace> SelectFrom(Trace trace, const std::vector<std::string>& cha
     thin(kept.values.back());
   }
   if (kept.channels.empty()) {
-    out.Error({path, 0, 0}, "has no channel that fits",
+    out.Error("trace.no_matching_channel", {path, 0, 0}, "has no channel that fits",
               trace.channels.empty() ? "it has none at all"
                                      : "there is \"" + trace.channels.front().name + "\"");
     return std::nullopt;
@@ -164,7 +164,7 @@ Conversion WriteTraceCsv(const Trace& trace, const std::string& path, const GoOn
     if (!writer->Append(trace.time_s[row], values.data())) break;
   }
   if (writer->Finish()) return Conversion::kDone;
-  out.Error({}, writer->error());
+  out.Error("trace.not_written", {}, writer->error());
   return Conversion::kFailed;
 }
 
@@ -172,13 +172,13 @@ Conversion WriteTraceMcap(const Trace& trace, const ModelDef* robot, const std::
                           const GoOn& go_on, Diagnostics& out) {
   if (!trace.time_s.empty() &&
       !(trace.time_s.back() - std::min(trace.time_s.front(), 0.0) < kMostSeconds)) {
-    out.Error({path, 0, 0}, "cannot have times beyond 570 years");
+    out.Error("trace.times_too_long", {path, 0, 0}, "cannot have times beyond 570 years");
     return Conversion::kFailed;
   }
   ToMcap to(trace, robot, path);
   const Conversion end = to.Run(go_on);
   if (end == Conversion::kFailed) {
-    out.Error({path, 0, 0}, "cannot be written: " + to.why());
+    out.Error("file.not_writable", {path, 0, 0}, "cannot be written: " + to.why());
   }
   return end;
 }

@@ -1,6 +1,6 @@
-// glTF 2.0 in one binary file, after the specification of the Khronos Group
-// (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html): a head, a chunk of JSON, a chunk of
-// numbers.
+// glTF 2.0 in one binary file (GLB), after the specification of the Khronos Group
+// (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html): a header, a JSON chunk, a binary
+// chunk.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,11 +22,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Words of the specification.
+// Constants of the specification.
 constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 constexpr int kFloat = 5126, kShort = 5123, kWord = 5125;
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;
-constexpr std::size_t kMostShorts = 65535;  // the last number means something else
+constexpr std::size_t kMostShorts = 65535;  // the last number is reserved
 
 class Glb {
  public:
@@ -37,7 +37,7 @@ class Glb {
     gltf_["asset"] = {{"version", "2.0"}, {"generator", std::string("taut ") + kVersion}};
     gltf_["scene"] = 0;
     gltf_["scenes"] = List({{"name", def_.name}, {"nodes", ordered_json::array({0})}});
-    // A quarter turn about x brings z to y.
+    // A quarter turn about x rotates z to y.
     const double half = std::sqrt(0.5);
     ordered_json root{{"name", def_.name}, {"rotation", {-half, 0.0, 0.0, half}}};
     if (scale_ != 1) root["scale"] = {scale_, scale_, scale_};
@@ -55,7 +55,8 @@ class Glb {
   }
 
  private:
-  /// A node with those shapes of a body, places from `origin_m`. None if there are none.
+  /// Adds a node with the shapes of a body, relative to `origin_m`. Returns nothing if there are
+  /// none.
   std::optional<int> Group(int body, const std::string& name, const Vec3& origin_m) {
     std::vector<int> children;
     for (const ShapeMesh& mesh : shapes_) {
@@ -127,7 +128,7 @@ class Glb {
                               {"type", "SCALAR"}});
   }
 
-  /// What has been written since `start`, and fills up to whole words.
+  /// Adds a buffer view of the bytes since `start`, and pads to whole words.
   int View(std::size_t start, int target) {
     const std::size_t size = binary_.size() - start;
     binary_.resize((binary_.size() + 3) / 4 * 4, '\0');

@@ -1,4 +1,4 @@
-/// Numbers in binary files, the least byte first.
+/// Little-endian numbers in binary files.
 #pragma once
 
 #include <bit>

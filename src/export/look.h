@@ -1,4 +1,4 @@
-/// What shapes look like for other programs: the colours of the viewer's pages.
+/// Colors of shapes in exported files: the colors of the viewer's pages.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace taut::exporting {
 struct Look {
   ShapeMesh::Kind kind;
   const char* name;
-  int rgb;  ///< As screens show it.
+  int rgb;  ///< sRGB color.
 
-  /// Of red, green, blue: 0..1.
+  /// Returns red, green or blue in sRGB: 0..1.
   double Screen(int which) const { return (rgb >> (16 - 8 * which) & 0xff) / 255.0; }
-  /// The light that this brightness of a screen is (IEC 61966-2-1).
+  /// Returns the linear intensity of an sRGB component (IEC 61966-2-1).
   double Light(int which) const {
     const double x = Screen(which);
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);

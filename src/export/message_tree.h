@@ -1,4 +1,4 @@
-/// Channels of a trace as messages: JSON objects in each other, a level a part of their names.
+/// Channels of a trace as nested JSON messages, with one level per part of their names.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ namespace taut::exporting {
 
 class MessageTree {
  public:
-  /// `path`: what is left of the name of channel `channel`.
+  /// `path`: remaining part of the name of channel `channel`.
   void Add(std::string_view path, std::size_t channel);
 
-  /// A row; what is not finite, which JSON has no word for, is left out.
+  /// Writes a row; values that are not finite, which JSON cannot represent, are left out.
   void Write(const Trace& trace, std::size_t row, std::string& json) const;
-  /// The JSON schema of all that may be in it, with units.
+  /// Returns the JSON schema of all possible content, with units.
   std::string Schema(const Trace& trace) const;
 
  private:
@@ -33,7 +33,7 @@ struct MessageTree::Field {
   std::unique_ptr<MessageTree> inner;  ///< Null: a channel.
 };
 
-/// The shortest digits that read back as the same number.
+/// Writes the shortest digits that read back as the same number.
 void PutNumber(std::string& json, double x);
 
 }  // namespace taut::exporting

@@ -37,7 +37,7 @@ ordered_json ColourOf(ShapeMesh::Kind kind) {
   return {{"r", look.Screen(0)}, {"g", look.Screen(1)}, {"b", look.Screen(2)}, {"a", 1.0}};
 }
 
-/// The shortest turn from z to a direction.
+/// Returns the shortest rotation from z to a direction.
 Quat FromZ(const Vec3& way) {
   const double length = std::sqrt(Dot(way, way));
   if (!(length > 0)) return {};
@@ -48,7 +48,7 @@ Quat FromZ(const Vec3& way) {
   return {q.w / size, q.x / size, q.y / size, 0};
 }
 
-/// Something with a frame, and lists of all that it may be made of.
+/// Returns an entity with a frame and empty lists of all its possible primitives.
 ordered_json Entity(const std::string& id, const std::string& frame, std::uint64_t time_ns) {
   ordered_json entity{{"timestamp", Time(time_ns)},
                       {"frame_id", frame},

@@ -1,4 +1,4 @@
-/// A recorded robot in messages of Foxglove: frames of its bodies, shapes, cables.
+/// Recorded robot in Foxglove messages: frames of its bodies, shapes, cables.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace taut::exporting {
 
-/// A body's channels: place in x, y, z, turn in w, x, y, z.
+/// A body's channels: position in x, y, z, orientation in w, x, y, z.
 struct BodyChannels {
   std::string name;
   std::array<std::size_t, 3> place;
@@ -23,24 +23,24 @@ struct BodyChannels {
   Quat TurnAt(const Trace& trace, std::size_t row) const;
   bool IsFiniteAt(const Trace& trace, std::size_t row) const;
 };
-/// Of all bodies that have them, in the order of the trace.
+/// Returns the channels of all bodies with such channels, in the order of the trace.
 std::vector<BodyChannels> BodiesOf(const Trace& trace);
 
-/// foxglove.FrameTransforms: from the world's frame to those of bodies, whose axes are W's as they
-/// were described and whose origins are centres of mass.
+/// Returns foxglove.FrameTransforms from the world's frame to the bodies' frames, whose axes
+/// coincide with W in the described pose and whose origins are centers of mass.
 std::string FramesAt(const Trace& trace, const std::vector<BodyChannels>& bodies, std::size_t row,
                      std::uint64_t time_ns);
 
-/// foxglove.SceneUpdate, for each body its shapes in its frame.
+/// Returns foxglove.SceneUpdate, for each body its shapes in its frame.
 std::string RobotShapes(const ModelDef& def, std::uint64_t time_ns);
 
-/// Cables where bodies are.
+/// Cables at the poses of bodies.
 class CableLines {
  public:
-  /// Nothing if a body that moves has no channels, or there are no cables.
+  /// Returns nothing if a body that moves has no channels, or there are no cables.
   static std::optional<CableLines> Of(const ModelDef& def, const Trace& trace,
                                       const std::vector<BodyChannels>& bodies);
-  /// foxglove.SceneUpdate with all of them as lines in W.
+  /// Returns foxglove.SceneUpdate with all cables as lines in W.
   std::string At(const Trace& trace, std::size_t row, std::uint64_t time_ns) const;
 
  private:
@@ -53,7 +53,7 @@ class CableLines {
   std::vector<std::optional<std::size_t>> tension_;  ///< Per cable, its channel.
 };
 
-/// JSON schemas of what is used of the two kinds of message.
+/// Return the JSON schemas of the used parts of the two messages.
 std::string FramesSchema();
 std::string SceneSchema();
 

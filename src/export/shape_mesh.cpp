@@ -1,4 +1,4 @@
-// Shapes as closed triangles with the volume of what they stand for.
+// Closed triangle meshes of shapes, with the same volume as the shapes.
 #include "taut/shape_mesh.h"
 
 #include <cmath>
@@ -19,8 +19,9 @@ constexpr double kNoLength_m = 1e-12;
 
 double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 
-/// A direction and two across it. Each shape has its own turn about it: else rods that follow one
-/// another would have edges in common, which programs that join equal corners take for a fault.
+/// A direction and two axes across it. Each shape has a different rotation about the direction:
+/// else consecutive rods would have common edges, which programs that merge equal corners report as
+/// a fault.
 struct Axes {
   Vec3 along, u, v;
   Axes(const Vec3& way, std::size_t shape) {
@@ -37,13 +38,14 @@ struct Axes {
   Vec3 Around(double angle) const { return std::cos(angle) * u + std::sin(angle) * v; }
 };
 
-/// By how much a polygon's corners have to be farther out than a circle of the same area.
+/// Returns the ratio of a polygon's outer radius to the radius of a circle of the same area.
 double Wider(int sides) {
   const double step = 2 * std::numbers::pi / sides;
   return std::sqrt(step / std::sin(step));
 }
 
-/// By how much a half sphere of rings has to be higher than a true one of the same volume.
+/// Returns the ratio of the height of a half sphere made of rings to the radius of a half sphere of
+/// the same volume.
 double Higher() {
   double volume = 0;  // of frusta, in units of pi r^3
   for (int k = 0; k < kRings; ++k) {
@@ -64,7 +66,7 @@ class Round {
     Add(at, normal);
     rings_.push_back({static_cast<int>(mesh_.corners_m.size()) - 1, 1});
   }
-  /// `rise`: of the normals along the axis.
+  /// `rise`: component of the normals along the axis.
   void Ring(const Vec3& center, double radius, double rise) {
     rings_.push_back({static_cast<int>(mesh_.corners_m.size()), sides_});
     const double level = std::sqrt(1 - rise * rise);
@@ -97,7 +99,7 @@ class Round {
   std::vector<Row> rings_;
 };
 
-/// All within `radius` of a segment, which may be a point.
+/// Adds all points within `radius` of a segment, which may be a point.
 void AddCapsule(ShapeMesh& mesh, const Vec3& from, const Vec3& to, double radius,
                 std::size_t shape) {
   const Axes axes(to - from, shape);
@@ -130,7 +132,7 @@ void AddBox(ShapeMesh& mesh, const BoxDef& box) {
   }
 }
 
-/// A straight piece with flat ends.
+/// Adds a straight piece with flat ends.
 void AddPiece(ShapeMesh& mesh, const Vec3& from, const Vec3& to, double radius, std::size_t piece) {
   const Axes axes(to - from, piece);
   const int first = static_cast<int>(mesh.corners_m.size());

@@ -1,3 +1,4 @@
+// Chi-square distribution: tail probability and quantile.
 #include <algorithm>
 #include <cmath>
 
@@ -7,8 +8,8 @@
 namespace taut {
 namespace {
 
-/// log Gamma(x), x > 0: Stirling's series from x + n >= 16 on, Abramowitz and Stegun 6.1.41, whose
-/// first term left out is below 1e-16 there; below by Gamma(x + 1) = x Gamma(x).
+/// log Gamma(x), x > 0: Stirling's series for x + n >= 16, Abramowitz and Stegun 6.1.41, whose
+/// first omitted term is below 1e-16 there; smaller x by Gamma(x + 1) = x Gamma(x).
 double LogGamma(double x) {
   double product = 1;
   for (; x < 16; x += 1) product *= x;
@@ -19,8 +20,8 @@ double LogGamma(double x) {
   return (x - 0.5) * math::Log(x) - x + half_log_two_pi + series - math::Log(product);
 }
 
-/// Q(a, x) = Gamma(a, x) / Gamma(a): by the series of 1 - Q where x < a + 1 (6.5.29), else by the
-/// continued fraction (6.5.31) with Lentz's method.
+/// Regularized incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a): by the series of 1 - Q
+/// where x < a + 1 (6.5.29), else by the continued fraction (6.5.31) with Lentz's method.
 double UpperGamma(double a, double x) {
   if (x <= 0) return 1;
   const double front = math::Exp(a * math::Log(x) - x - LogGamma(a));

@@ -1,5 +1,5 @@
-// Columns of derivatives whose steps are checked by halving, and shortened where that resolves
-// them.
+// Derivative columns by differences whose steps are checked by halving, and shortened if that
+// removes the disagreement.
 #include <cmath>
 
 #include "fit/differences.h"
@@ -16,7 +16,8 @@ double SizeOf(const std::vector<double>& v) {
   return std::sqrt(sum);
 }
 
-/// Whether a shorter step serves: its sizes agree, and the errors that its slope leaves lie within.
+/// Returns whether a shorter step is valid: its two sizes agree, and the standard error that its
+/// slope implies lies within the step.
 bool Serves(const FitColumn& column) {
   return column.failed.empty() && !column.kink && column.step * SizeOf(column.slope) >= 1.0;
 }
@@ -82,7 +83,7 @@ FitDerivatives Differentiate(const FitProblem& problem, const std::vector<double
   FitDerivatives result;
   const auto compute = [&](const std::vector<std::vector<double>>& points,
                            const std::vector<std::size_t>&, std::vector<Residuals>& answers) {
-    // The point itself goes with the first of them.
+    // The point itself is part of the first call.
     std::vector<std::vector<double>> all = points;
     if (!result.done) all.push_back(values);
     auto computed = fit::Compute(problem, all);

@@ -1,5 +1,5 @@
-/// One step of Levenberg's and Marquardt's method within a box. Equations (F.3) to (F.5) of
-/// docs/theory/identification.md.
+/// One step of the Levenberg-Marquardt method within a box (eq. F.3 to F.5 of
+/// docs/theory/identification.md).
 #pragma once
 
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace taut::fit {
 
-/// |R d + q|^2 / 2, up to a constant: a system, with no more rows than columns.
+/// R d + q|^2 / 2, up to a constant: a reduced system with no more rows than columns.
 struct Quadratic {
   Matrix R;
   Vector q;
   Vector gradient() const { return R.transpose() * q; }
-  /// By how much d lowers it.
+  /// Returns the decrease of the quadratic by d.
   double Reduction(const Vector& d) const {
     return -gradient().dot(d) - 0.5 * (R * d).squaredNorm();
   }
 };
 
-/// By orthogonal transformation, which keeps the columns' angles to rounding (normal equations
-/// square the condition).
+/// Reduces a system by orthogonal transformation, which preserves the angles of columns up to
+/// rounding (normal equations square the condition).
 Quadratic Reduce(const System& system);
 
 /// Bounds of a step in scales, and parameters that do not move.
@@ -29,8 +29,8 @@ struct StepBox {
   std::vector<bool> held;
 };
 
-/// argmin |R d + q|^2 + damping |D d|^2 with D = diag(weight) and d in the box: parameters that the
-/// free minimum has beyond a bound are put onto it one after the other, the worst first.
+/// Returns argmin |R d + q|^2 + damping |D d|^2 with D = diag(weight) and d in the box. Parameters
+/// whose free minimum is beyond a bound are set to it one after the other, the worst first.
 Vector DampedStep(const Quadratic& quadratic, const Vector& weight, double damping,
                   const StepBox& box);
 

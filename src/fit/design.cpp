@@ -1,3 +1,5 @@
+// Optimal design of the next measurement: Bayesian D-optimality with a greedy ranking
+// (docs/theory/identification.md, section 7).
 #include "taut/fit_design.h"
 
 #include <algorithm>
@@ -28,7 +30,8 @@ std::vector<std::string> Wrong(const std::vector<FitParameter>& parameters,
 
 double PriorIn(const FitParameter& p) { return fit::HasPrior(p) ? p.prior_sd : FitScale(p); }
 
-/// J^T J of a candidate in units of the priors; rows that could not be computed are left out.
+/// Returns J^T J of a candidate in units of the priors; rows that could not be computed are left
+/// out.
 Matrix Information(const std::vector<FitParameter>& parameters, const DesignCandidate& candidate) {
   const auto n = static_cast<Eigen::Index>(parameters.size());
   Matrix sum = Matrix::Zero(n, n);
@@ -43,7 +46,7 @@ Matrix Information(const std::vector<FitParameter>& parameters, const DesignCand
   return sum;
 }
 
-/// Of eigenvalues s^2 of J^T J: s >= sqrt(3) halves a prior sd, 1 / sqrt(1 + s^2) <= 1 / 2.
+/// Eigenvalues of J^T J are s^2: s >= sqrt(3) halves a prior sd, 1 / sqrt(1 + s^2) <= 1 / 2.
 DesignWorth Worth(const std::string& name, const Matrix& information) {
   const Eigen::Index n = information.rows();
   DesignWorth worth;

@@ -6,7 +6,7 @@
 namespace taut::fit {
 namespace {
 
-/// Disagreement beyond these is a kink: a share of the slope, and residuals a scale.
+/// Thresholds of a kink: disagreement as a share of the slope, and in residuals per scale.
 constexpr double kKinkShare = 0.05, kKinkLeast = 0.05;
 
 bool Usable(const Residuals& answer) { return answer.failed.empty(); }
@@ -18,7 +18,7 @@ std::vector<double> Secant(double x1, const std::vector<double>& f1, double x0,
   return slope;
 }
 
-/// a + factor (a - b)
+/// Returns a + factor (a - b).
 std::vector<double> Beyond(std::vector<double> a, const std::vector<double>& b, double factor) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * (a[i] - b[i]);
   return a;
@@ -36,13 +36,13 @@ double Distance(const std::vector<double>& a, const std::vector<double>& b, doub
   return std::sqrt(sum);
 }
 
-/// The two sizes' slopes, each of second order, and how much slopes bend over each size.
+/// Slopes with both step sizes, each of second order, and the change of the slope over each step.
 struct TwoSizes {
   std::vector<double> wide, narrow;
-  std::vector<double> bend_wide, bend_narrow;  ///< h f'': empty where only one side was looked at.
+  std::vector<double> bend_wide, bend_narrow;  ///< h f''; empty for one-sided stencils.
 };
 
-/// f at +h, -h: (f(+h) - f(-h)) / 2h and (f(+h) - 2 f + f(-h)) / h.
+/// Computes (f(+h) - f(-h)) / 2h and (f(+h) - 2 f + f(-h)) / h from f at +h and -h.
 void Central(double up, const std::vector<double>& f_up, double down,
              const std::vector<double>& f_down, const std::vector<double>& f,
              std::vector<double>& slope, std::vector<double>& bend) {
@@ -116,15 +116,15 @@ FitColumn CheckedColumn(const Stencil& s, double value, double scale,
     if (!Usable(answer) && column.failed.empty()) column.failed = answer.failed;
   }
   if (!column.failed.empty()) {
-    // Without all points there is no check; the narrow size alone, if it is there.
+    // Without all points there is no check; the slope is then the narrow size if available.
     const bool narrow = s.central && Usable(answers[2]) && Usable(answers[3]);
     column.slope = narrow ? Secant(s.at[2], answers[2].value, s.at[3], answers[3].value)
                           : Slope(s, value, residual, answers);
     return column;
   }
   const TwoSizes sizes = Both(s, value, residual, answers);
-  // Both are of second order, so a third of their difference takes the narrow one to the fourth
-  // (one-sided: to the third).
+  // Both are of second order, so extrapolation by a third of their difference raises the narrow one
+  // to fourth order (one-sided: third).
   column.slope = Beyond(sizes.narrow, sizes.wide, 1.0 / 3.0);
   column.error = scale * Distance(sizes.narrow, sizes.wide);
   double odd = column.error, even = 0;

@@ -1,3 +1,4 @@
+// Random starts of parameter fits, drawn from priors and bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -7,16 +8,16 @@
 namespace taut {
 namespace {
 
-constexpr std::uint32_t kStream = 0x0066'6974;  // "fit": starts are this stream's only use
+constexpr std::uint32_t kStream = 0x0066'6974;  // "fit": this stream is used for starts only
 
-/// A normal distribution, cut off at the bounds: drawn until it lies between them.
+/// Draws from a normal distribution truncated to the bounds, by rejection.
 double DrawNormal(const FitParameter& p, math::Random& random) {
   double value = fit::PriorMean(p);
   for (int attempt = 0; attempt < 64; ++attempt) {
     value = fit::PriorMean(p) + p.prior_sd * random.Normal();
     if (value >= p.low && value <= p.high) return value;
   }
-  return std::clamp(value, p.low, p.high);  // a prior far out of its bounds
+  return std::clamp(value, p.low, p.high);  // prior far outside of its bounds
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Parameter fit by the Levenberg-Marquardt method from several starts.
 #include <algorithm>
 
 #include "fit/search.h"
@@ -13,7 +14,7 @@ std::string Joined(const std::vector<std::string>& sentences) {
   return all;
 }
 
-/// The lowest cost of those that have one, of equal ones the first.
+/// Returns the track with the lowest cost, the first of equal ones; nothing if none has a cost.
 std::optional<std::size_t> BestTrack(const FitState& state) {
   std::optional<std::size_t> best;
   for (std::size_t t = 0; t < state.tracks.size(); ++t) {
@@ -50,7 +51,7 @@ FitResult Fit(const FitProblem& problem, const FitOptions& options, const FitSta
   }
   std::vector<FitJob> jobs(starts);
   for (std::size_t t = 0; t < starts; ++t) jobs[t].start = DrawFitStart(problem, options.seed, t);
-  // The given start is not drawn again: that it fails is something to be told.
+  // The given start is not replaced by a drawn one: its failure is reported.
   const fit::Again again = [&](std::size_t job, int attempt) -> std::optional<std::vector<double>> {
     if (job == 0 || attempt > kDrawnAgain) return {};
     return DrawFitStart(problem, options.seed, job + starts * static_cast<std::size_t>(attempt));

@@ -1,3 +1,5 @@
+// Identifiability of parameters: standard errors, null space, correlations and verdicts
+// (docs/theory/identification.md, section 4).
 #include <algorithm>
 #include <cmath>
 
@@ -14,29 +16,29 @@ using fit::Matrix;
 using fit::Vector;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// A column below this, in residuals a scale, is dead.
+/// A column below this, in residuals per scale, is dead.
 constexpr double kDead = 1e-6;
-/// Above this correlation an estimate is said to go with another.
+/// Correlation above which two estimates are reported together.
 constexpr double kTogether = 0.95;
-/// What takes at least this share of the largest part of a trade is named.
+/// Least share of the largest part of a trade for a parameter to be named.
 constexpr double kNamed = 0.2;
 
-/// What all the functions below work on: the parameters that no bound holds, in scales.
+/// Free parameters (not at a bound) in scales, with the Jacobian and its decompositions.
 struct Local {
   const FitProblem& problem;
   const FitDerivatives& derivatives;
   std::vector<Eigen::Index> free;
-  Matrix data;             ///< The data's Jacobian.
-  std::vector<bool> null;  ///< A direction of it.
-  fit::Singular svd;       ///< Of it.
-  fit::Spread spread;      ///< With the priors, and null directions gone.
+  Matrix data;             ///< Jacobian of the data.
+  std::vector<bool> null;  ///< Whether a direction of `svd` is null.
+  fit::Singular svd;       ///< Decomposition of `data`.
+  fit::Spread spread;      ///< With the priors, without null directions.
 
   const FitParameter& parameter(std::size_t k) const {
     return problem.parameters[static_cast<std::size_t>(free[k])];
   }
 };
 
-/// By how much the derivatives' own errors may change a direction's singular value.
+/// Returns the effect of the derivatives' errors on a direction's singular value (eq. F.12).
 double DirectionError(const Local& local, Eigen::Index direction) {
   double sum = 0;
   for (std::size_t k = 0; k < local.free.size(); ++k) {
@@ -55,7 +57,7 @@ Local MakeLocal(const FitProblem& problem, const std::vector<double>& values,
   const auto n = static_cast<Eigen::Index>(local.free.size());
   if (n == 0) return local;
   local.svd = fit::Decompose(local.data);
-  // What remains of the data is diag(s) V^T without the null directions.
+  // The data without null directions are diag(s) V^T.
   Matrix stacked = Matrix::Zero(n + all.rows() - system.data_rows, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double s = local.svd.value[k];
@@ -85,8 +87,8 @@ std::vector<FitDirection> Directions(const Local& local) {
   return directions;
 }
 
-/// How the others move if free parameter k moves by a scale and all is fitted anew: along the null
-/// directions, else by the covariance.
+/// Returns the changes of the others if free parameter k moves by a scale and all are refitted:
+/// along the null directions, else by the covariance (eq. F.13).
 Vector Trade(const Local& local, std::size_t k) {
   const auto i = static_cast<Eigen::Index>(k);
   Vector d = local.spread.covariance.col(i);
@@ -148,7 +150,7 @@ std::string Against(const FitProblem& problem,
   return fit::List(names);
 }
 
-/// Those that an estimate is tied to.
+/// Returns the names of the parameters correlated with an estimate.
 std::string Together(const FitProblem& problem, const Identifiability& all, std::size_t j) {
   const std::size_t n = problem.parameters.size();
   std::vector<std::string> names;
@@ -161,7 +163,7 @@ std::string Together(const FitProblem& problem, const Identifiability& all, std:
   return names.empty() ? "" : "; it goes with " + fit::List(names);
 }
 
-/// Whether an error reaches further than a step that had to be shortened.
+/// Returns whether a standard error exceeds a step that had to be shortened.
 bool Bends(const FitColumn& column, double se) {
   return column.step_share < 1.0 && se > column.step;
 }
@@ -201,7 +203,7 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
              " standard deviations (alone it would be known to +- " + Brief(v.se_alone, p.unit) +
              ")";
       break;
-    case Determined::kScattered:  // is not yet known
+    case Determined::kScattered:  // set later, from the jackknife
       break;
   }
   if (column.kink) {
@@ -249,7 +251,7 @@ Identifiability Identify(const FitProblem& problem, const std::vector<double>& v
   for (std::size_t j = 0; j < n; ++j) {
     const FitParameter& p = problem.parameters[j];
     ParameterVerdict& verdict = all.parameters[j];
-    verdict.kind = Determined::kAtBound;  // those that are free are looked at below
+    verdict.kind = Determined::kAtBound;  // free parameters are classified below
     verdict.value = values[j];
     if (fit::HasPrior(p)) verdict.pull = (values[j] - fit::PriorMean(p)) / p.prior_sd;
   }

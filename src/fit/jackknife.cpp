@@ -1,3 +1,4 @@
+// Standard errors by the delete-one-group jackknife (docs/theory/identification.md, eq. F.14).
 #include <cmath>
 
 #include "fit/linear.h"
@@ -9,10 +10,10 @@ namespace {
 using fit::Matrix;
 using fit::Vector;
 
-/// Fewer have no scatter worth the name.
+/// Least number of groups for a meaningful scatter.
 constexpr std::size_t kLeastGroups = 3;
-/// A parameter of whose column less than this share of the square remains without a group is that
-/// group's own.
+/// A group alone determines a parameter if less than this share of the squared column remains
+/// without the group.
 constexpr double kOwn = 0.01;
 
 std::vector<bool> Without(int group) {
@@ -21,7 +22,7 @@ std::vector<bool> Without(int group) {
   return left_out;
 }
 
-/// Parameters that the data without a group determine as those with it do.
+/// Returns the parameters that the data without a group still determine.
 std::vector<bool> Seen(const fit::System& whole, const fit::System& part,
                        const std::vector<Eigen::Index>& free) {
   std::vector<bool> seen(static_cast<std::size_t>(whole.jacobian.cols()), false);
@@ -34,7 +35,7 @@ std::vector<bool> Seen(const fit::System& whole, const fit::System& part,
   return seen;
 }
 
-/// One step of Gauss and Newton from `values` over the free ones.
+/// Returns the result of one Gauss-Newton step from `values` over the free parameters.
 std::vector<double> OneStep(const FitProblem& problem, const fit::System& part,
                             const std::vector<double>& values,
                             const std::vector<Eigen::Index>& free) {
@@ -47,7 +48,7 @@ std::vector<double> OneStep(const FitProblem& problem, const fit::System& part,
   return moved;
 }
 
-/// (G - 1) / G sum (x_g - mean)^2
+/// Returns (G - 1) / G sum (x_g - mean)^2 (eq. F.14).
 double Variance(const std::vector<GroupEffect>& groups, std::size_t parameter) {
   const double count = static_cast<double>(groups.size());
   double mean = 0, sum = 0;

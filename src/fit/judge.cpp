@@ -1,3 +1,5 @@
+// Verdict on a fit: goodness of fit by chi-square, errors by groups, cross-validation
+// (docs/theory/identification.md, section 6).
 #include <algorithm>
 #include <cmath>
 
@@ -10,16 +12,17 @@ namespace {
 
 using fit::Brief;
 
-/// Pulls from here on are named where a fit is rejected.
+/// Least pull, in sds of the prior, that is named when a fit is rejected.
 constexpr double kStrongPull = 3;
-/// Starts whose cost is this near to the best one's have come to the same minimum.
+/// Relative difference of costs up to which starts count as converged to the same minimum.
 constexpr double kSameCost = 1e-3;
-/// Errors by groups beyond this many times those by J^T J are told, if chance makes them seldomer.
+/// Errors by groups are reported if they exceed those by J^T J by this factor and chance explains
+/// it with a probability below kByChance.
 constexpr double kSeveral = 2, kByChance = 1e-3;
 
-/// A sum of squares of normal numbers with a covariance of this trace and trace of its square, as
-/// if it were a multiple of a chi-square with the same mean and variance (Satterthwaite; exact
-/// where all its eigenvalues are equal or 0).
+/// Approximates a sum of squares of normal numbers, given the traces of their covariance and of its
+/// square, by a multiple of a chi-square with the same mean and variance (Satterthwaite; exact if
+/// all eigenvalues are equal or 0).
 ChiSquare MakeChiSquare(double value, double trace, double trace_of_square) {
   ChiSquare chi{value, trace, 1};
   if (trace > 1e-6 && trace_of_square > 0) {
@@ -29,8 +32,8 @@ ChiSquare MakeChiSquare(double value, double trace, double trace_of_square) {
   return chi;
 }
 
-/// Traces of I - D C D and of its square, D = diag(1 / prior sd): the covariance of the pulls
-/// (F.15).
+/// Uses the traces of I - D C D and of its square, D = diag(1 / prior sd): the covariance of the
+/// pulls (F.15).
 ChiSquare PriorsOf(const FitProblem& problem, const Identifiability& found) {
   const std::size_t n = problem.parameters.size();
   double value = 0, trace = 0, square = 0;
@@ -50,8 +53,8 @@ ChiSquare PriorsOf(const FitProblem& problem, const Identifiability& found) {
   return MakeChiSquare(value, trace, square);
 }
 
-/// Data by their losses, priors, both. Of a linear model with normal errors the whole is a
-/// chi-square.
+/// Chi-squares of the data with their losses, of the priors, and of both. For a linear model with
+/// normal errors the sum is a chi-square.
 void ChiSquares(const FitProblem& problem, FitVerdict& verdict) {
   double data = 0;
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
@@ -105,8 +108,8 @@ std::string UnidentifiableSentence(const FitProblem& problem, const FitVerdict& 
          Brief(verdict.identifiability.condition) + ").";
 }
 
-/// Errors by groups beside those by J^T J. Were residuals independent, (G - 1) times the square of
-/// their ratio would be a chi-square with G - 1 degrees of freedom (F.14a).
+/// Compares errors by groups with those by J^T J. For independent residuals, (G - 1) times the
+/// square of their ratio is a chi-square with G - 1 degrees of freedom. Errors by groups: eq. F.14.
 void CompareErrors(const FitProblem& problem, FitVerdict& verdict) {
   const double freedom = static_cast<double>(verdict.jackknife.groups.size()) - 1;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {

@@ -1,3 +1,4 @@
+// Cross-validation over groups (k-fold) and errors on held-out data.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +14,7 @@ std::vector<double> Starts(const FitProblem& problem) {
   return starts;
 }
 
-/// Sums of squares of rows of some groups.
+/// Sums of squares of the rows of some groups.
 struct Squares {
   std::size_t count = 0;
   double untuned = 0, fitted = 0;
@@ -28,7 +29,8 @@ struct Squares {
   }
 };
 
-/// Residuals untuned, then at each point; why there are none in `why`.
+/// Returns the residuals at the start values, then at each point; `why` receives the reason if they
+/// are missing.
 std::vector<Residuals> Evaluate(const FitProblem& problem,
                                 const std::vector<std::vector<double>>& points, std::string& why) {
   std::vector<std::vector<double>> all = {Starts(problem)};
@@ -44,7 +46,7 @@ std::vector<Residuals> Evaluate(const FitProblem& problem,
   return std::move(*answers);
 }
 
-/// The lower of two searches, from the fit and from the start; null if there is none.
+/// Returns the lower of two searches, from the fit and from the start; null if both failed.
 const FitTrack* Lower(const FitState& state, std::size_t first) {
   const FitTrack* best = nullptr;
   for (std::size_t t = first; t < first + 2; ++t) {

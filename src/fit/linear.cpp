@@ -16,7 +16,8 @@ Singular Decompose(const Matrix& jacobian) {
     const Eigen::HouseholderQR<Matrix> qr(jacobian);
     square = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
   }
-  // Jacobi's method: small singular values to their own relative precision, not the largest's.
+  // Jacobi's method yields small singular values to their own relative precision, not only to the
+  // largest one's.
   const Eigen::JacobiSVD<Matrix> svd(square, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
 }

@@ -1,5 +1,5 @@
-/// Singular values of scaled Jacobians and what is null of them. Equations (F.10) to (F.13) of
-/// docs/theory/identification.md.
+/// Singular values and null space of scaled Jacobians, for identifiability (eq. F.10 to F.13 of
+/// docs/theory/identification.md).
 #pragma once
 
 #include <vector>
@@ -16,33 +16,33 @@ struct Singular {
 };
 Singular Decompose(const Matrix& jacobian);
 
-/// The inverse of J^T J without its null directions, and which parameters they touch: those have no
-/// finite variance, whatever a pseudo-inverse gives them.
+/// Inverse of J^T J without its null directions, and the parameters in those: their variance is
+/// infinite, although a pseudo-inverse yields a finite one.
 struct Spread {
   Matrix covariance;          ///< Without null directions.
-  std::vector<bool> endless;  ///< A parameter that is part of a null direction.
+  std::vector<bool> endless;  ///< Whether a parameter is part of a null direction.
   Matrix null;                ///< Null directions, columns.
 };
 
-/// A parameter is part of a null direction if its component is above this: below it are the errors
-/// of singular vectors of a Jacobian by differences.
+/// Least component of a parameter that is part of a null direction. Smaller components are errors
+/// of singular vectors, since Jacobians are differences.
 inline constexpr double kPartOfNull = 1e-3;
-/// A singular value is null below this share of the largest.
+/// Singular values below this share of the largest are null.
 inline constexpr double kNullShare = 1e-9;
 
 Spread SpreadOf(const Matrix& jacobian);
 
-/// The minimum-norm d of |J d + r| without null directions: a Gauss-Newton step.
+/// Returns the minimum-norm d of |J d + r| without null directions: a Gauss-Newton step.
 Vector LeastSquares(const Matrix& jacobian, const Vector& residual);
 
-/// Columns that are named.
+/// Returns the given columns.
 Matrix Columns(const Matrix& matrix, const std::vector<Eigen::Index>& columns);
 
-/// Parameters that a bound does not hold: not at one, or pulled back from it.
+/// Returns the parameters that are not at a bound, or whose gradient points away from it.
 std::vector<Eigen::Index> FreeOf(const FitProblem& problem, const std::vector<double>& values,
                                  const System& system);
 
-/// The system at `values` from checked derivatives.
+/// Assembles the system at `values` from checked derivatives.
 System SystemOf(const FitProblem& problem, const std::vector<bool>& left_out,
                 const std::vector<double>& values, const FitDerivatives& derivatives);
 

@@ -1,4 +1,4 @@
-/// A problem as the solvers see it: checked answers, losses, and linear systems in scales.
+/// Fit problem for the solvers: validated residuals, losses, and linear systems in scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@ namespace taut::fit {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// Known to this share of its prior sd or scale, a parameter is estimated; a direction that is has
-/// a singular value of sqrt(1 / share^2 - 1) at least.
+/// A parameter counts as estimated if its sd is at most this share of its prior sd or scale; for a
+/// direction, the singular value is then at least sqrt(1 / share^2 - 1).
 inline constexpr double kEstimatedShare = 0.5;
 
 inline bool HasPrior(const FitParameter& parameter) {
@@ -25,16 +25,17 @@ inline double PriorMean(const FitParameter& parameter) {
   return parameter.prior_mean.value_or(parameter.start);
 }
 
-/// Answers of `problem.forward` with what is wrong with them in `failed`. Nothing: it was stopped.
+/// Returns the residuals of `problem.forward` after validation; errors are in `failed`. Nothing if
+/// it was stopped.
 std::optional<std::vector<Residuals>> Compute(const FitProblem& problem,
                                               std::span<const std::vector<double>> points);
 
-/// Loss of a residual; its own square without a loss.
+/// Returns the loss of a residual; its square if the row has no loss.
 double Loss(const FitRow& row, double residual);
-/// d loss / d r^2: the factor of the square that has the same derivative here.
+/// Returns d loss / d r^2: the factor of the square with the same derivative at this residual.
 double LossWeight(const FitRow& row, double residual);
 
-/// Which groups count. A reference: `left_out` must outlive it.
+/// Rows whose groups count. Holds a reference: `left_out` must outlive it.
 class Rows {
  public:
   Rows(const FitProblem& problem, const std::vector<bool>& left_out)
@@ -49,26 +50,27 @@ class Rows {
   const std::vector<bool>* left_out_;
 };
 
-/// Half of the sum of the losses of what counts and of the squared priors.
+/// Returns half of the sum of losses of counting rows and of squared priors.
 double Cost(const FitProblem& problem, const Rows& rows, const std::vector<double>& values,
             const std::vector<double>& residual);
 
-/// r + J d with d in scales: weighted rows of the data, then one row a prior.
+/// Linear system r + J d with d in scales: weighted rows of the data, then one row per prior.
 struct System {
   Matrix jacobian;
   Vector residual;
   Eigen::Index data_rows = 0;
 };
 
-/// `slopes`: a column a parameter, in residuals a unit of it; an empty one is zero.
+/// `slopes`: one column per parameter, in residuals per unit of the parameter; an empty one is
+/// zero.
 System MakeSystem(const FitProblem& problem, const Rows& rows, const std::vector<double>& values,
                   const std::vector<double>& residual,
                   std::span<const std::vector<double>* const> slopes);
 
-/// "group 3" or its name.
+/// Returns "group 3" or the group's name.
 std::string GroupName(const FitProblem& problem, int group);
 
-/// Groups that occur, ascending.
+/// Returns the occurring groups, ascending.
 std::vector<int> Groups(const FitProblem& problem);
 
 }  // namespace taut::fit

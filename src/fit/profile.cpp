@@ -1,3 +1,5 @@
+// Profile likelihood of a parameter and its confidence interval (docs/theory/identification.md,
+// section 5).
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,11 +12,12 @@ namespace taut {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kExtensions = 4;    ///< Of a side that does not reach the level: each twice as far.
-constexpr double kLower = 1e-6;   ///< Less than that is the searches' tolerance.
-constexpr double kBetter = 0.01;  ///< A chi-square this much lower is another fit.
+/// Number of extensions of a side that does not reach the level; each doubles the spacing.
+constexpr int kExtensions = 4;
+constexpr double kLower = 1e-6;   ///< Smaller differences are within the tolerance of the searches.
+constexpr double kBetter = 0.01;  ///< Decrease of chi-square that indicates another, better fit.
 
-/// A profile under way: `points` grow outwards on both sides of the fit.
+/// Profile likelihood in progress: `points` grow outwards on both sides of the fit.
 class Profile {
  public:
   Profile(const FitProblem& problem, std::size_t parameter, const ProfileOptions& options)
@@ -23,7 +26,8 @@ class Profile {
     held_[parameter] = true;
   }
 
-  /// False if it was stopped, or the fit itself cannot be computed.
+  /// Computes the central point. Returns false if it was stopped or the fit itself cannot be
+  /// computed.
   bool Centre(const std::vector<double>& values) {
     std::vector<bool> all(values.size(), true);
     const std::vector<FitJob> jobs = {{values, all, {}}};
@@ -39,8 +43,8 @@ class Profile {
     return true;
   }
 
-  /// Adds points `step` apart on the sides asked for, each from where the outermost of its side
-  /// ended.
+  /// Adds points with spacing `step` on the chosen sides; each starts at the result of the
+  /// outermost point of its side.
   bool Extend(bool down, bool up, double step) {
     std::vector<FitJob> jobs;
     if (down) AddSide(Computed(true), -step, jobs);
@@ -48,14 +52,14 @@ class Profile {
     return Run(jobs);
   }
 
-  /// From each neighbour's result once more, and on from what that lowers: another minimum beside,
-  /// which a kink may hide, is handed on from point to point.
+  /// Repeats the searches from the results of both neighbors, then around each point that this
+  /// lowered. Another minimum, which a kink may hide, thus propagates from point to point.
   bool Again() {
     for (const ProfilePoint& point : points_) lowered_.insert(point.value);
     for (std::size_t pass = 0; pass < points_.size() && !lowered_.empty(); ++pass) {
       std::vector<FitJob> jobs;
       for (std::size_t k = 0; k < points_.size(); ++k) {
-        for (const std::size_t other : {k - 1, k + 1}) {  // before the first: beyond the last, too
+        for (const std::size_t other : {k - 1, k + 1}) {  // k - 1 wraps at 0
           if (other >= points_.size() || lowered_.count(points_[other].value) == 0) continue;
           if (!points_[other].failed.empty()) continue;
           jobs.push_back({points_[other].values, held_, {}});
@@ -84,14 +88,14 @@ class Profile {
   const std::string& why() const { return why_; }
 
  private:
-  /// The outermost of a side that could be computed.
+  /// Returns the outermost computable point of a side.
   const ProfilePoint& Computed(bool low) const {
     std::size_t k = low ? 0 : points_.size() - 1;
     while (!points_[k].failed.empty()) low ? ++k : --k;
     return points_[k];
   }
 
-  /// As far as the bound, which is the last point.
+  /// Adds points up to the bound, which is the last one.
   void AddSide(const ProfilePoint& from, double step, std::vector<FitJob>& jobs) const {
     const FitParameter& p = problem_.parameters[parameter_];
     double before = from.value;
@@ -120,7 +124,7 @@ class Profile {
     return true;
   }
 
-  /// In its place by value; of two of one value the lower.
+  /// Inserts a point by its value; of two with the same value the lower one is kept.
   void Put(const FitTrack& track) {
     ProfilePoint point;
     point.value = track.start[parameter_];
@@ -149,10 +153,10 @@ class Profile {
   std::string why_;
 };
 
-/// Where the rise crosses the level between a point below and one above: linear in the square root,
-/// exact for a parabola whose lowest point is the fit.
+/// Returns the parameter value at which the rise crosses the level between two points: linear in
+/// the square root, exact for a parabola with its minimum at the fit.
 double Crossing(const ProfilePoint& below, const ProfilePoint& above, double lowest, double level) {
-  if (std::isinf(above.rise)) return below.value;  // cannot be computed beyond
+  if (std::isinf(above.rise)) return below.value;  // not computable beyond
   const double a = std::sqrt(std::max(below.rise - lowest, 0.0));
   const double b = std::sqrt(above.rise - lowest);
   return below.value + (above.value - below.value) * (std::sqrt(level) - a) / (b - a);

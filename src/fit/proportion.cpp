@@ -1,3 +1,4 @@
+// Consistency check of proportional measurements: slope through 0 and its error.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,7 +9,7 @@
 namespace taut {
 namespace {
 
-/// Sums of weighted products, from which a slope through 0 follows.
+/// Sums of weighted products for a slope through 0.
 struct Sums {
   double xx = 0, xy = 0;
   void Add(const ProportionPoint& p) {
@@ -18,7 +19,7 @@ struct Sums {
   }
 };
 
-/// Delete-one-group jackknife of the slope; 0 with fewer than three groups.
+/// Returns the delete-one-group jackknife error of the slope; 0 with fewer than three groups.
 double GroupError(const Sums& all, const std::map<int, Sums>& groups) {
   std::vector<double> slopes;
   for (const auto& [group, part] : groups) {

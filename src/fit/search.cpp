@@ -8,10 +8,10 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLeastDamping = 1e-12, kMostDamping = 1e12;
-/// Below this share of the promised gain, slopes are looked at again.
+/// Slopes are checked again if the gain is below this share of the predicted gain.
 constexpr double kPoorRatio = 0.25;
 
-/// The cosine of the angle between the residuals and column j.
+/// Returns the cosine of the angle between the residuals and column j.
 double Cosine(const Quadratic& quadratic, const Vector& gradient, double residual_norm,
               Eigen::Index j) {
   const double size = quadratic.R.col(j).norm() * residual_norm;
@@ -188,7 +188,8 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
   const Vector gradient = quadratic.gradient();
   const StepBox box = BoxOf(t, gradient);
 
-  // More's rule: D is the largest norm that a column has had, so that scales do not matter.
+  // Moré's rule: D is the largest norm that a column has had, which makes the method independent of
+  // scales (F.4).
   Vector weight(gradient.size());
   for (Eigen::Index j = 0; j < weight.size(); ++j) {
     double& kept = track.weight[static_cast<std::size_t>(j)];
@@ -223,7 +224,8 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
       const FitParameter& p = problem_.parameters[j];
       const auto i = static_cast<Eigen::Index>(j);
       point[j] = std::clamp(point[j] + FitScale(p) * step[i], p.low, p.high);
-      if (!box.held[j] && step[i] == box.low[i]) point[j] = p.low;  // exactly, whatever rounds
+      if (!box.held[j] && step[i] == box.low[i])
+        point[j] = p.low;  // exactly, regardless of rounding
       if (!box.held[j] && step[i] == box.high[i]) point[j] = p.high;
     }
     points.push_back(std::move(point));
@@ -244,7 +246,7 @@ void Search::Choose(std::size_t t, std::span<Trial> trials,
     const double ratio = trial.predicted > 0 ? gained / trial.predicted : 1.0;
     const bool small = gained <= options_.cost_tolerance * track.cost &&
                        trial.predicted <= options_.cost_tolerance * track.cost;
-    // Nielsen's rule.
+    // Nielsen's rule (F.5).
     const double turned = 2.0 * ratio - 1.0;
     track.damping = trial.damping * std::max(1.0 / 3.0, 1.0 - turned * turned * turned);
     track.damping = std::clamp(track.damping, kLeastDamping, kMostDamping);
@@ -257,7 +259,7 @@ void Search::Choose(std::size_t t, std::span<Trial> trials,
     track.check = ratio < kPoorRatio || small || vanished;
     return;
   }
-  // The one with the least damping goes furthest and promises most.
+  // The trial with the least damping is the longest and predicts the largest gain.
   const double promised = trials.front().predicted;
   const bool vanished = trials.front().length <= options_.step_tolerance;
   const bool nothing = promised <= options_.cost_tolerance * track.cost;

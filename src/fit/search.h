@@ -1,4 +1,4 @@
-/// Searches in lockstep: the points of all of them are computed in one call.
+/// Levenberg-Marquardt searches in lockstep: the points of all searches are computed in one call.
 #pragma once
 
 #include <functional>
@@ -11,12 +11,12 @@
 
 namespace taut::fit {
 
-/// Another start for job `job` whose start could not be computed, the `attempt`-th time; nothing:
-/// no more.
+/// Returns a replacement for the start of job `job` that could not be computed, at the given
+/// attempt; nothing: no more attempts.
 using Again = std::function<std::optional<std::vector<double>>(std::size_t job, int attempt)>;
 
-/// The searches of one call. Its state changes at the end of an iteration only, so that one that
-/// was stopped goes on as if it had not been.
+/// All searches of one call. The state changes at the end of an iteration only, so that a stopped
+/// search resumes with identical results.
 class Search {
  public:
   Search(const FitProblem& problem, std::span<const FitJob> jobs, const FitOptions& options,
@@ -25,31 +25,33 @@ class Search {
   FitState Run();
 
  private:
-  /// What can be had again from a track's values.
+  /// Data that can be recomputed from a track's values.
   struct Work {
     std::vector<double> residual;
-    std::vector<std::vector<double>> slopes;  ///< One a parameter; empty where it is held.
-    std::vector<double> nearby;  ///< The best point of the differences, if better than the track's;
+    std::vector<std::vector<double>> slopes;  ///< One per parameter; empty if it is held.
+    /// Best point of the differences if it is better than the track's; else empty.
+    std::vector<double> nearby;
     std::vector<double> nearby_residual;
     double nearby_cost = 0;
   };
-  /// A trial point of a track.
+  /// Trial point of a track.
   struct Trial {
     std::size_t track = 0;
     double damping = 0, predicted = 0, length = 0;
     Residuals answer;
-    double cost = 0;  ///< Infinite if it failed: the penalty.
+    double cost = 0;  ///< Infinite if it failed (penalty).
   };
 
-  bool Begin();   ///< Residuals of all starts. False: stopped.
-  bool Derive();  ///< Slopes of those that moved. False: stopped.
-  /// Before a search ends at differences that were not checked: has them checked, if they were not.
+  bool Begin();   ///< Computes the residuals of all starts. False: stopped.
+  bool Derive();  ///< Computes the slopes of the searches that moved. False: stopped.
+  /// Requests a check of the differences before a search ends, if they were not checked. Returns
+  /// whether it did.
   bool CheckFirst(std::size_t track);
   /// Counts points of differences and keeps the best of each track.
   void TakeNearby(std::size_t track, const std::vector<double>& point, const Residuals& answer);
-  bool Try();  ///< An iteration. False: stopped.
+  bool Try();  ///< Performs an iteration. False: stopped.
 
-  FitState Stopped();  ///< What was kept, with those that still run marked.
+  FitState Stopped();  ///< Returns the kept state with running searches marked as interrupted.
   bool Compute(const std::vector<std::vector<double>>& points, std::vector<Residuals>& answers);
   double CostAt(std::size_t track, const std::vector<double>& values,
                 const std::vector<double>& residual) const;
@@ -59,7 +61,7 @@ class Search {
   void Choose(std::size_t track, std::span<Trial> trials,
               std::span<const std::vector<double>> points);
   void MoveTo(std::size_t track, const std::vector<double>& values, double cost);
-  /// To the best point of the differences, if it is better by more than nothing to speak of.
+  /// Moves to the best point of the differences, if it lowers the cost by more than rounding.
   bool Jump(std::size_t track);
   void End(std::size_t track, FitEnd end, const std::string& why);
   void CountFailure(std::size_t track, const std::string& why);

@@ -1,4 +1,4 @@
-/// Numbers and lists in sentences for a reader.
+/// Numbers and lists as text for messages.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace taut::fit {
 
-/// Four digits, with the unit, if there is one.
+/// Returns four significant digits, with the unit if there is one.
 std::string Brief(double x, const std::string& unit = {});
-/// With a sign, for a change.
+/// Returns a change with its sign and unit.
 std::string Change(double x, const std::string& unit);
-/// "a", "a and b", "a, b and c".
+/// Returns "a", "a and b", or "a, b and c".
 std::string List(const std::vector<std::string>& names);
 
 }  // namespace taut::fit

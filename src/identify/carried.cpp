@@ -12,7 +12,8 @@
 namespace taut::identify {
 namespace {
 
-/// What members carry and what is applied may differ by this share where nothing else holds.
+/// Largest relative difference between computed member forces and applied loads if nothing else
+/// holds the bodies.
 constexpr double kClosed = 1e-6;
 
 Vec3 PlaceOf(const ModelDef& def, const Pose& pose, int body, const Vec3& described_m) {
@@ -22,7 +23,8 @@ Vec3 PlaceOf(const ModelDef& def, const Pose& pose, int body, const Vec3& descri
   return s.position_m + Rotate(s.orientation, described_m - def.bodies[b].com_m);
 }
 
-/// By how much a unit of tension in a member pulls the bodies inside along a direction.
+/// Returns the component along `direction` of the force on the bodies inside, per unit of tension
+/// in a member.
 double PullAlong(const ModelDef& def, const Pose& pose, const CutMember& member,
                  const Vec3& direction) {
   const Vec3 way = PlaceOf(def, pose, member.outside, member.to_m) -
@@ -84,7 +86,7 @@ void AddJoint(const JointDef& joint, Cut& cut) {
                          a ? joint.to_m : joint.from_m});
 }
 
-/// The first of a member's channels that was measured; empty if there is none.
+/// Returns the member's first measured channel; empty if none was measured.
 std::string ChannelOf(const CutMember& member, const MeasuredForces& measured) {
   for (const std::string& channel : member.channels) {
     if (measured.by_channel.count(channel)) return channel;
@@ -92,7 +94,7 @@ std::string ChannelOf(const CutMember& member, const MeasuredForces& measured) {
   return {};
 }
 
-/// What a member has in a rest that was computed.
+/// Returns a member's force in a computed equilibrium [N].
 double ComputedForce(const ModelDef& def, const Equilibrium& rest, const CutMember& member) {
   for (std::size_t i = 0; i < def.cables.size(); ++i) {
     if (member.channels[0] == "cable/" + def.cables[i].name + "/tension_n") {
@@ -107,11 +109,11 @@ double ComputedForce(const ModelDef& def, const Equilibrium& rest, const CutMemb
   return 0;
 }
 
-/// The row of one rest; nothing if a member was not measured then.
+/// Returns the comparison at one rest; nothing if a member was not measured there.
 std::optional<CarriedLoad::Row> RowOf(const ModelDef& def, const Cut& cut, const Pose& pose,
                                       const Vec3& direction, const MeasuredForces& measured) {
   CarriedLoad::Row row{measured.where, 0, 0, 0};
-  // A cable may cross several times: its error is one.
+  // Summed per channel: all crossings of one cable share one measurement error.
   std::map<std::string, double> pulls;
   for (const CutMember& member : cut.members) {
     const std::string channel = ChannelOf(member, measured);
@@ -147,9 +149,10 @@ void CheckCut(const FitCarried& asked, const FitExperiment& one,
   const std::string of = "carried: " + asked.name + " of " + one.name + ": ";
   const Cut cut = CutAbout(one.experiment.robot.def, asked.bodies);
   for (const std::string& what : cut.wrong) {
-    out.Error(asked.at, of + what, "bodies that only cables and bars hold");
+    out.Error("carried.not_held", asked.at, of + what, "bodies that only cables and bars hold");
   }
-  if (cut.members.empty() && cut.wrong.empty()) out.Error(asked.at, of + "nothing holds them");
+  if (cut.members.empty() && cut.wrong.empty())
+    out.Error("carried.not_held", asked.at, of + "nothing holds them");
   std::set<std::string> missing;
   for (const CutMember& member : cut.members) {
     const auto has = [&](const MeasuredForces& m) { return !ChannelOf(member, m).empty(); };
@@ -157,7 +160,7 @@ void CheckCut(const FitCarried& asked, const FitExperiment& one,
     missing.insert(member.channels[0]);
   }
   for (const std::string& channel : missing) {
-    out.Error(asked.at, of + "nothing compares " + channel,
+    out.Error("carried.not_compared", asked.at, of + "nothing compares " + channel,
               "all members between the bodies and the rest have to be measured");
   }
 }

@@ -1,5 +1,5 @@
-/// Whether measured forces carry the load that is applied: a cut about bodies, whose members are
-/// measured. docs/theory/identification.md, section 6.
+/// Check of measured forces against the applied load: a cut around bodies whose crossing members
+/// are measured (docs/theory/identification.md, section 6).
 #pragma once
 
 #include <map>
@@ -12,29 +12,31 @@
 
 namespace taut::identify {
 
-/// A force along a line that pulls a body inside towards what is outside.
+/// Member that crosses the cut, with its force along a line from a body inside to one outside.
 struct CutMember {
-  std::vector<std::string> channels;  ///< Any of which has its force, tension > 0.
-  int inside = 0, outside = kWorld;   ///< Bodies,
-  Vec3 from_m, to_m;                  ///< and its ends there, as described.
+  /// Channels of its force, tension > 0; any one of them suffices.
+  std::vector<std::string> channels;
+  int inside = 0, outside = kWorld;  ///< Bodies at its ends.
+  Vec3 from_m, to_m;                 ///< Its ends there, in the described pose.
 };
 
 struct Cut {
   std::set<int> bodies;
   std::vector<CutMember> members;
-  std::vector<std::string> wrong;  ///< What else holds the bodies, one sentence each.
+  std::vector<std::string> wrong;  ///< Other connections of the bodies, one sentence each.
 };
 
 Cut CutAbout(const ModelDef& def, const std::vector<std::string>& bodies);
 
-/// What was compared of an experiment at one rest: force [N] and its sd by channel.
+/// Forces of an experiment that are compared at one rest, by channel: force and standard deviation
+/// [N].
 struct MeasuredForces {
   std::string where;
-  double time = 0;  ///< Of the rest, as of `EachRest`.
+  double time = 0;  ///< Time of the rest, as in `EachRest`.
   std::map<std::string, std::pair<double, double>> by_channel;
 };
 
-/// Complaints if the cut is none, or members of it were never measured.
+/// Reports errors if the cut is invalid or a crossing member was never measured.
 void CheckCut(const FitCarried& asked, const FitExperiment& one,
               const std::vector<MeasuredForces>& measured, Diagnostics& out);
 

@@ -1,4 +1,5 @@
-/// What an experiment gives: its channels against time, or at rest.
+/// Computed channels of an experiment for system identification: against time, or at static
+/// equilibria.
 #pragma once
 
 #include <atomic>
@@ -15,45 +16,47 @@
 namespace taut::identify {
 
 struct Computed {
-  std::string failed;      ///< Reason why there is no result; else empty.
+  std::string failed;      ///< Reason for the missing result; else empty.
   std::string unreadable;  ///< Reason why its files cannot be read; then the trial is undecided.
   bool stopped = false;
-  std::vector<double> time_s;               ///< Of a rest: of its set points; of load cases 1, 2...
-  std::vector<std::vector<double>> values;  ///< [channel as asked][row].
-  /// Of a run: its number for each value of each reference of the experiment [N]; NaN if it did not
-  /// get that far.
+  std::vector<double> time_s;  ///< For rests: times of the set points; for load cases 1, 2, ...
+  std::vector<std::vector<double>> values;  ///< [requested channel][row].
+  /// For runs: value of each number of each reference of the experiment [N]; NaN if the run ended
+  /// before it.
   std::vector<std::vector<double>> references;
 };
 
-/// To the bit, for other processes of the same build.
+/// Serializes all values bit for bit, for other processes of the same build.
 std::string Pack(const Computed& computed);
 Computed UnpackComputed(const std::string& bytes);
 
-/// Runs it. `channels` as of `DynamicChannels`.
+/// Simulates the experiment. `channels`: names from `DynamicChannels`.
 Computed Run(const ExperimentSpec& experiment, const std::vector<std::string>& channels,
              const std::atomic<bool>* stop);
-/// What a run can give: all that it can record, and `body/<name>/rotation_{x,y,z}_rad`, the turn
-/// from where it was described as a vector along its axis.
+/// Returns the channels that a run can provide: every recordable channel, and
+/// `body/<name>/rotation_{x,y,z}_rad`, the rotation vector from the described orientation.
 std::vector<ChannelInfo> DynamicChannels(const ExperimentSpec& experiment);
 
-/// Rests one after the other: at moments, which rise, each from the one before; or of load cases,
-/// whose time is their number, from 1. `take` gets each with its loads; false ends it. Why one was
-/// not found; else empty.
+/// Computes static equilibria one after another: at increasing moments, each starting from the one
+/// before, or of load cases, whose time is their number from 1. `take` receives each one with its
+/// loads and returns false to stop. Returns the reason if one was not found; else an empty string.
 using RestTaker = std::function<bool(double time, const LoadCaseSpec&, const Equilibrium&)>;
 std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
                      const std::vector<double>& moments_s, const RestTaker& take);
-/// The channels of these rests.
+/// Computes the requested channels at these rests.
 Computed Rest(const ExperimentSpec& experiment, FitForward forward,
               const std::vector<double>& moments_s, const std::vector<std::string>& channels,
               const std::atomic<bool>* stop);
 std::vector<ChannelInfo> RestChannels(const ExperimentSpec& experiment);
-/// Why an experiment has no rests that its set points alone tell; empty if it has.
+/// Returns the reason why the set points of an experiment do not determine static equilibria; empty
+/// if they do.
 std::string WhyNoRest(const ExperimentSpec& experiment);
 
-/// When programs of rest lengths and pushes have come to another value: the ends of their ramps.
+/// Returns the times at which programs of rest lengths and pushes have reached a new value: the
+/// ends of their ramps [s].
 std::vector<double> SetPoints(const ExperimentSpec& experiment);
 
-/// The turn of a unit quaternion as a vector along its axis, no longer than pi [rad].
+/// Returns the rotation vector of a unit quaternion, with length <= pi [rad].
 Vec3 TurnOf(const Quat& q);
 
 }  // namespace taut::identify

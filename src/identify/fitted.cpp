@@ -1,4 +1,4 @@
-// Experiments with what was found, and their rests to look at.
+// Experiment files with fitted parameters, and run folders of their static equilibria.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ bool WriteRests(const Identification& fit, std::size_t experiment, const Experim
   const identify::Computed rests =
       identify::Rest(with, one.forward, fit.moments_s(experiment), names, nullptr);
   if (!rests.failed.empty()) {
-    out.Error({one.experiment_file}, one.name + ": " + rests.failed);
+    out.Error("fit.no_rest", {one.experiment_file}, one.name + ": " + rests.failed);
     return false;
   }
   ExperimentSpec shown = with;
@@ -74,7 +74,7 @@ bool WriteRests(const Identification& fit, std::size_t experiment, const Experim
     good = trace->Append(rests.time_s[row], values.data());
   }
   if (!good || !trace->Finish()) {
-    out.Error({}, trace->error());
+    out.Error("trace.not_written", {}, trace->error());
     return false;
   }
   RunSummary summary;

@@ -1,3 +1,4 @@
+// System identification: builds a fit problem from experiments, their models and measured data.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,12 +17,12 @@ namespace taut {
 namespace identify {
 namespace {
 
-/// A row with what acts on it.
+/// Row with its model, channels and the estimates that affect it.
 struct Tied {
   Row row;
   std::size_t model = 0;
   RowChannels channels;
-  std::vector<std::size_t> gains, offsets, delays;  ///< Estimates of the fit.
+  std::vector<std::size_t> gains, offsets, delays;  ///< Indices of estimates of the fit.
 };
 
 /// Rows of a problem, in its order.
@@ -85,7 +86,7 @@ class Made : public Identification {
   Residuals Compose(const Set& set, const std::vector<double>& all,
                     const std::map<std::size_t, Models::Answer>& computed) const;
   std::vector<double> All(const std::vector<double>& values) const;
-  /// What makes points the same.
+  /// Returns the facts that must match for stored points to be reused.
   std::map<std::string, std::string> Facts() const;
   bool OpenMemory(Diagnostics& out);
 
@@ -94,7 +95,8 @@ class Made : public Identification {
   Models models_;
   int processes_ = 1;
   std::unique_ptr<PointMemory> memory_;
-  std::vector<std::vector<ChannelInfo>> channels_;  ///< Per experiment: what can be computed.
+  /// Per experiment: channels that can be computed.
+  std::vector<std::vector<ChannelInfo>> channels_;
   std::vector<std::size_t> estimates_;
   Set train_, test_;
   std::vector<Set> design_sets_;
@@ -128,7 +130,7 @@ void Made::AddRows(const FitResidual& residual, std::size_t experiment, const Me
   }
 }
 
-/// Offsets and gains of channels that nothing compares are mistakes.
+/// Reports offsets, gains and delays of channels that are not compared as errors.
 void Made::CheckActing(Diagnostics& out) {
   std::vector<bool> acts(spec_.estimates.size());
   std::set<std::string> names;
@@ -143,12 +145,13 @@ void Made::CheckActing(Diagnostics& out) {
   for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
     const FitEstimate& e = spec_.estimates[i];
     if (acts[i] || e.kind == FitEstimate::Kind::kParameter) continue;
-    out.Error(e.at, "estimate: nothing that is compared has anything of " + e.name,
+    out.Error("estimate.compared_with_nothing", e.at,
+              "estimate: nothing that is compared has anything of " + e.name,
               e.channels.empty() ? "" : DidYouMean(e.channels, {names.begin(), names.end()}));
   }
 }
 
-/// What is compared of an experiment at its rests, row by row.
+/// Returns the compared measurements of an experiment at its rests, row by row.
 std::vector<MeasuredForces> Made::ForcesOf(std::size_t experiment) const {
   std::vector<MeasuredForces> out;
   for (const Set* set : {&train_, &test_}) {
@@ -178,7 +181,7 @@ std::vector<CarriedLoad> Made::Carried() const {
   return out;
 }
 
-/// Those that act on nothing that is trained on stay where they start.
+/// Selects the estimates that affect training data; the others keep their start values.
 void Made::ChooseEstimates() {
   for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
     const auto& on = spec_.estimates[i].experiments;
@@ -264,7 +267,7 @@ std::vector<Residuals> Made::Answer(const Set& set, std::span<const std::vector<
     missing.push_back(All(point));
     missing_keys.push_back(keys.back());
   }
-  // In parts, so that what is stopped or killed has lost little.
+  // In parts, so that little is lost if the process is stopped or killed.
   const std::size_t part =
       4 * static_cast<std::size_t>(models_.threads()) * static_cast<std::size_t>(processes_);
   for (std::size_t from = 0; from < missing.size(); from += part) {
@@ -331,10 +334,11 @@ bool Made::Begin(Diagnostics& out) {
     if (one.forward != FitForward::kStatic) continue;
     const std::string why = WhyNoRest(one.experiment);
     if (!why.empty()) {
-      out.Error(one.at, "experiments: " + one.name + " has no rest at its set points: " + why,
+      out.Error("fit.no_rest", one.at,
+                "experiments: " + one.name + " has no rest at its set points: " + why,
                 "forward: dynamic");
     } else if (SetPoints(one.experiment).empty()) {
-      out.Error(one.at, "experiments: " + one.name + " has no set points",
+      out.Error("fit.no_setpoints", one.at, "experiments: " + one.name + " has no set points",
                 "where a program of rest lengths or a push comes to another value");
     }
   }
@@ -364,7 +368,7 @@ bool Made::Begin(Diagnostics& out) {
   std::size_t known = train_.rows.size();
   for (const std::size_t i : estimates_) known += spec_.estimates[i].range.sd ? 1 : 0;
   if (known < estimates_.size()) {
-    out.Error({spec_.files[0]},
+    out.Error("fit.few_data", {spec_.files[0]},
               fmt::format("{} numbers are to be found from {} data and priors together",
                           estimates_.size(), known),
               "priors with `sd`, more data, or fewer numbers");

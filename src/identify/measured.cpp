@@ -10,7 +10,7 @@
 namespace taut::identify {
 namespace {
 
-/// A file of set points may say which of the experiment's moments each row is.
+/// Optional column of a file of set points: the experiment's moment of each row.
 constexpr const char* kOurClock = "experiment_s";
 
 bool Rises(const std::vector<double>& times) {
@@ -40,12 +40,12 @@ std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out)
   auto trace = Read(one, out);
   if (trace) measured.trace = std::move(*trace);
   if (trace && measured.trace.time_s.empty()) {
-    out.Error({one.data_file}, "has no rows");
+    out.Error("data.no_rows", {one.data_file}, "has no rows");
     trace.reset();
   }
   if (one.forward == FitForward::kLoadCases && trace &&
       measured.trace.time_s.size() != one.experiment.load_cases.size()) {
-    out.Error(one.data_at,
+    out.Error("data.rows_differ_from_load_cases", one.data_at,
               fmt::format("experiments: {} has {} load cases, its data {} rows", one.name,
                           one.experiment.load_cases.size(), measured.trace.time_s.size()),
               "row i of the data is that of load case i");
@@ -57,11 +57,12 @@ std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out)
   if (ours) {
     measured.ours_s = times->values[*ours];
     if (!Rises(measured.ours_s)) {
-      out.Error({one.setpoints_file}, std::string(kOurClock) + " does not rise");
+      out.Error("data.clock_not_increasing", {one.setpoints_file},
+                std::string(kOurClock) + " does not rise");
       return std::nullopt;
     }
   } else if (times && times->time_s.size() != measured.setpoint_s.size()) {
-    out.Error(one.setpoints_at,
+    out.Error("data.rows_differ_from_setpoints", one.setpoints_at,
               fmt::format("experiments: {} has {} set points, its file of them {} rows", one.name,
                           measured.setpoint_s.size(), times->time_s.size()),
               std::string("a set point is where a program of rest lengths or a push comes to "

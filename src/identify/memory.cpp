@@ -69,7 +69,8 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
         known[name] = r.Text(1);
       });
   if (!read) {
-    out.Error({path}, "is not the memory of a fit, or cannot be written: " + database_->TakeError(),
+    out.Error("fit.not_a_memory", {path},
+              "is not the memory of a fit, or cannot be written: " + database_->TakeError(),
               "give another folder with --out");
     return false;
   }
@@ -89,21 +90,22 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
       if (both && here->second == there->second) continue;
       which += (which.empty() ? "" : ", ") + name;
     }
-    out.Error({path}, "holds another fit: it differs in " + which,
+    out.Error("fit.other_fit", {path}, "holds another fit: it differs in " + which,
               "give another folder with --out, or remove this one");
     return false;
   }
   if (!ReadPoints()) {
-    out.Error({path}, "cannot be read: " + database_->TakeError());
+    out.Error("fit.memory_not_readable", {path}, "cannot be read: " + database_->TakeError());
     return false;
   }
   if (known.empty() && remembered_ + damaged_ > 0) {
-    out.Error({path}, "is damaged: holds points, but not the facts of their fit",
+    out.Error("fit.memory_damaged", {path},
+              "is damaged: holds points, but not the facts of their fit",
               "give another folder with --out, or remove this one");
     return false;
   }
   if (known.empty() && !WriteFacts(facts)) {
-    out.Error({path}, "cannot be written: " + database_->TakeError());
+    out.Error("fit.memory_not_writable", {path}, "cannot be written: " + database_->TakeError());
     return false;
   }
   return true;

@@ -1,4 +1,5 @@
-/// The points that a fit has computed, on the disk: killed at any moment, it goes on from there.
+/// Persistent cache of the points that a fit has computed (SQLite), so that a killed fit resumes
+/// there.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +15,22 @@
 
 namespace taut::identify {
 
-/// One thread at a time. Without a file it remembers for as long as it lives.
+/// Cache of points; not thread-safe. Without a file it exists in memory only.
 class PointMemory {
  public:
   PointMemory() = default;
-  /// `facts`: what makes points the same; a file that says another of them is another fit's. Null
-  /// and a complaint if that is so, or if the file cannot be read or written, or holds points
-  /// without facts. Points that were computed under other facts count as damaged.
+  /// Opens the file. `facts` identify the fit: a file with other facts belongs to another fit.
+  /// Returns null with errors in that case, or if the file cannot be read or written, or contains
+  /// points without facts. Points that were computed under other facts count as damaged.
   static std::unique_ptr<PointMemory> Open(const std::string& path,
                                            const std::map<std::string, std::string>& facts,
                                            Diagnostics& out);
 
-  /// The bits of numbers, after what they are of.
+  /// Returns the key of a point: the problem's name and the bits of its values.
   static std::string Key(const std::string& problem, const std::vector<double>& values);
 
   const Residuals* Find(const std::string& key) const;
-  /// Adds all, to the file at once or not at all. False if that cannot be written; see `error`.
+  /// Adds all points to the file in one transaction. Returns false if writing fails; see `error`.
   bool Add(const std::vector<std::pair<std::string, Residuals>>& points);
 
   const std::string& error() const { return error_; }

@@ -8,7 +8,7 @@
 namespace taut::identify {
 namespace {
 
-/// So many answers are kept: columns that move offsets alone compute nothing anew.
+/// Number of cached results; columns that change offsets only need no new computation.
 constexpr std::size_t kMostKept = 256;
 
 bool ActsOn(const FitEstimate& e, std::size_t experiment) {

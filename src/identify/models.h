@@ -1,4 +1,5 @@
-/// The experiments of a fit, computed for any values of its parameters.
+/// Forward models of a fit: experiments computed for given parameter values, in parallel and with a
+/// cache.
 #pragma once
 
 #include <atomic>
@@ -18,17 +19,18 @@
 
 namespace taut::identify {
 
-/// One thread at a time. Experiments that have a file, a way and parameters in common are computed
-/// once for all of them.
+/// Not thread-safe. Experiments with the same file, forward method and parameters share one
+/// computation.
 class Models {
  public:
   Models(const FitSpec& spec, int threads, const std::atomic<bool>* stop);
 
-  /// Which model an experiment is of.
+  /// Returns the index of the model that computes an experiment.
   std::size_t ModelOf(std::size_t experiment) const { return of_[experiment]; }
-  /// Asks for a channel; its place among those of the model. Before anything is computed.
+  /// Requests a channel and returns its index among the model's channels. Call before anything is
+  /// computed.
   std::size_t Need(std::size_t model, const std::string& channel);
-  /// Asks for the rest at a moment; likewise.
+  /// Requests the rest at a moment [s]. Call before anything is computed.
   void NeedMoment(std::size_t model, double time_s);
 
   const std::vector<double>& Moments(std::size_t model) const { return models_[model].moments_s; }
@@ -40,12 +42,12 @@ class Models {
   std::vector<std::map<std::size_t, Answer>> Compute(const std::vector<std::vector<double>>& points,
                                                      const std::set<std::size_t>& models);
 
-  /// What `Compute` needs anew, as pieces of work: which experiment with which values. `Do` does
-  /// them on this process's threads; `spread`, in its place, also on others', with the same
-  /// answers.
+  /// Computes pieces of work (an experiment with its values, serialized) on this process's threads.
+  /// `spread`, if set, replaces it in `Compute` and distributes pieces over processes, with the
+  /// same answers.
   std::vector<std::string> Do(std::span<const std::string> pieces);
   void SpreadBy(FitWork spread) { spread_ = std::move(spread); }
-  /// All that the pieces and their answers mean, for processes to compare.
+  /// Returns all definitions that pieces and answers depend on, for comparison between processes.
   std::string Meaning() const;
 
   std::int64_t computed() const { return computed_; }
@@ -54,10 +56,10 @@ class Models {
 
  private:
   struct Model {
-    std::size_t experiment = 0;           ///< One of those it stands for.
-    std::vector<std::size_t> parameters;  ///< Estimates that act on it.
+    std::size_t experiment = 0;           ///< One of the experiments it represents.
+    std::vector<std::size_t> parameters;  ///< Estimates that affect it.
     std::vector<std::string> channels;
-    std::vector<double> moments_s;  ///< Rising.
+    std::vector<double> moments_s;  ///< Increasing.
   };
   using Job = std::pair<std::size_t, Overrides>;
   Overrides At(const Model& model, const std::vector<double>& point) const;
@@ -71,9 +73,9 @@ class Models {
   base::ThreadPool pool_;
   FitWork spread_;
   std::vector<Model> models_;
-  std::vector<std::size_t> of_;  ///< Per experiment.
+  std::vector<std::size_t> of_;  ///< Model per experiment.
   std::map<std::string, Answer> lately_;
-  std::deque<std::string> order_;  ///< Of `lately_`, the oldest first.
+  std::deque<std::string> order_;  ///< Keys of `lately_`, the oldest first.
   std::int64_t computed_ = 0;
   std::string input_error_;
 };

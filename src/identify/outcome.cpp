@@ -1,3 +1,4 @@
+// Run of a fit with its verdict, profile likelihoods and design of measurements.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace taut {
 namespace {
 
-/// At one point: nothing if it could not be computed.
+/// Returns the residuals at one point; empty if it could not be computed.
 std::vector<double> At(const FitProblem& problem, const std::vector<double>& values) {
   const std::vector<std::vector<double>> points{values};
   const auto answers = problem.forward(points);
@@ -31,7 +32,7 @@ bool AtRest(const FitSpec& spec) {
                      [](const auto& one) { return one.forward != FitForward::kDynamic; });
 }
 
-/// What rows of a problem with their sds tell, as design wants it.
+/// Converts the rows of a problem and their standard deviations to a design candidate.
 DesignCandidate CandidateOf(const std::string& name, const FitProblem& problem,
                             const std::vector<FitPoint>& points, bool scaled,
                             const std::vector<double>& values) {
@@ -40,7 +41,7 @@ DesignCandidate CandidateOf(const std::string& name, const FitProblem& problem,
   const FitDerivatives d = Differentiate(problem, values);
   if (!d.done) return out;
   for (std::size_t row = 0; row < points.size(); ++row) {
-    // A residual is in sds: its slope times the sd is the channel's.
+    // Residuals are in standard deviations: slope times sd is the slope of the channel.
     out.sd.push_back(scaled ? points[row].sd : 1.0);
     for (const FitColumn& column : d.columns) {
       const double slope = column.failed.empty() ? column.slope[row] : NAN;
@@ -68,7 +69,8 @@ bool CheckDependence(const Identification& fit, Diagnostics& out) {
   const FitDerivatives d = Differentiate(problem, Starts(problem));
   const std::string& file = fit.spec().files[0];
   if (!d.done) {
-    out.Error({file}, "where the search starts nothing can be computed: " + d.why);
+    out.Error("fit.start_not_computed", {file},
+              "where the search starts nothing can be computed: " + d.why);
     return false;
   }
   bool good = true;
@@ -79,7 +81,8 @@ bool CheckDependence(const Identification& fit, Diagnostics& out) {
       continue;
     }
     const FitEstimate& e = fit.spec().estimates[fit.estimates()[i]];
-    out.Error(e.at, "estimate: nothing that is compared depends on " + e.name,
+    out.Error("estimate.no_influence", e.at,
+              "estimate: nothing that is compared depends on " + e.name,
               "the experiment does not use it, or not for what is compared");
     good = false;
   }

@@ -1,3 +1,4 @@
+// Result of a fit as JSON.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// The outcome of a fit as one page.
+// Result of a fit as one self-contained HTML page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ std::string Errors(const char* title, const std::vector<FitPoint>& points,
   return Table(rows);
 }
 
-/// Where experiments can be looked at before and after.
+/// Returns the list of viewer links of the experiments before and after the fit.
 std::string Looks(const Identification& fit, const std::vector<std::string>& looks) {
   std::string list;
   for (std::size_t e = 0; e < looks.size(); ++e) {
@@ -86,7 +86,7 @@ std::string Looks(const Identification& fit, const std::vector<std::string>& loo
          list + "</ul>\n";
 }
 
-/// What measured forces carry of the load, against the load.
+/// Returns the section that compares measured forces with the applied loads.
 std::string Carried(const Identification& fit, const FitOutcome& outcome) {
   if (outcome.carried.empty()) return {};
   std::string out =
@@ -110,7 +110,7 @@ std::string Carried(const Identification& fit, const FitOutcome& outcome) {
   return out;
 }
 
-/// Computed less measured, by channel, in its unit.
+/// Returns the plots of computed minus measured values, by channel, in its unit.
 std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) {
   std::vector<std::string> order;
   std::map<std::string, Plot> plots;

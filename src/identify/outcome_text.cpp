@@ -1,3 +1,4 @@
+// Result of a fit as text for a terminal.
 #include <fmt/format.h>
 
 #include <algorithm>

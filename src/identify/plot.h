@@ -1,4 +1,4 @@
-/// Plots for pages, as SVG that needs nothing else.
+/// Plots for HTML pages, as self-contained SVG.
 #pragma once
 
 #include <string>
@@ -7,26 +7,26 @@
 
 namespace taut::identify {
 
-/// With < > & " as entities.
+/// Returns the text with < > & " as entities.
 std::string Escaped(const std::string& text);
 
 struct Series {
-  std::string style;  ///< Class of its marks: "untuned", "fitted", "held".
+  std::string style;  ///< CSS class of its marks: "untuned", "fitted", "held".
   std::vector<std::pair<double, double>> points;
-  bool line = false;  ///< Joined; else dots.
+  bool line = false;  ///< Connected by lines; else dots.
 };
 
 struct Plot {
   std::string title, x, y;  ///< Plain text.
   std::vector<Series> series;
-  std::vector<double> levels;  ///< Horizontal lines,
-  std::vector<double> marks;   ///< and vertical ones.
+  std::vector<double> levels;  ///< Horizontal lines.
+  std::vector<double> marks;   ///< Vertical lines.
 };
 
-/// A figure; points that are not finite are left out. Empty if there are none.
+/// Returns a figure without non-finite points; an empty string if no points are left.
 std::string Svg(const Plot& plot);
 
-/// Round numbers within low..high, some five of them.
+/// Returns about five round numbers within low..high.
 std::vector<double> Ticks(double low, double high);
 
 }  // namespace taut::identify

@@ -1,4 +1,4 @@
-// An experiment at rest: what statics gives at its set points or under its load cases.
+// Static equilibria of an experiment at its set points or under its load cases.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace taut::identify {
 namespace {
 
-/// Linear between points, held before the first and after the last.
+/// Interpolates linearly between points, constant before the first and after the last.
 double At(const std::vector<std::pair<double, double>>& course, double time_s) {
   const auto after = std::upper_bound(
       course.begin(), course.end(), time_s,
@@ -23,7 +23,7 @@ double At(const std::vector<std::pair<double, double>>& course, double time_s) {
   return before->second + share * (after->second - before->second);
 }
 
-/// Forces and rest lengths at a moment; rest lengths that nothing drives stay.
+/// Sets forces and rest lengths of a moment; rest lengths without a program stay.
 void SetMoment(const ExperimentSpec& experiment, double time_s, std::vector<double>& rest_lengths_m,
                LoadCaseSpec& loads) {
   for (const ControllerSpec& controller : experiment.controllers) {
@@ -44,7 +44,7 @@ void Put(const Vec3& v, std::vector<double>& out) {
   out.push_back(v.x), out.push_back(v.y), out.push_back(v.z);
 }
 
-/// In the order of `RestChannels`.
+/// Returns the values in the order of `RestChannels`.
 std::vector<double> Values(const ModelDef& def, const Equilibrium& rest) {
   std::vector<double> out;
   for (const BodyState& body : rest.pose.bodies) {
@@ -74,7 +74,7 @@ std::vector<double> Values(const ModelDef& def, const Equilibrium& rest) {
   return out;
 }
 
-/// Keeps of `Values` what was asked for.
+/// Selects the requested channels from `Values`.
 class Picker {
  public:
   Picker(const ExperimentSpec& experiment, const std::vector<std::string>& channels)
@@ -94,7 +94,7 @@ class Picker {
       out.values[i].push_back(values[at_[i]]);
     }
   }
-  std::string missing;  ///< Not empty: there is no such channel.
+  std::string missing;  ///< Name of a channel that does not exist; else empty.
 
  private:
   const std::vector<std::string>& channels_;
@@ -166,7 +166,7 @@ std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
   if (forward == FitForward::kLoadCases) {
     double number = 0;
     for (const LoadCaseSpec& loads : experiment.load_cases) {
-      if (options.from) {  // rest lengths are those of the model and of the case
+      if (options.from) {  // rest lengths of the model and of the load case
         for (std::size_t i = 0; i < def.cables.size(); ++i) {
           options.from->rest_lengths_m[i] = def.cables[i].rest_length_m;
         }

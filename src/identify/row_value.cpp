@@ -1,4 +1,4 @@
-// Values of residuals: moments and statistics of what was computed.
+// Computed values of residuals: at moments, or as statistics of windows.
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +8,8 @@
 namespace taut::identify {
 namespace {
 
-/// A channel of a run against time: straight lines between rows, so that a window that moves
-/// changes all smoothly.
+/// Channel of a run against time, interpolated linearly between rows, so that a value is a
+/// continuous function of the shift of its window.
 class Course {
  public:
   Course(const Row& row, const Computed& computed, const RowChannels& channels)
@@ -22,7 +22,7 @@ class Course {
 
   double Clamped(double time_s) const { return std::clamp(time_s, times_.front(), times_.back()); }
   double At(double time_s) const { return At(time_s, values_); }
-  /// With the sign that brings the quaternion nearer to `measured`.
+  /// Returns the value with the sign that brings the quaternion nearer to `measured`.
   double At(double time_s, const std::array<double, 4>& measured) const {
     if (quaternion_[0] == nullptr) return At(time_s);
     std::array<double, 4> q{};
@@ -32,7 +32,7 @@ class Course {
   const std::vector<double>& times() const { return times_; }
   const std::vector<double>& values() const { return values_; }
 
-  /// Of row `i` of what was computed.
+  /// Returns the value of computed row `i`.
   double OfRow(std::size_t i, const std::optional<std::array<double, 4>>& measured) const {
     if (!measured || quaternion_[0] == nullptr) return values_[i];
     std::array<double, 4> q{};
@@ -55,7 +55,7 @@ class Course {
   std::array<const std::vector<double>*, 4> quaternion_{};
 };
 
-/// Sums up values of a window.
+/// Accumulates values of a window.
 struct Total {
   double area = 0, time = 0, least = INFINITY, most = -INFINITY;
 
@@ -66,7 +66,7 @@ struct Total {
   }
 };
 
-/// In the moments of the data.
+/// Returns the statistic at the sample times of the data.
 double OfSamples(const Row& row, const Course& course, double delay_s) {
   const Samples& samples = *row.samples;
   Total total;
@@ -81,7 +81,7 @@ double OfSamples(const Row& row, const Course& course, double delay_s) {
   return total.Of(row.how);
 }
 
-/// Of all of a window.
+/// Returns the statistic over a whole window.
 double OfWhole(const Row& row, const Course& course, double delay_s) {
   const double from_s = course.Clamped(row.from_s - delay_s);
   const double to_s = course.Clamped(row.to_s - delay_s);

@@ -15,13 +15,13 @@
 namespace taut::identify {
 namespace {
 
-/// A span of both clocks.
+/// Time window on the clocks of data and experiment.
 struct Window {
   std::string where;
   double data_from_s = 0, data_to_s = 0;
-  double from_s = 0, to_s = 0;  ///< On the experiment's clock, were the data's not late.
+  double from_s = 0, to_s = 0;  ///< On the experiment's clock, for data without delay.
   std::size_t number = 0;
-  double moment_s = 0;  ///< Of its set point, on the experiment's clock.
+  double moment_s = 0;  ///< Time of its set point, on the experiment's clock.
 };
 
 std::vector<Window> Windows(const FitSpec& spec, const FitResidual& residual,
@@ -60,10 +60,10 @@ std::vector<Window> Windows(const FitSpec& spec, const FitResidual& residual,
   return {window};
 }
 
-/// A channel of the data.
+/// Channel of the data.
 struct Column {
   const std::vector<double>* values = nullptr;
-  /// Of a component of a quaternion: all four; else null.
+  /// All four components if the channel is part of a quaternion; else null.
   std::array<const std::vector<double>*, 4> quaternion{};
 
   bool HasQuaternion() const { return quaternion[0] != nullptr; }
@@ -71,7 +71,7 @@ struct Column {
     return {(*quaternion[0])[row], (*quaternion[1])[row], (*quaternion[2])[row],
             (*quaternion[3])[row]};
   }
-  /// Whether there is a number in a row; a quaternion is whole or missing.
+  /// Returns whether a row has a number; for quaternions all four components.
   bool Finite(std::size_t row) const {
     if (!std::isfinite((*values)[row])) return false;
     if (!HasQuaternion()) return true;
@@ -80,7 +80,7 @@ struct Column {
   }
 };
 
-/// Of the rows in a window: their numbers.
+/// Returns the indices of the data rows in a window.
 std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
                                 const Column& column) {
   std::vector<std::size_t> out;
@@ -93,7 +93,7 @@ std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
   return out;
 }
 
-/// Means are over time: rows are weighted by the time for which they stand.
+/// Returns the statistic of the rows; means are weighted by the duration of each row.
 double Of(FitStatistic statistic, const std::vector<double>& values,
           const std::vector<std::size_t>& rows, const std::vector<double>& weights) {
   std::vector<double> inside;
@@ -108,7 +108,7 @@ Row::How HowOf(FitStatistic statistic) {
   return statistic == FitStatistic::kMin ? Row::How::kMin : Row::How::kMean;
 }
 
-/// Makes the rows of one residual and one experiment.
+/// Builds the rows of one residual and one experiment.
 class Maker {
  public:
   Maker(const FitSpec& spec, const FitResidual& residual, std::size_t experiment,
@@ -120,7 +120,7 @@ class Maker {
         windows_(Windows(spec, residual, experiment, measured)),
         late_s_(StartDelay(spec, experiment)) {}
 
-  /// `column` null: nothing is measured.
+  /// `column` null: no measurement (design).
   void Channel(const ChannelInfo& channel, const Column* column) {
     if (one_.forward == FitForward::kLoadCases) {
       for (std::size_t i = 0; i < one_.experiment.load_cases.size(); ++i) {
@@ -146,7 +146,7 @@ class Maker {
     }
   }
   std::vector<Row> rows;
-  std::size_t asked = 0, met = 0;  ///< Windows.
+  std::size_t asked = 0, met = 0;  ///< Numbers of windows.
 
  private:
   bool Beyond(const Window& window) const {
@@ -167,7 +167,7 @@ class Maker {
     row.point.sd = std::max(residual_.sd, residual_.relative_sd * std::fabs(measured));
     rows.push_back(std::move(row));
   }
-  /// When a row of the data was, on the experiment's clock if the data's is not late.
+  /// Returns the time of a data row on the experiment's clock, for data without delay [s].
   double TimeOf(const Window& window, std::size_t row) const {
     return measured_->trace.time_s[row] - window.data_from_s + window.from_s;
   }
@@ -274,7 +274,7 @@ std::vector<std::string> Names(const std::vector<ChannelInfo>& channels) {
   return out;
 }
 
-/// The closest, or nothing: channels are too many to be listed.
+/// Suggests the closest name, else the first four: channels are too many for a full list.
 std::string Hint(const std::string& name, const std::vector<ChannelInfo>& channels) {
   const auto names = Names(channels);
   const std::string_view close = ClosestMatch(name, names);
@@ -306,7 +306,7 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
   Maker maker(spec, residual, experiment, measured);
   const std::vector<ChannelInfo>& offered = measured ? measured->trace.channels : channels;
   const auto wrong = [&](const std::string& what, const std::string& hint) {
-    out.Error(residual.at, "residuals: " + what, hint);
+    out.Error("residual.bad_channels", residual.at, "residuals: " + what, hint);
   };
   bool any = false, good = true;
   std::set<std::string> sign_unknown;
@@ -333,7 +333,7 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
       const auto names = compare::QuaternionNames(offered[c].name);
       if (!names.empty() && !column.HasQuaternion() && sign_unknown.insert(names[0]).second) {
         const std::string all = names[0].substr(0, names[0].size() - 1) + "{w,x,y,z}";
-        out.Warning(residual.at,
+        out.Warning("residual.partial_quaternion", residual.at,
                     fmt::format("residuals: the data of {} have only some of {}, so their sign "
                                 "cannot be aligned with that of the run",
                                 one.name, all),
@@ -355,7 +355,7 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
                       "`window` say how they go together",
                       of_data, one.experiment.duration_s));
   } else if (good && maker.met < maker.asked) {
-    out.Warning(residual.at,
+    out.Warning("residual.windows_without_data", residual.at,
                 fmt::format("residuals: {} of {} windows of \"{}\" have no data in {}",
                             maker.asked - maker.met, maker.asked, residual.channels, one.name));
   }

@@ -1,4 +1,4 @@
-/// Which numbers of what is computed are set beside which of what was measured.
+/// Residual rows: pairs of computed and measured numbers.
 #pragma once
 
 #include <array>
@@ -15,67 +15,68 @@
 
 namespace taut::identify {
 
-/// What was measured, on its own clock.
+/// Measured data, on their clock.
 struct Measured {
-  Trace trace;                     ///< With the names of taut.
-  std::vector<double> setpoint_s;  ///< When each set point was commanded, on that clock,
-  std::vector<double> ours_s;      ///< and on the experiment's.
+  Trace trace;                     ///< With taut's channel names.
+  std::vector<double> setpoint_s;  ///< Time of each set point's command on the data's clock.
+  std::vector<double> ours_s;      ///< Time of each set point on the experiment's clock.
 };
 
-/// Nothing and diagnostics if files cannot be read or do not go together. An experiment without
-/// data has an empty trace.
+/// Reads data and set points. Nothing with diagnostics if files cannot be read or do not match. An
+/// experiment without data has an empty trace.
 std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out);
 
-/// Rows of the data in a window. A run is looked at in the same moments, with the same weights, so
-/// that gaps and uneven rows are those of both.
+/// Data rows in a window. Runs are evaluated at the same times with the same weights, so that gaps
+/// and uneven spacing affect both sides equally.
 struct Samples {
-  std::vector<double> time_s;  ///< As `Row::from_s`.
-  std::vector<double> weight;  ///< Time for which each stands (`compare::TimeWeights`).
-  std::vector<std::array<double, 4>> orientation;  ///< Measured, of its channels; else empty.
+  std::vector<double> time_s;  ///< On the clock of `Row::from_s`.
+  std::vector<double> weight;  ///< Duration that each sample represents (`compare::TimeWeights`).
+  /// Measured quaternions of orientation channels; else empty.
+  std::vector<std::array<double, 4>> orientation;
 
   void AddTo(base::Fnv1a& sum) const;
 };
 
-/// One residual's part of what is computed.
+/// Computed part of one residual.
 struct Row {
   enum class How { kRow, kRest, kAt, kMean, kMax, kMin, kReference };
   std::size_t experiment = 0;
   std::string channel;
   How how = How::kRow;
-  std::size_t row = 0;          ///< kRow: of `Computed`.
-  double from_s = 0, to_s = 0;  ///< A window, or kAt and kRest a moment, on the experiment's clock
-                                ///< if the data's is not late.
-  std::shared_ptr<const Samples> samples;  ///< kMean, kMax, kMin of data; of a design null.
-  /// What was measured of a quaternion's channel, w first: one of kAt, kRest and kRow. The sign of
-  /// what is computed is chosen to be nearer to it.
+  std::size_t row = 0;          ///< kRow: row of `Computed`.
+  double from_s = 0, to_s = 0;  ///< Window, or for kAt and kRest a moment, on the experiment's
+                                ///< clock for data without delay.
+  std::shared_ptr<const Samples> samples;  ///< kMean, kMax, kMin of data; null for designs.
+  /// Measured quaternion of an orientation channel, w first, for kAt, kRest and kRow. The sign of
+  /// the computed one is chosen to be nearer to it.
   std::optional<std::array<double, 4>> orientation;
-  std::size_t reference = 0;  ///< Of the experiment,
-  std::size_t value = 0;      ///< and which of its values.
-  std::size_t window = 0;     ///< Which, for groups.
+  std::size_t reference = 0;  ///< Index among the experiment's references.
+  std::size_t value = 0;      ///< Index among the reference's values.
+  std::size_t window = 0;     ///< Index of the window, for groups.
   FitPoint point;
 
   bool HasQuaternion() const { return orientation || (samples && !samples->orientation.empty()); }
 };
 
-/// How late the data's clock is where a search begins.
+/// Returns the delay of the data's clock at the start of a search [s].
 double StartDelay(const FitSpec& spec, std::size_t experiment);
 
-/// The rows of one residual and one experiment. `measured` null: of a design, for which nothing is
-/// measured. `channels`: what can be computed of the experiment.
+/// Returns the rows of one residual and one experiment. `measured` null: a design, without
+/// measurements. `channels`: channels that can be computed for the experiment.
 std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std::size_t experiment,
                           const Measured* measured, const std::vector<ChannelInfo>& channels,
                           Diagnostics& out);
 
-/// Places of channels among those that were computed.
+/// Indices of channels among the computed ones.
 struct RowChannels {
   std::size_t own = 0;
   std::optional<std::array<std::size_t, 4>> quaternion;  ///< Of an orientation, w first.
 };
 
-/// Asks `need` for the channels that a row reads.
+/// Requests the channels that a row reads by calls of `need`.
 RowChannels ChannelsOf(const Row& row, const std::function<std::size_t(const std::string&)>& need);
 
-/// What a row asks for. Nothing if there is none.
+/// Returns the computed value of a row; nothing if there is none.
 std::optional<double> ValueOf(const Row& row, const Computed& computed, const RowChannels& channels,
                               double delay_s);
 

@@ -1,4 +1,4 @@
-// An experiment as it runs.
+// Simulation of an experiment for system identification, with its channels in memory.
 #include <algorithm>
 #include <optional>
 
@@ -14,7 +14,8 @@ constexpr const char* kTurns[] = {"rotation_x_rad", "rotation_y_rad", "rotation_
 constexpr const char* kQuaternion[] = {"orientation_w", "orientation_x", "orientation_y",
                                        "orientation_z"};
 
-/// Of body/<name>/rotation_y_rad: 1, and its start up to the last slash.
+/// Parses a channel such as body/<name>/rotation_y_rad: returns the axis (here 1) and the name up
+/// to the last slash.
 std::optional<std::pair<int, std::string>> TurnAxis(const std::string& channel) {
   const std::size_t slash = channel.rfind('/');
   if (!channel.starts_with("body/") || slash == channel.npos) return std::nullopt;
@@ -110,7 +111,7 @@ Computed Run(const ExperimentSpec& given, const std::vector<std::string>& channe
       values.push_back(report::OurValue(*summary, reference, value.cable));
     }
   }
-  compare::MakeOrientationsContinuous(memory.trace);  // straight lines between rows follow
+  compare::MakeOrientationsContinuous(memory.trace);  // precedes interpolation between rows
   out.time_s = memory.trace.time_s;
   for (const std::string& channel : channels) {
     const auto at = memory.trace.Find(channel);

@@ -1,4 +1,4 @@
-/// What outcomes are called, in all of their forms.
+/// Names of results of a fit, shared by all output formats.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace taut::identify {
 
 const char* WordOf(Determined kind);
 const char* WordOf(FitJudgement judgement);
-/// "push_n [N]".
+/// Returns "push_n [N]" for a name and a unit.
 std::string WithUnit(const std::string& name, const std::string& unit);
-/// What a question about carried loads came to, in a sentence.
+/// Returns the result of a check of carried loads as a sentence.
 std::string CarriedText(const Identification& fit, const CarriedLoad& carried);
-/// "any" if it is infinite.
+/// Returns a standard error as text; "any" if it is infinite.
 std::string ErrorText(double se);
 
 }  // namespace taut::identify

@@ -1,4 +1,4 @@
-// `bond_groups:`: pairs between substructures, and substructures that are hung into each other.
+// `bond_groups:`: pairs between substructures, and substructures that are attached to each other.
 #include <cmath>
 #include <utility>
 
@@ -9,11 +9,11 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// A node of one structure goes into the middle of an edge, a cable, of the other.
+/// A bond that puts a node of one structure at the middle of an edge, a cable, of the other.
 struct NodeOnEdge {
   int node = -1;
   int edge_from = -1, edge_to = -1;
-  Vec3 in_first, in_second;  ///< What comes together: the node, and the middle of the edge.
+  Vec3 in_first, in_second;  ///< Points that coincide: the node, and the middle of the edge.
   SourceRef at;
 };
 
@@ -21,7 +21,7 @@ Vec3 MiddleOf(const Reading& in, int a, int b) {
   return 0.5 * (in.node(a).place + in.node(b).place);
 }
 
-/// Half of a line `[top1, bottom1/bottom2]`. The place where it is; nothing after a complaint.
+/// Reads one half of a line `[top1, bottom1/bottom2]`. Returns its point; nothing after an error.
 std::optional<Vec3> ReadHalf(const Reading& in, int structure, const std::string& text,
                              NodeOnEdge& bond) {
   const std::vector<std::string> names = AtSlashes(text);
@@ -43,7 +43,7 @@ std::optional<NodeOnEdge> ReadNodeOnEdge(const Reading& in, int first, int secon
   if (!ReadTwo(line, a, b, in.out)) return std::nullopt;
   const std::size_t edges = AtSlashes(a).size() * AtSlashes(b).size();
   if (edges != 2) {
-    in.out.Error(line.at, "a node_edge bond joins a node and an edge",
+    in.out.Error("ntrt.bond_of_node_and_edge", line.at, "a node_edge bond joins a node and an edge",
                  "such as [top1, bottom1/bottom2]");
     return std::nullopt;
   }
@@ -55,8 +55,8 @@ std::optional<NodeOnEdge> ReadNodeOnEdge(const Reading& in, int first, int secon
   return bond;
 }
 
-/// Turns and shifts `second` until the bonds' places in it are on those in the first: their planes
-/// (of the first three) parallel, their centres together, the first ones in one direction.
+/// Rotates and shifts `second` to fit the bonds' points to the points in the first: their planes
+/// (of the first three) parallel, their centers coincident, the first ones in one direction.
 void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   Vec3 centre_1, centre_2;
   for (const NodeOnEdge& bond : bonds) {
@@ -70,7 +70,7 @@ void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   const Vec3 normal_2 =
       Cross(bonds[1].in_second - bonds[0].in_second, bonds[2].in_second - bonds[0].in_second);
   if (!(Length(normal_1) > 0.0) || !(Length(normal_2) > 0.0)) {
-    in.out.Error(bonds[0].at, "the first three node_edge bonds lie on a line",
+    in.out.Error("ntrt.bonds_in_line", bonds[0].at, "the first three node_edge bonds lie on a line",
                  "they must span a plane in both structures");
     return;
   }
@@ -80,14 +80,15 @@ void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   const Vec3 first_2 = Rotate(to_plane, bonds[0].in_second - centre_2);
   const Vec3 first_1 = bonds[0].in_first - centre_1;
   if (!(Length(first_1) > 0.0) || !(Length(first_2) > 0.0)) {
-    in.out.Error(bonds[0].at, "the first node_edge bond lies in the centre of all",
+    in.out.Error("ntrt.bond_in_center", bonds[0].at,
+                 "the first node_edge bond lies in the centre of all",
                  "it gives the direction; begin with another one");
     return;
   }
   in.model.Turn(second, centre_1, Between(first_2, first_1, normal_1));
 }
 
-/// Pairs that hang on what is moved afterwards.
+/// Warns of pairs that are attached to a structure which is moved afterwards.
 void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
   const auto below = [&](int structure) {
     while (structure >= 0 && structure != second) structure = in.structure(structure).parent;
@@ -97,7 +98,7 @@ void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
     if (!in.model.MayCompare({}, {})) return;
     if (pair.removed || below(pair.structure)) continue;
     if (!below(in.node(pair.from).structure) && !below(in.node(pair.to).structure)) continue;
-    in.out.Warning(at,
+    in.out.Warning("ntrt.bond_moves_bonded", at,
                    "this bond moves \"" + in.structure(second).tags[0] +
                        "\", to which earlier bonds lead: NTRT leaves their ends behind, here they "
                        "go with it",
@@ -106,7 +107,7 @@ void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
   }
 }
 
-/// The cable between two nodes in `structure` goes. False if it is a solid, which stays.
+/// Removes the cable between two nodes in `structure`. Returns false if it is a solid, which stays.
 bool Remove(const Reading& in, int structure, int a, int b, bool& found) {
   const int i = in.model.FindPair(structure, in.node(a).place, in.node(b).place);
   if (i < 0) return true;
@@ -118,16 +119,18 @@ bool Remove(const Reading& in, int structure, int a, int b, bool& found) {
   return true;
 }
 
-/// The edge's cable gives way to two that run through the node.
+/// Replaces the edge's cable by two cables through the node.
 void RunThrough(const Reading& in, int parent, int first, int second, const NodeOnEdge& bond,
                 const std::vector<NodeOnEdge>& all, const Words& tags) {
   bool found = false;
   for (const int structure : {first, second}) {
     if (Remove(in, structure, bond.edge_from, bond.edge_to, found)) continue;
-    in.out.Error(bond.at, "the edge of a node_edge bond must be a cable, and is a solid");
+    in.out.Error("ntrt.bond_edge_is_solid", bond.at,
+                 "the edge of a node_edge bond must be a cable, and is a solid");
   }
   if (!found) {
-    in.out.Warning(bond.at, "no cable runs along this edge: NTRT adds two and takes none away");
+    in.out.Warning("ntrt.bond_without_cable", bond.at,
+                   "no cable runs along this edge: NTRT adds two and takes none away");
   }
   for (const NodeOnEdge& other : all) {
     if (in.model.ComparedTooMuch()) return;
@@ -143,7 +146,7 @@ void BondNodesAndEdges(const Reading& in, int parent, int first, int second,
                        const std::string& tags, const Value& lines) {
   const auto& items = ListOf(&lines, "a node_edge bond", in.out);
   if (items.size() < 3) {
-    in.out.Error(lines.at, "a node_edge bond needs three lines at least");
+    in.out.Error("ntrt.few_bonds", lines.at, "a node_edge bond needs three lines at least");
     return;
   }
   std::vector<NodeOnEdge> bonds;
@@ -173,7 +176,7 @@ void BondNodes(const Reading& in, int parent, int first, int second, const std::
   }
 }
 
-/// `bonds` is "a/b/c/node_node": from each structure to the next.
+/// Reads `bonds`, such as "a/b/c/node_node": from each structure to the next.
 void ReadChain(const Reading& in, int parent, const std::string& bonds, const std::string& tags,
                const Entry& entry) {
   if (entry.value->kind == Value::Kind::kNull) return;
@@ -181,19 +184,21 @@ void ReadChain(const Reading& in, int parent, const std::string& bonds, const st
   const std::string kind = names.back();
   names.pop_back();
   if (kind != "node_node" && kind != "node_edge") {
-    in.out.Error(entry.key_at, "\"" + bonds + "\" does not end with the kind of the bond",
+    in.out.Error("ntrt.bond_kind", entry.key_at,
+                 "\"" + bonds + "\" does not end with the kind of the bond",
                  "node_node or node_edge, such as t1/t2/node_node");
     return;
   }
   if (names.size() < 2) {
-    in.out.Error(entry.key_at, "a bond joins two substructures at least", "such as t1/t2/" + kind);
+    in.out.Error("ntrt.bond_of_one", entry.key_at, "a bond joins two substructures at least",
+                 "such as t1/t2/" + kind);
     return;
   }
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
     const int first = in.model.FindChild(parent, names[i]);
     const int second = in.model.FindChild(parent, names[i + 1]);
     if (first < 0 || second < 0) {
-      in.out.Error(entry.key_at,
+      in.out.Error("ntrt.unknown_substructure", entry.key_at,
                    "there is no substructure \"" + (first < 0 ? names[i] : names[i + 1]) + "\"");
       return;
     }
@@ -212,7 +217,7 @@ void ReadBonds(const Reading& in, int structure, const Value* bonds) {
   for (const Entry& outer : MapOf(bonds, "bond_groups", in.out)) {
     for (const Entry& inner : MapOf(outer.value.get(), outer.key, in.out)) {
       if (is_bond(outer.key) == is_bond(inner.key)) {
-        in.out.Error(inner.key_at,
+        in.out.Error("ntrt.nested_bond", inner.key_at,
                      is_bond(inner.key) ? "a bond in a bond" : "a tag in a tag, without a bond",
                      "a tag holds bonds such as t1/t2/node_node, or a bond holds tags");
         continue;

@@ -1,5 +1,5 @@
-// The rules are those of NTRT's tgStructureInfo, tgConnectorInfo, tgRodInfo, tgBoxInfo and
-// tgSphereInfo at f0c52e93.
+// Construction of a structure by the rules of NTRT's tgStructureInfo, tgConnectorInfo, tgRodInfo,
+// tgBoxInfo and tgSphereInfo at f0c52e93.
 #include "import_ntrt/build.h"
 
 #include <algorithm>
@@ -53,7 +53,8 @@ class Maker {
     for (std::size_t i = 0; i < count; ++i) built_.same.push_back(sets.Root(static_cast<int>(i)));
   }
 
-  /// The last builder of a kind that matches; a structure's own name need not be among the tags.
+  /// Returns the last builder of a kind that matches; the tags need not include the structure's
+  /// name.
   template <class Kind>
   int FindBuilder(const Words& tags, int structure, const Kind& is_kind) const {
     for (int b = static_cast<int>(model_.builders.size()) - 1; b >= 0; --b) {
@@ -79,7 +80,7 @@ class Maker {
       const std::pair<int, int> ends = std::minmax(Same(pair.from), Same(pair.to));
       if (!joined_.emplace(structure, ends).second) {
         ++model_.counts.duplicate_pairs;
-        out_.Warning(pair.at,
+        out_.Warning("ntrt.duplicate_pair", pair.at,
                      "another pair joins these two nodes already; as in NTRT both are built",
                      "leave one of them away");
       }
@@ -100,7 +101,8 @@ class Maker {
       ++model_.counts.ignored_pairs;
       std::string tags;
       for (const std::string& tag : pair.tags) tags += (tags.empty() ? "" : " ") + tag;
-      out_.Warning(pair.at, "no builder has the tag \"" + tags + "\": NTRT leaves the pair away",
+      out_.Warning("ntrt.pair_left_out", pair.at,
+                   "no builder has the tag \"" + tags + "\": NTRT leaves the pair away",
                    "tags with builders of their own are rod, string, box, sphere");
     }
     for (const int child : StructureOf(structure).children) BuildSolids(child);
@@ -114,7 +116,7 @@ class Maker {
       solid.mass_kg = is.density * 4.0 / 3.0 * kPi * is.radius * is.radius * is.radius;
     } else {
       if (!(length > 0.0)) {
-        out_.Error(PairOf(solid.pair).at, "a rod or box without a length");
+        out_.Error("ntrt.no_length", PairOf(solid.pair).at, "a rod or box without a length");
         return;
       }
       solid.mass_kg =
@@ -146,8 +148,8 @@ class Maker {
     }
   }
 
-  /// Of the solids at a node the one whose centre is nearest. Where several are, NTRT takes the one
-  /// that its heap has first; here it is the one that is declared first.
+  /// Returns the solid at a node with the nearest center. If several are equally near, NTRT uses
+  /// the first in its heap; this function returns the first declared.
   const Solid* ChooseSolid(int node) {
     const Solid* chosen = nullptr;
     double nearest = INFINITY;
@@ -168,7 +170,7 @@ class Maker {
     if (tied) {
       ++model_.counts.ends_with_tied_choice;
       out_.Warning(
-          NodeOf(node).at,
+          "ntrt.several_rods", NodeOf(node).at,
           "a cable ends where several rods are equally near: to NTRT it is chance on which "
           "it ends, here it is the first",
           "let it end elsewhere");
@@ -176,8 +178,8 @@ class Maker {
     return chosen;
   }
 
-  /// The point of the rod's or box's "surface" towards `other`; a box counts as round, with its
-  /// `width` for a radius.
+  /// Returns the point of the rod's or box's "surface" towards `other`; a box counts as round, with
+  /// `width` as its radius.
   Vec3 PointOnBeam(const Solid& solid, double radius, double rotation, const Vec3& at,
                    const Vec3& other, bool& special) const {
     const Vec3 axis = Unit(NodeOf(solid.to).place - NodeOf(solid.from).place);
@@ -198,7 +200,7 @@ class Maker {
     end.point = at;
     const Solid* const solid = ChooseSolid(end.node);
     if (!solid) {
-      out_.Error(NodeOf(node).at,
+      out_.Error("ntrt.no_solid_at_end", NodeOf(node).at,
                  "a cable ends at the node \"" + NodeOf(node).tags[0] + "\", where no solid is",
                  "NTRT ends with an error there");
       return end;
@@ -227,14 +229,15 @@ class Maker {
     const Pair& pair = PairOf(connector.pair);
     const Builder& builder = BuilderOf(connector.builder);
     if (SamePlace(NodeOf(pair.from).place, NodeOf(pair.to).place)) {
-      out_.Error(pair.at, "both ends of a cable are in one place");
+      out_.Error("ntrt.cable_without_length", pair.at, "both ends of a cable are in one place");
       return;
     }
     Cable cable{connector.builder, connector.pair, {}, {}, 0.0};
     cable.from = MakeEnd(builder, builder.is.move_from_to_edge, pair.from, pair.to);
     cable.to = MakeEnd(builder, builder.is.move_to_to_edge, pair.to, pair.from);
     if (out_.ok() && cable.from.body == cable.to.body) {
-      out_.Warning(pair.at, "the cable ends twice on one body, where it does nothing: left away",
+      out_.Warning("ntrt.cable_on_one_body", pair.at,
+                   "the cable ends twice on one body, where it does nothing: left away",
                    "leave the pair away");
       return;
     }
@@ -243,7 +246,7 @@ class Maker {
     if (!(cable.rest_length > 0.0)) {
       ++model_.counts.cables_without_rest_length;
       out_.Warning(
-          pair.at,
+          "ntrt.pretension_too_high", pair.at,
           "the pretension is more than stretches this cable from nothing to its length: NTRT "
           "ends with an error there",
           "lower it, here or in the model");

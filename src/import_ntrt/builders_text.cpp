@@ -1,4 +1,4 @@
-// Builders and parameters as text.
+// YAML text of builders and parameters.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -8,7 +8,7 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// What an expression may call by that name.
+/// Returns a name that is valid in an expression.
 std::string Identifier(const std::string& tag) {
   std::string name = tag;
   for (char& c : name) {
@@ -98,7 +98,7 @@ std::string BuildersText(const Draft& draft) {
   std::string text = "\nbuilders:\n";
   std::map<std::string, int> uses;
   for (const Group& group : draft.groups) ++uses[FlowText(group.actuator)];
-  std::map<std::string, std::string> motors;  // what is said once, by its anchor
+  std::map<std::string, std::string> motors;  // actuators written once, by their YAML anchor
   for (const Group& group : draft.groups) {
     const std::string match = MatchText(group.keys);
     if (group.kind != "cable") {

@@ -41,7 +41,7 @@ class Drafter {
     return model_.structures[static_cast<std::size_t>(i)];
   }
 
-  /// By the way from the topmost structure: leg_knee.
+  /// Names placements by their path from the topmost structure: leg_knee.
   void NamePlacements() {
     base::UniqueNames taken;
     for (const Structure& structure : model_.structures) {
@@ -72,7 +72,7 @@ class Drafter {
       draft.at_m = u_ * ZUp(node.in_file);
       draft_.nodes.push_back(std::move(draft));
     }
-    // A sphere that sits on another node of the same place.
+    // A sphere on another node at the same place.
     for (const Solid& solid : built_.solids) {
       if (solid.node < 0 || solid.node == solid.from) continue;
       DraftNode& at = draft_.nodes[static_cast<std::size_t>(solid.from)];
@@ -100,7 +100,8 @@ class Drafter {
     }
   }
 
-  /// To taut a pair is called after its nodes, either way, so a second one needs its own name.
+  /// In taut a pair is named after its nodes, in either order, so a second one needs a separate
+  /// name.
   void NameDuplicates(const std::vector<bool>& is_built) {
     std::map<std::pair<int, int>, int> count;
     for (std::size_t i = 0; i < draft_.pairs.size(); ++i) {

@@ -1,4 +1,4 @@
-/// A model file on its way: names and tags of taut, in SI, z up.
+/// Draft of a model file: names and tags of taut, in SI, z up.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace taut::import_ntrt {
 struct DraftNode {
   std::string name, full_name;
   Words tags;         ///< Besides its name.
-  int structure = 0;  ///< -1: nothing is there, it is left away.
+  int structure = 0;  ///< -1: not used, left out.
   Vec3 at_m;          ///< In the frame of its structure's file.
   std::string fixed_to;
 };
@@ -21,9 +21,9 @@ struct DraftNode {
 struct DraftPair {
   int from = 0, to = 0;  ///< Draft nodes.
   Words tags;
-  std::string name;   ///< Empty: that of its nodes.
-  int structure = 0;  ///< Of NTRT's, which has it.
-  int number = 0;     ///< In the order of that one's file.
+  std::string name;   ///< Empty: named after its nodes.
+  int structure = 0;  ///< NTRT structure that contains it.
+  int number = 0;     ///< In the order of that structure's file.
 };
 
 /// A key of a builder: a number or a text.
@@ -42,24 +42,24 @@ struct Group {
   std::vector<int> items;
   std::vector<Words> keys;  ///< Per item: the tags by which NTRT's builder found it.
 
-  std::string Text() const;  ///< All of it but the items: what is the same is one builder.
+  std::string Text() const;  ///< Text without the items: groups with equal texts share a builder.
 };
 
 struct Draft {
-  std::vector<std::string> placements;  ///< Per structure: its name; empty of the topmost.
-  std::vector<DraftNode> nodes;         ///< NTRT's by their numbers, more behind them.
+  std::vector<std::string> placements;  ///< Per structure: its name; empty for the topmost.
+  std::vector<DraftNode> nodes;         ///< NTRT's nodes by their numbers, then added ones.
   std::vector<DraftPair> pairs;
   std::vector<Group> groups;
 };
 
 Draft MakeDraft(const Model& model, const Built& built, double length_unit_m);
 
-/// Gives the draft its groups, and tags where those of NTRT do not tell them apart. What NTRT has
-/// and the model has not goes into `import`.
+/// Adds the groups to the draft, and tags where NTRT's tags do not distinguish them. Features of
+/// NTRT that the model lacks are listed in `import`.
 void AddGroups(const Model& model, const Built& built, const NtrtOptions& options, Draft& draft,
                NtrtImport& import, Diagnostics& out);
 
-/// Numbers that stand in several places, or that one will want to change, by name.
+/// Named parameters: numbers that occur several times, or that users will want to change.
 struct Parameter {
   std::string name;
   double value = 0.0;

@@ -1,5 +1,5 @@
-// NTRT's builders as those of a model: in SI, one for all that are alike, and only those that build
-// something.
+// Conversion of NTRT's builders to builders of a model: in SI, merged where equal, and only if they
+// build anything.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,7 +11,7 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// The largest number of few digits that is not above this one.
+/// Returns the largest number with three digits that is not above this one.
 double RoundedDown(double number) {
   if (!(number > 0.0)) return 0.0;
   const double step = std::pow(10.0, std::floor(std::log10(number)) - 2);
@@ -42,7 +42,7 @@ class Grouper {
     draft_.groups[same->second].keys.push_back(key);
   }
 
-  /// The tags that were looked for among those of a pair or node of this structure.
+  /// Returns the tags that the builder searches for, apart from the structure's tags.
   Words KeyOf(const Builder& builder, int structure) const {
     Words key;
     const Words& own = model_.structures[static_cast<std::size_t>(structure)].tags;
@@ -80,8 +80,8 @@ class Grouper {
     Add(std::move(group), solid.pair, KeyOf(builder, structure));
   }
 
-  /// NTRT turns a box from y to its pair's direction the shortest way; ours is level. Where the two
-  /// differ by more than width and height, it is told by its corners.
+  /// NTRT rotates a box from y to its pair's direction by the shortest way; taut's box is level. If
+  /// the two differ by more than an exchange of width and height, the box is given by its corners.
   void AddBox(const Solid& solid, const Builder& builder, Group group, int structure) {
     const Vec3 from = PlaceOf(solid.from), along = PlaceOf(solid.to) - from;
     const Quat q = Between({0, 1, 0}, along, {});
@@ -115,7 +115,8 @@ class Grouper {
     DraftNode& to = draft_.nodes[static_cast<std::size_t>(solid.to)];
     const SourceRef& at = model_.pairs[static_cast<std::size_t>(solid.pair)].at;
     if (from.structure != to.structure) {
-      out_.Error(at, "a box that is not level, between two substructures, has no place in a model",
+      out_.Error("ntrt.tilted_box", at,
+                 "a box that is not level, between two substructures, has no place in a model",
                  "tgRodInfo builds a rod there");
       return;
     }
@@ -142,8 +143,8 @@ class Grouper {
     Add(std::move(group), solid.from, {from.full_name});
   }
 
-  /// A motor of taut's stops at the least rest length from the start on; NTRT's goes there when it
-  /// is first told something.
+  /// taut's motors stop at the least rest length from the start on; NTRT's cables go there at the
+  /// first command.
   void FindShortestRest() {
     shortest_.assign(model_.builders.size(), INFINITY);
     for (const Cable& cable : built_.cables) {
@@ -154,7 +155,8 @@ class Grouper {
       const Builder& builder = model_.builders[b];
       if (!(shortest_[b] < builder.is.min_rest_length)) continue;
       const auto written = builder.written.find("min_rest_length");
-      out_.Warning(written == builder.written.end() ? PlaceOfBuilder(builder) : written->second,
+      out_.Warning("ntrt.below_min_rest_length",
+                   written == builder.written.end() ? PlaceOfBuilder(builder) : written->second,
                    "cables of \"" + builder.search[0] + "\" start with a rest length of " +
                        NumberText(shortest_[b]) + ", below min_rest_length, which is " +
                        NumberText(builder.is.min_rest_length) +
@@ -199,7 +201,7 @@ class Grouper {
     Add(std::move(group), cable.pair, KeyOf(builder, structure));
   }
 
-  /// A node of its own for an end that models have no word for.
+  /// Returns a new node for an end that a model cannot express otherwise.
   int NodeFor(const CableEnd& end, const CableEnd& other) {
     if (end.kind == End::kNode) return end.node;
     const DraftNode& at = draft_.nodes[static_cast<std::size_t>(end.node)];
@@ -246,8 +248,8 @@ class Grouper {
   std::vector<double> shortest_;
 };
 
-/// Makes sure that what matches a group matches nothing else of its kind; where tags cannot tell,
-/// it gets one of its own.
+/// Ensures that each group's match selects no other items of its kind; if tags cannot distinguish
+/// the group, adds a new tag.
 class Teller {
  public:
   explicit Teller(Draft& draft) : draft_(draft) {}
@@ -324,7 +326,7 @@ class Teller {
   int number_ = 1;
 };
 
-/// What the builders that built something say and a model does not, a sentence each.
+/// Lists parameters of used builders that a model does not have, one sentence each.
 void ReportDropped(const Model& model, const Built& built, NtrtImport& import) {
   std::vector<bool> used(model.builders.size(), false);
   for (const Solid& solid : built.solids) used[static_cast<std::size_t>(solid.builder)] = true;

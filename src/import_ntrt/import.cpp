@@ -1,4 +1,5 @@
-// From NTRT's files to a model file: read, build as NTRT does, say it in taut's words.
+// Import of NTRT's structure files as a model file: reads, builds as NTRT does, and writes taut's
+// YAML.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace taut {
 namespace import_ntrt {
 namespace {
 
-/// Whether no cable joins some of the bodies that move to the others.
+/// Returns true if cables leave some moving bodies unconnected to the others.
 bool IsDisconnected(const Built& built) {
   const auto world = built.mass_kg.size();
   base::UnionFind sets(world + 1);
@@ -126,13 +127,13 @@ std::optional<NtrtImport> ImportNtrt(const std::string& path, const NtrtOptions&
   if (!model) return std::nullopt;
   const Built built = BuildStructure(*model, out);
   if (model->ComparedTooMuch()) {
-    out.Error({path, 0, 0},
+    out.Error("ntrt.too_large", {path, 0, 0},
               "is too large: resolving its names, bonds and builders takes more than " +
                   std::to_string(kMostComparisons) + " comparisons",
               "use fewer or shorter names, bonds and builders");
   }
   if (built.solids.empty() && out.items().size() == errors_before) {
-    out.Error({path, 0, 0}, "NTRT builds no solid from it",
+    out.Error("ntrt.no_solid", {path, 0, 0}, "NTRT builds no solid from it",
               "builders for a tag of its pairs, such as tgRodInfo, may be in a file that includes "
               "this one, or lost behind a line that begins with %");
   }
@@ -146,7 +147,7 @@ std::optional<NtrtImport> ImportNtrt(const std::string& path, const NtrtOptions&
   import.counts.size_m = options.length_unit_m * SizeOf(*model);
   SayLaws(*model, built, options, import);
   if (model->counts.cables_without_rest_length > 0) {
-    out.Warning({path, 0, 0},
+    out.Warning("ntrt.no_rest_length", {path, 0, 0},
                 std::to_string(model->counts.cables_without_rest_length) +
                     " cables start without a rest length: the model is not good before their "
                     "prestress is lower",

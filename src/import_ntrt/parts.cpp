@@ -1,5 +1,5 @@
-// Nodes, pairs, parts and where they go, as text. A file that is used several times is one part;
-// pairs that not all of its copies have stand outside of it.
+// YAML text of nodes, pairs, parts and placements. A file that is used several times is one part;
+// pairs that only some of its copies have are outside of it.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 struct Part {
   std::string name, file, nodes;
   std::vector<int> structures;
-  std::set<std::string> pairs;  ///< Those that all have, by their number and text.
+  std::set<std::string> pairs;  ///< Pairs of all copies, by their number and text.
 };
 
 class Texter {
@@ -146,7 +146,7 @@ class Texter {
     return pairs;
   }
 
-  /// Neighbours with the same tags as one entry.
+  /// Writes neighbors with the same tags as one entry.
   std::string PairsText(const std::vector<int>& pairs, bool inside,
                         const std::string& indent) const {
     std::string text;

@@ -1,4 +1,4 @@
-// NTRT's files and how they include each other; the rules are those of NTRT's TensegrityModel.cpp
+// Reader of NTRT's structure files and their includes, with the rules of NTRT's TensegrityModel.cpp
 // at f0c52e93.
 #include "import_ntrt/read.h"
 
@@ -43,7 +43,7 @@ class Reader {
     int percent_lines = 0;
   };
 
-  /// Null after a complaint.
+  /// Returns null after an error.
   const File& Open(const std::string& path) {
     const auto [found, fresh] = files_.emplace(path, File{});
     File& file = found->second;
@@ -56,8 +56,9 @@ class Reader {
     file.root = description::ParseYaml(*text, path, out_);
     if (!file.root) return file;
     if (file.root->kind != Value::Kind::kMap) {
-      out_.Error(file.root->at, "an NTRT structure is a map, not " +
-                                    std::string(description::KindName(*file.root)));
+      out_.Error(
+          "ntrt.not_a_map", file.root->at,
+          "an NTRT structure is a map, not " + std::string(description::KindName(*file.root)));
       file.root = nullptr;
       return file;
     }
@@ -66,8 +67,8 @@ class Reader {
     return file;
   }
 
-  /// To YAML a line that begins with `%` is a directive. At the head of a file it may be one; later
-  /// it ends what was before.
+  /// In YAML a line that begins with `%` is a directive. It may be one at the head of a file; later
+  /// it ends the document before it.
   int TreatPercent(const std::string& path, std::string& text) const {
     int count = 0, line = 1;
     bool at_head = true;
@@ -78,7 +79,7 @@ class Reader {
         ++count;
         const bool cut = in_.options.like_ntrt;
         out_.Warning(
-            {path, line, 1},
+            "ntrt.percent_line", {path, line, 1},
             cut ? "a line that begins with % ends the file for NTRT: what follows is lost"
                 : "read as a comment; for NTRT a line that begins with % ends the file, "
                   "and what follows is lost",
@@ -127,12 +128,13 @@ class Reader {
       node.structure = structure;
       node.in_file = node.place = ReadPoint(*entry.value, entry.key, out_);
       if (node.tags.empty()) {
-        out_.Error(entry.key_at, "a node needs a name");
+        out_.Error("ntrt.unnamed_node", entry.key_at, "a node needs a name");
         continue;
       }
       if (model_.nodes.size() >= kMostItems) {
         model_.full = true;
-        out_.Error(entry.key_at, "more than " + std::to_string(kMostItems) + " nodes");
+        out_.Error("ntrt.too_many_nodes", entry.key_at,
+                   "more than " + std::to_string(kMostItems) + " nodes");
         return;
       }
       in_.structure(structure).nodes.push_back(static_cast<int>(model_.nodes.size()));
@@ -151,7 +153,7 @@ class Reader {
       }
     }
     if (model_.full) return;
-    // Turned first, all of them; then each key's scale, offset and translation.
+    // First all rotations, then each key's scale, offset and translation.
     for (const Entry& entry : entries) {
       ForNamed(structure, entry, [&](int child, int) {
         if (const Value* turn = entry.value->Find("rotation")) Rotate(child, *turn);
@@ -163,7 +165,7 @@ class Reader {
       const Value* shift = entry.value->Find("translation");
       const double factor = scale ? ReadPlain(*scale, "scale", out_) : 1.0;
       if (scale && !(factor > 0) && !std::isnan(factor)) {
-        out_.Error(scale->at, "scale must be positive");
+        out_.Error("ntrt.bad_scale", scale->at, "scale must be positive");
       }
       const Vec3 step = offset ? ReadPoint(*offset, "offset", out_) : Vec3{};
       const Vec3 by = shift ? ReadPoint(*shift, "translation", out_) : Vec3{};
@@ -185,11 +187,11 @@ class Reader {
     const std::string real = fs::weakly_canonical(*file, ignored).string();
     if (open_.empty()) open_.push_back(fs::weakly_canonical(parent_path, ignored).string());
     if (std::find(open_.begin(), open_.end(), real) != open_.end()) {
-      out_.Error(path->at, "the file includes itself");
+      out_.Error("ntrt.circular_include", path->at, "the file includes itself");
       return;
     }
     if (open_.size() >= kDeepest || model_.structures.size() >= kMostStructures) {
-      out_.Error(path->at,
+      out_.Error("ntrt.too_deep", path->at,
                  open_.size() >= kDeepest
                      ? "files include files more than " + std::to_string(kDeepest) + " levels deep"
                      : "more than " + std::to_string(kMostStructures) + " substructures");
@@ -199,7 +201,7 @@ class Reader {
     Structure child;
     child.tags = Split(name);
     if (child.tags.empty()) {
-      out_.Error(entry.key_at, "a substructure needs a name");
+      out_.Error("ntrt.unnamed_substructure", entry.key_at, "a substructure needs a name");
       return;
     }
     child.parent = parent;
@@ -210,7 +212,7 @@ class Reader {
     open_.push_back(real);
     Build(index, *file);
     open_.pop_back();
-    // Only now: NTRT hangs a child up when it is complete.
+    // Only now: NTRT adds a child to its parent when the child is complete.
     in_.structure(parent).children.push_back(index);
   }
 
@@ -222,9 +224,10 @@ class Reader {
       if (child >= 0) {
         visit(child, index);
       } else if (model_.ComparedTooMuch()) {
-        return;                                 // one complaint at the end
-      } else if (!entry.value->Find("path")) {  // a missing file has been complained about
-        out_.Error(entry.key_at, "there is no substructure \"" + name + "\"",
+        return;                                 // one error at the end
+      } else if (!entry.value->Find("path")) {  // a missing file has been reported
+        out_.Error("ntrt.unknown_substructure", entry.key_at,
+                   "there is no substructure \"" + name + "\"",
                    "one of its entries needs a `path`");
       }
       ++index;
@@ -236,7 +239,8 @@ class Reader {
     OnlyKeys(rotation, {"axis", "angle", "reference"}, out_);
     const Value *axis = rotation.Find("axis"), *angle = rotation.Find("angle");
     if (!axis || !angle) {
-      out_.Warning(rotation.at, "without axis and angle NTRT does not rotate",
+      out_.Warning("ntrt.rotation_without_effect", rotation.at,
+                   "without axis and angle NTRT does not rotate",
                    "give both, or leave `rotation` away");
       return;
     }
@@ -246,7 +250,7 @@ class Reader {
     const Vec3 fixed =
         reference ? ReadPoint(*reference, "reference", out_) : model_.Centroid(child);
     if (Dot(about, about) == 0.0) {
-      out_.Error(axis->at, "the axis of a rotation must not be zero");
+      out_.Error("ntrt.zero_axis", axis->at, "the axis of a rotation must not be zero");
       return;
     }
     model_.Turn(child, fixed, About(about, degrees / 180.0 * std::acos(-1.0)));
@@ -265,12 +269,14 @@ double ReadPlain(const Value& value, std::string_view what, Diagnostics& out) {
   double number = NAN;
   const std::string text = value.text.starts_with('+') ? value.text.substr(1) : value.text;
   if (value.kind != Value::Kind::kScalar || !description::ToNumber(text, number)) {
-    out.Error(value.at, std::string(what) + " must be a number" +
-                            (value.text.empty() ? "" : ", not \"" + value.text + "\""));
+    out.Error("ntrt.not_a_number", value.at,
+              std::string(what) + " must be a number" +
+                  (value.text.empty() ? "" : ", not \"" + value.text + "\""));
     return NAN;
   }
   if (std::fabs(number) > kFarthest) {
-    out.Error(value.at, std::string(what) + " is too large: " + value.text);
+    out.Error("ntrt.number_too_large", value.at,
+              std::string(what) + " is too large: " + value.text);
     return NAN;
   }
   return number;
@@ -278,7 +284,7 @@ double ReadPlain(const Value& value, std::string_view what, Diagnostics& out) {
 
 Vec3 ReadPoint(const Value& value, std::string_view what, Diagnostics& out) {
   if (value.kind != Value::Kind::kSequence || value.items.size() != 3) {
-    out.Error(value.at, std::string(what) + " must be [x, y, z]");
+    out.Error("ntrt.not_a_vector", value.at, std::string(what) + " must be [x, y, z]");
     return {NAN, NAN, NAN};
   }
   return {ReadPlain(*value.items[0], what, out), ReadPlain(*value.items[1], what, out),
@@ -289,8 +295,9 @@ const std::vector<Entry>& MapOf(const Value* value, std::string_view what, Diagn
   static const std::vector<Entry> kNone;
   if (!value || value->kind == Value::Kind::kNull) return kNone;
   if (value->kind == Value::Kind::kMap) return value->entries;
-  out.Error(value->at, std::string(what) + " must be a map, not " +
-                           std::string(description::KindName(*value)));
+  out.Error(
+      "ntrt.not_a_map", value->at,
+      std::string(what) + " must be a map, not " + std::string(description::KindName(*value)));
   return kNone;
 }
 
@@ -298,15 +305,17 @@ const std::vector<ValuePtr>& ListOf(const Value* value, std::string_view what, D
   static const std::vector<ValuePtr> kNone;
   if (!value || value->kind == Value::Kind::kNull) return kNone;
   if (value->kind == Value::Kind::kSequence) return value->items;
-  out.Error(value->at, std::string(what) + " must be a list, not " +
-                           std::string(description::KindName(*value)));
+  out.Error(
+      "ntrt.not_a_list", value->at,
+      std::string(what) + " must be a list, not " + std::string(description::KindName(*value)));
   return kNone;
 }
 
 void OnlyKeys(const Value& map, const std::vector<std::string>& known, Diagnostics& out) {
   for (const Entry& entry : map.entries) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
-    out.Error(entry.key_at, "unknown key \"" + entry.key + "\"", DidYouMean(entry.key, known));
+    out.Error("ntrt.unknown_key", entry.key_at, "unknown key \"" + entry.key + "\"",
+              DidYouMean(entry.key, known));
   }
 }
 
@@ -328,7 +337,7 @@ bool ReadTwo(const Value& value, std::string& a, std::string& b, Diagnostics& ou
     a = value.items[0]->text;
     b = value.items[1]->text;
   } else {
-    out.Error(value.at, "a pair must be two names, such as [bottom, top]");
+    out.Error("ntrt.bad_pair", value.at, "a pair must be two names, such as [bottom, top]");
   }
   return two;
 }
@@ -339,8 +348,9 @@ int NodeAt(const Reading& in, int structure, const std::string& path, const Sour
     const std::string name = left.substr(0, dot);
     structure = in.model.FindChild(structure, name);
     if (structure >= 0) continue;
-    if (in.model.ComparedTooMuch()) return -1;  // one complaint at the end
-    in.out.Error(at, "there is no substructure \"" + name + "\" for the node \"" + path + "\"");
+    if (in.model.ComparedTooMuch()) return -1;  // one error at the end
+    in.out.Error("ntrt.unknown_substructure", at,
+                 "there is no substructure \"" + name + "\" for the node \"" + path + "\"");
     return -1;
   }
   const int node = in.model.FindNode(structure, left);
@@ -350,7 +360,7 @@ int NodeAt(const Reading& in, int structure, const std::string& path, const Sour
       if (names.size() > kMostHinted) break;
       names.push_back(in.node(i).tags[0]);
     }
-    in.out.Error(at, "there is no node \"" + path + "\"",
+    in.out.Error("ntrt.unknown_node", at, "there is no node \"" + path + "\"",
                  names.empty() ? "" : description::NameHint(left, names));
   }
   return node;
@@ -360,7 +370,7 @@ void AddPair(const Reading& in, int structure, int from, int to, Words tags, con
   if (in.model.full) return;
   if (in.model.pairs.size() >= kMostItems) {
     in.model.full = true;
-    in.out.Error(at, "more than " + std::to_string(kMostItems) + " pairs");
+    in.out.Error("ntrt.too_many_pairs", at, "more than " + std::to_string(kMostItems) + " pairs");
     return;
   }
   in.structure(structure).pairs.push_back(static_cast<int>(in.model.pairs.size()));
@@ -374,7 +384,7 @@ std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& o
   Reader(options, model, out).Run(path);
   if (out.items().size() != errors_before) return std::nullopt;
   if (model.nodes.empty()) {
-    out.Error({path, 1, 1}, "describes no nodes",
+    out.Error("ntrt.no_nodes", {path, 1, 1}, "describes no nodes",
               "an NTRT structure has `nodes:`, or `substructures:` that have");
     return std::nullopt;
   }
@@ -383,7 +393,8 @@ std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& o
         std::max({std::fabs(node.place.x), std::fabs(node.place.y), std::fabs(node.place.z)});
     if (std::isfinite(node.place.x + node.place.y + node.place.z) && farthest <= kFarthest)
       continue;
-    out.Error(node.at, "the scales and turns of its structures move this node too far",
+    out.Error("ntrt.node_too_far", node.at,
+              "the scales and turns of its structures move this node too far",
               "coordinates are within 1e12");
     return std::nullopt;
   }

@@ -1,4 +1,4 @@
-/// What the readers of the parts of a file share.
+/// Functions shared by the readers of the parts of a file.
 #pragma once
 
 #include <string>
@@ -23,30 +23,31 @@ struct Reading {
   Pair& pair(int i) const { return model.pairs[static_cast<std::size_t>(i)]; }
 };
 
-/// A plain number, as yaml-cpp reads it for NTRT; NaN after a complaint.
+/// Reads a plain number as yaml-cpp does for NTRT; NaN after an error.
 double ReadPlain(const Value& value, std::string_view what, Diagnostics& out);
-/// [x, y, z]; NaN after a complaint.
+/// Reads [x, y, z]; NaN after an error.
 Vec3 ReadPoint(const Value& value, std::string_view what, Diagnostics& out);
-/// The entries of a map, none of nothing; a complaint if it is something else. May be null.
+/// Returns the entries of a map; none, and an error, if it is not a map. `value` may be null.
 const std::vector<Entry>& MapOf(const Value* value, std::string_view what, Diagnostics& out);
-/// The items of a list, likewise.
+/// Returns the items of a list, likewise.
 const std::vector<ValuePtr>& ListOf(const Value* value, std::string_view what, Diagnostics& out);
-/// Complains about keys that are not among these.
+/// Reports errors for keys that are not among these.
 void OnlyKeys(const Value& map, const std::vector<std::string>& known, Diagnostics& out);
 
-/// "a/b/c" as its three words.
+/// Returns the three words of "a/b/c".
 std::vector<std::string> AtSlashes(const std::string& text);
-/// Two texts, such as [bottom, top]; false after a complaint.
+/// Reads two texts, such as [bottom, top]; returns false after an error.
 bool ReadTwo(const Value& value, std::string& a, std::string& b, Diagnostics& out);
-/// The node that `path` names from the structure on: leg.hip.top. -1 after a complaint at `at`.
+/// Returns the node that `path` names from the structure on: leg.hip.top. -1 after an error at
+/// `at`.
 int NodeAt(const Reading& in, int structure, const std::string& path, const SourceRef& at);
 void AddPair(const Reading& in, int structure, int from, int to, Words tags, const SourceRef& at);
 
-/// `builders:` of a file. Later ones go before earlier ones.
+/// Reads `builders:` of a file. Later ones precede earlier ones.
 void ReadBuilders(const Reading& in, const Value* builders);
-/// The four that NTRT has for the tags rod, string, box and sphere.
+/// Adds NTRT's four builders for the tags rod, string, box and sphere.
 void AddDefaultBuilders(Model& model);
-/// `bond_groups:` of a file.
+/// Reads `bond_groups:` of a file.
 void ReadBonds(const Reading& in, int structure, const Value* bonds);
 
 }  // namespace taut::import_ntrt

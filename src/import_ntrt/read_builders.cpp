@@ -1,4 +1,4 @@
-// `builders:`: which class builds what carries a tag, and its parameters by NTRT's names.
+// `builders:`: the class that builds items with a tag, and its parameters by NTRT's names.
 #include <cmath>
 
 #include "description/yaml/yaml_tree.h"
@@ -58,7 +58,7 @@ const std::vector<Table> kTables{
     {Class::kKinematicContact, {&kCable, &kMotor}},
 };
 
-/// What yaml-cpp takes for a truth value.
+/// Reads a Boolean value in the notations of yaml-cpp.
 bool ReadTruth(const Value& value, std::string_view what, Diagnostics& out) {
   for (const char* yes :
        {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON", "y", "Y"}) {
@@ -68,18 +68,18 @@ bool ReadTruth(const Value& value, std::string_view what, Diagnostics& out) {
        {"false", "False", "FALSE", "no", "No", "NO", "off", "Off", "OFF", "n", "N"}) {
     if (value.text == no) return false;
   }
-  out.Error(value.at, std::string(what) + " must be true or false");
+  out.Error("ntrt.not_boolean", value.at, std::string(what) + " must be true or false");
   return false;
 }
 
 void CheckRange(double number, const Number& is, const SourceRef& at, Diagnostics& out) {
   const std::string name = is.name;
   if (is.least == Least::kAboveZero && number <= 0.0) {
-    out.Error(at, name + " must be positive");
+    out.Error("ntrt.not_positive", at, name + " must be positive");
   } else if (is.least == Least::kZero && number < 0.0) {
-    out.Error(at, name + " must not be negative");
+    out.Error("ntrt.negative", at, name + " must not be negative");
   } else if (number > is.most) {
-    out.Error(at, name + " must be within 0..1");
+    out.Error("ntrt.out_of_range", at, name + " must be within 0..1");
   }
 }
 
@@ -109,7 +109,7 @@ void ReadParameters(const Table& table, const Value* parameters, Builder& builde
       builder.is.*is.field = ReadTruth(*entry.value, is.name, out);
     }
     if (found) continue;
-    out.Error(entry.key_at,
+    out.Error("ntrt.unknown_parameter", entry.key_at,
               std::string(NameOf(table.kind)) + " has no parameter \"" + entry.key + "\"",
               DidYouMean(entry.key, known));
   }
@@ -123,16 +123,16 @@ void ReadBuilders(const Reading& in, const Value* builders) {
     builder.search = Split(entry.key);
     builder.at = entry.key_at;
     if (builder.search.empty()) {
-      in.out.Error(entry.key_at, "a builder needs a tag");
+      in.out.Error("ntrt.builder_without_tag", entry.key_at, "a builder needs a tag");
       continue;
     }
     MapOf(entry.value.get(), entry.key, in.out);
-    // NTRT overlooks other keys; a misspelt `parameters` would leave the defaults.
+    // NTRT ignores other keys; a misspelled `parameters` would leave the defaults.
     OnlyKeys(*entry.value, {"class", "parameters"}, in.out);
     const Value* const kind = entry.value->Find("class");
     if (!kind) {
-      in.out.Error(entry.key_at, "the builder \"" + entry.key + "\" has no class",
-                   "such as class: tgRodInfo");
+      in.out.Error("ntrt.builder_without_class", entry.key_at,
+                   "the builder \"" + entry.key + "\" has no class", "such as class: tgRodInfo");
       continue;
     }
     std::vector<std::string> classes;
@@ -142,7 +142,7 @@ void ReadBuilders(const Reading& in, const Value* builders) {
       if (kind->text == NameOf(known.kind)) table = &known;
     }
     if (!table) {
-      in.out.Error(kind->at, "there is no class \"" + kind->text + "\"",
+      in.out.Error("ntrt.unknown_class", kind->at, "there is no class \"" + kind->text + "\"",
                    DidYouMean(kind->text, classes));
       continue;
     }

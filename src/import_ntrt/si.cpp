@@ -20,7 +20,7 @@ double Reread(const char* format, int precision, double number) {
   return read == 0.0 ? 0.0 : read;  // no -0
 }
 
-/// "2 * pi / 3"; empty if it is no such share.
+/// Returns text such as "2 * pi / 3"; empty if the angle is no such fraction.
 std::string ShareOfPi(double angle_rad) {
   for (const int part : {1, 2, 3, 4, 5, 6, 8, 9, 10, 12, 18, 36}) {
     const double times = angle_rad / kPi * part;

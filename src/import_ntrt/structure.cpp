@@ -24,7 +24,7 @@ const char* NameOf(Class kind) {
   return "";
 }
 
-/// Level by level, itself first. Ends when `visit` returns true.
+/// Visits the structure and all below it, level by level. Ends when `visit` returns true.
 template <class F>
 void Model::ForEachBelow(int structure, const F& visit) const {
   std::deque<int> open{structure};

@@ -1,5 +1,5 @@
-/// An NTRT structure as its files describe it, put together but with nothing built yet. NTRT's
-/// frame (y up) and the files' units throughout.
+/// NTRT structure as described by its files, assembled but not built. NTRT's frame (y up) and the
+/// files' units throughout.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Node {
   Words tags;  ///< The first is its name.
   SourceRef at;
   int structure = 0;
-  Vec3 in_file;  ///< As the file says it, but for scales.
+  Vec3 in_file;  ///< As given in the file, with scales applied.
   Vec3 place;
 };
 
@@ -31,13 +31,13 @@ struct Pair {
   int from = 0, to = 0;  ///< Nodes.
   Words tags;
   SourceRef at;
-  int structure = 0;  ///< Which has it; its nodes may be of others below.
+  int structure = 0;  ///< Structure that contains it; its nodes may be in structures below.
   bool removed = false;
 };
 
-/// A file in its place. `place = shift + turn(in_file)` of each of its own nodes.
+/// A file in its place: `place = shift + turn(in_file)` for each of its direct nodes.
 struct Structure {
-  Words tags;  ///< Its name; of the topmost none.
+  Words tags;  ///< Its name; none for the topmost.
   int parent = -1;
   std::vector<int> children, nodes, pairs;
   std::string file;
@@ -50,7 +50,7 @@ enum class Class { kRod, kBox, kSphere, kBasic, kBasicContact, kKinematic, kKine
 const char* NameOf(Class kind);
 inline bool IsSolid(Class kind) { return kind <= Class::kSphere; }
 
-/// NTRT's numbers of all classes, at the defaults of its YAML reader (TensegrityModel.h).
+/// NTRT's parameters of all classes, with the defaults of its YAML reader (TensegrityModel.h).
 struct Parameters {
   double radius = 0.5, density = 1.0, friction = 1.0, roll_friction = 0.0, restitution = 0.2;
   double width = 1.0, height = 1.0;  ///< Half the edges of a box.
@@ -61,12 +61,12 @@ struct Parameters {
   bool move_from_to_edge = true, move_to_to_edge = true;
 };
 
-/// What builds the pairs or nodes with the words of `search`; of several the last one.
+/// Builder of the pairs or nodes with the words of `search`; the last matching one applies.
 struct Builder {
   Words search;
   Class kind = Class::kRod;
   Parameters is;
-  std::map<std::string, SourceRef> written;  ///< Which parameters the file names, and where.
+  std::map<std::string, SourceRef> written;  ///< Parameters given in the file, with their places.
   SourceRef at;
 };
 
@@ -90,16 +90,17 @@ struct Model {
   }
   bool ComparedTooMuch() const { return comparisons > kMostComparisons; }
 
-  /// The structure with that name below this one, the nearest level first; -1: none.
+  /// Returns the structure with that name below this one, the nearest level first; -1: none.
   int FindChild(int structure, const std::string& name) const;
-  /// The node with that name in the structure or below it; -1: none.
+  /// Returns the node with that name in the structure or below it; -1: none.
   int FindNode(int structure, const std::string& name) const;
-  /// A pair of the structure, or of one below it, between these places, either way; -1: none.
+  /// Returns a pair of the structure, or of one below it, between these places, in either order;
+  /// -1: none.
   int FindPair(int structure, const Vec3& a, const Vec3& b) const;
 
   void Turn(int structure, const Vec3& about, const Quat& q);
   void Shift(int structure, const Vec3& by);
-  /// About the middle of its nodes.
+  /// Scales about the centroid of its nodes.
   void Scale(int structure, double factor);
   Vec3 Centroid(int structure) const;
 
@@ -108,11 +109,11 @@ struct Model {
   void ForEachBelow(int structure, const F& visit) const;
 };
 
-/// Whether the two are the same place to NTRT, which compares squares with the least double that
-/// makes a difference to 1.
+/// Returns true if the two are the same place in NTRT, which compares squared distances with the
+/// machine epsilon of double.
 inline bool SamePlace(const Vec3& a, const Vec3& b) { return Dot(b - a, b - a) < 2.3e-16; }
 
-/// Reads the file and all that it includes. Nothing after an error.
+/// Reads the file and all included ones. Returns nothing after an error.
 std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& options,
                                    Diagnostics& out);
 

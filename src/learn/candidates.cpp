@@ -1,3 +1,4 @@
+// Evaluation of a study's candidates by rollouts in varied worlds.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +15,7 @@ namespace {
 
 enum Stream : std::uint32_t { kWorldSeed = 1, kWorldScales = 2 };
 
-/// Puts values into the numbers that the parameters stand for.
+/// Sets the numbers that the parameters represent.
 void SetValues(const std::vector<StudyParameter>& parameters, const std::vector<double>& values,
                const RobotSpec& robot, RolloutWorld& world) {
   std::vector<ScaleSpec> scales = TunableScales(robot);
@@ -33,8 +34,8 @@ void SetValues(const std::vector<StudyParameter>& parameters, const std::vector<
   }
 }
 
-/// Numbers of world `world` of an evaluation. Worlds that all candidates share belong to no
-/// evaluation.
+/// Returns the random numbers of world `world` of an evaluation. Without `redraw` all evaluations
+/// share the same worlds.
 math::Random RandomOf(const StudySpec& study, Stream stream, std::int64_t evaluation, int world) {
   const std::uint64_t of =
       study.perturbation.redraw ? static_cast<std::uint64_t>(evaluation) + 1 : 0;
@@ -48,7 +49,7 @@ class LocalEvaluator final : public Evaluator {
 
   bool Evaluate(std::span<const Candidate> candidates, const Done& done) override {
     std::vector<RolloutWorld> worlds;
-    std::vector<std::pair<std::size_t, std::size_t>> owner;  // candidate, its world
+    std::vector<std::pair<std::size_t, std::size_t>> owner;  // candidate, index of its world
     std::vector<Trial> trials(candidates.size());
     std::vector<std::size_t> missing(candidates.size());
     for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -98,7 +99,7 @@ class LocalEvaluator final : public Evaluator {
 }  // namespace
 
 double ParameterValue(const StudyParameter& p, double x) {
-  // The ends exactly: a logarithm's rounding must not leave the bounds.
+  // Exact ends: rounding of a logarithm must not exceed the bounds.
   if (x <= 0) return p.low;
   if (x >= 1) return p.high;
   if (!p.log) return p.low + x * (p.high - p.low);
@@ -136,7 +137,7 @@ std::unique_ptr<Evaluator> MakeEvaluator(const StudySpec& study, int threads,
   return std::make_unique<LocalEvaluator>(study, std::move(rollouts));
 }
 
-// --- the folder of a study, read back -------------------------------------------------------
+// --- reading of a study folder ---------------------------------------------------------------
 
 ExperimentSpec StudyResult::ExperimentWith(const std::vector<double>& values) const {
   RolloutWorld world = WorldOf(experiment);

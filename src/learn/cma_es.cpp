@@ -1,3 +1,4 @@
+// Covariance matrix adaptation evolution strategy (CMA-ES).
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -13,10 +14,10 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// Covariance matrix adaptation, (mu / mu_w, lambda), with default settings.
+/// Covariance matrix adaptation evolution strategy, (mu / mu_w, lambda), with default settings.
 /// Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, figure 6 and
-/// table 1, without negative weights. Different from that: points beyond a bound are mirrored
-/// (the path and the covariance use the step as drawn), and sigma stays below 1, the whole width.
+/// table 1, without negative weights. Differences: points beyond a bound are mirrored (the path and
+/// the covariance use the step as drawn), and sigma stays at or below 1, the whole width.
 class CmaEs final : public Optimizer {
  public:
   CmaEs(const CmaEsSpec& spec, int lambda, OptimizerStart start)
@@ -91,7 +92,7 @@ class CmaEs final : public Optimizer {
     }
     sigma_ *= math::Exp(std::fmin(1.0, c_sigma_ / d_sigma_ * (norm / expected_norm_ - 1.0)));
     sigma_ = std::fmin(sigma_, 1.0);
-    // The decomposition costs n^3; so often, it costs no more than the rest of a generation.
+    // The decomposition costs n^3. At this interval it costs no more than the rest of a generation.
     if (static_cast<double>(generation_ - decomposed_) > 0.1 / ((c_1_ + c_mu_) * n)) Decompose();
   }
 
@@ -100,7 +101,7 @@ class CmaEs final : public Optimizer {
     decomposed_ = generation_;
     C_ = (0.5 * (C_ + C_.transpose())).eval();
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(C_);
-    if (solver.info() != Eigen::Success) return;  // goes on with the last one
+    if (solver.info() != Eigen::Success) return;  // keeps the previous decomposition
     // A direction that has shrunk to rounding errors stays finite.
     const double least = 1e-20 * std::fmax(solver.eigenvalues()[n_ - 1], 1e-300);
     D_ = solver.eigenvalues().cwiseMax(least).cwiseSqrt();
@@ -118,7 +119,7 @@ class CmaEs final : public Optimizer {
   double mu_eff_ = 0, c_sigma_ = 0, d_sigma_ = 0, c_c_ = 0, c_1_ = 0, c_mu_ = 0, expected_norm_ = 0;
   double decay_ = 1;  ///< (1 - c_sigma)^(2 generations).
   std::int64_t generation_ = 0, decomposed_ = 0;
-  std::vector<Vector> steps_;  ///< As drawn, before bounds.
+  std::vector<Vector> steps_;  ///< As drawn, before mirroring.
   std::uint64_t drawn_ = 0;
 };
 

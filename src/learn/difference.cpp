@@ -16,7 +16,7 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-/// A line, or the part of it around `at`.
+/// Returns a line, or the part of it around `at`.
 std::string Shortened(const std::string& line, std::size_t at) {
   if (line.size() <= kWidth) return line;
   const std::size_t from = at < kWidth / 2 ? 0 : std::min(at - kWidth / 2, line.size() - kWidth);
@@ -47,7 +47,7 @@ std::string Difference(const std::string& old_text, const std::string& new_text)
     if (i < a.size() && j < b.size() && a[i] == b[j]) {
       ++i, ++j;
     } else if (i < a.size() && (j == b.size() || common[i + 1][j] >= common[i][j + 1])) {
-      // a line that was changed shows where
+      // changed lines are cut around the first difference
       const std::string& other = j < b.size() ? b[j] : std::string();
       const auto at = std::mismatch(a[i].begin(), a[i].end(), other.begin(), other.end()).first;
       const auto where = static_cast<std::size_t>(at - a[i].begin());

@@ -1,3 +1,4 @@
+// Hill climbing with adaptive step size.
 #include <cmath>
 #include <limits>
 
@@ -8,17 +9,17 @@
 namespace taut::learn {
 namespace {
 
-/// The paper's: Gauss steps around the best so far, which the best of them replaces if it is
-/// better. NTRT (AnnealEvolution) makes one step at a time, sigma 0.005 of the bounds for ever, and
-/// stops at the bounds; `adapt: false`, `batch: 1`, `deviation: 0.005` is that, but for the bounds,
-/// where ours mirror.
+/// Hill climbing with Gaussian steps around the best point so far, which the best of a batch
+/// replaces if it is better. NTRT (AnnealEvolution) makes one step at a time with a constant sigma
+/// of 0.005 of the bounds, and stops at the bounds. `adapt: false`, `batch: 1`, `deviation: 0.005`
+/// is equivalent, except that bounds mirror here.
 ///
-/// What `adapt` adds: sigma follows the share p of steps that were successes,
+/// With `adapt`, sigma follows the share p of successful steps:
 ///   p' = (1 - c) p' + c p,   sigma <- sigma exp((p' - p*) / (d (1 - p*)))
-/// with lambda steps a batch, n dimensions, p* = 1 / (5 + sqrt(lambda) / 2),
-/// c = p* lambda / (2 + p* lambda), d = 1 + n / (2 lambda).
-/// Source: C. Igel, N. Hansen, S. Roth, "Covariance matrix adaptation for multi-objective
-/// optimization", Evolutionary Computation 15(1), 2007, section 2.1: (1 + lambda).
+/// with lambda steps per batch, n dimensions, p* = 1 / (5 + sqrt(lambda) / 2), c = p* lambda / (2 +
+/// p* lambda), d = 1 + n / (2 lambda). Source: C. Igel, N. Hansen, S. Roth, "Covariance matrix
+/// adaptation for multi-objective optimization", Evolutionary Computation 15(1), 2007, section 2.1:
+/// (1 + lambda).
 class HillClimbing final : public Optimizer {
  public:
   HillClimbing(const HillClimbingSpec& spec, int batch, OptimizerStart start)
@@ -36,7 +37,8 @@ class HillClimbing final : public Optimizer {
     if (drawn_ == 0 && !start_.score) asked_.push_back(start_.point);
     while (asked_.size() < static_cast<std::size_t>(batch_)) {
       math::Random random = DrawOf(start_, drawn_++);
-      if (std::isnan(best_score_) && start_.score) {  // nothing worked so far: look elsewhere
+      if (std::isnan(best_score_) &&
+          start_.score) {  // all points failed so far: draw a uniform one
         asked_.push_back(UniformPoint(best_.size(), random));
         continue;
       }
@@ -58,7 +60,7 @@ class HillClimbing final : public Optimizer {
     }
     const bool first = !start_.score;
     start_.score = best_score_;
-    if (!spec_.adapt || first) return;  // the first batch was compared with nothing
+    if (!spec_.adapt || first) return;  // the first batch has no reference score
     const double lambda = batch_, n = static_cast<double>(best_.size());
     const double c = target_ * lambda / (2.0 + target_ * lambda);
     success_ = (1.0 - c) * success_ + c * (successes / lambda);

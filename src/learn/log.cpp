@@ -10,15 +10,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Complaints about one file: more are hard to read.
+/// Largest number of errors reported about one file.
 constexpr std::size_t kMostComplaints = 20;
 
-/// A database without tables is one page or nothing. Where there is more, damage hides tables.
+/// Largest size of a database without tables (one page). In a larger one damage hides the tables.
 constexpr std::uintmax_t kEmptyBytes = 4096;
 
 constexpr const char* kYours = "is the folder yours, and the disk not full?";
 
-/// What was made in the file, as SQLite keeps it: table by table the text that made it.
+/// Reads the schema of the file: the SQL text of each table, as SQLite stores it.
 bool ReadSchema(Database& database, std::string& schema) {
   Statement get(database, "SELECT type, name, sql FROM sqlite_schema ORDER BY name, type");
   return get.Run([&](Row& row) {
@@ -26,7 +26,7 @@ bool ReadSchema(Database& database, std::string& schema) {
   });
 }
 
-/// The version whose tables these are, or nothing.
+/// Returns the log version with these tables; nothing if there is none.
 std::optional<int> VersionOf(const std::string& schema) {
   for (int version = 0; version <= kLogVersion; ++version) {
     Database empty;
@@ -38,7 +38,7 @@ std::optional<int> VersionOf(const std::string& schema) {
   return std::nullopt;
 }
 
-/// What a file of a later version says of itself, if it does.
+/// Returns the version that a file of a later version contains; empty if it contains none.
 std::string OtherVersion(Database& database) {
   std::string version;
   Statement get(database, "SELECT value FROM fact WHERE name = 'log_version'");
@@ -50,7 +50,7 @@ std::string OtherVersion(Database& database) {
   return version;
 }
 
-/// The structure below the tables.
+/// Checks the structure of the database file.
 void CheckStructure(Database& database, std::vector<std::string>& damage) {
   Statement check(database, "PRAGMA integrity_check(20)");
   const bool whole = check.Run([&](Row& row) {
@@ -68,9 +68,9 @@ bool Accept(const LogContents& contents, const std::string& path, bool skip_dama
             Diagnostics& out) {
   if (contents.damage.empty() || skip_damaged) return true;
   for (std::size_t i = 0; i < std::min(contents.damage.size(), kMostComplaints); ++i) {
-    out.Error({path}, contents.damage[i]);
+    out.Error("study.log_damaged", {path}, contents.damage[i]);
   }
-  out.Error({path},
+  out.Error("study.log_damaged", {path},
             "is damaged; " + std::to_string(contents.evaluations.size()) + " evaluations are good",
             "`--skip_damaged` uses these; a search does the others once more");
   return false;
@@ -79,48 +79,54 @@ bool Accept(const LogContents& contents, const std::string& path, bool skip_dama
 std::unique_ptr<Log> Log::Open(const std::string& path, Diagnostics& out) {
   std::unique_ptr<Log> log(new Log(path, Database::Open::kOrMake));
   if (log->database_.good()) return log;
-  out.Error({path}, "cannot be opened: " + log->database_.TakeError(), kYours);
+  out.Error("study.log_not_opened", {path}, "cannot be opened: " + log->database_.TakeError(),
+            kYours);
   return nullptr;
 }
 
 std::unique_ptr<Log> Log::OpenToRead(const std::string& path, Diagnostics& out) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) {
-    out.Error({path}, "there is no such file", "give the folder that `taut learn STUDY` wrote");
+    out.Error("study.log_missing", {path}, "there is no such file",
+              "give the folder that `taut learn STUDY` wrote");
     return nullptr;
   }
   std::unique_ptr<Log> log(new Log(path, Database::Open::kThatIsThere));
   if (log->database_.good()) return log;
-  out.Error({path}, "cannot be opened: " + log->database_.TakeError(), kYours);
+  out.Error("study.log_not_opened", {path}, "cannot be opened: " + log->database_.TakeError(),
+            kYours);
   return nullptr;
 }
 
 bool Log::Unwritten(const std::string& why, Diagnostics& out) {
-  out.Error({path_}, "cannot be written: " + why,
+  out.Error("study.log_not_written", {path_}, "cannot be written: " + why,
             "what it holds is safe; make room and run the same command again");
   return false;
 }
 
 std::optional<LogContents> Log::Read(Diagnostics& out) {
-  const auto refuse = [&](const std::string& what, const std::string& hint = {}) {
-    out.Error({path_}, what, hint);
+  const auto refuse = [&](MessageId id, const std::string& what, const std::string& hint = {}) {
+    out.Error(id, {path_}, what, hint);
     return std::nullopt;
   };
   std::string schema;
-  // One moment of a file that another process may be writing.
+  // A transaction, for a consistent view of a file that another process may be writing.
   const bool readable = database_.Execute("BEGIN") && ReadSchema(database_, schema);
-  if (!readable) return refuse("is not the log of a study, or damaged: " + database_.TakeError());
+  if (!readable)
+    return refuse("study.not_a_log",
+                  "is not the log of a study, or damaged: " + database_.TakeError());
   const std::optional<int> version = VersionOf(schema);
   if (!version) {
     const std::string other = OtherVersion(database_);
     const bool newer = !other.empty() && other != "1" && other != std::to_string(kLogVersion);
-    return refuse(newer ? "has version " + other + "; this taut reads versions 1 to " +
+    return refuse(newer ? MessageId("study.newer_log") : MessageId("study.not_a_log"),
+                  newer ? "has version " + other + "; this taut reads versions 1 to " +
                               std::to_string(kLogVersion)
                         : "is not the log of a study: holds other tables");
   }
   std::error_code ignored;
   if (*version == 0 && fs::file_size(path_, ignored) > kEmptyBytes) {
-    return refuse("is not the log of a study: holds no tables");
+    return refuse("study.not_a_log", "is not the log of a study: holds no tables");
   }
   std::vector<std::string> damage;
   CheckStructure(database_, damage);
@@ -128,9 +134,9 @@ std::optional<LogContents> Log::Read(Diagnostics& out) {
   LogContents contents;
   if (*version > 0) contents = ReadRows(database_, *version, error);
   database_.Execute("COMMIT");
-  database_.TakeError();  // it has changed nothing
+  database_.TakeError();  // read only: an error here has no effect
   if (!error.empty()) {
-    return refuse("is damaged: " + error,
+    return refuse("study.log_damaged", "is damaged: " + error,
                   "without that no evaluation means anything; give `--out` another folder");
   }
   contents.damage.insert(contents.damage.begin(), damage.begin(), damage.end());
@@ -142,13 +148,13 @@ bool Log::Begin(const LogContents& contents, Diagnostics& out) {
   for (const Evaluation& evaluation : contents.evaluations) sum_ += Checksum(evaluation);
   if (!contents.damage.empty()) {
     database_.Execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    database_.TakeError();  // as far as it goes
+    database_.TakeError();  // best effort
     const std::string kept = path_ + ".damaged";
     std::error_code error;
     fs::remove(kept, error);
     if (!error) fs::copy_file(path_, kept, error);
     if (error) {
-      out.Error({kept}, "cannot be written: " + error.message(), kYours);
+      out.Error("file.not_writable", {kept}, "cannot be written: " + error.message(), kYours);
       return false;
     }
   }
@@ -175,7 +181,8 @@ bool Log::Add(const Evaluation& evaluation, Diagnostics& out) {
 
 bool Log::IsThere(Diagnostics& out) {
   if (!database_.IsGone()) return true;
-  out.Error({path_}, "is gone: it or its folder was deleted or moved during the search",
+  out.Error("study.log_deleted", {path_},
+            "is gone: it or its folder was deleted or moved during the search",
             "if it was moved, `--out` with its new place goes on");
   return false;
 }

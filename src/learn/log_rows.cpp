@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The numbers of a JSON list. Written as JSON they read back to the same bits.
+/// Parses a JSON list of numbers, which preserves their bits.
 std::vector<double> Numbers(Row& row, int column) {
   std::vector<double> out;
   const json list = json::parse(row.Text(column), nullptr, false);
@@ -37,7 +37,8 @@ std::vector<std::string> Texts(Row& row, int column) {
   return out;
 }
 
-/// What no evaluation can be; empty if there is nothing. Written so that NaN fails, too.
+/// Returns a description of invalid data in an evaluation; empty if there are none. Conditions are
+/// written so that NaN fails.
 std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& parameters) {
   if (e.id < 0 || e.search < 0) return "a negative id or search";
   if (e.values.size() != parameters.size()) {
@@ -53,7 +54,7 @@ std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& 
   if (e.worlds.empty()) return "its worlds are missing";
   for (std::size_t w = 0; w < e.worlds.size(); ++w) {
     const RolloutResult& r = e.worlds[w];
-    if (!r.failed.empty()) continue;  // its numbers may be anything
+    if (!r.failed.empty()) continue;  // numbers of a failed world are arbitrary
     for (const double x : {r.score, r.distance_m, r.along_m, r.energy_j, r.max_tension_n,
                            r.tracking_n, r.fell_s.value_or(0)}) {
       if (!std::isfinite(x)) return "a number of world " + std::to_string(w) + " is not finite";
@@ -62,7 +63,8 @@ std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& 
   return {};
 }
 
-/// Fills in the worlds. What is wrong, or nothing.
+/// Reads the worlds of an evaluation. Returns a description of invalid data; empty if there are
+/// none.
 std::string ReadWorlds(Database& database, Statement& get, Evaluation& e) {
   std::string wrong;
   const bool good = get.Bind(e.id).Run([&](Row& row) {
@@ -89,7 +91,7 @@ std::string ReadWorlds(Database& database, Statement& get, Evaluation& e) {
   return wrong;
 }
 
-/// The rows of the table `evaluation`, by id, each with what is wrong with it so far.
+/// Row of the table `evaluation`, with the description of invalid data found so far.
 struct Found {
   Evaluation evaluation;
   std::string checksum, wrong;
@@ -100,7 +102,7 @@ std::map<std::int64_t, Found> ReadEvaluations(Database& database, int version,
   const std::string select =
       std::string("SELECT id, search, score, failed, parameter_values, elapsed_s") +
       (version > 1 ? ", checksum" : "") + " FROM evaluation ORDER BY id";
-  // Where a page cannot be read, what is behind it can be from the other end.
+  // Rows behind an unreadable page can be read in descending order.
   for (const char* order : {" ASC", " DESC"}) {
     const bool whole = Statement(database, select + order).Run([&](Row& row) {
       Found f;
@@ -122,7 +124,7 @@ std::map<std::int64_t, Found> ReadEvaluations(Database& database, int version,
   return found;
 }
 
-/// Version 1 had no checksums; it can only be seen that worlds are missing.
+/// Version 1 had no checksums: only missing worlds can be detected.
 void CheckCountsOfWorlds(std::map<std::int64_t, Found>& found) {
   std::size_t most = 0;
   for (const auto& item : found) most = std::max(most, item.second.evaluation.worlds.size());
@@ -162,7 +164,7 @@ void ReadParameters(Database& database, LogContents& contents, std::string& erro
   if (!good) error = "parameters: " + database.TakeError();
 }
 
-/// Takes a fact out of the map; empty if it is not there.
+/// Removes a fact from the map and returns it; empty if it is missing.
 std::string Take(std::map<std::string, std::string>& facts, const char* name) {
   const auto node = facts.extract(name);
   return node.empty() ? std::string() : node.mapped();
@@ -293,7 +295,7 @@ LogContents ReadRows(Database& database, int version, std::string& error) {
   const std::string own_version = Take(contents.facts, "log_version");
   const std::string checksum = Take(contents.facts, "checksum");
   const std::string tally = Take(contents.facts, "evaluations");
-  Take(contents.facts, "complete");  // of version 1, whose facts were written one by one
+  Take(contents.facts, "complete");  // fact of version 1, which wrote facts one by one
   if (own_version != std::to_string(version) ||
       (version > 1 &&
        (application != kApplicationId || checksum != base::HashText(Checksum(contents))))) {

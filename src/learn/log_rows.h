@@ -1,4 +1,4 @@
-/// How a study's log is laid out, and what is checked of it.
+/// Tables and checksums of a study's log.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,26 @@
 
 namespace taut::learn {
 
-/// What makes a file one of ours, beside its tables: "taut" in ASCII.
+/// Application id of the SQLite file: "taut" in ASCII.
 inline constexpr std::int64_t kApplicationId = 0x74617574;
 
-/// The tables of a version.
+/// Returns the SQL text that creates the tables of a version.
 std::string Schema(int version);
 
 std::uint64_t Checksum(const Evaluation& evaluation);
-/// Of facts and parameters.
+/// Checksum of facts and parameters.
 std::uint64_t Checksum(const LogContents& contents);
 
-/// The fact "evaluations": how many there are, and the sum of their checksums.
+/// Returns the fact "evaluations": their number and the sum of their checksums.
 std::string Tally(std::uint64_t count, std::uint64_t sum);
 
-/// Empty tables become `contents`. False: see the database's error.
+/// Creates the tables and inserts `contents`. Returns false on failure; see the database's error.
 bool Insert(Database& database, const LogContents& contents);
-/// Adds one, with its worlds and the new tally.
+/// Inserts an evaluation with its worlds, and updates the tally.
 bool Insert(Database& database, const Evaluation& evaluation, const std::string& tally);
 
-/// Everything in a file of `version`, whose tables are ours. What cannot be used is in `damage`,
-/// or, if it is facts or parameters, in `error`.
+/// Returns the contents of a file with the tables of `version`. Invalid evaluations are listed in
+/// `damage`; invalid facts or parameters set `error`.
 LogContents ReadRows(Database& database, int version, std::string& error);
 
 }  // namespace taut::learn

@@ -1,10 +1,11 @@
+// Monte Carlo search (uniform random points).
 #include "learn/draw.h"
 #include "learn/optimizers.h"
 
 namespace taut::learn {
 namespace {
 
-/// Points without any memory: the start, then uniform ones.
+/// Random search: the start, then uniform points, independent of scores.
 class MonteCarlo final : public Optimizer {
  public:
   MonteCarlo(int batch, OptimizerStart start) : batch_(batch), start_(std::move(start)) {}
@@ -24,7 +25,7 @@ class MonteCarlo final : public Optimizer {
   int batch_;
   OptimizerStart start_;
   std::uint64_t drawn_ = 0;
-  bool begun_ = false;  ///< A batch of one is the start alone: nothing is drawn for it.
+  bool begun_ = false;  ///< A batch of one consists of the start: nothing is drawn for it.
 };
 
 }  // namespace

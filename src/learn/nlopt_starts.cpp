@@ -1,3 +1,4 @@
+// Optimizers of the NLopt library with several starts.
 #include <nlopt.h>
 
 #include <condition_variable>
@@ -18,8 +19,9 @@ nlopt_algorithm AlgorithmOf(const std::string& name) {
   return NLOPT_LN_NELDERMEAD;
 }
 
-/// One run of NLopt after the other, each from another point. NLopt calls for one value at a time
-/// and keeps no state, so it has a thread that waits in that call until the score is there.
+/// Repeated runs of NLopt, each from another point. NLopt requests one value at a time by a
+/// callback and cannot be suspended, so each start has a thread that waits in the callback for the
+/// score.
 class Start {
  public:
   Start(const NloptSpec& spec, const OptimizerStart& start, int number)
@@ -35,7 +37,7 @@ class Start {
   Start(const Start&) = delete;
   Start& operator=(const Start&) = delete;
 
-  /// The point that this start wants to know about.
+  /// Returns the point that this start wants evaluated.
   UnitPoint Ask() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return asks_; });
@@ -51,7 +53,8 @@ class Start {
   }
 
  private:
-  /// In the thread: hands a point out, waits for its score. Nothing if all is over.
+  /// Publishes a point and waits for its score, in the thread. Returns nothing when the search is
+  /// over.
   std::optional<double> Evaluate(UnitPoint point) {
     std::unique_lock lock(mutex_);
     point_ = std::move(point);
@@ -64,8 +67,8 @@ class Start {
       most_ = std::isnan(most_) ? score_ : std::fmax(most_, score_);
       return score_;
     }
-    // NLopt wants a number: a failure is worse than all that this start has seen, but not so much
-    // worse that a model of the scores is spoilt.
+    // NLopt needs a number: a failure scores lower than all points of this start so far, but only
+    // slightly, to preserve a model of the scores.
     if (std::isnan(worst_)) return -1.0;
     return worst_ - 0.1 * std::fmax(most_ - worst_, 1e-3);
   }
@@ -100,14 +103,14 @@ class Start {
       nlopt_set_upper_bounds1(optimizer_, 1.0);
       nlopt_set_initial_step1(optimizer_, spec_.initial_step);
       nlopt_set_max_objective(optimizer_, Call, this);
-      nlopt_set_xtol_abs1(optimizer_, 1e-5);  // of the bounds: then another start
+      nlopt_set_xtol_abs1(optimizer_, 1e-5);  // share of the bounds; then the next run begins
       nlopt_set_maxeval(optimizer_, 100'000);
       calls_ = 0;
       UnitPoint end = from;
       double score = 0;
       nlopt_optimize(optimizer_, end.data(), &score);
       nlopt_destroy(optimizer_);
-      // An algorithm that refuses its start must not turn this into an endless loop.
+      // Prevents an endless loop if an algorithm rejects its start.
       if (calls_ == 0 && !IsOver() && !Evaluate(from)) return;
     }
   }

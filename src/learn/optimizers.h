@@ -1,4 +1,4 @@
-/// The optimisers by name; `MakeOptimizer` chooses.
+/// Constructors of the optimizers; `MakeOptimizer` chooses among them.
 #pragma once
 
 #include <memory>

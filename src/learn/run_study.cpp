@@ -1,3 +1,4 @@
+// Run and resumption of a study: optimizers, evaluations and log.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -27,15 +28,15 @@ std::string LogPath(const std::string& folder) {
   return (fs::path(folder) / "study.sqlite").string();
 }
 
-/// The experiment in numbers, without the comment that says where it came from.
+/// Returns the experiment as text, without the comment about its origin.
 std::string ExperimentText(const ExperimentSpec& experiment) {
   ExperimentSpec portable = experiment;
-  portable.compare_with.reset();  // a path, which may differ from machine to machine
+  portable.compare_with.reset();  // a path, which may differ between machines
   const std::string text = ResolvedYaml(portable);
   return text.substr(text.find("taut: 1"));
 }
 
-/// Where the search begins: what the experiment says, within the bounds.
+/// Returns the start of the search: the experiment's values, clamped to the bounds.
 UnitPoint FirstPoint(const StudySpec& study) {
   std::vector<ControllerSpec> controllers = study.experiment.controllers;
   std::vector<ScaleSpec> scales = TunableScales(study.experiment.robot);
@@ -80,7 +81,7 @@ class StudyRun {
       start.stream = static_cast<std::uint32_t>(s);
       if (!Search(static_cast<int>(s), start, out)) break;
     }
-    // It may have gone since the last evaluation.
+    // The log may have been deleted since the last evaluation.
     if (out.ok() && !log_.IsThere(out)) summary_.end = LearnEnd::kFailed;
     summary_.wall_s = SinceStart();
     summary_.simulated_s = simulated_s_;
@@ -93,7 +94,7 @@ class StudyRun {
   }
   bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Whether this build of taut still gives the numbers of the log: one evaluation done again.
+  /// Checks that this build of taut reproduces the numbers of the log, by repeating one evaluation.
   bool SameNumbers(Diagnostics& out) {
     for (const auto& known : known_) {
       const auto id = known.first;
@@ -109,7 +110,7 @@ class StudyRun {
         return same;
       });
       if (same) return true;
-      out.Error({LogPath(options_.folder)},
+      out.Error("study.other_study", {LogPath(options_.folder)},
                 "this folder holds another study: evaluation " + std::to_string(id) +
                     " now ends in another state",
                 "another build of taut made it; give `--out` another folder");
@@ -118,13 +119,15 @@ class StudyRun {
     return true;
   }
 
-  /// One of the study's searches; `start` becomes the best so far. False if the study stops.
+  /// Runs one of the study's searches; `start` becomes the best point so far. Returns false if the
+  /// study stops.
   bool Search(int number, OptimizerStart& start, Diagnostics& out) {
     const SearchSpec& search = study_.searches[static_cast<std::size_t>(number)];
     const auto optimizer = MakeOptimizer(search, start);
     for (std::int64_t left = search.evaluations; left > 0;) {
       std::vector<UnitPoint> points = optimizer->Ask();
-      // The budget may end within a batch: the rest of it is not evaluated, and nobody is told.
+      // The budget may end within a batch: the rest is not evaluated, and the optimizer is not
+      // updated.
       const auto count = std::min(left, static_cast<std::int64_t>(points.size()));
       points.resize(static_cast<std::size_t>(count));
       std::vector<double> scores;
@@ -137,7 +140,7 @@ class StudyRun {
       left -= count;
       if (left > 0) optimizer->Tell(scores);
     }
-    if (!start.score) start.score = kNothing;  // it was tried, in vain
+    if (!start.score) start.score = kNothing;  // it was evaluated and failed
     return true;
   }
 
@@ -157,7 +160,7 @@ class StudyRun {
       if (logged == known_.end()) {
         missing.push_back({id, std::move(values)});
       } else if (logged->second.values != values) {
-        out.Error({LogPath(options_.folder)},
+        out.Error("study.other_values", {LogPath(options_.folder)},
                   "evaluation " + std::to_string(id) + " was of other values than now asked for",
                   "the file was changed, or written by another build of taut");
         return End(LearnEnd::kRefused);
@@ -182,13 +185,14 @@ class StudyRun {
           return !Stopped();
         });
     if (out.ok() && !evaluator_.error().empty()) {
-      out.Error({}, evaluator_.error(), "run the same command again to go on");
+      out.Error("study.not_evaluated", {}, evaluator_.error(),
+                "run the same command again to go on");
     }
     if (!out.ok()) return End(LearnEnd::kFailed);
     return finished || End(LearnEnd::kInterrupted);
   }
 
-  /// Always false.
+  /// Sets the end of the study and returns false.
   bool End(LearnEnd end) {
     summary_.end = end;
     return false;
@@ -198,7 +202,7 @@ class StudyRun {
     ++summary_.evaluations;
     if (!evaluation.failed.empty()) ++summary_.failed;
     if (std::isnan(evaluation.score) || !evaluation.failed.empty()) return;
-    // In the order of ids, whatever the order in which they end: of equal ones the first.
+    // Of equal scores the lowest id is the best, independent of the order of completion.
     const bool better =
         !summary_.best || evaluation.score > summary_.best->score ||
         (evaluation.score == summary_.best->score && evaluation.id < summary_.best->id);
@@ -232,7 +236,7 @@ class StudyRun {
   Clock::time_point started_;
 };
 
-/// The experiment of a log, which is text; the reader of experiments reads files.
+/// Reads the experiment text of a log, by way of a file.
 std::optional<ExperimentSpec> LoggedExperiment(const std::string& folder, const std::string& text,
                                                Diagnostics& out) {
   const fs::path file = fs::path(folder) / "experiment.yaml";
@@ -240,16 +244,16 @@ std::optional<ExperimentSpec> LoggedExperiment(const std::string& folder, const 
   return LoadExperiment(file.string(), {}, out);
 }
 
-/// Whether two texts are the same experiment. One of an earlier version lacks the keys that came
-/// later: read, and written anew, it has them.
+/// Returns whether two texts are the same experiment. A text of an earlier version lacks newer
+/// keys; reading and writing it adds them.
 bool SameExperiment(const std::string& folder, const std::string& logged, const std::string& text) {
   Diagnostics unread;
   const auto experiment = LoggedExperiment(folder, logged, unread);
   return experiment && ExperimentText(*experiment) == text;
 }
 
-/// Whether the log is of this study; an empty one becomes it. The version that began it may be
-/// another: `SameNumbers` finds out whether its numbers are.
+/// Checks that the log belongs to this study; an empty log is initialized. It may be from another
+/// version of taut: `SameNumbers` compares its numbers.
 bool Claim(const StudySpec& study, const std::string& folder, LogContents& log, Diagnostics& out) {
   log.facts.emplace("name", study.name);
   if (log.facts.emplace("taut_version", kVersion).second) log.version = 0;
@@ -257,10 +261,10 @@ bool Claim(const StudySpec& study, const std::string& folder, LogContents& log, 
       {"study", StudyText(study)}, {"experiment", ExperimentText(study.experiment)}};
   for (const auto& [name, text] : facts) {
     const auto [fact, is_new] = log.facts.emplace(name, text);
-    if (is_new) log.version = 0;  // empty, or whoever began it was killed at once
+    if (is_new) log.version = 0;  // empty, or its process was killed immediately
     if (is_new || fact->second == text) continue;
     if (fact->first == "experiment" && SameExperiment(folder, fact->second, text)) continue;
-    out.Error({LogPath(folder)},
+    out.Error("study.other_study", {LogPath(folder)},
               std::string("this folder holds another study: its ") + name + " differs\n" +
                   learn::Difference(fact->second, text),
               "give `--out` another folder, or undo the change; only the last search's evaluations "
@@ -301,7 +305,7 @@ std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostic
   auto contents = log ? log->Read(out) : std::nullopt;
   if (!contents || !Accept(*contents, path, skip_damaged, out)) return std::nullopt;
   if (contents->version == 0) {
-    out.Error({path}, "is empty", "did `taut learn STUDY` end at once?");
+    out.Error("study.log_empty", {path}, "is empty", "did `taut learn STUDY` end at once?");
     return std::nullopt;
   }
   StudyResult result;

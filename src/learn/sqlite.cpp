@@ -19,13 +19,13 @@ Database::Database(const std::string& path, Open how) {
 
 void Database::Protect() {
   sqlite3_busy_timeout(db_, 10'000);
-  // https://sqlite.org/security.html: a file may hold more than data.
+  // https://sqlite.org/security.html: a file may contain more than data.
   sqlite3_db_config(db_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   Execute("PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;");
-  TakeError();  // a file that cannot be read says so to whoever reads it
+  TakeError();  // errors of unreadable files are reported when they are read
 }
 
 void Database::OpenWithoutFolder(const std::string& path) {
@@ -44,7 +44,7 @@ void Database::OpenWithoutFolder(const std::string& path) {
   }
   sqlite3_close(std::exchange(db_, nullptr));
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
-  // Immutable: without locks and without the files beside it.
+  // Immutable: without locks and without the accompanying WAL files.
   if (Check(sqlite3_open_v2((uri + "?immutable=1").c_str(), &db_, kFlags, nullptr))) Protect();
 }
 
@@ -71,7 +71,7 @@ bool Database::CopyTo(Database& to) {
   sqlite3_backup* const backup = sqlite3_backup_init(to.db_, "main", db_, "main");
   if (backup == nullptr) return to.Check(sqlite3_errcode(to.db_));
   sqlite3_backup_step(backup, -1);
-  return to.Check(sqlite3_backup_finish(backup));  // what went wrong in the step, too
+  return to.Check(sqlite3_backup_finish(backup));  // includes errors of the step
 }
 
 bool Database::IsGone() {

@@ -1,6 +1,5 @@
-/// The little of SQLite's interface that a study's log needs. Every result of the library is looked
-/// at in `Database::Check` and nowhere else, so that an error is never taken for the end of the
-/// rows.
+/// SQLite wrapper for a study's log. Every result code is checked in `Database::Check` only, so
+/// that an error is never mistaken for the end of the rows.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +11,13 @@ struct sqlite3_stmt;
 
 namespace taut::learn {
 
-/// A connection. It keeps the first error until `TakeError`.
+/// Connection. It keeps the first error until `TakeError`.
 class Database {
  public:
   enum class Open { kThatIsThere, kOrMake };
-  /// What the file holds is not looked at yet. Nothing in it is trusted to be code. A file that is
-  /// there opens where its folder cannot be written (a read-only medium, another user's), if no
-  /// rows of it are left in its write-ahead log.
+  /// Opens the file without reading its contents. Nothing in it is trusted as code. An existing
+  /// file also opens in a folder without write permission (a read-only medium, another user's
+  /// folder), if its write-ahead log contains no rows.
   Database(const std::string& path, Open how);
   /// In memory.
   Database() : Database(":memory:", Open::kOrMake) {}
@@ -26,24 +25,24 @@ class Database {
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Statements whose rows nobody needs.
+  /// Executes statements and discards their rows.
   bool Execute(const std::string& sql);
-  /// All of it becomes what `to` holds, whatever that was: at once or not at all.
+  /// Replaces the contents of `to` by this database, in one transaction.
   bool CopyTo(Database& to);
-  /// Whether the file is no longer where it was opened: deleted, moved, or its folder was.
+  /// Returns whether the file, or its folder, was deleted or moved since it was opened.
   bool IsGone();
 
-  /// Whether nothing has gone wrong since the last `TakeError`.
+  /// Returns whether there was no error since the last `TakeError`.
   bool good() const { return error_.empty(); }
-  /// What went wrong first: "database or disk is full".
+  /// Returns and clears the first error, such as "database or disk is full".
   std::string TakeError();
 
  private:
   friend class Statement;
-  /// Whether a call went well.
+  /// Returns whether a call succeeded.
   bool Check(int result);
-  /// Opens the connection anew for a file in WAL mode in a folder that cannot be written, where
-  /// SQLite could not make the files beside it that it needs.
+  /// Reopens a file in WAL mode whose folder cannot be written, where SQLite cannot create the
+  /// accompanying files that it needs.
   void OpenWithoutFolder(const std::string& path);
   void Protect();
 
@@ -51,7 +50,7 @@ class Database {
   std::string error_;
 };
 
-/// One row of an answer. The first value that is not of the type asked for is named in `wrong`.
+/// Row of a result. `wrong` describes the first value of an unexpected type.
 class Row {
  public:
   explicit Row(sqlite3_stmt* statement) : statement_(statement) {}
@@ -59,11 +58,11 @@ class Row {
   std::int64_t Integer(int column);
   double Number(int column);  ///< NULL: NaN.
   std::string Text(int column);
-  /// A whole number as text, which may need all 64 bits.
+  /// Returns a 64-bit unsigned integer stored as text.
   std::uint64_t Whole(int column);
 
   void Wrong(int column, const std::string& what);
-  /// "score is not a number"; empty if all is well.
+  /// Returns a description such as "score is not a number"; empty if all values are valid.
   const std::string& wrong() const { return wrong_; }
 
  private:
@@ -73,7 +72,7 @@ class Row {
   std::string wrong_;
 };
 
-/// A prepared statement with its values. Not to outlive its database.
+/// Prepared statement with its values. Must not outlive its database.
 class Statement {
  public:
   Statement(Database& database, const std::string& sql);
@@ -81,13 +80,13 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  /// The next value.
+  /// Binds the next value.
   Statement& Bind(std::int64_t x);
   Statement& Bind(double x);  ///< NaN becomes NULL.
   Statement& Bind(const std::string& x);
 
-  /// Runs it; `use` sees each row. False if anything went wrong, also after some rows. It may be
-  /// bound and run again.
+  /// Executes the statement; `use` receives each row. Returns false on any error, also after some
+  /// rows. The statement may be bound and executed again.
   [[nodiscard]] bool Run(const std::function<void(Row&)>& use = {});
 
  private:

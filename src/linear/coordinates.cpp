@@ -23,7 +23,7 @@ V3<Num> Splat(const Vec3& a) {
   return {Num::Splat(a.x), Num::Splat(a.y), Num::Splat(a.z)};
 }
 
-/// The spin that goes with an angular momentum [rad/s], in W.
+/// Returns the angular velocity of a body from its angular momentum [rad/s], in W.
 template <class Num>
 V3<Num> SpinOf(const World<Num>& world, int body) {
   const sim::Layout& l = world.layout();
@@ -32,7 +32,7 @@ V3<Num> SpinOf(const World<Num>& world, int body) {
          GetV3(world, l.mom + 3 * body);
 }
 
-/// A small turn from `from` to `to` [rad], in W: right to second order.
+/// Returns the small rotation vector from `from` to `to` [rad], in W; exact to second order.
 template <class Num>
 V3<Num> TurnFrom(const Quat& from, const Q4<Num>& to) {
   const V3<Num> u{to.x, to.y, to.z}, s = Splat<Num>({from.x, from.y, from.z});
@@ -52,7 +52,7 @@ Coordinate& Coordinates::State(std::string name, std::string unit, SignalKind ki
 
 void Coordinates::AddBodies(const World<Plain>& at) {
   const sim::Layout& l = at.layout();
-  const bool touches = at.touches();  // by less than what is lifted
+  const bool touches = at.touches();  // changes must be smaller than the lift off the ground
   const std::vector<BodyDef>& bodies = at.def().bodies;
   for (int b = 0; b < at.view().body_count; ++b) {
     if (!(at.Get(l.mass + b).v > 0.0) || at.view().HasMotion(b)) continue;
@@ -93,7 +93,7 @@ void Coordinates::AddBodies(const World<Plain>& at) {
   first_row_state_ = states_.size();
 }
 
-/// What else a step keeps: each row by itself.
+/// Adds the other stored values of a step, one state per row.
 void Coordinates::AddRows(const World<Plain>& at) {
   const sim::Layout& l = at.layout();
   const auto add = [&](const std::string& name, const char* unit, SignalKind kind, int row,

@@ -1,4 +1,4 @@
-/// The states, inputs and outputs of the linear system, and where in a world they are.
+/// States, inputs and outputs of the linearized system, and their places in a world.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,24 @@
 
 namespace taut::linear {
 
-/// Signals of one kind are judged together.
+/// Signals of one kind are compared with each other.
 enum class SignalKind { kPlace, kTurn, kVelocity, kSpin, kLength, kRate, kForce, kOther };
 
-/// A number that may be changed a little.
+/// State, input or output; states and inputs can be changed by small amounts.
 struct Coordinate {
   enum class Of { kRows, kMemory, kTarget, kVelocityInput };
   LinearSignal signal;
   SignalKind kind = SignalKind::kOther;
   Of of = Of::kRows;
-  std::vector<std::pair<int, double>> rows;  ///< What of each changes per unit.
-  int index = 0;                             ///< If it is in no row: which of its kind.
-  int quat_row = -1;                         ///< To be a unit quaternion again.
-  double small = 1e-6;                       ///< A change for differences [its unit].
-  bool may_go = false;                       ///< Left out where nothing depends on it.
+  std::vector<std::pair<int, double>> rows;  ///< Affected rows, with the change of each per unit.
+  int index = 0;                             ///< Index within its kind if it is not in a row.
+  int quat_row = -1;                         ///< Quaternion to normalize after a change, or -1.
+  double small = 1e-6;                       ///< Size of a change for differences [its unit].
+  bool may_go = false;                       ///< Left out if nothing depends on it.
 };
 
-/// The motions of bodies, and what else a world and its controllers keep from tick to tick.
+/// All coordinates: motions of bodies, and the memory of a world and its controllers from tick to
+/// tick.
 class Coordinates {
  public:
   Coordinates(const World<Plain>& at, const Tick<Plain>& tick);
@@ -39,10 +40,10 @@ class Coordinates {
   const std::vector<Coordinate>& inputs() const noexcept { return inputs_; }
   const std::vector<Coordinate>& outputs() const noexcept { return outputs_; }
 
-  /// The states of a world, in their order: motions of bodies as small changes from the start.
+  /// Returns the states of a world, in order; motions of bodies as small changes from the start.
   template <class Num>
   std::vector<Num> States(const World<Num>& world, const TickMemory<Num>& memory) const;
-  /// What is seen of it; it has been sensed.
+  /// Returns the outputs of a world after `Sense`.
   template <class Num>
   std::vector<Num> Outputs(const World<Num>& world) const;
 
@@ -59,12 +60,12 @@ class Coordinates {
   void AddOutputs(const World<Plain>& at);
   Coordinate& State(std::string name, std::string unit, SignalKind kind, double small);
 
-  /// Changes of lengths [m], turns [rad] by which no cable gets slack.
+  /// Limits changes of lengths [m] and rotations [rad] so that no cable becomes slack.
   double Less(double small) const { return std::min(small, std::max(1e-8, 0.1 * stretch_m_)); }
 
-  double stretch_m_ = 1.0;  ///< The least of any cable that is taut.
+  double stretch_m_ = 1.0;  ///< Least stretch of any taut cable.
   std::vector<Mover> movers_;
-  std::vector<int> nodes_;  ///< That move.
+  std::vector<int> nodes_;  ///< Nodes of moving bodies.
   std::size_t first_row_state_ = 0;
   std::vector<Coordinate> states_, inputs_, outputs_;
 };

@@ -1,3 +1,5 @@
+// Modes (natural frequency and damping) and frequency response of a linearized system
+// (docs/theory/linear.md, section 5).
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -23,7 +25,7 @@ Eigen::MatrixXd MatrixOf(const Matrix& m) {
 
 std::vector<LinearMode> ModesOf(const StateSpace& system) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(MatrixOf(system.A), false);
-  constexpr double kNothing = 1e-9;  // of what neither swings nor dies away
+  constexpr double kNothing = 1e-9;  // log |z| and angle of a motion without oscillation and decay
   std::vector<LinearMode> modes;
   for (const Complex& z : solver.eigenvalues()) {
     if (z.imag() < 0) continue;
@@ -61,8 +63,9 @@ FrequencyResponse ResponseOf(const StateSpace& system, int input, int output,
     double condition = 0, ignored = 0;
     Complex x = at(z, condition);
     bool finite = true;
-    // What stays where it is put (a turn about a weight's rope) makes it singular at 0 Hz. If the
-    // input does not push that, or the output does not show it, both sides of it are the same.
+    // Free positions or rotations (a weight that turns about its rope) make the matrix singular at
+    // 0 Hz. If the input does not excite them or the output does not contain them, the values on
+    // both sides agree.
     if (!(condition > kSingular)) {
       const Complex more = at(z * (1 + kBeside), ignored), less = at(z * (1 - kBeside), ignored);
       x = 0.5 * (more + less);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kAtRestMPerS = 1e-9;
 
-/// The experiment as far as it is the same all the time.
+/// Returns the experiment without its time-dependent parts; `remarks` receives a list of them.
 ExperimentSpec Unmoved(const ExperimentSpec& experiment, std::vector<std::string>& remarks) {
   ExperimentSpec e = experiment;
   if (!e.pushes.empty() || !e.drags.empty()) remarks.push_back("pushes and drags are left out");
@@ -32,8 +32,8 @@ ExperimentSpec Unmoved(const ExperimentSpec& experiment, std::vector<std::string
   return e;
 }
 
-/// Cables under impedance control and the steps of a tick; false and `why` if there is no tick that
-/// all controllers have.
+/// Collects the cables under impedance control and the steps of a tick. Returns false, with `why`,
+/// if the controllers have no common tick.
 bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
   double period_s = 0;
   for (const ControllerSpec& c : e.controllers) {
@@ -66,7 +66,7 @@ bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
     rest.step_s = {e.step_s};
     return true;
   }
-  // As a run takes them (plant/schedule.h).
+  // As in runs (plant/schedule.h).
   const double count = std::max(1.0, std::ceil(period_s / e.step_s - 1e-6));
   double step_s = period_s / count;
   if (std::fabs(step_s - e.step_s) < 1e-9 * e.step_s) step_s = e.step_s;
@@ -98,7 +98,7 @@ double LastPoint(const ExperimentSpec& e) {
   return last_s;
 }
 
-/// Runs whole ticks under the controllers until nothing moves for some of them.
+/// Runs whole ticks under the controllers until the robot has been at rest for kStillTicks.
 bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest) {
   constexpr int kStillTicks = 20;
   const auto plant = PlantOf(*rest.batch);
@@ -130,7 +130,7 @@ bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest
   return true;
 }
 
-/// Rest lengths as the programs leave them.
+/// Sets rest lengths to the end values of their programs.
 void WindToTheEnd(const ExperimentSpec& e, Batch& batch) {
   for (const ControllerSpec& c : e.controllers) {
     for (const PositionProgram& p : c.position) {
@@ -153,7 +153,7 @@ void Place(const Pose& pose, Batch& batch) {
   }
 }
 
-/// What is neither taut nor slack has two derivatives.
+/// A cable at the limit between taut and slack has two different one-sided derivatives.
 bool CheckKinks(Rest& rest) {
   constexpr double kShare = 1e-7;
   const std::vector<CableDef>& cables = rest.model->def().cables;
@@ -170,7 +170,8 @@ bool CheckKinks(Rest& rest) {
   return true;
 }
 
-/// The coefficient of friction of a contact by its key (sim/data/tables.h), as the step had it.
+/// Returns the coefficient of friction that a step used for a contact, by the contact's key
+/// (sim/data/tables.h).
 double FrictionOf(const sim::View& m, double key, bool slides) {
   const auto id = static_cast<std::uint32_t>(key);
   if (id < m.first_pair_id) {
@@ -183,7 +184,7 @@ double FrictionOf(const sim::View& m, double key, bool slides) {
   return slides ? pair.kinetic_friction : pair.static_friction;
 }
 
-/// Nor has what slips or is about to.
+/// Contacts that slip, or are about to, have no derivative either.
 bool CheckContacts(Rest& rest) {
   constexpr double kShare = 1e-3;
   const BatchInside::Impl& inside = BatchInside::Of(*rest.batch);

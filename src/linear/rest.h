@@ -1,4 +1,4 @@
-/// Where an experiment's robot comes to rest.
+/// State of rest of an experiment's robot, the operating point for linearization.
 #pragma once
 
 #include <memory>
@@ -10,17 +10,17 @@
 
 namespace taut::linear {
 
-/// A robot at rest at a tick of its controllers.
+/// Robot at rest at a tick of its controllers.
 struct Rest {
   std::shared_ptr<const Model> model;
   std::unique_ptr<Batch> batch;  ///< Of one world; null if it does not come to rest.
   std::vector<DrivenCable> driven;
-  std::vector<double> step_s;  ///< Of a tick.
+  std::vector<double> step_s;  ///< Steps of a tick.
   std::string why, hint;
   std::vector<std::string> remarks;
 };
 
-/// Without a batch and with `why`, or with diagnostics, if there is no such rest.
+/// Returns the state of rest; if there is none, no batch, and `why` or diagnostics.
 Rest FindRest(const ExperimentSpec& experiment, const LinearOptions& options, Diagnostics& out);
 
 }  // namespace taut::linear

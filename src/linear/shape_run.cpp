@@ -1,3 +1,4 @@
+// Animated run of a mode shape or self-stress for the viewer.
 #include "taut/shape_run.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ Quat TurnBy(const Vec3& turn) {
   return {std::cos(angle / 2), v.x, v.y, v.z};
 }
 
-/// The greatest way of any node or centre of mass, per amplitude [m].
+/// Returns the largest displacement of any node or center of mass, per amplitude [m].
 double GreatestWay(const ModelDef& def, const Shape& shape) {
   double most = 0;
   for (const Vec3& t : shape.translation_m) most = std::max(most, Norm(t));
@@ -37,8 +38,8 @@ double GreatestWay(const ModelDef& def, const Shape& shape) {
   return most;
 }
 
-/// Of the largest: what a self-stress is in newtons is nobody's choice, and colours begin at some.
-/// Without round-off, by which equal cables would differ.
+/// Converts to percent of the largest: the magnitude of a self-stress is arbitrary, and the
+/// viewer's color scale starts at a threshold. Rounding removes differences between equal cables.
 void ToPerCent(std::vector<double>& tension_n) {
   double largest = 0;
   for (const double t : tension_n) largest = std::max(largest, std::fabs(t));
@@ -82,7 +83,7 @@ std::vector<double> RowAt(Batch& batch, const Pose& pose, const Shape& shape) {
   return row;
 }
 
-/// What the table of a run says of each cable, of a row more.
+/// Updates the cables' summary by a row.
 void Note(const std::vector<double>& row, std::size_t cables, RunSummary& summary) {
   for (std::size_t c = 0; c < cables; ++c) {
     CableSummary& cable = summary.cables[c];
@@ -117,7 +118,7 @@ bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
     good = trace->Append(time_s, row.data());
   }
   if (good && trace->Finish()) return true;
-  out.Error({}, trace->error());
+  out.Error("trace.not_written", {}, trace->error());
   return false;
 }
 

@@ -1,3 +1,5 @@
+// Linearization: state-space matrices A, B, C, D by automatic differentiation of the step, checked
+// against differences (docs/theory/linear.md).
 #include "taut/state_space.h"
 
 #include <algorithm>
@@ -13,20 +15,21 @@ namespace taut {
 namespace linear {
 namespace {
 
-/// How far bodies are lifted off what they touch: by itself a step closes gaps with what speed that
-/// takes, but does not throw out what is inside. A gap of nothing is the edge between both.
+/// Distances by which bodies are lifted off their contacts, for differences and for exact
+/// derivatives. A step closes positive gaps by its velocity law, but pushes penetrating bodies out
+/// by another rule; a zero gap is the limit between both.
 constexpr double kLiftM = 2e-8, kHairM = 1e-10;
 
 constexpr int kKinds = static_cast<int>(SignalKind::kOther) + 1;
 
-/// States after a tick, then outputs before it, one below the other.
+/// States after a tick, then outputs before it.
 using Column = std::vector<double>;
 
 struct Columns {
   std::vector<Column> of_states, of_inputs;
 };
 
-/// What a tick from `world`'s start with a change of one coordinate comes to.
+/// Returns states and outputs of a tick from `world`'s start, with one coordinate changed.
 template <class Num>
 std::vector<Num> RunWith(World<Num>& world, const Tick<Num>& tick, const Coordinates& coordinates,
                          const Coordinate* changed, double amount) {
@@ -92,9 +95,9 @@ class Finder {
     return column;
   }
 
-  /// Central differences at a step, at half and at a quarter of it, put together such that their
-  /// errors of first order (motors with limits: x |x|) and of second cancel; and how far those to
-  /// either side are apart.
+  /// Returns central differences at a step, half of it and a quarter of it, combined so that errors
+  /// of first order (motors with limits: x |x|) and of second order cancel (L4). `apart` receives
+  /// the differences between one-sided slopes.
   Column Differences(const Coordinate& c, const Column& at_rest, Column& apart) {
     std::array<Column, 3> of;
     double d = c.small;
@@ -116,7 +119,7 @@ class Finder {
   }
 
  private:
-  /// Of differences of steps what a solve leaves over must be small, too.
+  /// Differences of steps require small residuals of the solver.
   static constexpr double kTolerance = 1e-12;
 
   template <class Num>
@@ -148,7 +151,7 @@ class Finder {
   Coordinates coordinates_;
 };
 
-/// Changes of about the same importance.
+/// Returns changes of similar relevance for all kinds.
 double SmallOf(SignalKind kind) {
   switch (kind) {
     case SignalKind::kPlace:
@@ -164,7 +167,7 @@ double SmallOf(SignalKind kind) {
   }
 }
 
-/// The largest entry of each pair of kinds.
+/// Largest entry for each pair of kinds.
 class Sizes {
  public:
   Sizes(const std::vector<SignalKind>& rows) : rows_(rows) {}
@@ -174,9 +177,11 @@ class Sizes {
       most = std::max(most, std::fabs(column[i]));
     }
   }
-  /// The largest share that an entry of `column` is of the largest of its kind; and which it is.
+  /// Returns the largest ratio of an entry of `column` to the largest of its kinds; `which`
+  /// receives its index.
   double Share(SignalKind of, const Column& column, std::size_t& which) const {
-    constexpr double kNothing = 1e-4;  // of a small change of the one kind by one of the other
+    // Effect of a small change of one kind, as a share of a small change of the other.
+    constexpr double kNothing = 1e-4;
     double most = 0;
     for (std::size_t i = 0; i < column.size(); ++i) {
       const double floor = kNothing * SmallOf(rows_[i]) / SmallOf(of);
@@ -204,8 +209,8 @@ Column Less(const Column& a, const Column& b) {
   return out;
 }
 
-/// States on which nothing depends but themselves are left out, and then what only they depended
-/// on.
+/// Returns the states that matter. A state is dropped if it affects nothing but itself, and then
+/// others that affect dropped states only.
 std::vector<std::size_t> KeptStates(const std::vector<Coordinate>& states,
                                     const std::vector<Column>& columns) {
   constexpr double kNothing = 1e-10;
@@ -251,7 +256,7 @@ void Fill(const Coordinates& c, const Columns& columns, StateSpace& out) {
   for (const Coordinate& output : c.outputs()) out.outputs.push_back(output.signal);
 }
 
-/// Exact columns and differences, one beside the other; false and `why` where there is a kink.
+/// Computes exact columns and differences and compares them. Returns false, with `why`, at a kink.
 bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, Columns& columns) {
   constexpr double kAgrees = 1e-5, kKink = 1e-2;
   const Coordinates& c = finder.coordinates();

@@ -1,7 +1,7 @@
 #include "linear/step_dual.h"
 
 #include "simd/dual.h"
-// The very text that simulates; it must find the numbers above.
+// The simulation's source code; it must find the dual numbers above.
 #include "sim/step/kernel.inl"
 
 namespace taut::linear {

@@ -1,14 +1,14 @@
-/// The step compiled for numbers with a derivative.
+/// Simulation step compiled for dual numbers (automatic differentiation).
 #pragma once
 
 #include "sim/data/group.h"
 
 namespace taut::linear {
 
-/// Of groups of two lanes, which are one world and the derivative of all that it has.
+/// Kernel for groups of two lanes: the values of one world and their derivatives.
 extern const sim::Kernel kKernelDual;
 
-/// From which h^2 K on the solver finds a cable's tension.
+/// Least h^2 K for which the solver computes a cable's tension.
 extern const double kStiffFrom;
 
 }  // namespace taut::linear

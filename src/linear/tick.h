@@ -1,5 +1,5 @@
-/// One tick: what is sensed, what controllers make of it, the steps up to the next. The laws are
-/// those of include/taut/control/, in the numbers of the world.
+/// One tick of the controllers: sensing, control laws, and the steps up to the next tick. The laws
+/// are templates of include/taut/control/, instantiated for the world's number type.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace taut::linear {
 
-/// A cable that an impedance law drives.
+/// Cable under impedance control.
 struct DrivenCable {
   int cable = 0;
   control::ImpedanceLaw law;
@@ -19,14 +19,14 @@ struct DrivenCable {
   std::string controller;
 };
 
-/// What controllers remember, per driven cable.
+/// Internal state of the controllers, per driven cable.
 template <class Num>
 using TickMemory = std::vector<control::ImpedanceMemory<Num>>;
 
-/// Commands and their changes.
+/// Changes of the commands.
 template <class Num>
 struct TickInputs {
-  std::vector<Num> target;          ///< Per cable: added to the rest length commanded.
+  std::vector<Num> target;          ///< Per cable: added to the commanded rest length.
   std::vector<Num> velocity_input;  ///< Per driven cable: added to V0.
 };
 
@@ -39,17 +39,17 @@ class Tick {
   const std::vector<DrivenCable>& driven() const noexcept { return driven_; }
   const std::vector<double>& step_s() const noexcept { return step_s_; }
 
-  /// What controllers remember at an equilibrium; the world has been sensed.
+  /// Returns the controllers' internal state at an equilibrium. Call after `Sense`.
   TickMemory<Num> MemoryAtRest(const World<Num>& world) const;
   TickInputs<Num> NoInputs(const World<Num>& world) const;
 
-  /// The world has been sensed.
+  /// Runs a tick. Call after `Sense`.
   void Run(World<Num>& world, TickMemory<Num>& memory, const TickInputs<Num>& inputs) const;
 
  private:
   static CableReadings<Num> Read(const World<Num>& world, int cable);
   std::vector<DrivenCable> driven_;
-  std::vector<double> step_s_;  ///< Of a tick's steps.
+  std::vector<double> step_s_;  ///< Steps of a tick.
 };
 
 extern template class Tick<Plain>;

@@ -1,5 +1,4 @@
-/// A world that starts from a given state again and again, in numbers of one's choice: plain ones,
-/// or such with a derivative.
+/// World that repeatedly starts from a given state, in plain or dual numbers.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 
 namespace taut::linear {
 
-/// A plain number; the tag keeps its functions apart from those of the step.
+/// Tag of plain numbers that keeps their functions separate from the functions of the step.
 struct OutsideOfSteps {};
 using Plain = simd::Wide<1, OutsideOfSteps>;
 using simd::Dual;
@@ -19,28 +18,29 @@ using simd::Dual;
 template <class Num>
 class World {
  public:
-  /// `at`: world 0 of a batch of that model. Its snapshot is where this one starts.
+  /// `at`: its world 0 is the start; a batch of the same model.
   World(std::shared_ptr<const Model> model, const Batch& at, double tolerance_m_per_s = 1e-10);
 
-  /// Back to the start; no derivative of anything.
+  /// Returns to the start, with zero derivatives.
   void Reset();
-  /// The start is as the world is now.
+  /// Makes the present state the start.
   void StartHere() { snapshot_ = batch_.Save(0); }
   Num Get(int row) const noexcept;
   void Set(int row, Num x) noexcept;
-  /// The part of a row in a direction: what of it changes per unit. Plain: x += amount * unit.
+  /// Adds a change of a row: `amount` * `unit` in plain numbers, a derivative of `unit` in dual
+  /// ones.
   void Add(int row, double amount, double unit) noexcept;
 
   void Step(double step_s);
-  /// What is seen of the cables, now.
+  /// Updates the cable readings.
   void Sense();
 
   const sim::Layout& layout() const noexcept { return inside_->layout; }
   const sim::View& view() const noexcept { return inside_->view; }
   const ModelDef& def() const noexcept { return batch_.model().def(); }
-  /// Whether anything touches anything.
+  /// Returns whether there is any contact.
   bool touches() const { return !batch_.Contacts(0).empty(); }
-  /// False where the machine has no lanes for derivatives.
+  /// False if the build or machine has no lanes for derivatives.
   bool good() const noexcept { return good_; }
   std::uint32_t status_bits() const { return batch_.Status(0).bits; }
 

@@ -12,9 +12,9 @@ namespace {
 
 using board::Mode;
 
-/// Cycles that a board gets to obey.
+/// Cycles within which a board must obey.
 constexpr int kObey = 10;
-/// The last version before which the adapter left the bus without a stop.
+/// First adapter firmware that always ends a transfer with a stop on the bus.
 constexpr int kGoodAdapter = 8;
 /// Timeout of the stop that the destructor sends.
 constexpr double kLastWords_s = 0.1;
@@ -41,7 +41,7 @@ Driver::Driver(Port& port, DriverOptions options)
 }
 
 Driver::~Driver() {
-  on_cycle = {};  // who listened may be gone
+  on_cycle = {};  // the listeners may no longer exist
   on_event = {};
   if (state_.stage == Stage::kUnconfigured || !port_.is_open()) return;
   if (state_.stage == Stage::kActive) Stop("the driver ends");
@@ -63,22 +63,24 @@ std::string Driver::MotorName(int motor) const {
 bool Driver::FindBoards(Diagnostics& out) {
   const auto info = adapter_.Identify();
   if (!info) {
-    out.Error({}, "nothing answers as a USB-ISS does",
+    out.Error("adapter.no_answer", {}, "nothing answers as a USB-ISS does",
               "is it this port, and does nobody else talk to it?");
     return false;
   }
   adapter_info_ = *info;
   if (info->module_id != kModuleId) {
-    out.Error({}, "this is no USB-ISS: its number is " + std::to_string(info->module_id) +
-                      ", not " + std::to_string(kModuleId));
+    out.Error("adapter.unknown_module", {},
+              "this is no USB-ISS: its number is " + std::to_string(info->module_id) + ", not " +
+                  std::to_string(kModuleId));
     return false;
   }
   if (info->firmware_version < kGoodAdapter) {
-    out.Warning({}, "the adapter's program is version " + std::to_string(info->firmware_version) +
-                        ": before 8 a board that does not answer holds up the bus");
+    out.Warning("adapter.old_firmware", {},
+                "the adapter's program is version " + std::to_string(info->firmware_version) +
+                    ": before 8 a board that does not answer holds up the bus");
   }
   if (!adapter_.SetMode()) {
-    out.Error({}, "the adapter refuses to work as I2C at 400 kHz");
+    out.Error("adapter.no_i2c", {}, "the adapter refuses to work as I2C at 400 kHz");
     return false;
   }
   bool good = true;
@@ -94,7 +96,7 @@ bool Driver::FindBoards(Diagnostics& out) {
     if (said->protocol_min > board::kProtocolVersion ||
         said->protocol_max < board::kProtocolVersion ||
         said->parameters_version != board::kParametersVersion) {
-      out.Error({},
+      out.Error("board.other_firmware", {},
                 "board " + std::to_string(b) + " has a firmware of another version, " +
                     std::to_string(said->firmware_major) + "." +
                     std::to_string(said->firmware_minor),
@@ -129,7 +131,7 @@ void Driver::Watch() {
     armed = armed ||
             (board.there && board.status.mode != Mode::kOff && board.status.mode != Mode::kStopped);
   }
-  // Who holds since its PC went away goes on holding, and says what it senses.
+  // A board that holds since it lost its PC continues to hold and sends its readings.
   say_.mode = armed ? Mode::kHold : Mode::kOff;
   say_.arm = armed ? board::Arm::kGo : board::Arm::kNot;
 }
@@ -164,7 +166,7 @@ bool Driver::Configure(std::span<const Setting> settings, Diagnostics& out, Mean
     if (!requests_.Set(setting, out)) return false;
   }
   if (!ReadFigures(out)) return false;
-  // What a board senses comes with a broadcast, which must neither give nor take power.
+  // Boards send readings after a broadcast, which must neither apply nor remove power.
   for (int b = 0; b < board_count(); ++b) {
     const auto faults = requests_.Faults(b, out);
     if (!faults) return false;
@@ -176,7 +178,7 @@ bool Driver::Configure(std::span<const Setting> settings, Diagnostics& out, Mean
       const std::size_t motor = static_cast<std::size_t>(b * board::kMotors + m);
       if (motor < state_.motors.size()) state_.motors[motor].faults = faults->motor[m];
     }
-    // A broadcast with a number that it knows already would be none.
+    // Boards ignore a broadcast whose sequence number they know already.
     if (const auto status = requests_.ReadStatus(b)) say_.sequence = status->sequence;
   }
   say_.sequence = static_cast<std::uint8_t>(say_.sequence + 32);
@@ -188,7 +190,7 @@ bool Driver::Configure(std::span<const Setting> settings, Diagnostics& out, Mean
   std::fill(missed_.begin(), missed_.end(), 0);
   std::fill(deaf_.begin(), deaf_.end(), 0);
   before_ = state_.boards;
-  for (BoardView& board : before_) board.status.was_reset = true;  // and why, it has just said
+  for (BoardView& board : before_) board.status.was_reset = true;  // its cause has just been read
   return true;
 }
 
@@ -282,7 +284,7 @@ void Driver::Cycle(int count) {
       --count;
       continue;
     }
-    if (!state_.link.connected) return;  // nobody knows for how long
+    if (!state_.link.connected) return;  // the time of the reconnection is unknown
     port_.Wait(due_s());
   }
 }
@@ -301,7 +303,7 @@ bool Driver::CycleBy(double time_s) {
 
 bool Driver::Enable(Mode mode, bool capture, Diagnostics& out) {
   if (state_.stage == Stage::kUnconfigured) {
-    out.Error({}, "boards have not been configured");
+    out.Error("board.not_configured", {}, "boards have not been configured");
     return false;
   }
   Arm();
@@ -311,17 +313,18 @@ bool Driver::Enable(Mode mode, bool capture, Diagnostics& out) {
       const BoardView& board = state_.boards[static_cast<std::size_t>(b)];
       const std::string who = "board " + std::to_string(b);
       if (!board.there) {
-        out.Error({}, who + " does not answer");
+        out.Error("board.no_answer", {}, who + " does not answer");
       } else if (board.status.mode != Mode::kOff || board.status.faulty || board.status.timeout) {
-        out.Error({},
+        out.Error("board.not_ready", {},
                   who + " is not well: " + ModeName(board.status.mode) +
                       (board.status.timeout ? ", timed out" : "") +
                       (board.status.faulty ? ", faults latched" : ""),
                   "`taut robot status` names faults, --clear_faults takes them back");
       }
     }
-    if (state_.stopping) out.Error({}, "an emergency stop has not been cleared");
-    if (out.ok()) out.Error({}, "the adapter is gone");
+    if (state_.stopping)
+      out.Error("robot.emergency_stop", {}, "an emergency stop has not been cleared");
+    if (out.ok()) out.Error("adapter.lost", {}, "the adapter is gone");
     Off();
     Cycle(1);
     return false;
@@ -340,11 +343,12 @@ bool Driver::Enable(Mode mode, bool capture, Diagnostics& out) {
   for (int b = 0; b < board_count(); ++b) {
     const BoardView& board = state_.boards[static_cast<std::size_t>(b)];
     if (board.there && !board.status.faulty && board.status.mode == say_.mode) continue;
-    out.Error({}, "board " + std::to_string(b) + " does not obey: it is in mode " +
-                      ModeName(board.status.mode) +
-                      (board.faults != 0 ? " (" + BoardFaultNames(board.faults) + ")" : ""));
+    out.Error("board.does_not_obey", {},
+              "board " + std::to_string(b) + " does not obey: it is in mode " +
+                  ModeName(board.status.mode) +
+                  (board.faults != 0 ? " (" + BoardFaultNames(board.faults) + ")" : ""));
   }
-  if (out.ok()) out.Error({}, "the boards did not obey");
+  if (out.ok()) out.Error("board.does_not_obey", {}, "the boards did not obey");
   Off();
   Cycle(2);
   return false;

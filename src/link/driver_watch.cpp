@@ -1,4 +1,4 @@
-// After a cycle: who is there, who is well, and what follows from that.
+// Supervision of boards and cables after each cycle, and reactions to faults.
 #include <algorithm>
 #include <cstdlib>
 
@@ -10,13 +10,15 @@ namespace {
 using board::Mode;
 
 constexpr int kRequestTries = 3;
-constexpr int kResetAfter = 3;  // broadcasts in a row that nobody heard
+constexpr int kResetAfter = 3;  // consecutive broadcasts without an acknowledgment
 
 constexpr double kSlack_n = 0.5, kTaut_n = 2;
 constexpr int kSlackCycles = 20;
-// The way that has to change what a load cell shows, whatever its noise: 0.7 N of a spring.
+// Change of rest length that must change a load cell's reading despite its noise: 0.7 N of a
+// spring.
 constexpr double kShowing_m = 0.003;
-constexpr int kSameCycles = 20;  // fewer are chance: of two in a row every third pair is the same
+// Fewer equal readings occur by chance: one in three pairs of consecutive readings is equal.
+constexpr int kSameCycles = 20;
 
 board::Asking AskForFaults() {
   return {board::Request::kAsk, static_cast<std::uint8_t>(board::Asked::kFaults), board::kMotors, 0,
@@ -47,7 +49,7 @@ void Driver::React(const std::string& why) {
   }
 }
 
-/// What is new of it, is told: a board is not well already when a second motor of it fails.
+/// Reports new faults only: a board is faulty already when its second motor fails.
 void Driver::TakeFaults(int board, int index, std::uint8_t bits) {
   const int motor = board * board::kMotors + index;
   const bool of_motor = index < board::kMotors;
@@ -112,8 +114,8 @@ void Driver::LookAt(int board, const BoardView& before) {
   }
 }
 
-/// A cable that is cut, or a load cell that stands, moves nothing by itself: boards notice it once
-/// they have wound in a long way.
+/// Detects cut cables and load cells whose reading does not change. They cause no motion, and
+/// boards detect them only after winding in a long way.
 void Driver::LookAtCable(int motor) {
   CableWatch& watch = cable_watches_[At(motor)];
   const MotorView& now = state_.motors[At(motor)];
@@ -156,7 +158,7 @@ void Driver::EndCycle() {
   link.mean_cycle_s += (link.cycle_s - link.mean_cycle_s) * share;
   link.mean_lateness_s += (link.lateness_s - link.mean_lateness_s) * share;
 
-  // Requests that got no answer.
+  // Requests without an answer.
   for (std::size_t i = 0; i < waiting_.size();) {
     if (waiting_[i].tries < kRequestTries || waiting_[i].rest > 1) {
       ++i;

@@ -1,4 +1,4 @@
-/// What boards send and are sent, as bytes of the adapter.
+/// Frames from and to boards, as bytes of the adapter.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace taut::link {
 
-/// A whole frame of this board, of either kind; false: it is not.
+/// Copies a complete frame of this board, of either kind; returns false for other bytes.
 inline bool CopyFrame(std::span<const std::uint8_t> bytes, std::uint8_t board,
                       std::uint8_t (&frame)[board::kFrameSize]) {
   if (bytes.size() != sizeof frame) return false;

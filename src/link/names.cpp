@@ -21,7 +21,7 @@ constexpr struct {
               {board::Mode::kDuty, "duty"},         {board::Mode::kReply, "reply"},
               {board::Mode::kStopped, "stopped"}};
 
-/// By the bits' order, least first.
+/// In order of the bits, least significant first.
 constexpr const char* kMotorFaults[] = {"over_tension", "sensor",  "slack", "stall",
                                         "polarity",     "runaway", "hot"};
 constexpr const char* kBoardFaults[] = {"driver",       "overruns",  "parameters_lost",
@@ -52,7 +52,7 @@ std::optional<ParameterValue> ReadParameter(const std::string& text, const std::
                         ? std::from_chars_result{number, std::errc::invalid_argument}
                         : std::from_chars(number, end, value);
   if (read.ec != std::errc() || read.ptr != end) {
-    out.Error({}, what + " " + text + ": not of the form name=number");
+    out.Error("board.bad_assignment", {}, what + " " + text + ": not of the form name=number");
     return std::nullopt;
   }
   std::vector<std::string> keys;
@@ -65,13 +65,14 @@ std::optional<ParameterValue> ReadParameter(const std::string& text, const std::
       if (board::IsWithin(range, static_cast<float>(value))) {
         return ParameterValue{of_motor, static_cast<std::uint8_t>(i), static_cast<float>(value)};
       }
-      out.Error({}, fmt::format("{} {}: not within {:g} .. {:g}", what, text, range.least,
-                                range.greatest));
+      out.Error(
+          "board.out_of_range", {},
+          fmt::format("{} {}: not within {:g} .. {:g}", what, text, range.least, range.greatest));
       return std::nullopt;
     }
   }
   const std::string_view close = ClosestMatch(name, keys);
-  out.Error({}, what + " " + text + ": boards have no parameter " + name,
+  out.Error("board.unknown_parameter", {}, what + " " + text + ": boards have no parameter " + name,
             close.empty() ? "docs/hardware/parameters.md lists them" : DidYouMean(name, keys));
   return std::nullopt;
 }

@@ -63,21 +63,23 @@ void ReportPower(const PowerReport& report, Diagnostics& out) {
     const BoardPower& board = report.boards[b];
     if (board.is == BoardPower::Is::kOff) continue;
     if (board.is == BoardPower::Is::kOn) {
-      out.Error({},
+      out.Error("power.not_off", {},
                 fmt::format("board {} has not turned its motors off: its last status, {:.0f} ms "
                             "old, has mode {}",
                             b, board.age_s * 1e3, ModeName(board.mode)));
     } else if (board.age_s < 0) {
-      out.Error({}, fmt::format("board {} has not confirmed that its motors are off: no status "
-                                "was ever received from it",
-                                b));
+      out.Error("power.not_confirmed", {},
+                fmt::format("board {} has not confirmed that its motors are off: no status "
+                            "was ever received from it",
+                            b));
     } else {
-      out.Error({}, fmt::format("board {} has not confirmed that its motors are off: its last "
-                                "status, {:.1f} s old, has mode {}",
-                                b, board.age_s, ModeName(board.mode)));
+      out.Error("power.not_confirmed", {},
+                fmt::format("board {} has not confirmed that its motors are off: its last "
+                            "status, {:.1f} s old, has mode {}",
+                            b, board.age_s, ModeName(board.mode)));
     }
   }
-  out.Error({},
+  out.Error("power.summary", {},
             fmt::format("{} of {} boards confirmed that their motors are off{}", report.off_count(),
                         report.boards.size(),
                         report.adapter_answers ? "" : "; the adapter does not answer"),

@@ -9,10 +9,10 @@ namespace taut::link {
 namespace {
 
 constexpr int kTries = 3;
-/// A board looks at messages between two ticks. Where it is emulated on a busy machine, its time
-/// may stand meanwhile: each try waits longer.
+/// Boards process messages between two ticks. The time of a board emulated on a busy machine may
+/// stand still meanwhile, so each attempt waits longer.
 constexpr double kAnswer_s = 0.003, kLonger = 4;
-/// 250 bytes of EEPROM at 3.4 ms, and as much again.
+/// 250 bytes of EEPROM at 3.4 ms each, and a margin of more than as much.
 constexpr double kMemory_s = 2.0;
 
 board::Asking AskFor(board::Asked what) {
@@ -64,11 +64,12 @@ std::optional<board::Reply> Requests::Ask(int board, const board::Asking& asking
     const auto reply = bytes ? ReplyIn(*bytes, number) : std::nullopt;
     if (!reply || reply->what != asking.what || reply->index != asking.index) continue;
     if (reply->answer == board::Answer::kGood) return reply;
-    out.Error({}, who + " refuses " + DescribeRequest(asking) + ": " + AnswerText(reply->answer),
+    out.Error("board.request_refused", {},
+              who + " refuses " + DescribeRequest(asking) + ": " + AnswerText(reply->answer),
               "docs/hardware/protocol.md lists requests and answers");
     return std::nullopt;
   }
-  out.Error({}, who + " does not answer",
+  out.Error("board.no_answer", {}, who + " does not answer",
             port.is_open() ? "`taut robot scan` shows who is there" : "the adapter is gone");
   return std::nullopt;
 }
@@ -128,7 +129,8 @@ bool Requests::WaitForMemory(int board, Diagnostics& out) {
     if (!report) return false;
     if (!report->writes_memory) return true;
   }
-  out.Error({}, "board " + std::to_string(board) + " is still writing its memory");
+  out.Error("board.still_writing", {},
+            "board " + std::to_string(board) + " is still writing its memory");
   return false;
 }
 

@@ -55,7 +55,7 @@ bool RobotPlant::Hold(Diagnostics& out) {
 }
 
 void RobotPlant::Begin() {
-  // On the way to a position, a motor's first one is where it is.
+  // In position control, a motor's first set point is its current position.
   for (std::size_t m = 0; m < cables_.size(); ++m) {
     const double here_m = driver_.state().motors[m].rest_length_m;
     driver_.SetValue(static_cast<int>(m), mode_ == Mode::kPosition ? here_m : 0.0);
@@ -98,8 +98,8 @@ void RobotPlant::Read() {
     const int c = cables_[m];
     const MotorView& motor = state.motors[m];
     const BoardView& board = state.boards[m / board::kMotors];
-    // The spool's rate, as the boards take it: what the load cell knows of the spring's drowns in
-    // its quanta.
+    // Rate of the spool, as the boards use it. The spring's rate is below the resolution of the
+    // load cell.
     at(kRate, c) = since_s > 0 ? (motor.rest_length_m - at(kRestLength, c)) / since_s : 0.0;
     at(kRestLength, c) = motor.rest_length_m;
     at(kLength, c) = motor.length_m;
@@ -123,7 +123,7 @@ const Observation& RobotPlant::Observe() {
 void RobotPlant::Advance(const double* /*step_s*/, const double* to_s) {
   if (before_first_step) {
     std::exchange(before_first_step, {})();
-    if (driver_.state().stage != Stage::kActive) return;  // it came to nothing: no time has begun
+    if (driver_.state().stage != Stage::kActive) return;  // the start failed: time does not run
   }
   const std::size_t count = faults_.size();
   for (std::size_t m = 0; m < cables_.size(); ++m) {

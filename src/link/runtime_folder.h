@@ -1,4 +1,4 @@
-/// Where programs that use one robot find each other.
+/// Folder of sockets and files by which programs that use the same robot find each other.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace taut::link {
 
-/// $XDG_RUNTIME_DIR/taut, or /tmp/taut-UID where there is none; only this user may look into it.
-/// Empty and a complaint if it cannot be had.
+/// Returns $XDG_RUNTIME_DIR/taut, or /tmp/taut-UID without that variable; accessible to this user
+/// only. Returns an empty string and reports an error if it cannot be created.
 std::string RuntimeFolder(Diagnostics& out);
 
 }  // namespace taut::link

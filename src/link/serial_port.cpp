@@ -24,11 +24,11 @@ class SerialPort final : public Port {
  public:
   SerialPort(std::string device, PortUse use) : device_(std::move(device)), use_(use) {}
 
-  /// Empty: it is open.
+  /// Returns an empty string on success, else the error.
   std::string Open() {
     boost::system::error_code error;
     port_.emplace(context_);
-    port_->open(device_, error);  // raw: Asio sets that
+    port_->open(device_, error);  // raw mode, set by Asio
     if (!error && use_ == PortUse::kDrive) {
       // A replugged adapter is a new device: lock it at each opening.
       const int handle = port_->native_handle();
@@ -38,7 +38,7 @@ class SerialPort final : public Port {
       }
       ioctl(handle, TIOCEXCL);  // also excludes programs that do not use flock, except root's
     }
-    // The adapter ignores the rate; some drivers want one all the same.
+    // The adapter ignores the rate, but some drivers require one.
     if (!error) port_->set_option(asio::serial_port_base::baud_rate(115'200), error);
     if (!error) port_->set_option(asio::serial_port_base::flow_control(), error);
     if (error) {
@@ -68,7 +68,7 @@ class SerialPort final : public Port {
   void Wait(double until_s) override {
     const auto until = Clock::time_point(
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(until_s)));
-    // Without a port nothing would be waited for.
+    // Without a port, the wait would end at once.
     std::optional<asio::executor_work_guard<asio::io_context::executor_type>> guard;
     guard.emplace(context_.get_executor());
     context_.restart();
@@ -114,13 +114,13 @@ std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Dia
   if (why.empty()) return port;
   if (why == SerialPort::kDriven) {
     const auto process = DriverOf(device);
-    out.Error({device, 0, 0},
+    out.Error("robot.driven_elsewhere", {device, 0, 0},
               (process ? "process " + std::to_string(*process) : std::string("another program")) +
                   " drives this robot",
               "to stop the robot, run `taut robot estop`");
     return nullptr;
   }
-  out.Error({device, 0, 0}, "cannot be opened: " + why,
+  out.Error("robot.not_opened", {device, 0, 0}, "cannot be opened: " + why,
             "the adapter is /dev/ttyACM0 or the like, which the group dialout may open; "
             "--port virtual is an emulated robot");
   return nullptr;

@@ -1,4 +1,4 @@
-// What an experiment and its model say to the boards.
+// Settings of the boards from an experiment and its model.
 #include <numbers>
 
 #include "taut/link/robot_plant.h"
@@ -48,9 +48,11 @@ std::vector<int> MotorCables(const RobotSpec& robot, Diagnostics& out) {
   std::vector<int> cables = CablesOf(robot);
   const SourceRef file{robot.files.empty() ? "model" : robot.files.front()};
   if (cables.empty()) {
-    out.Error(file, "no cable has an actuator", "a robot needs 1 to 12 of them");
+    out.Error("robot.no_actuators", file, "no cable has an actuator",
+              "a robot needs 1 to 12 of them");
   } else if (cables.size() > board::kCables) {
-    out.Error(file, std::to_string(cables.size()) + " cables have an actuator",
+    out.Error("robot.too_many_actuators", file,
+              std::to_string(cables.size()) + " cables have an actuator",
               "six boards drive 12 at most");
   } else {
     return cables;
@@ -70,7 +72,7 @@ std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) 
   std::string names;
   for (const std::string& name : without) names += (names.empty() ? "" : ", ") + name;
   const SourceRef file{experiment.files.empty() ? "experiment" : experiment.files.front()};
-  out.Error(file, "no impedance control of " + names,
+  out.Error("robot.no_impedance_control", file, "no impedance control of " + names,
             "boards control all of their motors by it, or none");
   return std::nullopt;
 }

@@ -46,8 +46,9 @@ std::unique_ptr<StopListener> StopListener::Open(const std::string& device, Diag
       bind(listening, reinterpret_cast<const sockaddr*>(&address), size) == 0) {
     return std::unique_ptr<StopListener>(new StopListener(listening));
   }
-  out.Error({device}, std::string("cannot listen for emergency stops: ") +
-                          (size == 0 ? "no such device" : std::strerror(errno)));
+  out.Error("robot.no_stop_listener", {device},
+            std::string("cannot listen for emergency stops: ") +
+                (size == 0 ? "no such device" : std::strerror(errno)));
   if (listening >= 0) close(listening);
   return nullptr;
 }

@@ -24,10 +24,11 @@ namespace taut::link {
 namespace {
 
 constexpr char kProgram[] = "taut_virtual_robot";
-/// To read the model and start six boards, on a machine that has other work.
+/// Time to read the model and start six boards on a busy machine.
 constexpr int kStart_ms = 30'000;
 
-/// $TAUT_VIRTUAL_ROBOT, or the program beside this one, or that of the path.
+/// Returns $TAUT_VIRTUAL_ROBOT, or the program in this program's folder, or the program on the
+/// search path.
 std::string ProgramPath() {
   if (const char* const given = std::getenv("TAUT_VIRTUAL_ROBOT"); given && *given != '\0') {
     return given;
@@ -40,11 +41,12 @@ std::string FolderOfIt(Diagnostics& out) {
   if (runtime.empty()) return {};
   std::string folder = runtime + "/virtual";
   if (mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return folder;
-  out.Error({folder}, std::string("cannot make this folder: ") + std::strerror(errno));
+  out.Error("folder.not_made", {folder},
+            std::string("cannot make this folder: ") + std::strerror(errno));
   return {};
 }
 
-/// Whether somebody listens there: a link to a terminal may have stayed, and lead to another one.
+/// Returns true if a process listens there. A leftover link may lead to another terminal.
 bool Lives(const std::string& truth) {
   sockaddr_un address;
   if (!UnixAddress(truth, &address)) return false;
@@ -56,7 +58,7 @@ bool Lives(const std::string& truth) {
   return lives;
 }
 
-/// The first line that comes, without its end; nothing if none comes in time.
+/// Returns the first line received, without its end; nothing if none comes in time.
 std::optional<std::string> FirstLine(int from) {
   std::string line;
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStart_ms);
@@ -110,12 +112,12 @@ std::unique_ptr<VirtualRobot> VirtualRobot::Start(const std::vector<std::string>
   argv.push_back(nullptr);
   int says[2];
   if (pipe2(says, O_CLOEXEC) != 0) {
-    out.Error({}, std::string("no pipe: ") + std::strerror(errno));
+    out.Error("virtual_robot.no_pipe", {}, std::string("no pipe: ") + std::strerror(errno));
     return nullptr;
   }
   const pid_t child = fork();
   if (child == 0) {
-    setpgid(0, 0);  // Ctrl-C is for who drives: the robot stays until its motors are off
+    setpgid(0, 0);  // Ctrl-C is for the driving program: the robot stays until its motors are off
     dup2(says[1], STDOUT_FILENO);
     execvp(argv[0], argv.data());
     _exit(127);
@@ -128,7 +130,8 @@ std::unique_ptr<VirtualRobot> VirtualRobot::Start(const std::vector<std::string>
     const bool ended = child > 0 && waitpid(child, &status, WNOHANG) == child;
     if (ended) robot->process_ = -1;
     const bool missing = ended && WIFEXITED(status) && WEXITSTATUS(status) == 127;
-    out.Error({program}, missing ? "there is no such program" : "did not start",
+    out.Error("virtual_robot.not_started", {program},
+              missing ? "there is no such program" : "did not start",
               missing ? "it is built where avr-g++ and libsimavr are (docs/hardware/"
                         "virtual_robot.md); TAUT_VIRTUAL_ROBOT may name it"
                       : "");

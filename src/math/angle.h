@@ -1,4 +1,5 @@
-/// Angles with the same bits everywhere, for wide numbers and plain ones; + - * / and Sqrt alone.
+/// Arctangent, exponential and rounding with the same bits on all machines, for wide and plain
+/// numbers; only + - * / and Sqrt.
 #pragma once
 
 #include "math/scalar.h"
@@ -7,15 +8,15 @@ namespace taut {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// The whole number that is nearest, for |x| < 2^50.
+/// Returns the nearest whole number, for |x| < 2^50.
 template <class S>
 TAUT_INLINE S Round(S x) noexcept {
   const S large = Constant<S>::Of(6755399441055744.0);  // 1.5 * 2^52
   return (x + large) - large;
 }
 
-/// The angle from x to (x, y), -pi..pi, to some 3 units in the last place; of (0, 0) it is 0. Twice
-/// halved, so that its series is short.
+/// Returns the angle from x to (x, y), -pi..pi, with an error of about 3 units in the last place; 0
+/// for (0, 0). The angle is halved twice, so that the series is short.
 template <class S>
 TAUT_INLINE S Atan2(S y, S x) noexcept {
   constexpr int kTerms = 12;  // (tan(pi / 16))^25 / 25 < 1e-19
@@ -34,11 +35,11 @@ TAUT_INLINE S Atan2(S y, S x) noexcept {
   return Select(y < zero, zero - angle, angle);
 }
 
-/// e^x - 1 for 0 <= x <= 40, to some 1e-15 of e^x. By (1 + y)^2 - 1 = y (2 + y), so that no digits
-/// are lost where x is small.
+/// Returns e^x - 1 for 0 <= x <= 40, with an error of about 1e-15 of e^x. Uses (1 + y)^2 - 1 = y (2
+/// + y), so that no digits are lost for small x.
 template <class S>
 TAUT_INLINE S ExpLess1(S x) noexcept {
-  constexpr int kHalvings = 8, kTerms = 9;  // (40 / 256)^10 / 10! < 1e-14 of it
+  constexpr int kHalvings = 8, kTerms = 9;  // remainder (40 / 256)^10 / 10! < 1e-14
   using C = Constant<S>;
   const S t = C::Of(1.0 / (1 << kHalvings)) * x;
   S sum = C::Of(1.0);

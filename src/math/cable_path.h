@@ -1,13 +1,13 @@
-/// The path of a cable, from where it is held to what it pulls (docs/theory/cables.md, eq. 2, 3).
-/// The one text for the step, its sensors, the start, the bounds of stiffness and the statics: on
-/// V3<W> of the step and on Vec3 alike, without the standard library.
+/// Cable path: length, rate and pulls of a cable along its attachments (docs/theory/cables.md, eq.
+/// 2, 3). Shared by the step, its sensors, the start, the bounds of stiffness and the statics: for
+/// V3<W> of the step and for Vec3, without the standard library.
 ///
-/// A path is a row of points that belong to bodies, and the spans between them. Its users see three
-/// things only: its length, its rate, and what each point is pulled with per unit of tension.
+/// A path is a sequence of points that belong to bodies, and the spans between them. It provides
+/// its length, its rate, and the pull on each point per unit of tension.
 ///
-/// A point is an attachment, or one of the two where a cable arrives at a wheel and leaves it
-/// (cable_wheel.h). Between those two there is no span that pulls: the arc adds to the length only.
-/// The rate is right without it, since the points slide along the spans that they end
+/// A point is an attachment, or one of the two points where a cable arrives at a wheel and leaves
+/// it (cable_wheel.h). Between those two there is no span that pulls: the arc adds only to the
+/// length. The rate is correct without it, since the points slide along the spans that they end
 /// (docs/theory/cables.md, eq. 14).
 #pragma once
 
@@ -17,21 +17,21 @@ namespace taut {
 
 template <class V>
 struct PathPoint {
-  V p;    ///< Place; one frame for the whole path [m].
-  V v;    ///< Velocity; only rates need it [m/s].
-  V arm;  ///< From the origin of its body; only torques need it [m].
-  V u;    ///< Of the span from the point before: its direction, per unit of tension.
+  V p;    ///< Position; one frame for the whole path [m].
+  V v;    ///< Velocity; only for rates [m/s].
+  V arm;  ///< From the origin of its body; only for torques [m].
+  V u;    ///< Direction of the span from the previous point, per unit of tension.
 };
 
-/// Of a path or a part of it. `dl` is the exact rate.
+/// Length of a path or a part of it, and its exact rate.
 template <class V>
 struct PathLength {
   using S = decltype(V::x);
   S l = Constant<S>::Of(0.0), dl = Constant<S>::Of(0.0);
 };
 
-/// Adds the span between two neighbours, and fills in `to.u`. Points in one place have no
-/// direction; a length this small pulls with u = d / tiny ~ 0.
+/// Adds the span between two neighbors, and fills in `to.u`. Coincident points have no direction;
+/// the small length makes u = d / tiny ~ 0.
 template <class V>
 TAUT_INLINE void AddSpan(const PathPoint<V>& from, PathPoint<V>& to, PathLength<V>& path) noexcept {
   using S = typename PathLength<V>::S;
@@ -42,7 +42,7 @@ TAUT_INLINE void AddSpan(const PathPoint<V>& from, PathPoint<V>& to, PathLength<
   path.dl = path.dl + Dot(to.u, to.v - from.v);
 }
 
-/// Length and rate of a path without wheels; fills in the directions.
+/// Returns length and rate of a path without wheels; fills in the directions.
 template <class V>
 TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept {
   PathLength<V> path;
@@ -50,7 +50,7 @@ TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept 
   return path;
 }
 
-/// The same for points that `place(i)` puts somewhere, where nobody needs the directions.
+/// Returns the same for points at `place(i)`, without storing directions.
 template <class V, class Place>
 PathLength<V> MeasureThrough(int count, const Place& place) noexcept {
   PathLength<V> path;
@@ -64,7 +64,7 @@ PathLength<V> MeasureThrough(int count, const Place& place) noexcept {
   return path;
 }
 
-/// The force on point `i` per unit of tension: u_i+1 - u_i.
+/// Returns the force on point `i` per unit of tension: u_i+1 - u_i.
 template <class V>
 TAUT_INLINE V PullAt(int count, const PathPoint<V>* points, int i) noexcept {
   const auto zero = Constant<typename PathLength<V>::S>::Of(0.0);
@@ -74,8 +74,8 @@ TAUT_INLINE V PullAt(int count, const PathPoint<V>* points, int i) noexcept {
   return pull;
 }
 
-/// Adds what a tension does to the bodies. `body(i)` refers to the sums of point i's body: its
-/// `force`, and its `torque` about the origin of the arms.
+/// Adds the forces and torques of a tension to its bodies. `body(i)` returns the sums of point i's
+/// body: its `force`, and its `torque` about the origin of the arms.
 template <class V, class Body>
 TAUT_INLINE void PullBodies(int count, const PathPoint<V>* points,
                             typename PathLength<V>::S tension, const Body& body) noexcept {

@@ -1,6 +1,6 @@
-/// How a cable lies on wheels: cylinders of bodies that its path goes round (docs/theory/cables.md,
-/// section 4). The shortest path of its kind: how often and which way round it goes is known by one
-/// number, an angle that is followed from step to step.
+/// Cable wrapping around wheels: cylinders of bodies in the cable's path (docs/theory/cables.md,
+/// section 4). The path is the shortest one for its winding, and one angle, tracked from step to
+/// step, determines number and direction of the turns.
 #pragma once
 
 #include "math/angle.h"
@@ -13,34 +13,35 @@ struct Wheel {
   using S = decltype(V::x);
   V center, axis;  ///< In the path's frame; the axis is a unit vector.
   S radius;        ///< [m]
-  S before;        ///< Its last `angle`: half a turn away at most.
-  int at;          ///< The path's point where the cable arrives; it leaves from the next one.
-  // Found:
-  S angle;  ///< About the axis, from the point before to the point behind, with all turns [rad].
-  S theta;  ///< Over which the cable lies on; not positive where it does not [rad].
-  S arc;    ///< Its length there [m].
+  S before;        ///< Its previous `angle`, at most half a turn different.
+  int at;          ///< Path point where the cable arrives; it leaves from the next one.
+  // Results:
+  S angle;  ///< About the axis, from the previous to the next point, with all turns [rad].
+  S theta;  ///< Wrap angle; not positive where the cable does not touch [rad].
+  S arc;    ///< Length of the arc [m].
 };
 
-/// Either of two places, lane by lane.
+/// Selects one of two points, lane by lane.
 template <class M, class V>
 TAUT_INLINE V Pick(M which, const V& yes, const V& no) noexcept {
   return {Select(which, yes.x, no.x), Select(which, yes.y, no.y), Select(which, yes.z, no.z)};
 }
 
-/// Where a cable from `p` to `q` arrives at a wheel, and where it leaves it.
+/// Points where a cable from `p` to `q` arrives at a wheel and leaves it.
 template <class V>
 struct Tangents {
   using S = typename Wheel<V>::S;
   V a, b;
   S angle, theta, arc;
-  S zp, zq, lp, around, lq;  ///< Places along the axis, and ways across it: to, on and from it [m].
+  S zp, zq, lp, around, lq;  ///< Along the axis; across it: before, on, behind the wheel [m].
 };
 
-/// Where nothing holds the middle of an arc along the axis.
+/// Value of a free arc's middle along the axis, without friction.
 inline constexpr double kNotHeld = 1e300;
 
-/// How steeply a cable goes along a wheel's axis, per way across it. Where friction holds the arc's
-/// middle at `along` it is bent twice; the arc has the mean of what is before and behind it.
+/// Slopes of a cable along a wheel's axis, per distance across it. Where friction holds the arc's
+/// middle at `along`, the slope changes at both tangent points; the arc has the mean of the slopes
+/// before and behind it.
 template <class S>
 struct Rises {
   S before, on, behind;
@@ -56,8 +57,8 @@ TAUT_INLINE Rises<S> RisesAt(const Tangents<V>& way, S along) noexcept {
   return {(along - on * w - way.zp) / lp, on, (way.zq - along - on * w) / lq};
 }
 
-/// A straight line on the cylinder when that is unrolled, unless it is held at `along`, if that is
-/// not null. Points within it are taken to be on it.
+/// Lays a cable around a wheel: a straight line on the unrolled cylinder, unless it is held at
+/// `along` (if not null). Points within the cylinder count as on it.
 template <class V, class S = typename Wheel<V>::S>
 TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q,
                               const S* along = nullptr) noexcept {
@@ -90,7 +91,7 @@ TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q,
   return found;
 }
 
-/// Where the cable goes to from wheel k of a row that ends before `last`.
+/// Returns the next point of the cable after wheel k of a row that ends before `last`.
 template <class V>
 TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, int last,
                      const V& to) noexcept {
@@ -100,14 +101,14 @@ TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, 
   return q;
 }
 
-/// Lays wheels first..last-1, which follow one another, between the points before and behind them.
-/// `begun`: points and thetas hold an initial guess; else the cable starts off all wheels.
+/// Lays wheels first..last-1, which are consecutive, between the points before and behind them.
+/// `begun`: points and thetas contain an initial guess; else the cable starts off all wheels.
 template <class V, class S = typename Wheel<V>::S>
 void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last, const S* along,
                      bool begun) noexcept {
   using C = Constant<S>;
   constexpr int kMostRounds = 200;
-  constexpr double kStill = 1e-15;  ///< Of the distances between them.
+  constexpr double kStill = 1e-15;  ///< Relative to their distance.
   const S zero = C::Of(0.0);
   const V from = points[wheels[first].at - 1].p, to = points[wheels[last - 1].at + 2].p;
   for (int k = first; k < last; ++k) {
@@ -141,7 +142,7 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
     }
     busy = moved;
   }
-  // Where it does not lie on, the pulls on its two points cancel out wherever on the way they are.
+  // Where the cable does not touch, the pulls on its two points cancel anywhere on the way.
   for (int k = first; k < last; ++k) {
     const V half = C::Of(0.5) * (points[wheels[k].at - 1].p + Behind(points, wheels, k, last, to));
     V& a = points[wheels[k].at].p;
@@ -151,10 +152,10 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
   }
 }
 
-/// Puts the points where the cable arrives at wheels and leaves them; the others are where they
-/// are. A path neither starts nor ends at a wheel. `along`, if it is not null: per wheel, where
-/// along the axis from its centre the middle of the arc is held [m], or kNotHeld. `begun`: see
-/// above.
+/// Computes the points where the cable arrives at wheels and leaves them; other points are given. A
+/// path neither starts nor ends at a wheel. `along`, if not null: per wheel, the position along the
+/// axis from its center at which the middle of the arc is held [m], or kNotHeld. `begun`: as in
+/// LayOnNeighbours.
 template <class V, class S = typename Wheel<V>::S>
 void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels, const S* along = nullptr,
                  bool begun = false) noexcept {
@@ -202,9 +203,9 @@ void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* h
   }
 }
 
-/// The middle of the arc on a wheel, as an angle about its axis from `mark`, a direction across it
-/// [rad]: it parts the cable's material before it from that behind it. Where the cable does not lie
-/// on, the place that is nearest.
+/// Returns the middle of the arc on a wheel, as an angle about its axis from `mark`, a direction
+/// across it [rad]: it divides the cable's material before and behind it. If the cable does not
+/// touch, the nearest place.
 template <class V>
 TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
                                           const PathPoint<V>* points) noexcept {
@@ -225,7 +226,7 @@ TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
          Select(on, C::Of(0.5) * side * wheel.theta, zero);
 }
 
-/// Length and rate of a path whose points are where they are; fills in the directions.
+/// Returns length and rate of a path with given points; fills in the directions.
 template <class V>
 TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points, int wheel_count,
                                       const Wheel<V>* wheels) noexcept {

@@ -1,6 +1,6 @@
-// Every three points whose plane has all others on one side make a face. That takes the fourth
-// power of the number of corners, which is small, and knows no special cases: what lies in one
-// plane to within a tolerance is one face.
+// Convex hull by brute force: any three points whose plane has all others on one side form a face.
+// The work is the fourth power of the number of corners, which is small, and there are no special
+// cases: points in one plane to within a tolerance form one face.
 #include "math/convex_hull.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace taut::math {
 namespace {
 
-/// In sizes of the body: what is in one plane or in one place; and how far that may be widened
-/// where faces do not close.
+/// Tolerances relative to the size of the body: coplanar or coincident points; its largest value,
+/// and the factor by which it is increased while faces do not close.
 constexpr double kSame = 1e-7, kWidest = 1e-3, kWider = 10.0;
-/// How often a point may be added without one more corner. In a body whose thickness is near the
-/// tolerance, the corner that is added may be dropped with the next faces, or drop another one.
+/// Number of points that may be added without one more corner. In a body whose thickness is near
+/// the tolerance, an added corner may be dropped with the next faces, or drop another one.
 constexpr int kMostFruitless = 16;
 
 using Face = std::vector<int>;
@@ -27,13 +27,13 @@ const Vec3& At(const Points& points, int i) { return points[static_cast<std::siz
 double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 
 struct Plane {
-  Vec3 normal;  ///< Unit, outwards.
+  Vec3 normal;  ///< Unit vector, outwards.
   double offset_m;
   double Above(const Vec3& p) const { return Dot(normal, p) - offset_m; }
 };
 
-/// The corners of a face among `on`, all in one plane, counter-clockwise seen from outside: from
-/// each the next is the one that has no other to the right of it; of several, the farthest.
+/// Returns the corners of a face among `on`, all in one plane, counterclockwise seen from outside:
+/// after each corner comes the point without others to its right; of several, the farthest.
 Face Around(const Points& points, const Face& on, const Vec3& normal, double same_m) {
   int start = on.front();
   Vec3 u = Cross(normal, std::fabs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
@@ -41,7 +41,7 @@ Face Around(const Points& points, const Face& on, const Vec3& normal, double sam
   for (const int i : on) {
     if (Dot(u, At(points, i)) > Dot(u, At(points, start)) + same_m) start = i;
   }
-  // Of those at the same place along u the foremost across it.
+  // Among points at the same place along u, the foremost across it.
   const Vec3 v = Cross(normal, u);
   const double foremost = Dot(u, At(points, start));
   for (const int i : on) {
@@ -95,7 +95,7 @@ std::vector<Face> FacesOf(const Points& points, double same_m) {
             on.push_back(i);
         }
         if (above && below) continue;
-        // Three of its points may be so near to a line that their plane is tilted.
+        // Three of its points may be nearly collinear, which tilts their plane.
         const auto holds = [](const Face& big, const Face& small) {
           return std::includes(big.begin(), big.end(), small.begin(), small.end());
         };
@@ -122,7 +122,7 @@ Plane PlaneOf(const Points& points, const Face& face) {
   return {n, offset_m};
 }
 
-/// Whether every edge is one of two faces, once each way.
+/// Returns whether every edge belongs to two faces, once in each direction.
 bool Closes(const std::vector<Face>& faces) {
   std::map<std::pair<int, int>, int> edges;
   for (const Face& face : faces) {
@@ -136,7 +136,7 @@ bool Closes(const std::vector<Face>& faces) {
   });
 }
 
-/// Faces of some points without those that are no corner of three.
+/// Returns the hull of some points, without points that are corners of fewer than three faces.
 ConvexHull Closed(Points points, double same_m) {
   for (;;) {
     ConvexHull hull;
@@ -159,7 +159,7 @@ ConvexHull Closed(Points points, double same_m) {
   }
 }
 
-/// Four points that span a body, the outermost first.
+/// Returns four points that span a body, outermost first.
 Points Start(const Points& points, double same_m) {
   Points start{points.front()};
   const auto add_farthest = [&](const auto& distance) {
@@ -182,8 +182,8 @@ Points Start(const Points& points, double same_m) {
   return start.size() == 4 ? start : Points{};
 }
 
-/// The point that is farthest outside, and how far. Points that are not outside are taken away: as
-/// the hull grows they never will be.
+/// Returns the point farthest outside, and its distance. Removes points that are not outside from
+/// `outside`, since they stay inside as the hull grows.
 std::pair<Vec3, double> Outermost(Points& outside, const ConvexHull& hull, double same_m) {
   std::vector<Plane> planes;
   for (const Face& face : hull.faces) planes.push_back(PlaneOf(hull.corners, face));

@@ -1,4 +1,4 @@
-/// The path of a cable as it is described.
+/// Path of a cable in the described pose, with cable wrapping around its wheels.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,21 @@
 
 namespace taut::math {
 
-/// A wheel's angle (cable_wheel.h) as its attachment `i` is described [rad].
+/// Returns the initial angle of a wheel (cable_wheel.h), from the description of its attachment `i`
+/// [rad].
 double StartAngle(const CableDef& cable, std::size_t i);
 
-/// In W. Points of wheels are those where the cable arrives and leaves.
+/// Path in W. A wheel has two points, where the cable arrives and leaves.
 class DescribedPath {
  public:
   explicit DescribedPath(const CableDef& cable);
 
   double length_m() const { return length_m_; }
   int count() const { return static_cast<int>(points_.size()); }
-  /// With places and directions; arms and velocities are zero.
+  /// Returns points with positions and directions; arms and velocities are zero.
   PathPoint<Vec3>* points() { return points_.data(); }
   const std::vector<Wheel<Vec3>>& wheels() const { return wheels_; }
-  /// Which attachment point `i` of the path belongs to.
+  /// Returns the attachment that point `i` of the path belongs to.
   std::size_t attachment(int i) const { return attachment_[static_cast<std::size_t>(i)]; }
 
  private:
@@ -33,7 +34,7 @@ class DescribedPath {
   double length_m_ = 0;
 };
 
-/// Lengths of the spans between the places where it may slip: attachments with friction [m].
+/// Returns the lengths of the spans between slip places, i.e. attachments with friction [m].
 std::vector<double> SpanLengths(const CableDef& cable);
 
 }  // namespace taut::math

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-/// Below this, two terms of a series are exact to beyond a double.
+/// Below it, two terms of a series are exact beyond double precision.
 constexpr double kTiny = 0x1p-30;
 
 /// A number as the unevaluated sum hi + lo, |lo| <= ulp(hi) / 2.
@@ -23,22 +23,22 @@ constexpr double kLn2[3] = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56, 0x1.7b5
 constexpr Dd kHalfPiDd{kHalfPi[0], kHalfPi[1]};
 constexpr Dd kPiDd{2.0 * kHalfPi[0], 2.0 * kHalfPi[1]};
 
-// The building blocks are Knuth's and Dekker's; the double-double operations are those that
-// Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks of
-// double-word arithmetic", ACM TOMS 44 (2017), prove accurate to a few units of 2^-106.
+// The building blocks are by Knuth and Dekker; the double-double operations are from Joldes, Muller
+// and Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
+// arithmetic", ACM TOMS 44 (2017), who prove an accuracy of a few units of 2^-106.
 
 Dd TwoSum(double a, double b) {
   const double sum = a + b, of_b = sum - a;
   return {sum, (a - (sum - of_b)) + (b - of_b)};
 }
 
-/// The same, for |a| >= |b|.
+/// As TwoSum, for |a| >= |b|.
 Dd FastTwoSum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
 }
 
-/// The upper 26 bits and the rest.
+/// Splits a number into its upper 26 bits and the rest.
 Dd Split(double a) {
   const double c = 134217729.0 * a;  // 2^27 + 1
   const double hi = c - (c - a);
@@ -73,7 +73,7 @@ Dd operator/(const Dd& a, const Dd& b) {
   return FastTwoSum(q1, q2) + Dd{rest.hi / b.hi};
 }
 
-/// Times a power of two.
+/// Multiplies by a power of two.
 Dd Scaled(const Dd& a, double power) { return {a.hi * power, a.lo * power}; }
 
 Dd Sqrt(const Dd& a) {
@@ -83,7 +83,7 @@ Dd Sqrt(const Dd& a) {
   return FastTwoSum(root, rest.hi / (2.0 * root));
 }
 
-/// x + x^2/2! + ... for |x| <= 0.0014.
+/// Returns x + x^2/2! + ... for |x| <= 0.0014.
 Dd Expm1Series(const Dd& x) {
   Dd term = x, sum = x;
   for (int n = 2; n <= 10; ++n) {
@@ -93,7 +93,7 @@ Dd Expm1Series(const Dd& x) {
   return sum;
 }
 
-/// e^x for |x| <= 800, rounded to a double.
+/// Returns e^x for |x| <= 800, rounded to a double.
 double ExpOf(const Dd& x) {
   // x = k ln 2 + r, |r| <= 0.35; e^r - 1 from r / 256 by doubling eight times.
   const double k = std::floor(x.hi / kLn2[0] + 0.5);
@@ -103,7 +103,7 @@ double ExpOf(const Dd& x) {
   return std::ldexp((Dd{1.0} + p).hi, static_cast<int>(k));
 }
 
-/// ln x for finite x > 0.
+/// Returns ln x for finite x > 0.
 Dd LogOf(double x) {
   // x = 2^e m, 1/sqrt(2) <= m < sqrt(2); ln m = 2 artanh(s), s = (m - 1) / (m + 1), |s| <= 0.172.
   int e = 0;
@@ -138,7 +138,7 @@ SinCos SinCosSeries(const Dd& r) {
   return out;
 }
 
-/// Sine and cosine of an angle, |angle| <= kMaxAngle.
+/// Returns sine and cosine of an angle, |angle| <= kMaxAngle.
 SinCos SinCosOf(double angle) {
   const double k = std::floor(angle / kHalfPi[0] + 0.5);
   const Dd r =
@@ -156,7 +156,7 @@ SinCos SinCosOf(double angle) {
   }
 }
 
-/// The angle of (x, y) for 0 <= y <= x, x near 1.
+/// Returns the angle of (x, y) for 0 <= y <= x, x near 1.
 Dd AngleBelowDiagonal(const Dd& y, const Dd& x) {
   Dd t = y / x;
   for (int i = 0; i < 3; ++i) t = t / (Dd{1.0} + Sqrt(Dd{1.0} + t * t));  // halves the angle
@@ -166,7 +166,7 @@ Dd AngleBelowDiagonal(const Dd& y, const Dd& x) {
   return Scaled(t * series, 8.0);
 }
 
-/// The angle of (x, y), the larger of |x|, |y| near 1, y >= 0.
+/// Returns the angle of (x, y), the larger of |x|, |y| near 1, y >= 0.
 Dd AngleOf(const Dd& y, const Dd& x) {
   const Dd right = x.hi < 0.0 ? -x : x;
   const Dd acute =
@@ -217,7 +217,7 @@ double Atan(double x) noexcept {
 
 double Atan2(double y, double x) noexcept {
   if (std::isnan(x) || std::isnan(y)) return kNan;
-  if (std::isinf(x) || std::isinf(y)) {  // as if both were of the size of the infinite ones
+  if (std::isinf(x) || std::isinf(y)) {  // finite ones count as zero, infinite ones as equal
     const double finite = 0.0;
     return Atan2(std::isinf(y) ? std::copysign(1.0, y) : std::copysign(finite, y),
                  std::isinf(x) ? std::copysign(1.0, x) : std::copysign(finite, x));

@@ -1,18 +1,18 @@
-/// Elementary functions that give the same bits on every machine and with every C library.
+/// Elementary functions with the same bits on every machine and with every C library.
 ///
 /// Computed in double-double arithmetic (two doubles, about 2^-100 relative) from +, -, *, / and
-/// sqrt alone, which IEEE 754 fixes, then rounded to a double: the result is within 0.5001 units
-/// in the last place of the true one, and within one of them where it is subnormal. Needs a
-/// compiler that does not contract or reorder (-ffp-contract=off, no -ffast-math). About a
-/// hundred times slower than a C library: meant for reading files and start-up, not for stepping.
+/// sqrt alone, which IEEE 754 fixes, then rounded to a double: the error is at most 0.5001 units in
+/// the last place, and at most one unit for subnormal results. Needs a compiler that does not
+/// contract or reorder (-ffp-contract=off, no -ffast-math). About a hundred times slower than a C
+/// library: for reading files and start-up, not for stepping.
 ///
 /// Special cases follow C: NaN in, NaN out; domain errors are NaN; overflow is infinity.
 #pragma once
 
 namespace taut::math {
 
-/// Largest angle [rad] that Sin, Cos and Tan accept; beyond it they return NaN, because the
-/// argument is reduced with 160 bits of pi only.
+/// Largest angle [rad] of Sin, Cos and Tan; beyond it they return NaN, because the argument
+/// reduction has only 160 bits of pi.
 inline constexpr double kMaxAngle = 1e9;
 
 double Sin(double angle_rad) noexcept;

@@ -1,4 +1,4 @@
-// How far apart the points of a joint are described, and how far off its bodies' turns are.
+// Errors of joints in the described pose: distance of their points, and angle between their bodies.
 #include <cmath>
 
 #include "math/joint_turn.h"

@@ -7,7 +7,7 @@
 namespace taut::math {
 namespace {
 
-constexpr std::uint32_t kStream = 0x6e6f6973;  // no other use has it
+constexpr std::uint32_t kStream = 0x6e6f6973;  // unique among streams
 
 double AtCorner(std::uint64_t seed, std::int64_t x, std::int64_t y) noexcept {
   const auto place = static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |
@@ -15,7 +15,7 @@ double AtCorner(std::uint64_t seed, std::int64_t x, std::int64_t y) noexcept {
   return Random(seed, kStream, place).Uniform(-1.0, 1.0);
 }
 
-/// From 0 to 1 with no slope and no curvature at its ends.
+/// Rises from 0 to 1 without slope and curvature at its ends.
 double Ease(double t) noexcept { return t * t * t * (t * (6.0 * t - 15.0) + 10.0); }
 
 }  // namespace

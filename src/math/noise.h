@@ -1,12 +1,13 @@
-/// Smooth random heights.
+/// Smooth lattice noise for random heights.
 #pragma once
 
 #include <cstdint>
 
 namespace taut::math {
 
-/// Between -1 and 1: at whole x and y a random number of that place, evenly spread, and between
-/// them a smooth course with continuous curvature. The same bits on every machine.
+/// Returns noise between -1 and 1: at whole x and y a uniform random number of that lattice point,
+/// and between them a smooth interpolation with continuous curvature. The same bits on every
+/// machine.
 double Noise(std::uint64_t seed, double x, double y) noexcept;
 
 }  // namespace taut::math

@@ -10,17 +10,17 @@ namespace {
 
 constexpr double kTwoToMinus53 = 1.0 / 9007199254740992.0;
 
-/// The ziggurat: layers of equal area under exp(-x^2 / 2). 99 % of all numbers fall into the part
-/// of a layer that lies under the curve in any case and cost one multiplication.
-/// Source: G. Marsaglia, W. W. Tsang, "The ziggurat method for generating random variables",
-/// J. Stat. Software 5(8), 2000; in the form of J. A. Doornik, "An improved ziggurat method to
+/// Ziggurat method: layers of equal area under exp(-x^2 / 2). 99 % of all numbers are in the part
+/// of a layer that lies entirely under the curve, and cost one multiplication.
+/// Source: G. Marsaglia, W. W. Tsang, "The ziggurat method for generating random variables", J.
+/// Stat. Software 5(8), 2000; in the form of J. A. Doornik, "An improved ziggurat method to
 /// generate normal random samples", 2005, which takes layer and position from separate bits.
 struct Ziggurat {
   static constexpr int kLayers = 128;
-  static constexpr double kTail = 3.442619855899;       ///< Where the tail begins,
-  static constexpr double kArea = 9.91256303526217e-3;  ///< and the area of a layer for that.
+  static constexpr double kTail = 3.442619855899;       ///< Start of the tail,
+  static constexpr double kArea = 9.91256303526217e-3;  ///< and the corresponding area of a layer.
   double x[kLayers + 1];                                ///< Right end of a layer.
-  double sure[kLayers];  ///< Share of a layer that is under the curve in any case.
+  double sure[kLayers];  ///< Share of a layer that is entirely under the curve.
 
   Ziggurat() noexcept {
     double f = Exp(-0.5 * kTail * kTail);

@@ -1,6 +1,6 @@
-/// Random numbers that are a function of what they are for: seed, stream, index. Nothing is drawn
-/// "next", so that no order of evaluation, no number of threads and no interruption changes them.
-/// The same bits on every machine: integers, + - * /, sqrt, and our own logarithm.
+/// Counter-based random numbers: functions of seed, stream and index. There is no sequential state,
+/// so order of evaluation, number of threads and interruptions do not change them. The same bits on
+/// every machine: integers, + - * /, sqrt, and taut's logarithm.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace taut::math {
 
-/// Philox4x32-10: ten rounds that turn a counter and a key into 128 random bits.
-/// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy
-/// as 1, 2, 3", SC'11, doi:10.1145/2063384.2063405; tested with the authors' known answers.
+/// Philox4x32-10: ten rounds that convert a counter and a key into 128 random bits.
+/// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as
+/// 1, 2, 3", SC'11, doi:10.1145/2063384.2063405; tested with the authors' known answers.
 std::array<std::uint32_t, 4> Philox(std::array<std::uint32_t, 4> counter,
                                     std::array<std::uint32_t, 2> key) noexcept;
 
-/// What one use needs: as many numbers as it asks for. Streams are separate whatever their numbers.
+/// Random numbers of one use, as many as needed. Different streams are independent.
 class Random {
  public:
-  /// `stream`: what it is for. `index`: the how-manieth time.
+  /// `stream`: purpose of the numbers. `index`: number of the use.
   Random(std::uint64_t seed, std::uint32_t stream, std::uint64_t index) noexcept
       : seed_(seed), index_(index), stream_(stream) {}
 

@@ -1,13 +1,13 @@
-/// Rotations as matrices (row major) and as unit quaternions: for the code around the step.
+/// Rotations as matrices (row major) and as unit quaternions, for code outside of the step.
 #pragma once
 
 #include "taut/types.h"
 
 namespace taut {
 
-/// Shepperd's method: the largest component first.
+/// Converts a matrix by Shepperd's method: the largest component first.
 Quat QuatOf(const double r[9]) noexcept;
-/// Of a quaternion of any length but 0.
+/// Converts a quaternion of any length except 0.
 void MatrixOf(const Quat& q, double r[9]) noexcept;
 
 }  // namespace taut

@@ -1,34 +1,34 @@
-/// Plain doubles under the names that wide numbers have (simd/wide.h), so that one text serves
-/// both. Builtins: the standard library has no place in a step.
+/// Plain doubles with the interface of wide numbers (simd/wide.h), so that the same code serves
+/// both. Builtins instead of the standard library, which a step must not use.
 #pragma once
 
-/// Wide numbers travel in registers or not at all: a call passes them through memory, and the
-/// compilers' rules of thumb would call.
+/// Wide numbers must stay in registers: a call would pass them through memory, and the compilers'
+/// heuristics would not inline.
 #define TAUT_INLINE [[gnu::always_inline]] inline
 
-/// Before a loop whose turns may run side by side: what it writes, no other turn reads. clang++
-/// finds that out by itself, and complains where it cannot make use of being told.
+/// For a loop without dependencies between iterations. clang++ detects this and warns about a
+/// pragma that it cannot use.
 #if defined(__clang__)
 #define TAUT_NO_OVERLAP
 #else
 #define TAUT_NO_OVERLAP _Pragma("GCC ivdep")
 #endif
 
-/// Before a loop of few turns, whose number is known: written out, indices cost nothing.
+/// For a short loop of known length: unrolled, indices cost nothing.
 #define TAUT_UNROLL _Pragma("GCC unroll 12")
 
 namespace taut {
 
 TAUT_INLINE double Sqrt(double a) noexcept { return __builtin_sqrt(a); }
 TAUT_INLINE double Abs(double a) noexcept { return __builtin_fabs(a); }
-/// The greater of two; `b` if either is NaN.
+/// Returns the larger of two; `b` if either is NaN.
 TAUT_INLINE double Max(double a, double b) noexcept { return a > b ? a : b; }
-/// The smaller of two; `b` if either is NaN.
+/// Returns the smaller of two; `b` if either is NaN.
 TAUT_INLINE double Min(double a, double b) noexcept { return a < b ? a : b; }
 TAUT_INLINE double Select(bool which, double yes, double no) noexcept { return which ? yes : no; }
 TAUT_INLINE bool Any(bool which) noexcept { return which; }
 
-/// A constant as a number of type `S`.
+/// Converts a constant to a number of type `S`.
 template <class S>
 struct Constant {
   TAUT_INLINE static S Of(double x) noexcept { return S::Splat(x); }

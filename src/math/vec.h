@@ -1,4 +1,4 @@
-/// Arithmetic on the plain public vectors and quaternions: for the code around the step.
+/// Arithmetic on the plain public vectors and quaternions, for code outside of the step.
 #pragma once
 
 #include "taut/types.h"

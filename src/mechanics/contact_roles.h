@@ -1,4 +1,4 @@
-/// What shapes need not be tested with, for engines other than taut's.
+/// Redundant shapes of contact detection, for other engines than taut.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace taut::mechanics {
 
-/// What is tested for nothing costs engines time and adds contacts in the place of others: a rod
-/// whose ends carry spheres meets a plane with these alone, and a sphere no thicker than the rod
-/// that ends in it meets other bodies as part of the rod. taut leaves the same out. Hills come
-/// between the ends of rods, so a height field is met as a body is.
+/// Redundant tests cost engines time and add contacts in place of others: planes need only the
+/// spheres at a rod's ends, not the rod, and other bodies need the rod, not a sphere at its end
+/// that is no thicker than the rod. taut omits the same tests. Hills fit between the ends of rods,
+/// so height fields count as bodies.
 struct ContactRole {
   bool meets_planes = true, meets_bodies = true;
 };

@@ -1,4 +1,4 @@
-/// Between which heights a height field lies.
+/// Range of heights of a height field.
 #pragma once
 
 #include <algorithm>

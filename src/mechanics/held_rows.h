@@ -1,4 +1,4 @@
-/// The directions that a joint holds, one by one (docs/theory/joints.md, section 1).
+/// Directions that a joint holds, as separate rows (docs/theory/joints.md, section 1).
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ struct Wrench {
   Vec3 force, torque;
 };
 
-/// n: the axis; s, t: the two directions across it.
+/// n: the axis; s, t: two directions across it.
 enum class HeldRow { kAlong, kAcross1, kAcross2, kSwing1, kSwing2, kTwist, kDistance };
 
 struct JointAxes {
@@ -38,8 +38,8 @@ inline std::vector<HeldRow> HeldRowsOf(const JointDef& j) {
   return rows;
 }
 
-/// The derivative of what a row measures, where the axes of both bodies are one: a unit of it, with
-/// the force at `to_m`.
+/// Returns the derivative of a row's coordinate where the axes of both bodies coincide: a unit
+/// wrench, with the force at `to_m`.
 inline Wrench UnitOf(const JointDef& j, HeldRow row) {
   const JointAxes axes = AxesOf(j);
   switch (row) {

@@ -1,5 +1,5 @@
-// What joints carry at the start: the forces and torques by which everything they hold stays
-// together, from the masses, J M^-1 J^T x = -J M^-1 f (docs/theory/joints.md, eq. 12).
+// Joint loads at the start: forces and torques of all held rows, from the masses, J M^-1 J^T x = -J
+// M^-1 f (docs/theory/joints.md, eq. 12).
 #include <cmath>
 
 #include "base/fixed.h"
@@ -10,7 +10,8 @@
 namespace taut {
 namespace {
 
-/// L D L^T of a symmetric matrix with positive pivots, row by row; zeros cost nothing.
+/// L D L^T factorization of a symmetric matrix with positive pivots, row by row; zeros cost
+/// nothing.
 class Factors {
  public:
   explicit Factors(std::size_t size) : size_(size), a_(size * size) {}
@@ -41,7 +42,7 @@ class Factors {
   std::vector<double> a_;
 };
 
-/// The same as it acts on a body: about its centre of mass.
+/// Returns a joint's wrench about the center of mass of a body.
 Wrench On(const BodyDef& body, const Wrench& w, const Vec3& point, double sign) {
   return {sign * w.force, sign * (w.torque + Cross(point - body.com_m, w.force))};
 }
@@ -55,7 +56,7 @@ Vec3 TurnBy(const Inertia& i, const Vec3& t) {
   return {t.x / i.xx - l1 * turned - l2 * z, turned, z};
 }
 
-/// What the springs of a joint do to its body b as described.
+/// Returns the wrench of a joint's springs on its body b in the described pose.
 Wrench SpringOf(const JointDef& j) {
   if (j.stiffness == 0) return {};
   const Vec3 apart = j.to_m - j.from_m;
@@ -100,7 +101,7 @@ class Reactions {
   }
 
  private:
-  /// A body that a row moves, the row's unit force on it, and the acceleration that it gives.
+  /// A body that a row moves, the row's unit force on it, and the resulting acceleration.
   struct Link {
     int body;
     Wrench on, gives;
@@ -140,7 +141,7 @@ class Reactions {
     return sum;
   }
 
-  /// What the rows are to take away: the accelerations along them by all that is known.
+  /// Returns the accelerations along the rows by all known loads, which the rows must cancel.
   std::vector<double> RightSide(const std::vector<JointLoad>& springs) const {
     std::vector<Wrench> known(def_.bodies.size());
     for (std::size_t b = 0; b < known.size(); ++b) {
@@ -170,8 +171,8 @@ class Reactions {
     return b;
   }
 
-  /// Redundant rows share what they carry: each is softened by a share of its own inverse mass, and
-  /// more passes take back what that leaves.
+  /// Solves for the loads. Redundant rows share their load: each has a compliance, a share of its
+  /// inverse mass, and further passes remove the remaining error.
   std::vector<double> Solved(const std::vector<double>& b) const {
     constexpr double kCompliance = 1e-9;
     constexpr int kPasses = 4;

@@ -12,7 +12,8 @@
 namespace taut {
 namespace {
 
-/// Inertia with moment `along` about the unit vector u, `across` about all axes normal to it.
+/// Returns the inertia with moment `along` about the unit vector u, `across` about all axes normal
+/// to it.
 Inertia AxiallySymmetric(const Vec3& u, double along, double across) {
   const double d = along - across;
   return {across + d * u.x * u.x, across + d * u.y * u.y, across + d * u.z * u.z,
@@ -23,7 +24,7 @@ Inertia operator+(const Inertia& a, const Inertia& b) {
   return {a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
 }
 
-/// Of a point mass at r.
+/// Returns the inertia of a point mass at r.
 Inertia PointInertia(double mass, const Vec3& r) {
   return {mass * (r.y * r.y + r.z * r.z),
           mass * (r.x * r.x + r.z * r.z),
@@ -35,7 +36,7 @@ Inertia PointInertia(double mass, const Vec3& r) {
 
 Vec3 Abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
 
-/// The shortest rotation that turns z into the unit vector u.
+/// Returns the shortest rotation from z to the unit vector u.
 Quat FromZ(const Vec3& u) {
   const double w = std::sqrt(0.5 * (1.0 + std::max(-1.0, u.z)));
   if (w < 1e-9) return {0.0, 1.0, 0.0, 0.0};  // straight down: any half turn
@@ -59,7 +60,7 @@ MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_
   const double l = std::sqrt(Dot(axis, axis)), r = radius_m;
   const double ends = mass_kg * 4.0 * r / (3.0 * l + 4.0 * r), middle = mass_kg - ends;
   const double along = 0.5 * middle * r * r + 0.4 * ends * r * r;
-  // A half sphere's centre of mass is 3/8 r from its flat side.
+  // The center of mass of a half sphere is 3/8 r from its flat side.
   const double across =
       middle / 12.0 * (3.0 * r * r + l * l) + ends * (0.4 * r * r + 0.25 * l * l + 0.375 * l * r);
   return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / l) * axis, along, across)};
@@ -84,7 +85,7 @@ MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& ha
 
 MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangles& triangles,
                          double density_kg_per_m3) {
-  // From a corner, not from the origin: far from there little would be left of large differences.
+  // Relative to a corner, not the origin: far from it, large differences would cancel.
   const Vec3 from = corners_m[static_cast<std::size_t>(triangles.front()[0])];
   double volume_m3 = 0.0;
   Vec3 first;  // of x, y, z
@@ -112,7 +113,7 @@ MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangl
 }
 
 Inertia Turned(const Quat& q, const Inertia& i) {
-  // The columns of I, turned; then the same once more with the rows of what came out.
+  // Rotates the columns of I, then the rows of the result.
   const Vec3 x = Rotate(q, {i.xx, i.xy, i.xz}), y = Rotate(q, {i.xy, i.yy, i.yz}),
              z = Rotate(q, {i.xz, i.yz, i.zz});
   const Vec3 a = Rotate(q, {x.x, y.x, z.x}), b = Rotate(q, {x.y, y.y, z.y}),

@@ -1,4 +1,4 @@
-/// Mass, centre and inertia of solids and of what is welded from them.
+/// Mass, center of mass and inertia of solids and of rigid assemblies.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// All in W, the inertia about the centre of mass in axes parallel to W.
+/// All in W; the inertia is about the center of mass, with axes parallel to W.
 struct MassProperties {
   double mass_kg = 0.0;
   Vec3 com_m;
@@ -16,26 +16,29 @@ struct MassProperties {
 };
 
 // Homogeneous solids.
-/// A straight cylinder with flat ends, its axis from..to (which differ).
+/// Returns the properties of a straight cylinder with flat ends; its axis is from..to (which
+/// differ).
 MassProperties SolidCylinder(const Vec3& from_m, const Vec3& to_m, double radius_m, double mass_kg);
-/// A cylinder whose ends are half spheres, its axis without those from..to.
+/// Returns the properties of a cylinder with half spheres at its ends; from..to is the axis without
+/// them.
 MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_m, double mass_kg);
 MassProperties SolidSphere(const Vec3& center_m, double radius_m, double mass_kg);
 MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& half_extents_m,
                         double mass_kg);
 
-/// What closed triangles enclose (math/triangles.h). After Tonon (2005), "Explicit exact formulas
-/// for the 3-D tetrahedron inertia tensor": of tetrahedra from one point to every triangle.
+/// Returns the properties of the solid that closed triangles enclose (math/triangles.h). After
+/// Tonon (2005), "Explicit exact formulas for the 3-D tetrahedron inertia tensor": a sum over
+/// tetrahedra from one point to every triangle.
 MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangles& triangles,
                          double density_kg_per_m3);
 
-/// Of what is turned by q: R I R^T.
+/// Returns an inertia rotated by q: R I R^T.
 Inertia Turned(const Quat& q, const Inertia& inertia);
 
-/// The parts as one rigid body (parallel axes). No parts, or none with mass: all zero.
+/// Returns the parts as one rigid body (parallel axes). Without parts, or without mass: all zero.
 MassProperties Combine(const std::vector<MassProperties>& parts);
 
-/// Axes-parallel bounds; starts empty.
+/// Axis-aligned bounds; initially empty.
 struct Bounds {
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   void Add(const Vec3& center_m, const Vec3& half_extents_m);
@@ -43,12 +46,12 @@ struct Bounds {
 
 Bounds SphereBounds(const Vec3& center_m, double radius_m);
 Bounds BoxBounds(const Vec3& center_m, const Quat& q_WBox, const Vec3& half_extents_m);
-/// Of the square prism around a cylinder, turned from z to the axis the shortest way: what Bullet
-/// takes for the bounds of a cylinder that NTRT made (whose "up" is our z).
+/// Returns the bounds of the square prism around a cylinder, rotated the shortest way from z to the
+/// axis: Bullet's bounds of a cylinder made by NTRT (whose "up" is z here).
 Bounds BulletCylinderBounds(const Vec3& from_m, const Vec3& to_m, double radius_m);
 Bounds Union(const Bounds& a, const Bounds& b);
 
-/// Of a solid box that fills `bounds`: what Bullet 2.82 takes for the inertia of a compound.
+/// Returns the inertia of a solid box that fills `bounds`: Bullet 2.82's inertia of a compound.
 Inertia BoundingBoxInertia(const Bounds& bounds, double mass_kg);
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-/// All that has a place and hangs at a body: what moves where a robot is described in another pose.
+/// Geometry attached to bodies, and its transformation to another pose of the robot.
 #pragma once
 
 #include "math/vec.h"
@@ -6,10 +6,10 @@
 
 namespace taut {
 
-/// Moves shapes, nodes, cables' ends and joints; bodies themselves and terrain stay. A `Motion` has
-///   bool Moves(int body)                       whether anything at it moves,
-///   Vec3 Moved(int body, const Vec3& point_m)  where a point of it goes,
-///   Quat Turned(int body)                      by what it turns, in W.
+/// Moves shapes, nodes, cable ends and joints; bodies themselves and terrain stay. A `Motion` has
+///   bool Moves(int body)                       whether the body moves,
+///   Vec3 Moved(int body, const Vec3& point_m)  new position of one of its points,
+///   Quat Turned(int body)                      its rotation, in W.
 /// `body` may be the world.
 template <class Motion>
 void MoveParts(const Motion& motion, ModelDef& def) {

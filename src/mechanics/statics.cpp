@@ -15,7 +15,7 @@ double CableTension(const CableDef& cable) {
 
 std::vector<BodyLoad> StartLoads(const ModelDef& def) {
   struct Sum {
-    Vec3 force, torque;  ///< About the centre of mass.
+    Vec3 force, torque;  ///< About the center of mass.
   };
   std::vector<Sum> sums(def.bodies.size() + 1);  // the world last
   const auto index = [&](int body) {

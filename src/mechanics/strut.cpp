@@ -9,7 +9,7 @@
 namespace taut::mechanics {
 namespace {
 
-constexpr double kRounding = 1e-9;  ///< What sums of a handful of solids may be off by, relatively.
+constexpr double kRounding = 1e-9;  ///< Relative rounding error of sums over a handful of solids.
 
 Vec3 Times(const Inertia& i, const Vec3& v) {
   return {i.xx * v.x + i.xy * v.y + i.xz * v.z, i.xy * v.x + i.yy * v.y + i.yz * v.z,
@@ -28,13 +28,13 @@ const CapsuleDef* OnlyCapsule(const ModelDef& def, int body) {
   return only;
 }
 
-/// How a rod's mass is shared out, as shares of the whole.
+/// Distribution of a rod's mass, as shares of the total.
 struct Masses {
   double rod = 0, start = 0, end = 0;
 };
 
-/// From the moments of the mass along the rod (eq. 5); nothing if no uniform rod with masses at its
-/// ends has them.
+/// Computes the shares from the moments of the mass along the rod (eq. 5); returns nothing if no
+/// uniform rod with masses at its ends has these moments.
 std::optional<Masses> MassesOf(const BodyDef& body, const CapsuleDef& rod, const Vec3& along,
                                double length_m) {
   const double m = body.mass_kg, l2 = length_m * length_m, r2 = rod.radius_m * rod.radius_m;
@@ -45,7 +45,7 @@ std::optional<Masses> MassesOf(const BodyDef& body, const CapsuleDef& rod, const
   const Inertia& inertia = body.inertia_kg_m2;
   const double axial = Dot(along, Times(inertia, along));
   const double across = 0.5 * (inertia.xx + inertia.yy + inertia.zz - axial);
-  // The same about every axis across the rod: (I - across) v = 0 for all of them.
+  // The moment is the same about every axis across the rod: (I - across) v = 0 for all of them.
   for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     const Vec3 v = axis - Dot(axis, along) * along;
     if (Length(Times(inertia, v) - across * v) > tiny) return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<Masses> MassesOf(const BodyDef& body, const CapsuleDef& rod, const
     return std::nullopt;
   }
   const double of_end_masses =
-      axial - masses.rod * m * r2 / 2;  // their own moments, if they are balls
+      axial - masses.rod * m * r2 / 2;  // moments of the masses themselves, if they are balls
   const bool lone = std::fabs(ends) < -kLeast;
   if (of_end_masses < -tiny || (lone && of_end_masses > tiny)) return std::nullopt;
   return masses;
@@ -89,7 +89,7 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
   const Vec3 along = (1 / length_m) * (rod->to_m - rod->from_m);
   const auto masses = MassesOf(whole, *rod, along, length_m);
   if (!masses) return std::nullopt;
-  // At a node that is no end there may be a point mass; without masses at the ends there is none.
+  // A node that is not an end may carry a point mass, unless there are no masses at the ends.
   const bool ends_only = std::all_of(def.nodes.begin(), def.nodes.end(), [&](const NodeDef& node) {
     return !here(node) || at_end(node.position_m);
   });
@@ -112,12 +112,12 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
 
 namespace {
 
-/// A force on a strut: where along it, from the middle, and how much of it is along it.
+/// A force on a strut: its position along it, from the middle, and its axial component.
 struct Pull {
   double at_m, force_n;
 };
 
-/// The force in cuts of a strut (eq. 6).
+/// Axial force in cuts of a strut (eq. 6).
 class Cuts {
  public:
   Cuts(const Strut& strut, double mass_kg, double spin2, double on_all_n)
@@ -126,14 +126,14 @@ class Cuts {
         on_all_n_(on_all_n),
         center_m_(0.5 * strut.length_m * (strut.at_end - strut.at_start)) {}
 
-  /// At `x_m` from the middle, below forces of `above_n` together.
+  /// Returns the force at `x_m` from the middle; `above_n`: sum of the forces beyond it.
   double At(double x_m, double above_n) const {
     const double l = strut_.length_m;
     const double share = strut_.rod * (0.5 - x_m / l) + strut_.at_end;
     const double moment_m = strut_.rod * (l * l / 4 - x_m * x_m) / (2 * l) + strut_.at_end * l / 2;
     return above_n - share * on_all_n_ + spin_n_per_m_ * (moment_m - share * center_m_);
   }
-  /// Where it is largest between two forces, if that is there.
+  /// Returns the position of the maximum between two forces, if it lies there.
   double Crest() const { return center_m_ + on_all_n_ / spin_n_per_m_; }
   bool spins() const { return spin_n_per_m_ > 0; }
 
@@ -142,7 +142,8 @@ class Cuts {
   double spin_n_per_m_, on_all_n_, center_m_;
 };
 
-/// From end to start: the cuts beside every force, and the crests between them.
+/// Returns the least and the greatest force: on both sides of each point force, from end to start,
+/// and at the maxima between them.
 std::pair<double, double> LeastAndGreatest(const Cuts& cuts, double length_m,
                                            std::vector<Pull>& pulls) {
   std::sort(pulls.begin(), pulls.end(),
@@ -157,7 +158,7 @@ std::pair<double, double> LeastAndGreatest(const Cuts& cuts, double length_m,
   double from_m = end_m;
   std::size_t next = 0;
   while (true) {
-    // What acts at or beyond an end acts there; at one place there is no cut between two forces.
+    // Forces at or beyond an end act at the end; between two forces at one place there is no cut.
     while (next < pulls.size() && pulls[next].at_m >= from_m - same_m) {
       above_n += pulls[next++].force_n;
     }
@@ -183,7 +184,7 @@ AxialForce AxialForceOf(const Strut& strut, double mass_kg, const BodyMoment& mo
     if (force.body != strut.body) continue;
     const double ahead_m = Dot(force.point_m - middle_m, along);
     const double pull_n = Dot(force.force_n, along);
-    // In the very middle a force belongs to both halves.
+    // A force in the middle belongs to both halves.
     const bool between = std::fabs(ahead_m) <= kRounding * strut.apart_m;
     const double share = between ? 0.5 : ahead_m > 0 ? 1 : 0;
     on_upper_n += share * pull_n;

@@ -1,5 +1,5 @@
-/// Bodies that are a single straight rod and the force along them, and what holds anchored bodies:
-/// the laws of docs/theory/loads.md, for moments of a run and for a description.
+/// Struts: bodies that are one straight rod, their axial forces, and reactions of anchored bodies,
+/// by the laws of docs/theory/loads.md, for runs and descriptions.
 #pragma once
 
 #include <array>
@@ -11,36 +11,38 @@
 
 namespace taut::mechanics {
 
-/// A uniform rod with at most a mass at either end. Shares of the mass, so that a factor on the
-/// body's mass changes nothing here.
+/// A uniform rod with at most a point mass at each end. Shares of the mass do not change when the
+/// body's mass is scaled.
 struct Strut {
   int body = 0;
-  Vec3 middle_arm_m;                ///< From the centre of mass, in W at t = 0.
+  Vec3 middle_arm_m;                ///< From the center of mass, in W at t = 0.
   Vec3 along;                       ///< Unit vector from start to end, in W at t = 0.
   double length_m = 0.0;            ///< Of the capsule's axis.
-  double rod = 1.0;                 ///< Share of the mass that is spread along it.
-  double at_start = 0.0;            ///< That is at its start,
+  double rod = 1.0;                 ///< Share of the mass distributed along it.
+  double at_start = 0.0;            ///< Share at its start,
   double at_end = 0.0;              ///< and at its end.
-  double lower = 0.5, upper = 0.5;  ///< In the halves: from the start to the middle, and beyond.
-  double apart_m = 0.0;             ///< Between the centres of mass of the halves.
+  double lower = 0.5, upper = 0.5;  ///< Shares of the halves, split at the rod's middle.
+  double apart_m = 0.0;             ///< Distance between the centers of mass of the halves.
 };
 
-/// Nothing if the body is no strut, or its mass cannot be told from its inertia.
+/// Returns the strut, or nothing if the body is not a strut or its inertia does not determine its
+/// mass distribution.
 std::optional<Strut> StrutOf(const ModelDef& def, int body);
 
-/// Where a body is and how it turns.
+/// Pose and rotation of a body.
 struct BodyMoment {
-  Vec3 position_m;                  ///< Of the centre of mass, in W.
-  Quat orientation;                 ///< From that at t = 0.
+  Vec3 position_m;                  ///< Of the center of mass, in W.
+  Quat orientation;                 ///< From the orientation at t = 0.
   Vec3 angular_velocity_rad_per_s;  ///< In W.
 };
 
-/// Eq. 4 in the middle, eq. 6 along all of it. `forces`: on all bodies, without weights.
+/// Returns the axial force: eq. 4 in the middle, eq. 6 along the strut. `forces`: on all bodies,
+/// without weights.
 AxialForce AxialForceOf(const Strut& strut, double mass_kg, const BodyMoment& moment,
                         const std::vector<BodyForce>& forces);
 
-/// What a joint does to its bodies: on b at its point, on a the opposite, at a's point if it is a
-/// distance, else where b's is. The points are those of the moment.
+/// Returns the forces of a joint on its bodies: on b at its point, on a the opposite, at a's point
+/// for a distance joint, else at b's. The points are in the current pose.
 inline std::array<BodyForce, 2> JointForces(const JointDef& joint, const JointLoad& on_b,
                                             const Vec3& from_m, const Vec3& to_m) {
   const Vec3 at_a = joint.kind == JointKind::kDistance ? from_m : to_m;
@@ -48,7 +50,8 @@ inline std::array<BodyForce, 2> JointForces(const JointDef& joint, const JointLo
            {joint.body_b, to_m, on_b.force_n, on_b.torque_n_m}}};
 }
 
-/// Eq. 8: minus what acts on an anchored body, its weight included; about `origin_m`.
+/// Returns the reaction of an anchored body (eq. 8): minus all loads on it, its weight included;
+/// about `origin_m`.
 Reaction ReactionOf(int body, const Vec3& origin_m, const Vec3& weight_n,
                     const std::vector<BodyForce>& forces);
 

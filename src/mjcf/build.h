@@ -1,4 +1,5 @@
-/// From a scene to a robot: what its steps share. All in the file's units until the last one.
+/// Conversion of an MJCF scene to a robot: data shared by its steps. All quantities are in the
+/// file's units until the last step.
 #pragma once
 
 #include <map>
@@ -11,12 +12,12 @@
 
 namespace taut::mjcf {
 
-/// A rigid body of the robot, or the world with what stands still and is no terrain.
+/// A rigid body of the robot, or the world with static parts that are not terrain.
 struct Rigid {
   int root = 0;           ///< Body of the scene.
-  std::string placement;  ///< That its nodes are in; empty: none.
+  std::string placement;  ///< Placement of its nodes; empty: none.
   bool moves = false, called_as_robot = false;
-  std::vector<int> sites, shapes;  ///< Of the scene; shapes that are terrain are not here.
+  std::vector<int> sites, shapes;  ///< Of the scene; without shapes that are terrain.
   int body = kWorld;               ///< Of the robot.
 };
 
@@ -41,24 +42,24 @@ struct Building {
   const Rigid& RigidOf(int body) const;
 };
 
-/// Which bodies are one, what of them is terrain, where their nodes go.
+/// Finds rigidly connected bodies, terrain, and the placements of nodes.
 void FindRigids(Building& b);
-/// Bodies, nodes and shapes.
+/// Adds bodies, nodes and shapes.
 void BuildBodies(Building& b);
 void NameBodies(Building& b);
-/// Which shapes touch anything: before shapes are built.
+/// Finds the shapes that collide with anything. Call it before shapes are built.
 void FindWhatCollides(Building& b);
-/// Which bodies touch nothing of each other, and with what friction they touch.
+/// Sets pairs of bodies without contact, and the friction of materials.
 void BuildContacts(Building& b);
-/// The scene's bodies where the key has them; null: as described.
+/// Moves the scene's bodies to the poses of the key; null: as described.
 void PutAt(const Key* key, Building& b);
 void BuildCables(const Key* key, Building& b);
-/// To SI units; a warning if that is unlikely to be what was meant.
+/// Converts to SI units; warns if the result is implausible.
 void ScaleUnits(Building& b);
 
-/// What taut lets be a name: other characters become `_`.
+/// Returns a valid name of taut: other characters become `_`.
 std::string ToName(const std::string& text, const std::string& if_empty);
-/// "3 geoms" or "1 geom".
+/// Returns text such as "3 geoms" or "1 geom".
 std::string Count(std::size_t count, const std::string& what);
 
 }  // namespace taut::mjcf

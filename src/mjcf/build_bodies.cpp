@@ -1,4 +1,4 @@
-// Bodies, nodes and shapes of a robot.
+// Bodies, nodes and shapes of a robot imported from MJCF.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -17,7 +17,8 @@ bool IsTerrain(const Scene& scene, const Shape& s) {
   return !scene.Moves(s.body) && (s.kind == Shape::Kind::kPlane || s.kind == Shape::Kind::kBox);
 }
 
-/// "segment_0" if all sites of the body are called segment_0.something, as taut writes them.
+/// Returns the common prefix of the body's site names: "segment_0" if all are called
+/// segment_0.something, as in taut's export.
 std::string CommonPrefix(const Scene& scene, const Rigid& rigid) {
   std::string prefix;
   for (const int site : rigid.sites) {
@@ -74,7 +75,7 @@ class BodyBuilder {
     robot_.node_sources.push_back(at);
     return static_cast<int>(def_.nodes.size()) - 1;
   }
-  /// A node of the body that is there up to rounding; -1: none.
+  /// Returns a node of the body at this point up to rounding; -1: none.
   int NodeNear(const Vec3& p) const {
     for (std::size_t n = first_node_; n < def_.nodes.size(); ++n) {
       const Vec3 off = def_.nodes[n].position_m - p;
@@ -82,13 +83,13 @@ class BodyBuilder {
     }
     return -1;
   }
-  /// That which is there, or a new one.
+  /// Returns the node at this point, or a new one.
   const NodeDef& NodeFor(const Vec3& p, const std::string& raw, const SourceRef& at) {
     int node = NodeNear(p);
     if (node < 0) node = AddNode(raw, p, at);
     return def_.nodes[Scene::Index(node)];
   }
-  /// The same, but for one that has such a shape already.
+  /// As `NodeFor`, but never a node in `taken`, which has such a shape already.
   const NodeDef& FreeNodeFor(std::set<int>& taken, const Shape& s, const std::string& raw) {
     int node = NodeNear(s.pose.p);
     if (node < 0 || taken.contains(node)) node = AddNode(raw, s.pose.p, s.at);
@@ -140,7 +141,7 @@ class BodyBuilder {
   }
 
  public:
-  /// Whether solids of taut weigh what they do in MuJoCo.
+  /// Finds whether masses of taut's solids equal MuJoCo's.
   void FindOwnMasses() {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const Body& body = scene_.bodies[i];
@@ -165,17 +166,19 @@ class BodyBuilder {
     body.inertia_kg_m2 = whole.inertia_kg_m2;
     const SourceRef& at = scene_.bodies[Scene::Index(rigid_.root)].at;
     if (!(whole.mass_kg > 0)) {
-      b_.out.Error(at, "the body \"" + BodyName() + "\" has no mass");
+      b_.out.Error("body.no_mass", at, "the body \"" + BodyName() + "\" has no mass");
       return;
     }
     double r[9], moments[3];
     PrincipalAxes(body.inertia_kg_m2, r, moments);
     std::sort(moments, moments + 3);
     if (!(moments[0] > 1e-12 * moments[2])) {
-      b_.out.Error(at, "the body \"" + BodyName() + "\" has no inertia about some axis");
+      b_.out.Error("body.no_inertia", at,
+                   "the body \"" + BodyName() + "\" has no inertia about some axis");
     } else if (moments[0] + moments[1] < (1 - 1e-9) * moments[2]) {
-      b_.out.Error(at, "the moments of inertia of the body \"" + BodyName() +
-                           "\" are those of no body: two of them make less than the third");
+      b_.out.Error("body.impossible_inertia", at,
+                   "the moments of inertia of the body \"" + BodyName() +
+                       "\" are those of no body: two of them make less than the third");
     }
     if (own_masses_) return;
     const std::string raw =
@@ -234,13 +237,13 @@ void FindRigids(Building& b) {
   });
   for (auto& [root, rigid] : by_root) {
     if (!rigid.placement.empty() || (!rigid.moves && rigid.shapes.empty())) continue;
-    // The only body of a robot is called as that.
+    // The only body of a robot may have the robot's name.
     rigid.called_as_robot = bodies == 1 && scene.bodies[Scene::Index(root)].name == b.def().name;
     if (rigid.called_as_robot) continue;
     const auto rods = std::count_if(rigid.shapes.begin(), rigid.shapes.end(), [&](int shape) {
       return IsRod(scene.shapes[Scene::Index(shape)]);
     });
-    // A body is called by its placement; where there is none by its rod, or its first node.
+    // A body's name is its placement, or without one the name of its rod or first node.
     const std::string& name = scene.bodies[Scene::Index(root)].name;
     const bool by_node =
         rods == 0 && rigid.shapes.size() <= 1 &&
@@ -260,7 +263,7 @@ void FindRigids(Building& b) {
   for (const auto& part : parts) {
     for (const Rigid* const rigid : part) b.rigids.push_back(*rigid);
   }
-  for (auto& [root, rigid] : by_root) {  // nothing but nodes
+  for (auto& [root, rigid] : by_root) {  // static bodies without shapes, which have nodes only
     if (rigid.moves || !rigid.shapes.empty()) continue;
     rigid.placement.clear();
     b.rigids.push_back(rigid);

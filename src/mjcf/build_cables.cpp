@@ -1,4 +1,4 @@
-// Tendons, with all that pulls at them, as cables or bars.
+// Cables and bars from MuJoCo tendons with their springs, dampers and actuators.
 #include <algorithm>
 #include <cmath>
 
@@ -11,8 +11,8 @@ namespace {
 /// T = k l - c + b dl/dt: springs, dampers and actuators of a tendon together.
 struct Law {
   double k = 0, b = 0, c = 0;
-  double gain = 0;       ///< By how much a unit of the control lessens c; of the only actuator.
-  double c_at_zero = 0;  ///< Where all controls are 0.
+  double gain = 0;       ///< Decrease of c per unit of control; of the only actuator.
+  double c_at_zero = 0;  ///< c with all controls 0.
   int actuators = 0;
   double lag_s = 0;  ///< The longest of its actuators.
   bool pushes = false, damps_slack = false, has_most = false, has_least = false;
@@ -28,7 +28,8 @@ class CableBuilder {
   }
 
  private:
-  /// What it has come to, of one that lags behind its control, if the key says so.
+  /// Returns the control at the start; for an actuator with a lag its activation, if the key
+  /// contains one.
   double Control(std::size_t actuator) const {
     const auto& state = scene_.actuators[actuator].state;
     if (state && key_ && !key_->act.empty()) return key_->act[*state];
@@ -38,7 +39,7 @@ class CableBuilder {
     return u;
   }
 
-  /// At qpos0.
+  /// Returns the length at qpos0.
   double Length(const Tendon& tendon) const {
     double length = 0;
     for (std::size_t i = 0; i + 1 < tendon.sites.size(); ++i) {
@@ -76,7 +77,7 @@ class CableBuilder {
     return law;
   }
 
-  /// The tension at the start as MuJoCo computes it, where the tendon has this length.
+  /// Returns the tension at the start as MuJoCo computes it, for this length of the tendon.
   double TensionInMujoco(int index, double length) const {
     const Tendon& tendon = scene_.tendons[Scene::Index(index)];
     double shortest = tendon.springlength[0], longest = tendon.springlength[1];
@@ -95,16 +96,16 @@ class CableBuilder {
     return tension;
   }
 
-  /// Complains where the cable's tension at the start is not MuJoCo's: a limit of an actuator's
-  /// force acts there, or the spring is slack there while an actuator pulls. What only pushes in
-  /// MuJoCo is a warning of its own.
+  /// Reports an error if the cable's tension at the start differs from MuJoCo's: a limit of an
+  /// actuator's force is active there, or the spring is slack while an actuator pulls. Tendons that
+  /// push in MuJoCo have a separate warning.
   void CheckStart(int index, const Law& law, double length) {
     const Tendon& tendon = scene_.tendons[Scene::Index(index)];
     const double theirs = TensionInMujoco(index, length);
     const double ours = std::max(0.0, law.k * length - law.c);
     const double size = law.k * length + std::fabs(law.c);
     if (std::fabs(std::max(theirs, 0.0) - ours) <= 1e-9 * size) return;
-    b_.out.Error(tendon.at,
+    b_.out.Error("mjcf.tension_differs", tendon.at,
                  "tendon \"" + tendon.name + "\" starts with a tension of " + Shown(theirs) +
                      " in MuJoCo and " + Shown(ours) + " as a cable: a cable has neither" +
                      " limits of its force (forcerange) nor a spring that can be slack alone",
@@ -118,32 +119,35 @@ class CableBuilder {
     const bool limits = tendon.range && scene_.has_limits;
     if (law.k == 0 && law.b == 0 && law.actuators == 0) {
       if (tendon.friction > 0) {
-        b_.out.Error(tendon.at, called + " has dry friction (frictionloss) but no stiffness",
+        b_.out.Error("mjcf.frictionloss_without_stiffness", tendon.at,
+                     called + " has dry friction (frictionloss) but no stiffness",
                      "set stiffness and springlength to make it a cable");
       }
       if (!limits) {
         scene_.pictures += tendon.friction == 0;
         return;
       }
-      b_.out.Error(tendon.at, called + " has a limit of its length and no stiffness",
+      b_.out.Error("mjcf.limit_without_stiffness", tendon.at,
+                   called + " has a limit of its length and no stiffness",
                    "set stiffness and springlength to make it a cable");
       return;
     }
     if (limits) limits_.push_back(&tendon);
     if (!(law.k > 0)) {
-      b_.out.Error(tendon.at,
+      b_.out.Error("mjcf.no_stiffness", tendon.at,
                    called + (law.actuators > 0 ? " is pulled by a force, without stiffness"
                                                : " is a damper without stiffness"),
                    "a cable has a stiffness: of the tendon, or `biasprm` and `kp` of the actuator");
       return;
     }
     if (law.b < 0) {
-      b_.out.Error(tendon.at, called + " has a negative damping");
+      b_.out.Error("mjcf.negative_damping", tendon.at, called + " has a negative damping");
       return;
     }
     const double rest = law.c / law.k;
     if (!(rest > 0)) {
-      b_.out.Error(tendon.at, called + " has no rest length: at the start it is " + Shown(rest),
+      b_.out.Error("mjcf.no_rest_length", tendon.at,
+                   called + " has no rest length: at the start it is " + Shown(rest),
                    law.actuators > 0 ? KeyHint() : "springlength");
       return;
     }
@@ -163,7 +167,8 @@ class CableBuilder {
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
       const Vec3 d = ends[i + 1].position_m - ends[i].position_m;
       if (Dot(d, d) == 0) {
-        b_.out.Error(tendon.at, called + ": two sites that follow each other are in one place");
+        b_.out.Error("mjcf.sites_in_one_place", tendon.at,
+                     called + ": two sites that follow each other are in one place");
         return;
       }
       length += std::sqrt(Dot(d, d));
@@ -182,7 +187,8 @@ class CableBuilder {
     if (law.has_least) pulled_.push_back(&tendon);
     if (tendon.friction > 0) {
       if (!b_.options.without_frictionloss) {
-        b_.out.Error(tendon.at, called + ": frictionloss of a cable is not read",
+        b_.out.Error("mjcf.frictionloss", tendon.at,
+                     called + ": frictionloss of a cable is not read",
                      "--without_frictionloss leaves it out; bars (--slack as_mujoco) have it");
       }
       rough_.push_back(&tendon);
@@ -209,7 +215,8 @@ class CableBuilder {
     b_.made.robot.cable_sources.push_back(tendon.at);
   }
 
-  /// As it is called, if a pair of a model may be called so.
+  /// Returns the tendon's name if it is valid for a pair of a model, else a valid name made from
+  /// it.
   std::string NameOf(const Tendon& tendon) const {
     std::string by_nodes, shorter, placement;
     bool inside = true;
@@ -231,7 +238,7 @@ class CableBuilder {
               const std::vector<AttachmentDef>& ends, const std::string& name) {
     const bool dead_band = tendon.springlength[0] != tendon.springlength[1] && tendon.stiffness > 0;
     if (ends.size() != 2 || law.actuators > 0 || dead_band) {
-      b_.out.Error(tendon.at,
+      b_.out.Error("mjcf.tendon_pushes", tendon.at,
                    "tendon \"" + tendon.name +
                        "\" pushes, and is no bar: that has two sites, one springlength and no "
                        "actuator",
@@ -277,7 +284,7 @@ class CableBuilder {
     note(other_, " u of MuJoCo: rest lengths by another scale, as of " + example_);
     note(several_, " of MuJoCo: several of a cable, whose rest length follows from their sum");
     if (!bilateral_.empty()) {
-      b_.out.Warning(bilateral_[0]->at,
+      b_.out.Warning("mjcf.bilateral_tendons", bilateral_[0]->at,
                      Count(bilateral_.size(), "tendon") +
                          " would push in MuJoCo when shorter than at rest; here cables only "
                          "pull. " +
@@ -285,7 +292,7 @@ class CableBuilder {
                      "--slack as_mujoco makes bars of them");
     }
     if (!damped_.empty()) {
-      b_.out.Warning(damped_[0]->at,
+      b_.out.Warning("mjcf.dampers_of_slack_tendons", damped_[0]->at,
                      Count(damped_.size(), "damper") +
                          " of tendons would act in MuJoCo while slack, too; here dampers act "
                          "only under tension");
@@ -303,7 +310,7 @@ class CableBuilder {
   void Some(const std::vector<const Tendon*>& tendons, const std::string& what) {
     if (tendons.empty()) return;
     const std::size_t more = tendons.size() - 1;
-    b_.out.Warning(tendons[0]->at,
+    b_.out.Warning("mjcf.tendons_changed", tendons[0]->at,
                    "tendon \"" + tendons[0]->name + "\"" +
                        (more > 0 ? " and " + std::to_string(more) + " more have" : " has") + what);
   }

@@ -1,5 +1,5 @@
-// What may touch what. MuJoCo says so of geoms by masks, of pairs of bodies and of pairs of geoms;
-// taut of a shape as a whole and of pairs of bodies.
+// Contact pairs and friction. MuJoCo selects contacts by masks of geoms, by pairs of bodies and by
+// pairs of geoms; taut by shapes as a whole and by pairs of bodies.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -69,13 +69,14 @@ class ContactBuilder {
     }
     if (finer == 0) return;
     b_.out.Warning(
-        example_at,
+        "mjcf.more_contacts", example_at,
         Count(static_cast<std::size_t>(finer), "pair") +
             " of geoms that do not touch each other in MuJoCo do here, as " + example,
         "here shapes touch all or nothing, and pairs of bodies are kept apart as wholes");
   }
 
-  /// MuJoCo takes the larger friction of two geoms, or that of the one of higher priority.
+  /// Sets friction. MuJoCo uses the larger friction of two geoms, or the friction of the geom with
+  /// higher priority.
   void Friction() {
     std::set<double> of_shapes;
     bool priorities = false;
@@ -89,7 +90,7 @@ class ContactBuilder {
     ModelDef& def = b_.def();
     def.friction_combine = CombineRule::kMaximum;
     const bool one_kind = of_shapes.size() == 1 && *of_shapes.begin() > 0;
-    if (priorities && one_kind) {  // then a mean of the two can be what the ground says
+    if (priorities && one_kind) {  // then a geometric mean can reproduce the ground's friction
       const double shape = *of_shapes.begin();
       def.friction_combine = CombineRule::kGeometricMean;
       for (int i = 0; i < count; ++i) {
@@ -108,7 +109,7 @@ class ContactBuilder {
  private:
   Shape& At(int i) { return scene_.shapes[Scene::Index(i)]; }
   int Root(int body) const { return scene_.bodies[Scene::Index(body)].root; }
-  /// Of the robot; the world if it is terrain.
+  /// Returns the body of the robot; the world for terrain.
   int Body(int i) {
     const Building::Made& made = b_.made_of_shape[Scene::Index(i)];
     const std::string list = made.list;
@@ -124,7 +125,7 @@ class ContactBuilder {
     return least;
   }
 
-  /// Of different bodies of which one moves.
+  /// Returns true for shapes of different bodies of which one moves.
   bool MayMeet(int i, int j) {
     const Shape &one = At(i), &two = At(j);
     return Root(one.body) != Root(two.body) && (scene_.Moves(one.body) || scene_.Moves(two.body));
@@ -137,7 +138,7 @@ class ContactBuilder {
            !excluded_.contains(std::minmax(Root(one.body), Root(two.body)));
   }
 
-  /// Whether taut leaves the pair out, too.
+  /// Returns true if taut leaves the pair out, too.
   bool Covered(int i, int j) {
     if (!roles_) roles_ = mechanics::ContactRolesOf(b_.def());
     const auto role = [&](int k) {
@@ -188,7 +189,7 @@ class ContactBuilder {
       }
     }
     if (other == 0) return;
-    b_.out.Warning(at,
+    b_.out.Warning("mjcf.friction_differs", at,
                    Count(static_cast<std::size_t>(other), "pair") +
                        " of geoms have another friction here, as " + example,
                    "priorities and pairs of MJCF have no place in a model; change `friction`");

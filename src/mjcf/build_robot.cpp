@@ -1,4 +1,4 @@
-// The robot as a whole: its start, its units, what was left out.
+// Robot from an MJCF scene: start, units, and a report of omitted elements.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,10 +12,10 @@ namespace {
 
 double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 
-/// From where bodies are at qpos0 to where the key has them.
+/// Motion of bodies from qpos0 to the key's poses.
 struct ToKey {
   std::vector<Pose> motions;  ///< Per body of the robot.
-  std::vector<Vec3> coms;     ///< Where they were described.
+  std::vector<Vec3> coms;     ///< Centers of mass as described.
   bool Moves(int body) const { return body != kWorld; }
   Vec3 Moved(int body, const Vec3& p) const {
     return (motions[Scene::Index(body)] * Pose{p, {}}).p;
@@ -23,7 +23,7 @@ struct ToKey {
   const Quat& Turned(int body) const { return motions[Scene::Index(body)].q; }
 };
 
-/// The key that was asked for; null, without a complaint, if none was.
+/// Returns the requested key; null, without an error, if none was requested.
 const Key* FindKey(const Scene& scene, const std::string& asked, const std::string& path,
                    Diagnostics& out) {
   if (asked.empty()) return nullptr;
@@ -35,7 +35,7 @@ const Key* FindKey(const Scene& scene, const std::string& asked, const std::stri
   for (std::size_t i = 0; i < scene.keys.size(); ++i) {
     if (std::to_string(i) == asked) return &scene.keys[i];
   }
-  out.Error({path}, "there is no key \"" + asked + '"',
+  out.Error("mjcf.unknown_key", {path}, "there is no key \"" + asked + '"',
             known.empty() ? "there is none at all" : DidYouMean(asked, known));
   return nullptr;
 }
@@ -62,7 +62,7 @@ void TellWhatIsLeftOut(Building& b) {
   if (!text.empty()) b.Note("left out: " + text);
   if (const auto& twisting = b.scene.twisting; !twisting.empty()) {
     b.out.Warning(
-        twisting[0],
+        "mjcf.torsional_friction", twisting[0],
         "torsional and rolling friction (condim above 3) is left out" +
             (twisting.size() > 1 ? " here and of " + std::to_string(twisting.size() - 1) + " more"
                                  : std::string()));
@@ -96,9 +96,9 @@ void PutAt(const Key* key, Building& b) {
     if (!body.is_free) continue;
     const std::size_t q = 7 * free, v = 6 * free;
     ++free;
-    if (body.root != static_cast<int>(i)) continue;  // moves with what it is welded to
+    if (body.root != static_cast<int>(i)) continue;  // moves with the body that it is welded to
     if (body.aligned) {
-      b.out.Error(body.at,
+      b.out.Error("mjcf.aligned_free_joint", body.at,
                   "the free joint of body \"" + body.name +
                       "\" has align=\"true\", which is not read with poses of keys",
                   "set align=\"false\" to keep the frame of the body");
@@ -110,7 +110,8 @@ void PutAt(const Key* key, Building& b) {
       const double* n = key->qpos.data() + q;
       const double size = std::sqrt(n[3] * n[3] + n[4] * n[4] + n[5] * n[5] + n[6] * n[6]);
       if (size < 1e-14) {
-        b.out.Error(key->at, "the key \"" + key->name + "\" has an orientation without length");
+        b.out.Error("mjcf.zero_orientation", key->at,
+                    "the key \"" + key->name + "\" has an orientation without length");
         return;
       }
       now = {{n[0], n[1], n[2]}, {n[3] / size, n[4] / size, n[5] / size, n[6] / size}};
@@ -118,7 +119,7 @@ void PutAt(const Key* key, Building& b) {
     const Quat turn = now.q * Conjugate(body.frame.q);
     to.motions[Scene::Index(made)] = {now.p - Rotate(turn, body.frame.p), turn};
     if (key->qvel.empty()) continue;
-    // Of the body's origin in W, and the turning in the body's axes.
+    // Velocity of the body's origin in W, angular velocity in the body's axes.
     const double* n = key->qvel.data() + v;
     BodyDef& its = def.bodies[Scene::Index(made)];
     const Vec3 w = Rotate(now.q, {n[3], n[4], n[5]});
@@ -141,7 +142,8 @@ void PutAt(const Key* key, Building& b) {
   const bool moving =
       std::any_of(key->qvel.begin(), key->qvel.end(), [](double n) { return n != 0; });
   if (moving)
-    b.out.Warning(key->at, "a model file has no velocities: those of the key are left out");
+    b.out.Warning("mjcf.key_velocities", key->at,
+                  "a model file has no velocities: those of the key are left out");
 }
 
 void ScaleUnits(Building& b) {
@@ -180,7 +182,7 @@ void ScaleUnits(Building& b) {
     if (mass.inertia_kg_m2) scale_inertia(*mass.inertia_kg_m2);
   }
 
-  // What people build is smaller and lighter; files in other units look like giants.
+  // Typical robots are smaller and lighter; a file in other units seems huge.
   constexpr double kLong_m = 2, kHeavy_kg = 50, kEarth = 9.81;
   double longest = 0, heaviest = 0;
   for (const CapsuleDef& rod : def.capsules)
@@ -191,18 +193,18 @@ void ScaleUnits(Building& b) {
   const double g = Length(def.gravity_m_per_s2);
   if (longest > kLong_m && !b.options.length_unit_m) {
     std::snprintf(text, sizeof text, "a rod is %.3g m long: is 1 in this file a metre?", longest);
-    b.out.Warning(whole, text, "set --length_unit_m");
+    b.out.Warning("mjcf.length_unit", whole, text, "set --length_unit_m");
   }
   if (heaviest > kHeavy_kg && !b.options.mass_unit_kg) {
     std::snprintf(text, sizeof text, "a body weighs %.4g kg: is 1 in this file a kilogram?",
                   heaviest);
-    b.out.Warning(whole, text, "set --mass_unit_kg");
+    b.out.Warning("mjcf.mass_unit", whole, text, "set --mass_unit_kg");
   }
   if (l != 1 && g > 0 && std::fabs(g / kEarth - 1) > 0.02) {
     std::snprintf(text, sizeof text,
                   "with this unit of length gravity is %.3g m/s^2, as MuJoCo has it for the file",
                   g);
-    b.out.Warning(whole, text, "to change it, set gravity_m_per_s2 in the model");
+    b.out.Warning("mjcf.gravity", whole, text, "to change it, set gravity_m_per_s2 in the model");
   }
 }
 
@@ -229,7 +231,8 @@ std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
   PutAt(key, b);
   if (out.items().size() != errors_before) return std::nullopt;
   BuildCables(key, b);
-  if (made.robot.def.bodies.empty()) out.Error({path}, "there is no body in this file");
+  if (made.robot.def.bodies.empty())
+    out.Error("mjcf.no_body", {path}, "there is no body in this file");
   if (out.items().size() != errors_before) return std::nullopt;
   ScaleUnits(b);
   TellWhatIsLeftOut(b);

@@ -1,4 +1,4 @@
-/// An XML file as a tree, what it includes put in its place.
+/// XML file as a tree of elements, with included files in place.
 #pragma once
 
 #include <optional>
@@ -27,15 +27,15 @@ struct Element {
     }
     return nullptr;
   }
-  /// Its name if it has one, for complaints: `geom "foot"`.
+  /// Returns the element with its name, if it has one, for messages: `geom "foot"`.
   std::string Called() const {
     const Attribute* const its = Find("name");
     return its ? name + " \"" + its->value + "\"" : name;
   }
 };
 
-/// The file's root element. `files` becomes all that was read, the file itself first. Nothing, and
-/// a complaint, if one of them is no XML.
+/// Returns the file's root element. `files` is set to all files read, the file itself first.
+/// Returns nothing and reports an error if one of them is not XML.
 std::optional<Element> ReadXml(const std::string& path, std::vector<std::string>& files,
                                Diagnostics& out);
 

@@ -1,4 +1,4 @@
-// A file of MJCF as a robot, and the experiment to go with it.
+// Import of an MJCF file as a robot with an experiment.
 #include "mjcf/scene.h"
 
 #include "description/yaml/reader.h"

@@ -9,13 +9,14 @@ namespace taut::mjcf {
 namespace {
 
 /// Parameters of an actuator while elements are applied to it: the elements of its default classes
-/// from the outermost one inwards, then its own. All kinds of element write the same parameters.
+/// from the outermost one inwards, then the actuator element. All kinds of element write the same
+/// parameters.
 struct ActuatorSettings {
   std::string dyntype = "none", gaintype = "fixed", biastype = "none";
   double gain = 1, bias[3] = {0, 0, 0}, lag_s = 1, inherited_range = 0;
 
   bool Lags() const { return dyntype == "filter" || dyntype == "filterexact"; }
-  /// Whether an actuator has the same force with the other ones.
+  /// Returns true if both give the same force.
   bool Equals(const ActuatorSettings& other) const {
     const bool same_bias = biastype != "affine" || std::equal(bias, bias + 3, other.bias);
     return dyntype == other.dyntype && gaintype == other.gaintype && biastype == other.biastype &&
@@ -30,7 +31,8 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   const Layers layers({&e}, out);
   const auto number = [&](const char* name, double if_absent) {
     const double given = layers.Number(name, if_absent);
-    if (layers.Has(name) && given < 0) layers.Error(name, std::string(name) + " is negative");
+    if (layers.Has(name) && given < 0)
+      layers.Error("mjcf.negative", name, std::string(name) + " is negative");
     return given;
   };
   if (e.name == "general") {
@@ -48,10 +50,10 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   } else if (e.name == "position" || e.name == "intvelocity") {
     s.gain = layers.Number("kp", s.gain), s.bias[1] = -s.gain;
     if (layers.Has("kv")) s.bias[2] = -number("kv", 0);
-    // A positive number here is a ratio of damping, until MuJoCo knows the masses.
+    // Here a positive number is a damping ratio, which MuJoCo converts once it knows the masses.
     if (layers.Has("dampratio")) s.bias[2] = number("dampratio", 0);
     if (layers.Has("kv") && layers.Has("dampratio")) {
-      layers.Error("dampratio", "it has both kv and dampratio");
+      layers.Error("mjcf.kv_and_dampratio", "dampratio", "it has both kv and dampratio");
     }
     if (layers.Has("timeconst")) {
       s.lag_s = number("timeconst", 0);
@@ -75,7 +77,7 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   }
 }
 
-/// Until MuJoCo 3.15 each element changes what all elements before it made.
+/// Up to MuJoCo 3.15 each element changes the result of all elements before it.
 ActuatorSettings MergedUntil315(const std::vector<const Element*>& layers, Diagnostics& out) {
   ActuatorSettings s;
   for (const Element* const layer : layers) Apply(*layer, s, out);
@@ -83,8 +85,8 @@ ActuatorSettings MergedUntil315(const std::vector<const Element*>& layers, Diagn
 }
 
 /// Since MuJoCo 3.16 an element of another kind than `general` inherits from the latest element
-/// before it that is `general` or of its own kind, and takes less from `general`. Found with
-/// random files of up to four elements: 10,000 with 4.0.0 and 1,500 with 3.16.0 compile so.
+/// before it that is `general` or of its own kind, and takes less from `general`. Found with random
+/// files of up to four elements: 10,000 with 4.0.0 and 1,500 with 3.16.0 compile so.
 ActuatorSettings MergedSince316(const std::vector<const Element*>& layers) {
   Diagnostics ignored;
   std::vector<std::pair<std::string, ActuatorSettings>> made{{"general", {}}};
@@ -117,13 +119,15 @@ class ActuatorReader {
       if (IsRead(layer->name)) continue;
       const std::string under =
           layer == &e ? "" : " are not read; its class sets one in line " + LineOf(*layer);
-      Refuse(e, under.empty() ? "actuators of kind " + e.name + " are not read"
-                              : "actuators of kind " + layer->name + under);
+      Refuse("mjcf.actuator_kind", e,
+             under.empty() ? "actuators of kind " + e.name + " are not read"
+                           : "actuators of kind " + layer->name + under);
       return;
     }
     for (const char* other : {"joint", "jointinparent", "site", "body", "cranksite"}) {
       if (!e.Find(other)) continue;
-      Refuse(e, std::string("an actuator on a ") + other + " is not read (expected a tendon)");
+      Refuse("mjcf.actuator_transmission", e,
+             std::string("an actuator on a ") + other + " is not read (expected a tendon)");
       return;
     }
     actuator.tendon = Find(scene_.tendon_by_name, e, "tendon", "tendon", out_);
@@ -131,7 +135,7 @@ class ActuatorReader {
     const ActuatorSettings s = MergedUntil315(layers.all(), out_);
     const ActuatorSettings since = MergedSince316(layers.all());
     if (!s.Equals(since)) {
-      Refuse(e,
+      Refuse("mjcf.defaults_differ", e,
              "versions of MuJoCo disagree on its defaults: " + Text(s) + " until 3.15, " +
                  Text(since) + " since 3.16",
              "set these parameters in the element: its classes set other kinds of actuators");
@@ -163,18 +167,22 @@ class ActuatorReader {
     const Element& e = layers.element();
     const bool lags = s.Lags();
     if (!lags && s.dyntype != "none") {
-      Refuse(e, "its dyntype is " + s.dyntype + " (expected none, filter or filterexact)");
+      Refuse("mjcf.actuator_law", e,
+             "its dyntype is " + s.dyntype + " (expected none, filter or filterexact)");
     }
     if (lags) actuator.lag_s = s.lag_s, actuator.state = scene_.states++;
-    if (s.gaintype != "fixed") Refuse(e, "its gaintype is " + s.gaintype + " (expected fixed)");
+    if (s.gaintype != "fixed")
+      Refuse("mjcf.actuator_law", e, "its gaintype is " + s.gaintype + " (expected fixed)");
     if (s.biastype != "none" && s.biastype != "affine") {
-      Refuse(e, "its biastype is " + s.biastype + " (expected none or affine)");
+      Refuse("mjcf.actuator_law", e,
+             "its biastype is " + s.biastype + " (expected none or affine)");
     }
     const bool affine = s.biastype == "affine";
     if (affine && s.bias[2] > 0 && s.gain == -s.bias[1]) {
-      layers.Error("dampratio", "dampratio is not read", "kv is");
+      layers.Error("mjcf.dampratio", "dampratio", "dampratio is not read", "kv is");
     }
-    // The actuator's length is the tendon's times the gear, and so is its force the other way.
+    // The actuator's length is the tendon's times the gear; its force on the tendon is also scaled
+    // by the gear.
     const double gear = layers.Numbers("gear", {1}, 1, 6)[0];
     actuator.gain = gear * s.gain;
     actuator.bias[0] = affine ? gear * s.bias[0] : 0;
@@ -198,25 +206,28 @@ class ActuatorReader {
                         actuator.force_range && !scene_.settings.autolimits_given;
     if (unsure && !warned_) {
       warned_ = true;
-      out_.Warning(e.at, e.Called() + ": forcerange has no forcelimited; here it applies",
+      out_.Warning("mjcf.forcerange", e.at,
+                   e.Called() + ": forcerange has no forcelimited; here it applies",
                    "MuJoCo 2 ignores such a forcerange: set forcelimited");
     }
     if (!actuator.state) return;
     if (layers.Range("actlimited", "actrange", scene_.settings)) {
-      layers.Error("actrange", "actrange is not read", "use ctrlrange");
+      layers.Error("mjcf.actrange", "actrange", "actrange is not read", "use ctrlrange");
     }
   }
 
-  /// `inheritrange`: a share of the tendon's range about its middle.
+  /// Applies `inheritrange`: a fraction of the tendon's range about its middle.
   void InheritRange(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {
     const auto& range = scene_.tendons[Scene::Index(actuator.tendon)].range;
     if (s.dyntype == "filter") {
-      layers.Error("inheritrange", "inheritrange does not apply to dyntype filter");
+      layers.Error("mjcf.inheritrange", "inheritrange",
+                   "inheritrange does not apply to dyntype filter");
     } else if (layers.Has("ctrlrange") &&
                layers.Numbers("ctrlrange", {0, 0}, 2, 2) != std::vector<double>{0, 0}) {
-      layers.Error("inheritrange", "it has both ctrlrange and inheritrange");
+      layers.Error("mjcf.inheritrange", "inheritrange", "it has both ctrlrange and inheritrange");
     } else if (!range) {
-      layers.Error("inheritrange", "inheritrange is given, but its tendon has no range");
+      layers.Error("mjcf.inheritrange", "inheritrange",
+                   "inheritrange is given, but its tendon has no range");
     } else if (layers.Text("ctrllimited", "auto") != "false") {
       const double middle = 0.5 * (range->first + range->second);
       const double radius = 0.5 * (range->second - range->first) * s.inherited_range;
@@ -226,26 +237,28 @@ class ActuatorReader {
     }
   }
 
-  /// Attributes that would change its force, and are not part of taut's cables.
+  /// Reads attributes that would change the force and are not part of taut's cables.
   void ReadRest(const Layers& layers, Actuator& actuator) {
     for (const char* key : {"damping", "armature"}) {
       const auto n = layers.Numbers(key, {0, 0, 0}, 1, 3);
       if (n == std::vector<double>{0, 0, 0}) continue;
-      layers.Error(key, std::string(key) + " of an actuator is not read");
+      layers.Error("mjcf.not_read", key, std::string(key) + " of an actuator is not read");
     }
     if (const double delay_s = layers.Number("delay", 0); delay_s != 0) {
       actuator.lag_s += delay_s;
     }
     const std::vector<int>& off = scene_.disabled_groups;
     if (std::find(off.begin(), off.end(), layers.Whole("group", 0)) != off.end()) {
-      Refuse(layers.element(), "its group is disabled (option actuatorgroupdisable)",
+      Refuse("mjcf.disabled_group", layers.element(),
+             "its group is disabled (option actuatorgroupdisable)",
              "remove the actuator, or its group from the option");
     }
   }
 
-  void Refuse(const Element& e, const std::string& what, const std::string& hint = {}) {
+  void Refuse(MessageId id, const Element& e, const std::string& what,
+              const std::string& hint = {}) {
     scene_.lacks_actuators = true;
-    out_.Error(e.at, e.Called() + ": " + what, hint);
+    out_.Error(id, e.at, e.Called() + ": " + what, hint);
   }
   const Defaults& defaults_;
   Scene& scene_;

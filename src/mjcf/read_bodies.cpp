@@ -1,4 +1,4 @@
-// The tree of bodies, laid out in W.
+// Tree of bodies, with poses in W.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,7 +31,7 @@ class BodyReader {
   Layers Over(const Element& element, const std::string& cls) const {
     return defaults_.Over(element, cls, out_);
   }
-  /// In W, of what is given in `frame`.
+  /// Returns the pose in W of a pose given in `frame`.
   Pose InWorld(const Pose& frame, const Pose& given) const {
     return scene_.settings.global ? given : frame * given;
   }
@@ -77,11 +77,13 @@ class BodyReader {
     defaults_.CheckClass(element, "childclass", out_);
     const Layers layers({&element}, out_);
     its.frame = InWorld(frame, layers.ReadPose(scene_.settings));
-    if (layers.Number("gravcomp", 0) != 0) layers.Error("gravcomp", "gravcomp is not read");
+    if (layers.Number("gravcomp", 0) != 0)
+      layers.Error("mjcf.gravcomp", "gravcomp", "gravcomp is not read");
     if (layers.Flag("mocap", false)) {
-      out_.Warning(element.at, element.Called() + " is moved by a program; here it stands still");
+      out_.Warning("mjcf.mocap", element.at,
+                   element.Called() + " is moved by a program; here it stands still");
     }
-    // What has no joint is part of what it is in; in the world it stands still by itself.
+    // A body without a joint is part of its parent; in the world it is a static body.
     its.root = scene_.Moves(parent) ? scene_.bodies[Scene::Index(parent)].root : body;
     const auto inertial_outside = inertial_;
     const bool had_mass = has_mass_;
@@ -95,7 +97,8 @@ class BodyReader {
     has_mass_ = had_mass;
   }
 
-  /// Before what is inside, which belongs to it only if it moves.
+  /// Finds the free joint before the children are read, which are part of the body only if it
+  /// moves.
   void FindFreeJoint(const Element& element, int body, const std::string& cls) {
     for (const Element& child : element.children) {
       if (child.name == "frame") FindFreeJoint(child, body, ClassOf(child, cls));
@@ -104,11 +107,13 @@ class BodyReader {
           (child.name == "joint" && Over(child, cls).Text("type", "hinge") == "free");
       if (!is_free) continue;
       Body& its = scene_.bodies[Scene::Index(body)];
-      if (its.is_free) out_.Error(child.at, "a body has one free joint, not two");
+      if (its.is_free)
+        out_.Error("mjcf.several_free_joints", child.at, "a body has one free joint, not two");
       its.is_free = true;
       its.root = body;
       if (parents_.back() != 0) {
-        out_.Error(child.at, child.Called() + ": a body within another one has no free joint");
+        out_.Error("mjcf.nested_free_joint", child.at,
+                   child.Called() + ": a body within another one has no free joint");
       }
     }
   }
@@ -118,7 +123,8 @@ class BodyReader {
         " of " +
         (body == 0 ? "the world" : "body \"" + scene_.bodies[Scene::Index(body)].name + "\"");
     if (body == 0) {
-      out_.Error(joint.at, joint.Called() + whose + ": the world does not move");
+      out_.Error("mjcf.joint_of_world", joint.at,
+                 joint.Called() + whose + ": the world does not move");
       return;
     }
     const Layers layers = Over(joint, cls);
@@ -129,17 +135,17 @@ class BodyReader {
     const std::string type = layers.Text("type", "hinge");
     if (type != "free") {
       out_.Error(
-          joint.at,
+          "mjcf.joint_type", joint.at,
           joint.Called() + whose + " is of type " + type + ": only bodies that are free are read",
           "joints of taut's own are added to the model by hand: docs/theory/joints.md");
       return;
     }
     if (layers.Number("frictionloss", 0) > 0) {
-      layers.Error("frictionloss", "frictionloss of a free joint is not read");
+      layers.Error("mjcf.frictionloss", "frictionloss", "frictionloss of a free joint is not read");
     }
     for (const char* key : {"damping", "stiffness", "armature"}) {
       if (layers.Numbers(key, {0}, 1, 3)[0] == 0) continue;
-      out_.Warning(layers.Find(key)->at,
+      out_.Warning("mjcf.free_joint_key", layers.Find(key)->at,
                    joint.Called() + whose + ": " + key + " of a free joint is left out");
     }
   }
@@ -162,13 +168,14 @@ class BodyReader {
 
   void AddGeom(GeomAt geom) {
     if (++geom_count_ == kMostGeoms + 1) {
-      out_.Error(geom.element->at, "there are more than " + std::to_string(kMostGeoms) + " geoms",
+      out_.Error("mjcf.too_many_geoms", geom.element->at,
+                 "there are more than " + std::to_string(kMostGeoms) + " geoms",
                  "all pairs of them are tested for contact");
     }
     if (geom_count_ <= kMostGeoms) geoms_.push_back(std::move(geom));
   }
 
-  /// An inertial that counts.
+  /// Reads the inertial element if it takes effect.
   void Mass(int body) {
     using FromGeoms = CompilerSettings::FromGeoms;
     const FromGeoms from_geoms = scene_.settings.from_geoms;
@@ -177,8 +184,9 @@ class BodyReader {
     if (body == 0 || inertial_.first == nullptr || !has_mass_) return;
     const Layers layers({inertial_.first}, out_);
     const Pose pose = InWorld(inertial_.second, layers.ReadPose(scene_.settings));
-    if (!layers.Has("mass")) layers.Error("mass", "it has no mass");
-    if (!layers.Has("pos") && !scene_.settings.global) layers.Error("pos", "it has no pos");
+    if (!layers.Has("mass")) layers.Error("mjcf.no_mass", "mass", "it has no mass");
+    if (!layers.Has("pos") && !scene_.settings.global)
+      layers.Error("mjcf.no_pos", "pos", "it has no pos");
     Body& its = scene_.bodies[Scene::Index(body)];
     its.own_masses = false;
     its.mass.mass_kg = layers.Number("mass", 0);
@@ -192,7 +200,7 @@ class BodyReader {
       own = {n[0], n[1], n[2], 0, 0, 0};
     }
     its.mass.inertia_kg_m2 = Turned(pose.q, own);
-    if (its.mass.mass_kg < 0) layers.Error("mass", "its mass is negative");
+    if (its.mass.mass_kg < 0) layers.Error("mjcf.negative_mass", "mass", "its mass is negative");
   }
 
   /// `first`: index of the body's first shape; its shapes are the last ones. A search through all
@@ -221,7 +229,7 @@ class BodyReader {
     }
   }
 
-  /// `boundmass` and `boundinertia`: at least so much.
+  /// Applies the lower bounds `boundmass` and `boundinertia`.
   void Bound(int body) {
     Body& its = scene_.bodies[Scene::Index(body)];
     if (!scene_.Moves(body)) return;
@@ -278,7 +286,7 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
       return;
     }
     const bool known = type == "mesh" || type == "hfield" || type == "ellipsoid" || type == "sdf";
-    layers.Error(known || kind != kKinds.end() ? "name" : "type",
+    layers.Error("mjcf.geom_type", known || kind != kKinds.end() ? "name" : "type",
                  known || kind != kKinds.end()
                      ? "geoms of type " + type + (kind == kKinds.end() ? "" : " from a mesh") +
                            " are not read"
@@ -299,7 +307,8 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
   shape.priority = layers.Whole("priority", 0);
   const auto friction = layers.Numbers("friction", {1, 0.005, 0.0001}, 1, 3);
   shape.friction = shape.condim == 1 ? 0 : friction[0];
-  if (friction[0] < 0) layers.Error("friction", "its friction is negative");
+  if (friction[0] < 0)
+    layers.Error("mjcf.negative_friction", "friction", "its friction is negative");
   const bool twists =
       shape.condim > 3 && (friction[1] > 0 || (shape.condim > 4 && friction[2] > 0));
   if (twists && touches) scene_.twisting.push_back(shape.at);
@@ -313,19 +322,21 @@ void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::st
   const auto line = layers.FromTo();
   const bool is_long = shape.kind == Shape::Kind::kCapsule || shape.kind == Shape::Kind::kCylinder;
   if (shape.kind == Shape::Kind::kPlane) {
-    if (scene_.Moves(shape.body)) layers.Error("type", "a plane in a body that moves");
+    if (scene_.Moves(shape.body))
+      layers.Error("mjcf.plane_in_body", "type", "a plane in a body that moves");
     return;
   }
   std::vector<double> needed{size[0]};
   if (line) {
-    if (shape.kind == Shape::Kind::kSphere) layers.Error("fromto", "a sphere has no fromto");
+    if (shape.kind == Shape::Kind::kSphere)
+      layers.Error("mjcf.sphere_fromto", "fromto", "a sphere has no fromto");
     const Vec3 from = InWorld(frame, {line->first, {}}).p,
                to = InWorld(frame, {line->second, {}}).p;
     shape.from = from, shape.to = to;
     const double length = std::sqrt(Dot(to - from, to - from));
     shape.half = {size[0], size[0], 0.5 * length};
-    // As MuJoCo has it, the axes beside z follow from the direction from `to` to `from`, in the
-    // body's frame.
+    // As in MuJoCo, the other axes follow from the direction from `to` to `from`, in the body's
+    // frame.
     shape.pose =
         InWorld(frame, {0.5 * (line->first + line->second), FromZ(line->first - line->second)});
   } else {
@@ -337,8 +348,9 @@ void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::st
   }
   shape.radius = size[0];
   if (std::any_of(needed.begin(), needed.end(), [](double n) { return !(n > 0); })) {
-    layers.Error("size", "a " + type + " needs " + std::to_string(needed.size()) +
-                             (needed.size() == 1 ? " positive size" : " positive sizes"));
+    layers.Error("mjcf.geom_size", "size",
+                 "a " + type + " needs " + std::to_string(needed.size()) +
+                     (needed.size() == 1 ? " positive size" : " positive sizes"));
     shape.radius = 1, shape.half = {1, 1, 1};
   }
 }
@@ -346,7 +358,8 @@ void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::st
 void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
   const std::vector<double>& groups = scene_.settings.inertia_groups;
   const int group = layers.Whole("group", 0);
-  if (layers.Flag("shellinertia", false)) layers.Error("shellinertia", "shells are not read");
+  if (layers.Flag("shellinertia", false))
+    layers.Error("mjcf.shellinertia", "shellinertia", "shells are not read");
   const double r = shape.radius, l = std::sqrt(Dot(shape.to - shape.from, shape.to - shape.from));
   double volume = 0;
   switch (shape.kind) {
@@ -367,7 +380,9 @@ void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
   }
   const double density = layers.Number("density", 1000);
   shape.mass = layers.Has("mass") ? layers.Number("mass", 0) : density * volume;
-  if (shape.mass < 0) layers.Error(layers.Has("mass") ? "mass" : "density", "its mass is negative");
+  if (shape.mass < 0)
+    layers.Error("mjcf.negative_mass", layers.Has("mass") ? "mass" : "density",
+                 "its mass is negative");
   if (group < groups[0] || group > groups[1]) shape.mass = 0;
 }
 

@@ -1,4 +1,4 @@
-// What stands outside of bodies, tendons and actuators.
+// Compiler settings, options, contacts, equalities and keyframes.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,8 @@ void ReadCompiler(const Layers& layers, CompilerSettings& s) {
                           const std::vector<std::string>& words) {
     std::string text = layers.Text(name, usual);
     if (std::find(words.begin(), words.end(), text) != words.end()) return text;
-    layers.Error(name, std::string(name) + " is \"" + text + '"', DidYouMean(text, words));
+    layers.Error("mjcf.bad_setting", name, std::string(name) + " is \"" + text + '"',
+                 DidYouMean(text, words));
     return usual;
   };
   if (layers.Has("angle")) s.degrees = choose("angle", "degree", {"degree", "radian"}) == "degree";
@@ -24,7 +25,7 @@ void ReadCompiler(const Layers& layers, CompilerSettings& s) {
   if (layers.Has("eulerseq")) {
     s.eulerseq = layers.Text("eulerseq");
     if (s.eulerseq.size() != 3 || s.eulerseq.find_first_not_of("xyzXYZ") != std::string::npos) {
-      layers.Error("eulerseq", "eulerseq must be three of x, y, z, X, Y, Z");
+      layers.Error("mjcf.eulerseq", "eulerseq", "eulerseq must be three of x, y, z, X, Y, Z");
       s.eulerseq = "xyz";
     }
   }
@@ -46,9 +47,10 @@ void ReadCompiler(const Layers& layers, CompilerSettings& s) {
 void ReadFlags(const Element& element, Scene& scene, Diagnostics& out) {
   for (const Attribute& a : element.attributes) {
     if (a.value != "enable" && a.value != "disable") {
-      out.Error(a.at, "flag." + a.name + " must be enable or disable, not \"" + a.value + '"');
+      out.Error("mjcf.bad_flag", a.at,
+                "flag." + a.name + " must be enable or disable, not \"" + a.value + '"');
     } else if (a.name == "override" && a.value == "enable") {
-      out.Error(a.at, "flag.override=\"enable\" is not read",
+      out.Error("mjcf.not_read", a.at, "flag.override=\"enable\" is not read",
                 "friction is that of each geom; o_friction replaces it only with this flag");
     } else if (a.value == "disable") {
       if (a.name == "gravity") scene.gravity = {};
@@ -58,7 +60,8 @@ void ReadFlags(const Element& element, Scene& scene, Diagnostics& out) {
       if (a.name == "limit") scene.has_limits = false;
       for (const char* whole :
            {"constraint", "passive", "spring", "damper", "actuation", "equality"}) {
-        if (a.name == whole) out.Error(a.at, "flag." + a.name + "=\"disable\" is not read");
+        if (a.name == whole)
+          out.Error("mjcf.not_read", a.at, "flag." + a.name + "=\"disable\" is not read");
       }
     }
   }
@@ -70,10 +73,12 @@ void ReadOption(const Layers& layers, Scene& scene, Diagnostics& out) {
   scene.gravity = {n[0], n[1], n[2]};
   scene.timestep = layers.Number("timestep", scene.timestep);
   if (!(scene.timestep >= 1e-9 && scene.timestep <= 1)) {
-    layers.Error("timestep", "timestep must be within 1e-9..1");  // as step_s of an experiment
+    layers.Error("mjcf.timestep", "timestep",
+                 "timestep must be within 1e-9..1");  // as step_s of an experiment
   }
   for (const char* fluid : {"density", "viscosity"}) {
-    if (layers.Number(fluid, 0) != 0) layers.Error(fluid, "a fluid is not read", "there is none");
+    if (layers.Number(fluid, 0) != 0)
+      layers.Error("mjcf.fluid", fluid, "a fluid is not read", "there is none");
   }
   scene.only_pairs = layers.Text("collision", "all") == "predefined";
   if (layers.Has("actuatorgroupdisable")) {
@@ -101,7 +106,7 @@ void Register(std::map<std::string, int>& by_name, const Element& element, int i
   const Attribute* const name = element.Find("name");
   if (!name || name->value.empty()) return;
   if (!by_name.emplace(name->value, index).second) {
-    out.Error(name->at, "there are two of " + element.Called());
+    out.Error("mjcf.duplicate_name", name->at, "there are two of " + element.Called());
   }
 }
 
@@ -109,7 +114,8 @@ int Find(const std::map<std::string, int>& by_name, const Element& element,
          std::string_view attribute, const char* kind, Diagnostics& out) {
   const Attribute* const name = element.Find(attribute);
   if (!name) {
-    out.Error(element.at, element.Called() + " has no " + std::string(attribute));
+    out.Error("mjcf.missing_attribute", element.at,
+              element.Called() + " has no " + std::string(attribute));
     return -1;
   }
   const auto found = by_name.find(name->value);
@@ -118,7 +124,8 @@ int Find(const std::map<std::string, int>& by_name, const Element& element,
   for (const auto& [key, index] : by_name) {
     if (out.items().size() < kMostHints) known.push_back(key);
   }
-  out.Error(name->at, std::string("there is no ") + kind + " \"" + name->value + '"',
+  out.Error("mjcf.unknown_name", name->at,
+            std::string("there is no ") + kind + " \"" + name->value + '"',
             known.empty() ? "" : DidYouMean(name->value, known));
   return -1;
 }
@@ -145,13 +152,15 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
         const int a = Find(scene.shape_by_name, e, "geom1", "geom", out),
                   b = Find(scene.shape_by_name, e, "geom2", "geom", out);
         if (a < 0 || b < 0) continue;
-        // Of the geoms' own friction and condim MuJoCo takes nothing.
+        // MuJoCo ignores the friction and condim of the geoms here.
         const auto friction = layers.Numbers("friction", {1, 1, 0.005, 0.0001, 0.0001}, 1, 5);
         const int condim = layers.Whole("condim", 3);
-        if (friction[0] < 0) layers.Error("friction", "its friction is negative");
+        if (friction[0] < 0)
+          layers.Error("mjcf.negative_friction", "friction", "its friction is negative");
         if (condim > 1 && friction[0] != friction[1]) {
           layers.Error(
-              "friction", "friction that differs between the two tangents is not read",
+              "mjcf.anisotropic_friction", "friction",
+              "friction that differs between the two tangents is not read",
               "the first two numbers are those of the tangents; the second is 1 if absent");
         }
         if (condim > 3) scene.twisting.push_back(e.at);
@@ -170,12 +179,12 @@ void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene,
         continue;
       }
       if (e.name != "weld") {
-        out.Error(e.at, "the equality " + e.Called() + " is not read",
+        out.Error("mjcf.equality", e.at, "the equality " + e.Called() + " is not read",
                   "weld is: two bodies become one");
         continue;
       }
       if (e.Find("site1")) {
-        out.Error(e.at, "a weld of sites is not read", "a weld of bodies is");
+        out.Error("mjcf.weld_of_sites", e.at, "a weld of sites is not read", "a weld of bodies is");
         continue;
       }
       const int a = Find(scene.body_by_name, e, "body1", "body", out);
@@ -184,10 +193,10 @@ void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene,
       const auto n = layers.Numbers("relpose", {0, 1, 0, 0, 0, 0, 0}, 7, 7);
       const bool as_described = n[3] == 0 && n[4] == 0 && n[5] == 0 && n[6] == 0;
       if (!as_described) {
-        layers.Error("relpose", "a weld with a relpose is not read",
+        layers.Error("mjcf.relpose", "relpose", "a weld with a relpose is not read",
                      "put the bodies where they are to be, and leave it out");
       }
-      // What is welded to something that stands still stands still.
+      // A body welded to a static body is static.
       const int root_a = scene.bodies[Scene::Index(a)].root,
                 root_b = scene.bodies[Scene::Index(b)].root;
       const int keep = scene.Moves(b) ? root_a : root_b, lose = keep == root_a ? root_b : root_a;

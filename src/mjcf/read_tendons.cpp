@@ -1,4 +1,4 @@
-// Tendons.
+// Spatial tendons.
 #include <algorithm>
 #include <cmath>
 
@@ -18,8 +18,8 @@ void ReadSpringLength(const Layers& layers, Tendon& tendon, Diagnostics& out) {
   }
   if (l[0] == -1 && l[1] == -1) return;
   if (l[0] > l[1] || l[1] < 0) {
-    layers.Error("springlength", "springlength must increase and not be negative",
-                 "-1 is the length at the start");
+    layers.Error("mjcf.springlength", "springlength",
+                 "springlength must increase and not be negative", "-1 is the length at the start");
   }
 }
 
@@ -41,28 +41,30 @@ void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Di
         tendon.sites.push_back(Find(scene.site_by_name, site, "site", "site", out));
       }
       if (tendon.sites.size() < 2 && e.children.size() == tendon.sites.size()) {
-        out.Error(e.at, e.Called() + " has fewer than two sites");
+        out.Error("mjcf.few_sites", e.at, e.Called() + " has fewer than two sites");
       }
       tendon.stiffness = layers.Numbers("stiffness", {0}, 1, 3)[0];
       tendon.damping = layers.Numbers("damping", {0}, 1, 3)[0];
       for (const char* polynomial : {"stiffness", "damping"}) {
         const auto n = layers.Numbers(polynomial, {0, 0, 0}, 1, 3);
         if (n[1] == 0 && n[2] == 0) continue;
-        layers.Error(polynomial, std::string(polynomial) + " that is not constant is not read");
+        layers.Error("mjcf.polynomial", polynomial,
+                     std::string(polynomial) + " that is not constant is not read");
       }
       ReadSpringLength(layers, tendon, out);
       tendon.friction = scene.has_dry_friction ? layers.Number("frictionloss", 0) : 0;
       if (layers.Number("armature", 0) != 0) {
-        layers.Error("armature", "armature of a tendon is not read");
+        layers.Error("mjcf.armature", "armature", "armature of a tendon is not read");
       }
       for (const char* key : {"stiffness", "damping", "frictionloss"}) {
         if (layers.Numbers(key, {0}, 1, 3)[0] < 0) {
-          layers.Error(key, std::string(key) + " is negative");
+          layers.Error("mjcf.negative", key, std::string(key) + " is negative");
         }
       }
       tendon.range = layers.Range("limited", "range", scene.settings);
       if (layers.Range("actuatorfrclimited", "actuatorfrcrange", scene.settings)) {
-        layers.Error("actuatorfrcrange", "actuatorfrcrange is not read", "forcerange is");
+        layers.Error("mjcf.actuatorfrcrange", "actuatorfrcrange", "actuatorfrcrange is not read",
+                     "forcerange is");
       }
       scene.tendons.push_back(std::move(tendon));
     }

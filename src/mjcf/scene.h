@@ -1,5 +1,5 @@
-/// What a file of MJCF describes, in its own units, all places in W at qpos0. Nothing is left of
-/// frames, classes and ways to write an orientation.
+/// Scene of an MJCF file, in the file's units, with all poses in W at qpos0. Frames, default
+/// classes and the notations of orientations are resolved.
 #pragma once
 
 #include <map>
@@ -27,7 +27,7 @@ struct Shape {
   double mass = 0;
   double friction = 1;
   int contype = 1, conaffinity = 1, condim = 3, priority = 0;
-  bool collides = true;  ///< With anything; known when all is read.
+  bool collides = true;  ///< With anything; known after all is read.
 };
 
 struct Site {
@@ -37,17 +37,16 @@ struct Site {
   Vec3 p;
 };
 
-/// One of the file. The first is the world.
+/// A body of the file. The first is the world.
 struct Body {
   std::string name;
   SourceRef at;
-  bool is_free = false;  ///< Has a free joint of its own.
-  int root =
-      0;  ///< The body that it is one rigid body with: itself, or what it is in or welded to.
+  bool is_free = false;  ///< Has a free joint.
+  int root = 0;          ///< Body of the same rigid body: itself, its parent or the weld's.
   Pose frame = {};
   MassProperties mass = {};
-  bool aligned = false;  ///< MuJoCo turns its frame into its principal axes: poses of keys differ.
-  bool own_masses = true;  ///< Each of its shapes weighs what a solid of taut's weighs.
+  bool aligned = false;  ///< MuJoCo aligns its frame with its principal axes: poses of keys differ.
+  bool own_masses = true;  ///< Each of its shapes has the mass of the same solid in taut.
 };
 
 struct Tendon {
@@ -65,16 +64,16 @@ struct Actuator {
   std::string name;
   SourceRef at;
   int tendon = 0;
-  double gain = 0, bias[3] = {0, 0, 0};  ///< With the gear: of the tendon's own l.
+  double gain = 0, bias[3] = {0, 0, 0};  ///< With the gear: for the tendon's l.
   std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of p.
-  double lag_s = 0;                       ///< With which it follows its control.
-  std::optional<std::size_t> state = {};  ///< Of one that does: its place in keys' `act`.
+  double lag_s = 0;                       ///< Lag behind its control.
+  std::optional<std::size_t> state = {};  ///< With a lag: its index in keys' `act`.
 };
 
 struct Key {
   std::string name;
   SourceRef at;
-  std::vector<double> qpos, qvel, ctrl, act;  ///< Empty if not said.
+  std::vector<double> qpos, qvel, ctrl, act;  ///< Empty if not given.
 };
 
 struct ContactPair {
@@ -104,20 +103,21 @@ struct Scene {
   std::map<std::string, int> site_by_name, body_by_name, shape_by_name, tendon_by_name;
   LeftOut left_out;
   std::vector<SourceRef> twisting;  ///< Geoms and pairs with torsional or rolling friction.
-  int pictures = 0;                 ///< Tendons that do nothing.
+  int pictures = 0;                 ///< Tendons without effect.
 
   bool Moves(int body) const { return bodies[Index(bodies[Index(body)].root)].is_free; }
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 };
 
-/// One name a kind: of the list that `by_name` counts. Complains about a second one.
+/// Registers a name, unique per kind: an entry of the list that `by_name` indexes. Reports an error
+/// for a duplicate.
 void Register(std::map<std::string, int>& by_name, const Element& element, int index,
               Diagnostics& out);
-/// What the attribute names; -1 after a complaint.
+/// Returns the index of the item that the attribute names; -1 after an error.
 int Find(const std::map<std::string, int>& by_name, const Element& element,
          std::string_view attribute, const char* kind, Diagnostics& out);
 
-// Each reads its section; all of the scene that stands above it in `Scene` is there.
+// Each function reads its section. Members of `Scene` that are declared earlier have been read.
 void ReadSettings(const Element& root, Scene& scene, Diagnostics& out);
 void ReadBodies(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
 void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
@@ -126,10 +126,10 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
 void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
 void ReadKeys(const Element& root, Scene& scene, Diagnostics& out);
 
-/// All sections of that name, one after the other.
+/// Returns all sections of that name, in order.
 std::vector<const Element*> Sections(const Element& root, std::string_view name);
 
-/// The robot of the scene, in SI units.
+/// Returns the robot of the scene, in SI units.
 std::optional<ImportedMjcf> BuildRobot(Scene& scene, const std::string& path,
                                        const MjcfImport& options, Diagnostics& out);
 

@@ -89,7 +89,8 @@ class Checker {
         LeaveOut(element, kind, a);
         continue;
       }
-      out_.Error(a.at, element.name + " has no \"" + a.name + "\" in MJCF",
+      out_.Error("mjcf.unknown_attribute", a.at,
+                 element.name + " has no \"" + a.name + "\" in MJCF",
                  DidYouMean(a.name, Words(std::string(rule->read) + " " + rule->left_out)));
     }
     for (const Element& child : element.children) {
@@ -98,9 +99,11 @@ class Checker {
       } else if (Has(rule->children_left_out, child.name)) {
         ++left_out_[child.name];
       } else if (Has(rule->children_refused, child.name)) {
-        out_.Error(child.at, child.Called() + " in " + element.name + " is not read");
+        out_.Error("mjcf.element_not_read", child.at,
+                   child.Called() + " in " + element.name + " is not read");
       } else {
-        out_.Error(child.at, element.name + " has no element \"" + child.name + "\" in MJCF",
+        out_.Error("mjcf.unknown_element", child.at,
+                   element.name + " has no element \"" + child.name + "\" in MJCF",
                    DidYouMean(child.name,
                               Words(std::string(rule->children) + " " + rule->children_left_out)));
       }
@@ -108,7 +111,7 @@ class Checker {
   }
 
  private:
-  /// `site` within a tendon is another thing than in a body.
+  /// `site` within a tendon has another meaning than in a body.
   static std::string KindOf(const std::string& in, const std::string& name) {
     if (in == "spatial") return "spatial/" + name;
     if (name == "frame" || name == "worldbody") return "body";
@@ -124,7 +127,7 @@ class Checker {
                                    std::equal(is->begin(), is->end(), neutral->begin());
       if (changes_nothing) return;
       if (change.consequence == nullptr) {
-        out_.Error(a.at, element.Called() + ": " + a.name + " is not read");
+        out_.Error("mjcf.not_read", a.at, element.Called() + ": " + a.name + " is not read");
         return;
       }
       const auto [first, fresh] = changes_.try_emplace(change.consequence, Changed{called, a.at});
@@ -148,7 +151,7 @@ class Checker {
     for (const auto& [consequence, its] : changes_) {
       const std::string more =
           its.more > 0 ? " and " + std::to_string(its.more) + " more are" : " is";
-      out_.Warning(its.at, its.called + more + " left out: " + consequence);
+      out_.Warning("mjcf.left_out", its.at, its.called + more + " left out: " + consequence);
     }
   }
 };
@@ -240,7 +243,7 @@ const std::vector<Rule>& Rules() {
 
 void CheckSchema(const Element& root, LeftOut& left_out, Diagnostics& out) {
   if (root.name != "mujoco") {
-    out.Error(root.at, "the root element is \"" + root.name + "\", not mujoco",
+    out.Error("mjcf.root", root.at, "the root element is \"" + root.name + "\", not mujoco",
               root.name == "robot" ? "this is URDF; MuJoCo's compile makes MJCF of it" : "");
     return;
   }

@@ -66,10 +66,10 @@ std::string Layers::Text(std::string_view name, const std::string& if_absent) co
   return found ? found->value : if_absent;
 }
 
-void Layers::Error(std::string_view attribute, const std::string& what,
+void Layers::Error(MessageId id, std::string_view attribute, const std::string& what,
                    const std::string& hint) const {
   const Attribute* const found = Find(attribute);
-  out_->Error(found ? found->at : element().at, element().Called() + ": " + what, hint);
+  out_->Error(id, found ? found->at : element().at, element().Called() + ": " + what, hint);
 }
 
 std::vector<double> Layers::Numbers(std::string_view name, std::vector<double> if_absent,
@@ -82,8 +82,9 @@ std::vector<double> Layers::Numbers(std::string_view name, std::vector<double> i
       const std::string count = least == most
                                     ? std::to_string(most)
                                     : std::to_string(least) + " to " + std::to_string(most);
-      out_->Error(a->at, element().Called() + ": " + std::string(name) + " must be " + count +
-                             (most == 1 ? " number" : " numbers") + ", not \"" + a->value + "\"");
+      out_->Error("mjcf.wrong_numbers", a->at,
+                  element().Called() + ": " + std::string(name) + " must be " + count +
+                      (most == 1 ? " number" : " numbers") + ", not \"" + a->value + "\"");
       continue;
     }
     if (if_absent.size() < numbers->size()) if_absent.resize(numbers->size());
@@ -99,14 +100,16 @@ double Layers::Number(std::string_view name, double if_absent) const {
 int Layers::Whole(std::string_view name, int if_absent) const {
   const double number = Number(name, if_absent);
   if (number == std::floor(number) && std::fabs(number) < 2e9) return static_cast<int>(number);
-  Error(name, std::string(name) + " must be a whole number");
+  Error("mjcf.not_whole", name, std::string(name) + " must be a whole number");
   return if_absent;
 }
 
 bool Layers::Flag(std::string_view name, bool if_absent) const {
   const std::string text = Text(name);
   if (text == "true" || text == "false") return text == "true";
-  if (!text.empty()) Error(name, std::string(name) + " must be true or false, not \"" + text + '"');
+  if (!text.empty())
+    Error("mjcf.not_boolean", name,
+          std::string(name) + " must be true or false, not \"" + text + '"');
   return if_absent;
 }
 
@@ -117,7 +120,7 @@ std::optional<std::pair<double, double>> Layers::Range(std::string_view flag,
   const bool limited =
       Text(flag, "auto") == "auto" ? settings.autolimits && n[0] != n[1] : Flag(flag, false);
   if (!limited) return std::nullopt;
-  if (!(n[0] < n[1])) Error(range, std::string(range) + " must rise");
+  if (!(n[0] < n[1])) Error("mjcf.empty_range", range, std::string(range) + " must rise");
   return std::pair(n[0], n[1]);
 }
 
@@ -126,7 +129,7 @@ std::optional<std::pair<Vec3, Vec3>> Layers::FromTo() const {
   const std::vector<double> n = Numbers("fromto", {0, 0, 0, 0, 0, 1}, 6, 6);
   const Vec3 from{n[0], n[1], n[2]}, to{n[3], n[4], n[5]};
   if (Length(to - from) < 1e-14) {
-    Error("fromto", "its two points are one");
+    Error("mjcf.no_length", "fromto", "its two points are one");
     return std::pair(from, from + Vec3{0, 0, 1});
   }
   return std::pair(from, to);
@@ -136,7 +139,7 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
   const auto unit = [&](const char* name, const Vec3& v) {
     const double length = Length(v);
     if (length > 1e-14) return (1 / length) * v;
-    Error(name, std::string(name) + " has no length");
+    Error("mjcf.zero_vector", name, std::string(name) + " has no length");
     return Vec3{0, 0, 1};
   };
   const double angle = settings.degrees ? std::numbers::pi / 180 : 1;
@@ -144,7 +147,8 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
   for (const char* name : {"quat", "axisangle", "xyaxes", "zaxis", "euler"}) {
     ways += element().Find(name) != nullptr;
   }
-  if (ways > 1) Error("pos", "its orientation is given in several ways");
+  if (ways > 1)
+    Error("mjcf.orientation_given_twice", "pos", "its orientation is given in several ways");
   if (Has("axisangle")) {
     const auto n = Numbers("axisangle", {0, 0, 1, 0}, 4, 4);
     return AboutAxis(unit("axisangle", {n[0], n[1], n[2]}), angle * n[3]);
@@ -176,7 +180,7 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
   const auto n = Numbers("quat", {1, 0, 0, 0}, 4, 4);
   const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
   if (length < 1e-14) {
-    Error("quat", "quat has no length");
+    Error("mjcf.zero_orientation", "quat", "quat has no length");
     return {};
   }
   return {n[0] / length, n[1] / length, n[2] / length, n[3] / length};
@@ -194,14 +198,15 @@ void Defaults::Add(const Element& element, const Class* in, Diagnostics& out) {
     if (!called.empty() && classes_.empty()) main_ = called;
     if (called.empty()) called = main_;
   } else if (called.empty()) {
-    out.Error(element.at, "a default within another one has no class");
+    out.Error("mjcf.unnamed_default", element.at, "a default within another one has no class");
     return;
   }
   const auto [entry, fresh] = classes_.try_emplace(called);
   Class* const its = &entry->second;
   if (fresh && in != nullptr) its->in = in, its->inherited = in->settings.size();
   if (!fresh && (in != nullptr || called != main_)) {
-    out.Error(name->at, "there are two default classes \"" + called + "\"");
+    out.Error("mjcf.duplicate_default", name->at,
+              "there are two default classes \"" + called + "\"");
     return;
   }
   for (const Element& child : element.children) {
@@ -220,7 +225,7 @@ void Defaults::CheckClass(const Element& element, std::string_view attribute,
   for (const auto& [key, value] : classes_) {
     if (out.items().size() < kMostHints) known.push_back(key);
   }
-  out.Error(name->at, "there is no default class \"" + name->value + "\"",
+  out.Error("mjcf.unknown_default", name->at, "there is no default class \"" + name->value + "\"",
             known.empty() ? "" : DidYouMean(name->value, known));
 }
 

@@ -1,4 +1,4 @@
-/// Attributes of an element, with those of its default classes below, and what they say.
+/// Values of an element's attributes, including the defaults of its classes.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct Pose {
 };
 Pose operator*(const Pose& a, const Pose& b);
 
-/// Of `<compiler>`.
+/// Attributes of `<compiler>`.
 struct CompilerSettings {
   bool degrees = true, global = false;
   std::string eulerseq = "xyz";
@@ -32,7 +32,7 @@ struct CompilerSettings {
   std::vector<double> inertia_groups{0, 5};
 };
 
-/// An element over the defaults that hold for it; what is later in the list holds.
+/// An element and the defaults that apply to it; later items of the list override earlier ones.
 class Layers {
  public:
   Layers(std::vector<const Element*> layers, Diagnostics& out)
@@ -42,24 +42,25 @@ class Layers {
   const std::vector<const Element*>& all() const { return layers_; }
   const Attribute* Find(std::string_view name) const;
   bool Has(std::string_view name) const { return Find(name) != nullptr; }
-  /// As written; empty if it is not there.
+  /// Returns the text as written; empty if the attribute is missing.
   std::string Text(std::string_view name, const std::string& if_absent = "") const;
 
-  /// Of each number that which the last layer has that has so many: `size="0.1"` over
+  /// Returns for each number the value of the last layer that contains that many: `size="0.1"` over
   /// `size="0.2 0.3"` is 0.1 0.3.
   std::vector<double> Numbers(std::string_view name, std::vector<double> if_absent,
                               std::size_t least, std::size_t most) const;
   double Number(std::string_view name, double if_absent) const;
   int Whole(std::string_view name, int if_absent) const;
   bool Flag(std::string_view name, bool if_absent) const;
-  /// The range if it limits anything: `flag` is "true", or it is `auto` or absent, the compiler's
-  /// autolimits are on and the range is not empty. Complains about a range that does not rise.
+  /// Returns the range if it is in effect: `flag` is "true", or it is `auto` or absent, the
+  /// compiler's autolimits are on and the range is not empty. Reports an error if the range does
+  /// not rise.
   std::optional<std::pair<double, double>> Range(std::string_view flag, std::string_view range,
                                                  const CompilerSettings& settings) const;
   Pose ReadPose(const CompilerSettings& settings) const;
   std::optional<std::pair<Vec3, Vec3>> FromTo() const;
 
-  void Error(std::string_view attribute, const std::string& what,
+  void Error(MessageId id, std::string_view attribute, const std::string& what,
              const std::string& hint = {}) const;
 
  private:
@@ -68,21 +69,21 @@ class Layers {
   Diagnostics* out_;
 };
 
-/// Default classes, nested: each is that which it stands in, but for what it says.
+/// Default classes, nested: each inherits the settings of the class around it.
 class Defaults {
  public:
   void Add(const Element& element, Diagnostics& out) { Add(element, nullptr, out); }
-  /// The element over the defaults of its kind, or of `actuator` for all actuators: of its own
-  /// class, else of `child_class`.
+  /// Returns the element with the defaults of its kind (one kind, `actuator`, for all actuators),
+  /// from the element's class, else from `child_class`.
   Layers Over(const Element& element, const std::string& child_class, Diagnostics& out) const;
-  /// Complains about a class that does not exist.
+  /// Reports an error for a class that does not exist.
   void CheckClass(const Element& element, std::string_view attribute, Diagnostics& out) const;
 
  private:
   struct Class {
     const Class* in = nullptr;
-    /// How many of `in`'s own settings it inherits, those before it begins: what a later section
-    /// adds to the outermost class does not reach it, as in MuJoCo.
+    /// Number of settings of `in` that it inherits: only the settings before it. As in MuJoCo,
+    /// settings that a later section adds to the outermost class have no effect on it.
     std::size_t inherited = 0;
     std::vector<const Element*> settings;
   };
@@ -93,11 +94,11 @@ class Defaults {
   std::string main_ = "main";
 };
 
-/// Turns z into v by the shortest way.
+/// Returns the shortest rotation from z to v.
 Quat FromZ(const Vec3& v);
 Quat AboutAxis(const Vec3& axis, double angle_rad);
 
-/// `text` as numbers; nothing if something in it is none, or not finite.
+/// Returns the numbers of `text`; nothing if any item is not a finite number.
 std::optional<std::vector<double>> ToNumbers(const std::string& text);
 
 }  // namespace taut::mjcf

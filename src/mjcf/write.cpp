@@ -1,4 +1,4 @@
-// The text of MJCF. What taut's numbers mean there is in docs/from_mujoco.md.
+// MJCF text of a model. docs/from_mujoco.md describes the conversion of quantities.
 #include "mjcf/write.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::string List(const std::vector<double>& values) {
 }
 std::string Numbers(const Vec3& v) { return List({v.x, v.y, v.z}); }
 std::string Numbers(const Quat& q) { return List({q.w, q.x, q.y, q.z}); }
-/// ` key="value"`.
+/// Returns ` key="value"`.
 std::string Key(const char* key, const std::string& value) {
   return std::string(" ") + key + "=\"" + value + '"';
 }
@@ -71,7 +71,7 @@ class Writer {
   void Settings() {
     xml_ << "<option" << (options_.elliptic ? Key("cone", "elliptic") : Key("cone", "pyramidal"))
          << Key("gravity", Numbers(def_.gravity_m_per_s2));
-    if (options_.as_peer) {  // the defaults of MuJoCo 2, for versions that may have others
+    if (options_.as_peer) {  // the defaults of MuJoCo 2, for versions with other defaults
       xml_ << Key("solver", "Newton") << Key("iterations", "100") << Key("tolerance", "1e-8")
            << Key("integrator", "Euler");
     } else {
@@ -79,7 +79,7 @@ class Writer {
     }
     xml_ << "/>\n";
     if (options_.as_peer) {
-      // Bodies of many shapes, a disc on feet, need more; but its memory grows with the square.
+      // Bodies of many shapes, such as a disc on feet, need more; but memory grows with the square.
       const std::size_t usual = 12 * def_.bodies.size(),
                         shapes = def_.capsules.size() + def_.spheres.size() + def_.boxes.size(),
                         contacts = 100 + usual + 8 * (shapes > usual ? shapes - usual : 0);
@@ -148,7 +148,7 @@ class Writer {
     }
   }
 
-  /// A node's name for the cables that end there, else a site of the cable's own.
+  /// Uses a node's name for cables that end there, else adds a site for the cable.
   void NameSites() {
     base::UniqueNames names;
     for (const NodeDef& node : def_.nodes) {
@@ -289,7 +289,7 @@ class Writer {
     xml_ << "</tendon>\n";
   }
 
-  /// The force k u - k l - b dl/dt, which pushes where it is positive, ends at 0.
+  /// Writes the force k u - k l - b dl/dt, where positive pushes, with the upper limit 0.
   void Actuators() {
     if (def_.cables.empty()) return;
     xml_ << "<actuator>\n";
@@ -305,7 +305,8 @@ class Writer {
     xml_ << "</actuator>\n";
   }
 
-  /// Speeds and rest lengths of the start. What is not named, the poses, is as in the bodies.
+  /// Writes speeds and rest lengths of the start. Poses, which are not given, are the bodies'
+  /// poses.
   void Start() {
     std::vector<double> speeds, controls;
     for (const BodyDef& body : def_.bodies) {

@@ -1,4 +1,4 @@
-/// A model as MJCF, for people and for the MuJoCo peer.
+/// Export of a model as MJCF, for users and for the MuJoCo peer.
 #pragma once
 
 #include <string>
@@ -10,29 +10,29 @@
 namespace taut::mjcf {
 
 struct WriteOptions : MjcfExport {
-  bool elliptic = true;  ///< In place of pyramidal friction cones.
-  /// As the peer is measured: MuJoCo 2's solver settings, room for all contacts it may have, and
-  /// height fields without heights, which are put in when the model is loaded.
+  bool elliptic = true;  ///< Elliptic friction cones; else pyramidal.
+  /// Writes the model as the peer is measured: MuJoCo 2's solver settings, memory for all its
+  /// possible contacts, and height fields without heights, which are set when the model is loaded.
   bool as_peer = false;
 };
 
-/// What MJCF has no word for: errors by name.
+/// Reports errors, with names, for features that MJCF lacks.
 void RefuseWhatMjcfLacks(const ModelDef& def, const WriteOptions& options, Diagnostics& out);
-/// What is left out, in words: warnings.
+/// Warns of features that are left out.
 void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagnostics& out);
 
-/// The text of a model of which nothing is refused.
+/// Returns the MJCF text of a model without refused features.
 std::string Text(const ModelDef& def, const WriteOptions& options);
 
-/// The friction that MuJoCo is told: its own rule for two geoms is the larger one, or that of the
-/// one of higher priority.
+/// Friction values for MuJoCo, which uses the larger friction of two geoms, or the friction of the
+/// geom with higher priority.
 struct Friction {
-  /// Two shapes, or a shape and a ground, whose friction does not follow from theirs.
+  /// Two shapes, or a shape and a ground, whose friction does not follow from their values.
   struct Pair {
     std::string geom1, geom2;
     double friction = 0;
   };
-  double shape = 0;           ///< Of the first shape that collides: most are like it.
+  double shape = 0;           ///< Of the first shape that collides: usual value.
   bool grounds_rule = false;  ///< Grounds have a higher priority.
   std::vector<Pair> pairs;
 };
@@ -52,10 +52,10 @@ struct Geoms {
 Geoms GeomsOf(const ModelDef& def);
 double FrictionOf(const ModelDef& def, const Material& a, const Material& b);
 Friction FrictionsOf(const ModelDef& def, const Geoms& geoms);
-/// What the geom itself says.
+/// Returns the friction value of the geom element.
 double OwnFriction(const ModelDef& def, const Friction& all, const Geoms::Geom& geom);
 
-/// How high a height field is in MuJoCo, which wants it above 0 [m].
+/// Returns the height of a height field in MuJoCo, which requires more than 0 [m].
 double RiseOf(const mechanics::HeightRange& range);
 
 }  // namespace taut::mjcf

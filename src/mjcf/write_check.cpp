@@ -1,4 +1,4 @@
-// What MJCF cannot say of a model, and what it leaves out.
+// Model features that MJCF cannot express, or that the export leaves out.
 #include <algorithm>
 
 #include "mjcf/write.h"
@@ -8,7 +8,7 @@ namespace {
 
 bool IsSpecial(const Material& m) { return m.stribeck || m.directions; }
 
-/// Calls `f` with every shape and ground that collides: its name and material.
+/// Calls `f` with the name and material of every shape and ground that collides.
 template <class F>
 void ForMaterials(const ModelDef& def, F f) {
   const auto all = [&](const auto& list) {
@@ -50,13 +50,14 @@ class Refuser {
       Refuse("the height field \"" + field.name + "\"", "MuJoCo 2.2.2 reads heights from a file");
     }
     if (options_.cables == MjcfCables::kSpring && options_.keyframe) {
-      out_.Error({}, "cables that are springs have no controls for a keyframe");
+      out_.Error("mjcf.springs_without_keyframe", {},
+                 "cables that are springs have no controls for a keyframe");
     }
   }
 
  private:
   void Refuse(const std::string& what, const std::string& hint = {}) {
-    out_.Error({}, "MJCF cannot say " + what, hint);
+    out_.Error("mjcf.not_expressible", {}, "MJCF cannot say " + what, hint);
   }
 
   void LookAt(const CableDef& cable) {
@@ -76,7 +77,7 @@ class Refuser {
   Diagnostics& out_;
 };
 
-/// "x" or "x and 3 more".
+/// Returns "x" or "x and 3 more".
 std::string Some(const std::vector<std::string>& names) {
   std::string text = "\"" + names.front() + "\"";
   if (names.size() > 1) text += " and " + std::to_string(names.size() - 1) + " more";
@@ -91,7 +92,8 @@ void RefuseWhatMjcfLacks(const ModelDef& def, const WriteOptions& options, Diagn
 
 void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagnostics& out) {
   const auto warn = [&](const std::vector<std::string>& names, const std::string& what) {
-    if (!names.empty()) out.Warning({}, "left out: " + what + " of " + Some(names));
+    if (!names.empty())
+      out.Warning("mjcf.left_out", {}, "left out: " + what + " of " + Some(names));
   };
   std::vector<std::string> restitution, sticking, special, motors, dampers, speeds;
   ForMaterials(def, [&](const std::string& name, const Material& m) {
@@ -125,11 +127,13 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
     const auto damped = std::find_if(def.cables.begin(), def.cables.end(),
                                      [](const CableDef& c) { return c.damping_n_s_per_m > 0; });
     if (damped != def.cables.end()) {
-      out.Warning({}, "MuJoCo's dampers of tendons act on slack cables, too, and push",
+      out.Warning("mjcf.dampers_of_slack_tendons", {},
+                  "MuJoCo's dampers of tendons act on slack cables, too, and push",
                   "cables as actuators do not push");
     }
   }
-  if (def.friction_law != FrictionLaw::kCone) out.Warning({}, "left out: friction along the slip");
+  if (def.friction_law != FrictionLaw::kCone)
+    out.Warning("mjcf.friction_along_slip", {}, "left out: friction along the slip");
 }
 
 }  // namespace taut::mjcf

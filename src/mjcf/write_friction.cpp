@@ -1,4 +1,4 @@
-// Geoms by name, and what MuJoCo is told of their friction.
+// Unique names of geoms, and their friction values for MuJoCo.
 #include <cmath>
 
 #include "base/unique_names.h"
@@ -16,7 +16,7 @@ void ForAll(const Geoms& geoms, F f) {
   }
 }
 
-/// What two geoms of MuJoCo have by themselves.
+/// Returns the friction of two geoms by MuJoCo's rule, without a pair element.
 double Given(const ModelDef& def, const Friction& all, const Geoms::Geom& shape,
              const Geoms::Geom& other) {
   const double a = OwnFriction(def, all, shape), b = OwnFriction(def, all, other);

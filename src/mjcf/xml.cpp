@@ -1,4 +1,4 @@
-// Reading XML: the only place that knows the library.
+// XML reader; the only user of the XML library.
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -78,7 +78,7 @@ class XmlReader {
     if (!text) return std::nullopt;
     files_.push_back(path);
     if (std::any_of(text->begin(), text->end(), base::IsControl)) {
-      out_.Error({path}, "there are control characters in this file");
+      out_.Error("mjcf.control_character", {path}, "there are control characters in this file");
       return std::nullopt;
     }
     if (!Fits(*text, path)) return std::nullopt;
@@ -86,12 +86,13 @@ class XmlReader {
     if (document.Parse(text->data(), text->size()) != tinyxml2::XML_SUCCESS ||
         document.RootElement() == nullptr) {
       const bool empty = document.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT;
-      out_.Error({path, empty ? 0 : document.ErrorLineNum()},
+      out_.Error("mjcf.not_xml", {path, empty ? 0 : document.ErrorLineNum()},
                  empty ? "this file is empty" : "this is no XML: " + Why(document));
       return std::nullopt;
     }
     if (document.RootElement()->NextSiblingElement() != nullptr) {
-      out_.Error({path, document.RootElement()->NextSiblingElement()->GetLineNum()},
+      out_.Error("mjcf.second_root",
+                 {path, document.RootElement()->NextSiblingElement()->GetLineNum()},
                  "there is a second element beside the root");
       return std::nullopt;
     }
@@ -108,11 +109,13 @@ class XmlReader {
     const MarkupCount count = CountMarkup(text);
     elements_ += count.nodes;
     if (elements_ > kMostElements) {
-      out_.Error({path}, "there are more than " + std::to_string(kMostElements) +
-                             " elements and comments up to the end of this file");
+      out_.Error("mjcf.too_many_elements", {path},
+                 "there are more than " + std::to_string(kMostElements) +
+                     " elements and comments up to the end of this file");
     } else if (count.attributes > kMostAttributes) {
       const auto from = text.begin(), to = from + static_cast<std::ptrdiff_t>(count.crowded_at);
-      out_.Error({path, 1 + static_cast<int>(std::count(from, to, '\n'))},
+      out_.Error("mjcf.too_many_attributes",
+                 {path, 1 + static_cast<int>(std::count(from, to, '\n'))},
                  "an element has more than " + std::to_string(kMostAttributes) + " attributes");
     } else {
       return true;
@@ -140,8 +143,9 @@ class XmlReader {
 
   bool Take(const tinyxml2::XMLElement& from, const std::string& path, Element& to) {
     if (depth_ >= kDeepest) {
-      out_.Error({path, from.GetLineNum()}, "elements of all files are nested more than " +
-                                                std::to_string(kDeepest) + " deep");
+      out_.Error(
+          "mjcf.too_deep", {path, from.GetLineNum()},
+          "elements of all files are nested more than " + std::to_string(kDeepest) + " deep");
       return false;
     }
     to.name = from.Name();
@@ -150,7 +154,8 @@ class XmlReader {
       const SourceRef at{path, a->GetLineNum(), 0};
       const std::string value = a->Value();
       if (std::any_of(value.begin(), value.end(), base::IsControl)) {
-        out_.Error(at, to.name + "." + a->Name() + " has control characters");
+        out_.Error("mjcf.control_character", at,
+                   to.name + "." + a->Name() + " has control characters");
         return false;
       }
       to.attributes.push_back({a->Name(), value, at});
@@ -167,33 +172,35 @@ class XmlReader {
     return true;
   }
 
-  /// The children of the file's root, here.
+  /// Inserts the children of the included file's root here.
   bool Include(const tinyxml2::XMLElement& include, const std::string& path, Element& to) {
     const SourceRef at{path, include.GetLineNum(), 0};
     const char* const name = include.Attribute("file");
     if (name == nullptr) {
-      out_.Error(at, "include has no file");
+      out_.Error("mjcf.include_without_file", at, "include has no file");
       return false;
     }
     const std::string file = (folder_ / name).lexically_normal().string();
     if (std::find(files_.begin(), files_.end(), file) != files_.end()) {
-      out_.Error(at, "\"" + file + "\" is included twice");
+      out_.Error("mjcf.included_twice", at, "\"" + file + "\" is included twice");
       return false;
     }
     if (files_.size() >= static_cast<std::size_t>(kMostFiles)) {
-      out_.Error(at, "there are more than " + std::to_string(kMostFiles) + " files");
+      out_.Error("mjcf.too_many_files", at,
+                 "there are more than " + std::to_string(kMostFiles) + " files");
       return false;
     }
     auto root = Read(file);
     if (!root) {
-      out_.Error(at, "what it includes cannot be read");
+      out_.Error("mjcf.include_not_read", at, "what it includes cannot be read");
       return false;
     }
     for (Element& child : root->children) to.children.push_back(std::move(child));
     return true;
   }
 
-  const std::filesystem::path folder_;  ///< Of the first file: where all others are seen from.
+  const std::filesystem::path
+      folder_;  ///< Folder of the first file; paths of all others are relative to it.
   std::vector<std::string>& files_;
   Diagnostics& out_;
   std::size_t elements_ = 0;

@@ -1,4 +1,4 @@
-/// How a body stands in a trace: `body/NAME/...`, there and back.
+/// Channels of a body's state in a trace, `body/NAME/...`: conversion to and from `BodyState`.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-/// What acts on the bodies of a simulated plant besides their weights, point by point.
+/// Forces on the bodies of a simulated plant, except their weights, with their points of
+/// application.
 #pragma once
 
 #include <vector>
@@ -11,7 +12,8 @@
 
 namespace taut::plant {
 
-/// A point of a body, by its arm from the centre of mass at t = 0 (in W), or of the world.
+/// Point of a body, given by its arm from the center of mass at t = 0 (in W), or point of the
+/// world.
 struct BodyPoint {
   int body = kWorld;
   Vec3 arm_m;
@@ -28,17 +30,18 @@ inline mechanics::BodyMoment MomentOf(const World& world, int body, int lane = 0
 /// Returns the joints of a model with `from_m` and `to_m` relative to the centers of mass.
 std::vector<JointDef> JointsByArms(const ModelDef& def);
 
-/// Gathers the forces of a lane: of cables with the tensions that are read (docs/theory/loads.md,
-/// eq. 1), of contacts, joints and at nodes as means over the last step.
+/// Gathers the forces on the bodies of a lane: of cables from the tensions read
+/// (docs/theory/loads.md, eq. 1); of contacts, joints and at nodes as means over the last step.
 class BodyForces {
  public:
   explicit BodyForces(const ModelDef& def);
 
-  /// In a fixed order; valid until the next call.
+  /// Returns the forces in a fixed order; valid until the next call.
   const std::vector<BodyForce>& Gather(const Observation& exact, const World& world, int lane = 0);
 
  private:
-  std::vector<std::vector<BodyPoint>> cables_;  ///< Empty: their path must be asked for.
+  std::vector<std::vector<BodyPoint>>
+      cables_;  ///< Empty: the path is read from the world (wheels, friction, wrapping).
   std::vector<int> bodies_of_nodes_;
   std::vector<JointDef> joints_;  ///< From `JointsByArms`.
   std::size_t body_count_;

@@ -1,4 +1,4 @@
-/// Where a simulated robot is as a whole.
+/// Center of mass of a simulated robot.
 #pragma once
 
 #include "math/vec.h"
@@ -6,7 +6,7 @@
 
 namespace taut::plant {
 
-/// Of bodies with masses mass(b) [kg] at place(b) [m].
+/// Returns the center of mass of bodies with masses mass(b) [kg] at place(b) [m].
 template <class Mass, class Place>
 Vec3 CenterOfMass(std::size_t body_count, const Mass& mass, const Place& place) {
   Vec3 sum;
@@ -19,7 +19,7 @@ Vec3 CenterOfMass(std::size_t body_count, const Mass& mass, const Place& place) 
   return (mass_kg > 0 ? 1 / mass_kg : 0) * sum;
 }
 
-/// Of all bodies in a lane [m], in W.
+/// Returns the center of mass of all bodies of a lane [m], in W.
 inline Vec3 CenterOfMass(const World& world, int lane, std::size_t body_count) {
   return CenterOfMass(
       body_count, [&](std::size_t b) { return world.BodyMass(lane, static_cast<int>(b)); },

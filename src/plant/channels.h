@@ -1,5 +1,5 @@
-/// Groups of channels that are recorded on request only (docs/formats/trace.md): nobody gets them
-/// who asks for none, but all who look for a channel's name know them.
+/// Optional groups of channels of a trace (docs/formats/trace.md). Each is recorded on request
+/// only; the check of channel names and its suggestions include all of them.
 #pragma once
 
 #include "plant/recorder.h"
@@ -7,16 +7,17 @@
 namespace taut::plant {
 
 void AddNodeChannels(const ExperimentSpec& experiment, Recorder& recorder);
-/// The axial forces of struts, and what holds anchored bodies.
+/// Adds the axial forces of struts and the reactions of anchored bodies.
 void AddLoadChannels(const ExperimentSpec& experiment, Recorder& recorder);
-/// Of cables with friction or wheels: their spans, what friction took, angles about wheels.
+/// Adds span tensions, friction losses, wheel angles, wrap angles and bends of routed cables with
+/// friction or wheels and of wrapping cables.
 void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder);
-/// What joints carry, and where they are.
+/// Adds forces, torques and coordinates of joints.
 void AddJointChannels(const ExperimentSpec& experiment, Recorder& recorder);
 void AddMotionChannels(const ExperimentSpec& experiment, Recorder& recorder);
 void AddContactChannels(const ExperimentSpec& experiment, Recorder& recorder);
 
-/// Writes a vector's components behind each other.
+/// Writes the components of a vector to `out[0]` to `out[2]`.
 inline void Put(const Vec3& v, double* out) {
   out[0] = v.x;
   out[1] = v.y;

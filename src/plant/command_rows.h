@@ -1,4 +1,4 @@
-/// What commands point to, for plants that have no place of their own for it.
+/// Storage for the rows that `Commands` points to, for plants without other storage for them.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,8 @@ class CommandRows {
         mode_(cables * lanes, CommandMode::kRestLength),
         gait_(lanes, -1) {}
 
-  /// `rest_length_m`: the plant's own row. Valid while this neither moves nor goes.
+  /// Returns commands with `rest_length_m` as the row of rest lengths. Valid while this object is
+  /// neither moved nor destroyed.
   Commands With(double* rest_length_m) {
     return {static_cast<int>(lanes_),
             rest_length_m,
@@ -30,7 +31,7 @@ class CommandRows {
             gait_.data()};
   }
 
-  /// All but the rest lengths of a lane are those of a start.
+  /// Resets the commands of a lane to their initial values, except the rest lengths.
   void Restart(int lane) {
     const auto j = static_cast<std::size_t>(lane);
     gait_[j] = -1;
@@ -40,7 +41,7 @@ class CommandRows {
     }
   }
 
-  /// All but the rest lengths.
+  /// Serializes the commands of a lane, except the rest lengths.
   void Carry(LaneState& state) {
     for (std::vector<double>* row : {&set_point_n_, &velocity_input_m_per_s_, &signal_}) {
       state.Row(*row);

@@ -8,14 +8,14 @@
 namespace taut::plant {
 namespace {
 
-/// How much of a new gait is there at a part of the blend, 0 to 1: with its first two derivatives
-/// continuous (docs/theory/gaits.md).
+/// Returns the weight of a new gait at a fraction of the blend, 0 to 1. Its first two derivatives
+/// are continuous (docs/theory/gaits.md).
 double ShareAt(double part) {
   const double x = std::clamp(part, 0.0, 1.0);
   return x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
 }
 
-/// Plays the gaits of a controller's input, one at a time, and passes from one to the next.
+/// Plays the gaits of a controller's input, one at a time, and blends from one to the next.
 class GaitController final : public Controller {
  public:
   GaitController(const ControlSetup& setup, std::size_t index)
@@ -86,7 +86,7 @@ class GaitController final : public Controller {
   };
   struct Lane {
     std::vector<GaitChange> changes;
-    Part now, before;  ///< `before`: while it is blended away.
+    Part now, before;  ///< `before`: the gait that is being blended out.
     double blend_from_s = 0;
   };
 
@@ -94,8 +94,8 @@ class GaitController final : public Controller {
     return control::TickTime(control::Clock<double>{clock_.period_s, clock_.phase_s}, tick);
   }
 
-  /// Which gait is to play in a lane from this tick on. A change waits until the one before is
-  /// over.
+  /// Selects the gait of a lane from this tick on. A change waits until the previous blend has
+  /// ended.
   void Choose(std::size_t j, std::int64_t tick, int commanded) {
     Lane& lane = lanes_[j];
     const double time_s = TimeOf(tick);
@@ -135,7 +135,7 @@ class GaitController final : public Controller {
         {playing, number_.data(), time_s_.data(), since_s_.data()}, seen);
   }
 
-  /// Whether all lanes play the same one gait.
+  /// Returns true if all lanes play the same gait and none is blending.
   bool InUnison(Lanes due) const {
     bool same = due == AllLanes(static_cast<int>(lanes_.size()));
     for (const Lane& lane : lanes_) {

@@ -20,7 +20,7 @@ control::ImpedanceLaw LawOf(const ImpedanceSpec& spec, const ClockSpec& clock) {
   return law;
 }
 
-/// The impedance law of a controller's cables (paper eq. 3). The worlds' gains differ.
+/// Impedance control of a controller's cables (paper eq. 3). Gains may differ between worlds.
 class ImpedanceController final : public Controller {
  public:
   ImpedanceController(const ControlSetup& setup, std::size_t index)
@@ -111,7 +111,7 @@ class ImpedanceController final : public Controller {
     others.PutBack();
   }
 
-  /// All that a tick writes.
+  /// Keeps every row that a tick writes.
   void KeepAll(OtherLanes& others, const Commands& commands) {
     for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
       others.Keep(memory->data(), cables_.size());

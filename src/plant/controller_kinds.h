@@ -1,4 +1,5 @@
-/// The controllers that an experiment may have. One a file, controller_*.cpp, and a line here.
+/// Registry of the controllers of an experiment: one file per kind (controller_*.cpp) and one entry
+/// here.
 #pragma once
 
 #include <memory>
@@ -8,19 +9,19 @@
 
 namespace taut::plant {
 
-/// Each makes what a controller of the experiment, number `index`, has of its kind; nothing if it
-/// has none of it.
+/// Each creates the controller of its kind for controller `index` of the experiment; null if that
+/// has none.
 using MakeController = std::unique_ptr<Controller> (*)(const ControlSetup&, std::size_t index);
 
 std::unique_ptr<Controller> MakeGait(const ControlSetup&, std::size_t index);
 std::unique_ptr<Controller> MakeImpedance(const ControlSetup&, std::size_t index);
 std::unique_ptr<Controller> MakePosition(const ControlSetup&, std::size_t index);
 
-/// In the order in which they act at one time: a gait before the law that it feeds.
+/// In the order in which they act at the same time: a gait before the law that it feeds.
 inline constexpr MakeController kControllerKinds[] = {MakeGait, MakeImpedance, MakePosition};
 
-/// The controllers of an experiment, each with its kinds one after the other, then those that a
-/// program brings.
+/// Returns the controllers of an experiment, each with its kinds in order, then the controllers
+/// that the calling program adds.
 inline std::vector<std::unique_ptr<Controller>> MakeControllers(const ControlSetup& setup,
                                                                 const Brought& brought) {
   std::vector<std::unique_ptr<Controller>> made;

@@ -7,7 +7,7 @@
 namespace taut::plant {
 namespace {
 
-/// Rest lengths against time: a program, a gait's signal, or the one upon the other.
+/// Position control: rest lengths from a program in time, a gait's signal, or the sum of both.
 class PositionController final : public Controller {
  public:
   PositionController(const ControlSetup& setup, std::size_t index, const std::vector<int>& of_gait)
@@ -48,8 +48,8 @@ class PositionController final : public Controller {
     }
   }
 
-  /// Of lengths that cables without a program had at their first tick; a program that somebody has
-  /// held in place stays held.
+  /// Serializes the lengths that cables without a program had at their first tick. A program that
+  /// `Hold` has replaced stays replaced.
   void Carry(LaneState& state) override {
     for (double& length_m : lanes_[static_cast<std::size_t>(state.lane())].start_m) {
       state.Value(length_m);
@@ -89,8 +89,8 @@ class PositionController final : public Controller {
 
   std::size_t index_;
   ClockSpec clock_;
-  std::vector<int> cables_;  ///< Those with a program, then those that a gait alone moves.
-  bool moved_ = false;       ///< By a gait.
+  std::vector<int> cables_;  ///< Cables with a program, then cables that only a gait moves.
+  bool moved_ = false;       ///< A gait moves the cables.
   std::vector<Lane> lanes_;
 };
 

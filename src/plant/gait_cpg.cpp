@@ -4,7 +4,8 @@
 namespace taut::plant {
 namespace {
 
-/// Phase oscillators with amplitude dynamics (paper eq. 4-6, docs/theory/gaits.md).
+/// Central pattern generator: phase oscillators with amplitude dynamics (paper eq. 4-6,
+/// docs/theory/gaits.md).
 class CpgPlayer final : public OscillatorPlayer {
  public:
   explicit CpgPlayer(const GaitSetup& setup)
@@ -28,7 +29,7 @@ class CpgPlayer final : public OscillatorPlayer {
     state.Row(signal_rad_per_s_);
   }
 
-  /// Phases and amplitudes stay what they are: only what they tend to changes.
+  /// Keeps phases and amplitudes; only their targets change.
   bool GoOnFrom(const GaitPlayer& before, int lane) override {
     const auto* const other = dynamic_cast<const CpgPlayer*>(&before);
     if (other == nullptr || other->cables() != cables() || other->sign_ != sign_) return false;
@@ -94,7 +95,7 @@ class CpgPlayer final : public OscillatorPlayer {
   }
 
   std::vector<double> sign_;
-  std::vector<std::size_t> group_;  ///< Of each coupling: into `CpgGait::groups`.
+  std::vector<std::size_t> group_;  ///< Index of each coupling into `CpgGait::groups`.
   std::vector<double> frequency_hz_, amplitude_, convergence_per_s_, weight_, phase_turns_;
   std::vector<double> gain_, reference_n_, signal_rad_per_s_;
   bool wants_tensions_ = false;

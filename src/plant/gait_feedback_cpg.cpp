@@ -5,14 +5,14 @@
 namespace taut::plant {
 namespace {
 
-constexpr std::size_t kSaid = 3;  ///< To an oscillator: about frequency, amplitude, phase.
+constexpr std::size_t kSaid = 3;  ///< Feedback per oscillator: frequency, amplitude, phase.
 static_assert(NetworkSpec::kMostHidden == kMostHidden);
 constexpr const char* kSaidNames[kSaid] = {"frequency", "amplitude", "phase"};
 
-/// A network in all lanes; none says 0.
+/// Neural network, evaluated in all lanes; without one, all outputs are 0.
 class LaneNetwork {
  public:
-  /// The first lane's; `outputs` are the names of all that it may say.
+  /// Sets the shape from the first lane's network; `outputs` are the names of all possible outputs.
   void Shape(const std::optional<NetworkSpec>& spec, std::vector<std::string> outputs,
              std::size_t lanes) {
     lanes_ = lanes;
@@ -59,7 +59,8 @@ class LaneNetwork {
   std::vector<double> weights_, inputs_, said_;
 };
 
-/// Oscillators that hear their cables and where the goal is (docs/theory/gaits.md).
+/// Central pattern generator with feedback from cables and from the direction of the goal
+/// (docs/theory/gaits.md).
 class FeedbackCpgPlayer final : public OscillatorPlayer {
  public:
   explicit FeedbackCpgPlayer(const GaitSetup& setup)
@@ -162,7 +163,7 @@ class FeedbackCpgPlayer final : public OscillatorPlayer {
     }
   }
 
-  /// What the networks say to every oscillator, until the next tick.
+  /// Sets the feedback of all oscillators until the next tick from the outputs of the networks.
   void Hear(Lanes due, const Observation& seen) override {
     if (!of_cable_.there() && !of_goal_.there()) return;
     for (int j = 0; j < lanes(); ++j) {
@@ -189,7 +190,8 @@ class FeedbackCpgPlayer final : public OscillatorPlayer {
     }
   }
 
-  /// A joint at a time. Who senses no goal hears of none: (0, 0).
+  /// Evaluates the goal network, one joint at a time. Without a goal sensor its goal inputs are (0,
+  /// 0).
   void HearGoal(Lanes due, const Observation& seen) {
     for (std::size_t joint = 0; joint < found_.place.size(); ++joint) {
       for (int j = 0; j < lanes(); ++j) {
@@ -219,7 +221,7 @@ class FeedbackCpgPlayer final : public OscillatorPlayer {
       amplitude_gain_, phase_gain_, offset_, weight_, coupling_turns_;
   LaneNetwork of_cable_, of_goal_;
   std::vector<double> first_length_m_;
-  std::vector<double> feedback_;  ///< Row kSaid * i + said.
+  std::vector<double> feedback_;  ///< Row kSaid * oscillator + input.
 };
 
 }  // namespace

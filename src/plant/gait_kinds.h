@@ -1,4 +1,5 @@
-/// A gait at work in all lanes of a plant. One kind a file, gait_*.cpp, and a line here.
+/// Gait players: gaits in all lanes of a plant. One file per kind (gait_*.cpp) and one entry in the
+/// list of makers.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +14,15 @@
 
 namespace taut::plant {
 
-/// The lanes' gaits, which differ in numbers only, so that `ResolveGait` makes the same of all.
+/// The lanes' gaits. They differ in numbers only, so `ResolveGait` returns the same for all.
 struct GaitSetup {
   std::vector<const GaitSpec*> gaits;
   ResolvedGait resolved;
   double period_s = 0.01;
 };
 
-/// Who plays on now. Per lane: the time of the run, and how much time and how many ticks have
-/// passed since this gait began there.
+/// Lanes in which this gait plays now. Per lane: time of the run, and time and number of ticks
+/// since this gait began there.
 struct GaitTick {
   Lanes due = 0;
   const std::int64_t* number = nullptr;
@@ -36,21 +37,22 @@ class GaitPlayer {
         signal_(cables_.size() * setup.gaits.size()) {}
   virtual ~GaitPlayer() = default;
 
-  /// Per output, the robot's cable.
+  /// Per output, index of the robot's cable.
   const std::vector<int>& cables() const noexcept { return cables_; }
-  /// Of output i in lane j, at [i * lanes + j]: what it says since the last tick; 0 before.
+  /// Output i in lane j since the last tick, at [i * lanes + j]; 0 before the first.
   const std::vector<double>& signal() const noexcept { return signal_; }
 
-  /// To the next tick, in the lanes that are due.
+  /// Advances to the next tick in the lanes that are due.
   virtual void Tick(const GaitTick& tick, const Observation& seen) = 0;
-  /// A lane gets other numbers, and plays from the beginning.
+  /// Sets the parameters of a lane and plays from the beginning.
   virtual void Restart(int lane, const GaitSpec& gait) = 0;
-  /// A lane gets other numbers, and plays on: from its next tick, without a jump of a phase.
-  /// Allocates nothing.
+  /// Sets the parameters of a lane while it plays on: from its next tick, without a jump of a
+  /// phase. Allocates nothing.
   virtual void Retune(int lane, const GaitSpec& gait) = 0;
-  /// What the next ticks of a lane need to know of those before.
+  /// Serializes the state of a lane: all that its next ticks depend on.
   virtual void Carry(LaneState& state) { state.Row(signal_); }
-  /// Goes on in a lane from where another gait is, without a jump. False if there is no such way.
+  /// Continues in a lane from the state of another gait, without a jump. Returns false if that is
+  /// impossible.
   virtual bool GoOnFrom(const GaitPlayer& before, int lane) {
     return (void)before, (void)lane, false;
   }
@@ -69,7 +71,7 @@ class GaitPlayer {
   std::vector<double> signal_;
 };
 
-/// Each makes a player if the gaits are of its kind.
+/// Each returns a player if the gaits are of its kind, else null.
 using MakeGaitPlayer = std::unique_ptr<GaitPlayer> (*)(const GaitSetup&);
 
 std::unique_ptr<GaitPlayer> MakeSine(const GaitSetup&);

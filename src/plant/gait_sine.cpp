@@ -6,7 +6,7 @@
 namespace taut::plant {
 namespace {
 
-/// docs/theory/gaits.md, eq. G.1.
+/// Sine gait (docs/theory/gaits.md, eq. G.1).
 class SinePlayer final : public GaitPlayer {
  public:
   explicit SinePlayer(const GaitSetup& setup)
@@ -64,7 +64,8 @@ class SinePlayer final : public GaitPlayer {
   }
 
  private:
-  /// A frequency that changes at a time t turns a wave from there on: f' t + shift' = f t + shift.
+  /// Keeps a wave's phase continuous when its frequency changes at a time t: f' t + shift' = f t +
+  /// shift.
   void Shift(const GaitTick& tick) {
     const Lanes shifted = retuned_ & tick.due;
     retuned_ &= ~shifted;
@@ -86,9 +87,10 @@ class SinePlayer final : public GaitPlayer {
 
   const LaneKernel& kernel_;
   std::vector<ResolvedGait::Wave> waves_;
-  Lanes retuned_ = 0;  ///< Since their last tick.
+  Lanes retuned_ = 0;  ///< Lanes retuned since their last tick.
   std::vector<double> frequency_hz_, wanted_hz_, amplitude_, offset_;
-  /// Of a wave's phase: what the gait says, what changes of its frequency have added, together.
+  /// Of a wave's phase: the gait's value, the sum of shifts by changes of frequency, and their
+  /// total.
   std::vector<double> given_turns_, shift_turns_, phase_turns_;
   KeptRows kept_;
 };

@@ -7,13 +7,13 @@
 namespace taut::plant {
 namespace {
 
-/// The row that holds at `time_s`, which is not before the first.
+/// Returns the row in force at `time_s`, which is not before the first row.
 std::size_t RowAt(const std::vector<double>& times_s, double time_s) {
   const auto after = std::upper_bound(times_s.begin(), times_s.end(), time_s + kTimeToleranceS);
   return static_cast<std::size_t>(after - times_s.begin()) - 1;
 }
 
-/// Rows of a table, held or joined by straight lines.
+/// Plays the rows of a table, held or interpolated linearly.
 class TablePlayer final : public GaitPlayer {
  public:
   explicit TablePlayer(const GaitSetup& setup) : GaitPlayer(setup) {
@@ -42,18 +42,18 @@ class TablePlayer final : public GaitPlayer {
   void Restart(int lane, const GaitSpec& gait) override {
     tables_[static_cast<std::size_t>(lane)] = *gait.table;
   }
-  void Retune(int, const GaitSpec&) override {}  // none of its numbers is one that varies
+  void Retune(int, const GaitSpec&) override {}  // a table has no tunable parameter
 
  private:
   static double TimeIn(const TableGait& table, double time_s) {
     const double end_s = table.time_s.back();
     if (!table.repeat_from_s || time_s < end_s) return time_s;
-    // fmod is exact, so it has the same bits everywhere
+    // fmod is exact, so the result has the same bits on all platforms
     const double from_s = *table.repeat_from_s;
     return from_s + std::fmod(time_s - from_s, end_s - from_s);
   }
 
-  std::vector<TableGait> tables_;  ///< One a lane.
+  std::vector<TableGait> tables_;  ///< One per lane.
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ using Axis = control::Direction<double>;
 
 Axis AxisOf(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-/// S^-1, by Cramer's rule (docs/theory/gaits.md, eq. G.22).
+/// Returns S^-1, by Cramer's rule (docs/theory/gaits.md, eq. G.22).
 control::StrutFrame<double> FrameOf(const std::vector<Axis>& struts) {
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, xz = 0;
   for (const Axis& u : struts) {
@@ -23,8 +23,8 @@ control::StrutFrame<double> FrameOf(const std::vector<Axis>& struts) {
           one * b, one * (xy * xz - xx * yz), one * c};
 }
 
-/// Rolls towards the goal (docs/theory/gaits.md, eq. G.22 to G.24). A lane at a time: it is little
-/// work beside a step, and has the same bits.
+/// Rolling gait towards the goal (docs/theory/gaits.md, eq. G.22 to G.24). Computed lane by lane:
+/// the cost is small compared to a step, and the result is bit-identical for every number of lanes.
 class TowardGoalPlayer final : public GaitPlayer {
  public:
   explicit TowardGoalPlayer(const GaitSetup& setup) : GaitPlayer(setup), laws_(setup.gaits.size()) {
@@ -72,11 +72,11 @@ class TowardGoalPlayer final : public GaitPlayer {
   struct Law {
     control::TowardGoal<double> gains{};
     double beat = 0, beat_hz = 0;
-    /// A frequency that changes does so at a tick, and the beat turns on from there.
+    /// The frequency changes at a tick, and the beat continues from its phase there.
     double wanted_hz = 0, shift_turns = 0;
   };
 
-  /// Who does not know how the robot lies says the offset; who senses no goal hears of none: (0,
+  /// Without known poses of bodies the signal is the offset; without a goal sensor the goal is (0,
   /// 0).
   void TickLane(int lane, double since_s, const Observation& seen) {
     Axis ahead{0, 0, 0}, up{0, 0, 0};

@@ -1,4 +1,4 @@
-/// Where the goal is, and the sensor that says in which direction.
+/// Goal of an experiment, and the sensor of its direction.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace taut::plant {
 
-/// By how much a start of this seed is beside the one described, horizontally [m].
+/// Returns the random horizontal offset of the start for a seed [m].
 Vec3 PlaceOf(const StartNoise& noise, std::uint64_t seed);
 
-/// The goal in W, with the noise of a start of this seed.
+/// Returns the goal in W, with the start noise of a seed.
 Vec3 GoalOf(const GoalSpec& goal, const StartNoise& noise, std::uint64_t seed);
 
-/// How far a body's centre of mass is from the goal, horizontally [m].
+/// Returns the horizontal distance of a body's center of mass from the goal [m].
 double DistanceToGoal(const Vec3& goal_m, const Vec3& body_m);
 
-/// A compass, or a camera that sees a beacon, at the goal of each lane (docs/theory/sensors.md).
-/// Where the plant says itself where the goal is, as a robot with such a sensor does, that is
-/// shown. Where neither bodies nor the goal are known it says (0, 0).
+/// Compass, or camera that sees a beacon, at the goal of each lane (docs/theory/sensors.md). If the
+/// plant observes the goal's direction, as a robot with such a sensor does, that direction is used.
+/// Returns (0, 0) where neither bodies nor the goal are observed.
 class GoalSensor final : public SensorModel {
  public:
   explicit GoalSensor(const ControlSetup& setup);

@@ -1,4 +1,5 @@
-/// A clock that every lane has its own hand of: a lane that begins anew starts it anew.
+/// Clock of a sensor or controller with one tick counter per lane, since lanes restart
+/// independently.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,7 @@ class LaneClock {
   LaneClock(const ClockSpec& spec, int lanes)
       : clock_{spec.period_s, spec.phase_s}, ticks_(static_cast<std::size_t>(lanes)) {}
 
-  /// Those of `among` whose tick is due.
+  /// Returns the lanes of `among` whose tick is due.
   Tick Due(const double* time_s, Lanes among) const noexcept {
     if (together_) {
       const bool due = control::IsDue(clock_, ticks_[0], time_s[0]);
@@ -28,7 +29,7 @@ class LaneClock {
     return {due & among, ticks_.data()};
   }
 
-  /// They have acted.
+  /// Counts the tick of lanes that have acted.
   void Advance(Lanes lanes) noexcept {
     for (std::size_t j = 0; j < ticks_.size(); ++j) ticks_[j] += lanes >> j & 1u;
   }
@@ -41,13 +42,13 @@ class LaneClock {
     ticks_[static_cast<std::size_t>(lane)] = 0;
     together_ = ticks_.size() == 1;
   }
-  /// Into a lane that has begun anew.
+  /// Serializes the counter of a lane; restores into a lane that was restarted.
   void Carry(LaneState& state) { state.Row(ticks_); }
 
  private:
   control::Clock<double> clock_;
   std::vector<std::int64_t> ticks_;
-  bool together_ = true;  ///< No lane has ever begun anew: all hands are alike.
+  bool together_ = true;  ///< No lane has been restarted: all counters are equal.
 };
 
 }  // namespace taut::plant

@@ -1,4 +1,4 @@
-/// Neural networks, and the network of oscillators that they modulate, in lanes.
+/// SIMD kernels of neural networks and of the central pattern generator (CPG) that they modulate.
 #pragma once
 
 #include "plant/lane_kernel.h"
@@ -17,7 +17,7 @@ void SayNetwork(const NetworkRows& rows, const double* inputs, double* outputs) 
       [outputs](int k, W y) { Store(outputs, k, y); });
 }
 
-/// A network of oscillators in the caller's memory.
+/// Views of a network of oscillators in memory that the caller owns.
 template <class W>
 struct LaneFeedbackCpg {
   control::FeedbackCpgLaw<W>* laws;

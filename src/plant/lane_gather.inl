@@ -16,7 +16,7 @@ TAUT_INLINE void StoreVec(double* rows, int i, const simd::V3<W>& v) noexcept {
   Store(rows, i, v.x), Store(rows, i + 1, v.y), Store(rows, i + 2, v.z);
 }
 
-// The functions of math/vec.h for lanes, with the same operations in the same order.
+// SIMD versions of functions of math/vec.h, with the same operations in the same order.
 template <class W>
 TAUT_INLINE simd::V3<W> Turned(const simd::Q4<W>& q, const simd::V3<W>& a) noexcept {
   const simd::V3<W> u{q.x, q.y, q.z};

@@ -1,5 +1,6 @@
-/// Included once an instruction set, by lane_*.cpp, with the width of its registers. As in the
-/// step, nothing here uses the standard library, and every function is a template of W.
+/// Implementation of the lane kernels, included by lane_*.cpp once per instruction set with the
+/// register width W. As in the step, nothing here uses the standard library, and every function is
+/// a template of W.
 #pragma once
 
 #include "plant/lane_feedback_cpg.inl"
@@ -12,7 +13,7 @@
 
 namespace taut::plant {
 
-/// What does not differ between cables is known to the compiler: `by_pid`, `differenced`.
+/// Options that are equal for all cables are compile-time constants: `by_pid`, `differenced`.
 template <class W, bool kByPid, bool kDifferenced>
 void ActCables(control::ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sensed,
                const ImpedanceOut out) noexcept {
@@ -89,7 +90,7 @@ void TickSine(const SineRows& rows, const double* time_s, double* velocity_m_per
   }
 }
 
-/// A network in memory that the caller keeps.
+/// Views of a network of oscillators in memory that the caller owns.
 template <class W>
 struct LaneCpg {
   control::CpgLaw<W>* laws;

@@ -1,5 +1,5 @@
-/// What one lane remembers, as bytes: the same walk over it writes them and reads them back, into
-/// any lane of the same loop or of one like it.
+/// Serialization of one lane's state (snapshot). The same sequence of calls writes the bytes and
+/// reads them back, into any lane of the same loop or of a loop with the same structure.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ class LaneState {
   /// Writes: appends to `to`.
   LaneState(int lane, int lanes, std::vector<std::uint8_t>& to)
       : lane_(static_cast<std::size_t>(lane)), lanes_(static_cast<std::size_t>(lanes)), to_(&to) {}
-  /// Reads what such a walk wrote. Zeros behind the end.
+  /// Reads bytes that the same sequence of calls wrote. Beyond the end it reads zeros.
   LaneState(int lane, int lanes, std::span<const std::uint8_t> from)
       : lane_(static_cast<std::size_t>(lane)),
         lanes_(static_cast<std::size_t>(lanes)),
@@ -26,10 +26,11 @@ class LaneState {
 
   int lane() const noexcept { return static_cast<int>(lane_); }
   bool reads() const noexcept { return to_ == nullptr; }
-  /// Whether as many bytes were read as there were.
+  /// Returns true if exactly all bytes were read.
   bool at_end() const noexcept { return from_.empty() && !short_; }
 
-  /// A number. (Structs have bytes that mean nothing; their numbers are named one by one.)
+  /// Serializes a number. Structs are serialized member by member, because their padding is
+  /// undefined.
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void Value(T& x) {
     if (!reads()) {
@@ -51,17 +52,17 @@ class LaneState {
   void Values(T&... x) {
     (Value(x), ...);
   }
-  /// The lane's numbers of a row, or of `count` rows one after the other.
+  /// Serializes the lane's numbers of `count` consecutive rows.
   template <class T>
   void Row(T* row, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) Value(row[i * lanes_ + lane_]);
   }
-  /// All that a vector of as many rows as fit has of the lane.
+  /// Serializes the lane's numbers of all rows of a vector.
   template <class T>
   void Row(std::vector<T>& row) {
     Row(row.data(), row.size() / lanes_);
   }
-  /// The lane's bit.
+  /// Serializes the lane's bit.
   void Bit(Lanes& lanes) {
     auto bit = static_cast<std::uint8_t>(lanes >> lane_ & 1u);
     Value(bit);

@@ -160,8 +160,9 @@ class Live final : public LiveRun {
     double until_s = 0;
   };
 
-  /// Spring and damper towards the hand. Both act explicitly and are limited so that they stay
-  /// stable on the end of a rod, which moves with a quarter of its mass.
+  /// Returns the force of a spring and damper between node and hand. Both are explicit and limited,
+  /// so that they are stable at the end of a rod, whose effective mass is a quarter of the rod's
+  /// mass.
   Vec3 HandForce() const {
     const NodeDef& node = experiment_.robot.def.nodes[static_cast<std::size_t>(hand_->node)];
     if (node.body == kWorld) return {};

@@ -11,7 +11,7 @@ namespace {
 
 /// The clock with the shortest period, whose ticks end steps most often.
 struct Ticks {
-  std::string of;  ///< Its name and a verb.
+  std::string of;  ///< Its name and a verb, for the message.
   double period_s = INFINITY;
 };
 
@@ -45,7 +45,8 @@ double LongestStep(const ExperimentSpec& experiment) {
 void WarnOfStep(const ExperimentSpec& experiment, Diagnostics& out) {
   const Ticks fastest = FastestTicks(experiment);
   if (experiment.step_s <= fastest.period_s * (1 + 1e-9)) return;
-  out.Warning({experiment.files.empty() ? "" : experiment.files[0]},
+  out.Warning("experiment.step_without_effect",
+              {experiment.files.empty() ? "" : experiment.files[0]},
               fmt::format("step_s {:g} has no effect: {} the period {:g} s, and a step ends at "
                           "each tick",
                           experiment.step_s, fastest.of, fastest.period_s),

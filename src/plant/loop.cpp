@@ -102,7 +102,8 @@ void Loop::AdvanceSchedules(int count) {
 
 void Loop::Step() {
   Prepare();
-  if (!timelines_[0].idle()) Push();  // all lanes have the same events, and hands are in the first
+  if (!timelines_[0].idle())
+    Push();  // all lanes have the same events; hand forces act in lane 0 only
   AdvanceSchedules(1);
   plant_.Advance(step_s_.data(), to_s_.data());
 }
@@ -166,7 +167,7 @@ void Loop::Carry(LaneState& state) {
   plant_.Carry(state);
 }
 
-/// The next tick or corner.
+/// Returns the time of the next tick or corner.
 double Loop::NextBoundary(int lane) const {
   const auto timeline = static_cast<std::size_t>(lane < count_ ? lane : 0);
   double next = timelines_[timeline].NextCorner(time_s(lane));

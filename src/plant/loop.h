@@ -1,5 +1,5 @@
-/// An experiment at work on a plant: sensors, controllers and timeline on their clocks, step by
-/// step. Each lane has clocks of its own. Who calls decides when to record, to show and to stop.
+/// Control loop of an experiment: steps a plant with sensors, controllers and timeline on their
+/// clocks. Each lane has separate clocks. The caller decides when to record, to show and to stop.
 #pragma once
 
 #include <array>
@@ -17,48 +17,50 @@ namespace taut::plant {
 
 class Loop {
  public:
-  /// A variant of the experiment a lane; lanes of the plant beyond them are worked as the first is,
-  /// and nobody looks at them. The plant is at the experiment's start. Experiment and plant outlive
-  /// the loop.
+  /// `lanes`: one variant of the experiment per lane. Further lanes of the plant run as the first
+  /// does; their results are not used. The plant must be at the experiment's start. Experiment and
+  /// plant must outlive the loop.
   Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes, Plant& plant,
        const Brought& brought);
-  /// One lane, under the experiment as it is.
+  /// Creates the loop of one lane under the unchanged experiment.
   Loop(const ExperimentSpec& experiment, Plant& plant, const Brought& brought = {})
       : Loop(experiment, plant, brought, WorldOf(experiment)) {}
 
-  /// Lets sensors sample where they are due, before their controllers act: what is seen is of now.
+  /// Samples the sensors that are due, before their controllers act, so that observations are
+  /// current.
   void Sense();
 
-  /// Lets sensors and controllers act where they are due. The next Step does so, too; a row that is
-  /// recorded at the start wants their first commands.
+  /// Runs the sensors and controllers that are due. `Step` calls it too; call it before recording a
+  /// row at the start, which contains their first commands.
   void Prepare();
 
-  /// One step of each lane. Steps land on the ticks of sensors and controllers, the corners of the
-  /// timeline and the experiment's end, and go on after it.
+  /// Steps each lane once. Steps end at the ticks of sensors and controllers, at the corners of the
+  /// timeline and at the experiment's end; stepping continues after the end.
   void Step();
 
-  /// One step or, where nobody acts or pushes in between, several: `most` at most. How many.
+  /// Takes one step, or up to `most` steps where no tick and no event lies between them. Returns
+  /// their number.
   int Steps(int most);
 
-  /// A lane begins anew as this variant; the plant has been brought to its start there.
+  /// Restarts a lane as this variant. The caller has set the plant to its start there.
   void Restart(int lane, const RolloutWorld& world);
 
-  /// The controllers of a lane go on with these numbers.
+  /// Continues with these parameters of the controllers in a lane.
   void Retune(int lane, const std::vector<ControllerSpec>& controllers);
 
-  /// All that a lane remembers, controllers, sensors, clocks and the plant's commands. Into a lane
-  /// that has been restarted, and retuned if it was, as it was when it was written; the plant has
-  /// been brought to its state.
+  /// Serializes the state of a lane: controllers, sensors, clocks, timeline and commands. To
+  /// restore, first restart the lane, retune it if it was retuned, and restore the plant's state.
   void Carry(LaneState& state);
 
   double time_s(int lane = 0) const noexcept { return ScheduleOf(lane).time_s(); }
-  /// Of the last step.
+  /// Length of the last step of each lane.
   const double* step_s() const noexcept { return step_s_.data(); }
   bool Goes(int lane = 0) const { return plant_.Goes(lane); }
   int lanes() const noexcept { return count_; }
 
   Plant& plant() const noexcept { return plant_; }
-  /// The plant as it is; and what controllers saw of it at their last tick.
+  /// `exact`: the state of the plant. `seen`: the observation of the controllers at their last
+  /// tick.
   const Observation& exact() const { return plant_.Observe(); }
   const Observation& seen() const {
     return sensors_.empty() ? exact() : sensors_.back().model->seen();
@@ -72,7 +74,7 @@ class Loop {
   // --- for a person, in lane 0 -------------------------------------------------------------------
   std::optional<ImpedanceGains> Gains(int cable) const;
   bool SetGains(const ImpedanceGains& gains);
-  /// Commands a cable; for good, unless a controller with other ideas drives it.
+  /// Commands a cable's rest length; it holds until a controller that drives the cable changes it.
   void SetRestLength(int cable, double rest_length_m);
 
  private:
@@ -100,11 +102,11 @@ class Loop {
   const ExperimentSpec& experiment_;
   Plant& plant_;
   ManySteps* many_;  ///< The plant; null if it takes one step at a time.
-  int count_;        ///< Lanes that somebody looks at.
+  int count_;        ///< Lanes with results.
   int plant_lanes_;
-  std::vector<Schedule> schedules_;  ///< One for all, until a lane begins anew: then one a lane.
+  std::vector<Schedule> schedules_;  ///< One for all lanes; one per lane after the first restart.
   std::vector<Timeline> timelines_;
-  std::vector<Sensor> sensors_;  ///< Each sees what the one before shows.
+  std::vector<Sensor> sensors_;  ///< Each receives the output of the previous one.
   std::vector<Law> laws_;
   std::vector<double> step_s_, to_s_;
 };

@@ -1,13 +1,15 @@
-/// Steps without anybody between them.
+/// Interface of plants that take several steps in one call, with no sensor or controller between
+/// them.
 #pragma once
 
 namespace taut::plant {
 
-/// What a plant of this project can do that one of a program need not.
+/// Optional: taut's simulated plant implements it; plants of other programs need not.
 class ManySteps {
  public:
   virtual ~ManySteps() = default;
-  /// As many calls of `Plant::Advance` with all lanes' steps alike. `to_s`: at the end of the last.
+  /// Equals `count` calls of `Plant::Advance` with the same step in all lanes. `to_s`: times at the
+  /// end of the last step.
   virtual void AdvanceMany(double step_s, int count, const double* to_s) = 0;
 };
 

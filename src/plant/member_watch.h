@@ -16,21 +16,21 @@ class MemberWatch {
  public:
   explicit MemberWatch(const ModelDef& def);
 
-  /// Whether no member has a limit.
+  /// Returns true if no member has a limit.
   bool empty() const noexcept { return members_.empty(); }
 
   /// Checks the current state of a lane. Bars and rods need `world`; without it, only cables are
-  /// checked. Forces are sensor values: those of stiff cables, bars and contacts are means over the
-  /// last step.
+  /// checked. Forces are sensor values: for stiff cables, bars and contacts, means over the last
+  /// step.
   void Take(double time_s, const Observation& exact, const World* world, int lane = 0);
 
-  /// Cables first, then bars, then rods.
+  /// Returns the overloads: cables first, then bars, then rods.
   std::vector<Overload> Overloads() const;
 
  private:
   struct Watched {
     MemberKind kind = MemberKind::kCable;
-    int index = 0;        ///< The cable, the joint or the place in `struts_`.
+    int index = 0;        ///< Index of the cable or the joint, or into `struts_`.
     bool parted = false;  ///< A cable with several spans (friction).
     std::array<Overload, 3> limits;
   };

@@ -16,7 +16,7 @@ std::string Shortest(double x) {
   return {text, base::ToChars(text, text + sizeof(text), x).ptr};
 }
 
-/// The processor's name as Linux knows it; empty elsewhere.
+/// Returns the processor's name on Linux; an empty string elsewhere.
 std::string ProcessorName() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
@@ -31,7 +31,7 @@ std::string MachineName() {
   utsname name{};
   if (uname(&name) != 0) return ProcessorName();
   const std::string system = std::string(name.sysname) + " " + name.release + " " + name.machine;
-  const std::string processor = ProcessorName();  // AArch64's Linux knows none
+  const std::string processor = ProcessorName();  // Linux on AArch64 reports none
   return processor.empty() ? system : system + ", " + processor;
 }
 

@@ -1,6 +1,6 @@
-/// What gaits of oscillators have in common: where these are in the memory of their kernel, and how
-/// they go from tick to tick in the lanes that are due. What one hears, and from whom, is its
-/// kind's (gait_cpg.cpp, gait_feedback_cpg.cpp).
+/// Base of gaits made of oscillators (CPG): memory of the kernel, and integration from tick to tick
+/// in the lanes that are due. Each kind computes the feedback (gait_cpg.cpp,
+/// gait_feedback_cpg.cpp).
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,8 @@ class OscillatorPlayer : public GaitPlayer {
     state.Row(States(), state_count());
   }
 
-  /// The oscillators start at the first tick, and go from tick to tick under what they heard at the
-  /// tick before.
+  /// Starts the oscillators at the first tick; later ticks integrate with the feedback of the tick
+  /// before.
   void Tick(const GaitTick& tick, const Observation& seen) final {
     if (retuned_) Start(0);
     Lanes first = 0;
@@ -61,7 +61,8 @@ class OscillatorPlayer : public GaitPlayer {
     }
   }
 
-  /// Memory for the kernel, and all lanes at their start: the end of a kind's constructor.
+  /// Allocates the kernel's memory and sets all lanes to their start. Kinds call it at the end of
+  /// their constructors.
   void Prepare(const GaitSetup& setup, std::size_t bytes) {
     memory_.reset(std::aligned_alloc(64, (bytes + 63) / 64 * 64));
     if (!memory_) base::OutOfMemory();
@@ -71,17 +72,17 @@ class OscillatorPlayer : public GaitPlayer {
   }
 
   virtual void SetNumbers(int lane, const GaitSpec& gait) = 0;
-  /// Of oscillator after oscillator, in all lanes: three numbers.
+  /// Returns the states: three rows per oscillator, in all lanes.
   virtual double* States() const = 0;
-  /// The kernel gets the numbers of all lanes, and all oscillators are at their start.
+  /// Passes the parameters of all lanes to the kernel and sets all oscillators to their start.
   virtual void StartKernel() = 0;
-  /// All oscillators go on by so many steps of `integrator_step_s` and say where they are.
+  /// Integrates all oscillators by `steps` steps of `integrator_step_s` and writes their signals.
   virtual void TickKernel(int steps) = 0;
-  /// Nothing was heard yet.
+  /// Clears the feedback of a lane.
   virtual void Forget(int lane) = 0;
-  /// What is noted at the first tick.
+  /// Stores the reference values at the first tick.
   virtual void Begin(Lanes first, const Observation& seen) { (void)first, (void)seen; }
-  /// What acts on the oscillators until the next tick.
+  /// Sets the feedback to the oscillators until the next tick.
   virtual void Hear(Lanes due, const Observation& seen) = 0;
 
   const LaneKernel& kernel() const noexcept { return kernel_; }
@@ -98,7 +99,8 @@ class OscillatorPlayer : public GaitPlayer {
     void operator()(void* p) const noexcept { std::free(p); }
   };
 
-  /// Oscillators of lanes that begin are at their start, others stay where they are.
+  /// Passes the parameters to the kernel; oscillators of the lanes `begin` restart, others keep
+  /// their state.
   void Start(Lanes begin) {
     retuned_ = false;
     OtherLanes others(begin, lanes(), kept_);
@@ -119,7 +121,7 @@ class OscillatorPlayer : public GaitPlayer {
   std::vector<unsigned short> to_, from_;
   int steps_a_tick_;
   double integrator_step_s_;
-  bool retuned_ = false;  ///< The kernel has not got all numbers yet.
+  bool retuned_ = false;  ///< Changed parameters have not been passed to the kernel yet.
   KeptRows kept_;
   std::unique_ptr<void, Free> memory_;
 };

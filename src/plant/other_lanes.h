@@ -1,4 +1,5 @@
-/// Rows are worked on for all lanes at once; lanes that are not due get back what they had.
+/// Backup of lanes that are not due: kernels change rows of all lanes at once, and `OtherLanes`
+/// restores the lanes that must not change.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +10,10 @@
 
 namespace taut::plant {
 
-/// Memory for what is kept, so that nobody asks for some while he acts.
+/// Preallocated memory for the backup, so that controllers allocate nothing while they act.
 class KeptRows {
  public:
-  /// Room for so many rows, of so many numbers together, in all lanes.
+  /// Reserves space for `rows` rows with `numbers` numbers in total, in all lanes.
   void Reserve(std::size_t rows, std::size_t numbers) {
     rows_.reserve(rows);
     was_.reserve(numbers);
@@ -30,14 +31,15 @@ class KeptRows {
 
 class OtherLanes {
  public:
-  /// Nothing is kept while all lanes are due. One at a time in a `memory`, which outlives it.
+  /// Keeps nothing if all lanes are due. Only one object at a time may use a `memory`, which must
+  /// outlive it.
   OtherLanes(Lanes due, int lanes, KeptRows& memory)
       : due_(due), lanes_(lanes), all_(due == AllLanes(lanes)), kept_(memory) {
     kept_.rows_.clear();
     kept_.was_.clear();
   }
 
-  /// Whether there is nothing to keep.
+  /// Returns true if there is nothing to keep.
   bool none() const noexcept { return all_; }
 
   /// Keeps `count` elements of a row.

@@ -1,4 +1,4 @@
-// Bodies that are in each other at the start (docs/formats/checks.md).
+// Overlaps of bodies at the start (docs/formats/checks.md).
 #include <string>
 
 #include "base/brief.h"
@@ -12,7 +12,7 @@ namespace {
 using base::Brief;
 using List = ShapeRef::List;
 
-/// What is less deep, in half thicknesses, counts as touching.
+/// Smaller depths, relative to the half thickness, count as touching.
 constexpr double kTouching = 0.01;
 
 bool IsTerrain(const ShapeRef& ref) {
@@ -43,7 +43,7 @@ std::string NameOf(const ModelDef& def, const ShapeRef& ref) {
   return {};
 }
 
-/// With terrain, its entry; else where the file has the body.
+/// Returns the place in the file of the terrain involved, else of the body.
 SourceRef PlaceOf(const RobotSpec& robot, const Overlap& overlap) {
   const auto at = [](const std::vector<SourceRef>& sources, int index) {
     const auto i = static_cast<std::size_t>(index);
@@ -71,7 +71,7 @@ bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, boo
     const std::string what =
         with_terrain ? a + " is " + depth + b : a + " and " + b + " are " + depth + "each other";
     if (deep) {
-      out.Error(PlaceOf(robot, overlap),
+      out.Error("start.deep_overlap", PlaceOf(robot, overlap),
                 what + " at the start, more than half the thickness of the thinner one, " +
                     Brief(overlap.half_thickness_m) + " m",
                 with_terrain
@@ -80,7 +80,7 @@ bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, boo
                       "of the model");
       good = false;
     } else {
-      out.Warning(PlaceOf(robot, overlap), what + " at the start",
+      out.Warning("start.overlap", PlaceOf(robot, overlap), what + " at the start",
                   "it is pushed out, without speed");
     }
   }

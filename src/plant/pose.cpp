@@ -1,4 +1,4 @@
-// Poses that a robot has come to, and the robot described in one.
+// Poses of a simulated robot, and the robot's model redefined in a pose.
 #include <algorithm>
 #include <cmath>
 
@@ -12,13 +12,13 @@
 namespace taut {
 namespace {
 
-/// Of unit length, up to rounding; what is stepped often is a little off.
+/// Returns `q` scaled to unit length; integration over many steps leaves a small error.
 Quat Normalized(const Quat& q) {
   const double scale = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {scale * q.w, scale * q.x, scale * q.y, scale * q.z};
 }
 
-/// From where bodies are described to where they have come.
+/// Motion of each body from its described to its current pose.
 class ToPose {
  public:
   ToPose(const ModelDef& from, const Pose& to) : from_(from.bodies), to_(to.bodies) {
@@ -38,7 +38,7 @@ class ToPose {
   const std::vector<BodyDef>& from_;
   const std::vector<BodyState>& to_;
   std::vector<Quat> turns_;
-  std::vector<bool> moves_;  ///< By forces or by a program.
+  std::vector<bool> moves_;  ///< By forces or as a kinematic body.
 };
 
 }  // namespace
@@ -78,8 +78,8 @@ Pose PoseOf(const Batch& batch) {
     pose.bodies.push_back(batch.Body(kTheWorld, static_cast<int>(b)));
   }
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    // Without an actuator nothing obeys a command, and none goes below its least rest length. A
-    // motor's servo may be short of its target, which friction holds.
+    // Without an actuator a cable does not follow commands, and no command goes below the least
+    // rest length. A motor's servo may be short of its target, where friction holds it.
     const ActuatorDef& actuator = def.cables[c].actuator;
     const int cable = static_cast<int>(c);
     pose.rest_lengths_m.push_back(

@@ -94,7 +94,7 @@ void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, i
         const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
         std::copy(std::begin(values), std::end(values), out);
       });
-  // What was made of counts has whole counts in it.
+  // Record integer counts where the values are quantized.
   if (sensors.load_cell && sensors.load_cell->counts) {
     const LoadCellCounts& counts = *sensors.load_cell->counts;
     Add(prefix, {{"tension_count", "1"}},
@@ -136,7 +136,7 @@ void Recorder::AddMotor(const std::string& prefix, int cable) {
 }
 
 void Recorder::AddSystem(const ModelDef& def) {
-  // Each by itself: who observes the centre of mass does not want all contacts gathered.
+  // Separate blocks: an observation of the center of mass must not gather all contacts.
   Add("system/", {{"kinetic_j", "J"}, {"gravity_j", "J"}, {"elastic_j", "J"}}, FillEnergies);
   Add("system/", {{"contact_count", "1"}}, [](const RecordSource& s, double* out) {
     *out = static_cast<double>(s.world->Contacts(s.lane).size());
@@ -218,7 +218,7 @@ bool CheckChannels(const ExperimentSpec& experiment, const std::vector<std::stri
     if (std::any_of(names.begin(), names.end(), fits)) continue;
     good = false;
     const bool contact = experiment.record.contacts == 0 && pattern.starts_with("contact/");
-    out.Error(i < places.size() ? places[i] : SourceRef{},
+    out.Error("record.no_channel", i < places.size() ? places[i] : SourceRef{},
               what + ": no channel fits \"" + pattern + "\"",
               contact ? "record.contacts says how many contacts have channels, and is 0"
                       : DidYouMean(pattern, known));

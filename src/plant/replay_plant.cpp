@@ -17,7 +17,7 @@ constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
 constexpr std::size_t kBodyNumbers = std::tuple_size_v<plant::BodyNumbers>;
 
-/// A log as a plant: what was read is read again; what is commanded goes nowhere.
+/// Plant that replays a recorded trace: readings come from the trace, commands have no effect.
 class ReplayPlant final : public Plant, public Bodies {
  public:
   ReplayPlant(const Trace& trace, const RobotSpec& robot)
@@ -52,7 +52,7 @@ class ReplayPlant final : public Plant, public Bodies {
     Restart(0);
   }
 
-  /// False if the log has nothing of any cable of the robot.
+  /// Returns false if the trace has no channel of any cable of the robot.
   bool HasCables() const {
     return std::any_of(columns_.begin(), columns_.end(), [](std::size_t c) { return c != kNone; });
   }
@@ -109,7 +109,7 @@ class ReplayPlant final : public Plant, public Bodies {
     return Rotate(body.orientation, node.position_m - def.com_m);
   }
 
-  /// What a row lacks stays as it was, with a fault.
+  /// Reads the current row. Missing values keep the last reading, with a fault.
   void Read() {
     std::fill(faults_.begin(), faults_.end(), kFaultNone);
     for (std::size_t c = 0; c < cables_; ++c) {
@@ -129,7 +129,7 @@ class ReplayPlant final : public Plant, public Bodies {
   const Trace& trace_;
   const RobotSpec& robot_;
   std::size_t cables_;
-  std::vector<double> rows_;  ///< Six readings, and the rest lengths that are commanded.
+  std::vector<double> rows_;  ///< Six rows of readings, and the row of commanded rest lengths.
   std::vector<std::size_t> columns_, body_columns_;
   std::vector<std::uint32_t> faults_;
   plant::CommandRows command_rows_;
@@ -143,12 +143,12 @@ class ReplayPlant final : public Plant, public Bodies {
 
 std::unique_ptr<Plant> ReplayOf(const Trace& trace, const RobotSpec& robot, Diagnostics& out) {
   if (trace.time_s.empty()) {
-    out.Error({}, "the log has no row");
+    out.Error("replay.no_rows", {}, "the log has no row");
     return nullptr;
   }
   auto plant = std::make_unique<ReplayPlant>(trace, robot);
   if (plant->HasCables()) return plant;
-  out.Error({}, "the log knows no cable of " + robot.def.name,
+  out.Error("replay.no_cables", {}, "the log knows no cable of " + robot.def.name,
             "its channels have to be called cable/NAME/tension_n and the like");
   return nullptr;
 }

@@ -47,7 +47,7 @@ std::string DescribeStatus(const ModelDef& def, const WorldStatus& status) {
   return out + ", first at t = " + when;
 }
 
-/// One experiment while it runs.
+/// State of one run of an experiment.
 class Runner {
  public:
   Runner(const ExperimentSpec& experiment, const RunOptions& options, Plant& plant)
@@ -69,7 +69,7 @@ class Runner {
       loop_.Prepare();
       if (rows == 0) {
         if (!Record(rows, out)) break;
-        start = Clock::now();  // how long a disk takes to make files is not what a run takes
+        start = Clock::now();  // the wall time excludes the creation of files
       }
       loop_.Step();
       const double time_s = loop_.time_s();
@@ -95,7 +95,7 @@ class Runner {
     }
     summary.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
     for (TraceWriter* trace : options_.traces) {
-      if (!trace->Finish() && out.ok()) out.Error({}, trace->error());
+      if (!trace->Finish() && out.ok()) out.Error("trace.not_written", {}, trace->error());
     }
     summary.simulated_s = loop_.time_s();
     statistics_.Fill(summary);
@@ -126,7 +126,7 @@ class Runner {
                      loop_.plant().world());
   }
 
-  /// Recording takes steps as they come; it must not change them.
+  /// Recording selects steps; it must not change their lengths.
   bool RowIsDue(double time_s, std::int64_t rows) const {
     const double rate_hz = experiment_.record.rate_hz;
     return rate_hz <= 0 || time_s >= static_cast<double>(rows) / rate_hz - 1e-9 ||
@@ -148,7 +148,7 @@ class Runner {
   }
 
   static bool Wrote(bool good, const TraceWriter& trace, Diagnostics& out) {
-    if (!good) out.Error({}, trace.error());
+    if (!good) out.Error("trace.not_written", {}, trace.error());
     return good;
   }
 

@@ -1,6 +1,7 @@
-/// Which steps an experiment takes: they are no longer than asked for, and land on every boundary
-/// (the tick of a controller or sensor, a corner of the timeline, the end). Shared by one world and
-/// by many: what differs between the worlds of a batch has no say in it.
+/// Schedule of the steps of an experiment: none is longer than the requested step, and steps end at
+/// every boundary (tick of a controller or sensor, corner of the timeline, end). One world and the
+/// worlds of a batch use the same schedule: it does not depend on anything that differs between
+/// worlds.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 namespace taut::plant {
 
-/// Times are sums of steps: two that are no further apart are one.
+/// Times are sums of steps: times with a difference up to this are equal.
 inline constexpr double kTimeToleranceS = 1e-9;
 
 class Schedule {
@@ -19,11 +20,12 @@ class Schedule {
   Schedule(double step_s, double duration_s) : wanted_s_(step_s), duration_s_(duration_s) {}
 
   double time_s() const noexcept { return time_s_; }
-  double step_s() const noexcept { return step_s_; }  ///< Of the steps up to the next boundary.
+  double step_s() const noexcept { return step_s_; }  ///< Step length up to the next boundary.
   bool AtBoundary() const noexcept { return done_ >= steps_; }
-  std::int64_t left() const noexcept { return steps_ - done_; }  ///< Steps up to there.
+  std::int64_t left() const noexcept { return steps_ - done_; }  ///< Steps up to the next boundary.
 
-  /// At a boundary: `next_s` is the next of all ticks and corners; infinity if there is none.
+  /// Plans the steps to the next boundary; call it at a boundary. `next_s`: the next of all ticks
+  /// and corners; infinity if there is none.
   void Aim(double next_s) {
     from_s_ = time_s_;
     const bool over = time_s_ >= duration_s_;
@@ -35,20 +37,20 @@ class Schedule {
         std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(span / wanted_s_ - 1e-6)));
     done_ = 0;
     step_s_ = span / static_cast<double>(steps_);
-    // "n steps" that differ from the step asked for by rounding only are that step.
+    // A step that differs from the requested one only by rounding is set to the requested one.
     if (std::fabs(step_s_ - wanted_s_) < 1e-9 * wanted_s_) step_s_ = wanted_s_;
   }
 
   void Carry(LaneState& state) { state.Values(time_s_, step_s_, from_s_, until_s_, steps_, done_); }
 
-  /// A step was done.
+  /// Counts one step.
   void Advance() {
     ++done_;
     time_s_ = done_ == steps_ ? until_s_ : from_s_ + static_cast<double>(done_) * step_s_;
   }
 
  private:
-  /// After the experiment's end there may be no boundary left; spans then have this length.
+  /// Length of a span after the experiment's end, where there may be no boundary.
   static constexpr double kSpanAfterEndS = 1.0;
 
   double wanted_s_, duration_s_;

@@ -54,7 +54,7 @@ void Sensors::Restart(int lane, const RolloutWorld& world) {
   DrawErrors(j);
 }
 
-/// Slots are counted from the lane's first tick: they mean the same in every lane.
+/// Slots are counted from the lane's first tick, so their meaning is the same in every lane.
 void Sensors::Carry(LaneState& state) {
   tension_delay_.Carry(state);
   rest_delay_.Carry(state);
@@ -88,7 +88,7 @@ void Sensors::Sample(const Tick& tick, const Observation& exact) {
       seen_.length_m[i] = exact.cables.length_m[i];
       seen_.rate_m_per_s[i] = exact.cables.rate_m_per_s[i];
     }
-    // A load cell cannot tell the spring from the damper.
+    // A load cell measures the sum of spring and damper.
     seen_.elastic_n[i] = spec_.load_cell ? seen_.tension_n[i] : exact.cables.elastic_n[i];
   }
 }
@@ -100,7 +100,7 @@ double Sensors::Normal(std::size_t i, std::int64_t tick, std::uint32_t stream) c
   return math::Random(seeds_[i % lanes], stream, sample).Normal();
 }
 
-/// sensors.md, S.1 to S.3.
+/// docs/theory/sensors.md, S.1 to S.3.
 double Sensors::Tension(std::size_t i, std::int64_t tick, double exact) {
   if (!spec_.load_cell) return exact;
   const LoadCellSpec& cell = *spec_.load_cell;
@@ -122,7 +122,7 @@ double Sensors::Tension(std::size_t i, std::int64_t tick, double exact) {
   return tension_delay_.Oldest(i, tick);
 }
 
-/// sensors.md, S.4: the force that the board takes a count for.
+/// docs/theory/sensors.md, S.4: the force that the board computes from a count.
 double Sensors::Counted(const LoadCellCounts& counts, std::size_t i, std::int64_t tick,
                         double x) const {
   double u = (x - counts.offset_n) / counts.gain_n_per_count;
@@ -133,7 +133,7 @@ double Sensors::Counted(const LoadCellCounts& counts, std::size_t i, std::int64_
   return counts.gain_n_per_count * count + counts.offset_n;
 }
 
-/// sensors.md, S.5 and S.6.
+/// docs/theory/sensors.md, S.5 and S.6.
 double Sensors::RestLength(std::size_t i, std::int64_t tick, double exact) {
   if (!spec_.encoder) return exact;
   const EncoderSpec& encoder = *spec_.encoder;

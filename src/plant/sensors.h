@@ -1,5 +1,5 @@
-/// What controllers get to see: the robot through load cells and encoders (docs/theory/sensors.md),
-/// for all lanes side by side.
+/// Sensor models between plant and controllers: load cells and encoders (docs/theory/sensors.md),
+/// for all lanes together.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@ namespace taut::plant {
 
 class Sensors final : public SensorModel {
  public:
-  /// One seed a lane: noise is a function of seed, sample and cable alone.
+  /// `seeds`: one per lane; noise is a function of seed, sample and cable only.
   Sensors(const SensorSpec& spec, std::size_t cable_count, std::vector<std::uint64_t> seeds);
 
   ClockSpec clock() const override { return {spec_.period_s, 0.0}; }
   void Sample(const Tick& tick, const Observation& exact) override;
-  /// The last sample, as late as the sensors are.
+  /// Returns the last sample, delayed by the sensors' delay.
   const Observation& seen() const override { return shown_; }
   void Restart(int lane, const RolloutWorld& world) override;
   void Carry(LaneState& state) override;
 
  private:
-  /// What was sampled d ticks ago; before that, the first sample. Of each lane at its own tick.
+  /// Delay line: returns the sample of d ticks ago; before that, the first sample. Ticks are
+  /// counted per lane.
   class Delay {
    public:
     Delay(double delay_s, double period_s, std::size_t cables, std::size_t lanes);
@@ -42,16 +43,16 @@ class Sensors final : public SensorModel {
     std::vector<double> ring_;
   };
 
-  /// What is wrong with one cable's cell and encoder, for a whole run.
+  /// Errors of one cable's load cell and encoder, constant for a run.
   struct Errors {
     double bias_n = 0, gain = 1, drift_n_per_s = 0;
     double zero_m = 0, encoder_gain = 1;
-    double start_m = 0;         ///< The rest length at the first sample.
-    bool index_passed = false;  ///< A mark was seen: what is left of `zero_m` is whole turns.
+    double start_m = 0;         ///< Rest length at the first sample.
+    bool index_passed = false;  ///< A mark was passed: `zero_m` is a multiple of `index_m`.
   };
 
   void DrawErrors(std::size_t lane);
-  // Of cable i / lanes in lane i % lanes, at the lane's tick.
+  // Argument i: cable i / lanes in lane i % lanes, at the lane's tick.
   double Tension(std::size_t i, std::int64_t tick, double exact);
   double Counted(const LoadCellCounts& counts, std::size_t i, std::int64_t tick, double x) const;
   double Normal(std::size_t i, std::int64_t tick, std::uint32_t stream) const;

@@ -1,4 +1,4 @@
-/// Which cables have set points of their tension.
+/// Cables with set points of their tension.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace taut::plant {
 
-/// Those that the impedance law drives, ascending.
+/// Returns the cables that impedance control drives, in ascending order.
 inline std::vector<int> CablesWithSetPoints(const std::vector<ControllerSpec>& controllers) {
   std::vector<int> cables;
   for (const ControllerSpec& controller : controllers) {

@@ -66,7 +66,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     rows_.Restart(lane);
   }
 
-  /// Rest lengths and whether motors are on are part of the batch's own snapshots.
+  /// Rest lengths and the motors' enable states are part of the batch's snapshots.
   void Carry(plant::LaneState& state) override {
     state.Row(time_s_);
     rows_.Carry(state);
@@ -122,8 +122,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     seen_.shaft_m = shaft_m_.data();
   }
 
-  /// Motors go off and on again where commands change to that; who else switches them is not
-  /// overruled.
+  /// Switches motors off and on where commands change; other callers' switching is not overruled.
   void Switch() {
     for (const int c : motors_) {
       for (std::size_t j = 0; j < goes_.size(); ++j) {
@@ -136,7 +135,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     }
   }
 
-  /// Actuators that are to stay where they are: their target is where they are.
+  /// Sets the target of actuators in hold mode to their current rest length.
   void Hold() {
     const std::vector<CommandMode>& modes = rows_.mode();
     CommandMode most = CommandMode::kRestLength;
@@ -148,7 +147,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     }
   }
 
-  /// Lanes whose steps differ in length step one length after the other.
+  /// Steps lanes with different step lengths, one length after the other.
   void StepByLength(const double* step_s) {
     std::vector<double> lengths(step_s, step_s + goes_.size());
     std::sort(lengths.begin(), lengths.end());
@@ -167,8 +166,8 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   plant::CommandRows rows_;
   Commands commands_;
   Observation seen_;
-  std::vector<int> motors_;        ///< Their cables.
-  std::vector<std::uint8_t> off_;  ///< A row: those that commands have switched off.
+  std::vector<int> motors_;        ///< Cables with motors.
+  std::vector<std::uint8_t> off_;  ///< A row: motors that commands have switched off.
   std::vector<double> shaft_m_;    ///< A row; empty where no gear has backlash.
 };
 

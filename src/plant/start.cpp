@@ -29,7 +29,8 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
   };
   if (experiment.start == StartKind::kSettled) {
     if (settle(batch)) return true;
-    out.Error({}, "the robot does not settle to an equilibrium on its ground", hint);
+    out.Error("start.not_settled", {}, "the robot does not settle to an equilibrium on its ground",
+              hint);
     return false;
   }
   ModelDef floating = experiment.robot.def;
@@ -43,7 +44,8 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
   Batch alone(model, {});
   ApplyScales(experiment.scales, alone, kTheWorld);
   if (!settle(alone)) {
-    out.Error({}, "the robot does not settle to an equilibrium of its cables", hint);
+    out.Error("start.not_settled", {}, "the robot does not settle to an equilibrium of its cables",
+              hint);
     return false;
   }
   for (std::size_t b = 0; b < floating.bodies.size(); ++b) {
@@ -52,8 +54,8 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
   return true;
 }
 
-/// Per body: the first of those that joints tie to it, which a start moves together; kWorld if it
-/// is tied to what does not move.
+/// Returns for each body the first body of its group of jointed bodies, which the start noise moves
+/// together; kWorld if joints connect the group to a fixed body or the world.
 std::vector<int> JointedTo(const ModelDef& def) {
   const int world = static_cast<int>(def.bodies.size());
   base::UnionFind sets(def.bodies.size() + 1);
@@ -66,8 +68,9 @@ std::vector<int> JointedTo(const ModelDef& def) {
   return first;
 }
 
-/// How the whole robot is turned. Of poses each is as likely: normal numbers have no direction of
-/// their own in any number of dimensions, and turns lie evenly on the sphere of unit quaternions.
+/// Returns the random rotation of the whole robot. It is uniform over all rotations: normal numbers
+/// have no preferred direction in any dimension, so the unit quaternions are uniform on their
+/// sphere.
 Quat TurnOf(const StartNoise& noise, std::uint64_t seed) {
   Quat turn;
   if (noise.any_pose) {
@@ -86,8 +89,8 @@ Quat TurnOf(const StartNoise& noise, std::uint64_t seed) {
   return turn;
 }
 
-/// Points of the robot as described, no further apart along its rods than these are thick, by
-/// which it stands over the ground.
+/// Returns points of the robot as described that determine its clearance over the ground; along
+/// rods their spacing is at most the radius (up to 100 parts).
 std::vector<Vec3> PointsOf(const ModelDef& def) {
   constexpr double kMostOfARod = 100;
   std::vector<Vec3> points;
@@ -117,8 +120,8 @@ std::vector<Vec3> PointsOf(const ModelDef& def) {
   return points;
 }
 
-/// Where the noise puts the robot: no point of it comes nearer to the ground below it. Nothing, and
-/// a complaint, where there is no ground.
+/// Returns the displacement by the start noise; it keeps every point's clearance over the ground
+/// below it. Reports an error and returns nothing where there is no ground.
 std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& model,
                              Diagnostics& out) {
   Vec3 by = PlaceOf(experiment.start_noise, experiment.seed);
@@ -127,7 +130,8 @@ std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& mode
     const double was_m = sim::GroundHeight(model, p.x, p.y);
     const double is_m = sim::GroundHeight(model, p.x + by.x, p.y + by.y);
     if (std::isinf(is_m) && is_m != was_m) {
-      out.Error({}, "start_noise.place_m puts the robot beyond its terrain",
+      out.Error("start.outside_terrain", {},
+                "start_noise.place_m puts the robot beyond its terrain",
                 "smaller, or a larger terrain");
       return std::nullopt;
     }
@@ -137,7 +141,7 @@ std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& mode
   return by;
 }
 
-/// Moves all bodies that move.
+/// Moves all bodies that are not fixed.
 void MoveBy(const Vec3& by, const ModelDef& def, Batch& batch) {
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     if (def.bodies[b].fixed) continue;
@@ -147,7 +151,7 @@ void MoveBy(const Vec3& by, const ModelDef& def, Batch& batch) {
   }
 }
 
-/// Bodies a little off, upwards rather than into the ground; then the whole robot turned.
+/// Displaces bodies at random, upwards rather than into the ground; then rotates the whole robot.
 void Disturb(const ExperimentSpec& experiment, Batch& batch) {
   const StartNoise& noise = experiment.start_noise;
   const ModelDef& def = experiment.robot.def;

@@ -1,4 +1,4 @@
-/// How an experiment begins.
+/// Start of an experiment: scales, settling to equilibrium, start noise.
 #pragma once
 
 #include <functional>
@@ -19,30 +19,30 @@ inline constexpr int kTheWorld = 0;
 /// Multiplies parameters of a world.
 void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world);
 
-/// Brings a new batch of one world to the start that the experiment asks for: its scales, its
-/// equilibrium, its noise. False and a diagnostic if there is no such state, if bodies are deep in
-/// something there or where settling begins, or if `go_on` says no before it is found. `settled`,
-/// if given, gets what settling has come to, without the noise; it stays empty where nothing
-/// settles.
+/// Sets a new batch of one world to the start of the experiment: scales, equilibrium, noise.
+/// Returns false and reports a diagnostic if there is no such state, if bodies overlap deeply there
+/// or where settling begins, or if `go_on` returns false before it is found. `settled`, if given,
+/// receives the result of settling without the noise; it stays empty if the experiment does not
+/// settle.
 bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
                   const std::function<bool()>& go_on = {},
                   std::optional<SettledStart>* settled = nullptr);
 
-/// Of the only world, with its commanded rest lengths.
+/// Returns the pose of the only world, with its commanded rest lengths.
 Pose PoseOf(const Batch& batch);
 
-/// A world before it settles, for a comparison with what it settles to.
+/// State of a world before it settles, for the comparison with the settled state.
 struct Unsettled {
   std::vector<double> elastic_n;           ///< Per cable.
   std::set<std::pair<int, int>> touching;  ///< Bodies, the lower index first.
 };
-/// Leaves the world as it is.
+/// Does not change the world.
 Unsettled NoteUnsettled(Batch& batch, double step_s);
-/// The only world of `batch` has settled: its last step was one of `Settle`.
+/// Requires that the only world of `batch` has settled: its last step was a step of `Settle`.
 StartChange ChangeOf(const Unsettled& before, const Batch& batch);
 
-/// What `CheckStart` says of overlaps, of the only world as it is. `terrain`: whether it is there;
-/// `warn`: whether to speak of what is less than half through, too.
+/// Reports overlaps in the current state of the only world, as `CheckStart`. `terrain`: whether
+/// terrain is included; `warn`: whether overlaps of less than half the thickness give warnings.
 bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, bool warn,
                    Diagnostics& out);
 

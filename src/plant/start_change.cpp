@@ -1,4 +1,4 @@
-// What settling has made of a robot, and whether somebody can have meant it
+// Change of a robot by settling, and warnings about probably unintended changes
 // (docs/formats/checks.md).
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace taut {
 namespace plant {
 namespace {
 
-/// A cable with less than this part of the largest tension as described is slack.
+/// A cable with less than this fraction of the largest tension as described is slack.
 constexpr double kSlack = 1e-6;
 
 double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
@@ -31,7 +31,7 @@ Unsettled NoteUnsettled(Batch& batch, double step_s) {
     before.elastic_n.push_back(batch.Cable(kTheWorld, static_cast<int>(c)).elastic_n);
   }
   const std::vector<std::uint8_t> as_described = batch.Save(kTheWorld);
-  batch.Step(step_s);  // only a step looks for contacts
+  batch.Step(step_s);  // only a step detects contacts
   for (const ContactState& contact : batch.Contacts(kTheWorld)) {
     before.touching.insert(PairOf(contact));
   }
@@ -86,11 +86,11 @@ namespace {
 
 using base::Brief;
 
-/// A robot whose nodes are farther than this part of its size from where they were is another one.
+/// A larger displacement of a node, relative to the robot's size, means another shape.
 constexpr double kFar = 0.25;
 constexpr std::size_t kMostNames = 3;
 
-/// "a, b, c and 4 more".
+/// Returns text like "a, b, c and 4 more".
 template <class Items, class F>
 std::string SomeOf(const Items& items, F name) {
   std::string text;
@@ -109,7 +109,7 @@ void WarnOfStart(const StartChange& change, Diagnostics& out) {
   const char* const hint = "`taut check --settled` shows what is left, `taut view` how it looks";
   if (!change.slack_cables.empty()) {
     const std::size_t slack = change.slack_cables.size();
-    out.Warning({},
+    out.Warning("start.slack_cables", {},
                 std::to_string(slack) + " of the " + std::to_string(change.taut_cables) +
                     " cables that are taut as described " + (slack == 1 ? "is" : "are") +
                     " slack after settling: " +
@@ -120,7 +120,7 @@ void WarnOfStart(const StartChange& change, Diagnostics& out) {
   }
   if (change.largest_displacement_m > kFar * change.size_m) {
     const double part = change.largest_displacement_m / change.size_m;
-    out.Warning({},
+    out.Warning("start.other_shape", {},
                 "the robot settles to another shape: the node \"" + change.displaced_node +
                     "\" ends " + Brief(change.largest_displacement_m) +
                     " m from its place in the shape described, " + Brief(100 * part) +
@@ -128,7 +128,7 @@ void WarnOfStart(const StartChange& change, Diagnostics& out) {
                 hint);
   }
   if (!change.new_contacts.empty()) {
-    out.Warning({},
+    out.Warning("start.new_contacts", {},
                 "bodies that were apart as described press on each other after settling: " +
                     SomeOf(change.new_contacts,
                            [](const auto& pair) { return pair.first + " on " + pair.second; }),

@@ -1,4 +1,4 @@
-/// What an experiment's seed is used for: a stream of random numbers each.
+/// Streams of random numbers of an experiment's seed, one per use.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,10 @@ enum Stream : std::uint32_t {
   kEpisodeScales = 12,  ///< Index: 0.
   kEpisodeSlope = 13,   ///< Index: 0.
   kEpisodeDelays = 14,  ///< Index: 0.
-  kFollowingSeed = 15,  ///< Index: 0; the seed after this one.
+  kFollowingSeed = 15,  ///< Index: 0; the seed of the next episode.
   kStartPlace = 16,     ///< Index: 0.
-  // 100: blocks that lie about, by a seed of their own (description/experiment/terrain_boxes.cpp).
+  // 100: scattered blocks of terrain, with a separate seed
+  // (description/experiment/terrain_boxes.cpp).
 };
 
 }  // namespace taut::plant

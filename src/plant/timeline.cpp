@@ -110,7 +110,7 @@ void Timeline::SetHandForces(std::vector<NodeForce> forces) {
   hand_ = std::move(forces);
   for (const NodeForce& hand : hand_) {
     const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), hand.node);
-    // A node stays here for good: once it is let go, its force is set to zero.
+    // A node stays here after its release, so that its force is set to zero.
     if (at != nodes_.end() && *at == hand.node) continue;
     set_n_.insert(set_n_.begin() + (at - nodes_.begin()), kNothingYet);
     nodes_.insert(at, hand.node);

@@ -1,4 +1,4 @@
-/// What happens to the robot from outside: pushes and drags.
+/// Timeline: external forces on the robot by pushes and drags.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace taut::plant {
 
-/// A piecewise linear profile, zero outside its points.
+/// Returns the value of a piecewise linear profile, zero outside its points.
 double ProfileAt(const std::vector<std::pair<double, double>>& points, double time_s);
 
 /// A force on a node, in W.
@@ -18,27 +18,28 @@ struct NodeForce {
   Vec3 force_n;
 };
 
-/// The outside forces of an experiment.
+/// The external forces of an experiment.
 class Timeline {
  public:
   explicit Timeline(const ExperimentSpec& experiment);
 
-  /// Whether nothing ever pushes or drags.
+  /// Returns true if there is never a push or drag.
   bool idle() const noexcept { return nodes_.empty(); }
 
-  /// The next time after `time_s` at which a profile has a corner; infinity if there is none.
+  /// Returns the next time after `time_s` at which a profile has a corner; infinity if there is
+  /// none.
   double NextCorner(double time_s) const;
 
-  /// Sets the node forces for the step from `time_s` to `time_s + step_s`: their values in its
+  /// Sets the node forces for the step from `time_s` to `time_s + step_s`: values of pushes in its
   /// middle.
   void Apply(World& world, int lane, double time_s, double step_s);
 
-  /// From the beginning; no hand holds anything.
+  /// Restarts from the beginning, without hand forces.
   void Restart();
-  /// What has happened so far, without hands.
+  /// Serializes the state, except hand forces.
   void Carry(LaneState& state);
 
-  /// Forces that the experiment does not know of, until changed: a person's hand. They add to its
+  /// Sets forces by a person's hand, outside the experiment, until the next call. They add to its
   /// pushes and drags.
   void SetHandForces(std::vector<NodeForce> forces);
 
@@ -51,8 +52,8 @@ class Timeline {
 
   const ExperimentSpec& experiment_;
   std::vector<double> corners_;
-  std::vector<int> nodes_;   ///< All that are ever pushed or dragged, rising.
-  std::vector<Vec3> set_n_;  ///< What the world was told of them last; NaN: nothing yet.
+  std::vector<int> nodes_;   ///< All nodes that are ever pushed or dragged, in ascending order.
+  std::vector<Vec3> set_n_;  ///< Forces last set in the world; NaN: none set yet.
   std::vector<double> push_n_, drag_n_;
   std::vector<NodeForce> hand_;
   std::vector<Vec3> drag_start_m_;

@@ -1,4 +1,4 @@
-// The pose that a row of a recording shows.
+// Pose of a robot in a row of a trace.
 #include <array>
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace taut {
 namespace {
 
-constexpr double kUnit = 1e-3;        // by which a quaternion's length may be off
-constexpr double kSameLength = 1e-3;  // of a cable, by which recorded and computed may be apart
+constexpr double kUnit = 1e-3;        // tolerance of a quaternion's length
+constexpr double kSameLength = 1e-3;  // tolerance of a cable's recorded length, relative
 
 class RowOfTrace {
  public:
@@ -18,7 +18,7 @@ class RowOfTrace {
       : trace_(trace), row_(row), at_(at), out_(out) {}
 
   bool Has(const std::string& name) const { return trace_.Find(name).has_value(); }
-  /// Of channels that are all there and finite; complaints about the others.
+  /// Reads channels that are all present and finite; reports errors about the others.
   template <std::size_t kCount>
   bool Read(const std::string& before, const std::array<const char*, kCount>& names,
             std::array<double, kCount>& values) const {
@@ -27,14 +27,15 @@ class RowOfTrace {
       const std::string name = before + names[i];
       const auto channel = trace_.Find(name);
       if (!channel) {
-        out_.Error(at_, "has no channel " + name, "a pose needs place and turn of every body");
+        out_.Error("pose.no_channel", at_, "has no channel " + name,
+                   "a pose needs place and turn of every body");
         good = false;
         continue;
       }
       values[i] = trace_.values[*channel][row_];
       if (std::isfinite(values[i])) continue;
       out_.Error(
-          at_,
+          "pose.not_finite", at_,
           name + " is " + base::Brief(values[i]) + " at " + base::Brief(trace_.time_s[row_]) + " s",
           "take another row");
       good = false;
@@ -55,7 +56,8 @@ class RowOfTrace {
     if (!turned) return;
     const double size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (std::fabs(size - 1) > kUnit) {
-      out_.Error(at_, "the orientation of body " + name + " has the length " + base::Brief(size),
+      out_.Error("pose.bad_quaternion", at_,
+                 "the orientation of body " + name + " has the length " + base::Brief(size),
                  "a turn is a quaternion of length 1: w, x, y, z");
       return;
     }
@@ -69,20 +71,21 @@ class RowOfTrace {
     if (value[0] > 0) {
       rest_m = value[0];
     } else {
-      out_.Error(at_, channel + " is " + base::Brief(value[0]), "it must be above 0");
+      out_.Error("pose.bad_value", at_, channel + " is " + base::Brief(value[0]),
+                 "it must be above 0");
     }
   }
 
-  /// Where a recording says how long cables are, and they are not: it is of another robot, or of
-  /// one that begins elsewhere.
+  /// Warns if recorded lengths of cables differ from the lengths in this pose: then the trace is of
+  /// another robot, or of one with another initial state.
   void CompareLengths(const ModelDef& there) const {
     for (const CableDef& cable : there.cables) {
-      if (cable.touches != CableTouches::kNone) continue;  // they bend where they touch
+      if (cable.touches != CableTouches::kNone) continue;  // wrapping cables bend at contacts
       const auto channel = trace_.Find("cable/" + cable.name + "/length_m");
       if (!channel) continue;
       const double recorded_m = trace_.values[*channel][row_], length_m = CableLength(cable);
       if (!(std::fabs(recorded_m - length_m) > kSameLength * length_m)) continue;
-      out_.Warning(at_,
+      out_.Warning("pose.cable_length_differs", at_,
                    "cable " + cable.name + " is " + base::Brief(length_m) +
                        " m long in this pose, and " + base::Brief(recorded_m) +
                        " m in the recording",
@@ -104,7 +107,7 @@ std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std:
                                 const SourceRef& at, Diagnostics& out) {
   const ModelDef& def = robot.def;
   if (row >= trace.time_s.size()) {
-    out.Error(at, "has no row to take a pose from");
+    out.Error("pose.no_rows", at, "has no row to take a pose from");
     return std::nullopt;
   }
   const std::size_t before = out.items().size();
@@ -113,7 +116,7 @@ std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std:
   for (const BodyDef& body : def.bodies) {
     BodyState& state = pose.bodies.emplace_back();
     state.position_m = body.com_m;
-    // What stands still need not be recorded.
+    // The state of a fixed body need not be recorded.
     if (body.fixed && !from.Has("body/" + body.name + "/position_x_m")) continue;
     from.ReadBody(body.name, state);
   }

@@ -1,4 +1,4 @@
-/// What both forms of the summary derive from a run.
+/// Derived quantities that both forms of the run summary share.
 #pragma once
 
 #include <cstddef>
@@ -8,24 +8,24 @@
 
 namespace taut::report {
 
-/// Whether the run came as far as the phase's end.
+/// Returns whether the run reached the phase's end.
 inline bool Complete(const RunSummary& summary, const PhaseSpec& phase) {
   return phase.to_s <= summary.simulated_s * (1.0 + 1e-9);
 }
 
-/// Simulated over wall-clock time; 0 if no time passed.
+/// Returns simulated over wall-clock time; 0 if no time passed.
 inline double RealTimeFactor(const RunSummary& summary) {
   return summary.wall_s > 0.0 ? summary.simulated_s / summary.wall_s : 0.0;
 }
 
-/// "ok", or what is wrong.
+/// Returns "ok" or the description of the problem.
 inline std::string StatusText(const RunSummary& summary) {
   if (summary.status.bits == kStatusOk) return "ok";
   return summary.status_text.empty() ? "status bits " + std::to_string(summary.status.bits)
                                      : summary.status_text;
 }
 
-/// What its trace lacks; empty if nothing.
+/// Returns a description of contacts missing in the trace; empty if there are none.
 inline std::string LeftOutText(const RunSummary& summary) {
   const LeftOutContacts& left = summary.left_out;
   if (left.contacts == 0) return {};

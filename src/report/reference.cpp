@@ -1,4 +1,4 @@
-// Ours beside the numbers of others.
+// Comparison of a run with reference values.
 #include "report/reference.h"
 
 #include <fmt/format.h>

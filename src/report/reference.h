@@ -1,4 +1,4 @@
-/// Ours beside the numbers of others that an experiment names.
+/// Comparison of a run with the reference values that an experiment contains.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace taut::report {
 std::string StatisticName(const ReferenceSpec& reference);  ///< "mean", "min" or "max".
 std::string QuantityName(const ReferenceSpec& reference);   ///< "tension" or "elastic".
 
-/// The run's number for a cable of the reference [N]; NaN if the run did not get that far.
+/// Returns the run's value for a cable of the reference [N]; NaN if the run ended before.
 double OurValue(const RunSummary& run, const ReferenceSpec& reference, int cable);
 
-/// For each reference what it is and where it is farthest off; empty without any.
+/// Returns, for each reference, its description and largest difference; empty without any.
 std::string ReferenceLines(const RunSummary& run);
 
 }  // namespace taut::report

@@ -1,3 +1,4 @@
+// Actuator sizing: demand of a run's cables, and margins of catalogue motors and springs.
 #include "taut/sizing.h"
 
 #include <algorithm>
@@ -13,23 +14,24 @@
 namespace taut {
 namespace {
 
-/// Rows of a cable's channel; null after a complaint.
+/// Returns the rows of a cable's channel; null after an error.
 const std::vector<double>* Rows(const Trace& trace, const std::string& channel,
                                 const std::string& path, Diagnostics& out) {
   const auto found = trace.Find(channel);
   if (!found) {
-    out.Error({path, 0, 0}, "the trace has no channel \"" + channel + "\"",
+    out.Error("trace.no_channel", {path, 0, 0}, "the trace has no channel \"" + channel + "\"",
               "record it: record.channels of the experiment");
     return nullptr;
   }
   const std::vector<double>& rows = trace.values[*found];
   if (std::all_of(rows.begin(), rows.end(), [](double x) { return std::isfinite(x); }))
     return &rows;
-  out.Error({path, 0, 0}, "channel \"" + channel + "\" has values that are not finite");
+  out.Error("trace.not_finite", {path, 0, 0},
+            "channel \"" + channel + "\" has values that are not finite");
   return nullptr;
 }
 
-/// Between rows everything goes straight.
+/// Computes a cable's demand, with linear interpolation between rows.
 CableDemand OfRows(const std::vector<double>& time_s, const std::vector<double>& tension_n,
                    const std::vector<double>& rest_length_m) {
   CableDemand d;
@@ -57,7 +59,8 @@ CableDemand OfRows(const std::vector<double>& time_s, const std::vector<double>&
   return d;
 }
 
-/// What the summary knows of every step. A file that is not such a summary says nothing.
+/// Takes the extremes over all steps from the summary. Returns false for a file that is not such a
+/// summary.
 bool TakeSummary(const nlohmann::json& summary, std::vector<CableDemand>& cables) {
   const auto list = summary.find("cables");
   if (list == summary.end() || !list->is_array() || list->size() != cables.size()) return false;
@@ -99,7 +102,7 @@ void TakeLeast(Fit& fit) {
 std::optional<RunDemand> DemandOf(const Trace& trace, const ExperimentSpec& experiment,
                                   const std::string& path, Diagnostics& out) {
   if (trace.time_s.size() < 2) {
-    out.Error({path, 0, 0}, "the trace has fewer than two rows");
+    out.Error("trace.few_rows", {path, 0, 0}, "the trace has fewer than two rows");
     return std::nullopt;
   }
   RunDemand demand;
@@ -144,7 +147,8 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
 
 Fit FitOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
           const CableDemand& cable) {
-  // Per newton and per metre a second of the cable, at the motor's shaft.
+  // Conversion to the motor's shaft: torque per newton of tension, speed per meter per second of
+  // the cable.
   const double arm_m = spool_radius_m / (motor.gear_ratio * motor.gear_efficiency);
   const double turn_per_m = motor.gear_ratio / spool_radius_m;
   Fit fit;

@@ -1,3 +1,4 @@
+// Summary of a run as JSON.
 #include <fmt/format.h>
 
 #include <limits>
@@ -18,7 +19,7 @@ Json ToJson(const Range& range) {
   return {{"mean_n", range.mean}, {"min_n", range.min}, {"max_n", range.max}};
 }
 
-/// A largest value from 5 s on; null of a run that ended before.
+/// Returns the largest value from 5 s on; null for runs that ended before.
 Json AfterStart(double value, const RunSummary& run) {
   return run.simulated_s > 5 ? Json(value) : Json();
 }

@@ -1,3 +1,4 @@
+// Summary of a run as tables for a terminal.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +12,9 @@ namespace taut {
 namespace {
 
 constexpr int kCell = 8;                   ///< Columns of a number.
-constexpr std::size_t kPhasesAbreast = 3;  ///< What fits into 100 columns.
+constexpr std::size_t kPhasesAbreast = 3;  ///< Phases that fit into 100 columns.
 
-/// Decimals that show a quantity of this size to four digits or so.
+/// Returns the decimals that show about four digits of a quantity of this size.
 int DecimalsFor(double size) { return size >= 1000.0 ? 1 : size >= 10.0 ? 2 : size >= 1.0 ? 3 : 4; }
 
 std::string Cell(double value, int decimals, int width = kCell) {
@@ -51,7 +52,7 @@ std::string Head(const RunSummary& run) {
   return out;
 }
 
-/// Cables against phases first .. last - 1, and the largest of the whole run.
+/// Table of cables by phases first .. last - 1, and the largest of the whole run.
 std::string PhaseTable(const RunSummary& run, std::size_t first, std::size_t last) {
   const std::size_t name_width = NameWidth(run.cables);
   const int decimals = DecimalsFor(run.system_max_tension_n);
@@ -89,7 +90,7 @@ std::string SystemLines(const RunSummary& run) {
   return out + "\n";
 }
 
-/// What rods bore, and what anchored bodies were held with.
+/// Tables of rod loads and of the reactions of anchored bodies.
 std::string LoadTables(const RunSummary& run) {
   std::string out;
   if (!run.struts.empty()) {
@@ -118,7 +119,7 @@ std::string LoadTables(const RunSummary& run) {
   return out;
 }
 
-/// One row per exceeded limit of a member.
+/// Table with one row per exceeded limit of a member.
 std::string OverloadTable(const RunSummary& run) {
   if (run.overloads.empty()) return {};
   const std::size_t name_width = NameWidth(run.overloads);
@@ -146,7 +147,7 @@ std::string DragTable(const RunSummary& run) {
   return out;
 }
 
-/// Cables whose rest length moved or was held by a motor; those without one are left out.
+/// Table of cables whose rest length moved or was held by a motor; those without one are left out.
 std::string ActuatorTable(const RunSummary& run) {
   std::string rows;
   const std::size_t name_width = NameWidth(run.cables);
@@ -162,7 +163,7 @@ std::string ActuatorTable(const RunSummary& run) {
          rows;
 }
 
-/// What motors took and gave.
+/// Table of the motors' power and energy.
 std::string MotorTable(const RunSummary& run) {
   std::string rows;
   const std::size_t name_width = NameWidth(run.cables);

@@ -1,5 +1,5 @@
-/// What one sees of a world who judges it, now and then: the laws of falling, of blowing up, of the
-/// way that a robot has made.
+/// Conditions and measures of an episode, evaluated at intervals: fall, failure by excessive speed,
+/// distance, tension penalty.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace taut::rollout {
 
-/// Whether the angle between a body's own vertical and the world's is beyond the limit.
+/// Returns whether the angle between any body's vertical axis and the world's exceeds the limit.
 template <class OrientationOf>
 bool AnyTilted(std::size_t count, const OrientationOf& orientation_of, double cos_max_tilt) {
   bool tilted = false;
@@ -27,13 +27,13 @@ inline bool AnyTilted(std::span<const BodyState> bodies, double cos_max_tilt) {
       bodies.size(), [&](std::size_t b) { return bodies[b].orientation; }, cos_max_tilt);
 }
 
-/// Of the centre of mass.
+/// Returns whether the height of the center of mass is outside of its limits.
 inline bool BeyondHeights(const FallSpec& fall, double height_m) {
   return (fall.min_height_m && height_m < *fall.min_height_m) ||
          (fall.max_height_m && height_m > *fall.max_height_m);
 }
 
-/// The last body that is faster, or not a number; kWorld: none.
+/// Returns the last body with a speed above the limit or not a number; kWorld if there is none.
 template <class VelocityOf>
 int TooFast(std::size_t count, const VelocityOf& velocity_of, double max_speed_m_per_s) {
   int found = kWorld;
@@ -48,10 +48,10 @@ inline int TooFast(std::span<const BodyState> bodies, double max_speed_m_per_s) 
       bodies.size(), [&](std::size_t b) { return bodies[b].velocity_m_per_s; }, max_speed_m_per_s);
 }
 
-/// The part of a way that counts as distance [m].
+/// Returns the horizontal distance of a displacement [m].
 inline double DistanceOf(const Vec3& way) { return std::sqrt(way.x * way.x + way.y * way.y); }
 
-/// What exceeding the limit costs; `max_tension_n`: of any cable, ever.
+/// Returns the penalty of exceeding the limit; `max_tension_n`: largest of any cable so far.
 inline double TensionPenalty(const TensionLimit& limit, double max_tension_n) {
   const double above_n = max_tension_n - limit.limit_n;
   return limit.penalty_per_n * (above_n > 0.0 ? above_n : 0.0);

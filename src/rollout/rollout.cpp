@@ -1,3 +1,4 @@
+// Rollouts: many variants of an experiment in parallel, one per SIMD lane, on several threads.
 #include "taut/rollout.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ class LaneRollouts final : public Rollouts {
         options_(options),
         model_(std::move(model)),
         pool_(options.threads) {
-    // A world alone takes scalar code: what it gives is the same.
+    // A single world uses scalar code, with identical results.
     BatchOptions probe;
     probe.simd = options.simd ? *options.simd : BestSimd();
     simd_ = *probe.simd;
@@ -60,19 +61,19 @@ class LaneRollouts final : public Rollouts {
  private:
   bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// A thread's batches, kept from group to group: making one costs as much as seconds of its
-  /// worlds.
+  /// Batches of a thread, reused from group to group: creating one costs as much as simulating its
+  /// worlds for seconds.
   struct Workplace {
     Workplace(const std::shared_ptr<const Model>& model, Simd simd, int lanes)
         : alone(model, {}), group(model, {.worlds = lanes, .simd = simd}) {
       fresh = alone.Save(plant::kTheWorld);
     }
-    Batch alone;  ///< One world, brings each lane to its start.
+    Batch alone;  ///< One world, which prepares each lane's start.
     std::vector<std::uint8_t> fresh;
     Batch group;
   };
 
-  /// Brings a lane to its start. One that has none fails.
+  /// Restores a lane to its start. Returns false, with the reason, if there is no start.
   bool Prepare(const RolloutWorld& world, Workplace& place, int lane, std::string& failed) const {
     place.alone.Restore(plant::kTheWorld, place.fresh);
     Diagnostics complaints;
@@ -88,7 +89,7 @@ class LaneRollouts final : public Rollouts {
     Batch& batch = place.group;
     const int count = static_cast<int>(worlds.size());
     std::vector<std::string> no_start(worlds.size());
-    std::vector<const RolloutWorld*> lanes;  // those left over repeat the first
+    std::vector<const RolloutWorld*> lanes;  // surplus lanes repeat the first world
     for (int j = 0; j < lanes_; ++j) {
       const int world = j < count ? j : 0;
       lanes.push_back(&worlds[static_cast<std::size_t>(world)]);
@@ -126,7 +127,7 @@ class LaneRollouts final : public Rollouts {
   const RolloutOptions options_;
   std::shared_ptr<const Model> model_;
   base::ThreadPool pool_;
-  std::vector<std::unique_ptr<Workplace>> places_;  ///< A thread.
+  std::vector<std::unique_ptr<Workplace>> places_;  ///< Per thread.
   Simd simd_ = Simd::kScalar;
   int lanes_ = 1;
 };

@@ -1,4 +1,4 @@
-/// What is measured of the worlds of a group while they run, and the scores that follow.
+/// Measurements during the rollouts of a group of worlds, and the resulting scores.
 #pragma once
 
 #include <memory>
@@ -14,16 +14,16 @@ namespace taut::rollout {
 
 class Scorer {
  public:
-  /// `loop` is at its start, its lanes are those of `setup`. `own`: in place of the objective's
+  /// `loop` is at its start, and its lanes are the lanes of `setup`. `own` replaces the objective's
   /// measure; may be null.
   Scorer(const ControlSetup& setup, const ObjectiveSpec& objective, const plant::Loop& loop,
          std::unique_ptr<Score> own);
 
-  /// After every step.
+  /// Call after every step.
   void Take();
-  /// Whether a lane of `count` still has a chance.
+  /// Returns whether any of the first `count` lanes has not failed.
   bool AnyAlive(int count) const;
-  /// At the end.
+  /// Returns the result at the end.
   RolloutResult Result(int lane) const;
 
  private:
@@ -39,15 +39,15 @@ class Scorer {
   std::unique_ptr<Score> own_;
   const plant::LaneKernel& kernel_;
   double cos_max_tilt_;
-  std::vector<double> motor_;  ///< Per cable: 1 if it has one.
-  std::vector<int> driven_;    ///< Cables that have set points, ascending.
+  std::vector<double> motor_;  ///< Per cable: 1 if it has a motor.
+  std::vector<int> driven_;    ///< Cables with set points, ascending.
   std::vector<double> rest_before_m_, wound_j_, max_tension_n_, error_n2_s_;
-  std::vector<std::optional<Vec3>> start_m_;  ///< Centre of mass at `from_s`.
+  std::vector<std::optional<Vec3>> start_m_;  ///< Center of mass at `from_s`.
   std::vector<Vec3> goal_m_;                  ///< Empty without a goal.
   std::vector<double> goal_start_m_;          ///< Distance to it at `from_s`.
   std::vector<std::optional<double>> fell_s_;
   std::vector<std::string> failed_;
-  std::vector<BodyState> states_;  ///< Of the lane that is looked at.
+  std::vector<BodyState> states_;  ///< Bodies of the lane under examination.
   std::int64_t looks_ = 0;
 };
 

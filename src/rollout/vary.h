@@ -1,4 +1,4 @@
-/// How worlds are drawn that differ.
+/// Random variation of worlds (domain randomization).
 #pragma once
 
 #include "math/random.h"
@@ -6,7 +6,7 @@
 
 namespace taut::rollout {
 
-/// Draws factors within the shares, and adds them and the starts' noise to a world.
+/// Draws factors within the given shares and adds them, and the noise of the start, to a world.
 void Vary(const VariationSpec& by, math::Random random, RolloutWorld& world);
 
 }  // namespace taut::rollout

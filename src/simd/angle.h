@@ -1,4 +1,4 @@
-/// Angles and their sines, of wide numbers.
+/// Sine and cosine of wide numbers.
 #pragma once
 
 #include "math/angle.h"
@@ -10,8 +10,8 @@ using taut::Atan2;
 using taut::kPi;
 using taut::Round;
 
-/// Sine and cosine of 2 pi `turns`, for |turns| < 2^48, to some 2 units in the last place of 1; + -
-/// * alone.
+/// Computes sine and cosine of 2 pi `turns`, for |turns| < 2^48, to about 2 units in the last place
+/// of 1; only with + - *.
 template <class W>
 TAUT_INLINE void SinCosOfTurns(W turns, W& sine, W& cosine) noexcept {
   constexpr int kTerms = 8;  // (pi / 4)^17 / 17! < 1e-16

@@ -1,9 +1,10 @@
-/// A number and its derivative by one other number, in the place of a wide number: a step compiled
-/// for it gives, beside what a single world's step gives, how that changes with what it starts
-/// from (forward differentiation: sum, product and chain rule for every operation).
+/// Dual numbers for forward-mode automatic differentiation: a number and its derivative with
+/// respect to one variable, in the place of a wide number. A step compiled for it computes a single
+/// world's step and its derivative with respect to the start (sum, product and chain rule for every
+/// operation).
 ///
-/// Comparisons, and what chooses by them, go by the number alone: the derivative is that of the
-/// branch that is taken. In memory it is two doubles, as the same number of two lanes.
+/// Comparisons and selections depend only on the number: the derivative belongs to the branch
+/// taken. In memory a Dual is two doubles, like a number of two lanes.
 #pragma once
 
 #include "simd/angle.h"
@@ -30,8 +31,8 @@ struct LaneOf<Dual> {
   using Type = Dual;
 };
 
-/// What no derivative goes through stays so where a factor is infinite: guards like 1e300 may
-/// overflow, and what they guard is not chosen.
+/// Returns the product, but 0 for a zero derivative even if the factor is infinite: guards like
+/// 1e300 may overflow, and the guarded value is not selected.
 TAUT_INLINE double DualPart(double derivative, double factor) noexcept {
   return derivative == 0.0 ? 0.0 : derivative * factor;
 }
@@ -57,12 +58,12 @@ TAUT_INLINE bool Any(DualMask m) noexcept { return m.v; }
 TAUT_INLINE Dual Max(Dual a, Dual b) noexcept { return a.v > b.v ? a : b; }
 TAUT_INLINE Dual Min(Dual a, Dual b) noexcept { return a.v < b.v ? a : b; }
 TAUT_INLINE Dual Abs(Dual a) noexcept { return Max(a, -a); }
-/// At 0, where it has none, the derivative is taken as 0: roots of what is nothing are not chosen.
+/// The derivative at 0, where none exists, is set to 0: such roots are not selected.
 TAUT_INLINE Dual Sqrt(Dual a) noexcept {
   const double root = __builtin_sqrt(a.v);
   return {root, a.v > 0.0 ? DualPart(a.d, 0.5 / root) : 0.0};
 }
-/// Between its jumps it does not change.
+/// Constant between its jumps: derivative 0.
 TAUT_INLINE Dual Round(Dual a) noexcept { return {taut::Round(a.v), 0.0}; }
 TAUT_INLINE Dual& operator+=(Dual& a, Dual b) noexcept { return a = a + b; }
 TAUT_INLINE Dual& operator-=(Dual& a, Dual b) noexcept { return a = a - b; }

@@ -1,4 +1,4 @@
-/// 3-vectors, quaternions and 3x3 matrices of wide numbers.
+/// 3-vectors, quaternions and 3x3 matrices of wide numbers (wide.h).
 #pragma once
 
 #include "simd/wide.h"
@@ -50,7 +50,7 @@ template <class W, class M>
 TAUT_INLINE V3<W> Select3(M m, const V3<W>& yes, const V3<W>& no) noexcept {
   return {Select(m, yes.x, no.x), Select(m, yes.y, no.y), Select(m, yes.z, no.z)};
 }
-/// |x| + |y| + |z|: at least the Euclidean norm, and without a square root.
+/// Returns |x| + |y| + |z|: an upper bound of the Euclidean norm, without a square root.
 template <class W>
 TAUT_INLINE W Norm1(const V3<W>& a) noexcept {
   return Abs(a.x) + Abs(a.y) + Abs(a.z);
@@ -61,7 +61,7 @@ struct Q4 {
   W w, x, y, z;
 };
 
-/// Row-major 3x3 matrix by its rows.
+/// 3x3 matrix, stored by rows.
 template <class W>
 struct M3 {
   V3<W> r0, r1, r2;
@@ -76,7 +76,7 @@ TAUT_INLINE V3<W> TransposeTimes(const M3<W>& m, const V3<W>& a) noexcept {
   return a.x * m.r0 + a.y * m.r1 + a.z * m.r2;
 }
 
-/// The rotation matrix of a unit quaternion.
+/// Returns the rotation matrix of a unit quaternion.
 template <class W>
 TAUT_INLINE M3<W> RotationOf(const Q4<W>& q) noexcept {
   const W one = W::Splat(1.0), two = W::Splat(2.0);
@@ -89,7 +89,7 @@ TAUT_INLINE M3<W> RotationOf(const Q4<W>& q) noexcept {
           {xz - wy, yz + wx, one - (xx + yy)}};
 }
 
-/// A symmetric 3x3 matrix.
+/// Symmetric 3x3 matrix.
 template <class W>
 struct S3 {
   W xx, yy, zz, xy, xz, yz;
@@ -99,7 +99,7 @@ TAUT_INLINE V3<W> operator*(const S3<W>& m, const V3<W>& a) noexcept {
   return {m.xx * a.x + m.xy * a.y + m.xz * a.z, m.xy * a.x + m.yy * a.y + m.yz * a.z,
           m.xz * a.x + m.yz * a.y + m.zz * a.z};
 }
-/// R diag(d) R^T.
+/// Returns R diag(d) R^T.
 template <class W>
 TAUT_INLINE S3<W> Congruence(const M3<W>& r, const V3<W>& d) noexcept {
   const V3<W> a{r.r0.x * d.x, r.r0.y * d.y, r.r0.z * d.z};

@@ -1,18 +1,18 @@
-/// N doubles side by side, one a world. Lane i never reads lane j, so a batch of N gives bit for
-/// bit what N single worlds give (docs/determinism.md).
+/// SIMD vectors of N doubles, one lane per world. Lane i never reads lane j, so a batch of N gives
+/// bit for bit the results of N single worlds (docs/determinism.md).
 ///
 /// The storage is a compiler vector and not an array: with arrays, g++ 12 leaves most of the step
 /// scalar. There are no shuffles, no horizontal sums and no fused multiply-adds. Every width is
 /// used in exactly one instruction set, so that no template instance is compiled twice with
-/// different flags. This folder is the only one that knows intrinsics: where the compiler does not
-/// find an instruction by itself, the headers wide_*.h name it.
+/// different flags. Intrinsics occur only in this folder, in the headers wide_*.h: where the
+/// compiler does not find an instruction.
 #pragma once
 
 #include <float.h>
 
 #include "math/scalar.h"
 
-// Where numbers are kept wider between operations, as on the x87, results are other ones.
+// Excess precision between operations, as on the x87, would change results.
 static_assert(FLT_EVAL_METHOD == 0, "taut needs arithmetic that rounds to double each time");
 
 namespace taut::simd {
@@ -22,7 +22,7 @@ struct VectorOf {
   typedef T Type __attribute__((vector_size(sizeof(T) * N)));
 };
 
-/// `Isa` only tells apart what is compiled for several instruction sets: see Lane.
+/// `Isa` only distinguishes types that are compiled for several instruction sets: see Lane.
 template <int N, class Isa = void>
 struct Wide {
   static constexpr int kLanes = N;
@@ -93,7 +93,7 @@ TAUT_INLINE Wide<N, I> Select(Mask<N, I> m, Wide<N, I> yes, Wide<N, I> no) noexc
   return {m.v ? yes.v : no.v};
 }
 
-// For all widths and machines; wide_*.h have better ones for theirs.
+// For all widths and machines; wide_*.h overload them with single instructions.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Sqrt(Wide<N, I> a) noexcept {
   for (int i = 0; i < N; ++i) a.v[i] = __builtin_sqrt(a.v[i]);
@@ -105,19 +105,19 @@ TAUT_INLINE bool Any(Mask<N, I> m) noexcept {
   for (int i = 0; i < N; ++i) any |= m.v[i];
   return any != 0;
 }
-/// The greater of two; `b` if either is NaN or both are zero: a > b ? a : b. That is what x86-64's
-/// instruction does. AArch64's FMAX differs in both, so nothing may stand for this but a selection.
+/// Returns the greater of two; `b` if either is NaN or both are zero: a > b ? a : b, like x86-64's
+/// instruction. AArch64's FMAX differs in both cases, so only a selection may implement it.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Max(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v > b.v ? a.v : b.v};
 }
-/// The smaller of two; `b` if either is NaN or both are zero.
+/// Returns the smaller of two; `b` if either is NaN or both are zero.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Min(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v < b.v ? a.v : b.v};
 }
 
-/// One lane: a plain double, so that a single world costs no vector overhead.
+/// One lane: a plain double, so that a single world has no vector overhead.
 template <class I>
 struct Mask<1, I> {
   bool v;
@@ -166,8 +166,8 @@ TAUT_INLINE bool Any(Mask<1, I> m) noexcept {
   return m.v;
 }
 
-/// One lane of W by itself, where lanes have too little in common to walk together. Tagged with W,
-/// so that each instruction set has its own; for a single world W itself.
+/// A single lane of W, for code where lanes have too little in common to run together. Tagged with
+/// W, so that each instruction set has a separate type; W if W is one lane.
 template <class W>
 struct LaneOf {
   using Type = Wide<1, W>;

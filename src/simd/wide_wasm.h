@@ -1,5 +1,6 @@
-/// What WebAssembly's compiler does not find by itself; included by wide.h alone. `pmax` and `pmin`
-/// are x86-64's instructions with the operands the other way round: pmax(x, y) = x < y ? y : x.
+/// SIMD instructions that WebAssembly's compiler does not generate from wide.h; included only by
+/// wide.h. `pmax` and `pmin` are x86-64's instructions with swapped operands: pmax(x, y) = x < y ?
+/// y : x.
 #pragma once
 
 #include <wasm_simd128.h>

@@ -1,4 +1,5 @@
-/// What x86-64's compilers do not find by themselves; included by wide.h alone.
+/// SSE2, AVX2 and AVX-512 instructions that x86-64's compilers do not generate from wide.h;
+/// included only by wide.h.
 #pragma once
 
 #include <immintrin.h>

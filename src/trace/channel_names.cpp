@@ -10,7 +10,7 @@
 namespace taut::trace {
 namespace {
 
-/// What is wrong with a name; empty if nothing is. `taken`: all names.
+/// Returns the flaw of a channel name; empty if there is none. `taken`: all names.
 std::string_view Flaw(std::string_view name, const std::set<std::string_view>& taken) {
   if (name == "time_s") return "is the trace's own clock";
   for (const char c : name) {
@@ -43,7 +43,8 @@ bool CheckChannelNames(const std::string& path, const std::vector<ChannelInfo>& 
     const bool twice = !before.insert(channel.name).second;
     const std::string_view flaw = twice ? "occurs twice" : Flaw(channel.name, taken);
     if (flaw.empty()) continue;
-    out.Error({path}, fmt::format("channel name \"{}\" {}", channel.name, flaw));
+    out.Error("trace.bad_channel_name", {path},
+              fmt::format("channel name \"{}\" {}", channel.name, flaw));
     good = false;
   }
   return good;
@@ -56,7 +57,7 @@ namespace taut {
 std::string UnitOfName(std::string_view name) {
   name.remove_prefix(name.rfind('/') + 1);  // npos + 1 is 0
   const base::NameUnit unit = base::UnitAtEnd(name);
-  // What stands before "per" may be a unit that is not known: turns_per_s.
+  // The unit before "per" may be unknown, as in turns_per_s.
   return unit.over.empty() ? "1" : unit.Text();
 }
 

@@ -1,4 +1,4 @@
-/// Rules for the names of channels, the same for every kind of trace file.
+/// Rules for the names of channels, the same for every format of trace files.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace taut::trace {
 
-/// Complains about names that a trace cannot hold: empty, given twice, `time_s`, characters that a
-/// CSV header or an HDF5 path cannot carry. False if there are any.
+/// Reports names that a trace cannot contain: empty, duplicate, `time_s`, or with characters that a
+/// CSV header or an HDF5 path cannot contain. Returns false if there are any.
 bool CheckChannelNames(const std::string& path, const std::vector<ChannelInfo>& channels,
                        Diagnostics& out);
 

@@ -18,7 +18,7 @@
 namespace taut::trace {
 namespace {
 
-/// Address space of this process, or 0 if the system does not tell.
+/// Returns the address space of this process, or 0 if the system does not report it.
 std::size_t AddressSpaceBytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
@@ -55,8 +55,8 @@ ProcessorUse UseOf(pid_t pid) {
   return use;
 }
 
-/// A crash of the child is expected: no handlers of the program around it, no core file, no last
-/// words on the terminal. An interrupt is for the parent to answer.
+/// Prepares for a crash of the child, which is expected: removes signal handlers of the surrounding
+/// program, core file and terminal output. An interrupt (SIGINT) is handled by the parent.
 void PrepareForTheWorst(std::size_t more_memory_bytes) {
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGPIPE}) {
     signal(number, SIG_DFL);
@@ -101,7 +101,7 @@ ChildProcess::ChildProcess(const std::function<void(const ChildOutput&)>& work,
     } catch (const std::exception&) {
       _exit(1);
     }
-    _exit(0);  // not exit(): what the parent has open or buffered is the parent's to finish
+    _exit(0);  // not exit(), which would flush and close files of the parent
   }
   if (pid_ < 0) trouble_ = fmt::format("could not be started: {}", std::strerror(errno));
   close(ends[1]);

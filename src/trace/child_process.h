@@ -1,4 +1,4 @@
-/// A forked child that does something dangerous and sends back what it found.
+/// Forked child process that isolates a library that may crash and sends its result through a pipe.
 #pragma once
 
 #include <sys/types.h>
@@ -10,10 +10,10 @@
 
 namespace taut::trace {
 
-/// Processor time that a child may take to read a file of HDF5.
+/// Limit of processor time for a child that reads an HDF5 file.
 inline constexpr std::chrono::seconds kChildPatience{30};
 
-/// The child's end of the pipe. Ends the child once the parent is gone.
+/// The child's end of the pipe. Ends the child when the parent has ended.
 class ChildOutput {
  public:
   explicit ChildOutput(int descriptor) : descriptor_(descriptor) {}
@@ -23,7 +23,7 @@ class ChildOutput {
   int descriptor_;
 };
 
-/// Whatever happens to the child (a crash, a hang, memory without bound), the parent lives.
+/// The parent survives any failure of the child: a crash, a hang, unbounded memory.
 class ChildProcess {
  public:
   /// Forks and runs `work` in the child, which ends with it. `more_memory_bytes`: memory limit of
@@ -36,7 +36,7 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Receives exactly `size` bytes. False if they do not come.
+  /// Receives exactly `size` bytes. Returns false if they do not arrive.
   bool Read(void* to, std::size_t size);
 
   /// Ends the child if it still runs. Returns an empty string if it exited normally, else the

@@ -1,4 +1,4 @@
-// zlib reads plain files as they are, so compressed or not is one path.
+// zlib also reads uncompressed files, so one code path serves both.
 #include "trace/csv_lines.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxLineBytes = 8 << 20;
 
-/// Why no more can be unpacked; empty at the end of the file.
+/// Returns the reason why no more can be unpacked; empty at the end of the file.
 std::string WhyItEnds(gzFile file, const std::string& path) {
   int code = 0;
   std::string_view why = gzerror(file, &code);
@@ -42,12 +42,12 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
         if (tail == CsvTail::kLine && !text.empty()) use(text);
         return true;
       }
-      out.Error({path, lines}, why, "`zcat` into a .csv keeps what is there");
+      out.Error("csv.damaged_gzip", {path, lines}, why, "`zcat` into a .csv keeps what is there");
       return false;
     }
     unpacked_bytes += count;
     if (unpacked_bytes > MostUnpackedBytes(file_bytes)) {
-      out.Error({path}, fmt::format("unpacks to {}", kUnpackLimit),
+      out.Error("trace.too_large", {path}, fmt::format("unpacks to {}", kUnpackLimit),
                 "if it is what it should be, unpack it with `gunzip` first");
       return false;
     }
@@ -59,7 +59,7 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
     }
     text.erase(0, from);
     if (text.size() > kMaxLineBytes) {
-      out.Error({path}, "is not a CSV file: no line end in 8 MB");
+      out.Error("csv.no_line_end", {path}, "is not a CSV file: no line end in 8 MB");
       return false;
     }
   }
@@ -77,7 +77,8 @@ bool ReadCsvLines(const std::string& path, CsvTail tail,
                   const std::function<bool(std::string_view)>& use, Diagnostics& out) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (file == nullptr) {
-    out.Error({path}, fmt::format("cannot be opened: {}", std::strerror(errno)));
+    out.Error("file.not_readable", {path},
+              fmt::format("cannot be opened: {}", std::strerror(errno)));
     return false;
   }
   struct stat info {};

@@ -1,4 +1,4 @@
-/// The lines of a text, compressed with gzip or not.
+/// Lines of a text file, compressed with gzip or not.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,15 @@
 
 namespace taut::trace {
 
-/// What follows the last line end: a line that was cut off, or the last one.
+/// Meaning of text after the last line end: a line that was cut off, or the last line.
 enum class CsvTail { kCutOff, kLine };
 
-/// Hands every line to `use`, without its end, until that is false. False, with a diagnostic, if
-/// the file cannot be opened or read to its end.
+/// Passes every line, without its end, to `use`, until that returns false. Returns false and
+/// reports a diagnostic if the file cannot be opened or read to its end.
 bool ReadCsvLines(const std::string& path, CsvTail tail,
                   const std::function<bool(std::string_view)>& use, Diagnostics& out);
 
-/// Without blanks before and after.
+/// Returns `text` without blanks and tabs before and after it.
 std::string_view Trim(std::string_view text);
 
 }  // namespace taut::trace

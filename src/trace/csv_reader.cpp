@@ -1,4 +1,4 @@
-// Reads a trace from text.
+// CSV reader for traces.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::size_t kMaxErrors = 20;
 
-/// Takes the lines of one file and makes a trace of them.
+/// Parses the lines of one file into a trace.
 class CsvParser {
  public:
   CsvParser(const std::string& path, Diagnostics& out) : path_(path), out_(out) {}
 
-  /// False: too many errors to go on.
+  /// Returns false after too many errors.
   bool Line(std::string_view line) {
     ++line_;
     if (line.ends_with('\r')) line.remove_suffix(1);
@@ -28,13 +28,14 @@ class CsvParser {
       empty_line_ = empty_line_ == 0 ? line_ : empty_line_;
       return true;
     }
-    if (empty_line_ > 0) return Error(empty_line_, 0, "an empty line between rows");
+    if (empty_line_ > 0)
+      return Error("csv.empty_line", empty_line_, 0, "an empty line between rows");
     Row(line);
     return error_count_ < kMaxErrors;
   }
 
   std::optional<Trace> Take() {
-    if (line_ == 0) Error(1, 0, "has no header line");
+    if (line_ == 0) Error("csv.no_header", 1, 0, "has no header line");
     if (error_count_ > 0) return std::nullopt;
     return std::move(trace_);
   }
@@ -47,7 +48,7 @@ class CsvParser {
       if (column++ > 0) {
         trace_.channels.push_back({std::string(cell), UnitOfName(cell)});
       } else if (cell != "time_s") {
-        Error(1, 1, fmt::format("the first column is \"{}\"", cell),
+        Error("csv.no_time", 1, 1, fmt::format("the first column is \"{}\"", cell),
               "the first column of a trace is time_s");
       }
     });
@@ -63,22 +64,23 @@ class CsvParser {
       double number = 0.0;
       const auto [end, failure] = base::FromChars(cell.data(), cell.data() + cell.size(), number);
       if (failure == std::errc::result_out_of_range) {
-        good = Error(line_, column, fmt::format("number \"{}\" is out of range", cell));
+        good = Error("csv.out_of_range", line_, column,
+                     fmt::format("number \"{}\" is out of range", cell));
       } else if (failure != std::errc() || end != cell.data() + cell.size()) {
-        good = Error(line_, column, fmt::format("\"{}\" is not a number", cell),
+        good = Error("csv.not_a_number", line_, column, fmt::format("\"{}\" is not a number", cell),
                      cell.empty() ? "write nan for a missing value" : "");
       }
       row_.push_back(number);
     });
     if (row_.size() != trace_.channels.size() + 1) {
-      good = Error(line_, 0,
+      good = Error("csv.ragged_row", line_, 0,
                    fmt::format("{} values where the header names {}", row_.size(),
                                trace_.channels.size() + 1));
     }
     if (!good) return;
     if (!std::isfinite(row_[0]) || (!trace_.time_s.empty() && !(row_[0] > trace_.time_s.back()))) {
-      Error(line_, 1, fmt::format("time {} does not come after the row before", row_[0]),
-            "times must rise");
+      Error("csv.times_not_increasing", line_, 1,
+            fmt::format("time {} does not come after the row before", row_[0]), "times must rise");
       return;
     }
     trace_.time_s.push_back(row_[0]);
@@ -97,10 +99,10 @@ class CsvParser {
     }
   }
 
-  /// Always false.
-  bool Error(int line, int column, std::string what, std::string hint = {}) {
+  /// Always returns false.
+  bool Error(MessageId id, int line, int column, std::string what, std::string hint = {}) {
     if (++error_count_ <= kMaxErrors) {
-      out_.Error({path_, line, column}, std::move(what), std::move(hint));
+      out_.Error(id, {path_, line, column}, std::move(what), std::move(hint));
     }
     return false;
   }
@@ -110,7 +112,7 @@ class CsvParser {
   Trace trace_;
   std::vector<double> row_;
   int line_ = 0;
-  int empty_line_ = 0;  ///< The first of those that only the end of the file may have.
+  int empty_line_ = 0;  ///< First of the empty lines that are allowed at the end of the file only.
   std::size_t error_count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Tables of other programs, as a mapping says they are laid out.
+// Tables of other programs, in the layout that a mapping defines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,10 +47,10 @@ class TableParser {
 
   std::optional<Trace> Take() {
     if (errors_ == 0 && columns_.empty()) {
-      Error(std::max(line_, 1), 0, "ends before the rows begin",
+      Error("csv.no_rows", std::max(line_, 1), 0, "ends before the rows begin",
             fmt::format("the mapping skips {} lines", layout_.skip_lines));
     }
-    if (errors_ == 0 && rows_ == 0) Error(line_, 0, "has no rows");
+    if (errors_ == 0 && rows_ == 0) Error("csv.no_rows", line_, 0, "has no rows");
     if (errors_ > 0) return std::nullopt;
     if (is_long()) Spread();
     return std::move(trace_);
@@ -92,9 +92,10 @@ class TableParser {
     const auto index = [&](const std::string& name) {
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end()) {
-        Error(line, 0, fmt::format("has no column \"{}\"", name), DidYouMean(name, names));
+        Error("csv.no_column", line, 0, fmt::format("has no column \"{}\"", name),
+              DidYouMean(name, names));
       } else if (std::find(found + 1, names.end(), name) != names.end()) {
-        Error(line, 0, fmt::format("has two columns \"{}\"", name),
+        Error("csv.duplicate_column", line, 0, fmt::format("has two columns \"{}\"", name),
               "give them names: `columns` of the mapping");
       }
       return static_cast<std::size_t>(found - names.begin());
@@ -119,7 +120,7 @@ class TableParser {
     return errors_ == 0;
   }
 
-  /// NaN for a gap.
+  /// Returns NaN for a gap.
   double Number(const Cell& cell) {
     std::string_view text = cell.text;
     if (text.empty() || text == "NA" || text == "NaN" || text == "nan") return kNan;
@@ -128,7 +129,7 @@ class TableParser {
     const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
     if (failure != std::errc() || end != text.data() + text.size()) {
       Error(
-          line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),
+          "csv.not_a_number", line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),
           "of lines before the rows: `skip_lines` of the mapping; of a column of texts: `ignore`");
       return kNan;
     }
@@ -138,7 +139,7 @@ class TableParser {
   void Row(const std::vector<Cell>& cells) {
     const std::size_t errors_before = errors_;
     if (cells.size() != columns_.size()) {
-      Error(line_, 0,
+      Error("csv.ragged_row", line_, 0,
             fmt::format("{} values where there are {} columns", cells.size(), columns_.size()));
       return;
     }
@@ -171,10 +172,11 @@ class TableParser {
     time_s += layout_.offset_s;
     auto& last = last_[name];
     if (!std::isfinite(time_s)) {
-      Error(line_, time_at, "the time is not a number", "a row without a time is to be left out");
+      Error("csv.not_a_number", line_, time_at, "the time is not a number",
+            "a row without a time is to be left out");
     } else if (last.line > 0 && !(time_s > last.time_s)) {
       const bool midnight = last.time_s - time_s > 0.5 * kDay_s;
-      Error(line_, time_at,
+      Error("csv.times_not_increasing", line_, time_at,
             fmt::format("the time {} s {} {} s in line {}", time_s,
                         time_s == last.time_s ? "is again that of" : "comes before", last.time_s,
                         last.line),
@@ -188,7 +190,7 @@ class TableParser {
     last = {time_s, line_};
   }
 
-  /// One row a time that any channel has.
+  /// Converts one value per line to one row for each time of any channel.
   void Spread() {
     std::map<double, std::size_t> rows;
     for (const auto& [name, points] : long_) {
@@ -205,9 +207,9 @@ class TableParser {
     }
   }
 
-  void Error(int line, int column, std::string what, std::string hint = {}) {
+  void Error(MessageId id, int line, int column, std::string what, std::string hint = {}) {
     if (++errors_ <= kMaxTableErrors) {
-      out_.Error({path_, line, column}, std::move(what), std::move(hint));
+      out_.Error(id, {path_, line, column}, std::move(what), std::move(hint));
     }
   }
 
@@ -219,7 +221,7 @@ class TableParser {
   const TableLayout& layout_;
   Diagnostics& out_;
   std::vector<Use> columns_;
-  std::map<std::string, Before> last_;  ///< By channel, if a row has one value.
+  std::map<std::string, Before> last_;  ///< Per channel, in tables with one value per row.
   std::map<std::string, std::vector<std::pair<double, double>>> long_;
   double zero_ = 0;
   std::size_t rows_ = 0;

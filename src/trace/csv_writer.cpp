@@ -1,4 +1,5 @@
-// A trace as text: one line a row, the shortest digits that read back as the same number.
+// CSV writer for traces: one line per row, with the shortest digits that read back as the same
+// number.
 #include <fmt/format.h>
 
 #include <utility>
@@ -17,7 +18,7 @@ constexpr std::size_t kBlockBytes = 1 << 18;
 
 class CsvWriter final : public TraceWriter {
  public:
-  /// `whole`: the file is there once it is finished, not from its first row on.
+  /// `whole`: publish the file when it is finished, not from its first row on.
   CsvWriter(const std::string& path, std::size_t channel_count, bool whole)
       : path_(path), channel_count_(channel_count), whole_(whole), file_(path) {}
 
@@ -87,7 +88,7 @@ class CsvWriter final : public TraceWriter {
   bool whole_;
   NewFile file_;
   bool finished_ = false;
-  std::string text_;  ///< Whole lines, not yet written.
+  std::string text_;  ///< Complete lines, not yet written.
   FlushClock clock_;
 };
 
@@ -97,7 +98,7 @@ std::unique_ptr<TraceWriter> Create(const std::string& path,
   if (!CheckChannelNames(path, channels, out)) return nullptr;
   auto writer = std::make_unique<CsvWriter>(path, channels.size(), whole);
   if (!writer->Start(channels)) {
-    out.Error({}, writer->error());
+    out.Error("trace.not_written", {}, writer->error());
     return nullptr;
   }
   return writer;

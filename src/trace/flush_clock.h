@@ -1,4 +1,4 @@
-/// When the rows that a writer holds in memory are due to be written.
+/// Timer that determines when a writer must write the rows in its memory.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,9 @@
 
 namespace taut::trace {
 
-/// The first row is due at once, so that a run that is killed early has left something. The waits
-/// then double up to half a second: half of what the interface promises, because the next look at
-/// the clock is at the next row. What is written is the same whatever the clock says.
+/// The first row is due at once, so that a run that is killed early leaves some data. The waits
+/// then double up to half a second: half of the interface's guarantee, because the clock is checked
+/// again only at the next row. The content of the file does not depend on the clock.
 class FlushClock {
  public:
   bool due() const { return Clock::now() - flushed_ >= wait_; }

@@ -11,7 +11,7 @@ herr_t TakeInnermost(unsigned depth, const H5E_error2_t* error, void* out) {
   return 0;
 }
 
-/// HDF5 calls this when a call has failed, before anything can overwrite the reason.
+/// HDF5 calls this when a call has failed, before the reason can be overwritten.
 herr_t Remember(hid_t stack, void* out) {
   Hdf5Failure& first = *static_cast<Hdf5Failure*>(out);
   if (!first.why.empty()) return 0;
@@ -27,8 +27,8 @@ herr_t Remember(hid_t stack, void* out) {
 }  // namespace
 
 QuietHdf5::QuietHdf5() {
-  // A trace that could not be finished stays open inside the library, which must not try again
-  // when the program exits.
+  // A trace that could not be finished stays open inside the library, which must not try again when
+  // the program exits.
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

@@ -1,4 +1,4 @@
-/// The little of HDF5's C interface that reader and writer share.
+/// Wrappers of HDF5's C interface, shared by reader and writer.
 #pragma once
 
 #include <hdf5.h>
@@ -27,12 +27,12 @@ class Hdf5Id {
   }
   ~Hdf5Id() { Reset(); }
 
-  /// Closes. False if that failed (HDF5 writes what it still holds when it closes).
+  /// Closes. Returns false if that failed (HDF5 writes its buffers when it closes).
   bool Reset() noexcept {
     const hid_t id = std::exchange(id_, H5I_INVALID_HID);
     return id < 0 || close_(id) >= 0;
   }
-  /// Forgets the identifier without closing it.
+  /// Releases the identifier without closing it.
   void Abandon() noexcept { id_ = H5I_INVALID_HID; }
   explicit operator bool() const noexcept { return id_ >= 0; }
   operator hid_t() const noexcept { return id_; }
@@ -43,12 +43,12 @@ class Hdf5Id {
 };
 
 struct Hdf5Failure {
-  std::string why;         ///< In the system's words if it was the system.
+  std::string why;         ///< The system's message if a call to the system failed.
   bool of_system = false;  ///< A call to the system failed ("No space left on device").
 };
 
-/// Keeps HDF5 from printing its errors while it lives, and remembers the first. Puts the setting of
-/// the program around us back afterwards.
+/// Suppresses HDF5's error output during its lifetime and stores the first error. The destructor
+/// restores the setting of the surrounding program.
 class QuietHdf5 {
  public:
   QuietHdf5();
@@ -56,10 +56,10 @@ class QuietHdf5 {
   QuietHdf5(const QuietHdf5&) = delete;
   QuietHdf5& operator=(const QuietHdf5&) = delete;
 
-  /// Why the first call failed.
+  /// Returns the reason of the first failed call.
   Hdf5Failure first() const { return {why(), first_.of_system}; }
   std::string why() const { return first_.why.empty() ? "unknown HDF5 error" : first_.why; }
-  /// Forgets an error that was expected.
+  /// Clears an error that was expected.
   void Forget() { first_ = {}; }
 
  private:
@@ -73,8 +73,8 @@ class QuietHdf5 {
 /// itself. To be called before anything is read.
 std::string WhyElsewhere(hid_t plan);
 
-/// Opens the dataset of that name if the file itself holds all its numbers. Returns nothing and a
-/// sentence in `error` if it is missing or a link, external storage or a virtual layout leads to
+/// Opens the dataset of that name if the file itself contains all its numbers. Returns nothing and
+/// a sentence in `error` if it is missing or a link, external storage or a virtual layout leads to
 /// another file.
 Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error);
 

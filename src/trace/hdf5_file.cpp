@@ -17,14 +17,14 @@ namespace {
 /// (hdf5_reader.cpp).
 constexpr std::size_t kMaxTextBytes = 64 << 20;
 
-/// The widest number that a machine has.
+/// Size of the widest number type of a machine.
 constexpr std::size_t kMostNumberBytes = 16;
 
-/// How often HDF5 looks again when a live file does not add up. It waits twice as long each time,
-/// from 1 ns: about 30 ms in all (its own 100 attempts take more than a minute).
+/// Number of attempts of HDF5 to read consistent metadata of a live file. The wait doubles each
+/// time, from 1 ns: about 30 ms in total (HDF5's default of 100 attempts takes more than a minute).
 constexpr unsigned kReadAttempts = 25;
 
-/// The attribute as text; nothing if there is none or it is not text.
+/// Returns the attribute as text; nothing if there is none or it is not text.
 std::optional<std::string> TextAttribute(hid_t object, const std::string& name) {
   if (H5Aexists(object, name.c_str()) <= 0) return std::nullopt;
   const Hdf5Id attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
@@ -70,7 +70,7 @@ herr_t AddMetadata(hid_t object, const char* name, const H5A_info_t*, void* out)
   return 0;
 }
 
-/// Attributes in the order in which they were made if the file knows it, else by name.
+/// Returns the attributes in order of creation if the file stores it, else by name.
 TraceMetadata ReadMetadata(hid_t file) {
   TraceMetadata metadata;
   if (H5Aiterate2(file, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, AddMetadata, &metadata) < 0) {
@@ -85,8 +85,8 @@ struct Walk {
   std::string& error;
 };
 
-/// Why a dataset is no column of a trace; empty if it is one. Looks at its layout before anything
-/// that could make HDF5 open another file: a trace is one file.
+/// Returns the reason why a dataset is not a column of a trace; empty if it is one. Checks its
+/// layout before any call that could make HDF5 open another file: a trace is one file.
 std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   const H5D_layout_t layout = plan ? H5Pget_layout(plan) : H5D_LAYOUT_ERROR;
@@ -116,7 +116,7 @@ std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
   return {};
 }
 
-/// Takes the dataset behind a link. A soft link is another name of one that has its own.
+/// Adds the dataset behind a link. A soft link is a second name of a dataset that has a hard link.
 herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* context) {
   const Walk& walk = *static_cast<Walk*>(context);
   if (link->type == H5L_TYPE_SOFT) return 0;
@@ -138,7 +138,7 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   }
   const std::optional<std::string> unit = TextAttribute(object, "unit");
   const std::optional<int> place = NumberAttribute(object, "column");
-  // What is there and cannot be read is not what is not there.
+  // An attribute that exists but cannot be read is an error, unlike a missing one.
   if ((!unit && H5Aexists(object, "unit") != 0) || (!place && H5Aexists(object, "column") != 0)) {
     walk.error = fmt::format("is damaged: unit or place of /{} cannot be read", name);
     return -1;
@@ -154,15 +154,15 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   return 0;
 }
 
-/// Every column, time first.
+/// Returns every column, time first.
 std::vector<const Hdf5Column*> AllColumns(const Hdf5File& trace) {
   std::vector<const Hdf5Column*> all{&trace.time};
   for (const Hdf5Column& channel : trace.channels) all.push_back(&channel);
   return all;
 }
 
-/// What reading takes, as numbers of the machine: whole chunks. A damaged extent may promise more
-/// than any file of this size can hold.
+/// Checks that the data to be read, as the machine's numbers in whole chunks, fit in memory. A
+/// damaged extent may claim more than any file of this size can contain.
 bool FitsInMemory(double file_bytes, const Hdf5File& trace, std::string& error) {
   double bytes = 0;
   for (const Hdf5Column* column : AllColumns(trace)) {
@@ -178,8 +178,8 @@ bool FitsInMemory(double file_bytes, const Hdf5File& trace, std::string& error) 
   return false;
 }
 
-/// Whether all rows were ever written, and to places of their own. Only of a file that was
-/// finished: one that was cut off has room beyond its rows.
+/// Checks that all rows were written, to storage that columns do not share. Only for finished
+/// files: a file that was cut off has space beyond its rows.
 bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
   double stored_bytes = 0;
   for (const Hdf5Column* column : AllColumns(trace)) {
@@ -213,11 +213,11 @@ bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
 std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& error) {
   QuietHdf5 quiet;
   Hdf5File trace;
-  // Twice: a read that fails once makes no trace an unfinished one.
+  // Two attempts, so that one failed read does not classify a trace as unfinished.
   for (int attempt = 0; attempt < 2 && !trace.file; ++attempt) {
     trace.file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   }
-  if (!trace.file) {  // as a reader beside the writer, which need not live any more
+  if (!trace.file) {  // open as a concurrent reader (SWMR); the writer may have ended
     const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_metadata_read_attempts(access, kReadAttempts);
     trace.file =

@@ -1,4 +1,5 @@
-/// Opens and walks an HDF5 trace. Used in a child process only: HDF5 may crash on a damaged file.
+/// Structure of an HDF5 trace file: opening, checks and columns. Used in a child process only: HDF5
+/// may crash on a damaged file.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +18,24 @@ struct Hdf5Column {
   std::string unit;
   Hdf5Id dataset;
   hsize_t rows = 0;
-  hsize_t chunk_rows = 0;  ///< Rows that can only be unpacked together; 0: each alone.
-  int place = 0;  ///< Attribute `column`: its place in a row. Without one: after all that have.
+  hsize_t chunk_rows = 0;  ///< Rows that can only be unpacked together; 0: each separately.
+  int place = 0;           ///< Attribute `column`: place in a row; without it: after the others.
 };
 
-/// An open trace: what it holds, not yet the numbers.
+/// An open trace: its structure, without the numbers.
 struct Hdf5File {
   Hdf5Id file;
   bool cut_off = false;  ///< Never finished, or still being written.
   TraceMetadata metadata;
   Hdf5Column time;
   std::vector<Hdf5Column> channels;  ///< In the order of a row.
-  hsize_t rows = 0;                  ///< Complete in every column.
+  hsize_t rows = 0;                  ///< Rows that are complete in every column.
 };
 
-/// Nothing and a sentence in `error` if the file is not a trace.
+/// Returns nothing and a sentence in `error` if the file is not a trace.
 std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& error);
 
-/// Reads rows from .. from + count. False and a sentence in `error` if that fails.
+/// Reads rows from .. from + count. Returns false and a sentence in `error` on failure.
 bool ReadHdf5Rows(const Hdf5Column& column, hsize_t from, hsize_t count, double* to,
                   std::string& error);
 

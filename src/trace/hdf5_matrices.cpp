@@ -8,7 +8,7 @@
 namespace taut::trace {
 namespace {
 
-/// A data set at `path`, whose groups are made; null if that fails.
+/// Creates a dataset at `path` and its groups; null on failure.
 Hdf5Id Create(hid_t file, const std::string& path, hid_t type, hid_t space) {
   const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
@@ -72,7 +72,7 @@ bool Fill(hid_t file, const Hdf5Content& content) {
 bool WriteHdf5(const std::string& path, const Hdf5Content& content, Diagnostics& out) {
   NewFile made(path);
   const auto fail = [&](const std::string& why) {
-    out.Error({path}, "cannot be written: " + why);
+    out.Error("file.not_writable", {path}, "cannot be written: " + why);
     return false;
   };
   if (!made.Create()) return fail(made.why());

@@ -1,4 +1,4 @@
-/// Matrices and lists of names in an HDF5 file, for other programs to read.
+/// Matrices and lists of names in an HDF5 file, for other programs.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ struct Hdf5Content {
   std::vector<std::pair<std::string, double>> numbers;                  ///< Of the file.
 };
 
-/// Writes a new file, in the place of one of that name once it is complete. Groups of a path are
-/// made. False and a complaint if it cannot be written.
+/// Writes a new file, which replaces a file of that name when it is complete. Creates the groups of
+/// a path. Returns false and reports an error if it cannot be written.
 bool WriteHdf5(const std::string& path, const Hdf5Content& content, Diagnostics& out);
 
 }  // namespace taut::trace

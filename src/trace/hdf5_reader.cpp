@@ -1,5 +1,5 @@
-// Reads a trace from HDF5 through a child process. What goes through the pipe: texts as length and
-// bytes, numbers in the machine's own form.
+// Reads a trace from HDF5 through a child process. Content of the pipe: texts as length and bytes,
+// numbers in the machine's binary format.
 //   error (empty: none) | cut_off | metadata count, key, text, ... | channel count, name, unit, ...
 //   | row count | time | values of each channel, in blocks: error (empty: none), count, values
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ void SendText(const ChildOutput& to, const std::string& text) {
 }
 
 void SendColumn(const ChildOutput& to, const Hdf5Column& column, std::uint64_t rows) {
-  // Whole chunks: HDF5 would unpack one again for every block that begins in it.
+  // Whole chunks: HDF5 would unpack a chunk again for every block that begins in it.
   const std::uint64_t chunk = std::max<std::uint64_t>(column.chunk_rows, 1);
   const std::uint64_t most = std::min(rows, std::max<std::uint64_t>(kBlockRows / chunk, 1) * chunk);
   std::vector<double> block(most);
@@ -44,7 +44,7 @@ void SendColumn(const ChildOutput& to, const Hdf5Column& column, std::uint64_t r
   }
 }
 
-/// All that the child does.
+/// The child's part: reads the file and sends its content.
 void SendTrace(const std::string& path, const ChildOutput& to) {
   std::string error;
   const std::optional<Hdf5File> trace = OpenHdf5Trace(path, error);
@@ -66,7 +66,8 @@ void SendTrace(const std::string& path, const ChildOutput& to) {
   for (const Hdf5Column& channel : trace->channels) SendColumn(to, channel, trace->rows);
 }
 
-/// The parent's side. Trusts nothing: each member returns false once something is amiss.
+/// The parent's part. Validates all received data: each member returns false at the first
+/// inconsistency.
 class Receiver {
  public:
   explicit Receiver(ChildProcess& child) : child_(child) {}
@@ -102,7 +103,7 @@ class Receiver {
     return true;
   }
 
-  /// False: see `error`, empty if the child's end is the reason.
+  /// Returns false with the reason in `error`, which is empty if the child ended early.
   bool All(Trace& trace) {
     std::uint64_t flag = 0, rows = 0;
     std::vector<std::pair<std::string, std::string>> channels;
@@ -126,7 +127,7 @@ class Receiver {
   ChildProcess& child_;
 };
 
-/// Row after which time no longer rises.
+/// Returns the number of rows up to which time rises and is finite.
 std::size_t RisingRows(const std::vector<double>& time_s) {
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     if (!std::isfinite(time_s[i]) || (i > 0 && !(time_s[i] > time_s[i - 1]))) return i;
@@ -147,15 +148,16 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
       const std::string how = child.End();
       what = "is damaged: reading it " + (how.empty() ? "gave nonsense" : how);
     }
-    out.Error({path}, what);
+    out.Error("hdf5.damaged", {path}, what);
     return std::nullopt;
   }
   const std::size_t rows = RisingRows(trace.time_s);
   if (rows < trace.time_s.size() && !trace.unfinished) {
-    out.Error({path}, fmt::format("is damaged: time does not rise at row {}", rows));
+    out.Error("trace.damaged", {path},
+              fmt::format("is damaged: time does not rise at row {}", rows));
     return std::nullopt;
   }
-  // Cut off between making room for rows and writing them: the room is not data.
+  // If the writer was cut off between allocating rows and writing them, these rows are not data.
   trace.time_s.resize(rows);
   for (std::vector<double>& column : trace.values) column.resize(rows);
   return trace;

@@ -1,5 +1,5 @@
-// What goes through the pipe: error as length and bytes (empty: none) | rows | columns | numbers,
-// in the machine's own form.
+// Content of the pipe: error as length and bytes (empty: none) | rows | columns | numbers, in the
+// machine's binary format.
 #include "trace/hdf5_table.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMostErrorBytes = 1 << 16;
 
-/// The data set, with a sentence if it is none that holds a table.
+/// Opens the dataset; returns a sentence if it is not a table.
 std::string OpenTable(const std::string& path, const std::string& name, double most,
                       double file_bytes, Hdf5Id& file, Hdf5Id& set, hsize_t size[2]) {
   const QuietHdf5 quiet;
@@ -49,7 +49,7 @@ std::string OpenTable(const std::string& path, const std::string& name, double m
   return "";
 }
 
-/// All that the child does.
+/// The child's part: reads the file and sends its content.
 void SendTable(const std::string& path, const std::string& name, double most, double file_bytes,
                const ChildOutput& to) {
   Hdf5Id file, set;
@@ -73,7 +73,7 @@ void SendTable(const std::string& path, const std::string& name, double most, do
 
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
                                        double most, Diagnostics& out) {
-  // Whether it can be opened at all is told in the system's words.
+  // Reports in the system's words if the file cannot be opened.
   constexpr std::size_t kMostBytes = std::size_t{1} << 30;
   const auto bytes = base::ReadInputFile(path, kMostBytes, "fewer numbers", out);
   if (!bytes) return std::nullopt;
@@ -102,7 +102,7 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
     error = "is damaged: reading it " + (how.empty() ? "gave nonsense" : how);
   }
   if (!error.empty()) {
-    out.Error({path}, error);
+    out.Error("hdf5.bad_table", {path}, error);
     return std::nullopt;
   }
   return table;

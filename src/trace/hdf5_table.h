@@ -1,4 +1,4 @@
-/// Tables of numbers in HDF5 files that other programs wrote.
+/// Tables of numbers in HDF5 files of other programs.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,9 @@ struct Hdf5Table {
   std::vector<double> values;  ///< Row by row.
 };
 
-/// A data set of two dimensions with numbers of any kind. Nothing and a complaint if there is none
-/// called `name`, or it has more than `most` numbers. A child process opens the file, as for traces
-/// (readers.h).
+/// Reads a two-dimensional dataset of any number type. Returns nothing and reports an error if
+/// there is none called `name`, or it has more than `most` numbers. A child process opens the file,
+/// as for traces (readers.h).
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
                                        double most, Diagnostics& out);
 

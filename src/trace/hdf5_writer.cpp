@@ -1,8 +1,8 @@
-// A trace in HDF5, written so that it can be read at any moment (docs/formats/trace.md).
+// HDF5 writer for traces that are readable at any moment (docs/formats/trace.md).
 //
 // All groups, datasets and attributes exist before the first row; from then on the file is in
-// HDF5's single-writer mode, in which the library orders its writes such that a reader, or the
-// next program after a kill -9, never sees a broken structure.
+// HDF5's single-writer mode (SWMR), in which the library orders its writes such that a reader, or
+// the next program after a kill -9, never sees a broken structure.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,8 +19,8 @@
 namespace taut::trace {
 namespace {
 
-/// Rows of a chunk. 8 kB: a short run wastes little on its last chunk, an hour at 1 kHz is still
-/// only 3500 chunks a channel.
+/// Rows of a chunk. 8 kB: a short run wastes little on its last chunk, and an hour at 1 kHz has
+/// only 3500 chunks per channel.
 constexpr hsize_t kChunkRows = 1024;
 
 bool WriteText(hid_t object, const std::string& name, const std::string& text) {
@@ -38,7 +38,7 @@ bool WriteNumber(hid_t object, const char* name, int number) {
   return attribute && H5Awrite(attribute, H5T_NATIVE_INT, &number) >= 0;
 }
 
-/// A column at `path`, empty, with room without limit. `column`: its place in a row.
+/// Creates an empty column of unlimited length at `path`. `column`: its place in a row.
 Hdf5Id CreateColumn(hid_t file, const std::string& path, const std::string& unit, int column) {
   const hsize_t none = 0, unlimited = H5S_UNLIMITED;
   const Hdf5Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
@@ -63,12 +63,12 @@ class Hdf5Writer final : public TraceWriter {
 
   ~Hdf5Writer() override {
     if (new_.published()) Finish();
-    const QuietHdf5 quiet;  // what is not published is closed, too, and then gone
+    const QuietHdf5 quiet;  // an unpublished file is closed, too, and then removed
     columns_.clear();
     file_.Reset();
   }
 
-  /// Makes the file and all that it will ever contain except rows.
+  /// Creates the file with its entire content except the rows.
   bool Start(const std::vector<ChannelInfo>& channels, const TraceMetadata& metadata);
 
   bool Append(double time_s, const double* values) override {
@@ -78,7 +78,7 @@ class Hdf5Writer final : public TraceWriter {
     row[0] = time_s;
     std::copy(values, values + (width_ - 1), row + 1);
     ++row_count_;
-    // Whole chunks are cheapest, so a block ends where a chunk does.
+    // Whole chunks are cheapest, so a block ends at the end of a chunk.
     if ((written_ + row_count_) % kChunkRows == 0 && !WriteRows()) return false;
     return FlushOld();
   }
@@ -111,7 +111,7 @@ class Hdf5Writer final : public TraceWriter {
     return new_.Publish() || Fail(new_.why());
   }
 
-  /// Time goes last: a row that has a time has everything else.
+  /// Writes time last: a row with a time is complete.
   bool WriteRows() {
     if (row_count_ == 0) return true;
     const QuietHdf5 quiet;
@@ -138,10 +138,10 @@ class Hdf5Writer final : public TraceWriter {
 
   bool Fail(std::string why) { return Fail(Hdf5Failure{std::move(why), true}); }
 
-  /// The library cannot close what it cannot write: the file stays as it is, readable up to the
-  /// last flush that went well. Where the system refused to write, the rest goes nowhere instead,
-  /// so that neither memory nor, once somebody removes the file, its room on the disk is held. A
-  /// library that failed by itself is left alone.
+  /// The library cannot close a file that it cannot write: the file stays unchanged, readable up to
+  /// the last successful flush. If the system refused to write, remaining writes are redirected to
+  /// /dev/null, so that neither memory nor, after removal of the file, its disk space is held.
+  /// After an internal failure of the library its identifiers are abandoned.
   bool Fail(const Hdf5Failure& failure) {
     if (error_.empty()) error_ = fmt::format("{}: cannot be written: {}", path_, failure.why);
     const bool nowhere = failure.of_system && WriteNowhere();
@@ -155,7 +155,7 @@ class Hdf5Writer final : public TraceWriter {
     return false;
   }
 
-  /// What the library still writes is forgotten.
+  /// Redirects the remaining writes of the library to /dev/null.
   bool WriteNowhere() {
     const QuietHdf5 quiet;
     void* handle = nullptr;
@@ -183,13 +183,13 @@ bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMeta
   const QuietHdf5 quiet;
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  // No chunk cache: what is written leaves the process at once, and memory stays small. (Set for
-  // a dataset alone it is forgotten when the single-writer mode starts.)
+  // No chunk cache: data leave the process at once, and memory stays small. (A setting for a single
+  // dataset is lost when the single-writer mode starts.)
   H5Pset_cache(access, 0, 1, 0, 1.0);
   const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
 
-  // The file is ours already, made anew: HDF5 opens it and begins.
+  // `NewFile` has created the file; HDF5 opens and truncates it.
   if (!new_.Create()) return Fail(new_.why());
   file_ = Hdf5Id(H5Fcreate(new_.made_at().c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
   if (!file_) return Fail(quiet.first());
@@ -214,7 +214,8 @@ bool CheckMetadata(const std::string& path, const TraceMetadata& metadata, Diagn
                        std::any_of(metadata.begin(), metadata.begin() + static_cast<long>(i),
                                    [&](const auto& pair) { return pair.first == key; });
     if (!taken) continue;
-    out.Error({path}, fmt::format("metadata key \"{}\" is empty, reserved or occurs twice", key));
+    out.Error("trace.bad_metadata", {path},
+              fmt::format("metadata key \"{}\" is empty, reserved or occurs twice", key));
     return false;
   }
   return true;
@@ -234,7 +235,7 @@ std::unique_ptr<TraceWriter> CreateHdf5Trace(const std::string& path,
   }
   auto writer = std::make_unique<trace::Hdf5Writer>(path, channels.size());
   if (!writer->Start(channels, metadata)) {
-    out.Error({}, writer->error());
+    out.Error("trace.not_written", {}, writer->error());
     return nullptr;
   }
   return writer;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr char kMagic[] = "\x89MCAP0\r\n";
 constexpr std::size_t kMagicBytes = 8;
-constexpr std::size_t kChunkBytes = std::size_t{1} << 20;  // when a chunk is full
+constexpr std::size_t kChunkBytes = std::size_t{1} << 20;  // size of a full chunk
 constexpr char kMetadataName[] = "taut";
 
 enum class Op : std::uint8_t {
@@ -28,7 +28,7 @@ enum class Op : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
-/// The content of a record: numbers with the least byte first, texts after their lengths.
+/// Content of a record: little-endian numbers, texts after their lengths.
 class Content {
  public:
   Content& U8(std::uint8_t x) { return Int(x, 1); }
@@ -40,7 +40,7 @@ class Content {
     bytes_ += bytes;
     return *this;
   }
-  /// After the length of all of it.
+  /// Appends the length of all pairs, then the pairs.
   template <class Map, class Each>
   Content& Pairs(const Map& map, const Each& each) {
     Content all;
@@ -160,7 +160,7 @@ bool McapWriter::CloseChunk() {
   return true;
 }
 
-/// All that comes after the data, and where in it what is.
+/// Returns all records after the data, with the offsets of their groups.
 std::string McapWriter::Summary(std::uint64_t start) const {
   std::string all, offsets;
   const auto group = [&](Op op, const std::string& records) {
@@ -216,7 +216,7 @@ std::string McapWriter::Summary(std::uint64_t start) const {
                                 .Record(Op::kMetadataIndex));
   const std::uint64_t offsets_start = start + all.size();
   all += offsets;
-  // The sum of the summary goes up to itself, so through most of the footer.
+  // The checksum of the summary covers everything before it, including most of the footer.
   std::string footer = Content().U64(start).U64(offsets_start).U32(0).Record(Op::kFooter);
   footer.resize(footer.size() - 4);
   all += footer;

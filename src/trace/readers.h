@@ -1,4 +1,4 @@
-/// The readers behind `ReadTrace`, one for each kind of file.
+/// Trace readers behind `ReadTrace`, one per file format.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 namespace taut::trace {
 
 /// Reads a trace in HDF5. The library is known to crash on damaged files, so a child process opens
-/// the file and sends what it finds.
+/// the file and sends its content.
 std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out);
 
 /// Reads a trace in CSV, compressed with gzip or not.

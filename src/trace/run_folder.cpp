@@ -22,18 +22,18 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInputs = "inputs.yaml";
 constexpr const char* kSummary = "summary.json";
-/// In the order in which they go when a new run begins.
+/// In the order of their removal when a new run begins.
 constexpr const char* kPieces[] = {kSummary,    "report.html", "events.jsonl",
                                    "trace.csv", "trace.h5",    kInputs};
 constexpr std::string_view kIdLine = "# run ";
 
-/// The rest of `text` after this beginning; nothing if it begins otherwise.
+/// Returns `text` without the given beginning; nothing if it begins otherwise.
 std::optional<std::string_view> After(std::string_view text, std::string_view beginning) {
   if (!text.starts_with(beginning)) return std::nullopt;
   return text.substr(beginning.size());
 }
 
-/// Such as `trace.h5.77.part`, or `trace_2.h5.77.part` of a live run that was reset.
+/// Matches names such as `trace.h5.77.part`, or `trace_2.h5.77.part` of a live run that was reset.
 bool IsLeftover(std::string_view name) {
   if (!name.ends_with(".part")) return false;
   return std::any_of(std::begin(kPieces), std::end(kPieces), [&](std::string_view piece) {
@@ -48,7 +48,8 @@ bool IsLeftover(std::string_view name) {
 
 bool RemoveOld(const std::string& path, Diagnostics& out) {
   if (unlink(path.c_str()) == 0 || errno == ENOENT) return true;
-  out.Error({path}, fmt::format("of the run before cannot be removed: {}", std::strerror(errno)));
+  out.Error("folder.old_file_kept", {path},
+            fmt::format("of the run before cannot be removed: {}", std::strerror(errno)));
   return false;
 }
 
@@ -81,14 +82,14 @@ std::string IdOfTrace(const Trace& trace) {
 }
 
 struct Piece {
-  std::string path, id;  ///< Of an earlier version's run the id is empty.
+  std::string path, id;  ///< The id is empty for runs of earlier versions.
 };
 
-/// What is there of the run that a trace is of.
+/// Returns the existing files of the run that a trace belongs to.
 std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   std::vector<Piece> pieces;
   const std::string id = IdOfTrace(trace);
-  // A measured trace in a run's folder is no piece of it, and text does not say what it is of.
+  // A measured trace in a run's folder does not belong to the run, and CSV contains no id.
   const bool named = fs::path(path).filename().string().starts_with("trace");
   if (path.ends_with(".h5") && (named || !id.empty())) {
     pieces.push_back({path, id});
@@ -142,7 +143,7 @@ bool AreOfOneRun(const std::vector<Piece>& pieces) {
 }
 
 /// Returns the pieces of the run of a trace. If its writer was killed while it replaced another
-/// run, the remains of the other run are removed first. A writer that is still alive is waited for.
+/// run, the remains of the other run are removed first. Waits for a writer that is still alive.
 std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace) {
   constexpr int kLooks = 50;
   constexpr std::chrono::milliseconds kBetween{20};
@@ -171,8 +172,8 @@ void FinishReplacementIn(const std::string& folder) {
   if (unnamed) FinishReplacement(path, *unnamed);
 }
 
-/// Writes the last of a run's traces, and removes the run before once every trace has its first row
-/// on the disk.
+/// Writes the last of a run's traces, and removes the previous run once every trace has its first
+/// row on the disk.
 class BeginningTrace final : public TraceWriter {
  public:
   BeginningTrace(RunFolder& folder, std::unique_ptr<TraceWriter> writer,
@@ -188,7 +189,7 @@ class BeginningTrace final : public TraceWriter {
   }
   bool FlushOld() override { return error_.empty() && writer_->FlushOld(); }
   bool Finish() override {
-    // Another trace has failed before its first row: the run before stays.
+    // Another trace has failed before its first row: the previous run stays.
     if (!begun_ && traces_.size() > 1 && Replaced().empty()) return true;
     return error_.empty() && writer_->Finish() && Begin();
   }
@@ -266,7 +267,7 @@ bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
   if (inputs_->Create() && inputs_->Write(InputsOfRun(id_, experiment)) && inputs_->Sync()) {
     return true;
   }
-  out.Error({Path(kInputs)}, "cannot be written: " + inputs_->why());
+  out.Error("file.not_writable", {Path(kInputs)}, "cannot be written: " + inputs_->why());
   return false;
 }
 
@@ -284,13 +285,14 @@ bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) 
     if (!RemoveOld(Path(name), out)) return false;
   }
   if (!inputs_ || inputs_->Publish()) return true;
-  out.Error({Path(kInputs)}, "cannot be written: " + inputs_->why());
+  out.Error("file.not_writable", {Path(kInputs)}, "cannot be written: " + inputs_->why());
   return false;
 }
 
 bool RunFolder::Finish(const std::string& summary_json, Diagnostics& out) {
   if (lock_->Holds()) return WriteWholeFile(Path(kSummary), summary_json, out);
-  out.Error({folder_}, "was deleted while the run wrote into it: there is no summary");
+  out.Error("folder.deleted", {folder_},
+            "was deleted while the run wrote into it: there is no summary");
   return false;
 }
 
@@ -328,7 +330,7 @@ std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
   const std::vector<Piece> pieces = WholePiecesOfRun(path, *trace);
   for (const Piece& piece : pieces) {
     if (piece.id == pieces.front().id) continue;
-    out.Error({piece.path},
+    out.Error("trace.other_run", {piece.path},
               fmt::format("is not of the run of {} (run {}, there {})", pieces.front().path,
                           shown(piece), shown(pieces.front())),
               "take away the one that does not belong there, or run the experiment again");

@@ -1,4 +1,4 @@
-/// Traces in CSV that are there complete or not at all.
+/// CSV traces that are published only when complete.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace taut::trace {
 
-/// As `CreateCsvTrace`, but the file takes its name when it is finished, and never otherwise.
+/// As `CreateCsvTrace`, but the file gets its name when it is finished, and never otherwise.
 std::unique_ptr<TraceWriter> CreateWholeCsvTrace(const std::string& path,
                                                  const std::vector<ChannelInfo>& channels,
                                                  Diagnostics& out);

@@ -1,4 +1,4 @@
-// Where no files of traces can be read: in a browser.
+// Stubs for builds that cannot read trace files: in a browser.
 #include <utility>
 
 #include "trace/hdf5_table.h"
@@ -8,7 +8,7 @@ namespace taut::trace {
 namespace {
 
 void Refuse(const std::string& path, const char* what, Diagnostics& out) {
-  out.Error({path, 0, 0}, std::string(what) + " cannot be read in a browser",
+  out.Error("browser.no_files", {path, 0, 0}, std::string(what) + " cannot be read in a browser",
             "the command taut reads them");
 }
 

@@ -1,8 +1,9 @@
-/// A motor board: two motors, its modes, what it obeys and when it stops. All of the firmware but
-/// the chip's registers, so that the same text runs on an ATmega328P, in its emulator and natively.
-/// Freestanding C++14. docs/hardware/firmware.md.
+/// Firmware of a motor board for two motors: modes, commands and safety reactions. It is everything
+/// but access to the chip's registers, so that the same source runs on an ATmega328P, in its
+/// emulator and natively. Freestanding C++14. docs/hardware/firmware.md.
 ///
-/// Not for two threads; on the chip, all is called from the main loop, nothing from an interrupt.
+/// Not thread safe; on the chip, all functions are called from the main loop, none from an
+/// interrupt.
 #pragma once
 
 #include "taut/board/requests.h"

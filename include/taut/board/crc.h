@@ -1,4 +1,4 @@
-/// Checksums of the wire and of the EEPROM.
+/// CRC-8 and CRC-16 checksums of messages and of the EEPROM.
 #pragma once
 
 #include <stddef.h>
@@ -8,8 +8,8 @@ namespace taut {
 namespace board {
 namespace internal {
 
-/// Half a byte at a time: 16 numbers of RAM on an AVR, whose constants live there, where a table of
-/// bytes takes 256.
+/// Tables for half a byte: 16 numbers of RAM on an AVR, which keeps constants in RAM, instead of
+/// 256 for a byte.
 constexpr uint16_t kCrc16[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50a5, 0x60c6, 0x70e7,
                                  0x8108, 0x9129, 0xa14a, 0xb16b, 0xc18c, 0xd1ad, 0xe1ce, 0xf1ef};
 constexpr uint8_t kCrc8[16] = {0x00, 0x07, 0x0e, 0x09, 0x1c, 0x1b, 0x12, 0x15,
@@ -20,7 +20,8 @@ constexpr uint8_t kCrc8[16] = {0x00, 0x07, 0x0e, 0x09, 0x1c, 0x1b, 0x12, 0x15,
 constexpr uint16_t kCrc16Start = 0xffff;
 constexpr uint8_t kCrc8Start = 0;
 
-/// CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xffff, nothing mirrored): 0x29b1 of "123456789".
+/// Adds a byte to a CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xffff, not reflected) and returns
+/// it: 0x29b1 for "123456789".
 constexpr uint16_t AddToCrc16(uint16_t crc, uint8_t byte) noexcept {
   crc = static_cast<uint16_t>(static_cast<uint16_t>(crc << 4) ^
                               internal::kCrc16[(crc >> 12) ^ (byte >> 4)]);
@@ -28,18 +29,21 @@ constexpr uint16_t AddToCrc16(uint16_t crc, uint8_t byte) noexcept {
                                internal::kCrc16[(crc >> 12) ^ (byte & 0x0f)]);
 }
 
-/// CRC-8 (polynomial 0x07, start 0, nothing mirrored): 0xf4 of "123456789".
+/// Adds a byte to a CRC-8 (polynomial 0x07, start 0, not reflected) and returns it: 0xf4 for
+/// "123456789".
 constexpr uint8_t AddToCrc8(uint8_t crc, uint8_t byte) noexcept {
   crc = static_cast<uint8_t>(crc ^ byte);
   crc = static_cast<uint8_t>(static_cast<uint8_t>(crc << 4) ^ internal::kCrc8[crc >> 4]);
   return static_cast<uint8_t>(static_cast<uint8_t>(crc << 4) ^ internal::kCrc8[crc >> 4]);
 }
 
+/// Returns the CRC-16 of `count` bytes, continued from `crc`.
 constexpr uint16_t Crc16(const uint8_t* bytes, size_t count, uint16_t crc = kCrc16Start) noexcept {
   for (size_t i = 0; i < count; ++i) crc = AddToCrc16(crc, bytes[i]);
   return crc;
 }
 
+/// Returns the CRC-8 of `count` bytes, continued from `crc`.
 constexpr uint8_t Crc8(const uint8_t* bytes, size_t count, uint8_t crc = kCrc8Start) noexcept {
   for (size_t i = 0; i < count; ++i) crc = AddToCrc8(crc, bytes[i]);
   return crc;

@@ -1,6 +1,6 @@
-/// A motor's loop on its board, every millisecond: what load cell and encoder say, and the duty by
-/// the laws of include/taut/control (paper section III). Freestanding C++14; float, whose
-/// arithmetic gives the same bits on an AVR and on a PC.
+/// Motor control loop of a board at 1 kHz: evaluates load cell and encoder and computes the duty by
+/// the laws of include/taut/control (paper section III). Freestanding C++14; float arithmetic gives
+/// the same bits on an AVR and on a PC.
 #pragma once
 
 #include <stdint.h>
@@ -16,28 +16,31 @@ namespace board {
 constexpr float kTick_s = 0.001f;
 constexpr int16_t kFullWidth = 400;  ///< Steps of the PWM at full duty.
 
-/// A motor's parameters as its loop takes them, computed when one changes: a division is 30 us.
+/// A motor's parameters in the units of its loop. Computed when a parameter changes, since a
+/// division takes 30 us.
 struct LoopNumbers {
-  control::Pid<float> force,
-      length;              ///< From N and from counts to steps of the PWM; in units of `kHalfTick`.
-  float limit_counts;      ///< Of the load cell: where winding in ends.
-  float band_from_counts;  ///< Where it begins to get weaker.
-  float most, most_per_count;     ///< Of the drive.
+  /// From N and from counts to steps of the PWM; time in units of `kHalfTick_s`.
+  control::Pid<float> force, length;
+  float limit_counts;             ///< Of the load cell: winding in stops here.
+  float band_from_counts;         ///< Of the load cell: winding in is reduced from here on.
+  float most, most_per_count;     ///< Largest drive [steps of the PWM], and per count of the band.
   float counts_per_n;             ///< Of the load cell.
-  float speed_per_count_m_per_s;  ///< Lengthening, of a count a tick.
+  float speed_per_count_m_per_s;  ///< Rate of lengthening for one count per tick.
 };
 
-/// The unit of time of the PIDs is half a tick: their period is 2, and the compiler leaves out what
-/// it is multiplied by. Their errors are as the sensors count them, their outputs steps of the PWM,
-/// for the same reason.
+/// Time unit of the PIDs: half a tick. Their period is 2, so that the compiler removes
+/// multiplications by half a period. For the same reason errors are in counts of the sensors and
+/// outputs in steps of the PWM.
 constexpr float kHalfTick_s = 0.5f * kTick_s;
 constexpr float kPeriod = 2.0f;
 
+/// Converts gains from duty per unit of error to steps of the PWM and half ticks.
 inline control::Pid<float> InSteps(float per_unit, float p, float i, float d) noexcept {
   const float scale = per_unit * static_cast<float>(kFullWidth);
   return control::Pid<float>{scale * p, scale * (i * kHalfTick_s), scale * (d / kHalfTick_s)};
 }
 
+/// Computes the loop's numbers from a motor's parameters.
 inline LoopNumbers NumbersOf(const float* p) noexcept {
   const float counts_per_n = 1.0f / p[kNewtonsPerCount];
   LoopNumbers numbers;
@@ -53,28 +56,29 @@ inline LoopNumbers NumbersOf(const float* p) noexcept {
   return numbers;
 }
 
+/// State of a motor's loop.
 struct MotorLoop {
   // measured
-  uint16_t encoder = 0;         ///< As read last, modulo 2^16.
-  int16_t step = 0;             ///< Counts since the tick before.
-  int32_t counts = 0;           ///< From the reference; winding in positive.
+  uint16_t encoder = 0;         ///< Last reading, modulo 2^16.
+  int16_t step = 0;             ///< Counts since the previous tick.
+  int32_t counts = 0;           ///< From the reference; winding in is positive.
   float tension_counts = 0.0f;  ///< Filtered.
-  // for impedance control only, which is why they cost nothing else anything
+  // for impedance control only, so that other modes have no cost
   float counts_per_tick = 0.0f;  ///< Filtered.
   float tension_n = 0.0f, rest_length_m = 0.0f, length_m = 0.0f, rate_m_per_s = 0.0f;
   // commanded
   int32_t target_counts = 0;
   float velocity_input_m_per_s = 0.0f;  ///< V0.
   float drive_input = 0.0f;
-  control::Impedance<float> gains{};  ///< As they act now.
-  // decided
+  control::Impedance<float> gains{};  ///< Gains now in effect.
+  // results
   control::PidState<float> pid{};
   float set_point_n = 0.0f;
-  float drive = 0.0f;  ///< Steps of the PWM, winding in positive.
-  int16_t width = 0;   ///< The same, whole.
+  float drive = 0.0f;  ///< Steps of the PWM, winding in is positive.
+  int16_t width = 0;   ///< `drive`, truncated.
 };
 
-/// Reads the sensors. `adc`: 0 .. 1023.
+/// Updates sensor values. `adc`: 0 .. 1023; `encoder`: modulo 2^16.
 inline void Sense(const float* p, uint16_t adc, uint16_t encoder, MotorLoop& motor) noexcept {
   motor.step = static_cast<int16_t>(static_cast<uint16_t>(encoder - motor.encoder));
   motor.encoder = encoder;
@@ -89,13 +93,14 @@ inline void Sense(const float* p, uint16_t adc, uint16_t encoder, MotorLoop& mot
   }
 }
 
+/// Returns the filtered tension [N].
 inline float Tension(const float* p, const MotorLoop& motor) noexcept {
   return (motor.tension_counts - p[kCountsAtZero]) * p[kNewtonsPerCount];
 }
 
-/// What impedance control needs and position control does not (the paper: it "consumes additional
-/// computational time"). The rate is that of the rest length: what the load cell knows of the
-/// spring's rate drowns in its quanta.
+/// Computes the quantities of impedance control that position control does not use (the paper: it
+/// "consumes additional computational time"). The rate is the rest length's rate: the spring's rate
+/// is below the resolution of the load cell.
 inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   control::StepLowPass(motor.counts_per_tick, static_cast<float>(motor.step), p[kRateShare]);
   motor.rate_m_per_s = motor.counts_per_tick * numbers.speed_per_count_m_per_s;
@@ -104,7 +109,8 @@ inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& mo
   motor.length_m = control::LengthFromTension(motor.rest_length_m, motor.tension_n, p[kStiffness]);
 }
 
-/// How much it may still wind in: all below limit and band, nothing at the limit.
+/// Returns the limits of the drive: winding in decreases linearly in the band below the tension
+/// limit, to 0 at the limit.
 inline control::OutputLimits<float> DriveLimits(const LoopNumbers& numbers,
                                                 const MotorLoop& motor) noexcept {
   float winding = numbers.most;
@@ -115,31 +121,34 @@ inline control::OutputLimits<float> DriveLimits(const LoopNumbers& numbers,
   return control::OutputLimits<float>{-numbers.most, winding};
 }
 
-/// How far the rest length is above its target [counts]: what has to be wound in.
+/// Returns the rest length minus its target [counts]: the length to wind in.
 inline float LengthError(const MotorLoop& motor) noexcept {
   return static_cast<float>(motor.target_counts - motor.counts);
 }
 
-/// The drive goes on from where it is.
+/// Starts position control with the present drive (bumpless transfer).
 inline void StartPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   motor.set_point_n = 0.0f;
   motor.pid = control::StartPidFrom(numbers.length, LengthError(motor), motor.drive, kPeriod);
 }
+/// Computes the drive of one tick of position control.
 inline void StepPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   motor.drive = control::StepPidLimited(numbers.length, motor.pid, LengthError(motor), kPeriod,
                                         DriveLimits(numbers, motor), control::Windup::kHeld);
 }
 
+/// Computes the tension set point (paper eq. 3).
 inline void FindSetPoint(MotorLoop& motor) noexcept {
   motor.set_point_n = control::ImpedanceTension(motor.gains, motor.length_m, motor.rate_m_per_s,
                                                 motor.velocity_input_m_per_s);
 }
 
-/// `capture`: what is measured now becomes L0 and T0, in the parameters, too; T0 within its range,
-/// for what pulls more is to be let go. The drive goes on from where it is.
+/// Starts impedance control with the present drive (bumpless transfer). `capture`: the measured
+/// length and tension become L0 and T0, also in the parameters; T0 is limited to its range, so that
+/// a higher tension is reduced.
 inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
                            MotorLoop& motor) noexcept {
-  motor.counts_per_tick = 0.0f;  // one count of a motor that holds would pass for 13 mm/s
+  motor.counts_per_tick = 0.0f;  // one count of a motor that holds would count as 13 mm/s
   SenseCable(p, numbers, motor);
   if (capture) {
     const Range range = MotorRange(kTensionOffset);
@@ -152,6 +161,7 @@ inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
   motor.pid = control::StartPidFrom(numbers.force, motor.set_point_n - motor.tension_n, motor.drive,
                                     kPeriod);
 }
+/// Computes the drive of one tick of impedance control.
 inline void StepImpedance(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   SenseCable(p, numbers, motor);
   FindSetPoint(motor);
@@ -160,6 +170,7 @@ inline void StepImpedance(const float* p, const LoopNumbers& numbers, MotorLoop&
                               kPeriod, DriveLimits(numbers, motor), control::Windup::kHeld);
 }
 
+/// Sets the commanded duty as drive, within its limits.
 inline void StepDuty(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   const control::OutputLimits<float> limits = DriveLimits(numbers, motor);
   motor.drive = control::Clamp(motor.drive_input, limits.low, limits.high);
@@ -173,8 +184,8 @@ inline float Towards(float from, float to, float most) noexcept {
 
 }  // namespace internal
 
-/// Gains that were set while the motor runs move there within a second or so. One gain a call,
-/// `which` = 0 .. 3; `share_s`: the time since its last turn.
+/// Moves a gain toward its parameter, within about a second, if it was set while the motor runs.
+/// One gain per call, `which` = 0 .. 3; `share_s`: time since the previous call for this gain.
 inline void SlewGain(const float* p, uint8_t which, float share_s, MotorLoop& motor) noexcept {
   control::Impedance<float>& gains = motor.gains;
   switch (which) {

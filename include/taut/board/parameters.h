@@ -1,6 +1,6 @@
-/// What can be set on a board and is kept in its EEPROM. Adding one is a line here.
+/// Parameters of a motor board, which it stores in its EEPROM. A new parameter is one line here.
 ///
-/// All are floats: what the loop uses, without conversion. Freestanding C++14.
+/// All are floats, as used by the loop, without conversion. Freestanding C++14.
 #pragma once
 
 #include <stddef.h>
@@ -8,8 +8,8 @@
 
 #include "taut/board/crc.h"
 
-/// X(name, key, default, least, greatest) of every parameter of a motor. A key ends in its unit.
-/// Defaults marked "assumed" in docs/hardware/parameters.md are nobody's measurement.
+/// X(name, key, default, least, greatest) for each parameter of a motor. Keys end with their unit.
+/// Defaults marked "assumed" in docs/hardware/parameters.md are neither measured nor published.
 #define TAUT_MOTOR_PARAMETERS(X)                                       \
   X(kTensionOffset, "tension_offset_n", 10.0f, 0.0f, 50.0f)            \
   X(kLengthOffset, "length_offset_m", 0.2f, 0.0f, 2.0f)                \
@@ -36,7 +36,7 @@
   X(kSlackWay, "slack_way_m", 0.03f, 0.001f, 1.0f)                     \
   X(kStallDuty, "stall_duty", 0.6f, 0.05f, 1.1f)
 
-/// Of the board itself.
+/// Parameters of the board.
 #define TAUT_BOARD_PARAMETERS(X)                                       \
   X(kOnTimeout, "on_timeout_0_hold_1_off", 0.0f, 0.0f, 1.0f)           \
   X(kSupply, "supply_v", 12.0f, 5.0f, 28.0f)                           \
@@ -52,8 +52,8 @@
 namespace taut {
 namespace board {
 
-/// As on the wire. `kGains` of a motor, the first four, may change while it runs: they then move
-/// slowly.
+/// Numbers of a motor's parameters in messages. The first `kGains` may be set while a motor runs;
+/// their effective values then change slowly.
 enum MotorParameter : uint8_t {
 #define TAUT_MOTOR_ENUM(name, key, value, least, greatest) name,
   TAUT_MOTOR_PARAMETERS(TAUT_MOTOR_ENUM)
@@ -62,6 +62,7 @@ enum MotorParameter : uint8_t {
 };
 constexpr uint8_t kGains = 4;
 
+/// Numbers of the board's parameters in messages.
 enum BoardParameter : uint8_t {
 #define TAUT_BOARD_ENUM(name, key, value, least, greatest) name,
   TAUT_BOARD_PARAMETERS(TAUT_BOARD_ENUM)
@@ -69,11 +70,12 @@ enum BoardParameter : uint8_t {
       kBoardParameters
 };
 
+/// Default and limits of a parameter.
 struct Range {
   float value, least, greatest;
 };
 
-/// Default and limits. Code rather than a table: constants of an AVR live in its RAM.
+/// Returns default and limits. Code instead of a table, since an AVR keeps constants in RAM.
 constexpr Range MotorRange(uint8_t parameter) noexcept {
   Range range{0.0f, 0.0f, 0.0f};
   switch (parameter) {
@@ -100,12 +102,13 @@ constexpr Range BoardRange(uint8_t parameter) noexcept {
   return range;
 }
 
-/// All of a board: what stands in its EEPROM.
+/// All parameters of a board: contents of its EEPROM.
 struct Parameters {
   float motor[2][kMotorParameters];
   float board[kBoardParameters];
 };
 
+/// Sets all parameters to their defaults.
 constexpr void SetDefaults(Parameters& all) noexcept {
   for (uint8_t i = 0; i < kMotorParameters; ++i) {
     all.motor[0][i] = all.motor[1][i] = MotorRange(i).value;
@@ -113,16 +116,16 @@ constexpr void SetDefaults(Parameters& all) noexcept {
   for (uint8_t i = 0; i < kBoardParameters; ++i) all.board[i] = BoardRange(i).value;
 }
 
-/// Not a NaN either.
+/// Returns whether a value is within the limits; false for NaN.
 constexpr bool IsWithin(const Range& range, float value) noexcept {
   return value >= range.least && value <= range.greatest;
 }
 
-/// Checksum of names and order: a PC and a board that differ in it do not mean the same by a
-/// number.
+/// Checksum of names and order. If it differs between a PC and a board, parameter numbers have
+/// different meanings.
 constexpr uint16_t kParametersVersion = 0x5bee;
 
-#ifndef __AVR__  // a string, even one that only the compiler reads, costs an AVR's RAM
+#ifndef __AVR__  // a string, even if used only at compile time, takes RAM on an AVR
 namespace internal {
 
 constexpr uint16_t AddKey(uint16_t crc, const char* key) noexcept {

@@ -1,8 +1,8 @@
-/// What goes over the bus between the PC and the motor boards, version 1: the only definition, for
-/// the boards' firmware, the driver and the virtual robot. docs/hardware/protocol.md has it byte by
+/// Communication protocol between the PC and the motor boards over I2C, version 1. Only definition,
+/// for the boards' firmware, the driver and the virtual robot; docs/hardware/protocol.md lists each
 /// byte.
 ///
-/// All messages have at most 32 bytes; numbers are little endian. Freestanding C++14.
+/// Messages have at most 32 bytes; numbers are little endian. Freestanding C++14.
 #pragma once
 
 #include <stddef.h>
@@ -15,45 +15,48 @@ namespace board {
 
 constexpr uint8_t kProtocolVersion = 1;
 constexpr uint8_t kBoards = 6;
-constexpr uint8_t kMotors =
-    2;  ///< Of a board. Motor m of board b is cable 2 b + m with an actuator.
+/// Per board. Motor m of board b drives the (2 b + m)-th cable with an actuator.
+constexpr uint8_t kMotors = 2;
 constexpr uint8_t kCables = kBoards * kMotors;
 
-constexpr uint8_t kBroadcastAddress = 0x00;  ///< I2C's general call.
+constexpr uint8_t kBroadcastAddress = 0x00;  ///< General call of I2C.
+/// Returns the 7-bit I2C address of a board.
 constexpr uint8_t BoardAddress(uint8_t board) noexcept {
   return static_cast<uint8_t>(0x10 + board);
 }
 
-// --- what a board is told to do -----------------------------------------------------------------
+// --- commands ------------------------------------------------------------------------------------
 
 enum class Mode : uint8_t {
   kOff = 0,        ///< The driver is off: motors coast.
-  kHold = 1,       ///< Position control at where the motors were when it began.
+  kHold = 1,       ///< Position control at the motors' positions at the start of the mode.
   kPosition = 2,   ///< Values: encoder counts from the reference.
   kImpedance = 3,  ///< Values: V0 in units of `kSpeedUnit_m_per_s`, lengthening positive.
-  kDuty = 4,       ///< Values: duty in 1/32767, winding in positive. For tests on the bench.
-  kReply = 5,      ///< Never commanded: marks a frame that answers a request.
-  kStopped = 7,    ///< Emergency stop: as kOff, left through clearing faults only.
+  kDuty = 4,       ///< Values: duty in 1/32767, winding in positive. For bench tests.
+  kReply = 5,      ///< Never commanded: marks the reply to a request.
+  kStopped = 7,    ///< Emergency stop: as kOff, until faults are cleared.
 };
 
 constexpr float kSpeedUnit_m_per_s = 2e-5f;
 
-/// Motors have power in two steps: a broadcast with kReady while all is off and well, then kGo.
+/// Arming: motors get power in two steps, by a broadcast with kReady in mode kOff without faults,
+/// then by kGo.
 enum class Arm : uint8_t { kNot = 0, kReady = 1, kGo = 2 };
 
-/// The cyclic broadcast, 29 bytes.
+/// Cyclic broadcast to all boards, 29 bytes.
 struct Cyclic {
-  uint8_t sequence = 0;  ///< A board takes a broadcast whose number differs from the last one's.
+  /// A board applies a broadcast only if its number differs from the previous one's.
+  uint8_t sequence = 0;
   Mode mode = Mode::kOff;
-  bool capture = false;  ///< On entering kImpedance: L0 and T0 are what is measured (paper).
-  bool clear_faults =
-      false;  ///< Latched faults, an emergency stop and a timeout end, if mode is kOff or kHold.
-  bool zero_inputs = false;  ///< V0 = 0, whatever the values say.
+  bool capture = false;  ///< On entering kImpedance: measured values become L0 and T0 (paper).
+  /// In mode kOff or kHold: clears latched faults, an emergency stop and a timeout.
+  bool clear_faults = false;
+  bool zero_inputs = false;  ///< V0 = 0, instead of the values.
   Arm arm = Arm::kNot;
   int16_t values[kCables] = {};
 };
 
-/// What board `first / 2` takes of it.
+/// Part of a broadcast for one board.
 struct Command {
   uint8_t sequence = 0;
   Mode mode = Mode::kOff;
@@ -86,20 +89,22 @@ constexpr void Put32(uint8_t* at, uint32_t x) noexcept {
 constexpr uint32_t Get32(const uint8_t* at) noexcept {
   return Get16(at) | static_cast<uint32_t>(Get16(at + 2)) << 16;
 }
-/// The checksum alone stands high byte first, so that it goes on where the message ends, as on
-/// paper, and no burst of up to 16 wrong bits, wherever it begins, stays unnoticed.
+/// Appends the CRC-16, with the high byte first, in contrast to other numbers. So it continues the
+/// message's bits as in the theory of CRCs, and any burst of up to 16 wrong bits at any position is
+/// detected.
 constexpr void Seal16(uint8_t* frame, size_t size) noexcept {
   const uint16_t crc = Crc16(frame, size - 2);
   frame[size - 2] = static_cast<uint8_t>(crc >> 8);
   frame[size - 1] = static_cast<uint8_t>(crc & 0xff);
 }
-/// What is sealed leaves nothing over.
+/// Returns whether the CRC-16 is right: the remainder of a frame with its checksum is 0.
 constexpr bool IsSealed16(const uint8_t* frame, size_t size) noexcept {
   return Crc16(frame, size) == 0;
 }
 
 }  // namespace internal
 
+/// Encodes a broadcast.
 constexpr void Encode(const Cyclic& message, uint8_t (&frame)[kCyclicSize]) noexcept {
   frame[0] = kCyclicHead | kProtocolVersion;
   frame[1] = message.sequence;
@@ -112,8 +117,8 @@ constexpr void Encode(const Cyclic& message, uint8_t (&frame)[kCyclicSize]) noex
   internal::Seal16(frame, kCyclicSize);
 }
 
-/// The part for the board whose first motor is number `first`; a board that was given no number has
-/// none.
+/// Decodes the part of a broadcast for the board whose first motor has the number `first`. For a
+/// board without a number it is kWrongValue.
 constexpr Decoded Decode(const uint8_t* frame, size_t size, uint8_t first, Command& out) noexcept {
   if (first + kMotors > kCables) return Decoded::kWrongValue;
   if (size < 1 || (frame[0] & 0xf0) != kCyclicHead || frame[0] == kStopHead)
@@ -137,53 +142,55 @@ constexpr Decoded Decode(const uint8_t* frame, size_t size, uint8_t first, Comma
   return Decoded::kGood;
 }
 
-/// Emergency stop, to all: sent alone and several times.
+/// Encodes an emergency stop for all boards. Send it alone and several times.
 constexpr void EncodeStop(uint8_t (&frame)[kStopSize]) noexcept {
   frame[0] = kStopHead;
   frame[1] = 'S';
   frame[2] = 'T';
   frame[3] = Crc8(frame, 3);
 }
+/// Returns whether a message is an emergency stop.
 constexpr bool IsStop(const uint8_t* frame, size_t size) noexcept {
   return size == kStopSize && frame[0] == kStopHead && frame[1] == 'S' && frame[2] == 'T' &&
          frame[3] == Crc8(frame, 3);
 }
 
-// --- requests to one board: what the next read of it then answers --------------------------------
+// --- requests to one board; the next read of the board returns the reply -------------------------
 
 enum class Request : uint8_t {
-  kSet = 0xd1,  ///< A parameter gets a value.
-  kAsk = 0xd2,  ///< For a parameter, or one of `Asked`.
-  kDo = 0xd3,   ///< One of `Action`.
+  kSet = 0xd1,  ///< Sets a parameter.
+  kAsk = 0xd2,  ///< Reads a parameter or one of `Asked`.
+  kDo = 0xd3,   ///< Performs one of `Action`.
 };
 
-/// What else but parameters (0 .. 127) can be asked for.
+/// Readable data other than parameters (0 .. 127).
 enum class Asked : uint8_t { kInfo = 0xf0, kFaults = 0xf1, kCounters = 0xf2 };
 
 enum class Action : uint8_t {
-  kStore = 0xe1,         ///< Parameters into the EEPROM; only while off.
-  kLoad = 0xe2,          ///< Parameters from it; only while off.
-  kDefaults = 0xe3,      ///< Parameters as the firmware brings them; only while off.
-  kSetReference = 0xe4,  ///< The motor's encoder is at `value` counts now; off or holding.
+  kStore = 0xe1,         ///< Stores the parameters in the EEPROM; only while off.
+  kLoad = 0xe2,          ///< Loads the parameters from the EEPROM; only while off.
+  kDefaults = 0xe3,      ///< Restores the firmware's defaults; only while off.
+  kSetReference = 0xe4,  ///< Sets the motor's encoder count to `value`; off or holding.
 };
 
-constexpr int32_t kMostReference = int32_t{1} << 23;  ///< 112 m of cable; a float has all of them.
+constexpr int32_t kMostReference = int32_t{1} << 23;  ///< 112 m of cable; exact in a float.
 
-/// A request as it came. Size: kSet 9, kAsk 4, kDo 11 bytes.
+/// Request to one board. Sizes: kSet 9, kAsk 4, kDo 11 bytes.
 struct Asking {
   Request request = Request::kAsk;
   uint8_t what = 0;    ///< Parameter, `Asked` or `Action`.
-  uint8_t index = 0;   ///< Motor, or `kMotors`: the board itself.
-  uint32_t value = 0;  ///< kSet: the bits of a float; kDo: an int32.
-  uint16_t nonce = 0;  ///< kDo: the boot it is meant for (`Info::nonce`).
+  uint8_t index = 0;   ///< Motor, or `kMotors` for the board.
+  uint32_t value = 0;  ///< kSet: bits of a float; kDo: an int32.
+  uint16_t nonce = 0;  ///< kDo: boot number of the board (`Info::nonce`); boards refuse others.
 };
 constexpr size_t kSetSize = 9, kAskSize = 4, kDoSize = 11;
 
+/// Returns the size of a request in bytes.
 constexpr size_t SizeOf(Request request) noexcept {
   return request == Request::kSet ? kSetSize : request == Request::kAsk ? kAskSize : kDoSize;
 }
 
-/// Returns how many bytes of `frame` it takes.
+/// Encodes a request. Returns the number of bytes used in `frame`.
 constexpr size_t Encode(const Asking& message, uint8_t (&frame)[kDoSize]) noexcept {
   frame[0] = static_cast<uint8_t>(message.request);
   frame[1] = message.what;
@@ -198,6 +205,7 @@ constexpr size_t Encode(const Asking& message, uint8_t (&frame)[kDoSize]) noexce
   return SizeOf(message.request);
 }
 
+/// Decodes a request.
 constexpr Decoded Decode(const uint8_t* frame, size_t size, Asking& out) noexcept {
   if (size < 1 || frame[0] < static_cast<uint8_t>(Request::kSet) ||
       frame[0] > static_cast<uint8_t>(Request::kDo)) {
@@ -217,11 +225,11 @@ constexpr Decoded Decode(const uint8_t* frame, size_t size, Asking& out) noexcep
   return Decoded::kGood;
 }
 
-// --- what a board says: 16 bytes, whatever is read -----------------------------------------------
+// --- frames from a board: 16 bytes for every read ------------------------------------------------
 
 constexpr size_t kFrameSize = 16;
 
-/// What the byte `Status::more` is, by its frame's sequence number modulo 16.
+/// Meaning of the byte `Status::more`, by its frame's sequence number modulo 16.
 enum class More : uint8_t {
   kFaults0,
   kFaults1,
@@ -242,35 +250,37 @@ enum class More : uint8_t {
 };
 constexpr uint8_t kMores = 16;
 
-/// Of one motor.
+/// Status of one motor.
 struct MotorStatus {
-  uint16_t tension_quarters =
-      0;  ///< Filtered reading of the load cell, in quarters of a count, 12 bit.
-  uint16_t set_point_quarters = 0;  ///< What it should be, in the same; 0 where there is none.
+  /// Filtered reading of the load cell in quarters of a count, 12 bits.
+  uint16_t tension_quarters = 0;
+  uint16_t set_point_quarters = 0;  ///< Set point in the same unit; 0: none.
   uint16_t encoder_counts = 0;      ///< Modulo 2^16; winding in positive.
   int8_t duty = 0;                  ///< In 1/127, winding in positive.
 };
 
+/// Status of a board.
 struct Status {
-  uint8_t sequence = 0;  ///< Of the last broadcast that was taken.
+  uint8_t sequence = 0;  ///< Of the last broadcast that was applied.
   Mode mode = Mode::kOff;
   bool referenced = false, faulty = false, timeout = false;
-  bool overrun = false;    ///< A tick came late since the last frame.
-  bool was_reset = false;  ///< Since faults were cleared last.
+  bool overrun = false;    ///< A tick was late since the last frame.
+  bool was_reset = false;  ///< Reset since faults were last cleared.
   MotorStatus motors[kMotors];
   uint8_t more = 0;  ///< `More`.
 };
 
+/// Results of a request.
 enum class Answer : uint8_t {
   kGood = 0,
   kUnknown = 1,     ///< No such parameter, action or motor.
-  kOutOfRange = 2,  ///< Not finite, or outside the parameter's limits or a reference's.
+  kOutOfRange = 2,  ///< Not finite, or outside the limits of the parameter or reference.
   kNotInThisMode = 3,
-  kBusy = 4,   ///< The EEPROM is still being written.
-  kStale = 5,  ///< Meant for another boot.
+  kBusy = 4,   ///< The EEPROM is being written.
+  kStale = 5,  ///< Boot number of another boot.
 };
 
-/// The frame after a request.
+/// Reply: frame after a request.
 struct Reply {
   uint8_t what = 0;
   uint8_t index = 0;
@@ -280,15 +290,16 @@ struct Reply {
 
 namespace internal {
 
-/// The board's number is part of the checksum but not of the frame: what another board said
-/// does not pass for its answer. The start is not 0, so that a line that is stuck low does not
-/// either.
+/// Returns the checksum of a frame. It includes the board's number, which is not part of the frame,
+/// so that frames of other boards are rejected. The start is not 0, so that a line stuck at low is
+/// rejected too.
 constexpr uint8_t FrameCrc(const uint8_t* frame, uint8_t board) noexcept {
   return Crc8(frame, kFrameSize - 1, AddToCrc8(0xff, board));
 }
 
 }  // namespace internal
 
+/// Encodes a status.
 constexpr void Encode(const Status& status, uint8_t board, uint8_t (&frame)[kFrameSize]) noexcept {
   frame[0] = status.sequence;
   frame[1] = static_cast<uint8_t>(static_cast<uint8_t>(status.mode) | (status.referenced ? 8 : 0) |
@@ -308,6 +319,7 @@ constexpr void Encode(const Status& status, uint8_t board, uint8_t (&frame)[kFra
   frame[15] = internal::FrameCrc(frame, board);
 }
 
+/// Encodes a reply.
 constexpr void Encode(const Reply& reply, uint8_t board, uint8_t (&frame)[kFrameSize]) noexcept {
   frame[0] = reply.what;
   frame[1] = static_cast<uint8_t>(Mode::kReply);
@@ -317,15 +329,16 @@ constexpr void Encode(const Reply& reply, uint8_t board, uint8_t (&frame)[kFrame
   frame[15] = internal::FrameCrc(frame, board);
 }
 
-/// Whether it is a whole frame of this board.
+/// Returns whether a message is a complete frame of this board.
 constexpr bool IsFrame(const uint8_t* frame, size_t size, uint8_t board) noexcept {
   return size == kFrameSize && frame[15] == internal::FrameCrc(frame, board);
 }
+/// Returns whether a frame is a reply, otherwise it is a status.
 constexpr bool IsReply(const uint8_t (&frame)[kFrameSize]) noexcept {
   return (frame[1] & 7) == static_cast<uint8_t>(Mode::kReply);
 }
 
-/// Of a frame that `IsFrame` and is no reply.
+/// Decodes a status. Requires `IsFrame` and not `IsReply`.
 constexpr Status DecodeStatus(const uint8_t (&frame)[kFrameSize]) noexcept {
   Status status;
   status.sequence = frame[0];
@@ -347,7 +360,7 @@ constexpr Status DecodeStatus(const uint8_t (&frame)[kFrameSize]) noexcept {
   return status;
 }
 
-/// Of a frame that `IsFrame` and `IsReply`.
+/// Decodes a reply. Requires `IsFrame` and `IsReply`.
 constexpr Reply DecodeReply(const uint8_t (&frame)[kFrameSize]) noexcept {
   Reply reply;
   reply.what = frame[0];
@@ -357,14 +370,15 @@ constexpr Reply DecodeReply(const uint8_t (&frame)[kFrameSize]) noexcept {
   return reply;
 }
 
-/// The payload of the reply to `Asked::kInfo`.
+/// Payload of the reply to `Asked::kInfo`.
 struct Info {
   uint8_t protocol_min = 0, protocol_max = 0;
   uint8_t firmware_major = 0, firmware_minor = 0;
-  uint32_t parameters_version = 0;  ///< Checksum of the parameters' table of this firmware.
-  uint16_t nonce = 0;               ///< Counts boots.
+  uint32_t parameters_version = 0;  ///< `kParametersVersion` of this firmware.
+  uint16_t nonce = 0;               ///< Boot number, incremented at each boot.
   uint8_t board = 0;
 };
+/// Encodes the payload.
 constexpr void Encode(const Info& info, uint8_t (&payload)[11]) noexcept {
   payload[0] = info.protocol_min;
   payload[1] = info.protocol_max;
@@ -374,6 +388,7 @@ constexpr void Encode(const Info& info, uint8_t (&payload)[11]) noexcept {
   internal::Put16(payload + 8, info.nonce);
   payload[10] = info.board;
 }
+/// Decodes the payload.
 constexpr Info DecodeInfo(const uint8_t (&payload)[11]) noexcept {
   Info info;
   info.protocol_min = payload[0];

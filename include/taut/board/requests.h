@@ -1,4 +1,5 @@
-/// What a board does with messages, and what it answers. Freestanding C++14.
+/// Message handling of a motor board: broadcasts, emergency stops, requests and their replies.
+/// Freestanding C++14.
 #pragma once
 
 #include "taut/board/state.h"
@@ -6,7 +7,7 @@
 namespace taut {
 namespace board {
 
-/// `board.parameters` are there already.
+/// Initializes a board at its start. `board.parameters` must be loaded before.
 inline void Start(const Boot& boot, Board& board) noexcept {
   board.boot = boot;
   if (!boot.parameters_good) {
@@ -14,7 +15,8 @@ inline void Start(const Boot& boot, Board& board) noexcept {
     board.board_faults |= kParametersLost;
   }
   Prepare(board);
-  // After a reset that was no power-on nobody knows how warm the motors are.
+  // After a reset without a power cycle, the temperature of the motors is unknown: assume warm
+  // motors.
   if ((boot.reset_cause & kPowerOn) == 0) {
     for (uint8_t m = 0; m < kMotors; ++m) board.watches[m].housing_rise_k = 40.0f;
   }
@@ -33,14 +35,14 @@ inline uint32_t ToBits(float value) noexcept {
   return bits;
 }
 
-/// Null: there is none.
+/// Returns the address of a parameter, or null if it does not exist.
 inline float* ParameterAt(Board& board, uint8_t what, uint8_t index) noexcept {
   if (index < kMotors && what < kMotorParameters) return &board.parameters.motor[index][what];
   if (index == kMotors && what < kBoardParameters) return &board.parameters.board[what];
   return nullptr;
 }
 
-/// Quiet: a change of anything moves no motor.
+/// Returns whether the mode allows changes of all parameters, since none of them moves a motor.
 inline bool IsQuiet(const Board& board) noexcept {
   return board.mode == Mode::kOff || board.mode == Mode::kHold || board.mode == Mode::kStopped;
 }
@@ -62,13 +64,14 @@ inline Answer SetParameter(Board& board, const Asking& asking) noexcept {
   } else {
     Prepare(board);
   }
-  // A position's PID would jump with its gains: it goes on from where the duty is.
+  // Changed gains would make the PID's output jump: continue from the present duty.
   if (of_motor && board.mode == Mode::kHold) {
     StartPosition(board.numbers[asking.index], board.loops[asking.index]);
   }
   return Answer::kGood;
 }
 
+/// Performs an action.
 inline Answer Do(Board& board, const Asking& asking) noexcept {
   if (asking.nonce != board.boot.nonce) return Answer::kStale;
   switch (static_cast<Action>(asking.what)) {
@@ -100,6 +103,7 @@ inline Answer Do(Board& board, const Asking& asking) noexcept {
   return Answer::kUnknown;
 }
 
+/// Reads a parameter or other data into `payload`.
 inline Answer Ask(Board& board, const Asking& asking, uint8_t (&payload)[11]) noexcept {
   if (asking.what < 0x80) {
     const float* const at = ParameterAt(board, asking.what, asking.index);
@@ -143,8 +147,8 @@ inline Answer Ask(Board& board, const Asking& asking, uint8_t (&payload)[11]) no
 
 }  // namespace internal
 
-/// A message that came whole over the bus, between ticks. `to_all`: by the general call, where
-/// commands come; requests come to the board's own address.
+/// Processes a complete message from the bus, between ticks. `to_all`: sent to the general call, as
+/// broadcasts and emergency stops are; requests are sent to the board's address.
 inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board) noexcept {
   if (!to_all) {
     Asking asking;
@@ -168,7 +172,7 @@ inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board
     return;
   }
   if (IsStop(bytes, size)) {
-    board.stopped = true;  // what else came is void
+    board.stopped = true;  // cancels a pending command
     board.command_due = false;
     return;
   }
@@ -177,15 +181,14 @@ inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board
       Decoded::kGood) {
     return internal::Count(board.counters.bad_messages);
   }
-  if (board.heard && command.sequence == board.command.sequence) return;  // once more the same
+  if (board.heard && command.sequence == board.command.sequence) return;  // repeated broadcast
   board.command = command;
   board.heard = true;
   board.command_due = true;
   board.silence = 0;
 }
 
-/// The frame that the next read gets. To be called when `reply_due` or after a tick when
-/// `status_due`.
+/// Makes the frame for the next read. Call it when `reply_due`, or after a tick when `status_due`.
 inline void MakeFrame(Board& board, uint8_t (&frame)[kFrameSize]) noexcept {
   if (board.reply_due) {
     Encode(board.reply, board.boot.board, frame);

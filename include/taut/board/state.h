@@ -1,4 +1,4 @@
-/// What a motor board is and remembers. Freestanding C++14.
+/// State of a motor board: parameters, motor loops, faults, bus, temperatures. Freestanding C++14.
 #pragma once
 
 #include <stddef.h>
@@ -18,36 +18,37 @@ constexpr uint8_t kFirmwareMajor = 0, kFirmwareMinor = 2;
 constexpr uint8_t kFreezeTicks = 30;    ///< Without a broadcast: inputs become 0.
 constexpr uint8_t kTimeoutTicks = 100;  ///< Without a broadcast: hold or off, until cleared.
 
-/// What a tick takes from the chip.
+/// Inputs of a tick from the chip.
 struct Inputs {
   uint16_t adc[kMotors];      ///< 0 .. 1023.
   uint16_t encoder[kMotors];  ///< Modulo 2^16; winding in positive.
   bool driver_fault;
-  uint8_t elapsed;  ///< Ticks of the timer since the last call; 1 if none was missed.
+  uint8_t elapsed;  ///< Timer ticks since the previous call; 1 if none was missed.
 };
 
-/// What the EEPROM is to do next; the chip's side takes it and says when it is done.
+/// Pending operation of the EEPROM; the chip's code performs it and then sets kIdle.
 enum class Memory : uint8_t { kIdle, kStore, kLoad };
 
-/// What begins a board.
+/// Data of a board's start.
 struct Boot {
   uint8_t board = 0;  ///< 0 .. kBoards - 1.
   uint16_t nonce = 0;
   uint8_t reset_cause = kPowerOn;  ///< `ResetCause` bits.
-  bool parameters_good = true;  ///< What stands in `Board::parameters` came whole from the EEPROM.
+  /// Whether `Board::parameters` were loaded from the EEPROM with a valid checksum.
+  bool parameters_good = true;
 };
 
 struct Counters {
   uint16_t bad_messages = 0;  ///< With a wrong checksum, size or content.
-  uint16_t overruns = 0;      ///< Ticks of the timer that found the one before still at work.
-  uint16_t missed = 0;        ///< Times that no broadcast came for kFreezeTicks.
-  uint16_t recoveries = 0;    ///< Of the bus.
+  uint16_t overruns = 0;      ///< Timer ticks during which the previous tick was still running.
+  uint16_t missed = 0;        ///< Number of times without a broadcast for kFreezeTicks.
+  uint16_t recoveries = 0;    ///< Restarts of the bus.
 };
 
 struct Board {
   Parameters parameters;
   MotorLoop loops[kMotors];
-  LoopNumbers numbers[kMotors];  ///< Of the parameters: `Prepare`.
+  LoopNumbers numbers[kMotors];  ///< From the parameters, by `Prepare`.
   Boot boot;
   Mode mode = Mode::kOff;
   bool armed = false, ready = false, stopped = false, timeout = false, was_reset = true;
@@ -55,40 +56,43 @@ struct Board {
   uint8_t faults[kMotors] = {0, 0};
   uint8_t board_faults = 0;
 
-  // the bus
-  bool heard = false;        ///< A broadcast ever came.
-  bool command_due = false;  ///< One waits for the next tick, which applies it as a whole.
-  bool reply_due = false;    ///< The next frame read is `reply`.
+  // bus
+  bool heard = false;        ///< A broadcast has been received since the start.
+  bool command_due = false;  ///< The next tick applies `command`.
+  bool reply_due = false;    ///< The next read returns `reply`.
   bool status_due = false;   ///< The next tick is followed by a new status.
   bool overrun_seen = false;
-  uint8_t silence = 0;   ///< Ticks since the last good broadcast.
-  uint8_t loop_8us = 0;  ///< The longest tick since the last status.
+  uint8_t silence = 0;   ///< Ticks since the last valid broadcast.
+  uint8_t loop_8us = 0;  ///< Longest tick since the last status [8 us].
   Command command;
   Reply reply;
   Counters counters;
   Memory memory = Memory::kIdle;
 
-  // watching
+  // monitoring
   Watch watches[kMotors];
   WatchLimits limits[kMotors];
   HeatNumbers heat[kMotors];
-  uint8_t turn = 0;  ///< Which of the slow works is due: a tick does one.
+  uint8_t turn = 0;  ///< Next gain for `DoSlowWork`, which processes one per tick.
   uint8_t temperature_c[kMotors] = {0, 0};
   uint16_t second_ticks = 0;
   uint8_t second_overruns = 0;
 };
 
-/// Has to follow every change of a motor's parameters but of gains; of the board's, for both. 0.4
-/// ms on the chip.
+/// Updates numbers derived from the parameters of a motor. Call it after each change of a motor's
+/// parameters other than gains, and for both motors after a change of the board's. 0.4 ms on the
+/// chip.
 inline void Prepare(Board& board, uint8_t m) noexcept {
   board.numbers[m] = NumbersOf(board.parameters.motor[m]);
   board.limits[m] = LimitsOf(board.parameters.motor[m]);
   board.heat[m] = HeatOf(board.parameters.board, board.parameters.motor[m][kLengthPerCount]);
 }
+/// Updates numbers derived from the parameters of both motors.
 inline void Prepare(Board& board) noexcept {
   for (uint8_t m = 0; m < kMotors; ++m) Prepare(board, m);
 }
 
+/// Returns whether a board has no fault, timeout or emergency stop.
 inline bool IsHealthy(const Board& board) noexcept {
   return board.faults[0] == 0 && board.faults[1] == 0 && board.board_faults == 0 &&
          !board.timeout && !board.stopped;
@@ -96,6 +100,7 @@ inline bool IsHealthy(const Board& board) noexcept {
 
 namespace internal {
 
+/// Increments a counter, up to 65535.
 inline void Count(uint16_t& counter) noexcept {
   if (counter != 0xffff) ++counter;
 }

@@ -1,4 +1,5 @@
-/// What a board does every millisecond. Freestanding C++14.
+/// Control tick of a motor board (1 ms): faults, commands, control laws, monitoring. Freestanding
+/// C++14.
 #pragma once
 
 #include "taut/board/state.h"
@@ -7,7 +8,7 @@ namespace taut {
 namespace board {
 namespace internal {
 
-/// Motors whose mode changes go on from the drive that they have.
+/// Enters a mode. Control laws start with the present drive (bumpless transfer).
 inline void Enter(Mode mode, bool capture, Board& board) noexcept {
   board.mode = mode;
   for (uint8_t m = 0; m < kMotors; ++m) {
@@ -31,6 +32,7 @@ inline void Enter(Mode mode, bool capture, Board& board) noexcept {
   }
 }
 
+/// Applies the values of the last broadcast according to the mode.
 inline void TakeValues(Board& board) noexcept {
   const Command& command = board.command;
   for (uint8_t m = 0; m < kMotors; ++m) {
@@ -46,12 +48,14 @@ inline void TakeValues(Board& board) noexcept {
   }
 }
 
+/// Returns whether a mode requires a reference of the encoders.
 inline bool Needs(Mode mode, bool capture) noexcept {
   return mode == Mode::kPosition || (mode == Mode::kImpedance && !capture);
 }
 
-/// Obeys the broadcast that came, as far as it may. True: a law took over, which acts from the next
-/// tick on; until then the duties stay, and this tick has no more to do.
+/// Applies the last broadcast as far as permitted. Returns true if a new control law was started,
+/// which computes its first duty in the next tick; until then duties stay, and this tick is
+/// complete.
 inline bool Apply(Board& board) noexcept {
   const Command& command = board.command;
   board.command_due = false;
@@ -75,7 +79,7 @@ inline bool Apply(Board& board) noexcept {
     board.armed = true;
     board.ready = false;
   }
-  // Faulty, or given up: it stays with what it does about that until it is cleared.
+  // After a fault, timeout or stop, the reaction to it continues until it is cleared.
   if (!IsHealthy(board)) return false;
   if (Needs(command.mode, command.capture) && board.mode != command.mode &&
       !(board.referenced[0] && board.referenced[1])) {
@@ -86,7 +90,8 @@ inline bool Apply(Board& board) noexcept {
     TakeValues(board);
     return false;
   }
-  // A position's first target has to be there before its PID starts, and no V0 of before may stay.
+  // The first target must be set before the PID of a position starts, and an earlier V0 must not
+  // remain.
   const Mode before = board.mode;
   board.mode = command.mode;
   for (uint8_t m = 0; m < kMotors; ++m) board.loops[m].velocity_input_m_per_s = 0.0f;
@@ -96,7 +101,7 @@ inline bool Apply(Board& board) noexcept {
   return true;
 }
 
-/// Nothing came in time, or a motor or the board is not well.
+/// Reacts to missing broadcasts and to faults of motors or board.
 inline void React(bool driver_fault, Board& board) noexcept {
   const bool runs = board.mode != Mode::kOff && board.mode != Mode::kStopped;
   if (driver_fault && runs) board.board_faults |= kDriverFault;
@@ -117,17 +122,18 @@ inline void React(bool driver_fault, Board& board) noexcept {
     if (board.parameters.board[kOnTimeout] >= 0.5f) {
       Enter(Mode::kOff, false, board);
       board.armed = false;
-      return;  // a fault besides does not make it hold
+      return;  // an additional fault does not start holding
     }
     if (board.mode != Mode::kImpedance && board.mode != Mode::kHold) {
-      Enter(Mode::kHold, false, board);  // impedance control holds by itself, with V0 = 0
+      Enter(Mode::kHold, false, board);  // impedance control continues, with V0 = 0
     }
   }
   const bool faulty = board.faults[0] != 0 || board.faults[1] != 0 || board.board_faults != 0;
   if (faulty && board.mode != Mode::kHold) Enter(Mode::kHold, false, board);
 }
 
-/// No power for a motor that is not well; one that pulls too much pays out until it does no more.
+/// Removes power from a motor with a fault. With too high a tension it pays out until the tension
+/// is low enough.
 inline void Restrain(Board& board, uint8_t m) noexcept {
   if (board.faults[m] == 0) return;
   constexpr float kPayOut = -0.3f * kFullWidth;
@@ -139,6 +145,7 @@ inline void Restrain(Board& board, uint8_t m) noexcept {
   motor.drive = too_much ? control::Max(kPayOut, -board.numbers[m].most) : 0.0f;
 }
 
+/// Counts late ticks and ticks without a broadcast.
 inline void CountTicks(uint8_t elapsed, Board& board) noexcept {
   const uint8_t late = static_cast<uint8_t>(elapsed - 1);
   for (uint8_t i = 0; i < late; ++i) Count(board.counters.overruns);
@@ -159,7 +166,7 @@ inline void CountTicks(uint8_t elapsed, Board& board) noexcept {
 
 }  // namespace internal
 
-/// One millisecond. After it `loops[m].width` are the duties, and the driver has power where
+/// Runs one tick of 1 ms. Then the duties are `loops[m].width`, and the driver has power if
 /// `IsPowered`.
 inline void Tick(const Inputs& in, Board& board) noexcept {
   internal::CountTicks(in.elapsed, board);
@@ -188,26 +195,27 @@ inline void Tick(const Inputs& in, Board& board) noexcept {
         break;
       default:
         motor.drive = 0.0f;
-        motor.step = 0;  // `Feel`: no current flows, however fast the cable turns it
+        motor.step = 0;  // for `Feel`: no current flows, however fast the cable turns the motor
     }
     internal::Restrain(board, m);
     motor.width = static_cast<int16_t>(motor.drive);
   }
 }
 
-/// Off, motors coast; else duty 0 brakes.
+/// Returns whether the driver is on. Off: motors coast; on with duty 0: motors brake.
 inline bool IsPowered(const Board& board) noexcept {
   return board.mode != Mode::kOff && board.mode != Mode::kStopped && !board.stopped;
 }
 
-/// After every tick.
+/// Updates the heat sums of the motors. Call it after every tick.
 inline void Feel(Board& board) noexcept {
   for (uint8_t m = 0; m < kMotors; ++m) {
     FeelHeat(board.loops[m].width, board.loops[m].step, board.watches[m]);
   }
 }
 
-/// After a tick that leaves time: one of the things that need not be done every tick.
+/// Performs one of the tasks that need not run in every tick: a motor's temperature or a gain's
+/// slow change. Call it after ticks that leave time.
 inline void DoSlowWork(Board& board) noexcept {
   for (uint8_t m = 0; m < kMotors; ++m) {
     Watch& watch = board.watches[m];

@@ -1,5 +1,5 @@
-/// What a board watches its motors for, every tick. Counts rather than computes: a tick has little
-/// time. Freestanding C++14.
+/// Fault detection and temperature model of a motor, for every tick. Detection counts events
+/// instead of computing, since a tick has little time. Freestanding C++14.
 #pragma once
 
 #include <stdint.h>
@@ -10,17 +10,17 @@
 namespace taut {
 namespace board {
 
-constexpr uint16_t kSensorLow = 2;     ///< Compression clips there [counts].
-constexpr uint16_t kSensorHigh = 735;  ///< The amplifier ends at some 741 [counts].
-constexpr uint8_t kReadings = 5;       ///< So many in a row count.
+constexpr uint16_t kSensorLow = 2;     ///< Readings are clipped here under compression [counts].
+constexpr uint16_t kSensorHigh = 735;  ///< The amplifier saturates at about 741 [counts].
+constexpr uint8_t kReadings = 5;       ///< Consecutive readings for a fault.
 constexpr uint8_t kMuchDutyTicks = 100;
 constexpr float kSlackTension_n = 0.5f;
-constexpr uint8_t kThermalTicks = 64;  ///< A motor's temperatures are computed every so many ticks.
+constexpr uint8_t kThermalTicks = 64;  ///< Ticks between two updates of a motor's temperatures.
 
-/// Limits of a motor in the units of its sensors: computed when a parameter changed.
+/// Limits of a motor in units of its sensors. Computed when a parameter changes.
 struct WatchLimits {
   uint16_t over_counts = 0, slack_counts = 0;
-  int16_t step_counts = 0;  ///< In a tick.
+  int16_t step_counts = 0;  ///< Per tick.
   int16_t slack_way_counts = 0;
   int16_t stall_width = 0;      ///< Steps of the PWM.
   int16_t polarity_counts = 0;  ///< In kMuchDutyTicks: a tenth of the speed limit.
@@ -28,12 +28,14 @@ struct WatchLimits {
 
 namespace internal {
 
+/// Converts to int16_t, at most INT16_MAX.
 inline int16_t Saturated(float x) noexcept {
   return x < 32767.0f ? static_cast<int16_t>(x) : INT16_MAX;
 }
 
 }  // namespace internal
 
+/// Computes the limits from a motor's parameters.
 inline WatchLimits LimitsOf(const float* p) noexcept {
   const float per_n = 1.0f / p[kNewtonsPerCount], per_m = 1.0f / p[kLengthPerCount];
   const float speed = p[kSpeedLimit] * per_m * kTick_s;  // counts a tick
@@ -49,29 +51,32 @@ inline WatchLimits LimitsOf(const float* p) noexcept {
   return limits;
 }
 
+/// State of a motor's fault detection and temperatures.
 struct Watch {
-  uint8_t sensor = 0, over = 0, fast = 0;  ///< Readings in a row.
-  uint8_t much_duty = 0;                   ///< Ticks in a row, of one sign.
+  uint8_t sensor = 0, over = 0, fast = 0;  ///< Consecutive readings.
+  uint8_t much_duty = 0;                   ///< Consecutive ticks, with one sign.
   bool winds = false;                      ///< That sign.
-  int16_t way = 0;                         ///< Counts in them.
-  int16_t slack_way = 0;        ///< Wound in while slack, or while nothing was felt of it.
-  uint16_t adc = 0;             ///< The reading before.
-  float winding_rise_k = 0.0f;  ///< Above the housing.
-  float housing_rise_k = 0.0f;  ///< Above the air.
-  // Of the ticks since temperatures were computed last, in steps of the PWM and counts.
+  int16_t way = 0;                         ///< Counts in these ticks.
+  int16_t slack_way = 0;  ///< Wound in while slack, or while the reading did not change [counts].
+  uint16_t adc = 0;       ///< Previous reading.
+  float winding_rise_k = 0.0f;  ///< Winding above housing.
+  float housing_rise_k = 0.0f;  ///< Housing above air.
+  // Sums over the ticks since the last update of temperatures, in steps of the PWM and counts.
   int32_t width_width = 0, width_step = 0, step_step = 0;
-  uint8_t felt = 0;  ///< How many ticks these are.
+  uint8_t felt = 0;  ///< Number of these ticks.
 };
 
 namespace internal {
 
+/// Returns the next number of consecutive events, at most 255.
 inline uint8_t InARow(bool so, uint8_t count) noexcept {
   return so ? (count < 255 ? static_cast<uint8_t>(count + 1) : count) : uint8_t{0};
 }
 
 }  // namespace internal
 
-/// What is wrong now. `step`: counts since the tick before; `width`: the duty of the tick before.
+/// Returns the fault bits of this tick. `step`: counts since the previous tick; `width`: duty of
+/// the previous tick.
 inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16_t width,
                     Watch& watch) noexcept {
   uint8_t wrong = 0;
@@ -83,7 +88,7 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
       internal::InARow(step > limits.step_counts || step < -limits.step_counts, watch.fast);
   if (watch.fast >= kReadings) wrong |= kRunaway;
 
-  // No converter gives the same number over and over while the cable is being wound.
+  // A converter does not give exactly the same reading repeatedly while the cable is being wound.
   const bool slack = adc <= limits.slack_counts;
   if (!slack && adc != watch.adc) {
     watch.slack_way = 0;
@@ -113,13 +118,16 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
   return wrong;
 }
 
-/// How a motor's temperatures follow from what it felt in kThermalTicks: current from duty and
-/// speed, two thermal masses (docs/theory/motor.md). Computed when a parameter changes.
+/// Coefficients of the temperature model: current from duty and speed, two thermal masses
+/// (docs/theory/motor.md), updated every kThermalTicks. Computed when a parameter changes.
 struct HeatNumbers {
-  float width_width_w, width_step_w, step_step_w;  ///< Mean heat [W] of the sums of `Watch`.
-  float winding_share, housing_share;              ///< Of the way to where a temperature goes.
+  float width_width_w, width_step_w, step_step_w;  ///< Mean heat [W] per sum of `Watch`.
+  /// Share of the difference to the steady-state temperature by which a temperature changes per
+  /// update.
+  float winding_share, housing_share;
 };
 
+/// Computes the coefficients from the board's parameters and a motor's length per count [m].
 inline HeatNumbers HeatOf(const float* board, float length_per_count_m) noexcept {
   constexpr float kTime_s = kThermalTicks * kTick_s;
   const float width_v = board[kSupply] / kFullWidth;
@@ -130,12 +138,12 @@ inline HeatNumbers HeatOf(const float* board, float length_per_count_m) noexcept
                      kTime_s / board[kHousingTime]};
 }
 
-constexpr int16_t kMostStep = 2000;  ///< Of what is felt, a tick [counts].
+constexpr int16_t kMostStep = 2000;  ///< Largest step in heat sums [counts per tick].
 
-/// What heats a winding is the current's square, tick by tick: a drive that changes its sign ten
-/// times a second has a mean of nothing.
+/// Adds a tick to the heat sums. The heat of a winding is proportional to the square of the current
+/// in each tick: a drive that changes its sign ten times per second has zero mean, but heats.
 inline void FeelHeat(int16_t width, int16_t step, Watch& watch) noexcept {
-  // No encoder counts more, and of this much the sums hold what is felt between two looks.
+  // Real encoders count less, and up to this limit the sums do not overflow between two updates.
   if (step > kMostStep) step = kMostStep;
   if (step < -kMostStep) step = -kMostStep;
   watch.width_width += int32_t{width} * width;
@@ -144,7 +152,8 @@ inline void FeelHeat(int16_t width, int16_t step, Watch& watch) noexcept {
   if (watch.felt < 255) ++watch.felt;
 }
 
-/// The winding's temperature [deg C] after what was felt, which counts as kThermalTicks.
+/// Updates both temperatures from the heat sums, as over kThermalTicks, and returns the winding's
+/// temperature [deg C].
 inline float StepTemperature(const HeatNumbers& numbers, const float* board,
                              Watch& watch) noexcept {
   const float heat_w = numbers.width_width_w * static_cast<float>(watch.width_width) +

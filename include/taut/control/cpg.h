@@ -1,9 +1,9 @@
-/// A central pattern generator: phase oscillators with amplitude dynamics, coupled in a network.
+/// Central pattern generator (CPG): network of coupled phase oscillators with amplitude dynamics.
 ///
 /// Sources: Mirletz, Park, Quinn, SunSpiral, "Towards bridging the reality gap between tensegrity
 /// simulation and robotic hardware", IROS 2015, eq. 4-6; A. Crespi, A. J. Ijspeert, "AmphiBot II:
 /// an amphibious snake robot that crawls and swims using a central pattern generator", CLAWAR 2006,
-/// whose equations these are. Derivations and differences: docs/theory/gaits.md.
+/// the origin of these equations. Derivations and differences: docs/theory/gaits.md.
 #pragma once
 
 #include <stddef.h>
@@ -15,23 +15,23 @@
 namespace taut {
 namespace control {
 
-/// What one oscillator tends to. It may change at any time: phase and amplitude stay smooth.
+/// Targets of one oscillator. They may change at any time: phase and amplitude stay smooth.
 template <class Real>
 struct CpgLaw {
-  Real frequency_hz;       ///< v: of the oscillator left to itself.
-  Real amplitude_m_per_s;  ///< R >= 0.
-  Real convergence_per_s;  ///< a > 0.
+  Real frequency_hz;       ///< v: of the uncoupled oscillator.
+  Real amplitude_m_per_s;  ///< R >= 0: target amplitude.
+  Real convergence_per_s;  ///< a > 0: rate of convergence to R.
 };
 
-/// The pull of oscillator `from` on oscillator `to`. Made by `MakeCoupling`.
+/// Coupling: effect of oscillator `from` on oscillator `to`. Created by `MakeCoupling`.
 template <class Real>
 struct CpgCoupling {
   uint16_t to, from;
-  Real along, across;  ///< w / (2 pi) times cosine and sine of phi [turns/m].
+  Real along, across;  ///< w / (2 pi) times the cosine and sine of phi [turns/m].
 };
 
-/// w in rad/s per m/s of the neighbour's amplitude; phi in turns, -1/2..1/2: the coupling pulls
-/// theta_from - theta_to towards it.
+/// Returns a coupling with weight w [rad/s per m/s of the neighbor's amplitude] and phase phi
+/// [turns], -1/2..1/2: it pulls theta_from - theta_to toward phi.
 template <class Real>
 constexpr CpgCoupling<Real> MakeCoupling(uint16_t to, uint16_t from, Real weight_per_m,
                                          Real phase_turns) noexcept {
@@ -40,7 +40,7 @@ constexpr CpgCoupling<Real> MakeCoupling(uint16_t to, uint16_t from, Real weight
                            weight * SinTurns(phase_turns)};
 }
 
-/// One oscillator's state.
+/// State of one oscillator.
 template <class Real>
 struct CpgState {
   Real phase_turns;              ///< theta, -1/2..1/2.
@@ -48,28 +48,30 @@ struct CpgState {
   Real amplitude_rate_m_per_s2;  ///< dr/dt.
 };
 
+/// Returns the initial state: all 0.
 template <class Real>
 constexpr CpgState<Real> StartCpg() noexcept {
   return CpgState<Real>{Literal<Real>(0.0f), Literal<Real>(0.0f), Literal<Real>(0.0f)};
 }
 
-/// V = r cos theta [m/s] (paper eq. 6, docs/theory/gaits.md eq. G.5).
+/// Returns V = r cos theta [m/s] (paper eq. 6, docs/theory/gaits.md eq. G.5).
 template <class Real>
 constexpr Real CpgVelocity(const CpgState<Real>& state) noexcept {
   return state.amplitude_m_per_s * CosTurns(state.phase_turns);
 }
 
-/// What a step needs and forgets, one an oscillator.
+/// Work space of a step, one per oscillator.
 template <class Real>
 struct CpgWork {
   CpgState<Real> stage, sum;
-  // Of the phase; the same times the amplitude, as neighbours see it; S and C of eq. G.6, in turns.
-  // Were S and C side by side, g++ 12 would sum them twice: as a pair and one by one.
+  // Sine and cosine of the phase; both times the amplitude, as used by neighbors; S and C of eq.
+  // G.6, in turns. The order matters: with S and C adjacent, g++ 12 would sum them twice, as a pair
+  // and individually.
   Real sine, scaled_sine, pull_sine;
   Real cosine, scaled_cosine, pull_cosine;
 };
 
-/// A network: `count` oscillators, and couplings in any order (the order of the sums).
+/// Network of `count` oscillators with couplings in any order, which is the order of summation.
 template <class Real>
 struct CpgNetwork {
   const CpgLaw<Real>* laws;  ///< Per oscillator.
@@ -80,8 +82,9 @@ struct CpgNetwork {
 
 namespace internal {
 
-/// What an oscillator shows its neighbours: one sine and one cosine for each oscillator, and none
-/// for a coupling, for the sine of a difference is taken apart (G.6).
+/// Sets sine and cosine of an oscillator's phase for its neighbors. Since the sine of a phase
+/// difference is expanded (G.6), each oscillator needs one sine and one cosine, and a coupling
+/// none.
 template <class Real, class Work>
 constexpr void SetWave(Real turns, Real amplitude, Work& w) noexcept {
   w.sine = SinTurns(turns);
@@ -90,8 +93,8 @@ constexpr void SetWave(Real turns, Real amplitude, Work& w) noexcept {
   w.scaled_cosine = amplitude * w.cosine;
 }
 
-/// Adds to S and C (G.6). Couplings that pull at one oscillator are cheapest one after the other:
-/// their sums stay in registers.
+/// Adds the couplings' terms to S and C (G.6). Consecutive couplings to the same oscillator are
+/// fastest: their sums stay in registers.
 template <class Real, class Work>
 constexpr void AddPulls(const CpgCoupling<Real>* link, size_t coupling_count, Work* work) noexcept {
   const CpgCoupling<Real>* const end = link + coupling_count;
@@ -110,12 +113,13 @@ constexpr void AddPulls(const CpgCoupling<Real>* link, size_t coupling_count, Wo
   }
 }
 
-/// sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) in turns, from the sums.
+/// Returns sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) in turns, from S and C.
 template <class Real, class Work>
 constexpr Real PullOf(const Work& w) noexcept {
   return w.pull_sine * w.cosine - w.pull_cosine * w.sine;
 }
 
+/// Sets the waves of all oscillators.
 template <class Real>
 constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) noexcept {
   for (size_t i = 0; i < network.count; ++i) {
@@ -124,6 +128,7 @@ constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) no
   }
 }
 
+/// Computes S and C of all oscillators. `feedback` [rad/s] as in `StepCpg`.
 template <class Real>
 constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
                         CpgWork<Real>* work) noexcept {
@@ -135,7 +140,7 @@ constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
   AddPulls(network.couplings, network.coupling_count, work);
 }
 
-/// The rate of an oscillator's state:
+/// Returns the time derivative of an oscillator's state:
 ///   theta_i' = 2 pi v_i + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) + s_i cos theta_i  (G.3)
 ///   r_i''    = a_i (a_i / 4 (R_i - r_i) - r_i')                                             (G.4)
 template <class Real>
@@ -147,6 +152,7 @@ constexpr CpgState<Real> CpgRate(const CpgLaw<Real>& law, const CpgWork<Real>& w
            w.stage.amplitude_rate_m_per_s2)};
 }
 
+/// Returns state + h rate.
 template <class Real>
 constexpr CpgState<Real> Advanced(const CpgState<Real>& state, const CpgState<Real>& rate,
                                   Real h) noexcept {
@@ -158,12 +164,12 @@ constexpr CpgState<Real> Advanced(const CpgState<Real>& state, const CpgState<Re
 }  // namespace internal
 
 /// Advances all oscillators by `step_count` steps of `step_s` with the classical Runge-Kutta method
-/// of fourth order (eq. G.7); choose step_s so that step_s times the sum of an oscillator's |w| R
-/// is well below 2.7, where the method's stability ends.
+/// of fourth order (eq. G.7). It is stable if step_s times the sum of |w| R over an oscillator's
+/// couplings is below 2.7; choose a step well below this.
 ///
-/// `feedback` [rad/s] is null or has one s_i an oscillator, held during the call: a sensor reading
-/// times a gain. It slows or hastens an oscillator by s_i cos theta_i. `states` and `work` have
-/// `network.count` entries.
+/// `feedback` [rad/s] is null or has one s_i per oscillator, constant during the call: a sensor
+/// reading times a gain. It changes an oscillator's phase rate by s_i cos theta_i. `states` and
+/// `work` have `network.count` entries.
 template <class Real>
 constexpr void StepCpg(const CpgNetwork<Real>& network, const Real* feedback, Real step_s,
                        uint16_t step_count, CpgState<Real>* states, CpgWork<Real>* work) noexcept {

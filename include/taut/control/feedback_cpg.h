@@ -1,9 +1,10 @@
-/// Oscillators that sensors act on: on their frequency, their amplitude and their phase.
+/// Central pattern generator with sensor feedback to frequency, amplitude and phase of its
+/// oscillators.
 ///
 /// Source: Mirletz, Bhandal, Adams, Agogino, Quinn, SunSpiral, "Goal-directed CPG-based control for
 /// tensegrity spines with many degrees of freedom traversing irregular terrain", Soft Robotics
-/// 2(4), 2015, as its program has it (NTRTsim, src/util/CPGNodeFB.cpp). Different here: the
-/// amplitude is held relative to R, so that gains have no unit of a gait's signal. Equations:
+/// 2(4), 2015, as in its program (NTRTsim, src/util/CPGNodeFB.cpp). Difference: the amplitude is
+/// relative to R, so that gains do not have the unit of a gait's signal. Equations:
 /// docs/theory/gaits.md.
 #pragma once
 
@@ -17,23 +18,23 @@
 namespace taut {
 namespace control {
 
-/// What one oscillator tends to, and how much it heeds its sensors.
+/// Parameters of one oscillator and gains of its sensor feedback.
 template <class Real>
 struct FeedbackCpgLaw {
-  Real amplitude;                ///< R >= 0 [m/s], or [m]: of the oscillator left to itself.
+  Real amplitude;                ///< R >= 0 [m/s] or [m]: amplitude without feedback.
   Real convergence_per_s;        ///< a > 0.
   Real frequency_gain_hz_per_s;  ///< k_f.
   Real amplitude_gain;           ///< k_a.
   Real phase_gain_turns_per_s;   ///< k_p.
 };
 
-/// What the sensors say to one oscillator, each -1..1 from a network.
+/// Feedback to one oscillator, each -1..1, from a network (network.h).
 template <class Real>
 struct CpgFeedback {
   Real frequency, amplitude, phase;  ///< f_f, f_a, f_p.
 };
 
-/// One oscillator's state.
+/// State of one oscillator.
 template <class Real>
 struct FeedbackCpgState {
   Real phase_turns;   ///< theta, -1/2..1/2.
@@ -41,20 +42,20 @@ struct FeedbackCpgState {
   Real frequency_hz;  ///< v.
 };
 
-/// At its amplitude from the start: it has no way to grow from 0.
+/// Returns an initial state with the full amplitude, since an amplitude of 0 cannot grow.
 template <class Real>
 constexpr FeedbackCpgState<Real> StartFeedbackCpg(Real phase_turns, Real frequency_hz) noexcept {
   return FeedbackCpgState<Real>{phase_turns, Literal<Real>(1.0f), frequency_hz};
 }
 
-/// R rho cos theta [m/s], or [m] (G.18).
+/// Returns the signal R rho cos theta [m/s] or [m] (G.18).
 template <class Real>
 constexpr Real FeedbackCpgSignal(const FeedbackCpgLaw<Real>& law,
                                  const FeedbackCpgState<Real>& state) noexcept {
   return law.amplitude * state.relative * CosTurns(state.phase_turns);
 }
 
-/// What a step needs and forgets, one an oscillator.
+/// Work space of a step, one per oscillator.
 template <class Real>
 struct FeedbackCpgWork {
   FeedbackCpgState<Real> stage, sum;
@@ -62,7 +63,7 @@ struct FeedbackCpgWork {
   Real cosine, scaled_cosine, pull_cosine;
 };
 
-/// A network: `count` oscillators, and couplings in any order (the order of the sums).
+/// Network of `count` oscillators with couplings in any order, which is the order of summation.
 template <class Real>
 struct FeedbackCpgNetwork {
   const FeedbackCpgLaw<Real>* laws;  ///< Per oscillator.
@@ -73,7 +74,7 @@ struct FeedbackCpgNetwork {
 
 namespace internal {
 
-/// The rate of an oscillator's state:
+/// Returns the time derivative of an oscillator's state:
 ///   theta_i' = 2 pi v_i + k_p f_p + sum_j w_ij r_j sin(theta_j - theta_i - phi_ij)   (G.15)
 ///   v_i'     = k_f f_f sin theta_i                                                   (G.16)
 ///   rho_i'   = a (1 + k_a f_a - rho_i^2) rho_i                                       (G.17)
@@ -89,6 +90,7 @@ constexpr FeedbackCpgState<Real> FeedbackCpgRate(const FeedbackCpgLaw<Real>& law
       law.frequency_gain_hz_per_s * says.frequency * w.sine};
 }
 
+/// Returns state + h rate.
 template <class Real>
 constexpr FeedbackCpgState<Real> Advanced(const FeedbackCpgState<Real>& state,
                                           const FeedbackCpgState<Real>& rate, Real h) noexcept {
@@ -100,8 +102,8 @@ constexpr FeedbackCpgState<Real> Advanced(const FeedbackCpgState<Real>& state,
 }  // namespace internal
 
 /// Advances all oscillators by `step_count` steps of `step_s` with the classical Runge-Kutta method
-/// of fourth order (G.7), under `feedback`, one an oscillator, which is held during the call.
-/// `states` and `work` have `network.count` entries.
+/// of fourth order (G.7). `feedback`: one per oscillator, constant during the call. `states` and
+/// `work` have `network.count` entries.
 template <class Real>
 constexpr void StepFeedbackCpg(const FeedbackCpgNetwork<Real>& network,
                                const CpgFeedback<Real>* feedback, Real step_s, uint16_t step_count,

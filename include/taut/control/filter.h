@@ -1,23 +1,23 @@
-/// Filters of first order for what a board measures.
+/// First-order filters for sensor signals: low-pass and complementary filter.
 #pragma once
 
 namespace taut {
 namespace control {
 
-/// One tick of a low pass (docs/theory/control.md, eq. K.12); returns y.
+/// Advances a low-pass filter by one tick (docs/theory/control.md, eq. K.12) and returns y.
 ///   y_n = y_(n-1) + a (x_n - y_(n-1))
-/// `share` a, 0 < a <= 1: h / (tau + h) for a time constant tau at a period h. 1 lets all through.
+/// `share`: a, 0 < a <= 1; h / (tau + h) for a time constant tau and a period h; 1: no filtering.
 template <class Real>
 constexpr Real StepLowPass(Real& y, Real x, Real share) noexcept {
   y = y + share * (x - y);
   return y;
 }
 
-/// One tick of a complementary filter (eq. K.13); returns y.
+/// Advances a complementary filter by one tick (eq. K.13) and returns y.
 ///   y_n = (1 - a) (y_(n-1) + dx_n) + a x_n
-/// Slow changes come from the measurement x, quick ones from `step` dx, what another sensor says
-/// that x has changed by: of a load cell, what the encoder wound times the stiffness. Without it
-/// (0), a low pass.
+/// Low frequencies come from the measurement x, high frequencies from `step` dx, the change of x
+/// measured by another sensor: for a load cell, the length wound by the encoder times the
+/// stiffness. With dx = 0 it is a low-pass filter.
 template <class Real>
 constexpr Real StepComplementary(Real& y, Real x, Real step, Real share) noexcept {
   y = y + step;

@@ -1,5 +1,5 @@
-/// Impedance control of one cable: a tension set point that grows with length and rate, and the
-/// two ways to make the cable have that tension.
+/// Impedance control of one cable: tension set point from length and rate, and two methods to
+/// control the tension to it, by stiffness and by PID.
 ///
 /// Sources: Mirletz, Park, Quinn, SunSpiral, "Towards bridging the reality gap between tensegrity
 /// simulation and robotic hardware", IROS 2015, eq. 3; NTRT's tgImpedanceController and
@@ -21,12 +21,12 @@ struct Impedance {
   Real velocity_gain_n_s_per_m;  ///< B [N s/m].
 };
 
-/// The tension set point (paper eq. 3, docs/theory/control.md eq. K.2) [N]:
+/// Returns the tension set point [N] (paper eq. 3, docs/theory/control.md eq. K.2):
 ///   T = max(0, T0 + K (L - L0) + B (V - V0))
-/// with L the cable's length [m] and V its rate [m/s], lengthening positive. V0 [m/s] is the input
-/// through which a gait drives the cable: a sine, an oscillator, or 0 to hold still.
+/// with the cable's length L [m] and its rate V [m/s], lengthening positive. V0 [m/s] is the input
+/// by which a gait drives the cable, such as a sine or an oscillator; 0 holds still.
 ///
-/// The paper does not print the floor at 0; its simulator has it, and a cable cannot push.
+/// The paper omits the lower bound 0; its simulator has it, and a cable cannot push.
 template <class Real>
 constexpr Real ImpedanceTension(const Impedance<Real>& law, Real length_m, Real rate_m_per_s,
                                 Real velocity_offset_m_per_s) noexcept {
@@ -36,33 +36,34 @@ constexpr Real ImpedanceTension(const Impedance<Real>& law, Real length_m, Real 
   return Max(Literal<Real>(0.0f), T);
 }
 
-/// The rest length that gives `set_point_n`, the cable's ends being held (eq. K.3) [m]:
+/// Returns the rest length that gives the tension `set_point_n` while the cable's ends do not move
+/// [m] (eq. K.3):
 ///   L' = max(floor, L - (T_set - T) / k)
-/// An ideal taut cable reaches the set point in one tick; a slack one (T = 0) approaches by
-/// T_set / k a tick. Source: NTRT's tgTensionController, with its floor of 0.1 length units made
-/// an argument. `tension_n` is the elastic tension k (l - L) there; a measured one includes the
-/// cable's damping.
+/// An ideal taut cable reaches the set point in one tick; a slack cable (T = 0) approaches it by
+/// T_set / k per tick. Source: NTRT's tgTensionController; its floor of 0.1 length units is an
+/// argument here. There, `tension_n` is the elastic tension k (l - L); a measured tension includes
+/// the cable's damping.
 template <class Real>
 constexpr Real TensionToRestLengthByStiffness(Real rest_length_m, Real tension_n, Real set_point_n,
                                               Real stiffness_n_per_m, Real floor_m) noexcept {
   return Max(floor_m, rest_length_m - (set_point_n - tension_n) / stiffness_n_per_m);
 }
 
-/// The rate of the rest length [m/s] that a PID on the tension error asks for (eq. K.7):
+/// Returns the rate of the rest length [m/s] from a PID controller of the tension error (eq. K.7):
 ///   dL/dt = -PID(T_set - T)
-/// A cable that pulls too little is wound in, so the rate is negative. Gains in m/s per N, and per
-/// second or times seconds.
+/// Too little tension gives a negative rate: winding in. Gains are in m/s per N, and per second or
+/// times seconds.
 ///
-/// The paper says that its boards run a PID every millisecond; it gives neither gains nor what the
-/// PID's output is before it becomes a PWM duty. That the output is a winding rate (a DC motor
-/// under voltage is close to a rate source) and every gain used with this are our assumption.
+/// According to the paper, its boards run a PID every millisecond; it gives neither gains nor the
+/// quantity of the output before conversion to a PWM duty. The winding rate as output (a DC motor
+/// at a voltage is close to a rate source) and all gains used with this are assumptions of taut.
 template <class Real>
 constexpr Real TensionByPid(const Pid<Real>& pid, PidState<Real>& state, Real tension_n,
                             Real set_point_n, Real period_s) noexcept {
   return -StepPid(pid, state, set_point_n - tension_n, period_s);
 }
 
-/// The same with the winding rate bounded to +-`max_speed_m_per_s`.
+/// Returns the same rate, limited to +-`max_speed_m_per_s`.
 template <class Real>
 constexpr Real TensionByPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real tension_n,
                                    Real set_point_n, Real period_s, Real max_speed_m_per_s,
@@ -71,18 +72,18 @@ constexpr Real TensionByPidLimited(const Pid<Real>& pid, PidState<Real>& state, 
   return -StepPidLimited(pid, state, set_point_n - tension_n, period_s, limits, windup);
 }
 
-/// Where a rest length goes in one period at a commanded rate (eq. K.8) [m].
+/// Returns the rest length after one period at a commanded rate [m] (eq. K.8).
 template <class Real>
 constexpr Real RestLengthAfter(Real rest_length_m, Real rate_m_per_s, Real period_s,
                                Real floor_m) noexcept {
   return Max(floor_m, rest_length_m + rate_m_per_s * period_s);
 }
 
-/// The length of a taut cable whose rest length an encoder knows and whose tension a load cell
-/// knows (eq. K.9) [m]:
+/// Returns the length of a taut cable from its rest length (encoder) and tension (load cell) [m]
+/// (eq. K.9):
 ///   l = L + T / k
-/// The paper's boards have no other way to know it and do not say how they do it. Too long by
-/// b dl/dt / k if T contains the cable's damping; while slack (T = 0) it is only an upper bound.
+/// The paper's boards have no other means, and the paper does not describe theirs. Too long by b
+/// dl/dt / k if T contains the cable's damping; for a slack cable (T = 0) only an upper bound.
 template <class Real>
 constexpr Real LengthFromTension(Real rest_length_m, Real tension_n,
                                  Real stiffness_n_per_m) noexcept {

@@ -1,6 +1,6 @@
-/// One tick of impedance control of one cable: sensing, the impedance law and, where a PID winds
-/// the cable, that. The same text runs in a simulation (Real = double, or a wide number with a
-/// world a lane) and on a board (float).
+/// Tick of impedance control of one cable: sensing, impedance law and optional tension PID. The
+/// simulation (Real = double, or a SIMD type with one world per lane) and the boards (float)
+/// compile the same source.
 #pragma once
 
 #include "taut/control/impedance.h"
@@ -11,29 +11,31 @@
 namespace taut {
 namespace control {
 
-/// What all cables of a controller have in common; numbers only, so that no function of the
+/// Parameters common to all cables of a controller. Numbers only, so that no function of the
 /// standard library is compiled for an instruction set that a machine may lack.
 struct ImpedanceLaw {
-  bool by_pid = false;  ///< Else by the cable's stiffness.
+  bool by_pid = false;  ///< Tension control by PID; else by the cable's stiffness.
   bool differenced_rate = false, start_from_rest_length = false;
   bool first_tick = true;
   double proportional = 0, integral = 0, derivative = 0;  ///< Of the PID.
   double period_s = 0.001;
 };
 
+/// State of one cable's controller between ticks.
 template <class Real>
 struct ImpedanceMemory {
   PidState<Real> pid;
   DifferenceState<Real> difference;
 };
 
+/// Commanded rest length and tension set point.
 template <class Real>
 struct ImpedanceCommand {
   Real target_m, set_point_n;
 };
 
-/// `sensed` has the fields of `CableReadings` that the law asks for: rest_length_m, length_m,
-/// tension_n, elastic_n, stiffness_n_per_m, rate_m_per_s.
+/// Computes the command of one tick. `sensed` has the fields of `CableReadings` that the law uses:
+/// rest_length_m, length_m, tension_n, elastic_n, stiffness_n_per_m, rate_m_per_s.
 template <class Real, class Readings>
 [[gnu::always_inline]] inline ImpedanceCommand<Real> StepImpedance(
     const ImpedanceLaw& law, const Impedance<Real>& gains, Real velocity_offset_m_per_s,

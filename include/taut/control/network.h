@@ -1,7 +1,7 @@
-/// A feed-forward network: inputs, one layer of hidden neurons, outputs.
+/// Feed-forward neural network with one hidden layer.
 ///
-/// Its exponential is made of + and * alone, so that a network says the same on a microcontroller,
-/// on a PC and in every lane. Equations: docs/theory/gaits.md.
+/// Its exponential uses only + and *, so that outputs are bit-identical on a microcontroller, on a
+/// PC and in every lane. Equations: docs/theory/gaits.md.
 #pragma once
 
 #include "taut/control/real.h"
@@ -11,7 +11,8 @@ namespace control {
 
 namespace internal {
 
-/// 1 / n!, for n from 0. A template, so that instruction sets share no function.
+/// Returns 1 / n!, n >= 0. A template, so that object code for different instruction sets shares no
+/// function.
 template <class Real>
 constexpr double ExpTerm(int n) noexcept {
   constexpr double kTerms[] = {1.0,
@@ -28,8 +29,8 @@ constexpr double ExpTerm(int n) noexcept {
   return kTerms[n];
 }
 
-/// exp(-y) for y from 0 to 40: the series at y / 256, squared eight times. Its error is 256
-/// roundings at most: 3e-14 of it in double, 2e-5 in float.
+/// Returns exp(-y), 0 <= y <= 40: the series at y / 256, squared eight times. The relative error is
+/// at most 256 rounding errors: 3e-14 in double, 2e-5 in float.
 template <class Real>
 constexpr Real ExpOfMinus(Real y) noexcept {
   const Real z = Literal<Real>(-0.00390625f) * y;
@@ -41,7 +42,7 @@ constexpr Real ExpOfMinus(Real y) noexcept {
 
 }  // namespace internal
 
-/// 1 / (1 + exp(-x)), which never overflows; within 1e-14 in double. NaN stays NaN.
+/// Returns 1 / (1 + exp(-x)) without overflow, to 1e-14 in double. NaN stays NaN.
 template <class Real>
 constexpr Real Sigmoid(Real x) noexcept {
   const Real one = Literal<Real>(1.0f), zero = Literal<Real>(0.0f);
@@ -50,19 +51,21 @@ constexpr Real Sigmoid(Real x) noexcept {
   return Select(x < zero, e, one) / (one + e);
 }
 
+/// Numbers of inputs, hidden neurons and outputs.
 struct NetworkShape {
   int inputs, hidden, outputs;
 };
 
-/// Of a hidden neuron: one an input, then its bias; after all of those, of an output: one a hidden
-/// neuron, then its bias.
+/// Returns the number of weights. Order: for each hidden neuron one weight per input, then its
+/// bias; then for each output one weight per hidden neuron, then its bias.
 constexpr int WeightCount(const NetworkShape& shape) noexcept {
   return (shape.inputs + 1) * shape.hidden + (shape.hidden + 1) * shape.outputs;
 }
 
-/// h_j = sigma(sum_i w_ji x_i + b_j),  y_k = 2 sigma(sum_j u_kj h_j + c_k) - 1   (G.19)
-/// `weight(n)` and `input(i)` give a `Real`, `output(k, y)` takes one; `hidden` has a place for
-/// each hidden neuron.
+/// Evaluates the network:
+///   h_j = sigma(sum_i w_ji x_i + b_j),  y_k = 2 sigma(sum_j u_kj h_j + c_k) - 1   (G.19)
+/// `weight(n)` and `input(i)` return a `Real`, `output(k, y)` takes one; `hidden` is a buffer with
+/// one entry per hidden neuron.
 template <class Real, class Weight, class Input, class Output>
 constexpr void EvaluateNetwork(const NetworkShape& shape, const Weight& weight, const Input& input,
                                Real* hidden, const Output& output) noexcept {

@@ -1,4 +1,4 @@
-/// Position control: rest lengths that follow a program.
+/// Position control: rest lengths follow a program.
 ///
 /// The paper uses position control "at startup to set the initial length of each cable and to
 /// maintain the balance of all three segments". Its boards receive motor angles; taut commands the
@@ -13,17 +13,17 @@
 namespace taut {
 namespace control {
 
-/// A corner of a program.
+/// Point of a program.
 template <class Real, class Time = Real>
 struct ProgramPoint {
   Time time_s;
   Real rest_length_m;
 };
 
-/// The program's rest length at `t_s` (docs/theory/control.md, eq. K.10) [m]: straight between the
-/// points, held before the first and after the last. One point is a constant command, two are a
-/// ramp; two points at one time are a jump, and the later one holds at that time.
-/// `count` >= 1; times must not fall.
+/// Returns the program's rest length at `t_s` [m] (docs/theory/control.md, eq. K.10): linear
+/// between the points, constant before the first and after the last. One point is a constant
+/// command, two are a ramp; two points at one time are a jump, and the later one applies at that
+/// time. `count` >= 1; times must not decrease.
 template <class Real, class Time>
 constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count,
                             Time t_s) noexcept {
@@ -38,9 +38,9 @@ constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count
   return from.rest_length_m + (to.rest_length_m - from.rest_length_m) * FromScalar<Real>(part);
 }
 
-/// The rate of the rest length [m/s] that a PID on its error asks for, bounded to
-/// +-`max_speed_m_per_s` (eq. K.11): what a board does that can set a winding rate only. The
-/// paper gives no gains; those used with this are our assumption.
+/// Returns the rate of the rest length [m/s] from a PID controller of its error, limited to
+/// +-`max_speed_m_per_s` (eq. K.11), for boards that can command only a winding rate. The paper
+/// gives no gains; the gains used with this are assumptions of taut.
 template <class Real>
 constexpr Real RestLengthByPid(const Pid<Real>& pid, PidState<Real>& state, Real rest_length_m,
                                Real set_point_m, Real period_s, Real max_speed_m_per_s,

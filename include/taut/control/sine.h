@@ -1,4 +1,4 @@
-/// A sine as the velocity input of impedance control: the paper's hand-tuned gait.
+/// Sine wave as velocity input of impedance control: the paper's hand-tuned gait.
 #pragma once
 
 #include "taut/control/real.h"
@@ -7,7 +7,7 @@
 namespace taut {
 namespace control {
 
-/// One cable's wave.
+/// Wave of one cable.
 template <class Real>
 struct Sine {
   Real amplitude_m_per_s;  ///< May be negative.
@@ -15,16 +15,16 @@ struct Sine {
   Real offset_m_per_s;
 };
 
-/// Where a wave of a frequency is at a time [turns], -1/2..1/2. The product is formed anew for
-/// every time, so it does not drift; in float it is good for minutes (a microcontroller adds
-/// frequency times period to a phase and wraps that).
+/// Returns the phase of a wave at a time [turns], -1/2..1/2. It is computed from the time, so it
+/// does not drift; in float it is accurate for minutes (a microcontroller adds frequency times
+/// period to a phase and wraps it).
 template <class Real>
 constexpr Real ClockTurns(Real frequency_hz, Real time_s) noexcept {
   return WrapTurns(frequency_hz * time_s);
 }
 
-/// V0 = offset + amplitude cos(2 pi (clock + phase))  [m/s] (docs/theory/gaits.md, eq. G.1), where
-/// the clock is at `clock_turns`.
+/// Returns V0 = offset + amplitude cos(2 pi (clock + phase)) [m/s] (docs/theory/gaits.md, eq. G.1),
+/// with the clock's phase `clock_turns`.
 template <class Real>
 constexpr Real SineVelocity(const Sine<Real>& wave, Real clock_turns) noexcept {
   return wave.offset_m_per_s +

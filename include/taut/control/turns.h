@@ -1,6 +1,6 @@
-/// Angles in turns (1 turn = 2 pi rad), their sine and cosine.
+/// Angles in turns (1 turn = 2 pi rad), with sine and cosine.
 ///
-/// A phase in turns wraps without error and takes no pi; the functions need only + - * and
+/// A phase in turns wraps without rounding error and needs no pi; the functions need only + - * and
 /// comparisons, so that they give the same bits on an AVR, on a PC and in every lane.
 #pragma once
 
@@ -9,13 +9,13 @@
 namespace taut {
 namespace control {
 
-/// Turns in a radian, 1 / (2 pi).
+/// Turns per radian, 1 / (2 pi).
 constexpr double kTurnsPerRad = 0.15915494309189534;
 
 namespace internal {
 
-/// Adding and taking away this number rounds what is much smaller to a whole number: 1.5 times the
-/// number from which on neighbours are 1 apart. In double, unless specialised.
+/// Number whose addition and subtraction rounds a much smaller number to an integer: 1.5 times the
+/// number from which on adjacent floating-point numbers differ by 1. In double, unless specialized.
 template <class Real>
 struct Rounder {
   static constexpr double kNumber = 6755399441055744.0;  // 1.5 2^52
@@ -25,7 +25,7 @@ struct Rounder<float> {
   static constexpr float kNumber = 12582912.0f;  // 1.5 2^23
 };
 
-/// Terms of the sine's series that reach beyond the last place at a quarter turn.
+/// Number of terms of the sine's series: the next term is below the last digit at a quarter turn.
 template <class Real>
 struct SineTerms {
   static constexpr int kCount = 11;
@@ -35,7 +35,8 @@ struct SineTerms<float> {
   static constexpr int kCount = 7;
 };
 
-/// (-1)^n (2 pi)^(2n+1) / (2n+1)!, rounded. A template, so that instruction sets share no function.
+/// Returns (-1)^n (2 pi)^(2n+1) / (2n+1)!, rounded. A template, so that object code for different
+/// instruction sets shares no function.
 template <class Real>
 constexpr double SineTerm(int n) noexcept {
   constexpr double kTerms[] = {
@@ -46,7 +47,7 @@ constexpr double SineTerm(int n) noexcept {
   return kTerms[n];
 }
 
-/// sin(2 pi x) for |x| <= 1/4.
+/// Returns sin(2 pi x), |x| <= 1/4.
 template <class Real>
 constexpr Real SineSeries(Real x) noexcept {
   const Real x2 = x * x;
@@ -59,16 +60,16 @@ constexpr Real SineSeries(Real x) noexcept {
 
 }  // namespace internal
 
-/// The same angle within -1/2..1/2 turns, without rounding. For |x| < 2^22 in float and 2^51 in
-/// double; NaN stays NaN.
+/// Returns the same angle within -1/2..1/2 turns, without rounding. For |x| < 2^22 in float and
+/// 2^51 in double; NaN stays NaN.
 template <class Real>
 constexpr Real WrapTurns(Real x) noexcept {
   const Real rounder = control::FromScalar<Real>(internal::Rounder<Real>::kNumber);
   return x - ((x + rounder) - rounder);
 }
 
-/// sin(2 pi x), -1/2 <= x <= 1/2 (docs/theory/gaits.md, eq. G.2): the series around the nearest
-/// whole or half turn. Absolute error below 4.4e-16 in double, 2.4e-7 in float.
+/// Returns sin(2 pi x), -1/2 <= x <= 1/2 (docs/theory/gaits.md, eq. G.2): the series around the
+/// nearest whole or half turn. Absolute error below 4.4e-16 in double, 2.4e-7 in float.
 template <class Real>
 constexpr Real SinTurns(Real x) noexcept {
   const Real half = Literal<Real>(0.5f), quarter = Literal<Real>(0.25f);
@@ -76,7 +77,7 @@ constexpr Real SinTurns(Real x) noexcept {
   return internal::SineSeries(Select(x > quarter, back, Select(x < -quarter, back, x)));
 }
 
-/// cos(2 pi x), -1/2 <= x <= 1/2.
+/// Returns cos(2 pi x), -1/2 <= x <= 1/2.
 template <class Real>
 constexpr Real CosTurns(Real x) noexcept {
   const Real size = Select(x < Literal<Real>(0.0f), -x, x);

@@ -1,12 +1,13 @@
-/// Drives up to six motor boards over a USB-ISS: every 10 ms a broadcast and all frames back
-/// (docs/hardware/driver.md). The boards' word about safety is final; the driver adds what they
-/// cannot know: that one of them is gone, that another is not well, that the PC wants all to stop.
+/// Driver for up to six motor boards over a USB-ISS: in each cycle of 10 ms, sends a broadcast and
+/// reads a frame from each board (docs/hardware/driver.md). The boards have the final decision on
+/// safety; the driver adds reactions that a board cannot have: to the loss or fault of another
+/// board, and to a stop by the PC.
 ///
-/// A life: `Configure` speaks to the boards and moves nothing; cycles then show what they sense;
-/// `Arm`, and a cycle later `Go`, give motors power; `Off` and `Stop` take it. The destructor stops
-/// motors that have power.
+/// Lifecycle: `Configure` addresses the boards without moving motors; then cycles update sensor
+/// values; `Arm` and, a cycle later, `Go` give motors power; `Off` and `Stop` remove it. The
+/// destructor stops motors that have power.
 ///
-/// Threads: belongs to one at a time.
+/// Threads: use an object from one thread at a time.
 #pragma once
 
 #include <functional>
@@ -21,84 +22,91 @@
 
 namespace taut::link {
 
-/// What happens to all motors when a board or a motor is not well, or a board has begun anew. (A
-/// board that does not answer stops all, always.)
+/// Reaction of all motors to a fault of a board or motor, or to a restart of a board. (A board that
+/// does not answer always causes a stop of all boards.)
 enum class OnFault { kHold, kOff, kStop };
 
 struct DriverOptions {
   int motors = board::kCables;  ///< 1 .. 12.
   double period_s = 0.01;       ///< Of cycles; boards time out after 0.1 s.
-  double patience_s = 0.04;     ///< For a reply while cycling.
-  int lost_after = 3;           ///< Cycles without a frame: then a board is lost.
+  double patience_s = 0.04;     ///< Timeout of a reply in cycles.
+  int lost_after = 3;           ///< Cycles without a frame after which a board counts as lost.
   OnFault on_fault = OnFault::kHold;
-  std::vector<std::string> cables;  ///< Names for messages; "motor 3" where there is none.
+  std::vector<std::string> cables;  ///< Names for messages; without a name, "motor 3".
 };
 
 class Driver {
  public:
-  /// The port outlives it.
+  /// The port must outlive the driver.
   Driver(Port& port, DriverOptions options);
   ~Driver();
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
   // --- before cycles -----------------------------------------------------------------------------
-  /// Finds adapter and boards, sets what is given and reads what their numbers mean. False, and
-  /// complaints about all that is wrong: no adapter, boards that are not there or of another
-  /// version, values that they refuse. Again after `Configure`: begins anew; motors that have power
-  /// are turned off, or hold: then those of boards that are well do not let go of the robot, and
-  /// time out meanwhile.
+  /// Identifies adapter and boards, sets parameters and reads the scales of the boards' numbers.
+  /// Returns false, with errors about all problems: no adapter, boards that are missing or have
+  /// another protocol or parameter version, refused values. May be called again and then restarts
+  /// the driver; motors with power are turned off or, with kHold, hold: boards without faults then
+  /// keep holding the robot, and time out meanwhile.
   enum class Meanwhile { kOff, kHold };
   bool Configure(std::span<const Setting> settings, Diagnostics& out,
                  Meanwhile meanwhile = Meanwhile::kOff);
-  /// The cable of each motor has this rest length now. Motors have to be off or held. False and a
-  /// complaint otherwise.
+  /// Sets the reference of a motor's encoder: the present rest length of its cable [m]. Motors must
+  /// be off or holding; otherwise returns false, with an error.
   bool SetReference(int motor, double rest_length_m, Diagnostics& out);
   Requests& requests() { return requests_; }
   const AdapterInfo& adapter() const { return adapter_info_; }
   const MotorFigures& figures(int motor) const { return figures_[At(motor)]; }
 
-  // --- what is commanded; goes with the next broadcast -------------------------------------------
-  /// Motors off, boards ready for power.
+  // --- commands, sent with the next broadcast ----------------------------------------------------
+  /// Turns motors off and makes boards ready for power.
   void Arm();
-  /// Power, after `Arm` and a cycle in which every board said that it is well; false, and nothing
-  /// done, otherwise. `capture`: under impedance control T0 and L0 are what is measured (paper).
+  /// Gives motors power, after `Arm` and a cycle in which every board reported no fault; otherwise
+  /// returns false without an effect. `capture`: under impedance control, measured values become T0
+  /// and L0 (paper).
   bool Go(board::Mode mode, bool capture = false);
-  /// By the mode: rest length [m], V0 [m/s], duty. What the wire cannot hold is cut off. A position
-  /// that was not set since motors were off, or is no number, is where the motor is.
+  /// Sets the command of a motor according to the mode: rest length [m], V0 [m/s], duty. Values are
+  /// clipped to the range of the message. A position that is not finite, or not set since motors
+  /// were off, is the motor's present position.
   void SetValue(int motor, double value) { values_[At(motor)] = value; }
+  /// Turns motors off.
   void Off();
-  /// An emergency stop: sent alone and several times, until faults are cleared.
+  /// Sends an emergency stop, alone and several times, until faults are cleared.
   void Stop(const std::string& why);
-  /// With the next broadcast, which turns motors off or holds them: all faults, time-outs, stops.
+  /// Clears all faults, timeouts and stops with the next broadcast, which turns motors off or, in
+  /// mode kHold, holds them.
   void ClearFaults();
-  /// One request between cycles' frames, for gains of motors that run; `done` (may be empty) gets
-  /// the answer, or nothing after three tries. One goes out a cycle.
+  /// Queues a request to a board in the next cycles, such as for a gain of a running motor. `done`
+  /// (may be empty) is called with the reply, or with nothing after three tries. At most one
+  /// request is sent per cycle.
   void Request(int board, const board::Asking& asking,
                std::function<void(const std::optional<board::Reply>&)> done = {});
 
   // --- cycles ------------------------------------------------------------------------------------
-  /// Goes on as far as it can without waiting. True: a cycle has just ended.
+  /// Continues the cycle as far as possible without waiting. Returns true if a cycle has just
+  /// ended.
   bool Poll();
-  double due_s() const;          ///< When `Poll` has something to do, if no bytes come before.
-  void RunUntil(double time_s);  ///< Polls and waits, by the port's clock.
-  /// So many cycles; fewer if the adapter is gone, none before `Configure`.
+  double due_s() const;          ///< Time of the next work for `Poll` if no bytes arrive before.
+  void RunUntil(double time_s);  ///< Polls and waits until a time of the port's clock.
+  /// Runs `count` cycles; fewer if the adapter is lost, none before `Configure`.
   void Cycle(int count = 1);
   /// Runs until a cycle has ended or the port's clock reaches `time_s`; meanwhile tries to
   /// reconnect a missing adapter. Returns whether a cycle has ended.
   bool CycleBy(double time_s);
-  /// Motors get power in two steps, held where they are, and then `mode`. False and a complaint if
-  /// a board is not well or does not obey.
+  /// Gives motors power in two steps, first holding their positions, then in `mode`. Returns false,
+  /// with an error, if a board has a fault or does not follow.
   bool Enable(board::Mode mode, bool capture, Diagnostics& out);
 
   const State& state() const { return state_; }
-  void ForgetStatistics();  ///< What `LinkView` and frames' counts say begins anew.
+  void ForgetStatistics();  ///< Resets `LinkView` and the counts of frames.
   Port& port() { return port_; }
   std::string MotorName(int motor) const;
 
-  /// After each cycle.
+  /// Called after each cycle.
   std::function<void(const State&)> on_cycle;
-  /// What happens, for a log: board 2 is not well, a cable's name, why all was stopped.
+  /// Called with the text of an event for a log, such as a fault of a board or cable, or the reason
+  /// of a stop.
   std::function<void(double time_s, const std::string& text)> on_event;
 
  private:
@@ -114,22 +122,22 @@ class Driver {
     board::Asking asking;
     std::function<void(const std::optional<board::Reply>&)> done;
     int tries = 0;
-    int rest = 0;  ///< Cycles for the answer to come, before it is asked again.
+    int rest = 0;  ///< Cycles to wait for the answer before the next try.
   };
-  /// What boards do not take for a fault, and a PC should tell all the same.
+  /// Monitoring of a cable for conditions that boards do not detect as faults.
   struct CableWatch {
     int slack_cycles = 0, same_cycles = 0;
     bool slack = false, stands = false;
-    int quarters = -1;        ///< The last reading of the load cell that differed from one before,
-    std::int64_t counts = 0;  ///< and the encoder then.
+    int quarters = -1;        ///< Last changed reading of the load cell,
+    std::int64_t counts = 0;  ///< and the encoder's count at that time.
   };
 
   std::size_t At(int motor) const;
   int board_count() const { return static_cast<int>(state_.boards.size()); }
   bool FindBoards(Diagnostics& out);
   bool ReadFigures(Diagnostics& out);
-  void FinishCycle();  ///< So that requests do not come between its frames.
-  void Watch();        ///< Chooses a broadcast that moves nothing and takes no power.
+  void FinishCycle();  ///< So that requests are not sent between its frames.
+  void Watch();        ///< Selects a broadcast that neither moves motors nor changes their power.
 
   // driver_cycle.cpp
   void BeginCycle();
@@ -144,7 +152,8 @@ class Driver {
   void Lost();
   bool TryReconnect();
   std::int16_t OnWire(int motor) const;
-  /// Who was not heard in this cycle: the adapter was silent, for a moment.
+  /// Returns whether boards without a reply in this cycle are excused: the adapter was briefly
+  /// silent.
   bool IsExcused() const;
 
   // driver_watch.cpp
@@ -167,19 +176,19 @@ class Driver {
   int stops_left_ = 0;
   State state_;
 
-  std::vector<Step> steps_;  ///< Of the cycle under way; those from `step_` on are to be done.
+  std::vector<Step> steps_;  ///< Of the present cycle; remaining from `step_` on.
   std::size_t step_ = 0;
   bool under_way_ = false, transfer_under_way_ = false;
   double next_cycle_s_ = 0, cycle_begun_s_ = 0, reconnect_s_ = 0;
   std::vector<Waiting> waiting_;
-  std::vector<bool> heard_;  ///< In this cycle, by board.
+  std::vector<bool> heard_;  ///< In this cycle, per board.
   std::vector<CableWatch> cable_watches_;
-  std::vector<int> missed_;        ///< Cycles in a row, by board.
-  std::vector<int> deaf_;          ///< Cycles in a row in which it took no broadcast, by board.
-  std::vector<BoardView> before_;  ///< As of the cycle before.
+  std::vector<int> missed_;        ///< Consecutive cycles without a frame, per board.
+  std::vector<int> deaf_;          ///< Consecutive cycles without an applied broadcast, per board.
+  std::vector<BoardView> before_;  ///< From the previous cycle.
   int unheard_in_row_ = 0;
   bool silent_in_cycle_ = false;
-  double replied_s_ = 0;  ///< When the adapter did last.
+  double replied_s_ = 0;  ///< Time of the adapter's last reply.
 };
 
 }  // namespace taut::link

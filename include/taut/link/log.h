@@ -1,6 +1,6 @@
-/// What a driver hears, as a trace (docs/hardware/driver.md): a row a cycle.
+/// Log of a driver as a trace with one row per cycle (docs/hardware/driver.md).
 ///
-/// Threads: belongs to one at a time.
+/// Threads: use an object from one thread at a time.
 #pragma once
 
 #include <memory>
@@ -12,16 +12,16 @@
 
 namespace taut::link {
 
-/// A line of events.jsonl: who says what, and when.
+/// Returns a line of events.jsonl: time, origin and text of an event.
 std::string EventLine(double time_s, const std::string& who, const std::string& what);
 
 class RobotLog {
  public:
-  /// Names of the motors' cables.
+  /// `cables`: names of the motors' cables.
   explicit RobotLog(const std::vector<std::string>& cables);
 
   const std::vector<ChannelInfo>& channels() const { return channels_; }
-  /// The row of a state; valid until the next call.
+  /// Returns the row of a state; valid until the next call.
   const double* Row(const State& state);
 
  private:

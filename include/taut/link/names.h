@@ -1,7 +1,7 @@
-/// What numbers of the boards' protocol are called: parameters, modes, faults, answers
+/// Names of numbers in the boards' protocol: parameters, modes, faults, answers
 /// (docs/hardware/protocol.md).
 ///
-/// Threads: any number may call these.
+/// Threads: any number may call these functions at once.
 #pragma once
 
 #include <optional>
@@ -16,56 +16,56 @@
 namespace taut::link {
 
 struct ParameterInfo {
-  const char* key;  ///< Ends in its unit.
+  const char* key;  ///< Ends with its unit.
   board::Range range;
 };
-/// By their numbers.
+/// Return the parameters, indexed by their numbers.
 std::span<const ParameterInfo> MotorParameters();
 std::span<const ParameterInfo> BoardParameters();
 
-/// Which parameter of which board, and of which of its motors.
+/// Parameter of a board or of one of its motors.
 struct ParameterPlace {
   int board = 0;
-  int index = 0;  ///< `board::kMotors`: of the board itself.
+  int index = 0;  ///< Motor, or `board::kMotors` for the board.
   std::uint8_t parameter = 0;
 };
 
-/// That of a motor, of whichever board.
+/// Returns the place of a motor's parameter; `motor` counts over all boards.
 constexpr ParameterPlace PlaceOf(int motor, std::uint8_t parameter) {
   return {motor / board::kMotors, motor % board::kMotors, parameter};
 }
 
-/// A value for a parameter.
+/// Parameter of a board or motor, and its value.
 struct Setting {
   ParameterPlace place;
   float value = 0;
 };
 
-/// A parameter by its name, and a value for it.
+/// Parameter without a board or motor, and its value.
 struct ParameterValue {
   bool of_motor = false;  ///< Else of the board.
   std::uint8_t parameter = 0;
   float value = 0;
 };
-/// Reads "duty_limit=0.5". Nothing and a complaint, which begins with `what`, if it is none or out
-/// of its range.
+/// Parses text such as "duty_limit=0.5". Returns nothing, with an error that begins with `what`, if
+/// the text is invalid or the value out of range.
 std::optional<ParameterValue> ReadParameter(const std::string& text, const std::string& what,
                                             Diagnostics& out);
-/// For all motors, or all boards, of a robot of so many.
+/// Returns the settings for all motors, or all boards, of a robot with `motors` motors.
 std::vector<Setting> ForAll(const ParameterValue& value, int motors);
 
 const char* ModeName(board::Mode mode);
 std::optional<board::Mode> ModeOf(const std::string& name);
-/// "over_tension, stall"; empty: none.
+/// Return names of bits, such as "over_tension, stall"; empty: none.
 std::string MotorFaultNames(unsigned bits);
 std::string BoardFaultNames(unsigned bits);
 std::string ResetCauseNames(unsigned bits);
-/// What is wrong with a board and its motors, empty if nothing is.
+/// Returns the faults of a board and its motors; empty if there are none.
 std::string FaultsOf(const State& state, int board, const std::vector<std::string>& cables);
-/// All that is wrong with a board and its motors: "outer_top_1: stall; board: bus_stuck"; "no
-/// faults". `cables`: names of the motors.
+/// Returns the faults of a board and its motors, such as "outer_top_1: stall; board: bus_stuck", or
+/// "no faults". `cables`: names of the motors.
 std::string FaultText(const State& state, int board, const std::vector<std::string>& cables);
-/// "out of the parameter's range".
+/// Returns a text such as "out of the parameter's range".
 const char* AnswerText(board::Answer answer);
 
 }  // namespace taut::link

@@ -32,7 +32,7 @@ struct PowerReport {
 /// Commands all motors off and cycles until every board has confirmed it, at most `patience_s`.
 PowerReport TurnOff(Driver& driver, double patience_s);
 
-/// "confirmed by 6 of 6 boards within 23 ms".
+/// Returns a text such as "confirmed by 6 of 6 boards within 23 ms".
 std::string DescribeConfirmation(const PowerReport& report);
 /// Adds an error for each board without confirmation, and a hint on boards without commands. Adds
 /// nothing if all boards have confirmed.

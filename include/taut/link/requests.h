@@ -1,7 +1,7 @@
-/// Requests to single boards, one at a time, each waiting for its answer: who they are, what is set
-/// on them, what they are to do while nothing runs.
+/// Requests to single boards outside of cycles: identification, parameters, actions. Each waits for
+/// its reply.
 ///
-/// Threads: belongs to one at a time.
+/// Threads: use an object from one thread at a time.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace taut::link {
 
-/// What a board says of its faults when it is asked.
+/// Reply to a request for faults.
 struct FaultReport {
   std::uint8_t motor[board::kMotors] = {};  ///< `board::MotorFault` bits.
   std::uint8_t board = 0;                   ///< `board::BoardFault` bits.
@@ -22,33 +22,35 @@ struct FaultReport {
   bool referenced[board::kMotors] = {};
   std::uint8_t temperature_c[board::kMotors] = {};  ///< Of the windings, computed.
 };
+/// Decodes the reply to a request for faults.
 FaultReport DecodeFaults(const board::Reply& reply);
 
-/// Since its boot; they stay at 65535.
+/// Counters of a board since its boot, up to 65535.
 struct CounterReport {
   std::uint16_t bad_messages = 0, late_ticks = 0, missed_broadcasts = 0, bus_recoveries = 0;
 };
 
 class Requests {
  public:
-  /// The adapter outlives it.
+  /// The adapter must outlive the object.
   explicit Requests(UsbIss& adapter) : adapter_(adapter) {}
 
-  // Each tries three times. Nothing, or false, and a complaint if the board does not answer or
-  // refuses.
+  // Each function tries three times. It returns nothing or false, with an error, if the board does
+  // not answer or refuses.
   std::optional<board::Reply> Ask(int board, const board::Asking& asking, Diagnostics& out);
   std::optional<board::Info> Info(int board, Diagnostics& out);
   std::optional<FaultReport> Faults(int board, Diagnostics& out);
   std::optional<CounterReport> Counters(int board, Diagnostics& out);
   std::optional<float> Get(const ParameterPlace& place, Diagnostics& out);
   bool Set(const Setting& setting, Diagnostics& out);
-  /// `nonce`: of the boot that it is meant for (`board::Info`).
+  /// Performs an action. `nonce`: boot number of the board (`board::Info`).
   bool Do(int board, board::Action action, std::uint16_t nonce, Diagnostics& out);
   bool SetReference(int motor, std::int32_t counts, std::uint16_t nonce, Diagnostics& out);
-  /// Until the EEPROM has taken what `kStore` asked for.
+  /// Waits until the EEPROM has stored the parameters after `kStore`, at most 2 s.
   bool WaitForMemory(int board, Diagnostics& out);
 
-  /// As of the last broadcast that the board took; nothing: no whole frame came.
+  /// Returns the board's status, as of the last broadcast that it applied; nothing without a valid
+  /// frame.
   std::optional<board::Status> ReadStatus(int board);
 
   UsbIss& adapter() { return adapter_; }

@@ -1,8 +1,8 @@
-/// A robot as a plant (taut/plant.h): an experiment's controllers see what boards sense and command
-/// what boards do. Impedance control runs on the boards: its gains become their parameters, a
-/// gait's part V0 of broadcasts; rest lengths become positions.
+/// Robot as a plant (taut/plant.h): observations of an experiment's controllers come from the
+/// boards, and their commands go to the boards. Impedance control runs on the boards: gains become
+/// their parameters, and a gait's part becomes V0 of broadcasts. Rest lengths become positions.
 ///
-/// Motor m of board b is actuated cable 2 b + m, in the model's order.
+/// Motor m of board b drives the (2 b + m)-th cable with an actuator, in the model's order.
 #pragma once
 
 #include <functional>
@@ -16,44 +16,48 @@
 
 namespace taut::link {
 
-/// The actuated cables of a robot. Nothing and complaints if there is none, or more than boards can
-/// drive.
+/// Returns the indices of the actuated cables. Returns an empty list, with errors, if there are
+/// none or more than the boards can drive.
 std::vector<int> MotorCables(const RobotSpec& robot, Diagnostics& out);
-/// Their names.
+/// Returns the names of the actuated cables.
 std::vector<std::string> MotorNames(const RobotSpec& robot);
 
-/// How the boards run an experiment: by impedance control if it controls cables so, else by
-/// position. Nothing and a complaint if it does both, or leaves out a motor.
+/// Returns the boards' mode for an experiment: impedance control if it uses that for cables, else
+/// position control. Returns nothing, with an error, if it uses impedance control for some motors
+/// only.
 std::optional<board::Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out);
 
-/// What follows for the boards from gear, spool, spring and gains. `encoder_lines`: marks a turn of
-/// the motor's shaft, of which boards count two states each.
+/// Returns the boards' parameters that follow from gear, spool and spring. `encoder_lines`: marks
+/// per revolution of the motor's shaft; boards count two states per mark.
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines);
+/// Returns the boards' parameters for the experiment's impedance gains.
 std::vector<Setting> GainsFor(const ExperimentSpec& experiment);
-/// What was measured. Its cables are of this robot.
+/// Returns the calibrated parameters. Cables of the calibration must belong to this robot.
 std::vector<Setting> SettingsFor(const Calibration& calibration, const RobotSpec& robot);
 
-/// One lane. Threads: belongs to the one that has the driver.
+/// Plant of one lane. Threads: use it from the thread that uses the driver.
 class RobotPlant final : public Plant {
  public:
-  /// The driver's motors are those of the experiment's robot. Both outlive it.
+  /// The driver's motors must be the motors of the experiment's robot. Experiment and driver must
+  /// outlive the plant.
   RobotPlant(const ExperimentSpec& experiment, Driver& driver);
 
-  /// Motors get power and hold where they are. False and a complaint if a board does not obey, or
-  /// boards cannot run the experiment.
+  /// Gives motors power and holds their positions. Returns false, with an error, if a board does
+  /// not follow, or boards cannot run the experiment.
   bool Hold(Diagnostics& out);
-  /// After `Hold`: the experiment's mode from the next broadcast on; its time 0 is now.
+  /// After `Hold`: starts the experiment's mode with the next broadcast; the experiment's time is 0
+  /// now.
   void Begin();
 
   const Observation& Observe() override;
   Commands& commands() override { return commands_; }
   void Advance(const double* step_s, const double* to_s) override;
   void Restart(int lane) override;
-  /// False once motors have been stopped or turned off.
+  /// Returns false once motors have been stopped or turned off.
   bool Goes(int lane) const override;
 
-  /// Called in the first `Advance`, once: for who gives power then, with `Hold` and `Begin`, since
-  /// boards do not wait while an experiment is made ready.
+  /// Called once, in the first `Advance`: use it to give power with `Hold` and `Begin` only then,
+  /// since boards time out while an experiment is prepared.
   std::function<void()> before_first_step;
 
   Driver& driver() { return driver_; }
@@ -66,7 +70,7 @@ class RobotPlant final : public Plant {
   Driver& driver_;
   std::vector<int> cables_;  ///< Of the motors.
   board::Mode mode_ = board::Mode::kHold;
-  std::vector<double> rows_;  ///< Six readings, and the rest lengths that are commanded.
+  std::vector<double> rows_;  ///< Six readings and the commanded rest lengths.
   std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
   std::vector<CommandMode> command_mode_;
   std::vector<std::uint32_t> faults_;

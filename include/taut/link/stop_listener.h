@@ -15,21 +15,23 @@ namespace taut::link {
 /// Result of a stop request to the program that drives a robot.
 enum class StopAnswer {
   kNobody,       ///< No program drives it.
-  kSilent,       ///< A program drives it, and did not answer in time.
-  kUnconfirmed,  ///< It sent the stop; some boards did not confirm it.
+  kSilent,       ///< A program drives it, but did not answer in time.
+  kUnconfirmed,  ///< The stop was sent; some boards did not confirm it.
   kStopped,      ///< All boards confirmed the stop.
 };
 
 /// Server side, in the driving program.
 class StopListener {
  public:
-  /// Null, with a diagnostic, if the socket cannot be created, or another program uses it.
+  /// Opens the socket. Returns null, with a diagnostic, if it cannot be created or another program
+  /// uses it.
   static std::unique_ptr<StopListener> Open(const std::string& device, Diagnostics& out);
   ~StopListener();
   StopListener(const StopListener&) = delete;
   StopListener& operator=(const StopListener&) = delete;
 
-  /// Whether another program has asked for an emergency stop since the last call. Does not wait.
+  /// Returns whether another program has requested an emergency stop since the last call. Does not
+  /// wait.
   bool StopAsked();
   /// Answers all pending requests with kStopped or kUnconfirmed.
   void Answer(StopAnswer answer);
@@ -42,8 +44,8 @@ class StopListener {
   std::unique_ptr<Askers> askers_;
 };
 
-/// Asks the program that drives the robot at a device to stop it, and waits for the answer at most
-/// `patience_s`.
+/// Sends a stop request to the program that drives the robot at a device, and waits for the answer,
+/// at most `patience_s`.
 StopAnswer AskToStop(const std::string& device, double patience_s);
 
 }  // namespace taut::link

@@ -1,7 +1,7 @@
-/// The PC's side of a USB-ISS, Devantech's adapter from a serial port to a two-wire bus
-/// (usb_iss_tech, usb_iss_i2c_tech).
+/// USB-ISS adapter from a serial port to I2C, by Devantech: host side (usb_iss_tech,
+/// usb_iss_i2c_tech).
 ///
-/// Threads: belongs to one at a time.
+/// Threads: use an object from one thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -14,44 +14,49 @@
 namespace taut::link {
 
 struct AdapterInfo {
-  int module_id = 0;         ///< 7: a USB-ISS.
-  int firmware_version = 0;  ///< Before 8 a byte that nobody took left the bus without a stop.
-  int mode = 0;              ///< As it was when it was asked.
+  int module_id = 0;  ///< 7: a USB-ISS.
+  /// Before 8, a byte without acknowledgment left the bus without a stop.
+  int firmware_version = 0;
+  int mode = 0;  ///< At the time of identification.
   std::string serial_number;
 };
 inline constexpr int kModuleId = 7;
 
-/// How a reply ends, which nothing in it says.
+/// Size of a reply, which the reply does not contain.
 struct ReplyShape {
   std::size_t bytes = 1;
-  bool direct =
-      false;  ///< Of I2C_DIRECT: `FF n` and n bytes, or `00 error`; `bytes` does not count.
+  /// I2C_DIRECT: `FF n` and n bytes, or `00 error`; `bytes` is ignored.
+  bool direct = false;
 };
 
 class UsbIss {
  public:
-  /// The port outlives it.
+  /// The port must outlive the adapter.
   explicit UsbIss(Port& port) : port_(port) {}
 
-  // --- one transfer at a time, without waiting ---------------------------------------------------
+  // --- transfers, one at a time, without waiting -------------------------------------------------
   enum class State { kIdle, kPending, kDone, kSilent, kLost };
-  /// Sends a frame; what a transfer before it left is forgotten. The reply is due within
+  /// Sends a frame, and discards remaining data of an earlier transfer. The reply is due within
   /// `patience_s`.
   void Begin(std::span<const std::uint8_t> frame, ReplyShape shape, double patience_s);
-  /// kDone: `reply` is there. kSilent: none came in time. kLost: there is no adapter.
+  /// Reads received bytes. kDone: `reply` is complete. kSilent: no complete reply in time. kLost:
+  /// no adapter.
   State Poll();
   const Bytes& reply() const { return reply_; }
   double begun_s() const { return begun_s_; }
-  double due_s() const { return due_s_; }  ///< When it is silent, if nothing comes.
+  double due_s() const { return due_s_; }  ///< Time at which it becomes silent without a reply.
 
-  // --- and with waiting --------------------------------------------------------------------------
+  // --- transfers with waiting --------------------------------------------------------------------
+  /// Sends a frame and returns its reply; nothing if none arrives in time.
   std::optional<Bytes> Transfer(std::span<const std::uint8_t> frame, ReplyShape shape);
+  /// Returns type, version, mode and serial number of the adapter; nothing without an answer.
   std::optional<AdapterInfo> Identify();
-  /// The bus at 400 kHz by the adapter's hardware; also what makes a confused adapter well.
+  /// Sets the bus to 400 kHz by the adapter's hardware; also resets an adapter in a wrong state.
   bool SetMode();
-  bool Test(std::uint8_t address);  ///< Whether anybody acknowledges it; 7 bits.
-  bool Write(std::uint8_t address, std::span<const std::uint8_t> bytes);  ///< Acknowledged.
-  /// What an absent slave would have sent is 0xff: only a checksum tells.
+  bool Test(std::uint8_t address);  ///< Returns whether a slave acknowledges this 7-bit address.
+  /// Returns whether the slave acknowledged.
+  bool Write(std::uint8_t address, std::span<const std::uint8_t> bytes);
+  /// Reads bytes from a slave. Bytes of an absent slave are 0xff; only a checksum detects this.
   std::optional<Bytes> Read(std::uint8_t address, std::size_t size);
 
   Port& port() { return port_; }
@@ -59,7 +64,8 @@ class UsbIss {
   // --- frames ------------------------------------------------------------------------------------
   static Bytes WriteFrame(std::uint8_t address, std::span<const std::uint8_t> bytes);
   static Bytes ReadFrame(std::uint8_t address, std::size_t size);
-  /// Reads of several slaves in one frame, <= 16 bytes each; three of 16 fill a reply.
+  /// Returns the frame that reads several slaves, at most 16 bytes each; three of 16 bytes fill a
+  /// reply.
   static Bytes ReadsFrame(std::span<const std::uint8_t> addresses, std::size_t size);
 
  private:

@@ -1,6 +1,7 @@
-/// The emulated robot as another program, `taut_virtual_robot`, which is found or started.
+/// Virtual robot: finds or starts the emulated robot, which is another program,
+/// `taut_virtual_robot`.
 ///
-/// Threads: an object belongs to one at a time.
+/// Threads: use an object from one thread at a time.
 #pragma once
 
 #include <memory>
@@ -11,14 +12,14 @@
 
 namespace taut::link {
 
-/// The robot behind `--port virtual`.
+/// Emulated robot of `--port virtual`.
 class VirtualRobot {
  public:
-  /// The one that runs already, if it runs; null otherwise.
+  /// Returns the running virtual robot; null if there is none.
   static std::unique_ptr<VirtualRobot> Find(Diagnostics& out);
-  /// Starts one, which ends with this object: on a stand until its boards hold it. `arguments`:
-  /// what it is to be, as "--model FILE". Null and a complaint if there is no such program, it does
-  /// not take its arguments, or one runs already.
+  /// Starts a virtual robot, which ends with this object: on a stand until its boards hold it.
+  /// `arguments`: command line, such as "--model FILE". Returns null, with an error, if the program
+  /// is not found, refuses its arguments, or another one is running.
   static std::unique_ptr<VirtualRobot> Start(const std::vector<std::string>& arguments,
                                              Diagnostics& out);
   ~VirtualRobot();
@@ -26,7 +27,7 @@ class VirtualRobot {
   VirtualRobot& operator=(const VirtualRobot&) = delete;
 
   const std::string& device() const { return device_; }
-  /// A socket that tells where it really is (docs/formats/truth.md).
+  /// Socket that provides the true state of the emulated robot (docs/formats/truth.md).
   const std::string& truth() const { return truth_; }
   bool is_ours() const { return process_ > 0; }  ///< Started by this object.
 
@@ -35,7 +36,7 @@ class VirtualRobot {
 
   std::string device_, truth_;
   int process_;
-  int says_;  ///< What it prints; nobody reads it after the first line.
+  int says_;  ///< Output of the program; only the first line is read.
 };
 
 }  // namespace taut::link

@@ -51,17 +51,20 @@ std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, D
     // Before the row is read: a line may have as many numbers as a file.
     const auto count = static_cast<double>(1 + std::count(line.begin(), line.end(), ','));
     if (static_cast<double>(table.height_m.size()) + count > most) {
-      out.Error(place, "more than " + base::Brief(most) + " heights up to this line",
+      out.Error("heights.too_many", place,
+                "more than " + base::Brief(most) + " heights up to this line",
                 "use fewer, larger cells");
       break;
     }
     row.clear();
     if (const auto wrong = AddRow(line, row)) {
-      out.Error(place, "number " + std::to_string(*wrong) + " of this line is none",
+      out.Error("heights.not_a_number", place,
+                "number " + std::to_string(*wrong) + " of this line is none",
                 "finite numbers in m, with commas between them");
     } else if (table.columns > 0 && row.size() != static_cast<std::size_t>(table.columns)) {
-      out.Error(place, "this line has " + std::to_string(row.size()) +
-                           " heights, those before have " + std::to_string(table.columns));
+      out.Error("heights.ragged_row", place,
+                "this line has " + std::to_string(row.size()) + " heights, those before have " +
+                    std::to_string(table.columns));
     } else {
       table.columns = static_cast<int>(row.size());
       ++table.rows;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostImageBytes = std::size_t{1} << 30;
 
-/// What libpng reads from, and what it says.
+/// Input of libpng, and its error message.
 struct Source {
   std::string_view bytes;
   std::size_t at = 0;
@@ -42,8 +42,8 @@ struct PngHeader {
   int bits = 0, colour = 0;
 };
 
-/// One image while it is read. libpng leaves a function by longjmp, which destroys nothing: what
-/// has a destructor lives outside of those that call it.
+/// Reader of one image. libpng leaves functions by longjmp, which skips destructors: objects with
+/// destructors must live outside of the functions that call it.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) {
@@ -63,7 +63,7 @@ class Reader {
                  nullptr);
     return true;
   }
-  /// Rows of 1 or 2 bytes a sample, the more significant one first.
+  /// Reads rows of 1 or 2 bytes per sample, most significant byte first.
   bool ReadRows(png_bytepp rows) {
     if (setjmp(source_.back) != 0) return false;
     png_set_expand_gray_1_2_4_to_8(png_);
@@ -88,7 +88,7 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
   const auto bytes = base::ReadInputFile(path, kMostImageBytes, "use fewer, larger cells", out);
   if (!bytes) return std::nullopt;
   const auto refuse = [&](const std::string& what, const std::string& hint = {}) {
-    out.Error({path, 0, 0}, what, hint);
+    out.Error("heights.bad_image", {path, 0, 0}, what, hint);
     return std::nullopt;
   };
   Reader reader(*bytes);

@@ -1,4 +1,4 @@
-/// Heights as an image: gray, dark is low.
+/// Heights from gray-scale PNG images; dark is low.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@ namespace taut::description {
 
 struct HeightImage {
   int columns = 0, rows = 0;
-  int bits = 0;                ///< Of a sample, 1 to 16.
+  int bits = 0;                ///< Per sample, 1 to 16.
   std::vector<double> shares;  ///< 0 black, 1 white; row by row, from the lowest row up.
 };
 
-/// A PNG of gray samples, as they are: no gamma, no profile. Nothing and a complaint if it is none,
-/// or has colours, or more than `most` samples.
+/// Reads a PNG of gray samples as stored: no gamma, no color profile. Returns nothing and reports
+/// an error for other files, for colors, or for more than `most` samples.
 std::optional<HeightImage> ReadHeightImage(const std::string& path, double most, Diagnostics& out);
 
 }  // namespace taut::description

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostMeshBytes = std::size_t{1} << 30, kMostErrors = 10;
 
-/// Corners that are the same point are one: without that nothing would be closed.
+/// Corners with merged duplicates; without the merge, no mesh would be closed.
 class Corners {
  public:
   explicit Corners(MeshFile& mesh) : mesh_(mesh) {}
@@ -33,7 +33,7 @@ class Corners {
   std::map<std::tuple<double, double, double>, int> known_;
 };
 
-/// The next word of a line; empty at its end.
+/// Removes and returns the next word of a line; empty at its end.
 std::string_view NextWord(std::string_view& line) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
   while (!line.empty() && blank(line.front())) line.remove_prefix(1);
@@ -59,7 +59,7 @@ std::optional<Vec3> ReadPoint(std::string_view& line) {
   return Vec3{x[0], x[1], x[2]};
 }
 
-/// `use(line, number)` with every line.
+/// Calls `use(line, number)` for every line.
 template <class Use>
 void EachLine(std::string_view text, const Use& use) {
   int number = 0;
@@ -83,7 +83,7 @@ class ObjReader {
       if (kind == "v") {
         const auto point = ReadPoint(line);
         if (!point)
-          out_.Error(at_, "a corner needs three finite numbers",
+          out_.Error("mesh.bad_corner", at_, "a corner needs three finite numbers",
                      "x, y and z, with blanks between them");
         points_.push_back(corners_.Add(point.value_or(Vec3{})));
       } else if (kind == "f") {
@@ -105,13 +105,13 @@ class ObjReader {
       const bool read = ReadWhole(corner, index);
       const long from_start = index < 0 ? count + index : index - 1;
       if (!read || from_start < 0 || from_start >= count) {
-        out_.Error(at_, "there is no corner \"" + std::string(corner) + "\"",
+        out_.Error("mesh.unknown_corner", at_, "there is no corner \"" + std::string(corner) + "\"",
                    "corners count from 1, or back from -1, and stand before their faces");
         return;
       }
       face.push_back(points_[static_cast<std::size_t>(from_start)]);
     }
-    if (face.size() < 3) out_.Error(at_, "a face needs three corners or more");
+    if (face.size() < 3) out_.Error("mesh.few_corners", at_, "a face needs three corners or more");
     for (std::size_t k = 2; k < face.size(); ++k) {
       mesh_.triangles.push_back({face[0], face[k - 1], face[k]});
       mesh_.lines.push_back(at_.line);
@@ -123,7 +123,7 @@ class ObjReader {
   Corners corners_;
   Diagnostics& out_;
   SourceRef at_;
-  std::vector<int> points_;  ///< The file's corners.
+  std::vector<int> points_;  ///< Indices of the file's corners.
 };
 
 void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh, Diagnostics& out) {
@@ -137,12 +137,14 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
     if (kind == "vertex") {
       const auto point = ReadPoint(line);
       if (!point)
-        out.Error(at, "a corner needs three finite numbers",
+        out.Error("mesh.bad_corner", at, "a corner needs three finite numbers",
                   "x, y and z, with blanks between them");
       if (count < 3) triangle[count] = corners.Add(point.value_or(Vec3{}));
       ++count;
     } else if (kind == "endfacet") {
-      if (count != 3) out.Error(at, "a facet has three corners, this one " + std::to_string(count));
+      if (count != 3)
+        out.Error("mesh.facet_corners", at,
+                  "a facet has three corners, this one " + std::to_string(count));
       mesh.triangles.push_back(triangle);
       mesh.lines.push_back(number);
       count = 0;
@@ -153,7 +155,8 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
   });
 }
 
-/// 80 bytes of anything, a count, 50 bytes a triangle: normal, three corners, two bytes.
+/// Binary STL: 80 arbitrary bytes, a count, 50 bytes per triangle: normal, three corners, two
+/// bytes.
 constexpr std::size_t kStlHead = 84, kStlTriangle = 50;
 
 std::uint32_t Word(std::string_view bytes, std::size_t at) {
@@ -175,8 +178,9 @@ void ReadStlBinary(const std::string& path, std::string_view bytes, MeshFile& me
         x[axis] = __builtin_bit_cast(float, Word(bytes, at + 12 * (k + 1) + 4 * axis));
       }
       if (!std::isfinite(x[0] + x[1] + x[2])) {
-        out.Error({path, 0, 0}, "triangle " + std::to_string(mesh.triangles.size()) +
-                                    " has a corner that is not finite");
+        out.Error("mesh.not_finite", {path, 0, 0},
+                  "triangle " + std::to_string(mesh.triangles.size()) +
+                      " has a corner that is not finite");
         return;
       }
       triangle[k] = corners.Add({x[0], x[1], x[2]});
@@ -225,18 +229,21 @@ bool ReportFaults(const MeshFile& mesh, bool closed, const std::string& path,
     const std::string edge =
         fault.from < 0 ? "" : "the edge from " + corner(fault.from) + " to " + corner(fault.to);
     if (fault.kind == Kind::kOpen) {
-      out.Error(at, words.what + " is not closed: " + edge + " has one triangle only",
+      out.Error("mesh.not_closed", at,
+                words.what + " is not closed: " + edge + " has one triangle only",
                 "close it" + words.or_else);
     } else if (fault.kind == Kind::kCrowded) {
-      out.Error(at, edge + " has two triangles on one side, or more than two in all",
+      out.Error("mesh.edge_shared", at,
+                edge + " has two triangles on one side, or more than two in all",
                 "all must run counter-clockwise seen from outside" + words.or_else);
     } else if (fault.kind == Kind::kInsideOut) {
-      out.Error(at, words.what + " is inside out",
+      out.Error("mesh.inside_out", at, words.what + " is inside out",
                 "corners must run counter-clockwise seen from outside");
     } else {
       const std::string which =
           has_line ? "this triangle" : "triangle " + std::to_string(fault.triangle);
-      out.Error(at, which + " has no area", "its corners are on one line: leave it out");
+      out.Error("mesh.no_area", at, which + " has no area",
+                "its corners are on one line: leave it out");
     }
   }
   return faults.empty();
@@ -254,7 +261,8 @@ bool EndsIn(const std::string& path, std::string_view end) {
 std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) {
   const bool obj = EndsIn(path, ".obj");
   if (!obj && !EndsIn(path, ".stl")) {
-    out.Error({path, 0, 0}, "is neither .obj nor .stl", "a mesh is a Wavefront OBJ or an STL");
+    out.Error("mesh.unknown_format", {path, 0, 0}, "is neither .obj nor .stl",
+              "a mesh is a Wavefront OBJ or an STL");
     return std::nullopt;
   }
   const auto text = base::ReadInputFile(path, kMostMeshBytes, "use fewer triangles", out);
@@ -262,7 +270,7 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
   const std::size_t errors_before = out.items().size();
   MeshFile mesh;
   mesh.BeginPart({});
-  // Some programs begin binary files with "solid", too: their size tells.
+  // Some programs begin binary files with "solid", too; the size distinguishes them.
   const bool binary = !obj && text->size() >= kStlHead &&
                       text->size() == kStlHead + kStlTriangle * std::size_t{Word(*text, 80)};
   if (obj) {
@@ -273,7 +281,7 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
     ReadStlText(path, *text, mesh, out);
   }
   if (out.items().size() == errors_before && mesh.triangles.empty()) {
-    out.Error({path, 0, 0}, "there is no triangle in it",
+    out.Error("mesh.no_triangles", {path, 0, 0}, "there is no triangle in it",
               obj ? "faces are lines that begin with f" : "neither text nor binary STL");
   }
   if (out.items().size() != errors_before) return std::nullopt;

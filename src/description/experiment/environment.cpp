@@ -1,3 +1,4 @@
+// Reinforcement-learning environment of an experiment: actions and their checks.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,7 +10,7 @@
 namespace taut::description {
 namespace {
 
-/// Which controller drives a cable, and how; null: none.
+/// Controller that drives a cable, and whether by impedance; null: none.
 struct Driver {
   const ControllerSpec* controller = nullptr;
   bool by_impedance = false;
@@ -33,7 +34,8 @@ std::vector<Driver> DriversOf(const ExperimentSpec& experiment, const RobotSpec&
   return drivers;
 }
 
-/// Why an action cannot move a cable; empty if it can, or if nobody knows what it was to do.
+/// Returns the reason why an action cannot move a cable; empty if it can, or if the action is
+/// invalid.
 std::string Obstacle(const EnvironmentAction& action, const CableDef& cable, const Driver& driver) {
   const bool by_length = action.rest_length_m || action.rest_length_rate_m_per_s;
   if (by_length == action.velocity_input_m_per_s.has_value()) return {};
@@ -67,7 +69,7 @@ class Actions {
 
   std::vector<EnvironmentAction> Take() {
     std::sort(of_cables_.begin(), of_cables_.end(), [](const auto& a, const auto& b) {
-      return a.cable < b.cable;  // of those given twice nobody asks any more
+      return a.cable < b.cable;  // duplicates are already reported
     });
     of_cables_.insert(of_cables_.end(), of_numbers_.begin(), of_numbers_.end());
     return std::move(of_cables_);
@@ -75,7 +77,7 @@ class Actions {
 
  private:
   void AddCables(const EnvironmentActionText& text, const Value& selector) {
-    std::map<std::string, std::string> refused;  // why, and which: one complaint each
+    std::map<std::string, std::string> refused;  // reason -> names: one error per reason
     for (const int cable : SelectCables(selector, "environment.actions.cables", &robot_, scope_)) {
       const auto index = static_cast<std::size_t>(cable);
       const CableDef& def = robot_.def.cables[index];
@@ -89,7 +91,8 @@ class Actions {
       names += (names.empty() ? "" : ", ") + def.name;
     }
     for (const auto& [why, names] : refused) {
-      scope_.out.Error(selector.at, "environment.actions: no action can move " + names, why);
+      scope_.out.Error("environment.action_moves_nothing", selector.at,
+                       "environment.actions: no action can move " + names, why);
     }
   }
 
@@ -103,10 +106,12 @@ class Actions {
       const Tunable& tunable = tunables_[i];
       const auto [first, fresh] = taken_.emplace(tunable.name, patterns.at.line);
       if (!fresh) {
-        scope_.out.Error(patterns.at, "environment.actions: two actions move " + tunable.name,
+        scope_.out.Error("environment.action_overlap", patterns.at,
+                         "environment.actions: two actions move " + tunable.name,
                          "the first is in line " + std::to_string(first->second));
       } else if (tunable.at_start) {
-        scope_.out.Error(patterns.at, "environment.actions: no action can move " + tunable.name,
+        scope_.out.Error("environment.action_moves_nothing", patterns.at,
+                         "environment.actions: no action can move " + tunable.name,
                          "a gait looks at it when it begins, and not again");
       }
       action.numbers.push_back(tunable.name);
@@ -119,7 +124,8 @@ class Actions {
     const auto named = [&](const auto& other) { return NameOf(other) == action.name; };
     if (scope_.out.items().size() == errors_before &&
         std::any_of(of_numbers_.begin(), of_numbers_.end(), named)) {
-      scope_.out.Error(text.name_at.line > 0 ? text.name_at : patterns.at,
+      scope_.out.Error("environment.duplicate_action",
+                       text.name_at.line > 0 ? text.name_at : patterns.at,
                        "environment.actions: two actions are called " + action.name);
     }
     of_numbers_.push_back(std::move(action));
@@ -135,11 +141,11 @@ class Actions {
   std::vector<Tunable> tunables_;  ///< Of `controllers_`.
   const Scope& scope_;
   std::vector<EnvironmentAction> of_cables_, of_numbers_;
-  std::map<int, int> given_;          ///< Cable, line.
-  std::map<std::string, int> taken_;  ///< Number, line.
+  std::map<int, int> given_;          ///< Cable -> line.
+  std::map<std::string, int> taken_;  ///< Name of a number -> line.
 };
 
-/// Where a key of a part of the block stands.
+/// Returns the position of a key in a part of the block.
 SourceRef PlaceOf(const Value& block, std::string_view part, std::string_view key) {
   const Value* const inner = block.Find(part);
   return inner ? KeyAt(*inner, key) : block.at;
@@ -153,10 +159,12 @@ void CheckDelay(const Value& block, const char* key, double delay_s, double peri
   const std::string path = "environment.randomise." + std::string(key);
   const SourceRef at = PlaceOf(block, "randomise", key);
   if (periods > kMostPeriods) {
-    scope.out.Error(at, path + " must not be longer than 1000 periods",
+    scope.out.Error("environment.delay_too_long", at,
+                    path + " must not be longer than 1000 periods",
                     "the period is " + Shown(period_s) + " s");
   } else if (std::fabs(periods - std::floor(periods + 0.5)) > 1e-6) {
-    scope.out.Error(at, path + " must be a whole number of periods, got " + Shown(periods),
+    scope.out.Error("environment.delay_not_whole", at,
+                    path + " must be a whole number of periods, got " + Shown(periods),
                     "environment.period_s is " + Shown(period_s));
   }
 }
@@ -166,7 +174,8 @@ void CheckDelay(const Value& block, const char* key, double delay_s, double peri
 void Check(const MapReader& map, EnvironmentActionText& action) {
   action.name_at = map.KeyAt("name");
   const auto only = [&](const char* key, const char* with) {
-    if (map.Has(key)) map.Error(key, map.Path(key) + " goes with " + with + " only");
+    if (map.Has(key))
+      map.Error("environment.key_needs_key", key, map.Path(key) + " goes with " + with + " only");
   };
   if (action.cables.value) {
     only("by", "`each` or `all`");
@@ -191,7 +200,8 @@ void Check(const MapReader& map, EnvironmentText& environment) {
   for (const char* const key : {"actions", "observations"}) {
     const Value* const list = map.Find(key);
     if (!list || list->kind != Value::Kind::kSequence || !list->items.empty()) continue;
-    map.Error(key, map.Path(key) + " is empty", "a learner needs one at least");
+    map.Error("environment.empty_list", key, map.Path(key) + " is empty",
+              "a learner needs one at least");
   }
 }
 
@@ -212,18 +222,18 @@ EnvironmentSpec ToEnvironment(const EnvironmentText& text, const Value& block,
   }
   const EnvironmentReward& reward = out.reward;
   if (reward.from_s >= experiment.duration_s) {
-    scope.out.Error(PlaceOf(block, "reward", "from_s"),
+    scope.out.Error("environment.reward_after_end", PlaceOf(block, "reward", "from_s"),
                     "environment.reward.from_s is not before the experiment's end",
                     "that is at " + Shown(experiment.duration_s) + " s");
   }
   if (reward.measure == Measure::kNearer && !experiment.goal) {
-    scope.out.Error(PlaceOf(block, "reward", "measure"),
+    scope.out.Error("environment.reward_needs_goal", PlaceOf(block, "reward", "measure"),
                     "environment.reward.measure: nearer needs a goal",
                     "the experiment has no `goal`");
   }
   const EnvironmentVariation& varied = out.randomise;
   if (varied.start.goal_rad > 0 && !experiment.goal) {
-    scope.out.Error(PlaceOf(block, "randomise", "start"),
+    scope.out.Error("environment.start_needs_goal", PlaceOf(block, "randomise", "start"),
                     "environment.randomise.start.goal_rad: the experiment has no `goal`");
   }
   CheckDelay(block, "action_delay_s", varied.action_delay_s, out.period_s, scope);

@@ -1,3 +1,4 @@
+// Loading of experiment files, with their models and overrides.
 #include <cmath>
 #include <functional>
 
@@ -17,12 +18,13 @@ namespace taut {
 namespace description {
 namespace {
 
-/// `set:` as overrides with places; values are worked out here, in the experiment's parameters.
+/// Adds `set:` as overrides with positions. Values are evaluated here, with the parameters of the
+/// experiment.
 void AddSet(const Value* value, const Scope& scope, OverrideSet& overrides) {
   for (const Entry& entry : Entries(value, "set", scope)) {
     const double number = ReadNumber(*entry.value, "set." + entry.key, Bound::kAny, scope);
     const bool good = !std::isnan(number);
-    // Without a file, a parameter is one that was complained about.
+    // An empty file name marks a parameter whose error is already reported.
     overrides.Add({entry.key, good ? Shown(number) : "", good ? entry.key_at : SourceRef{}});
   }
 }
@@ -39,17 +41,17 @@ LoadedModel LoadItsModel(const ExperimentText& text, const OverrideSet& of_user,
   for (const auto& parameter : scope.names) all.push_back(parameter.first);
   for (const ParameterText& parameter : overrides.Unused()) {
     if (parameter.at.file.empty()) continue;
-    const bool from_file = parameter.at.line > 0;  // by `set:`, for the model alone
+    const bool from_file = parameter.at.line > 0;  // from `set:`, which addresses the model only
     ReportUnknownParameter(parameter, from_file ? model.parameter_names : all, scope.out);
   }
   return model;
 }
 
-/// Complains about a start that would tear the robot off what it is joined to.
+/// Reports random turns of the start pose that would break a joint with the world.
 void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const Scope& scope) {
   for (const JointDef& joint : def.joints) {
     if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) continue;
-    scope.out.Error(noise->at,
+    scope.out.Error("start_noise.joint_holds_robot", noise->at,
                     "start_noise." + std::string(key) + ": the joint \"" + joint.name +
                         "\" holds the robot in the world",
                     "start_noise.position_m moves what is not tied to the world");
@@ -57,7 +59,7 @@ void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const 
   }
 }
 
-/// Whatever could be read; the caller looks at the diagnostics.
+/// Returns all that could be read; the caller checks the diagnostics.
 ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, const Scope& scope,
                               const std::function<void(const ExperimentSpec&)>& look) {
   const std::size_t errors_before = scope.out.items().size();
@@ -84,7 +86,8 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   if (text.goal_text) text.goal = ToGoal(*text.goal_text, known ? &text.robot : nullptr, scope);
   CheckGoalIsSensed(text, scope.out);
   if (text.start_noise.goal_rad > 0 && !text.goal_text) {
-    scope.out.Error(root.Find("start_noise")->at, "start_noise.goal_rad: there is no `goal`");
+    scope.out.Error("start_noise.no_goal", root.Find("start_noise")->at,
+                    "start_noise.goal_rad: there is no `goal`");
   }
   const StartNoise& noise = text.start_noise;
   if (noise.place_m > 0) CheckTurns(def, "place_m", root.Find("start_noise"), scope);
@@ -101,7 +104,8 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   return text;
 }
 
-/// Whether `path` holds what `ResolvedYaml` wrote. Complaints are left to whoever reads it next.
+/// Returns whether `path` is a resolved experiment (`ResolvedYaml`). The next reader reports
+/// errors.
 bool IsResolved(const std::string& path) {
   Diagnostics unheard;
   const ValuePtr root = ReadYaml(path, unheard);

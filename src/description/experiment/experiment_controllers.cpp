@@ -1,3 +1,4 @@
+// Controllers of an experiment: impedance, position programs, gait inputs.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,15 +21,15 @@ std::string CableNames(const RobotSpec& robot, const std::vector<int>& cables) {
   return out;
 }
 
-/// What (gains, set points ...) some cables were given, and where; complains about a cable that
-/// gets it twice.
+/// Settings (gains, set points ...) per cable with their positions; reports cables with two of
+/// them.
 template <class T>
 class PerCable {
  public:
   PerCable(const RobotSpec* robot, std::string what, const Scope& scope)
       : robot_(robot), what_(std::move(what)), scope_(scope) {}
 
-  /// `selector` may be null, after a complaint about it.
+  /// Adds a setting for the cables of a selector; null after an error.
   void Add(const Value* selector, const std::string& path, const T& given) {
     if (!selector) {
       complete_ = false;
@@ -45,7 +46,8 @@ class PerCable {
       twice.push_back(cable);
     }
     if (twice.empty()) return;
-    scope_.out.Error(selector->at, "two " + what_ + " for " + CableNames(*robot_, twice),
+    scope_.out.Error("controller.duplicate_cable", selector->at,
+                     "two " + what_ + " for " + CableNames(*robot_, twice),
                      "the first are in line " + std::to_string(first.line));
   }
 
@@ -54,10 +56,10 @@ class PerCable {
     return found == given_.end() ? nullptr : &found->second.value;
   }
 
-  /// An error for every selector here that matches a cable that `other` lacks.
+  /// Reports every selector here that matches a cable without a setting in `other`.
   template <class U>
   void Require(const PerCable<U>& other, const std::string& hint) const {
-    if (!other.complete()) return;  // what is missing was probably meant by a selector in error
+    if (!other.complete()) return;  // a selector with an error may include the missing cables
     std::map<std::pair<int, int>, std::pair<SourceRef, std::vector<int>>> missing;
     for (const auto& [cable, given] : given_) {
       if (other.Find(cable)) continue;
@@ -66,12 +68,12 @@ class PerCable {
       cables.push_back(cable);
     }
     for (const auto& [place, lacking] : missing) {
-      scope_.out.Error(lacking.first,
+      scope_.out.Error("controller.cable_without", lacking.first,
                        "no " + other.what() + " for " + CableNames(*robot_, lacking.second), hint);
     }
   }
 
-  /// False if a selector was wrong: then more cables may have been meant.
+  /// Returns false if a selector had an error: it may include more cables.
   bool complete() const { return complete_; }
   void SetIncomplete() { complete_ = false; }
   const std::string& what() const { return what_; }
@@ -95,7 +97,7 @@ class PerCable {
 
 using Points = std::vector<std::pair<double, double>>;
 
-/// A number (held for ever) or points.
+/// Reads a number (constant in time) or points.
 Points ReadCourse(const Value& value, const std::string& what, const Bound& bound,
                   const Scope& scope) {
   if (value.kind == Value::Kind::kSequence) return ReadPoints(value, what, bound, scope);
@@ -110,11 +112,11 @@ Points ReadCourse(const Value& value, const std::string& what, const Bound& boun
 
 struct Course {
   Points points;
-  bool relative = false;  ///< To the cable's rest length as described.
+  bool relative = false;  ///< To the cable's rest length in the described pose.
   SourceRef at;
 };
 
-/// One complaint a course: the other cables would only repeat it.
+/// Returns the program of one cable. Errors are reported once per course, not for each cable.
 PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& course,
                            std::set<std::pair<int, int>>& reported, const Scope& scope) {
   PositionProgram program{cable, course.points};
@@ -124,7 +126,7 @@ PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& cour
     const double change_m = length_m;
     length_m += def.rest_length_m;
     if (!(length_m <= 0.0) || !reported.insert({course.at.line, course.at.column}).second) continue;
-    scope.out.Error(course.at,
+    scope.out.Error("program.no_rest_length", course.at,
                     "programs.change_m: a change of " + Shown(change_m) +
                         " m at t = " + Shown(time_s) + " s leaves " + def.name + " no rest length",
                     "it is " + Shown(def.rest_length_m) + " m as described");
@@ -132,7 +134,7 @@ PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& cour
   return program;
 }
 
-/// Which cables a controller drives, ascending: those of its law and those that its gait moves.
+/// Returns the cables that a controller drives, ascending: by control law or gait.
 std::set<int> DrivenCables(const ControllerSpec& controller, const std::vector<int>& of_gait) {
   std::set<int> cables(of_gait.begin(), of_gait.end());
   if (controller.impedance) {
@@ -142,7 +144,7 @@ std::set<int> DrivenCables(const ControllerSpec& controller, const std::vector<i
   return cables;
 }
 
-/// One line for all cables that a controller cannot drive, for the same reason.
+/// Reports cables that a controller cannot drive, one error per reason.
 void CheckDriven(const std::vector<ControllerSpec>& controllers,
                  const std::vector<std::set<int>>& driven, const std::vector<SourceRef>& places,
                  const RobotSpec& robot, bool actuators_known, const Scope& scope) {
@@ -157,13 +159,13 @@ void CheckDriven(const std::vector<ControllerSpec>& controllers,
       if (!fresh) taken[place->second].push_back(cable);
     }
     if (!no_actuator.empty() && actuators_known) {
-      scope.out.Error(places[i],
+      scope.out.Error("controller.cable_without_actuator", places[i],
                       "controller " + controllers[i].name + " drives " +
                           CableNames(robot, no_actuator) + ", which has no actuator",
                       "give the cable's builder in the model an `actuator:`");
     }
     for (const auto& [other, cables] : taken) {
-      scope.out.Error(places[i],
+      scope.out.Error("controller.cable_driven_twice", places[i],
                       "controller " + controllers[i].name + " drives " + CableNames(robot, cables) +
                           ", which controller " + controllers[other].name + " drives already",
                       "a cable obeys one controller");
@@ -207,17 +209,20 @@ std::vector<int> SelectCables(const Value& value, std::string_view what, const R
     words.insert(words.end(), tags.begin(), tags.end());
   }
   if (!cables.empty()) return cables;
-  scope.out.Error(value.at, std::string(what) + ": no cable matches " + Written(value),
+  scope.out.Error("controller.matches_no_cable", value.at,
+                  std::string(what) + ": no cable matches " + Written(value),
                   UnknownWord(match, std::move(words), "cable"));
   return cables;
 }
 
 void Check(const MapReader& map, ImpedanceText& impedance) {
   if (impedance.conversion == TensionConversion::kStiffness && map.Has("pid")) {
-    map.Error("pid", "impedance.pid has no effect", "write `conversion: pid`, too");
+    map.Error("controller.pid_without_effect", "pid", "impedance.pid has no effect",
+              "write `conversion: pid`, too");
   }
   if (impedance.conversion == TensionConversion::kPid && !map.Has("pid")) {
-    map.Error("conversion", "conversion: pid needs the key \"pid\" beside it",
+    map.Error("controller.pid_missing", "conversion",
+              "conversion: pid needs the key \"pid\" beside it",
               "write `pid: {proportional_m_per_s_n: 0.01}`");
   }
   if (impedance.pid_text) impedance.pid = *impedance.pid_text;
@@ -235,7 +240,8 @@ void Check(const MapReader& map, ControllerText& controller) {
   if (map.Has("velocity_input") && !map.Has("impedance")) {
     for (const char* key : {"position", "rest_length_input"}) {
       if (!map.Has(key)) continue;
-      map.Error("velocity_input", std::string("velocity_input has no effect with ") + key,
+      map.Error("controller.velocity_input_without_effect", "velocity_input",
+                std::string("velocity_input has no effect with ") + key,
                 "it is the V0 of `impedance`");
       break;
     }
@@ -317,7 +323,8 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
     if (!controller.name.empty()) {
       const auto [first, fresh] = names.emplace(controller.name, text.name_at);
       if (!fresh) {
-        scope.out.Error(text.name_at, "there are two controllers " + controller.name,
+        scope.out.Error("controller.duplicate_name", text.name_at,
+                        "there are two controllers " + controller.name,
                         "the first is in line " + std::to_string(first->second.line));
       }
     }

@@ -1,3 +1,4 @@
+// Gait inputs of controllers: reading of gait files, checks against the robot.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -16,19 +17,19 @@ std::string NamesOf(const std::vector<int>& cables, const RobotSpec& robot) {
   return names;
 }
 
-/// Those of `a` that are not in `b`; both ascending.
+/// Returns the elements of `a` that are not in `b`; both ascending.
 std::vector<int> Without(const std::vector<int>& a, const std::vector<int>& b) {
   std::vector<int> rest;
   std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
   return rest;
 }
 
-/// The gait files of an input, each read once, whatever it is called.
+/// Gait files of an input; each file is read once, under any path.
 class GaitFiles {
  public:
   GaitFiles(std::string what, const Scope& scope) : what_(std::move(what)), scope_(scope) {}
 
-  /// Its number; -1 after a complaint.
+  /// Adds a file and returns its number; -1 after an error.
   int Add(const Value* file, const char* key) {
     const auto path = FindFile(file, what_ + "." + key, scope_);
     if (!path) return -1;
@@ -63,7 +64,7 @@ void CheckQuantity(const GaitSpec& gait, const GaitInputKind& kind, const Source
   if (gait.drives == kind.drives) return;
   const bool lengths = gait.drives == GaitDrives::kRestLength;
   const GaitInputKind& right = lengths ? kRestLengthInput : kVelocityInput;
-  out.Error(at,
+  out.Error("gait.wrong_output", at,
             std::string(kind.key) + ": gait " + gait.name + " drives " +
                 (lengths ? "rest lengths" : "velocities"),
             std::string("it is for `") + right.key + "`");
@@ -76,8 +77,9 @@ void Check(const MapReader& map, GaitInputText& input) {
     const GaitChangeText& change = input.change_texts[i];
     const double before_s = input.change_texts[i - 1].at_s;
     if (!(change.at_s <= before_s)) continue;
-    map.scope().out.Error(change.at, "changes: times must rise, but " + Shown(change.at_s) +
-                                         " s follows " + Shown(before_s) + " s");
+    map.scope().out.Error("gait.times_not_increasing", change.at,
+                          "changes: times must rise, but " + Shown(change.at_s) + " s follows " +
+                              Shown(before_s) + " s");
   }
 }
 
@@ -114,7 +116,8 @@ std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kin
     CheckQuantity(gait, kind, places[i], out);
     for (std::size_t j = 0; j < i; ++j) {
       if (GaitOf(input, j).name != gait.name) continue;
-      out.Error(places[i], std::string(kind.key) + ": two gaits are called " + gait.name,
+      out.Error("gait.duplicate_name", places[i],
+                std::string(kind.key) + ": two gaits are called " + gait.name,
                 "give one of them another name: their numbers are called after it");
       break;
     }
@@ -130,7 +133,7 @@ std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kin
       const bool is_less = !lacks.empty();
       const std::string &who = is_less ? gait.name : input.gait.name,
                         &than = is_less ? input.gait.name : gait.name;
-      out.Error(places[i],
+      out.Error("gait.different_cables", places[i],
                 std::string(kind.key) + ": gait " + who + " does not move " +
                     NamesOf(is_less ? lacks : more, *robot) + ", which gait " + than + " moves",
                 "gaits that follow each other move the same cables");
@@ -146,7 +149,7 @@ void CheckGaitDrives(const ControllerSpec& controller, const std::vector<int>& c
   std::sort(driven.begin(), driven.end());
   const std::vector<int> idle = Without(cables, driven);
   if (idle.empty()) return;
-  out.Error(at,
+  out.Error("gait.cable_not_driven", at,
             "gait " + controller.velocity_input->gait.name + " moves " + NamesOf(idle, robot) +
                 ", which controller " + controller.name + " does not drive",
             "give them `gains` and `set_points`");

@@ -1,3 +1,4 @@
+// Goal of an experiment, and checks that gaits that need one have it.
 #include <algorithm>
 
 #include "description/experiment/experiment_parts.h"
@@ -11,7 +12,8 @@ std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, con
   for (const BodyDef& body : robot->def.bodies) names.push_back(body.name);
   const auto found = std::find(names.begin(), names.end(), text.body_name.text);
   if (found == names.end()) {
-    scope.out.Error(text.body_name.at, "goal.body: there is no body " + text.body_name.text,
+    scope.out.Error("goal.unknown_body", text.body_name.at,
+                    "goal.body: there is no body " + text.body_name.text,
                     NameHint(text.body_name.text, names));
     return std::nullopt;
   }
@@ -24,21 +26,21 @@ namespace {
 constexpr const char* kSayWhere =
     "say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: ...}";
 
-/// What hears the goal: a network hears it in any frame, a law that sets it beside the vertical and
-/// the struts' directions in the world's.
+/// Reports a missing goal of the experiment. A network accepts it in any frame; the rolling gait
+/// combines its direction with the vertical and the struts' directions and needs it in frame W.
 void CheckGoalIsSensed(const ExperimentSpec& experiment, const GaitSpec& gait, Diagnostics& out) {
   if (gait.feedback_cpg && gait.feedback_cpg->goal_network && !experiment.goal) {
-    out.Error(gait.feedback_cpg->goal_network->at,
+    out.Error("gait.goal_network_without_goal", gait.feedback_cpg->goal_network->at,
               "gait " + gait.name + " has a goal_network, but the experiment has no `goal`",
               kSayWhere);
   }
   if (!gait.toward_goal) return;
   if (!experiment.goal) {
-    out.Error(gait.toward_goal->at,
+    out.Error("gait.toward_goal_without_goal", gait.toward_goal->at,
               "gait " + gait.name + " goes toward a goal, but the experiment has no `goal`",
               kSayWhere);
   } else if (experiment.goal->frame != GoalFrame::kOfWorld) {
-    out.Error(gait.toward_goal->at,
+    out.Error("gait.goal_in_other_frame", gait.toward_goal->at,
               "gait " + gait.name + " needs the way to the goal in the frame of the world",
               "goal: {frame: world, ...}: a body that rolls has no ahead");
   }

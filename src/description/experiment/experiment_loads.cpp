@@ -1,4 +1,4 @@
-// Load cases.
+// Load cases of an experiment: forces, settlements, changes of length and temperature.
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -10,7 +10,8 @@
 namespace taut::description {
 namespace {
 
-/// The index of the one that is called so; -1 after a complaint.
+/// Returns the index of the item of this name; -1 after an error. `counts`: items that are
+/// eligible.
 template <class Named>
 int Find(const Placed& name, const char* kind, const std::vector<Named>& all,
          const std::vector<bool>& counts, const Scope& scope) {
@@ -20,8 +21,9 @@ int Find(const Placed& name, const char* kind, const std::vector<Named>& all,
     if (all[i].name == name.text) return static_cast<int>(i);
     names.push_back(all[i].name);
   }
-  if (name.text.empty()) return -1;  // complained about
-  scope.out.Error(name.at, std::string("there is no ") + kind + " \"" + name.text + "\"",
+  if (name.text.empty()) return -1;  // already reported
+  scope.out.Error("load_case.unknown_name", name.at,
+                  std::string("there is no ") + kind + " \"" + name.text + "\"",
                   names.empty() ? std::string("the robot has none") : NameHint(name.text, names));
   return -1;
 }
@@ -61,9 +63,10 @@ class CaseReader {
     for (const auto& [member, gain] : gains_) {
       const Member m = MemberAt(member);
       if (m.rest_m + gain.by_m <= 0) {
-        scope_.out.Error(gain.at, "the load case \"" + out.name +
-                                      "\" leaves nothing of the rest length of \"" + m.name +
-                                      "\", " + Shown(m.rest_m) + " m");
+        scope_.out.Error("load_case.no_rest_length", gain.at,
+                         "the load case \"" + out.name +
+                             "\" leaves nothing of the rest length of \"" + m.name + "\", " +
+                             Shown(m.rest_m) + " m");
       }
       (member.is_bar ? out.bars : out.cables).push_back({member.index, gain.by_m});
     }
@@ -84,7 +87,7 @@ class CaseReader {
   };
   struct Gain {
     double by_m = 0;
-    SourceRef at;  ///< Of the last that adds to it.
+    SourceRef at;  ///< Of the last contribution.
   };
 
   Member MemberAt(const Key& key) const {
@@ -97,7 +100,7 @@ class CaseReader {
     return {cable.name, cable.rest_length_m, cable.member.expansion_per_k};
   }
 
-  /// Adds what `gain` says of each member to what it has.
+  /// Adds `gain` [m] of each selected member to its change of rest length.
   template <class F>
   void ForEach(const Value& selector, const char* what, const F& gain) {
     for (const Key& key : Select(selector, what)) {
@@ -114,7 +117,7 @@ class CaseReader {
       return m.expansion_per_k * by_k * m.rest_m;
     });
     if (unknown.empty()) return;
-    scope_.out.Error(selector.at,
+    scope_.out.Error("load_case.unknown_expansion", selector.at,
                      "temperatures.members: it is not known how warmth lengthens " + unknown,
                      "give the builder in the model `expansion_per_k`: steel has 12e-6");
   }
@@ -133,7 +136,7 @@ class CaseReader {
       if (is_bar_[i]) look(true, i, robot_.joint_tags[i]);
     }
     if (found.empty()) {
-      scope_.out.Error(selector.at,
+      scope_.out.Error("load_case.matches_no_member", selector.at,
                        std::string(what) + ": no cable or bar matches " + Written(selector),
                        UnknownWord(match, words, "cable or bar"));
     }
@@ -155,7 +158,8 @@ std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
   for (const LoadCaseText& text : texts) {
     const auto [first, fresh] = names.emplace(text.name.text, text.name.at);
     if (!fresh && !text.name.text.empty()) {
-      scope.out.Error(text.name.at, "there are two load cases " + text.name.text,
+      scope.out.Error("load_case.duplicate_name", text.name.at,
+                      "there are two load cases " + text.name.text,
                       "the first is in line " + std::to_string(first->second.line));
     }
     if (robot) cases.push_back(CaseReader(*robot, scope).Run(text));

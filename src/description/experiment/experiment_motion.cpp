@@ -1,3 +1,4 @@
+// Kinematic bodies of an experiment.
 #include <algorithm>
 #include <set>
 
@@ -11,7 +12,7 @@
 namespace taut::description {
 namespace {
 
-/// A box of the terrain becomes a body that stands still. Returns its number.
+/// Converts a terrain box to a fixed body. Returns the body's index.
 int BodyOfBox(std::size_t box, RobotSpec& robot) {
   ModelDef& def = robot.def;
   const TerrainBoxDef& from = def.terrain_boxes[box];
@@ -40,19 +41,20 @@ std::size_t Find(const List& list, const std::string& name) {
 
 void CheckLaw(const MapReader& map, const char* speed, const char* amplitude) {
   if (map.Has(amplitude) && !map.Has("frequency_hz")) {
-    map.Error(amplitude, map.Path(amplitude) + " needs a frequency_hz");
+    map.Error("motion.frequency_missing", amplitude, map.Path(amplitude) + " needs a frequency_hz");
   }
   if (!map.Has(amplitude) && !map.Has(speed)) {
-    map.scope().out.Error(map.at(), map.what() + " says no speed and no amplitude");
+    map.scope().out.Error("motion.no_motion", map.at(),
+                          map.what() + " says no speed and no amplitude");
   }
 }
 
-/// Of a body that forces do not move any more.
+/// Reports joints between a kinematic body and another fixed body.
 void CheckJoints(const ModelDef& def, int body, const SourceRef& at, const Scope& scope) {
   for (const JointDef& joint : def.joints) {
     if (joint.body_a != body && joint.body_b != body) continue;
     if (!base::IsFixed(def, joint.body_a) || !base::IsFixed(def, joint.body_b)) continue;
-    scope.out.Error(at,
+    scope.out.Error("motion.joint_to_kinematic_body", at,
                     "motion.of: the joint \"" + joint.name + "\" ties it to what no force moves",
                     "leave the joint out of the model");
   }
@@ -64,7 +66,8 @@ void Check(const MapReader& map, SlideText&) { CheckLaw(map, "speed_m_per_s", "a
 void Check(const MapReader& map, TurnText&) { CheckLaw(map, "speed_rad_per_s", "amplitude_rad"); }
 void Check(const MapReader& map, MotionText&) {
   if (map.Has("slide") || map.Has("turn")) return;
-  map.scope().out.Error(map.at(), map.what() + " needs a slide or a turn");
+  map.scope().out.Error("motion.slide_or_turn_missing", map.at(),
+                        map.what() + " needs a slide or a turn");
 }
 
 void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Scope& scope,
@@ -73,11 +76,13 @@ void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Sc
   std::set<std::string> names, moved;
   for (const MotionText& text : texts) {
     if (!names.insert(text.name).second) {
-      scope.out.Error(text.at, "there are two motions called " + text.name);
+      scope.out.Error("motion.duplicate_name", text.at,
+                      "there are two motions called " + text.name);
       continue;
     }
     if (!moved.insert(text.of.text).second) {
-      scope.out.Error(text.of.at, "motion.of: \"" + text.of.text + "\" has another motion");
+      scope.out.Error("motion.body_moved_twice", text.of.at,
+                      "motion.of: \"" + text.of.text + "\" has another motion");
       continue;
     }
     MotionDef motion;
@@ -101,7 +106,7 @@ void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Sc
       for (const BodyDef& b : def.bodies) known.push_back(b.name);
       for (const TerrainBoxDef& b : def.terrain_boxes) known.push_back(b.name);
       if (robot_known) {
-        scope.out.Error(text.of.at,
+        scope.out.Error("motion.unknown_body", text.of.at,
                         "motion.of: \"" + text.of.text +
                             "\" is neither a body of the robot nor a box of the terrain",
                         NameHint(text.of.text, known));
@@ -122,7 +127,7 @@ void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& ex
   };
   const auto check = [&](const MotionText& text, const TimeLaw& law) {
     if (law.amplitude == 0 || law.frequency_hz * experiment.step_s <= 0.5) return;
-    scope.out.Warning(text.at,
+    scope.out.Warning("motion.frequency_too_high", text.at,
                       "the motion \"" + text.name + "\" has " + base::Brief(law.frequency_hz) +
                           " Hz, and a step of " + base::Brief(experiment.step_s) +
                           " s sees less than two steps of a period",
@@ -134,12 +139,12 @@ void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& ex
     const double angle_rad = text.turn ? reach(text.turn->law) : 0;
     if (IsTooFar(experiment.robot, way_m)) {
       scope.out.Error(
-          text.at,
+          "motion.too_far", text.at,
           "the motion \"" + text.name + "\" may go " + base::Brief(way_m) + " m far" + in_time,
           "positions so far away are too coarse for the robot");
     }
     if (!(angle_rad <= math::kMaxAngle)) {
-      scope.out.Error(text.at,
+      scope.out.Error("motion.turns_too_far", text.at,
                       "the motion \"" + text.name + "\" may turn by " + base::Brief(angle_rad) +
                           " rad" + in_time,
                       "at most 1e9 rad: angles beyond are too coarse");

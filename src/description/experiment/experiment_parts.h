@@ -1,5 +1,5 @@
-/// From what an experiment file says to what is done. `robot` is null where the model
-/// could not be read: then nothing that refers to it is checked, everything else is.
+/// Conversion of the contents of an experiment file to the experiment. `robot` is null if the model
+/// could not be read: then references to the robot are not checked, but everything else is.
 #pragma once
 
 #include <optional>
@@ -13,23 +13,25 @@
 
 namespace taut::description {
 
-/// The cables that a selector stands for, ascending. Empty, and a complaint unless the robot is
-/// unknown, if there are none.
+/// Returns the cables of a selector, ascending. If there are none, returns an empty list and,
+/// unless the robot is unknown, reports an error.
 std::vector<int> SelectCables(const Value& value, std::string_view what, const RobotSpec* robot,
                               const Scope& scope);
 
-/// A selector as a user would write it: [inner, top].
+/// Returns a selector as users write it: [inner, top].
 std::string Written(const Value& selector);
-/// The hint for a selector that matches no `kind` ("cable"), whose tags are `words`: the word that
-/// none of them has.
+/// Returns the hint for a selector that matches no `kind` ("cable"); `words` are the existing tags.
+/// The hint contains the word that none of them has.
 std::string UnknownWord(const std::vector<std::vector<std::string>>& match,
                         std::vector<std::string> words, const std::string& kind);
 
-/// Complains about names that are not there, and about members that nobody knows to expand.
+/// Converts load cases. Reports unknown names, and temperatures of members without an expansion
+/// coefficient.
 std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
                                       const RobotSpec* robot, const Scope& scope);
 
-/// `actuators_known`: false if the model has errors, so that an actuator may just be misspelt.
+/// Converts controllers. `actuators_known`: false if the model has errors, which may hide an
+/// actuator.
 std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
                                           const RobotSpec* robot, bool actuators_known,
                                           const Scope& scope);
@@ -38,7 +40,7 @@ ImpedanceSpec ToImpedance(const ImpedanceText& text, const RobotSpec* robot, con
 std::vector<PositionProgram> ToPrograms(const PositionText& text, const RobotSpec* robot,
                                         const Scope& scope);
 
-/// What a gait may be the input of.
+/// Kind of gait input: its key and the quantity that its gaits must drive.
 struct GaitInputKind {
   const char* key;
   GaitDrives drives;
@@ -46,59 +48,60 @@ struct GaitInputKind {
 inline constexpr GaitInputKind kVelocityInput{"velocity_input", GaitDrives::kVelocity};
 inline constexpr GaitInputKind kRestLengthInput{"rest_length_input", GaitDrives::kRestLength};
 
-/// Reads the gaits' files, each once, and checks them as `CheckGaits`. Nothing if there was any
-/// error. `cables`: that the gaits move, if that is known.
+/// Reads the gait files, each once, and checks them with `CheckGaits`. Returns nothing after any
+/// error. `cables`: the cables that the gaits drive, if known.
 std::optional<GaitInputSpec> ToGaitInput(const GaitInputText& text, const GaitInputKind& kind,
                                          const RobotSpec* robot, const Scope& scope,
                                          std::vector<int>& cables);
 
-/// Complains unless the gaits of an input drive what they are to drive, all of them the same cables
-/// of the robot, which are returned. `places`: of the first gait and of the others.
+/// Checks that the gaits of an input drive the right quantity and all the same cables of the robot,
+/// and returns these cables. `places`: of the first gait and of the others.
 std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kind,
                             const std::vector<SourceRef>& places, const RobotSpec* robot,
                             Diagnostics& out);
 
-/// Complains about cables that a gait moves and the controller's impedance does not.
+/// Reports cables that a gait drives without an impedance of the controller.
 void CheckGaitDrives(const ControllerSpec& controller, const std::vector<int>& cables,
                      const RobotSpec& robot, const SourceRef& at, Diagnostics& out);
 
-/// What programs move, of the robot or the terrain, which must be there.
+/// Adds kinematic bodies to the robot: bodies of the robot, or boxes of the terrain, which must
+/// exist already.
 void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Scope& scope,
                 RobotSpec& robot);
 
-/// Complains about motions that go too far in the time of the experiment, warns of those that are
-/// too fast for its steps.
+/// Reports motions that go too far during the experiment; warns of motions too fast for its steps.
 void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& experiment,
                   const Scope& scope);
 
-/// Phases and events, into `out`, which has its duration already (NaN if that is unknown).
+/// Adds phases and events to `out`, whose duration is already set (NaN if unknown).
 void AddTimeline(const TimelineText& text, const RobotSpec* robot, const Scope& scope,
                  ExperimentSpec& out);
 
-/// Numbers of others. `phases`: those of the timeline.
+/// Converts reference values from other sources. `phases`: of the timeline.
 std::vector<ReferenceSpec> ToReferences(const std::vector<ReferenceText>& texts,
                                         const RobotSpec* robot,
                                         const std::vector<PhaseSpec>& phases, const Scope& scope);
-/// Factors on friction, masses, stiffnesses and dampings.
+/// Converts factors on friction, masses, stiffnesses and dampings.
 std::vector<ScaleSpec> ToScales(const std::vector<ScaleText>& texts, const RobotSpec* robot,
                                 const Scope& scope);
 
-/// Where the robot is to go. Nothing after a complaint.
+/// Converts the goal. Returns nothing after an error.
 std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, const Scope& scope);
-/// Complains about gaits that hear of a goal where there is none.
+/// Reports gaits that need a goal in an experiment without one.
 void CheckGoalIsSensed(const ExperimentSpec& experiment, Diagnostics& out);
 
-/// What learners may do and see. `experiment` has everything else already; `drivers_known`: false
-/// if the model or its controllers have errors, so that what drives a cable may just be misspelt.
+/// Converts the environment of reinforcement learning. `experiment` is otherwise complete;
+/// `drivers_known`: false if the model or its controllers have errors, which may hide the driver of
+/// a cable.
 EnvironmentSpec ToEnvironment(const EnvironmentText& text, const Value& block,
                               const RobotSpec* robot, bool drivers_known,
                               const ExperimentSpec& experiment, const Scope& scope);
 
-/// Planes and boxes, stairs and scattered blocks, appended to what `robot` has.
+/// Appends planes, boxes, stairs, scattered blocks, height fields and meshes to `robot`.
 void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot);
 
-/// Moves the robot (but not the terrain) and gives it a velocity. `start` is for the
-/// complaint about velocities that settling would take away.
+/// Moves the robot (but not the terrain) and sets its velocity. `start`: for the error about
+/// velocities that settling would reset.
 void Place(const PlaceText& place, StartKind start, const Scope& scope, RobotSpec& robot);
 
 }  // namespace taut::description

@@ -1,4 +1,4 @@
-// Numbers of others, to show ours beside.
+// Reference values of an experiment, for comparison with taut's results.
 #include "description/experiment/experiment_keys.h"
 #include "description/experiment/experiment_parts.h"
 
@@ -13,7 +13,8 @@ std::optional<int> FindNamed(const Items& items, const std::string& name, const 
     names.push_back(items[i].name);
     if (names.back() == name) return static_cast<int>(i);
   }
-  out.Error(at, "there is no " + std::string(kind) + " \"" + name + "\"", NameHint(name, names));
+  out.Error("reference.unknown_name", at, "there is no " + std::string(kind) + " \"" + name + "\"",
+            NameHint(name, names));
   return std::nullopt;
 }
 
@@ -21,12 +22,14 @@ std::optional<int> FindNamed(const Items& items, const std::string& name, const 
 
 void Check(const MapReader& map, ReferenceText& reference) {
   if (!map.Has("phase") && reference.statistic != ReferenceSpec::Statistic::kMax) {
-    map.Error("statistic", "reference.statistic: over the whole run there is only max",
+    map.Error("reference.statistic_only_max", "statistic",
+              "reference.statistic: over the whole run there is only max",
               "name a phase of the timeline: phase: before");
   }
   const Value* cables = map.Find("cables_n");
   if (cables && cables->kind == Value::Kind::kMap && cables->entries.empty()) {
-    map.scope().out.Error(cables->at, "reference.cables_n has no values", "inner_top_1: 34.4");
+    map.scope().out.Error("reference.no_values", cables->at, "reference.cables_n has no values",
+                          "inner_top_1: 34.4");
   }
 }
 

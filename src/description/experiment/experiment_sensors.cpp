@@ -1,3 +1,4 @@
+// Checks of sensor keys: load cells, encoders, delays.
 #include <cmath>
 
 #include "description/experiment/experiment_keys.h"
@@ -5,21 +6,21 @@
 namespace taut::description {
 namespace {
 
-/// A delay in whole periods, so that it does not depend on when samples are looked at. `what` is
-/// the sensor, a key of `map`.
+/// Checks that a delay is a whole number of periods, so that it does not depend on the times of
+/// reading. `what` is the sensor, a key of `map`.
 void CheckDelay(const MapReader& map, const char* what, double delay_s, double period_s) {
-  constexpr double kLongest = 10000;  // samples that have to be kept
+  constexpr double kLongest = 10000;  // number of buffered samples
   const Value* sensor = map.Find(what);
   const double periods = delay_s / period_s;
   if (!sensor || std::isnan(periods)) return;
   const std::string path = map.Path(what) + ".delay_s";
   if (periods > kLongest) {
-    map.scope().out.Error(KeyAt(*sensor, "delay_s"),
+    map.scope().out.Error("sensor.delay_too_long", KeyAt(*sensor, "delay_s"),
                           path + " must not be longer than 10000 sensor periods",
                           "the period is " + Shown(period_s) + " s");
   } else if (std::fabs(periods - std::floor(periods + 0.5)) > 1e-6) {
     map.scope().out.Error(
-        KeyAt(*sensor, "delay_s"),
+        "sensor.delay_not_whole", KeyAt(*sensor, "delay_s"),
         path + " must be a whole number of sensor periods, got " + Shown(periods),
         "the period is " + Shown(period_s) + " s; give `sensors` another `period_s`");
   }
@@ -31,7 +32,8 @@ void Check(const MapReader& map, LoadCellText& cell) {
   if (cell.counts) {
     for (const char* other : {"range_n", "bits", "quantum_n"}) {
       if (!map.Has(other)) continue;
-      map.Error(other, map.what() + " has both counts and " + std::string(other),
+      map.Error("sensor.counts_given_twice", other,
+                map.what() + " has both counts and " + std::string(other),
                 "the counts have a range and bits of their own");
     }
     return;
@@ -40,16 +42,18 @@ void Check(const MapReader& map, LoadCellText& cell) {
   cell.max_n = cell.range_n.second;
   if (cell.min_n >= cell.max_n) {
     map.scope().out.Error(
-        map.Find("range_n")->at,
+        "sensor.empty_range", map.Find("range_n")->at,
         map.Path("range_n") + ": " + Shown(cell.min_n) + " is not below " + Shown(cell.max_n),
         "write [least, greatest]");
   }
   if (!map.Has("bits")) return;
   if (map.Has("quantum_n")) {
-    map.Error("bits", map.what() + " has bits and quantum_n", "one follows from the other");
+    map.Error("sensor.bits_and_quantum", "bits", map.what() + " has bits and quantum_n",
+              "one follows from the other");
   }
   if (!map.Has("range_n")) {
-    map.Error("bits", map.Path("bits") + " needs the key \"range_n\" beside it",
+    map.Error("sensor.bits_need_range", "bits",
+              map.Path("bits") + " needs the key \"range_n\" beside it",
               "write `range_n: [0, 100]`");
   }
   if (cell.bits) cell.quantum_n = (cell.max_n - cell.min_n) / (std::ldexp(1.0, *cell.bits) - 1.0);
@@ -59,18 +63,19 @@ void Check(const MapReader& map, EncoderText& encoder) {
   constexpr double kTwoPi = 6.28318530717958647692;
   for (const char* key : {"decoding", "gear_ratio", "index"}) {
     if (!map.Has(key) || map.Has("lines")) continue;
-    map.Error(key, map.Path(key) + " needs the key \"lines\" beside it",
+    map.Error("sensor.key_needs_lines", key, map.Path(key) + " needs the key \"lines\" beside it",
               "it is about an encoder on the motor's shaft");
   }
   if (encoder.decoding == 3) {
-    map.Error("decoding", map.Path("decoding") + " must be 1, 2 or 4, got 3",
+    map.Error("sensor.bad_decoding", "decoding", map.Path("decoding") + " must be 1, 2 or 4, got 3",
               "edges of one channel, of both ways of one, of both");
   }
   const char* const by = map.Has("lines") ? "lines" : "counts_per_turn";
   if (!map.Has(by) && !map.Has("spool_radius_m")) return;
   for (const char* other : {"quantum_m", "counts_per_turn"}) {
     if (!map.Has(other) || std::string(other) == by) continue;
-    map.Error(other, map.what() + " has " + std::string(other) + " and " + by,
+    map.Error("sensor.resolution_given_twice", other,
+              map.what() + " has " + std::string(other) + " and " + by,
               "one follows from the other");
   }
   if (!map.Require(by) || !map.Require("spool_radius_m")) return;

@@ -1,3 +1,4 @@
+// Terrain of an experiment, and placement of the robot in it.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -26,7 +27,8 @@ Inertia Rotated(const Quat& q, const Inertia& inertia) {
   return {product(0, 0), product(1, 1), product(2, 2), product(0, 1), product(0, 2), product(1, 2)};
 }
 
-/// Turned by `q` about the origin, then moved by `at_m`: bodies, and what is fixed in the world.
+/// Rigid displacement of all bodies and of parts fixed in the world: rotation by `q` about the
+/// origin, then translation by `at_m`.
 struct Placing {
   Vec3 at_m;
   Quat q;
@@ -50,7 +52,7 @@ void Move(const Placing& placing, RobotSpec& robot) {
   }
 }
 
-/// Adds a motion of the whole robot: of its centre of mass, and about it.
+/// Adds a rigid motion of the whole robot: velocity of its center of mass, and rotation about it.
 void AddVelocity(const Vec3& v, const Vec3& w, ModelDef& def) {
   Vec3 sum;
   double mass_kg = 0.0;
@@ -75,17 +77,18 @@ void Check(const MapReader& map, PlaneText& plane) {
   if (plane.height_m) {
     plane.point_m = {0, 0, *plane.height_m};
     if (map.Has("point_m")) {
-      map.Error("point_m", "plane has both height_m and point_m", "only one of them may be there");
+      map.Error("terrain.plane_given_twice", "point_m", "plane has both height_m and point_m",
+                "only one of them may be there");
     }
   }
   if (map.Has("slope_direction") && !map.Has("slope_rad")) {
-    map.Error("slope_direction", "plane.slope_direction needs slope_rad");
+    map.Error("terrain.slope_missing", "slope_direction", "plane.slope_direction needs slope_rad");
   }
   if (!plane.slope_rad || !map.Require("slope_direction")) return;
   const double slope = *plane.slope_rad;
   const Vec3 up = *plane.slope_direction;
   if (up.z != 0.0 && !std::isnan(up.z)) {
-    map.scope().out.Error(map.Find("slope_direction")->at,
+    map.scope().out.Error("terrain.slope_not_horizontal", map.Find("slope_direction")->at,
                           "plane.slope_direction must be horizontal", "its last number must be 0");
   }
   if (std::isnan(slope)) return;
@@ -141,7 +144,8 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
     const auto claim = [&](const std::string& name) {
       const auto [first, fresh] = names.emplace(name, text.name_at);
       if (!fresh) {
-        scope.out.Error(text.name_key_at, "there are two parts of the terrain called " + name,
+        scope.out.Error("terrain.duplicate_name", text.name_key_at,
+                        "there are two parts of the terrain called " + name,
                         "the first is in line " + std::to_string(first->second.line));
       }
       return fresh;
@@ -150,11 +154,11 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
     const int made = text.scatter ? text.scatter->count : text.stairs ? text.stairs->steps : 0;
     if (const std::size_t all = def.terrain_boxes.size() + static_cast<std::size_t>(made);
         all > static_cast<std::size_t>(kMostBoxes)) {
-      scope.out.Error(text.at,
+      scope.out.Error("terrain.too_many_boxes", text.at,
                       "the terrain has " + std::to_string(all) + " boxes up to here, more than " +
                           std::to_string(kMostBoxes),
                       "use a height field or a mesh");
-      return;  // before boxes are made: thousands of entries would fill the memory
+      return;  // before the boxes are made: thousands of entries would exhaust memory
     }
     std::vector<TerrainBoxDef> boxes;
     if (text.scatter) boxes = Boxes(*text.scatter);
@@ -162,7 +166,7 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       boxes[i].name = text.name + '_' + std::to_string(i);
       if (boxes[i].name.size() > kMaxNameLength) {
-        scope.out.Error(text.name_at,
+        scope.out.Error("terrain.name_too_long", text.name_at,
                         "terrain.name: with the number of a box it has more than " +
                             std::to_string(kMaxNameLength) + " characters",
                         "a shorter name");
@@ -179,12 +183,13 @@ void Place(const PlaceText& place, StartKind start, const Scope& scope, RobotSpe
   const bool moving = place.velocity_at.line > 0, turning = place.angular_velocity_at.line > 0;
   const auto check = [&](bool given, const SourceRef& at, const char* key) {
     if (start == StartKind::kAsDescribed || !given) return;
-    scope.out.Error(at, std::string("place.") + key + " has no effect: settling ends at rest",
+    scope.out.Error("start.key_without_effect", at,
+                    std::string("place.") + key + " has no effect: settling ends at rest",
                     "write `start: as_described`");
   };
   check(moving, place.velocity_at, "velocity_m_per_s");
   check(turning, place.angular_velocity_at, "angular_velocity_rad_per_s");
-  // Nothing is touched for nothing: a robot that is not placed keeps its numbers bit for bit.
+  // A robot without a new place keeps its numbers bit for bit.
   if (place.moved) Move({place.at_m, place.rotate}, robot);
   if (moving || turning) {
     AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, robot.def);

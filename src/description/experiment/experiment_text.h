@@ -1,4 +1,5 @@
-/// An experiment file as read. What refers to the robot is looked up when the model is known.
+/// Contents of an experiment file after reading. References to the robot are resolved later, when
+/// the model is known.
 #pragma once
 
 #include <cmath>
@@ -29,7 +30,7 @@ struct SpanForm {
       R"("type": "array", "title": "[from, to]", "items": {"$ref": "#/$defs/number"}, )"
       R"("minItems": 2, "maxItems": 2)";
 };
-/// A constant, or points.
+/// Constant, or points over time.
 struct CourseForm {
   static constexpr const char* kSchema =
       R"("title": "number or [[time_s, value], ...]", )"
@@ -40,7 +41,7 @@ struct CourseForm {
 
 struct PlaneText : PlaneDef {
   std::optional<double> height_m, slope_rad;
-  std::optional<Vec3> slope_direction;  ///< With length 1.
+  std::optional<Vec3> slope_direction;  ///< Unit vector.
   SurfaceText surface;
 };
 struct TerrainBoxText : TerrainBoxDef {
@@ -62,7 +63,7 @@ struct PlaceText {
   Vec3 at_m;
   Quat rotate;
   Vec3 velocity_m_per_s, angular_velocity_rad_per_s;
-  SourceRef velocity_at, angular_velocity_at;  ///< Of their keys; no line if they are not there.
+  SourceRef velocity_at, angular_velocity_at;  ///< Of the keys; line 0 if absent.
   bool moved = false;
 };
 
@@ -82,7 +83,7 @@ struct ImpedanceText : ImpedanceSpec {
   RateSource rate = RateSource::kExact;
   std::vector<GainsText> gains;
   std::vector<SetPointText> set_points;
-  bool gains_complete = true, set_points_complete = true;  ///< False: they are no lists.
+  bool gains_complete = true, set_points_complete = true;  ///< False: not lists.
 };
 struct ProgramText {
   Raw<SelectorForm> cables;
@@ -112,7 +113,7 @@ struct ControllerText : ControllerSpec {
   std::optional<PositionText> position_text;
   std::optional<VelocityInputText> velocity_input_text;
   std::optional<RestLengthInputText> rest_length_input_text;
-  SourceRef name_at;  ///< Of its key.
+  SourceRef name_at;  ///< Of the key.
 };
 
 // timeline
@@ -136,7 +137,7 @@ struct TimelineText {
   std::vector<EventText> events;
 };
 
-// what is measured and what may be different
+// sensors and scale factors
 
 struct LoadCellText : LoadCellSpec {
   std::pair<double, double> range_n{0.0, std::numeric_limits<double>::infinity()};
@@ -168,7 +169,7 @@ struct ReferenceText : ReferenceSpec {
   Named<double> cables_n;
 };
 
-// loads that stand still
+// load cases
 
 struct NodeForceText : LoadCaseSpec::NodeForce {
   Placed node_name;
@@ -195,12 +196,12 @@ struct LoadCaseText {
   std::vector<TemperatureText> temperatures;
 };
 
-// for learners
+// reinforcement learning
 
 struct EnvironmentActionText : EnvironmentAction {
   Raw<SelectorForm> cables;
   Raw<PatternsForm> each, all;
-  SourceRef name_at;  ///< Of its key.
+  SourceRef name_at;  ///< Of the key.
 };
 struct EnvironmentText : EnvironmentSpec {
   std::vector<EnvironmentActionText> action_texts;

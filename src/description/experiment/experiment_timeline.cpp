@@ -1,3 +1,4 @@
+// Timeline of an experiment: phases and events.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-/// The index of the node; 0 after a complaint or if the robot is unknown.
+/// Returns the index of the node; 0 after an error or if the robot is unknown.
 int FindNode(const Placed& name, const RobotSpec* robot, const Scope& scope) {
   if (name.text.empty() || !robot) return 0;
   std::vector<std::string> names;
@@ -16,7 +17,8 @@ int FindNode(const Placed& name, const RobotSpec* robot, const Scope& scope) {
     names.push_back(robot->def.nodes[i].name);
     if (names.back() == name.text) return static_cast<int>(i);
   }
-  scope.out.Error(name.at, "there is no node \"" + name.text + "\"", NameHint(name.text, names));
+  scope.out.Error("node.unknown", name.at, "there is no node \"" + name.text + "\"",
+                  NameHint(name.text, names));
   return 0;
 }
 
@@ -32,10 +34,12 @@ void AddPhases(const Named<Raw<SpanForm>>& phases, double duration_s, const Scop
     phase.to_s = (*span)[1];
     const std::string shown = Shown(phase.from_s) + ".." + Shown(phase.to_s) + " s";
     if (phase.from_s >= phase.to_s) {
-      scope.out.Error(item.at, what + " must end after it begins, got " + shown);
+      scope.out.Error("event.ends_before_start", item.at,
+                      what + " must end after it begins, got " + shown);
     } else if (phase.from_s < 0.0 || phase.to_s > duration_s) {
-      scope.out.Error(item.at, what + " must be within the experiment, 0.." + Shown(duration_s) +
-                                   " s, got " + shown);
+      scope.out.Error(
+          "event.outside_experiment", item.at,
+          what + " must be within the experiment, 0.." + Shown(duration_s) + " s, got " + shown);
     }
     out.push_back(std::move(phase));
   }
@@ -45,7 +49,8 @@ void AddPhases(const Named<Raw<SpanForm>>& phases, double duration_s, const Scop
 
 void Check(const MapReader& map, PushText& push) {
   if (push.force_n.size() == 1) {
-    map.scope().out.Error(map.Find("force_n")->at, "push.force_n needs two points or more",
+    map.scope().out.Error("event.few_points", map.Find("force_n")->at,
+                          "push.force_n needs two points or more",
                           "the force is zero before the first and after the last one");
   }
 }
@@ -53,12 +58,13 @@ void Check(const MapReader& map, PushText& push) {
 void Check(const MapReader& map, DragText& drag) {
   const Vec3& v = drag.velocity_m_per_s;
   if (v.x == 0.0 && v.y == 0.0 && v.z == 0.0) {
-    map.Error("velocity_m_per_s", "drag.velocity_m_per_s must not be zero",
+    map.Error("event.no_velocity", "velocity_m_per_s", "drag.velocity_m_per_s must not be zero",
               "the force is measured along it");
   }
   if (drag.from_s >= drag.to_s) {
-    map.Error("to_s", "drag.to_s must be after from_s, got " + Shown(drag.from_s) + ".." +
-                          Shown(drag.to_s));
+    map.Error(
+        "event.ends_before_start", "to_s",
+        "drag.to_s must be after from_s, got " + Shown(drag.from_s) + ".." + Shown(drag.to_s));
   }
 }
 
@@ -88,7 +94,7 @@ void AddTimeline(const TimelineText& text, const RobotSpec* robot, const Scope& 
     if (name.empty()) continue;
     const auto [first, fresh] = names.emplace(name, event.name_at);
     if (!fresh) {
-      scope.out.Error(event.name_at, "there are two events " + name,
+      scope.out.Error("event.duplicate_name", event.name_at, "there are two events " + name,
                       "the first is in line " + std::to_string(first->second.line));
     }
   }

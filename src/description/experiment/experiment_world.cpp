@@ -1,3 +1,4 @@
+// Scale factors of an experiment on friction, masses, stiffnesses and dampings.
 #include <cmath>
 
 #include "base/pattern.h"
@@ -7,7 +8,7 @@
 namespace taut::description {
 namespace {
 
-/// The bodies that patterns of names stand for.
+/// Returns the bodies that match patterns of names.
 std::vector<int> SelectBodies(const Value& value, const std::string& what, const RobotSpec* robot,
                               const Scope& scope) {
   std::vector<std::string> patterns;
@@ -24,7 +25,8 @@ std::vector<int> SelectBodies(const Value& value, const std::string& what, const
     if (base::FitsAny(patterns, names.back())) bodies.push_back(static_cast<int>(b));
   }
   if (bodies.empty() && !patterns.empty()) {
-    scope.out.Error(value.at, what + ": no body is called \"" + patterns[0] + "\"",
+    scope.out.Error("scale.unknown_body", value.at,
+                    what + ": no body is called \"" + patterns[0] + "\"",
                     NameHint(patterns[0], names));
   }
   return bodies;
@@ -33,7 +35,7 @@ std::vector<int> SelectBodies(const Value& value, const std::string& what, const
 }  // namespace
 
 void Check(const MapReader& map, ScaleText& scale) {
-  std::string key;  // one at most: of several none was looked at
+  std::string key;  // at most one: of several, none was read
   const std::optional<double> factors[] = {scale.friction, scale.mass, scale.stiffness,
                                            scale.damping};
   for (std::size_t i = 0; i < kScaledQuantities.size(); ++i) {
@@ -44,10 +46,11 @@ void Check(const MapReader& map, ScaleText& scale) {
   }
   if (key.empty()) return;
   if (map.Has("bodies") && key != "mass") {
-    map.Error("bodies", "scale: " + key + " has no bodies", "only mass has");
+    map.Error("scale.no_bodies", "bodies", "scale: " + key + " has no bodies", "only mass has");
   }
   if (map.Has("cables") && key != "stiffness" && key != "damping") {
-    map.Error("cables", "scale: " + key + " has no cables", "stiffness and damping have");
+    map.Error("scale.no_cables", "cables", "scale: " + key + " has no cables",
+              "stiffness and damping have");
   }
 }
 

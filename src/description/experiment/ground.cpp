@@ -19,15 +19,16 @@ namespace {
 
 constexpr double kMostInFile = 1e8;
 constexpr double kMostByFormula = 4e6;
-/// Steps of a formula for all corners together; a step takes 5 to 50 ns.
+/// Limit of the steps of a formula over all corners; a step takes 5 to 50 ns.
 constexpr double kMostSteps = 4e8;
 
-/// Heights by a formula, which is looked at once a corner.
+/// Fills the heights by a formula, evaluated at each corner.
 bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
   const Value& formula = *text.formula.value;
   if (formula.kind != Value::Kind::kScalar) {
-    scope.out.Error(formula.at, "height_field.height_m must be a formula, got " +
-                                    std::string(KindName(formula)));
+    scope.out.Error(
+        "heights.formula_missing", formula.at,
+        "height_field.height_m must be a formula, got " + std::string(KindName(formula)));
     return false;
   }
   NameTable names = scope.names;
@@ -41,7 +42,7 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
   const Formula parsed(formula.text, names);
   const double corners = static_cast<double>(field.columns) * field.rows;
   if (corners * static_cast<double>(parsed.size()) > kMostSteps) {
-    scope.out.Error(formula.at,
+    scope.out.Error("heights.formula_too_costly", formula.at,
                     "height_field.height_m has " + std::to_string(parsed.size()) +
                         " operations and numbers for each of " + base::Brief(corners) +
                         " corners, more than 400 000 000 in all",
@@ -57,7 +58,7 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
       y_m = (j - 0.5 * (field.rows - 1)) * field.cell_m;
       const Evaluated height = parsed.Value();
       if (!height.error.empty()) {
-        scope.out.Error(formula.at,
+        scope.out.Error("heights.formula_error", formula.at,
                         "height_field.height_m at i = " + std::to_string(i) +
                             ", j = " + std::to_string(j) + ": " + height.error,
                         height.hint);
@@ -88,7 +89,7 @@ bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope
   const auto [low, high] = *text.height_range_m;
   const double steps = std::exp2(image->bits) - 1;
   if (image->bits < 16) {
-    scope.out.Warning({path, 0, 0},
+    scope.out.Warning("heights.coarse_image", {path, 0, 0},
                       "has " + std::to_string(image->bits) +
                           " bits a sample: heights in steps of " +
                           base::Brief(std::fabs(high - low) / steps) + " m",
@@ -100,7 +101,7 @@ bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope
   return true;
 }
 
-/// `hills.h5:/z`: where the name of the data set begins.
+/// Returns the position of the data set's name in `hills.h5:/z`; npos for other files.
 std::size_t SetIn(const std::string& file) {
   for (const char* end : {".h5:", ".hdf5:"}) {
     const std::size_t at = file.find(end);
@@ -116,7 +117,7 @@ bool ReadHdf5(const std::string& path, const std::string& set, const Scope& scop
   for (std::size_t i = 0; i < table->values.size(); ++i) {
     if (std::isfinite(table->values[i])) continue;
     const std::size_t columns = static_cast<std::size_t>(table->columns);
-    scope.out.Error({path, 0, 0},
+    scope.out.Error("heights.not_finite", {path, 0, 0},
                     set + ": row " + std::to_string(i / columns) + ", column " +
                         std::to_string(i % columns) + " is no finite number",
                     "heights in m");
@@ -128,7 +129,7 @@ bool ReadHdf5(const std::string& path, const std::string& set, const Scope& scop
   return true;
 }
 
-/// Heights from a file of any kind.
+/// Reads the heights from a CSV, PNG or HDF5 file.
 bool ReadHeights(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
   field.columns = field.rows = 0;
   const std::string& file = text.file.text;
@@ -138,7 +139,8 @@ bool ReadHeights(const HeightFieldText& text, const Scope& scope, HeightFieldDef
                     : IsImage(file)  ? ReadImage(text, path, scope, field)
                                      : ReadCsv(path, scope, field);
   if (!good || (field.columns >= 2 && field.rows >= 2)) return good;
-  scope.out.Error({path, 0, 0}, "a height field needs two rows or more of two heights or more");
+  scope.out.Error("heights.too_small", {path, 0, 0},
+                  "a height field needs two rows or more of two heights or more");
   return false;
 }
 
@@ -151,17 +153,19 @@ void Check(const MapReader& map, HeightFieldText& field) {
   if (IsImage(file)) {
     map.Require("height_range_m");
   } else if (map.Has("height_range_m")) {
-    map.Error("height_range_m", map.Path("height_range_m") + " has no effect here",
+    map.Error("heights.range_without_effect", "height_range_m",
+              map.Path("height_range_m") + " has no effect here",
               "it says what black and white are in an image, .png");
   }
   if ((EndsIn(file, ".h5") || EndsIn(file, ".hdf5"))) {
-    map.Error("file", map.Path("file") + " does not say which data set",
+    map.Error("heights.data_set_missing", "file", map.Path("file") + " does not say which data set",
               "behind a colon: " + file + ":/z");
   }
   for (const char* key : {"columns", "rows"}) {
     if (map.Has("height_m")) map.Require(key);
     if (map.Has("file") && map.Has(key)) {
-      map.Error(key, map.Path(key) + " has no effect here", "the file says how many there are");
+      map.Error("heights.key_without_effect", key, map.Path(key) + " has no effect here",
+                "the file says how many there are");
     }
   }
 }
@@ -189,7 +193,7 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
     const bool known = text.formula.value != nullptr && field.columns >= 2 && field.rows >= 2 &&
                        std::isfinite(field.cell_m);
     if (known && static_cast<double>(field.columns) * field.rows > kMostByFormula) {
-      scope.out.Error(text.at, "a formula may have 4 000 000 corners at most",
+      scope.out.Error("heights.too_many", text.at, "a formula may have 4 000 000 corners at most",
                       "fewer, larger cells, or a file");
       return std::nullopt;
     }

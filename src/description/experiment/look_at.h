@@ -1,4 +1,4 @@
-/// Complaints that other layers have about an experiment file, beside the file's own.
+/// Loading of experiments with a callback, so that other layers can add errors about the file.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace taut::description {
 
-/// `LoadExperiment`. If it fails, `look` gets what could be read, once the model and the
-/// controllers are good: names of bodies, cables and controllers are known, numbers may be missing
-/// (NaN).
+/// Loads like `LoadExperiment`. On failure calls `look` with the readable part, if the model and
+/// the controllers are valid: names of bodies, cables and controllers are known, numbers may be
+/// missing (NaN).
 std::optional<ExperimentSpec> LoadOrLook(const std::string& path, const Overrides& overrides,
                                          Diagnostics& out,
                                          const std::function<void(const ExperimentSpec&)>& look);

@@ -29,7 +29,8 @@ std::vector<std::size_t> MatchTunables(const Value& value, const std::string& wh
     if (any) continue;
     std::string hint = NameHint(text, names);
     if (hint.size() > 200) hint = "`taut learn --parameters EXPERIMENT` lists them all";
-    scope.out.Error(pattern->at, what + ": nothing is called \"" + text + "\"", hint);
+    scope.out.Error("tunable.unknown_name", pattern->at,
+                    what + ": nothing is called \"" + text + "\"", hint);
   }
   return {found.begin(), found.end()};
 }

@@ -1,4 +1,4 @@
-/// From patterns in a file to what of a model and a gait may be changed by name.
+/// Selection of tunables (numbers of a model or gait that may be changed) by patterns of names.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace taut::description {
 
-/// Which tunables patterns stand for. Empty after a complaint.
+/// Returns the indices of the tunables that match patterns. Empty after an error.
 std::vector<std::size_t> MatchTunables(const Value& value, const std::string& what,
                                        const std::vector<Tunable>& tunables, const Scope& scope);
 

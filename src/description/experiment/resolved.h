@@ -1,4 +1,4 @@
-/// What `ResolvedYaml` writes, read again.
+/// Reader of resolved experiments, which `ResolvedYaml` writes.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace taut::description {
 
-/// The experiment of a file of kind `resolved_experiment`, without its input hash. It has no
-/// parameters, so every override is an error. Nothing if there was any error.
+/// Reads a file of kind `resolved_experiment`, without its input hash. It has no parameters, so
+/// every override is an error. Returns nothing after any error.
 std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& overrides,
                                            Diagnostics& out);
 

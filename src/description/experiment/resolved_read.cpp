@@ -1,3 +1,4 @@
+// Reader of resolved experiments.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,7 +30,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, std::
   const char* end = value.text.data() + value.text.size();
   const auto [stop, status] = base::FromChars(value.text.data(), end, out);
   if (status == std::errc() && stop == end) return;
-  scope.out.Error(value.at, what + " must be a whole number");
+  scope.out.Error("resolved.not_whole", value.at, what + " must be a whole number");
 }
 void Read(const Value& value, const std::string& what, const Scope& scope, std::string& out) {
   out = ReadText(value, what, scope);
@@ -49,7 +50,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope,
           std::pair<double, double>& out) {
   if (const auto point = ReadNumbers(value, what, 2, scope)) out = {(*point)[0], (*point)[1]};
 }
-/// Numbers with a space between them.
+/// Reads numbers separated by spaces.
 template <class List>
 void Read(const Value& value, const std::string& what, const Scope& scope, Packed<List>& out) {
   const char* at = value.text.data();
@@ -66,10 +67,12 @@ void Read(const Value& value, const std::string& what, const Scope& scope, Packe
     EachNumber(out.list.emplace_back(), take);
     good = good && at != before;
   }
-  if (!good) scope.out.Error(value.at, what + " must be numbers with a space between them");
+  if (!good)
+    scope.out.Error("resolved.not_numbers", value.at,
+                    what + " must be numbers with a space between them");
 }
 template <class T>
-void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // a struct
+void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // for structs
 template <class T>
 void Read(const Value& value, const std::string& what, const Scope& scope, std::optional<T>& out) {
   Read(value, what, scope, out.emplace());
@@ -81,8 +84,8 @@ void Read(const Value& value, const std::string& what, const Scope& scope, std::
   }
 }
 
-/// All keys have to be there, but for what may be absent: what is optional, limits, and what
-/// earlier versions of taut did not write. Ranges are left to `Model::Compile`.
+/// Reader of resolved experiments. All keys are required, except optional fields, limits and keys
+/// that earlier versions of taut did not write. Ranges are checked by `Model::Compile`.
 class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
  public:
   explicit ResolvedReader(MapReader& map) : map_(map) { spelling = map.scope().spelling; }
@@ -103,14 +106,14 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     scope.spelling = spelling;
     Read(*value, map_.Path(key.name), scope, out);
   }
-  /// What a joint is of says what its numbers are called.
+  /// The kind of a joint selects the names of its keys.
   template <class OfName>
   void Spell(const Spellings& spellings, const OfName& of_name) {
     const char* const right = spellings.names[std::max(0, spelling.index)];
     for (const char* name : spellings.names) {
       if (name != right && map_.Has(name)) {
         map_.Know(name);
-        map_.Error(name, map_.Path(name) + " is of another quantity");
+        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is of another quantity");
       }
     }
     of_name(right);
@@ -142,10 +145,11 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
   ReadStruct(value, what, {}, scope, out);
 }
 
-/// Its numbers must be what a gait file's would have to be.
+/// Applies the numeric checks of a gait file.
 void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
   if (CountKinds(gait) != 1) {
-    out.Error(at, "a gait is one of sine, cpg, table, feedback_cpg and toward_goal");
+    out.Error("gait.kind_missing", at,
+              "a gait is one of sine, cpg, table, feedback_cpg and toward_goal");
     return;
   }
   ForEachGaitKind([&](const auto& kind, auto) {
@@ -153,12 +157,12 @@ void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
   });
 }
 
-/// Returns the cables that the gaits move.
+/// Returns the cables that the gaits drive.
 std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kind,
                             const RobotSpec& robot, const SourceRef& at, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
   const auto check = [&](bool good, const char* what) {
-    if (!good) out.Error(at, std::string(kind.key) + what);
+    if (!good) out.Error("resolved.bad_value", at, std::string(kind.key) + what);
   };
   check(input.clock.period_s > 0.0, ".period_s must be positive");
   check(input.blend_s >= 0.0, ".blend_s must not be negative");
@@ -175,10 +179,11 @@ std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kin
   return CheckGaits(input, kind, std::vector<SourceRef>(input.others.size() + 1, at), &robot, out);
 }
 
-/// The rules of names that the files had which were resolved.
+/// Checks names by the rules of the original files.
 void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
   const auto check = [&](const std::string& name, bool good) {
-    if (!good) out.Error(at, "\"" + name + "\" cannot be a name", "letters, digits, _ and -");
+    if (!good)
+      out.Error("name.bad", at, "\"" + name + "\" cannot be a name", "letters, digits, _ and -");
   };
   const auto check_all = [&](const auto& list) {
     for (const auto& item : list) check(item.name, IsFullName(item.name));
@@ -194,23 +199,28 @@ void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnosti
   check_all(experiment.phases), check_all(experiment.load_cases);
 }
 
-/// What `Model::Compile` does not look at.
+/// Checks indices that `Model::Compile` does not check.
 void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
   const RobotSpec& robot = experiment.robot;
   const auto check = [&](int index, std::size_t count, const char* what) {
     if (index >= 0 && static_cast<std::size_t>(index) < count) return;
-    out.Error(at, "there is no " + std::string(what) + " " + std::to_string(index));
+    out.Error("resolved.bad_index", at,
+              "there is no " + std::string(what) + " " + std::to_string(index));
   };
   for (const ControllerSpec& controller : experiment.controllers) {
     for (const PositionProgram& program : controller.position) {
       check(program.cable, robot.def.cables.size(), "cable");
     }
     if (controller.rest_length_input) {
-      if (controller.impedance) out.Error(at, "rest_length_input does not go with impedance");
+      if (controller.impedance)
+        out.Error("resolved.rest_length_input_with_impedance", at,
+                  "rest_length_input does not go with impedance");
       CheckInput(*controller.rest_length_input, kRestLengthInput, robot, at, out);
     }
     if (!controller.impedance) {
-      if (controller.velocity_input) out.Error(at, "velocity_input goes with impedance");
+      if (controller.velocity_input)
+        out.Error("resolved.velocity_input_without_impedance", at,
+                  "velocity_input goes with impedance");
       continue;
     }
     if (controller.velocity_input) {
@@ -248,9 +258,11 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     for (const Tunable& number : FindTunables(controllers, none, robot)) known.insert(number.name);
     for (const EnvironmentAction& action : experiment.environment->actions) {
       if (!action.by) check(action.cable, robot.def.cables.size(), "cable");
-      if (action.by && action.numbers.empty()) out.Error(at, "an action that moves no number");
+      if (action.by && action.numbers.empty())
+        out.Error("resolved.empty_action", at, "an action that moves no number");
       for (const std::string& name : action.numbers) {
-        if (known.count(name) == 0) out.Error(at, "there is no number called \"" + name + '"');
+        if (known.count(name) == 0)
+          out.Error("resolved.unknown_number", at, "there is no number called \"" + name + '"');
       }
     }
   }
@@ -259,11 +271,11 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
   for (const DragSpec& drag : experiment.drags) check(drag.node, robot.def.nodes.size(), "node");
   if (robot.node_tags.size() != robot.def.nodes.size() ||
       robot.cable_tags.size() != robot.def.cables.size()) {
-    out.Error(at, "every node and every cable needs its tags");
+    out.Error("resolved.tags_missing", at, "every node and every cable needs its tags");
   }
-  const std::size_t joint_tags = robot.joint_tags.size();  // earlier versions did not write any
+  const std::size_t joint_tags = robot.joint_tags.size();  // absent in files of earlier versions
   if (joint_tags != 0 && joint_tags != robot.def.joints.size()) {
-    out.Error(at, "every joint needs its tags");
+    out.Error("resolved.joint_tags_missing", at, "every joint needs its tags");
   }
 }
 

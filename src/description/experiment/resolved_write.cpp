@@ -1,3 +1,4 @@
+// Writer of resolved experiments.
 #include <filesystem>
 
 #include "base/hash.h"
@@ -22,7 +23,7 @@ std::string ResolvedYaml(const ExperimentSpec& experiment) {
   out += description::kResolvedKind;
   out += '\n';
   ExperimentSpec portable = experiment;
-  if (portable.compare_with) {  // this text may be kept anywhere
+  if (portable.compare_with) {  // absolute path, because the text may be stored in any folder
     std::error_code failed;
     const auto path = std::filesystem::absolute(*portable.compare_with, failed);
     if (!failed) portable.compare_with = path.string();

@@ -10,7 +10,7 @@
 namespace taut::description {
 namespace {
 
-/// What these random numbers are for, among all uses of a seed (plant/streams.h has others).
+/// Random number stream of scattered blocks; other uses of a seed are in plant/streams.h.
 constexpr std::uint32_t kScatterStream = 100;
 
 }  // namespace
@@ -25,15 +25,16 @@ void Check(const MapReader& map, ScatterText& scatter) {
   if (within->kind != Value::Kind::kSequence) return;
   const char* const hint = "[[x, y, z], [x, y, z]], the lower numbers first";
   if (corners.size() != 2) {
-    map.Error("within_m", path + " must be two points, got " + std::to_string(corners.size()),
-              hint);
+    map.Error("terrain.bad_region", "within_m",
+              path + " must be two points, got " + std::to_string(corners.size()), hint);
     return;
   }
   scatter.low_m = ReadVec3(*corners[0], path, map.scope());
   scatter.high_m = ReadVec3(*corners[1], path, map.scope());
   const Vec3 &low = scatter.low_m, &high = scatter.high_m;
   if (low.x > high.x || low.y > high.y || low.z > high.z) {
-    map.Error("within_m", path + " has a number that is larger in its first point", hint);
+    map.Error("terrain.empty_region", "within_m",
+              path + " has a number that is larger in its first point", hint);
   }
 }
 

@@ -1,3 +1,4 @@
+// Tunables: numbers of controllers, gaits and models that studies may change by name.
 #include <limits>
 
 #include "description/experiment/control_keys.h"

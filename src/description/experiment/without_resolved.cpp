@@ -1,12 +1,12 @@
-// Where nothing is recorded, and no run's resolved experiment is read again: in a browser.
+// Stub without resolved experiments, for the browser build, which records no runs.
 #include "description/experiment/resolved.h"
 
 namespace taut::description {
 
 std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& /*overrides*/,
                                            Diagnostics& out) {
-  out.Error({path, 0, 0}, "resolved experiments cannot be read in a browser",
-            "the command taut reads them");
+  out.Error("browser.no_resolved_experiments", {path, 0, 0},
+            "resolved experiments cannot be read in a browser", "the command taut reads them");
   return std::nullopt;
 }
 

@@ -1,5 +1,5 @@
-// The network of a CPG, from the model: who is coupled to whom, and which couplings are alike
-// (docs/theory/gaits.md, eq. G.8 to G.10).
+// Coupling graph of a CPG, derived from the model: coupled oscillators and groups of equal
+// couplings (docs/theory/gaits.md, eq. G.8 to G.10).
 #include <algorithm>
 #include <map>
 #include <set>
@@ -11,7 +11,7 @@ namespace taut {
 namespace description {
 namespace {
 
-constexpr std::size_t kMaxOscillators = 65535;  // StepCpg counts in 16 bits
+constexpr std::size_t kMaxOscillators = 65535;  // StepCpg uses 16-bit indices
 
 const std::string& CableName(const RobotSpec& robot, int cable) {
   return robot.def.cables[static_cast<std::size_t>(cable)].name;
@@ -22,13 +22,13 @@ bool HasActuator(const RobotSpec& robot, int cable) {
   return def.actuator.kind != ActuatorDef::Kind::kNone;
 }
 
-/// The cables that get an oscillator, in order. Empty after a complaint.
+/// Returns the cables that get an oscillator, in order. Empty after an error.
 std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::string>& order,
                              const SourceRef& at, Diagnostics& out) {
   std::vector<int> cables;
   const std::string too_many = "more than " + std::to_string(kMaxOscillators) + " oscillators";
   if (order.size() > kMaxOscillators) {
-    out.Error(at, too_many);
+    out.Error("gait.too_many_oscillators", at, too_many);
     return cables;
   }
   std::vector<std::string> names;
@@ -42,22 +42,25 @@ std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::stri
   for (const std::string& name : order) {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
-      out.Error(at, "cpg.order: there is no cable \"" + name + "\"", NameHint(name, names));
+      out.Error("cable.unknown", at, "cpg.order: there is no cable \"" + name + "\"",
+                NameHint(name, names));
       continue;
     }
     cables.push_back(static_cast<int>(found - names.begin()));
-    if (!seen.insert(name).second) out.Error(at, "cpg.order has " + name + " twice");
+    if (!seen.insert(name).second)
+      out.Error("gait.duplicate_cable", at, "cpg.order has " + name + " twice");
     if (!HasActuator(robot, cables.back())) {
-      out.Error(at, "cpg.order: " + name + " has no actuator",
+      out.Error("cable.no_actuator", at, "cpg.order: " + name + " has no actuator",
                 "give the cable's builder in the model an `actuator:`");
     }
   }
-  if (cables.empty() && order.empty()) out.Error(at, "no cable of the robot has an actuator");
-  if (cables.size() > kMaxOscillators) out.Error(at, too_many);
+  if (cables.empty() && order.empty())
+    out.Error("gait.no_actuated_cable", at, "no cable of the robot has an actuator");
+  if (cables.size() > kMaxOscillators) out.Error("gait.too_many_oscillators", at, too_many);
   return out.items().size() == errors_before ? cables : std::vector<int>();
 }
 
-/// The bodies that each cable is attached to.
+/// Returns the bodies that each cable is attached to.
 std::vector<std::set<int>> BodiesOf(const RobotSpec& robot, const std::vector<int>& cables) {
   std::vector<std::set<int>> bodies;
   for (const int cable : cables) {
@@ -73,7 +76,7 @@ bool ShareABody(const std::set<int>& a, const std::set<int>& b) {
   return std::any_of(a.begin(), a.end(), [&](int body) { return b.count(body) > 0; });
 }
 
-/// Roles in the order of their first cable, and each oscillator's place.
+/// Roles in the order of their first cable, with the role and number of each oscillator.
 struct Chain {
   std::vector<std::string> roles;
   std::vector<std::size_t> role;  ///< Per oscillator.
@@ -86,7 +89,8 @@ std::optional<Chain> FindChain(const RobotSpec& robot, const std::vector<int>& c
   for (const int cable : cables) {
     const auto place = PlaceInChain(CableName(robot, cable));
     if (!place) {
-      out.Error(at, "cable " + CableName(robot, cable) + " has no number at its end",
+      out.Error("gait.cable_without_number", at,
+                "cable " + CableName(robot, cable) + " has no number at its end",
                 "symmetric couplings tell cables apart by names such as outer_top_2; write "
                 "`symmetry: none`");
       return std::nullopt;
@@ -99,13 +103,15 @@ std::optional<Chain> FindChain(const RobotSpec& robot, const std::vector<int>& c
   return chain;
 }
 
-/// Position of {j, k}, j <= k, among all such pairs of `count`: (0,0), (0,1), ..., (1,1), ...
+/// Returns the index of {j, k}, j <= k, among all such pairs of `count`: (0,0), (0,1), ..., (1,1),
+/// ...
 std::size_t PairIndex(std::size_t j, std::size_t k, std::size_t count) {
   const std::size_t low = std::min(j, k), high = std::max(j, k);
   return low * count - low * (low + 1) / 2 + high;
 }
 
-/// A group for each relation and each unordered pair of `names`; `same` leaves out pairs of one.
+/// Adds a group for each relation and each unordered pair of `names`; relation `same` excludes
+/// pairs of a name with itself.
 void NameGroups(const std::vector<std::string>& relations, std::size_t same,
                 const std::vector<std::string>& names, std::vector<std::string>& groups,
                 std::vector<std::vector<int>>& index) {
@@ -121,7 +127,8 @@ void NameGroups(const std::vector<std::string>& relations, std::size_t same,
   }
 }
 
-/// `a` is coupled to `b`, which is on a's joint, or nearer to the front, or to the rear.
+/// Groups couplings by roles and by position along the chain: `a` is coupled to a `b` at a joint
+/// nearer to the front, at the same joint, or behind.
 void GroupBySegments(const Chain& chain, CouplingGraph& graph) {
   std::vector<std::vector<int>> index;
   NameGroups({"front", "same", "behind"}, 1, chain.roles, graph.groups, index);
@@ -141,9 +148,9 @@ bool GroupByIndex(const RobotSpec& robot, const Chain& chain, CouplingGraph& gra
   std::vector<std::vector<int>> index;
   NameGroups({"rp0", "rp1", "rp2"}, 1, names, graph.groups, index);
   for (CouplingGraph::Coupling& link : graph.couplings) {
-    const int relation = (link.to - link.from) / count + 1;  // C's division, towards zero
+    const int relation = (link.to - link.from) / count + 1;  // integer division rounds toward zero
     if (relation < 0 || relation > 2) {
-      out.Error(at,
+      out.Error("gait.index_too_far", at,
                 "symmetry: index knows oscillators up to " + std::to_string(2 * count - 1) +
                     " places apart, but " + CableName(robot, graph.cables[std::size_t(link.to)]) +
                     " and " + CableName(robot, graph.cables[std::size_t(link.from)]) + " are " +

@@ -10,7 +10,8 @@ void Check(const MapReader& map, CpgGait& cpg) { CheckTwice(cpg.groups, "groups"
 
 void CheckNumbers(const CpgGait& cpg, const SourceRef& at, Diagnostics& out) {
   if (cpg.convergence_per_s > 0.0 && cpg.integrator_step_s > 0.0) return;
-  out.Error(at, "cpg.convergence_per_s and cpg.integrator_step_s must be positive");
+  out.Error("gait.not_positive", at,
+            "cpg.convergence_per_s and cpg.integrator_step_s must be positive");
 }
 
 void Resolve(const CpgGait& cpg, const RobotSpec& robot, ResolvedGait& resolved, Diagnostics& out) {
@@ -21,7 +22,8 @@ void Resolve(const CpgGait& cpg, const RobotSpec& robot, ResolvedGait& resolved,
     given[cpg.groups[g].name] = static_cast<int>(g);
     const std::string& name = cpg.groups[g].name;
     if (std::find(graph->groups.begin(), graph->groups.end(), name) == graph->groups.end()) {
-      out.Error(cpg.groups[g].at, "cpg.groups: " + robot.def.name + " has no group " + name,
+      out.Error("gait.unknown_group", cpg.groups[g].at,
+                "cpg.groups: " + robot.def.name + " has no group " + name,
                 NameHint(name, graph->groups));
     }
   }
@@ -35,7 +37,7 @@ void Resolve(const CpgGait& cpg, const RobotSpec& robot, ResolvedGait& resolved,
     std::string text = missing[0];
     for (std::size_t i = 1; i < missing.size() && i < 3; ++i) text += ", " + missing[i];
     if (missing.size() > 3) text += " and " + std::to_string(missing.size() - 3) + " more";
-    out.Error(cpg.at, "cpg.groups lacks " + text,
+    out.Error("gait.group_missing", cpg.at, "cpg.groups lacks " + text,
               "`taut gait create` writes a file with all groups of a robot");
     return;
   }
@@ -63,7 +65,7 @@ std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry,
                                    GaitDrives drives) {
   CpgGait cpg;
   cpg.symmetry = symmetry;
-  if (drives == GaitDrives::kRestLength) cpg.amplitude = 0.01;  // 5 cm would be much of a cable
+  if (drives == GaitDrives::kRestLength) cpg.amplitude = 0.01;  // 5 cm would be too large
   const auto graph = FindCouplings(robot, symmetry, {}, {}, out);
   if (!graph) return std::nullopt;
   for (const std::string& name : graph->groups) cpg.groups.push_back({name, 0.0, 0.0, {}});

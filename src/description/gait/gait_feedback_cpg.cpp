@@ -25,20 +25,22 @@ void CheckWeights(const std::vector<Neuron>& neurons, std::size_t least, std::si
     const std::size_t count = neuron.weights.size();
     if (least <= count && count <= most) continue;
     const SourceRef& where = neuron.at.line > 0 ? neuron.at : at;
-    out.Error(where, "neuron " + neuron.name + " has " + std::to_string(count) +
-                         " weights, but there are " + std::to_string(least) +
-                         (most > least ? " or " + std::to_string(most) : "") + " " + of);
+    out.Error("network.wrong_number_of_weights", where,
+              "neuron " + neuron.name + " has " + std::to_string(count) +
+                  " weights, but there are " + std::to_string(least) +
+                  (most > least ? " or " + std::to_string(most) : "") + " " + of);
   }
 }
 
-/// What several keys of a network must fulfil together.
+/// Checks conditions on several keys of a neural network.
 void CheckNetwork(const NetworkSpec& network, const std::string& what, std::size_t least_inputs,
                   std::size_t most_inputs, const std::vector<std::string>& outputs,
                   const SourceRef& at, Diagnostics& out) {
   const std::size_t hidden = network.hidden.size();
   const SourceRef& where = network.at.line > 0 ? network.at : at;
   if (hidden < 1 || hidden > NetworkSpec::kMostHidden) {
-    out.Error(where, what + ".hidden must have 1 to 32 neurons, not " + std::to_string(hidden));
+    out.Error("network.bad_size", where,
+              what + ".hidden must have 1 to 32 neurons, not " + std::to_string(hidden));
     return;
   }
   const std::string inputs = what == "cable_network" ? "inputs: stretch, tension"
@@ -49,7 +51,7 @@ void CheckNetwork(const NetworkSpec& network, const std::string& what, std::size
     const std::size_t count = neuron.weights.size();
     const auto possible = [&](std::size_t n) { return least_inputs <= n && n <= most_inputs; };
     if (count == first || !possible(count) || !possible(first)) continue;
-    out.Error(neuron.at.line > 0 ? neuron.at : at,
+    out.Error("network.wrong_number_of_weights", neuron.at.line > 0 ? neuron.at : at,
               what + ": neuron " + neuron.name + " has " + std::to_string(count) +
                   " weights, but " + network.hidden[0].name + " has " + std::to_string(first),
               "all hidden neurons have the same inputs");
@@ -57,7 +59,7 @@ void CheckNetwork(const NetworkSpec& network, const std::string& what, std::size
   CheckWeights(network.outputs, hidden, hidden, "hidden neurons", at, out);
   for (const Neuron& neuron : network.outputs) {
     if (std::find(outputs.begin(), outputs.end(), neuron.name) != outputs.end()) continue;
-    out.Error(neuron.at.line > 0 ? neuron.at : at,
+    out.Error("network.unknown_output", neuron.at.line > 0 ? neuron.at : at,
               what + ".outputs: there is nothing called " + neuron.name,
               NameHint(neuron.name, outputs));
   }
@@ -70,7 +72,7 @@ void CheckNetworks(const FeedbackCpgGait& cpg, const SourceRef& at, Diagnostics&
   }
 }
 
-/// Which oscillator each cable has: its number in the list. Cables ascending.
+/// Returns the oscillator of each cable, as an index into the list; cables ascending.
 std::map<int, int> RolesOf(const FeedbackCpgGait& cpg, const RobotSpec& robot, Diagnostics& out) {
   std::map<int, int> roles;
   for (std::size_t i = 0; i < cpg.oscillators.size(); ++i) {
@@ -78,7 +80,7 @@ std::map<int, int> RolesOf(const FeedbackCpgGait& cpg, const RobotSpec& robot, D
     for (const int cable : FindCables(one.cables, "oscillators " + one.name, one.at, robot, out)) {
       const auto [other, fresh] = roles.emplace(cable, static_cast<int>(i));
       if (fresh) continue;
-      out.Error(one.at,
+      out.Error("gait.two_oscillators", one.at,
                 "oscillators " + one.name + ": " +
                     robot.def.cables[static_cast<std::size_t>(cable)].name +
                     " has an oscillator already, of " +
@@ -90,7 +92,7 @@ std::map<int, int> RolesOf(const FeedbackCpgGait& cpg, const RobotSpec& robot, D
   return roles;
 }
 
-/// The given groups' couplings, in the order of `cpg.groups`; the others go.
+/// Keeps the couplings of the given groups, in the order of `cpg.groups`; removes all others.
 bool KeepGroups(const FeedbackCpgGait& cpg, const std::string& robot, CouplingGraph& graph,
                 Diagnostics& out) {
   std::map<std::string, int> given;
@@ -99,7 +101,7 @@ bool KeepGroups(const FeedbackCpgGait& cpg, const std::string& robot, CouplingGr
     const std::string& name = cpg.groups[g].name;
     given[name] = static_cast<int>(g);
     if (std::find(graph.groups.begin(), graph.groups.end(), name) != graph.groups.end()) continue;
-    out.Error(cpg.groups[g].at.line > 0 ? cpg.groups[g].at : cpg.at,
+    out.Error("gait.unknown_group", cpg.groups[g].at.line > 0 ? cpg.groups[g].at : cpg.at,
               "feedback_cpg.groups: " + robot + " has no group " + name,
               NameHint(name, graph.groups));
     good = false;
@@ -126,7 +128,8 @@ void Check(const MapReader& map, NetworkSpec& network) {
   for (const Neuron& neuron : network.hidden) hidden[neuron.name] = &neuron;
   for (const Neuron& neuron : network.outputs) {
     if (neuron.name.empty() || hidden.count(neuron.name) == 0) continue;
-    map.scope().out.Error(neuron.at, "there is a hidden neuron " + neuron.name + ", too",
+    map.scope().out.Error("network.duplicate_neuron", neuron.at,
+                          "there is a hidden neuron " + neuron.name + ", too",
                           "numbers are called after the neurons: give each its own name");
   }
 }
@@ -135,14 +138,15 @@ void Check(const MapReader& map, FeedbackCpgGait& cpg) {
   CheckTwice(cpg.groups, "groups", map.scope());
   CheckTwice(cpg.oscillators, "oscillators", map.scope());
   if (map.Has("oscillators") && cpg.oscillators.empty() && map.scope().out.ok()) {
-    map.Error("oscillators", "feedback_cpg.oscillators must have one or more");
+    map.Error("gait.no_oscillators", "oscillators",
+              "feedback_cpg.oscillators must have one or more");
   }
   if (map.scope().out.ok()) CheckNetworks(cpg, cpg.at, map.scope().out);
 }
 
 void CheckNumbers(const FeedbackCpgGait& cpg, const SourceRef& at, Diagnostics& out) {
   if (!(cpg.convergence_per_s > 0.0 && cpg.integrator_step_s > 0.0)) {
-    out.Error(at,
+    out.Error("gait.not_positive", at,
               "feedback_cpg.convergence_per_s and feedback_cpg.integrator_step_s must be positive");
   }
   CheckNetworks(cpg, at, out);
@@ -158,14 +162,14 @@ void Resolve(const FeedbackCpgGait& cpg, const RobotSpec& robot, ResolvedGait& r
     order.push_back(robot.def.cables[static_cast<std::size_t>(cable)].name);
   }
   CouplingGraph graph;
-  if (cpg.groups.empty()) {  // then names need not end in numbers
+  if (cpg.groups.empty()) {  // then names need no number at the end
     for (const auto& [cable, role] : roles) graph.cables.push_back(cable);
   } else {
     auto found = FindCouplings(robot, cpg.symmetry, order, cpg.at, out);
     if (!found || !KeepGroups(cpg, robot.def.name, *found, out)) return;
     graph = std::move(*found);
   }
-  std::map<int, int> joint_of;  // by the number at a name's end
+  std::map<int, int> joint_of;  // by the number at the end of the name
   std::vector<int> number;
   for (const int cable : graph.cables) {
     const auto place = PlaceInChain(robot.def.cables[static_cast<std::size_t>(cable)].name);
@@ -187,7 +191,7 @@ void Resolve(const FeedbackCpgGait& cpg, const RobotSpec& robot, ResolvedGait& r
                               : actuator.max_force_n;
     resolved.most_tension_n.push_back(most_n);
     if (!cpg.cable_network || (std::isfinite(most_n) && most_n > 0.0)) continue;
-    out.Error(cpg.cable_network->at.line > 0 ? cpg.cable_network->at : cpg.at,
+    out.Error("cable.no_max_force", cpg.cable_network->at.line > 0 ? cpg.cable_network->at : cpg.at,
               "cable_network: the actuator of " + robot.def.cables[cable].name +
                   " has no max_force_n to set its tension beside",
               "give it one, or leave out `cable_network`");

@@ -1,3 +1,4 @@
+// Loading and saving of gait files.
 #include "description/gait/gait_keys.h"
 #include "description/yaml/merged_file.h"
 #include "description/yaml/read_keys.h"

@@ -1,5 +1,5 @@
-// Gaits of NTRT: learned parameters (.nnw) and hand-tuned ones (controlVars.json). What the files
-// mean is in NTRT's code only; the facts used here are named at each place.
+// Import of NTRT gaits: learned parameters (.nnw) and hand-tuned ones (controlVars.json). The
+// formats are defined only by NTRT's code; each place cites the facts that it uses.
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
@@ -16,20 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// BaseSpineCPGControl::Config of LearningSpineJSON: the learner's numbers are in 0..1 and stand for
-// 0..30 Hz, 0..30 cm/s, weights 0..1 per cm/s and second, and phases -pi..pi.
+// BaseSpineCPGControl::Config of LearningSpineJSON: the learned numbers in 0..1 map to 0..30 Hz,
+// 0..30 cm/s, weights 0..1 per cm/s and second, and phases -pi..pi.
 constexpr double kHighestHz = 30.0, kHighestAmplitude = 30.0;
-// The descending command 2 makes frequency and amplitude offset + 2 scale, and both are the same.
+// With the descending command 2, frequency and amplitude are offset + 2 scale, with offset = scale.
 constexpr double kCommandFactor = 3.0;
 constexpr double kConvergencePerS = 20.0;
-/// Follows NTRT's own integration to 2e-6 m/s over a minute. To walk, steps of 2 ms would do: 4e-3
-/// m/s off (docs/theory/gaits.md).
+/// Follows NTRT's integration within 2e-6 m/s over a minute. Steps of 2 ms would suffice for
+/// walking: error 4e-3 m/s (docs/theory/gaits.md).
 constexpr double kIntegratorStepS = 0.00025;
 constexpr int kEdges = 57;
 /// Nodes whose sign LearningSpineJSON changes "for hardware comparison".
 constexpr int kInverted[] = {2, 4, 5, 6, 7, 8};
 
-/// Cables of three segments in the order of NTRT's nodes: at the paper's commit, and since 2016.
+/// Cables of three segments in the order of NTRT's nodes: at the commit of the paper, and since
+/// 2016.
 const std::vector<std::string> kOrder2015{"outer_top_1",   "inner_top_1",   "outer_top_2",
                                           "inner_top_2",   "outer_left_1",  "inner_left_1",
                                           "outer_left_2",  "inner_left_2",  "outer_right_1",
@@ -38,7 +39,7 @@ const std::vector<std::string> kOrder2016{
     "outer_right_1", "outer_left_1", "outer_top_1", "inner_right_1", "inner_left_1", "inner_top_1",
     "outer_right_2", "outer_left_2", "outer_top_2", "inner_right_2", "inner_left_2", "inner_top_2"};
 
-/// "0.5036,0.9295": two numbers within 0..1.
+/// Reads two numbers within 0..1: "0.5036,0.9295".
 std::pair<double, double> ReadNnw(const fs::path& path, Diagnostics& out) {
   auto text = base::ReadInputFile(path.string(), kMaxFileBytes, "", out);
   if (!text) return {};
@@ -54,13 +55,14 @@ std::pair<double, double> ReadNnw(const fs::path& path, Diagnostics& out) {
   }
   std::string more;
   if (!good || words >> more) {
-    out.Error({path.string(), 1, 1}, "is not two numbers within 0..1, such as 0.5036,0.9295");
+    out.Error("ntrt.bad_parameters", {path.string(), 1, 1},
+              "is not two numbers within 0..1, such as 0.5036,0.9295");
   }
   return {numbers[0], numbers[1]};
 }
 
-/// "bestParameters-9" of "bestParameters-9_edge-0.nnw". Nothing, and a complaint, unless there is
-/// one such set in the folder.
+/// Returns "bestParameters-9" for "bestParameters-9_edge-0.nnw". Reports an error and returns
+/// nothing unless the folder contains exactly one such set.
 std::optional<std::string> FindSet(const std::string& folder, Diagnostics& out) {
   std::vector<std::string> sets;
   std::error_code ignored;
@@ -70,7 +72,7 @@ std::optional<std::string> FindSet(const std::string& folder, Diagnostics& out) 
     if (name.ends_with(ending)) sets.push_back(name.substr(0, name.size() - ending.size()));
   }
   if (sets.size() == 1) return sets[0];
-  out.Error({folder, 0, 0},
+  out.Error("ntrt.parameter_files", {folder, 0, 0},
             sets.empty() ? "has no file ..._node-0.nnw" : "has several sets of learned parameters",
             "a folder with bestParameters-9_node-0.nnw and bestParameters-9_edge-0.nnw to -56.nnw");
   return std::nullopt;
@@ -108,12 +110,12 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
   return gait;
 }
 
-/// A .json: htSpineSine's numbers, or a controller with feedback. Of the former
-/// V0 = A cos(2 pi f t + phi) - A, and one A for left and right.
+/// Imports a .json: the parameters of htSpineSine, or a controller with feedback. htSpineSine has
+/// V0 = A cos(2 pi f t + phi) - A, with one A for left and right.
 std::optional<GaitSpec> ImportJson(const std::string& path, Diagnostics& out) {
   auto text = base::ReadInputFile(path, kMaxFileBytes, "", out);
   if (!text) return std::nullopt;
-  std::replace(text->begin(), text->end(), '\t', ' ');  // JSON's, which YAML does not indent with
+  std::replace(text->begin(), text->end(), '\t', ' ');  // JSON allows tabs, YAML does not
   const std::size_t errors_before = out.items().size();
   const ValuePtr root = ParseYaml(*text, path, out);
   if (!root) return std::nullopt;
@@ -178,7 +180,7 @@ std::optional<GaitSpec> ImportNtrtGait(const std::string& path, NtrtCableOrder o
   if (std::filesystem::is_directory(path, ignored))
     return description::ImportLearned(path, order, out);
   if (std::filesystem::is_regular_file(path, ignored)) return description::ImportJson(path, out);
-  out.Error({path, 0, 0}, "there is no such file or folder");
+  out.Error("file.missing", {path, 0, 0}, "there is no such file or folder");
   return std::nullopt;
 }
 

@@ -1,4 +1,4 @@
-/// What the importers of NTRT's gaits share.
+/// Shared parts of the importers of NTRT gaits.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,14 @@
 
 namespace taut::description {
 
-inline constexpr double kMetre = 0.01;  // the spines are in centimetres
+inline constexpr double kMetre = 0.01;  // NTRT's spines are in centimeters
 
-/// What `FindCouplings` calls the groups of so many roles by index, in the order in which NTRT's
-/// scaleEdgeActions fills its table.
+/// Returns the names of `FindCouplings` for the index groups of `roles` roles, in the order of the
+/// table of NTRT's scaleEdgeActions.
 std::vector<std::string> IndexGroups(int roles);
 
-/// A controller with feedback; `path` is where the text came from, networks are beside it.
+/// Imports a controller with feedback; `path` is the file of the text, its networks are in the same
+/// folder.
 std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& path,
                                        Diagnostics& out);
 

@@ -1,6 +1,7 @@
-// Controllers with feedback of NTRT's tetrahedral complex: a .json and the networks (.nnw) that it
-// names. What the files mean is in NTRT's code only (JSONFeedbackControl, JSONGoalControl and
-// tgCPGCableControl at commit f0c52e93); the facts used here are named at each place.
+// Import of controllers with feedback of NTRT's tetrahedral complex: a .json and the networks
+// (.nnw) that it names. The formats are defined only by NTRT's code (JSONFeedbackControl,
+// JSONGoalControl and tgCPGCableControl at commit f0c52e93); each place cites the facts that it
+// uses.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -16,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRoles = 8;  // cables a joint
-/// The rates of amplitudes reach 600 a second.
+constexpr int kRoles = 8;  // cables per joint
+/// The rates of amplitudes reach 600 per second.
 constexpr double kFeedbackStepS = 0.001;
 /// Cables of a joint in the order of NTRT's nodes.
 const std::vector<std::string> kOscillators{"outer_front", "outer_right", "outer_back",
@@ -25,7 +26,7 @@ const std::vector<std::string> kOscillators{"outer_front", "outer_right", "outer
                                             "inner_left",  "inner_back"};
 const std::vector<std::string> kSaid{"frequency", "amplitude", "phase"};
 
-/// The numbers of `KEY: {params: [[...], ...]}`, each within 0..1; a row has `columns`.
+/// Reads the numbers of `KEY: {params: [[...], ...]}`, each within 0..1; a row has `columns`.
 std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, std::size_t rows,
                                             std::size_t columns, const Scope& scope) {
   const Value* of = root.Find(key);
@@ -38,7 +39,8 @@ std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, 
       if (!numbers) return {};
       for (const double x : *numbers) {
         if (!(x >= 0.0 && x <= 1.0)) {
-          scope.out.Error(row->at, std::string(key) + ": parameters lie within 0..1");
+          scope.out.Error("ntrt.parameter_out_of_range", row->at,
+                          std::string(key) + ": parameters lie within 0..1");
           return {};
         }
       }
@@ -47,16 +49,16 @@ std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, 
   }
   if (out.size() == rows) return out;
   if (scope.out.items().size() == errors_before) {
-    scope.out.Error(of ? of->at : root.at, std::string(key) + ".params must have " +
-                                               std::to_string(rows) + " rows, as NTRT's " +
-                                               "controllers of spines with eight cables a joint");
+    scope.out.Error("ntrt.wrong_number_of_rows", of ? of->at : root.at,
+                    std::string(key) + ".params must have " + std::to_string(rows) +
+                        " rows, as NTRT's " + "controllers of spines with eight cables a joint");
   }
   return {};
 }
 
-/// The network that `KEY: {params: {neuralFilename: ..., numStates: ...}}` names. Weights are, for
-/// each input and then the bias, one a hidden neuron; after them, for each hidden neuron and the
-/// bias, one an output. A bias is what a neuron that says -1 adds.
+/// Reads the network of `KEY: {params: {neuralFilename: ..., numStates: ...}}`. Its file contains,
+/// for each input and then the bias, one weight per hidden neuron; then, for each hidden neuron and
+/// the bias, one weight per output. The bias neuron has the constant output -1.
 std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const fs::path& folder,
                                        const std::vector<std::string>& outputs,
                                        const Scope& scope) {
@@ -74,7 +76,7 @@ std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const
   const Value* file = map.Require("neuralFilename");
   if (!file || inputs == 0 || hidden == 0 || said == 0) return std::nullopt;
   if (inputs != 2 || said != static_cast<int>(outputs.size())) {
-    scope.out.Error(params->at,
+    scope.out.Error("ntrt.wrong_network", params->at,
                     std::string(key) + ": a network of " + std::to_string(inputs) + " inputs and " +
                         std::to_string(said) + " outputs is not of this kind",
                     "2 and " + std::to_string(outputs.size()) +
@@ -92,9 +94,10 @@ std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const
   const auto in = static_cast<std::size_t>(inputs), mid = static_cast<std::size_t>(hidden);
   const std::size_t count = (in + 1) * mid + (mid + 1) * outputs.size();
   if (!good || weights.size() != count) {
-    scope.out.Error({path, 1, 1}, "is not " + std::to_string(count) + " numbers, as a network of " +
-                                      std::to_string(inputs) + ", " + std::to_string(hidden) +
-                                      " and " + std::to_string(said) + " neurons has");
+    scope.out.Error("ntrt.wrong_number_of_weights", {path, 1, 1},
+                    "is not " + std::to_string(count) + " numbers, as a network of " +
+                        std::to_string(inputs) + ", " + std::to_string(hidden) + " and " +
+                        std::to_string(said) + " neurons has");
     return std::nullopt;
   }
   NetworkSpec network;
@@ -135,8 +138,8 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   if (cpg.goal_network) {  // NTRT's x is our y, its z our x
     for (Neuron& neuron : cpg.goal_network->hidden) std::swap(neuron.weights[0], neuron.weights[1]);
   }
-  // 0..30 rad/s; squares of amplitudes 0..300 (cm/s)^2; what feedback of 1 does: -0.5..10 rad/s^2,
-  // 0..200 (cm/s)^2, -0.5..6.28 rad/s. The square of the amplitude converges with it itself.
+  // Ranges: 0..30 rad/s; squares of amplitudes 0..300 (cm/s)^2; effect of a feedback of 1: -0.5..10
+  // rad/s^2, 0..200 (cm/s)^2, -0.5..6.28 rad/s. The squared amplitude is also its convergence rate.
   const std::vector<double>& node = nodes[0];
   const double square = 300.0 * node[1];
   cpg.frequency_hz = 30.0 * node[0] / (2.0 * std::numbers::pi);
@@ -147,7 +150,7 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   cpg.integrator_step_s = kFeedbackStepS;
   cpg.symmetry = CpgSymmetry::kIndex;
   if (!(square > 0.0)) {
-    out.Error(root.at, "nodeVals: an amplitude of 0 moves nothing");
+    out.Error("ntrt.no_amplitude", root.at, "nodeVals: an amplitude of 0 moves nothing");
     return std::nullopt;
   }
   for (const std::string& name : kOscillators) {

@@ -1,8 +1,9 @@
-/// The kinds of gaits. One has a file NAME.h here, with the table of its keys, and beside it
+/// Registry of the kinds of gaits. Each kind has a file NAME.h in this folder with the table of its
+/// keys and the functions
 ///
-///   void Check(const MapReader&, Text&);   what its keys must fulfil together in a file
+///   void Check(const MapReader&, Text&);   checks conditions on several keys of a file
 ///   void CheckNumbers(const Spec&, const SourceRef&, Diagnostics&);
-///                                          what a resolved experiment must be asked again
+///                                          repeats checks for a resolved experiment
 ///   void Resolve(const Spec&, const RobotSpec&, ResolvedGait&, Diagnostics&);
 ///                                          finds its cables in a robot
 ///
@@ -25,7 +26,7 @@
 
 namespace taut::description {
 
-/// `OfFile`: what a file says, a `OfGait` or derived from it.
+/// Kind of gait. `OfFile`: contents of a file, an `OfGait` or derived from it.
 template <class OfGait, class OfFile = OfGait>
 struct GaitKind {
   using Spec = OfGait;
@@ -42,7 +43,7 @@ inline constexpr std::tuple kGaitKinds{
     GaitKind<TowardGoalGait>{"toward_goal", &GaitSpec::toward_goal},
 };
 
-/// visit(kind, its number as a constant), in the order of the list.
+/// Calls visit(kind, index as a constant) in the order of the list.
 template <class Visit>
 void ForEachGaitKind(const Visit& visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -51,7 +52,7 @@ void ForEachGaitKind(const Visit& visit) {
   (std::make_index_sequence<std::tuple_size_v<std::remove_const_t<decltype(kGaitKinds)>>>());
 }
 
-/// What a file says of each kind.
+/// Contents of a file for each kind.
 template <class... Kinds>
 std::tuple<std::optional<typename Kinds::Text>...> TextsOf(const std::tuple<Kinds...>&);
 using GaitKindTexts = decltype(TextsOf(kGaitKinds));
@@ -62,13 +63,13 @@ inline std::vector<std::string> GaitKindNames() {
   return names;
 }
 
-/// What a written gait has below the lines of its keys.
+/// Returns the lines of a written gait below the lines of its keys.
 template <class Spec>
 std::string LinesBesideKeys(const Spec&) {
   return {};
 }
 
-/// The kinds that a gait has, of which there must be one.
+/// Returns the number of kinds that a gait has; it must be one.
 inline int CountKinds(const GaitSpec& gait) {
   int count = 0;
   ForEachGaitKind([&](const auto& kind, auto) { count += (gait.*kind.gait).has_value(); });

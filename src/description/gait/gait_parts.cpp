@@ -54,7 +54,7 @@ std::vector<int> FindCables(const CableMatch& match, const std::string& what, co
              NameHint(word, words);
     }
   }
-  out.Error(at, what + ": no cable matches " + Written(match), hint);
+  out.Error("gait.matches_no_cable", at, what + ": no cable matches " + Written(match), hint);
   return cables;
 }
 

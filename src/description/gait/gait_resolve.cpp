@@ -1,3 +1,4 @@
+// Cables of a gait in a robot, and the numbers of a gait that may be varied.
 #include "description/gait/gait_keys.h"
 #include "description/yaml/number_list.h"
 

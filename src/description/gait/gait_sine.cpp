@@ -7,7 +7,7 @@ namespace taut::description {
 void Check(const MapReader& map, SineGait& sine) {
   CheckTwice(sine.waves, "waves", map.scope());
   if (map.Has("waves") && sine.waves.empty() && map.scope().out.ok()) {
-    map.Error("waves", "sine.waves must have a wave or more");
+    map.Error("gait.no_waves", "waves", "sine.waves must have a wave or more");
   }
 }
 
@@ -23,7 +23,7 @@ void Resolve(const SineGait& sine, const RobotSpec& robot, ResolvedGait& resolve
       const auto place = PlaceInChain(name);
       if (!place && wave.phase_per_segment_rad != 0.0) {
         out.Error(
-            wave.at,
+            "gait.cable_without_number", wave.at,
             "wave " + wave.name + ": phase_per_segment_rad needs a number at the end of " + name,
             "such as outer_top_2");
       }
@@ -35,7 +35,8 @@ void Resolve(const SineGait& sine, const RobotSpec& robot, ResolvedGait& resolve
       }
     }
     if (!twice.empty()) {
-      out.Error(wave.at, "wave " + wave.name + ": " + twice, "a cable has one wave");
+      out.Error("gait.cable_matched_twice", wave.at, "wave " + wave.name + ": " + twice,
+                "a cable has one wave");
     }
   }
   for (const auto& [cable, wave] : by_cable) {

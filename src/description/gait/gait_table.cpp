@@ -26,7 +26,7 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
-/// "outer_top_1" of "outer_top_1_m". Empty if the name has not the unit of the quantity.
+/// Returns "outer_top_1" for "outer_top_1_m". Empty if the name lacks the unit of the quantity.
 std::string CableOf(const std::string& cell, GaitDrives drives) {
   const std::string unit = UnitOfName(drives);
   const bool good = cell.size() > unit.size() && cell.ends_with(unit);
@@ -36,7 +36,9 @@ std::string CableOf(const std::string& cell, GaitDrives drives) {
 bool ReadHeader(const std::vector<std::string>& cells, GaitDrives drives, const SourceRef& at,
                 TableGait& table, Diagnostics& out) {
   bool good = cells.front() == "time_s";
-  if (!good) out.Error(at, "the first column must be time_s, got \"" + cells.front() + "\"");
+  if (!good)
+    out.Error("gait_table.no_time", at,
+              "the first column must be time_s, got \"" + cells.front() + "\"");
   for (std::size_t i = 1; i < cells.size(); ++i) {
     const std::string& cell = cells[i];
     const std::string cable = CableOf(cell, drives);
@@ -47,27 +49,30 @@ bool ReadHeader(const std::vector<std::string>& cells, GaitDrives drives, const 
     const bool velocity = drives == GaitDrives::kVelocity;
     const std::string of_other =
         CableOf(cell, velocity ? GaitDrives::kRestLength : GaitDrives::kVelocity);
-    out.Error(at, "column " + std::to_string(i + 1) + " is \"" + cell + "\"",
-              of_other.empty() ? std::string("a cable's name with its unit, such as outer_top_1") +
-                                     UnitOfName(drives)
-                               : WhoDrives(drives) + (" has " + of_other) + UnitOfName(drives));
+    out.Error(
+        "gait_table.bad_column", at, "column " + std::to_string(i + 1) + " is \"" + cell + "\"",
+        of_other.empty()
+            ? std::string("a cable's name with its unit, such as outer_top_1") + UnitOfName(drives)
+            : WhoDrives(drives) + (" has " + of_other) + UnitOfName(drives));
     good = false;
   }
   return good;
 }
 
-/// False: a cell was wrong.
+/// Reads a row. Returns false after an error.
 bool ReadRow(const std::vector<std::string>& cells, const SourceRef& at, TableGait& table,
              Diagnostics& out) {
   if (cells.size() != table.cables.size() + 1) {
-    out.Error(at, "a row of " + std::to_string(cells.size()) + " cells under a header of " +
-                      std::to_string(table.cables.size() + 1));
+    out.Error("gait_table.ragged_row", at,
+              "a row of " + std::to_string(cells.size()) + " cells under a header of " +
+                  std::to_string(table.cables.size() + 1));
     return false;
   }
   std::vector<double> row(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (ToNumber(cells[i], row[i])) continue;
-    out.Error(at, "\"" + cells[i] + "\" is not a finite number", "column " + std::to_string(i + 1));
+    out.Error("gait_table.not_a_number", at, "\"" + cells[i] + "\" is not a finite number",
+              "column " + std::to_string(i + 1));
     return false;
   }
   table.time_s.push_back(row.front());
@@ -75,29 +80,32 @@ bool ReadRow(const std::vector<std::string>& cells, const SourceRef& at, TableGa
   return true;
 }
 
-/// What holds for every table, wherever it comes from.
+/// Checks a table of any source.
 void CheckTable(const TableGait& table, const SourceRef& at, Diagnostics& out) {
   if (table.cables.empty() || table.rows.empty()) {
-    out.Error(at, "a table needs a column for a cable and a row");
+    out.Error("gait_table.empty", at, "a table needs a column for a cable and a row");
     return;
   }
   if (table.time_s.front() != 0.0) {
-    out.Error(at, "a table's first row is at 0 s, not at " + Shown(table.time_s.front()) + " s");
+    out.Error("gait_table.bad_start", at,
+              "a table's first row is at 0 s, not at " + Shown(table.time_s.front()) + " s");
   }
   for (std::size_t i = 1; i < table.time_s.size(); ++i) {
     if (table.time_s[i] > table.time_s[i - 1]) continue;
-    out.Error(at, "a table's times must rise, but " + Shown(table.time_s[i]) + " s follows " +
-                      Shown(table.time_s[i - 1]) + " s");
+    out.Error("gait_table.times_not_increasing", at,
+              "a table's times must rise, but " + Shown(table.time_s[i]) + " s follows " +
+                  Shown(table.time_s[i - 1]) + " s");
     break;
   }
   if (table.repeat_from_s && !(*table.repeat_from_s < table.time_s.back())) {
-    out.Error(at, "table.repeat_from_s must be before the last row, which is at " +
-                      Shown(table.time_s.back()) + " s");
+    out.Error("gait_table.bad_repeat", at,
+              "table.repeat_from_s must be before the last row, which is at " +
+                  Shown(table.time_s.back()) + " s");
   }
 }
 
-/// A table as a file has it: "time_s,outer_top_1_m_per_s,...", then rows. Lines with a # in front
-/// say something to people. Nothing after a complaint.
+/// Reads a table from a CSV file: "time_s,outer_top_1_m_per_s,...", then rows. Lines that begin
+/// with # are comments. Returns nothing after an error.
 std::optional<TableGait> ReadGaitTable(const std::string& path, GaitDrives drives,
                                        Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
@@ -119,7 +127,7 @@ std::optional<TableGait> ReadGaitTable(const std::string& path, GaitDrives drive
     }
   }
   if (!header) {
-    out.Error({path, 1, 1}, "has no header line",
+    out.Error("gait_table.no_header", {path, 1, 1}, "has no header line",
               std::string("such as time_s,outer_top_1") + UnitOfName(drives));
   }
   if (out.items().size() != errors_before) return std::nullopt;
@@ -145,7 +153,8 @@ void Check(const MapReader& map, TableText& table) {
   const std::string key = map.ExactlyOne({"file", "rows"});
   if (key == "file") {
     if (map.Has("cables")) {
-      map.Error("cables", "table.cables has no effect", "the file's columns name the cables");
+      map.Error("gait_table.cables_without_effect", "cables", "table.cables has no effect",
+                "the file's columns name the cables");
     }
     const auto path = FindFile(table.file.value, "table.file", map.scope());
     if (auto read = path ? ReadGaitTable(*path, drives, map.scope().out) : std::nullopt) {
@@ -166,10 +175,11 @@ void Check(const MapReader& map, TableText& table) {
 
 void CheckNumbers(const TableGait& table, const SourceRef& at, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
-  if (table.rows.size() != table.time_s.size()) out.Error(at, "a table needs a time for each row");
+  if (table.rows.size() != table.time_s.size())
+    out.Error("gait_table.times_missing", at, "a table needs a time for each row");
   for (const std::vector<double>& row : table.rows) {
     if (row.size() == table.cables.size()) continue;
-    out.Error(at, "a table's row needs a signal for each cable");
+    out.Error("gait_table.signals_missing", at, "a table's row needs a signal for each cable");
     break;
   }
   if (out.items().size() == errors_before) CheckTable(table, at, out);
@@ -183,9 +193,10 @@ void Resolve(const TableGait& table, const RobotSpec& robot, ResolvedGait& resol
     const auto found = std::find(names.begin(), names.end(), name);
     const int cable = static_cast<int>(found - names.begin());
     if (found == names.end()) {
-      out.Error(table.at, robot.def.name + " has no cable \"" + name + "\"", NameHint(name, names));
+      out.Error("cable.unknown", table.at, robot.def.name + " has no cable \"" + name + "\"",
+                NameHint(name, names));
     } else if (std::count(resolved.cables.begin(), resolved.cables.end(), cable) > 0) {
-      out.Error(table.at, "the table has " + name + " twice");
+      out.Error("gait_table.duplicate_cable", table.at, "the table has " + name + " twice");
     } else {
       resolved.cables.push_back(cable);
     }

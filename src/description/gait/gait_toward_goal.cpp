@@ -7,8 +7,8 @@
 namespace taut::description {
 namespace {
 
-/// The directions of bodies that are one rod, as the robot is described. Those of a robot that
-/// stands on a fixed rod say nothing about how it lies.
+/// Returns the directions of bodies that are a single rod, in the described pose. Fixed rods are
+/// left out: they do not show the orientation of the robot.
 std::vector<ResolvedGait::Strut> StrutsOf(const ModelDef& def) {
   std::vector<int> rods(def.bodies.size());
   for (const CapsuleDef& rod : def.capsules) {
@@ -25,8 +25,8 @@ std::vector<ResolvedGait::Strut> StrutsOf(const ModelDef& def) {
   return struts;
 }
 
-/// How well directions span space: the determinant of sum u u^T over that of as many that go
-/// evenly in all directions, 0 to 1.
+/// Returns the spread of directions over space, 0 to 1: the determinant of sum u u^T, divided by
+/// its value for equally many evenly distributed directions.
 double Spread(const std::vector<ResolvedGait::Strut>& struts) {
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, xz = 0;
   for (const ResolvedGait::Strut& strut : struts) {
@@ -39,7 +39,7 @@ double Spread(const std::vector<ResolvedGait::Strut>& struts) {
          (third * third * third);
 }
 
-/// Struts that all but lie in one plane tell a turn about it badly.
+/// With struts almost in one plane, the orientation of the robot is poorly determined.
 constexpr double kLeastSpread = 1e-3;
 
 }  // namespace
@@ -55,7 +55,7 @@ void Resolve(const TowardGoalGait& gait, const RobotSpec& robot, ResolvedGait& r
   const ModelDef& def = robot.def;
   std::vector<ResolvedGait::Strut> struts = StrutsOf(def);
   if (struts.size() < 3 || !(Spread(struts) > kLeastSpread)) {
-    out.Error(gait.at,
+    out.Error("gait.strut_directions", gait.at,
               "toward_goal: the " + std::to_string(struts.size()) + " struts of " + def.name +
                   " do not go in three directions",
               "the turn of the robot is found from bodies that are a single rod");
@@ -74,7 +74,8 @@ void Resolve(const TowardGoalGait& gait, const RobotSpec& robot, ResolvedGait& r
   for (const Vec3& middle : middles) square_m2 += Dot(middle - center, middle - center);
   const double radius_m = std::sqrt(square_m2 / count);
   if (!(radius_m > 0)) {
-    out.Error(gait.at, "toward_goal: the middles of all its cables are in one place",
+    out.Error("gait.cables_in_one_place", gait.at,
+              "toward_goal: the middles of all its cables are in one place",
               "it needs cables on all sides of the robot");
     return;
   }

@@ -14,7 +14,7 @@ void AddTag(Tags& tags, const std::string& tag) {
   if (!tag.empty() && std::find(tags.begin(), tags.end(), tag) == tags.end()) tags.push_back(tag);
 }
 
-/// Position `i` of `count` in a row: its number, and first, middle or last.
+/// Adds the tags of copy `i` of `count`: its number, and first, middle or last.
 void AddPositionTags(Tags& tags, int i, int count, int number) {
   if (i == 0) AddTag(tags, "first");
   if (i == count - 1) AddTag(tags, "last");
@@ -54,7 +54,8 @@ class Assembler {
     return nullptr;
   }
 
-  /// Counted before anything is made, so that `copies: 10000` of a large part costs nothing.
+  /// Checks the limits before anything is allocated, so that `copies: 10000` of a large part costs
+  /// nothing.
   bool FitsLimits() {
     const auto ends = [](const std::vector<PairText>& pairs) {
       long long count = 0;
@@ -70,7 +71,7 @@ class Assembler {
       pair_ends += (ends(part->pairs) + ends(placement.connect)) * placement.copies;
       if (nodes <= kMaxModelNodes && pair_ends <= kMaxModelEnds) continue;
       out_.Error(
-          placement.at,
+          "model.too_large", placement.at,
           nodes > kMaxModelNodes
               ? "the model has more than " + std::to_string(kMaxModelNodes) + " nodes"
               : "the pairs of the model name more than " + std::to_string(kMaxModelEnds) + " nodes",
@@ -95,7 +96,8 @@ class Assembler {
       instance.velocity_m_per_s = placement.velocity_m_per_s;
       instance.angular_velocity_rad_per_s = placement.angular_velocity_rad_per_s;
       if (!instance.name.empty() && !instances_.emplace(instance.name, placement.at).second) {
-        out_.Error(placement.at, "duplicate name \"" + instance.name + "\" in the structure",
+        out_.Error("structure.duplicate_name", placement.at,
+                   "duplicate name \"" + instance.name + "\" in the structure",
                    "give each placement a `name:` of its own");
         return;
       }
@@ -127,7 +129,7 @@ class Assembler {
       node_of_.emplace(node.name, static_cast<int>(assembly_.nodes.size()));
       assembly_.nodes.push_back(std::move(node));
     }
-    for (const NodeText& text : part.nodes) {  // once all nodes of the copy are known
+    for (const NodeText& text : part.nodes) {  // after all nodes of the copy are known
       if (text.fixed_to.text.empty()) continue;
       const auto other = node_of_.find(FullName(instance, text.fixed_to.text));
       if (other == node_of_.end()) continue;
@@ -161,7 +163,7 @@ class Assembler {
     }
   }
 
-  /// Copy after copy, as a spine is built: all cables from 0 to 1, then all from 1 to 2, ...
+  /// Adds the `connect` pairs, copy after copy: all cables from 0 to 1, then all from 1 to 2, ...
   void Connect(const PlacementText& placement, int first_instance) {
     for (int i = 0; i < placement.copies; ++i) {
       for (const PairText& text : placement.connect) {
@@ -199,7 +201,8 @@ class Assembler {
       for (const Placed& node : text.nodes) {
         names.push_back(node.text);
         if (!AddNode(pair, node.text) && model_.nodes_complete) {
-          out_.Error(node.at, "there is no node \"" + node.text + "\"", NodeHint(node.text));
+          out_.Error("node.unknown", node.at, "there is no node \"" + node.text + "\"",
+                     NodeHint(node.text));
           assembly_.complete = false;
         }
       }
@@ -216,7 +219,7 @@ class Assembler {
     return true;
   }
 
-  /// Keeps a pair whose nodes all exist (the others were complained about).
+  /// Keeps a pair whose nodes all exist (missing ones are already reported).
   void Add(PlacedPair pair, const PairText& text, std::size_t node_count) {
     if (pair.nodes.size() != node_count) return;
     pair.route = text.route;
@@ -227,7 +230,7 @@ class Assembler {
       }
     }
     AddTag(pair.tags, pair.name);
-    // Two unnamed pairs between the same nodes are the same pair, whichever way round.
+    // Two unnamed pairs between the same nodes are the same pair, in either direction.
     std::string key = pair.name;
     if (text.name.empty() && pair.nodes.size() == 2 && pair.nodes[0] > pair.nodes[1]) {
       key = assembly_.nodes[pair.nodes[1]].name + "-" + assembly_.nodes[pair.nodes[0]].name;
@@ -239,7 +242,7 @@ class Assembler {
     const auto [first, fresh] = pair_keys_.emplace(key, pair.at);
     const bool same_name = fresh && !pair_names_.emplace(pair.name).second;
     if (!fresh || same_name) {
-      out_.Error(pair.at, "duplicate pair \"" + pair.name + "\"",
+      out_.Error("pair.duplicate_name", pair.at, "duplicate pair \"" + pair.name + "\"",
                  "the first is in line " + std::to_string(first->second.line) +
                      "; if both are meant, give them a `name:`");
       return;

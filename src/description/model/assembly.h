@@ -1,5 +1,5 @@
-/// A model with everything placed: nodes and pairs in W with full names and all their tags, but
-/// nothing built from them yet.
+/// Assembly of a model: nodes and pairs placed in W, with full names and all their tags, before
+/// bodies and cables are built.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace taut::description {
 
-/// A copy of a part, or (the first one) the nodes and pairs at the top of the file.
+/// Copy of a part, or (instance 0) the nodes and pairs at the top of the file.
 struct Instance {
   std::string name;  ///< Empty for the top of the file.
   SourceRef at;
@@ -29,14 +29,14 @@ struct PlacedNode {
 struct PlacedPair {
   std::string name;  ///< "outer_top_1", "segment_0.right-left"
   SourceRef at;
-  int instance = -1;  ///< -1: joins several.
+  int instance = -1;  ///< -1: several instances.
   std::vector<int> nodes;
   Tags tags;
-  std::vector<RouteText> route = {};  ///< Empty, or one a node.
+  std::vector<RouteText> route = {};  ///< Empty, or one element per node.
 };
 
-/// What a builder could match if there were copies enough: the tags of one node or pair of the
-/// file, and whether first, middle, last and a number come on top.
+/// Tags of one node or pair of the file, for the check of selectors. `copied`: its copies also have
+/// first, middle or last and a number.
 struct TagsInFile {
   Tags tags;
   bool copied = false;
@@ -50,7 +50,7 @@ struct Assembly {
   bool complete = true;  ///< False: some nodes or pairs of the file are missing.
 };
 
-/// Complains about names that do not exist or exist twice, and about models that are too large.
+/// Places all parts. Reports unknown and duplicate names and models that are too large.
 Assembly Assemble(const ModelText& model, Diagnostics& out);
 
 }  // namespace taut::description

@@ -1,3 +1,4 @@
+// Assignment of builders to nodes and pairs by selectors.
 #include <algorithm>
 #include <set>
 
@@ -6,7 +7,7 @@
 namespace taut::description {
 namespace {
 
-/// Tags that a copy may have on top of its own: its position and its number.
+/// Returns whether copies get this tag automatically: position or number.
 bool IsCopyTag(const std::string& tag) {
   return tag == "first" || tag == "middle" || tag == "last" ||
          std::all_of(tag.begin(), tag.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -33,7 +34,7 @@ std::string ShownTags(const std::vector<std::string>& set) {
   return shown + "]";
 }
 
-/// The likely tag if one of the set is on none of `all`.
+/// Returns a hint for the first tag of the set that no element of `all` has.
 std::string TagHint(const std::vector<std::string>& set, const std::vector<TagsInFile>& all) {
   std::set<std::string> tags;
   for (const TagsInFile& one : all) {
@@ -47,8 +48,8 @@ std::string TagHint(const std::vector<std::string>& set, const std::vector<TagsI
   return "no one has all of these tags";
 }
 
-/// Only what no number of copies could ever match is an error: a spine of two segments has no
-/// middle one, and its model file is right all the same.
+/// Reports selectors that no number of copies could match. A selector that matches nothing at
+/// present is valid: a spine of two segments has no middle one.
 void CheckMatches(const BuilderText& builder, const Assembly& assembly, Diagnostics& out) {
   const auto& mine = builder.on_pairs() ? assembly.pair_tags : assembly.node_tags;
   const auto& others = builder.on_pairs() ? assembly.node_tags : assembly.pair_tags;
@@ -59,7 +60,8 @@ void CheckMatches(const BuilderText& builder, const Assembly& assembly, Diagnost
     const bool placed =
         builder.on_pairs() ? MatchesAny(set, assembly.pairs) : MatchesAny(set, assembly.nodes);
     if (placed) continue;  // a full name such as segment_0.tip
-    out.Error(builder.match_at, std::string("no ") + what + " matches " + ShownTags(set),
+    out.Error("builder.matches_nothing", builder.match_at,
+              std::string("no ") + what + " matches " + ShownTags(set),
               CouldMatch(set, others)
                   ? "a " + builder.kind + " goes on " + what + "s, but these tags are on " + other
                   : TagHint(set, mine));
@@ -73,11 +75,11 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
   assignment.of_pair.assign(assembly.pairs.size(), -1);
   assignment.of_node.resize(assembly.nodes.size());
   assignment.lump_kg.assign(assembly.nodes.size(), 0.0);
-  std::set<std::pair<int, int>> clashes;  // one complaint for two builders, not one a node
+  std::set<std::pair<int, int>> clashes;  // one error for two builders, not one per node
   const auto clash = [&](int first, int second, const std::string& name) {
     if (!clashes.insert({first, second}).second) return;
     const BuilderText& a = model.builders[first];
-    out.Error(model.builders[second].at,
+    out.Error("builder.second_builder", model.builders[second].at,
               "\"" + name + "\" already is a " + a.kind + " by the builder in line " +
                   std::to_string(a.at.line),
               "each pair and node is built once: make the tags differ");
@@ -113,14 +115,14 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
   }
 
   if (!model.builders_complete) return assignment;
-  std::set<std::pair<int, int>> reported;  // once in the file, not once a copy
+  std::set<std::pair<int, int>> reported;  // once per place in the file, not once per copy
   for (std::size_t pair = 0; pair < assembly.pairs.size(); ++pair) {
     const PlacedPair& placed = assembly.pairs[pair];
     if (assignment.of_pair[pair] >= 0 ||
         !reported.insert({placed.at.line, placed.at.column}).second) {
       continue;
     }
-    out.Error(placed.at, "no builder matches the pair \"" + placed.name + "\"",
+    out.Error("pair.no_builder", placed.at, "no builder matches the pair \"" + placed.name + "\"",
               placed.tags.empty() ? "it has no tags" : "its tags are " + ShownTags(placed.tags));
   }
   return assignment;

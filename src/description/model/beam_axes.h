@@ -1,4 +1,4 @@
-/// How a beam along a pair is turned.
+/// Orientation of a beam (box along a pair).
 #pragma once
 
 #include <cmath>
@@ -7,12 +7,12 @@
 
 namespace taut::description {
 
-/// Of a beam along the unit vector u of its part: x along it, y level, z up; a beam along z has
-/// its y along the part's y.
+/// Returns q_PartBeam of a beam along the unit vector u, in the part's frame: x along the beam, y
+/// horizontal, z upward. A beam along z has its y along the part's y.
 inline Quat BeamOrientation(const Vec3& u) {
-  // Turn x to u's direction in the level plane (about z), then up to u (about the new y). Of the
-  // half angle's sine and cosine the larger is a root, the other a quotient: a root of a difference
-  // would lose half of the digits of a small angle, or be one of a negative number.
+  // Yaw about z to u's horizontal direction, then pitch about the new y. Of the half angle's sine
+  // and cosine, the larger is computed by a square root, the smaller by a quotient: a root of a
+  // difference would lose half of the digits of a small angle, or have a negative argument.
   const double level = std::sqrt(u.x * u.x + u.y * u.y);
   const double c = level > 1e-12 ? u.x / level : 1.0, s = level > 1e-12 ? u.y / level : 0.0;
   const double larger = std::sqrt(0.5 * (1.0 + std::fabs(c))),

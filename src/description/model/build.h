@@ -1,4 +1,4 @@
-/// From placed nodes and pairs to bodies, shapes and cables.
+/// Builders: construction of bodies, shapes, cables and joints from placed nodes and pairs.
 #pragma once
 
 #include <vector>
@@ -9,33 +9,35 @@
 
 namespace taut::description {
 
-/// Which builder makes what. Indices into `ModelText::builders`.
+/// Builders of each pair and node. Indices into `ModelText::builders`.
 struct Assignment {
   std::vector<int> of_pair;               ///< Per pair; -1: none.
   std::vector<std::vector<int>> of_node;  ///< Per node: at most one of each kind.
   std::vector<double>
-      lump_kg;  ///< Per node: half of what the bars and cables that end there weigh.
+      lump_kg;  ///< Per node [kg]: half the mass of the bars and cables that end there.
 };
 
-/// Complains about builders that match nothing, about two for the same, about pairs without one.
+/// Assigns builders by their selectors. Reports builders that match nothing, two builders for the
+/// same pair or node, and pairs without a builder.
 Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diagnostics& out);
 
-/// Which body a node belongs to, per node: an index into `ModelDef::bodies`, or kWorld.
+/// Body of each node: an index into `ModelDef::bodies`, or kWorld.
 using BodyOfNode = std::vector<int>;
 
-/// What shares nodes becomes one rigid body; fills bodies, shapes and nodes of `robot`.
+/// Builds the rigid bodies: solids that share nodes form one body. Fills bodies, shapes and nodes
+/// of `robot`.
 BodyOfNode BuildBodies(const ModelText& model, const Assembly& assembly,
                        const Assignment& assignment, RobotSpec& robot, Diagnostics& out);
 
 void BuildCables(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out);
 
-/// Joints of pairs and supports of nodes, behind those of rods that turn in their nodes
-/// (BuildBodies); and what is kept apart.
+/// Adds the joints of pairs and the supports of nodes, after the pins of class-k rods
+/// (BuildBodies); and the pairs of bodies that do not collide (`apart`).
 void BuildJoints(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out);
 
-/// Complains about bodies that no chain of cables and joints joins to the others or to the world.
+/// Reports bodies that no chain of cables and joints connects to the others or to the world.
 void CheckConnected(const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::description

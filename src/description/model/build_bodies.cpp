@@ -1,3 +1,4 @@
+// Construction of rigid bodies, shapes and nodes.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,16 +16,16 @@
 namespace taut::description {
 namespace {
 
-constexpr double kShortest_m = 1e-9;  ///< What is shorter has no direction.
-/// Inertia radius of a lone point mass. All that pulls at it acts at its centre and it has no
-/// shape, so it never turns and the value changes nothing; it only has to be a number.
+constexpr double kShortest_m = 1e-9;  ///< Least length that has a direction.
+/// Radius for the inertia of a lone point mass. All forces act at its center and it has no shape,
+/// so it never rotates: the value has no effect, but has to be a number.
 constexpr double kPointRadius_m = 0.01;
 
-/// A weld with what it is made of.
+/// Solid parts of a weld.
 struct Solids {
   std::vector<MassProperties> parts;
   Bounds bounds;
-  bool complete = true;  ///< False: one of its rods was complained about and is not in `parts`.
+  bool complete = true;  ///< False: a rod with an error is missing in `parts`.
 };
 
 class BodyBuilder {
@@ -70,8 +71,9 @@ class BodyBuilder {
       const PlacedPair& placed = assembly_.pairs[pair];
       const int b = assignment_.of_pair[pair];
       if (b < 0 || !IsSolid(model_.builders[b]) || placed.nodes.size() == 2) continue;
-      out_.Error(placed.at, "a " + model_.builders[b].kind + " has two nodes, \"" + placed.name +
-                                "\" has " + std::to_string(placed.nodes.size()));
+      out_.Error("builder.two_nodes_needed", placed.at,
+                 "a " + model_.builders[b].kind + " has two nodes, \"" + placed.name + "\" has " +
+                     std::to_string(placed.nodes.size()));
     }
   }
 
@@ -108,7 +110,8 @@ class BodyBuilder {
     def.fixed = weld.anchored;
     if (!def.fixed) CheckMass(weld, solids, def);
     if (!names_.insert(def.name).second) {
-      out_.Error(Source(weld), "two bodies would be called \"" + def.name + "\"",
+      out_.Error("body.duplicate_name", Source(weld),
+                 "two bodies would be called \"" + def.name + "\"",
                  "give one of its pairs a `name:`");
     }
     robot_.def.bodies.push_back(std::move(def));
@@ -121,12 +124,12 @@ class BodyBuilder {
     const PlacedNode& node = assembly_.nodes[weld.nodes[0]];
     if (!model_.builders_complete || !assembly_.complete) return;
     if (weld.ends_bar) {
-      bodiless_(node.at, "the node \"" + node.name + "\" has no mass",
+      bodiless_("node.no_mass", node.at, "the node \"" + node.name + "\" has no mass",
                 "give a bar or a cable that ends there density_kg_per_m3 and area_m2, or mass_kg; "
                 "or the node a point_mass, or an anchor");
       return;
     }
-    bodiless_(node.at, "node \"" + node.name + "\" belongs to no body",
+    bodiless_("node.no_body", node.at, "node \"" + node.name + "\" belongs to no body",
               "a rod, box, sphere or point_mass makes a body of it, fixed_to joins it to another "
               "node's, an anchor fixes it in the world");
   }
@@ -140,7 +143,8 @@ class BodyBuilder {
     if (std::isnan(length)) return;
     const BuilderText& builder = PairBuilder(pair);
     if (length < kShortest_m) {
-      short_(placed.at, "the " + builder.kind + " \"" + placed.name + "\" has no length",
+      short_("rod.no_length", placed.at,
+             "the " + builder.kind + " \"" + placed.name + "\" has no length",
              "its nodes are in one place");
       return;
     }
@@ -218,7 +222,7 @@ class BodyBuilder {
     return instance < 0 ? Quat{} : assembly_.instances[instance].q_WPart;
   }
 
-  /// A shape as its builder has it, on a body. Directions of its surface turn with the part.
+  /// Adds a shape of a builder to a body. Directions of its surface rotate with the part.
   template <class Def, class Text>
   static Def& Add(std::vector<Def>& shapes, const Text& text, const std::string& name, int body,
                   const Quat& q_WPart) {
@@ -275,14 +279,15 @@ class BodyBuilder {
         std::isnan(def.com_m.x + def.com_m.y + def.com_m.z))
       return;
     if (def.mass_kg <= 0.0) {
-      out_.Error(Source(weld), "the body \"" + def.name + "\" has no mass");
+      out_.Error("body.no_mass", Source(weld), "the body \"" + def.name + "\" has no mass");
       return;
     }
     const Inertia& i = def.inertia_kg_m2;
     if (!std::isfinite(i.xx + i.yy + i.zz + i.xy + i.xz + i.yz)) return;
     const Vec3 moments = PrincipalMoments(i);
     if (moments.x > 1e-12 * moments.z) return;
-    out_.Error(Source(weld), "the body \"" + def.name + "\" has no inertia about some axis",
+    out_.Error("body.no_inertia", Source(weld),
+               "the body \"" + def.name + "\" has no inertia about some axis",
                "its mass is all on one line: give the point_mass a radius_m");
   }
 
@@ -303,12 +308,12 @@ class BodyBuilder {
     robot_.def.joints.push_back(std::move(joint));
   }
 
-  /// That of its first node; of a rod without nodes of its own, the rod's.
+  /// Returns the instance of the first node, or of the first rod if the body has no nodes.
   int FirstInstance(const Weld& weld) const {
     return weld.nodes.empty() ? assembly_.pairs[weld.pairs[0]].instance
                               : assembly_.nodes[weld.nodes[0]].instance;
   }
-  /// The instance that all nodes of the body are in, or -1.
+  /// Returns the instance of all nodes of the body, or -1 if they are in several.
   int InstanceOf(const Weld& weld) const {
     const int instance = FirstInstance(weld);
     const bool same = std::all_of(weld.nodes.begin(), weld.nodes.end(), [&](int node) {
@@ -317,7 +322,7 @@ class BodyBuilder {
     return same ? instance : -1;
   }
 
-  /// A placement that is one body gives it its name; otherwise the first rod does, or the node.
+  /// Returns the name of the placement if it is one body, else of the first rod or node.
   std::string Name(const Weld& weld) const {
     const int instance = InstanceOf(weld);
     if (instance >= 0 && bodies_in_instance_[instance] == 1) {
@@ -336,7 +341,8 @@ class BodyBuilder {
                               : assembly_.pairs[weld.pairs[0]].at;
   }
 
-  /// A copy moves as one: its centre of mass has the given velocity and all turns about it.
+  /// Sets the initial velocities. A copy moves as one rigid body: the given velocity is at its
+  /// center of mass, the angular velocity about it.
   void SetVelocities() {
     std::vector<double> mass(assembly_.instances.size(), 0.0);
     std::vector<Vec3> moment(assembly_.instances.size());
@@ -356,8 +362,9 @@ class BodyBuilder {
           if (Dot(in.velocity_m_per_s, in.velocity_m_per_s) +
                   Dot(in.angular_velocity_rad_per_s, in.angular_velocity_rad_per_s) >
               0.0) {
-            out_.Error(in.at, "the body \"" + def.name +
-                                  "\" joins placements, so none of them can have a velocity");
+            out_.Error("body.velocity_of_several_parts", in.at,
+                       "the body \"" + def.name +
+                           "\" joins placements, so none of them can have a velocity");
             break;
           }
         }
@@ -384,7 +391,7 @@ class BodyBuilder {
   std::vector<const Weld*> welds_with_body_;  ///< Per body.
   std::vector<int> instance_of_body_, bodies_in_instance_;
   BodyOfNode body_of_node_;
-  std::vector<int> body_of_pair_;  ///< Of those that are solid.
+  std::vector<int> body_of_pair_;  ///< Of solid pairs.
   std::set<std::string> names_;
   OncePerPlace bodiless_, short_;
 };

@@ -1,3 +1,4 @@
+// Construction of cables: attachments, rest lengths, connectivity.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -52,7 +53,7 @@ class CableMaker {
       CheckEnds(pair, cable);
     }
     if (cable.touches != CableTouches::kNone && cable.attachments.size() > 2) {
-      once_(pair.at,
+      once_("cable.touches_and_runs_over_nodes", pair.at,
             "the cable \"" + pair.name +
                 "\" touches what it comes to, and runs over more than two " + "nodes",
             "cables that touch run from node to node; leave `touches` away or cut it in two");
@@ -64,19 +65,20 @@ class CableMaker {
     robot_.cable_sources.push_back(pair.at);
   }
 
-  /// Spans with tensions of their own are wound at an end by what has no dynamics of its own.
+  /// Rejects friction in a cable with a DC motor: a cable whose spans have different tensions needs
+  /// an actuator without dynamics.
   void CheckMotor(const PlacedPair& pair, const CableDef& cable) {
     if (cable.actuator.kind != ActuatorDef::Kind::kDcMotor) return;
     for (const RouteText& element : pair.route) {
       if (element.friction == 0) continue;
-      once_(element.at,
+      once_("cable.friction_with_motor", element.at,
             "the cable \"" + pair.name +
                 "\" has friction there: a direct-current motor does not wind such a cable",
             "ideal and limited actuators do");
     }
   }
 
-  /// A cable that rods stop does not begin inside of one of another body.
+  /// Rejects a cable that wraps around rods and ends inside a rod of another body.
   void CheckEnds(const PlacedPair& pair, const CableDef& cable) {
     for (const CapsuleDef& rod : robot_.def.capsules) {
       const Vec3 along = rod.to_m - rod.from_m;
@@ -86,7 +88,7 @@ class CableMaker {
         const Vec3 off = at.position_m - rod.from_m - std::clamp(share, 0.0, 1.0) * along;
         const double inside_m = rod.radius_m - std::sqrt(Dot(off, off));
         if (!(inside_m > 0)) continue;
-        once_(pair.at,
+        once_("cable.end_inside_rod", pair.at,
               "the cable \"" + pair.name + "\" touches rods and ends " + Number(1000 * inside_m) +
                   " mm inside the rod \"" + rod.name + "\" of another body",
               "move one of them");
@@ -94,7 +96,8 @@ class CableMaker {
     }
   }
 
-  /// False if there is no sensible length.
+  /// Returns whether the cable has a valid length; reports legs of zero length and cables whose
+  /// ends are on one body.
   bool CheckPath(const PlacedPair& pair, const CableText&, const CableDef& cable) {
     for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
       const PlacedNode &from = assembly_.nodes[pair.nodes[i - 1]],
@@ -103,7 +106,7 @@ class CableMaker {
       const double length = std::sqrt(Dot(leg, leg));
       if (std::isnan(length)) return false;
       if (length >= kShortestLeg_m) continue;
-      once_(pair.at,
+      once_("cable.no_length", pair.at,
             "the cable \"" + pair.name + "\" has no length between \"" + from.name + "\" and \"" +
                 to.name + "\"",
             "these nodes are in one place");
@@ -117,7 +120,7 @@ class CableMaker {
     if (one_body && model_.builders_complete && assembly_.complete) {
       const int body = cable.attachments[0].body;
       once_(
-          pair.at,
+          "cable.both_ends_on_one_body", pair.at,
           "the cable \"" + pair.name + "\" ends twice on " +
               (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\""),
           "it would do nothing");
@@ -125,7 +128,7 @@ class CableMaker {
     return true;
   }
 
-  /// By the turns that its route gives it: no way of its bodies makes it shorter.
+  /// Returns the length wound by the given turns [m], a lower bound of the length in any pose.
   static double WoundLength(const PlacedPair& pair) {
     double wound = 0.0;
     for (const RouteText& element : pair.route) {
@@ -142,7 +145,7 @@ class CableMaker {
     cable.stiffness_n_per_m = elastic.stiffness_n_per_m;
     cable.member.mass_kg = elastic.mass_kg;
     if (builder.prestress_n && cable.rest_length_m <= 0.0) {
-      once_(builder.rest_at,
+      once_("cable.prestress_too_high", builder.rest_at,
             "cable.prestress_n: " + Number(*builder.prestress_n) + " N would stretch the cable \"" +
                 pair.name + "\" to more than its length of " + Number(length) + " m",
             "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
@@ -150,17 +153,17 @@ class CableMaker {
     }
     const double wound = WoundLength(pair);
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < wound) {
-      once_(builder.rest_at,
+      once_("cable.rest_length_below_wound", builder.rest_at,
             "the cable \"" + pair.name + "\" starts with a rest length of " +
                 Number(cable.rest_length_m) + " m, below the " + Number(wound) +
                 " m that are wound round its pulleys and drums",
             "with all that is between them it is " + Number(length) + " m long");
     }
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
-      once_(builder.rest_at, "the cable \"" + pair.name + "\" starts with a rest length of " +
-                                 Number(cable.rest_length_m) +
-                                 " m, below its min_rest_length_m of " +
-                                 Number(cable.actuator.min_rest_length_m) + " m");
+      once_("cable.rest_length_below_min", builder.rest_at,
+            "the cable \"" + pair.name + "\" starts with a rest length of " +
+                Number(cable.rest_length_m) + " m, below its min_rest_length_m of " +
+                Number(cable.actuator.min_rest_length_m) + " m");
     }
   }
 
@@ -181,7 +184,7 @@ void BuildCables(const ModelText& model, const Assembly& assembly, const Assignm
 
 void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   const std::vector<BodyDef>& bodies = robot.def.bodies;
-  const int world = static_cast<int>(bodies.size());  // and all that is fixed in it
+  const int world = static_cast<int>(bodies.size());  // includes all bodies fixed in the world
   base::UnionFind sets(bodies.size() + 1);
   const auto index = [&](int body) { return base::IsFixed(robot.def, body) ? world : body; };
   for (const CableDef& cable : robot.def.cables) {
@@ -192,7 +195,7 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   for (const JointDef& joint : robot.def.joints) {
     sets.Join(index(joint.body_a), index(joint.body_b));
   }
-  // The first body's set is the robot. The world alone is no set of bodies.
+  // The set of the first body is the robot. The world alone is not a set.
   int robot_set = -1;
   std::set<int> reported;
   for (int body = 0; body < world; ++body) {
@@ -200,7 +203,7 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
     const int set = sets.Root(body);
     if (robot_set < 0) robot_set = set;
     if (set == robot_set || !reported.insert(set).second) continue;
-    out.Error(robot.body_sources[body],
+    out.Error("body.not_connected", robot.body_sources[body],
               "no cable or joint joins the body \"" + bodies[body].name + "\" to \"" +
                   bodies[robot_set].name + "\"",
               "if that is meant, write `allow_disconnected: true`");

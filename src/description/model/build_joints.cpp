@@ -1,3 +1,4 @@
+// Construction of joints, supports and bars.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -15,8 +16,8 @@
 namespace taut::description {
 namespace {
 
-/// So far a joint may be beyond a stop: robots that have come to rest on one are, a little [rad,
-/// m].
+/// Tolerance of joint limits in the described pose [rad, m]: a robot at rest on a stop is slightly
+/// beyond it.
 constexpr double kPassed = 1e-3;
 
 class JointMaker {
@@ -54,7 +55,7 @@ class JointMaker {
   }
 
  private:
-  /// A joint as its builder has it, whose directions are those of the part.
+  /// Returns the joint of a builder, with directions rotated from the part's frame to W.
   JointDef In(int instance, const JointText& text) const {
     JointDef joint = text;
     if (instance < 0) return joint;
@@ -66,7 +67,7 @@ class JointMaker {
   }
   bool IsFixed(int body) const { return base::IsFixed(robot_.def, body); }
 
-  /// A distance with a spring. What it joins touches each other as if it were not there.
+  /// Adds a bar as a distance joint with a spring. Its two bodies still collide with each other.
   void Bar(const PlacedPair& pair, const BarText& text) {
     const auto at = [&](int node) { return assembly_.nodes[node].position_m; };
     const Vec3 along = at(pair.nodes.back()) - at(pair.nodes.front());
@@ -74,7 +75,7 @@ class JointMaker {
     const Elastic elastic = ElasticOf(text, length_m);
     const bool has_length = elastic.rest_length_m > 0 && std::isfinite(elastic.rest_length_m);
     if (text.prestress_n && !has_length && length_m > 0 && !std::isnan(elastic.rest_length_m)) {
-      once_(text.rest_at,
+      once_("bar.prestress_too_high", text.rest_at,
             "bar.prestress_n: " + base::Brief(*text.prestress_n) + " N would " +
                 (*text.prestress_n > 0 ? "stretch" : "press") + " the bar \"" + pair.name +
                 (*text.prestress_n > 0
@@ -98,8 +99,9 @@ class JointMaker {
 
   void Between(const PlacedPair& pair, const char* kind, JointDef joint) {
     if (pair.nodes.size() != 2) {
-      once_(pair.at, std::string("a ") + kind + " has two nodes, \"" + pair.name + "\" has " +
-                         std::to_string(pair.nodes.size()));
+      once_("pair.two_nodes_needed", pair.at,
+            std::string("a ") + kind + " has two nodes, \"" + pair.name + "\" has " +
+                std::to_string(pair.nodes.size()));
       return;
     }
     joint.name = pair.name;
@@ -123,7 +125,8 @@ class JointMaker {
     joint.body_a = kWorld, joint.body_b = body_of_node_[node];
     joint.from_m = joint.to_m = placed.position_m;
     if (joint.kind == JointKind::kDistance) {
-      once_(placed.at, "a support of the kind distance has no second point",
+      once_("support.distance_needs_two_points", placed.at,
+            "a support of the kind distance has no second point",
             "join the node to one in the world: a pair with a joint");
       return;
     }
@@ -137,11 +140,11 @@ class JointMaker {
       return other.at.line == at.line && other.at.column == at.column;
     };
     if (joint.body_b == kWorld && std::any_of(out_.items().begin(), out_.items().end(), told)) {
-      return;  // that its node belongs to no body
+      return;  // already reported: the node belongs to no body
     }
-    if (kind == "bar" && joint.body_b == kWorld && !out_.ok()) return;  // that it has no mass
+    if (kind == "bar" && joint.body_b == kWorld && !out_.ok()) return;  // reported: no mass
     if (known && joint.body_a == joint.body_b) {
-      once_(at,
+      once_("joint.one_body", at,
             called + " joins the body \"" +
                 (joint.body_b == kWorld ? "world" : robot_.def.bodies[joint.body_b].name) +
                 "\" to itself",
@@ -149,32 +152,34 @@ class JointMaker {
       return;
     }
     if (known && IsFixed(joint.body_a) && IsFixed(joint.body_b)) {
-      once_(at, called + " joins two things that do not move", "leave it out, or an anchor");
+      once_("joint.both_ends_fixed", at, called + " joins two things that do not move",
+            "leave it out, or an anchor");
       return;
     }
     const double gap = HeldGap(joint);
     if (gap > JointDef::kClosed_m) {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g m", gap);
-      once_(at, "the nodes of " + called + " are " + text + " apart where it holds them together",
+      once_("joint.gap", at,
+            "the nodes of " + called + " are " + text + " apart where it holds them together",
             joint.kind == JointKind::kBall ? "put them in one place" : "see its kind and axis");
       return;
     }
     const Vec3 apart = joint.to_m - joint.from_m;
     if (joint.kind == JointKind::kDistance && Dot(apart, apart) == 0) {
-      once_(at, "the nodes of " + called + " are in one place",
+      once_("joint.no_length", at, "the nodes of " + called + " are in one place",
             kind == "bar" ? "a bar has a length"
                           : "a distance has a direction; a ball holds two nodes in one place");
       return;
     }
     if (math::HeldTurn(joint) > math::kClosedTurn_rad) {
-      once_(at, called + " holds its bodies as `turned` does not have them",
+      once_("joint.turned_wrongly", at, called + " holds its bodies as `turned` does not have them",
             "a hinge, a cylindrical and a planar joint let them turn about the axis alone, a weld "
             "and a prismatic joint not at all");
       return;
     }
     if (!names_.insert(joint.name).second) {
-      once_(at, "two joints would be called \"" + joint.name + "\"",
+      once_("joint.duplicate_name", at, "two joints would be called \"" + joint.name + "\"",
             "a pair has the name that its `name:` says, a support that of its node");
       return;
     }
@@ -183,7 +188,7 @@ class JointMaker {
     robot_.def.joints.push_back(std::move(joint));
   }
 
-  /// Joints that a builder says, without those that rods of `class_k` bring along.
+  /// Visits the joints of builders, without the pins of `class_k` rods.
   template <class F>
   void EachJoint(const F& use) const {
     const std::vector<JointDef>& joints = robot_.def.joints;
@@ -191,7 +196,8 @@ class JointMaker {
     for (std::size_t i = 0; i < sources_.size(); ++i) use(joints[first + i], sources_[i]);
   }
 
-  /// A joint's coordinate as described, of a hinge without turns.
+  /// Returns the coordinate of a joint in the described pose, for a hinge without whole turns [rad,
+  /// m].
   static double Coordinate(const JointDef& j) {
     const Vec3 d = j.to_m - j.from_m;
     switch (j.kind) {
@@ -206,21 +212,21 @@ class JointMaker {
     }
   }
 
-  /// A stop that is passed holds a joint where it is, and does not push it back.
+  /// Reports joints beyond a limit: the limit would hold them there, not push them back.
   void RefusePassedStops() {
-    if (!out_.ok()) return;  // limits that are wrong have been named
+    if (!out_.ok()) return;  // invalid limits are already reported
     EachJoint([&](const JointDef& j, const SourceRef& at) {
       const double now = Coordinate(j);
       const double beyond = std::max(j.least ? *j.least - now : 0, j.most ? now - *j.most : 0);
       if (!(beyond > kPassed)) return;
-      once_(at,
+      once_("joint.outside_stops", at,
             "the joint \"" + j.name + "\" is " + base::Brief(beyond) +
                 (IsAngle(j.kind) ? " rad" : " m") + " beyond its stop as described",
             "describe it in another pose, or move the stop, which would not push it back");
     });
   }
 
-  /// What welds hold together needs no other joint, and no other joint can do anything there.
+  /// Reports welds and joints between bodies that other welds already connect.
   void RefuseRedundantWelds() {
     const std::size_t world = robot_.def.bodies.size();
     base::UnionFind welded(world + 1);
@@ -231,14 +237,16 @@ class JointMaker {
     EachJoint([&](const JointDef& j, const SourceRef& at) {
       if (j.kind != JointKind::kWeld) return;
       if (together(j)) {
-        once_(at, "the weld \"" + j.name + "\" is redundant: other welds hold its bodies together",
+        once_("joint.redundant_weld", at,
+              "the weld \"" + j.name + "\" is redundant: other welds hold its bodies together",
               "leave it out");
       }
       welded.Join(place(j.body_a), place(j.body_b));
     });
     EachJoint([&](const JointDef& j, const SourceRef& at) {
       if (j.kind == JointKind::kWeld || !together(j)) return;
-      once_(at, "the joint \"" + j.name + "\" can do nothing: welds hold its bodies together",
+      once_("joint.without_effect", at,
+            "the joint \"" + j.name + "\" can do nothing: welds hold its bodies together",
             "leave it out, or a weld");
     });
   }
@@ -250,18 +258,20 @@ class JointMaker {
     for (const std::vector<std::string>& list : model_.apart) {
       std::vector<int> found;
       if (list.size() < 2) {
-        out_.Error(model_.apart_at, "apart: \"" + list[0] + "\" stands alone in its list",
+        out_.Error("apart.single_body", model_.apart_at,
+                   "apart: \"" + list[0] + "\" stands alone in its list",
                    "a list has two bodies or more, that do not touch each other: [[a, b]]");
       }
       for (const std::string& name : list) {
         const auto at = std::find(names.begin(), names.end(), name);
         if (at == names.end()) {
-          out_.Error(model_.apart_at, "apart: there is no body \"" + name + "\"",
-                     NameHint(name, names));
+          out_.Error("apart.unknown_body", model_.apart_at,
+                     "apart: there is no body \"" + name + "\"", NameHint(name, names));
           continue;
         }
         if (std::find(found.begin(), found.end(), at - names.begin()) != found.end()) {
-          out_.Error(model_.apart_at, "apart: \"" + name + "\" stands twice in one list");
+          out_.Error("apart.duplicate_body", model_.apart_at,
+                     "apart: \"" + name + "\" stands twice in one list");
           continue;
         }
         for (const int other : found) {
@@ -280,7 +290,7 @@ class JointMaker {
   Diagnostics& out_;
   OncePerPlace once_;
   std::set<std::string> names_;
-  std::vector<SourceRef> sources_;  ///< Of the joints that builders say: the last ones.
+  std::vector<SourceRef> sources_;  ///< Of the joints of builders, which are the last ones.
 };
 
 }  // namespace

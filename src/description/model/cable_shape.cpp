@@ -37,8 +37,9 @@ class CableShaper {
     return nullptr;
   }
 
-  /// Where the cable leaves the rod at that node whose centre is nearest, of several the first: at
-  /// right angles to it, on the side of `next`. At the node itself if that is along the rod.
+  /// Returns the point on a rod's surface at which the cable leaves node `node`: perpendicular to
+  /// the rod, toward `next`; the node if `next` is along the rod. Of several rods, takes the
+  /// shortest (with the nearest center), of equal ones the first.
   std::optional<Vec3> OnRod(int node, const Vec3& next) const {
     std::optional<Vec3> on_rod;
     double nearest = std::numeric_limits<double>::infinity();
@@ -74,8 +75,8 @@ class CableShaper {
             nodes[end].position_m + (sphere->radius_m / length) * leg;
       } else if (const auto on_rod = OnRod(node, nodes[next].position_m)) {
         cable.attachments[end].position_m = *on_rod;
-      } else if (BodyOf(node) != kWorld) {  // where there is no surface
-        once_(builder.ends_at,
+      } else if (BodyOf(node) != kWorld) {  // no surface there
+        once_("cable.end_without_solid", builder.ends_at,
               "cable.ends: the node \"" + in_.assembly.nodes[node].name + "\" of the cable \"" +
                   pair.name + "\" has no sphere, and no rod ends there",
               "give the node a sphere, or write `ends: node`");
@@ -89,7 +90,8 @@ class CableShaper {
     const Vec3 leg = nodes[last].position_m - nodes[0].position_m;
     const Vec3 left = cable.attachments[last].position_m - cable.attachments[0].position_m;
     if (last == 1 && LengthBetween(nodes[0], nodes[1]) >= kShortestLeg_m && Dot(leg, left) <= 0.0) {
-      once_(pair.at, "the solids at the ends of the cable \"" + pair.name + "\" overlap",
+      once_("cable.no_length", pair.at,
+            "the solids at the ends of the cable \"" + pair.name + "\" overlap",
             "nothing is left for the cable between their surfaces");
     }
   }

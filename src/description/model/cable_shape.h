@@ -1,4 +1,4 @@
-/// Where a cable runs, as described.
+/// Path of a cable in the described pose.
 #pragma once
 
 #include "description/model/build.h"
@@ -6,9 +6,9 @@
 
 namespace taut::description {
 
-inline constexpr double kShortestLeg_m = 1e-9;  ///< A shorter leg has no direction.
+inline constexpr double kShortestLeg_m = 1e-9;  ///< Least length of a leg that has a direction.
 
-/// `body_of_node`: null as long as it is not known; ends are then in the world.
+/// Inputs of the path. `body_of_node`: null while it is unknown; ends are then in the world.
 struct CableSurroundings {
   const ModelText& model;
   const Assembly& assembly;
@@ -16,8 +16,8 @@ struct CableSurroundings {
   const BodyOfNode* body_of_node;
 };
 
-/// Gives `cable` its attachments: at its nodes or on the surfaces there, and along its route.
-/// Complains about ends that have nothing to be on, and about routes.
+/// Sets the attachments of `cable`: at its nodes or on the surfaces there, and along its route.
+/// Reports ends without a solid, and invalid routes.
 void ShapeCable(const CableSurroundings& in, const PlacedPair& pair, const CableText& builder,
                 CableDef& cable, OncePerPlace& complain);
 

@@ -9,11 +9,13 @@
 namespace taut::description {
 namespace {
 
-constexpr double kSameDirection = 1e-6;  ///< Across by that share: it is what a text can say.
+constexpr double kSameDirection = 1e-6;  ///< Sine of the angle below which directions count as
+                                         ///< parallel; about the precision of numbers in files.
 
 double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 
-/// Where the cable ends on a drum about `center`, `wound_rad` behind where it arrives from `from`.
+/// Returns the point of a drum's rim at which the cable ends, `wound_rad` beyond the point of
+/// tangency of the cable from `from`. `center`: of the drum.
 Vec3 RimPoint(const Vec3& center, const WheelDef& wheel, const Vec3& from, double wound_rad) {
   const Vec3 way = from - center;
   const Vec3 along = Dot(way, wheel.axis) * wheel.axis, out = way - along;
@@ -24,7 +26,7 @@ Vec3 RimPoint(const Vec3& center, const WheelDef& wheel, const Vec3& from, doubl
   return center + along + wheel.radius_m * (math::Cos(turn) * x + math::Sin(turn) * y);
 }
 
-/// Whole turns, so that the angle at attachment `i` comes to `angle_rad` or nearly so.
+/// Returns the whole turns that bring the angle at attachment `i` nearest to `angle_rad`.
 int TurnsFor(const CableDef& cable, std::size_t i, double angle_rad) {
   const double least = std::fabs(math::StartAngle(cable, i));
   return static_cast<int>(std::lround((angle_rad - least) / (2 * kPi)));
@@ -44,18 +46,20 @@ class RouteFollower {
       good = Element(i) && good;
     }
     if (spans > CableDef::kMostSpans) {
-      complain_(pair_.at, "the cable \"" + pair_.name + "\" has friction at more than " +
-                              std::to_string(CableDef::kMostSpans - 1) + " places");
+      complain_("route.too_much_friction", pair_.at,
+                "the cable \"" + pair_.name + "\" has friction at more than " +
+                    std::to_string(CableDef::kMostSpans - 1) + " places");
     }
     if (!good) return;
-    // The last one first: the others keep their numbers.
+    // The last end first, so that the indices of the others stay valid.
     const std::size_t last = pair_.route.size() - 1;
     if (pair_.route[last].is_drum()) EndOnDrum(last, last - 1, last + 1);
     if (pair_.route[0].is_drum()) EndOnDrum(0, 1, 0);
   }
 
  private:
-  /// False if the cable cannot go round it.
+  /// Sets friction and wheel of element `i`. Returns false if the cable cannot run around the
+  /// wheel.
   bool Element(std::size_t i) {
     const RouteText& element = pair_.route[i];
     AttachmentDef& at = cable_.attachments[i];
@@ -80,12 +84,12 @@ class RouteFollower {
       const std::string name = assembly_.nodes[pair_.nodes[k]].name;
       const std::string what = element.is_drum() ? "drum" : "pulley";
       if (beside < 1e-9) {
-        complain_(element.at,
+        complain_("route.node_on_axis", element.at,
                   "the node \"" + name + "\" is on the axis of the " + what + " of the cable \"" +
                       pair_.name + "\"",
                   "an axis across the cable is needed");
       } else {
-        complain_(element.at,
+        complain_("route.node_inside_wheel", element.at,
                   "the node \"" + name + "\" is inside the " + what + " of the cable \"" +
                       pair_.name + "\"",
                   "it is " + Shown(std::round(1e6 * beside) / 1e6) +
@@ -96,20 +100,20 @@ class RouteFollower {
     return good && HasASide(i);
   }
 
-  /// Whether `left` and `right` mean something: seen along the axis, the cable comes from somewhere
-  /// and goes somewhere else. Where it is wound round by whole turns, these say enough.
+  /// Returns whether `left` and `right` are defined: seen along the axis, the cable comes from one
+  /// direction and leaves in another. With whole turns they always are.
   bool HasASide(std::size_t i) {
     const RouteText& element = pair_.route[i];
     if (i == 0 || i + 1 == pair_.route.size() || element.turns > 0) return true;
     for (const std::size_t k : {i - 1, i + 1}) {
-      // Where it leaves another wheel is not known yet.
+      // The point at which the cable leaves another wheel is not known yet.
       if (pair_.route[k].is_pulley() || pair_.route[k].is_drum()) return true;
     }
     const Vec3 from = cable_.attachments[i - 1].position_m;
     const Vec3 to = cable_.attachments[i + 1].position_m;
     const double across = Length(Cross(cable_.attachments[i].wheel->axis, to - from));
     if (!(across < kSameDirection * Length(to - from))) return true;
-    complain_(element.at,
+    complain_("route.axis_along_cable", element.at,
               "the axis of the pulley of the cable \"" + pair_.name +
                   "\" is along the way from \"" + assembly_.nodes[pair_.nodes[i - 1]].name +
                   "\" to \"" + assembly_.nodes[pair_.nodes[i + 1]].name +
@@ -118,11 +122,11 @@ class RouteFollower {
     return false;
   }
 
-  /// `end`: where among the attachments the one on the rim goes.
+  /// Adds the attachment on the rim at index `end`.
   void EndOnDrum(std::size_t drum, std::size_t next, std::size_t end) {
     const AttachmentDef at = cable_.attachments[drum];
     WheelDef wheel = *at.wheel;
-    // Seen from the other end a cable goes round the other way.
+    // Seen from the other end, a cable runs around in the opposite sense.
     const Vec3 from = cable_.attachments[next].position_m;
     const bool arrives = end > drum;
     if (!arrives) wheel.counterclockwise = !wheel.counterclockwise;

@@ -1,4 +1,4 @@
-/// A cable's route with what it runs over, as a model's pair says it.
+/// Routed cables: eyelets, pulleys and drums along a pair's `route`.
 #pragma once
 
 #include "description/model/assembly.h"
@@ -7,8 +7,8 @@
 
 namespace taut::description {
 
-/// Gives the attachments of `cable`, one a node of the pair, their friction and wheels; a drum gets
-/// an attachment more, on its rim. Complains about wheels that a cable cannot go round.
+/// Sets the attachments of `cable`, one per node of the pair, with friction and wheels; a drum adds
+/// one attachment on its rim. Reports wheels that the cable cannot run around.
 void FollowRoute(const PlacedPair& pair, const Assembly& assembly, CableDef& cable,
                  OncePerPlace& complain);
 

@@ -10,11 +10,11 @@
 namespace taut::description {
 namespace {
 
-/// What says how long a member is without stress, and how stiff.
+/// Data that determine the unstressed length and the stiffness of a member.
 struct Given {
   const MemberDef& member;
-  double stiffness_n_per_m;  ///< NaN: see the section.
-  double rest_length_m;      ///< NaN: see the others.
+  double stiffness_n_per_m;  ///< NaN: from the section.
+  double rest_length_m;      ///< NaN: from `ratio` or `prestress_n`.
   const std::optional<double>&ratio, prestress_n, density_kg_per_m3;
 };
 
@@ -42,7 +42,8 @@ bool HasMass(const MemberDef& member, const std::optional<double>& density_kg_pe
 
 void Needs(const MapReader& map, const char* key, const char* other, const char* why) {
   if (!map.Has(key) || map.Has(other)) return;
-  map.Error(key, map.Path(key) + " needs the key \"" + other + "\" beside it", why);
+  map.Error("key.needs_key", key, map.Path(key) + " needs the key \"" + other + "\" beside it",
+            why);
 }
 
 double Length(const Vec3& a, const Vec3& b) { return std::sqrt(Dot(b - a, b - a)); }
@@ -64,7 +65,7 @@ Elastic ElasticOf(const CableText& cable, double length_m) {
 }
 
 void LumpMembers(const ModelText& model, const Assembly& assembly, Assignment& assignment) {
-  Diagnostics unheard;  // `BuildCables` and `BuildJoints` say what is wrong
+  Diagnostics unheard;  // `BuildCables` and `BuildJoints` report the errors
   OncePerPlace complain(unheard);
   for (std::size_t pair = 0; pair < assembly.pairs.size(); ++pair) {
     const int b = assignment.of_pair[pair];
@@ -101,7 +102,8 @@ void CheckOwnMass(const MapReader& map, const MemberDef& member,
     Needs(map, "density_kg_per_m3", "area_m2", "the mass is density times area times length");
   }
   if (map.Has("mass") && member.mass_kg == 0 && !density_kg_per_m3) {
-    map.Error("mass", map.Path("mass") + ": it has no mass", "mass_kg or density_kg_per_m3");
+    map.Error("rod.mass_without_effect", "mass", map.Path("mass") + ": it has no mass",
+              "mass_kg or density_kg_per_m3");
   }
 }
 
@@ -112,7 +114,8 @@ void CheckStiffness(const MapReader& map) {
   if (map.Has("young_pa")) {
     Needs(map, "young_pa", "area_m2", "or stiffness_n_per_m: k = E A / L");
   } else {
-    map.scope().out.Error(map.at(), map.what() + " needs the key \"stiffness_n_per_m\"", hint);
+    map.scope().out.Error("bar.stiffness_missing", map.at(),
+                          map.what() + " needs the key \"stiffness_n_per_m\"", hint);
   }
 }
 

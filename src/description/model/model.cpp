@@ -12,7 +12,7 @@
 namespace taut::description {
 namespace {
 
-/// Numbers that are finite one by one can still overflow together.
+/// Reports overflows: finite numbers can have infinite sums and products.
 void CheckFinite(const RobotSpec& robot, Diagnostics& out) {
   for (std::size_t i = 0; i < robot.def.bodies.size(); ++i) {
     const BodyDef& body = robot.def.bodies[i];
@@ -22,17 +22,18 @@ void CheckFinite(const RobotSpec& robot, Diagnostics& out) {
                       inertia.yz)) {
       continue;
     }
-    out.Error(robot.body_sources[i],
+    out.Error("body.too_large", robot.body_sources[i],
               "the body \"" + body.name + "\" is too large or too heavy to be calculated with");
   }
   for (std::size_t i = 0; i < robot.def.cables.size(); ++i) {
     const CableDef& cable = robot.def.cables[i];
     if (std::isfinite(cable.rest_length_m)) continue;
-    out.Error(robot.cable_sources[i], "the cable \"" + cable.name + "\" has no finite rest length");
+    out.Error("cable.rest_length_not_finite", robot.cable_sources[i],
+              "the cable \"" + cable.name + "\" has no finite rest length");
   }
 }
 
-/// What an experiment says about laws, over what the model says. It was complained about before.
+/// Applies the laws of an experiment on top of the model. Errors in them are already reported.
 void Replace(const Value& value, ModelText& model) {
   Diagnostics unheard;
   const NameTable no_names;
@@ -47,13 +48,14 @@ void Replace(const Value& value, ModelText& model) {
   }
 }
 
-/// `errors_before`: how many there were before the file was read.
+/// Builds the robot of a file. `errors_before`: number of errors before the file was read.
 LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagnostics& out,
                        const Overlay<ModelOptions>& options) {
   const auto errors = [&out] { return out.items().size(); };
   LoadedModel result;
   const NameTable values = ResolveParameters(file.parameters, out);
-  bool numbers_known = true;  // an experiment may have passed on one that it complained about
+  bool numbers_known = true;  // NaN: an experiment overrides a parameter with an invalid value,
+                              // which is already reported
   for (const auto& [name, value] : values) {
     result.parameter_names.push_back(name);
     numbers_known = numbers_known && !std::isnan(value);
@@ -77,7 +79,7 @@ LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagno
   BuildCables(model, assembly, assignment, body_of_node, robot, out);
   BuildJoints(model, assembly, assignment, body_of_node, robot, out);
 
-  // Only a model that is otherwise good: a cable that could not be read joins nothing.
+  // Only without other errors: a cable with an error is missing and would connect bodies.
   if (errors() == errors_before && !model.allow_disconnected) CheckConnected(robot, out);
   if (errors() == errors_before && numbers_known) {
     CheckPositions(robot, out);
@@ -138,10 +140,11 @@ std::optional<std::string> FileKind(const std::string& path, Diagnostics& out) {
   }
   if (kind && kind->text == description::kResolvedKind) return "experiment";
   if (kind) {
-    out.Error(kind->at, "kind must be model, experiment or gait, got " + kind->text,
+    out.Error("file.unknown_kind", kind->at,
+              "kind must be model, experiment or gait, got " + kind->text,
               description::HintOfKind(kind->text));
   } else {
-    out.Error(root->at, "a file is of kind model, experiment or gait",
+    out.Error("file.unknown_kind", root->at, "a file is of kind model, experiment or gait",
               "write `kind: model`, `kind: experiment` or `kind: gait` at its top");
   }
   return std::nullopt;

@@ -1,4 +1,4 @@
-/// Reading a model file on behalf of an experiment, which shares its overrides.
+/// Loading of model files, alone or for an experiment, which shares its overrides.
 #pragma once
 
 #include <optional>
@@ -11,23 +11,23 @@
 
 namespace taut::description {
 
-/// A model file as far as it could be read.
+/// Result of loading a model file, possibly with errors.
 struct LoadedModel {
-  /// There if every node and cable that the file describes is: then an experiment can be checked
-  /// against it even though some of its numbers are wrong.
+  /// Present if all nodes and cables of the file are: then an experiment can be checked against the
+  /// robot even if some of its numbers are invalid.
   std::optional<RobotSpec> robot;
-  bool good = false;                         ///< Nothing was wrong.
-  std::vector<std::string> parameter_names;  ///< Known as soon as the file is YAML.
+  bool good = false;                         ///< No errors.
+  std::vector<std::string> parameter_names;  ///< Known if the file is valid YAML.
 };
 
-/// As `LoadRobot`, but overrides that the model does not know are left for the caller to report
-/// (`OverrideSet::ReportUnused`). If the file cannot be read at all, the overrides are silenced.
-/// `options`, if given, replace what the file says.
+/// Loads a model like `LoadRobot`, but leaves the report of overrides that the model does not have
+/// to the caller (`OverrideSet::ReportUnused`). If the file is unreadable, marks all overrides as
+/// used. `options`, if given, replace the laws of the file.
 LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
                       const Overlay<ModelOptions>& options = {});
 
-/// The robot of a model file that is a text, without bases and parameters. Nothing if there was any
-/// error.
+/// Returns the robot of a model given as a text, without bases and parameters. Returns nothing
+/// after any error.
 std::optional<RobotSpec> ModelOfText(const std::string& text, Diagnostics& out);
 
 }  // namespace taut::description

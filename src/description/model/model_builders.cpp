@@ -1,3 +1,4 @@
+// Checks of builder keys.
 #include <limits>
 
 #include "description/model/model_keys.h"
@@ -13,7 +14,8 @@ void Check(const MapReader& map, RodText& rod) {
   rod.material = ToMaterial(map, rod.surface, true);
   CheckSection(map, MemberOf::kRod);
   if (rod.pins && !rod.class_k) {
-    map.Error("pins", map.Path("pins") + ": only rods of class k turn in their nodes",
+    map.Error("rod.pins_without_class_k", "pins",
+              map.Path("pins") + ": only rods of class k turn in their nodes",
               "class_k: true, or leave out `pins`");
   }
 }
@@ -26,14 +28,15 @@ void Check(const MapReader& map, PointMassText& mass) {
   const std::size_t count = mass.inertia_kg_m2.size();
   if (!map.Has("inertia_kg_m2")) return;
   if (count != 3 && count != 6) {
-    map.Error("inertia_kg_m2", "point_mass.inertia_kg_m2 has " + std::to_string(count) + " numbers",
+    map.Error("point_mass.bad_inertia", "inertia_kg_m2",
+              "point_mass.inertia_kg_m2 has " + std::to_string(count) + " numbers",
               "three, [xx, yy, zz], or six, [xx, yy, zz, xy, xz, yz]");
     mass.inertia_kg_m2.assign(6, NAN);
   }
   mass.inertia_kg_m2.resize(6, 0.0);
   if (map.Has("radius_m")) {
-    map.Error("radius_m", "point_mass has both inertia_kg_m2 and radius_m",
-              "only one of them may be there");
+    map.Error("point_mass.inertia_given_twice", "radius_m",
+              "point_mass has both inertia_kg_m2 and radius_m", "only one of them may be there");
   }
 }
 
@@ -46,11 +49,11 @@ void Check(const MapReader& map, BoxText& box) {
   if (box.along_pair) {
     for (const char* other : {"size_m", "half_extents_m"}) {
       if (!map.Has(other)) continue;
-      map.Error(other, "box has both width_m and " + std::string(other),
+      map.Error("box.width_given_twice", other, "box has both width_m and " + std::string(other),
                 "width_m and height_m along a pair, size_m or half_extents_m at a node");
     }
     if (map.Has("rotate")) {
-      map.Error("rotate", "a box along a pair lies as its nodes say",
+      map.Error("box.rotation_without_effect", "rotate", "a box along a pair lies as its nodes say",
                 "size_m or half_extents_m at a node");
     }
     map.Require("width_m");
@@ -61,7 +64,8 @@ void Check(const MapReader& map, BoxText& box) {
   if (key == "size_m")
     box.half_extents_m = {0.5 * box.size_m.x, 0.5 * box.size_m.y, 0.5 * box.size_m.z};
   if (map.Has("mass_kg_per_m")) {
-    map.Error("mass_kg_per_m", "a box at a node has no length", "mass_kg or density_kg_per_m3");
+    map.Error("box.no_length", "mass_kg_per_m", "a box at a node has no length",
+              "mass_kg or density_kg_per_m3");
   }
 }
 
@@ -69,20 +73,21 @@ void Check(const MapReader& map, DcMotorDef& motor) {
   if (!(motor.static_friction_torque_n_m < motor.friction_torque_n_m)) return;
   const char* const key =
       map.Has("static_friction_torque_n_m") ? "static_friction_torque_n_m" : "friction_torque_n_m";
-  map.Error(key,
+  map.Error("motor.static_below_friction", key,
             map.Path("static_friction_torque_n_m") + " is " +
                 Shown(motor.static_friction_torque_n_m) + ", below friction_torque_n_m of " +
                 Shown(motor.friction_torque_n_m),
             "friction at rest is not less than that of sliding");
 }
 
-/// A motor's limits are its figures.
+/// Checks an actuator with a DC motor, which has no other limits than the motor's data.
 void CheckMotor(const MapReader& map, ActuatorText& actuator) {
   actuator.kind = ActuatorDef::Kind::kDcMotor;
   for (const char* other :
        {"ideal", "max_speed_m_per_s", "max_acceleration_m_per_s2", "max_force_n", "min_length_m"}) {
     if (!map.Has(other)) continue;
-    map.Error(other, map.what() + " has both dc_motor and " + std::string(other),
+    map.Error("actuator.given_twice", other,
+              map.what() + " has both dc_motor and " + std::string(other),
               "beside a dc_motor there is min_rest_length_m only");
   }
 }
@@ -91,9 +96,11 @@ void Check(const MapReader& map, ActuatorText& actuator) {
   const bool limited = map.HasAnyBut("ideal");
   if (actuator.dc_motor) return CheckMotor(map, actuator);
   if (actuator.ideal && limited) {
-    map.Error("ideal", "an ideal actuator has no limits", "leave out `ideal`, or the limits");
+    map.Error("actuator.ideal_has_no_limits", "ideal", "an ideal actuator has no limits",
+              "leave out `ideal`, or the limits");
   } else if (!actuator.ideal && !limited && map.is_map()) {
-    map.scope().out.Error(map.at(), map.what() + " needs limits, a `dc_motor`, or `ideal: true`",
+    map.scope().out.Error("actuator.limits_missing", map.at(),
+                          map.what() + " needs limits, a `dc_motor`, or `ideal: true`",
                           "without an actuator the rest length is fixed");
   }
   actuator.kind = actuator.ideal ? ActuatorDef::Kind::kIdeal : ActuatorDef::Kind::kLimited;
@@ -110,19 +117,22 @@ void Check(const MapReader& map, CableText& cable) {
   if (map.Has("ends")) cable.ends_at = map.Find("ends")->at;
   const bool touches = cable.touches != CableTouches::kNone;
   if (touches && cable.radius_m == 0) {
-    map.Error("touches", map.Path("touches") + ": a cable that touches needs a `radius_m` above 0",
+    map.Error("cable.touches_without_radius", "touches",
+              map.Path("touches") + ": a cable that touches needs a `radius_m` above 0",
               "half the cable's thickness, such as 0.001");
   } else if (!touches && map.Has("radius_m")) {
-    map.Error("radius_m", map.Path("radius_m") + ": goes with `touches`",
+    map.Error("cable.radius_without_touches", "radius_m",
+              map.Path("radius_m") + ": goes with `touches`",
               "terrain, rods or all; a cable that touches nothing has no thickness");
   }
   if (!touches && map.Has("touch_friction")) {
-    map.Error("touch_friction", map.Path("touch_friction") + ": goes with `touches`",
+    map.Error("cable.touch_friction_without_touches", "touch_friction",
+              map.Path("touch_friction") + ": goes with `touches`",
               "terrain, rods or all; at eyelets and pulleys it is the `friction` of the route");
   }
   if (cable.actuator_text) cable.actuator = *cable.actuator_text;
   if (cable.touch_friction > 0 && cable.actuator.kind == ActuatorDef::Kind::kDcMotor) {
-    map.Error("touch_friction",
+    map.Error("cable.touch_friction_of_motor", "touch_friction",
               map.Path("touch_friction") + ": a direct-current motor does not wind such a cable",
               "ideal and limited actuators do");
   }
@@ -135,34 +145,39 @@ void Check(const MapReader& map, JointText& joint) {
                           "damping_n_m_s_per_rad", "damping_n_s_per_m", "rest_rad", "rest_m"}) {
     if (!map.Has(key)) continue;
     if (!HasCoordinate(joint.kind)) {
-      map.Error(key,
+      map.Error("joint.no_single_coordinate", key,
                 map.Path(key) + ": a joint of this kind leaves nothing free that has one number");
     } else if (ball && key == std::string_view("least_rad")) {
-      map.Error(key, map.Path(key) + ": a ball joint has no lower stop",
+      map.Error("joint.ball_has_no_lower_stop", key,
+                map.Path(key) + ": a ball joint has no lower stop",
                 "most_rad is how far its axis may turn away");
     } else if (ball && key == std::string_view("rest_rad")) {
-      map.Error(key, map.Path(key) + ": the spring of a ball joint is at rest as described",
+      map.Error("joint.ball_spring_offset", key,
+                map.Path(key) + ": the spring of a ball joint is at rest as described",
                 "turn its bodies in the model");
     }
   }
   const char* const most = IsAngle(joint.kind) ? "most_rad" : "most_m";
   if (ball && joint.most && *joint.most <= 0 && map.Has(most)) {
-    map.Error(most, map.Path(most) + " must be positive, got " + Shown(*joint.most),
+    map.Error("joint.stop_not_positive", most,
+              map.Path(most) + " must be positive, got " + Shown(*joint.most),
               "it is how far a ball's axis may turn away, to any side");
   }
   if (joint.kind == JointKind::kDistance) {
     const bool below = joint.least && *joint.least < 0;
     if (below)
-      map.Error("least_m", map.Path("least_m") + " must not be negative: it is a distance");
+      map.Error("joint.negative_distance", "least_m",
+                map.Path("least_m") + " must not be negative: it is a distance");
     if (joint.most && *joint.most <= 0 && map.Has(most)) {
-      map.Error(most, map.Path(most) + " must be positive, got " + Shown(*joint.most),
+      map.Error("joint.stop_not_positive", most,
+                map.Path(most) + " must be positive, got " + Shown(*joint.most),
                 "it is a distance");
     }
     if (below) return;
   }
   if (!joint.least || !joint.most || *joint.least < *joint.most) return;
   if (!map.Has(most)) return;
-  map.Error(most,
+  map.Error("joint.empty_range", most,
             map.Path(most) + " is " + Shown(*joint.most) + ", not above the least of " +
                 Shown(*joint.least),
             "limits must rise");
@@ -182,7 +197,8 @@ void FinishBuilders(const MapReader& map, ModelText& model) {
   if (!list) return;
   if (list->kind != Value::Kind::kSequence) model.builders_complete = false;
   if (model.builders.size() > static_cast<std::size_t>(kMaxBuilders)) {
-    map.scope().out.Error(list->at, "more than " + std::to_string(kMaxBuilders) + " builders",
+    map.scope().out.Error("builder.too_many", list->at,
+                          "more than " + std::to_string(kMaxBuilders) + " builders",
                           "match by tags that many nodes or pairs share");
     model.builders_complete = false;
     model.builders.clear();

@@ -1,4 +1,4 @@
-// Convex solids of a model, from a file or by their corners.
+// Convex solids of a model, from a mesh file or from given corners.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -14,14 +14,14 @@ namespace {
 
 using base::Brief;
 
-/// A hull that encloses so many times what its object does is worth a word.
+/// Ratio of the volumes of a hull and its object above which a warning is given.
 constexpr double kMuchLarger = 1.05;
 constexpr std::size_t kMostParts = 256;
 
 void WarnOfHull(const SourceRef& at, const std::string& what, const ConvexText::Part& part,
                 const math::ConvexHull& hull, Diagnostics& out) {
   if (static_cast<int>(hull.corners.size()) >= HullDef::kMostCorners && hull.left_out_m > 0.0) {
-    out.Warning(at,
+    out.Warning("convex.corners_left_out", at,
                 what + " has " + std::to_string(part.corners_m.size()) +
                     " corners: of those that " + std::to_string(HullDef::kMostCorners) +
                     " do not hold, the farthest is " + Brief(hull.left_out_m) + " m outside",
@@ -30,7 +30,7 @@ void WarnOfHull(const SourceRef& at, const std::string& what, const ConvexText::
   const double own = math::SixVolumes(part.corners_m, part.triangles);
   const double held = math::SixVolumes(hull.corners, math::TrianglesOf(hull));
   if (held > kMuchLarger * own) {
-    out.Warning(at,
+    out.Warning("convex.not_convex", at,
                 what + " is not convex: its hull, which is what touches, has " + Brief(held / own) +
                     " times its volume",
                 "several convex objects in the file are as many hulls");
@@ -41,9 +41,10 @@ math::ConvexHull HullOrComplaint(const SourceRef& at, const std::string& what,
                                  const std::vector<Vec3>& corners_m, Diagnostics& out) {
   math::ConvexHull hull = math::HullOf(corners_m, HullDef::kMostCorners);
   if (hull.corners.empty()) {
-    out.Error(at, what + " has no volume", "corners that are not all in one plane, four at least");
+    out.Error("convex.no_volume", at, what + " has no volume",
+              "corners that are not all in one plane, four at least");
   } else if (hull.too_thin) {
-    out.Error(at,
+    out.Error("convex.too_thin", at,
               what + " is so thin that its faces cannot be told apart: of the corners left out, " +
                   "the farthest is " + Brief(hull.left_out_m) + " m outside",
               "a thickness of 1e-5 times its width or more");
@@ -52,7 +53,7 @@ math::ConvexHull HullOrComplaint(const SourceRef& at, const std::string& what,
   return hull;
 }
 
-/// Whether an object of a file became a part.
+/// Adds an object of a file as a part. Returns false after an error.
 bool AddObject(const MapReader& map, const std::string& path, const MeshFile& mesh,
                std::size_t number, ConvexText& convex) {
   Diagnostics& out = map.scope().out;
@@ -66,7 +67,7 @@ bool AddObject(const MapReader& map, const std::string& path, const MeshFile& me
       ReportFaults(object, true, path,
                    {what, ": an open mesh has no volume; mass_kg gives its hull a mass"}, faults);
   if (!closed && !convex.mass.mass_kg) {
-    for (const Diagnostic& fault : faults.items()) out.Error(fault.at, fault.what, fault.hint);
+    for (const Diagnostic& fault : faults.items()) out.AddError(fault);
     return false;
   }
   ConvexText::Part part{{}, object.corners, object.triangles};
@@ -77,7 +78,8 @@ bool AddObject(const MapReader& map, const std::string& path, const MeshFile& me
   if (hull.corners.empty()) return false;
   if (!closed) {
     const Diagnostic& first = faults.items().front();
-    out.Warning(first.at, first.what + ": the mass of " + what + " is distributed as in its hull");
+    out.Warning("convex.mass_as_hull", first.at,
+                first.what + ": the mass of " + what + " is distributed as in its hull");
     part.corners_m = hull.corners;
     part.triangles = math::TrianglesOf(hull);
   }
@@ -92,8 +94,9 @@ void ReadParts(const MapReader& map, ConvexText& convex) {
   const auto mesh = ReadMeshFile(path, map.scope().out);
   if (!mesh) return;
   if (mesh->parts.size() > kMostParts) {
-    map.Error("file", path + " has " + std::to_string(mesh->parts.size()) + " objects, more than " +
-                          std::to_string(kMostParts));
+    map.Error("convex.too_many_parts", "file",
+              path + " has " + std::to_string(mesh->parts.size()) + " objects, more than " +
+                  std::to_string(kMostParts));
     return;
   }
   bool good = true;
@@ -116,18 +119,20 @@ void Check(const MapReader& map, ConvexText& convex) {
     return;
   }
   if (map.Has("scale_m")) {
-    map.Error("scale_m", map.Path("scale_m") + " has no effect here", "it goes with a file");
+    map.Error("convex.scale_without_effect", "scale_m", map.Path("scale_m") + " has no effect here",
+              "it goes with a file");
   }
   if (!map.Has("corners_m")) return;
   const SourceRef at = map.Find("corners_m")->at;
   if (convex.corners_m.size() > HullDef::kMostCorners) {
-    map.scope().out.Error(at, map.Path("corners_m") + " are " +
-                                  std::to_string(convex.corners_m.size()) + ", more than " +
-                                  std::to_string(HullDef::kMostCorners));
+    map.scope().out.Error("convex.too_many_corners", at,
+                          map.Path("corners_m") + " are " +
+                              std::to_string(convex.corners_m.size()) + ", more than " +
+                              std::to_string(HullDef::kMostCorners));
     return;
   }
   for (const Vec3& p : convex.corners_m) {
-    if (!std::isfinite(p.x + p.y + p.z)) return;  // complained about
+    if (!std::isfinite(p.x + p.y + p.z)) return;  // already reported
   }
   const math::ConvexHull hull = HullOrComplaint(at, "the hull", convex.corners_m, map.scope().out);
   if (hull.corners.empty()) return;

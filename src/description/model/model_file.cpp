@@ -1,3 +1,4 @@
+// Reading of the top level of model files.
 #include <cmath>
 #include <map>
 #include <string>
@@ -8,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-/// Motors of different builders may share a supply, which has one voltage and one resistance.
+/// Checks supplies that motors of different builders share: voltage and resistance must agree.
 void CheckSupplies(const ModelText& model, Diagnostics& out) {
   std::map<std::string, const BuilderText*> first;
   for (const BuilderText& builder : model.builders) {
@@ -22,9 +23,9 @@ void CheckSupplies(const ModelText& model, Diagnostics& out) {
     if (figures(motor) == figures(there)) continue;
     if (std::isnan(motor.supply_voltage_v + motor.supply_resistance_ohm + there.supply_voltage_v +
                    there.supply_resistance_ohm)) {
-      continue;  // complained about already
+      continue;  // already reported
     }
-    out.Error(builder.at,
+    out.Error("motor.supply_differs", builder.at,
               "a dc_motor's supply \"" + motor.supply +
                   "\" has other figures than in the builder of "
                   "line " +
@@ -54,7 +55,7 @@ void Check(const MapReader& map, ModelText& model) {
   }
   CheckSupplies(model, map.scope().out);
   if (!map.Has("nodes") && !map.Has("structure")) {
-    map.scope().out.Error(map.at(), "the model places nothing",
+    map.scope().out.Error("model.empty", map.at(), "the model places nothing",
                           map.Has("parts")
                               ? "parts are placed by a `structure:` list"
                               : "a model needs `nodes:`, or `parts:` and a `structure:`");

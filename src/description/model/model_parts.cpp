@@ -1,3 +1,4 @@
+// Reading of nodes, pairs, routes, parts and placements.
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
@@ -13,11 +14,12 @@ bool IsFinite(const Vec3& v) {
 
 void CheckTags(const MapReader& map, Tags& tags) {
   if (tags.size() <= static_cast<std::size_t>(kMaxTags)) return;
-  map.Error("tags", map.Path("tags") + ": more than " + std::to_string(kMaxTags) + " tags");
+  map.Error("tags.too_many", "tags",
+            map.Path("tags") + ": more than " + std::to_string(kMaxTags) + " tags");
   tags.clear();
 }
 
-/// `[a, b]`, or more nodes for a cable with via points. Adds `pair` with them to `pairs`.
+/// Reads `[a, b]`, or more nodes for a cable with via points, and adds `pair` with them to `pairs`.
 void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_names,
                    const Scope& scope, PairText pair, std::vector<PairText>& pairs) {
   if (nodes.kind != Value::Kind::kSequence) {
@@ -25,12 +27,12 @@ void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_name
     return;
   }
   if (nodes.items.size() < 2) {
-    scope.out.Error(nodes.at,
+    scope.out.Error("pair.few_nodes", nodes.at,
                     what + " must name 2 or more nodes, got " + std::to_string(nodes.items.size()));
     return;
   }
   for (const ValuePtr& node : nodes.items) {
-    // A placed node's full name has a dot in it: segment_0.tip.
+    // The full name of a placed node contains a dot: segment_0.tip.
     std::string name = placed_names ? ReadText(*node, what, scope) : ReadName(*node, what, scope);
     if (name.empty()) return;
     pair.nodes.push_back({std::move(name), node->at});
@@ -38,7 +40,8 @@ void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_name
   pairs.push_back(std::move(pair));
 }
 
-/// The pairs that entries of a list make. `placed_names`: nodes may be called segment_0.tip.
+/// Returns the pairs of the entries of a list. `placed_names`: full names such as segment_0.tip are
+/// allowed.
 std::vector<PairText> ToPairs(const MapReader& map, std::string_view key,
                               const std::vector<PairsText>& entries, bool placed_names) {
   const Scope& scope = map.scope();
@@ -69,7 +72,7 @@ std::vector<PairText> ToPairs(const MapReader& map, std::string_view key,
   return pairs;
 }
 
-/// False if the key is there, but is no list.
+/// Returns false if the key is present, but is not a list.
 bool IsListOrAbsent(const MapReader& map, std::string_view key) {
   const Value* value = map.Find(key);
   return !value || value->kind == Value::Kind::kSequence;
@@ -79,7 +82,7 @@ bool AllGood(const std::vector<PairsText>& entries) {
   return std::all_of(entries.begin(), entries.end(), [](const PairsText& p) { return p.good; });
 }
 
-/// Ends are ends, and all else is in between.
+/// Checks that only ends are drums and that pulleys and friction are between the ends.
 void CheckRoute(const MapReader& map, const PairsText& pairs) {
   const Scope& scope = map.scope();
   const Value* const value = map.Find("route");
@@ -87,19 +90,20 @@ void CheckRoute(const MapReader& map, const PairsText& pairs) {
   const std::string what = map.Path("route");
   const std::vector<RouteText>& route = pairs.route;
   if (value->items.size() < 2) {
-    map.Error("route",
+    map.Error("route.few_nodes", "route",
               what + " must name 2 or more nodes, got " + std::to_string(value->items.size()));
   }
   for (std::size_t i = 0; i < route.size(); ++i) {
     const bool end = i == 0 || i + 1 == route.size();
     if (end && route[i].is_pulley()) {
-      scope.out.Error(route[i].at, what + " ends at a pulley",
+      scope.out.Error("route.ends_at_pulley", route[i].at, what + " ends at a pulley",
                       "a cable ends at a node or on a drum");
     } else if (end && !route[i].is_drum() && route[i].friction > 0) {
-      scope.out.Error(route[i].at, what + ": friction at an end, where the cable is fixed",
+      scope.out.Error("route.friction_at_end", route[i].at,
+                      what + ": friction at an end, where the cable is fixed",
                       "leave `friction` away there");
     } else if (!end && route[i].is_drum()) {
-      scope.out.Error(route[i].at, what + " has a drum on the way",
+      scope.out.Error("route.drum_inside", route[i].at, what + " has a drum on the way",
                       "a cable ends on a drum; what it runs over is a `pulley`");
     }
   }
@@ -132,15 +136,18 @@ void Check(const MapReader& map, RouteText& element) {
   const bool round = element.is_pulley() || element.is_drum();
   const char* const what = element.is_drum() ? "a drum" : "a pulley";
   for (const char* key : {"axis", "radius_m", "side"}) {
-    if (round && !map.Has(key)) map.Error(key, what + std::string(" needs ") + map.Path(key));
+    if (round && !map.Has(key))
+      map.Error("route.key_missing", key, what + std::string(" needs ") + map.Path(key));
   }
   for (const char* key : {"axis", "radius_m", "side", "turns"}) {
     if (round || !map.Has(key)) continue;
-    map.Error(key, map.Path(key) + " is of pulleys and drums, not of eyelets");
+    map.Error("route.key_of_wheels", key,
+              map.Path(key) + " is of pulleys and drums, not of eyelets");
   }
   const double turns = element.turns;
   if (element.is_pulley() && turns != std::floor(turns) && !std::isnan(turns)) {
-    map.Error("turns", map.Path("turns") + " of a pulley must be a whole number",
+    map.Error("route.turns_not_whole", "turns",
+              map.Path("turns") + " of a pulley must be a whole number",
               "what it takes to get round it comes on top");
   }
 }
@@ -149,7 +156,8 @@ void Check(const MapReader& map, PairsText& pairs) {
   CheckTags(map, pairs.tags);
   CheckRoute(map, pairs);
   if (map.Has("each") && !map.Has("nodes") && map.Has("name")) {
-    map.Error("name", map.Path("each") + " makes several pairs, which cannot share a name");
+    map.Error("pair.name_shared", "name",
+              map.Path("each") + " makes several pairs, which cannot share a name");
   }
 }
 
@@ -172,7 +180,7 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
   }
   if (nodes && nodes->kind != Value::Kind::kMap) part.nodes_complete = false;
   if (nodes && nodes->kind == Value::Kind::kMap && nodes->entries.empty()) {
-    scope.out.Error(nodes->at, map.Path("nodes") + " is empty");
+    scope.out.Error("pair.no_nodes", nodes->at, map.Path("nodes") + " is empty");
     part.nodes_complete = false;
   }
 
@@ -180,9 +188,10 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
   for (const NodeText& node : part.nodes) {
     if (node.fixed_to.text.empty()) continue;
     if (node.fixed_to.text == node.name) {
-      scope.out.Error(node.fixed_to.at, "the node \"" + node.name + "\" is fixed to itself");
+      scope.out.Error("node.fixed_to_itself", node.fixed_to.at,
+                      "the node \"" + node.name + "\" is fixed to itself");
     } else if (known.count(node.fixed_to.text) == 0) {
-      scope.out.Error(node.fixed_to.at,
+      scope.out.Error("node.unknown", node.fixed_to.at,
                       "there is no node \"" + node.fixed_to.text + "\" in this part",
                       NameHint(node.fixed_to.text, names));
     }
@@ -192,14 +201,15 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
   for (const PairText& pair : part.pairs) {
     for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
       if (pair.nodes[i].text != pair.nodes[i - 1].text) continue;
-      scope.out.Error(pair.nodes[i].at, "a pair from \"" + pair.nodes[i].text + "\" to itself");
+      scope.out.Error("pair.same_node_twice", pair.nodes[i].at,
+                      "a pair from \"" + pair.nodes[i].text + "\" to itself");
     }
   }
   for (const PairText& pair : part.pairs) {
     for (const Placed& node : pair.nodes) {
-      // A loose pair may join placed nodes, known later.
+      // A loose pair may join placed nodes, which are known later.
       if (loose || known.count(node.text) > 0 || !part.nodes_complete) continue;
-      scope.out.Error(node.at,
+      scope.out.Error("node.unknown", node.at,
                       "there is no node \"" + node.text + "\" in part \"" + part.name + "\"",
                       NameHint(node.text, names));
     }
@@ -219,7 +229,8 @@ void Check(const MapReader& map, PlacementText& placement) {
   placement.connect = ToPairs(map, "connect", placement.connect_text, false);
   for (const char* key : {"step_m", "step_rotate", "connect", "ring"}) {
     if (map.Has(key) && !placement.numbered) {
-      map.Error(key, map.Path(key) + " needs copies", "write `copies: 2`, or as many as you want");
+      map.Error("structure.key_needs_copies", key, map.Path(key) + " needs copies",
+                "write `copies: 2`, or as many as you want");
     }
   }
   placement.pairs_complete = map.scope().out.items().size() == errors_before &&
@@ -242,7 +253,8 @@ void FinishStructure(const MapReader& map, ModelText& model) {
     if (part == model.parts.end()) {
       model.nodes_complete = false;
       if (placement.part.text.empty()) continue;
-      scope.out.Error(placement.part.at, "there is no part \"" + placement.part.text + "\"",
+      scope.out.Error("part.unknown", placement.part.at,
+                      "there is no part \"" + placement.part.text + "\"",
                       NameHint(placement.part.text, part_names));
       continue;
     }
@@ -253,7 +265,7 @@ void FinishStructure(const MapReader& map, ModelText& model) {
       for (const Placed& node : pair.nodes) {
         if (!model.nodes_complete) break;
         if (known.count(node.text) > 0) continue;
-        scope.out.Error(node.at,
+        scope.out.Error("node.unknown", node.at,
                         "there is no node \"" + node.text + "\" in part \"" + part->name + "\"",
                         NameHint(node.text, node_names));
         model.pairs_complete = false;

@@ -1,5 +1,5 @@
-/// A model file as read, before anything is placed or built: names, tags and numbers with their
-/// places in the file.
+/// Contents of a model file after reading, before placement and building: names, tags and numbers
+/// with their positions in the file.
 #pragma once
 
 #include <cmath>
@@ -29,18 +29,17 @@ struct NodeText {
   SourceRef at;  ///< Of its name.
   Vec3 at_m;     ///< In the part's frame.
   Tags tags;
-  Placed fixed_to;  ///< Another node of the part whose body this one belongs to; may be empty.
+  Placed fixed_to;  ///< Another node of the part; this node belongs to its body. May be empty.
 };
 
-/// One pair; an entry of `pairs:` may make several.
-/// An element of a pair's `route:`: what a cable runs through or round.
+/// Element of a pair's `route:`: eyelet, pulley or drum of a routed cable.
 struct RouteText {
   SourceRef at;
-  Placed eyelet, pulley, drum;  ///< Its node; one of them.
+  Placed eyelet, pulley, drum;  ///< Its node; exactly one is set.
   double friction = 0;
   Vec3 axis;  ///< In the part's frame.
   double radius_m = NAN;
-  bool left = false;  ///< It is on the cable's left, with the axis upwards.
+  bool left = false;  ///< The wheel is on the left of the cable, seen with the axis upward.
   double turns = 0;
 
   const Placed& node() const {
@@ -50,12 +49,13 @@ struct RouteText {
   bool is_drum() const { return !drum.text.empty(); }
 };
 
+/// One pair; an entry of `pairs:` may define several.
 struct PairText {
-  std::string name;  ///< Empty: made from the nodes.
+  std::string name;  ///< Empty: made from the nodes' names.
   SourceRef at;
   std::vector<Placed> nodes;  ///< 2 or more.
   Tags tags;
-  std::vector<RouteText> route = {};  ///< Empty, or one a node.
+  std::vector<RouteText> route = {};  ///< Empty, or one element per node.
 };
 
 struct NodeListForm {
@@ -68,7 +68,7 @@ struct NodeListsForm {
       R"("items": {"type": "string"}, "minItems": 2})";
 };
 
-/// An entry of `pairs:`.
+/// Entry of `pairs:`.
 struct PairsText {
   SourceRef at;
   std::string name;
@@ -76,10 +76,10 @@ struct PairsText {
   Raw<NodeListsForm> each;
   std::vector<RouteText> route;
   Tags tags;
-  bool good = true;  ///< Nothing was wrong with it.
+  bool good = true;  ///< No errors.
 };
 
-/// Nodes and pairs: those of a part, or those at the top of the file.
+/// Nodes and pairs of a part, or of the top of the file.
 struct PartText {
   std::string name;
   Named<NodeText> nodes_text;
@@ -89,27 +89,27 @@ struct PartText {
   bool nodes_complete = true, pairs_complete = true;
 };
 
-/// An entry of `structure:`.
+/// Entry of `structure:`.
 struct PlacementText {
-  std::string name;  ///< The part's, if there is none.
+  std::string name;  ///< Default: the name of the part.
   SourceRef at;
   Placed part;
   int copies = 1;
   bool numbered = false;            ///< `copies` was given: the copies are name_0, name_1, ...
   Vec3 at_m;                        ///< Origin of copy 0 in W.
   Quat rotate;                      ///< q_WPart of copy 0.
-  Vec3 step_m;                      ///< From one copy's origin to the next, in W.
-  Quat step_rotate;                 ///< From one copy's orientation to the next, about axes of W.
-  Vec3 velocity_m_per_s;            ///< Of the centre of mass of a copy.
-  Vec3 angular_velocity_rad_per_s;  ///< Of a copy as a whole, about that centre.
+  Vec3 step_m;                      ///< Translation from one copy's origin to the next, in W.
+  Quat step_rotate;                 ///< Rotation from one copy to the next, about axes of W.
+  Vec3 velocity_m_per_s;            ///< Of a copy's center of mass, in W.
+  Vec3 angular_velocity_rad_per_s;  ///< Of a whole copy about its center of mass, in W.
   Tags tags;
   std::vector<PairsText> connect_text;
   std::vector<PairText> connect;  ///< Node k of a pair is on copy i + k.
-  bool ring = false;              ///< Copy 0 follows the last one.
+  bool ring = false;              ///< The last copy is also connected to copy 0.
   bool nodes_complete = true, pairs_complete = true;
 };
 
-/// A mass as files may give it: one of these, none after a complaint.
+/// Mass as given in a file: exactly one is set, none after an error.
 struct MassText {
   std::optional<double> mass_kg, density_kg_per_m3, mass_kg_per_m;
 
@@ -125,10 +125,10 @@ struct MassText {
   }
 };
 
-// What builders say. The structs that they build on are what is built but for its place: each copy
-// gets name, body and positions.
+// Parameters of builders. Their base structs are the results, which lack only the data of each
+// copy: name, body and positions.
 
-/// As those of a ball in `JointDef`.
+/// Pins of a class-k rod; units as for a ball joint in `JointDef`.
 struct PinText {
   double friction = 0.0, stiffness = 0.0, damping = 0.0;
 };
@@ -144,12 +144,12 @@ struct SphereText : SphereDef {
 };
 struct PointMassText {
   double mass_kg = 0.0;
-  double radius_m = 0.0;  ///< Of the solid sphere that gives it its inertia; touches nothing.
-  /// In place of that sphere's: about the node, in the part's axes. Empty, or xx, yy, zz, and xy,
-  /// xz, yz where they are not 0.
+  double radius_m = 0.0;  ///< Of the solid sphere that defines the inertia; no contact shape.
+  /// Instead of the sphere's inertia: about the node, in the part's axes. Empty, or xx, yy, zz, and
+  /// optionally xy, xz, yz (default 0).
   std::vector<double> inertia_kg_m2;
 };
-/// At a node, or along a pair.
+/// Box at a node, or along a pair.
 struct BoxText : BoxDef {
   Vec3 size_m;
   double width_m = NAN, height_m = NAN;  ///< Along a pair.
@@ -158,26 +158,26 @@ struct BoxText : BoxDef {
   SurfaceText surface;
   bool along_pair = false;
 };
-/// At a node. Its parts are those of the file, or the one that the corners span.
+/// Convex solid at a node. Its parts are the objects of the file, or the hull of the given corners.
 struct ConvexText : HullDef {
   struct Part {
-    std::vector<Vec3> hull_m;  ///< Corners of what touches.
+    std::vector<Vec3> hull_m;  ///< Corners of the contact shape.
     std::vector<Vec3> corners_m;
-    math::Triangles triangles;  ///< What has mass, by those.
+    math::Triangles triangles;  ///< Surface of the mass, by `corners_m`.
   };
   Placed file;
   double scale_m = 1.0;
   MassText mass;
   SurfaceText surface;
-  std::vector<Part> parts;  ///< In the part's frame, from the node; none after a complaint.
-  std::string read_file;    ///< Where they come from.
+  std::vector<Part> parts;  ///< In the part's frame, relative to the node; none after an error.
+  std::string read_file;    ///< File of the parts.
 };
 struct ActuatorText : ActuatorDef {
-  ActuatorText();  ///< Without limits.
+  ActuatorText();  ///< Sets infinite limits.
   bool ideal = false;
 };
-/// Its rest length is one of three, none after a complaint; NaN stands for one that is wrong. So it
-/// does for a stiffness that follows from the section.
+/// Cable. One of three keys determines the rest length; none is set after an error. NaN marks an
+/// invalid value, and a stiffness that follows from the section.
 struct CableText : CableDef {
   CableText() { rest_length_m = stiffness_n_per_m = NAN; }
   std::optional<double> prestress_n, rest_length_ratio, density_kg_per_m3;
@@ -187,7 +187,7 @@ struct CableText : CableDef {
   SourceRef ends_at;
   std::optional<ActuatorText> actuator_text;
 };
-/// At most one of the three says how long it is without stress: as long as described if none.
+/// Bar. At most one of three keys determines the unstressed length; default: the described length.
 struct BarText {
   std::optional<double> stiffness_n_per_m;
   double damping_n_s_per_m = 0.0;
@@ -197,19 +197,19 @@ struct BarText {
   SourceRef rest_at;
 };
 struct AnchorText {};
-/// Between the bodies of a pair's nodes, the axis in the part's frame; or, as a support, between
-/// the world and a node's body.
+/// Joint between the bodies of a pair's nodes, with the axis in the part's frame; or, as a support,
+/// between the world and a node's body.
 struct JointText : JointDef {};
 
 using Match = std::vector<std::vector<std::string>>;
 
-/// An entry of `builders:`: what becomes of the pairs or nodes that carry the tags. One of the
-/// kinds is there.
+/// Entry of `builders:`: the element made of the pairs or nodes that the selector matches. Exactly
+/// one of the kinds is set.
 struct BuilderText {
   SourceRef at;
   Match match;
   SourceRef match_at;
-  std::string kind;  ///< As written: "rod", "cable" ... Empty after a complaint.
+  std::string kind;  ///< As written: "rod", "cable" ... Empty after an error.
   std::optional<RodText> rod;
   std::optional<SphereText> sphere;
   std::optional<PointMassText> point_mass;
@@ -220,7 +220,7 @@ struct BuilderText {
   std::optional<AnchorText> anchor;
   std::optional<JointText> joint, support;
 
-  /// True for what goes on pairs, false for what goes on nodes.
+  /// Returns true for builders of pairs, false for builders of nodes.
   bool on_pairs() const { return rod || cable || bar || joint || (box && box->along_pair); }
 };
 
@@ -239,12 +239,12 @@ struct ModelText {
   Head<ModelForm> head;
   std::string name, description;
   SourceRef at;
-  ModelDef def;  ///< What the file says of the model as a whole: its laws.
+  ModelDef def;  ///< Laws and gravity of the whole model.
   InertiaLaw inertia = InertiaLaw::kExact;
-  DampingLaw damping_law = DampingLaw::kExact;  ///< Of cables that have none of their own.
-  std::optional<ActuatorText> actuator_text;    ///< In place of that of every cable that has one.
+  DampingLaw damping_law = DampingLaw::kExact;  ///< Default for cables without `damping_law`.
+  std::optional<ActuatorText> actuator_text;    ///< Replaces all actuators of cables.
   bool allow_disconnected = false;
-  PartText loose;  ///< The nodes and pairs at the top of the file.
+  PartText loose;  ///< Nodes and pairs at the top of the file.
   Named<PartText> parts_text;
   std::vector<PartText> parts;
   std::vector<PlacementText> structure;
@@ -256,10 +256,10 @@ struct ModelText {
   bool pairs_complete = true;  ///< False: at least one pair could not be read.
 };
 
-/// Reads the top of a model file, bases merged in (`ReadMergedFile(path, "model", out)`).
+/// Reads the top of a model file with merged bases (`ReadMergedFile(path, "model", out)`).
 ModelText ReadModelText(const Value& root, const Scope& scope);
 
-// What is left to do when the keys of a block are read, each in the file of the block.
+// Final checks after the keys of a block have been read, each implemented in the file of its block.
 void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part);
 void FinishStructure(const MapReader& map, ModelText& model);
 void FinishBuilders(const MapReader& map, ModelText& model);

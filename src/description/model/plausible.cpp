@@ -20,14 +20,15 @@ using base::Brief;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// A rounding of a position may be this part of the smallest size of a robot.
+/// Largest rounding error of a position, relative to the smallest size of a robot.
 constexpr double kFinest = 1e-6;
-/// Between the largest and the smallest of a model. Skyscrapers and watches have screws, too.
+/// Largest ratios between the largest and the smallest of a model. Generous, since large structures
+/// have small parts, too.
 constexpr double kMaxSizeRatio = 1e3, kMaxMassRatio = 1e6, kMaxStiffnessRatio = 1e6;
-/// Air has 1.2 kg/m^3, osmium 22 600. Thin rods that stand for thicker and heavier parts are usual.
+/// Air has 1.2 kg/m^3, osmium 22 600. Thin rods often represent thicker and heavier parts.
 constexpr double kLeastDensity = 0.1, kGreatestDensity = 1e6;  // [kg/m^3]
 
-/// The spacing of numbers at x.
+/// Returns the spacing of floating-point numbers at x.
 double Rounding(double x) { return std::nextafter(std::fabs(x), kInf) - std::fabs(x); }
 
 double Farthest(const Vec3& p) {
@@ -38,7 +39,7 @@ double Thinnest(const BoxDef& box) {
   return std::min({box.half_extents_m.x, box.half_extents_m.y, box.half_extents_m.z});
 }
 
-/// Of the bounds along the axes.
+/// Returns the smallest extent of the axis-aligned bounding box.
 double Thinnest(const HullDef& hull) {
   Vec3 low{kInf, kInf, kInf}, high = -1.0 * low;
   for (const Vec3& p : hull.corners_m) {
@@ -58,7 +59,8 @@ double Length(const CapsuleDef& rod) {
   return std::sqrt(Dot(d, d));
 }
 
-/// A resolved file's indices and numbers may be wrong, which `Model::Compile` says.
+/// Returns whether a body index is valid. Resolved files may contain invalid ones, which
+/// `Model::Compile` reports.
 bool IsBody(const RobotSpec& robot, int body) {
   return body >= 0 && static_cast<std::size_t>(body) < robot.body_sources.size();
 }
@@ -67,7 +69,7 @@ SourceRef SourceOf(const RobotSpec& robot, int body) {
   return IsBody(robot, body) ? robot.body_sources[static_cast<std::size_t>(body)] : SourceRef{};
 }
 
-/// A number of a part of the model.
+/// Number of a part of the model, with its name and place.
 struct Item {
   double value;
   std::string name;
@@ -77,7 +79,7 @@ using ItemList = std::vector<Item>;
 
 bool Less(const Item& a, const Item& b) { return a.value < b.value; }
 
-/// Radii, half the smallest edges of boxes, half the smallest extents of hulls [m].
+/// Returns radii, half the smallest edges of boxes and half the smallest extents of hulls [m].
 ItemList Sizes(const RobotSpec& robot) {
   ItemList sizes;
   const auto add = [&](double size_m, const char* kind, const auto& shape) {
@@ -112,13 +114,13 @@ ItemList Stiffnesses(const RobotSpec& robot) {
   return stiffnesses;
 }
 
-/// At the larger one, as that is the usual slip.
+/// Warns at the larger item, the usual mistake.
 void WarnOfRatio(const ItemList& items, double most, const char* what, const char* unit,
                  Diagnostics& out) {
   if (items.empty()) return;
   const auto [least, greatest] = std::minmax_element(items.begin(), items.end(), Less);
   if (!(least->value > 0.0) || greatest->value <= most * least->value) return;
-  out.Warning(greatest->at,
+  out.Warning("plausible.large_ratio", greatest->at,
               std::string(what) + " of the " + greatest->name + ", " + Brief(greatest->value) +
                   " " + unit + ", is " + Brief(greatest->value / least->value) +
                   " times that of the " + least->name + ", " + Brief(least->value) + " " + unit,
@@ -131,7 +133,7 @@ void WarnOfThickRods(const RobotSpec& robot, Diagnostics& out) {
     const SourceRef at = SourceOf(robot, rod.body);
     const double length_m = Length(rod);
     if (rod.radius_m <= length_m || !seen.insert({at.line, at.column}).second) continue;
-    out.Warning(at,
+    out.Warning("plausible.thick_rod", at,
                 "the rod \"" + rod.name + "\" has a radius of " + Brief(rod.radius_m) +
                     " m and a length of " + Brief(length_m) + " m",
                 "its ends are round: a disc is a box or a short sphere");
@@ -160,7 +162,7 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
     if (density >= kLeastDensity && density <= kGreatestDensity) continue;
     const SourceRef& at = robot.body_sources[b];
     if (!seen.insert({at.line, at.column}).second) continue;
-    out.Warning(at,
+    out.Warning("plausible.density", at,
                 "the body \"" + body.name + "\" has " + Brief(body.mass_kg) + " kg in " +
                     Brief(volume_m3[b]) + " m^3: " + Brief(density) + " kg/m^3",
                 density < kLeastDensity ? "air has 1.2: are the units right?"
@@ -172,8 +174,7 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
 
 namespace {
 
-/// The smallest size of a robot: of a shape, for want of shapes of a cable, for want of all a
-/// metre.
+/// Returns the smallest size of a robot: of a shape; without shapes, of a cable; without both, 1 m.
 Item Smallest(const RobotSpec& robot) {
   ItemList sizes = Sizes(robot);
   if (sizes.empty()) {
@@ -196,7 +197,7 @@ void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* p
   const Item smallest = Smallest(robot);
   if (!(smallest.value > 0.0)) return;
   const auto complain = [&](const SourceRef& at, const std::string& what, double far_m) {
-    out.Error(at,
+    out.Error("plausible.far_from_origin", at,
               what + " is " + Brief(far_m) + " m from the origin, where positions are rounded to " +
                   Brief(Rounding(far_m)) + " m",
               "at most a millionth of the smallest size, " + Brief(smallest.value) + " m of the " +
@@ -210,10 +211,10 @@ void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* p
     if (!too_far(far_m)) continue;
     complain(place ? *place : robot.node_sources[n], "the node \"" + def.nodes[n].name + "\"",
              far_m);
-    break;  // the others are there, too
+    break;  // the others are probably as far away
   }
   for (std::size_t p = 0; p < def.planes.size(); ++p) {
-    // What is rounded is how far its surface is from the origin.
+    // The rounded quantity is the distance of the plane from the origin.
     const Vec3 &n = def.planes[p].normal, &at = def.planes[p].point_m;
     const double far_m = Farthest({n.x * at.x, n.y * at.y, n.z * at.z});
     if (too_far(far_m)) {

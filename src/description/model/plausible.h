@@ -1,18 +1,19 @@
-/// Numbers that are allowed one by one and make no sense together (docs/formats/checks.md).
+/// Plausibility checks: numbers that are valid separately but not together
+/// (docs/formats/checks.md).
 #pragma once
 
 #include "taut/spec.h"
 
 namespace taut::description {
 
-/// Complains about what is so far from the origin that positions there are too coarse for the
-/// robot. `place`: of an experiment's, which then is to blame.
+/// Reports objects so far from the origin that the rounding of positions is too coarse for the
+/// robot. `place`: place of an experiment's start pose, reported instead of the model's nodes.
 void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place = nullptr);
 
-/// Whether positions so far from the origin are too coarse for the robot.
+/// Returns whether the rounding of positions at this distance is too coarse for the robot.
 bool IsTooFar(const RobotSpec& robot, double far_m);
 
-/// Warns of a robot that nobody can have meant: units mixed up, a zero too many.
+/// Warns of implausible numbers, such as mixed units or an additional zero.
 void WarnOfOddNumbers(const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::description

@@ -29,11 +29,12 @@ Quat ReadQuaternion(const Value& value, const std::string& path, const Scope& sc
   const double square =
       (*q)[0] * (*q)[0] + (*q)[1] * (*q)[1] + (*q)[2] * (*q)[2] + (*q)[3] * (*q)[3];
   if (!(square > 1e-12) || std::isinf(square)) {
-    scope.out.Error(value.at, path + " must not be zero", "order w, x, y, z");
+    scope.out.Error("rotation.zero", value.at, path + " must not be zero", "order w, x, y, z");
     return {};
   }
   const Quat read{(*q)[0], (*q)[1], (*q)[2], (*q)[3]};
-  // Of length 1 up to rounding: as taut writes it, to be read to the bit.
+  // A quaternion of length 1 up to rounding, as taut writes it, is read back without a change of
+  // bits.
   return std::fabs(square - 1.0) < 1e-15 ? read : Normalized(read);
 }
 
@@ -48,7 +49,8 @@ Quat ReadOneRotation(const Value& value, const std::string& path, const Scope& s
 void Check(const MapReader& map, RotationText& rotation) {
   if (const Value* quaternion = rotation.quaternion.value) {
     if (map.Has("axis") || map.Has("angle_rad")) {
-      map.Error("quaternion", map.what() + " has both a quaternion and an axis or angle",
+      map.Error("rotation.given_twice", "quaternion",
+                map.what() + " has both a quaternion and an axis or angle",
                 "only one of them may be there");
     }
     rotation.q = ReadQuaternion(*quaternion, map.Path("quaternion"), map.scope());
@@ -58,7 +60,7 @@ void Check(const MapReader& map, RotationText& rotation) {
   if (!map.Require("angle_rad") || !axis_value) return;
   const double angle = *rotation.angle_rad;
   if (std::fabs(angle) > math::kMaxAngle)
-    map.Error("angle_rad", map.Path("angle_rad") + " is too large");
+    map.Error("rotation.too_large", "angle_rad", map.Path("angle_rad") + " is too large");
   const Vec3 axis = ReadAxis(*axis_value, map.Path("axis"), map.scope());
   if (!(std::fabs(angle) <= math::kMaxAngle)) return;
   const Vec3 v = math::Sin(0.5 * angle) * axis;

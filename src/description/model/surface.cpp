@@ -1,3 +1,4 @@
+// Checks of surface keys: friction and restitution.
 #include "description/model/surface_keys.h"
 
 namespace taut::description {
@@ -7,13 +8,15 @@ namespace {
 void CheckLaws(const MapReader& map, const Material& material, bool has_axis) {
   if (material.stribeck && material.static_friction == material.kinetic_friction &&
       material.stribeck->viscous_friction_s_per_m == 0.0) {
-    map.Error("stribeck", map.Path("stribeck") + " has no effect",
+    map.Error("friction.stribeck_without_effect", "stribeck",
+              map.Path("stribeck") + " has no effect",
               "static_friction above kinetic_friction, or viscous_friction_s_per_m");
   }
   if (!material.directions || has_axis) return;
   const Vec3& axis = material.directions->axis;
   if (axis.x == 0.0 && axis.y == 0.0 && axis.z == 0.0) {
-    map.Error("friction_directions", map.Path("friction_directions") + " needs an axis",
+    map.Error("friction.axis_missing", "friction_directions",
+              map.Path("friction_directions") + " needs an axis",
               "only rods have one of their own: axis: [1, 0, 0]");
   }
 }
@@ -26,7 +29,8 @@ Material ToMaterial(const MapReader& map, const SurfaceText& surface, bool has_a
     material.static_friction = material.kinetic_friction = surface.friction;
     for (const char* other : {"static_friction", "kinetic_friction"}) {
       if (map.Has(other)) {
-        map.Error(other, map.Path("friction") + " already says what " + other + " is",
+        map.Error("friction.given_twice", other,
+                  map.Path("friction") + " already says what " + other + " is",
                   "friction alone, or static_friction and kinetic_friction");
       }
     }
@@ -35,7 +39,8 @@ Material ToMaterial(const MapReader& map, const SurfaceText& surface, bool has_a
     material.static_friction = *surface.static_friction;
     material.kinetic_friction = *surface.kinetic_friction;
     if (material.static_friction < material.kinetic_friction) {
-      map.Error("static_friction", map.Path("static_friction") + " is below kinetic_friction",
+      map.Error("friction.static_below_kinetic", "static_friction",
+                map.Path("static_friction") + " is below kinetic_friction",
                 "a contact that sticks holds at least as much as one that slides");
     }
   }

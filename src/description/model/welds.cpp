@@ -5,7 +5,7 @@
 namespace taut::description {
 namespace {
 
-/// Of nodes and, behind them, pairs.
+/// Union-find over nodes, followed by pairs.
 class WeldFinder {
  public:
   WeldFinder(const ModelText& model, const Assembly& assembly, const Assignment& assignment)
@@ -45,10 +45,10 @@ class WeldFinder {
     }
   }
 
-  /// What nodes are welded to, or an anchor, takes them, else the first of the rods that turn in
-  /// them; the others are pinned there.
+  /// Assigns the nodes of class-k rods. A node that a stiff solid or an anchor holds stays with it,
+  /// else it goes to the first of its rods; the other rods are pinned there.
   void JoinTurning() {
-    std::vector<bool> taken(assembly_.nodes.size() + assembly_.pairs.size(), false);  // by root
+    std::vector<bool> taken(assembly_.nodes.size() + assembly_.pairs.size(), false);  // per root
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       if (IsSolid(pair) && !TurnsInNodes(pair)) taken[sets_.Root(Element(pair))] = true;
     }
@@ -100,7 +100,7 @@ class WeldFinder {
       if (!Builder(pair) || !Builder(pair)->bar) continue;
       for (const int node : assembly_.pairs[pair].nodes) weld_of(node).ends_bar = true;
     }
-    // Where a member ends on an anchor alone, the world takes its half.
+    // At a node that is only an anchor, the world takes half the mass of a member.
     for (Weld& weld : out_.welds) {
       for (const int node : weld.nodes) {
         const double lump_kg = assignment_.lump_kg[static_cast<std::size_t>(node)];

@@ -1,4 +1,4 @@
-/// Which nodes and rods are one rigid body.
+/// Welds: groups of nodes and rods that form one rigid body.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace taut::description {
 
-/// What is welded into one body. Rods and beams weld their nodes to themselves, `fixed_to` welds
+/// Nodes and solids of one rigid body. Rods and beams are welded to their nodes, `fixed_to` welds
 /// nodes to each other.
 struct Weld {
   std::vector<int> nodes, pairs;  ///< `pairs`: its rods and beams.
   bool anchored = false;
-  bool has_solid = false;  ///< Or a bar or a cable with mass ends there.
+  bool has_solid = false;  ///< Or a bar or cable with mass ends there.
   bool ends_bar = false;
 };
 
-/// A rod that turns in a node which goes with another body.
+/// Rod that is pinned by a ball joint to a node of another body.
 struct Pin {
   int pair, node;
 };
@@ -26,7 +26,7 @@ struct Welds {
   std::vector<Pin> pins;
 };
 
-/// A rod or a beam, not a cable, a bar or a joint.
+/// Returns whether a builder of pairs makes a rod or a beam, not a cable, bar or joint.
 bool IsSolid(const BuilderText& builder);
 
 Welds FindWelds(const ModelText& model, const Assembly& assembly, const Assignment& assignment);

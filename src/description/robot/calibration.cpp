@@ -1,3 +1,4 @@
+// Loading of calibration files.
 #include "taut/calibration.h"
 
 #include <set>
@@ -33,7 +34,8 @@ Calibration ReadCalibration(const Value& root, const std::vector<std::string>& c
   for (CableCalibrationText& one : text.cables) {
     const std::string& name = one.cable.text;
     if (!name.empty() && !known.insert(name).second) {
-      scope.out.Error(one.cable.at, "cable \"" + name + "\" was there already");
+      scope.out.Error("calibration.duplicate_cable", one.cable.at,
+                      "cable \"" + name + "\" was there already");
     }
     if (!name.empty() && !cables.empty()) FindActuatedCable(one.cable, cables, scope);
     one.values.cable = name;
@@ -47,14 +49,15 @@ Calibration ReadCalibration(const Value& root, const std::vector<std::string>& c
 
 void Check(const MapReader& map, CableCalibrationText& cable) {
   if (map.Has("measured") && !IsDay(cable.measured.text)) {
-    map.Error("measured", "\"" + cable.measured.text + "\" is not a day",
+    map.Error("calibration.bad_day", "measured", "\"" + cable.measured.text + "\" is not a day",
               "year, month, day, as 2026-11-23");
   }
   const CableCalibration& values = cable.values;
   if (!values.load_cell_n_per_count && !values.load_cell_counts_at_zero &&
       !values.encoder_m_per_count && !values.rest_length_at_reference_m &&
       !values.stiffness_n_per_m) {
-    map.scope().out.Error(map.at(), map.what() + " says nothing that was measured");
+    map.scope().out.Error("calibration.empty", map.at(),
+                          map.what() + " says nothing that was measured");
   }
 }
 

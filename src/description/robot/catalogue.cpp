@@ -1,3 +1,4 @@
+// Loading of catalogue files.
 #include "taut/catalogue.h"
 
 #include "description/robot/catalogue_keys.h"
@@ -31,17 +32,20 @@ Catalogue ReadCatalogue(const Value& root, const Scope& scope) {
 
 void Check(const MapReader& map, CatalogueMotorText& motor) {
   if (motor.values.peak_torque_n_m < motor.values.rated_torque_n_m) {
-    map.Error("peak_torque_n_m", "the peak torque is less than the rated one");
+    map.Error("catalogue.peak_below_rated_torque", "peak_torque_n_m",
+              "the peak torque is less than the rated one");
   }
   if (motor.values.rated_power_w && motor.values.peak_power_w &&
       *motor.values.peak_power_w < *motor.values.rated_power_w) {
-    map.Error("peak_power_w", "the peak power is less than the rated one");
+    map.Error("catalogue.peak_below_rated_power", "peak_power_w",
+              "the peak power is less than the rated one");
   }
 }
 
 void Check(const MapReader& map, CatalogueFileText& catalogue) {
   if (catalogue.motors.items.empty() && catalogue.springs.items.empty()) {
-    map.scope().out.Error(map.at(), "the catalogue has neither motors nor springs");
+    map.scope().out.Error("catalogue.empty", map.at(),
+                          "the catalogue has neither motors nor springs");
   }
 }
 

@@ -1,3 +1,4 @@
+// Loading of fault scripts.
 #include "taut/faults.h"
 
 #include <algorithm>
@@ -15,11 +16,11 @@ namespace taut {
 namespace description {
 namespace {
 
-/// The keys of a kind besides `at_s` and `for_s`.
+/// Keys of a kind in addition to `at_s` and `for_s`.
 struct KindKeys {
   FaultKind kind;
   std::initializer_list<const char*> needed, allowed;
-  bool lasts = true;  ///< `for_s` makes sense.
+  bool lasts = true;  ///< Whether `for_s` is allowed.
 };
 const KindKeys kKindKeys[] = {
     {FaultKind::kClockDrift, {"board", "drift_ppm"}, {}},
@@ -62,7 +63,8 @@ FaultScript ReadScript(const Value& root, const std::vector<std::string>& cables
     if (!fault.cable.text.empty()) fault.spec.cable = FindActuatedCable(fault.cable, cables, scope);
     const int boards = static_cast<int>(cables.size() + 1) / 2;
     if (fault.board && *fault.board >= boards) {
-      scope.out.Error(fault.board_at, "there is no board " + std::to_string(*fault.board),
+      scope.out.Error("fault.unknown_board", fault.board_at,
+                      "there is no board " + std::to_string(*fault.board),
                       "the robot has " + std::to_string(cables.size()) +
                           " motors, two a board; the first board is 0");
     }
@@ -77,25 +79,26 @@ FaultScript ReadScript(const Value& root, const std::vector<std::string>& cables
 void Check(const MapReader& map, FaultText& fault) {
   if (map.Has("board")) fault.board_at = map.Find("board")->at;
   const Value* kind = map.Find("kind");
-  // After a complaint about the kind nobody knows which keys were meant.
+  // After an error in the kind the allowed keys are unknown.
   if (!kind || kind->text != FaultName(fault.spec.kind)) return;
   const auto* keys = std::find_if(std::begin(kKindKeys), std::end(kKindKeys),
                                   [&](const KindKeys& one) { return one.kind == fault.spec.kind; });
   TAUT_ASSERT(keys != std::end(kKindKeys));
   for (const char* key : keys->needed) {
     if (!map.Has(key)) {
-      map.scope().out.Error(map.at(), map.what() + " needs the key \"" + key + "\"",
+      map.scope().out.Error("fault.key_missing", map.at(),
+                            map.what() + " needs the key \"" + key + "\"",
                             std::string("of kind: ") + FaultName(keys->kind));
     }
   }
   for (const char* key : {"board", "cable", "drift_ppm", "flips_per_bit", "line", "force_n"}) {
     if (map.Has(key) && !Contains(keys->needed, key) && !Contains(keys->allowed, key)) {
-      map.Error(key, map.Path(key) + " has no effect here",
+      map.Error("fault.key_without_effect", key, map.Path(key) + " has no effect here",
                 "it belongs to kind: " + KindsWith(key));
     }
   }
   if (map.Has("for_s") && !keys->lasts) {
-    map.Error("for_s", map.Path("for_s") + " has no effect here",
+    map.Error("fault.duration_without_effect", "for_s", map.Path("for_s") + " has no effect here",
               std::string(FaultName(keys->kind)) + " happens once");
   }
 }

@@ -1,4 +1,4 @@
-/// Files about a robot that another file describes: fault scripts, calibrations.
+/// Files that refer to a robot of another file: fault scripts and calibrations.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 
 namespace taut::description {
 
-/// Index of the cable; -1 after a complaint.
+/// Returns the index of the cable; -1 after an error.
 inline int FindActuatedCable(const Placed& name, const std::vector<std::string>& cables,
                              const Scope& scope) {
   const auto found = std::find(cables.begin(), cables.end(), name.text);
   if (found != cables.end()) return static_cast<int>(found - cables.begin());
-  scope.out.Error(name.at, "there is no actuated cable \"" + name.text + "\"",
+  scope.out.Error("cable.not_actuated", name.at, "there is no actuated cable \"" + name.text + "\"",
                   NameHint(name.text, cables));
   return -1;
 }
 
-/// What `read(root, scope)` makes of a file of this kind, with the names of its files; nothing
-/// after a complaint.
+/// Loads a file of this kind with `read(root, scope)`, and the names of its files; returns nothing
+/// after an error.
 template <class Read>
 auto LoadRobotFile(const std::string& path, const char* kind, Diagnostics& out, Read&& read)
     -> std::optional<decltype(read(std::declval<const Value&>(), std::declval<const Scope&>()))> {

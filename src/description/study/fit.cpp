@@ -1,3 +1,4 @@
+// Loading of fit files.
 #include <filesystem>
 #include <map>
 
@@ -17,7 +18,7 @@ std::string WholePath(const std::string& path) {
   return whole.empty() ? path : whole.string();
 }
 
-/// False if it has errors of its own.
+/// Loads the experiment of an entry. Returns false if it has errors.
 bool LoadItsExperiment(const FitExperimentText& text, const OverrideSet& of_user,
                        const Scope& scope, FitExperiment& out) {
   for (const Entry& entry : Entries(text.set.value, "experiments.set", scope)) {
@@ -37,7 +38,7 @@ bool LoadItsExperiment(const FitExperimentText& text, const OverrideSet& of_user
   return true;
 }
 
-/// What is trained on and judged by at once judges nothing.
+/// Reports data that occur twice, in particular in both training and test.
 void CheckFiles(const std::vector<FitExperiment>& experiments, const Scope& scope) {
   std::map<std::string, const FitExperiment*> seen;
   for (const FitExperiment& one : experiments) {
@@ -47,7 +48,7 @@ void CheckFiles(const std::vector<FitExperiment>& experiments, const Scope& scop
     const FitExperiment& other = *first->second;
     const bool held_out = one.train != other.train;
     scope.out.Error(
-        one.data_at,
+        "fit.data_used_twice", one.data_at,
         "experiments: " + one.name + " has the data of " + other.name +
             (held_out ? ", and one of them is held out to judge the other" : " once more"),
         held_out ? "hold out what nothing is found from: use: test needs data of its own"
@@ -66,7 +67,8 @@ void ReadExperiments(const std::vector<FitExperimentText>& texts, const Override
     one.train = text.train;
     one.forward = text.forward;
     if (!one.name.empty() && !names.emplace(one.name, text.name_at).second) {
-      scope.out.Error(text.name_at, "experiments: two are called " + one.name);
+      scope.out.Error("fit.duplicate_experiment", text.name_at,
+                      "experiments: two are called " + one.name);
     }
     known.push_back(LoadItsExperiment(text, of_user, scope, one));
     one.data_file = FindFile(text.data.value, "experiments.data", scope).value_or("");
@@ -75,7 +77,8 @@ void ReadExperiments(const std::vector<FitExperimentText>& texts, const Override
         FindFile(text.setpoints.value, "experiments.setpoints", scope).value_or("");
     if (known.back() && one.forward == FitForward::kLoadCases &&
         one.experiment.load_cases.empty()) {
-      scope.out.Error(one.at, "experiments: " + one.name + " has no load cases",
+      scope.out.Error("fit.no_load_cases", one.at,
+                      "experiments: " + one.name + " has no load cases",
                       "forward: load_cases needs `load_cases` in the experiment");
     }
   }
@@ -97,7 +100,8 @@ FitSpec ReadFit(const Value& root, const OverrideSet& overrides, const Scope& sc
     bool any = false;
     for (const FitExperiment& one : fit.experiments) any |= one.train;
     if (!any) {
-      scope.out.Error(list->at, "experiments: there is none to find numbers from",
+      scope.out.Error("fit.no_experiments", list->at,
+                      "experiments: there is none to find numbers from",
                       "one with use: train, which is what an entry without `use` is");
     }
   }
@@ -111,7 +115,8 @@ FitSpec ReadFit(const Value& root, const OverrideSet& overrides, const Scope& sc
   for (const char* key : {"estimate", "residuals"}) {
     const Value* items = root.Find(key);
     if (items && items->kind == Value::Kind::kSequence && items->items.empty()) {
-      scope.out.Error(items->at, std::string(key) + " is empty: there is nothing to fit");
+      scope.out.Error("fit.empty_list", items->at,
+                      std::string(key) + " is empty: there is nothing to fit");
     }
   }
   return fit;
@@ -125,15 +130,18 @@ void Check(const MapReader& map, FitExperimentText& experiment) {
   experiment.setpoints_at = map.KeyAt("setpoints");
   for (const char* key : {"map", "setpoints"}) {
     if (map.Has(key) && !map.Has("data")) {
-      map.Error(key, std::string("experiments.") + key + " is for `data`, which is not there");
+      map.Error("fit.key_needs_data", key,
+                std::string("experiments.") + key + " is for `data`, which is not there");
     }
   }
   if (experiment.forward == FitForward::kLoadCases && map.Has("setpoints")) {
-    map.Error("setpoints", "experiments.setpoints: load cases have no set points",
+    map.Error("fit.setpoints_with_load_cases", "setpoints",
+              "experiments.setpoints: load cases have no set points",
               "row i of the data is that of load case i");
   }
   if (experiment.forward != FitForward::kDynamic && map.Has("experiment") && !map.Has("data")) {
-    map.Error("forward", "experiments.forward: a rest is compared with `data`, which is not there");
+    map.Error("fit.forward_without_data", "forward",
+              "experiments.forward: a rest is compared with `data`, which is not there");
   }
 }
 
@@ -147,7 +155,8 @@ std::vector<std::size_t> NamedExperiments(const std::vector<Placed>& names, cons
     const auto at = std::find(all.begin(), all.end(), name.text);
     if (at == all.end()) {
       scope.out.Error(
-          name.at, std::string(what) + ".experiments: there is none called \"" + name.text + "\"",
+          "fit.unknown_experiment", name.at,
+          std::string(what) + ".experiments: there is none called \"" + name.text + "\"",
           NameHint(name.text, all));
     } else {
       found.push_back(static_cast<std::size_t>(at - all.begin()));

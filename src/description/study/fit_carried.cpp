@@ -1,4 +1,4 @@
-// Which measured forces carry which load.
+// Loads carried by measured forces (`carried:` of a fit).
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +9,14 @@
 namespace taut::description {
 namespace {
 
-/// Patterns that no body of an experiment fits.
+/// Reports patterns that match no body of an experiment.
 void CheckBodies(const FitCarriedText& text, const FitExperiment& one, const Scope& scope) {
   std::vector<std::string> names;
   for (const BodyDef& body : one.experiment.robot.def.bodies) names.push_back(body.name);
   for (const Placed& pattern : text.bodies) {
     const auto fits = [&](const std::string& name) { return base::Fits(pattern.text, name); };
     if (std::any_of(names.begin(), names.end(), fits)) continue;
-    scope.out.Error(pattern.at,
+    scope.out.Error("carried.unknown_body", pattern.at,
                     "carried.bodies: " + one.name + " has no body \"" + pattern.text + "\"",
                     NameHint(pattern.text, names));
   }
@@ -37,13 +37,14 @@ std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
     if (length > 0 && std::isfinite(length)) {
       carried.direction = (1 / length) * text.direction;
     } else {
-      scope.out.Error(text.at, "carried.direction has no length");
+      scope.out.Error("carried.no_direction", text.at, "carried.direction has no length");
     }
     for (const std::size_t e : NamedExperiments(text.experiments, "carried", experiments, scope)) {
       const FitExperiment& one = experiments[e];
       if (one.forward == FitForward::kDynamic) {
         if (!text.experiments.empty()) {
-          scope.out.Error(text.at, "carried: " + one.name + " moves, and so does what it carries",
+          scope.out.Error("carried.experiment_moves", text.at,
+                          "carried: " + one.name + " moves, and so does what it carries",
                           "forward: static or load_cases");
         }
         continue;
@@ -52,7 +53,7 @@ std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
       if (known[e]) CheckBodies(text, one, scope);
     }
     if (carried.experiments.empty() && text.experiments.empty() && !experiments.empty()) {
-      scope.out.Error(text.at, "carried: no experiment is at rest",
+      scope.out.Error("carried.no_rest", text.at, "carried: no experiment is at rest",
                       "forward: static or load_cases");
     }
   }

@@ -1,4 +1,4 @@
-// The numbers that a fit finds.
+// Estimated quantities of a fit: parameters, offsets, gains and delays, with bounds and priors.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +10,7 @@
 namespace taut::description {
 namespace {
 
-/// A parameter's value in an experiment or its model.
+/// Returns the value of a parameter in an experiment or its model; null if absent.
 const double* FindParameter(const FitExperiment& one, const std::string& name) {
   const auto in = [&](const std::map<std::string, double>& map) -> const double* {
     const auto at = map.find(name);
@@ -29,11 +29,11 @@ std::vector<std::string> ParameterNames(const std::vector<FitExperiment>& experi
   return {names.begin(), names.end()};
 }
 
-/// Whether bounds, prior and start go together; a complaint if not. Fills in what is not said.
+/// Checks that bounds, prior and start are consistent, and reports errors. Sets a default scale.
 void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRange& range,
                 const Scope& scope) {
   const auto wrong = [&](const std::string& text, const std::string& hint = {}) {
-    scope.out.Error(at, what + text, hint);
+    scope.out.Error("estimate.bad_value", at, what + text, hint);
   };
   if (!(range.low < range.high) && !std::isnan(range.low) && !std::isnan(range.high)) {
     wrong(": nothing lies between low " + Shown(range.low) + " and high " + Shown(range.high));
@@ -85,10 +85,11 @@ FitEstimate OfNuisance(const Made& made, FitEstimate::Kind kind, double neutral,
   range.sd = n.sd;
   if (n.sd) range.mean = n.mean.value_or(neutral);
   if (n.mean && !n.sd) {
-    scope.out.Error(out.at, std::string("estimate.") + made.word + ".mean needs an `sd`");
+    scope.out.Error("estimate.mean_without_sd", out.at,
+                    std::string("estimate.") + made.word + ".mean needs an `sd`");
   }
   double start = n.mean.value_or(neutral);
-  // A delay that can only be positive begins in the middle of what it may be.
+  // A delay with bounds starts in the middle of them.
   if (kind == FitEstimate::Kind::kDelay && !n.sd && n.low && n.high)
     start = 0.5 * (*n.low + *n.high);
   range.start = n.start.value_or(start);
@@ -110,7 +111,7 @@ std::optional<FitEstimate> OfParameter(const FitEstimateText& text,
     const double* found = FindParameter(experiments[e], out.parameter);
     if (!found) {
       if (text.experiments.empty()) continue;
-      scope.out.Error(text.parameter.at,
+      scope.out.Error("estimate.unknown_parameter", text.parameter.at,
                       "estimate: " + experiments[e].name + " has no parameter \"" + out.name + "\"",
                       NameHint(out.name, ParameterNames({experiments[e]})));
       continue;
@@ -120,7 +121,7 @@ std::optional<FitEstimate> OfParameter(const FitEstimateText& text,
   }
   if (know.empty()) {
     if (!text.experiments.empty()) return std::nullopt;
-    scope.out.Error(text.parameter.at,
+    scope.out.Error("estimate.unknown_parameter", text.parameter.at,
                     "estimate: no experiment and no model has a parameter \"" + out.name + "\"",
                     NameHint(out.name, ParameterNames(experiments)));
     return std::nullopt;
@@ -139,7 +140,7 @@ std::optional<FitEstimate> OfParameter(const FitEstimateText& text,
   return out;
 }
 
-/// What a number is, so that two that are the same are seen.
+/// Returns the identity of a quantity, for the detection of duplicates.
 std::string Identity(const FitEstimate& e) {
   return std::to_string(static_cast<int>(e.kind)) + " " + e.parameter + " " + e.channels;
 }
@@ -152,7 +153,8 @@ void Check(const MapReader& map, FitEstimateText& e) {
   const auto only = [&](bool fits, std::initializer_list<const char*> keys, const char* whose) {
     for (const char* key : keys) {
       if (!fits && map.Has(key)) {
-        map.Error(key, std::string("estimate.") + key + " is for " + whose);
+        map.Error("estimate.key_without_effect", key,
+                  std::string("estimate.") + key + " is for " + whose);
       }
     }
   };
@@ -160,11 +162,12 @@ void Check(const MapReader& map, FitEstimateText& e) {
   only(channel, {"offset", "gain"}, "a channel");
   only(e.has_clock, {"delay_s"}, "a clock");
   if (channel && !parameter && !e.has_clock && !e.offset && !e.gain) {
-    map.Error("channel", "estimate: a channel needs an `offset` or a `gain`",
-              "offset: {sd: 0.002}");
+    map.Error("estimate.channel_without_number", "channel",
+              "estimate: a channel needs an `offset` or a `gain`", "offset: {sd: 0.002}");
   }
   if (e.has_clock && !parameter && !channel && !e.delay_s) {
-    map.Error("clock", "estimate: a clock needs a `delay_s`", "delay_s: {low: 0, high: 3}");
+    map.Error("estimate.clock_without_delay", "clock", "estimate: a clock needs a `delay_s`",
+              "delay_s: {low: 0, high: 3}");
   }
 }
 
@@ -177,7 +180,8 @@ std::vector<FitEstimate> ToEstimates(const std::vector<FitEstimateText>& texts,
     for (const std::size_t e : acts_on) {
       const auto [first, fresh] = taken.emplace(std::pair(Identity(estimate), e), estimate.at);
       if (fresh) continue;
-      scope.out.Error(estimate.at, "estimate: " + estimate.name + " is found twice",
+      scope.out.Error("estimate.duplicate", estimate.at,
+                      "estimate: " + estimate.name + " is found twice",
                       "first in line " + std::to_string(first->second.line));
       break;
     }
@@ -211,8 +215,9 @@ std::vector<FitEstimate> ToEstimates(const std::vector<FitEstimateText>& texts,
     if (text.has_clock) nuisance(text.delay_s, FitEstimate::Kind::kDelay, "delay", 0.0);
     for (const std::size_t e : acts_on) {
       if (!text.has_clock || experiments[e].forward != FitForward::kLoadCases) continue;
-      scope.out.Error(text.at, "estimate: the load cases of " + experiments[e].name +
-                                   " have no clock that could be late");
+      scope.out.Error("estimate.no_clock", text.at,
+                      "estimate: the load cases of " + experiments[e].name +
+                          " have no clock that could be late");
     }
   }
   return out;

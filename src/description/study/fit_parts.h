@@ -1,4 +1,4 @@
-/// From what a fit file says to what is fitted.
+/// Conversion of the contents of a fit file to the fit.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace taut::description {
 
-/// `known`: per experiment, whether it could be read; what is wrong with others is not asked.
+/// Converts estimates. `known`: per experiment, whether it could be read; others are not checked.
 std::vector<FitEstimate> ToEstimates(const std::vector<FitEstimateText>& texts,
                                      const std::vector<FitExperiment>& experiments,
                                      const std::vector<bool>& known, const Scope& scope);
-/// `of_design`: there is no data for them.
+/// Converts residuals. `of_design`: without data.
 std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
                                      const std::vector<FitExperiment>& experiments,
                                      const std::vector<bool>& known, bool of_design,
@@ -20,7 +20,7 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
 std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
                                   const std::vector<FitExperiment>& experiments,
                                   const std::vector<bool>& known, const Scope& scope);
-/// Those of `names`, all if it is empty.
+/// Returns the experiments with these names; all if `names` is empty.
 std::vector<std::size_t> NamedExperiments(const std::vector<Placed>& names, const char* what,
                                           const std::vector<FitExperiment>& experiments,
                                           const Scope& scope);

@@ -1,4 +1,4 @@
-// What a fit compares.
+// Residuals of a fit: channels, references, windows and statistics.
 #include <algorithm>
 
 #include "description/study/fit_parts.h"
@@ -9,7 +9,7 @@ namespace {
 void CheckForward(const FitResidual& residual, const FitResidualText& text,
                   const FitExperiment& one, const Scope& scope) {
   const auto wrong = [&](const std::string& what, const std::string& hint) {
-    scope.out.Error(text.at, "residuals: " + what, hint);
+    scope.out.Error("residual.bad_channels", text.at, "residuals: " + what, hint);
   };
   const bool window = text.window.has_value();
   if (residual.channels.empty()) {
@@ -36,7 +36,7 @@ void CheckForward(const FitResidual& residual, const FitResidualText& text,
   std::vector<std::string> phases;
   for (const PhaseSpec& phase : one.experiment.phases) phases.push_back(phase.name);
   if (std::find(phases.begin(), phases.end(), *residual.phase) == phases.end()) {
-    scope.out.Error(text.window->phase.at,
+    scope.out.Error("residual.unknown_phase", text.window->phase.at,
                     "residuals.window: " + one.name + " has no phase \"" + *residual.phase + "\"",
                     NameHint(*residual.phase, phases));
   }
@@ -48,17 +48,19 @@ void Check(const MapReader& map, FitWindowText& window) {
   const int kinds = int{map.Has("phase")} + int{map.Has("from_s") || map.Has("to_s")} +
                     int{map.Has("after_setpoint_s")};
   if (kinds != 1 && map.is_map()) {
-    map.scope().out.Error(map.at(),
+    map.scope().out.Error("residual.window_incomplete", map.at(),
                           "residuals.window needs one of `phase`, `from_s` with `to_s`, "
                           "`after_setpoint_s`");
   }
   if (map.Has("from_s") != map.Has("to_s")) {
-    map.scope().out.Error(map.at(), "residuals.window: from_s and to_s go together");
+    map.scope().out.Error("residual.window_incomplete", map.at(),
+                          "residuals.window: from_s and to_s go together");
   }
   const auto rises = [&](const char* key, double from, double to) {
     if (to <= from) {
-      map.Error(key, "residuals.window: its end " + Shown(to) + " s is not after its begin " +
-                         Shown(from) + " s");
+      map.Error("residual.window_empty", key,
+                "residuals.window: its end " + Shown(to) + " s is not after its begin " +
+                    Shown(from) + " s");
     }
   };
   if (window.from_s && window.to_s) rises("to_s", *window.from_s, *window.to_s);
@@ -72,12 +74,14 @@ void Check(const MapReader& map, FitResidualText& residual) {
   if (residual.has_reference && !map.Has("channel")) {
     for (const char* key : {"window", "statistic"}) {
       if (map.Has(key)) {
-        map.Error(key, std::string("residuals.") + key + ": references say that themselves");
+        map.Error("residual.key_of_references", key,
+                  std::string("residuals.") + key + ": references say that themselves");
       }
     }
   }
   if (residual.loss_sd && residual.loss == RobustLoss::kSquares) {
-    map.Error("loss_sd", "residuals.loss_sd is for loss: huber or cauchy");
+    map.Error("residual.loss_sd_without_loss", "loss_sd",
+              "residuals.loss_sd is for loss: huber or cauchy");
   }
 }
 
@@ -104,7 +108,8 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
       r.after_setpoint_s = text.window->after_setpoint_s;
     }
     if (of_design && r.statistic == FitStatistic::kRows) {
-      scope.out.Error(text.at, "design: what is not measured yet has no rows",
+      scope.out.Error("residual.design_has_no_rows", text.at,
+                      "design: what is not measured yet has no rows",
                       "statistic: mean, max or min");
     }
     const bool meant = !r.channels.empty() || text.has_reference;
@@ -112,9 +117,9 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
          NamedExperiments(text.experiments, "residuals", experiments, scope)) {
       const FitExperiment& one = experiments[e];
       if (!r.channels.empty() && one.data_file.empty() && !of_design) {
-        // A measurement without data is one of references.
+        // An experiment without data has only references.
         if (!text.experiments.empty() && known[e]) {
-          scope.out.Error(text.at, "residuals: " + one.name + " has no `data`");
+          scope.out.Error("residual.no_data", text.at, "residuals: " + one.name + " has no `data`");
         }
         continue;
       }
@@ -122,7 +127,7 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
       if (known[e] && meant) CheckForward(r, text, one, scope);
     }
     if (meant && r.experiments.empty() && text.experiments.empty() && !experiments.empty()) {
-      scope.out.Error(text.at, "residuals: no experiment has `data`");
+      scope.out.Error("residual.no_data", text.at, "residuals: no experiment has `data`");
     }
   }
   return out;

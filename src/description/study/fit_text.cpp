@@ -1,3 +1,4 @@
+// Text that identifies a fit.
 #include <cmath>
 
 #include "description/study/key_line.h"

@@ -1,3 +1,4 @@
+// Loading of study files.
 #include "taut/study.h"
 
 #include "description/study/study_parts.h"
@@ -9,7 +10,7 @@ namespace taut {
 namespace description {
 namespace {
 
-/// False if it has errors of its own.
+/// Loads the experiment of a study. Returns false if it has errors.
 bool LoadItsExperiment(const StudyFileText& text, const OverrideSet& of_user, const Scope& scope,
                        StudySpec& study) {
   Overrides overrides;
@@ -29,20 +30,21 @@ bool LoadItsExperiment(const StudyFileText& text, const OverrideSet& of_user, co
   return true;
 }
 
-/// What an objective asks of its experiment.
+/// Checks the requirements of an objective on its experiment.
 void CheckAgainst(const ExperimentSpec& experiment, const ObjectiveText& objective,
                   Diagnostics& out) {
   if (objective.from_s >= experiment.duration_s) {
-    out.Error(objective.from_at, "objective.from_s is not before the experiment's end",
+    out.Error("objective.starts_after_end", objective.from_at,
+              "objective.from_s is not before the experiment's end",
               "that is at " + Shown(experiment.duration_s) + " s");
   }
   if (objective.measure == Measure::kNearer && !experiment.goal) {
-    out.Error(objective.measure_at, "objective.measure: nearer needs a goal",
-              "the experiment has no `goal`");
+    out.Error("objective.needs_goal", objective.measure_at,
+              "objective.measure: nearer needs a goal", "the experiment has no `goal`");
   }
 }
 
-/// Whatever could be read; the caller looks at the diagnostics.
+/// Returns all that could be read; the caller checks the diagnostics.
 StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope& scope) {
   StudyFileText text;
   ReadMapping(root, "", scope, text);
@@ -60,9 +62,10 @@ StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope
   if (known) CheckAgainst(study.experiment, text.objective, scope.out);
   if (text.worlds) study.perturbation = *text.worlds;
   if (known && study.perturbation.start.goal_rad > 0 && !study.experiment.goal) {
-    scope.out.Error(root.Find("worlds")->at, "worlds.start.goal_rad: the experiment has no `goal`");
+    scope.out.Error("study.start_needs_goal", root.Find("worlds")->at,
+                    "worlds.start.goal_rad: the experiment has no `goal`");
   }
-  // After complaints about `vary` nobody knows how many parameters were meant.
+  // After an error in `vary` the number of parameters is unknown.
   const std::size_t dimensions = scope.out.ok() ? study.parameters.size() : 0;
   study.searches = ToSearches(root.Find("search"), text.search, dimensions, scope);
   return study;

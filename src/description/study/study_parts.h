@@ -1,4 +1,4 @@
-/// From what a study file says to what is searched.
+/// Conversion of the contents of a study file to the study.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace taut::description {
 
-/// `list` is where the texts stand. `tunables` is null where the experiment could not be read: then
-/// names are not checked.
+/// Converts parameters. `list` is the value with the entries. `tunables` is null if the experiment
+/// could not be read: then names are not checked.
 std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<VaryText>& texts,
                                          const std::vector<Tunable>* tunables, const Scope& scope);
 std::vector<SearchSpec> ToSearches(const Value* list, const std::vector<SearchText>& texts,

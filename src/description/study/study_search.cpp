@@ -1,3 +1,4 @@
+// Search methods of a study.
 #include "description/study/study_parts.h"
 
 namespace taut {
@@ -10,7 +11,7 @@ const std::vector<std::string>& NloptAlgorithms() {
 namespace description {
 namespace {
 
-/// The method with what the file says of it.
+/// Returns the search method with its settings.
 SearchSpec ToSearch(const SearchText& text) {
   SearchSpec search{MonteCarloSpec{}, text.evaluations, text.batch};
   if (text.method == Method::kHillClimbing) {
@@ -43,7 +44,8 @@ const Choices<std::string>& NloptChoices() {
 void Check(const MapReader& map, SearchText& search) {
   const auto only = [&](std::string_view key, Method owner, const char* who) {
     if (map.Has(key) && search.method != owner) {
-      map.Error(key, "search." + std::string(key) + " has no effect here",
+      map.Error("search.key_without_effect", key,
+                "search." + std::string(key) + " has no effect here",
                 "it belongs to method: " + std::string(who));
     }
   };
@@ -52,17 +54,17 @@ void Check(const MapReader& map, SearchText& search) {
   only("starts", Method::kNlopt, "nlopt");
   only("initial_step", Method::kNlopt, "nlopt");
   if (search.method == Method::kMonteCarlo && map.Has("deviation")) {
-    map.Error("deviation", "search.deviation has no effect here",
+    map.Error("search.key_without_effect", "deviation", "search.deviation has no effect here",
               "it belongs to hill_climbing and cma_es");
   }
   if (search.method == Method::kNlopt && (map.Has("batch") || map.Has("deviation"))) {
-    map.Error(map.Has("batch") ? "batch" : "deviation",
+    map.Error("search.key_without_effect", map.Has("batch") ? "batch" : "deviation",
               "search: nlopt has neither batch nor deviation",
               "it runs `starts` side by side, with steps of `initial_step`");
   }
   if (search.method == Method::kCmaEs && search.batch < 4) {
     map.scope().out.Error(
-        map.Find("batch")->at,
+        "search.batch_too_small", map.Find("batch")->at,
         "search.batch must be at least 4 for cma_es, got " + std::to_string(search.batch),
         "it is the population");
   }
@@ -81,12 +83,12 @@ std::vector<SearchSpec> ToSearches(const Value* list, const std::vector<SearchTe
   for (const SearchText& text : texts) {
     out.push_back(ToSearch(text));
     if (dimensions == 1 && text.method == Method::kNlopt && text.algorithm == "bobyqa") {
-      scope.out.Error(text.algorithm_at, "search.algorithm: bobyqa needs two parameters or more",
-                      "take nelder_mead");
+      scope.out.Error("search.few_parameters", text.algorithm_at,
+                      "search.algorithm: bobyqa needs two parameters or more", "take nelder_mead");
     }
   }
   if (list && list->kind == Value::Kind::kSequence && list->items.empty()) {
-    scope.out.Error(list->at, "search is empty: there is nothing to do",
+    scope.out.Error("search.empty", list->at, "search is empty: there is nothing to do",
                     "such as [{method: monte_carlo, evaluations: 100}]");
   }
   return out;

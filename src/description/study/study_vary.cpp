@@ -1,3 +1,4 @@
+// Varied parameters of a study.
 #include <cmath>
 #include <map>
 #include <set>
@@ -11,12 +12,12 @@ namespace {
 
 constexpr std::size_t kMostParameters = 1000;
 
-/// Whether there is room between the bounds; a complaint if not.
+/// Returns whether the bounds are a valid range; reports an error if not.
 bool HasRoom(const VaryText& vary, const Scope& scope) {
   if (std::isnan(vary.low) || std::isnan(vary.high)) return false;
   bool good = true;
   if (!(vary.low < vary.high)) {
-    scope.out.Error(vary.low_at,
+    scope.out.Error("vary.empty_range", vary.low_at,
                     vary.low == vary.high
                         ? "vary: nothing lies between low and high, both " + Shown(vary.low)
                         : "vary: low " + Shown(vary.low) + " is above high " + Shown(vary.high),
@@ -24,7 +25,8 @@ bool HasRoom(const VaryText& vary, const Scope& scope) {
     good = false;
   }
   if (vary.log && !(vary.low > 0)) {
-    scope.out.Error(vary.low_at, "vary: scale: log needs bounds above 0, got " + Shown(vary.low));
+    scope.out.Error("vary.log_not_positive", vary.low_at,
+                    "vary: scale: log needs bounds above 0, got " + Shown(vary.low));
     good = false;
   }
   return good;
@@ -44,7 +46,7 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
   std::map<std::size_t, SourceRef> taken;
   std::set<std::string> names;
   for (const VaryText& vary : texts) {
-    if (out.size() > kMostParameters) break;  // further entries would only repeat the complaints
+    if (out.size() > kMostParameters) break;  // further entries would repeat the errors
     const bool each = vary.each.value, good = HasRoom(vary, scope);
     if (each == (vary.all.value != nullptr) || !tunables) continue;
     const auto found = MatchTunables(each ? *vary.each.value : *vary.all.value,
@@ -53,13 +55,14 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
       const Tunable& tunable = (*tunables)[i];
       const auto [first, fresh] = taken.emplace(i, vary.at);
       if (!fresh) {
-        scope.out.Error(vary.pattern_at, "vary: " + tunable.name + " is varied twice",
+        scope.out.Error("vary.duplicate", vary.pattern_at,
+                        "vary: " + tunable.name + " is varied twice",
                         "first in line " + std::to_string(first->second.line));
       }
       if (good && (vary.low < tunable.min || vary.high > tunable.max)) {
-        scope.out.Error(vary.pattern_at, "vary: " + tunable.name + " must stay within " +
-                                             Shown(tunable.min) + ".." + Shown(tunable.max) + " " +
-                                             tunable.unit);
+        scope.out.Error("vary.out_of_range", vary.pattern_at,
+                        "vary: " + tunable.name + " must stay within " + Shown(tunable.min) + ".." +
+                            Shown(tunable.max) + " " + tunable.unit);
         break;
       }
     }
@@ -67,7 +70,8 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
       std::vector<std::string> targets;
       for (const std::size_t i : chosen) targets.push_back((*tunables)[i].name);
       if (!names.insert(wanted).second) {
-        scope.out.Error(vary.name_at, "vary: two parameters are called " + wanted);
+        scope.out.Error("vary.duplicate_name", vary.name_at,
+                        "vary: two parameters are called " + wanted);
       }
       out.push_back(
           {wanted, (*tunables)[chosen[0]].unit, std::move(targets), vary.low, vary.high, vary.log});
@@ -80,11 +84,12 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
     }
   }
   if (out.size() > kMostParameters) {
-    scope.out.Error(list->at, "vary: more than " + std::to_string(kMostParameters) + " parameters",
+    scope.out.Error("vary.too_many", list->at,
+                    "vary: more than " + std::to_string(kMostParameters) + " parameters",
                     "let groups share one: `all` instead of `each`");
   }
   if (list && list->kind == Value::Kind::kSequence && list->items.empty()) {
-    scope.out.Error(list->at, "vary is empty: there is nothing to learn");
+    scope.out.Error("vary.empty", list->at, "vary is empty: there is nothing to learn");
   }
   return out;
 }

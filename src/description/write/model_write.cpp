@@ -1,5 +1,5 @@
-// A robot as a model file. What a model file cannot say is refused: by name where this code knows
-// of it, by reading the text back where it does not.
+// Serialization of a robot as a model file. Robots that the format cannot express are rejected:
+// known cases with a specific error, others by reading the text back.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -63,7 +63,8 @@ class Writer {
     RefuseModel(out_, what, hint);
   }
 
-  /// One tag for the pairs of each builder instead of a list of names: `rod`, or `rod_1`, `rod_2`.
+  /// Adds one tag to the pairs of each builder, instead of lists of names: `rod`, or `rod_1`,
+  /// `rod_2`.
   void TagSolids() {
     int number = 0;
     for (const WrittenBuilder& builder : m_.on_pairs) {
@@ -79,7 +80,7 @@ class Writer {
     }
   }
 
-  /// In its placement if its name says so, else among the pairs of the whole model.
+  /// Assigns a pair to its placement if its name has that prefix, else to the whole model.
   void NamePair(WrittenPair& pair) {
     const auto [placement, given] = NameOf(m_, pair);
     const bool inside = !placement.empty();
@@ -95,7 +96,7 @@ class Writer {
       pair.line += (i == 0 ? "" : ", ") + Name(inside ? ShortName(name) : name);
     }
     pair.line += "]" + TagsText(pair.tags, {given, pair.name}) + "}";
-    for (const std::string& name : {given, pair.name}) {  // as they are when it is read
+    for (const std::string& name : {given, pair.name}) {  // tags that reading adds
       if (!name.empty()) pair.tags.push_back(name);
     }
   }
@@ -164,7 +165,7 @@ class Writer {
     return parts + structure;
   }
 
-  /// What a builder matches: a tag that all of them have and nobody else, or their names.
+  /// Returns the selector of a builder: a tag that exactly its elements have, or their names.
   template <class Items>
   std::string MatchText(const std::vector<int>& on, const Items& items) {
     const auto has = [&](int i, const std::string& tag) {
@@ -203,7 +204,8 @@ class Writer {
     return text + CableBuilders();
   }
 
-  /// Rest lengths differ from cable to cable, the rest hardly.
+  /// Returns one builder per cable: rest lengths differ, the other numbers are mostly equal and
+  /// shared by a YAML anchor.
   std::string CableBuilders() {
     const auto kind_of = [&](std::size_t i) {
       const CableDef& cable = def_.cables[static_cast<std::size_t>(m_.cables[i])];

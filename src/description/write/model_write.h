@@ -1,4 +1,4 @@
-/// Writing a robot as a model file: what its steps share.
+/// Serialization of a robot as a model file: types and functions shared by its steps.
 #pragma once
 
 #include <map>
@@ -18,68 +18,69 @@ struct WrittenNode {
   int fixed_to = -1;
 };
 struct WrittenPair {
-  std::string name;  ///< Full.
+  std::string name;  ///< Full name.
   Tags tags;
   std::vector<int> nodes;
-  std::string line;       ///< Of `pairs:`, once it is known how it is named.
-  std::string placement;  ///< Whose pair it is; empty: none's.
-  bool turns = false;     ///< A rod of `class_k` that turns in a node of another body.
+  std::string line;       ///< Of `pairs:`, set when its name is known.
+  std::string placement;  ///< Placement of the pair; empty: none.
+  bool turns = false;     ///< Rod of `class_k` that is pinned to a node of another body.
 };
-/// What builders of one text go on: indices of nodes or pairs.
+/// Builder text and the indices of its nodes or pairs.
 struct WrittenBuilder {
   std::string text;
   std::vector<int> on;
 };
 
-/// A robot taken apart into what a model file has.
+/// Robot decomposed into the elements of a model file.
 struct WrittenModel {
-  std::vector<WrittenNode> nodes;  ///< Those of the robot first, in its order.
+  std::vector<WrittenNode> nodes;  ///< Nodes of the robot first, in its order.
   std::vector<WrittenPair> pairs;  ///< Solids first.
   std::size_t solid_pairs = 0;
-  std::vector<int> cables;                      ///< Of the robot: the pairs after the solids.
-  std::set<int> pins;                           ///< Joints that rods of `class_k` bring along.
-  std::vector<std::vector<std::string>> apart;  ///< Bodies, by their names.
+  std::vector<int> cables;                      ///< Robot's cables: the pairs after the solids.
+  std::set<int> pins;                           ///< Joints that rods of `class_k` imply.
+  std::vector<std::vector<std::string>> apart;  ///< Names of bodies.
   std::vector<WrittenBuilder> on_pairs, on_nodes;
-  std::map<std::string, Quat> turns;  ///< Per placement with boxes.
+  std::map<std::string, Quat> turns;  ///< Orientation of each placement with boxes.
 };
 
-/// A box of the terrain that an experiment moves: no part of the robot.
+/// Returns whether the body is a terrain box that an experiment moves, not a part of the robot.
 bool IsTerrain(const ModelDef& def, int body);
-/// Whether the robot says that the body stands still, and not an experiment that moves it.
+/// Returns whether the body is anchored by the model, as opposed to moved by an experiment.
 bool IsAnchored(const ModelDef& def, int body);
 
-/// The node of the body, or of the world, that is exactly there; -1: none.
+/// Returns the node of the body, or of the world, at exactly this point; -1: none.
 int NodeAt(const WrittenModel& model, int body, const Vec3& p);
-/// The builder of that text goes on one more.
+/// Adds an element to the builder with this text.
 void Build(std::vector<WrittenBuilder>& list, const std::string& text, int on);
 
-/// How a pair is written: `given` is its `name:`, empty for that of its nodes.
+/// Name of a pair in the file: `given` is its `name:`, empty if the name follows from the nodes.
 struct PairName {
   std::string placement, given;
 };
 PairName NameOf(const WrittenModel& model, const WrittenPair& pair);
 
-/// A member's keys, those that say something, with ", " before each.
+/// Returns the keys of a member that differ from the default, each after ", ".
 std::string MemberText(const MemberDef& member);
-/// What of the body is half of bars and cables that end on it [kg].
+/// Returns the share of the body's mass that comes from bars and cables at its nodes [kg].
 double LumpedOn(const ModelDef& def, int body);
 
-/// Joints, bars, supports and what does not touch each other: the last pairs, and builders. What
-/// rods of `class_k` bring along is left out.
+/// Adds joints, bars, supports and `apart` as the last pairs and builders, without the joints that
+/// rods of `class_k` imply.
 void TakeJoints(const RobotSpec& robot, WrittenModel& model, Diagnostics& out);
 
-/// Complains about what a model file cannot say; what comes back is whole if there was nothing.
+/// Decomposes a robot. Reports features that a model file cannot express; the result is complete if
+/// there are none.
 WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out);
 std::string TextOf(const RobotSpec& robot, WrittenModel model, Diagnostics& out);
 
-/// Complains about the first thing that differs, beyond rounding, between a robot and what was read
-/// back of it. `read` may have more nodes. False if there is such a thing.
+/// Reports the first difference, beyond rounding, between a robot and its copy after reading back,
+/// and returns false. `read` may have more nodes.
 bool CheckReadBack(const RobotSpec& robot, const RobotSpec& read, Diagnostics& out);
 
-/// The one beginning of all these complaints.
+/// Reports an error with the common beginning of all these messages.
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint = {});
 
-/// All that stands before the last dot: the placement that a node belongs to; empty for none.
+/// Returns the text before the last dot: the placement of a node; empty for none.
 inline std::string PlacementOf(const std::string& full_name) {
   const std::size_t dot = full_name.rfind('.');
   return dot == full_name.npos ? "" : full_name.substr(0, dot);

@@ -10,7 +10,7 @@
 namespace taut::description {
 namespace {
 
-/// Points of a support that are as near as this are one node; farther, it has slid.
+/// Greatest distance of a support's points that are one node; beyond it, the support has slid.
 constexpr double kTogether_m = 1e-9;
 
 bool IsOne(const Quat& q) { return q.w == 1 && q.x == 0 && q.y == 0 && q.z == 0; }
@@ -60,7 +60,8 @@ class JointTaker {
           static_cast<int>(m_.pairs.size()) - 1);
   }
 
-  /// Where the node of a support that has slid was: a node of the world. -1 after a complaint.
+  /// Adds a node of the world at the original point of a support that has slid. Returns -1 after an
+  /// error.
   int GroundOf(const JointDef& support) {
     const std::string name = support.name + "_from";
     const auto taken = std::find_if(m_.nodes.begin(), m_.nodes.end(),
@@ -76,8 +77,8 @@ class JointTaker {
     return node;
   }
 
-  /// Only what differs from what is if nothing is said, and as the joint's kind spells it.
-  /// Directions are those of the part.
+  /// Returns the keys that differ from the defaults, with the names for the joint's kind and
+  /// directions in the part's frame.
   std::string Text(const JointDef& joint, const std::string& placement) const {
     const auto found = m_.turns.find(placement);
     const Quat turn = found == m_.turns.end() ? Quat{} : found->second;
@@ -113,7 +114,7 @@ class JointTaker {
     return text + "}";
   }
 
-  /// But for rods that are pinned in the same node, which never touch each other.
+  /// Adds `apart`, without pairs of rods that are pinned to the same node, which never collide.
   void Apart() {
     std::set<std::pair<int, int>> told;
     for (const int pin : m_.pins) {

@@ -1,4 +1,4 @@
-// A robot taken apart into nodes, pairs and builders.
+// Decomposition of a robot into nodes, pairs and builders.
 #include <algorithm>
 #include <cmath>
 
@@ -83,8 +83,8 @@ class Taker {
   }
   std::string BodyName(int body) const { return def_.bodies[static_cast<std::size_t>(body)].name; }
 
-  /// What a shape weighs: as its builder said; else all that its body does, if there is nothing
-  /// else in it.
+  /// Returns the mass of a shape as given in its builder; if unknown, the mass of the body,
+  /// provided that it has no other shape.
   SolidMass MassOf(const std::vector<SolidMass> SolidsSpec::*list, std::size_t index, int body) {
     if (robot_.solids) return ((*robot_.solids).*list)[index];
     int shapes = 0;
@@ -100,7 +100,7 @@ class Taker {
             def_.bodies[static_cast<std::size_t>(body)].mass_kg - LumpedOn(def_, body)};
   }
 
-  /// The tags of a pair that becomes a solid are not kept when it is built.
+  /// Adds the pair of a solid, without tags, which are lost when the solid is built.
   int AddSolidPair(const std::string& name, int a, int b) {
     m_.pairs.push_back({name, {}, {a, b}, {}, {}, false});
     return static_cast<int>(m_.pairs.size()) - 1;
@@ -126,7 +126,8 @@ class Taker {
     }
   }
 
-  /// Rods as they are, but those that are pinned as their joints are: these follow the pairs.
+  /// Returns the order of the rods. Pinned rods are ordered by their joints, which follow the
+  /// pairs.
   std::vector<std::size_t> InOrder() const {
     std::vector<std::size_t> order, places;
     std::vector<std::pair<std::size_t, std::size_t>> pinned;  // joint, rod
@@ -144,7 +145,7 @@ class Taker {
     return order;
   }
 
-  /// Whether a rod of `class_k` brings the joint along.
+  /// Returns whether a rod of `class_k` implies the joint.
   bool IsPin(const JointDef& joint, const CapsuleDef& rod) const {
     if (joint.kind != JointKind::kBall || joint.body_b != rod.body) return false;
     const int node = NodeAt(joint.body_a, joint.from_m);
@@ -152,7 +153,7 @@ class Taker {
            joint.name == rod.name + "." + m_.nodes[static_cast<std::size_t>(node)].name;
   }
 
-  /// A node of the rod's body, or that of another which it is pinned to.
+  /// Returns the node at an end of a rod: a node of its body, or the node that it is pinned to.
   int RodEnd(const CapsuleDef& rod, const Vec3& p) {
     const int own = NodeAt(rod.body, p);
     if (own >= 0) return own;
@@ -206,8 +207,8 @@ class Taker {
     }
   }
 
-  /// How the part is turned in which a box is: as its first one that has to be. Nodes outside of
-  /// parts are not.
+  /// Returns the orientation of the part of a box: the orientation of its first box. Nodes outside
+  /// of parts have none.
   Quat TurnFor(const std::string& placement, const Quat& box) {
     if (placement.empty()) return {};
     return m_.turns.emplace(placement, box).first->second;
@@ -240,7 +241,7 @@ class Taker {
     }
   }
 
-  /// In the axes of the node's part; three numbers where the rest is 0.
+  /// Returns the inertia in the axes of the node's part; three numbers if the products are 0.
   std::string InertiaText(const Inertia& in_world, int node) const {
     const auto turn = m_.turns.find(PlacementOf(m_.nodes[static_cast<std::size_t>(node)].name));
     const Inertia i = turn == m_.turns.end() ? in_world : Turned(Conjugate(turn->second), in_world);
@@ -275,7 +276,7 @@ class Taker {
         continue;
       }
       const double own_kg = body.mass_kg - LumpedOn(def_, static_cast<int>(b));
-      if (own_kg < 1e-12 * body.mass_kg) continue;  // bars and cables make a point of it
+      if (own_kg < 1e-12 * body.mass_kg) continue;  // the mass is from bars and cables alone
       add(node, own_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg), {});
     }
   }
@@ -304,8 +305,8 @@ class Taker {
     }
   }
 
-  /// The node where a cable is attached. On the surface of a sphere there is none yet: the cable
-  /// stays at that point of the sphere however the robot moves, so it becomes one.
+  /// Returns the node at which a cable is attached. A point on a surface becomes a new node,
+  /// because the cable stays there in every pose.
   int EndNode(const CableDef& cable, std::size_t i) {
     const AttachmentDef& at = cable.attachments[i];
     const int there = NodeAt(at.body, at.position_m);
@@ -332,7 +333,7 @@ class Taker {
     return static_cast<int>(m_.nodes.size()) - 1;
   }
 
-  /// What no rod or box welds to the rest of its body is fixed to it.
+  /// Sets `fixed_to` for nodes that no rod or box welds to the rest of their body.
   void FixNodes() {
     base::UnionFind welds(m_.nodes.size());
     for (std::size_t p = 0; p < m_.solid_pairs; ++p) {

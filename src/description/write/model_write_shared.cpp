@@ -1,4 +1,4 @@
-// What the steps of writing a model file ask and say alike.
+// Shared queries and messages of the serialization of model files.
 #include <algorithm>
 
 #include "description/write/model_write.h"
@@ -6,7 +6,8 @@
 namespace taut::description {
 
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint) {
-  out.Error({}, "a model file cannot say all of this robot: " + what, hint);
+  out.Error("write.not_expressible", {}, "a model file cannot say all of this robot: " + what,
+            hint);
 }
 
 bool IsTerrain(const ModelDef& def, int body) {

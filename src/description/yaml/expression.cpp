@@ -12,8 +12,8 @@
 namespace taut::description {
 namespace {
 
-constexpr int kMaxNesting = 100;  ///< Of parentheses, signs and powers: bounds the recursion.
-constexpr std::size_t kMaxLength = 10'000;  ///< Bounds the time that names take.
+constexpr int kMaxNesting = 100;  ///< Depth of parentheses, signs and powers; bounds recursion.
+constexpr std::size_t kMaxLength = 10'000;  ///< Bounds the time of the search for names.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Function {
@@ -34,12 +34,12 @@ const Function* FindFunction(std::string_view name) {
   return nullptr;
 }
 
-// Not <cctype>: what is a letter must not depend on the locale.
+// Not <cctype>: letters must not depend on the locale.
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Characters from `start` that belong to an identifier starting there.
+/// Returns the length of the identifier that begins at `start`; 0 if none does.
 std::size_t IdentifierLength(std::string_view text, std::size_t start) {
   if (start >= text.size() || !IsLetter(text[start])) return 0;
   std::size_t end = start + 1;
@@ -51,7 +51,7 @@ using Step = Formula::Step;
 using Kind = Formula::Kind;
 using Failure = ExpressionFailure;
 
-/// Recursive descent:
+/// Recursive-descent parser of the grammar
 ///   sum     = product {("+" | "-") product}
 ///   product = sign {("*" | "/") sign}
 ///   sign    = ("-" | "+") sign | power
@@ -168,7 +168,7 @@ class Parser {
 
   const double& Named(std::string_view name) {
     const auto found = names_.find(name);
-    if (found != names_.end()) return found->second;  // NaN spreads, silently, as intended
+    if (found != names_.end()) return found->second;  // NaN propagates silently
     if (FindFunction(name)) {
       throw Failure{std::string(name) + " is a function", "write " + std::string(name) + "(...)"};
     }
@@ -177,7 +177,7 @@ class Parser {
 
   std::string NameHint(std::string_view name) const {
     if (names_.empty()) return "there are no parameters";
-    if (names_.size() > 300 || name.size() > 60) return {};  // the search would take long
+    if (names_.size() > 300 || name.size() > 60) return {};  // bounds the time of the search
     std::vector<std::string> known;
     for (const auto& entry : names_) known.push_back(entry.first);
     return DidYouMean(name, known);
@@ -277,7 +277,7 @@ std::vector<std::string> NamesIn(std::string_view expression) {
     const std::size_t length = IdentifierLength(expression, at);
     if (length == 0) {
       ++at;
-      // The e of 1e-3 is no name: a number is skipped with all its letters.
+      // The e of 1e-3 is not a name: a number is skipped with all its letters.
       if (IsDigit(expression[at - 1])) {
         while (at < expression.size() && (IsLetter(expression[at]) || IsDigit(expression[at])))
           ++at;

@@ -80,7 +80,7 @@ double CallOf(std::string_view name, std::span<const double> arguments) {
   return Checked(Apply(name, arguments), name);
 }
 
-/// The value of an operation with two operands.
+/// Returns the result of an operation with two operands.
 double Combined(Formula::Kind kind, double a, double b) {
   switch (kind) {
     case Formula::Kind::kAdd:

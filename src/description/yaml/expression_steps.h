@@ -1,4 +1,4 @@
-/// Stack machine for the steps of a parsed expression.
+/// Stack machine that evaluates the postfix steps of a parsed expression.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace taut::description {
 
-/// Leaves parsing or evaluation at the first error; `Formula` catches it.
+/// Thrown at the first error of parsing or evaluation; `Formula` catches it.
 struct ExpressionFailure {
   std::string error, hint;
 };
 
-/// Throws ExpressionFailure.
+/// Returns the value of the expression. Throws ExpressionFailure.
 double ValueOf(const std::vector<Formula::Step>& steps);
 
 }  // namespace taut::description

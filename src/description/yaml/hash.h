@@ -1,4 +1,4 @@
-/// A fingerprint of what a run depends on.
+/// Fingerprint (hash) of the input files and overrides of a run.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace taut::description {
 
-/// FNV-1a (64 bit) of the bytes of the files and of the overrides, in order. Where the files are
-/// and what they are called does not matter. A file that cannot be read counts as empty.
+/// Returns the 64-bit FNV-1a hash of the bytes of the files and of the overrides, in order. Names
+/// and folders of the files are not included. An unreadable file counts as empty.
 std::uint64_t HashInputs(const std::vector<std::string>& files, const Overrides& overrides);
 
 }  // namespace taut::description

@@ -1,6 +1,7 @@
-/// Tables of keys. What there is to say about a key of the formats stands in one line of a function
-/// `Keys`, one such function a mapping: its name, the field that it fills, its range, whether it is
-/// needed, what it means. The unit is that of the name, the default that of the field.
+/// Declarative tables of the keys of the YAML formats. Each map of a format has one function
+/// `Keys`, which defines each key in one line: its name, the field that it fills, its range,
+/// whether it is required, and its description. The suffix of the name gives the unit; the
+/// initializer of the field is the default.
 ///
 ///   struct Spring { double stiffness_n_per_m = 0, damping_n_s_per_m = 1; };
 ///   template <class Io>
@@ -11,14 +12,15 @@
 ///   }
 ///
 /// Visitors walk these tables: `FileReader` (read_keys.h) fills the fields from a file,
-/// `SchemaMaker` (schema.cpp) writes the JSON schema that editors and docs/formats/ are made from,
-/// `BlockWriter` (write_keys.h) and `ResolvedReader` (resolved_read.cpp) take them to resolved
-/// experiments and back, `NumberList` (number_list.h) finds what studies may vary. What several
-/// keys must fulfil together is code: a function `Check(map, struct)` beside the table, which the
-/// reader calls when all keys are read.
+/// `SchemaMaker` (schema.cpp) writes the JSON schema for editors and docs/formats/, `BlockWriter`
+/// (write_keys.h) and `ResolvedReader` (resolved_read.cpp) write and read resolved experiments,
+/// `NumberList` (number_list.h) lists the numbers that studies may vary. Conditions on several keys
+/// are code: a function `Check(map, struct)` next to the table, which the reader calls after it has
+/// read all keys.
 ///
-/// A struct that both kinds of files know is one table, too: a model's `cable:` is a `CableText`,
-/// which is a `CableDef` with what only files say; `Io::kResolved` tells which of the two is meant.
+/// A struct that occurs in files and in resolved experiments has one table for both: `cable:` of a
+/// model is a `CableText`, which extends `CableDef` by the keys that only files have;
+/// `Io::kResolved` distinguishes the two.
 #pragma once
 
 #include <algorithm>
@@ -38,11 +40,11 @@ namespace taut::description {
 
 template <class T, class U>
 concept Like = std::same_as<std::remove_const_t<T>, U>;
-/// A struct of a resolved experiment, or what a file says instead.
+/// Matches a struct of a resolved experiment or its counterpart in files.
 template <class T, class Spec, class Text>
 concept Either = Like<T, Spec> || Like<T, Text>;
 
-// Notes on a key, besides its `Bound`, the choices of an enumeration, and its meaning.
+// Notes on a key, in addition to its `Bound`, its description and the choices of an enumeration.
 
 namespace note {
 struct Needed {};
@@ -56,38 +58,40 @@ struct Fixed {};
 struct Varied {};
 struct AtStart {};
 }  // namespace note
-/// Earlier versions of taut did not write it and meant this number.
+/// The key was added to the format later; a file without it means this number.
 struct LaterThan {
   double value;
 };
-/// An example, as JSON.
+/// Example value, as JSON.
 struct Example {
   const char* json;
 };
 
-inline constexpr note::Needed kNeeded;              ///< A file without it is wrong.
-inline constexpr note::ResolvedOnly kResolvedOnly;  ///< Not in files that people write.
-inline constexpr note::Later kLater;                ///< Earlier versions of taut did not write it.
-inline constexpr note::IsName kName;                ///< A text of letters, digits, _ and -.
-inline constexpr note::IsDirection kDirection;  ///< A vector of any length but zero; stored as 1.
-inline constexpr note::Inherited kInherited;    ///< If absent, something else says what it is.
+inline constexpr note::Needed kNeeded;              ///< Required key.
+inline constexpr note::ResolvedOnly kResolvedOnly;  ///< Only in resolved experiments.
+inline constexpr note::Later kLater;            ///< Absent from files of earlier versions of taut.
+inline constexpr note::IsName kName;            ///< A text of letters, digits, _ and -.
+inline constexpr note::IsDirection kDirection;  ///< A nonzero vector; stored with length 1.
+inline constexpr note::Inherited kInherited;    ///< If absent, the value comes from elsewhere.
 inline constexpr note::Limit kLimit;            ///< If absent, infinite.
-inline constexpr note::Fixed kFixed;            ///< Not a number that studies vary.
+inline constexpr note::Fixed kFixed;            ///< A number that studies do not vary.
 inline constexpr note::Varied kVaried;    ///< A list whose numbers studies vary, as key_1, key_2.
-inline constexpr note::AtStart kAtStart;  ///< A number that says where something begins.
+inline constexpr note::AtStart kAtStart;  ///< A number that describes the start of something.
 
-/// The names of one key where another key of the file chooses which of them it has: the amplitude
-/// of a gait is amplitude_m_per_s or amplitude_m. `when` says where, to readers of the reference.
+/// Alternative names of a key; another key of the file selects the valid one: the amplitude of a
+/// gait is amplitude_m_per_s or amplitude_m. `when` gives the condition of each name, for the
+/// reference.
 struct Spellings {
   static constexpr int kCount = 2;
   const char* names[kCount];
   const char* when[kCount];
 };
 
-/// A line of a table, without the field: what readers want of it, who see hundreds of them.
+/// Line of a table without the field, reduced to the data that readers need, because they visit
+/// hundreds of lines.
 struct Key {
   const char* name = "";
-  const Bound* bound = &Bound::kAny;  ///< Of the table, as long as the line is visited.
+  const Bound* bound = &Bound::kAny;  ///< Part of the table; valid during the visit of the line.
   bool needed : 1 = false, later : 1 = false, is_name : 1 = false, is_direction : 1 = false;
   bool inherited : 1 = false, limit : 1 = false, fixed : 1 = false, varied : 1 = false;
   bool at_start : 1 = false;
@@ -110,12 +114,12 @@ struct Key {
   void Note(const Choices<E>&) {}
 };
 
-/// The same with what is for people, and for those who write.
+/// Line of a table with the texts for people, for visitors that write.
 struct KeyText : Key {
-  const char* meaning = "";  ///< Sentences, without range and unit.
+  const char* meaning = "";  ///< Description in sentences, without range and unit.
   const char* example = nullptr;
   double before =
-      std::numeric_limits<double>::quiet_NaN();  ///< Not written: what `LaterThan` says.
+      std::numeric_limits<double>::quiet_NaN();  ///< `LaterThan`: this value is not written.
 
   using Key::Note;
   void Note(const char* text) { meaning = text; }
@@ -128,8 +132,8 @@ inline constexpr bool kIsChoices = false;
 template <class E>
 inline constexpr bool kIsChoices<Choices<E>> = true;
 
-/// A visitor of tables: `Derived::On(key, field)`, with the choices if there are any. What it gets
-/// of a line is its `Derived::Line`, `Key` or `KeyText`. `kOfResolved`: whether it is about
+/// Base class of the visitors of tables. Calls `Derived::On(key, field)`, for an enumeration with
+/// its choices. The type of `key` is `Derived::Line`: `Key` or `KeyText`. `kOfResolved`: for
 /// resolved experiments.
 template <class Derived, bool kOfResolved>
 class KeyVisitor {
@@ -137,7 +141,7 @@ class KeyVisitor {
   static constexpr bool kResolved = kOfResolved;
   using Line = Key;
 
-  // Inline, or what no visitor wants of a line would be handed on all the same.
+  // Inline, so that notes that no visitor uses cost nothing.
   template <class T, class... Notes>
   [[gnu::always_inline]] void operator()(const char* name, T& field, const Notes&... notes) {
     if constexpr (kResolved || !(std::same_as<Notes, note::ResolvedOnly> || ...)) {
@@ -153,7 +157,7 @@ class KeyVisitor {
     }
   }
 
-  /// A key with several names: those that `Derived::Spell` asks for.
+  /// Visits a key with alternative names, under each name that `Derived::Spell` selects.
   template <class T, class... Notes>
   void operator()(const Spellings& spellings, T& field, const Notes&... notes) {
     static_cast<Derived&>(*this).Spell(spellings,
@@ -163,21 +167,22 @@ class KeyVisitor {
   void Spell(const Spellings& spellings, const OfName& of_name) {
     of_name(spellings.names[std::max(0, spelling.index)]);
   }
-  /// From here on, and in all that is below, keys with several names have those of `now`, as `key`
-  /// says.
+  /// Selects the valid alternative name for all following keys and nested maps; `key` is the key
+  /// that made the choice.
   void SpeltBy(const char* /*key*/, const Spelling& now) { spelling = now; }
 
   Spelling spelling;
 
-  // What else a table may say. `what` is the mapping's name in messages, that of its place in the
-  // file if empty; `title` its heading in the reference.
+  // Further declarations of a table. `what` is the name of the map in messages (if empty, its path
+  // in the file); `title` is its heading in the reference.
   void Map(const char* /*what*/, const char* /*title*/, const char* /*meaning*/,
            const char* /*example*/ = nullptr) {}
-  void OneOf(const std::vector<std::string>& /*keys*/) {}  ///< Exactly one of these.
-  /// Keys of the one side or of the other, one at least.
+  void OneOf(const std::vector<std::string>& /*keys*/) {}  ///< Exactly one of these keys.
+  /// Keys of one side or of the other, at least one.
   void EitherSide(const std::vector<std::string>& /*one*/,
                   const std::vector<std::string>& /*other*/) {}
-  void Rule(const char* /*json*/) {}  ///< For the schema: what `Check` has a better message for.
+  void Rule(const char* /*json*/) {}  ///< For the schema only: a condition that `Check` reports
+                                      ///< with a better message.
 
  private:
   template <class T, class Note>
@@ -186,16 +191,16 @@ class KeyVisitor {
   }
 };
 
-// Fields of structs that stand for what files say.
+// Field types of structs that represent the contents of files.
 
-/// A text and where it stands.
+/// Text with its position in the file.
 struct Placed {
   std::string text;
   SourceRef at;
 };
 
-/// A map with free keys: names of what the values are. One that is wrong is kept for those who name
-/// it, who have made no mistake.
+/// Map with free keys, which name the values. An item with an error is kept, so that valid
+/// references to it cause no further errors.
 template <class T>
 struct Named {
   struct Item {
@@ -207,15 +212,16 @@ struct Named {
   std::vector<Item> items;
 };
 
-/// A value that code reads, once more is known than the file. `Form::kSchema` is what it may be, as
-/// members of a JSON schema.
+/// Value that code reads later, when more than the file is known. `Form::kSchema` describes the
+/// allowed values as members of a JSON schema.
 template <class Form>
 struct Raw {
   using FormType = Form;
   const Value* value = nullptr;
 };
 
-/// A list of a resolved experiment that may be too long for a list of YAML: numbers in one text.
+/// List of a resolved experiment, written as one text of numbers because it may be too long for a
+/// YAML list.
 template <class List>
 struct Packed {
   List& list;
@@ -238,7 +244,7 @@ void EachNumber(Number& number, const Use& use) {
   }
 }
 
-/// A mapping that is checked when it is read, and read once more over what a model says.
+/// Map that is checked when it is read, and later applied on top of the values of a model.
 template <class T>
 struct Overlay {
   using Mapping = T;

@@ -1,4 +1,4 @@
-/// The kinds of files that there are.
+/// Kinds of files, for hints in messages.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace taut::description {
 /// Kind of a file in which `ResolvedYaml` recorded an experiment.
 inline constexpr const char* kResolvedKind = "resolved_experiment";
 
-/// What to do with a file that says it is of this kind, where another was wanted; of a word that is
-/// no kind, which kinds there are.
+/// Returns a hint for a file of an unexpected kind: the command that reads files of this kind, or,
+/// for an unknown kind, the list of kinds.
 std::string HintOfKind(std::string_view kind);
 
 }  // namespace taut::description

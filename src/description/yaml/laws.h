@@ -1,4 +1,4 @@
-/// Laws that model files name and experiments may replace, as both spell them.
+/// Names of laws and enumerations that model files set and experiments may override.
 #pragma once
 
 #include <string>
@@ -20,10 +20,10 @@ inline const Choices<FrictionLaw> kFrictionLaws{{"cone", FrictionLaw::kCone},
                                                 {"along_slip", FrictionLaw::kAlongSlip}};
 inline const Choices<DampingLaw> kDampingLaws{{"exact", DampingLaw::kExact},
                                               {"clamped", DampingLaw::kClamped}};
-/// How a body's inertia follows from its parts.
+/// Computation of the inertia of a body from its parts.
 enum class InertiaLaw {
-  kExact,        ///< The sum of the parts'.
-  kBoundingBox,  ///< A solid box of the body's size and mass, as Bullet takes it for compounds.
+  kExact,        ///< Sum of the inertias of the parts.
+  kBoundingBox,  ///< Solid box of the body's size and mass, like Bullet's compound shapes.
 };
 inline const Choices<InertiaLaw> kInertiaLaws{{"exact", InertiaLaw::kExact},
                                               {"bounding_box", InertiaLaw::kBoundingBox}};

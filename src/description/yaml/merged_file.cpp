@@ -8,14 +8,14 @@
 namespace taut::description {
 namespace {
 
-/// Two paths to one file are the same file.
+/// Returns the canonical path, so that two paths to one file compare equal.
 std::string Canonical(const std::string& path) {
   std::error_code failed;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, failed);
   return failed ? path : canonical.string();
 }
 
-/// `top` over `base`, key by key.
+/// Merges `top` over `base`, key by key.
 ValuePtr Merge(const Value& top, const Value& base) {
   auto merged = std::make_shared<Value>(top);
   for (const Entry& entry : base.entries) {
@@ -48,17 +48,19 @@ MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagno
     file.root = file.root ? Merge(*file.root, *root) : root;
     if (!base) break;
     if (base->kind != Value::Kind::kScalar || base->text.empty()) {
-      out.Error(base->at, "base must be the name of a file of kind " + std::string(kind));
+      out.Error("base.bad_name", base->at,
+                "base must be the name of a file of kind " + std::string(kind));
       return {};
     }
     next = PathBeside(next, base->text);
     if (std::find(seen.begin(), seen.end(), Canonical(next)) != seen.end()) {
-      out.Error(base->at, "base files name each other in a circle: " + next);
+      out.Error("base.circle", base->at, "base files name each other in a circle: " + next);
       return {};
     }
     std::error_code ignored;
     if (!std::filesystem::exists(next, ignored)) {
-      out.Unreadable(base->at, "base: there is no file " + next, "as seen from this file's folder");
+      out.Unreadable("base.missing", base->at, "base: there is no file " + next,
+                     "as seen from this file's folder");
       return {};
     }
   }

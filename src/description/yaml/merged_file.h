@@ -1,4 +1,4 @@
-/// Files that say `base: other.yaml` and then only what differs.
+/// File inheritance: files with `base: other.yaml` that contain only the differences.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@
 
 namespace taut::description {
 
-/// The top of a file with its `base` files merged in: every top-level key of the file replaces
-/// the base's, except that `parameters` and `set` are merged by name.
+/// File with its `base` files merged in: every top-level key of the file replaces the key of the
+/// base, except that `parameters` and `set` are merged by name.
 struct MergedFile {
   ValuePtr root;
   std::vector<ParameterText> parameters;
-  std::vector<std::string> files;  ///< The file itself first.
+  std::vector<std::string> files;  ///< The file first, then its bases.
 };
 
-/// `kind` is what the file and its bases must be: "model" or "experiment". Null root after
-/// complaints.
+/// Reads a file and its bases, which must all be of kind `kind` ("model", "experiment", ...). The
+/// root is null after an error.
 MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagnostics& out);
 
 }  // namespace taut::description

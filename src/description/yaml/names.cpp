@@ -1,4 +1,4 @@
-// What may be a name, and reading names; lists of names and points.
+// Readers of names, lists of names, tags and points in YAML files.
 #include <algorithm>
 #include <cmath>
 
@@ -22,12 +22,14 @@ std::string ReadNameText(const Value& value, std::string_view what, bool dots, c
     return {};
   }
   if (value.text.size() > kMaxNameLength) {
-    scope.out.Error(value.at, std::string(what) + ": a name has at most " +
-                                  std::to_string(kMaxNameLength) + " characters");
+    scope.out.Error("name.too_long", value.at,
+                    std::string(what) + ": a name has at most " + std::to_string(kMaxNameLength) +
+                        " characters");
     return {};
   }
   if (dots ? IsFullName(value.text) : IsName(value.text)) return value.text;
-  scope.out.Error(value.at, std::string(what) + ": \"" + value.text + "\" cannot be a name",
+  scope.out.Error("name.bad", value.at,
+                  std::string(what) + ": \"" + value.text + "\" cannot be a name",
                   "letters, digits, _ and -");
   return {};
 }
@@ -79,13 +81,14 @@ std::vector<std::vector<std::string>> ReadMatch(const Value& value, std::string_
   const auto is_list = [](const ValuePtr& item) { return item->kind == Value::Kind::kSequence; };
   std::vector<std::vector<std::string>> match;
   if (value.kind == Value::Kind::kSequence && value.items.empty()) {
-    scope.out.Error(value.at, std::string(what) + " must not be empty", "name the tags to match");
+    scope.out.Error("value.empty", value.at, std::string(what) + " must not be empty",
+                    "name the tags to match");
   } else if (value.kind == Value::Kind::kSequence &&
              std::any_of(value.items.begin(), value.items.end(), is_list)) {
     for (const ValuePtr& item : value.items) {
       std::vector<std::string> set = ReadNameTexts(*item, what, true, scope);
       if (is_list(item) && item->items.empty()) {
-        scope.out.Error(item->at, std::string(what) + " must not be empty",
+        scope.out.Error("value.empty", item->at, std::string(what) + " must not be empty",
                         "name the tags to match");
       }
       if (!set.empty()) match.push_back(std::move(set));
@@ -111,7 +114,8 @@ std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::strin
                                                   const Bound& bound, const Scope& scope) {
   std::vector<std::pair<double, double>> points;
   if (value.kind != Value::Kind::kSequence || value.items.empty()) {
-    scope.out.Error(value.at, std::string(what) + " must be a list of [time_s, value]",
+    scope.out.Error("value.not_a_course", value.at,
+                    std::string(what) + " must be a list of [time_s, value]",
                     "such as [[0, 1], [5, 2]]");
     return points;
   }
@@ -119,7 +123,8 @@ std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::strin
   double before = -1.0;
   for (const ValuePtr& item : value.items) {
     if (item->kind != Value::Kind::kSequence || item->items.size() != 2) {
-      scope.out.Error(item->at, std::string(what) + ": a point must be [time_s, value]");
+      scope.out.Error("value.not_a_point", item->at,
+                      std::string(what) + ": a point must be [time_s, value]");
       good = false;
       continue;
     }
@@ -127,8 +132,9 @@ std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::strin
         ReadNumber(*item->items[0], std::string(what) + ": time_s", Bound::kNonNegative, scope);
     const double number = ReadNumber(*item->items[1], what, bound, scope);
     if (time_s <= before) {
-      scope.out.Error(item->items[0]->at, std::string(what) + ": times must rise, but " +
-                                              Shown(time_s) + " s follows " + Shown(before) + " s");
+      scope.out.Error("value.times_not_increasing", item->items[0]->at,
+                      std::string(what) + ": times must rise, but " + Shown(time_s) +
+                          " s follows " + Shown(before) + " s");
       good = false;
     }
     good = good && !std::isnan(time_s) && !std::isnan(number);

@@ -1,4 +1,5 @@
-/// The numbers of structs by the tables of keys (keys.h), for whoever varies them.
+/// List of the numbers of a struct, collected from its table of keys (keys.h), for searches and
+/// studies.
 #pragma once
 
 #include <limits>
@@ -11,9 +12,9 @@
 
 namespace taut::description {
 
-/// Every number that is there and not `kFixed`, as "prefix.key"; those of lists by the items'
-/// names. `Number` is made of name, unit, place, least and most. An angle without bounds is one of
-/// a turn.
+/// Collects every number that is present and not `kFixed`, as "prefix.key"; items of lists are
+/// addressed by their names. `Number` is an aggregate of name, unit, pointer to the field, least
+/// and most. An angle without bounds gets the range -pi..pi.
 template <class Number>
 class NumberList : public KeyVisitor<NumberList<Number>, true> {
  public:

@@ -1,4 +1,5 @@
-/// Complaints of which a place in a file gets one: copies of a part would only repeat it.
+/// Errors that are reported once for each place in a file, because copies of a part would repeat
+/// them.
 #pragma once
 
 #include <set>
@@ -13,9 +14,9 @@ class OncePerPlace {
  public:
   explicit OncePerPlace(Diagnostics& out) : out_(out) {}
 
-  void operator()(const SourceRef& at, std::string what, std::string hint = {}) {
+  void operator()(MessageId id, const SourceRef& at, std::string what, std::string hint = {}) {
     if (!places_.insert({at.line, at.column}).second) return;
-    out_.Error(at, std::move(what), std::move(hint));
+    out_.Error(id, at, std::move(what), std::move(hint));
   }
 
  private:

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Finds a circle among parameters that all wait for another one: "a -> b -> a".
-/// `waits_for[i]` is one that i waits for.
+/// Finds a cycle of parameters, such as a -> b -> a, from a parameter that cannot be evaluated.
+/// `waits_for[i]` is one unevaluated parameter that `i` refers to.
 std::vector<std::size_t> FindCircle(const std::unordered_map<std::size_t, std::size_t>& waits_for,
                                     std::size_t start) {
   std::vector<std::size_t> path;
@@ -64,7 +64,7 @@ void OverrideSet::ReportUnused(const std::vector<std::string>& known, Diagnostic
 
 void ReportUnknownParameter(const ParameterText& parameter, const std::vector<std::string>& known,
                             Diagnostics& out) {
-  out.Error(parameter.at, "there is no parameter \"" + parameter.name + "\"",
+  out.Error("parameter.unknown", parameter.at, "there is no parameter \"" + parameter.name + "\"",
             known.empty()         ? "the file has no parameters"
             : known.size() <= 300 ? KeyHint(parameter.name, known)
                                   : "");
@@ -74,21 +74,23 @@ std::vector<ParameterText> ReadParameters(const Value* block, Diagnostics& out) 
   std::vector<ParameterText> parameters;
   if (!block) return parameters;
   if (block->kind != Value::Kind::kMap) {
-    out.Error(block->at, "parameters must be a map, got " + std::string(KindName(*block)),
+    out.Error("parameter.not_a_map", block->at,
+              "parameters must be a map, got " + std::string(KindName(*block)),
               "write `parameters: {edge_m: 0.4}`");
     return parameters;
   }
   for (const Entry& entry : block->entries) {
     if (!IsIdentifier(entry.key)) {
-      out.Error(entry.key_at, "\"" + entry.key + "\" cannot be the name of a parameter",
-                "letters, digits and _");
+      out.Error("parameter.bad_name", entry.key_at,
+                "\"" + entry.key + "\" cannot be the name of a parameter", "letters, digits and _");
     } else if (IsReservedName(entry.key)) {
-      out.Error(entry.key_at, "\"" + entry.key + "\" is the name of a function or constant");
+      out.Error("parameter.reserved_name", entry.key_at,
+                "\"" + entry.key + "\" is the name of a function or constant");
     } else if (entry.value->kind != Value::Kind::kScalar) {
-      out.Error(entry.value->at, "parameters." + entry.key +
-                                     " must be a number or an expression, got " +
-                                     std::string(KindName(*entry.value)));
-      parameters.push_back({entry.key, "", {}});  // so that its users stay silent
+      out.Error("parameter.not_a_number", entry.value->at,
+                "parameters." + entry.key + " must be a number or an expression, got " +
+                    std::string(KindName(*entry.value)));
+      parameters.push_back({entry.key, "", {}});  // no second message from its users
     } else {
       parameters.push_back({entry.key, entry.value->text, entry.value->at});
     }
@@ -126,13 +128,14 @@ void WarnOfUnused(const std::vector<ParameterText>& parameters, NameSet used,
     const bool of_base =
         std::find(files.begin() + 1, files.end(), parameter.at.file) != files.end();
     if (of_base || used.contains(parameter.name)) continue;
-    out.Warning(parameter.at, "nothing reads the parameter \"" + parameter.name + "\"",
+    out.Warning("parameter.unused", parameter.at,
+                "nothing reads the parameter \"" + parameter.name + "\"",
                 "its value changes nothing");
   }
 }
 
 NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagnostics& out) {
-  // In the order of their needs (Kahn), not by recursion: a chain of any length is fine.
+  // In topological order (Kahn), not by recursion: a chain may have any length.
   std::unordered_map<std::string, std::size_t> places;
   for (std::size_t i = 0; i < parameters.size(); ++i) places[parameters[i].name] = i;
   std::vector<std::vector<std::size_t>> users(parameters.size()), needs(parameters.size());
@@ -140,7 +143,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     for (const std::string& name : NamesIn(parameters[i].expression)) {
       const auto found = places.find(name);
-      if (found == places.end()) continue;  // the evaluation will say so
+      if (found == places.end()) continue;  // the evaluation reports it
       needs[i].push_back(found->second);
       users[found->second].push_back(i);
     }
@@ -148,18 +151,18 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     if (open[i] == 0) ready.push_back(i);
   }
 
-  // While they are evaluated, all names exist, so that hints can point at them.
+  // During the evaluation all names exist, so that hints can suggest them.
   NameTable values;
   for (const ParameterText& parameter : parameters) values[parameter.name] = kUnknown;
   std::vector<bool> done(parameters.size(), false);
   const auto evaluate = [&](std::size_t i) {
     const ParameterText& parameter = parameters[i];
     done[i] = true;
-    if (parameter.at.file.empty()) return;  // was complained about when it was read
+    if (parameter.at.file.empty()) return;  // already reported when it was read
     Evaluated result = Evaluate(parameter.expression, values);
     if (!result.error.empty()) {
-      out.Error(parameter.at, "parameters." + parameter.name + ": " + result.error,
-                std::move(result.hint));
+      out.Error("parameter.bad_expression", parameter.at,
+                "parameters." + parameter.name + ": " + result.error, std::move(result.hint));
     }
     values[parameter.name] = result.value;
   };
@@ -171,7 +174,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     }
   }
 
-  // What is left waits for a circle, or is in one.
+  // The remaining parameters are in a cycle or depend on one.
   std::unordered_map<std::size_t, std::size_t> waits_for;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     for (const std::size_t need : needs[i]) {
@@ -187,7 +190,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     reported[circle[0]] = true;
     std::string path;
     for (const std::size_t member : circle) path += parameters[member].name + " -> ";
-    out.Error(parameters[circle[0]].at,
+    out.Error("parameter.circle", parameters[circle[0]].at,
               "parameters refer to each other in a circle: " + path + parameters[circle[0]].name);
   }
   return values;

@@ -1,4 +1,4 @@
-/// The `parameters:` block of a file and its `--set name=value` overrides.
+/// Parameters of a file (`parameters:`) and their `--set name=value` overrides.
 #pragma once
 
 #include <string>
@@ -10,33 +10,33 @@
 
 namespace taut::description {
 
-/// A parameter as written.
+/// Parameter as written in the file.
 struct ParameterText {
   std::string name;
   std::string expression;
   SourceRef at;
 };
 
-/// `--set` pairs, and who has used them: an experiment and its model share one set, and what
-/// neither of them knows is an error.
+/// `--set` overrides and whether they have been used. An experiment and its model share one set; a
+/// name that neither of them has is an error.
 class OverrideSet {
  public:
   explicit OverrideSet(const Overrides& overrides);
 
-  /// One more, with the place in a file that it comes from.
+  /// Adds an override that comes from a file; `parameter.at` is its place there.
   void Add(ParameterText parameter);
 
-  /// Replaces the expressions of the parameters that are overridden. The last of several
-  /// overrides of one name wins.
+  /// Replaces the expressions of overridden parameters. The last of several overrides of one name
+  /// wins.
   void Apply(std::vector<ParameterText>& parameters);
 
-  /// For when a file could not be read far enough to know its parameters.
+  /// Marks all overrides as used: after a read error the parameters of a file are not all known.
   void Silence();
 
-  /// What no `Apply` has used so far.
+  /// Returns the overrides that no `Apply` has used.
   std::vector<ParameterText> Unused() const;
 
-  /// An error for every override that no `Apply` has used; `known` are the names to hint at.
+  /// Reports an error for every override that no `Apply` has used; `known` are the names for hints.
   void ReportUnused(const std::vector<std::string>& known, Diagnostics& out) const;
 
  private:
@@ -47,22 +47,22 @@ class OverrideSet {
   std::vector<Item> items_;
 };
 
-/// The error for an override of a parameter that is not there.
+/// Reports an override of a parameter that does not exist.
 void ReportUnknownParameter(const ParameterText& parameter, const std::vector<std::string>& known,
                             Diagnostics& out);
 
 /// Reads a `parameters:` map. `block` may be null: no parameters.
 std::vector<ParameterText> ReadParameters(const Value* block, Diagnostics& out);
 
-/// `changes` on top of `base`: the same name replaces, a new name is added.
+/// Merges `changes` into `base`: the same name replaces, a new name is added.
 void MergeParameters(std::vector<ParameterText>& base, const std::vector<ParameterText>& changes);
 
-/// Evaluates parameters, which may refer to each other in any order. One that cannot be
-/// evaluated is complained about once and is NaN in the result.
+/// Evaluates parameters, which may refer to each other in any order. A parameter that cannot be
+/// evaluated is reported once and is NaN in the result.
 NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagnostics& out);
 
-/// A warning for each parameter that neither the file (`used`) nor another parameter that it uses
-/// refers to: who changes it changes nothing. Those that only a base file has are left out.
+/// Warns of each parameter to which neither the file (`used`) nor another parameter in use refers,
+/// because a change of it has no effect. Parameters that only a base file defines are left out.
 void WarnOfUnused(const std::vector<ParameterText>& parameters, NameSet used,
                   const std::vector<std::string>& files, Diagnostics& out);
 

@@ -19,7 +19,7 @@ std::string Joined(const std::vector<std::string>& words, std::string_view betwe
   return out;
 }
 
-/// How a number is out of its range: " must be positive". Empty if it is not, or NaN.
+/// Returns the violated bound, such as " must be positive"; empty for a number in range or NaN.
 std::string Beyond(double number, const Bound& bound) {
   const bool low = number < bound.least || (bound.above_least && number == bound.least);
   const bool high = number > bound.most || (bound.below_most && number == bound.most);
@@ -47,8 +47,9 @@ std::string Shown(double number) {
 
 void WrongType(const Value& value, std::string_view what, std::string_view wanted,
                const Scope& scope) {
-  scope.out.Error(value.at, std::string(what) + " must be " + std::string(wanted) + ", got " +
-                                std::string(KindName(value)));
+  scope.out.Error("value.wrong_kind", value.at,
+                  std::string(what) + " must be " + std::string(wanted) + ", got " +
+                      std::string(KindName(value)));
 }
 
 std::string KeyHint(std::string_view key, const std::vector<std::string>& known) {
@@ -78,7 +79,8 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   if (text == ".nan" || text == "nan" || text == ".inf" || text == "inf" || text == "-.inf" ||
       text == "-inf") {
-    scope.out.Error(value.at, std::string(what) + " must be a finite number, got " + value.text);
+    scope.out.Error("value.not_finite", value.at,
+                    std::string(what) + " must be a finite number, got " + value.text);
     return kMissing;
   }
   if (scope.used) {
@@ -86,15 +88,16 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
   }
   Evaluated result = Evaluate(value.text, scope.names);
   if (!result.error.empty()) {
-    scope.out.Error(value.at, std::string(what) + ": " + result.error, std::move(result.hint));
+    scope.out.Error("value.bad_expression", value.at, std::string(what) + ": " + result.error,
+                    std::move(result.hint));
     return kMissing;
   }
   const double number = result.value;
   const std::string wrong = Beyond(number, bound);
   if (wrong.empty()) return number;
   const bool too_much = number >= bound.most;
-  scope.out.Error(value.at, std::string(what) + wrong + ", got " + Shown(number),
-                  too_much ? bound.hint : "");
+  scope.out.Error("value.out_of_range", value.at,
+                  std::string(what) + wrong + ", got " + Shown(number), too_much ? bound.hint : "");
   return kMissing;
 }
 
@@ -103,9 +106,9 @@ std::optional<int> ReadInteger(const Value& value, std::string_view what, int le
   const double number = ReadNumber(value, what, Bound::kAny, scope);
   if (std::isnan(number)) return std::nullopt;
   if (number != std::floor(number) || number < least || number > most) {
-    scope.out.Error(value.at, std::string(what) + " must be a whole number within " +
-                                  std::to_string(least) + ".." + std::to_string(most) + ", got " +
-                                  Shown(number));
+    scope.out.Error("value.not_whole", value.at,
+                    std::string(what) + " must be a whole number within " + std::to_string(least) +
+                        ".." + std::to_string(most) + ", got " + Shown(number));
     return std::nullopt;
   }
   return static_cast<int>(number);
@@ -115,7 +118,7 @@ std::optional<bool> ReadBool(const Value& value, std::string_view what, const Sc
   if (value.kind == Value::Kind::kScalar && !value.quoted) {
     if (value.text == "true") return true;
     if (value.text == "false") return false;
-    scope.out.Error(value.at,
+    scope.out.Error("value.not_boolean", value.at,
                     std::string(what) + " must be true or false, got \"" + value.text + "\"");
     return std::nullopt;
   }
@@ -130,8 +133,9 @@ std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_v
     return std::nullopt;
   }
   if (value.items.size() != count) {
-    scope.out.Error(value.at, std::string(what) + " must have " + std::to_string(count) +
-                                  " numbers, got " + std::to_string(value.items.size()));
+    scope.out.Error("value.wrong_length", value.at,
+                    std::string(what) + " must have " + std::to_string(count) + " numbers, got " +
+                        std::to_string(value.items.size()));
     return std::nullopt;
   }
   std::vector<double> numbers;
@@ -152,13 +156,14 @@ Vec3 ReadVec3(const Value& value, std::string_view what, const Scope& scope) {
 
 Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope) {
   const Vec3 v = ReadVec3(value, what, scope);
-  // Scaled first, so that neither 1e200 nor 1e-200 is lost in its square.
+  // Scaled first, so that the squares of 1e200 and 1e-200 neither overflow nor underflow.
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (largest == 0.0) {
-    scope.out.Error(value.at, std::string(what) + " must not be zero", "it is a direction");
+    scope.out.Error("value.zero", value.at, std::string(what) + " must not be zero",
+                    "it is a direction");
     return {kMissing, kMissing, kMissing};
   }
-  // Of length 1 up to rounding: as taut writes it, to be read to the bit.
+  // A vector of length 1 up to rounding, as taut writes it, is read back without a change of bits.
   if (std::fabs(v.x * v.x + v.y * v.y + v.z * v.z - 1.0) < 1e-15) return v;
   const Vec3 s{v.x / largest, v.y / largest, v.z / largest};
   const double length = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);
@@ -185,7 +190,7 @@ void MapReader::RefuseOthers() const {
   }
   for (const Entry& entry : value_.entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-    scope_.out.Error(entry.key_at,
+    scope_.out.Error("key.unknown", entry.key_at,
                      "unknown key \"" + entry.key + "\"" + (what_.empty() ? "" : " in " + what_),
                      KeyHint(entry.key, known_));
   }
@@ -206,15 +211,17 @@ const Value* MapReader::Require(std::string_view key) const {
   const Value* found = Find(key);
   if (!found && is_map()) {
     scope_.out.Error(
-        at(), (what_.empty() ? "the file" : what_) + " needs the key \"" + std::string(key) + "\"");
+        "key.missing", at(),
+        (what_.empty() ? "the file" : what_) + " needs the key \"" + std::string(key) + "\"");
   }
   return found;
 }
 
 SourceRef MapReader::KeyAt(std::string_view key) const { return description::KeyAt(value_, key); }
 
-void MapReader::Error(std::string_view key, std::string what, std::string hint) const {
-  scope_.out.Error(KeyAt(key), std::move(what), std::move(hint));
+void MapReader::Error(MessageId id, std::string_view key, std::string what,
+                      std::string hint) const {
+  scope_.out.Error(id, KeyAt(key), std::move(what), std::move(hint));
 }
 
 std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
@@ -226,10 +233,10 @@ std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
   if (present.size() == 1) return present[0];
   const std::string what = what_.empty() ? "the file" : what_;
   if (present.empty()) {
-    scope_.out.Error(at(),
+    scope_.out.Error("key.one_of_missing", at(),
                      what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
   } else {
-    Error(present[1], what + " has both " + Joined(present, " and "),
+    Error("key.both_given", present[1], what + " has both " + Joined(present, " and "),
           "only one of them may be there");
   }
   return {};
@@ -260,7 +267,7 @@ std::optional<std::string> FindFile(const Value* value, const std::string& what,
   const std::string path = PathBeside(value->at.file, text);
   std::error_code ignored;
   if (!text.empty() && std::filesystem::is_regular_file(path, ignored)) return path;
-  scope.out.Unreadable(value->at, what + ": there is no file \"" + path + "\"",
+  scope.out.Unreadable("file.missing", value->at, what + ": there is no file \"" + path + "\"",
                        "as seen from the folder of the file that names it");
   return std::nullopt;
 }
@@ -287,7 +294,8 @@ const std::vector<Entry>& Entries(const Value* value, std::string_view what, con
 
 bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
   if (root.kind != Value::Kind::kMap) {
-    out.Error(root.at, "the file must be a map, got " + std::string(KindName(root)),
+    out.Error("file.not_a_map", root.at,
+              "the file must be a map, got " + std::string(KindName(root)),
               "it starts with `taut: 1` and `kind: " + std::string(kind) + "`");
     return false;
   }
@@ -295,13 +303,13 @@ bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
   const auto check = [&](const char* key, std::string_view wanted, const std::string& hint) {
     const Value* found = root.Find(key);
     if (!found) {
-      out.Error(root.at, std::string("the file needs the key \"") + key + "\"",
+      out.Error("key.missing", root.at, std::string("the file needs the key \"") + key + "\"",
                 "write `" + std::string(key) + ": " + std::string(wanted) + "`");
     } else if (found->kind != Value::Kind::kScalar || found->text != wanted) {
       const std::string got =
           found->kind == Value::Kind::kScalar ? found->text : std::string(KindName(*found));
-      out.Error(found->at, std::string(key) + " must be " + std::string(wanted) + ", got " + got,
-                hint);
+      out.Error("value.wrong_constant", found->at,
+                std::string(key) + " must be " + std::string(wanted) + ", got " + got, hint);
     } else {
       return;
     }

@@ -23,11 +23,11 @@ std::string ControlText(char c) {
 constexpr const char* kControlHint =
     "files are UTF-8, without control characters but tab and line end";
 
-/// Leaves the parser at the first error that makes going on pointless. Never leaves this file.
+/// Thrown at the first error after which parsing cannot continue; caught in this file.
 struct StopReading {};
 
-/// Builds the tree from yaml-cpp's events. Events (rather than YAML::Node) because they give
-/// every place, show duplicate keys and aliases, and let us stop at a limit while reading.
+/// Builds the tree from yaml-cpp's events. Events (rather than YAML::Node) because they give every
+/// position, show duplicate keys and aliases, and allow to stop at a limit while reading.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(std::string file, Diagnostics& out) : file_(std::move(file)), out_(out) {}
@@ -35,7 +35,9 @@ class TreeBuilder : public YAML::EventHandler {
   ValuePtr root() const { return root_; }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (root_) Stop(mark, "more than one document in the file", "remove the `---` between them");
+    if (root_)
+      Stop("yaml.several_documents", mark, "more than one document in the file",
+           "remove the `---` between them");
   }
   void OnDocumentEnd() override {}
 
@@ -45,17 +47,18 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) Stop(mark, "an anchor may not contain itself");
+    if (found == anchors_.end())
+      Stop("yaml.circular_anchor", mark, "an anchor may not contain itself");
     Place(found->second, At(mark));
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
     CheckTag(mark, tag);
-    // As an escape in quotes; as it is, `ParseYaml` has seen it.
+    // From an escape in quotes; `ParseYaml` has already rejected raw control characters.
     if (const auto bad = std::find_if(text.begin(), text.end(), base::IsControl);
         bad != text.end()) {
-      out_.Error(At(mark), ControlText(*bad), kControlHint);
+      out_.Error("yaml.control_character", At(mark), ControlText(*bad), kControlHint);
     }
     auto value = NewValue(mark, Value::Kind::kScalar);
     value->text = text;
@@ -82,19 +85,20 @@ class TreeBuilder : public YAML::EventHandler {
   struct Frame {
     std::shared_ptr<Value> value;
     YAML::anchor_t anchor;
-    std::optional<Entry> entry;  ///< Of a map: a key that waits for its value.
+    std::optional<Entry> entry;  ///< Of a map: a key without its value so far.
   };
 
   SourceRef At(const YAML::Mark& mark) const { return {file_, mark.line + 1, mark.column + 1}; }
 
-  [[noreturn]] void Stop(const YAML::Mark& mark, std::string what, std::string hint = {}) {
-    out_.Error(At(mark), std::move(what), std::move(hint));
+  [[noreturn]] void Stop(MessageId id, const YAML::Mark& mark, std::string what,
+                         std::string hint = {}) {
+    out_.Error(id, At(mark), std::move(what), std::move(hint));
     throw StopReading{};
   }
 
   void CheckTag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    out_.Error(At(mark), "YAML tag \"" + tag + "\" is not allowed");
+    out_.Error("yaml.tag", At(mark), "YAML tag \"" + tag + "\" is not allowed");
   }
 
   std::shared_ptr<Value> NewValue(const YAML::Mark& mark, Value::Kind kind) const {
@@ -108,7 +112,8 @@ class TreeBuilder : public YAML::EventHandler {
             Value::Kind kind) {
     CheckTag(mark, tag);
     if (static_cast<int>(open_.size()) >= kMaxYamlDepth) {
-      Stop(mark, "nested more than " + std::to_string(kMaxYamlDepth) + " levels deep");
+      Stop("yaml.too_deep", mark,
+           "nested more than " + std::to_string(kMaxYamlDepth) + " levels deep");
     }
     open_.push_back({NewValue(mark, kind), anchor, std::nullopt});
   }
@@ -125,7 +130,7 @@ class TreeBuilder : public YAML::EventHandler {
     Place(std::move(value), at);
   }
 
-  /// Hangs a complete value below the innermost open one.
+  /// Adds a complete value to the innermost open one.
   void Place(ValuePtr value, const SourceRef& at) {
     if (open_.empty()) {
       root_ = std::move(value);
@@ -137,7 +142,8 @@ class TreeBuilder : public YAML::EventHandler {
       parent.value->items.push_back(std::move(value));
     } else if (!parent.entry) {
       if (value->kind != Value::Kind::kScalar) {
-        out_.Error(at, "a key must be a text, not " + std::string(KindName(*value)));
+        out_.Error("yaml.key_not_text", at,
+                   "a key must be a text, not " + std::string(KindName(*value)));
         throw StopReading{};
       }
       parent.entry = Entry{value->text, at, nullptr};
@@ -151,19 +157,20 @@ class TreeBuilder : public YAML::EventHandler {
   void Count(Value& parent, std::size_t more, const SourceRef& at) {
     parent.node_count += more;
     if (parent.node_count <= kMaxYamlNodes) return;
-    out_.Error(at, "more than " + std::to_string(kMaxYamlNodes) + " YAML nodes",
+    out_.Error("yaml.too_many_nodes", at,
+               "more than " + std::to_string(kMaxYamlNodes) + " YAML nodes",
                "an alias counts as often as it is used");
     throw StopReading{};
   }
 
-  /// Complains about duplicate keys and replaces `<<` by the entries it stands for.
+  /// Reports duplicate keys and replaces each `<<` by the entries of its map.
   void ResolveMerges(Value& map) {
     std::vector<Entry> own, merges;
     std::unordered_map<std::string, SourceRef> seen;
     for (Entry& entry : map.entries) {
       const auto [first, fresh] = seen.emplace(entry.key, entry.key_at);
       if (!fresh) {
-        out_.Error(entry.key_at, "duplicate key \"" + entry.key + "\"",
+        out_.Error("key.duplicate", entry.key_at, "duplicate key \"" + entry.key + "\"",
                    "first in line " + std::to_string(first->second.line));
         continue;
       }
@@ -178,16 +185,18 @@ class TreeBuilder : public YAML::EventHandler {
           if (item->kind == Value::Kind::kMap) {
             MergeInto(map, *item, seen);
           } else {
-            out_.Error(item->at, "`<<` needs a map, not " + std::string(KindName(*item)));
+            out_.Error("yaml.merge_needs_map", item->at,
+                       "`<<` needs a map, not " + std::string(KindName(*item)));
           }
         }
       } else {
-        out_.Error(merge.key_at, "`<<` needs a map, not " + std::string(KindName(*merge.value)));
+        out_.Error("yaml.merge_needs_map", merge.key_at,
+                   "`<<` needs a map, not " + std::string(KindName(*merge.value)));
       }
     }
   }
 
-  /// What is there already wins, as YAML's merge key wants it.
+  /// Existing keys win, as YAML's merge key requires.
   static void MergeInto(Value& map, const Value& other,
                         std::unordered_map<std::string, SourceRef>& seen) {
     for (const Entry& entry : other.entries) {
@@ -232,7 +241,8 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
     const std::size_t line_end = text.rfind('\n', before);
     const std::size_t line_begin = line_end == std::string::npos ? 0 : line_end + 1;
     const auto line = 1 + std::count(text.begin(), bad, '\n');
-    out.Error({file, static_cast<int>(line), static_cast<int>(before - line_begin) + 1},
+    out.Error("yaml.control_character",
+              {file, static_cast<int>(line), static_cast<int>(before - line_begin) + 1},
               ControlText(*bad), kControlHint);
     return nullptr;
   }
@@ -245,15 +255,17 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
   } catch (const StopReading&) {
     return nullptr;
   } catch (const YAML::Exception& error) {
-    out.Error({file, error.mark.line + 1, error.mark.column + 1}, "not valid YAML: " + error.msg);
+    out.Error("yaml.invalid", {file, error.mark.line + 1, error.mark.column + 1},
+              "not valid YAML: " + error.msg);
     return nullptr;
   } catch (const std::bad_alloc&) {
-    throw;                                 // says nothing of the file
-  } catch (const std::exception& error) {  // a slip of yaml-cpp
-    out.Error({file, 0, 0}, std::string("cannot be read as YAML: ") + error.what());
+    throw;                                 // not an error of the file
+  } catch (const std::exception& error) {  // a fault of yaml-cpp
+    out.Error("yaml.unreadable", {file, 0, 0},
+              std::string("cannot be read as YAML: ") + error.what());
     return nullptr;
   }
-  if (!builder.root()) out.Error({file, 1, 1}, "the file is empty");
+  if (!builder.root()) out.Error("yaml.empty", {file, 1, 1}, "the file is empty");
   return out.items().size() == errors_before ? builder.root() : nullptr;
 }
 

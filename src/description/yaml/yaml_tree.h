@@ -1,5 +1,5 @@
-/// A YAML file as a tree with places. What yaml-cpp is lenient about is an error here: duplicate
-/// keys, tags, several documents. Aliases are resolved, merge keys (`<<: *anchor`) are merged.
+/// YAML file as a tree with source positions. Stricter than yaml-cpp: duplicate keys, tags and
+/// several documents are errors. Aliases are resolved, merge keys (`<<: *anchor`) are merged.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace taut::description {
 
 inline constexpr std::size_t kMaxFileBytes = 10'000'000;
-inline constexpr std::size_t kMaxYamlNodes = 200'000;  ///< An alias counts as what it stands for.
+inline constexpr std::size_t kMaxYamlNodes = 200'000;  ///< An alias counts with all nodes below it.
 inline constexpr int kMaxYamlDepth = 64;
 
 struct Value;
@@ -25,7 +25,7 @@ struct Entry {
   ValuePtr value;
 };
 
-/// A scalar, a sequence or a map. Immutable once read; aliases share it.
+/// Scalar, sequence or map. Immutable once read; aliases share it.
 struct Value {
   enum class Kind { kNull, kScalar, kSequence, kMap };
   Kind kind = Kind::kNull;
@@ -34,19 +34,20 @@ struct Value {
   bool quoted = false;          ///< Of a scalar.
   std::vector<ValuePtr> items;  ///< Of a sequence.
   std::vector<Entry> entries;   ///< Of a map, in order; merged ones last.
-  std::size_t node_count = 1;   ///< Itself and all below it.
+  std::size_t node_count = 1;   ///< This value and all below it.
 
-  /// The value of a key, or null.
+  /// Returns the value of a key, or null.
   const Value* Find(std::string_view key) const;
 };
 
-/// "a map", "a list", "a text" ...: for messages about a wrong type.
+/// Returns "a map", "a list", "a text" ..., for messages about a wrong type.
 std::string_view KindName(const Value& value);
 
-/// Null and diagnostics if the text is not what the formats allow. `file` is for the messages.
+/// Parses a text. Returns null and adds diagnostics if the formats do not allow it. `file` is the
+/// name in messages.
 ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics& out);
 
-/// The same for a file. Never reads more than `kMaxFileBytes`.
+/// Reads and parses a file of at most `kMaxFileBytes`. Returns null and adds diagnostics on error.
 ValuePtr ReadYaml(const std::string& path, Diagnostics& out);
 
 }  // namespace taut::description

@@ -1,3 +1,4 @@
+// Batches of worlds: choice of the SIMD kernel, memory, start, steps, and setters of the state.
 #include "taut/batch.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace taut {
 namespace {
 
-/// The kernel of this width; null if the build or the machine has none.
+/// Returns the kernel of an instruction set; null if the build or the machine has none.
 const sim::Kernel* KernelOf(Simd simd) {
   switch (simd) {
 #ifdef TAUT_HAS_AVX512
@@ -70,7 +71,7 @@ constexpr bool kHasSimd128 = true;
 constexpr bool kHasSimd128 = false;
 #endif
 
-/// What TAUT_SIMD may say. Three of them are of one width, of which a build has one.
+/// Values of TAUT_SIMD. Three of them have the same width; a build has one of these.
 constexpr struct {
   std::string_view name;
   Simd simd;
@@ -90,7 +91,7 @@ BatchOptions Sane(BatchOptions o) {
   return o;
 }
 
-/// To rounding.
+/// Returns whether poses are equal up to rounding.
 bool SamePlace(const BodyState& a, const BodyState& b) {
   constexpr double kTurn = 1e-12;
   const Quat &p = a.orientation, &q = b.orientation;
@@ -116,7 +117,8 @@ bool sim::CheckEnvironment(Diagnostics& out) {
     known += (known.empty() ? "" : ", ") + std::string(name);
     if (built && KernelOf(simd)) here += (here.empty() ? "" : ", ") + std::string(name);
   }
-  out.Error({}, "the environment variable TAUT_SIMD is \"" + std::string(SimdWish()) + "\"",
+  out.Error("simd.unknown", {},
+            "the environment variable TAUT_SIMD is \"" + std::string(SimdWish()) + "\"",
             "one of: " + known + "; this taut on this machine runs: " + here);
   return false;
 }
@@ -158,7 +160,7 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
   for (int i = 0; i < pool.threads(); ++i) {
     scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
   }
-  // The lanes behind the last world are worlds, too: no special cases, and no NaN.
+  // Lanes after the last world are worlds, too: no special cases, and no NaN.
   for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
 }
 
@@ -191,7 +193,7 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
   for (int c = 0; c < view.cable_count; ++c) {
     k_max = std::max(k_max, at(world, layout.stiffness + c));
   }
-  // Two bounds of the same spectral radius: by columns, and of the whole.
+  // Two bounds of the same spectral radius: by the column of the cable, and of the whole matrix.
   for (int c = 0; c < view.cable_count; ++c) {
     const double own = model->coupling[static_cast<std::size_t>(c)];
     const double all = model->largest_coupling;
@@ -213,9 +215,9 @@ void Batch::Impl::ForgetMeans(int world) noexcept {
 
 void Batch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
-  // Several threads may read at once: one senses, the others wait for it. Whoever comes later in
-  // the same step takes no lock.
-  // std::atomic_ref is not everywhere yet (the libc++ of emscripten 3.1.6).
+  // Several threads may read at once: one senses, the others wait for it. Later calls in the same
+  // step take no lock. std::atomic_ref is not available everywhere (the libc++ of emscripten
+  // 3.1.6).
   if (__atomic_load_n(&g.sensed, __ATOMIC_ACQUIRE)) return;
   const std::lock_guard lock(sensing);
   if (__atomic_load_n(&g.sensed, __ATOMIC_RELAXED)) return;
@@ -311,7 +313,7 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
   d.set(world, d.layout.mom + 3 * body,
         Rotate(q, {inertia.x * w.x, inertia.y * w.y, inertia.z * w.z}));
-  // The next step projects the velocities, as the first one does.
+  // The next step projects the velocities, like the first one.
   if (d.view.joint_count > 0) d.at(world, d.layout.last_step) = 0;
   d.Moved(world);
 }

@@ -1,4 +1,4 @@
-/// What a Batch keeps; shared by the files that implement it.
+/// Data of a Batch; shared by the files that implement it.
 #pragma once
 
 #include <cstdlib>
@@ -24,7 +24,7 @@ struct Free {
 template <class T>
 using Aligned = std::unique_ptr<T[], Free>;
 
-/// Zeroed memory on a cache line's boundary.
+/// Allocates zeroed memory aligned to a cache line.
 template <class T>
 Aligned<T> AllocateAligned(std::size_t count) {
   const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64 + 64;
@@ -39,7 +39,7 @@ struct Batch::Impl {
 
   std::shared_ptr<const sim::Tables> model;
   sim::View view;
-  sim::FrictionTable friction;  ///< `view` points to it, if it is needed.
+  sim::FrictionTable friction;  ///< `view` points to it if the model needs it.
   BatchOptions options;
   const sim::Kernel* kernel;
   sim::Layout layout;
@@ -49,11 +49,11 @@ struct Batch::Impl {
   std::vector<int> slots_used;
   std::vector<int> forced;
   std::vector<sim::LaneStatus> status;
-  std::vector<Aligned<char>> scratch;  ///< One a thread.
+  std::vector<Aligned<char>> scratch;  ///< One per thread.
   base::ThreadPool pool;
   mutable std::mutex sensing;  ///< Guards scratch[0] and the kSensed rows in const functions.
 
-  // What callers give (sim/batch/check_index.h); `function` is the caller's name.
+  // Checks of the callers' arguments (sim/batch/check_index.h); `function` is the caller's name.
   void CheckWorld(const char* function, int world) const noexcept {
     sim::CheckIndex(function, "world", world, options.worlds);
   }
@@ -65,7 +65,7 @@ struct Batch::Impl {
     CheckWorld(function, world);
     sim::CheckIndex(function, "cable", cable, view.cable_count);
   }
-  /// The number of a cable's motor.
+  /// Returns the number of a cable's motor.
   int CheckMotor(const char* function, int world, int cable) const noexcept {
     CheckCable(function, world, cable);
     const int motor = view.cables[cable].motor;
@@ -78,7 +78,7 @@ struct Batch::Impl {
     CheckWorld(function, world);
     sim::CheckIndex(function, "node", node, view.node_count);
   }
-  /// The row of a parameter.
+  /// Returns the row of a parameter.
   int ParameterRow(const char* function, int world, Parameter parameter, int index) const noexcept;
 
   int lanes() const noexcept { return kernel->lanes; }
@@ -86,7 +86,7 @@ struct Batch::Impl {
     TAUT_ASSERT(0 <= world && static_cast<std::size_t>(world / lanes()) < groups.size());
     return groups[static_cast<std::size_t>(world / lanes())];
   }
-  /// Row `row` of a world.
+  /// Returns row `row` of a world.
   double& at(int world, int row) const noexcept {
     TAUT_ASSERT(0 <= row && row < layout.rows);
     return group(world).rows[row * lanes() + world % lanes()];
@@ -97,9 +97,9 @@ struct Batch::Impl {
   sim::MotorOrders<double> orders(int world, int number) const noexcept {
     return Struct<sim::MotorOrders<double>>(world, layout.orders, number);
   }
-  /// Where a cable lies against edges, along it.
+  /// Returns the bends of a cable that touches, in their order along it.
   std::vector<sim::BendNumbers<double>> Bends(int world, int cable) const;
-  /// A cable on what it lies against, without what it has left.
+  /// Path of a cable with its bends, without bends that it has left.
   struct LaidCable;
   LaidCable Lay(int world, int cable) const;
   Vec3 vec(int world, int row) const noexcept {
@@ -115,7 +115,7 @@ struct Batch::Impl {
     at(world, row + 1) = x.y;
     at(world, row + 2) = x.z;
   }
-  /// Of a row whose elements are structs of numbers: the one with this number.
+  /// Returns element `number` of a row whose elements are structs of numbers.
   template <class T>
   T Struct(int world, int row, int number) const noexcept {
     constexpr int kWidth = sizeof(T) / sizeof(double);
@@ -145,7 +145,7 @@ struct Batch::Impl {
     const int row = layout.quat + 4 * body;
     return {at(world, row), at(world, row + 1), at(world, row + 2), at(world, row + 3)};
   }
-  /// Calls f(number of the memory) for each contact that a world remembers, keys rising by body.
+  /// Calls f(number of the memory) for each contact that a world stores; keys ascend within a body.
   template <class F>
   void ForEachContact(int world, F&& f) const {
     const sim::Group& g = group(world);
@@ -157,13 +157,13 @@ struct Batch::Impl {
     }
     for (int k = 0; k < g.touches_used; ++k) visit(view.slot_count + k);
   }
-  /// Steps all worlds; first the targets of all cables of all worlds, unless null.
+  /// Steps all worlds; first sets the targets of all cables of all worlds, unless null.
   void Step(double step_s, int count, const double* targets_m) noexcept;
   void StepSome(double step_s, const std::uint8_t* goes);
   void SetTargets(int group_number, const double* targets_m) const noexcept;
   void SetMass(int world, int body, double mass_kg) noexcept;
   void StartWorld(int world) noexcept;
-  /// f(number) of all that a snapshot holds of a contact.
+  /// Calls f(number) for all numbers of a contact in a snapshot (serialization).
   template <class F>
   void EachMemory(int world, int contact, F f) const noexcept {
     TAUT_ASSERT(0 <= contact && contact < view.ContactCapacity());
@@ -173,23 +173,24 @@ struct Batch::Impl {
       for (int k = 0; k < row.width; ++k) f(at(world, first + k));
     }
   }
-  /// After a change of masses, stiffnesses or dampings: which cables are how stiff.
+  /// Recomputes the stiffness bounds of the cables after a change of masses, stiffnesses or
+  /// dampings.
   void JudgeStiffness(int world) noexcept;
-  /// Bodies moved by hand: what was known about distances is void.
+  /// Invalidates clearances after bodies were moved from outside.
   void Moved(int world) noexcept;
-  /// Cables changed from outside: means of the last step are invalid for them.
+  /// Invalidates the means of the last step, after cables were changed from outside.
   void ForgetMeans(int world) noexcept;
-  /// Nobody knows any more how the cables lie that touch what they come to: straight.
+  /// Resets the bends of cables that touch: straight, because their sides are unknown.
   void ForgetBends(int world) noexcept;
-  /// Bodies with motions to where they are at the world's time.
+  /// Sets the kinematic bodies to their poses at the world's time.
   void PlaceMotions(int world) noexcept;
-  /// Makes the kSensed rows of the world's group belong to the current state.
+  /// Updates the kSensed rows of the world's group to the current state. Thread-safe.
   void Sense(int world) const noexcept;
   void ForceNode(int world, int node) noexcept;
-  /// Changes one of the orders of a motor.
+  /// Changes one of the commands of a motor.
   void Order(int world, int motor, double sim::MotorOrders<double>::*order,
              double value) const noexcept;
-  /// A cable's motor, if it has one, stands still, with the flanks of its gear together.
+  /// Stops a cable's motor, if it has one, with the flanks of its gear in contact.
   void StopMotor(int world, int cable) const noexcept;
 };
 

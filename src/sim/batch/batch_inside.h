@@ -1,4 +1,4 @@
-/// A batch's inside, for those outside of this folder that must have it.
+/// Access to a batch's implementation from outside of this folder.
 #pragma once
 
 #include "sim/batch/batch_impl.h"
@@ -8,7 +8,7 @@ namespace taut {
 struct BatchInside {
   using Impl = Batch::Impl;
   static Impl& Of(Batch& batch) noexcept { return *batch.impl_; }
-  /// From now on the batch steps with time stamps between its stages (benchmarks/stage_watch.h).
+  /// Enables time stamps between the stages of the batch's steps (benchmarks/stage_watch.h).
   static void Watch(Batch& batch);
 };
 

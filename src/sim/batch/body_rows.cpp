@@ -1,3 +1,4 @@
+// Direct access to the rows of body positions and velocities of a batch.
 #include "taut/body_rows.h"
 
 #include "sim/batch/batch_inside.h"
@@ -8,7 +9,7 @@ namespace taut {
 BodyRows RowsOfBodies(Batch& batch, int group) noexcept {
   const BatchInside::Impl& d = BatchInside::Of(batch);
   sim::CheckIndex(__func__, "group", group, batch.groups());
-  // Of a model without bodies the rows are empty, and may be behind the last.
+  // Without bodies the rows are empty, and may start after the last row.
   const auto first = [&](int row) {
     return d.groups[static_cast<std::size_t>(group)].rows + row * d.lanes();
   };

@@ -1,3 +1,4 @@
+// Integration scheme of each cable of a model for a given step.
 #include "taut/cable_scheme.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Messages for wrong indices and counts that callers pass to a Batch.
 #include "sim/batch/check_index.h"
 
 #include <cstdio>

@@ -1,12 +1,12 @@
-/// The indices that callers give. A wrong one is a mistake of theirs, and would write what belongs
-/// to something else: it is named and ends the program, in every build.
+/// Bounds checks of the indices that callers pass. A wrong index is a programming error and would
+/// overwrite other data: it is reported and aborts the program, in every build.
 #pragma once
 
 #include <cstddef>
 
 namespace taut::sim {
 
-/// `function` and `what` as the caller knows them: "Cable", "cable".
+/// `function` and `what` in the caller's terms: "Cable", "cable".
 [[noreturn]] void WrongIndex(const char* function, const char* what, int index, int count) noexcept;
 
 inline void CheckIndex(const char* function, const char* what, int index, int count) noexcept {
@@ -15,13 +15,13 @@ inline void CheckIndex(const char* function, const char* what, int index, int co
   }
 }
 
-/// A cable that no motor winds.
+/// Reports a cable without a motor.
 [[noreturn]] void NoMotor(const char* function, int cable) noexcept;
 
 [[noreturn]] void WrongCount(const char* function, const char* what, std::size_t given,
                              std::size_t needed) noexcept;
 
-/// For arrays with one value for `what`.
+/// Checks the size of an array with one value per `what`.
 inline void CheckCount(const char* function, const char* what, std::size_t given,
                        std::size_t needed) noexcept {
   if (given != needed) [[unlikely]] {

@@ -1,4 +1,4 @@
-// Lays out motions, and says where they are outside of steps.
+// Motions of kinematic bodies: tables of a model, and poses between steps.
 #include "sim/batch/motion.h"
 
 #include "sim/batch/batch_impl.h"

@@ -1,5 +1,4 @@
-/// Motors: how a model lays them out, what a batch tells them and says of them. Their law is
-/// dc_motor.inl.
+/// DC motors: tables of a model, commands and readings of a batch. Their law is in dc_motor.inl.
 
 #include <algorithm>
 
@@ -9,7 +8,7 @@ namespace taut {
 namespace sim {
 namespace {
 
-/// The number of a motor's supply; a new one if nobody named it before.
+/// Returns the number of a motor's supply; adds a supply for a new name.
 int SupplyOf(const DcMotorDef& def, std::vector<std::string>& names, Tables& tables) {
   const auto known = std::find(names.begin(), names.end(), def.supply);
   if (known != names.end()) return static_cast<int>(known - names.begin());

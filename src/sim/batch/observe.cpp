@@ -1,4 +1,4 @@
-/// What can be seen of a world, and its snapshots.
+/// Readings of a world, and its serialization (snapshots).
 
 #include <algorithm>
 #include <cstring>
@@ -69,7 +69,7 @@ Energy Batch::TotalEnergy(int world) const noexcept {
       const double area_n = cable.stiffness_n_per_m * cable.rest_length_m;
       for (int i = 0; i < d.view.cables[c].span_count; ++i) {
         const CableSpanState span = CableSpan(world, c, i);
-        if (span.rest_length_m == 0) continue;  // where it does not touch now
+        if (span.rest_length_m == 0) continue;  // its place has no contact now
         const double longer = std::max(span.length_m - span.rest_length_m, 0.0);
         e.elastic_j += 0.5 * area_n / span.rest_length_m * longer * longer;
       }
@@ -116,13 +116,13 @@ struct Touching {
   int a, b;
 };
 
-/// Keys are whole numbers below this.
+/// Returns the upper end of the keys, which are whole numbers.
 double KeyEnd(const sim::Tables& m) {
   return static_cast<double>(m.first_pair_id) +
          static_cast<double>(sim::kMaxPointsPerPair) * static_cast<double>(m.shape_pairs.size());
 }
 
-/// The bodies that a contact's key names.
+/// Returns the bodies of a contact, by its key.
 Touching BodiesOf(const sim::Tables& m, double key) {
   const auto id = static_cast<std::uint32_t>(key);
   if (id < m.first_pair_id) {
@@ -160,14 +160,14 @@ std::vector<ContactState> Batch::Contacts(int world) const {
 
 namespace {
 
-/// A snapshot: header, the state rows, then what contacts are remembered by.
+/// Header of a snapshot; the state rows follow, then the memory of the contacts.
 struct SnapshotHeader {
   std::uint32_t magic = 0x74736e32;  // "tsn2"
   std::uint32_t rows = 0, contacts = 0, bits = 0;
   double first_time_s = 0;
 };
 
-/// Numbers of a contact, its key first.
+/// Returns the number of values per contact; its key is first.
 constexpr std::size_t MemoryWidth() {
   std::size_t width = 0;
   for (const sim::RowInfo& row : sim::kStateRows) {
@@ -247,14 +247,14 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   status.bits = header.bits;
   status.first_time_s = header.first_time_s;
 
-  // This lane's contacts give way to the snapshot's; those of other lanes stay.
+  // The snapshot's contacts replace this lane's; contacts of other lanes stay.
   d.ForEachContact(world, [&](int i) { d.at(world, d.layout.contact_key + i) = sim::kNoKey; });
   const sim::Tables& m = *d.model;
   int list = -1, next = 0;
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
     const Touching bodies = BodiesOf(m, Read<double>(at));
     at -= sizeof(double);
-    // A body's slots, or the touches behind all of them.
+    // The slots of a body, or the touches after all slots.
     const bool moves = bodies.b < m.body_count &&
                        (d.at(world, d.layout.mass + bodies.b) > 0 || d.view.HasMotion(bodies.b));
     const int first = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(bodies.a)];
@@ -264,7 +264,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
         moves ? m.pair_capacity : m.first_slot[static_cast<std::size_t>(bodies.a) + 1] - first;
     int& used = moves ? g.touches_used : g.slots_used[bodies.a];
     const int i = next++;
-    if (i - first >= room) {  // no snapshot that Save made has so many
+    if (i - first >= room) {  // never for a snapshot from Save
       at += sizeof(double) * MemoryWidth();
       continue;
     }
@@ -274,7 +274,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
     }
     d.EachMemory(world, i, [&](double& x) { x = Read<double>(at); });
   }
-  // What only reports was of the world that was here before.
+  // Derived rows belong to the previous state.
 #define TAUT_ROW(name, type, per, role, halted, start)                    \
   if constexpr (sim::Role::role == sim::Role::kDerived) {                 \
     const int count = sim::kWidth##type * d.view.Count(sim::Per::per);    \

@@ -1,4 +1,4 @@
-// What can be seen of a world's cables.
+// Readings of a world's cables: state, spans, path, bends.
 #include <algorithm>
 
 #include "math/cable_wheel.h"
@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-/// The rows that hold what is read of a cable.
+/// Returns the rows of a cable's readings.
 CableReadings<int> RowsOf(const sim::Layout& l) {
   return {.rest_length_m = l.rest,
           .length_m = l.sense_length,
@@ -51,8 +51,9 @@ CableSpanState Batch::CableSpan(int world, int cable, int span) const noexcept {
 
 struct Batch::Impl::LaidCable {
   std::vector<PathPoint<Vec3>> points;
-  std::vector<int> bodies;  ///< By point; the world is behind the last one.
-  std::vector<int> spans;   ///< By point: which one comes there; the next point's leaves it.
+  std::vector<int> bodies;  ///< By point; the world's number follows the last body's.
+  std::vector<int>
+      spans;  ///< By point: number of the span that ends there; the next point's span starts there.
   std::vector<Wheel<Vec3>> wheels;
 };
 
@@ -67,7 +68,7 @@ std::vector<double> Batch::CableSpanTensions(int world, int cable) const {
     }
     return tensions;
   }
-  // What it has left by now parts nothing.
+  // Bends that it has left separate no spans.
   const Impl::LaidCable laid = d.Lay(world, cable);
   for (const Wheel<Vec3>& wheel : laid.wheels) {
     const int span = laid.spans[static_cast<std::size_t>(wheel.at)];
@@ -152,7 +153,7 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   }
   LayOnWheels(points.data(), wheel_count, wheels.data(), along.empty() ? nullptr : along.data(),
               begun);
-  // What a cable that touches has left by now is no part of its path.
+  // Bends that a cable has left are not part of its path.
   for (std::size_t k = wheels.size(); table.touch >= 0 && k-- > 0;) {
     if (wheels[k].theta > 0) continue;
     points.erase(points.begin() + wheels[k].at, points.begin() + wheels[k].at + 2);
@@ -230,7 +231,7 @@ CableRows Batch::Cables(int group) noexcept {
   sim::CheckIndex(__func__, "group", group, groups());
   const int first_world = group * d.lanes();
   d.Sense(first_world);
-  // Of a model without cables the rows are empty, and may be behind the last.
+  // Without cables the rows are empty, and may start after the last row.
   const auto first = [&](int row) { return d.group(first_world).rows + row * d.lanes(); };
   return {MapReadings([&](int row) -> const double* { return first(row); }, RowsOf(d.layout)),
           d.lanes(), first_world, first(d.layout.target)};

@@ -1,4 +1,4 @@
-// What can be seen of a world's joints.
+// Readings of a world's joints: coordinate, rate, gap, force.
 #include <algorithm>
 #include <cmath>
 
@@ -38,7 +38,7 @@ JointState Batch::Joint(int world, int joint) const noexcept {
   const Side a = side(j.a, j.own_a_P, j.axes_a_P), b = side(j.b, j.own_b_P, j.axes_b_P);
   const Vec3 gap = b.point_m - a.point_m, spin = b.spin_rad_per_s - a.spin_rad_per_s;
   const Vec3 apart =
-      b.velocity_m_per_s - a.velocity_m_per_s - Cross(a.spin_rad_per_s, gap);  // seen from a
+      b.velocity_m_per_s - a.velocity_m_per_s - Cross(a.spin_rad_per_s, gap);  // relative to a
   JointState out;
   out.force_n = d.vec(world, d.layout.joint_force + 3 * joint);
   out.torque_n_m = d.vec(world, d.layout.joint_torque + 3 * joint);
@@ -88,7 +88,7 @@ JointState Batch::Joint(int world, int joint) const noexcept {
   }
   out.rate = 0;
   if (j.has_coordinate) out.coordinate = value(j.coordinate);
-  Vec3 twice_sine;  // of the turn, along its axis
+  Vec3 twice_sine;  // of the rotation, along its axis
   double cosines = 0;
   for (int i = 0; i < 3; ++i) {
     twice_sine = twice_sine + Cross(a.axes[i], b.axes[i]);

@@ -1,4 +1,4 @@
-// What is done to a world's cables from outside.
+// Setters of a world's cables: rest lengths, targets, bends.
 #include "math/cable_wheel.h"
 #include "sim/batch/batch_impl.h"
 

@@ -9,7 +9,7 @@
 namespace taut {
 namespace {
 
-/// The condition that `value` violates, with the unit; null if there is none.
+/// Returns the condition that `value` violates, with the unit; null if there is none.
 const char* BoundViolatedBy(Parameter parameter, double value) noexcept {
   const bool finite = std::isfinite(value);
   switch (parameter) {

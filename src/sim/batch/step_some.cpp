@@ -1,3 +1,4 @@
+// Steps of some worlds of a batch: the other lanes of a group are restored afterwards.
 #include <algorithm>
 #include <cstring>
 
@@ -6,7 +7,7 @@
 namespace taut {
 namespace {
 
-/// The lanes of a group that stand still while the others step: what they are, to be put back.
+/// State of the lanes of a group that pause while the others step, for restoring it.
 class Still {
  public:
   Still(sim::Group& g, int row_count, std::vector<int> lanes)
@@ -64,7 +65,8 @@ void Batch::Impl::StepSome(double step_s, const std::uint8_t* goes) {
     const int touches = g.touches_used;
     step();
     held.PutBack();
-    // The lists are as long as the longest lane's: what is behind a lane's own end is old.
+    // The lists have the length of the longest lane's: entries after the end of a shorter lane's
+    // list are outdated.
     const auto keep = [&](int& used, int before, int first_slot) {
       const int longer = std::max(used, before);
       for (int lane = 0; lane < n; ++lane) {

@@ -1,5 +1,5 @@
-/// Bodies that move as a program says (docs/theory/motion.md): put where forces put others, and the
-/// work that this takes.
+/// Kinematic bodies in a step: prescribed poses and velocities, and the work of the motion
+/// (docs/theory/motion.md).
 #pragma once
 
 #include "sim/data/rows.h"
@@ -13,7 +13,7 @@ void PutPlace(const Rows<W>& s, int body, const Motion<W>& at) noexcept {
   s.quat[body] = {at.quat.w + zero, at.quat.x + zero, at.quat.y + zero, at.quat.z + zero};
 }
 
-/// Stage: bodies with a motion to the middle of the step, after the first half of the drift.
+/// Stage: moves kinematic bodies to the middle of the step, after the first half of the drift.
 ///   reads   time     writes  pos, quat, motions[]
 template <class W>
 void StageMotionPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {
@@ -29,7 +29,8 @@ void StageMotionPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, W h) n
   }
 }
 
-/// What kinematics take for at rest. No force acts on it but those that the motion has to hold.
+/// Replaces the velocities of kinematic bodies, which StageKinematics treats as resting. Their
+/// forces are zero until contacts, cables and joints add theirs.
 ///   reads   motions[]     writes  bodies[].v0, .w0, .v_mid, .w_mid, .force, .torque
 template <class W>
 void StageMotionStart(const View& m, Scratch<W>& work) noexcept {
@@ -44,7 +45,7 @@ void StageMotionStart(const View& m, Scratch<W>& work) noexcept {
   }
 }
 
-/// Velocities of the step's end, after the kick.
+/// Sets the velocities at the end of the step, after the kick.
 ///   reads   motions[]     writes  bodies[].v, .w
 template <class W>
 void StageMotionKick(const View& m, Scratch<W>& work) noexcept {
@@ -54,8 +55,8 @@ void StageMotionKick(const View& m, Scratch<W>& work) noexcept {
   }
 }
 
-/// A body that gets faster goes further than by its velocity before the step: bounds of what
-/// shapes may have come nearer know of it.
+/// Adds the velocity changes of kinematic bodies to the bounds of their displacement: an
+/// accelerating body moves farther than by its velocity before the step.
 template <class W>
 void BoundMotions(const View& m, const Rows<W>& s, Scratch<W>& work, W h, W since_last) noexcept {
   for (int i = 0; i < m.motion_count; ++i) {
@@ -68,8 +69,8 @@ void BoundMotions(const View& m, const Rows<W>& s, Scratch<W>& work, W h, W sinc
   }
 }
 
-/// Stage: the work of motions, against all that acts on their bodies at the middle of the step, and
-/// where they are at its end, after the second half of the drift.
+/// Stage: computes the work of motions against all forces on their bodies at the middle of the
+/// step, and sets the poses at its end, after the second half of the drift.
 ///   reads   motions[], bodies[], stiff[], joints[]     writes  pos, quat, vel, mom, old_*,
 ///   motion_*
 template <class W>
@@ -106,7 +107,7 @@ void StageMotionEnd(const View& m, const Rows<W>& s, Scratch<W>& work, double st
   }
 }
 
-/// What sensing takes for at rest.
+/// Sets the velocities of kinematic bodies for sensing.
 template <class W>
 void SenseMotions(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   for (int i = 0; i < m.motion_count; ++i) {

@@ -1,26 +1,28 @@
 /// Stages of the rigid bodies: drift, kinematics, kick (docs/theory/integrator.md).
 ///
-///   state   pos x, quat q_WP, vel v, mom L: angular momentum about the centre of mass, in W
+///   state   pos x, quat q_WP, vel v, mom L: angular momentum about the center of mass, in W
 ///
-/// Free rotation keeps L and turns q. H = L^2 / (2 Ix) + the rest, which is small for rods: z is
-/// the axis of near symmetry (model.cpp). The rest turns the body about its own y and z, the first
-/// term about L itself (docs/theory/integrator.md, I5-I6; after Dullweber, Leimkuhler, McLachlan,
-/// J. Chem. Phys. 107, 1997, eq. 2.4). L is kept to round-off, and the energy of a body with an
-/// axis of symmetry too, however fast it spins; else the energy's error stays bounded.
+/// Free rotation conserves L and rotates q. H = L^2 / (2 Ix) + a remainder, which is small for
+/// rods: z is the axis of near symmetry (model.cpp). The remainder rotates the body about its y and
+/// z axes, the first term about L (docs/theory/integrator.md, I5-I6; after Dullweber, Leimkuhler,
+/// McLachlan, J. Chem. Phys. 107, 1997, eq. 2.4). L is conserved to round-off, and so is the energy
+/// of a body with an axis of symmetry, at any spin; for other bodies the energy error stays
+/// bounded.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// tan(theta / 2) for a turn by theta; with a vector's length in theta^2, per theta. It is taken as
-/// theta/2 (1 + theta^2/12): a rotation for any theta, and its angle is right to O(theta^5).
+/// Returns tan(theta / 2) for a rotation by theta; with a vector's squared length as theta2, the
+/// factor of that vector. The series theta/2 (1 + theta^2/12) gives a rotation for any theta, and
+/// its angle is correct to O(theta^5).
 template <class W>
 TAUT_INLINE W HalfAngle(W theta, W theta2) noexcept {
   return W::Splat(0.5) * theta * (W::Splat(1.0) + W::Splat(1.0 / 12.0) * theta2);
 }
 
-/// Where a body's angular momentum turns as the body turns by theta about one axis.
+/// Rotation of a body's angular momentum in its frame as the body rotates by theta about one axis.
 template <class W>
 struct AxisTurn {
   W t, c, s;
@@ -39,8 +41,8 @@ struct AxisTurn {
   }
 };
 
-/// Returns the square of its length. Where that is infinite, which happens while all of `q` is
-/// finite, what is left is no rotation.
+/// Normalizes q. Returns the square of its length; if that is infinite (possible while all of `q`
+/// is finite), the result is not a rotation.
 template <class W>
 TAUT_INLINE W NormalizeQuat(Q4<W>& q) noexcept {
   const W square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
@@ -49,7 +51,7 @@ TAUT_INLINE W NormalizeQuat(Q4<W>& q) noexcept {
   return square;
 }
 
-/// q <- q (1, t e_axis), not normalised.
+/// q <- q (1, t e_axis), not normalized.
 template <class W>
 TAUT_INLINE void TurnY(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.y, q.x - t * q.z, q.y + t * q.w, q.z + t * q.x};
@@ -59,14 +61,14 @@ TAUT_INLINE void TurnZ(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.z, q.x + t * q.y, q.y - t * q.x, q.z + t * q.w};
 }
 
-/// q <- (1, u) q: a turn about u, fixed in W, not normalised.
+/// q <- (1, u) q: a rotation about u, fixed in W, not normalized.
 template <class W>
 TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
   q = {q.w - (u.x * q.x + u.y * q.y + u.z * q.z), q.x + (u.x * q.w + u.y * q.z - u.z * q.y),
        q.y + (u.y * q.w + u.z * q.x - u.x * q.z), q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
 }
 
-/// The same with a quaternion from cosine and sine of half the angle.
+/// Rotate by cosine and sine of half the angle.
 template <class W>
 TAUT_INLINE void TurnY(Q4<W>& q, W c, W s) noexcept {
   q = {c * q.w - s * q.y, c * q.x - s * q.z, c * q.y + s * q.w, c * q.z + s * q.x};
@@ -86,7 +88,7 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, W c, const V3<W>& u) noexcept {
 /// instead of HalfAngle's series, whose error there is 3e-5 of the angle [rad].
 inline constexpr double kSeriesTurn = 0.25;
 
-/// Cosine and sine of theta / 2 in the lanes `fast`; in others 1 and HalfAngle, to be normalized.
+/// Cosine and sine of theta / 2 in the lanes `fast`; 1 and HalfAngle in others, to be normalized.
 template <class W>
 struct HalfTurn {
   W c = W::Splat(1.0), s;
@@ -97,7 +99,7 @@ struct HalfTurn {
     simd::SinCosOfTurns(W::Splat(0.25 / simd::kPi) * theta, sine, cosine);
     c = Select(fast, cosine, c), s = Select(fast, sine, s);
   }
-  /// As AxisTurn does, with its bits where c is 1.
+  /// Rotates as AxisTurn does, with the same bits where c is 1.
   void Turn(W& a, W& b) const noexcept {
     const W cc = c * c, ss = s * s, scale = W::Splat(1.0) / (cc + ss);
     const W c2 = (cc - ss) * scale, s2 = (c * s + c * s) * scale;
@@ -107,8 +109,8 @@ struct HalfTurn {
   }
 };
 
-/// Half a drift of a body that is free, and its mirror image. `R`: the rotation that `q` is.
-/// Returns what NormalizeQuat does.
+/// Rotates a free body by half a drift; the second half mirrors the first. `R`: rotation matrix of
+/// `q`. Returns the result of NormalizeQuat.
 enum class Half { kFirst, kSecond };
 template <Half kHalf, class W>
 TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& inv_inertia,
@@ -116,7 +118,7 @@ TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& i
   const W zero = W::Splat(0.0);
   const W y = inv_inertia.y - inv_inertia.x, z = inv_inertia.z - inv_inertia.x;
   V3<W> l = TransposeTimes(R, L);
-  // No turn about y is the same as a turn by nothing, to the bit.
+  // Skipping the rotation about y gives the same bits as a rotation by zero.
   const bool has_y = Any(!(y == zero));
   if (has_y && kHalf == Half::kFirst) {
     const AxisTurn<W> turn(half_h * l.y * y);
@@ -127,7 +129,7 @@ TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& i
   if (has_y && kHalf == Half::kSecond) turn.Turn(l.x, l.y);
   TurnZ(q, turn.t);
   if (has_y && kHalf == Half::kSecond) TurnY(q, AxisTurn<W>(half_h * l.y * y).t);
-  // A turn about L leaves l as it is: its place in the order does not matter.
+  // A rotation about L does not change l, so its place in the order does not matter.
   const W theta = half_h * inv_inertia.x;
   TurnAbout(q, HalfAngle(theta, theta * theta * Dot(L, L)) * L);
   return NormalizeQuat(q);
@@ -165,7 +167,7 @@ template <Half kHalf, class W>
   return NormalizeQuat(q);
 }
 
-/// Half a drift of body b; see DriftTurn.
+/// Rotates body b by half a drift; see DriftTurn.
 template <Half kHalf, class W>
 TAUT_INLINE W DriftTurnOf(const View& m, const Rows<W>& s, int b, Q4<W>& q, const M3<W>& R,
                           W half_h) noexcept {
@@ -190,21 +192,21 @@ void StageDriftFirst(const View& m, const Rows<W>& s, W half_h) noexcept {
   }
 }
 
-/// Stage: second half of the drift, the mirror image of the first.
+/// Stage: second half of the drift, which mirrors the first.
 template <class W>
 void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W half_h) noexcept {
   const W zero = W::Splat(0.0);  // x + 0 turns -0 into 0: lanes must not differ in the sign of zero
   for (int b = 0; b < m.body_count; ++b) {
     Q4<W> q = s.quat[b];
     const W square = DriftTurnOf<Half::kSecond>(m, s, b, q, work.bodies[b].R, half_h);
-    // + 0, or NaN where the turn was lost: Judge looks at w.
+    // + 0, or NaN if the rotation was lost: Judge checks w.
     s.quat[b] = {q.w + zero * square, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];
     s.pos[b] += V3<W>{zero, zero, zero};
   }
 }
 
-/// Where cables are attached.
+/// Computes the points at which cables are attached.
 ///   reads   pos, bodies[].R     writes  spots[]
 template <class W>
 void StageSpots(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
@@ -216,8 +218,8 @@ void StageSpots(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   }
 }
 
-/// Frames, inverse inertias and velocities of all bodies; forces start at weight. `ahead` is how
-/// far the expected velocities look ahead, in steps before this one (0: not at all).
+/// Computes frames, inverse inertias and velocities of all bodies; forces start at weight. `ahead`:
+/// time to the predicted velocities, in units of the previous step (0: no prediction).
 ///   reads   quat, vel, mom, old_vel, old_spin, mass, gravity, node_force     writes  bodies[]
 template <class W>
 void StageKinematics(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
@@ -249,8 +251,8 @@ void StageKinematics(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
   }
 }
 
-/// Frames and velocities of all bodies as they are, with the same bits as StageKinematics: what a
-/// cable's length and rate follow from.
+/// Computes frames and velocities of all bodies in the current state, for lengths and rates of
+/// cables, with the same bits as StageKinematics.
 ///   reads   quat, vel, mom     writes  bodies[].R, .v_mid, .w_mid
 template <class W>
 void StageSenseBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
@@ -267,7 +269,7 @@ void StageSenseBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexcep
   world.v_mid = world.w_mid = none;
 }
 
-/// Stage: forces become velocities.
+/// Stage: converts forces to velocities.
 ///   reads   bodies[].force, .torque     writes  bodies[].v, .w, mom
 template <class W>
 void StageKick(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {

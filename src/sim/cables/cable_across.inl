@@ -1,5 +1,5 @@
-/// Friction along the axis of what a cable has come to lie against (docs/theory/cables.md, section
-/// 7): the cable has no mass, so it slides until friction can hold it, and stays there.
+/// Capstan friction across a cable, along the axis of an edge or rod (docs/theory/cables.md,
+/// section 7): the cable has no mass, so a bend slides at once until friction can hold it.
 #pragma once
 
 #include "sim/cables/cable_bends.inl"
@@ -8,15 +8,15 @@
 
 namespace taut::sim {
 
-/// How far a cable's bend turns aside from the straight line on what it lies against, that is how
-/// hard its two parts pull it along the axis, per tension. It falls as `along` grows.
+/// Returns the pull of both parts of a bend along the axis, per tension: its deviation from the
+/// straight line on the unrolled cylinder. It decreases with `along`.
 TAUT_INLINE double AsideAt(const Tangents<Vec3>& way, double along) noexcept {
   const Rises<double> rise = RisesAt(way, along);
   return rise.behind / Sqrt(1.0 + rise.behind * rise.behind) -
          rise.before / Sqrt(1.0 + rise.before * rise.before);
 }
 
-/// Where that is `goal`, which is between zero and what it is at `from`.
+/// Returns the place at which AsideAt is `goal`, which is between zero and its value at `from`.
 TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) noexcept {
   constexpr int kMostRounds = 100;
   constexpr double kFirstWayM = 1e-6, kFarM = 1e3, kEnough = 1e-14;
@@ -32,18 +32,18 @@ TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) 
     if (fc * fb <= 0.0) {
       a = b, fa = fb;
     } else {
-      fa = 0.5 * fa;  // regula falsi that does not creep (Illinois)
+      fa = 0.5 * fa;  // regula falsi without stagnation (Illinois)
     }
     b = c, fb = fc;
   }
   return b;
 }
 
-/// Of one lane's bend: slides if it has to. Returns how far [m].
+/// Slides one lane's bend if friction cannot hold it. Returns the displacement [m].
 template <class W>
 double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, double friction,
                  const Vec3& p, const Vec3& q, int k, int lane) noexcept {
-  constexpr double kSteepest = 0.995;  ///< Of what can hold it: what drifts is still some slip.
+  constexpr double kSteepest = 0.995;  ///< Share of the friction limit that keeps some slip.
   W& along = s.slip_along[cable.first_slip + k];
   AcrossWork<W>& across = work.across[cable.first_slip + k];
   const Wheel<V3<W>>& from = work.wheels[k];
@@ -83,8 +83,8 @@ double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, do
   return Abs(now - old);
 }
 
-/// What slips along the cable takes the bend along with it, in the direction against which friction
-/// acts, until it is straight.
+/// Drift of bends (eq. 23): slip along the cable carries a bend in the direction against which
+/// friction acts, until it is straight.
 template <class W, class Tag>
 void DriftAcross(const Rows<W>& s, const Scratch<W>& work, const CableTable& cable,
                  const Capstan<Tag>& found, double area_n, int lane) noexcept {
@@ -101,7 +101,7 @@ void DriftAcross(const Rows<W>& s, const Scratch<W>& work, const CableTable& cab
   }
 }
 
-/// All bends of a cable that is laid slide as far as they have to, and it is laid there.
+/// Slides all bends of a laid cable across, and lays the path over their new places.
 template <class W>
 [[gnu::noinline]] void SlideAcross(const View& m, const Rows<W>& s, Scratch<W>& work,
                                    const TouchTable& touch, int used,

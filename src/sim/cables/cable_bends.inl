@@ -1,5 +1,6 @@
-/// Cables that come to lie against edges of the terrain (cable_edges.h) and rods (cable_rods.inl;
-/// docs/theory/cables.md, section 6). These are wheels that a cable has only while it lies there.
+/// Cable wrapping around edges of the terrain (cable_edges.h) and rods (cable_rods.inl;
+/// docs/theory/cables.md, section 6). A bend is a wheel that exists only while the cable lies on
+/// it.
 #pragma once
 
 #include "sim/bodies/stage_bodies.inl"
@@ -17,14 +18,14 @@ TAUT_INLINE void SetPlace(V3<W>& to, const Vec3& p, int lane) noexcept {
   to.z.Set(lane, p.z);
 }
 
-/// Whose rod or edge a lane's bend is; the world's where there is none.
+/// Returns the body of a lane's bend; the world if there is no bend.
 template <class W>
 TAUT_INLINE int BodyOfBend(const View& m, const BendNumbers<W>& bend, int lane) noexcept {
   return bend.key[lane] == kNoKey ? m.body_count : static_cast<int>(bend.body[lane]);
 }
 
-/// `use(body, lanes)`: the bodies on whose rods a bend is, each with the lanes in which it is
-/// there.
+/// Calls `use(body, lanes)` for the bodies whose rods a bend is on, each with the lanes of the
+/// bend.
 template <class W, class Use>
 TAUT_INLINE void EachBody(const View& m, const BendNumbers<W>& bend, const Use& use) noexcept {
   auto left = IsOnRod(m, bend);
@@ -37,7 +38,7 @@ TAUT_INLINE void EachBody(const View& m, const BendNumbers<W>& bend, const Use& 
   }
 }
 
-/// How many places of a cable's room for bends are in use, in some lane.
+/// Returns the number of bends in use in some lane.
 template <class W>
 TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
   int used = 0;
@@ -47,8 +48,8 @@ TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
   return used;
 }
 
-/// A path from ends[0] over bends to ends[2 used + 1], on work.wheels. What a lane does not have is
-/// passed by. `pose(body)`: where that is. Friction holds it along their axes, where there is some.
+/// Lays a path from ends[0] over bends to ends[2 used + 1], on work.wheels. Bends that a lane lacks
+/// are skipped. `pose(body)`: pose of a body. Friction, if any, holds the path along the axes.
 template <class W, class Pose>
 void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
                   AttachmentWork<W>* ends, Wheel<V3<W>>* wheels, const Pose& pose) noexcept {
@@ -57,7 +58,7 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
     const BendNumbers<W>& bend = s.bend[touch.first_bend + k];
     const auto none = bend.key == W::Splat(kNoKey);
     Wheel<V3<W>>& wheel = wheels[k];
-    // With no radius and no turn it is never touched.
+    // A wheel with neither radius nor angle is never touched.
     wheel.center = Pick(none, ends[0].p, V3<W>{bend.center[0], bend.center[1], bend.center[2]});
     wheel.axis =
         Pick(none, V3<W>{zero, zero, one}, V3<W>{bend.axis[0], bend.axis[1], bend.axis[2]});
@@ -85,7 +86,7 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
               used > 1);
 }
 
-/// Where bodies are in the middle of a step, for LayOverBends.
+/// Returns the pose function of LayOverBends for the middle of a step.
 template <class W>
 auto PoseNow(const Rows<W>& s, const Scratch<W>& work) noexcept {
   return [&](int body, const V3<W>& center, const V3<W>& axis) {
@@ -94,15 +95,15 @@ auto PoseNow(const Rows<W>& s, const Scratch<W>& work) noexcept {
   };
 }
 
-/// Edges do not move.
+/// Sets velocities and lever arms of path points on edges, which do not move, to zero.
 template <class W>
 TAUT_INLINE void StandOnEdges(int used, AttachmentWork<W>* ends) noexcept {
   const W zero = W::Splat(0.0);
   for (int i = 1; i <= 2 * used; ++i) ends[i].v = ends[i].arm = {zero, zero, zero};
 }
 
-/// Length and rate; fills in the directions. On the way past what it does not touch, a path's
-/// directions are those of the whole way, so that pulls there are nothing.
+/// Returns length and rate, and fills in the directions. At bends that the cable does not touch,
+/// the points get the direction of the whole straight part, so that pulls there vanish.
 template <class W>
 PathLength<V3<W>> MeasureOverBends(int used, AttachmentWork<W>* ends,
                                    const Wheel<V3<W>>* wheels) noexcept {
@@ -130,7 +131,7 @@ PathLength<V3<W>> MeasureOverBends(int used, AttachmentWork<W>* ends,
   return path;
 }
 
-/// What a lane's cable lies against, while that changes.
+/// Update of one lane's bends of a cable.
 template <class W>
 class LaneBends {
  public:
@@ -154,7 +155,8 @@ class LaneBends {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
     Put(s_.bend[first_ + --count_], kNoBend);
   }
-  /// False if there is no room. `share`: of the cable's part there, what is before it.
+  /// Returns false if there is no room. `share`: part of the cable's span that lies before the
+  /// bend.
   bool Insert(int k, const BendFound& found, double share) noexcept {
     if (count_ == kMostBends) return false;
     spans_.Split(k, count_, share);
@@ -201,7 +203,8 @@ class LaneBends {
   int first_, first_rod_, rod_count_, lane_, count_ = 0;
 };
 
-/// Where a cable without bends may have come to touch something since it was looked at.
+/// Returns the lanes in which a cable without bends may have touched something since its last
+/// check.
 template <class W>
 TAUT_INLINE MaskOf<W> MayTouch(const Rows<W>& s, int touch, const V3<W>& p,
                                const V3<W>& q) noexcept {
@@ -210,7 +213,7 @@ TAUT_INLINE MaskOf<W> MayTouch(const Rows<W>& s, int touch, const V3<W>& p,
   return !(moved2 < free * free);
 }
 
-/// On rods, the points of a path have velocities and arms.
+/// Sets velocities and lever arms of path points on rods.
 template <class W>
 void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                   int used, AttachmentWork<W>* ends) noexcept {
@@ -225,7 +228,7 @@ void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const
   }
 }
 
-/// Length and rate of a path that is laid.
+/// Returns length and rate of a laid path.
 template <class W>
 PathLength<V3<W>> MeasureLaid(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
                               Scratch<W>& work, AttachmentWork<W>* ends) noexcept {
@@ -236,8 +239,8 @@ PathLength<V3<W>> MeasureLaid(const View& m, const Rows<W>& s, const TouchTable&
   return MeasureOverBends(used, ends, work.wheels);
 }
 
-/// Length and rate of such a cable. `ends` has its two, and afterwards all points of its path;
-/// work.bends_used says how many.
+/// Returns length and rate of a touching cable. `ends` contains its two ends, and afterwards all
+/// points of its path; work.bends_used is set to the number of bends.
 template <class W>
 [[gnu::noinline]] PathLength<V3<W>> MeasureTouching(const View& m, const Rows<W>& s,
                                                     const CableTable& cable, Scratch<W>& work,
@@ -251,8 +254,8 @@ template <class W>
   return MeasureLaid(m, s, touch, used, work, ends);
 }
 
-/// What the tension does to rods: one link a body, in the order of their numbers, whatever each
-/// lane's cable lies against.
+/// Links the tension to rods: one link per body, in the order of body numbers, for the bends of all
+/// lanes.
 template <class W>
 [[gnu::noinline]] void LinkRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                 const CableTable& cable, const AttachmentWork<W>* ends,
@@ -283,7 +286,7 @@ template <class W>
   }
 }
 
-/// The length at the start of the step, over what it lies against now.
+/// Returns the length at the start of the step, over the present bends.
 template <class W>
 [[gnu::noinline]] W StartLengthOverBends(const View& m, const Rows<W>& s, Scratch<W>& work,
                                          const CableTable& cable) noexcept {
@@ -293,7 +296,7 @@ template <class W>
   AttachmentWork<W>* const ends = work.attachments;
   ends[0].p = work.start_spots[tables[0].spot];
   ends[2 * used + 1].p = work.start_spots[tables[1].spot];
-  ends[0].v = ends[2 * used + 1].v = ends[0].p;  // nobody needs the rate
+  ends[0].v = ends[2 * used + 1].v = ends[0].p;  // the rate is not used
   const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
   const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m.body_count);
   LayOverBends(m, s, touch, used, ends, work.wheels,

@@ -1,5 +1,5 @@
-/// Cables with friction at what they run over (constraint/cable_chain.h, docs/theory/cables.md,
-/// section 5): their spans are measured in lanes and solved together with all else, lane by lane.
+/// Cables with capstan friction (constraint/cable_chain.h, docs/theory/cables.md, section 5): their
+/// spans are measured in lanes and solved together with all other constraints, lane by lane.
 #pragma once
 
 #include "sim/cables/cable_across.inl"
@@ -11,8 +11,8 @@
 
 namespace taut::sim {
 
-/// Material that a wheel has carried along since the step before goes from span to span. `length`:
-/// of the spans. `keep`: it is done with.
+/// Moves the material that a turning wheel has carried along since the previous step between its
+/// two spans. `length`: of the spans. `keep`: stores the wheel's new place.
 template <class W>
 TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, const V3<W>& mark, int span,
                            const AttachmentWork<W>* ends, const W* length, bool keep, W& place,
@@ -23,7 +23,7 @@ TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, const V3<W>& mark, int spa
   const W turned = middle - place;
   const W shift = turned - W::Splat(2 * kPi) * Round(W::Splat(0.5 / kPi) * turned);
   if (keep) place = place + shift;
-  // Forward along the cable the middle has gone by this, on the cable that lies there.
+  // Displacement of the arc's middle along the cable.
   const auto on = wheel.theta > zero;
   const W way = Select(on, side * shift * (wheel.arc / Max(wheel.theta, W::Splat(1e-300))), zero);
   const W strain = half * (length[span] / rest[span] + length[span + 1] / rest[span + 1]);
@@ -33,7 +33,7 @@ TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, const V3<W>& mark, int spa
   rest[span + 1] -= moves;
 }
 
-/// The same at all wheels with friction of a cable.
+/// Applies CarryOver to all wheels with friction of a cable.
 template <class W>
 void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   const AttachmentWork<W>* ends, const W* length, bool keep, W* rest) noexcept {
@@ -47,7 +47,7 @@ void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, cons
   }
 }
 
-/// A cable's spans as it lies: lengths and ratios.
+/// Computes lengths and tension ratios of a cable's spans in the present path.
 template <class W>
 void MeasureSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   const AttachmentWork<W>* ends, W* length, W* ratio) noexcept {
@@ -84,7 +84,7 @@ void MeasureSpans(const View& m, const Rows<W>& s, const CableTable& cable, cons
   ratio[cable.span_count - 1] = W::Splat(1.0);
 }
 
-/// What the spans do to bodies: a link for each span and body. Returns how many.
+/// Links the spans to bodies: one link for each span and body. Returns the number of links.
 template <class W>
 int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
               const AttachmentWork<W>* ends, RowLink<W>* links) noexcept {
@@ -132,11 +132,11 @@ int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Sc
   return count;
 }
 
-/// What an actuator winds comes from the first span, or from the next where that has no more.
+/// Takes wound length from the first span, or from the following ones if it is exhausted.
 template <class S>
 TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
   using C = Constant<S>;
-  constexpr double kLeast = 1e-3;  ///< Of the mean.
+  constexpr double kLeast = 1e-3;  ///< Relative to the mean.
   const S zero = C::Of(0.0);
   S all = zero;
   rest[0] += wound;
@@ -149,7 +149,8 @@ TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
   }
 }
 
-/// A cable with friction at the middle of the step: its actuator, and its spans for the solver.
+/// Prepares a cable with friction at the middle of the step: its actuator, and its spans for the
+/// solver.
 template <class W>
 [[gnu::noinline]] void MeetChain(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W h,
                                  W inv_h) noexcept {
@@ -169,7 +170,7 @@ template <class W>
   MeasureSpans(m, s, cable, work, ends, length, ratio);
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
   CarryOverAll(m, s, cable, work, ends, length, true, rests);
-  // The spans' stiffness follows from that of the cable: all in a row they have that.
+  // Spans in series have the stiffness of the cable.
   const W area = k * before;
   if (cable.touch >= 0) {
     WindGrips(m, s, cable, rest - before, rests);
@@ -204,7 +205,7 @@ template <class W>
   row.link_count = 0;
 }
 
-/// A lane's chain without its links. `spans`: where its spans may be put.
+/// Returns a lane's chain without its links. `spans`: memory for its spans.
 template <class L, class W>
 CableChain<L> ChainOfLane(const View& m, const Rows<W>& s, const CableTable& cable,
                           const Scratch<W>& work, ChainSpan<L>* spans, int lane, L h) noexcept {
@@ -224,8 +225,8 @@ CableChain<L> ChainOfLane(const View& m, const Rows<W>& s, const CableTable& cab
   return chain;
 }
 
-/// What a lane's cable slips: rest lengths and losses of `rest` and `loss`, which are those of its
-/// spans and places. No span gives more than most of what it has.
+/// Applies a lane's slip to `rest` and `loss`, the rest lengths and friction losses of the cable.
+/// No span loses more than 80 % of its rest length.
 template <class W, class Tag>
 void Slip(const Capstan<Tag>& found, double area_n, int lane, W* rest, W* loss) noexcept {
   constexpr double kMost = 0.8;
@@ -246,7 +247,7 @@ void Slip(const Capstan<Tag>& found, double area_n, int lane, W* rest, W* loss) 
   }
 }
 
-/// What can be seen of the spans: as they will be when what is still to slip has slipped.
+/// Computes the readings of the spans, after the pending slip.
 template <class W>
 [[gnu::noinline]] void SenseChain(const View& m, const Rows<W>& s, Scratch<W>& work,
                                   int c) noexcept {
@@ -257,7 +258,7 @@ template <class W>
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
   for (int i = 0; i + 1 < cable.span_count; ++i) loss[i] = s.slip_loss[cable.first_slip + i];
   CarryOverAll(m, s, cable, work, ends, length, false, rests);
-  // What slips in is much where a span is short: then its stiffness has changed.
+  // Much slip into a short span changes its stiffness, so the rounds repeat with the new one.
   constexpr int kRounds = 4;
   W elastic = W::Splat(0.0);
   for (int lane = 0; lane < W::kLanes; ++lane) {
@@ -285,7 +286,7 @@ template <class W>
   s.sense_elastic[c] = elastic;
 }
 
-/// What becomes of the tensions that were found: momenta, slips, and the energy that they take.
+/// Applies the solved tensions: momenta, slip, and friction losses.
 template <class W>
 void FinishChains(const View& m, const Rows<W>& s, const Scratch<W>& work, double step_s) noexcept {
   using L = simd::Lane<W>;

@@ -15,7 +15,7 @@ bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcep
 
 namespace {
 
-/// Looks at edges that may be crossed, and keeps the deepest.
+/// Search for the edge with the deepest penetration by a span.
 class Search {
  public:
   Search(const View& m, const FreeSpan& span, double radius_m, const double* taken, int taken_count,
@@ -31,7 +31,7 @@ class Search {
   bool found() const noexcept { return is_new_; }
   bool IsTaken(double key) const noexcept { return sim::IsTaken(key, taken_, taken_count_); }
 
-  /// One that is not taken.
+  /// Proposes an edge that is not taken.
   void Offer(TerrainEdge& edge, double depth_m) noexcept {
     BendPlace& place = edge.place;
     place.radius_m = radius_m_;
@@ -57,7 +57,7 @@ class Search {
   bool any_, is_new_ = false;
 };
 
-/// A box, and where the span cuts it.
+/// Search on the edges of one box that the span cuts.
 class BoxSearch {
  public:
   BoxSearch(const BoxShape& box, double first_key, Search& search) noexcept
@@ -73,7 +73,7 @@ class BoxSearch {
       Offer(in, out, CornerDepth(in, out));
       return;
     }
-    // Through opposite faces: over that of the other four to which it is nearest.
+    // Through opposite faces: over the nearest of the other four faces.
     int over = -1;
     double least = 0.0;
     for (int face = 0; face < 6; ++face) {
@@ -86,13 +86,13 @@ class BoxSearch {
   }
 
  private:
-  /// Of the edge between the two faces, below which the span cuts off a corner.
+  /// Returns the depth below the edge between two faces, at which the span cuts off a corner.
   double CornerDepth(int in, int out) const noexcept {
     const double a = cut_.Below(out, cut_.from), b = cut_.Below(in, cut_.to);
     return a * b / Larger(Sqrt(a * a + b * b), 1e-300);
   }
 
-  /// The edge between two faces.
+  /// Proposes the edge between two faces.
   void Offer(int f, int g, double depth_m) noexcept {
     if (f > g) return Offer(g, f, depth_m);
     const double key = first_key_ + NumberOfEdge<double>(f, g);
@@ -118,7 +118,7 @@ class BoxSearch {
 
 Vec3 Unit(const Vec3& a) noexcept { return (1.0 / Larger(Norm(a), 1e-300)) * a; }
 
-/// Of a surface, which edge and how deep the span is below it.
+/// Proposes an edge of a surface, with the depth of the span below it.
 void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& search) noexcept {
   if (edge.sides != 2 || edge.border || search.IsTaken(key)) return;
   const Vec3 along = edge.to - edge.from;
@@ -145,7 +145,8 @@ void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& sear
 void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noexcept {
   const FreeSpan& span = search.span();
   const double radius = search.radius_m();
-  // What is high enough to be touched; of a mesh, no deeper than a cable comes to be in a step.
+  // Height above which edges cannot be touched; for meshes, bounded by the depth that a cable
+  // reaches within a step.
   double reach = 2.0 * radius;
   if (s.is_field) {
     const Vec3 low{Smaller(span.from.x, span.to.x), Smaller(span.from.y, span.to.y), 0.0};
@@ -183,7 +184,7 @@ RoundShape RoundOf(const FreeSpan& span, double radius_m) noexcept {
   return {{span.from.x, span.from.y, span.from.z}, {span.to.x, span.to.y, span.to.z}, radius_m};
 }
 
-/// `use(shape, number)` with the world's boxes that may be within reach of the span.
+/// Calls `use(shape, number)` for the world's boxes that may be within reach of the span.
 template <class Use>
 void EachBox(const View& m, const FreeSpan& span, double reach_m, const Use& use) noexcept {
   const auto look = [&](int number) noexcept {

@@ -28,7 +28,7 @@ TAUT_INLINE void Crowd(Scratch<W>& work, const TouchTable& touch, int lane) noex
 }
 
 /// Returns a bend to remove in one lane, or -1: on a rod that contains an end of the cable or the
-/// next bend; of two consecutive penetrating rods, the one that turns the cable less.
+/// next bend; of two consecutive penetrating rods, the rod with the smaller wrap angle.
 template <class W>
 int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                 int used, int count, int lane) noexcept {
@@ -158,7 +158,7 @@ template <class W>
 }
 
 /// Updates the bends of `lanes` to the middle of the step. Returns the number of bends in use.
-/// `time`: since the middle of the previous step.
+/// `time`: since the middle of the previous step [s].
 template <class W>
 [[gnu::noinline]] int ChangeAll(const View& m, const Rows<W>& s, Scratch<W>& work,
                                 const TouchTable& touch, int used, MaskOf<W> lanes,
@@ -207,7 +207,7 @@ template <class W>
   auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
   if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
   look = look & (s.halted[0] == W::Splat(0.0));
-  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // nothing is bent
+  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // no bends
   const W* const now = nullptr;
   LayThen(m, s, work, touch, used, start, end, now);
   const auto busy = look & MayChangeBends(m, s, work, touch, used);

@@ -1,5 +1,5 @@
-/// Cables that touch with friction (docs/theory/cables.md, section 7): chains (cable_chains.inl)
-/// with the spans of lane_spans.inl.
+/// Capstan friction of cables that touch edges or rods (docs/theory/cables.md, section 7): chains
+/// (cable_chains.inl) with the spans of lane_spans.inl.
 #pragma once
 
 #include "sim/cables/cable_bends.inl"
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// Lengths and ratios of a cable's spans as it lies over work.wheels.
+/// Computes lengths and tension ratios of a cable's spans in its path over work.wheels.
 template <class W>
 [[gnu::noinline]] void MeasureGrips(const View& m, const Rows<W>& s, const CableTable& cable,
                                     const Scratch<W>& work, const AttachmentWork<W>* ends,
@@ -39,7 +39,7 @@ template <class W>
   }
 }
 
-/// Cable that lies on what turns goes along with that, as in CarryOver.
+/// Moves cable material with rotating rods, as in CarryOver.
 template <class W>
 [[gnu::noinline]] void CarryOverGrips(const View& m, const Rows<W>& s, const CableTable& cable,
                                       const Scratch<W>& work, const AttachmentWork<W>* ends,
@@ -51,7 +51,7 @@ template <class W>
   }
   for (int k = 0; k < work.bends_used; ++k) {
     const Wheel<V3<W>>& wheel = work.wheels[k];
-    // Some direction across the axis that turns with the body.
+    // Any direction across the axis that rotates with the body.
     const W* const u = bends[k].axis;
     const auto x_least = (Abs(u[0]) < Abs(u[1])) & (Abs(u[0]) < Abs(u[2]));
     const V3<W> axis{u[0], u[1], u[2]};
@@ -76,7 +76,7 @@ template <class W>
   }
 }
 
-/// What an actuator winds, lane by lane.
+/// Applies the wound length, lane by lane.
 template <class W>
 [[gnu::noinline]] void WindGrips(const View& m, const Rows<W>& s, const CableTable& cable, W wound,
                                  W* rest) noexcept {
@@ -89,7 +89,8 @@ template <class W>
   }
 }
 
-/// What the spans do to bodies: one link a span and body that some lane has, in the order of both.
+/// Links the spans to bodies: one link for each span and body in some lane, ordered by both.
+/// Returns the number of links.
 template <class W>
 [[gnu::noinline]] int LinkGrips(const View& m, const Rows<W>& s, const CableTable& cable,
                                 const Scratch<W>& work, const AttachmentWork<W>* ends,

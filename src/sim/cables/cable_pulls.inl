@@ -1,5 +1,5 @@
-/// Pulls of a cable on its bodies: their links, the mean rate and the tension of a soft cable,
-/// which is relaxed cable by cable (docs/theory/integrator.md, eq. I7).
+/// Pulls of a cable on its bodies: links, the mean rate, and the tension of a soft cable by
+/// Gauss-Seidel relaxation over all cables (docs/theory/integrator.md, eq. I7, I8).
 ///
 /// `kTwo`: the cable joins two bodies (CableTable::joins_two). It is known at compile time, so that
 /// the links stay in registers.
@@ -36,7 +36,7 @@ TAUT_INLINE void AddPull(const View& m, const Rows<W>& s, CableWork<W>& row, int
   }
 }
 
-/// The links of a cable: one per body, with the pulls of all its attachments there.
+/// Fills the links of a cable: one per body, with the pulls of all its attachments there.
 template <bool kTwo, class W>
 TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
                            const CableTable& cable, const AttachmentWork<W>* ends,
@@ -63,7 +63,7 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
   work.link_count += row.link_count;
 }
 
-/// The response of the bodies to an impulse along the cable.
+/// Computes the response of the bodies to an impulse along the cable.
 template <bool kTwo, class W>
 TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept {
   if constexpr (kTwo) {
@@ -81,7 +81,7 @@ TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept
   }
 }
 
-/// The mean rate over the step, as far as it is known.
+/// Returns the mean rate over the step, from the mean velocities known so far.
 template <bool kTwo, class W>
 TAUT_INLINE W MeanRate(const Scratch<W>& work, const CableWork<W>& row) noexcept {
   W dl = W::Splat(0.0);
@@ -92,9 +92,9 @@ TAUT_INLINE W MeanRate(const Scratch<W>& work, const CableWork<W>& row) noexcept
   return dl;
 }
 
-/// Brings a soft cable's tension nearer to its law, T = k s + b dl >= 0 with dl the mean rate over
-/// the step: exact if nothing else changes. The bodies' mean velocities follow, but for `half_h` =
-/// 0.
+/// Updates a soft cable's tension by its law, T = k s + b dl >= 0 with dl the mean rate over the
+/// step (eq. I8): exact if nothing else changes. Updates the bodies' mean velocities, unless
+/// `half_h` is 0.
 template <bool kTwo, class W>
 TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h) noexcept {
   const W zero = W::Splat(0.0);
@@ -109,7 +109,7 @@ TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h)
   }
 }
 
-/// Tension and pull of a soft cable that was found. `kAllSoft`: in all lanes it is.
+/// Applies the final tension of a soft cable to its bodies. `kAllSoft`: it is soft in all lanes.
 template <bool kTwo, bool kAllSoft, class W>
 TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
   const CableWork<W>& row = work.cables[c];
@@ -123,7 +123,7 @@ TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
   }
 }
 
-/// The second pass over the cables, back to the first.
+/// Second pass over the cables, in reverse order.
 template <bool kAllSoft, class W>
 TAUT_INLINE void RelaxBack(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
   for (int c = m.cable_count - 1; c >= 0; --c) {

@@ -126,8 +126,8 @@ TAUT_INLINE S SideNext(const RodPass<S>& pass, S known, double radius_m) noexcep
   return Select(pressed.inside & !holds, C::Of(0.0), now);
 }
 
-/// Lanes in which a cable may have come to touch a rod, of those where it has been `free`: straight
-/// from end to end. In the others of those it is written down on which side it is.
+/// Returns the lanes in which a cable may have come to touch a rod, among lanes where it has been
+/// `free` (straight from end to end). In the other free lanes, updates the sides of the rods.
 template <class W>
 MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
                        const TouchTable& touch, const V3<W>& from, const V3<W>& to,
@@ -171,10 +171,10 @@ MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return touches;
 }
 
-/// Round a rod a cable may be wound up.
+/// A cable may wind around a rod by any number of turns.
 inline constexpr double kAnyTurns = 1e300;
 
-/// Key of a rod, which no edge of the terrain has.
+/// Returns the key of a rod, which differs from the keys of all edges.
 TAUT_INLINE double KeyOf(const TouchRodTable& rod) noexcept { return kEdgesOfShape * rod.shape; }
 
 /// Resets the stored side of the rod with that key (if it is a rod) in one lane: the cable passes
@@ -222,7 +222,7 @@ bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const Touc
     const double off = Sqrt(pass.off2);
     const double depth = rod.radius_m + (pressed.through ? off : -off);
     if ((any || is_new) && !(depth > found->depth_m)) continue;
-    const double around = known < 0.0 ? 1.0 : -1.0;  // towards the side where it was
+    const double around = known < 0.0 ? 1.0 : -1.0;  // towards the previous side
     const int nearest = static_cast<int>(pass.part);
     const BendPlace place{KeyOf(rod), 0, center, axis, kAnyTurns, rod.half_m, rod.radius_m};
     if (!CanLieOn(place, parts.span[nearest], around)) continue;

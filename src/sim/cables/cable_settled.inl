@@ -1,6 +1,5 @@
-/// What can be said of a cable's bends (docs/theory/cables.md, section 6) in all lanes at once: in
-/// which they stay as they are, so that only the others are looked at one by one, and on which side
-/// of rods the cable is.
+/// Checks of a cable's bends in all lanes at once (docs/theory/cables.md, section 6): lanes without
+/// changes skip the search lane by lane. Also updates the side of rods on which the cable passes.
 #pragma once
 
 #include "sim/cables/cable_edges.h"
@@ -10,8 +9,8 @@
 
 namespace taut::sim {
 
-/// The straight stretches of a cable over bends: in each lane those between the ones that it has,
-/// which come first. `use(from, to, starts, ends, is)`, the last for the lanes that have it.
+/// Calls `use(from, to, starts, ends, is)` for the straight parts of a cable over bends: in each
+/// lane the parts between its bends, which come first. `is`: lanes that have the part.
 template <class W, class Use>
 TAUT_INLINE void EachSpan(const Rows<W>& s, const TouchTable& touch, int used,
                           const AttachmentWork<W>* ends, const Use& use) noexcept {
@@ -29,7 +28,7 @@ TAUT_INLINE void EachSpan(const Rows<W>& s, const TouchTable& touch, int used,
   }
 }
 
-/// Where it lies against that already.
+/// Returns the lanes in which the cable has a bend with that key.
 template <class W>
 TAUT_INLINE MaskOf<W> LiesAgainst(const Rows<W>& s, const TouchTable& touch, int used,
                                   W key) noexcept {
@@ -68,7 +67,7 @@ TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scra
   const W at_other = Dot(Cross(apart, rod.axis), across) * inverse;
   const auto within =
       parallel | ((Abs(at_rod) < bend->half - reach) & (Abs(at_other) < next->half - reach));
-  // The axes about which the cable turns, counter-clockwise.
+  // Axes of the cable's rotation, counterclockwise.
   const auto turn = [&](const Wheel<V3<W>>& x) {
     return Select(x.angle < zero, zero - one, one) * x.axis;
   };
@@ -135,7 +134,7 @@ RodPass<W> PassOf(const Rows<W>& s, const TouchTable& touch, int used,
   return pass;
 }
 
-/// Lanes in which ChangeBends may change something; in the others it would not.
+/// Returns the lanes in which ChangeBends may change something.
 template <class W>
 [[gnu::noinline]] MaskOf<W> MayChangeBends(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                            const TouchTable& touch, int used) noexcept {
@@ -166,7 +165,7 @@ template <class W>
   return may;
 }
 
-/// Wrap angles of the bends in the current path.
+/// Stores the wrap angles of the bends in the current path.
 template <class W>
 TAUT_INLINE void KeepAngles(const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                             int used, MaskOf<W> lanes) noexcept {

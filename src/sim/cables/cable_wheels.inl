@@ -1,11 +1,11 @@
-/// Cables that go round wheels (math/cable_wheel.h, docs/theory/cables.md, section 4).
+/// Cable wrapping around wheels (math/cable_wheel.h, docs/theory/cables.md, section 4).
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// The wheels of a cable as `place(spot)` has them, with the angles of the step before.
+/// Sets the wheels of a cable from positions `place(spot)`, with the angles of the previous step.
 template <class W, class Place>
 TAUT_INLINE void SetWheels(const View& m, const Rows<W>& s, const CableTable& cable,
                            Wheel<V3<W>>* wheels, const Place& place) noexcept {
@@ -20,8 +20,8 @@ TAUT_INLINE void SetWheels(const View& m, const Rows<W>& s, const CableTable& ca
   }
 }
 
-/// Of a path whose attachments are where they are, the points on wheels. Their velocities are those
-/// of the wheels' bodies there.
+/// Computes the path points on wheels from the positions of the attachments. They have the
+/// velocities of the wheels' bodies.
 template <class W>
 [[gnu::noinline]] void PutOnWheels(const View& m, const Rows<W>& s, const CableTable& cable,
                                    Scratch<W>& work, const Spot<W>* spots,
@@ -39,7 +39,7 @@ template <class W>
   }
 }
 
-/// Which way round its wheels a cable goes now, for the step to come.
+/// Stores the wrap angles for the next step.
 template <class W>
 TAUT_INLINE void KeepWheels(const Rows<W>& s, const CableTable& cable,
                             const Scratch<W>& work) noexcept {
@@ -48,14 +48,14 @@ TAUT_INLINE void KeepWheels(const Rows<W>& s, const CableTable& cable,
   }
 }
 
-/// The length at the start of the step, from where the spots were then.
+/// Returns the length at the start of the step, from the positions of the spots at that time.
 template <class W>
 [[gnu::noinline]] W StartLengthOnWheels(const View& m, const Rows<W>& s, Scratch<W>& work,
                                         const CableTable& cable) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   for (int i = 0; i < cable.attachment_count; ++i) {
     work.attachments[i].p = work.start_spots[tables[i].spot];
-    work.attachments[i].v = work.attachments[i].p;  // nobody needs the rate
+    work.attachments[i].v = work.attachments[i].p;  // the rate is not used
   }
   SetWheels(m, s, cable, work.wheels, [&](int spot) { return work.start_spots[spot]; });
   LayOnWheels(work.attachments, cable.wheel_count, work.wheels);

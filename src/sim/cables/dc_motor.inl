@@ -1,19 +1,20 @@
-/// Motors with gear and spool that wind cables (docs/theory/motor.md). The rotor turns by
+/// Direct-current motors with gear and spool that wind cables (docs/theory/motor.md). Equations of
+/// the rotor:
 ///
 ///   J dw/dt = k i - viscous w - friction - way T (1 + gear_loss in the direction of motion)
 ///   i = (duty V - k w) / R,    dL/dt = -way w
 ///
-/// with w its speed, positive winding in, T the cable's tension and `way` the spool's radius over
-/// the gear's ratio. A step has three parts: how far the supplies sag (LoadSupplies); before the
-/// cable's tension is known, how the rotor turns for any tension, which is what the cable's law
-/// needs (DriveMotor); and how it did turn, once the tension is known (StageMotors).
+/// w: speed of the rotor, positive winding in; T: tension of the cable; `way`: radius of the spool
+/// divided by the gear ratio. A step has three parts: the voltage drop of the supplies
+/// (LoadSupplies); before the tension is known, the rotation as a function of the tension, for the
+/// cable's law (DriveMotor); and the rotation under the computed tension (StageMotors).
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// How an exponential decay is stepped, z = rate h (motor.md, M.8): exp(-z) ~ 1 / p.
+/// Discretization of an exponential decay, z = rate h (motor.md, M.8): exp(-z) ~ 1 / p.
 template <class W>
 struct Decay {
   W z, inv_p;
@@ -28,7 +29,7 @@ struct Decay {
   }
 };
 
-/// A duty that is to be followed, per motor and step.
+/// Linear law of a motor's duty within a step.
 template <class W>
 struct DutyLaw {
   W duty, falls;  ///< duty - falls times the mean speed.
@@ -40,8 +41,8 @@ TAUT_INLINE W WindingOhm(const MotorTable& t, W temperature_c) noexcept {
          (W::Splat(1.0) + W::Splat(t.rise_per_k) * (temperature_c - W::Splat(t.rated_c)));
 }
 
-/// What turns the motor: the duty that it was given, or that of the servo (motor.md, M.6). The
-/// servo sees the rest length of the middle of the step, so that its gain may be high.
+/// Returns the commanded duty, or the law of the servo (motor.md, M.6). The servo uses the rest
+/// length at the middle of the step, so that its gain may be high.
 template <class W>
 TAUT_INLINE DutyLaw<W> DutyOf(const MotorTable& t, const MotorOrders<W>& orders,
                               const MotorNumbers<W>& motor, W wound, W target, W h) noexcept {
@@ -50,20 +51,20 @@ TAUT_INLINE DutyLaw<W> DutyOf(const MotorTable& t, const MotorOrders<W>& orders,
   const W wish = gain * (wound - target);
   const W falls = way * (W::Splat(0.5) * h * gain + W::Splat(t.servo_damping));
   const auto by_duty = orders.by_duty > zero;
-  // A bound that is not a number would be one: with these orders of arguments it stays none.
+  // With these orders of arguments, a duty that is NaN stays NaN instead of becoming a bound.
   const W now = Max(-one, Min(one, Select(by_duty, orders.duty, wish - falls * motor.speed)));
   const auto servo = (now < one) & (now > -one) & !by_duty;
   return {Select(servo, wish, now), Select(servo, falls, zero)};
 }
 
-/// The rest length that the gear's angle says, without what the spool lags behind.
+/// Returns the rest length by the gear's angle, without backlash of the spool.
 template <class W>
 TAUT_INLINE W WoundTo(const Rows<W>& s, int c, const MotorNumbers<W>& motor) noexcept {
   return s.rest[c] + motor.gap;
 }
 
-/// The voltage of every supply under its load (motor.md, M.7): V = V0 - R sum of duty i, with the
-/// currents that this very voltage gives at the speeds of the start.
+/// Computes the voltage of each supply under its load (motor.md, M.7): V = V0 - R sum of duty i,
+/// with the currents at this voltage and the speeds at the start.
 template <class W>
 void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
@@ -87,17 +88,18 @@ void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexce
   }
 }
 
-/// The rest length at some moment: what the gear says, or less while the spool is within the
-/// backlash; a taut cable (length `l`) pulls it against the gear.
+/// Returns the rest length on the spool: by the gear's angle, or less within the backlash; a taut
+/// cable (length `l`) pulls the spool against the gear.
 template <class W>
 TAUT_INLINE W RestOnSpool(const MotorTable& t, W wound, W before, W l) noexcept {
   if (t.backlash_m == 0.0) return wound;
   return Max(Min(Max(before, l), wound), wound - W::Splat(t.backlash_m));
 }
 
-/// How a motor turns in this step, for any tension of its cable: fills its MotorWork, and the
-/// cable's rate as if there were no tension. Returns the mean over the step of that rest length.
-///   k, b    of the cable     l, dl   its length at the middle, its mean rate as expected
+/// Computes a motor's rotation in this step as a function of its cable's tension: fills its
+/// MotorWork, and the cable's rate without tension. Returns the mean of this rest length over the
+/// step.
+///   k, b    of the cable     l, dl   its length at the middle, its expected mean rate
 template <class W>
 TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W k, W b, W l,
                          W dl, W h) noexcept {
@@ -109,7 +111,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W way = W::Splat(t.way_m), inv_J = W::Splat(t.inv_inertia), constant = W::Splat(t.constant);
   const W speed = motor.speed, wound = WoundTo(s, c, motor);
 
-  // Torques that follow the speed, and those of a rotor that stands.
+  // Torques that depend on the speed, and torques at zero speed.
   const DutyLaw<W> law = DutyOf(t, s.orders[number], motor, wound, s.target[c], h);
   out.duty = law.duty;
   out.duty_falls = law.falls;
@@ -121,7 +123,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W drive = inv_J * per_volt * law.duty * volts;
   const Decay<W> decay(rate * h);
 
-  // Does friction hold it? With the tension that there is if it stops (M.9, M.10).
+  // Does friction hold the rotor? With the tension if it stops (M.9, M.10).
   const W stopping = speed / (decay.half + decay.half);
   const W least = W::Splat(t.min_rest_m);
   const W stop_rest = RestOnSpool(t, wound - half_h * way * stopping, s.rest[c], l);
@@ -133,10 +135,10 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W friction = inv_J * (W::Splat(t.friction) + W::Splat(t.static_more) / (one + slowness));
   const W loss = W::Splat(t.gear_loss);
   const W holds = friction + pull * loss * tension;
-  const auto held = (Abs(slip) < holds) | (Abs(slip) == holds);  // what is no number goes on
+  const auto held = (Abs(slip) < holds) | (Abs(slip) == holds);  // NaN does not hold
   out.direction = Select(held, zero, Select(slip < zero, -one, one));
 
-  // Else it slips: what the speeds are without the cable, and what they lose per tension.
+  // Else it slips: speeds without the cable, and their decrease per tension.
   const W kick = h * (drive - out.direction * friction);
   const W lost = h * pull * (one + out.direction * loss);
   out.mean = Select(held, stopping, speed * decay.half * decay.inv_p + kick * decay.mean_kick);
@@ -144,7 +146,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   out.end = Select(held, zero, (speed + kick * decay.half) * decay.inv_p);
   out.end_slows = Select(held, zero, lost * decay.half * decay.inv_p);
 
-  // The stop of the spool: the shortest rest length.
+  // Stop of the spool: the shortest rest length.
   const W room = Max(wound - least, zero) / (way * h);
   const auto stops = out.mean - out.slows * tension > room;
   out.mean = Select(stops, room, out.mean);
@@ -159,7 +161,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   return mean;
 }
 
-/// Stage: rotors turn as the tensions that were found make them, and grow warm.
+/// Stage: rotates the rotors under the computed tensions, and updates temperatures and energies.
 ///   reads   tension, motors[]     writes  motor, rest, rest_rate
 template <class W>
 void StageMotors(const View& m, const Rows<W>& s, const Scratch<W>& work, double step_s) noexcept {
@@ -171,7 +173,7 @@ void StageMotors(const View& m, const Rows<W>& s, const Scratch<W>& work, double
     MotorNumbers<W>& motor = s.motor[i];
     const W tension = s.tension[c], way = W::Splat(t.way_m);
 
-    // Friction stops, it does not turn back: what was to slip one way does not go the other way.
+    // Friction stops a rotor but does not reverse it.
     const W mean = turn.mean - turn.slows * tension, end = turn.end - turn.end_slows * tension;
     const auto went_on = !(turn.direction * motor.speed < zero);
     const W mean_speed = Select((turn.direction * mean < zero) & went_on, zero, mean);

@@ -1,29 +1,31 @@
-/// Biases by which contacts with the world stick to second order (docs/theory/contact.md, eq. 12a).
+/// Biases for sticking contacts with the world, of second order in the step
+/// (docs/theory/contact.md, eq. 12a).
 ///
-/// A row holds the velocity of a point at the middle of the step, but what shall stick is a point
-/// that goes on along an arc until the middle of the next. The difference is known beforehand:
-/// where the two half drifts take the shape's skeleton, with the momentum that the body had if
-/// contacts and stiff cables pushed it as in the step before.
+/// A row holds the velocity of a point at the middle of the step, but a sticking point moves along
+/// an arc until the middle of the next step. The difference follows from the two half drifts of the
+/// shape's skeleton, with the momentum that the body would have under the torque of contacts and
+/// stiff cables in the previous step.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// The contacts of one body.
+/// Adds the biases of one body's contacts.
 template <class W, class M>
 void FollowArcs(const Rows<W>& s, const BodyWork<W>& body, int b, Contact<W, 1>* contacts,
                 int count, M lanes, W h) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   const W half_h = W::Splat(0.5) * h, sixth_h2 = W::Splat(1.0 / 6.0) * h * h;
   W number = zero;
-  V3<W> c{zero, zero, zero};  // the middle
+  V3<W> c{zero, zero, zero};  // mean of the skeleton points
   for (int k = 0; k < count; ++k) {
     number += contacts[k].live;
     c += contacts[k].live * (contacts[k].arm[0] + contacts[k].radius * contacts[k].links[0].lin[0]);
   }
   c = (one / Max(number, one)) * c;
-  // A body that is free: w, its derivatives w1 and w2, and the middle's c1 to c3.
+  // Free rotation of the body: w, its derivatives w1 and w2, and the derivatives c1 to c3 of the
+  // mean point.
   const S3<W>& inverse = body.inv_inertia;
   const V3<W> L = s.mom[b] + h * s.held_torque[b];
   const V3<W> w = inverse * L;
@@ -32,8 +34,8 @@ void FollowArcs(const Rows<W>& s, const BodyWork<W>& body, int b, Contact<W, 1>*
   const V3<W> c1 = Cross(w, c), c2 = Cross(w1, c) + Cross(w, c1);
   const V3<W> twice = Cross(w1, c1);
   const V3<W> c3 = Cross(w2, c) + (twice + twice) + Cross(w, c2);
-  // Until the middle of the next step the middle goes on by h (w x c + ahead), and the body turns
-  // by h (w + spin); where a step turns it by about a radian, series mean nothing any more.
+  // Until the middle of the next step the mean point moves by h (w x c + ahead), and the body turns
+  // by h (w + spin); the series fail if it turns by about a radian per step.
   const W w_w = Dot(w, w), radians4 = (h * h * w_w) * (h * h * w_w);
   const W good = Select(lanes, one / (one + radians4), zero);
   const V3<W> spin = good * (half_h * w1 + sixth_h2 * (w2 - W::Splat(0.5) * bend - w_w * w));

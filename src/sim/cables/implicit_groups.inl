@@ -29,7 +29,7 @@ template <class W>
   }
 }
 
-/// Valid for all steps of this length until a parameter changes.
+/// Selects the implicit cables. Valid for all steps of this length until a parameter changes.
 template <class W>
 void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double step_s) noexcept {
   const W limit = SoftLimit(W::Splat(step_s));
@@ -43,7 +43,7 @@ void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double 
   for (int lane = 0; lane < W::kLanes; ++lane) FindImplicitOf(m, s, x, step_s, lane);
 }
 
-/// Resets the final poses before a solve. Returns the lanes with such cables. Contacts of their
+/// Resets the final poses before a solve. Returns the lanes with implicit cables. Contacts of their
 /// bodies do not follow the arc of a free body.
 template <class W>
 [[gnu::noinline, gnu::cold]] MaskOf<W> StartImplicit(const View& m, Scratch<W>& work) noexcept {

@@ -1,5 +1,5 @@
 /// Spans of cables that touch with friction (docs/theory/cables.md, section 7): one on each side of
-/// every bend, so that each lane has its own. Those that it has come first.
+/// every bend, separately for each lane. Existing spans come first.
 #pragma once
 
 #include "sim/cables/cable_edges.h"
@@ -13,7 +13,7 @@ TAUT_INLINE int FirstSlip(const View& m, const TouchTable& touch) noexcept {
   return m.cables[touch.cable].first_slip;
 }
 
-/// How many spans a lane's cable has.
+/// Returns the number of spans of a lane's cable.
 template <class W>
 TAUT_INLINE int SpansIn(const View& m, const Rows<W>& s, const CableTable& cable,
                         int lane) noexcept {
@@ -24,7 +24,7 @@ TAUT_INLINE int SpansIn(const View& m, const Rows<W>& s, const CableTable& cable
   return count + 1;
 }
 
-/// In which lanes a cable has that span.
+/// Returns the lanes in which a cable has that span.
 template <class W>
 TAUT_INLINE MaskOf<W> HasSpan(const View& m, const Rows<W>& s, const CableTable& cable,
                               int span) noexcept {
@@ -32,7 +32,7 @@ TAUT_INLINE MaskOf<W> HasSpan(const View& m, const Rows<W>& s, const CableTable&
   return !(s.bend[m.touches[cable.touch].first_bend + span - 1].key == W::Splat(kNoKey));
 }
 
-/// Whether a link does anything: links are for all lanes, bends are not.
+/// Returns the lanes in which a link acts: links are shared by all lanes, bends are not.
 template <class W>
 TAUT_INLINE MaskOf<W> Pulls(const RowLink<W>& link) noexcept {
   return Dot(link.lin[0], link.lin[0]) > W::Splat(0.0);
@@ -43,7 +43,7 @@ TAUT_INLINE bool Pulls(const RowLink<W>& link, int lane) noexcept {
   return way.x[lane] != 0.0 || way.y[lane] != 0.0 || way.z[lane] != 0.0;
 }
 
-/// The same of the link of a whole cable.
+/// Returns the same for the link of a whole cable.
 template <class W>
 TAUT_INLINE bool Acts(const Link<W, 1>& link, int lane) noexcept {
   const V3<W>&way = link.lin[0], &turn = link.ang[0];
@@ -51,7 +51,7 @@ TAUT_INLINE bool Acts(const Link<W, 1>& link, int lane) noexcept {
          turn.y[lane] != 0.0 || turn.z[lane] != 0.0;
 }
 
-/// Ratio of the tensions at a place with that mu theta.
+/// Returns the tension ratio of a place with the given mu theta.
 template <class S>
 TAUT_INLINE S RatioOf(S mu_theta) noexcept {
   using C = Constant<S>;
@@ -59,7 +59,7 @@ TAUT_INLINE S RatioOf(S mu_theta) noexcept {
   return C::Of(1.0) + ExpLess1(Min(mu_theta, C::Of(kMost)));
 }
 
-/// A lane's spans, where the bends between them come and go.
+/// Updates one lane's spans when bends begin or end.
 template <class W>
 class LaneSpans {
  public:
@@ -69,8 +69,8 @@ class LaneSpans {
     first_span_ = table.first_span, first_slip_ = table.first_slip;
   }
 
-  /// Of `bends` bends one goes, and the cable before it becomes one with that behind it. What
-  /// strains apart have more of than one that is the same is lost.
+  /// Removes bend k of `bends` and merges its two spans. The elastic energy that unequal strains
+  /// have beyond an equal one is lost (eq. 21).
   void Merge(int k, int bends) const noexcept {
     if (!grips_) return;
     W* const rest = &s_.span_rest[first_span_];
@@ -88,7 +88,7 @@ class LaneSpans {
     ForgetPlace(bends - 1);
   }
 
-  /// To `bends` bends comes one. The strain is the same before it and behind it.
+  /// Adds bend k to `bends` bends and splits its span, with equal strain on both sides.
   void Split(int k, int bends, double share) const noexcept {
     if (!grips_) return;
     W* const rest = &s_.span_rest[first_span_];
@@ -116,8 +116,8 @@ class LaneSpans {
   bool grips_;
 };
 
-/// Of the cable that is straight along `span`, with halves of arcs before and behind that, what is
-/// before a place that has come there.
+/// Returns the share of a span before a new bend: the span is straight along `span`, with half arcs
+/// of lengths `before_m` and `behind_m` at its ends.
 template <class W>
 double ShareBefore(const View& m, const Rows<W>& s, const Scratch<W>& work, const BendPlace& place,
                    const FreeSpan& span, double before_m, double behind_m, int lane) noexcept {

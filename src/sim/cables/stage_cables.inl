@@ -1,4 +1,4 @@
-/// Stage of the cables: actuators and forces (docs/theory/cables.md).
+/// Stage of the cables: actuators, cable forces and cable wrapping (docs/theory/cables.md).
 ///
 ///   k, b    stiffness [N/m], damping [N s/m]
 ///   l, dl   length along all attachments [m], its rate [m/s]
@@ -21,8 +21,8 @@ struct CableForce {
   W tension, elastic;
 };
 
-/// Paper eq. (1): T = k (l - L) + b dl while l > L, never negative, otherwise 0.
-/// With the clamped law the damper's part is limited to +- the spring's.
+/// Tension law of paper eq. (1): T = k (l - L) + b dl while l > L, never negative, otherwise 0. The
+/// clamped law limits the damper's part to +- the spring's part.
 template <class W>
 TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
   const W zero = W::Splat(0.0);
@@ -34,7 +34,7 @@ TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) n
   return {Select(taut, Max(spring + damper, zero), zero), Select(taut, spring, zero)};
 }
 
-/// Where an attachment is and how fast it is expected to move.
+/// Returns position and expected velocity of an attachment.
 template <class W>
 TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
                                          const Scratch<W>& work) noexcept {
@@ -47,8 +47,8 @@ TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
   return here;
 }
 
-/// Length and rate of a cable; fills `ends` with its attachments. `kTwo`: it has two, which have to
-/// stay in registers, so that no function by itself may get at them.
+/// Returns length and rate of a cable; fills `ends` with its attachments. `kTwo`: it has two, which
+/// must stay in registers, so they are not passed to functions that are not inlined.
 template <bool kTwo, class W>
 TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, const CableTable& cable,
                                            int attachment_count, Scratch<W>& work,
@@ -65,10 +65,10 @@ TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, cons
   return MeasurePath(attachment_count, ends);
 }
 
-/// A rest length follows its target for one step, within the actuator's limits. Limits are per
+/// Moves a rest length toward its target for one step, within the actuator's limits. Limits are per
 /// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
-/// length at which the spring would exceed it. Returns the rest length's mean over the step: a
-/// motor runs until it arrives, and then stands.
+/// length at which the spring would exceed it. Returns the mean of the rest length over the step: a
+/// motor runs until it arrives, and then stops.
 template <class W>
 TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h, W& rest,
                       W& rate) noexcept {
@@ -90,7 +90,7 @@ TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h,
   const W a = W::Splat(limit.max_acceleration_m_per_s2);
   W speed = Min(arriving, top);
   if (!accelerates_at_once) {
-    // No faster than can still be braked: v h + v^2 / (2 a) <= distance.
+    // Braking distance: v h + v^2 / (2 a) <= distance.
     speed = Min(speed, Sqrt(a * a * h * h + (a + a) * distance) - a * h);
   }
   W wish = Select(way < zero, -speed, speed);
@@ -99,22 +99,22 @@ TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h,
   const auto arrives = Abs(wish) == arriving;
   rate = wish;
   rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
-  // The share of the step in which it runs; with limited acceleration, taken as all of it.
+  // Share of the step in which it runs; with limited acceleration, taken as all of it.
   const W share = accelerates_at_once ? speed * W::Splat(cable.inv_max_speed) : W::Splat(1.0);
   return rest - W::Splat(0.5) * share * (rest - before);
 }
 
-/// What is the same for all cables of a step.
+/// Data shared by all cables of a step.
 template <class W>
 struct CableStep {
   W h, inv_h;
-  MaskOf<W> goes_on;  ///< There was a step before, and its tensions are known.
-  W push;             ///< Half a step in lanes with dampers, where tensions are still to be found.
-  W room;             ///< Below zero if a cable may go slack or get taut [m^2].
+  MaskOf<W> goes_on;  ///< There was a previous step, whose tensions are known.
+  W push;             ///< Half a step in lanes with dampers, whose tensions are iterated.
+  W room;             ///< Negative if a cable may become slack or taut [m^2].
 };
 
-/// A cable's length, actuator and spring. `damped`: some lane's cables are. `kMotors`, here and
-/// below: some actuators of the model are motors; others need not look.
+/// Computes a cable's length, actuator and spring. `damped`: some lane has dampers. `kMotors`, here
+/// and below: some actuators of the model are motors.
 template <bool kTwo, bool kMotors, class W>
 TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
                            CableStep<W>& step) noexcept {
@@ -165,10 +165,10 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     row.damped = MaskOf<W>::Splat(false);
     return;
   }
-  // Before the first step, that at rest: then nothing moves what is in balance.
+  // Before the first step, the spring's tension: then bodies in balance do not move.
   row.tension = Select(step.goes_on, s.tension[c], row.spring);
   row.damping = b;
-  // With nothing to damp, or slack, the spring alone: to the bit. Stiff ones stay as they are.
+  // Without damping, or slack: the spring alone, to the bit. Stiff cables keep their tension.
   row.damped = stiff | ((row.damping > zero) & (row.spring > zero));
   row.share = W::Splat(1.0) / (W::Splat(1.0) + step.push * row.damping * row.A);
   if (any_stiff) row.share = Select(stiff, zero, row.share);
@@ -177,15 +177,16 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   RelaxCable<kTwo>(work, row, dl, step.push);
 }
 
-/// Soft cables that go slack or get taut in this step have a tension of their own law, for good:
-/// their spring's mean over the step, implicit in the end's length (docs/theory/cables.md, eq. 11).
-/// Between them explicit steps keep v^2 + w^2 x^2 / (1 - w^2 h^2 / 4), so that is what the spring
-/// must store, or energy would come and go with every catch.
+/// Sets the final tension of soft cables that become slack or taut in this step: the spring's mean
+/// over the step, implicit in the final length (docs/theory/cables.md, eq. 11). Explicit steps
+/// conserve v^2 + w^2 x^2 / (1 - w^2 h^2 / 4) (eq. 11a), so the spring must store this energy;
+/// otherwise each snatch would gain or lose some.
 template <bool kMotors, class W>
 [[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
                                               CableStep<W> step) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
-  // Rates have changed since: in a lane that did not ask, a cable may look near by now.
+  // Rates have changed since; only lanes with negative room count, so that the result does not
+  // depend on other lanes.
   const auto asks = step.room < zero;
   for (int c = 0; c < m.cable_count; ++c) {
     CableWork<W>& row = work.cables[c];
@@ -213,7 +214,7 @@ template <bool kMotors, class W>
     law.A = row.A;
     SetCableLaw(m, s, work, c, length, row.stretch, before, step.h, spring / (one - spring * law.A),
                 b, law);
-    // The mean rate has the tension in it that was found so far; without dampers, the last step's.
+    // The mean rate includes the latest tension; without dampers, the last step's tension.
     const W last = Select(step.goes_on, s.tension[c], zero);
     const W u = before - (dl + dl), now = step.h * Select(step.push > zero, row.tension, last);
     W l;
@@ -226,12 +227,12 @@ template <bool kMotors, class W>
 /// Stage: actuators move the rest lengths, cables pull on bodies.
 ///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
 ///           (adds), cables[], stiff[]
-///   order   cables ascending, then descending: sums do not depend on anything else
-/// The force is that of the middle of the step: geometry there, the rest length's mean over the
-/// step, and the mean of the rates at its start and its end (docs/theory/integrator.md, eq. I7).
-/// The mean velocities start as expected from the step before, which had these cables' tensions in
-/// them; two passes over the cables put the new ones in. Lanes in which a spring would not be
-/// stable leave the cable to the solver (stiff_cables.inl).
+///   order   cables ascending, then descending, which fixes the order of all sums
+/// The force belongs to the middle of the step: geometry there, the mean of the rest length, and
+/// the mean of the rates at the start and the end (docs/theory/integrator.md, eq. I7). A warm start
+/// predicts the mean velocities from the previous step, whose tensions they contain; two
+/// Gauss-Seidel passes over the cables insert the new ones. In lanes in which a spring would be
+/// unstable, the solver computes the tension (stiff_cables.inl).
 template <bool kMotors, class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0);

@@ -1,10 +1,9 @@
-/// Cables whose tension is the mean over the step of what their spring has on its way from the
-/// length at the start to that at the end (docs/theory/cables.md, eq. 8-11): work is then exactly
-/// what the spring stores or gives, through slackness too.
+/// Stiff cables: implicit tension as the mean of the spring force between the stretch at the start
+/// and at the end of the step (docs/theory/cables.md, eq. 8-11). Its work equals the change of the
+/// spring energy, also through slackness and a snatch.
 ///
-/// Those that explicit forces would make unstable at this step are left to the solver, which finds
-/// them together with the contacts. Soft ones are explicit, but in a step in which they go slack or
-/// get taut.
+/// Cables that explicit forces would make unstable at this step are solved together with the
+/// contacts. Soft cables are explicit, except in a step in which they become slack or taut.
 #pragma once
 
 #include "sim/cables/cable_bends.inl"
@@ -19,7 +18,8 @@ TAUT_INLINE W SoftLimit(W h) noexcept {
   return W::Splat(kSoftSpring) / (h * h);
 }
 
-/// Where cables are attached, at the start of the step: from the places that SaveStart has kept.
+/// Computes attachment positions at the start of the step, from the poses that SaveStart has
+/// stored.
 template <class W>
 void MeasureStart(const View& m, Scratch<W>& work) noexcept {
   const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
@@ -51,7 +51,7 @@ TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work,
       .l;
 }
 
-/// At what rate a cable lengthened before the step.
+/// Returns the rate at which a cable lengthened before the step.
 template <class W>
 TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int count) noexcept {
   W rate = W::Splat(0.0);
@@ -62,8 +62,9 @@ TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int co
   return rate;
 }
 
-/// A cable's law over the step, from its length and stretch at the middle. Its true length at the
-/// start says how far the middle's directions are wrong; they are so at the end by as much.
+/// Sets a cable's law over the step, from its length and stretch at the middle. The deviation of
+/// its true length at the start from the line through the middle is applied to the end, too (eq.
+/// 10).
 template <class W>
 TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length,
                              W stretch, W rate, W h, W spring, W damping,
@@ -76,12 +77,13 @@ TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, 
   row.SetLaw(z - (rate - wound), z - wound, spring, half_h * damping, wound + wound);
   row.upper = W::Splat(1e300);
   if (!cable.clamped_damping) return;
-  // Twice the spring's, as far as it is known before the step.
+  // Twice the spring part, predicted with the rate before the step.
   const W twice = row.SpringImpulse(row.start + W::Splat(2.0) * (rate - wound));
   row.upper = Select(damping > W::Splat(0.0), twice + twice, row.upper);
 }
 
-/// `k`, `b`: of its stiffness and damping what acts within a step.
+/// Adds a stiff cable to the solver's rows. `k`, `b`: effective stiffness and damping within a
+/// step.
 template <class W>
 void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                    const CableWork<W>& linked, W k, W b, W length, W stretch, W h,
@@ -100,8 +102,8 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
   row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
 }
 
-/// Share of the largest stable tension that a stiff cable has. Along itself it is stable at any
-/// tension; across itself its force is explicit.
+/// Returns a stiff cable's tension as a share of the largest stable one (eq. 12). Along its
+/// direction it is stable at any tension; its transverse force is explicit.
 template <class W>
 W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
   return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));

@@ -1,4 +1,4 @@
-/// What the checks of a model definition have in common.
+/// Shared helpers of the checks of a model definition.
 #pragma once
 
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace taut::sim {
 
-/// Checks numbers and names what is wrong; there are no file positions at this level.
+/// Checks values and reports errors by name; there are no file positions at this level.
 class Checker {
  public:
   Checker(const ModelDef& def, Diagnostics& out)
       : out_(out), cone_(def.friction_law == FrictionLaw::kCone) {}
   void Require(bool good, const std::string& what) {
-    if (!good) out_.Error({}, what);
+    if (!good) out_.Error("model.invalid", {}, what);
   }
   void Positive(double x, const std::string& what) {
     Require(x > 0 && std::isfinite(x), what + " must be a positive number");
@@ -31,7 +31,7 @@ class Checker {
     Require(body >= kWorld && body < static_cast<int>(def.bodies.size()),
             what + " refers to a body that is not there");
   }
-  /// `has_axis`: the shape itself says where forward is.
+  /// `has_axis`: the shape itself defines a forward direction.
   void Surface(const Material& m, const std::string& what, bool has_axis = false) {
     NonNegative(m.kinetic_friction, what + ": kinetic friction");
     NonNegative(m.static_friction, what + ": static friction");
@@ -72,10 +72,10 @@ class Checker {
 /// Height fields and meshes (surface_check.cpp).
 void CheckGround(const ModelDef& def, Checker& check);
 
-/// Joints, and bodies that are kept apart (joint_check.cpp).
+/// Joints, and bodies that do not collide with each other (joint_check.cpp).
 void CheckJoints(const ModelDef& def, Checker& check);
 
-/// Motions of bodies (motion_check.cpp).
+/// Motions of kinematic bodies (motion_check.cpp).
 void CheckMotions(const ModelDef& def, Checker& check);
 
 }  // namespace taut::sim

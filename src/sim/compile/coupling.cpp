@@ -1,5 +1,5 @@
-/// How strongly cables act on each other through the bodies: decides which are too stiff for
-/// explicit forces (docs/theory/cables.md, eq. 7).
+/// Coupling of cables through bodies, the Delassus operator of their tensions: determines which
+/// cables are too stiff for explicit forces (docs/theory/cables.md, eq. 7).
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace taut::sim {
 namespace {
 
-/// What a unit tension does to one body, at the start.
+/// Force and torque of a unit tension on one body, at the start.
 struct Pull {
   int body;
   Vec3 force, torque;  ///< Torque in the principal frame.
@@ -64,7 +64,7 @@ std::vector<Pull> PullsOf(const Tables& t, const CableTable& cable) {
   return pulls;
 }
 
-/// Change of rate of cable `b` per impulse in cable `a` [1/kg].
+/// Returns the change of the rate of cable `b` per impulse in cable `a` [1/kg].
 double Coupling(const Tables& t, const std::vector<Pull>& a, const std::vector<Pull>& b) {
   double sum = 0;
   for (const Pull& p : a) {
@@ -79,8 +79,9 @@ double Coupling(const Tables& t, const std::vector<Pull>& a, const std::vector<P
   return sum;
 }
 
-/// The most that a cable's tension may do to itself by a rod that it comes to lie against: back to
-/// where it came from, at an end of the rod. Its pulls have no torque about the rod's axis.
+/// Returns the greatest possible coupling of a cable with itself by a rod that it may come to
+/// touch: folded back on itself at an end of the rod. Its forces have no torque about the rod's
+/// axis.
 double RodCoupling(const Tables& t, const TouchTable& touch) {
   double most = 0;
   for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
@@ -98,10 +99,10 @@ double RodCoupling(const Tables& t, const TouchTable& touch) {
   return most;
 }
 
-/// A row of a symmetric matrix: its columns, rising, and what stands there.
+/// Row of a symmetric matrix: columns, in ascending order, and entries.
 using SparseRow = std::vector<std::pair<std::size_t, double>>;
 
-/// The largest eigenvalue of a symmetric positive semidefinite matrix, by power iteration.
+/// Returns the largest eigenvalue of a symmetric positive semidefinite matrix, by power iteration.
 double LargestEigenvalue(const std::vector<SparseRow>& matrix) {
   const std::size_t n = matrix.size();
   std::vector<double> x(n), y(n);
@@ -118,7 +119,7 @@ double LargestEigenvalue(const std::vector<SparseRow>& matrix) {
     if (!(eigenvalue > 0)) return 0;
     for (std::size_t i = 0; i < n; ++i) x[i] = y[i] / eigenvalue;
   }
-  return 1.05 * eigenvalue;  // power iteration comes from below
+  return 1.05 * eigenvalue;  // power iteration converges from below
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ void CoupleCables(Tables& tables) {
   std::vector<SparseRow> matrix(n);
   tables.coupling.assign(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    std::vector<std::size_t> others;  // only cables that share a body act on each other
+    std::vector<std::size_t> others;  // only cables that share a body are coupled
     for (const Pull& pull : pulls[i]) {
       const auto& here = cables_at[static_cast<std::size_t>(pull.body)];
       others.insert(others.end(), here.begin(), here.end());
@@ -145,7 +146,7 @@ void CoupleCables(Tables& tables) {
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
     for (const std::size_t j : others) {
-      // The same bits both ways, whatever the order of its sum.
+      // The same bits for (i, j) and (j, i), whatever the order of the sum.
       const double a = Coupling(tables, pulls[std::min(i, j)], pulls[std::max(i, j)]);
       matrix[i].emplace_back(j, a);
       tables.coupling[i] += std::fabs(a);

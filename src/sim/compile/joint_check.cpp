@@ -1,4 +1,4 @@
-// What joints must fulfil.
+// Checks of joint definitions.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

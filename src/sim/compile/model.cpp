@@ -1,3 +1,4 @@
+// Compilation of a model definition into the tables of the simulation.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,10 +19,10 @@ using sim::Length;
 using sim::Tables;
 using sim::ToBody;
 
-/// The radius of a sphere around a surface, which has no middle.
+/// Radius of the bounding sphere of a surface, which has no center.
 constexpr double kEverywhere_m = 1e30;
 
-/// Turns a checked definition into tables.
+/// Converts a checked definition into tables.
 class Compiler {
  public:
   explicit Compiler(Tables& t) : t_(t), def_(t.def()) {}
@@ -57,7 +58,7 @@ class Compiler {
     return body == kWorld ? t_.body_count : body;
   }
 
-  /// What stepping takes for granted about the tables.
+  /// Asserts the invariants of the tables on which steps rely.
   void Check() const {
     const auto bodies = static_cast<std::size_t>(t_.body_count);
     TAUT_ASSERT(t_.q_WP0.size() == 4 * bodies && t_.inertia.size() == 3 * bodies);
@@ -111,7 +112,7 @@ class Compiler {
     for (const PlaneDef& p : def_.planes) {
       sim::PlaneTable table;
       const double n[3] = {p.normal.x, p.normal.y, p.normal.z};
-      // The first tangent is the axis of W that is least along the normal, made orthogonal.
+      // The first tangent is the axis of W least aligned with the normal, made orthogonal.
       int axis = 0;
       for (int i = 1; i < 3; ++i) {
         if (std::fabs(n[i]) < std::fabs(n[axis])) axis = i;
@@ -218,7 +219,7 @@ class Compiler {
     each(List::kBoxes, def_.boxes, [&](const ShapeRef& ref, const BoxDef& b) {
       if (b.collides) Box(ref, b.body, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
-    // Pointers to their tables go into shapes.
+    // No reallocation: shapes contain pointers to the tables.
     t_.hulls.reserve(def_.hulls.size());
     each(List::kHulls, def_.hulls, [&](const ShapeRef& ref, const HullDef& h) {
       if (h.collides) Convex(ref, h);
@@ -226,7 +227,7 @@ class Compiler {
     each(List::kTerrainBoxes, def_.terrain_boxes, [&](const ShapeRef& ref, const TerrainBoxDef& b) {
       Box(ref, kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
-    // The same.
+    // No reallocation, likewise.
     t_.surfaces.reserve(def_.height_fields.size() + def_.terrain_meshes.size());
     each(List::kHeightFields, def_.height_fields, [&](const ShapeRef& ref, const auto& field) {
       Ground(ref, sim::Surface(field), field.material);
@@ -236,8 +237,8 @@ class Compiler {
     });
   }
 
-  /// Ground is a partner of its own for every shape: that a body's lowest rod lies on it is no
-  /// reason to look where its other rods are.
+  /// Adds ground. Every pair of a shape and ground has a clearance: contact of a body's lowest rod
+  /// must not trigger tests of its other rods.
   void Ground(const ShapeRef& ref, sim::Surface surface, const Material& material) {
     t_.surfaces.push_back(std::move(surface));
     sim::ShapeTable s;
@@ -251,8 +252,8 @@ class Compiler {
     t_.shape_refs.push_back(ref);
   }
 
-  /// Points that can touch planes. Of several in one place the thickest counts, spheres first:
-  /// rods that end in a node's sphere add nothing, on other ground neither.
+  /// Collects the points that can touch planes. Of several at the same place the thickest is kept,
+  /// spheres first: rods that end in a node's sphere add nothing, nor do they on other ground.
   void Points() {
     for (int body = 0; body < t_.body_count; ++body) {
       t_.first_point.push_back(static_cast<int>(t_.points.size()));
@@ -298,7 +299,7 @@ class Compiler {
     }
   }
 
-  /// Which one it is: there may be one already.
+  /// Returns the number of the point, which may exist already.
   int AddPoint(std::size_t first, const double p[3], double radius, const Material& material) {
     for (std::size_t i = first; i < t_.points.size(); ++i) {
       const sim::PointTable& other = t_.points[i];
@@ -322,7 +323,7 @@ class Compiler {
   const ModelDef& def_;
   std::vector<Frame> frames_;
   std::vector<std::vector<std::size_t>>
-      shapes_of_;                    ///< Per body and the world, but for the ground.
+      shapes_of_;                    ///< Per body and the world, without the ground.
   std::vector<std::size_t> ground_;  ///< Surfaces among the shapes.
 };
 

@@ -1,3 +1,4 @@
+// Validation of bodies, shapes, cables, motors and sizes of a model definition.
 #include "sim/compile/model_check.h"
 
 #include <cmath>
@@ -114,7 +115,7 @@ void CheckMotor(const std::string& name, const DcMotorDef& m, Checker& check) {
   check.NonNegative(m.servo_damping_s_per_m, name + "damping of the servo");
 }
 
-/// Motors that name the same supply say the same of it.
+/// Checks that motors with the same supply define it equally.
 void CheckSupplies(const ModelDef& def, Checker& check) {
   std::map<std::string, const CableDef*> first;
   for (const CableDef& c : def.cables) {
@@ -131,7 +132,7 @@ void CheckSupplies(const ModelDef& def, Checker& check) {
 
 static_assert(kMostSpans == CableDef::kMostSpans);
 
-/// Wheels and friction along a cable.
+/// Checks wheels and friction along a cable.
 void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
   int spans = 1;
   for (std::size_t i = 0; i < c.attachments.size(); ++i) {
@@ -150,7 +151,7 @@ void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
     for (const std::size_t k : {i - 1, i + 1}) {
       const Vec3 way = c.attachments[k].position_m - a.position_m;
       const Vec3 across = Cross(a.wheel->axis, way);
-      // A rim's own point may be a rounding inside.
+      // A point on the rim may be inside by rounding.
       check.Require(Dot(across, across) > 0.999 * a.wheel->radius_m * a.wheel->radius_m,
                     wheel + " has the attachment before or behind it inside, or on its axis");
     }
@@ -202,8 +203,8 @@ void CheckCables(const ModelDef& def, Checker& check) {
   }
 }
 
-/// Sizes that grow with the square of a model: pairs of shapes of different bodies, and pairs of
-/// cables that pull at one body.
+/// Checks quantities that grow with the square of a model's size: pairs of shapes of different
+/// bodies, and pairs of cables that pull at one body.
 void CheckSizes(const ModelDef& def, Checker& check) {
   std::vector<double> shapes(def.bodies.size()), ends(def.bodies.size());
   double fixed = static_cast<double>(def.terrain_boxes.size() + def.height_fields.size() +

@@ -1,4 +1,4 @@
-/// Is a model definition one that can be simulated?
+/// Validation of a model definition: whether it can be simulated.
 #pragma once
 
 #include "taut/diagnostics.h"
@@ -6,14 +6,15 @@
 
 namespace taut::sim {
 
-/// More would take hundreds of megabytes and minutes.
+/// Limits: more would take hundreds of megabytes and minutes.
 inline constexpr long kMaxShapePairs = 10'000'000;
 inline constexpr long kMaxCouplings = 10'000'000;
 
-/// False, with a diagnostic (without file position) for every wrong number or index.
+/// Reports a diagnostic (without file position) for every wrong number or index; returns false if
+/// there is one.
 bool CheckModel(const ModelDef& def, Diagnostics& out);
 
-/// Complains about a TAUT_SIMD that names no instruction set.
+/// Reports a TAUT_SIMD that names no instruction set.
 bool CheckEnvironment(Diagnostics& out);
 
 }  // namespace taut::sim

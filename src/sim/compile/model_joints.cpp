@@ -1,4 +1,4 @@
-// Lays out the joints of a model: their rows, and the linear system of what they hold.
+// Compilation of a model's joints: their rows, and the elimination order of their linear system.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,7 +17,7 @@ namespace {
 
 using M = JointMeasure;
 
-/// What a kind's rows hold.
+/// Returns the measures that the rows of a joint kind hold constant.
 std::vector<M> HeldMeasures(JointKind kind) {
   const HeldMotions held = HeldBy(kind);
   std::vector<M> rows;
@@ -74,7 +74,7 @@ class JointCompiler {
     for (int i = 0; i < 3; ++i) ToBody(turned, axes[i], out + 3 * i);
   }
 
-  /// How far from its centre of mass a body's mass is, in the mean, about its most unwieldy axis.
+  /// Returns the largest radius of gyration of a body [m].
   double Gyration(int body) const {
     if (!t_.Moves(body)) return 0;
     const double* const moments = &t_.inertia[static_cast<std::size_t>(3 * body)];
@@ -137,7 +137,7 @@ class JointCompiler {
   }
   static bool HasSpring(const JointDef& def) { return def.stiffness > 0 || def.damping > 0; }
 
-  /// What acts on a ball's turns, about all axes alike.
+  /// Adds friction and spring of a ball joint's rotation, equal about all axes.
   void Turns(const JointDef& def, JointTable& j) {
     const auto add = [&](JointRole role) {
       for (const M measure : {M::kTurn1, M::kTurn2, M::kTurn3}) {
@@ -149,8 +149,8 @@ class JointCompiler {
     j.has_turn_spring = def.stiffness > 0;
   }
 
-  /// Whether joints close a loop, of bodies or through what does not move: rows may be redundant.
-  /// And which bodies hang together without hanging from that.
+  /// Detects whether joints close a kinematic loop, of bodies or through static or kinematic
+  /// bodies: rows may be redundant. Collects the chains of bodies that are not connected to these.
   void FindChains() {
     base::UnionFind sets(static_cast<std::size_t>(t_.body_count) + 1);
     for (const JointTable& j : t_.joints) {

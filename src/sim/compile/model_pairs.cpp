@@ -1,4 +1,4 @@
-// Lays out what may touch what, and where contacts are kept.
+// Pairs of shapes that may collide, and storage of their contacts.
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -21,8 +21,8 @@ class PairCompiler {
                const std::vector<std::size_t>& ground)
       : t_(t), shapes_of_(shapes_of), ground_(ground) {}
 
-  /// Pairs of which one body does not move come first, by the body that does: their contacts go
-  /// into that body's slots.
+  /// Pairs with a static body come first, sorted by the moving body: their contacts are stored in
+  /// that body's slots.
   void Run() {
     std::uint32_t id = t_.first_pair_id;
     std::vector<int> solid;
@@ -66,8 +66,8 @@ class PairCompiler {
   }
 
  private:
-  /// Room for a body's contacts with what does not move: every point on every plane, and as many
-  /// with other shapes as can be sensible.
+  /// Sizes the slots of a body's contacts with static geometry: every point on every plane, and a
+  /// reasonable number with other shapes.
   void Slots() {
     int first = 0;
     for (int body = 0; body < t_.body_count; ++body) {

@@ -1,4 +1,4 @@
-// Finds which pieces of terrain are near each other, when a model is compiled (seams.h).
+// Detection of adjacent pieces of terrain, when a model is compiled (seams.h).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -77,7 +77,7 @@ bool BoundsMeet(const SeamPiece& a, const SeamPiece& b, double same_m) {
          a.low.z <= b.high.z + same_m && b.low.z <= a.high.z + same_m;
 }
 
-/// Whether a convex edge of a surface (borders are convex) is at a box.
+/// Returns whether a convex edge of a surface (borders are convex) is at a box.
 bool EndsAtBox(const SurfaceTable& s, const SeamPiece& box, double same_m) {
   const Vec3 reach{same_m, same_m, same_m};
   bool ends = false;
@@ -91,8 +91,8 @@ bool EndsAtBox(const SurfaceTable& s, const SeamPiece& box, double same_m) {
   return ends;
 }
 
-/// Whether contacts of `a` may depend on `b`. A box on a plane or in the middle of a field does not
-/// matter; a box that ends there does.
+/// Returns whether contacts of `a` may depend on `b`. A box on a plane or in the middle of a field
+/// does not matter; a box that ends there does.
 bool Meets(const Piece& a, const SeamPiece& b, double same_m) {
   if (b.kind == SeamPiece::kPlane) {
     return a.seam.kind == SeamPiece::kBox ? std::fabs(HighestOver(b, a.seam.box)) <= same_m

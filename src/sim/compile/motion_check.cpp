@@ -1,4 +1,4 @@
-// What motions must fulfil.
+// Checks of the motions of kinematic bodies.
 #include <set>
 
 #include "math/vec.h"

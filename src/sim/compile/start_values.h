@@ -1,4 +1,4 @@
-/// What the rows of a world that begins have (state_rows.h): per body, cable or contact, `i`.
+/// Initial values of a world's rows (state_rows.h): per body, cable or contact, `i`.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Motor = MotorNumbers<double>;
 using Orders = MotorOrders<double>;
 using Bend = BendNumbers<double>;
 
-/// Zero, whatever the row's type.
+/// Zero for rows of any type.
 struct Nothing {
   operator double() const noexcept { return 0.0; }
   operator Vec3() const noexcept { return {}; }
@@ -28,7 +28,7 @@ inline Nothing Zero(const Tables&, int) noexcept { return {}; }
 inline double One(const Tables&, int) noexcept { return 1.0; }
 inline double NoKey(const Tables&, int) noexcept { return kNoKey; }
 inline double SlipUnknown(const Tables&, int) noexcept { return kSlipUnknown; }
-/// Batch::Impl::JudgeStiffness writes it once the masses, stiffnesses and dampings are there.
+/// Batch::Impl::JudgeStiffness writes it after the masses, stiffnesses and dampings.
 inline Nothing ByJudgeStiffness(const Tables&, int) noexcept { return {}; }
 
 inline const BodyDef& BodyOf(const Tables& t, int i) noexcept {
@@ -57,7 +57,8 @@ inline Vec3 AngularMomentum(const Tables& t, int i) noexcept {
           j.xz * w.x + j.yz * w.y + j.zz * w.z};
 }
 
-/// A body of another mass than its definition's: the inertia scales with it. A fixed one has none.
+/// Mass properties for a mass other than in the definition: the inertia scales with it. All are
+/// zero for a fixed body.
 struct Masses {
   double mass = 0, inv_mass = 0;
   Vec3 inertia, inv_inertia;
@@ -96,7 +97,7 @@ inline double NotHeld(const Tables&, int) noexcept { return kNotHeld; }
 inline double RestLength(const Tables& t, int i) noexcept { return CableOf(t, i).rest_length_m; }
 inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).stiffness_n_per_m; }
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
-/// Where the solver starts from; also what a cable shows before the first step.
+/// Start of the solver, and the reading before the first step.
 inline double Tension(const Tables& t, int i) noexcept {
   const CableDef& cable = CableOf(t, i);
   const double length = math::DescribedPath(cable).length_m();
@@ -118,7 +119,7 @@ inline Motor MotorAtRest(const Tables& t, int i) noexcept {
   motor.supply = t.supplies[static_cast<std::size_t>(table.supply)].voltage_v;
   return motor;
 }
-/// As described.
+/// Side of the described pose.
 inline double TouchSide(const Tables& t, int i) noexcept {
   const TouchRodTable& rod = t.touch_rods[static_cast<std::size_t>(i)];
   const auto in_W = [&](const double* p_P) {

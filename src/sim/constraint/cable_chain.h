@@ -1,7 +1,7 @@
-/// A kind of constraint: a cable with friction at what it runs over (docs/theory/cables.md, eq.
-/// 16-19). A row a span; its velocity u is the rate at which the span shortens after the step, its
-/// impulse the span's mean tension over the step. The impulses follow from the velocities of all
-/// spans together, by the capstan's law.
+/// Constraint of a cable with capstan friction where it runs over eyelets, wheels, edges or rods
+/// (docs/theory/cables.md, eq. 16-19). One row per span: its velocity u is the rate at which the
+/// span shortens after the step, its impulse the span's mean tension over the step. The impulses
+/// follow from the velocities of all spans together.
 #pragma once
 
 #include "sim/constraint/capstan.h"
@@ -24,14 +24,14 @@ TAUT_INLINE void Push(const RowLink<Num>& link, const Num* l, V3<Num>& v, V3<Num
   Push(static_cast<const Link<Num, 1>&>(link), l + link.row, v, w);
 }
 
-/// A span while its tension is found. Its mean stretch over the step is `stretch` - h / 4 u before
-/// it slips, and the mean rate of its length `rate` - u / 2.
+/// A span while its tension is computed. Its mean stretch over the step is `stretch` - h / 4 u
+/// before slip, and the mean rate of its length `rate` - u / 2.
 template <class Num>
 struct ChainSpan {
   Num stretch, rate;              ///< [m], [m/s]
   Num stiffness, slip_stiffness;  ///< Per stretch, per rest length that slips in [N/m].
   Num damping;                    ///< [N s/m]
-  Num ratio;                      ///< Of the place behind it: exp(mu theta).
+  Num ratio;                      ///< Of the slip place behind it: exp(mu theta).
   Num l;                          ///< Impulse [N s].
 };
 
@@ -39,7 +39,7 @@ template <class Num>
 struct CableChain {
   static_assert(Num::kLanes == 1);
   using Number = Num;
-  static constexpr int kRows = kMostSpans;  ///< At most:
+  static constexpr int kRows = kMostSpans;  ///< Largest number of rows:
 
   int rows;
   Num h;  ///< The step [s].
@@ -50,8 +50,8 @@ struct CableChain {
 
   struct Branch {
     Capstan<Num> law;
-    Num wish[kMostSpans];   ///< Impulses [N s].
-    Num bends[kMostSpans];  ///< More rest length that the span could take, per -u [s].
+    Num wish[kMostSpans];   ///< Impulses that satisfy the law [N s].
+    Num bends[kMostSpans];  ///< Additional rest length that the span could take, per -u [s].
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     bool same = true;
@@ -68,7 +68,7 @@ struct CableChain {
     for (int i = 0; i < link_count; ++i) AddCoupling(links[i], links[i], &A[links[i].row]);
   }
 
-  /// The law is a function of the velocities.
+  /// Solves the law, which is a function of the velocities alone.
   Branch BranchOf(const Num* u, const Num*) const noexcept {
     Branch b;
     const double step = h[0];
@@ -78,7 +78,8 @@ struct CableChain {
       const double k = s.stiffness[0], slips = s.slip_stiffness[0], c = s.damping[0];
       const double stretch = s.stretch[0] - 0.25 * step * u[i][0];
       const double rate = s.rate[0] - 0.5 * u[i][0];
-      // The damper's part is no more than what it can have come by since the span got taut.
+      // The damper's part is limited to the value that can have built up since the span became
+      // taut.
       b.law.spans[i].p = 1.0 / (slips + c / step);
       b.law.spans[i].q = 1.0 / (slips + 2.0 * c / step);
       b.law.spans[i].a = (k * stretch + c * rate) * b.law.spans[i].p;
@@ -139,7 +140,7 @@ struct CableChain {
     }
     return symmetric;
   }
-  /// Nearer to its own solution.
+  /// Moves the impulses toward the solution of this constraint alone.
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     const Branch b = BranchOf(u, l_now);
     const Num one = Num::Splat(1.0);

@@ -1,14 +1,15 @@
-/// A kind of constraint: a cable whose tension is found together with the contacts
+/// Constraint of a stiff cable, whose tension is solved together with the contacts
 /// (docs/theory/cables.md, eq. 8-11; docs/theory/contact.md, eq. 14, 17).
 ///
-/// Twice the stretch, per step, is a rate: that of the start, z0, is known, and z = end - u is that
-/// of the end;  u: the rate at which the cable shortens after the step.
+/// The unknowns are rates: twice the stretch, divided by the step, is z0 at the start (known) and z
+/// = end - u at the end. u is the rate at which the cable shortens after the step.
 ///
 ///   l = phi (spring (p + p0) + damper (z - z0 + winding)),   0 <= l <= upper
-///   p = max(z, 0),  p0 = max(z0, 0),  phi = (p - p0) / (z - z0): the share of the way that is taut
+///   p = max(z, 0),  p0 = max(z0, 0),  phi = (p - p0) / (z - z0): taut share of the way
 ///
-/// Taut at both ends it is a line, l = base - gain u; slack at both, zero; and a curve between them
-/// that falls with u all the way. So it has one solution by itself, from a quadratic equation.
+/// The law is a line, l = base - gain u, if the cable is taut at both ends of the step; zero if
+/// slack at both; else a curve that decreases with u. So a row alone has one solution, the root of
+/// a quadratic equation.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -20,12 +21,12 @@ struct CableRow {
   using Number = Num;
   using Mask = MaskOf<Num>;
   static constexpr int kRows = 1;
-  /// A curve this flat, as a share of the line's slope, counts as a constant.
+  /// Curves with a slope below this share of the line's slope count as constant.
   static constexpr double kFlat = 1e-12;
 
   Num live;            ///< 1 in lanes in which this cable is stiff, else 0.
-  Num base, gain;      ///< Taut at both ends: impulse at u = 0 [N s], less per u [kg].
-  Num start, end;      ///< z0; the u at which it ends the step without stretch [m/s].
+  Num base, gain;      ///< Line: impulse at u = 0 [N s], decrease per u [kg].
+  Num start, end;      ///< z0; the u without stretch at the end of the step [m/s].
   Num spring, damper;  ///< gain = spring + damper [kg].
   Num winding;         ///< Twice the rate of its rest length [m/s].
   Num inv_gain;        ///< [1/kg]
@@ -38,10 +39,10 @@ struct CableRow {
 
   struct Branch {
     Mask inside;   ///< Neither slack nor at its limit.
-    Mask crosses;  ///< Goes slack or gets taut within the step.
+    Mask crosses;  ///< Becomes slack or taut within the step.
     Num lower;     ///< 1 where it is slack.
-    Num wish;      ///< Impulse without limits [N s].
-    Num slope;     ///< Of the wish, per -u [kg].
+    Num wish;      ///< Impulse before limits [N s].
+    Num slope;     ///< Slope of `wish`, per -u [kg].
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     constexpr double kNearly = 1e-6;
@@ -50,8 +51,8 @@ struct CableRow {
            !Any(Abs(a.slope - b.slope) > Num::Splat(kNearly) * (a.slope + b.slope));
   }
 
-  /// The law of a cable with the stretch `from` at the start of the step, and `to` at its end if
-  /// its length then does not change; both and the rates as in the head of this file.
+  /// Sets the law: stretch `from` at the start of the step, and `to` at its end if the length does
+  /// not change; both, and the rates, in the variables of the file comment.
   TAUT_INLINE void SetLaw(Num from, Num to, Num spring_kg, Num damper_kg, Num wound) noexcept {
     start = from, end = to;
     spring = spring_kg, damper = damper_kg;
@@ -59,14 +60,14 @@ struct CableRow {
     gain = spring + damper;
     base = spring * (end + start) + damper * ((end - start) + winding);
   }
-  /// A spring and a damper that is taut whatever happens.
+  /// Sets the law of a spring and a damper that stay taut at any length.
   void SetLine(Num at_rest, Num slope) noexcept {
     start = Num::Splat(1.0), end = Num::Splat(1e300);
     spring = gain = slope;
     damper = winding = Num::Splat(0.0);
     base = at_rest;
   }
-  /// All that SetLaw and the limit say, and the impulse, as `pick` takes them out of another row.
+  /// Copies the law, limit and impulse of another row, each value through `pick`.
   template <class Other, class F>
   TAUT_INLINE void TakeLaw(const CableRow<Other>& from, const F& pick) noexcept {
     live = pick(from.live);
@@ -85,7 +86,7 @@ struct CableRow {
     inv_gain = Num::Splat(1.0) / gain;
   }
 
-  /// The spring's part alone, of a step that ends with z.
+  /// Returns the spring part of the impulse of a step that ends with z.
   TAUT_INLINE Num SpringImpulse(Num z) const noexcept {
     const Num zero = Num::Splat(0.0), sum = Max(z, zero) + Max(start, zero);
     const auto crosses = Crosses(start > zero, z > zero);
@@ -94,7 +95,7 @@ struct CableRow {
 
   Branch Project(const Num* u, const Num* center, Num e, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), soft = e * A;
-    const Num free = (end - u[0]) + soft * center[0];  // z without its own effect
+    const Num free = (end - u[0]) + soft * center[0];  // z without the cable's impulse
     const auto was = start > zero;
     Branch b;
     b.slope = gain;
@@ -169,12 +170,12 @@ struct CableRow {
     return (was & !is) | ((!was) & is);
   }
 
-  /// phi of a crossing; `above`: p + p0, of which one is zero.
+  /// phi of a crossing; `above`: p + p0, one of which is zero.
   TAUT_INLINE Num Share(Num z, Num above) const noexcept {
     return above / Max(Abs(z - start), Num::Splat(1e-300));
   }
-  /// Of the curve, dl/dz. A winding motor and its damper may make it fall where l < 0, which is
-  /// beyond the limits.
+  /// Returns dl/dz of the curve. A winding motor and the damper may make it negative where l < 0,
+  /// which is outside of the limits.
   TAUT_INLINE Num SlopeAt(Num z, Mask was) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     const Num way = Max(Abs(z - start), Num::Splat(1e-300));
@@ -184,7 +185,7 @@ struct CableRow {
     const Num of_damper = Select(was, zero, one) + winding * bend;
     return Max(spring * of_spring + damper * of_damper, zero);
   }
-  /// l = curve(free - soft l), for a cable that was taut and goes slack:
+  /// Solves l = curve(free - soft l) for a cable that was taut and becomes slack:
   ///   l (z0 - z) = z0 (spring z0 + damper (z - z0 + winding))
   TAUT_INLINE Num Leaving(Num free, Num soft) const noexcept {
     const Num zero = Num::Splat(0.0), tiny = Num::Splat(1e-300);
@@ -193,7 +194,7 @@ struct CableRow {
     const Num root = Sqrt(Max(half_b * half_b + soft * c, zero));
     return Select(half_b > zero, c / Max(half_b + root, tiny), (root - half_b) / Max(soft, tiny));
   }
-  /// For one that was slack and gets taut; the smaller root, since z > 0:
+  /// Solves it for a cable that was slack and becomes taut; the smaller root, since z > 0:
   ///   l (z - z0) = z (gain z + damper (winding - z0))
   TAUT_INLINE Num Entering(Num free, Num soft) const noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);

@@ -1,29 +1,27 @@
-/// Friction of a cable at what it runs over: the law of the capstan (docs/theory/cables.md, section
-/// 5). Between places where it may slip a cable has spans, each with a tension of its own; at a
-/// place with the ratio c = exp(mu theta)
+/// Capstan friction of a cable (docs/theory/cables.md, section 5). Slip places divide the cable
+/// into spans, each with a tension; at a place with the ratio c = exp(mu theta)
 ///
-///   T / c <= T' <= c T,   and it slips, towards the greater tension, only where one of them is
-///   equal
+///   T / c <= T' <= c T,   and the cable slips, toward the greater tension, only at equality
 ///
-/// Which of them slip is found for all together: one after the other, the result would depend on
-/// the order. Numbers of one lane.
+/// This is one complementarity problem for all slip places, since solving them one by one would
+/// make the result depend on the order. Numbers of one lane.
 #pragma once
 
 #include "math/scalar.h"
 
 namespace taut::sim {
 
-/// The most spans of a cable that friction parts.
+/// Largest number of spans of a cable with friction.
 inline constexpr int kMostSpans = 16;
 
-/// How a span's tension T depends on the rest length x that slips into it:
+/// Relation between a span's tension T and the rest length x that slips into it:
 ///   x = min(a - p T, e - q T)   while T > 0; it is slack with more.
 struct CapstanSpan {
   double a, e;  ///< [m]
   double p, q;  ///< > 0 [m/N]
 };
 
-/// `Tag`: whatever differs between instruction sets, so that each has its own.
+/// `Tag`: type that differs between instruction sets, so that each gets its own instantiation.
 template <class Tag>
 struct Capstan {
   int count;
@@ -32,28 +30,29 @@ struct Capstan {
 
   // Found:
   double tension[kMostSpans];  ///< [N]
-  double slip[kMostSpans];     ///< Rest length that goes from span i to span i + 1 [m].
-  double weight[kMostSpans];   ///< Tensions of spans that slip together go by these.
-  double slope[kMostSpans];    ///< Of the spans that slip together with i: less rest length per T.
-  int first[kMostSpans];       ///< The first span that slips together with it.
-  bool upper[kMostSpans];      ///< The span is where x = e - q T.
+  double slip[kMostSpans];     ///< Rest length that moves from span i to span i + 1 [m].
+  double weight[kMostSpans];   ///< Ratios of the tensions of spans that slip together.
+  double slope[kMostSpans];    ///< Rest length lost per T, of the spans that slip together with i.
+  int first[kMostSpans];       ///< First of the spans that slip together with i.
+  bool upper[kMostSpans];      ///< The span is on the branch x = e - q T.
   int way[kMostSpans];         ///< 1: T' = c T, -1: T = c T', 0: it sticks.
 
   void Solve() noexcept {
     for (int i = 0; i + 1 < count; ++i) way[i] = ratio[i] > 1.0 ? 0 : 1;
     for (int round = 0; round < kMostRounds; ++round) {
       for (int i = 0; i < count;) i = SlipTogether(i);
-      // All at once is fast, and may go round in circles; the first alone does not (Murty).
+      // Changing all wrong places at once is fast but may cycle; changing the first alone cannot
+      // (Murty's rule).
       if (!Revise(round > 2 * count)) return;
     }
   }
 
  private:
   static constexpr int kMostRounds = 400;
-  /// What is a rounding off is not another state.
+  /// Differences of this relative size are rounding and do not change the state of a place.
   static constexpr double kRounding = 1e-13;
 
-  /// x of a span with the tension T, without the slack.
+  /// Returns x of a span with the tension T, without slack.
   double RestAt(int i, double T) noexcept {
     const CapstanSpan& s = spans[i];
     const double lower_x = s.a - s.p * T, upper_x = s.e - s.q * T;
@@ -61,7 +60,7 @@ struct Capstan {
     return upper[i] ? upper_x : lower_x;
   }
 
-  /// The spans from `begin` on that slip together. Returns the first of the next ones.
+  /// Solves the spans from `begin` on that slip together. Returns the first span after them.
   int SlipTogether(int begin) noexcept {
     int end = begin + 1;
     weight[begin] = 1.0;
@@ -70,8 +69,8 @@ struct Capstan {
       weight[end] = way[end - 1] > 0 ? weight[end - 1] * c : weight[end - 1] / c;
       ++end;
     }
-    // The sum of x falls with T, ever more steeply: from the left one step may go too far, then
-    // they come back.
+    // The sum of x decreases with T, ever more steeply: one Newton step from the left may go too
+    // far; the following ones come back.
     double T = 0.0, x[kMostSpans], sum = 0.0, steep = 0.0;
     for (int i = 0;; ++i) {
       sum = steep = 0.0;
@@ -87,7 +86,7 @@ struct Capstan {
     const bool slack = !(T > 0.0);
     double moved = 0.0;
     for (int k = begin; k < end; ++k) {
-      // Slack for all is shared out, since nothing says where it is.
+      // The total slack is divided equally, since its place is undetermined.
       const double gets = end == begin + 1 ? 0.0 : slack ? x[k] - sum / (end - begin) : x[k];
       moved -= gets;
       tension[k] = slack ? 0.0 : weight[k] * T;
@@ -99,7 +98,8 @@ struct Capstan {
     return end;
   }
 
-  /// Places that slip against their tension stick; those that stick beyond the ratio slip.
+  /// Updates the slip places: places that slip against their tension stick; sticking places beyond
+  /// the ratio slip. Returns whether any changed.
   bool Revise(bool one_only) noexcept {
     bool changed = false;
     for (int i = 0; i + 1 < count && !(changed && one_only); ++i) {

@@ -1,47 +1,49 @@
-/// A kind of constraint: a point of contact (docs/theory/contact.md, sections 1 and 4).
+/// Contact point constraint: complementarity and Coulomb's cone (docs/theory/contact.md, sections 1
+/// and 4).
 ///
 ///   (C1)  ln >= 0,  un + bn >= 0,  ln (un + bn) = 0                    no penetration
 ///   (C2)  |lt| <= mu ln,  and ut + bt = 0 or lt = -mu ln (ut + bt) / |ut + bt|     Coulomb's cone
-/// with u the contact's velocity after the step, b its biases, l its impulses: normal, tangents.
+///
+/// u: velocity of the contact point after the step, b: biases, l: impulses (normal, tangents).
 #pragma once
 
 #include "sim/constraint/links.h"
 
 namespace taut::sim {
 
-/// A contact with `kLinks` bodies: one, if the other side does not move.
+/// A contact with up to `kMaxLinks` bodies; one if the other side is static.
 template <class Num, int kMaxLinks>
 struct ContactPoint {
   using Number = Num;
   static constexpr int kRows = 3;
 
   Num live;             ///< 1 in lanes that have this contact, else 0.
-  Num wnn, wt;          ///< Inverse effective mass: of the normal, a bound of the tangents' [1/kg].
+  Num wnn, wt;          ///< Inverse effective mass: normal, upper bound of the tangents [1/kg].
   Num inv_wnn, inv_wt;  ///< [kg]
-  Num w1n, w2n, w11, w12, w22;  ///< The rest of the inverse effective mass [1/kg].
-  Num bias[3];                  ///< Wanted: un >= -bias[0], ut = -bias[1..2] [m/s].
+  Num w1n, w2n, w11, w12, w22;  ///< Other elements of the inverse effective mass [1/kg].
+  Num bias[3];                  ///< Targets: un >= -bias[0], ut = -bias[1..2] [m/s].
   Num mu, restitution;
-  Num before;   ///< Normal velocity at the start of the step [m/s].
-  Num rebound;  ///< How fast it leaves if it takes part in an impact in this step [m/s], or 0.
-  Num closing;  ///< bias[0] without an impact [m/s].
-  Num again;    ///< Its restitution if it opens at the start of the step, else 0.
-  Num l[3];     ///< Impulses [N s].
+  Num before;          ///< Normal velocity at the start of the step [m/s].
+  Num rebound;         ///< Rebound speed if it takes part in an impact in this step [m/s], or 0.
+  Num closing;         ///< bias[0] without an impact [m/s].
+  Num again;           ///< Its restitution if it opens at the start of the step, else 0.
+  Num l[3];            ///< Impulses [N s].
   bool one_direction;  ///< Friction acts along the first tangent only.
   int link_count;
   Link<Num, 3> links[kMaxLinks];
 
-  /// Which case of the law holds: open, sticking, sliding in a direction.
+  /// Case of the law: open, sticking, or sliding in a direction.
   struct Branch {
     MaskOf<Num> closed, slides;
-    Num s1, s2;  ///< Where it slides: direction of friction.
-    Num shrink;  ///< Radius of the cone / length of what reaches out of it.
+    Num s1, s2;  ///< Sliding: direction of friction.
+    Num shrink;  ///< Cone radius / length of the tangential vector outside of it.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     if (Any(a.closed) != Any(b.closed) || Any(a.slides) != Any(b.slides)) return false;
     return !Any(a.slides) || Any(a.s1 * b.s1 + a.s2 * b.s2 > Num::Splat(0.9999));
   }
 
-  /// All that another contact says but its links, as `pick(its, mine)` has it.
+  /// Copies the law of another contact without its links, as `pick(other's value, own value)`.
   template <int kOther, class F>
   TAUT_INLINE void TakeLaw(const ContactPoint<Num, kOther>& from, const F& pick) noexcept {
     const auto take = [&pick](const Num& x, Num& mine) { mine = pick(x, mine); };
@@ -55,7 +57,7 @@ struct ContactPoint {
     one_direction = from.one_direction;
   }
 
-  /// Inverse effective masses from the links, whose directions are orthonormal.
+  /// Computes inverse effective masses from the links, whose directions are orthonormal.
   TAUT_INLINE void FinishMasses() noexcept {
     wnn = w1n = w2n = w11 = w12 = w22 = Num::Splat(0.0);
     for (int i = 0; i < link_count; ++i) {
@@ -89,7 +91,8 @@ struct ContactPoint {
     Friction(u, center, inv_e, mu * l0[0], yn > zero, out);
   }
 
-  /// 3x3, row by row. Not symmetric where it slides: friction follows the normal impulse.
+  /// Computes the 3x3 matrix, row by row. It is not symmetric if the contact slides, since friction
+  /// follows the normal impulse.
   void Derivative(const Branch& b, Num e, Num* g) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     const Num inv_e = one / e;
@@ -106,8 +109,8 @@ struct ContactPoint {
     for (int i = 3; i < 9; ++i) g[i] = Select(b.closed, g[i], zero);
   }
 
-  /// Adds `share` of what a law of frozen direction has along the sliding direction: where
-  /// directions turn a lot within a step, a larger matrix makes smaller steps.
+  /// Adds `share` of the stiffness along the slip that a law of frozen direction lacks (eq. 27):
+  /// where directions turn a lot within a step, a larger matrix makes smaller steps.
   void Stiffen(const Branch& b, Num share, Num* g) const noexcept {
     const auto slides = b.closed & b.slides;
     if (!Any(slides)) return;
@@ -116,7 +119,7 @@ struct ContactPoint {
     g[7] += q * b.s1 * b.s2, g[8] += q * b.s2 * b.s2;
   }
 
-  /// The case that u and l are in: that of the law's fixed point with steps 1 / w (eq. 15).
+  /// Returns the case of u and l, by the natural map with steps 1 / w (eq. 15).
   TAUT_INLINE Branch BranchOf(const Num* u, const Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     Branch b;
@@ -134,7 +137,7 @@ struct ContactPoint {
     return b;
   }
 
-  /// What one step of 1 / w would change, as a velocity (eq. 16).
+  /// Returns the change by one step of the natural map, as a velocity (eq. 16).
   TAUT_INLINE Num Residual(const Branch& b, const Num* u, const Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num edge = mu * Max(l_now[0], zero);
@@ -178,9 +181,9 @@ struct ContactPoint {
     out.r[2] = zero - l_now[2];
   }
 
-  /// The contact's own solution (eq. 23), found along the line of stiffnesses k that hold the slip
-  /// back: |lt(k)| - mu ln(k) changes its sign on it, so there always is one, however steep the
-  /// cone (Painleve's rod has one, too). One lane only.
+  /// Solves this contact alone (eq. 23). Searches along stiffnesses k against the slip: |lt(k)| -
+  /// mu ln(k) changes its sign, so a solution exists for any cone (also for Painleve's rod). One
+  /// lane only.
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     static_assert(Num::kLanes == 1);
     const Num zero = Num::Splat(0.0);
@@ -214,9 +217,9 @@ struct ContactPoint {
     Clamp(l_now);
   }
 
-  /// Sets `rebound` (eq. 9-10): as high as restitution asks for, at the gap where the step finds
-  /// it, under the acceleration that goes on. `warm`: the normal velocity that forces and the
-  /// impulses of the step before lead to. False if there is none.
+  /// Sets `rebound` (eq. 9-10): for the height that restitution prescribes, at the gap where the
+  /// step finds the contact, under continuing acceleration. `warm`: normal velocity from forces and
+  /// the impulses of the previous step. Returns false if there is no rebound.
   TAUT_INLINE bool ExpectRebound(Num warm) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(kLeastRebound);
     const Num fastest = zero - restitution * before;
@@ -233,8 +236,9 @@ struct ContactPoint {
     rebound = Select(may & (speed > least), speed, zero);
     return true;
   }
-  /// Those of `lanes` in which it closed and now is to rebound: their bias says so from now on. One
-  /// that others have closed (`later`) rebounds from as fast as they did.
+  /// Applies the rebound bias in the lanes (of `lanes`) in which the contact closed and rebounds,
+  /// and returns them. A contact that other rebounds have closed (`later`) rebounds with its
+  /// restitution times their closing speed.
   MaskOf<Num> Rebound(const Num* u, const Num* l_now, MaskOf<Num> lanes, bool later) noexcept {
     const Num zero = Num::Splat(0.0);
     if (later && Any(again > zero)) {
@@ -247,10 +251,10 @@ struct ContactPoint {
     bias[0] = Select(now, zero - rebound, bias[0]);
     return now;
   }
-  /// Takes that back.
+  /// Undoes Rebound.
   void ForgetRebound(MaskOf<Num> lanes) noexcept { bias[0] = Select(lanes, closing, bias[0]); }
 
-  /// By how much velocities miss those that it holds on the branch `b`; 0 where it holds none.
+  /// Computes the error of the velocities that branch `b` prescribes; 0 where it prescribes none.
   void Miss(const Branch& b, const Num* u, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0);
     const auto sticks = b.closed & !b.slides;
@@ -258,25 +262,25 @@ struct ContactPoint {
     out[1] = Select(sticks, u[1] + bias[1], zero);
     out[2] = one_direction ? zero : Select(sticks, u[2] + bias[2], zero);
   }
-  /// The largest t for which l + t dl holds what it holds on the branch `b`; 1e300 if all do.
+  /// Returns the largest t for which l + t dl stays on the branch `b` (eq. 18a); 1e300 if all do.
   Num Reach(const Branch& b, const Num* l_now, const Num* dl) const noexcept {
     const Num zero = Num::Splat(0.0), never = Num::Splat(1e300);
-    // Of the cone's edge: |lt + t dlt|^2 = mu^2 (ln + t dln)^2
+    // At the cone's edge: |lt + t dlt|^2 = mu^2 (ln + t dln)^2
     const Num dl2 = one_direction ? zero : dl[2], mu2 = mu * mu;
     const Num a = dl[1] * dl[1] + dl2 * dl2 - mu2 * dl[0] * dl[0];
     const Num half = l_now[1] * dl[1] + l_now[2] * dl2 - mu2 * l_now[0] * dl[0];
     const Num inside =
         Max(mu2 * l_now[0] * l_now[0] - l_now[1] * l_now[1] - l_now[2] * l_now[2], zero);
     const Num square = half * half + a * inside;
-    // In the form that does not cancel; a root only if the ray leaves the cone.
+    // Form without cancellation; there is a root only if the ray leaves the cone.
     const Num divisor = half + Sqrt(Max(square, zero));
     const Num leaves = Select((square > zero) & (divisor > zero), inside / divisor, never);
     const Num ends = Select(dl[0] < zero, Max(l_now[0], zero) / (zero - dl[0]), never);
     return Select(b.closed, Min(ends, Select(b.slides, never, leaves)), never);
   }
-  /// Computes the least change of u that solves the law with the impulses l on the branch `b`,
-  /// except ln of open contacts: the error of un = -bias; the slip if l is inside the cone; the
-  /// slip not opposite to friction if l is on its boundary.
+  /// Inconsistent contacts (eq. 28a): computes the least change of u that solves the law with the
+  /// impulses l on the branch `b`, except ln of open contacts: the error of un = -bias; the slip if
+  /// l is inside the cone; the slip not opposite to friction if l is on its boundary.
   void Disagreement(const Branch& b, const Num* u, const Num* l_now, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num l1 = l_now[1], l2 = one_direction ? zero : l_now[2];
@@ -308,11 +312,11 @@ struct ContactPoint {
 
  private:
   struct Slip {
-    Num s11, s12, s22, q1, q2, qn;  ///< Tangential problem with the normal worked in.
+    Num s11, s12, s22, q1, q2, qn;  ///< Tangential problem after elimination of the normal impulse.
     Num ln, l1, l2;
   };
 
-  /// |lt| - mu ln with the stiffness k against slipping.
+  /// Computes |lt| - mu ln with the stiffness k against slip.
   Num Excess(Slip& s, Num k) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num a = s.s11 + k, c = s.s22 + k;
@@ -323,7 +327,8 @@ struct ContactPoint {
     return Sqrt(s.l1 * s.l1 + s.l2 * s.l2) - mu * s.ln;
   }
 
-  /// Regula falsi (Illinois), every fourth step a geometric mean: k may range over many decades.
+  /// Regula falsi (Illinois); every fourth step uses a geometric mean, since k may range over many
+  /// decades.
   void CloseIn(Slip& s, Num low, Num at_low, Num high, Num at_high) const noexcept {
     const Num half = Num::Splat(0.5), tiny = Num::Splat(1e-15);
     int side = 0;

@@ -1,13 +1,13 @@
-/// A kind of constraint: one direction in which a joint acts (docs/theory/joints.md, eq. 1).
+/// Joint constraint: one direction in which a joint acts (docs/theory/joints.md, eq. 1).
 ///
 ///   u + give l  = target   where  lower < l < upper,
 ///               >= target  where  l = lower,   <= target  where  l = upper;
 ///
-///   u: the velocity of the one body against the other along it, after the step
+///   u: relative velocity of the two bodies along it, after the step
 ///
-/// Held: no limits; compliance is a tiny share of its inverse effective mass about the previous
-/// impulse (joints.md, eq. 3). Stop: it only pushes. Dry friction: target 0 between the limits.
-/// Spring and damper: `give` is their velocity per impulse.
+/// Held: no limits; the compliance is a tiny share of the inverse effective mass, about the
+/// previous impulse (joints.md, eq. 3). Stop (joint limit): it only pushes. Dry friction: target 0
+/// between the limits. Spring and damper: `give` is their velocity per impulse.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -28,20 +28,20 @@ struct JointRow {
   Num A;             ///< Inverse effective mass along it [1/kg].
   Num l[1];          ///< Impulse [N s].
   Num rebound;       ///< Rebound speed of an impact at a stop [m/s]; 0: no rebound.
-  bool compliant;    ///< `give` is the compliance of eq. 3, not that of a spring.
+  bool compliant;    ///< `give` is the compliance of eq. 3, not of a spring.
   int link_count;
   Link<Num, 1> links[2];
 
   struct Branch {
     Mask inside;  ///< Between its limits.
     Num beyond;   ///< -1 below, 1 above, 0 between them.
-    Num impulse;  ///< At the limit that it is beyond.
+    Num impulse;  ///< Limit that applies beyond it.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     return !Any(Abs(a.beyond - b.beyond) > Num::Splat(0.5));
   }
 
-  /// All but the links, as `pick` takes it out of another row.
+  /// Copies another row without its links, each value through `pick`.
   template <class Other, class F>
   TAUT_INLINE void TakeLaw(const JointRow<Other>& from, const F& pick) noexcept {
     live = pick(from.live);
@@ -51,8 +51,8 @@ struct JointRow {
     rebound = pick(from.rebound);
     compliant = from.compliant;
   }
-  /// Of a displacement: what is held stays as it is, springs and friction are none, and a stop's
-  /// other side stays free.
+  /// Converts the row to displacements: held rows stay closed, springs and friction vanish, and the
+  /// free side of a stop stays free.
   void Hold() noexcept {
     const Num zero = Num::Splat(0.0);
     auto free = upper < Num::Splat(kNoLimit);
@@ -90,7 +90,7 @@ struct JointRow {
   void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
                  LinearLaw<Num, 1>& out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
-    // A held row's own compliance serves as e: the step solves its law.
+    // The compliance of a held row serves as e, so the Newton step solves its law.
     const Num soft = e * A;
     out.A[0][0] = Select(b.inside, compliant ? Max(give, soft) : give + soft, one);
     out.S[0][0] = Select(b.inside, one, zero);
@@ -104,7 +104,7 @@ struct JointRow {
   }
   void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], lower), upper); }
 
-  /// Whether the stop rebounds; its speed is computed beforehand (impacts.inl).
+  /// Returns whether the stop rebounds; its speed is computed beforehand (impacts.inl).
   bool ExpectRebound(Num) const noexcept { return Any(rebound > Num::Splat(0.0)); }
   Mask Rebound(const Num*, const Num* l_now, Mask lanes, bool) noexcept {
     const Num zero = Num::Splat(0.0);

@@ -1,8 +1,9 @@
-/// How a constraint acts on bodies: its links.
+/// Links of constraints to bodies: Jacobians and inverse masses, the factors of the Delassus
+/// operator W = J M^-1 J^T.
 ///
-/// A constraint of R rows has velocities u = sum over its links of J (v, w) and impulses l, one a
-/// row. A link is the part of J that belongs to one body, with that body's inverse mass worked in.
-/// The same text serves all lanes of a group and one lane by itself (simd::Lane).
+/// A constraint of R rows has velocities u = sum over its links of J (v, w) and impulses l, one per
+/// row. A link is one body's part of J, together with the inverse mass. The same code serves all
+/// lanes of a group and a single lane (simd::Lane).
 #pragma once
 
 #include "simd/vec3.h"
@@ -11,7 +12,7 @@ namespace taut::sim {
 
 using simd::V3;
 
-/// Slower rebounds are lost in what a solve leaves over [m/s].
+/// Slower rebounds are below the residual of a solve [m/s].
 inline constexpr double kLeastRebound = 1e-9;
 
 template <class Num>
@@ -21,12 +22,12 @@ template <class Num, int R>
 struct Link {
   int body;
   Num inv_mass;     ///< [1/kg]
-  V3<Num> lin[R];   ///< Of each row: its direction,
-  V3<Num> ang[R];   ///< its lever about the centre of mass [m],
-  V3<Num> turn[R];  ///< and inverse inertia times that: spin per impulse [rad/s per N s].
+  V3<Num> lin[R];   ///< Per row: direction,
+  V3<Num> ang[R];   ///< lever about the center of mass [m],
+  V3<Num> turn[R];  ///< and inverse inertia times lever: spin per impulse [rad/s per N s].
 };
 
-/// Velocity of a body: of its centre of mass, and its spin.
+/// Velocity of a body's center of mass, and its spin.
 template <class Num>
 struct Twist {
   V3<Num> v, w;
@@ -48,7 +49,7 @@ TAUT_INLINE void Push(const Link<Num, R>& link, const Num* l, V3<Num>& v, V3<Num
   }
 }
 
-/// c += J_a M^-1 J_b^T, of two links to one body; row by row.
+/// c += J_a M^-1 J_b^T, for two links to one body, row by row: a block of the Delassus operator.
 template <class Num, int A, int B>
 TAUT_INLINE void AddCoupling(const Link<Num, A>& a, const Link<Num, B>& b, Num* c) noexcept {
   for (int i = 0; i < A; ++i) {
@@ -58,7 +59,7 @@ TAUT_INLINE void AddCoupling(const Link<Num, A>& a, const Link<Num, B>& b, Num* 
   }
 }
 
-/// A law near some u and l: the change dl of its impulses that Newton's method asks for satisfies
+/// Linearized law near some u and l: Newton's change dl of its impulses satisfies
 /// (docs/theory/contact.md, eq. 18)
 ///   A dl + S du = r,   du: change of its velocities.
 template <class Num, int R>
@@ -66,7 +67,8 @@ struct LinearLaw {
   Num A[R][R], S[R][R], r[R];
 };
 
-/// How many rows a constraint has: kRows, or, where that is the most that one may have, `rows`.
+/// Returns the number of rows of a constraint: its `rows` if kRows is only an upper bound, else
+/// kRows.
 template <class Law>
 TAUT_INLINE constexpr int RowsOf(const Law& law) noexcept {
   if constexpr (requires { law.rows; }) {
@@ -76,19 +78,20 @@ TAUT_INLINE constexpr int RowsOf(const Law& law) noexcept {
   }
 }
 
-/// What a kind of constraint must offer for the solver. `u`: velocities, `l`: impulses, one a row.
+/// Functions that the solver requires of a kind of constraint. `u`: velocities, `l`: impulses, one
+/// per row.
 ///
-///   Project      l' = P(center - u / (e w)): the law with the compliance e (a share of its own
-///                inverse masses w) about `center`. Its fixed points are the law's solutions.
-///   Derivative   -dl'/du of Project on that branch; with `frozen`, of ProjectFrozen.
-///   ProjectFrozen  the same with what makes the law not convex kept at `l0` (the radius of
-///                Coulomb's cone): the gradient of a convex function that equals Project at u0.
-///   Stiffen      makes a derivative larger where Newton's steps go too far.
-///   BranchOf     the branch of l = P(l - u / w) that u and l are on; on it:
+///   Project      l' = P(center - u / (e w)): the law with the compliance e (a share of its
+///                inverse masses w), centered at `center`. Its fixed points solve the law.
+///   Derivative   -dl'/du of Project on that branch.
+///   ProjectFrozen  Project with its non-convex part frozen at `l0` (radius of Coulomb's cone):
+///                gradient of a convex function that equals Project at u0.
+///   Stiffen      enlarges a derivative where Newton's steps would be too long.
+///   BranchOf     branch of l = P(l - u / w) at u and l; on this branch:
 ///   Linearize    Newton's equations, with the compliance e; or Step, their solution,
-///   Residual     how far u and l are from the law [m/s].
+///   Residual     distance of u and l from the law [m/s].
 ///   SolveAlone   impulses that satisfy the law if nothing else changes.
-///   Clamp        impulses nearby that the law admits (no pull, inside the cone).
+///   Clamp        nearby admissible impulses (no pull, inside the cone).
 template <class K>
 concept ConstraintLaw = requires(const K k, const typename K::Number* u, typename K::Number* l,
                                  typename K::Number e, typename K::Branch branch,

@@ -1,11 +1,12 @@
-/// A kind of constraint: dry friction of a ball joint against turns about all axes
-/// (docs/theory/joints.md, eq. 10). Three rows at right angles to each other:
+/// Dry friction of a ball joint, a constraint on rotation about all axes (docs/theory/joints.md,
+/// eq. 10). Three orthogonal rows:
 ///
 ///   |l| <= limit,   and u = 0 or l = -limit u / |u|
 ///
-///   u: the turn of the one body against the other after the step, l: its impulses
+///   u: relative angular velocity of the bodies after the step, in the rows' units; l: impulses
 ///
-/// The limit is one of the length: the same about every axis, whatever the rows' directions.
+/// The limit applies to the length of l: it is the same about every axis, for any directions of the
+/// rows.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -18,15 +19,15 @@ struct TurnFriction {
   static constexpr int kRows = 3;
 
   Num limit;     ///< Of the impulse [N s], > 0.
-  Num w, inv_w;  ///< A bound of the inverse effective mass [1/kg], [kg].
-  Num A[3][3];   ///< All of that [1/kg].
+  Num w, inv_w;  ///< Upper bound of the inverse effective mass [1/kg], [kg].
+  Num A[3][3];   ///< Inverse effective mass [1/kg].
   int link_count;
   Link<Num, 3> links[2];
 
   struct Branch {
     MaskOf<Num> slides;
-    Num s[3];    ///< Where it slides: the direction of its impulse,
-    Num shrink;  ///< and the limit / the length of what reaches beyond it; else 1.
+    Num s[3];    ///< Sliding: direction of its impulse,
+    Num shrink;  ///< and limit / length of the vector outside of it; else 1.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     if (Any(a.slides) != Any(b.slides)) return false;
@@ -45,7 +46,7 @@ struct TurnFriction {
     return Reach(u, center, inv_w / e, out);
   }
   void ProjectFrozen(const Num* u, const Num* center, Num e, const Num*, Num* out) const noexcept {
-    Project(u, center, e, out);  // convex as it is
+    Project(u, center, e, out);  // already convex
   }
   void Derivative(const Branch& b, Num e, Num* g) const noexcept {
     Across(b, b.shrink * (inv_w / e), g);
@@ -78,8 +79,9 @@ struct TurnFriction {
     }
   }
 
-  /// Its own solution: l(k) = -(A + k)^-1 q with k = 0 if it may stick, else the k at which it has
-  /// the limit's length. Newton's method on 1 / |l(k)| comes to that from below, in a few steps.
+  /// Solves this constraint alone: l(k) = -(A + k)^-1 q, with k = 0 if it may stick, else the k at
+  /// which l has the limit's length. Newton's method on 1 / |l(k)| approaches it from below, in a
+  /// few steps.
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     static_assert(Num::kLanes == 1);
     constexpr int kMaxIterations = 40;
@@ -108,7 +110,7 @@ struct TurnFriction {
 
  private:
   static Num Square(const Num* x) noexcept { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; }
-  /// out <- what of center - step u the limit admits.
+  /// Projects center - step u to the ball of the limit, into `out`.
   Branch Reach(const Num* u, const Num* center, Num step, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     for (int r = 0; r < 3; ++r) out[r] = center[r] - step * u[r];
@@ -132,7 +134,7 @@ struct TurnFriction {
     }
   }
   /// x <- (A + k)^-1 b, by Cholesky's factors: inverse masses about a thin rod's axis and across it
-  /// differ a millionfold.
+  /// differ by a factor of a million.
   void Solve(Num k, const Num* b, Num* x) const noexcept {
     const Num d0 = A[0][0] + k, l1 = A[1][0] / d0, l2 = A[2][0] / d0;
     const Num d1 = A[1][1] + k - l1 * A[1][0], m = A[2][1] - l2 * A[1][0], l3 = m / d1;

@@ -1,4 +1,4 @@
-/// How the coefficients of two materials become one.
+/// Combination rules for the friction and restitution coefficients of two materials.
 #pragma once
 
 #include <algorithm>

@@ -1,11 +1,11 @@
-/// Biases that a rigid motion can fulfil (docs/theory/contact.md, eq. 12).
+/// Fit of contact biases to a rigid motion (docs/theory/contact.md, eq. 12).
 ///
-/// Points of one body that stick, each with a bias of its own, contradict each other in second
-/// order: closing different gaps turns the body, and turning moves the points along the surface.
-/// No impulses solve that to the last digit, and half of a heap's work would go into trying. So the
-/// biases of contacts that are nearly closed, side by side with the same normal, are replaced by
-/// those of the motion that fits them best: a lift along the normal and two tilts, with what the
-/// tilts do along the surface.
+/// Sticking points of one body with separate biases contradict each other in second order: closing
+/// different gaps turns the body, and turning moves the points along the surface. No impulses solve
+/// that to the last digit, and half of a heap's work would be spent on trying. So the biases of
+/// nearly closed contacts of one patch (same bodies, same normal) are replaced by the biases of the
+/// motion that fits them best: a lift along the normal and two tilts, with the tilts' motion along
+/// the surface.
 #pragma once
 
 #include "math/scalar.h"
@@ -15,12 +15,13 @@
 
 namespace taut::sim {
 
-/// Contacts that close or are pushed out faster than this keep their own bias [m/s].
+/// Contacts that close or are pushed out faster than this keep their bias [m/s].
 inline constexpr double kFittedMPerS = 0.05;
-/// Normals this near are the same (as cosine).
+/// Cosine above which normals are equal.
 inline constexpr double kSameNormal = 0.999;
 
-/// x <- A^-1 x, symmetric positive definite; the lower triangle counts.
+/// Computes x <- A^-1 x for a symmetric positive definite A; reads and overwrites its lower
+/// triangle.
 template <class Num, int N>
 TAUT_INLINE void SolveSymmetric(Num (&a)[N][N], Num (&x)[N]) noexcept {
   for (int k = 0; k < N; ++k) {
@@ -38,12 +39,14 @@ TAUT_INLINE void SolveSymmetric(Num (&a)[N][N], Num (&x)[N]) noexcept {
   }
 }
 
-/// The contacts of one patch: those with `share` 1, all between the same two bodies. `n`, `t1`,
-/// `t2`: the patch's directions; `most`: by so much a bias may change [m/s], or none does.
+/// Fits the biases of one patch: the contacts with `share` 1, all between the same two bodies. `n`,
+/// `t1`, `t2`: the patch's directions; `most`: largest change of a bias [m/s]; if one would change
+/// more, none changes.
 template <class Num, int kLinks, class Share>
 void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const V3<Num>& t1,
               const V3<Num>& t2, const Share& share, double most) noexcept {
-  // Of the least squares' matrix, whose largest entries are about 1: picks the smallest motion.
+  // Regularization of the least-squares matrix, whose largest entries are about 1: selects the
+  // smallest motion.
   constexpr double kTiny = 1e-9;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   Num number = zero, reach = zero;
@@ -96,8 +99,8 @@ void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const
   }
 }
 
-/// The contacts [0, count) are all between the same two bodies; in `lanes`. Patch by patch, each
-/// begun by the first contact that is in none yet. `most`: see FitPatch.
+/// Fits the biases of the contacts [0, count), all between the same two bodies, in `lanes`. Patch
+/// by patch, each started by the first contact without a patch. `most`: see FitPatch.
 template <class Num, int kLinks, class M>
 void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes,
                double most = kFittedMPerS) noexcept {
@@ -127,9 +130,10 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes,
   }
 }
 
-/// A body's contacts with what does not move, in several directions: jammed in a groove, it sticks
-/// with more rows than it has motions. Where the motion that fits best misses nearly nothing, the
-/// biases become its own (docs/theory/contact.md, eq. 12b).
+/// Makes the biases of a body's contacts with static geometry consistent, if they have several
+/// directions: jammed in a groove, a body sticks with more rows than it has degrees of freedom.
+/// Where the best-fitting motion deviates by less than kDisagreementMPerS, its biases replace
+/// theirs (docs/theory/contact.md, eq. 12b).
 template <class Num, class M>
 [[gnu::noinline]] void AgreeBiases(Contact<Num, 1>* contacts, int count, M lanes) noexcept {
   constexpr double kTiny = 1e-9, kNearlyClosed = 10 * kDisagreementMPerS;

@@ -1,6 +1,6 @@
-/// Where friction is more than two coefficients a pair (friction.h): from wide numbers to scalar
-/// code and back, before contacts get their equations. Not inlined: models without it must not pay
-/// for it in registers.
+/// Evaluation of friction laws beyond two coefficients per pair (friction.h): from wide numbers to
+/// scalar code and back, before the contact equations are set up. Not inlined, so that models
+/// without such laws do not pay for it in registers.
 #pragma once
 
 #include "sim/contacts/friction.h"
@@ -16,7 +16,7 @@ template <class Num>
 TAUT_INLINE void Put(const double from[3], int lane, V3<Num>& out) noexcept {
   out.x.Set(lane, from[0]), out.y.Set(lane, from[1]), out.z.Set(lane, from[2]);
 }
-/// out += sign (v + w x arm), in one lane.
+/// Adds sign (v + w x arm) to `out`, in one lane.
 template <class W>
 TAUT_INLINE void AddPointVelocity(const V3<W>& v, const V3<W>& w, int lane, const double arm[3],
                                   double sign, double out[3]) noexcept {
@@ -28,8 +28,8 @@ TAUT_INLINE void AddPointVelocity(const V3<W>& v, const V3<W>& w, int lane, cons
   }
 }
 
-/// Coefficients and directions of the contact `c` of a lane, in which it is number `at`: of all
-/// lanes, or alone. `bodies`: of its links.
+/// Computes the coefficients and directions of the contact `c` of a lane. `at`: the contact's lane
+/// in `Num`, or 0 if `Num` is of one lane. `bodies`: of its links.
 template <class W, class Num, int kLinks>
 [[gnu::noinline]] void AskFriction(const View& m, const Rows<W>& s, const Group& g,
                                    const Scratch<W>& work, const int (&bodies)[kLinks],
@@ -57,7 +57,7 @@ template <class W, class Num, int kLinks>
   Take(c.links[0].lin[0], at, asked.normal);
   Take(memory.force, at, asked.force);
   FrictionOf(m, asked);
-  // A coefficient that is no number would go unseen, as a cone that holds everything.
+  // A NaN coefficient would go unnoticed, as a cone without limit.
   if (asked.lost) s.mom[bodies[0]].x.Set(lane, __builtin_nan(""));
   c.static_friction.Set(at, asked.static_friction);
   c.kinetic_friction.Set(at, asked.kinetic_friction);
@@ -69,7 +69,7 @@ template <class W, class Num, int kLinks>
   Put(asked.across, at, c.links[0].lin[2]);
 }
 
-/// The same of a contact with the world, in all lanes that have it.
+/// Evaluates a contact with the world, in all lanes that have it.
 template <class W>
 [[gnu::noinline]] void AskFrictions(const View& m, const Rows<W>& s, const Group& g,
                                     const Scratch<W>& work, int body,
@@ -79,8 +79,8 @@ template <class W>
   }
 }
 
-/// What `ContactPoint::FinishMasses` takes for 1: squares of the tangents' lengths. A lane without
-/// directions keeps its bits.
+/// Corrects the inverse masses, where `ContactPoint::FinishMasses` assumes tangents of length 1. A
+/// lane without directions keeps its bits.
 template <class Num, int kLinks>
 [[gnu::noinline]] void FinishDirected(Contact<Num, kLinks>& c) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -94,7 +94,7 @@ template <class Num, int kLinks>
   }
   c.wt = c.one_direction ? c.w11 : Max(c.w11, c.w22) + Abs(c.w12);
   c.inv_wt = one / c.wt;
-  // Impulses along the tangents are their lengths times those of the law.
+  // The law's impulses are impulses along the tangents divided by their lengths.
   c.l[1] = Select(long1 > zero, c.l[1] / Select(long1 > zero, long1, one), zero);
   c.l[2] = Select(long2 > zero, c.l[2] / Select(long2 > zero, long2, one), zero);
 }

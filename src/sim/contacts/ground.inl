@@ -1,5 +1,5 @@
-/// Where shapes touch height fields and meshes (docs/theory/ground.md, section 4). Each is a
-/// partner of its own for every shape, and each lane looks for itself.
+/// Contacts of shapes with height fields and meshes (docs/theory/ground.md, section 4). Every pair
+/// of a shape and a surface has a clearance; each lane is tested in scalar code.
 #pragma once
 
 #include "sim/contacts/shape_pairs.inl"
@@ -8,8 +8,8 @@
 
 namespace taut::sim {
 
-/// Lanes in which a rod is where it was found to have no contact but at ends that other shapes
-/// have, or hardly has moved from there. A bound of rounding is in the slack.
+/// Returns the lanes in which a rod is near a place where it had no contact except at ends that
+/// other shapes cover. The slack contains a bound of rounding.
 template <class W>
 TAUT_INLINE MaskOf<W> IsQuiet(const Rows<W>& s, const Scratch<W>& work, int kept,
                               const ShapeTable& shape, W slack_m, W margin) noexcept {
@@ -33,7 +33,7 @@ void KeepQuiet(const Rows<W>& s, int number, int lane, const NearParts& kept) no
   s.quiet_limit[number].Set(lane, kept.between.count == 0 ? kept.limit_m : 0.0);
 }
 
-/// Of a shape and ground, in the lanes in which it may be `near`.
+/// Tests a shape against ground, in the lanes in which it may be `near`.
 template <class W, class M>
 void LookAtGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                   double step_s, M near, W margin, SlotFiller<W>* slots,
@@ -71,8 +71,8 @@ void LookAtGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& w
   }
 }
 
-/// Of a body's shapes and ground, pairs [first, end): what touches is looked at in each step, all
-/// else when it may have come as near. Each lane by itself.
+/// Finds contacts of a body's shapes with ground, pairs [first, end), in each lane separately:
+/// touching pairs in each step, others when their clearance may be used up.
 template <class W>
 void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int first,
                    int end, double step_s, W since_last, SlotFiller<W>* slots,

@@ -1,3 +1,4 @@
+// Contacts of a shape with the union of adjacent terrain boxes.
 #include "sim/contacts/joined_boxes.h"
 
 #include "sim/geometry/convex.h"
@@ -5,17 +6,17 @@
 namespace taut::sim {
 namespace {
 
-/// Nearer than this a place of one box is one of its neighbour, too [m].
+/// Distance below which a point of one box belongs to its neighbor, too [m].
 constexpr double kSamePlaceM = kJoinedM;
-/// To a place between the ends of a rod another box is nearer from so much on, and boxes go on if
-/// they do so far, in radii.
+/// Difference of distance above which another box counts as nearer to a point between the ends of a
+/// rod, and length along which boxes must continue, in radii.
 constexpr double kNearer = 1e-9, kStraightOn = 1e-3;
-/// From this cosine on a normal is that of a face.
+/// Cosine above which a normal is the normal of a face.
 constexpr double kFace = 0.999;
 /// Cosine tolerance of faces in the same plane, 1e-6 rad.
 constexpr double kLevelFace = 1.0 - 5e-13;
-/// Where a box's face is cut by another's side a point may be aside by so much, in sizes of both;
-/// and boxes go on if they do so for so many times that.
+/// Lateral tolerance of points where a box's face is clipped by another's side, in sizes of both;
+/// and length along which boxes must continue, in this tolerance.
 constexpr double kCutAside = 2e-5, kSteps = 10.0;
 
 double DistanceOf(const BoxShape& box, const Vec3& p) noexcept {
@@ -36,7 +37,7 @@ Vec3 PlaceOf(const TouchPoint& t) noexcept {
 /// normal.
 constexpr double kIntoGround = 1e-2, kIntoGroundOfRod = 1e-7;
 
-/// Whether other ground covers a point of a box and its neighborhood.
+/// Returns whether other ground covers a point of a box and its neighborhood.
 bool IsUnderGround(const ShapeTable& own, const SeamContact& contact, double same_m) noexcept {
   const SeamSlack slack{0.0, kIntoGround};
   if (!IsCovered(own.seams, contact.place, contact.normal, slack, same_m)) return false;
@@ -55,7 +56,7 @@ bool IsUnderGround(const ShapeTable& own, const SeamContact& contact, double sam
   return true;
 }
 
-/// A point of a rod's centre line.
+/// A point of a rod's centerline.
 struct Station {
   Vec3 center;
   bool is_end;
@@ -67,9 +68,10 @@ Station StationOf(const RoundShape& round, const TouchPoint& t) noexcept {
   return {Load(t.point) + (0.5 * t.gap_m + round.radius_m) * Load(t.normal), false};
 }
 
-/// Whether the way from the place to the point is not the shortest: some box that has the place,
-/// too, is nearer. All of the straight line from there to that one's nearest place is in it. Of
-/// boxes that are equally near to an end, the first has the contact.
+/// Returns whether another box that contains the place is nearer to the rod's point: then the way
+/// from the place to the point is not the shortest. The straight line from there to the nearest
+/// place of that other box lies inside it. Of boxes that are equally near to an end, the first has
+/// the contact.
 bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Station& station,
               double radius_m, bool* shared) noexcept {
   const ShapeTable& own = shapes[number];
@@ -89,8 +91,8 @@ bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Sta
   return hidden;
 }
 
-/// Whether boxes continue in the plane of a contact, in a tangential direction; `by_face`: with one
-/// of their faces.
+/// Returns whether boxes continue in the plane of a contact, in a tangential direction; `by_face`:
+/// with one of their faces.
 bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& normal,
             const Vec3& way, double same_m = kSamePlaceM, bool by_face = false) noexcept {
   const ShapeTable& own = shapes[number];
@@ -109,7 +111,8 @@ bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3&
   return false;
 }
 
-/// The normal of that face of a box which looks most along a direction; false if none does nearly.
+/// Finds the normal of the face of a box along a direction. Returns false if no face is nearly
+/// normal to it.
 bool FaceAlong(const BoxShape& box, const Vec3& direction, Vec3* normal) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     const double along = Dot(direction, AxisOf(box, axis));
@@ -119,15 +122,16 @@ bool FaceAlong(const BoxShape& box, const Vec3& direction, Vec3* normal) noexcep
   return false;
 }
 
-/// Along a rod, too, contacts are where it is nearest: what is held by both ends of a straight
-/// stretch, over boxes that go on in one plane, has none of its own.
+/// Marks the contacts of a rod with the union of boxes. Along a rod, too, contacts are local minima
+/// of the distance: a point that both ends of a straight stretch support, over boxes that continue
+/// in one plane, is no contact.
 void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* points,
                int count) noexcept {
   const double r = round.radius_m;
   const Vec3 along = Load(round.to) - Load(round.from);
   for (int i = 0; i < count; ++i) {
     JoinedPoint& p = points[i];
-    // So deep in one box it has a way out of that one's own.
+    // Deep inside a box, its own way out counts.
     if (p.touch.gap_m <= -r) continue;
     const Station station = StationOf(round, p.touch);
     const Vec3 place = PlaceOf(p.touch), normal = Load(p.touch.normal);
@@ -152,7 +156,7 @@ void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* p
   }
 }
 
-/// Whether boxes go on all around a place on a face of one of them.
+/// Returns whether boxes continue in all directions around a place on a face of one of them.
 bool IsFlat(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& up, double step_m,
             double same_m) noexcept {
   const BoxShape& own = shapes[number].shape_P.box;
@@ -174,8 +178,9 @@ bool IsCorner(const Convex& body, const Vec3& p, double same_m) noexcept {
   return false;
 }
 
-/// Where boxes go on all around in one plane, a body with flat faces that moves has its corners
-/// only, along the normal of that plane; and no way out of one of them leads into another.
+/// Marks the contacts of a body with flat faces. Where boxes continue in all directions in one
+/// plane, only its corners touch, along the normal of that plane; and no way out of one box may
+/// lead into another.
 void MarkFlat(const Convex& body, double size_m, const ShapeTable* shapes, JoinedPoint* points,
               int count) noexcept {
   for (int i = 0; i < count; ++i) {

@@ -11,19 +11,20 @@
 
 namespace taut::sim {
 
-/// A point where a shape touches a box of the world.
+/// A contact point of a shape with a box of the world.
 struct JoinedPoint {
   TouchPoint touch;
-  int box;  ///< Among the shapes.
+  int box;  ///< Index among the shapes.
   bool kept;
 };
 
-/// Says which of all points of a shape, given in W, are contacts of the union of the boxes, and
-/// moves them to the shape's surface, as where it meets ground.
+/// Marks the points of a shape, given in W, that are contacts with the union of the boxes, and
+/// moves them to the shape's surface, like contacts with ground.
 void MarkKept(const Shape& shape, const ShapeTable* shapes, JoinedPoint* points,
               int count) noexcept;
 
-/// Of points that close (passing.h), a bit for each that arrives where a box beside `box` goes on.
+/// Returns a bit mask of the closing points (passing.h) that arrive where a box adjacent to `box`,
+/// or other ground, continues.
 uint32_t ArrivesBeside(const MovingShape& a, const ShapeTable* shapes, int box, uint32_t closing,
                        const TouchPoint* points, int count) noexcept;
 

@@ -1,5 +1,5 @@
-/// Contacts of one shape with boxes of the world that touch each other, in one lane: all of its
-/// points first, then those that are contacts of all boxes together (joined_boxes.h).
+/// Contacts of one shape with adjacent boxes of the world, in one lane: first all points, then the
+/// selection of the contacts with the union of the boxes (joined_boxes.h).
 #pragma once
 
 #include "sim/contacts/joined_boxes.h"
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// Shapes of the world that are near a shape, in the order of their pairs.
+/// Shapes of the world near a shape, in the order of their pairs.
 template <class W>
 class NearPairs {
  public:
@@ -30,7 +30,7 @@ class NearPairs {
     if (pair_count_ == kMostJoinedPairs) Flush();
     pairs_[pair_count_++] = &pair;
   }
-  /// Puts what they touch into slots.
+  /// Finds the contacts and stores them in slots.
   void Flush() noexcept {
     bool joined = false;
     for (int i = 0; i < pair_count_; ++i) {
@@ -88,7 +88,7 @@ class NearPairs {
   int pair_count_ = 0;
 };
 
-/// Of a body and a world of few shapes, some of which touch each other.
+/// Finds the contacts of a body with a world of few shapes, some of which touch each other.
 template <class W>
 void CollideJoined(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const BodyPairTable& bodies, W margin, double step_s, SlotFiller<W>* slots,

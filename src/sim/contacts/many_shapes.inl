@@ -1,5 +1,6 @@
-/// Contacts of a body with the world where that has many shapes: each lane by itself looks up those
-/// that are near in the world's tree, and stores a clearance that holds for the others, too.
+/// Broad phase of a body in a world of many shapes: each lane separately searches the bounding
+/// volume hierarchy (BVH) of the world for near shapes, finds their contacts, and stores a
+/// clearance that holds for all others.
 #pragma once
 
 #include "sim/contacts/joined_boxes.inl"
@@ -9,15 +10,16 @@
 
 namespace taut::sim {
 
-/// Looks once at the shapes near a body in one lane, in the order of their pairs. Returns the
-/// clearance: no shape of the world is nearer. `kJoined`: some of them touch each other.
+/// Finds the contacts with the shapes near a body in one lane, in the order of their pairs. Returns
+/// the clearance: no shape of the world is nearer. `kJoined`: some of them touch each other.
 template <bool kJoined, class W>
 double CollideNear(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const BodyPairTable& bodies, double margin, double step_s, int lane,
                    SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const ShapePose at = LanePose(m, s, work, bodies.a, lane);
   const ShapePose world = LanePose(m, s, work, bodies.b, lane);
-  // What touches has a gap below the margin; a bit more, as the gap's last bits may be others.
+  // Touching shapes have a gap below the margin; a bit more, because the last bits of distance and
+  // gap may differ.
   const double touch_m = margin + kContactMarginM;
   double clearance = kLookAheadSteps * margin;
   const int words = (m.tree_shapes + 63) / 64;

@@ -1,4 +1,4 @@
-/// How a contact starts a step: directions, inverse masses, biases, and what it remembers
+/// Initialization of a contact for a step: directions, inverse masses, biases, warm start
 /// (docs/theory/contact.md, sections 1 to 3).
 #pragma once
 
@@ -12,21 +12,21 @@
 
 namespace taut::sim {
 
-/// A contact that is inside may leave at this share of its speed.
+/// Share of its speed at which a penetrating contact may separate.
 inline constexpr double kPushOutShare = 1e-3;
 template <class Num>
 TAUT_INLINE V3<Num> PointVelocity(const V3<Num>& v, const V3<Num>& w, const V3<Num>& arm) noexcept {
   return v + Cross(w, arm);
 }
 
-/// Two unit tangents. With one friction direction the first lies along the sliding velocity that
-/// would result without contact, as Bullet chooses it. Where a plane or friction.inl has given them
-/// (frame >= 0) they stay.
+/// Computes two unit tangents. With one friction direction the first lies along the sliding
+/// velocity without contact, as in Bullet. Tangents given by a plane or friction.inl (frame >= 0)
+/// stay.
 template <class Num, int kLinks>
 TAUT_INLINE void MakeTangents(Contact<Num, kLinks>& c, const V3<Num>& velocity) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
   V3<Num>* const d = c.links[0].lin;
-  // Start from the axis of W that is certainly not along the normal.
+  // Start from an axis of W that is not along the normal.
   const auto steep = Abs(d[0].x) < Num::Splat(0.6);
   V3<Num> t = Select3(steep, V3<Num>{one, zero, zero}, V3<Num>{zero, one, zero});
   t -= Dot(t, d[0]) * d[0];
@@ -40,7 +40,7 @@ TAUT_INLINE void MakeTangents(Contact<Num, kLinks>& c, const V3<Num>& velocity) 
   d[2] = Select3(own, Cross(d[0], t1), d[2]);
 }
 
-/// Levers and inverse masses of one link, whose directions are known.
+/// Computes lever arms and inverse masses of one link, whose directions are known.
 template <class Num>
 TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3<Num>& inv_inertia,
                             const V3<Num>& arm) noexcept {
@@ -52,7 +52,7 @@ TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3
   }
 }
 
-/// The same with the directions z, x, y: with the same bits but for zeros' signs.
+/// Like FinishLink for the directions z, x, y: the same bits except for signs of zeros.
 template <class Num>
 TAUT_INLINE void FinishUprightLink(Link<Num, 3>& link, int body, Num inv_mass, const S3<Num>& i,
                                    const V3<Num>& arm) noexcept {
@@ -70,7 +70,7 @@ TAUT_INLINE void FinishUprightLink(Link<Num, 3>& link, int body, Num inv_mass, c
                   i.zz * arm.x - i.xz * arm.z};
 }
 
-/// Velocity along one of a contact's directions.
+/// Returns the velocity along one of a contact's directions.
 template <class Num, int kLinks>
 TAUT_INLINE Num RowVelocity(const Contact<Num, kLinks>& c, int row, const V3<Num>& va,
                             const V3<Num>& wa, const V3<Num>& vb, const V3<Num>& wb) noexcept {
@@ -82,8 +82,9 @@ TAUT_INLINE Num RowVelocity(const Contact<Num, kLinks>& c, int row, const V3<Num
   return u;
 }
 
-/// Fills in what the finding of a contact left open. `a`, `b`: its bodies, with their numbers and
-/// inverse masses; b only where there are two links.
+/// Completes a detected contact: directions, links, biases, coefficients, and the warm start from
+/// `memory`. `a`, `b`: its bodies, with their numbers and inverse masses; `b` only if there are two
+/// links.
 template <class Num, int kLinks>
 TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory,
                                 const BodyWork<Num>& a, int body_a, Num inv_mass_a,
@@ -110,8 +111,8 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   }
   c.FinishMasses();
 
-  // Approaching: no further than to touch. Inside: out again, no faster than this step's forces
-  // take back, so that nothing flies; what that leaves goes out by displacements
+  // Approaching: no further than to contact. Penetrating: outwards, but no faster than this step's
+  // forces take back, so that nothing flies off; the rest is left to position projection
   // (solve/push_out.inl).
   const Num before = c.before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
   const Num change = before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), kick = Max(change, zero);
@@ -138,7 +139,8 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   if (c.directed) FinishDirected(c);
 }
 
-/// Whether a contact slid in this step: decides its coefficient in the next. `u`: its velocities.
+/// Determines whether a contact slid in this step, which selects its coefficient in the next. `u`:
+/// its velocities.
 template <class Num, int kLinks>
 TAUT_INLINE void JudgeSlip(Contact<Num, kLinks>& c, const Num* u) noexcept {
   const Num u1 = u[1] + c.bias[1], u2 = u[2] + c.bias[2];
@@ -147,7 +149,7 @@ TAUT_INLINE void JudgeSlip(Contact<Num, kLinks>& c, const Num* u) noexcept {
   c.slip = Select(c.static_friction > c.kinetic_friction, slip, c.slip);
 }
 
-/// The force of the impulses found.
+/// Returns the impulse of a contact in W.
 template <class Num, int kLinks>
 TAUT_INLINE V3<Num> ImpulseOf(const Contact<Num, kLinks>& c) noexcept {
   const V3<Num>* const d = c.links[0].lin;

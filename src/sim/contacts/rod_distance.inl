@@ -1,5 +1,5 @@
-/// Distance of spheres and capsules in all lanes at once. A bound only decides when to look closer,
-/// so it need not have the bits of shape_contacts.cpp.
+/// Lower bound of the distance of spheres and capsules, in all lanes at once. It only decides
+/// whether to compute contacts, so its bits may differ from shape_contacts.cpp.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -13,7 +13,7 @@ V3<W> ShapeCenter(const View& m, const Rows<W>& s, const Scratch<W>& work, int s
   return t.body < m.body_count ? s.pos[t.body] + p : p;
 }
 
-/// The centre line of a round shape in W: centre -+ half.
+/// The centerline of a round shape in W: center -+ half.
 template <class W>
 struct CenterLine {
   V3<W> center, half;
@@ -30,8 +30,8 @@ CenterLine<W> CenterLineOf(const View& m, const Rows<W>& s, const Scratch<W>& wo
   return {ShapeCenter(m, s, work, shape), R * simd::Splat3<W>(half)};
 }
 
-/// A lower bound of the distance of two centre lines: that of their nearest points, but for what
-/// nearly parallel ones lose to rounding.
+/// Returns a lower bound of the distance of two centerlines: the distance of their nearest points
+/// minus the rounding error of nearly parallel lines.
 template <class W>
 W LineDistance(const CenterLine<W>& a, const CenterLine<W>& b) noexcept {
   constexpr double kRounding = 1e-7;
@@ -40,7 +40,8 @@ W LineDistance(const CenterLine<W>& a, const CenterLine<W>& b) noexcept {
   const W aa = Max(Dot(a.half, a.half), tiny), bb = Max(Dot(b.half, b.half), tiny);
   const W ab = Dot(a.half, b.half), ad = Dot(a.half, d), bd = Dot(b.half, d);
   const auto clamp = [&](W x) { return Max(Min(x, one), -one); };
-  // On both lines from -1 to 1: first s without regard to b's ends, then t, then s for that t.
+  // Parameters of both lines from -1 to 1: first s without regard to b's ends, then t, then s for
+  // that t.
   W s = clamp((ab * bd - ad * bb) / Max(aa * bb - ab * ab, tiny));
   const W t = clamp((ab * s + bd) / bb);
   s = clamp((ab * t - ad) / aa);

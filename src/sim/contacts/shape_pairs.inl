@@ -1,4 +1,5 @@
-/// A pair of shapes in one lane: from wide numbers to the scalar code of shape_contacts.h.
+/// Narrow phase of a pair of shapes in one lane: from wide numbers to the scalar code of
+/// shape_contacts.h.
 #pragma once
 
 #include "sim/contacts/joined_boxes.h"
@@ -7,7 +8,7 @@
 
 namespace taut::sim {
 
-/// Where the body of a shape is in one lane.
+/// Returns the pose of a body in one lane.
 template <class W>
 ShapePose LanePose(const View& m, const Rows<W>& s, const Scratch<W>& work, int body,
                    int lane) noexcept {
@@ -23,8 +24,8 @@ ShapePose LanePose(const View& m, const Rows<W>& s, const Scratch<W>& work, int 
   return pose;
 }
 
-/// The points of a pair whose gap is below `margin`: how many `out` (kMaxPointsPerPair entries)
-/// holds afterwards.
+/// Finds the points of a pair whose gap is below `margin`. `out` has kMaxPointsPerPair entries.
+/// Returns the number of points.
 template <class W>
 int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const ShapePairTable& pair,
               int lane, double margin, TouchPoint* out) noexcept {
@@ -33,7 +34,7 @@ int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const Sha
                      LanePose(m, s, work, b.body, lane), margin, out);
 }
 
-/// A lower bound of the distance of a pair.
+/// Returns a lower bound of the distance of a pair.
 template <class W>
 double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane, double enough_m = 1e300) noexcept {
@@ -42,7 +43,7 @@ double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                           LanePose(m, s, work, b.body, lane), enough_m);
 }
 
-/// Both of a shape and ground; `kept`: what was near it, or null.
+/// Both for a shape and ground; `kept`: cache of near parts, or null.
 template <class W>
 int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane, double margin, NearParts* kept,
@@ -63,7 +64,7 @@ double GroundDistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& wor
   return DistanceToGround(round, m.shapes[pair.b].shape_P.surface, enough_m, kept);
 }
 
-/// A shape of a pair with the way of its body through the step.
+/// Returns a shape of a pair with the motion of its body in the step.
 template <class W>
 MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape,
                        int lane) noexcept {
@@ -78,8 +79,8 @@ MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, 
           table.shape_P.kind == ShapeKind::kSurface || table.IsJoined()};
 }
 
-/// Features of a pair that pressed in the step before, a bit each. `first`, `count`: where the
-/// memory of its contacts lies.
+/// Returns a bit mask of the features of a pair that pressed in the previous step. `first`,
+/// `count`: range of its contacts' memory.
 template <class W>
 uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, int lane) noexcept {
   uint32_t features = 0;
@@ -92,8 +93,9 @@ uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, i
   return features;
 }
 
-/// Points of shapes that only pass by each other go (passing.h). What pressed in the step before
-/// stays: things at rest all fall alike before contacts hold them.
+/// Removes points of shapes that only pass by each other (passing.h). Points that pressed in the
+/// previous step stay: bodies at rest all fall alike before contacts hold them. Returns the number
+/// of points.
 template <class W>
 int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
                  const ShapePairTable& pair, int lane, double step_s, int first, int memory,

@@ -8,10 +8,10 @@
 
 namespace taut::sim {
 
-/// Margin of contact detection, in addition to the way of the bodies in a step [m].
+/// Margin of contact detection, in addition to the motion of the bodies in a step [m].
 inline constexpr double kContactMarginM = 1e-5;
 
-/// Distance queries search up to the approach of so many steps like this one.
+/// Distance queries search up to the approach in this many steps like the present one.
 inline constexpr double kLookAheadSteps = 16.0;
 
 /// A detected contact with the world, per lane.
@@ -56,7 +56,7 @@ class SlotFiller {
     }
     used_ += Select(lanes, W::Splat(1.0), W::Splat(0.0));
   }
-  /// The same for one lane. Returns false if the lane has no free slot.
+  /// Like the function above for one lane. Returns false if the lane has no free slot.
   bool Add(const Found<W>& found, int lane) noexcept {
     const int k = static_cast<int>(used_[lane]);
     if (k == capacity_) return false;
@@ -94,7 +94,7 @@ class SlotFiller {
   bool one_direction_;
 };
 
-/// Converts a touch point between a body and a shape that does not move, for one lane of a slot.
+/// Converts a contact point between a body and a static shape, for one lane of a slot.
 template <class W>
 Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, const TouchPoint& t, int body, int lane) noexcept {
@@ -117,9 +117,9 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return found;
 }
 
-/// Stores the points of one pair of shapes in one lane, in the order of their features, without
-/// points that only pass by (passing.h): in the slots of a body if the other body does not move,
-/// else in the lists of touches.
+/// Stores the contact points of one pair of shapes in one lane, in the order of their features,
+/// without points that only pass by (passing.h): in the slots of a body if the other body is
+/// static, else in the lists of touches.
 template <class W>
 TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                            const ShapePairTable& pair, int lane, double step_s, NearParts* kept,

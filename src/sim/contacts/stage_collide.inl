@@ -1,10 +1,10 @@
-/// Stage: where bodies touch the world and each other, at the middle of the step
+/// Stage: collision detection, with the world and between bodies, at the middle of the step
 /// (docs/theory/contact.md, section 7).
 ///
-/// Points against planes are tested in all lanes at once. Everything else hides behind bounds:
-/// a pair of bodies is looked at only when the motion since the last look may have used up the
-/// distance found then, a pair of shapes only when their bounding spheres meet, and then each
-/// lane by itself in scalar code (shape_pairs.inl).
+/// Points against planes are tested in all lanes at once. All other pairs pass a broad phase first:
+/// a pair of bodies is tested only when the motion since the last distance query may have used up
+/// its clearance, a pair of shapes only when their bounding spheres meet. The narrow phase then
+/// runs in each lane separately, in scalar code (shape_pairs.inl).
 #pragma once
 
 #include "sim/bodies/motion.inl"
@@ -18,8 +18,8 @@
 
 namespace taut::sim {
 
-/// How far turning may take any point of each body in this step, and may have taken it since the
-/// middle of the step before.
+/// Computes bounds of the displacement of any point of each body by rotation, in this step and
+/// since the middle of the previous step.
 template <class W>
 void BoundTurns(const View& m, Scratch<W>& work, W h, W since_last) noexcept {
   for (int body = 0; body <= m.body_count; ++body) {
@@ -76,7 +76,7 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h, int b
   }
 }
 
-/// A lower bound of the distance between all shapes of two bodies, in `lanes`.
+/// Returns a lower bound of the distance between all shapes of two bodies, in `lanes`.
 template <class W, class M>
 W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
                    const BodyPairTable& bodies, M lanes) noexcept {
@@ -105,7 +105,7 @@ W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return least;
 }
 
-/// The same for all lanes in which the bounding spheres meet.
+/// Finds the contacts of a pair in all lanes in which the bounding spheres meet.
 template <class W>
 void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const ShapePairTable& pair, W margin, W center_distance2, double step_s,
@@ -120,7 +120,7 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   }
 }
 
-/// Whether two bodies may touch in some lane, and if so how far each may reach.
+/// Returns whether two bodies may touch in some lane; computes how far each may reach.
 template <class W>
 bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h, W since_last,
               W& margin) noexcept {

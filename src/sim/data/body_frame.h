@@ -1,4 +1,4 @@
-/// Where a body's own frame is while a model is laid out.
+/// Body frames during the compilation of a model: pose of each principal frame in W.
 #pragma once
 
 #include <cmath>

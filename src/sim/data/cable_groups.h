@@ -12,7 +12,8 @@ namespace taut::sim {
 inline constexpr double kSoftSpring = 0.1;
 /// Threshold of (w h)^2 above which a damped stiff cable gets the second stage.
 inline constexpr double kUnresolvedSpring = 4.0;
-/// Largest number of bodies of a group whose matrix always fits (solve/memory.h).
+/// Largest number of bodies of a group; its matrix always fits (LaneMemory::kFullBodies in
+/// memory.h).
 inline constexpr int kMostInGroup = 128;
 
 enum GroupKind : uint8_t {
@@ -21,7 +22,8 @@ enum GroupKind : uint8_t {
   kGroupDamped = 4,  ///< A stiff cable that the step does not resolve has a damper.
 };
 
-/// Whether the scheme supports a cable: straight between points of bodies, no direct-current motor.
+/// Returns whether the scheme supports a cable: straight between points of bodies, no
+/// direct-current motor.
 TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   if (cable.wheel_count > 0 || cable.touch >= 0 || cable.span_count > 0) return false;
   if (cable.motor >= 0) return false;
@@ -31,12 +33,12 @@ TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   return true;
 }
 
-/// The groups of a world. Each array has one element per body.
+/// Groups of a world. Each array has one element per body.
 struct CableGroups {
-  int *group, *size;  ///< Lowest body of the group; number of its bodies (at that one);
+  int *group, *size;  ///< Lowest body of the group; number of its bodies (stored at the lowest);
   uint8_t* kind;      ///< bits of GroupKind.
 
-  /// Whether the cables of a body are integrated implicitly.
+  /// Returns whether the cables of a body are implicit in tension and direction.
   TAUT_INLINE bool IsImplicit(int body) const noexcept {
     return (kind[group[body]] & (kGroupStiff | kGroupOther)) == kGroupStiff;
   }
@@ -54,8 +56,8 @@ TAUT_INLINE void ForEachMoved(const View& m, const CableTable& cable, const Move
   }
 }
 
-/// `moves(body)`: whether impulses move it; `stiffness(cable)`: K of (7) [1/s^2]; `damps(cable)`:
-/// whether it has a damper.
+/// Finds the groups. `moves(body)`: whether impulses move it; `stiffness(cable)`: K of (7) [1/s^2];
+/// `damps(cable)`: whether it has a damper.
 template <class Moves, class Stiffness, class Damps>
 TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
                             const Stiffness& stiffness, const Damps& damps,
@@ -102,7 +104,7 @@ TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
     if (K > kSoftSpring / (step_s * step_s)) kind |= kGroupStiff;
     if (K > kUnresolvedSpring / (step_s * step_s) && damps(c)) kind |= kGroupDamped;
     if (m.cables[c].touch >= 0) {
-      // It may later act on any of its rods.
+      // The cable may act on any of its rods later.
       const TouchTable& touch = m.touches[m.cables[c].touch];
       for (int i = 0; i < touch.rod_count; ++i) {
         mark(m.touch_rods[touch.first_rod + i].body, kGroupOther);

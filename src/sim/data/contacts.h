@@ -1,9 +1,9 @@
-/// Contacts while a step runs, and what they remember from step to step (docs/theory/contact.md,
-/// section 7).
+/// Contacts during a step, and their memory for the next one: key, force and slip, for warm starts
+/// (docs/theory/contact.md, section 7).
 ///
-/// A contact of a body with what does not move lies in one of the body's slots: slot k of a lane is
-/// that lane's k-th contact of the body, whatever the other lanes touch. Contacts of two moving
-/// bodies are a list of each lane's own.
+/// A contact of a body with static geometry occupies one of the body's slots: slot k of a lane is
+/// the lane's k-th contact of the body, independent of the other lanes. Contacts of two moving
+/// bodies form a separate list for each lane.
 #pragma once
 
 #include "sim/constraint/contact_point.h"
@@ -14,21 +14,21 @@ namespace taut::sim {
 
 template <class Num, int kLinks>
 struct Contact : ContactPoint<Num, kLinks> {
-  Num key;              ///< Pair and feature: finds the memory again.
-  Num frame;            ///< Contacts with equal numbers have the same directions.
-  Num gap;              ///< At the middle of the step [m].
-  Num deep;             ///< What velocities leave of it for displacements, below 0 [m]; or 0.
-  Num lands;            ///< 1 if it closes faster than this step's forces make it.
-  Num radius;           ///< From the shape's skeleton to its surface [m].
-  bool directed;        ///< In some lane its tangents are not of length 1 (friction.inl).
+  Num key;     ///< Key of a contact (pair and feature): finds its memory in the next step.
+  Num frame;   ///< Contacts with equal numbers have the same directions.
+  Num gap;     ///< At the middle of the step [m].
+  Num deep;    ///< Depth that remains for position projection (contact.md, eq. 7), < 0 [m]; or 0.
+  Num lands;   ///< 1 if it closes faster than this step's forces explain.
+  Num radius;  ///< From the shape's skeleton to its surface [m].
+  bool directed;        ///< In some lane, tangent lengths differ from 1 (friction.inl).
   bool upright;         ///< Its directions are z, x and y, in all lanes.
-  V3<Num> arm[kLinks];  ///< From the centre of mass [m].
+  V3<Num> arm[kLinks];  ///< From the center of mass [m].
   Num static_friction, kinetic_friction;
-  Num patch;  ///< While biases are fitted: in which state it is.
+  Num patch;  ///< Its patch (contact manifold) while biases are fitted.
   Num slip;   ///< 1 if it slides, 0 if it sticks.
 };
 
-/// What a contact remembers of the step before.
+/// Data of a contact that the next step uses: warm start of its force, and whether it slid.
 template <class Num>
 struct ContactMemory {
   V3<Num> force;  ///< [N]; 0 if there was none.
@@ -40,9 +40,9 @@ struct ContactMemory {
   }
 };
 
-/// Two moving shapes that touch in one lane.
+/// Contact of two moving shapes in one lane.
 struct TouchingPair {
-  int pair;  ///< ShapePairTable.
+  int pair;  ///< Index in View::shape_pairs.
   TouchPoint point;
 };
 

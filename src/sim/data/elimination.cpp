@@ -13,7 +13,7 @@ int BitsIn(const uint64_t* row, int words) noexcept {
 bool Has(const uint64_t* row, int i) noexcept { return (row[i / 64] >> (i % 64) & 1) != 0; }
 void Take(uint64_t* row, int i) noexcept { row[i / 64] &= ~(uint64_t{1} << (i % 64)); }
 
-/// Calls f(i) for each bit of a row, rising.
+/// Calls f(i) for each bit of a row, in ascending order.
 template <class F>
 void ForEachBit(const uint64_t* row, int words, F f) noexcept {
   for (int w = 0; w < words; ++w) {
@@ -51,7 +51,8 @@ bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
     place[best] = k;
     lower += least;
     const uint64_t* const row = graph.Row(best);
-    // Those that acted on it act on each other from now on. Its own row stays: the column below.
+    // The neighbors of the eliminated body become neighbors of each other. Its row remains as its
+    // column below the diagonal.
     ForEachBit(row, words, [&](int i) {
       uint64_t* const other = graph.Row(i);
       for (int w = 0; w < words; ++w) other[w] |= row[w];

@@ -1,21 +1,21 @@
-/// The order in which bodies are eliminated from a linear system, and the blocks that this fills.
-/// Scalar code without the standard library, the same for every instruction set.
+/// Minimum degree elimination order of bodies in a sparse linear system, with fill-in. Scalar code
+/// without the standard library, the same for every instruction set.
 #pragma once
 
 #include <stdint.h>
 
 namespace taut::sim {
 
-/// Which 6x6 blocks of a matrix over bodies there are, fill-in included. Bodies are numbered in the
-/// order of elimination.
+/// Pattern of the nonzero 6x6 blocks of a matrix over bodies, fill-in included. Bodies are numbered
+/// in the order of elimination.
 struct BlockPattern {
   int* slot;         ///< [i * count + j]: number of block (i, j), or -1.
-  int* below;        ///< [first_below[k] ...]: rows under the diagonal of column k, rising.
-  int* first_below;  ///< count + 1 of them.
+  int* below;        ///< [first_below[k] ...]: rows under the diagonal of column k, ascending.
+  int* first_below;  ///< count + 1 elements.
   int count, lower_count, block_count;  ///< Bodies; blocks of the lower triangle, which come first.
 };
 
-/// Who acts on whom: a bit a pair of bodies, `words` words a body.
+/// Adjacency matrix of bodies that interact: one bit per pair, `words` words per body.
 struct BodyGraph {
   uint64_t* bits;
   int count, words;
@@ -26,9 +26,9 @@ struct BodyGraph {
   void Join(int i, int j) noexcept;
 };
 
-/// Minimum degree, the lowest number first among equals. Fills `order` (the k-th to be eliminated),
-/// `place` (its inverse) and `pattern`; spends the graph. False if there would be more blocks than
-/// `block_capacity`.
+/// Orders bodies by minimum degree (ties: lowest number first). Fills `order` (the k-th body to
+/// eliminate), `place` (its inverse) and `pattern`; overwrites the graph. Returns false if there
+/// would be more blocks than `block_capacity`.
 bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
                BlockPattern& pattern) noexcept;
 

@@ -1,5 +1,5 @@
-/// A group of worlds that share a register, and the interface between the code that is compiled
-/// once (batch.cpp) and the step that is compiled once an instruction set (step_*.cpp).
+/// Group of worlds that share a SIMD register, and the interface between the code that is compiled
+/// once (batch.cpp) and the step that is compiled once per instruction set (step_*.cpp).
 #pragma once
 
 #include <stddef.h>
@@ -10,17 +10,17 @@
 
 namespace taut::sim {
 
-/// What one lane has to say; see WorldStatus.
+/// Status of one lane; see WorldStatus.
 struct LaneStatus {
   uint32_t bits = 0;
   double first_time_s = 0;
   int body = kWorld, cable = -1, ground = -1;
 };
 
-/// The key of a slot or of a memory that holds nothing. Others: see Tables.
+/// Key of an empty slot or memory. Other keys: see Tables.
 inline constexpr double kNoKey = -1.0;
 inline constexpr BendNumbers<double> kNoBend{kNoKey, 0, 0, 0, 0, 0, {}, {}};
-/// What a contact remembers of having slid (1) or stuck (0) where it did not press.
+/// Slip state (1: slid, 0: stuck) of a contact that did not press.
 inline constexpr double kSlipUnknown = -1.0;
 
 /// N worlds. `rows` is laid out by `Layout`: row i of lane j is rows[i * lanes + j].
@@ -28,22 +28,22 @@ struct Group {
   int lanes = 1;
   int first_world = 0;
   double* rows = nullptr;
-  int* slots_used = nullptr;    ///< Per body: its slots that some lane used in the last step.
-  int touches_used = 0;         ///< The longest lane's list of touches of the last step.
-  int* forced_nodes = nullptr;  ///< Nodes that ever had a force, rising.
+  int* slots_used = nullptr;    ///< Per body: number of slots that some lane used in the last step.
+  int touches_used = 0;         ///< Length of the longest lane's list of touches in the last step.
+  int* forced_nodes = nullptr;  ///< Nodes that ever had a force, ascending.
   int forced_count = 0;
   NearParts* kept =
-      nullptr;          ///< Of pair `BodyPairTable::kept` those of lane j at [kept * lanes + j].
+      nullptr;          ///< Cache of pair `BodyPairTable::kept` in lane j: [kept * lanes + j].
   bool sensed = false;  ///< The kSensed rows belong to the current state. Const readers share it.
   LaneStatus* status = nullptr;  ///< Per lane.
 };
 
 struct StepSettings {
-  int max_linear_solves = 1000;  ///< An island, a step.
+  int max_linear_solves = 1000;  ///< Per island and step.
   double tolerance_m_per_s = 1e-10;
 };
 
-/// One instruction set's step. Scratch is memory of `scratch_bytes`, aligned to 64.
+/// Step functions of one instruction set. Scratch is memory of `scratch_bytes`, aligned to 64.
 struct Kernel {
   int lanes;
   size_t (*scratch_bytes)(const View&);
@@ -52,7 +52,7 @@ struct Kernel {
   void (*sense)(const View&, const Layout&, Group&, void* scratch);
 };
 
-// Those that the build has (cmake/instruction_sets.cmake): TAUT_HAS_AVX2 and the like.
+// Kernels that the build contains (cmake/instruction_sets.cmake): TAUT_HAS_AVX2 etc.
 extern const Kernel kKernelScalar;
 extern const Kernel kKernelNeon;
 extern const Kernel kKernelSimd128;

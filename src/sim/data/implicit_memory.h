@@ -11,30 +11,30 @@ namespace taut::sim {
 /// State of a body during the implicit integration of its island.
 template <class Num>
 struct ImplicitBody {
-  bool turns;             ///< Implicit cables act on it; else it keeps the explicit step.
+  bool turns;             ///< Implicit cables act on it; otherwise it keeps the explicit step.
   Num mass;               ///< [kg]
-  V3<Num> moments;        ///< Principal [kg m^2],
-  V3<Num> inv_moments;    ///< and 1 / them.
+  V3<Num> moments;        ///< Principal moments [kg m^2],
+  V3<Num> inv_moments;    ///< and their inverses.
   V3<Num> force, torque;  ///< All other impulses of the whole step [N s], [N m s].
   V3<Num> x, v, w, L;     ///< State at the start of the stage; w, L: in W.
   simd::Q4<Num> q;
-  S3<Num> inertia;     ///< In W, at the start of the stage; at the middle unless it turns.
-  Num share;           ///< Of `force` and `torque` that acts within the stage.
+  S3<Num> inertia;     ///< In W, at the start of the stage; at its middle if not `turns`.
+  Num share;           ///< Share of `force` and `torque` that acts within the stage.
   Num ahead, behind;   ///< Velocity at the end = ahead * unknown + behind * start.
   V3<Num> half;        ///< Cayley vector of half the stage's rotation.
   Num scale;           ///< 1 / (1 + half^2)
-  simd::M3<Num> undo;  ///< (1 - [half])^-1, of the matrix.
-  V3<Num> x1, y, L1;   ///< At the end; y: L1 before the turn.
+  simd::M3<Num> undo;  ///< (1 - [half])^-1, as a matrix.
+  V3<Num> x1, y, L1;   ///< At the end; y: L1 before the rotation.
 };
 
 /// An attachment and the following part of the cable.
 template <class Num>
 struct ImplicitPoint {
-  int body;               ///< Index in the island; -1: fixed.
+  int body;               ///< Index in the island; -1: static.
   V3<Num> p_P, arm0, p0;  ///< In the body frame; relative to its center, and in W, at the start.
   V3<Num> arm, arm1, p1;  ///< Arm of the force; at the end.
   simd::M3<Num> turn;     ///< d arm1 / d spin.
-  V3<Num> d0, u, n;       ///< To the next one: at the start; force direction; at the end.
+  V3<Num> d0, u, n;       ///< To the next point: at the start; force direction; at the end.
   Num l0, l1;             ///< [m]
 };
 
@@ -47,21 +47,21 @@ struct ImplicitCable {
   Num rest, rate;       ///< At the start of the stage [m]; its change [m/s].
   Num l0;               ///< Length at the start of the stage [m].
   Num tension, slope;   ///< [N]; per length at the end [N/m].
-  Num elastic;          ///< The spring's part of the tension [N].
+  Num elastic;          ///< Spring part of the tension [N].
   Num impulse;          ///< Sum over the stages so far [N s],
-  Num elastic_impulse;  ///< and the springs' part.
+  Num elastic_impulse;  ///< and its spring part.
 };
 
 template <class W>
 struct ImplicitMemory {
   using Num = simd::Lane<W>;
-  static constexpr int64_t kMostRows = 192;  ///< Largest number of active law rows.
+  static constexpr int64_t kMostRows = 192;  ///< Largest number of active constraint rows.
 
   bool any = false;      ///< Whether any lane has implicit cables;
   Row<W> limit;          ///< per cable: largest K of an explicit cable [1/s^2]; -1: implicit,
   Row<W> damped;         ///< and 1 in lanes whose group has the second stage.
   Row<W> bodies;         ///< Per body: 1 in lanes with implicit cables on it.
-  Row<int> group, size;  ///< The groups of one lane (CableGroups).
+  Row<int> group, size;  ///< Groups of one lane (CableGroups).
   Row<uint8_t> kind;
   Row<W> ended;  ///< Per body: 1 in lanes whose final pose is computed:
   Row<V3<W>> end_pos;
@@ -71,14 +71,14 @@ struct ImplicitMemory {
   Row<ImplicitBody<Num>> body;
   Row<ImplicitPoint<Num>> points;
   Row<ImplicitCable<Num>> list;
-  Row<Num> U, trial, res, trial_res, step, back, ends;  ///< 6 a body.
+  Row<Num> U, trial, res, trial_res, step, back, ends;  ///< 6 per body.
   Row<Num> gap, bias, start, total, unit;               ///< Per row; start: warm-start impulses.
   Row<int> compact, active;                             ///< Per row.
-  Row<Num> x, w, k;                                     ///< For the active rows.
+  Row<Num> x, w, k;                                     ///< Of the active rows.
   Row<Num> l, u, y, f, best;
   int row_capacity;
 
-  /// Allocates nothing for models without cables.
+  /// Allocates the memory; nothing for models without cables.
   void Take(const View& m, Room& room) noexcept {
     const int64_t c = m.cable_count, n = c > 0 ? m.body_count : 0;
     const int64_t all =

@@ -1,12 +1,11 @@
-/// A solver's problem: bodies that act on each other through constraints, and the memory that its
-/// stages share (docs/theory/contact.md, section 5 and eq. 11).
+/// Island: bodies coupled by constraints, as one problem of the solver, with the memory that the
+/// solver's stages share (docs/theory/contact.md, section 5 and eq. 11).
 ///
 ///   v = v_free + M^-1 J^T l,   u = J v,   every constraint's law between its u and its l
 ///
-/// An unknown is what moves by itself: a body, a point mass or a rotor. Those that are solved for
-/// are numbered in the order of elimination; behind them come those that are prescribed, whose
-/// velocity is given. All constraints of a kind lie in one pool; the rows of all of them are
-/// numbered through, pool after pool.
+/// An unknown is a body, a point mass or a rotor. Unknowns that are solved for are numbered in the
+/// order of elimination; prescribed ones, whose velocity is given, come last. All constraints of a
+/// kind are in one pool; their rows are numbered consecutively, pool after pool.
 #pragma once
 
 #include "sim/constraint/cable_chain.h"
@@ -18,13 +17,13 @@ namespace taut::sim {
 
 using simd::S3;
 
-/// The most that biases may contradict each other by, to be made to agree [m/s].
+/// Inconsistent contacts: largest change of a bias that relaxes them [m/s].
 inline constexpr double kDisagreementMPerS = 1e-6;
 
-inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w. The most that an unknown has.
+inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w; the largest number of an unknown.
 
-/// When a solve is done [m/s]: `tolerance` is what it must reach; it goes on to `goal` as long as
-/// that pays, because what every step leaves over adds up.
+/// Convergence targets [m/s]: a solve must reach `tolerance`; it continues to `goal` while a step
+/// at least halves the residual, because remaining errors accumulate over steps.
 struct Target {
   static constexpr double kGoal = 0.01, kPays = 0.5;
   double tolerance;
@@ -37,29 +36,29 @@ struct SolverWork {
   double relaxation = 0;  ///< Largest relaxation of inconsistent biases [m/s].
 };
 
-/// Whether a residual has hardly moved from one step to the next.
+/// Returns whether a residual has changed by less than `bound` between two steps.
 inline bool Stays(double now, double before, double bound) noexcept {
   return now - before < bound && before - now < bound;
 }
 
-/// A body of an island, or something smaller. All have room for six velocities (v, w); of those
-/// beyond its size, and of links to them, an unknown has zeros.
+/// Body of an island, or a smaller unknown. All are stored with six velocities (v, w); entries of
+/// it and of its links beyond its size are zero.
 ///
 ///   size 6: a body
 ///        3: a point mass: v, mass; no inertia
 ///        1: a rotor: v.x is its spin, mass its moment of inertia; lin.x of a link its lever
-/// Links to one that is prescribed have no inverse mass and no turn: no impulse moves it.
+/// Links to a prescribed unknown have no inverse mass and no turn: no impulse moves it.
 template <class Num>
 struct Unknown {
-  int body;          ///< Its number in the world.
+  int body;          ///< Number in the world.
   int size = kDofs;  ///< 6, 3 or 1 velocities.
   Num mass, inv_mass;
   S3<Num> inertia, inv_inertia;  ///< In W.
-  Twist<Num> free;               ///< Its velocities without the island's constraints,
+  Twist<Num> free;               ///< Velocities without the island's constraints,
   Twist<Num> before;             ///< and at the start of the step.
 };
 
-/// All constraints of one kind, and the branch of its law that each is on.
+/// All constraints of one kind, each with the current branch of its law.
 template <class K>
 struct Pool {
   Row<K> items{nullptr, 0};
@@ -100,7 +99,7 @@ struct Pools : Pool<K>... {
   }
 };
 
-/// The law that `const Law&` or `Law&` names.
+/// Strips the reference from `const Law&` or `Law&`.
 template <class T>
 struct Named {
   using Type = T;
@@ -112,31 +111,31 @@ struct Named<T&> {
 template <class T>
 using LawOf = typename Named<T>::Type;
 
-/// What impacts need: velocities before the step, and the solution without rebounds; a row each.
+/// Data of impacts, per row: velocities before the step, and the solution without rebounds.
 template <class Num>
 struct ImpactRows {
   Row<Num> before, u, l;
 };
 
-/// The numbers that the stages of an island's solve work on.
+/// Vectors and matrices of the stages of an island's solve.
 template <class Num>
 struct IslandMemory {
-  Row<Num> v, rhs, direction, trial_v;             ///< 6 an unknown.
-  Row<Num> l, u, best, center, projected, du, u2;  ///< 1 a row.
-  Row<Num> g, f;                                   ///< rows^2, rows a constraint.
-  Row<Num> blocks;                                 ///< 36 a block.
+  Row<Num> v, rhs, direction, trial_v;             ///< 6 per unknown.
+  Row<Num> l, u, best, center, projected, du, u2;  ///< 1 per row.
+  Row<Num> g, f;                                   ///< rows^2, and rows, per constraint.
+  Row<Num> blocks;                                 ///< 36 per block.
   ImpactRows<Num> impacts;
 };
 
 template <class Num, class P>
 struct Island {
   Row<Unknown<Num>> bodies;
-  int body_count;        ///< With those that are prescribed: from pattern.count on.
-  BlockPattern pattern;  ///< Of those that are not.
+  int body_count;        ///< Includes prescribed unknowns, numbered from pattern.count on.
+  BlockPattern pattern;  ///< Of the unknowns that are not prescribed.
   P pools;
   IslandMemory<Num> m;
   int rows;
-  bool has_matrix;  ///< There is room for linear systems.
+  bool has_matrix;  ///< There is memory for linear systems.
 
   /// v <- v_free + M^-1 J^T l
   void VelocitiesOf(const Num* l, Num* v) const noexcept {
@@ -160,7 +159,7 @@ struct Island {
       }
     });
   }
-  /// f += J^T l, but for what is prescribed.
+  /// f += J^T l, except for prescribed unknowns.
   template <class Law>
   TAUT_INLINE void AddForce(const Law& law, const Num* l, Num* f) const noexcept {
     for (int i = 0; i < law.link_count; ++i) {
@@ -179,7 +178,7 @@ struct Island {
   TAUT_INLINE static void AddForce(const RowLink<Num>& link, const Num* l, Num* f) noexcept {
     AddForce(static_cast<const Link<Num, 1>&>(link), l + link.row, f);
   }
-  /// The largest of all constraints [m/s]; leaves their branches.
+  /// Updates the branches of all constraints and returns the largest residual [m/s].
   Num Residual(const Num* u, const Num* l) const noexcept {
     Num worst = Num::Splat(0.0);
     pools.ForEach([&](auto& law, auto& branch, int row, int) {
@@ -188,13 +187,13 @@ struct Island {
     });
     return worst;
   }
-  /// Goes on from `l`, made admissible. Returns its residual [m/s].
+  /// Continues from the impulses `from`, made admissible. Returns their residual [m/s].
   double Return(const Num* from) noexcept {
     for (int i = 0; i < rows; ++i) m.l[i] = from[i];
     Clamp(m.l);
     return Judge();
   }
-  /// Velocities that belong to m.l, and their residual [m/s].
+  /// Computes the velocities of m.l, and returns the residual [m/s].
   double Judge() noexcept {
     VelocitiesOf(m.l, m.v);
     Measure(m.v, m.u);

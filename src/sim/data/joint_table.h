@@ -1,21 +1,21 @@
-/// Joints, laid out for stepping (docs/theory/joints.md).
+/// Tables of joints, compiled for stepping (docs/theory/joints.md).
 #pragma once
 
 namespace taut::sim {
 
-/// What a row of a joint measures: g, whose rate is the row's velocity. Turns are measured in
-/// metres, by the joint's `reach_m`, so that all rows' velocities are ones.
+/// Coordinate g of a joint's row; its rate is the row's velocity. Rotations are in meters,
+/// multiplied by the joint's `reach_m`, so that all rows have velocities in m/s.
 enum class JointMeasure {
-  kAlongAxis,  ///< How far b's point is from a's along the axis,
+  kAlongAxis,  ///< Offset of b's point from a's along the axis,
   kAcross1,
   kAcross2,   ///< and along the two directions across it.
-  kDistance,  ///< How far in all.
+  kDistance,  ///< Distance of the two points.
   kSwing1,
-  kSwing2,  ///< The axis in b along the two directions across that in a.
+  kSwing2,  ///< Axis of b along the two directions across the axis of a.
   kTwist,   ///< b's first direction along a's second.
-  kAngle,   ///< The angle about the axis, with turns.
-  kCone,    ///< The angle between the axis in a and that in b.
-  kTurn1,   ///< Of the turn from a to b as a vector, what is along a's axis
+  kAngle,   ///< Angle about the axis, with whole turns.
+  kCone,    ///< Angle between the axis in a and the axis in b.
+  kTurn1,   ///< Turn vector from a to b: component along a's axis
   kTurn2,   ///< and along the two directions across it.
   kTurn3,
 };
@@ -25,7 +25,7 @@ enum class JointRole {
   kLeast,
   kMost,
   kFriction,
-  kTurnFriction,  ///< Three rows, one behind the other: one law (turn_friction.h).
+  kTurnFriction,  ///< Three successive rows under one law (turn_friction.h).
   kSpring,
 };
 
@@ -39,20 +39,21 @@ struct JointRowTable {
 };
 
 struct JointTable {
-  int a = 0, b = 0;                             ///< Bodies; the world is one.
-  bool a_moves = false, b_moves = false;        ///< By impulses;
-  bool a_is_moved = false, b_is_moved = false;  ///< as a program says.
-  bool holds_point = false;                     ///< All of the distance between its points.
-  double own_a_P[3] = {}, own_b_P[3] = {};      ///< The points, each in its body's frame [m].
-  double axes_a_P[9] = {}, axes_b_P[9] = {};    ///< Axis and two directions across it, one a row.
-  double reach_m = 0;                           ///< Of turns: see JointMeasure.
-  int first_row = 0, row_count = 0;             ///< Those that hold come first.
+  int a = 0, b = 0;                             ///< Bodies; one may be the world.
+  bool a_moves = false, b_moves = false;        ///< Impulses move it;
+  bool a_is_moved = false, b_is_moved = false;  ///< it is kinematic.
+  bool holds_point = false;  ///< Holds all components of the distance between its points.
+  double own_a_P[3] = {}, own_b_P[3] = {};    ///< The points, each in its body's frame [m].
+  double axes_a_P[9] = {}, axes_b_P[9] = {};  ///< Axis and two directions across it, one per row.
+  double reach_m = 0;  ///< Radius that converts rotations to meters: see JointMeasure.
+  int first_row = 0, row_count = 0;  ///< Held rows come first.
   bool has_coordinate = false, has_angle = false;
-  bool has_turn_spring = false;  ///< Of a ball.
+  bool has_turn_spring = false;  ///< Ball joints only.
   JointMeasure coordinate = JointMeasure::kAlongAxis;
-  // Of its coordinate, in metres of it; forces in N of that.
+  // Joint limits, friction and spring of its coordinate, which is in meters; forces are in N along
+  // it.
   double least = 0, most = 0, restitution = 0, friction = 0;
-  double stiffness = 0, damping = 0, rest = 0;  ///< `rest` of a distance that is held: what it is.
+  double stiffness = 0, damping = 0, rest = 0;  ///< `rest` of a held distance: its length.
 };
 
 }  // namespace taut::sim

@@ -1,4 +1,4 @@
-/// The solver's memory, whose size follows from the model.
+/// Solver memory; its size follows from the model.
 #pragma once
 
 #include "sim/constraint/cable_chain.h"
@@ -12,26 +12,26 @@
 
 namespace taut::sim {
 
-/// The kinds of constraints that a step knows.
+/// All kinds of constraints of a step.
 template <class Num>
 using StepPools =
     Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>, CableChain<Num>>;
 
-/// What solving one lane's islands takes. Systems with more blocks than there is room for (over 128
-/// bodies that are all tied together) are left to the sweeps.
+/// Memory for solving one lane's islands. Systems with more blocks than fit (over 128 bodies that
+/// all interact) are left to the Gauss-Seidel sweeps.
 template <class Num>
 struct LaneMemory {
   static constexpr int64_t kFullBodies = 128;
 
-  Row<Contact<Num, 2>> pairs;    ///< The lane's list of touches, prepared.
+  Row<Contact<Num, 2>> pairs;    ///< Contacts of the lane's list of touches, prepared.
   Row<int> root, local, bodies;  ///< Per body: its island; its number there; an island's bodies.
-  Row<int> order, place;         ///< Of elimination.
+  Row<int> order, place;         ///< Order of elimination.
   Row<int> source;               ///< Per constraint of an island: its index in the lane.
   BodyGraph graph;
   int block_capacity;
   Island<Num, StepPools<Num>> island;
   Row<Link<Num, 1>> links;
-  Row<RowLink<Num>> chain_links;  ///< Those of a cable from its first_link on.
+  Row<RowLink<Num>> chain_links;  ///< Links of a cable: from its first_link on.
   Row<ChainSpan<Num>> spans;
 
   void Take(const View& m, Room& room) noexcept {
@@ -80,17 +80,17 @@ struct LaneMemory {
   }
 };
 
-/// What the system of all that joints hold takes (joint_places.inl).
+/// Memory for the system of all held joint rows (joint_places.inl).
 template <class W>
 struct JointMemory {
   Row<Unknown<W>> bodies;
   Row<JointRow<W>> rows;
-  Row<int> number;         ///< Per row that is held: its number among the model's,
+  Row<int> number;         ///< Per held row: its number in the model,
   Row<W> G, gap, miss, l;  ///< stiffness, gap, error, impulse.
   Row<W> rhs, change;      ///< 6 per body; rhs: also for kinematic bodies, which do not change.
   Row<W> moved;            ///< Per body: largest displacement of its points [m],
-  Row<V3<W>> gained;       ///< and the change of angular momentum by it.
-  Row<W> blocks;           ///< 36 a block.
+  Row<V3<W>> gained;       ///< and the resulting change of angular momentum.
+  Row<W> blocks;           ///< 36 per block.
 
   void Take(const View& m, Room& room) noexcept {
     const int64_t n = m.joint_body_count;
@@ -106,12 +106,14 @@ struct JointMemory {
   }
 };
 
-/// What solving all cables and contacts of a world in lanes takes (world_dual.inl). Whether a world
-/// is solved so follows from the model alone, from all that might touch: not from other lanes.
+/// Memory for solving all cables and contacts of a world in lanes (world_dual.inl). Whether a world
+/// is solved this way depends only on the model, by the number of possible contacts, not on other
+/// lanes.
 template <class W>
 struct DualMemory {
   static constexpr int kMaxRows = 96, kMaxRowsPerBody = 12;
-  /// On ground, where rods have room for many contacts and have few.
+  /// Packed contacts, for height fields and meshes, where rods have room for many contacts but few
+  /// are active.
   using Packed = ContactPoint<W, W::kLanes>;
 
   /// A row of J that acts on a body.
@@ -119,18 +121,18 @@ struct DualMemory {
     int row;
     const V3<W>*lin, *ang, *turn;
   };
-  int capacity;         ///< Rows; 0: not solved so.
+  int capacity;         ///< Rows; 0: this method is not used.
   int packed_capacity;  ///< Contacts of a world, if they are packed (packed_contacts.inl).
   Row<Packed> packed;
-  Row<W> a;                 ///< Inverse effective mass, then factors: an upper triangle, by rows.
-  Row<W> c;                 ///< The contacts' system.
+  Row<W> a;                 ///< Delassus operator, then its factors: upper triangle, by rows.
+  Row<W> c;                 ///< System of the contacts.
   Row<W> u, l, r, q;        ///< Velocities, impulses; right sides, then changes.
   Row<W> d, now;            ///< Changes and impulses of the contacts alone.
-  Row<W> diagonal, active;  ///< Of the cables' A and S.
+  Row<W> diagonal, active;  ///< A and S of the cables.
   ImpactRows<W> impacts;
   Row<Twist<W>> v;        ///< Per body.
   Row<Column> columns;    ///< By body:
-  Row<int> first_column;  ///< where each body's start.
+  Row<int> first_column;  ///< first column of each body.
 
   void Take(const View& m, Room& room) noexcept {
     const int of_bodies = kMaxRowsPerBody * m.body_count;

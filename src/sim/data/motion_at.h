@@ -1,4 +1,4 @@
-/// Where a motion is at any time (docs/theory/motion.md).
+/// Pose and velocity of a kinematic body at any time (docs/theory/motion.md).
 #pragma once
 
 #include "sim/data/view.h"
@@ -45,7 +45,7 @@ Course<W> CourseAt(const View& m, const TimeLawTable& law, W t) noexcept {
   return {Select(before, zero, c.x), Select(before, zero, c.rate)};
 }
 
-/// Where a body is, and how it moves.
+/// Pose and velocity of a kinematic body.
 template <class W>
 struct Motion {
   Course<W> slide, turn;
@@ -53,7 +53,7 @@ struct Motion {
   Q4<W> quat;
 };
 
-/// eq. 2 and 3.
+/// Evaluates eq. 2 and 3.
 template <class W>
 Motion<W> MotionAt(const View& m, const MotionTable& table, W t) noexcept {
   Motion<W> at;

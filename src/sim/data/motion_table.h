@@ -1,9 +1,9 @@
-/// Motions of bodies, laid out for stepping (docs/theory/motion.md).
+/// Tables of kinematic bodies, compiled for stepping (docs/theory/motion.md).
 #pragma once
 
 namespace taut::sim {
 
-/// From `t` on: the speed `v` and how far it has come, `x`; the speed grows by `a`.
+/// From `t` on: speed `v` and distance covered `x`; the speed grows by `a`.
 struct MotionKnot {
   double t = 0, v = 0, x = 0, a = 0;
 };
@@ -18,7 +18,7 @@ struct TimeLawTable {
 struct MotionTable {
   int body = 0;
   double direction[3] = {}, axis[3] = {}, center[3] = {};  ///< In W.
-  double arm[3] = {};  ///< From the centre to the body's origin at t = 0.
+  double arm[3] = {};  ///< From the center to the body's origin at t = 0.
   TimeLawTable slide, turn;
 };
 

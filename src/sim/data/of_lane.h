@@ -1,4 +1,4 @@
-/// One lane of wide numbers as numbers of one lane (simd::Lane), and back.
+/// Conversion of one lane of a SIMD number to a one-lane number (simd::Lane), and back.
 #pragma once
 
 #include "simd/vec3.h"
@@ -14,7 +14,7 @@ struct OneLane {
   static L Of(W x, int lane) noexcept { return L::Splat(x[lane]); }
   static void Set(W& to, L from, int lane) noexcept { to.Set(lane, from[0]); }
 };
-/// A number of one lane is what it is, with all that belongs to it (simd/dual.h).
+/// One-lane numbers are kept unchanged, with derivatives (simd/dual.h).
 template <class L>
 struct OneLane<L, L> {
   static L Of(L x, int) noexcept { return x; }

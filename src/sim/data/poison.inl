@@ -1,14 +1,14 @@
-/// Builds without NDEBUG fill with NaN what a step must not read before it has written it, so that
-/// a stale value shows as a world that is not finite or as another golden hash.
+/// NaN poisoning of memory that a step must not read before it writes it, in builds without NDEBUG:
+/// a stale value shows as a world that is not finite or as a changed golden hash.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Called before a step and before sensing. What it fills: scratch, rows of contacts that the last
-/// step did not have, and what sensing will write. The lanes behind the last world are worlds, too,
-/// and keep their values. Returns whether it has filled them.
+/// Fills scratch, contact rows that the last step did not use, and the rows of sensing with NaN;
+/// called before a step and before sensing. Lanes behind the last world are worlds, too, and keep
+/// their values. Returns whether it has filled them.
 template <class W>
 bool Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
             [[maybe_unused]] const Group& g, [[maybe_unused]] Scratch<W>& work) noexcept {

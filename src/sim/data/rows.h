@@ -1,4 +1,4 @@
-/// Typed access to a group's rows, and what a step keeps only while it runs.
+/// Typed access to a group's rows, and scratch memory of a step.
 #pragma once
 
 #include "math/cable_wheel.h"
@@ -44,70 +44,70 @@ struct Rows {
   }
 };
 
-/// A body while a step runs. The world has one, too: identity, zero.
+/// Data of a body during a step. The world has one, too: identity, zero.
 template <class W>
 struct BodyWork {
   M3<W> R;              ///< R_WP at the middle of the step.
   S3<W> inv_inertia;    ///< In W [1/(kg m^2)].
   V3<W> v, w;           ///< Current velocities [m/s], [rad/s].
   V3<W> v0, w0;         ///< Before this step's forces.
-  V3<W> v_mid, w_mid;   ///< Means over the step, as far as known: for dampers.
+  V3<W> v_mid, w_mid;   ///< Means over the step, from the velocities known so far: for dampers.
   V3<W> force, torque;  ///< Of cables, gravity and nodes [N], [N m].
   V3<W> mom_free;       ///< Angular momentum without contacts and stiff cables.
   W landed;             ///< 1 where a contact of the body landed in this step.
-  W turns;              ///< No point goes further by turning in this step, without contacts [m],
-  W turned;             ///< and since the middle of the step before.
+  W turns;              ///< Bound of the travel of points by rotation in this step [m],
+  W turned;             ///< and since the middle of the previous step.
 };
 
-/// A point of a body that cables are attached to.
+/// A distinct point of a body to which cables are attached.
 template <class W>
 struct Spot {
-  V3<W> p, arm;  ///< In W; from the body's centre of mass [m].
+  V3<W> p, arm;  ///< In W; from the body's center of mass [m].
 };
 
-/// An attachment while its cable's force is worked out; its velocity is the expected one.
+/// An attachment while its cable's force is computed; its velocity is the expected one.
 template <class W>
 using AttachmentWork = PathPoint<V3<W>>;
 
-/// How a bend turns aside from the straight line on what it lies against (cable_across.inl).
+/// Deviation of a bend from the straight line on its edge or rod (cable_across.inl).
 template <class W>
 struct AcrossWork {
-  W aside;  ///< Its pull along the axis per tension, positive along that [1].
-  W drift;  ///< Way along the axis per way that slips along the cable [1].
-  W far;    ///< To where it would be straight, along the axis [m].
+  W aside;  ///< Pull along the axis per tension, positive along the axis [1].
+  W drift;  ///< Displacement along the axis per slip along the cable [1].
+  W far;    ///< Distance along the axis to the place where it would be straight [m].
 };
 
-/// A rod's middle and axis in W.
+/// Center and axis of a rod in W.
 template <class W>
 struct RodLine {
   V3<W> center, axis;
 };
 
-/// A cable while the tensions of soft ones are found. From `links` on: only in worlds with dampers
-/// or stiff cables.
+/// Data of a cable while the tensions of soft cables are computed. Members from `links` on: only in
+/// worlds with dampers or stiff cables.
 template <class W>
 struct CableWork {
-  MaskOf<W> soft;         ///< Lanes in which it is.
-  W spring;               ///< Its part of the tension [N].
+  MaskOf<W> soft;         ///< Lanes in which the cable is soft.
+  W spring;               ///< Spring part of the tension [N].
   W stretch;              ///< At the middle of the step [m].
   Row<Link<W, 1>> links;  ///< Used: the first link_count; capacity shared by all cables.
   int link_count;
   W A;  ///< Inverse effective mass along the cable [1/kg].
   MaskOf<W> damped;
   W damping;  ///< [N s/m]
-  W share;    ///< Of what is missing to its law, so that its own effect is in.
+  W share;    ///< Part of the error that corrects the tension (integrator.md, eq. I8).
   W upper;    ///< Largest tension [N].
-  W tension;  ///< As found so far [N].
+  W tension;  ///< Latest value [N].
 };
 
-/// A cable whose tension is found together with the contacts.
+/// A stiff cable, whose tension is solved together with the contacts.
 template <class W>
 struct StiffCable : CableRow<W> {
   int cable;
   W across;  ///< Share of the largest stable tension, per tension [1/N] (cables.md, eq. 12).
 };
 
-/// A row of a joint, and in which direction of W it acts on the joint's body b.
+/// A row of a joint, with its direction in W on the joint's body b.
 template <class W>
 struct HeldRow : JointRow<W> {
   int joint;
@@ -116,21 +116,21 @@ struct HeldRow : JointRow<W> {
   W reach;  ///< Stops: largest approach of the bodies in a step [m].
 };
 
-/// How a motion moves its body in this step: velocities at its start and middle, and its end.
+/// Motion of a kinematic body in this step: velocities at the start and the middle, and the end.
 template <class W>
 struct MotionWork {
   V3<W> v0, w0, v_mid, w_mid;
   Motion<W> end;
 };
 
-/// A motor while its cable's tension T is found: its mean speed over the step is `mean` - `slows`
-/// T.
+/// Data of a motor while its cable's tension T is computed: its mean speed over the step is `mean`
+/// - `slows` T.
 template <class W>
 struct MotorWork {
   W direction;         ///< 1 winding in, -1 out, 0: friction holds it.
   W mean, slows;       ///< [rad/s], [rad/(s N)]
-  W end, end_slows;    ///< The same of its speed at the end of the step.
-  W share;             ///< Of the cable's stiffness and damping that acts within this step.
+  W end, end_slows;    ///< The same for the speed at the end of the step.
+  W share;             ///< Share of the cable's law within this step (motor.md, eq. M.9).
   W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` times the mean speed. [1], [s/rad]
   W resistance;        ///< Of winding and driver [ohm].
   W conducts;          ///< 1, or 0 where the driver is off.
@@ -145,38 +145,38 @@ struct Scratch {
   Wheel<V3<W>>* wheels;       ///< Of one cable.
   Row<RodLine<W>> rod_lines;  ///< Rods that one cable may touch,
   Row<W> rod_sides;           ///< and its new side of each (cable_rods.inl).
-  Contact<W, 1>* contacts;    ///< Slots of all bodies: those of body b from View::first_slot[b] on.
+  Contact<W, 1>* contacts;    ///< Slots of all bodies; body b: from View::first_slot[b] on.
   int* contact_count;         ///< Used slots, per body.
-  TouchingPair* touches;      ///< Those of a lane from lane * pair_capacity on.
+  TouchingPair* touches;      ///< List of a lane: from lane * pair_capacity on.
   int touch_count[W::kLanes];
-  int bends_used = 0;  ///< By the cable that was measured last (cable_bends.inl).
+  int bends_used = 0;  ///< By the last cable that was measured (cable_bends.inl).
   /// Bit mask of the lanes in which a cable exceeds kMostBends, and that cable.
   uint32_t no_room = 0;
   int crowded_cable[W::kLanes];
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
-  W* start;  ///< Rows that go back to the start of the step in worlds that turn non-finite.
+  W* start;  ///< Rows that return to the start of the step in worlds that become non-finite.
   CableWork<W>* cables;
   StiffCable<W>* stiff;
   Row<Link<W, 1>> links;    ///< Of all cables.
   ChainSpan<W>* spans;      ///< Of all cables with friction.
-  AcrossWork<W>* across;    ///< Of all places where they slip.
-  RowLink<W>* chain_links;  ///< Those of a cable from its first_link on,
-  int* chain_link_count;    ///< and how many; per cable.
+  AcrossWork<W>* across;    ///< Of all their slip places.
+  RowLink<W>* chain_links;  ///< Links of a cable: from its first_link on,
+  int* chain_link_count;    ///< and their number; per cable.
   HeldRow<W>* joints;       ///< Rows of all joints.
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
   W* supplies;        ///< Voltage under load, per supply [V].
-  uint64_t* near;     ///< A bit for each of the world's shapes, if it has many.
-  uint32_t* touched;  ///< Per point: a bit for each lane in which its shape is near ground.
-  W* unsolved;        ///< Per body: 1 in lanes in which it is left to the lane's own solve.
+  uint64_t* near;     ///< One bit for each of the world's shapes, if they are in a BVH.
+  uint32_t* touched;  ///< Per point: bit mask of lanes where its shape is near ground.
+  W* unsolved;        ///< Per body: 1 in lanes left to the lane-by-lane solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   ImplicitMemory<W> implicit;
   int stiff_count = 0, link_count = 0;
   bool start_known = false;
 
-  /// Overwrites all that the pointers point to.
+  /// Overwrites all memory that the pointers refer to.
   void Fill(const View& m, unsigned char byte) noexcept {
     room_.Fill(byte);
     Scratch(m, room_.memory);
@@ -221,7 +221,7 @@ struct Scratch {
     implicit.Take(m, room_);
   }
 
-  /// False if the lane's list is full.
+  /// Returns false if the lane's list is full.
   bool AddTouch(const View& m, int lane_number, int pair, const TouchPoint& point) noexcept {
     int& count = touch_count[lane_number];
     if (count == m.pair_capacity) return false;

@@ -1,4 +1,4 @@
-// The tables as the step sees them, and where a group of worlds keeps what.
+// Pointer view of the tables, for the step, and memory layout of a group of worlds.
 #include "sim/data/tables.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 /// Read-only model data for a step: topology and constants, shared by all worlds.
 ///
-/// Every body has a principal frame P: origin in the centre of mass, axes along the principal
-/// axes of inertia. Points of a body are kept in P. The world is body number `body_count`: it
-/// has no mass, does not move, and its frame is W.
+/// Every body has a principal frame P: origin in the center of mass, axes along the principal axes
+/// of inertia. Points of a body are stored in P. The world is body number `body_count`: it has no
+/// mass, does not move, and its frame is W.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,10 @@
 
 namespace taut::sim {
 
-/// A `DcMotorDef` in the variables of its law (dc_motor.inl).
+/// A `DcMotorDef` in the variables of its law (dc_motor.inl; docs/theory/motor.md).
 struct MotorTable {
   int cable = 0, supply = 0;
-  double way_m = 0;        ///< Of the rest length, per angle of the rotor [m/rad].
+  double way_m = 0;        ///< Travel of the rest length per angle of the rotor [m/rad].
   double inv_inertia = 0;  ///< Of the rotor [1/(kg m^2)].
   double constant = 0;     ///< Torque per current, back EMF per speed [V s/rad].
   double winding_ohm = 0, driver_ohm = 0;
@@ -34,7 +34,7 @@ struct MotorTable {
   double viscous = 0;                    ///< [N m s/rad]
   double gear_loss = 0;                  ///< Friction of the gear per torque of the cable [1].
   double backlash_m = 0, min_rest_m = 0;
-  double winding_w_per_k = 0, housing_w_per_k = 0;  ///< To the housing, to the air.
+  double winding_w_per_k = 0, housing_w_per_k = 0;  ///< Conductances to the housing, to the air.
   double winding_k_per_j = 0, housing_k_per_j = 0;  ///< 1 / heat capacity.
   double servo_gain = 0, servo_damping = 0;         ///< [1/m], [s/m]
 };
@@ -46,7 +46,7 @@ struct SupplyTable {
 struct AttachmentTable {
   int body = 0;
   double p_P[3] = {};  ///< [m]
-  int spot = 0;        ///< Of a cable: the number of that point among all distinct ones.
+  int spot = 0;        ///< Cables: index of the point among all distinct ones.
 };
 
 /// A shape that may touch another.
@@ -54,15 +54,15 @@ struct ShapeTable {
   int body = 0;
   Shape shape_P;
   double center_P[3] = {};
-  double bound_m = 0;  ///< Radius of the sphere around `center_P` that holds it.
+  double bound_m = 0;  ///< Radius of the sphere around `center_P` that contains it.
   Material material;
-  int point[2] = {};            ///< Of a round one: numbers of its ends among all points;
-  bool elsewhere[2] = {};       ///< another shape of the body has that one.
+  int point[2] = {};            ///< Round shapes: numbers of the ends among all points;
+  bool elsewhere[2] = {};       ///< whether another shape of the body has the same end.
   const int* beside = nullptr;  ///< Terrain boxes: other terrain boxes that touch it.
   int beside_count = 0;
   SeamList seams;  ///< Terrain boxes: adjacent pieces.
 
-  /// Whether adjacent pieces must be checked with it. Always inline: see View.
+  /// Returns whether adjacent pieces must be checked with it. Always inline: see View.
   [[gnu::always_inline]] bool IsJoined() const noexcept {
     return beside_count > 0 || seams.count > 0;
   }
@@ -70,22 +70,22 @@ struct ShapeTable {
 
 /// Largest gap between touching terrain boxes [m].
 inline constexpr double kJoinedM = 1e-9;
-/// Largest number of them, and of their points, per query.
+/// Largest number of pairs of touching boxes, and of their points, per query.
 inline constexpr int kMostJoinedPairs = 32, kMostJoinedPoints = kMostJoinedPairs * 13;
 
-/// A point that can touch a plane: a sphere's centre, a capsule's end, a box's or a hull's corner.
+/// A point that can touch a plane: a sphere's center, a capsule's end, a box's or a hull's corner.
 struct PointTable {
   double p_P[3] = {};
   double radius_m = 0;
-  double static_friction[8] = {}, kinetic_friction[8] = {}, restitution[8] = {};  ///< A plane each.
+  double static_friction[8] = {}, kinetic_friction[8] = {}, restitution[8] = {};  ///< Per plane.
 };
 
-/// One side of a contact as friction sees it.
+/// Surface properties of one side of a contact, for friction.
 struct FrictionSide {
   ShapeRef ref;
-  int body = kWorld;  ///< As in a `ModelDef`.
+  int body = kWorld;  ///< Body number as in a `ModelDef`.
   bool directed = false;
-  bool by_slip = false;  ///< Anything but two constant coefficients.
+  bool by_slip = false;  ///< Friction other than two constant coefficients.
   double at_rest = 0, sliding = 0;
   double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/m^2], or 0.
   double viscous = 0;        ///< [s/m]
@@ -99,7 +99,7 @@ struct FrictionTable {
   int shape_count = 0;
   const int* shape_of_point = nullptr;
   CombineRule combine = CombineRule::kGeometricMean;
-  const ContactFriction* law = nullptr;  ///< Of the user's, or null.
+  const ContactFriction* law = nullptr;  ///< User-defined law, or null.
 };
 
 struct PlaneTable {
@@ -110,37 +110,36 @@ struct PlaneTable {
 
 struct ShapePairTable {
   int a = 0, b = 0;      ///< Shapes; the body of `a` is not the world.
-  std::uint32_t id = 0;  ///< Of its first possible contact point.
+  std::uint32_t id = 0;  ///< Id of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
-  std::uint32_t elsewhere = 0;  ///< Features that another pair has, too: a bit each.
+  std::uint32_t elsewhere = 0;  ///< One bit per feature that another pair has, too.
   /// One shape is round, so that the contact point is fixed to neither body, and one body is
   /// kinematic or jointed (solve/rolling.inl).
   bool rolls = false;
 };
 
-/// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and ground.
+/// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and a surface.
 struct BodyPairTable {
   int a = 0, b = 0;  ///< b may be the world.
   int first_pair = 0, pair_count = 0;
-  bool by_tree = false;    ///< b is the world; its shapes are found by its tree.
+  bool by_tree = false;    ///< b is the world; its shapes are found by the BVH.
   bool on_ground = false;  ///< One pair, whose second shape is a surface.
   int kept = -1;           ///< Index among pairs with a cache of near parts (near_parts.h).
-  bool joined = false;     ///< b is the world, and some boxes of it touch each other.
+  bool joined = false;     ///< b is the world, and some of its boxes touch each other.
 };
 
-/// Largest number of terrain shapes that are tested one by one; more are in a BVH.
+/// Largest number of the world's shapes that are tested one by one; more are in a BVH.
 inline constexpr int kFewShapes = 8;
 
 inline constexpr int kMaxPlanes = 8;
 
-/// Offsets, in rows of one double a lane, of everything that a group of worlds keeps
-/// (state_rows.h).
+/// Offsets of all rows of a group of worlds, in rows of one double per lane (state_rows.h).
 struct Layout {
 #define TAUT_ROW(name, ...) int name = 0;
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
   int hash_rows = 0;      ///< State and parameters, which come first.
-  int snapshot_rows = 0;  ///< Those and the readings, which follow.
+  int snapshot_rows = 0;  ///< State, parameters and the readings, which follow.
   int rows = 0;
 };
 
@@ -160,7 +159,8 @@ inline constexpr RowInfo kStateRows[] = {
 #undef TAUT_ROW
 };
 
-/// Snapshots and hashes take state and parameters as one piece.
+/// Returns whether roles ascend in the list: snapshots and hashes take state and parameters as one
+/// piece.
 constexpr bool RolesRise() {
   Role last = Role::kState;
   for (const RowInfo& row : kStateRows) {
@@ -171,7 +171,7 @@ constexpr bool RolesRise() {
 }
 static_assert(RolesRise());
 
-/// `Tables` without the standard library.
+/// Pointers to the data of `Tables`, without the standard library.
 struct View {
   int body_count, cable_count, node_count, plane_count, body_pair_count;
   const double* bound_m;
@@ -203,13 +203,13 @@ struct View {
   int tree_nodes, tree_shapes;
   const TreeNode* tree;
   int world_shape_count;    ///< Without surfaces;
-  const int* world_shapes;  ///< in the order of the tree's numbers.
+  const int* world_shapes;  ///< in the order of their numbers in the BVH.
   int touch_count;
   const TouchTable* touches;
   int touch_rod_count;
   const TouchRodTable* touch_rods;
-  const FrictionTable* friction;   ///< Null: coefficients are those of the pairs.
-  double floor_m;                  ///< Bodies below it have fallen off; minus infinity: none.
+  const FrictionTable* friction;   ///< Null: the coefficients of the pairs apply.
+  double floor_m;                  ///< Bodies below it have fallen off; minus infinity: no limit.
   int first_ground, ground_count;  ///< Surfaces among the shapes.
   int joint_count, joint_row_count, joint_body_count, turn_friction_count;
   const JointTable* joints;
@@ -224,11 +224,12 @@ struct View {
   const MotionKnot* motion_knots;
   const int* motion_of_body;  ///< Per body, or -1; null without motions.
 
-  // Always inline: of a function that several instruction sets emit the linker keeps any one.
-  /// Contacts that one world may have at once.
+  // Always inline: if several instruction sets emit a function, the linker keeps an arbitrary one.
+  /// Returns the largest number of simultaneous contacts in one world.
   [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
-  /// Links of all cables to bodies, in `lanes` lanes: one an attachment, and one a rod that the
-  /// cable may lie against. A lane's cable has kMostBends of those at most, each lane others.
+  /// Returns the capacity for links of all cables to bodies in `lanes` lanes: one per attachment,
+  /// and one per rod that the cable may touch. Each lane's cable touches at most kMostBends of the
+  /// rods, possibly different ones.
   [[gnu::always_inline]] int CableLinkCapacity(int lanes) const noexcept {
     int count = attachment_count;
     for (int i = 0; i < touch_count; ++i) {
@@ -237,7 +238,7 @@ struct View {
     }
     return count;
   }
-  /// Largest number of rods that one cable may touch.
+  /// Returns the largest number of rods that one cable may touch.
   [[gnu::always_inline]] int MostTouchRods() const noexcept {
     int most = 0;
     for (int i = 0; i < touch_count; ++i) {
@@ -245,11 +246,11 @@ struct View {
     }
     return most;
   }
-  /// Whether the body is kinematic.
+  /// Returns whether the body is kinematic.
   [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
     return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;
   }
-  /// Number of elements of a row.
+  /// Returns the number of elements of a row.
   [[gnu::always_inline]] int Count(Per per) const noexcept {
     switch (per) {
       case Per::kBody:

@@ -1,6 +1,5 @@
-/// Where a straight stretch of a cable goes into a box of the terrain and out of it
-/// (docs/theory/cables.md, section 6), for one world or for all lanes. Part of a step: no standard
-/// library.
+/// Entry and exit of a straight cable span through a box of the terrain (docs/theory/cables.md,
+/// section 6), for one world or for all lanes. Part of a step: no standard library.
 #pragma once
 
 #include "math/scalar.h"
@@ -8,14 +7,14 @@
 
 namespace taut::sim {
 
-/// A box, as thick as the cable, and a span in its frame. Faces are numbers: 2 i is the one against
-/// axis i, 2 i + 1 the one along it.
+/// A box, enlarged by the cable's radius, and a span in its frame. Faces are numbers: the outward
+/// normal of face 2 i is -axis i, of face 2 i + 1 +axis i.
 template <class V>
 struct BoxCut {
   using S = decltype(V::x);
-  S p[3], d[3], h[3];  ///< Where the span starts, its way, and half the box [m].
+  S p[3], d[3], h[3];  ///< Start of the span, its vector, and half the box [m].
   S from, to;          ///< Shares of the span.
-  S in, out;           ///< Faces; below zero where it starts or ends inside.
+  S in, out;           ///< Faces; negative where the span starts or ends inside.
 
   TAUT_INLINE S Below(int face, S share) const noexcept {
     const S x = p[face / 2] + share * d[face / 2];
@@ -33,9 +32,9 @@ struct BoxCut {
   }
 };
 
-/// Where a bend is inside, which is round, the cable goes through the nearest face. `through`:
-/// false if it passes by, stays at one face, or is inside with one of its own ends (`starts`,
-/// `ends`).
+/// Computes where a span enters and leaves a box. Where a bend of the cable is inside, because the
+/// cable is round, the span passes through the nearest face. `through`: false if the span misses
+/// the box, stays at one face, or is inside with an end of the whole cable (`starts`, `ends`).
 template <class V, class M>
 TAUT_INLINE BoxCut<V> CutBox(const BoxShape& box, const V& from, const V& to, double radius_m,
                              M starts, M ends, M* through) noexcept {
@@ -52,7 +51,7 @@ TAUT_INLINE BoxCut<V> CutBox(const BoxShape& box, const V& from, const V& to, do
     const V axis{C::Of(a[0]), C::Of(a[1]), C::Of(a[2])};
     const S p = cut.p[i] = Dot(axis, start), d = cut.d[i] = Dot(axis, way);
     const S h = cut.h[i] = C::Of(box.half_m[i] + radius_m);
-    const M along = d == zero;  // it stays within both faces, or outside
+    const M along = d == zero;  // parallel to the faces: between them, or outside
     hits = hits & ((!along) | (Abs(p) < h));
     const S low = C::Of(2 * i), high = C::Of(2 * i + 1);
     const M rises = d > zero;
@@ -72,7 +71,7 @@ TAUT_INLINE BoxCut<V> CutBox(const BoxShape& box, const V& from, const V& to, do
   return cut;
 }
 
-/// Of the edge between two faces, among the edges of its box.
+/// Returns the number of the edge between two faces, among the edges of its box.
 template <class S>
 TAUT_INLINE S NumberOfEdge(S face, S other) noexcept {
   return Constant<S>::Of(6.0) * Min(face, other) + Max(face, other);

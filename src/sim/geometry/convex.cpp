@@ -1,13 +1,14 @@
+// Convex polyhedra of boxes and hulls, and their nearest point to a given point.
 #include "sim/geometry/convex.h"
 
 namespace taut::sim {
 namespace {
 
-/// Nearer than this there is no direction from the surface to a point [m].
+/// Distance below which the direction from the surface to a point is undefined [m].
 constexpr double kOnSurfaceM = 1e-12;
 
-/// Corner c of a box has + along axis k where bit k of c is set; face 2 k + 1 is the one at + of
-/// axis k, 2 k that at -.
+/// Topology of a box. Corner c has + along axis k where bit k of c is set; face 2 k + 1 is at + of
+/// axis k, face 2 k at -.
 struct BoxParts {
   int first_in_face[7] = {0, 4, 8, 12, 16, 20, 24};
   int in_face[24] = {};
@@ -24,8 +25,8 @@ constexpr BoxParts MakeBoxParts() {
       parts.in_face[4 * (2 * k + 1) + i] = around[i] | (1 << k);
       parts.in_face[4 * (2 * k) + i] = around[3 - i];
     }
-    // Along axis k, beside face -u or +u, and -v or +v. Around the axis they are left, right in
-    // turns.
+    // Edges along axis k, between face -u or +u and face -v or +v; left and right alternate around
+    // the axis.
     for (int i = 0; i < 4; ++i) {
       const int beside_u = 2 * u + (i & 1), beside_v = 2 * v + (i >> 1);
       const int from = ((i & 1) << u) | ((i >> 1) << v);

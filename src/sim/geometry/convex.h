@@ -1,4 +1,4 @@
-/// A hull or a box where it is, so that both meet others by the same code.
+/// A convex polyhedron in W: a hull or a box, for shared narrow-phase code.
 ///
 /// Part of a step: no standard library.
 #pragma once
@@ -9,20 +9,20 @@
 namespace taut::sim {
 
 struct Convex {
-  const HullTable* table;  ///< What belongs to what; its places are those of its own frame.
+  const HullTable* table;  ///< Indices; its coordinates are in the hull's frame.
   Vec3 corners[kMaxHullCorners], normals[kMaxHullFaces];
   double offsets_m[kMaxHullFaces];
   Vec3 center;
-  double thin_m;  ///< The centre's distance from the nearest face.
+  double thin_m;  ///< Distance of the center from the nearest face.
 
   explicit Convex(const HullShape& hull) noexcept;
   explicit Convex(const BoxShape& box) noexcept;
 
-  /// How far a point is above the plane of a face.
+  /// Returns the signed height of a point above the plane of a face.
   double Above(int face, const Vec3& p) const noexcept {
     return Dot(normals[face], p) - offsets_m[face];
   }
-  /// How far its lowest corner is above a plane.
+  /// Returns the signed height of the lowest corner above a plane.
   double Lowest(const Vec3& normal, double offset_m) const noexcept {
     double lowest = Dot(normal, corners[0]);
     for (int i = 1; i < table->corner_count; ++i) {
@@ -30,7 +30,7 @@ struct Convex {
     }
     return lowest - offset_m;
   }
-  /// Least and greatest coordinates of its corners.
+  /// Computes the least and greatest coordinates of the corners.
   void Bounds(Vec3* low, Vec3* high) const noexcept {
     *low = *high = corners[0];
     for (int i = 1; i < table->corner_count; ++i) {
@@ -44,7 +44,7 @@ struct Convex {
     return corners[edge.to] - corners[edge.from];
   }
 
-  /// `use` with the two ends of every side of a face, counter-clockwise seen from outside.
+  /// Calls `use` with the two ends of every side of a face, counter-clockwise seen from outside.
   template <class Use>
   void EachSide(int face, const Use& use) const noexcept {
     const int first = table->first_in_face[face], last = table->first_in_face[face + 1];
@@ -54,10 +54,11 @@ struct Convex {
   }
 };
 
-/// The place of a convex body that is nearest to a point; of what is inside, the nearest face.
+/// The point of a convex body's surface nearest to a given point; for a point inside, on the
+/// nearest face.
 struct NearestOfConvex {
-  Vec3 at, normal;    ///< The normal leads out, to the point if that is outside.
-  double distance_m;  ///< Below 0: inside.
+  Vec3 at, normal;    ///< The normal points outwards: to the given point if that is outside.
+  double distance_m;  ///< Negative: inside.
 };
 NearestOfConvex NearestTo(const Convex& convex, const Vec3& point) noexcept;
 

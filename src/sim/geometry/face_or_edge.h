@@ -1,17 +1,18 @@
-/// Where bodies with flat faces meet: by a face of one of them, or edge on edge.
+/// Choice between face contact and edge contact of two polyhedra (separating axes).
 #pragma once
 
 #include "sim/geometry/touch_list.h"
 
 namespace taut::sim {
 
-/// Another axis must be better by this share of the depth, and of the bodies' size, before it takes
-/// over: `b`'s faces from `a`'s, edges from faces. So the choice does not flicker.
+/// Another axis must be better by this share of the depth, and of the bodies' size, to be
+/// preferred: `b`'s faces over `a`'s, edges over faces. This hysteresis keeps the choice from
+/// flickering.
 inline constexpr double kBetterShare = 0.05, kBetterSize = 1e-4;
-/// Faces are this much larger when the other's corners are cut off, so that corners on corners
-/// stay what they are.
+/// Relative enlargement of a face before the other face is clipped against it, so that corners on
+/// corners remain.
 inline constexpr double kCutSlack = 1e-5;
-/// Edges at less than this angle are parallel: faces do better.
+/// Edges at a smaller angle (as a sine) are parallel: faces are the better axes.
 inline constexpr double kParallelSin = 1e-3;
 
 inline bool ClearlyBetter(double apart_m, double than_m, double size_m) noexcept {

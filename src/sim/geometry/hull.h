@@ -1,6 +1,6 @@
-/// A convex body with flat faces, laid out for contacts.
+/// Tables of a convex hull (corners, faces, edges) for contacts.
 ///
-/// Part of a step: no standard library. What fills it in is hull_build.h.
+/// Part of a step: no standard library. hull_build.h fills them in.
 #pragma once
 
 #include "math/vec.h"
@@ -8,26 +8,26 @@
 namespace taut::sim {
 
 inline constexpr int kMaxHullCorners = 64;  // HullDef::kMostCorners
-/// By Euler's formula, where all faces are triangles.
+/// By Euler's formula, if all faces are triangles.
 inline constexpr int kMaxHullFaces = 2 * kMaxHullCorners - 4;
 inline constexpr int kMaxHullEdges = 3 * kMaxHullCorners - 6;
 
-/// Two corners, and the faces on either side: `left` has them in this order.
+/// Two corners, and the faces on both sides: in `left`, `to` follows `from`.
 struct HullEdge {
   int from, to, left, right;
 };
 
 struct HullTable {
   int corner_count = 0, face_count = 0, edge_count = 0;
-  const Vec3* corners = nullptr;       ///< In its own frame [m].
-  const Vec3* normals = nullptr;       ///< Of the faces: unit, outwards.
-  const double* offsets_m = nullptr;   ///< normal . x of what is on a face; no corner is above.
-  const int* first_in_face = nullptr;  ///< Into in_face; one more.
+  const Vec3* corners = nullptr;       ///< In the hull's frame [m].
+  const Vec3* normals = nullptr;       ///< Of the faces: unit vectors, outwards.
+  const double* offsets_m = nullptr;   ///< normal . x on each face; no corner has more.
+  const int* first_in_face = nullptr;  ///< Index into in_face; one more entry than faces.
   const int* in_face = nullptr;        ///< Corners, counter-clockwise seen from outside.
   const HullEdge* edges = nullptr;
   Vec3 center;           ///< Mean of the corners.
-  double bound_m = 0.0;  ///< No corner is farther from the centre.
-  double thin_m = 0.0;   ///< The centre's distance from the nearest face.
+  double bound_m = 0.0;  ///< Largest distance of a corner from the center.
+  double thin_m = 0.0;   ///< Distance of the center from the nearest face.
 };
 
 }  // namespace taut::sim

@@ -1,3 +1,4 @@
+// Construction of the contact tables of a convex hull.
 #include "sim/geometry/hull_build.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// A hull with all that contacts need, from its corners.
+/// Construction of the contact tables of a convex hull from its corners and faces.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@ namespace taut::sim {
 
 class Hull {
  public:
-  /// With kMaxHullCorners corners at most.
+  /// At most kMaxHullCorners corners.
   explicit Hull(math::ConvexHull hull);
 
-  /// Stays where it is, if the hull is moved, too.
+  /// The address stays the same if the hull is moved.
   const HullTable& table() const { return *table_; }
 
  private:

@@ -1,13 +1,14 @@
+/// Stretch of a line, clipped by half spaces.
 #pragma once
 
 #include "sim/geometry/touch_list.h"
 
 namespace taut::sim {
 
-/// A part of a line, between two shares of it.
+/// Part of a line, between two shares of it.
 struct LineStretch {
   double low, high;
-  /// Keeps where `at + share * slope` is not above 0.
+  /// Keeps the part where `at + share * slope` <= 0.
   void CutAbove(double at, double slope) noexcept {
     if (slope > 0.0) {
       high = Smaller(high, -at / slope);

@@ -1,4 +1,4 @@
-/// Points of a pair of which there may be more than a pair may have.
+/// Reduction of a contact manifold to the points that a pair may have (kMaxPointsPerPair).
 #pragma once
 
 #include "sim/geometry/touch_list.h"
@@ -7,11 +7,12 @@ namespace taut::sim {
 
 class ManyTouches {
  public:
-  /// Points with one normal that are no farther from each other than `same_m` are one.
+  /// Points with the same normal at a distance of at most `same_m` are merged.
   ManyTouches(double same_m, double margin_m) noexcept
       : same2_(same_m * same_m), margin_m_(margin_m) {}
 
-  /// `id` says where, so that most find their memory again.
+  /// Adds a point. `id` identifies its place, so that most points find their impulses for a warm
+  /// start.
   void Add(const Vec3& point, const Vec3& normal, double gap_m, int id) noexcept {
     if (!(gap_m < margin_m_)) return;
     least_gap_m_ = Smaller(least_gap_m_, gap_m);
@@ -33,12 +34,12 @@ class ManyTouches {
 
   double least_gap_m() const noexcept { return least_gap_m_; }
 
-  /// If they are too many: the nearest, and of those that are as near as each other the ones that
-  /// are outermost in twelve directions all around, which hold what all of them would.
+  /// Adds the points to a list. If there are too many: the nearest, and among points of equal gap
+  /// the outermost in twelve directions, which support the same loads as all of them.
   void AddTo(TouchList& list) noexcept {
     if (count_ > kMaxPointsPerPair) Choose();
     bool taken[kMaxPointsPerPair] = {};
-    // Those whose number is a feature's keep it.
+    // Points whose id is a feature keep it.
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < count_; ++i) {
         const One& one = all_[i];
@@ -52,9 +53,9 @@ class ManyTouches {
   }
 
  private:
-  /// Normals that agree so well are of one plane.
+  /// Cosine above which normals belong to one plane.
   static constexpr double kSamePlane = 1.0 - 1e-9;
-  /// Gaps that differ by so much of the margin are the same.
+  /// Gaps that differ by less than this share of the margin are equal.
   static constexpr double kSameGap = 1e-2;
   static constexpr int kRoom = 96;
 
@@ -65,7 +66,7 @@ class ManyTouches {
   };
 
   void Choose() noexcept {
-    // By gap, those added first in front.
+    // Sort by gap, stable.
     for (int i = 1; i < count_; ++i) {
       for (int k = i; k > 0 && all_[k].gap_m < all_[k - 1].gap_m; --k) {
         const One swapped = all_[k];
@@ -78,7 +79,7 @@ class ManyTouches {
     while (all_[nearer].gap_m < last_m - same_m) ++nearer;
     while (end < count_ && all_[end].gap_m <= last_m + same_m) ++end;
     count_ = nearer;
-    // To the corners of an icosahedron.
+    // Directions: the corners of an icosahedron.
     constexpr double kGolden = 1.618033988749895;
     for (int axis = 0; axis < 3; ++axis) {
       for (int signs = 0; signs < 4; ++signs) {

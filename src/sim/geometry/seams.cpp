@@ -1,3 +1,4 @@
+// Rejection of contacts internal to adjacent pieces of terrain (seams.h).
 #include "sim/geometry/seams.h"
 
 #include "sim/geometry/surface_near.h"
@@ -14,7 +15,7 @@ constexpr double kSteep = 0.5;
 /// point to open surface, beyond the penetration of pressed bodies.
 constexpr double kSteps = 16.0, kOpenSteps = 500.0;
 
-/// Whether `way`, of a given length, rises by more than the tolerance.
+/// Returns whether a vector of a given length rises by more than the tolerance.
 bool Rises(double up_m, double length_m, const SeamSlack& slack) noexcept {
   return up_m > slack.length_m + slack.sine * length_m || up_m > kSteep * length_m;
 }
@@ -116,7 +117,7 @@ bool BoxGoesOn(const BoxShape& box, const Vec3& place, const Vec3& way, double s
   return false;
 }
 
-/// Whether an open sheet at the point separates the direction from the middle of the body.
+/// Returns whether an open sheet at the point separates the direction from the middle of the body.
 bool IsBehindSheet(const SeamList& seams, const Vec3& place, const Vec3& way, const Vec3& middle,
                    double more_m) noexcept {
   bool behind = false;

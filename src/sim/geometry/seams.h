@@ -30,7 +30,7 @@ struct SeamPiece {
 struct SeamList {
   const SeamPiece* pieces = nullptr;
   int count = 0;
-  double same_m = 0;  ///< The largest of the pieces.
+  double same_m = 0;  ///< Largest `same_m` of the pieces.
 };
 
 /// Tolerances (length and sine) within which a normal is tangential to a piece and does not point
@@ -39,11 +39,11 @@ struct SeamSlack {
   double length_m, sine;
 };
 
-/// Whether a point belongs to another piece.
+/// Returns whether a point belongs to another piece.
 bool IsOnSeam(const SeamList& seams, const Vec3& place, double more_m = 0.0) noexcept;
 
-/// Whether a piece contains the point and continues in the direction of the normal: a part of it is
-/// nearer to the end of the normal.
+/// Returns whether a piece contains the point and continues in the direction of the normal: a part
+/// of it is nearer to the end of the normal.
 bool IsCovered(const SeamList& seams, const Vec3& place, const Vec3& normal, const SeamSlack& slack,
                double more_m = 0.0) noexcept;
 
@@ -53,22 +53,22 @@ struct SeamContact {
   const Vec3* middle;
 };
 
-/// The same for a point of a triangle or an edge that may emerge from its cover nearby, as the foot
-/// of a wall does: there a body with flat faces has a contact.
+/// Like IsCovered, for a point of a triangle or an edge that may emerge from its cover nearby, like
+/// the foot of a wall: there a body with flat faces has a contact.
 bool IsFaceCovered(const SeamList& seams, const SurfaceTriangle& face, const SeamContact& contact,
                    const SeamSlack& slack) noexcept;
 bool IsEdgeCovered(const SeamList& seams, const Vec3& from, const Vec3& to,
                    const SeamContact& contact, const SeamSlack& slack) noexcept;
-/// Whether the path from a covered point to `end`, perpendicular to the normal and towards the
-/// body, is open.
+/// Returns whether the path from a covered point to `end`, perpendicular to the normal and towards
+/// the body, is open.
 bool IsExposed(const SeamList& seams, const Vec3& end, const SeamContact& contact,
                const SeamSlack& slack, double more_m = 0.0) noexcept;
 
-/// Whether a piece, or `own` if not null, continues straight from a point in a unit direction.
-/// `boxes`: include boxes.
+/// Returns whether a piece, or `own` if not null, continues straight from a point in a unit
+/// direction. `boxes`: include boxes.
 bool GoesStraightOn(const SurfaceTable* own, const SeamList& seams, const Vec3& place,
                     const Vec3& way, bool boxes) noexcept;
-/// Whether the surface continues straight in all tangential directions.
+/// Returns whether the surface continues straight in all tangential directions.
 bool IsFlatAround(const SurfaceTable& own, const SeamList& seams, const Vec3& place,
                   const Vec3& normal) noexcept;
 

@@ -1,3 +1,4 @@
+// Narrow phase of capsules and spheres with each other and with boxes.
 #include "sim/geometry/shape_contacts.h"
 
 #include "sim/geometry/touch_list.h"
@@ -5,11 +6,11 @@
 namespace taut::sim {
 namespace {
 
-/// Centre points nearer than this have no direction of their own.
+/// Distance of centerline points below which its direction is undefined [m].
 constexpr double kCoincidentM = 1e-10;
-/// Below this angle (as sin^2) two capsules may share a stretch, not just a point.
+/// sin^2 of the angle below which two capsules may share a stretch, not just a point.
 constexpr double kAlongsideSin2 = 0.25;
-/// A point is left out if its neighbours give the same gap there, up to this share of the radius.
+/// A point is redundant if its neighbors imply the same gap there, up to this share of the radius.
 constexpr double kSameGap = 1e-6;
 
 struct Segment {
@@ -23,7 +24,7 @@ struct Segment {
   }
 };
 
-/// A point of each centre line and their distance.
+/// A point of each centerline and their distance.
 struct CenterPair {
   Vec3 a, b;
   double distance_m;
@@ -41,8 +42,9 @@ void KeepCloser(CenterPair& best, const CenterPair& other) noexcept {
   if (other.distance_m < best.distance_m) best = other;
 }
 
-/// The least distance is either between interiors, where the lines are closest, or at an end. All
-/// of these are tried: near-parallel lines then cost no accuracy.
+/// Returns the closest points of two centerlines. They lie either between interiors, where the
+/// lines are closest, or at an end. All of these are tried, so that near-parallel lines cost no
+/// accuracy.
 CenterPair ClosestPair(const Segment& a, const Segment& b) noexcept {
   CenterPair best = FromA(a.from, b);
   KeepCloser(best, FromA(a.to, b));
@@ -58,7 +60,7 @@ CenterPair ClosestPair(const Segment& a, const Segment& b) noexcept {
   return best;
 }
 
-/// A unit vector at right angles to `a`, which is not zero.
+/// Returns a unit vector perpendicular to `a`, which is not zero.
 Vec3 Perpendicular(const Vec3& a) noexcept {
   const double x = Abs(a.x), y = Abs(a.y), z = Abs(a.z);
   const Vec3 axis = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
@@ -66,8 +68,8 @@ Vec3 Perpendicular(const Vec3& a) noexcept {
   return (1.0 / Norm(p)) * p;
 }
 
-/// For centre lines that meet: across both if they cross, across the one if they coincide, up for
-/// two points. Either side would do.
+/// Returns a normal for centerlines that meet: perpendicular to both if they cross, to the line if
+/// they coincide, up for two points. Both signs are equally good.
 Vec3 NormalOfMeeting(const Segment& a, const Segment& b) noexcept {
   const double a2 = Dot(a.along, a.along), b2 = Dot(b.along, b.along);
   const Vec3 c = Cross(a.along, b.along);
@@ -76,7 +78,7 @@ Vec3 NormalOfMeeting(const Segment& a, const Segment& b) noexcept {
   return Perpendicular(a2 > b2 ? a.along : b.along);
 }
 
-/// Two round shapes, and the points found between them.
+/// Two round shapes, and the contact points found between them.
 struct RoundPair {
   Segment a, b;
   double radius_a_m, radius_b_m;
@@ -93,7 +95,7 @@ struct RoundPair {
   double SameGapM() const noexcept { return kSameGap * (radius_a_m + radius_b_m); }
 };
 
-/// The ends of the stretch that two capsules have in common, in the direction of `a`.
+/// Ends of the stretch along which two capsules overlap, in the direction of `a`.
 struct Overlap {
   bool exists = false;
   CenterPair low = {}, high = {};
@@ -109,7 +111,7 @@ Overlap FindOverlap(const RoundPair& pair) noexcept {
   if (a2 == 0.0 || b2 == 0.0 || Dot(c, c) > kAlongsideSin2 * a2 * b2) return overlap;
   const bool same_way = Dot(a.along, b.along) > 0.0;
   const Vec3 &b_low = same_way ? b.from : b.to, &b_high = same_way ? b.to : b.from;
-  // Halfway between the two directions, so that it does not matter which one is `a`.
+  // The bisector of both directions, so that the result does not depend on which one is `a`.
   const Vec3 both = (1.0 / Sqrt(a2)) * a.along + (1.0 / Sqrt(b2)) * (b_high - b_low);
   overlap.direction = (1.0 / Norm(both)) * both;
   const double a_from = Dot(overlap.direction, a.from), b_from = Dot(overlap.direction, b_low);
@@ -141,7 +143,7 @@ struct CapsuleAtBox {
   }
   double At(int axis, double t) const noexcept { return from[axis] + t * along[axis]; }
 
-  /// How far the point at `t` lies beyond the box.
+  /// Returns the vector from the box to the point at `t`; zero inside.
   Vec3 Beyond(double t) const noexcept {
     double out[3];
     for (int i = 0; i < 3; ++i) {
@@ -150,11 +152,11 @@ struct CapsuleAtBox {
     }
     return Load(out);
   }
-  /// Half the derivative of the squared distance: it rises, in straight pieces.
+  /// Returns half the derivative of the squared distance: piecewise linear and nondecreasing.
   double Slope(double t) const noexcept { return Dot(Beyond(t), Load(along)); }
 };
 
-/// A point of the centre line.
+/// A point of the centerline.
 struct Station {
   double t;
   int feature;
@@ -174,15 +176,15 @@ struct Stations {
     for (int axis = 0; axis < 3; ++axis) {
       for (int side = 0; side < 2; ++side) {
         const double plane = side == 0 ? -c.half_m[axis] : c.half_m[axis];
-        const double t = (plane - c.from[axis]) / c.along[axis];  // Infinite or NaN if parallel.
+        const double t = (plane - c.from[axis]) / c.along[axis];  // infinite or NaN if parallel
         if (t > 0.0 && t < 1.0) Add(t, 3 + 2 * axis + side);
       }
     }
   }
 };
 
-/// Where the centre line is nearest to the box: the root of a slope that is straight between
-/// stations.
+/// Returns where the centerline is nearest to the box: the root of the slope, which is linear
+/// between stations.
 double NearestToBox(const CapsuleAtBox& c, const Stations& stations) noexcept {
   double low = 0.0, high = 1.0;
   double slope_low = c.Slope(low), slope_high = c.Slope(high);
@@ -198,13 +200,13 @@ double NearestToBox(const CapsuleAtBox& c, const Stations& stations) noexcept {
   return Clamp(low + (high - low) * (slope_low / (slope_low - slope_high)), low, high);
 }
 
-/// A capsule beside a box, and the points found between them.
+/// A capsule next to a box, and the contact points found between them.
 struct RoundBoxPair {
   CapsuleAtBox capsule;
   const BoxShape& box;
   TouchList list;
 
-  /// `out` is the unit normal in the box's frame, `distance_m` how far the centre is outside.
+  /// `out`: unit normal in the box's frame; `distance_m`: distance of the centerline point outside.
   void Add(double t, const Vec3& out, double distance_m, int feature) noexcept {
     const Vec3 n = out.x * AxisOf(box, 0) + out.y * AxisOf(box, 1) + out.z * AxisOf(box, 2);
     Vec3 point = Load(box.center) - 0.5 * (capsule.radius_m + distance_m) * n;
@@ -218,7 +220,8 @@ struct RoundBoxPair {
   }
 };
 
-/// The centre line passes the box outside: every station has its own nearest point of the box.
+/// Adds the contacts of a centerline outside of the box: each station has its nearest point of the
+/// box.
 void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) noexcept {
   const CapsuleAtBox& c = pair.capsule;
   const double margin = pair.list.margin_m();
@@ -238,8 +241,8 @@ void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) 
     pair.AddOutside(t, stations.all[i].feature);
   }
   if (c.length_m == 0.0) return;
-  // The distance is convex along the line: if the nearest point is no closer than the straight
-  // line between its neighbours, they can carry everything that it could.
+  // The distance is convex along the line: if the nearest point is no closer than the chord between
+  // its neighbors, these can carry every load that it could.
   const double d_before = Norm(c.Beyond(before)), d_after = Norm(c.Beyond(after));
   const double d_nearest = Norm(c.Beyond(nearest));
   const double share = after > before ? (nearest - before) / (after - before) : 0.0;
@@ -249,12 +252,12 @@ void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) 
   pair.AddOutside(nearest, 2);
 }
 
-/// A stretch of the centre line.
+/// A stretch of the centerline.
 struct Stretch {
   Station low, high;
 };
 
-/// The stretch that lies between the four faces beside the two of `face_axis`.
+/// Returns the stretch that lies between the four faces adjacent to the two of `face_axis`.
 Stretch BetweenSides(const CapsuleAtBox& c, const Stations& stations, int face_axis) noexcept {
   Stretch s{{0.0, 0}, {1.0, 1}};
   for (int i = 2; i < stations.count; ++i) {
@@ -272,13 +275,13 @@ Vec3 UnitAxis(int axis, double sign) noexcept {
   return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0};
 }
 
-/// The shortest way out of a box for a centre line that goes through it: through a face, or at
-/// right angles to the line and an edge.
+/// Shortest way out of a box for a centerline that passes through it: through a face, or
+/// perpendicular to the line and an edge.
 struct WayOut {
-  int axis = 0;  ///< Across the face or along the edge.
+  int axis = 0;  ///< Axis across the face or along the edge.
   bool through_face = true;
   Vec3 normal = {};
-  double distance_m = -1e300;  ///< Of the line from outside: negative.
+  double distance_m = -1e300;  ///< Distance of the line from the outside: negative.
 };
 
 WayOut ThroughFace(const CapsuleAtBox& c, const Stations& stations) noexcept {
@@ -309,7 +312,7 @@ WayOut AcrossEdge(const CapsuleAtBox& c) noexcept {
   return way;
 }
 
-/// Where the centre line is nearest to the edge it is to leave across.
+/// Returns where the centerline is nearest to the edge across which it leaves.
 double NearestToEdge(const CapsuleAtBox& c, const WayOut& way) noexcept {
   const double n[3] = {way.normal.x, way.normal.y, way.normal.z};
   double dot = 0.0, norm2 = 0.0;
@@ -322,11 +325,12 @@ double NearestToEdge(const CapsuleAtBox& c, const WayOut& way) noexcept {
   return Clamp(dot / norm2, 0.0, 1.0);
 }
 
-/// Deep inside: all points leave the same way, for points with a way each could be at odds.
+/// Adds the contacts of a centerline deep inside: all points leave in the same direction, because
+/// separate directions could contradict each other.
 void TouchInside(RoundBoxPair& pair, const Stations& stations) noexcept {
   const CapsuleAtBox& c = pair.capsule;
   const WayOut face = ThroughFace(c, stations), edge = AcrossEdge(c);
-  // A face gives two points instead of one, so it wins unless the edge is clearly better.
+  // A face gives two points instead of one, so it is preferred unless the edge is clearly better.
   if (edge.distance_m > face.distance_m + 0.05 * Abs(face.distance_m)) {
     pair.Add(NearestToEdge(c, edge), edge.normal, edge.distance_m, 2);
     return;
@@ -351,7 +355,7 @@ int Touch(const RoundShape& a, const RoundShape& b, double margin_m, TouchPoint*
     pair.Add(overlap.low, 1);
     pair.Add(overlap.high, 2);
     // A twisted rod bulges between the ends; a parallel one does not, and its closest point is
-    // anywhere. In between, the point fades in with what it adds.
+    // anywhere. The point is omitted while it adds nothing to the chord between the ends.
     const double at = Dot(overlap.direction, 0.5 * (closest.a + closest.b));
     const double share =
         Clamp((at - overlap.low_at_m) / (overlap.high_at_m - overlap.low_at_m), 0.0, 1.0);

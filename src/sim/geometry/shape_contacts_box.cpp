@@ -1,4 +1,5 @@
-// Two boxes: separating axes, then the points of the face or the edges that belong to the best one.
+// Narrow phase of two boxes: separating axis test, then clipping of the best face or crossing of
+// the best edges.
 #include "sim/geometry/face_or_edge.h"
 #include "sim/geometry/shape_contacts.h"
 
@@ -10,7 +11,7 @@ static_assert(kMeetingFeature < kMaxPointsPerPair, "every feature needs a number
 
 double Sign(double x) noexcept { return x < 0.0 ? -1.0 : 1.0; }
 
-/// How far two boxes are apart along a unit direction; negative: how far they overlap.
+/// Returns the separation of two boxes along a unit direction; negative: overlap.
 double Apart(const BoxShape& a, const BoxShape& b, const Vec3& direction) noexcept {
   const Vec3 ab = Load(b.center) - Load(a.center);
   return Abs(Dot(ab, direction)) - Reach(a, direction) - Reach(b, direction);
@@ -21,7 +22,7 @@ struct FaceAxis {
   double apart_m = -1e300;
 };
 
-/// The best of the face axes of `a`.
+/// Returns the best of the face axes of `a`.
 FaceAxis BestFace(const BoxShape& a, const BoxShape& b) noexcept {
   FaceAxis best;
   for (int i = 0; i < 3; ++i) {
@@ -55,7 +56,7 @@ EdgeAxis BestEdges(const BoxShape& a, const BoxShape& b) noexcept {
   return best;
 }
 
-/// The middle of the edge along `axis` that is foremost in a direction.
+/// Returns the middle of the edge along `axis` that is foremost in a direction.
 Vec3 ForemostEdge(const BoxShape& box, int axis, const Vec3& direction) noexcept {
   Vec3 p = Load(box.center);
   for (int i = 0; i < 3; ++i) {
@@ -65,7 +66,7 @@ Vec3 ForemostEdge(const BoxShape& box, int axis, const Vec3& direction) noexcept
   return p;
 }
 
-/// Edge on edge: one point, if the edges do cross.
+/// Adds the contact of two edges: one point, if they cross.
 void TouchEdges(const BoxShape& a, const BoxShape& b, const EdgeAxis& edges,
                 TouchList& list) noexcept {
   const Vec3 along_a = AxisOf(a, edges.a), along_b = AxisOf(b, edges.b);
@@ -82,19 +83,19 @@ void TouchEdges(const BoxShape& a, const BoxShape& b, const EdgeAxis& edges,
   list.Add(0.5 * (on_a + on_b), -1.0 * edges.direction, edges.apart_m, kMeetingFeature);
 }
 
-/// A corner of the face that is being cut: place in the cutting face, height above it.
+/// A corner of the clipped face: place in the clipping face, height above it.
 struct Corner {
   double x[2], height_m;
   int feature;
 };
 
-/// Four corners, and one more a cut.
+/// Four corners, and one more for each cut.
 struct Polygon {
   static constexpr int kMax = 8;
   Corner corners[kMax];
   int count = 0;
   void Add(const Corner& corner) noexcept {
-    if (count < kMax) corners[count++] = corner;  // Rounding must not make a convex rim wavy.
+    if (count < kMax) corners[count++] = corner;  // rounding could make a convex rim wavy
   }
 };
 
@@ -104,7 +105,7 @@ Corner Between(const Corner& p, const Corner& q, double share, int feature) noex
           feature};
 }
 
-/// Cuts off what lies beyond `limit` along sign * x[axis]. `feature` and the next one number the
+/// Removes the part beyond `limit` along sign * x[axis]. `feature` and the next number denote the
 /// two places where the rim crosses the cut: leaving, entering.
 Polygon Cut(const Polygon& polygon, int axis, double sign, double limit, int feature) noexcept {
   Polygon kept;
@@ -119,8 +120,8 @@ Polygon Cut(const Polygon& polygon, int axis, double sign, double limit, int fea
   return kept;
 }
 
-/// The face of `box` that looks most against `direction`, seen from the frame of a cutting face:
-/// origin, two axes, and `direction` up.
+/// Returns the face of `box` that faces most against `direction`, in the frame of the clipping
+/// face: origin, two axes, and `direction` up.
 Polygon FacingFace(const BoxShape& box, const Vec3& direction, const Vec3& origin,
                    const Vec3& axis0, const Vec3& axis1) noexcept {
   int face = 0;
@@ -144,7 +145,7 @@ Polygon FacingFace(const BoxShape& box, const Vec3& direction, const Vec3& origi
   return polygon;
 }
 
-/// Face contact: the facing face of `other`, cut to the shape of `box`'s face.
+/// Adds a face contact: the facing face of `other`, clipped to `box`'s face.
 void TouchFace(const BoxShape& box, int axis, const BoxShape& other, bool box_is_a,
                TouchList& list) noexcept {
   const double side = Sign(Dot(AxisOf(box, axis), Load(other.center) - Load(box.center)));
@@ -192,7 +193,8 @@ CornerPair NearestCorner(const BoxShape& box, const BoxShape& other) noexcept {
   return best;
 }
 
-/// Boxes apart may be nearest at a corner that is beside the other's face: diagonal neighbours.
+/// Adds a corner that is nearest outside of the other's face: separate boxes that are diagonal
+/// neighbors.
 void TouchCorner(const BoxShape& a, const BoxShape& b, double slack_m, TouchList& list) noexcept {
   const CornerPair from_a = NearestCorner(a, b), from_b = NearestCorner(b, a);
   const bool use_b = from_b.distance_m < from_a.distance_m;
@@ -206,7 +208,7 @@ double SizeOf(const BoxShape& box) noexcept {
   return Smaller(box.half_m[0], Smaller(box.half_m[1], box.half_m[2]));
 }
 
-/// The distance of `a` from the smallest box along its axes that holds `b`.
+/// Returns the distance of `a` from the bounding box of `b` along the axes of `a`.
 double DistanceAlongAxes(const BoxShape& a, const BoxShape& b) noexcept {
   double sum2 = 0.0;
   for (int i = 0; i < 3; ++i) {

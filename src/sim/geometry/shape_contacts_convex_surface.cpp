@@ -1,6 +1,6 @@
-// A box or a hull on ground (docs/theory/ground.md, section 3): its corners against faces, its
-// edges against edges that stick out, and corners of the ground that stick out against its faces.
-// Between sharp bodies there is nothing else.
+// Narrow phase of a box or a hull on ground (docs/theory/ground.md, section 3): its corners against
+// faces, its edges against sharp edges, and its faces against sharp corners of the ground. Between
+// sharp bodies there are no other contacts.
 #include "sim/geometry/convex.h"
 #include "sim/geometry/many_touches.h"
 #include "sim/geometry/surface_near.h"
@@ -8,26 +8,27 @@
 namespace taut::sim {
 namespace {
 
-/// Numbers of points that tell where they are: corners, more planes of theirs, edges, faces.
+/// Numbers of points by place: corners, their further planes, edges, faces.
 constexpr int kFirstPlane = kMaxHullCorners, kFirstEdge = 2 * kMaxHullCorners;
 constexpr int kFirstFace = kFirstEdge + kMaxHullEdges;
-/// Places of a corner, and how many planes it may have.
+/// Maximum of places of a corner, and of its planes.
 constexpr int kPlacesOfCorner = 3, kPlanesOfCorner = 4;
-/// Sines and cosines by so much are rounding: level is level.
+/// Rounding tolerance of sines and cosines, within which directions are level.
 constexpr double kLevel = 1e-6;
-/// Edges at a smaller angle are parallel: other pairs hold them [rad].
+/// Angle below which edges are parallel and other pairs support them [rad].
 constexpr double kParallel = 1e-6;
-/// Normals that agree so well are of one plane; contacts that are so near to each other, in sizes
-/// of the body, one.
+/// Cosine above which normals belong to one plane; distance below which contacts are merged, in
+/// sizes of the body.
 constexpr double kSamePlane = 1.0 - 1e-9, kSamePlace = 1e-6;
-/// How deep edges may be in each other, and corners through a sheet, in thinnest half edges.
+/// Largest penetration of edges, and of corners through a sheet, in smallest half thicknesses.
 constexpr double kDeepestEdge = 0.5, kDeepestSheet = 0.25;
-/// Planes that rise beside a corner count as far from it as the step goes, and so many times its
+/// Planes that rise next to a corner count up to the search distance plus this many times its
 /// depth.
 constexpr double kBesideDepths = 4.0;
-/// How far a body looks around, in its size; and where more than bounds are looked at.
+/// Search distance around a body in its sizes; the part of it that is searched exactly; and the
+/// factor of each further search, by bounds.
 constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
-/// What was left out as found twice may be nearer by so much, as a share and [m].
+/// Possible reduction of the gap by contacts that were merged, as a share and [m].
 constexpr double kSameGap = 1e-5, kSameGapM = 1e-9;
 
 struct Plane {
@@ -35,12 +36,12 @@ struct Plane {
   double gap_m;
 };
 
-/// An order that stays while shapes slide.
+/// Order that stays while shapes slide.
 bool Before(const Vec3& a, const Vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-/// A body between triangles, and what it found.
+/// Search for the contacts of a body with a surface.
 class ConvexSearch {
  public:
   ConvexSearch(const Convex& body, const SurfaceTable& s, double margin_m) noexcept
@@ -55,7 +56,7 @@ class ConvexSearch {
     if (!IsClear(limit_m_)) Look();
     touches_.AddTo(list);
   }
-  /// Whether nothing of the surface is as near as that, as far as bounds can say.
+  /// Returns whether the bounds exclude that anything of the surface is within `reach_m`.
   bool IsClear(double reach_m) const noexcept {
     const LineReach line = Reach(reach_m);
     return line.low > line.high;
@@ -74,7 +75,7 @@ class ConvexSearch {
         },
         [&](const Vec3& p, const auto& each_beside) noexcept { Peak(p, each_beside); });
   }
-  /// All around the body, as what is around a line through its centre and its farthest corner.
+  /// Returns the reach around the body, as a line through its center and its farthest corner.
   LineReach Reach(double more_m) const noexcept {
     int farthest = 0;
     double most2 = 0.0;
@@ -92,15 +93,16 @@ class ConvexSearch {
     }
     return ReachOfLine(s_, center_ + low * along, center_ + high * along, Sqrt(aside2) + more_m);
   }
-  /// Away from ground; of a sheet to where the box is.
+  /// Returns the normal of a triangle, away from the ground; of a sheet, towards the body.
   Vec3 NormalOf(const SurfaceTable& s, const SurfaceTriangle& t) const noexcept {
     const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
     const bool turned = !s.solid && Dot(n, center_ - t.p[0]) < 0.0;
     return ((turned ? -1.0 : 1.0) / Norm(n)) * n;
   }
 
-  /// Whether a corner has gone through a sheet at its nearest place, and not past its border or
-  /// over a ridge: the way from it to the middle of the box comes through, too.
+  /// Returns whether a corner has passed through a sheet at its nearest place, and not past its
+  /// border or over a ridge: the way from the corner to the middle of the body crosses the sheet,
+  /// too.
   bool IsThrough(const Vec3& corner, const SurfacePlace& place) const noexcept {
     const double depth_m = place.distance_m, side = Dot(place.normal, center_ - place.at);
     if (depth_m > kDeepestSheet * thinnest_m_) return false;
@@ -128,7 +130,7 @@ class ConvexSearch {
     const double look_m = s_.solid ? limit_m_ : Larger(limit_m_, kDeepestSheet * thinnest_m_);
     const int found =
         NearestPlaces(s_, p, look_m, places, kPlacesOfCorner, nullptr, false, &center_);
-    // The first of them with its place.
+    // The first plane with its place.
     Plane planes[kPlanesOfCorner];
     Vec3 base;
     int count = 0;
@@ -157,9 +159,9 @@ class ConvexSearch {
     }
   }
 
-  /// Beside its nearest place `base` ground may rise: there a corner is held by planes of triangles
-  /// that it is not above yet, or that it is under. The nearest place of what is under a valley is
-  /// in its edge, and gives way to the planes on both sides.
+  /// Adds planes of triangles that rise next to the nearest place `base` of a corner, above which
+  /// the corner is not yet or below which it is. The nearest place of a corner under a valley is in
+  /// the valley's edge; it is replaced by the planes on both sides. Returns the number of planes.
   int AddRising(const Vec3& p, const Vec3& base, Plane* planes, int count) const noexcept {
     const Plane first = planes[0];
     const double beside_m = limit_m_ + kBesideDepths * Larger(-first.gap_m, 0.0);
@@ -170,13 +172,13 @@ class ConvexSearch {
       const Vec3 normal = NormalOf(s, t);
       const double gap_m = Dot(normal, p - t.p[0]);
       if (!(gap_m < limit_m_) || !(Dot(normal, center_ - t.p[0]) > 0.0)) return;
-      // A right angle at most, as that of the corner.
+      // At most a right angle, as at the corner.
       if (!(Dot(first.normal, normal) > -kLevel)) return;
       const Vec3 down = base - t.p[0];
       if (&s == &s_) {
         const Vec3 middle = (1.0 / 3.0) * (t.p[0] + t.p[1] + t.p[2]) - base;
         if (!(Dot(first.normal, middle) > kLevel * Norm(middle))) return;
-      } else {  // it may continue below, covered by this one
+      } else {  // covered by this surface, it may continue below
         double most_m = -1.0;
         for (const Vec3& corner : t.p) {
           const Vec3 way = corner - base;
@@ -209,8 +211,8 @@ class ConvexSearch {
     return count - 1;
   }
 
-  /// An edge of the ground against those of the body: along the direction at right angles to both,
-  /// if it leads out of both.
+  /// Adds contacts of a sharp edge of the ground with edges of the body, along their common
+  /// perpendicular, if that leads out of both.
   template <class EdgeOf>
   void Edges(const Vec3& start, const Vec3& end, const EdgeOf& edge_of) noexcept {
     for (int face = 0; face < body_.table->face_count; ++face) {
@@ -240,8 +242,8 @@ class ConvexSearch {
                    kFirstEdge + i + static_cast<int>(on_own > 0.5));
     }
   }
-  /// The same for all pieces that meet at a point of the edge. The edge is not convex where one of
-  /// them continues straight from one of its sides.
+  /// Returns whether the edge is convex at a point, considering all pieces that meet there: not
+  /// where one of them continues straight from one of its sides.
   bool IsEdgeOpen(const SurfaceEdge& edge, const Vec3& at, const Vec3& normal) const noexcept {
     if (!IsOnSeam(s_.seams, at)) return true;
     if (IsEdgeCovered(s_.seams, edge.from, edge.to, {at, normal, &center_}, {limit_m_, kLevel}))
@@ -256,7 +258,7 @@ class ConvexSearch {
     }
     return true;
   }
-  /// Whether the faces beside an edge of the body rise from it.
+  /// Returns whether the faces next to an edge of the body rise from it.
   bool IsLowest(const HullEdge& own, const Vec3& normal) const noexcept {
     const Vec3 from = body_.FromOf(own);
     bool lowest = true;
@@ -279,8 +281,8 @@ class ConvexSearch {
     return true;
   }
 
-  /// A corner of the ground beside the body, or in it and nearest to a face that it can have come
-  /// through.
+  /// Adds the contact of a sharp corner of the ground near the body, or inside it and nearest to a
+  /// face through which it can have come.
   template <class EachBeside>
   void Peak(const Vec3& p, const EachBeside& each_beside) noexcept {
     const int faces = body_.table->face_count;

@@ -1,5 +1,5 @@
-// Two hulls, or a box and a hull: separating axes, then the points of the face or the edges that
-// belong to the best one (docs/theory/contact.md, section 8).
+// Narrow phase of two hulls, or of a box and a hull: separating axis test, then clipping of the
+// best face or crossing of the best edges (docs/theory/contact.md, section 8).
 #include "sim/geometry/convex.h"
 #include "sim/geometry/face_or_edge.h"
 #include "sim/geometry/many_touches.h"
@@ -7,10 +7,10 @@
 namespace taut::sim {
 namespace {
 
-/// Points that are so near to each other, in sizes of the thinner body, are one.
+/// Distance below which points are merged, in sizes of the thinner body.
 constexpr double kSamePlace = 1e-6;
-/// Numbers of points that tell where they are: corners of the face that is cut, then two a cut,
-/// then where edges or corners meet.
+/// Numbers of points by place: corners of the clipped face, then two for each cut, then meeting
+/// edges or corners.
 constexpr int kFirstCut = kMaxHullCorners, kMeeting = 3 * kMaxHullCorners;
 
 struct FaceAxis {
@@ -18,11 +18,11 @@ struct FaceAxis {
   double apart_m = -1e300;
 };
 
-/// The face of `a` that `b` is farthest above.
+/// Returns the face of `a` above which `b` is farthest.
 FaceAxis BestFace(const Convex& a, const Convex& b) noexcept {
   FaceAxis best;
   for (int face = 0; face < a.table->face_count; ++face) {
-    // No corner is higher than the middle less the thinnest half.
+    // No corner is higher than the center minus the thinnest half.
     if (a.Above(face, b.center) - b.thin_m <= best.apart_m) continue;
     const double apart = b.Lowest(a.normals[face], a.offsets_m[face]);
     if (apart > best.apart_m) best = {face, apart};
@@ -30,7 +30,7 @@ FaceAxis BestFace(const Convex& a, const Convex& b) noexcept {
   return best;
 }
 
-/// Edges of a body that come near another's bounds, and so may meet its edges.
+/// Edges of a body near another's bounds, which may meet its edges.
 struct NearEdges {
   int all[kMaxHullEdges];
   int count = 0;
@@ -51,8 +51,9 @@ struct NearEdges {
   }
 };
 
-/// Whether two edges are what both bodies have foremost in some direction: the arcs of directions
-/// between their faces' normals, those of `b` turned round, cross each other.
+/// Returns whether two edges are foremost on both bodies in some direction, so that they form a
+/// face of the Minkowski difference: the arcs between their faces' normals, with those for `b`
+/// negated, cross.
 bool AreForemost(const Convex& a, const HullEdge& edge_a, const Convex& b,
                  const HullEdge& edge_b) noexcept {
   const Vec3 along_a = a.AlongOf(edge_a), along_b = b.AlongOf(edge_b);
@@ -72,8 +73,7 @@ struct EdgeAxis {
   double apart_m = -1e300;
 };
 
-/// The best of those edges that are no farther from each other than `reach_m`, and perhaps of some
-/// more.
+/// Returns the best axis of the edges that are at most `reach_m` apart, and perhaps of some more.
 EdgeAxis BestEdges(const Convex& a, const Convex& b, double reach_m) noexcept {
   EdgeAxis best;
   const NearEdges near_a(a, b, reach_m), near_b(b, a, reach_m);
@@ -95,7 +95,7 @@ EdgeAxis BestEdges(const Convex& a, const Convex& b, double reach_m) noexcept {
   return best;
 }
 
-/// Edge on edge: one point, if the edges do cross.
+/// Adds the contact of two edges: one point, if they cross. Returns whether they do.
 bool TouchEdges(const Convex& a, const Convex& b, const EdgeAxis& edges,
                 ManyTouches& touches) noexcept {
   const HullEdge &edge_a = a.table->edges[edges.a], &edge_b = b.table->edges[edges.b];
@@ -111,23 +111,23 @@ bool TouchEdges(const Convex& a, const Convex& b, const EdgeAxis& edges,
   return true;
 }
 
-/// A corner of the face that is being cut.
+/// A corner of the clipped face.
 struct Corner {
   Vec3 p;
   int id;
 };
 
-/// As many corners as a face has, and one more a cut.
+/// As many corners as a face has, and one more for each cut.
 struct Polygon {
   static constexpr int kMax = 2 * kMaxHullCorners;
   Corner corners[kMax];
   int count = 0;
   void Add(const Corner& corner) noexcept {
-    if (count < kMax) corners[count++] = corner;  // Rounding must not make a convex rim wavy.
+    if (count < kMax) corners[count++] = corner;  // rounding could make a convex rim wavy
   }
 };
 
-/// Cuts off what lies beyond a plane. `id` and the next one number the two places where the rim
+/// Removes the part beyond a plane. `id` and the next number denote the two places where the rim
 /// crosses it: leaving, entering.
 void Cut(const Polygon& polygon, const Vec3& out, double offset_m, int id, Polygon* kept) noexcept {
   kept->count = 0;
@@ -142,7 +142,7 @@ void Cut(const Polygon& polygon, const Vec3& out, double offset_m, int id, Polyg
   }
 }
 
-/// Face contact: the face of `other` that looks most against it, cut to the shape of the face.
+/// Adds a face contact: the face of `other` that faces most against it, clipped to the face.
 void TouchFace(const Convex& convex, int face, const Convex& other, bool convex_is_a,
                ManyTouches& touches) noexcept {
   const Vec3 up = convex.normals[face];
@@ -176,7 +176,7 @@ void TouchFace(const Convex& convex, int face, const Convex& other, bool convex_
   }
 }
 
-/// A corner and the place of the other body that is nearest to it.
+/// A corner and the nearest point of the other body.
 struct CornerPair {
   Vec3 corner;
   NearestOfConvex other;
@@ -197,7 +197,7 @@ CornerPair NearestCorner(const Convex& convex, const Convex& other) noexcept {
   return best;
 }
 
-/// The nearest corner of both.
+/// Nearest corner of both bodies.
 struct NearestOfBoth {
   CornerPair pair;
   bool of_b;
@@ -209,7 +209,7 @@ NearestOfBoth NearestCorners(const Convex& a, const Convex& b) noexcept {
   return {of_b ? from_b : from_a, of_b};
 }
 
-/// Bodies apart may be nearest at a corner that is beside the other's face.
+/// Adds a corner that is nearest outside of the other's face, for separate bodies.
 void TouchCorner(const Convex& a, const Convex& b, double below_m, ManyTouches& touches) noexcept {
   const auto [pair, of_b] = NearestCorners(a, b);
   const NearestOfConvex& place = pair.other;
@@ -247,14 +247,15 @@ int TouchConvex(const Convex& a, const Convex& b, double margin_m, TouchPoint* o
   return list.count();
 }
 
-/// A lower bound, exact but where two corners are nearest to each other.
+/// Returns a lower bound of the distance, exact except where two corners are nearest to each other.
 double DistanceOfConvex(const Convex& a, const Convex& b, double enough_m) noexcept {
   const double face_m = Larger(BestFace(a, b).apart_m, BestFace(b, a).apart_m);
   if (face_m >= enough_m) return face_m;
   const auto [pair, of_b] = NearestCorners(a, b);
   const double nearest_m = pair.other.distance_m;
   if (nearest_m <= 0.0) return 0.0;
-  // Between a corner and what is nearest to it the bodies may be apart by all of their distance.
+  // The direction between a corner and its nearest point may separate the bodies by their full
+  // distance.
   const Convex &one = of_b ? b : a, &other = of_b ? a : b;
   const Vec3 way = pair.other.normal;
   const double at = Dot(way, pair.other.at);

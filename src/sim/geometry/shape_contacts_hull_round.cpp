@@ -1,5 +1,5 @@
-// A rod or a sphere and a hull: the centre line's ends, its nearest place, and where it comes over
-// a face and leaves it.
+// Narrow phase of a rod or a sphere and a hull: ends of the centerline, its nearest point, and
+// points where it enters and leaves the Voronoi region of an edge.
 #include "sim/geometry/convex.h"
 #include "sim/geometry/line_stretch.h"
 #include "sim/geometry/shape_contacts.h"
@@ -8,12 +8,12 @@ namespace taut::sim {
 namespace {
 
 constexpr int kNearestFeature = 2, kFirstStation = 3;
-/// Places of the centre line that are nearer to each other are one, in radii.
+/// Distance below which places of the centerline are merged, in radii.
 constexpr double kSamePlace = 1e-3;
-/// A point is left out if its neighbours give the same gap there, up to this share of the radius.
+/// A point is redundant if its neighbors imply the same gap there, up to this share of the radius.
 constexpr double kSameGap = 1e-6;
 
-/// A capsule beside a convex body.
+/// Search for the contacts of a capsule with a convex body.
 class RoundSearch {
  public:
   RoundSearch(const RoundShape& round, const HullShape& hull) noexcept
@@ -23,7 +23,7 @@ class RoundSearch {
         length_m_(Norm(along_)),
         radius_m_(round.radius_m) {}
 
-  /// Of the centre line; 0 if it goes through the body.
+  /// Returns the distance of the centerline; 0 if it passes through the body.
   double Distance() noexcept {
     FindNearest();
     return Larger(nearest_.distance_m, 0.0);
@@ -53,7 +53,7 @@ class RoundSearch {
     if (place.distance_m < nearest_.distance_m) nearest_ = place, nearest_at_ = t;
   }
 
-  /// The nearest of all places: at an end, against an edge, or inside.
+  /// Finds the nearest place: at an end, against an edge, or inside.
   void FindNearest() noexcept {
     ends_[0] = NearestTo(convex_, At(0.0));
     nearest_ = ends_[0], nearest_at_ = 0.0;
@@ -71,12 +71,12 @@ class RoundSearch {
     for (int i = 0; i < convex_.table->edge_count; ++i) AgainstEdge(convex_.table->edges[i]);
   }
 
-  /// Where the inside of the line is nearest to an edge.
+  /// Tests where the interior of the line is nearest to an edge.
   void AgainstEdge(const HullEdge& edge) noexcept {
     const Vec3 start = convex_.FromOf(edge), side = convex_.AlongOf(edge);
     const Vec3 c = Cross(along_, side), between = start - from_;
     const double c2 = Dot(c, c);
-    if (!(c2 > 0.0)) return;  // As near at an end of one of them.
+    if (!(c2 > 0.0)) return;  // as near at an end of one of them
     const double on_edge = Clamp(Dot(Cross(between, along_), c) / c2, 0.0, 1.0);
     const Vec3 place = start + on_edge * side;
     const double t = Dot(place - from_, along_) / (length_m_ * length_m_);
@@ -86,7 +86,7 @@ class RoundSearch {
     if (distance < nearest_.distance_m) Keep(t, {place, (1.0 / distance) * way, distance});
   }
 
-  /// The centre line passes the body outside.
+  /// Adds the contacts of a centerline outside of the body.
   void TouchOutside(TouchList& list) noexcept {
     AddStation(list, 0.0, ends_[0], 0);
     AddStation(list, 1.0, ends_[1], 1);
@@ -95,15 +95,15 @@ class RoundSearch {
     Add(list, nearest_at_, nearest_, kNearestFeature);
   }
 
-  /// Where it comes beside an edge, between the two faces, and leaves it: there it comes from over
-  /// a face, or goes there.
+  /// Adds the points where the line enters and leaves the Voronoi region of an edge, between the
+  /// two faces: there it comes from above a face, or goes above one.
   void AlongEdge(int which, TouchList& list) noexcept {
     const HullEdge& edge = convex_.table->edges[which];
     const Vec3 start = convex_.FromOf(edge), side = convex_.AlongOf(edge), to_line = from_ - start;
     LineStretch beside{0.0, 1.0};
     beside.CutAbove(-Dot(to_line, side), -Dot(along_, side));
     beside.CutAbove(Dot(to_line, side) - Dot(side, side), Dot(along_, side));
-    // In either face's plane, into the face.
+    // In the plane of each face, into the face.
     const Vec3 left = Cross(convex_.normals[edge.left], side);
     const Vec3 right = Cross(side, convex_.normals[edge.right]);
     beside.CutAbove(Dot(to_line, left), Dot(along_, left));
@@ -119,7 +119,7 @@ class RoundSearch {
     }
   }
 
-  /// Unless there is one already.
+  /// Adds a place unless one is already there.
   void AddPlace(TouchList& list, double t, const NearestOfConvex& place, int id) noexcept {
     if (!(place.distance_m - radius_m_ < list.margin_m()) || station_count_ == kStations) return;
     for (int i = 0; i < station_count_; ++i) {
@@ -135,8 +135,8 @@ class RoundSearch {
     Add(list, t, place, feature);
   }
 
-  /// Whether the nearest place's neighbours can carry everything that it could: the distance is
-  /// convex along the line, and the place no closer than the straight line between them.
+  /// Returns whether the neighbors of the nearest place can carry every load that it could: the
+  /// distance is convex along the line, and the place is no closer than the chord between them.
   bool IsHeld(double reach_m) const noexcept {
     Station before = stations_[0], after = stations_[1];
     for (int i = 2; i < station_count_; ++i) {
@@ -152,7 +152,8 @@ class RoundSearch {
     return chord - nearest_.distance_m <= kSameGap * radius_m_;
   }
 
-  /// So deep inside all points leave through the same face: the one that needs the shortest way.
+  /// Adds the contacts of a centerline deep inside: all points leave through the face with the
+  /// shortest way out.
   void TouchInside(TouchList& list) const noexcept {
     int best = 0;
     double best_m = -1e300;
@@ -171,7 +172,7 @@ class RoundSearch {
     }
   }
 
-  /// A place of the centre line.
+  /// A place of the centerline.
   struct Station {
     double t, distance_m;
   };
@@ -182,7 +183,7 @@ class RoundSearch {
   double length_m_, radius_m_;
   NearestOfConvex ends_[2], nearest_;
   double nearest_at_ = 0.0;
-  LineStretch inside_{1.0, 0.0};  ///< Where the line is.
+  LineStretch inside_{1.0, 0.0};  ///< Part of the line inside the body.
   Station stations_[kStations];
   bool taken_[kStations - 2] = {};
   int station_count_ = 0;

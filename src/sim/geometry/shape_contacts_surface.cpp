@@ -1,3 +1,4 @@
+// Narrow phase of a rod or a sphere on a terrain surface.
 #include "sim/geometry/shape_contacts.h"
 #include "sim/geometry/surface_near.h"
 #include "sim/geometry/touch_list.h"
@@ -6,19 +7,19 @@ namespace taut::sim {
 namespace {
 
 constexpr int kPlacesOfEnd = 3, kPlacesBetween = 4;
-/// Places between the ends are numbered by where on the rod they are.
+/// Places between the ends are numbered by their position on the rod.
 static_assert(FeaturesOfEnd(1) == 7u << kPlacesOfEnd && FeaturesOfEnd(0) == 7u);
 constexpr int kStretches = kMaxPointsPerPair - 2 * kPlacesOfEnd;
 static_assert(kPlacesBetween <= kStretches);
-/// How far around itself a shape looks for what is below it, in its size; and where more than
-/// bounds are looked at, as a share of that.
+/// Search distance of a shape for ground below it, in its sizes; the part of it that is searched
+/// exactly; and the factor of each further search, by bounds.
 constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
-/// Places of a rod that are nearer to each other than a thousandth of its radius are one: by so
-/// much and more the least gap may be another after the rod has moved by nothing. In radii.
+/// Places closer to each other than a thousandth of the radius are merged, so that the least gap
+/// may jump by at least that when the rod moves by nothing; bound of this jump, in radii.
 constexpr double kSameContact = 0.01;
 
-/// A point of a rod that its neighbours hold up is left out: a straight line between them does not
-/// reach it. In as many parts of the radius, and where all three look the same way.
+/// A point of a rod is redundant if a chord between its neighbors lies below it: tolerance in
+/// radii, and cosine above which all three normals agree.
 constexpr double kSameGap = 1e-6, kSameWay = 0.999;
 
 /// A place found along a rod.
@@ -28,7 +29,7 @@ struct Found {
   int feature;
 };
 
-/// Whether two others, one on either side, keep the rod off a place.
+/// Returns whether two others, one on each side, keep the rod off a place.
 bool IsHeld(const Found* all, int count, int which, double tolerance_m) noexcept {
   const Found& f = all[which];
   for (int i = 0; i < count; ++i) {
@@ -46,7 +47,7 @@ bool IsHeld(const Found* all, int count, int which, double tolerance_m) noexcept
   return false;
 }
 
-/// Whether one direction comes before another: an order that stays while shapes slide.
+/// Returns whether one direction precedes another: an order that stays while shapes slide.
 bool Before(const Vec3& a, const Vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
@@ -66,7 +67,7 @@ int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, uns
   bool known = kept != nullptr && Serves(s, from, to, limit_m, *kept);
   LineReach line{from, to - from, 0.0, 1.0, limit_m};
   if (known && kept->looks < NearParts::kFewLooks) ++kept->looks;
-  // Where the line is over all edges, what is beyond its reach changes nothing.
+  // If the line is over all edges, parts beyond its reach change nothing.
   if (!known || !kept->over || kept->between.count > NearParts::kMostBetween) {
     const LineReach reach = ReachOfLine(s, from, to, WiderLook(s) * limit_m);
     if (reach.low > reach.high) return 0;
@@ -82,7 +83,7 @@ int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, uns
            : NearestAlong(s, line, r, between, kPlacesBetween, known ? &kept->between : nullptr);
   for (int end = 0; end < (ball ? 1 : 2); ++end) {
     if (end == 0 ? line.low > 0.0 : line.high < 1.0) continue;
-    // Of an end that another shape has it counts what it holds.
+    // An end that another shape covers counts only as support for places between.
     if ((elsewhere & FeaturesOfEnd(end)) != 0 && places_between == 0) continue;
     SurfacePlace places[kPlacesOfEnd];
     const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd,
@@ -126,7 +127,7 @@ double DistanceToGround(const RoundShape& a, const SurfaceShape& surface, double
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
-  // It looks further than contacts do: not to be kept for that.
+  // This search reaches further than contacts do, so it must not refill the cache.
   const bool serves = kept != nullptr && Serves(*b.table, from, to, a.radius_m + look_m, *kept);
   const int count = TouchGround(a, b, look_m, 0, serves ? kept : nullptr, points);
   if (count > 0) {

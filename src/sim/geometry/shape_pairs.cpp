@@ -1,11 +1,11 @@
-// Two shapes of any kinds: finds the function of their pair, at compile time a direct call.
+// Dispatch of the narrow phase for two shapes of any kinds; a direct call, resolved at compile
+// time.
 #include "sim/geometry/shape_contacts.h"
 
 namespace taut::sim {
 namespace {
 
-/// `use` with both shapes in W, that of the kind that comes first in front. Tells whether they
-/// changed places.
+/// Calls `use` with both shapes in W, ordered by kind, and with whether they were swapped.
 template <class Use>
 auto WithPair(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
               const Use& use) noexcept {

@@ -1,3 +1,4 @@
+// Bounds for the bounding volume hierarchy (BVH) of the broad phase.
 #include "sim/geometry/shape_tree.h"
 
 #include "sim/geometry/convex.h"
@@ -36,10 +37,10 @@ Bounds BoundsOf(const HullShape& shape) noexcept {
   return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
-/// Ground has a way of its own to be looked up by: it is in no tree.
+/// Terrain surfaces have their own lookup and are in no tree.
 Bounds BoundsOf(const SurfaceShape&) noexcept { return {}; }
 
-/// Squared distance of a point from a centre line, or from a box.
+/// Returns the squared distance of a point from a centerline, or from a box.
 double SkeletonDistance2(const RoundShape& shape, const double* p) noexcept {
   double line[3], to_p[3], length2 = 0, along = 0;
   for (int i = 0; i < 3; ++i) {
@@ -69,7 +70,7 @@ double SkeletonDistance2(const BoxShape& shape, const double* p) noexcept {
   return sum;
 }
 
-/// From the ball around it.
+/// Returns a lower bound, from the ball around the hull.
 double SkeletonDistance2(const HullShape& shape, const double* p) noexcept {
   const Vec3 own = shape.table->center;
   const double center[3] = {own.x, own.y, own.z};

@@ -1,7 +1,7 @@
-/// Which of the world's many shapes are near a body's: a tree of boxes around them.
+/// Bounding volume hierarchy (BVH) around the world's shapes, for the broad phase.
 ///
-/// A tree and not a grid of cells, as terrain has stones beside walls of many metres, for which no
-/// size of a cell is right.
+/// A tree and not a grid of cells: terrain has stones next to walls of many meters, for which no
+/// cell size fits.
 #pragma once
 
 #include <stdint.h>
@@ -10,25 +10,26 @@
 
 namespace taut::sim {
 
-/// Lowest and highest coordinates of what is inside, in W [m].
+/// Axis-aligned bounding box in W [m].
 struct Bounds {
   double low[3], high[3];
 };
 
-/// A part of the tree: the nodes from behind this one up to `next` lie inside of it.
+/// Node of the tree in depth-first order: the nodes after this one up to `next` lie inside of it.
 struct TreeNode {
   Bounds bounds;
-  int next = 0;    ///< The first node that is not inside.
+  int next = 0;    ///< First node that is not inside.
   int shape = -1;  ///< Of a leaf: its number among the world's shapes.
 };
 
 Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept;
 Bounds BoundsOf(const Shape& shape) noexcept;
 
-/// False only if a shape is further than `reach_m` from a ball.
+/// Returns false only if a shape is further than `reach_m` from a ball.
 bool MayReach(const Shape& shape, const double* center, double radius_m, double reach_m) noexcept;
 
-/// False also where a number is not finite: such a thing is near nothing.
+/// Returns whether two boxes are at most `reach_m` apart along every axis. False also where a
+/// number is not finite: nothing is near such a shape.
 inline bool Near(const Bounds& a, const Bounds& b, double reach_m) noexcept {
   for (int i = 0; i < 3; ++i) {
     if (!(a.low[i] - b.high[i] <= reach_m && b.low[i] - a.high[i] <= reach_m)) return false;
@@ -36,7 +37,7 @@ inline bool Near(const Bounds& a, const Bounds& b, double reach_m) noexcept {
   return true;
 }
 
-/// `use(number)` with each shape whose bounds are, along every axis, at most `reach_m` from
+/// Calls `use(number)` for each shape whose bounds are, along every axis, at most `reach_m` from
 /// `bounds`.
 template <class Use>
 void EachNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
@@ -52,7 +53,7 @@ void EachNear(const TreeNode* tree, int count, const Bounds& bounds, double reac
   }
 }
 
-/// Sets the bits of those: bit i % 64 of marks[i / 64].
+/// Sets the bits of these shapes: bit i % 64 of marks[i / 64].
 void MarkNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
               uint64_t* marks) noexcept;
 

@@ -1,14 +1,15 @@
-/// The kinds of shapes that touch each other.
+/// Collision shapes: capsules and spheres, boxes, convex hulls, terrain surfaces.
 ///
-/// A new kind takes: a value of `ShapeKind`; a struct with its `kKind` and a function `Moved`; a
+/// A new kind needs: a value of `ShapeKind`; a struct with its `kKind` and a function `Moved`; a
 /// member of `Shape` and a line in `WithShape`; a file with its `Touch` and `Distance`, one line
-/// each in shape_contacts.h for every kind that it may meet. A pair that is missing there does not
-/// compile. All of this is part of a step: no standard library, no heap, no function pointers.
+/// each in shape_contacts.h for every kind that it may meet. A missing pair does not compile. All
+/// of this is part of a step: no standard library, no heap, no function pointers.
 #pragma once
 
 namespace taut::sim {
 
-/// In this order pairs are written: `Touch(a, b)` where the kind of `a` is not behind that of `b`.
+/// Pairs are written in this order: `Touch(a, b)` where the kind of `a` is not after the kind of
+/// `b`.
 enum class ShapeKind { kRound, kBox, kHull, kSurface };
 
 /// A sphere (from = to) or capsule.
@@ -18,7 +19,7 @@ struct RoundShape {
   double radius_m;
 };
 
-/// A box; rows of `axes` are its unit axes.
+/// A box; the rows of `axes` are its unit axes.
 struct BoxShape {
   static constexpr ShapeKind kKind = ShapeKind::kBox;
   double center[3], axes[9], half_m[3];
@@ -27,7 +28,7 @@ struct BoxShape {
 struct HullTable;
 struct SurfaceTable;
 
-/// Where a frame is: x -> r x + origin.
+/// Pose of a frame: x -> r x + origin.
 struct ShapePose {
   double r[9];  ///< Row major.
   double origin[3];
@@ -37,10 +38,10 @@ struct ShapePose {
 struct HullShape {
   static constexpr ShapeKind kKind = ShapeKind::kHull;
   const HullTable* table;
-  ShapePose at;  ///< Of the table's frame.
+  ShapePose at;  ///< Pose of the table's frame.
 };
 
-/// Triangles that do not move (surface.h).
+/// Static triangles (surface.h).
 struct SurfaceShape {
   static constexpr ShapeKind kKind = ShapeKind::kSurface;
   const SurfaceTable* table;
@@ -90,7 +91,7 @@ inline HullShape Moved(const HullShape& shape, const ShapePose& pose) noexcept {
 
 inline SurfaceShape Moved(const SurfaceShape& shape, const ShapePose&) noexcept { return shape; }
 
-/// A shape of any kind; of the others only the one that `kind` says is filled in.
+/// A shape of any kind; only the member of its `kind` is filled in.
 struct Shape {
   ShapeKind kind = ShapeKind::kRound;
   RoundShape round = {};
@@ -99,12 +100,12 @@ struct Shape {
   SurfaceShape surface = {};
 };
 
-/// How far its surface is from its skeleton of points and lines.
+/// Returns the distance of the surface from the skeleton of points and lines.
 inline double RadiusOf(const Shape& shape) noexcept {
   return shape.kind == ShapeKind::kRound ? shape.round.radius_m : 0.0;
 }
 
-/// `use` with the struct of the shape's kind.
+/// Calls `use` with the struct of the shape's kind.
 template <class Use>
 auto WithShape(const Shape& shape, const Use& use) noexcept {
   switch (shape.kind) {

@@ -1,7 +1,7 @@
-/// Ground that is not flat: triangles that do not move, from a height field or a mesh, laid out so
-/// that those near a place are found in a time that does not grow with their number.
+/// Terrain surfaces: static triangles of a height field or a mesh, laid out so that the triangles
+/// near a place are found in a time that does not grow with their number.
 ///
-/// Part of a step: no standard library. What fills it in is surface_build.h.
+/// Part of a step: no standard library. surface_build.h fills the tables in.
 #pragma once
 
 #include "math/vec.h"
@@ -11,17 +11,19 @@ namespace taut::sim {
 
 inline constexpr int kMaxTopLevels = 32;
 
-/// What belongs to corner (i, j) of a field: the cell between it and (i + 1, j + 1), two of that
-/// cell's sides, and the corner itself.
+/// Marks of corner (i, j) of a field: about the cell between it and (i + 1, j + 1), two of that
+/// cell's sides, and the corner.
 enum FieldMark : unsigned char {
-  kRising = 1,       ///< The cell's diagonal is that of (i, j).
-  kSharpAlongX = 2,  ///< The edge to (i + 1, j) sticks out: a rod may touch it with its flank.
-  kSharpAlongY = 4,  ///< That to (i, j + 1).
+  kRising = 1,       ///< The cell's diagonal starts at (i, j).
+  kSharpAlongX = 2,  ///< The edge to (i + 1, j) is sharp: it sticks out, so that the flank of a rod
+                     ///< may touch it.
+  kSharpAlongY = 4,  ///< The edge to (i, j + 1) is sharp.
   kSharpDiagonal = 8,
   kSharpCorner = 16,
 };
 
-/// An edge of a mesh, and the third corners of its triangles: beside[first], ...
+/// An edge of a mesh, and the third corners of its triangles: `count` entries of SurfaceTable's
+/// array of adjacent corners, from `first` on.
 struct MeshEdge {
   int from, to, first, count;
 };
@@ -32,8 +34,8 @@ struct MeshCorner {
 
 struct SurfaceTable {
   bool is_field = false;  ///< Else a mesh.
-  bool solid = false;     ///< There is an inside; of a field what is below it.
-  Vec3 low, high;         ///< Of all corners, in W [m].
+  bool solid = false;     ///< Has an inside; for a field, the space below it.
+  Vec3 low, high;         ///< Bounds of all corners, in W [m].
 
   // A field: corner (i, j) is at low + (i, j) cells; columns along x, rows along y.
   int columns = 0, rows = 0;
@@ -43,26 +45,26 @@ struct SurfaceTable {
   int levels = 0;
   const double* tops[kMaxTopLevels] = {};  ///< Greatest height of 2^level by 2^level cells [m].
 
-  // A mesh: counter-clockwise seen from outside; buckets of a uniform grid.
+  // A mesh: triangles counter-clockwise seen from outside; buckets of a uniform grid.
   const Vec3* corners = nullptr;
   const int* triangles = nullptr;  ///< Three corners each.
   int buckets[3] = {};
   double bucket_m = 0, inv_bucket = 0;
   const int* first_in_bucket = nullptr;
-  const int* in_bucket = nullptr;  ///< Triangles, rising.
-  // Its edges and corners that stick out, each with one of its triangles: those of triangle k from
-  // first_edge[k] on, from first_corner[k] on.
+  const int* in_bucket = nullptr;  ///< Triangles, in ascending order.
+  // Sharp edges and corners of the mesh, each with one of its triangles: the entries of triangle k
+  // start at first_edge[k] and first_corner[k].
   const int *first_edge = nullptr, *first_corner = nullptr;
   const MeshEdge* edges = nullptr;
   const MeshCorner* sharp_corners = nullptr;
-  const int* beside = nullptr;  ///< Corners beside those.
+  const int* beside = nullptr;  ///< Corners adjacent to these.
 
   SeamList seams;                       ///< Adjacent pieces of terrain.
-  const SurfaceTable* alone = nullptr;  ///< The same without seams; null if there are none.
+  const SurfaceTable* alone = nullptr;  ///< The same table without seams; null if there are none.
 };
 
-/// A surface without adjacent pieces. Distances ignore covers: covered parts count as near, so that
-/// no contact is missed where they emerge.
+/// Returns a surface without adjacent pieces. Distances ignore covers: covered parts count as near,
+/// so that no contact is missed where they emerge.
 inline const SurfaceTable& Alone(const SurfaceTable& s) noexcept {
   return s.alone == nullptr ? s : *s.alone;
 }
@@ -70,25 +72,25 @@ inline const SurfaceTable& Alone(const SurfaceTable& s) noexcept {
 /// A triangle of a surface.
 struct SurfaceTriangle {
   Vec3 p[3];
-  int corner[3];  ///< The same numbers are the same corner.
+  int corner[3];  ///< Equal numbers are the same corner.
 };
 
-/// The cell of a coordinate, `x` cells from the first one's side.
+/// Returns the cell of a coordinate `x`, in cells from the first side; clamped to the grid.
 inline int CellAt(double x, int count) noexcept {
   if (!(x > 0.0)) return 0;
   return x < count ? static_cast<int>(x) : count - 1;
 }
 
-/// Height of a field above a place within it.
+/// Returns the height of a field above a place within it.
 double HeightAt(const SurfaceTable& s, double x, double y) noexcept;
-/// How far below a field's surface a point is, within its rectangle; else 0 or less.
+/// Returns the depth of a point below a field's surface, within its rectangle; else 0 or less.
 double DepthBelow(const SurfaceTable& s, const Vec3& p) noexcept;
-/// No less than any height of a field between these.
+/// Returns an upper bound of the heights of a field between these.
 double TopOver(const SurfaceTable& s, const Vec3& low, const Vec3& high) noexcept;
 
 namespace detail {
 
-/// `use(i, j)` with the cells of a field that reach between `low` and `high`.
+/// Calls `use(i, j)` for the cells of a field that reach between `low` and `high`.
 template <class Use>
 void EachCell(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Use& use) noexcept {
   const int i0 = CellAt((low.x - s.low.x) * s.inv_cell, s.columns - 1);
@@ -108,7 +110,7 @@ void EachCell(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Us
   }
 }
 
-/// One of a cell's two triangles.
+/// Returns one of a cell's two triangles.
 inline SurfaceTriangle TriangleOfField(const SurfaceTable& s, int i, int j, bool second) noexcept {
   const int at = j * s.columns + i;
   const double* const z = s.height_m + at;
@@ -143,7 +145,7 @@ inline double Most(double a, double b, double c) noexcept {
   return ab > c ? ab : c;
 }
 
-/// `use` with the numbers of triangles.
+/// Calls `use` with the numbers of triangles.
 template <class Use>
 void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Use& use) noexcept {
   const double from[3] = {low.x - s.low.x, low.y - s.low.y, low.z - s.low.z};
@@ -166,7 +168,7 @@ void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const 
               Most(a.z, b.z, c.z) < low.z) {
             continue;
           }
-          // Of all buckets that it lies in, only the first that is looked at counts.
+          // A triangle lies in several buckets; only the first one visited counts.
           const int bx = CellAt((least.x - s.low.x) * s.inv_bucket, s.buckets[0]);
           const int by = CellAt((least.y - s.low.y) * s.inv_bucket, s.buckets[1]);
           const int bz = CellAt((least.z - s.low.z) * s.inv_bucket, s.buckets[2]);
@@ -183,7 +185,8 @@ void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const 
 
 }  // namespace detail
 
-/// `use` with every triangle that reaches between `low` and `high`, and perhaps with some beside.
+/// Calls `use` with every triangle that reaches between `low` and `high`, and perhaps with some
+/// nearby.
 template <class Use>
 void EachTriangle(const SurfaceTable& s, const Vec3& low, const Vec3& high,
                   const Use& use) noexcept {

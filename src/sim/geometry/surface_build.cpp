@@ -1,3 +1,4 @@
+// Lookup tables of height fields and meshes: maximum pyramid, uniform grid of buckets.
 #include "sim/geometry/surface_build.h"
 
 #include <algorithm>
@@ -7,11 +8,11 @@
 namespace taut::sim {
 namespace {
 
-/// So that a triangle lies in few buckets, and few triangles in a bucket.
+/// Size of the grid: a triangle lies in few buckets, and a bucket contains few triangles.
 constexpr double kBucketsPerTriangle = 2.0;
 constexpr double kMostBuckets = 4e6;
-/// Entries of all buckets together. Each triangle is in all buckets of its bounding box, so that
-/// long triangles across the mesh would be in millions.
+/// Maximum of the entries of all buckets. Each triangle is in all buckets of its bounding box, so
+/// that long triangles across the mesh could be in millions.
 constexpr double kEntriesPerTriangle = 16.0, kMostFurtherEntries = 1e6;
 
 bool Rises(const HeightFieldDef& field, int i, int j) {
@@ -90,7 +91,7 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
   }
   const Vec3 size = t.high - t.low;
   const double longest = std::max({size.x, size.y, size.z});
-  // As many buckets as triangles, about, where the surface is bent; fewer where it is thin.
+  // About as many buckets as triangles where the surface is bent; fewer where it is thin.
   const double count = static_cast<double>(mesh.triangles.size());
   t.bucket_m = longest / std::clamp(std::sqrt(kBucketsPerTriangle * count), 1.0, 1024.0);
   const auto buckets = [&](double extent) {

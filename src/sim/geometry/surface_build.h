@@ -1,4 +1,4 @@
-/// A surface with all that it is looked up by, from its description.
+/// Construction of a terrain surface's tables from a height field or a mesh.
 #pragma once
 
 #include <memory>
@@ -14,14 +14,14 @@ class Surface {
   explicit Surface(const HeightFieldDef& field);
   explicit Surface(const TerrainMeshDef& mesh);
 
-  /// Stays where it is, if the surface is moved, too.
+  /// The address stays the same if the surface is moved.
   const SurfaceTable& table() const { return *table_; }
 
   /// Adjacent pieces; they must outlive the surface.
   void Join(const SeamList& seams);
 
  private:
-  // What sticks out (surface_sharp.cpp).
+  // Sharp edges and corners (surface_sharp.cpp).
   void MarkField();
   void FindSharp();
 

@@ -1,4 +1,4 @@
-// Straight lines beside a surface: where edges and corners that stick out touch the flank of a rod.
+// Narrow phase of the flank of a rod with sharp edges and corners of a surface.
 #include "math/scalar.h"
 #include "sim/geometry/surface_near.h"
 #include "sim/geometry/surface_sharp.h"
@@ -7,14 +7,14 @@
 namespace taut::sim {
 namespace {
 
-/// A stretch of a line shorter than this share of the radius has no contact of its own.
+/// A shorter stretch of a line, as a share of the radius, has no separate contact.
 constexpr double kShortStretch = 1e-6;
-/// Nor has one along which the rod is parallel to it, as the square of a sine.
+/// sin^2 of the angle below which rod and edge are parallel and have no separate contact.
 constexpr double kParallel = 1e-24;
 /// Sine above which a piece that rises from a point of another one is nearer.
 constexpr double kCovers = 1e-7;
 
-/// A line between edges and corners, and what it found.
+/// Search for the contacts of a line with edges and corners.
 class LineSearch {
  public:
   LineSearch(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
@@ -36,8 +36,8 @@ class LineSearch {
     const Vec3 edge = end - start, a = from_ - start, c = Cross(along_, edge);
     const double edge2 = Dot(edge, edge), c2 = Dot(c, c), apart = Dot(a, c);
     if (!(c2 > kParallel * along2_ * edge2)) return;
-    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // the nearest of the two straight lines
-    // Above the edge's own length, and beyond all of its triangles.
+    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // distance of the two straight lines
+    // Within the edge's length, and beyond all of its triangles.
     LineStretch outside = reach_;
     const double from_edge = Dot(a, edge), along_edge = Dot(along_, edge);
     outside.CutAbove(-from_edge, -along_edge);
@@ -59,14 +59,14 @@ class LineSearch {
       Take(piece, share, at, false);
       return;
     }
-    // Under a ridge: the line has gone through it, and leaves across it.
+    // Under a ridge: the line has passed through it, and leaves across it.
     if (!s_.solid || e.sides != 2) return;
     const double beside = from_edge + crossing * along_edge;
     if (!(beside > 0.0 && beside < edge2)) return;
     const Vec3 under = a + crossing * along_;
     const auto inside = [&](int side, int other) noexcept {
       Vec3 n = Cross(edge, e.apex[side] - e.from);
-      if (Dot(n, e.apex[other] - e.from) > 0.0) n = -1.0 * n;  // out of what sticks out
+      if (Dot(n, e.apex[other] - e.from) > 0.0) n = -1.0 * n;  // outwards
       return Dot(n, under) < 0.0;
     };
     if (inside(0, 1) && inside(1, 0) && IsUnder(under + e.from)) {
@@ -95,9 +95,9 @@ class LineSearch {
   int count() const noexcept { return count_; }
 
  private:
-  /// Whether a point on an edge, or a corner, belongs to the joint surface of all pieces that meet
-  /// there: no piece is nearer to the line, and they do not continue straight on both sides along
-  /// it, where the ends of the line support it.
+  /// Returns whether a point on an edge, or a corner, belongs to the joint surface of all pieces
+  /// that meet there: no piece is nearer to the line, and they do not continue straight on both
+  /// sides along it, where the ends of the line support it.
   bool IsOpen(const Vec3& start, const Vec3& end, double share, const Vec3& at,
               bool inside) const noexcept {
     const Vec3 away = from_ + share * along_ - at;
@@ -112,12 +112,12 @@ class LineSearch {
     return !GoesStraightOn(&s_, s_.seams, at, way, true) ||
            !GoesStraightOn(&s_, s_.seams, at, -1.0 * way, true);
   }
-  /// Of a field it can be told; of a mesh both triangles have said so.
+  /// Tests it for a field; for a mesh both triangles have already shown it.
   bool IsUnder(const Vec3& p) const noexcept { return !s_.is_field || DepthBelow(s_, p) > 0.0; }
 
   void Take(const LineStretch& piece, double share, const Vec3& at, bool inside) noexcept {
     if (!(share >= piece.low && share < piece.high)) return;
-    if (share <= apart_ || share >= 1.0 - apart_) return;  // the ends have it
+    if (share <= apart_ || share >= 1.0 - apart_) return;  // the ends have this contact
     const Vec3 away = from_ + share * along_ - at;
     const double distance = Norm(away);
     if (!(distance <= limit_m_ && distance > 0.0)) return;
@@ -125,7 +125,7 @@ class LineSearch {
     while (place > 0 && share < out_[place - 1].share) --place;
     const double sign = inside ? -1.0 : 1.0;
     const LinePlace found{share, {at, (sign / distance) * away, sign * distance}};
-    // Of two in the same place the nearer one counts.
+    // Of two at the same place the nearer one is kept.
     const bool repeats_before = place > 0 && share - out_[place - 1].share < apart_;
     const bool repeats_after = place < count_ && out_[place].share - share < apart_;
     if (repeats_before || repeats_after) {
@@ -134,7 +134,7 @@ class LineSearch {
       return;
     }
     if (count_ == most_) {
-      // The farthest goes.
+      // Drop the farthest.
       int farthest = 0;
       for (int i = 1; i < count_; ++i) {
         if (out_[i].place.distance_m > out_[farthest].place.distance_m) farthest = i;
@@ -163,7 +163,7 @@ LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
                       double limit_m) noexcept {
   LineReach line{from, to - from, 0.0, 1.0, limit_m};
   const Vec3 reach{limit_m, limit_m, limit_m};
-  // Each time that much is cut off, what is below the rest may be lower.
+  // After each large cut, the ground below the rest may be lower.
   for (double before = 4.0; line.low <= line.high && line.high - line.low < 0.5 * before;) {
     before = line.high - line.low;
     const Vec3 a = line.At(line.low), b = line.At(line.high);

@@ -1,6 +1,6 @@
-// Contacts with a surface are the local minima of its distance over all of it: a place in a
-// triangle, or on an edge or a corner that sticks out and is the nearest of every triangle there.
-// So what rolls over triangles of one plane feels nothing of them.
+// Contacts of a point with a surface are the local minima of its distance over the whole surface: a
+// place in a triangle, or on a sharp edge or corner that is the nearest place of every adjacent
+// triangle. So edges within a plane do not disturb bodies that roll over them.
 #include "sim/geometry/surface_near.h"
 
 #include "math/scalar.h"
@@ -9,29 +9,29 @@
 namespace taut::sim {
 namespace {
 
-/// Nearer than this a point has no direction from a place.
+/// Distance below which the direction from a place to a point is undefined [m].
 constexpr double kCoincidentM = 1e-10;
-/// Two triangles may find their common place at distances that differ so much, as a share.
+/// Relative difference of the distances that two triangles may compute for a common place.
 constexpr double kSameDistance = 1e-12;
 /// The same for the rounding of coordinates [m].
 constexpr double kSameDistanceM = 1e-13;
-/// And, as its root, so far from each other.
+/// The same for the distance of the places, as the root.
 constexpr double kSamePlace = 4e-6;
-/// A point so nearly above the plane of a triangle, seen from its edge, is above the plane: what is
-/// over an edge of one plane has the plane's normal, whatever rounding says of which triangle it
-/// is.
+/// Sine of the height above a triangle's plane, seen from its edge, below which a point counts as
+/// above the plane: then a place over an edge within a plane has the plane's normal, whichever
+/// triangle rounding selects.
 constexpr double kAbovePlane = 1e-7;
 constexpr int kMaxPlaces = 16;
 /// Margin by which a border wall must be nearer than the surface to be the way out of a field: a
 /// point beyond the border by rounding stays on the surface.
 constexpr double kWallNearer = 0.9, kWallNearerM = 1e-6;
-/// Cosine below which directions are perpendicular.
+/// Cosine above which directions are parallel.
 constexpr double kAlongNormal = 1.0 - 1e-9;
 /// Distances are compared without tolerance.
 constexpr SeamSlack kExactly{0.0, kAbovePlane};
 
-/// The place of a triangle that is nearest to a point. Source: C. Ericson, Real-Time Collision
-/// Detection (Morgan Kaufmann 2005), section 5.1.5.
+/// Returns the point of a triangle nearest to a given point. Source: C. Ericson, Real-Time
+/// Collision Detection (Morgan Kaufmann 2005), section 5.1.5.
 Vec3 NearestOf(const SurfaceTriangle& t, const Vec3& p) noexcept {
   const Vec3 ab = t.p[1] - t.p[0], ac = t.p[2] - t.p[0], ap = p - t.p[0];
   const double d1 = Dot(ab, ap), d2 = Dot(ac, ap);
@@ -55,7 +55,7 @@ Vec3 NearestOf(const SurfaceTriangle& t, const Vec3& p) noexcept {
     const double share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
     return t.p[1] + share * (t.p[2] - t.p[1]);
   }
-  // From the plane, not from the corner: the direction is then as good as the normal.
+  // From the plane, not from the corner: the direction is then as accurate as the normal.
   const Vec3 n = Cross(ab, ac);
   return p - (Dot(n, ap) / Dot(n, n)) * n;
 }
@@ -65,15 +65,15 @@ Vec3 NormalOf(const SurfaceTriangle& t) noexcept {
   return (1.0 / Norm(n)) * n;
 }
 
-/// Of all triangles near a point the one that is nearest.
+/// The triangle nearest to a point.
 struct NearestOfAll {
   double limit_m, distance_m;
   bool found = false;
   SurfaceTriangle triangle;
   Vec3 at;
 
-  /// `seams`: pieces whose covered points are no way out; then the way out is perpendicular to a
-  /// triangle. Or null.
+  /// `seams`: pieces whose covered points are no way out, with ways out perpendicular to a
+  /// triangle; or null.
   NearestOfAll(const SurfaceTable& s, const Vec3& p, double limit, const SeamList* seams,
                const Vec3* middle) noexcept
       : limit_m(limit), distance_m(limit) {
@@ -93,8 +93,8 @@ struct NearestOfAll {
   }
 };
 
-/// Whether a point is inside of a closed mesh, seen from the triangles at the nearest place of all:
-/// at an edge or a corner that one knows which faces the point most directly.
+/// Returns whether a point is inside a closed mesh, by the triangles at its nearest place: at an
+/// edge or a corner, by the triangle that faces the point most directly.
 bool IsInsideOfMesh(const SurfaceTable& s, const Vec3& p, const NearestOfAll& near) noexcept {
   if (!near.found) return false;
   const double same = near.distance_m * (1.0 + kSameDistance) + kSameDistanceM;
@@ -109,7 +109,7 @@ bool IsInsideOfMesh(const SurfaceTable& s, const Vec3& p, const NearestOfAll& ne
   return side < 0.0;
 }
 
-/// The nearest place of all.
+/// Returns the nearest place.
 SurfacePlace PlaceOf(const NearestOfAll& near, const Vec3& p, bool inside) noexcept {
   const Vec3 away = p - near.at, normal = NormalOf(near.triangle);
   const double sign = inside ? -1.0 : 1.0;
@@ -123,7 +123,7 @@ SurfacePlace PlaceOf(const NearestOfAll& near, const Vec3& p, bool inside) noexc
   return {near.at, (sign / near.distance_m) * away, sign * near.distance_m};
 }
 
-/// Local minima of the distance of a point, and those found so far, the nearest first.
+/// Search for the local minima of a point's distance; keeps the nearest, in order of distance.
 class PlaceSearch {
  public:
   PlaceSearch(const SurfaceTable& s, const Vec3* middle, const Vec3& point, double limit_m,
@@ -136,12 +136,12 @@ class PlaceSearch {
         out_(out),
         most_(most) {}
 
-  /// A place within a triangle.
+  /// Adds a place within a triangle.
   void Face(const SurfaceTriangle& t) noexcept {
     const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
     const double n2 = Dot(n, n), at = Dot(n, point_ - t.p[0]);
     if (at * at > limit_m_ * limit_m_ * n2) return;
-    // Where pieces meet there may be a gap.
+    // Pieces may have a gap where they meet.
     const double beside_m = seams_.count > 0 ? seams_.same_m : kCoincidentM;
     const double slack2 = kAbovePlane * kAbovePlane * (at * at) + beside_m * beside_m * n2;
     for (int k = 0; k < 3; ++k) {
@@ -150,7 +150,7 @@ class PlaceSearch {
       if (within >= 0.0) continue;
       if (within * within > slack2 * Dot(edge, edge)) return;
     }
-    // From the plane, not from a corner: the direction is then as good as the normal.
+    // From the plane, not from a corner: the direction is then as accurate as the normal.
     const double length = Sqrt(n2), height = at / length;
     // The solid lies behind its faces.
     if (solid_ && height < -kCoincidentM) return;
@@ -160,7 +160,7 @@ class PlaceSearch {
       return;
     Add(place);
   }
-  /// One on an edge that sticks out.
+  /// Adds a place on a sharp edge.
   template <class EdgeOf>
   void Edge(const Vec3& start, const Vec3& end, const EdgeOf& edge_of) noexcept {
     const Vec3 edge = end - start, a = point_ - start;
@@ -168,7 +168,7 @@ class PlaceSearch {
     const Vec3 away = a - (along / edge2) * edge;
     const double away2 = Dot(away, away);
     if (away2 > limit_m_ * limit_m_) return;
-    // A ridge that goes straight on past a corner has no corner there.
+    // A ridge that continues straight past a corner has no corner there.
     const double beyond = Larger(-along, along - edge2);
     const double slack2 = kAbovePlane * kAbovePlane * away2 + kCoincidentM * kCoincidentM;
     if (beyond > 0.0 && beyond * beyond > slack2 * edge2) return;
@@ -183,7 +183,7 @@ class PlaceSearch {
     }
     AddAway(point_ - away, away);
   }
-  /// A corner that sticks out.
+  /// Adds a sharp corner.
   template <class EachBeside>
   void Corner(const Vec3& p, const EachBeside& each_beside) noexcept {
     const Vec3 away = point_ - p;
@@ -199,7 +199,7 @@ class PlaceSearch {
     }
     AddAway(p, away);
   }
-  /// Of what is found twice the first counts: a face's direction is exact.
+  /// Adds a place. The first of equal places is kept: a face's direction is exact.
   void Add(const SurfacePlace& place) noexcept {
     const double same = kSamePlace * place.distance_m + kCoincidentM;
     for (int i = 0; i < kept_count_; ++i) {
@@ -232,15 +232,15 @@ class PlaceSearch {
   Vec3 kept_[kMaxPlaces];
 };
 
-/// Fields end in vertical walls below their border. Whether another piece covers a point of a wall
-/// and all points above it.
+/// Returns whether another piece covers a point of a wall and all points above it. Fields end in
+/// vertical walls below their border.
 bool IsWallCovered(const SurfaceTable& s, const SurfacePlace& place, const Vec3* middle) noexcept {
   if (s.seams.count == 0 || !IsCovered(s.seams, place.at, place.normal, kExactly)) return false;
   const Vec3 top{place.at.x, place.at.y, HeightAt(s, place.at.x, place.at.y)};
   return !IsExposed(s.seams, top, {place.at, place.normal, middle}, kExactly);
 }
 
-/// Returns the nearest point of the border walls to a point outside a field and below its border.
+/// Finds the nearest point of the border walls to a point outside a field and below its border.
 bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec3* middle,
                  SurfacePlace* out) noexcept {
   const Vec3 foot{Clamp(p.x, s.low.x, s.high.x), Clamp(p.y, s.low.y, s.high.y), p.z};
@@ -252,7 +252,7 @@ bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec
   return !IsWallCovered(s, *out, middle);
 }
 
-/// Whether other pieces cover the shortest way out.
+/// Returns whether other pieces cover the shortest way out.
 bool IsWayCovered(const SurfaceTable& s, const NearestOfAll& near, const Vec3& p,
                   const Vec3* middle) noexcept {
   if (s.seams.count == 0) return false;
@@ -292,8 +292,8 @@ bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double 
   return best != nullptr;
 }
 
-/// Finds the shortest way out of a closed mesh. False if the point is outside, or other pieces
-/// cover all ways. A point in a gap below the meeting distance is inside both pieces.
+/// Finds the shortest way out of a closed mesh. Returns false if the point is outside, or other
+/// pieces cover all ways. A point in a gap below the meeting distance is inside both pieces.
 bool WayOutOfMesh(const SurfaceTable& s, const Vec3& p, double reach_m, const Vec3* middle,
                   bool* inside, SurfacePlace* out) noexcept {
   const NearestOfAll near(s, p, reach_m, nullptr, nullptr);
@@ -334,7 +334,7 @@ int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, Surf
   if (above && known != nullptr && known->count == 0) return 0;
   PlaceSearch search(s, middle, point, limit_m, out, most);
   if (s.is_field && !above) {
-    // Search depth.
+    // Inside: the depth limits the search.
     const double depth = DepthBelow(s, point);
     if (depth > 0.0) return WayOutOfField(s, point, limit_m, depth, middle, out) ? 1 : 0;
     if (PlaceOnWall(s, point, limit_m, middle, out)) search.Add(SurfacePlace(*out));

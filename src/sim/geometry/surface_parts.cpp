@@ -1,6 +1,7 @@
-// Which parts of a field could have a contact with a rod that has moved by less than a slack. The
-// conditions are those of surface_near.cpp and surface_line.cpp, each as a distance and with the
-// slack given away: none of those distances changes by more than the rod's points do.
+// Selection of the parts of a field that could have a contact with a rod that has moved by less
+// than a slack. The conditions are those in surface_near.cpp and surface_line.cpp, each as a
+// distance and relaxed by the slack: none of these distances changes by more than the rod's points
+// move.
 #include "sim/geometry/surface_parts.h"
 
 #include "math/scalar.h"
@@ -9,16 +10,16 @@
 namespace taut::sim {
 namespace {
 
-/// More than what the conditions allow for rounding: of the limit, and [m].
+/// More than the tolerances of the conditions for rounding: of the limit, and [m].
 constexpr double kRounding = 1e-6, kRoundingM = 1e-9;
 
-/// Where a point, or a rod, was, how far from it anything counts, and by what else conditions may
-/// be missed.
+/// Search around the place of a point or a rod: largest distance of relevant parts, and slack of
+/// all other conditions.
 struct Around {
   const SurfaceTable& s;
   double reach_m, slack_m;
 
-  /// Whether `x`, a length times the root of `unit2`, is not above the slack.
+  /// Returns whether `x`, a length times the root of `unit2`, is at most the slack.
   bool Below(double x, double unit2) const noexcept {
     return x <= 0.0 || x * x <= slack_m * slack_m * unit2;
   }
@@ -78,7 +79,7 @@ class LineFilter {
     beside.CutAbove(-from_edge - slack, -along_edge);
     beside.CutAbove(from_edge - edge2 - slack, along_edge);
     if (beside.low > beside.high) return false;
-    // The least distance from the edge's straight line on a stretch.
+    // Least distance from the edge's straight line on a stretch.
     const Vec3 apart = a - (from_edge / edge2) * edge;
     const Vec3 parting = along_ - (along_edge / edge2) * edge;
     const auto in_reach = [&](const LineStretch& stretch) noexcept {
@@ -117,7 +118,7 @@ class LineFilter {
     const Vec3 there = a + least * along_;
     return Dot(there, there) <= a_.reach_m * a_.reach_m;
   }
-  /// Whether the line may be under an edge that was looked at.
+  /// Returns whether the line may be under a tested edge.
   bool under() const noexcept { return under_; }
 
  private:
@@ -139,7 +140,7 @@ void Add(PartList<kMost>& list, int i, int j, SurfacePart::Kind kind) noexcept {
   }
 }
 
-/// All that sticks out and passes a filter.
+/// Adds all sharp edges and corners that pass a filter.
 template <class Filter, int kMost>
 void AddSharp(const Around& around, const LineReach& line, const Filter& filter,
               PartList<kMost>& list) noexcept {
@@ -162,8 +163,8 @@ void AddSharp(const Around& around, const LineReach& line, const Filter& filter,
   });
 }
 
-/// Whether a point that has moved by less than the slack is above a field's rectangle, and all of
-/// the field there.
+/// Returns whether a point that has moved by less than the slack is above a field's rectangle and
+/// above the whole field there.
 bool IsAbove(const Around& around, const Vec3& point) noexcept {
   const SurfaceTable& s = around.s;
   const Vec3 slack{around.slack_m, around.slack_m, around.slack_m};
@@ -213,7 +214,7 @@ bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double l
   kept.looks = 0;
   kept.from = from, kept.to = to, kept.by_x = detail::GoesByX(to - from);
   kept.limit_m = limit_m + slack_m;
-  // A third slack takes up roundings.
+  // The third slack absorbs rounding.
   const LineReach line = ReachOfLine(s, from, to, limit_m + 3.0 * slack_m);
   const Around around{s, line.limit_m, slack_m + kRounding * line.limit_m + kRoundingM};
   const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;

@@ -1,4 +1,4 @@
-/// Searches near a field that keep what they came by (near_parts.h).
+/// Searches near a height field that cache the parts found (near_parts.h).
 ///
 /// Part of a step: no standard library.
 #pragma once
@@ -8,15 +8,16 @@
 
 namespace taut::sim {
 
-/// So many times the limit is how far a field is looked through, so that bounds leave nothing out
-/// that the laws would take: what is kept is found by others.
+/// Returns the factor on the limit with which a field is searched. Above 1, so that the bounds
+/// exclude nothing that the contact conditions accept: cached parts come from other bounds.
 inline double WiderLook(const SurfaceTable& s) noexcept { return s.is_field ? 1.001 : 1.0; }
 
-/// Whether what is kept of what is near a rod, or a ball, serves where it is now.
+/// Returns whether the cache of a rod or a ball is valid for its present place.
 bool Serves(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
             const NearParts& kept) noexcept;
 
-/// Looks up what is near, if that is worth it: not while the rod moves on at once. Whether it did.
+/// Fills the cache if that is worth it, which it is not while the rod keeps moving out of it.
+/// Returns whether it did.
 bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
                NearParts& kept) noexcept;
 
@@ -25,7 +26,7 @@ inline SurfaceEdge EdgeOfPart(const SurfaceTable& s, int i, int j, int kind) noe
   return detail::EdgeOfField(s, i, j, kMarks[kind - SurfacePart::kEdgeX]);
 }
 
-/// `use_edge` and `use_corner` as EachSharp has them; `use_face(triangle)`.
+/// Calls `use_edge` and `use_corner` like EachSharp, and `use_face(triangle)`.
 template <int kMost, class UseFace, class UseEdge, class UseCorner>
 void EachPart(const SurfaceTable& s, const PartList<kMost>& list, const UseFace& use_face,
               const UseEdge& use_edge, const UseCorner& use_corner) noexcept {

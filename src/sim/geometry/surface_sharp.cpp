@@ -1,4 +1,4 @@
-// Finds the edges and corners of a surface that stick out, when it is laid out.
+// Detection of the sharp edges and corners of a surface, when it is laid out.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -9,17 +9,18 @@
 namespace taut::sim {
 namespace {
 
-/// Triangles whose planes differ by less [rad] go on straight: a rod would touch the edge between
-/// them on a stretch of less than a millionth of its radius, which is none (surface_line.cpp).
+/// Angle of two triangles' planes below which they continue straight [rad]: a rod would touch the
+/// edge between them on a stretch of less than a millionth of its radius, which is omitted
+/// (surface_line.cpp).
 constexpr double kStraight = 1e-8;
-/// Of a corner that sticks out at least so many edges do: fewer do not span a cone.
+/// Least number of sharp edges at a sharp corner: fewer do not span a cone.
 constexpr int kEdgesOfSharpCorner = 3;
 
-/// Whether the sides of an edge fall away from each other by more than that (1), rise (-1), or
-/// neither: seen from where corners of the first triangle run counter-clockwise.
+/// Returns 1 if the sides of an edge fall away from each other by more than kStraight, -1 if they
+/// rise, else 0; seen from the side where the corners of the first triangle run counter-clockwise.
 int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other) {
   const Vec3 along = to - from, n = Cross(along, apex - from), m = Cross(along, other - from);
-  // The sine of the angle is that, over the lengths of n and m.
+  // This is the sine of the angle times the lengths of n and m, per length of the edge.
   const double sine = -Dot(n, other - from);
   if (sine * sine * Dot(along, along) <= kStraight * kStraight * Dot(n, n) * Dot(m, m)) return 0;
   return sine > 0.0 ? 1 : -1;
@@ -75,8 +76,8 @@ void Surface::MarkField() {
 void Surface::FindSharp() {
   SurfaceTable& t = *table_;
   const int triangles = static_cast<int>(triangles_.size()) / 3;
-  /// An edge: its first triangle, where corners `from`, `to` follow each other, and the third
-  /// corners of all.
+  /// An edge: its first triangle, in which `to` follows `from`, and the third corners of all its
+  /// triangles.
   struct Edge {
     int owner, from, to;
     std::vector<int> apexes;

@@ -1,7 +1,7 @@
-/// Edges and corners of a surface that stick out: what the flank of a rod may touch.
+/// Sharp edges and corners of a surface: they stick out, so that the flank of a rod may touch them.
 ///
-/// Which they are is found once, when a surface is laid out (surface_build.h). A step looks only at
-/// those, each once, with its neighbours at hand.
+/// They are found once, when a surface is laid out (surface_build.h). A step tests only these, each
+/// once, with its neighbors at hand.
 ///
 /// Part of a step: no standard library.
 #pragma once
@@ -11,18 +11,18 @@
 
 namespace taut::sim {
 
-/// An edge, with the third corners of the triangles that have it: one at a border, two, and of a
-/// mesh that is not solid perhaps more, of which so many count. At the border of a field the second
-/// one is a point straight below: there the ground ends in a wall.
+/// An edge, with the third corners of its triangles: one at a border, else two; a mesh that is not
+/// solid may have more, of which kMaxSides count. At the border of a field the second one is a
+/// point straight below: there the ground ends in a wall.
 struct SurfaceEdge {
   static constexpr int kMaxSides = 4;
   Vec3 from, to;
   Vec3 apex[kMaxSides];
   int sides;
-  bool border;  ///< Of a field.
+  bool border;  ///< At the border of a field.
 };
 
-/// A straight line and how far around it is looked, between two places of it.
+/// Part of a straight line, and the search distance around it.
 struct LineReach {
   Vec3 from, along;
   double low, high;  ///< Shares.
@@ -30,7 +30,8 @@ struct LineReach {
   Vec3 At(double share) const noexcept { return from + share * along; }
 };
 
-/// `use(stretch, low, high)` for a line piece by piece, with bounds of what is within its reach.
+/// Calls `use(stretch, low, high)` for a line piece by piece, with the bounds of its surroundings
+/// within reach.
 template <class Use>
 void EachPiece(const SurfaceTable& s, const LineReach& line, const Use& use) noexcept {
   constexpr int kMaxPieces = 4096;
@@ -57,7 +58,7 @@ inline bool Rises(const SurfaceTable& s, int i, int j) noexcept {
   return (s.marks[j * s.columns + i] & kRising) != 0;
 }
 
-/// The edge that a mark of corner (i, j) is about.
+/// Returns the edge to which a mark of corner (i, j) refers.
 inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark mark) noexcept {
   const auto at = [&](int ci, int cj) noexcept { return CornerOf(s, ci, cj); };
   SurfaceEdge edge;
@@ -73,7 +74,7 @@ inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark ma
   const bool x = mark == kSharpAlongX;
   edge.from = at(i, j);
   edge.to = x ? at(i + 1, j) : at(i, j + 1);
-  // The third corner of a triangle lies above the edge's end to which the cell's diagonal goes.
+  // The third corner of a triangle lies above the end of the edge where the cell's diagonal ends.
   if (x ? j + 1 < s.rows : i + 1 < s.columns) {
     const bool rises = Rises(s, i, j);
     edge.apex[edge.sides++] = x ? at(rises ? i + 1 : i, j + 1) : at(i + 1, rises ? j + 1 : j);
@@ -89,7 +90,8 @@ inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark ma
   return edge;
 }
 
-/// `use` with the other end of every edge at a corner of a field; at its border one leads down.
+/// Calls `use` with the other end of every edge at a corner of a field; at the border one of them
+/// leads down.
 template <class Use>
 void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noexcept {
   const bool west = i > 0, east = i + 1 < s.columns, south = j > 0, north = j + 1 < s.rows;
@@ -107,7 +109,8 @@ void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noex
   if (east && south && !Rises(s, i, j - 1)) use(CornerOf(s, i + 1, j - 1));
 }
 
-/// What sticks out of what belongs to corner (i, j) of a field, and reaches above `floor`.
+/// Visits the sharp edges and the sharp corner that belong to corner (i, j) of a field and reach
+/// above `floor`.
 template <class UseEdge, class UseCorner>
 void EachSharpOfCell(const SurfaceTable& s, int i, int j, double floor, const UseEdge& use_edge,
                      const UseCorner& use_corner) noexcept {
@@ -138,11 +141,12 @@ void EachSharpOfCell(const SurfaceTable& s, int i, int j, double floor, const Us
   }
 }
 
-/// Whether a line is followed along x, else along y.
+/// Returns whether a line is followed along x, else along y.
 inline bool GoesByX(const Vec3& along) noexcept { return Abs(along.x) >= Abs(along.y); }
 
-/// Slab by slab across the axis along which the line goes furthest: in each of them the part of the
-/// line that is near it says which few cells, and how high, are of interest. `use(i, j, floor)`.
+/// Visits the cells near a line, slab by slab across the axis along which the line extends
+/// furthest: the part of the line near a slab limits its cells and their least height. `use(i, j,
+/// floor)`.
 template <class Use>
 void EachCellOfField(const SurfaceTable& s, const LineReach& line, const Use& use) noexcept {
   const Vec3 a = line.At(line.low), b = line.At(line.high);
@@ -190,7 +194,7 @@ inline SurfaceEdge EdgeOfMesh(const SurfaceTable& s, const MeshEdge& found) noex
   return edge;
 }
 
-/// Of a mesh, between bounds.
+/// Visits the sharp edges and corners of a mesh between bounds.
 template <class UseEdge, class UseCorner>
 void EachSharpOfBounds(const SurfaceTable& s, const Vec3& low, const Vec3& high,
                        const UseEdge& use_edge, const UseCorner& use_corner) noexcept {
@@ -209,7 +213,7 @@ void EachSharpOfBounds(const SurfaceTable& s, const Vec3& low, const Vec3& high,
   });
 }
 
-/// Piece by piece of the line. Pieces share what is near both of them.
+/// Visits them piece by piece of the line; pieces share the edges and corners near both.
 template <class UseEdge, class UseCorner>
 void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                      const UseCorner& use_corner) noexcept {
@@ -227,10 +231,10 @@ void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge
 
 }  // namespace detail
 
-/// `use_edge(stretch, from, to, edge)`, where edge() says all of it, and `use_corner(stretch,
-/// corner, each_beside)` with all that stick out and are within reach of a line, and perhaps with
-/// some beside. What a line has on a stretch is told once with that stretch, and perhaps again with
-/// others.
+/// Visits all sharp edges and corners within reach of a line, and perhaps some nearby:
+/// `use_edge(stretch, from, to, edge)`, where edge() returns the complete edge, and
+/// `use_corner(stretch, corner, each_beside)`. Whatever is within reach of a stretch is passed once
+/// with that stretch, and perhaps again with others.
 template <class UseEdge, class UseCorner>
 void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                const UseCorner& use_corner) noexcept {
@@ -246,8 +250,8 @@ void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_
       });
 }
 
-/// The same between bounds: `use_edge(from, to, edge)` and `use_corner(corner, each_beside)` with
-/// each of them once.
+/// Visits them between bounds, each once: `use_edge(from, to, edge)` and `use_corner(corner,
+/// each_beside)`.
 template <class UseEdge, class UseCorner>
 void EachSharpWithin(const SurfaceTable& s, const Vec3& low, const Vec3& high,
                      const UseEdge& use_edge, const UseCorner& use_corner) noexcept {

@@ -1,4 +1,4 @@
-// Looking a place of a surface up.
+// Heights of a field: at a place, and the maximum over a rectangle.
 #include "sim/geometry/surface.h"
 
 #include "sim/geometry/touch_list.h"

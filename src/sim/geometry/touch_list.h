@@ -1,5 +1,5 @@
-/// Helpers that the functions of shape_contacts.h share; builtins, because the standard library has
-/// no place in a step.
+/// Helpers of the narrow-phase functions (shape_contacts.h); builtins, because a step uses no
+/// standard library.
 #pragma once
 
 #include "math/scalar.h"
@@ -17,13 +17,13 @@ inline double Clamp(double x, double low, double high) noexcept {
   return x < low ? low : x > high ? high : x;
 }
 
-/// Half the width of a box along a unit direction.
+/// Returns half the width of a box along a unit direction.
 inline double Reach(const BoxShape& box, const Vec3& direction) noexcept {
   double reach = 0.0;
   for (int i = 0; i < 3; ++i) reach += box.half_m[i] * Abs(Dot(AxisOf(box, i), direction));
   return reach;
 }
-/// Whether a point is in a box enlarged by `more_m` on all sides.
+/// Returns whether a point is in a box enlarged by `more_m` on all sides.
 inline bool IsIn(const BoxShape& box, const Vec3& p, double more_m) noexcept {
   const Vec3 d = p - Load(box.center);
   for (int axis = 0; axis < 3; ++axis) {
@@ -32,7 +32,7 @@ inline bool IsIn(const BoxShape& box, const Vec3& p, double more_m) noexcept {
   return true;
 }
 
-/// The points found so far.
+/// Contact points found so far, with a gap below the margin.
 class TouchList {
  public:
   TouchList(TouchPoint* out, double margin_m) noexcept : out_(out), margin_m_(margin_m) {}

@@ -1,6 +1,6 @@
 /// Projection onto joint constraints, as one linear system over the jointed bodies in all lanes:
 /// the mass-weighted least change that brings all rows to their targets (docs/theory/joints.md, eq.
-/// 7, 7a). At the end of a step it projects velocities and closes gaps.
+/// 7, 7a). At the end of a step it projects velocities and closes gaps (position projection).
 ///
 /// Bodies, rows and blocks follow from the model. Redundant rows share their load: each row gets a
 /// compliance proportional to its inverse effective mass, and a second pass removes the remaining
@@ -15,7 +15,7 @@
 
 namespace taut::sim {
 
-/// How far a held row is from what is wanted: its measure is to be 0, but for a distance.
+/// Returns the error of a held row: its measure, or for a distance the difference from its length.
 template <class W>
 TAUT_INLINE W MissOf(JointMeasure measure, const JointTable& j, W value) noexcept {
   return measure == JointMeasure::kDistance ? value - W::Splat(j.rest) : value;
@@ -33,7 +33,8 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
-  /// Adds pressing stops to the held rows: held stops, or all that are closed at the end.
+  /// Adds pressing stops (joint limits) to the held rows: held stops, or all that are closed at the
+  /// end.
   void IncludeHeldStops() noexcept { held_stops_ = true; }
   void IncludeStops() noexcept { held_stops_ = passed_stops_ = true; }
 
@@ -65,7 +66,7 @@ class JointSystem {
 
   int rows() const noexcept { return rows_; }
   const JointRow<W>& row(int r) const noexcept { return mem_.rows[r]; }
-  int number(int r) const noexcept { return mem_.number[r]; }  ///< Among the model's rows.
+  int number(int r) const noexcept { return mem_.number[r]; }  ///< Number among the model's rows.
   W gap(int r) const noexcept { return mem_.gap[r]; }
 
   /// Solves for the impulses that cancel the row velocities `miss(row)` (or for displacements, the
@@ -103,7 +104,8 @@ class JointSystem {
   }
 
  private:
-  /// Row `r` of the model. `stiffness(A)`: by its inverse effective mass.
+  /// Adds row `r` of the model. `stiffness(A)`: stiffness as a function of the inverse effective
+  /// mass.
   template <class F>
   void Add(int r, const JointTable& j, const JointPlace<W>& p, const JointDirection<W>& d, W gap,
            const F& stiffness) noexcept {
@@ -118,7 +120,7 @@ class JointSystem {
     matrix_.Add(row, &mem_.G[rows_]);
     ++rows_;
   }
-  /// Appended to the held rows. In lanes where a stop is open its row has zero weight.
+  /// Appends stops to the held rows. In lanes where a stop is open its row has zero weight.
   void AddStops() noexcept {
     const W zero = W::Splat(0.0), one = W::Splat(1.0), least = W::Splat(1e-300);
     for (int r = 0; r < m_.joint_row_count; ++r) {
@@ -206,8 +208,8 @@ void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   system.Solve([&](int r) { return system.gap(r); });
 }
 
-/// Of a chain by itself the angular momentum stays: it turns the slower for what its bodies have
-/// gained.
+/// Conserves the angular momentum of a chain without a support: a common rotation compensates for
+/// the change (`gained`).
 template <class W>
 void KeepMomentumOf(const View& m, const Rows<W>& s, Scratch<W>& work, const int* bodies,
                     int count) noexcept {
@@ -227,7 +229,7 @@ void KeepMomentumOf(const View& m, const Rows<W>& s, Scratch<W>& work, const int
   }
 }
 
-/// The furthest that what is held is from where it is to be [m], in each lane.
+/// Returns the largest gap of held rows and closed stops [m], per lane.
 template <class W>
 W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
   W worst = W::Splat(0.0);
@@ -250,7 +252,7 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
   return worst;
 }
 
-/// Whether a stop presses without being held: bodies may have passed it.
+/// Returns whether a stop presses without being held: bodies may have passed it.
 template <class W>
 bool StopsCatch(const View& m, const Scratch<W>& work) noexcept {
   const W zero = W::Splat(0.0);
@@ -271,7 +273,7 @@ void TurnJointedBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexce
   }
 }
 
-/// The least displacement of `lanes` that closes all gaps, to first order.
+/// Displaces the bodies of `lanes` by the least amount that closes all gaps to first order.
 template <class W>
 void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
                MaskOf<W> lanes) noexcept {
@@ -342,7 +344,7 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
                     [](int, const W&, const JointRow<W>&) {});
 }
 
-/// Hinge angles in the current pose, `t` after the last reading.
+/// Updates hinge angles to the current pose, `t` after the last reading.
 template <class W>
 void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) noexcept {
   for (int i = 0; i < m.joint_count; ++i) {

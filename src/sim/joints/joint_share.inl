@@ -1,9 +1,10 @@
-/// Stability limit of joint forces, as a share of it (docs/theory/joints.md, eq. 8).
+/// Stability limit of joint forces: joint load as a share of the largest stable one
+/// (docs/theory/joints.md, eq. 8).
 ///
 /// A joint's force is implicit along its direction and explicit across it, where it acts as a
 /// spring with a stiffness proportional to the load; the step must resolve its oscillation. A cheap
-/// bound per body suffices for most worlds. If it is exceeded, power iteration finds the fastest
-/// oscillation that the joints allow.
+/// bound per body suffices for most worlds. If it is exceeded, power iteration finds the highest
+/// natural frequency that the joints allow.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -27,7 +28,7 @@ struct JointShare {
   }
 };
 
-/// Tension of a distance joint per length [N/m]: its transverse stiffness.
+/// Returns the tension of a distance joint per length [N/m]: its transverse stiffness.
 template <class W>
 TAUT_INLINE W StiffnessAcross(const V3<W>& force, const V3<W>& gap) noexcept {
   return (W::Splat(0.0) - Dot(force, gap)) / Max(Dot(gap, gap), W::Splat(1e-300));
@@ -122,8 +123,8 @@ W Vigour(const Unknown<W>& body, const W* x) noexcept {
   return sum;
 }
 
-/// Returns h^2 w^2 / 4 of the fastest oscillation w compatible with the held rows, and the body
-/// with the largest amplitude: power iteration x <- A^-1 N x with the system A of eq. 7.
+/// Returns h^2 w^2 / 4 for the highest natural frequency w compatible with the held rows, and the
+/// body with the largest amplitude: power iteration x <- A^-1 N x with the system A of eq. 7.
 template <class W>
 JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
                              W quarter_h2) noexcept {

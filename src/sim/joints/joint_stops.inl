@@ -78,7 +78,7 @@ Twist<W> Ahead(const Rows<W>& s, const BodyWork<W>& body, int b, bool moves, W h
   return t;
 }
 
-/// Returns the rebound speed at a stop of restitution e (eq. 15), or 0. `before`: row velocity;
+/// Returns the rebound speed at a stop with restitution e (eq. 15), or 0. `before`: row velocity;
 /// `kick`: its decrease by forces in the step; `gap`: at the middle of the step. The impact is
 /// evaluated at the stop and extrapolated back under the acceleration of forces and arc. A bounce
 /// that ends within the step does not count.
@@ -138,8 +138,9 @@ TAUT_INLINE MaskOf<W> Presses(const HeldRow<W>& row) noexcept {
   return (row.live > zero) & (row.l[0] > zero);
 }
 
-/// Whether displacements close a stop: it pressed in this step, and is held or was passed. A stop
-/// passed by more than one step's motion (initial or set state) is left to eq. 4.
+/// Returns the lanes in which displacements close a stop: it pressed in this step, and is held or
+/// was passed. A stop passed by more than one step's motion (initial or set state) is left to eq.
+/// 4.
 template <class W>
 MaskOf<W> IsClosedAtEnd(const HeldRow<W>& row, W gap) noexcept {
   const W zero = W::Splat(0.0);

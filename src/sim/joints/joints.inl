@@ -1,23 +1,23 @@
-/// Joints (docs/theory/joints.md): their rows for the solver at the middle of the step, what their
-/// impulses come to, and places that are held to round-off at its end.
+/// Joints (docs/theory/joints.md): rows for the solver at the middle of the step, kinematic loops
+/// included, and loads from their impulses.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Where a joint is: its points and axes in W, the points from their bodies' centres of mass.
+/// Pose of a joint: its points and axes in W, the points relative to their bodies' centers of mass.
 template <class W>
 struct JointPlace {
   V3<W> own_a, own_b;  ///< [m]
   V3<W> gap;           ///< From a's point to b's [m].
   M3<W> axes_a, axes_b;
 
-  V3<W> arm_a() const noexcept { return own_a + gap; }  ///< To b's point, as own_b is.
+  V3<W> arm_a() const noexcept { return own_a + gap; }  ///< To b's point.
 };
 
-/// A row's direction: of b's velocity at its point, and of b's turns. Its value, and how fast that
-/// grows, are those of what it measures; a's are the opposite.
+/// A row's direction for b's velocity at its point and for b's rotation, with the value of the
+/// row's coordinate, whose rate it determines; the directions for a are opposite.
 template <class W>
 struct JointDirection {
   V3<W> lin, turn;
@@ -30,7 +30,7 @@ TAUT_INLINE M3<W> AxesOf(const M3<W>& R, const double* axes_P) noexcept {
           R * simd::Splat3<W>(axes_P + 6)};
 }
 
-/// Uses the frames in `work`.
+/// Returns the pose of a joint, with the frames in `work`.
 template <class W>
 JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const Scratch<W>& work,
                       const JointTable& j) noexcept {
@@ -53,8 +53,8 @@ TAUT_INLINE W HingeAngle(const JointPlace<W>& p, W expected) noexcept {
   return angle + turn * simd::Round(inv_turn * (expected - angle));
 }
 
-/// The turn that takes a's axes to b's, as a vector in W: its axis times its angle, 0..pi. At a
-/// half turn either of the two that it may be.
+/// Returns the rotation from a's axes to b's as a vector in W: axis times angle, 0..pi. At a half
+/// turn, one of the two possible vectors.
 template <class W>
 V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), tiny = W::Splat(1e-300);
@@ -63,7 +63,8 @@ V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   const W ab = Dot(p.axes_a.r0, p.axes_b.r1), ba = Dot(p.axes_a.r1, p.axes_b.r0),
           ac = Dot(p.axes_a.r0, p.axes_b.r2), ca = Dot(p.axes_a.r2, p.axes_b.r0),
           bc = Dot(p.axes_a.r1, p.axes_b.r2), cb = Dot(p.axes_a.r2, p.axes_b.r1);
-  // Its quaternion times itself, 4 q q^T; any row has the direction of q, the largest one safely.
+  // Quaternion times its transpose, 4 q q^T; each row is parallel to q, and the largest one is well
+  // conditioned.
   const W w[4] = {one + aa + bb + cc, cb - bc, ac - ca, ba - ab};
   const W x[4] = {w[1], one + aa - bb - cc, ab + ba, ac + ca};
   const W y[4] = {w[2], x[2], one - aa + bb - cc, bc + cb};
@@ -79,7 +80,8 @@ V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   return (scale * q[1]) * p.axes_a.r0 + (scale * q[2]) * p.axes_a.r1 + (scale * q[3]) * p.axes_a.r2;
 }
 
-/// `angle`: of a hinge, with turns. The value of a ball's turn is TurnOf.
+/// Returns direction and value of a measure. `angle`: of a hinge, with whole turns. The value of a
+/// ball's rotation is TurnOf.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -125,8 +127,8 @@ JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const J
           reach * simd::Atan2(sine, Dot(p.axes_a.r0, p.axes_b.r0))};
 }
 
-/// The same with the sign of the row's role. A stop's value is the remaining distance, so that its
-/// impulse pushes.
+/// Returns the same with the sign of the row's role. A stop's value is the remaining distance, so
+/// that its impulse pushes.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -139,7 +141,7 @@ JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, con
   return d;
 }
 
-/// The velocity that a row has at (va, wa), (vb, wb).
+/// Returns the velocity of a row at (va, wa), (vb, wb).
 template <class W>
 TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const Twist<W>& a,
                      const Twist<W>& b) noexcept {
@@ -147,12 +149,12 @@ TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const T
   return Dot(d.lin, apart) + Dot(d.turn, b.w - a.w);
 }
 
-/// Links and inverse effective mass of a row in direction `d`; the first link is to a body that
-/// impulses move.
+/// Computes links and inverse effective mass of a row in direction `d`; the first link is to a body
+/// that impulses move.
 ///
-/// A joint that holds a point pushes each body at its own point (joints.md, section 2). At the
-/// other's point, which is off by the gap, it would spin a thin rod about its axis, and redundant
-/// rows would become independent.
+/// A joint that holds a point pushes each body at the body's own point (joints.md, section 2). At
+/// the other body's point, which is off by the gap, it would spin a thin rod about its axis, and
+/// redundant rows would become independent.
 template <class W>
 void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
                    const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
@@ -192,7 +194,8 @@ TAUT_INLINE Twist<W> Free(const BodyWork<W>& body) noexcept {
   return {body.v, body.w};
 }
 
-/// A spring and damper, as a line through the mean of the step's start and end (eq. 6).
+/// Sets the law of a spring and damper: a line through the mean of the step's start and end (eq.
+/// 6).
 template <class W>
 void SetSpring(const JointTable& j, W stretch, W before, W h, JointRow<W>& row) noexcept {
   const W one = W::Splat(1.0), half = W::Splat(0.5), quarter = W::Splat(0.25);
@@ -202,8 +205,8 @@ void SetSpring(const JointTable& j, W stretch, W before, W h, JointRow<W>& row) 
   row.target = (quarter * h * k * before - half * b * before - k * stretch) / gain;
 }
 
-/// A row that holds (eq. 3) reverses its velocity, so that its impulse does no work. A tiny
-/// compliance about the impulse of the step before, if there is one, makes nearly dependent rows
+/// Sets the law of a held row (eq. 3), which reverses its velocity, so that its impulse does no
+/// work. A tiny compliance about the previous impulse, if there is one, makes nearly dependent rows
 /// solvable.
 template <class W>
 void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<W>& row) noexcept {
@@ -242,8 +245,8 @@ void TurnLinksBack(const View& m, const Scratch<W>& work, JointRow<W>& row) noex
 template <class W>
 void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept;
 
-/// Assembles the rows of all joints. In models with loops the held rows are evaluated at the
-/// nearest closed pose: redundant rows are exactly dependent only there.
+/// Assembles the rows of all joints. In models with kinematic loops the held rows are evaluated at
+/// the nearest closed pose: redundant rows are exactly dependent only there.
 ///   reads   pos, bodies[]     writes  joints[], joint_angle
 template <class W>
 void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
@@ -320,7 +323,7 @@ TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
          (row.links[0].ang[0] + row.links[1].ang[0]);
 }
 
-/// Loads of what the solver found, and the angular momenta that they give.
+/// Computes loads and angular momenta from the solver's impulses.
 template <class W>
 void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);

@@ -1,5 +1,6 @@
-/// A body whose few contacts with the world are an island: Newton's method in their impulses, in
-/// all lanes at once (docs/theory/contact.md, eq. 20). A segment of a spine on its feet is this.
+/// Newton's method in the impulses of a body with up to four contacts with the world, in all lanes
+/// at once, on its Delassus operator (docs/theory/contact.md, eq. 20). The contacts are an island,
+/// e.g. of a spine segment that stands on its feet.
 #pragma once
 
 #include "math/scalar.h"
@@ -20,16 +21,16 @@ template <class W, int kContacts>
 class BodyDual {
   static constexpr int kSize = 3 * kContacts;
   static constexpr int kMaxIterations = 8;
-  /// Redundant friction (two contacts on one rod, along the rod) leaves the system singular; this
-  /// much compliance chooses the change that is smallest, and is iterated away.
+  /// Redundant friction (two contacts along one rod) makes the system singular; this compliance
+  /// selects the smallest change. It has no effect on the converged result.
   static constexpr double kCompliance = 1e-9;
   using Law = ContactPoint<W, 1>;
 
  public:
   BodyDual(BodyWork<W>& body, Contact<W, 1>* rows) noexcept : body_(body), rows_(rows) {}
 
-  /// Solves the contacts in `lanes`, whose impulses and velocities are written. Returns the lanes
-  /// in which it did not get there; those stay as they were.
+  /// Solves the contacts in `lanes`, and writes their impulses and velocities. Returns the lanes
+  /// that did not converge; those stay unchanged.
   template <class M>
   M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
     const W zero = W::Splat(0.0);
@@ -49,7 +50,7 @@ class BodyDual {
     for (int c = 0; c < kContacts; ++c) {
       Contact<W, 1>& row = rows_[c];
       W l[3] = {l_[3 * c], l_[3 * c + 1], l_[3 * c + 2]};
-      l[0] = Max(l[0], zero);  // a contact that Newton leaves a rounding below zero is open
+      l[0] = Max(l[0], zero);  // a contact that Newton's method leaves slightly below zero is open
       for (int k = 0; k < 3; ++k) {
         row.l[k] = Select(solved, l[k], row.l[k]);
         l[k] = Select(solved, l[k], zero);
@@ -60,7 +61,7 @@ class BodyDual {
     return lanes & !solved;
   }
 
-  // What impacts.inl asks for.
+  // Interface for impacts.inl.
   template <class F>
   TAUT_INLINE void ForEach(F&& f) noexcept {
     for (int c = 0; c < kContacts; ++c) f(rows_[c], 3 * c);
@@ -113,7 +114,7 @@ class BodyDual {
     }
   }
 
-  /// Leaves the branches.
+  /// Updates the branches and returns the residual.
   W Residual() noexcept {
     W worst = W::Splat(0.0);
     for (int c = 0; c < kContacts; ++c) {
@@ -123,7 +124,8 @@ class BodyDual {
     return worst;
   }
 
-  /// W = J M^-1 J^T. Contacts with one plane share their directions, whose products are 0 and 1.
+  /// Assembles the Delassus operator W = J M^-1 J^T. Contacts with one plane share their
+  /// directions, whose products are 0 and 1.
   void BuildMatrix() noexcept {
     for (int i = 0; i < kContacts; ++i) {
       const Law& a = rows_[i];
@@ -163,7 +165,7 @@ class BodyDual {
     }
   }
 
-  /// The rows of Newton's linear system: (A + S W) dl = r.
+  /// Assembles Newton's linear system: (A + S W) dl = r.
   void Linearize() noexcept {
     for (int c = 0; c < kContacts; ++c) {
       const int n = 3 * c, t1 = n + 1, t2 = n + 2;
@@ -184,8 +186,8 @@ class BodyDual {
     }
   }
 
-  /// Gaussian elimination; the diagonal dominates enough to go without pivots, and a lane for
-  /// which that is not so does not get there.
+  /// Gaussian elimination without pivots, which the dominant diagonal makes unnecessary; a lane
+  /// where it fails does not converge.
   void Eliminate() noexcept {
     TAUT_UNROLL for (int k = 0; k < kSize; ++k) {
       const W inverse = W::Splat(1.0) / a_[k][k];

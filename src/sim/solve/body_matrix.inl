@@ -1,11 +1,11 @@
-/// The linear system of Newton's method in the velocities of bodies: 6x6 blocks, one a pair of
-/// bodies that act on each other, factored in the order of the bodies (docs/theory/contact.md,
-/// eq. 21, 25). No pivots: M + J^T G J is positive definite but for the coupling of friction to the
-/// normal impulse, and a step that a bad pivot spoils is refused by what judges it.
+/// Sparse linear system of Newton's method in the velocities of bodies: 6x6 blocks, one for each
+/// pair of interacting bodies, factored in the order of the bodies (docs/theory/contact.md, eq. 21,
+/// 25). No pivots: M + J^T G J is positive definite except for the coupling of friction to the
+/// normal impulse; line search or residual reject a step that a bad pivot spoils.
 ///
-/// Blocks of smaller unknowns are filled up with zeros. Only an unknown's own velocities are
-/// eliminated; what they do to others is worked out six by six, so that the loops have lengths
-/// that the compiler knows. Unknowns that are prescribed have no column at all.
+/// Blocks of smaller unknowns are padded with zeros. Only an unknown's own velocities are
+/// eliminated; coupling to neighbors is six by six, so that loops have fixed lengths. Prescribed
+/// unknowns have no column.
 #pragma once
 
 #include "base/assert.h"
@@ -24,8 +24,8 @@ class BodyMatrix {
  public:
   BodyMatrix(const BlockPattern& pattern, Num* blocks) noexcept : p_(pattern), a_(blocks) {}
 
-  /// M on the diagonal, else 0. `symmetric`: only the lower triangle is kept and filled. `bodies`
-  /// stay where they are until the last solve.
+  /// Sets M on the diagonal, 0 elsewhere. `symmetric`: stores only the lower triangle. `bodies`
+  /// must stay valid until the last solve.
   void Start(const Unknown<Num>* bodies, bool symmetric) noexcept {
     Clear(bodies, symmetric);
     for (int b = 0; b < p_.count; ++b) {
@@ -59,8 +59,8 @@ class BodyMatrix {
     add(to + 18, wv.r0, ww.r0), add(to + 24, wv.r1, ww.r1), add(to + 30, wv.r2, ww.r2);
   }
 
-  /// += J^T G J of one constraint, without what is prescribed; G: R x R, row by row. A function by
-  /// itself: among other code g++ took up to a fifth more instructions for the same loops.
+  /// Adds J^T G J of one constraint, without prescribed unknowns; G: R x R, row by row. Not
+  /// inlined: among other code g++ took up to a fifth more instructions for the same loops.
   template <class Law>
   [[gnu::noinline]] void Add(const Law& law, const Num* G) noexcept {
     constexpr int R = Law::kRows;
@@ -93,13 +93,13 @@ class BodyMatrix {
     }
   }
 
-  /// A = L D L^T, or L U. False if a pivot is not positive, or zero.
+  /// Factors A = L D L^T, or L U. Returns false if a pivot is not positive, or zero.
   bool Factor() noexcept {
     if (bodies_only_) return symmetric_ ? FactorSymmetric<true>() : FactorGeneral<true>();
     return symmetric_ ? FactorSymmetric<false>() : FactorGeneral<false>();
   }
 
-  /// x <- A^-1 x; 6 numbers an unknown, of which those beyond its size stay as they are.
+  /// x <- A^-1 x; 6 numbers per unknown; entries beyond its size are unchanged.
   void Solve(Num* x) const noexcept { bodies_only_ ? SolveAs<true>(x) : SolveAs<false>(x); }
 
   /// x <- A^-T x.
@@ -110,7 +110,7 @@ class BodyMatrix {
   }
 
  private:
-  /// The same of one whose links have a row each.
+  /// Adds J^T G J of a constraint whose links have one row each.
   template <class Law>
   void AddByRows(const Law& law, const Num* G) noexcept {
     for (int k = 0; k < law.link_count; ++k) {
@@ -160,7 +160,7 @@ class BodyMatrix {
     }
   }
 
-  /// a -= l u over the N velocities that are eliminated.
+  /// a -= l u over the N eliminated velocities.
   template <int N>
   static void Subtract(Num* a, const Num* l, const Num* u) noexcept {
     for (int x = 0; x < kDofs; ++x) {
@@ -180,7 +180,7 @@ class BodyMatrix {
     Transpose<N>(u, transposed);
     Subtract<N>(a, l, transposed);
   }
-  /// The first N columns.
+  /// Transposes the first N columns.
   template <int N>
   static void Transpose(const Num* a, Num* out) noexcept {
     for (int r = 0; r < kDofs; ++r) {
@@ -236,7 +236,7 @@ class BodyMatrix {
       for (int r = 0; r < kDofs; ++r) {
         for (int c = 0; c < N; ++c) bj[kDofs * r + c] *= d[7 * c];
       }
-      // Column j of the update: rows from j on. Those further down still hold (L D).
+      // Column j of the update: rows from j on. Later rows still contain (L D).
       Subtract<N>(At(j, j), bj, transposed);
       for (int s = q + 1; s < last; ++s) {
         const int i = p_.below[s];
@@ -301,7 +301,7 @@ class BodyMatrix {
     return good;
   }
 
-  // Triangular solves, of which each takes the columns one by one (triangular_solves.inl).
+  // Triangular solves, column by column (triangular_solves.inl).
   struct ForwardL;
   template <bool kScaled>
   struct BackwardTransposedL;

@@ -1,4 +1,5 @@
-/// Several bodies that turn about their common centre of mass as if they were one.
+/// Common rigid rotation of several bodies about their center of mass, for a correction of the
+/// total angular momentum.
 #pragma once
 
 #include "sim/contacts/fit_biases.inl"
@@ -8,7 +9,7 @@ namespace taut::sim {
 
 template <class Num>
 struct Solid {
-  V3<Num> x;        ///< Its centre of mass in W [m].
+  V3<Num> x;        ///< Center of mass in W [m].
   Num mass;         ///< [kg]
   S3<Num> inertia;  ///< In W [kg m^2].
 };
@@ -18,7 +19,7 @@ struct CommonTurn {
   V3<Num> centre;  ///< [m]
   V3<Num> w;       ///< [rad/s]
 
-  /// The turn that has the angular momentum `momentum`. `solid(k)`: the bodies, count of them.
+  /// Computes the rotation with the angular momentum `momentum`. `solid(k)`: body k of `count`.
   template <class F>
   CommonTurn(int count, const F& solid, const V3<Num>& momentum) noexcept {
     const Num zero = Num::Splat(0.0);

@@ -1,12 +1,12 @@
-/// Between the stages of an island's solve: what to do where Newton's steps stay on the same
-/// branches and still miss what the laws there hold (docs/theory/contact.md, section 5).
+/// Deadlocks and inconsistent contacts: escape of Newton's method from contradictory rows
+/// (docs/theory/contact.md, section 5).
 ///
-/// Contacts that stick along a closed chain (a rod jammed across a groove, a slab on rollers) have
-/// more rows than the bodies have motions, and biases that differ in the last digits of gaps and
-/// arcs. No velocities fulfil them all, and each step adds the same impulses along the chain. If
-/// these sooner or later open a contact or make it slide, the solver jumps there at once. Otherwise
-/// the equations are inconsistent: proximal rounds (proximal.inl) find the velocities with the
-/// least error; then the laws that support it are relaxed by this error.
+/// Contacts that stick along a kinematic loop (a rod jammed across a groove, a slab on rollers)
+/// have more rows than the bodies have degrees of freedom, and biases that differ in the last
+/// digits of gaps and arcs. No velocities satisfy them all, and each step adds the same impulses
+/// along the loop. If these eventually open a contact or make it slide, the solver jumps there at
+/// once. Otherwise the equations are inconsistent: proximal rounds (proximal.inl) find the
+/// velocities with the least error, and the laws of the loop are relaxed by this error.
 #pragma once
 
 #include "sim/data/island.h"
@@ -19,8 +19,8 @@ inline constexpr bool kRelaxes = requires(Law& law) {
 };
 
 /// Relaxes inconsistent laws at m.l, m.u and the branches of their residual: changes their biases
-/// so that they hold, if no bias changes by more than kDisagreementMPerS and this solves the
-/// island. False: nothing has changed.
+/// to satisfy the laws, if no bias changes by more than kDisagreementMPerS and this solves the
+/// island. Returns false if nothing has changed.
 template <class Num, class P>
 bool Relax(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
   auto& m = island.m;
@@ -51,21 +51,22 @@ bool Relax(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept 
   return false;
 }
 
-/// After a step of Newton's method from the velocities m.u2 and the impulses m.projected to m.u and
-/// m.l.
+/// Finds the end of a deadlock after a Newton step from the velocities m.u2 and the impulses
+/// m.projected to m.u and m.l.
 template <class Num, class P>
 class DeadlockBreaker {
-  static constexpr double kStays = 1e-2;  ///< Share of what is missed.
-  /// So many times the largest impulse are no way to a solution.
+  static constexpr double kStays = 1e-2;  ///< Relative change of the error that counts as none.
+  /// Steps of more than this multiple of the largest impulse are rejected.
   static constexpr double kFar = 1e3;
 
  public:
   explicit DeadlockBreaker(Island<Num, P>& island) noexcept : island_(island), m_(island.m) {}
 
-  /// Returns true if m.l is now where a law leaves its branch. False: no deadlock, or no way out.
+  /// Moves m.l to the first place where a law leaves its branch, and returns true. Returns false
+  /// without a deadlock, or if there is no such place.
   bool Break() noexcept {
     if (!IsDeadlock()) return false;
-    // m.projected <- what a step adds to the impulses
+    // m.projected <- impulses that a step adds
     for (int i = 0; i < island_.rows; ++i) m_.projected[i] = m_.l[i] - m_.projected[i];
     Num reach = Num::Splat(1e300), size = Num::Splat(0.0), added = size;
     ForEach([&](auto& law, auto& branch, int row) {
@@ -89,7 +90,7 @@ class DeadlockBreaker {
     });
   }
 
-  /// Whether the laws have a small error that the step has not changed.
+  /// Returns whether the laws have a small error that the step has not changed.
   bool IsDeadlock() noexcept {
     Num most = Num::Splat(0.0), changed = most;
     ForEach([&](auto& law, auto& branch, int row) {

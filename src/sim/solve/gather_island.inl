@@ -1,4 +1,4 @@
-/// Gathers one lane's island into the solver's memory and scatters the solution (LaneSolve).
+/// Gather of one lane's island into the solver's memory, and scatter of the solution (LaneSolve).
 #pragma once
 
 #include "sim/data/rows.h"
@@ -85,7 +85,7 @@ void LaneSolve<W>::GatherLink(const Link<W, R>& from, Link<L, S>& to, int first)
   }
 }
 
-/// Copies contacts as prepared for all lanes at once (prepare_contact.inl).
+/// Copies the inverse masses that were computed for all lanes at once (prepare_contact.inl).
 template <class W>
 void LaneSolve<W>::GatherMasses(const Contact<W, 1>& from, ContactPoint<L, 2>& to) const noexcept {
   to.wnn = OfLane<L>(from.wnn, lane_), to.wt = OfLane<L>(from.wt, lane_);
@@ -181,7 +181,7 @@ void LaneSolve<W>::GatherJoints(Pool<JointRow<L>>& pool,
   chain_source_ = friction_source_.From(frictions.count);
 }
 
-/// Ball joints: three rows form one law, except in displacement solves.
+/// Gathers the friction of ball joints: three rows form one law, except in displacement solves.
 template <class W>
 void LaneSolve<W>::GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept {
   pool.count = 0;

@@ -1,17 +1,16 @@
-/// Impacts: contacts that close against an approach rebound within the same step, all together
-/// (docs/theory/contact.md, section 3). The problem is solved as if nothing rebounded, then again
-/// with the rebounds of those contacts that took part; others that come in by that join. If the
-/// result has more energy than it may have (friction at several contacts can do that), it goes back
-/// towards the first solution, as far as it must: between two solutions all is linear, and cones
-/// are convex.
+/// Impacts: restitution of contacts and joint limits, all together in the step of the impact
+/// (docs/theory/contact.md, section 3). The problem is solved without rebounds, then again with the
+/// rebounds of the contacts that took part; contacts that newly press join. If the result has too
+/// much energy (friction at several contacts can cause this), it is interpolated toward the first
+/// solution as far as necessary: the problem is linear between two solutions, and cones are convex.
 ///
-/// A Problem is one of the solvers in the middle of its work:
+/// A Problem is a solver with this interface:
 ///   ForEach(f)       f(law, first row) for all constraints
-///   u(), l()         velocities and impulses, a row each
-///   impacts()        room for this
+///   u(), l()         velocities and impulses, one per row
+///   impacts()        memory for impacts
 ///   MeasureBefore()  impacts().before <- velocities at the start of the step
-///   SolveAgain(M)    goes on from l, in the lanes M
-///   Update()         makes all else belong to l
+///   SolveAgain(M)    solves again from l, in the lanes M
+///   Update()         updates all other variables to l
 #pragma once
 
 #include "sim/data/island.h"
@@ -23,8 +22,8 @@ inline constexpr bool kRebounds = requires(Law& law) {
   law.rebound;
 };
 
-/// Work of the constraints, as a share x of the way from the first solution to the second:
-/// c0 + c1 x + c2 x^2.
+/// Work of the constraints at a share x of the way from the first solution to the second: c0 + c1 x
+/// + c2 x^2.
 template <class Num>
 struct WorkOfImpacts {
   Num c0 = Num::Splat(0.0), c1 = Num::Splat(0.0), c2 = Num::Splat(0.0);
@@ -35,7 +34,7 @@ struct WorkOfImpacts {
     c1 += l * sum + l1 * u;
     c2 += l * u;
   }
-  /// The largest admissible share; 1 where all of it is.
+  /// Returns the largest admissible share; 1 if the second solution is admissible.
   Num Share() const noexcept {
     constexpr double kRounding = 1e-12;
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -48,8 +47,8 @@ struct WorkOfImpacts {
   }
 };
 
-/// How fast each contact would rebound if it took part in an impact; from the velocities that the
-/// impulses of the step before lead to. False if none would, in any lane.
+/// Computes the rebound speed of each contact if it took part in an impact, from the velocities
+/// under the previous step's impulses. Returns false if no contact would rebound in any lane.
 template <class Problem>
 bool ExpectImpacts(Problem& p) noexcept {
   bool any = false;
@@ -61,7 +60,7 @@ bool ExpectImpacts(Problem& p) noexcept {
   return any;
 }
 
-/// After a solve. `lanes`: those that are solved. Returns those that had an impact.
+/// Applies impacts after a solve. `lanes`: solved lanes. Returns the lanes with an impact.
 template <class Num, class Problem, class M>
 M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   constexpr int kMaxRounds = 4;
@@ -69,7 +68,7 @@ M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   auto hit = M::Splat(false);
   for (int round = 0; round < kMaxRounds; ++round) {
     auto fresh = M::Splat(false);
-    // A later round is for those that had an earlier one: an impact of a neighbour is none.
+    // Later rounds apply only to lanes with an earlier impact, not to their neighbors.
     const auto may = round > 0 ? lanes & hit : lanes;
     p.ForEach([&](auto& law, int row) {
       if constexpr (kRebounds<decltype(law)>)

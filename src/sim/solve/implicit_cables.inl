@@ -50,7 +50,7 @@ template <class Num>
 TAUT_INLINE void AddOuter(M3<Num>& m, Num f, const V3<Num>& a, const V3<Num>& b) noexcept {
   m.r0 += (f * a.x) * b, m.r1 += (f * a.y) * b, m.r2 += (f * a.z) * b;
 }
-/// The Cayley turn (1 - [h])^-1 (1 + [h]) y; scale: 1 / (1 + h^2).
+/// Returns the Cayley rotation (1 - [h])^-1 (1 + [h]) y; scale: 1 / (1 + h^2).
 template <class Num>
 TAUT_INLINE V3<Num> CayleyTurn(const V3<Num>& h, Num scale, const V3<Num>& y) noexcept {
   const V3<Num> t = Cross(h, y);
@@ -65,11 +65,11 @@ TAUT_INLINE M3<Num> CayleyInverse(const V3<Num>& h, Num scale) noexcept {
                                {h.z * h.x - h.y, h.z * h.y + h.x, one + h.z * h.z}});
 }
 
-/// A part of a step.
+/// One stage of a step.
 template <class Num>
 struct ImplicitStage {
   Num h;        ///< [s]
-  bool at_end;  ///< Forces at its end: implicit Euler.
+  bool at_end;  ///< Forces at the end of the stage: implicit Euler.
 };
 
 /// The cables and bodies of an island for Newton's method. Unknowns: mean velocities of the stage
@@ -85,7 +85,7 @@ class ImplicitCables {
   int cable_count = 0, point_count = 0;
   Num most_tension = Num::Splat(0.0);  ///< Of the last evaluation [N].
 
-  /// Arms, lengths and inertias of the start of a stage.
+  /// Computes arms, lengths and inertias at the start of a stage.
   void Begin() noexcept {
     for (int k = 0; k < count_; ++k) {
       ImplicitBody<Num>& b = mem_.body[k];
@@ -117,7 +117,7 @@ class ImplicitCables {
     }
   }
 
-  /// res <- final momenta minus those under all forces except contacts.
+  /// res <- final momenta minus momenta under all forces except contacts.
   void Evaluate(const ImplicitStage<Num>& stage, const Num* U, Num* res) noexcept {
     const Num one = Num::Splat(1.0), half = Num::Splat(0.5);
     for (int k = 0; k < count_; ++k) {

@@ -1,4 +1,4 @@
-/// One lane's island with stiff cables, integrated implicitly: Newton's method on the true lengths
+/// Implicit integration of one lane's island with stiff cables: Newton's method on the true lengths
 /// and directions at the end of the step, with contacts inside (docs/theory/cables.md, section 3).
 ///
 /// A step has one stage, or two if a stiff cable has a damper. If Newton's method fails, the step
@@ -21,7 +21,7 @@ class ImplicitIsland {
   static constexpr double kMiddle = 0.9;
   static constexpr double kTolerance = 1e-9, kLeastSpeedMPerS = 1e-3;
   static constexpr int kMostSteps = 40, kMostHalvings = 7;
-  /// Linear systems of contacts for one of bodies, as a bound of work.
+  /// Bound of work: contact systems allowed per linear system of bodies.
   static constexpr int kContactSystems = 5;
 
  public:
@@ -41,10 +41,10 @@ class ImplicitIsland {
         lane_(lane),
         step_s_(step_s) {}
 
-  /// After Solve: whether the velocities are no solution, not even to 1e-6 m/s.
+  /// After Solve: returns whether the velocities do not satisfy the laws, not even to 1e-6 m/s.
   bool failed() const noexcept { return failed_; }
 
-  /// Adds the stiff cable `row` to those of the island. `number`: index of a body in it, or -1.
+  /// Adds the stiff cable `row` to the island. `number`: index of a body in it, or -1.
   template <class Number>
   void AddCable(int row, const Number& number) noexcept {
     const StiffCable<W>& from = work_.stiff[row];
@@ -147,9 +147,9 @@ class ImplicitIsland {
     return work_done_.linear_solves >= work_done_.limit ||
            contact_work_.linear_solves >= contact_work_.limit;
   }
-  /// At the start of the stage.
+  /// Returns the velocity at the start of the stage.
   Twist<Num> VelocityOf(int k) const noexcept { return {mem_.body[k].v, mem_.body[k].w}; }
-  /// At its end, from the unknowns of the body.
+  /// Returns the velocity at the end of the stage, from the unknowns of the body.
   Twist<Num> EndVelocityOf(int k, const Twist<Num>& at) const noexcept {
     const ImplicitBody<Num>& b = mem_.body[k];
     return {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
@@ -185,7 +185,7 @@ class ImplicitIsland {
     return residual;
   }
 
-  /// The state at the start of the step.
+  /// Loads the state at the start of the step.
   void LoadStart(int body, ImplicitBody<Num>& b) const noexcept;
 
   /// Free islands: the second stage conserves angular momentum to second order only, the first to
@@ -195,7 +195,7 @@ class ImplicitIsland {
   /// Stores kinetic and elastic energy of the state after Begin [J].
   void Energy(Num& kinetic, Num& elastic) const noexcept;
 
-  /// Whether the step gains energy beyond the work of all forces except contacts.
+  /// Returns whether the step gains energy beyond the work of all forces except contacts.
   bool Gains() const noexcept;
 
   /// Sets data shared by all attempts. SaveStart has stored pos, quat, vel, mom.
@@ -240,7 +240,7 @@ class ImplicitIsland {
       island_.m.l[i] = mem_.start[i];
     }
     if (island_.rows == 0) return;
-    // From the middle of the step, where they are measured, back to its start.
+    // From the middle of the step, where gaps are measured, back to its start.
     MeasureBefore();
     const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
     for (int i = 0; i < contacts.count; ++i) {
@@ -330,7 +330,7 @@ class ImplicitIsland {
     }
   }
 
-  /// Velocities under all forces except cables; rebounds use them.
+  /// Computes velocities under all forces except cables; rebounds use them.
   void MeasureFree() noexcept {
     StoreVelocities(mem_.ends, &Unknown<Num>::free, [&](int k) {
       const ImplicitBody<Num>& b = mem_.body[k];
@@ -344,7 +344,7 @@ class ImplicitIsland {
   void Impacts() noexcept {
     const auto hit = SolveImpacts<Num>(*this, island_.rows, MaskOf<Num>::Splat(true));
     if (!Any(hit) || (good_ && laws_.residual <= target_.tolerance)) return;
-    // Rebounds that friction prevents.
+    // Friction prevents these rebounds.
     for (int i = 0; i < island_.rows; ++i) island_.m.l[i] = island_.m.impacts.l[i];
     good_ = true;
     Update();
@@ -356,9 +356,9 @@ class ImplicitIsland {
 
   // Newton's method of one stage (implicit_newton.inl).
 
-  /// Norm of a change of the unknowns as a velocity, weighted by mass.
+  /// Returns the norm of a change of the unknowns as a velocity, weighted by mass.
   double Norm(const Num* d) const noexcept;
-  /// Effect of rounding on the unknowns of a stage [m/s].
+  /// Returns the effect of rounding on the unknowns of a stage [m/s].
   double Noise() const noexcept;
   /// step <- change of the unknowns for the residual `res`. `given`: keeps the impulses; else
   /// solves for them, too.
@@ -373,7 +373,7 @@ class ImplicitIsland {
   ImplicitMemory<W>& mem_;
   Problem& island_;
   SolverWork& work_done_;
-  SolverWork contact_work_;  ///< Of the laws of contact, whose systems are smaller.
+  SolverWork contact_work_;  ///< Of the contact laws, whose systems are smaller.
   ImplicitLaws<W> laws_;
   ImplicitCables<W> cables_;
   BodyMatrix<Num> matrix_;

@@ -1,4 +1,4 @@
-/// Contact and joint impulses with implicit cables: the laws of an island with the Delassus matrix
+/// Contact and joint impulses with implicit cables: the laws of an island on the Delassus operator
 /// W = J A^-1 J^T, A the cables' matrix. W is dense and not symmetric (docs/theory/contact.md, eq.
 /// 20). Open contacts have no row.
 #pragma once
@@ -18,7 +18,7 @@
 namespace taut::sim {
 
 // Inverse effective masses for natural maps and single solutions: a block of W, row by row. Laws
-// without a block keep those of the bodies.
+// without a block keep the values of the bodies.
 template <class Num, int N>
 void SetMasses(ContactPoint<Num, N>& c, const Num* w, int stride) noexcept {
   const Num half = Num::Splat(0.5), one = Num::Splat(1.0), least = Num::Splat(1e-300);
@@ -70,8 +70,8 @@ class ImplicitLaws {
   }
 
   /// Solves for the impulses island.m.l. `ends`: velocities without impulses, 6 per body; an
-  /// impulse p changes them by ahead A^-1 p. Adds A^-1 J^T l to `step`. False if memory is too
-  /// small.
+  /// impulse p changes them by ahead A^-1 p. Adds A^-1 J^T l to `step`. Returns false if memory is
+  /// too small.
   bool Solve(const BodyMatrix<Num>& matrix, const Num* ends, Num* step) noexcept {
     const Num zero = Num::Splat(0.0);
     auto& m = island_.m;
@@ -100,7 +100,7 @@ class ImplicitLaws {
       if (count_ == before) break;
       Respond(matrix, before);
       Iterate();
-      // Contacts that this closes.
+      // Contacts that close under these impulses get rows, too.
       island_.Measure(ends, m.u2);
       for (int b = 0; b < kDofs * island_.body_count; ++b) mem_.ends[b] = zero;
       for (int c = 0; c < count_; ++c) {
@@ -164,7 +164,7 @@ class ImplicitLaws {
         if (at >= first) mem_.l[at + r] = m.l[row + r];
       }
     });
-    // y: without any impulses.
+    // y: velocities without any impulses.
     if (first == 0) return;
     for (int a = 0; a < count_; ++a) {
       Num sum = zero;
@@ -236,7 +236,7 @@ class ImplicitLaws {
     for (int i = 0; i < count_; ++i) to[i] = from[i];
   }
 
-  /// Gauss-Seidel sweep over the constraints.
+  /// Gauss-Seidel sweep over the active constraints.
   void Sweep() noexcept {
     const int stride = mem_.row_capacity;
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
@@ -251,7 +251,7 @@ class ImplicitLaws {
     });
   }
 
-  /// (1 + G W) dl = f
+  /// Solves (1 + G W) dl = f and adds dl to the impulses.
   void NewtonStep(Num e) noexcept {
     const Num one = Num::Splat(1.0);
     const int stride = mem_.row_capacity;

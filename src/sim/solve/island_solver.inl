@@ -1,4 +1,5 @@
-/// One island's solve: stages from the fast to the sure (docs/theory/contact.md, section 5).
+/// Solve of one island in stages, from fast to robust: plain Newton, Gauss-Seidel sweeps, proximal
+/// rounds (docs/theory/contact.md, section 5).
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -10,8 +11,8 @@
 
 namespace taut::sim {
 
-/// From m.l, which may be anything. Leaves the best impulses found, which the laws admit, in m.l
-/// with their velocities in m.v and m.u. Returns their residual [m/s].
+/// Solves from arbitrary m.l. Leaves the best admissible impulses found in m.l, with their
+/// velocities in m.v and m.u. Returns their residual [m/s].
 template <class Num, class P>
 double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;
@@ -32,7 +33,7 @@ double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) no
   return residual;
 }
 
-/// An island as impacts.inl sees it.
+/// Adapter of an island for impacts.inl.
 template <class Num, class P>
 class IslandImpacts {
  public:
@@ -67,8 +68,8 @@ class IslandImpacts {
   SolverWork& work_;
 };
 
-/// The same, with impacts. Rebounds that friction does not let happen (one point that slides under
-/// a steep rod has none) are left out: the solution without them is one, too.
+/// Solves an island, with impacts. Rebounds that friction prevents (one contact point under a steep
+/// rod that slides) are left out: the solution without them is valid, too.
 template <class Num, class P>
 double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   IslandImpacts<Num, P> problem(island, target, work);

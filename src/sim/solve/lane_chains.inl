@@ -1,4 +1,4 @@
-/// Cables with friction in a lane's islands (lane_solve.inl).
+/// Cables with capstan friction in a lane's islands (lane_solve.inl).
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
@@ -8,7 +8,7 @@
 
 namespace taut::sim {
 
-/// f(cable, a, b) for all pairs of moving bodies that a cable with friction ties.
+/// Calls f(cable, a, b) for all pairs of moving bodies that a cable with friction connects.
 template <class W>
 template <class F>
 void LaneSolve<W>::EachChain(const F& f) const noexcept {
@@ -34,7 +34,7 @@ void LaneSolve<W>::EachChain(const F& f) const noexcept {
   }
 }
 
-/// Those that pull at bodies of the island.
+/// Gathers the cables that pull at bodies of the island.
 template <class W>
 void LaneSolve<W>::GatherChains(Pool<CableChain<L>>& pool) noexcept {
   pool.count = 0;

@@ -13,7 +13,7 @@ namespace taut::sim {
 template <class W>
 double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   Island<L, StepPools<L>>& island = mem_.island;
-  // If the matrix does not fit into memory nothing is solved, and the status bit is set.
+  // If the matrix does not fit into memory, nothing is solved, and the status bit is set.
   if (!island.has_matrix) return 1.0;
   ImplicitIsland<W> implicit(m_, s_, work_, island, Target{settings_.tolerance_m_per_s}, lane_,
                              h_[0], work);
@@ -62,7 +62,7 @@ void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noe
   SetLane(work_.implicit.end_quat[body], q, lane_);
 }
 
-/// Angular momentum that contacts between moving bodies will add later.
+/// Returns the angular momentum that contacts between moving bodies will add later.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::PendingOfTouches(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};

@@ -7,7 +7,7 @@
 
 namespace taut::sim {
 
-/// Uses the velocities in the island's memory.
+/// Returns one side of a rolling contact, with the velocities in the island's memory.
 template <class W>
 RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
                                                 const Shape& shape) const noexcept {
@@ -72,7 +72,8 @@ double LaneSolve<W>::FollowRolling() noexcept {
   EachRolling([&](ContactPoint<L, 2>& point, const Contact<L, 2>& c, const ShapePairTable& pair) {
     const RollingSide<L> a = SideOf(c, 0, m_.shapes[pair.a].shape_P);
     const RollingSide<L> b = SideOf(c, 1, m_.shapes[pair.b].shape_P);
-    // Both points from a's origin at the middle of the step; the arms differ by the bodies' places.
+    // Both points from a's origin at the middle of the step; the arms differ by the bodies'
+    // positions.
     const V3<L> b_from_a = a.arm - b.arm;
     const V3<L> p = PointAtEnd(a, b, b_from_a, c.links[0].lin[0], half_h);
     const V3<L> slip =

@@ -1,6 +1,6 @@
-/// One lane's islands: where lanes have too little in common to walk together (contacts of moving
-/// bodies, many contacts, what the solves in lanes did not get). Each island is gathered in the
-/// numbers of one lane, solved (island_solver.inl), and written back.
+/// Lane-by-lane solve of islands, where lanes have too little in common to be solved together:
+/// contacts of moving bodies, many contacts, islands that the solvers in lanes left unsolved. Each
+/// island is gathered in one-lane numbers, solved (island_solver.inl), and written back.
 #pragma once
 
 #include "sim/cables/lane_spans.inl"
@@ -10,11 +10,11 @@
 
 namespace taut::sim {
 
-/// What solving one lane came to.
+/// Result of solving one lane.
 struct LaneResult {
   double residual = 0, relaxation = 0;
   int linear_solves = 0;
-  int body = kWorld;  ///< In the island that is furthest from solved.
+  int body = kWorld;  ///< A body of the island with the largest residual.
 };
 
 template <class W>
@@ -57,7 +57,7 @@ class LaneSolve {
     return result;
   }
 
-  /// Takes what is deep out of each other (push_out.inl). Returns how many linear systems it took.
+  /// Position projection (push_out.inl). Returns the number of linear systems.
   int PushOut() noexcept;
 
  private:
@@ -92,7 +92,7 @@ class LaneSolve {
     return mem_.island.bodies[c.links[k].body].body;
   }
 
-  /// By impulses.
+  /// Returns whether impulses move the body.
   bool Moves(int body) const noexcept {
     return body < m_.body_count && s_.inv_mass[body][lane_] > 0;
   }
@@ -108,17 +108,17 @@ class LaneSolve {
   bool IsOn(const StiffCable<W>& cable) const noexcept {
     return !displaces_ && cable.live[lane_] > 0;
   }
-  /// Whether the link belongs to this lane: a touching cable has links to the contacts of all
-  /// lanes, and a lane's result must not depend on other lanes.
+  /// Returns whether the link belongs to this lane: a touching cable has links to the contacts of
+  /// all lanes, and a lane's result must not depend on other lanes.
   bool IsOn(const StiffCable<W>& cable, int link) const noexcept {
     return m_.cables[cable.cable].touch < 0 || Acts(cable.links[link], lane_);
   }
 
-  /// Whether its cables are integrated implicitly (implicit_groups.inl).
+  /// Returns whether the cable's group is integrated implicitly (implicit_groups.inl).
   bool IsImplicit(const StiffCable<W>& cable) const noexcept {
     return work_.implicit.any && !fixed_directions_ && work_.implicit.limit[cable.cable][lane_] < 0;
   }
-  /// The same for the gathered island.
+  /// Returns whether the gathered island is integrated implicitly.
   bool IsImplicit() const noexcept {
     bool any = false;
     for (int k = 0; k < count_ && !displaces_; ++k) {
@@ -126,8 +126,8 @@ class LaneSolve {
     }
     return any;
   }
-  /// Whether the island's bodies have finite velocities without constraints. Other islands are not
-  /// solved: the world's status has kStatusNonFinite.
+  /// Returns whether the island's bodies have finite velocities without constraints. Other islands
+  /// are not solved: the world's status has kStatusNonFinite.
   bool IsFinite() const noexcept {
     const L zero = L::Splat(0.0);
     L sum = zero;
@@ -145,7 +145,8 @@ class LaneSolve {
   template <class F>
   void EachChain(const F& f) const noexcept;
 
-  /// root[b]: the lowest body of b's island, for islands with a body that `asks` for it; else -1.
+  /// Sets root[b] to the lowest body of b's island, for islands with a body that `asks` for it;
+  /// else -1.
   template <class Asks>
   void FindIslands(const Asks& asks) noexcept {
     for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = b;
@@ -178,8 +179,8 @@ class LaneSolve {
     }
   }
 
-  /// Numbers of elimination: place[local number]. Without room for the blocks the solver has no
-  /// linear systems, only sweeps.
+  /// Computes the order of elimination: place[local number]. If the blocks do not fit into memory,
+  /// the solver has no linear systems, only Gauss-Seidel sweeps.
   void Order() noexcept {
     BodyGraph& graph = mem_.graph;
     graph.count = count_;
@@ -214,14 +215,14 @@ class LaneSolve {
   }
   int Number(int body) const noexcept { return mem_.place[mem_.local[body]]; }
 
-  /// The law of a displacement: out, or no further in than to touch.
+  /// Sets the law of a displacement: outward, or inward to the point of touching.
   void Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept;
 
   // Gather and scatter between the lanes and the solver's memory (gather_island.inl).
   /// Gathers the island of `root`. Returns false if no constraint acts on it.
   bool Gather(int root) noexcept;
   void GatherBody(int body, Unknown<L>& out) const noexcept;
-  /// `first`: of the rows of `to`.
+  /// `first`: first row in `to`.
   template <int R, int S>
   void GatherLink(const Link<W, R>& from, Link<L, S>& to, int first = 0) const noexcept;
   void GatherMasses(const Contact<W, 1>& from, ContactPoint<L, 2>& to) const noexcept;
@@ -230,9 +231,9 @@ class LaneSolve {
   void GatherJoints(Pool<JointRow<L>>& pool, Pool<TurnFriction<L>>& frictions) noexcept;
   void GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept;
   void GatherChains(Pool<CableChain<L>>& pool) noexcept;
-  /// Warm-start impulses.
+  /// Gathers the impulses of the warm start.
   void GatherImpulses() noexcept;
-  /// Impulses and velocities back into the lane.
+  /// Writes impulses and velocities back into the lane.
   void Scatter() noexcept;
 
   const View& m_;

@@ -1,17 +1,17 @@
-/// Contacts of a whole world in as few rows as its lanes need: row k holds, in each lane, that
-/// lane's k-th contact, whatever body it is on. Slots are packed body by body (stage_collide.inl):
-/// on a plane the lanes' robots stand on the same feet, on hills each on others, and rows by bodies
-/// would be those of all lanes together.
+/// Contacts of a whole world in as few rows as its lanes need: row k contains, in each lane, the
+/// lane's k-th contact on any body. Slots are packed body by body (stage_collide.inl): on a plane
+/// all lanes' robots stand on the same feet, on hills on different ones, so rows by bodies would be
+/// as many as the contacts of all lanes.
 ///
-/// A packed contact has a link to each body that some lane has it on, with zeros in the others:
-/// what they add is exactly nothing.
+/// A packed contact has a link to each body that some lane needs, with zeros in the other lanes,
+/// which add exactly nothing.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Contacts as they lie in the bodies' slots.
+/// Contacts in the bodies' slots, unpacked.
 template <class W>
 class ContactsInSlots {
  public:
@@ -40,7 +40,7 @@ class PackedContacts {
 
  public:
   static constexpr bool kPacked = true;
-  /// Those of `lanes`, none of which has more than there is room for.
+  /// Packs the contacts of `lanes`; each lane's contacts must fit into memory.
   PackedContacts(const View& m, Scratch<W>& work, M lanes) noexcept
       : m_(m), work_(work), packed_(work.dual.packed), lanes_(lanes) {
     ForEachPlace([&](const Contact<W, 1>& from, int row, M here) {
@@ -52,7 +52,7 @@ class PackedContacts {
   TAUT_INLINE void ForEach(F&& f) noexcept {
     for (int k = 0; k < count_; ++k) f(packed_[k]);
   }
-  /// Impulses back to where contacts come from, in the lanes that are `solved`.
+  /// Writes impulses back to the slots, in the lanes that are `solved`.
   void Finish(M solved) noexcept {
     ForEachPlace([&](Contact<W, 1>& to, int row, M here) {
       for (int r = 0; r < 3; ++r) to.l[r] = Select(here & solved, packed_[row].l[r], to.l[r]);
@@ -60,7 +60,7 @@ class PackedContacts {
   }
 
  private:
-  /// f(contact, row, lanes that have it there), in the order of the slots.
+  /// Calls f(contact, row, lanes that have it there), in the order of the slots.
   template <class F>
   TAUT_INLINE void ForEachPlace(F&& f) noexcept {
     const W one = W::Splat(1.0), zero = W::Splat(0.0);
@@ -87,7 +87,7 @@ class PackedContacts {
     const W zero = W::Splat(0.0);
     const V3<W> none{zero, zero, zero};
     if (first) {
-      // What lanes that have no such contact keep does no harm.
+      // Harmless values for lanes without such a contact.
       to.TakeLaw(from, [](const W& x, const W&) { return x; });
       to.live = zero;
       for (W& l : to.l) l = zero;

@@ -1,5 +1,5 @@
-/// First stage of an island's solve: Newton's method on all laws as they are, without
-/// globalisation. Two steps, mostly (docs/theory/contact.md, eq. 18, 21-22).
+/// First stage of an island's solve: plain Newton's method on all laws, without globalization.
+/// Mostly two steps (docs/theory/contact.md, eq. 18, 21-22).
 #pragma once
 
 #include "math/scalar.h"
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// Inverse of a small matrix without pivots: those of laws have large diagonals.
+/// Inverts a small matrix without pivots: matrices of laws have large diagonals.
 template <class Num, int R>
 TAUT_INLINE void InvertSmall(const Num (&a)[R][R], Num (&out)[R][R]) noexcept {
   const Num one = Num::Splat(1.0);
@@ -33,7 +33,7 @@ TAUT_INLINE void InvertSmall(const Num (&a)[R][R], Num (&out)[R][R]) noexcept {
   }
 }
 
-/// G = A^-1 S and f = A^-1 r of a law: dl = f - G du. Returns whether G is symmetric.
+/// Computes G = A^-1 S and f = A^-1 r of a law: dl = f - G du. Returns whether G is symmetric.
 template <class Num, int R>
 TAUT_INLINE bool SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexcept {
   Num inverse[R][R];
@@ -55,7 +55,7 @@ TAUT_INLINE bool SolveLaw(const LinearLaw<Num, R>& linear, Num* g, Num* f) noexc
   return symmetric;
 }
 
-/// g and f of a law near u and l, with the compliance e.
+/// Computes g and f of a law near u and l, with the compliance e. Returns whether g is symmetric.
 template <class Law, class Num>
 TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, const Num* u,
                         const Num* l, Num e, Num* g, Num* f) noexcept {
@@ -68,8 +68,8 @@ TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, cons
   }
 }
 
-/// One step of Newton's method from m.l, m.u and the branches that the laws are said to be on.
-/// Leaves m.l with its velocities in m.v and m.u; false if there is no step.
+/// Takes one step of Newton's method from m.l, m.u and the laws' current branches. Leaves m.l with
+/// its velocities in m.v and m.u; returns false if there is no step.
 template <class Num, class P>
 bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
   constexpr double kCompliance = 1e-7;
@@ -103,8 +103,8 @@ bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
   return true;
 }
 
-/// Leaves the best impulses that it came by, made admissible, in m.l; m.v and m.u belong to it
-/// before and after. Returns the residual [m/s].
+/// Solves from m.l. Leaves the best impulses found, made admissible, in m.l; m.v and m.u belong to
+/// it before and after. Returns the residual [m/s].
 template <class Num, class P>
 double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kMaxIterations = 12, kMaxDeadlocks = 8;
@@ -139,7 +139,7 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noex
       break;
     }
   }
-  // What Newton's method leaves a rounding outside of the cone is moved back into it.
+  // Impulses slightly outside of the cone are moved back into it.
   return island.Return(residual <= best ? m.l : m.best);
 }
 

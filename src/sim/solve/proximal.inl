@@ -1,11 +1,12 @@
-/// Third stage of an island's solve: rounds of Newton's method on softened laws, each round about
-/// the impulses that the one before found, with a line search (docs/theory/contact.md, eq. 24-28).
+/// Third stage of an island's solve: proximal rounds, each a Newton solve of regularized laws
+/// centered at the impulses of the previous round, with a line search (docs/theory/contact.md, eq.
+/// 24-28).
 ///
-/// In a round every law is softened by a share `e` of its own compliance, so that its impulses are
-/// a function of the bodies' velocities: l(v) = Project(u, center, e). What is sought is
+/// In a round every law has a compliance, a share `e` of its inverse mass, so that its impulses are
+/// a function of the bodies' velocities: l(v) = Project(u, center, e). The round solves
 ///   F(v) = M (v - v_free) - J^T l(v) = 0.
-/// With friction's radii frozen F is the gradient of a convex function; it judges the steps. As the
-/// rounds' centers converge, the softness loses its effect.
+/// With frozen friction radii, F is the gradient of a convex function, which judges the steps. As
+/// the rounds' centers converge, the compliance loses its effect.
 #pragma once
 
 #include "math/angle.h"
@@ -22,8 +23,8 @@ class Proximal {
   static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
   static constexpr double kLeastSoftness = 1e-8, kStays = 1e-3;
   static constexpr int kMaxStays = 4;
-  /// A stagnating residual shows inconsistent equations: number of rounds without halving it, once
-  /// rounds are this stiff or fail.
+  /// Stagnation of the residual is the certificate of inconsistent contacts: number of rounds
+  /// without halving it, once rounds are this stiff or fail.
   static constexpr double kFalls = 0.5, kSmallMPerS = 1e-8, kStiff = 1e-8;
   static constexpr int kRoundsIfSmall = 4, kRounds = 6;
 
@@ -41,9 +42,9 @@ class Proximal {
     double e = first_softness, failed_at = 0, best_at_failure = 0;
     double residual = island_.Judge(), best = residual;
     Keep(m_.best, m_.l, island_.rows);
-    bool carried = false;  // m.trial_v is where the last round ended
+    bool carried = false;  // m.trial_v is the end of the last round
     int stayed = 0;
-    int stale = 0;         // rounds, as stiff or stiffer, since the residual was last halved:
+    int stale = 0;         // rounds at this softness or less since the residual was last halved:
     double e_at_fall = e;  // the softness of that round
     for (int round = 0; round < kMaxRounds && residual > tolerance_ && !Exhausted(); ++round) {
       Keep(m_.center, m_.l, island_.rows);
@@ -51,7 +52,7 @@ class Proximal {
       const bool ended_well = Round(e);
       const double before = residual;
       residual = island_.Judge();
-      // Inconsistent biases: see deadlock.inl
+      // Inconsistent contacts: see deadlock.inl
       stayed = ended_well && Stays(residual, before, kStays * residual) ? stayed + 1 : 0;
       if (residual < kFalls * best) {
         stale = 0, e_at_fall = e;
@@ -67,7 +68,7 @@ class Proximal {
       if (stays) break;
       carried = ended_well && residual - residual == 0;
       if (ended_well) {
-        // Not in one leap to where a round failed before.
+        // Approach a softness where a round failed before in smaller steps.
         const bool near_failure = failed_at > 0 && 0.1 * e <= 1.01 * failed_at;
         e *= near_failure ? 0.3 : 0.1;
         if (e < kLeastSoftness) e = kLeastSoftness;
@@ -101,7 +102,7 @@ class Proximal {
   }
 
   /// Relaxes the laws that m.l violates: with m.l the next step starts from the impulses grown
-  /// along the loop, until a contact slides. If that fails, tries the best impulses; else leaves
+  /// along the loop, until a contact slides. If that fails, tries the best impulses; else restores
   /// m.l.
   bool RelaxBest(double best) noexcept {
     if (!(best > tolerance_ && best <= kDisagreementMPerS)) return false;
@@ -114,9 +115,9 @@ class Proximal {
     return false;
   }
 
-  /// One round with the softness e from m.trial_v. Leaves impulses in m.l, velocities in m.trial_v.
-  /// True if it got to the bottom: then the impulses come from the linear equations of the last
-  /// step, which are free of the noise that a small e blows up.
+  /// Runs one round with the softness e from m.trial_v. Leaves impulses in m.l, velocities in
+  /// m.trial_v. Returns true if it converged: then the impulses come from the linear equations of
+  /// the last step, which are free of the noise that a small e amplifies.
   bool Round(double softness) noexcept {
     const Num e = Num::Splat(softness);
     island_.Measure(m_.trial_v, m_.u);
@@ -132,7 +133,8 @@ class Proximal {
         if (!(slope < 0)) break;
       }
       island_.Measure(m_.direction, m_.du);
-      // On the same branches at its end the step solves the equations: the judge has no say.
+      // If its end is on the same branches, the step solves the equations and bypasses the line
+      // search.
       StepTo(1);
       if (theta == 1 && !symmetric && SameBranches(e)) {
         TakeLinear();
@@ -160,7 +162,7 @@ class Proximal {
     for (int i = 0; i < island_.rows; ++i) m_.u2[i] = m_.u[i] + step * m_.du[i];
   }
 
-  /// Impulses, their derivatives and F at m.u, m.trial_v.
+  /// Computes impulses, their derivatives and F at m.u, m.trial_v.
   void Evaluate(Num e, double theta) noexcept {
     Gradient();
     island_.pools.ForEach([&](auto& law, auto& branch, int row, int cell) {
@@ -182,7 +184,8 @@ class Proximal {
     }
   }
 
-  /// direction <- -(M + J^T G J)^-1 F. Returns its slope, direction . F; NaN if there is none.
+  /// direction <- -(M + J^T G J)^-1 F. Returns its slope, direction . F; 0 if the matrix is
+  /// singular.
   double Direction(bool symmetric) noexcept {
     matrix_.Start(island_.bodies, symmetric);
     island_.pools.ForEach([&](auto& law, auto&, int, int cell) { matrix_.Add(law, m_.g + cell); });
@@ -195,7 +198,8 @@ class Proximal {
     return slope[0];
   }
 
-  /// Without the change of friction with the normal impulse the matrix is positive definite.
+  /// Removes the dependence of friction on the normal impulse, which makes the matrix positive
+  /// definite.
   void DropCoupling() noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int, int cell) {
       const int R = RowsOf(law);
@@ -208,7 +212,8 @@ class Proximal {
     });
   }
 
-  /// Slope of the convex function along the direction, at `alpha`; the constant part is M's.
+  /// Returns the slope of the convex function along the direction, at `alpha`; `at_zero` and
+  /// `per_alpha` are the part of M.
   double SlopeAt(Num e, double alpha, double at_zero, double per_alpha) noexcept {
     Num sum = Num::Splat(at_zero + per_alpha * alpha);
     const Num step = Num::Splat(alpha);
@@ -223,8 +228,8 @@ class Proximal {
     return sum[0];
   }
 
-  /// The step's length: all of it if the slope at its end has not turned up by much, else to where
-  /// the slope is a tenth of what it was.
+  /// Returns the step length: 1 unless the slope at its end has become clearly positive, else the
+  /// place where the slope is a tenth of its initial size.
   double LineSearch(Num e, double slope) noexcept {
     Num straight = Num::Splat(0.0), bent = Num::Splat(0.0);  // d . M (v - v_free), d . M d
     Num x[kDofs], md[kDofs], free[kDofs];
@@ -258,7 +263,7 @@ class Proximal {
     return alpha;
   }
 
-  /// Whether every law is at m.u2 on the branch that it was on at m.u.
+  /// Returns whether every law has the same branch at m.u2 as at m.u.
   bool SameBranches(Num e) noexcept {
     bool same = true;
     island_.pools.ForEach([&](auto& law, auto& branch, int row, int) {

@@ -1,7 +1,7 @@
-/// Displacements that take what is deep out of each other at once, with the least motion: as
-/// velocities times the step, without friction and cables (docs/theory/contact.md, eq. 8). Bodies
-/// go, and turn with their spin: no velocity changes, and no energy but that of place. Lane by
-/// lane: it is rare.
+/// Position projection: least displacements that remove penetration at once, as velocities times
+/// the step, without friction and cables (docs/theory/contact.md, eq. 8). Bodies move and rotate
+/// with their spin: velocities stay, and only potential energy changes. Lane by lane, since it is
+/// rare.
 #pragma once
 
 #include "sim/bodies/stage_bodies.inl"
@@ -55,7 +55,7 @@ void LaneSolve<W>::Displacing(ContactPoint<L, 2>& c, double deep, double gap) co
   for (L& l : c.l) l = zero;
 }
 
-/// Whether nothing but its own bodies pushed the island.
+/// Returns whether only contacts and joints between its own moving bodies pushed the island.
 template <class W>
 bool LaneSolve<W>::IsAlone() const noexcept {
   const Pool<ContactPoint<L, 2>>& contacts = mem_.island.pools;
@@ -73,8 +73,8 @@ bool LaneSolve<W>::IsAlone() const noexcept {
   return alone;
 }
 
-/// Angular momentum that this step's contacts with the world, stiff cables and joints have yet to
-/// add to a body's.
+/// Returns the angular momentum that this step's contacts with the world, stiff cables and joints
+/// will still add to a body.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
@@ -108,8 +108,8 @@ V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
   return sum;
 }
 
-/// Moves a body of the island; its momentum turns with it. Returns by how much that changes the
-/// angular momentum of all.
+/// Moves a body of the island; its angular momentum rotates with it. Returns the resulting change
+/// of the total angular momentum.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
   const Unknown<L>& unknown = mem_.island.bodies[number];
@@ -136,8 +136,8 @@ V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
   return turned - spin + Cross(dx, unknown.mass * OfLane<L>(work.v, lane_));
 }
 
-/// Of an island by itself the angular momentum stays: all of it turns the slower together for what
-/// its bodies gained.
+/// Conserves the angular momentum of an isolated island: a common rotation compensates for the
+/// change.
 template <class W>
 void LaneSolve<W>::KeepMomentum(const V3<L>& gained) noexcept {
   const auto solid = [&](int b) {

@@ -2,7 +2,7 @@
 /// the tangential velocity is zero at the final contact point of the step.
 ///
 /// The final contact point depends on the unknown velocities. So fixed-point rounds solve the
-/// island with the biases of the last velocities, warm-started, until the biases converge: each
+/// island with the biases of the last velocities and a warm start until the biases converge: each
 /// round leaves a share h |w| / 2 of the error, w the motion's angular velocity.
 #pragma once
 
@@ -15,14 +15,14 @@ using simd::V3;
 /// One body of a rolling contact.
 template <class L>
 struct RollingSide {
-  V3<L> x_end;     ///< Its origin at the end of the step.
-  V3<L> v, w;      ///< Its velocities there.
+  V3<L> x_end;     ///< Origin at the end of the step.
+  V3<L> v, w;      ///< Velocities there.
   V3<L> arm;       ///< From the origin to the contact point, at the middle of the step.
-  V3<L> skeleton;  ///< To the center of curvature of a round shape.
-  L radius;        ///< From there to the contact point.
+  V3<L> skeleton;  ///< From the origin to the center of curvature of a round shape.
+  L radius;        ///< From the center of curvature to the contact point.
   bool is_round;
 
-  /// Change of a body-fixed vector until the end of the step.
+  /// Rotates a body-fixed vector to the end of the step.
   V3<L> Turned(const V3<L>& a, L half_h) const noexcept {
     const V3<L> once = half_h * Cross(w, a);
     return a + once + L::Splat(0.5) * half_h * Cross(w, once);

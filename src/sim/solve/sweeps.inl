@@ -1,6 +1,6 @@
-/// Second stage of an island's solve: from constraint to constraint, each solved by itself. Slow
-/// where bodies hand loads on, but it needs no good start, and each law is solved exactly
-/// (docs/theory/contact.md, eq. 23).
+/// Second stage of an island's solve: Gauss-Seidel sweeps, which solve one constraint after the
+/// other exactly (docs/theory/contact.md, eq. 23). They converge slowly where loads pass through
+/// many bodies, but need no good start.
 #pragma once
 
 #include "sim/constraint/links.h"

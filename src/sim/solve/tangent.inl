@@ -1,6 +1,5 @@
-/// How an island's solution changes with what it was solved for: the linear system of Newton's
-/// method at the solution, and its transpose for gradients (docs/theory/contact.md, eq. 29-31).
-/// Nothing in a step needs it; it is for who wants derivatives of one.
+/// Derivatives of an island's solution by its inputs: Newton's linear system at the solution, and
+/// its transpose for gradients (docs/theory/contact.md, eq. 29-31). Steps do not use it.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -10,24 +9,25 @@
 
 namespace taut::sim {
 
-/// Of an island after its solve. Borrows the memory of the stages; velocities and impulses stay.
+/// Tangent of an island after its solve. Borrows the memory of the stages; velocities and impulses
+/// stay.
 ///
-/// What changes, and what of it follows:
-///   p   6 an unknown: momentum that it gets, M times a change of its free velocity [N s; N m s];
-///       of one that is prescribed, the change of its velocity [m/s; rad/s]
-///   b   one a row: what is added to the velocity that the row's law sees, as a bias is [m/s]
-///   dv, dl   of the velocities and impulses; of one that is prescribed dv is p
-/// Laws are followed on the branches that they are on. Where two meet (a contact that just touches,
-/// that just slips) this is the slope to one side. Where the impulses have been drawn back for the
-/// energy's sake (impacts.inl) they satisfy no law, and this says nothing.
+/// Inputs and results:
+///   p   6 per unknown: added momentum, M times the change of its free velocity [N s; N m s];
+///       prescribed unknowns: change of the velocity [m/s; rad/s]
+///   b   one per row: added to the velocity in the row's law, like a bias [m/s]
+///   dv, dl   changes of velocities and impulses; dv = p for prescribed unknowns
+/// The laws keep their branches. At the boundary of two branches (a contact that just touches or
+/// just slips) the result is a one-sided derivative. It does not apply where impulses were
+/// interpolated to limit the energy (impacts.inl), since they satisfy no law.
 template <class Num, class P>
 class IslandTangent {
  public:
   explicit IslandTangent(Island<Num, P>& island) noexcept
       : island_(island), m_(island.m), matrix_(island.pattern, island.m.blocks) {}
 
-  /// False if the system is singular, or the island has no room for it. All else is as exact as
-  /// the compliance, by which loads that may be shared in many ways are shared, is small.
+  /// Factors the matrix. Returns false if it is singular or does not fit into memory. The error is
+  /// of the order of the compliance, by which loads that may be shared in many ways are shared.
   bool Factor(double compliance = 1e-7) noexcept {
     if (!island_.has_matrix) return false;
     bool symmetric = true;
@@ -42,10 +42,10 @@ class IslandTangent {
     return matrix_.Factor();
   }
 
-  /// M + J^T G J of what is not prescribed, factored.
+  /// Returns M + J^T G J of the unknowns that are not prescribed, factored.
   const BodyMatrix<Num>& matrix() const noexcept { return matrix_; }
 
-  /// dv, dl <- what p and b bring about (eq. 29). dv may be p.
+  /// dv, dl <- effect of p and b (eq. 29). dv may be p.
   void Apply(const Num* p, const Num* b, Num* dv, Num* dl) noexcept {
     const Num zero = Num::Splat(0.0);
     for (int i = 0; i < size(); ++i) m_.trial_v[i] = i < solved() ? zero : p[i];
@@ -62,8 +62,8 @@ class IslandTangent {
     TimesMinusG(m_.du, dl, false);
   }
 
-  /// Of a number that depends on velocities and impulses with the derivatives `by_v`, `by_l`: those
-  /// by p and b (eq. 31). by_p may be by_v.
+  /// Adjoint (eq. 31): from the derivatives `by_v`, `by_l` of a number by velocities and impulses,
+  /// computes its derivatives by p and b. by_p may be by_v.
   void ApplyTransposed(const Num* by_v, const Num* by_l, Num* by_p, Num* by_b) noexcept {
     const Num zero = Num::Splat(0.0);
     TimesMinusG(by_l, by_b, true);

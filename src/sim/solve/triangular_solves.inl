@@ -7,7 +7,7 @@
 
 namespace taut::sim {
 
-/// x <- L^-1 x, of both factorizations.
+/// x <- L^-1 x, for both factorizations.
 template <class Num>
 struct BodyMatrix<Num>::ForwardL {
   template <int N>

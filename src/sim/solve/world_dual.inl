@@ -1,11 +1,11 @@
-/// A world whose bodies hang together by stiff cables, and touch only what does not move: Newton's
-/// method in all impulses, in all lanes at once (docs/theory/contact.md, section 5).
+/// World of bodies connected by stiff cables that touch only static geometry: Newton's method in
+/// all impulses on the Delassus operator, in all lanes at once (docs/theory/contact.md, section 5).
 ///
-/// Cables are eliminated first, by a symmetric factorisation that serves as long as the same cables
-/// are taut and none bends. What is left is a system of the contacts alone, as small as a body's;
-/// it has its own Newton iterations. Rows are those that some lane has; one that a lane has not
-/// stands in its system as 1 x = 0. What a lane gets does not depend on the others: its rows have
-/// the same order alone.
+/// Cables are eliminated first, by a symmetric factorization that stays valid while the same cables
+/// are taut and none bends. The rest is a system of the contacts alone, as small as one body's,
+/// with separate Newton iterations. The rows are the union of all lanes' rows; a row of other lanes
+/// stands in a lane's system as 1 x = 0. A lane's result does not depend on other lanes: its rows
+/// have the same order alone.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -13,12 +13,12 @@
 
 namespace taut::sim {
 
-/// `Contacts`: those with the world (packed_contacts.inl).
+/// `Contacts`: contacts with the world (packed_contacts.inl).
 template <class W, class Contacts>
 class WorldDual {
   static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
-  /// Contacts that look in many directions may go round in circles, and all lanes would wait for
-  /// them: worlds that did so as often are left to themselves.
+  /// Contacts in many directions may cycle, and all lanes would wait for them: worlds that cycled
+  /// this often are left to the lane-by-lane solve.
   static constexpr int kMaxCircles = Contacts::kPacked ? 3 : kMaxIterations;
   static constexpr double kCompliance = 1e-9;
   using M = MaskOf<W>;
@@ -28,7 +28,7 @@ class WorldDual {
   WorldDual(const View& m, const Rows<W>& s, Scratch<W>& work, Contacts contacts) noexcept
       : m_(m), s_(s), work_(work), contacts_(contacts), mem_(work.dual) {}
 
-  /// Solves `lanes`; returns those in which it did not get there, which stay as they were.
+  /// Solves `lanes`. Returns the lanes that did not converge, which stay unchanged.
   M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
     target_ = target;
     solves_ = now_ = W::Splat(0.0);
@@ -45,7 +45,7 @@ class WorldDual {
     return lanes & !solved;
   }
 
-  // What impacts.inl asks for.
+  // Interface for impacts.inl.
   template <class F>
   TAUT_INLINE void ForEach(F&& f) noexcept {
     ForEachCable(f);
@@ -74,7 +74,7 @@ class WorldDual {
     const W tolerance = W::Splat(target_.tolerance), goal = W::Splat(target_.goal()),
             pays = W::Splat(Target::kPays);
     now_ = Select(lanes, Residual(), now_);
-    // At least one step: what cables leave over swings on and adds up.
+    // At least one step: residuals of cables would persist as oscillations and accumulate.
     M busy = lanes;
     [[maybe_unused]] W circles = W::Splat(0.0);
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
@@ -102,7 +102,7 @@ class WorldDual {
   TAUT_INLINE void ForEachCable(F&& f) noexcept {
     for (int i = 0; i < work_.stiff_count; ++i) f(work_.stiff[i], i);
   }
-  /// for all contacts with the world.
+  /// and for all contacts with the world.
   template <class F>
   TAUT_INLINE void ForEachContact(F&& f) noexcept {
     int row = work_.stiff_count;
@@ -114,7 +114,7 @@ class WorldDual {
     TAUT_ASSERT(rows_ <= mem_.capacity);
   }
 
-  /// Impulses, and velocities with them.
+  /// Loads the impulses and computes the velocities.
   void Start() noexcept {
     cables_ = work_.stiff_count;
     ForEach([&](auto& law, int row) {
@@ -154,10 +154,11 @@ class WorldDual {
     return worst;
   }
 
-  /// Row i of an upper triangle, from the diagonal on: Row(i)[j], j >= i.
+  /// Returns row i of an upper triangle, from the diagonal on: Row(i)[j], j >= i.
   TAUT_INLINE W* Row(int i) const noexcept { return mem_.a + i * (2 * rows_ - i - 1) / 2; }
 
-  /// a <- W = J M^-1 J^T, its upper triangle: rows that share a body, body by body.
+  /// a <- upper triangle of the Delassus operator W = J M^-1 J^T, body by body from the rows that
+  /// share it.
   void BuildMatrix() noexcept {
     const int n = rows_;
     for (int i = 0; i < n; ++i) {
@@ -180,7 +181,7 @@ class WorldDual {
     }
   }
 
-  /// Which rows act on which body.
+  /// Lists the rows that act on each body.
   void SortColumns() noexcept {
     const sim::Row<int> next = mem_.first_column;  // shifted by one until the end
     for (int b = 0; b <= m_.body_count; ++b) next[b] = 0;
@@ -202,8 +203,8 @@ class WorldDual {
     next[0] = 0;
   }
 
-  /// Newton's equations of the cables. True if other cables are taut than before, or one has
-  /// another stiffness: those that go slack or get taut in this step are curves.
+  /// Computes Newton's equations of the cables. Returns true if other cables are taut than before,
+  /// or one has another stiffness: cables that become slack or taut in this step are curves.
   bool LinearizeCables(bool first) noexcept {
     bool changed = first;
     ForEachCable([&](auto& law, int row) {
@@ -219,8 +220,8 @@ class WorldDual {
     return changed;
   }
 
-  /// a: rows of the cables, eliminated (D L^T, the inverse of D on the diagonal); behind them what
-  /// is left for the contacts, W'.
+  /// a: rows of the cables, eliminated (D L^T, the inverse of D on the diagonal), followed by the
+  /// rest for the contacts, W'.
   void Factor() noexcept {
     BuildMatrix();
     const W one = W::Splat(1.0), zero = W::Splat(0.0);
@@ -241,8 +242,8 @@ class WorldDual {
     for (; k < cables_; ++k) EliminatePivots<1>(k);
   }
 
-  /// Pivots k to k + P - 1: first among themselves, then out of all rows below at once, each entry
-  /// by one pivot after the other.
+  /// Eliminates pivots k to k + P - 1: first among themselves, then from all rows below at once,
+  /// each entry by one pivot after the other.
   template <int P>
   void EliminatePivots(int k) noexcept {
     const int n = rows_;
@@ -269,12 +270,13 @@ class WorldDual {
     for (int p = 0; p < P; ++p) Row(k + p)[k + p] = inverse[p];
   }
 
-  /// y += f x. None of the callers' x and y overlap.
+  /// y += f x. x and y must not overlap.
   TAUT_INLINE static void AddMultiple(W* y, const W* x, W f, int count) noexcept {
     TAUT_NO_OVERLAP for (int i = 0; i < count; ++i) y[i] += f * x[i];
   }
 
-  /// Right sides forward through the cables; what that does to the contacts' velocities into q.
+  /// Forward substitution of the right sides through the cables; their effect on the contacts'
+  /// velocities is added to q.
   void Forward() noexcept {
     const W zero = W::Splat(0.0);
     for (int i = cables_; i < rows_; ++i) mem_.q[i] = zero;
@@ -286,7 +288,7 @@ class WorldDual {
       AddMultiple(mem_.q + cables_, a + cables_, f, rows_ - cables_);
     }
   }
-  /// The change of a cable that is not taut is known, dl = r; all others feel it, through the
+  /// Applies the known changes dl = r of cables that are not taut to all other rows, through the
   /// bodies.
   void PassOnKnown() noexcept {
     const W zero = W::Splat(0.0);
@@ -323,10 +325,10 @@ class WorldDual {
   M SolveContacts(M lanes, W goal) noexcept;
   void LinearizeContacts(int size) noexcept;
   void EliminateContacts(int size) noexcept;
-  /// W', of which a has the upper triangle.
+  /// Returns an element of W', of which a contains the upper triangle.
   TAUT_INLINE W Left(int i, int j) const noexcept { return i < j ? Row(i)[j] : Row(j)[i]; }
 
-  /// The cables' changes, from the contacts' back.
+  /// Back substitution of the cables' changes, from the contacts' changes.
   void Back() noexcept {
     for (int k = cables_ - 1; k >= 0; --k) {
       const W* const a = Row(k);
@@ -336,7 +338,7 @@ class WorldDual {
     }
   }
 
-  /// The step's impulses, made admissible.
+  /// Adds the step to the impulses and makes them admissible.
   void Take(M lanes) noexcept {
     ForEach([&](auto& law, int row) {
       constexpr int R = LawOf<decltype(law)>::kRows;
@@ -347,7 +349,7 @@ class WorldDual {
     });
   }
 
-  /// What was found into the laws and the bodies of `solved`.
+  /// Writes the results to the laws and the bodies in the lanes `solved`.
   void Finish(M solved) noexcept {
     if (!Any(solved)) return;
     ForEach([&](auto& law, int row) {

@@ -1,5 +1,5 @@
-/// The contacts of a world that hangs together by stiff cables, once those are eliminated: a system
-/// as small as a body's, with Newton iterations of its own.
+/// Contacts of a world of bodies connected by stiff cables, after elimination of the cables: a
+/// small system with separate Newton iterations.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -7,8 +7,8 @@
 
 namespace taut::sim {
 
-/// Newton's method for the contacts, with the cables giving way: u = u* + W' dl,  u* = u + q.
-/// Leaves dl in r. Returns the lanes in which it did not get there.
+/// Newton's method for the contacts, with yielding cables: u = u* + W' dl, u* = u + q. Leaves dl in
+/// r. Returns the lanes that did not converge.
 template <class W, class Contacts>
 MaskOf<W> WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
   const W zero = W::Splat(0.0);
@@ -40,7 +40,7 @@ MaskOf<W> WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
   return busy;
 }
 
-/// Newton's equations of the contacts: c d = d.
+/// Assembles Newton's equations of the contacts: c d = d.
 template <class W, class Contacts>
 void WorldDual<W, Contacts>::LinearizeContacts(int size) noexcept {
   const int first = cables_;
@@ -60,7 +60,7 @@ void WorldDual<W, Contacts>::LinearizeContacts(int size) noexcept {
   });
 }
 
-/// d <- c^-1 d, without pivots; a lane that this spoils does not get there.
+/// d <- c^-1 d, without pivots; a lane where this fails does not converge.
 template <class W, class Contacts>
 void WorldDual<W, Contacts>::EliminateContacts(int size) noexcept {
   W* const x = mem_.d;

@@ -1,10 +1,10 @@
-/// The step: the list of its stages (docs/theory/integrator.md). Included once an instruction
-/// set, by step_*.cpp, with the width of its registers.
+/// Simulation step: the sequence of its stages (docs/theory/integrator.md). Included once per
+/// instruction set, by step_*.cpp, with the width of its registers.
 ///
-/// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift.
-/// Nothing here or below uses the standard library, so that no shared template is compiled with
-/// instructions that not every machine has. For the same reason every function is a template of W
-/// or TAUT_INLINE: of a function that several of step_*.cpp emit the linker keeps any one.
+/// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift. Nothing
+/// here or below uses the standard library, so that no shared template is compiled with
+/// instructions that some machines lack. For the same reason every function is a template of W or
+/// TAUT_INLINE: if several of step_*.cpp emit a function, the linker keeps an arbitrary one.
 #pragma once
 
 #include "sim/bodies/motion.inl"
@@ -26,7 +26,7 @@ namespace taut::sim {
 
 template <class W>
 void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
-  // Rows that follow one another are copied in one piece.
+  // Consecutive rows are copied in one piece.
   const W* from = s.time.data();
   W* to = work.start;
   size_t count = 0;
@@ -46,7 +46,8 @@ void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   __builtin_memcpy(to, from, count * sizeof(W));
 }
 
-/// Worlds that are halted keep the state of the start of this step, and nothing that is not finite.
+/// Restores the state at the start of this step in halted worlds, and removes values that are not
+/// finite.
 template <class W, class M>
 void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted_worlds) noexcept {
   const W* from = work.start;
@@ -65,8 +66,8 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
 #undef TAUT_ROW
 }
 
-/// Velocities back into the state, and what the next step goes by: that it will be pushed as in
-/// this one, but for impacts.
+/// Stores velocities in the state, with the data for the next step's predictions: forces as in this
+/// step, without impacts.
 template <class W>
 TAUT_INLINE void StoreBody(const Rows<W>& s, const BodyWork<W>& body, int b,
                            double step_s) noexcept {
@@ -86,7 +87,7 @@ TAUT_INLINE void StoreBody(const Rows<W>& s, const BodyWork<W>& body, int b,
   s.held_torque[b] = Select3(landed, none, s.held_torque[b]);
 }
 
-/// What the bodies and the contacts remember.
+/// Stores the state of bodies and the memory of contacts.
 template <class W>
 void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& work,
                   double step_s) noexcept {
@@ -110,7 +111,7 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
   }
 }
 
-/// Lanes in which a body is below all ground (kStatusFellOff).
+/// Returns the lanes in which a body is below all ground (kStatusFellOff).
 template <class W>
 [[gnu::noinline]] MaskOf<W> FellOff(const View& m, const Rows<W>& s) noexcept {
   const W zero = W::Splat(0.0);
@@ -121,7 +122,7 @@ template <class W>
   return fallen & (s.gravity[0].z < zero) & (s.halted[0] == zero);
 }
 
-/// Which body of a lane fell off, and off which of the surfaces.
+/// Stores the body of a lane that fell off, and the surface nearest to it.
 template <class W>
 [[gnu::noinline]] void NameFallen(const View& m, const Rows<W>& s, int lane,
                                   LaneStatus& status) noexcept {
@@ -140,12 +141,12 @@ template <class W>
   status.body = body;
 }
 
-/// Writes down which lanes have something to say, and halts those that are no longer finite.
+/// Sets the status of all lanes, and halts lanes that are no longer finite.
 template <class W>
 void Judge(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, const SolveResult<W>& solve,
            const StepSettings& settings, uint32_t overflow, double step_s) noexcept {
   const W zero = W::Splat(0.0);
-  W sum = zero;  // stays 0 while everything is finite
+  W sum = zero;  // 0 while all values are finite
   for (int b = 0; b < m.body_count; ++b) {
     const V3<W>&p = s.pos[b], &v = s.vel[b], &l = s.mom[b];
     sum += zero * (p.x + p.y + p.z + v.x + v.y + v.z + l.x + l.y + l.z + s.quat[b].w);
@@ -216,19 +217,19 @@ void Judge(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, const So
 
 /// The stages of a step, in their order.
 enum class Stage {
-  kStart,       ///< Keep the state of the start.
+  kStart,       ///< Saves the state at the start.
   kKinematics,  ///< Half a drift, rotations, inertias in W.
   kCables,      ///< Actuators and cable forces.
   kKick,        ///< Velocities from forces.
-  kCollide,     ///< Find the contacts.
+  kCollide,     ///< Collision detection.
   kSolve,       ///< Contacts, stiff cables and joints.
-  kIntegrate,   ///< Keep the contacts, half a drift.
-  kJudge,       ///< Look whether it went well.
+  kIntegrate,   ///< Stores the contacts; half a drift.
+  kJudge,       ///< Checks the result.
   kCount
 };
 
-/// Is told when a stage is over. This one does nothing and costs nothing; benchmarks/ has one with
-/// a clock.
+/// Receives the end of each stage. This class does nothing and costs nothing; benchmarks/ has one
+/// with a clock.
 struct NoWatch {
   TAUT_INLINE void Begin() noexcept {}
   TAUT_INLINE void Mark(Stage) noexcept {}
@@ -241,7 +242,7 @@ void StepOnce(const View& m, const Rows<W>& s, Group& g, const StepSettings& set
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
 
-  // Dampers act on mean velocities over the step; a guess goes on as the last step did.
+  // Dampers act on mean velocities over the step, predicted by the change in the previous step.
   const W last = s.last_step[0];
   const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 

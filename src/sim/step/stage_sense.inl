@@ -1,4 +1,4 @@
-/// Stage: what can be seen of the cables.
+/// Stage: sensor readings of cables.
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
@@ -22,7 +22,7 @@ TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, i
   s.sense_elastic[c] = f.elastic;
 }
 
-/// Forces of stiff cables are means over the last step, as the solver found them
+/// Sets the forces of stiff cables to the means over the last step, as solved
 /// (docs/theory/cables.md, eq. 8). Instantaneous forces may alternate between zero and twice the
 /// mean: the implicit midpoint rule conserves the energy of vibrations shorter than the step, and
 /// only their mean acts on bodies.
@@ -39,7 +39,7 @@ template <class W>
   }
 }
 
-/// Stage: sensor readings of cables: lengths and rates at the end of the step, and forces.
+/// Stage: lengths and rates of cables at the end of the step, and forces.
 ///   reads   pos, bodies[] (of the current state), tension, mean_*     writes  sense_*
 template <class W>
 void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {

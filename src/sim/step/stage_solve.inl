@@ -1,6 +1,7 @@
-/// Stage: impulses of contacts, stiff cables and joints (docs/theory/contact.md, sections 4 and 5).
-/// One solve in three places: bodies that only stand on the world, and worlds that hang together by
-/// stiff cables, in all lanes at once; all else, and what those did not get, lane by lane.
+/// Stage: solve for the impulses of contacts, stiff cables and joints, with warm starts
+/// (docs/theory/contact.md, sections 4 and 5). Bodies that touch only the world, and worlds of
+/// bodies connected by stiff cables, are solved in all lanes at once; all other constraints, and
+/// those left unsolved, lane by lane.
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
@@ -22,14 +23,14 @@ namespace taut::sim {
 
 template <class W>
 struct SolveResult {
-  W residual;  ///< How far a lane is from solved [m/s].
+  W residual;  ///< Residual of a lane [m/s].
   W linear_solves;
-  W relaxation;         ///< Largest relaxation of inconsistent biases [m/s].
-  int body[W::kLanes];  ///< Where it is furthest.
+  W relaxation;         ///< Largest relaxation of inconsistent contacts [m/s].
+  int body[W::kLanes];  ///< Body with the largest residual.
 };
 
-/// What a body's slot remembers, by its key. Both sides have their keys rising in every lane; the
-/// cursor stays behind the slots that no lane needs any more.
+/// Returns the memory of a contact in a body's slot, by the key of the contact. Keys ascend on both
+/// sides in every lane; the cursor skips the slots that no lane needs any more.
 template <class W>
 TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, int first, int used,
                                     int& cursor) noexcept {
@@ -47,7 +48,7 @@ TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, in
   return found;
 }
 
-/// Contacts with the world get their equations and start from the impulses of the step before.
+/// Prepares contacts with the world, with a warm start from the impulses of the previous step.
 template <class W>
 void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                      double step_s) noexcept {
@@ -64,13 +65,13 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
   }
 }
 
-/// Biases of bodies with more than two contacts, or that are not islands of their own: two
-/// contacts by themselves are solved to the last digit as they are.
+/// Fits biases of bodies with more than two contacts, or in larger islands. The two contacts of a
+/// separate body are solved to the last digit without it.
 template <class W, class M>
 void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   constexpr int kFewest = 3;
   const W zero = W::Splat(0.0);
-  // Over facets and ridges the gaps of one body need not be those of any motion.
+  // Over facets and ridges the gaps of one body may not fit any rigid motion.
   const double most = m.has_ground ? kDisagreementMPerS : kFittedMPerS;
   for (int b = 0; b < m.body_count; ++b) {
     const int count = work.contact_count[b];
@@ -82,9 +83,9 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   }
 }
 
-/// Biases of contacts with the world that follow the body's arc, and agree.
-/// Not where bodies touch others that move: biases that agree on a body contradict each other
-/// around a loop of bodies, and heaps are left unsolved by it.
+/// Applies arcs (12a) and common motions (12b) to biases of contacts with the world. Bodies that
+/// touch moving bodies are exempt: such biases would be inconsistent around a loop of bodies and
+/// leave heaps unsolved.
 template <class W, class M>
 void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
                        double step_s) noexcept {
@@ -101,8 +102,9 @@ void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied
   }
 }
 
-/// Which lanes' bodies are left to the lane's own solve from the start: those that have joints or
-/// touch moving bodies, and all of a world with stiff cables that is not solved in lanes.
+/// Marks bodies for the lane-by-lane solve from the start: bodies with joints or contacts with
+/// moving bodies, and all bodies of a world with stiff cables that is not solved in lanes
+/// (`alone`).
 template <class W, class M>
 void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
   const W mark = Select(alone, W::Splat(1.0), W::Splat(0.0));
@@ -118,7 +120,8 @@ void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
   }
 }
 
-/// Lanes whose worlds, if cables tie them, may be solved all at once. `touches`: of moving bodies.
+/// Returns the lanes in which a world with stiff cables may be solved with all rows at once.
+/// `touches`: contacts of moving bodies.
 template <class W>
 MaskOf<W> MayGoToDual(const View& m, const Scratch<W>& work, W touches) noexcept {
   const W zero = W::Splat(0.0);
@@ -133,7 +136,7 @@ MaskOf<W> MayGoToDual(const View& m, const Scratch<W>& work, W touches) noexcept
   return (touches == zero) & !(contacts > W::Splat(work.dual.packed_capacity));
 }
 
-/// Bodies whose contacts with the world are islands.
+/// Solves bodies whose contacts with the world are islands.
 template <class W, class M>
 void SolveBodies(const View& m, Scratch<W>& work, Target target, M lanes,
                  SolveResult<W>& result) noexcept {
@@ -166,7 +169,7 @@ bool AnyDeep(const Scratch<W>& work, int lane, double deepest_m) noexcept {
   return deep;
 }
 
-/// Lanes whose bodies are not all solved, one after the other.
+/// Solves lanes with unsolved bodies, one after the other, and applies position projection.
 template <class W>
 void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                 const StepSettings& settings, double step_s, SolveResult<W>& result) noexcept {
@@ -197,7 +200,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
       result.linear_solves.Set(lane, result.linear_solves[lane] + linear_solves);
     }
   }
-  // Every lane must know where its list ends.
+  // Terminates every lane's list.
   if (g.touches_used == 0 && touches == 0) return;
   g.touches_used = touches;
   for (int lane = 0; lane < W::kLanes; ++lane) {
@@ -208,7 +211,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
 }
 
 /// Stage: solve.
-///   reads   contacts[], touches[] (geometry), stiff cables, pos, memory of the step before
+///   reads   contacts[], touches[] (geometry), stiff cables, pos, memory of the previous step
 ///   writes  bodies[].v, .w, impulses, mom, memory of touches, joint_*
 template <class W>
 SolveResult<W> StageSolve(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,

@@ -27,7 +27,7 @@ TEST(UntrustedText, ControlCharactersArePrintedAsNumbers) {
 
 TEST(UntrustedText, NoMessageSteersATerminal) {
   Diagnostics out;
-  out.Error({"a\x1b[2J.csv", 1, 2}, "holds \x1b[31m", "use \x1b[0m");
+  out.Error("test.control", {"a\x1b[2J.csv", 1, 2}, "holds \x1b[31m", "use \x1b[0m");
   EXPECT_EQ(out.Format(), "a\\x1b[2J.csv:1:2: error: holds \\x1b[31m (use \\x1b[0m)\n");
 }
 

@@ -10,7 +10,7 @@ namespace taut {
 /// As printed, without warnings.
 inline std::string ErrorsOf(const Diagnostics& found) {
   Diagnostics errors;
-  for (const Diagnostic& error : found.items()) errors.Error(error.at, error.what, error.hint);
+  for (const Diagnostic& error : found.items()) errors.AddError(error);
   return errors.Format();
 }
 

@@ -50,7 +50,7 @@ void Keys(Io& io, Like<Spring> auto& s) {
   io("dampers", s.dampers, "Beside it.");
 }
 void Check(const MapReader& map, Spring& spring) {
-  if (spring.length_m > 100.0) map.Error("length_m", "too long for this room");
+  if (spring.length_m > 100.0) map.Error("test.too_long", "length_m", "too long for this room");
 }
 
 constexpr Spellings kReach{{"reach_m", "reach_rad"}, {"a line", "a turn"}};

@@ -14,12 +14,12 @@ std::string Found(const std::string& yaml, const Overrides& overrides = {}) {
 
 TEST(Diagnostics, WarningsStandBetweenErrorsAndAreNoErrors) {
   Diagnostics out;
-  out.Warning({"a.yaml", 2, 1}, "odd");
+  out.Warning("test.odd", {"a.yaml", 2, 1}, "odd");
   EXPECT_TRUE(out.ok());
   EXPECT_TRUE(out.items().empty());
   EXPECT_EQ(out.warnings().size(), 1u);
-  out.Error({"a.yaml", 3, 1}, "wrong");
-  out.Error({"a.yaml", 1, 1}, "wrong", "do right");
+  out.Error("test.wrong", {"a.yaml", 3, 1}, "wrong");
+  out.Error("test.wrong", {"a.yaml", 1, 1}, "wrong", "do right");
   EXPECT_EQ(out.Format(),
             "a.yaml:1:1: error: wrong (do right)\na.yaml:2:1: warning: odd\na.yaml:3:1: error: "
             "wrong\n");
