@@ -194,10 +194,10 @@ class Lqr final : public taut::Controller {
 };
 
 /// Returns the ball's distance from rest at the end, with its speed counted at 6 rad/s [m].
-double Swing(const taut::ExperimentSpec& experiment, const taut::Brought& brought,
+double Swing(const taut::ExperimentSpec& experiment, const taut::Extensions& extensions,
              const taut::Vec3& rest_m, std::uint64_t& hash) {
   taut::Diagnostics out;
-  const auto run = taut::LiveRun::Start(experiment, out, {}, brought);
+  const auto run = taut::LiveRun::Start(experiment, out, {}, extensions);
   if (!run) return NAN;
   while (run->time_s() < experiment.duration_s - 1e-9 && run->Step()) continue;
   hash = run->world()->Hash(0);
@@ -215,19 +215,19 @@ double Swing(const taut::ExperimentSpec& experiment, const taut::Brought& brough
 int main() {
   const taut::ExperimentSpec experiment = HangingBall();
   const Plan plan = Regulator(experiment);
-  taut::Brought brought;
-  brought.controllers.push_back(
+  taut::Extensions extensions;
+  extensions.controllers.push_back(
       [&](const taut::ControlSetup& setup) { return std::make_unique<Lqr>(plan, setup); });
   std::uint64_t live = 0, ignored = 0;
-  const double with_m = Swing(experiment, brought, plan.rest_m, live);
+  const double with_m = Swing(experiment, extensions, plan.rest_m, live);
   const double without_m = Swing(experiment, {}, plan.rest_m, ignored);
 
   taut::Diagnostics out;
   taut::RunOptions options;
-  options.brought = brought;
+  options.extensions = extensions;
   const auto alone = taut::RunExperiment(experiment, options, out);
   taut::RolloutOptions side_by_side;
-  side_by_side.brought = brought;
+  side_by_side.extensions = extensions;
   const auto rollouts = taut::Rollouts::Create(experiment, {}, side_by_side, out);
   if (!alone || !rollouts) {
     std::fputs(out.Format().c_str(), stderr);

@@ -47,7 +47,7 @@ def arguments(text, at):
 
 
 def template(expression):
-    """Returns an expression of strings as one text: literals as they are, other terms as {}."""
+    """Returns an expression of strings as one text: literals unchanged, other terms as {}."""
     parts, at = [], 0
     for literal in LITERAL.finditer(expression):
         if re.search(r"\w", expression[at:literal.start()]):

@@ -111,7 +111,7 @@ def read_ratchet():
 
 
 def write_ratchet(folders, old):
-    lines = ["# Highest rates per 1,000 words that script/words.py allows: " + ", ".join(MARKERS) + "."]
+    lines = ["# Highest rates per 1,000 words for script/words.py, in the order of its table."]
     for folder, count in sorted(folders.items()):
         allowed = old.get(folder, {})
         rates = [max(min(rate(count, marker), allowed.get(marker, 1e9)), floor(folder, marker)) for marker in MARKERS]

@@ -12,8 +12,8 @@
 namespace taut::test {
 
 /// Returns the values of a message in their order: texts in quotation marks, numbers, and names
-/// with an underscore, a dot or a digit in them, such as `rod.radius_m`; a value that repeats the
-/// last one is left out.
+/// that contain an underscore, a dot or a digit, such as `rod.radius_m`. A value equal to the
+/// previous one is left out.
 inline std::vector<std::string> ValuesOf(std::string_view text) {
   std::vector<std::string> values;
   const auto add = [&](std::string value) {
@@ -56,7 +56,8 @@ inline std::string Coded(const Diagnostic& d, std::string_view kind) {
   return out + "\n";
 }
 
-/// Returns the errors as `Coded` does, one line each, in the order of `Diagnostics::Format`.
+/// Returns the errors in the format of `Coded`, one per line, in the order of
+/// `Diagnostics::Format`.
 inline std::string CodedErrors(const Diagnostics& found) {
   std::string out;
   for (const Diagnostic& d : Sorted(found.items())) out += Coded(d, "error");

@@ -1,5 +1,5 @@
-/// The instruction sets that the step is compiled for, in rising width. Of these, a machine may
-/// lack the widest: it falls back to what it has.
+/// Instruction sets for which the step is compiled, in order of width. A machine that lacks the
+/// widest falls back to its widest.
 #pragma once
 
 #include <ostream>
@@ -9,10 +9,10 @@
 namespace taut::test {
 
 struct InstructionSet {
-  const char* name;  ///< As TAUT_SIMD calls it.
+  const char* name;  ///< Name in TAUT_SIMD.
   Simd simd;
 };
-/// For GoogleTest.
+/// For GoogleTest
 inline void PrintTo(const InstructionSet& set, std::ostream* out) { *out << set.name; }
 
 inline constexpr InstructionSet kInstructionSets[] = {

@@ -1,4 +1,4 @@
-/// A trace writer for tests that look at the rows of a run and write nothing.
+/// A trace writer for tests that examine the rows of a run and write no file
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 import { defineConfig, type Plugin } from "vite";
 
-// One file holds everything: what the server sends at "/" is also the template of a report, whose
-// data go into its <script id="taut-report">. So a report opens from disk, with no server.
+// Builds one file with everything: the server sends it at "/", and it is the template of reports, whose data
+// go into its <script id="taut-report">. Therefore a report opens from disk, without a server.
 function oneFile(): Plugin {
   return {
     name: "taut-one-file",
@@ -44,6 +44,6 @@ export default defineConfig({
     cssCodeSplit: false,
     chunkSizeWarningLimit: 2000,
   },
-  // `npm run dev`: open its address with the ?token= that taut view printed.
+  // `npm run dev`: open its address with the ?token= printed by taut view.
   server: { proxy: { "/ws": { target: "ws://127.0.0.1:8080", ws: true } } },
 });

@@ -1,5 +1,5 @@
-// The demo (docs/browser.md): a folder of files that any server of files can serve, from any address.
-// script/wasm puts the core and the shipped files beside what this makes.
+// The demo (docs/browser.md): a folder for any static file server, at any address. script/wasm adds the core
+// and the shipped files.
 import { defineConfig } from "vite";
 
 export default defineConfig({

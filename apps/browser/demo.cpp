@@ -71,7 +71,7 @@ std::string Demo::Open(const std::string& path, std::vector<double> mark_at_s, b
 }
 
 std::string Demo::Post(std::string_view message) {
-  if (!session_) return "nothing runs";
+  if (!session_) return "there is no running simulation";
   std::string reason;
   auto command = viewer::ParseCommand(message, reason);
   if (!command) return reason;
@@ -92,7 +92,7 @@ std::string Demo::TakeMessages() {
   const auto add = [&](const std::string& text) { out += (out.empty() ? "[" : ",") + text; };
   std::vector<viewer::Outgoing> messages = session_->TakeMessages();
   if (!std::exchange(greeted_, true)) {
-    // The scene as it is now; messages so far may have an older one.
+    // The current scene; earlier messages may contain an older one.
     add(viewer::Dump(session_->Hello(kClient, kClient)));
     add(session_->scene());
   }

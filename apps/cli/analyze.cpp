@@ -16,8 +16,8 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
-#include "shipped.h"
-#include "taut/alone.h"
+#include "shipped_inputs.h"
+#include "taut/minimal_experiment.h"
 #include "taut/start.h"
 
 namespace taut::cli {
@@ -53,8 +53,8 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   const std::optional<std::string> kind = FileKind(args.path, out);
   if (!kind) return std::nullopt;
   if (*kind != "model" && *kind != "experiment") {
-    out.Error("file.wrong_kind", {args.path, 0, 0}, "is a " + *kind,
-              "analyze takes a model or an experiment");
+    out.Error("file.wrong_kind", {args.path, 0, 0}, "the file is a " + *kind,
+              "expected a model or an experiment");
     return std::nullopt;
   }
   Loaded loaded;
@@ -63,7 +63,7 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   if (loaded.model) {
     auto robot = LoadRobot(args.path, overrides, out);
     if (!robot) return std::nullopt;
-    experiment = ExperimentWith(std::move(*robot));
+    experiment = MinimalExperiment(std::move(*robot));
   } else {
     auto whole = LoadExperiment(args.path, overrides, out);
     if (!whole) return std::nullopt;
@@ -89,7 +89,7 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
     const LoadCaseSpec own = OwnWeight(loaded.experiment.robot.def);
-    if (!own.weight) notes.push_back("nothing holds the robot in the world: without weight");
+    if (!own.weight) notes.push_back("the robot has no support in the world: weight is left out");
     loaded.cases.push_back(own);
   }
   if (args.load_cases.empty()) return true;
@@ -100,7 +100,7 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end()) {
       out.Error("load_case.unknown", {args.path, 0, 0}, "there is no load case \"" + name + "\"",
-                names.empty() ? "load_cases of an experiment" : DidYouMean(name, names));
+                names.empty() ? "the file has no `load_cases`" : DidYouMean(name, names));
       continue;
     }
     chosen.push_back(loaded.cases[static_cast<std::size_t>(found - names.begin())]);
@@ -123,7 +123,7 @@ bool CheckSupportsOf(const std::string& file, const ModelDef& def,
     }
     if (!IsHeld(def) || !def.planes.empty()) continue;
     for (const std::string& motion : check.free_motions) {
-      const std::string note = motion + ": no member resists this";
+      const std::string note = motion + ": no member resists this motion";
       if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
     }
   }
@@ -195,12 +195,12 @@ int Analyze(const AnalyzeArguments& args) {
 
 void AddInverse(CLI::App& analyze, AnalyzeArguments& args) {
   InverseArguments& inverse = args.inverse;
-  auto* const backwards = analyze.add_flag(
-      "--inverse", args.backwards,
-      "The other way round: which tensions hold the robot as described, and the rest lengths");
+  auto* const backwards = analyze.add_flag("--inverse", args.backwards,
+                                           "Inverse statics: tensions of least cost that hold the "
+                                           "described pose, and their rest lengths");
   backwards->excludes(analyze.get_option("--modes"));
   AddChoice(analyze, "--minimise", inverse.minimise, kCosts,
-            "With --inverse: of what the sum is to be least (default: force_density)")
+            "With --inverse: objective, summed over all cables (default: force_density)")
       ->needs(backwards);
   const auto bound = [&](const char* flag, double& value, const char* help) {
     analyze.add_option(flag, value, help)
@@ -208,16 +208,19 @@ void AddInverse(CLI::App& analyze, AnalyzeArguments& args) {
         ->check(NumberWithin(0, 1e12))
         ->needs(backwards);
   };
-  bound("--at_least_n", inverse.bounds.at_least_n, "With --inverse: tension of every cable");
-  bound("--at_most_n", inverse.bounds.at_most_n, "The same");
+  bound("--at_least_n", inverse.bounds.at_least_n,
+        "With --inverse: lower bound of every cable's tension [N]");
+  bound("--at_most_n", inverse.bounds.at_most_n,
+        "With --inverse: upper bound of every cable's tension [N]");
   bound("--at_least_n_per_m", inverse.bounds.at_least_n_per_m,
-        "With --inverse: tension by length of every cable");
-  bound("--at_most_n_per_m", inverse.bounds.at_most_n_per_m, "The same");
+        "With --inverse: lower bound of every cable's force density [N/m]");
+  bound("--at_most_n_per_m", inverse.bounds.at_most_n_per_m,
+        "With --inverse: upper bound of every cable's force density [N/m]");
 }
 
 void AddForm(CLI::App& analyze, AnalyzeArguments& args) {
   auto* const form = analyze.add_flag(
-      "--form", args.form, "The form that the robot's cables give it, if they keep their tensions");
+      "--form", args.form, "Form finding: equilibrium shape under the described tensions");
   for (const char* const other : {"--inverse", "--modes", "--json"}) {
     form->excludes(analyze.get_option(other));
   }
@@ -227,9 +230,10 @@ void AddForm(CLI::App& analyze, AnalyzeArguments& args) {
         ->check(NumberWithin(1e-9, 1e12))
         ->needs(form);
   };
-  auto* const tension = of_all("--tension_n", args.forms.tension_n, "With --form: of every cable");
+  auto* const tension =
+      of_all("--tension_n", args.forms.tension_n, "With --form: tension of every cable [N]");
   of_all("--force_density_n_per_m", args.forms.force_density_n_per_m,
-         "With --form: tension by length of every cable")
+         "With --form: force density of every cable [N/m]")
       ->excludes(tension);
 }
 
@@ -242,7 +246,7 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
       analyze
           .add_option_function<std::string>(
               "--linear", file,
-              "What small changes do, about the rest: write A, B, C, D into this HDF5 file")
+              "Linearization about the equilibrium: HDF5 file to write with A, B, C and D")
           ->option_text("FILE");
   using Pairs = std::vector<std::pair<std::string, std::string>>;
   const auto pairs = [&args](const Pairs& all) {
@@ -250,9 +254,9 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
   };
   auto* const response =
       analyze
-          .add_option_function<Pairs>("--response", pairs,
-                                      "How an output answers a sine of an input about the rest: "
-                                      "gain and phase by frequency")
+          .add_option_function<Pairs>(
+              "--response", pairs,
+              "Frequency response of an output to an input about the equilibrium: gain and phase")
           ->option_text("INPUT OUTPUT")
           ->allow_extra_args(false);
   for (CLI::Option* const one : {whole, response}) {
@@ -262,19 +266,20 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
   }
   analyze
       .add_option("--from_hz", linear.from_hz,
-                  "With --response: the first frequency (default: 0.1)")
+                  "With --response: first frequency [Hz] (default: 0.1)")
       ->option_text("NUMBER")
       ->check(NumberWithin(1e-9, 1e9))
       ->needs(response);
   analyze
       .add_option("--to_hz", linear.to_hz,
-                  "With --response: the last frequency (default: half the controllers' or steps')")
+                  "With --response: last frequency [Hz] (default: half the tick rate)")
       ->option_text("NUMBER")
       ->check(NumberWithin(1e-9, 1e9))
       ->needs(response);
   analyze
-      .add_option("--points", linear.points,
-                  "With --response: how many frequencies, by equal factors (default: 40)")
+      .add_option(
+          "--points", linear.points,
+          "With --response: number of frequencies, spaced by a constant factor (default: 40)")
       ->option_text("NUMBER")
       ->check(WholeNumberWithin(1, 1000000))
       ->needs(response);
@@ -288,25 +293,30 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
 void AddAnalyze(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<AnalyzeArguments>();
   CLI::App* analyze = app.add_subcommand(
-      "analyze", "Say what holds a structure up: its equilibrium, safety and modes.");
+      "analyze", "Analyze the statics of a structure: equilibria, self-stress, modes.");
   AddInput(*analyze, "file", args->path, "Model or experiment file (YAML)")->required();
   analyze->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   analyze
       ->add_option("--load_case", args->load_cases,
-                   "Only this load case of the experiment; may be repeated")
+                   "Load case of the experiment to analyze (default: all)")
       ->option_text("NAME")
       ->allow_extra_args(false);
   analyze
-      ->add_option("--pose", args->pose.file,
-                   "The robot as this recording shows it, not as described (.h5, .csv, .csv.gz)")
+      ->add_option(
+          "--pose", args->pose.file,
+          "Trace with the pose to analyze instead of the described pose (.h5, .csv, .csv.gz)")
       ->option_text("FILE");
-  analyze->add_option("--at_s", args->pose.at_s, "With --pose: at this time (default: at its end)")
+  analyze
+      ->add_option("--at_s", args->pose.at_s,
+                   "With --pose: time of the pose [s] (default: last row)")
       ->option_text("NUMBER")
       ->check(NumberWithin(-1e12, 1e12))
       ->needs(analyze->get_option("--pose"));
-  analyze->add_option("--modes", args->modes, "How many modes to show (default: 10)")
+  analyze
+      ->add_option("--modes", args->modes,
+                   "Number of modes besides the rigid motions (default: 10)")
       ->option_text("NUMBER")
       ->check(WholeNumberWithin(0, 100000));
   analyze->add_flag("--json", args->inverse.json, "JSON instead of tables");
@@ -314,8 +324,8 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
   AddForm(*analyze, *args);
   analyze
       ->add_option("--out", args->forms.out,
-                   "Folder for modes, mechanisms and self-stresses as runs to look at; with --form "
-                   "a model file")
+                   "Folder for modes, mechanisms and states of self-stress as runs for `taut "
+                   "view`; with --form: model file to write")
       ->option_text("PATH")
       ->excludes(analyze->get_option("--inverse"));
   AddLinear(*analyze, *args);
@@ -330,10 +340,12 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut/trace.h5\n"
       "  taut analyze models/prism3.yaml --linear prism.h5\n"
       "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
-      "But for --linear and --response it is statics alone: it depends on no step, and on masses "
-      "as weights only.\n"
-      "Exit status: 0 good, 1 a load case has no equilibrium, 2 bad usage, 3 the file has errors "
-      "or supports are missing.");
+      "All analyses except --linear and --response are static: independent of the step, with "
+      "masses as\n"
+      "weights only.\n"
+      "Exit status: 0 success, 1 a load case has no equilibrium, 2 bad usage, 3 the file has "
+      "errors or\n"
+      "supports are missing.");
   analyze->callback([args, &exit_code] { exit_code = Analyze(*args); });
 }
 

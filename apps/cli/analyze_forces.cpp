@@ -17,7 +17,7 @@ constexpr std::size_t kMostStates = 6;  ///< Maximum number of columns of a tabl
 std::string GapText(const RankGap& rank) {
   return fmt::format("{} (singular values {:.3g} kept, {:.3g} dropped{})", rank.rank,
                      rank.smallest_kept, rank.largest_dropped,
-                     rank.clear() ? "" : "; LESS THAN A THOUSANDFOLD APART: the rank is not sure");
+                     rank.clear() ? "" : "; RATIO BELOW 1000: the rank is uncertain");
 }
 
 std::string Counts(const ForceAnalysis& f) {
@@ -26,7 +26,7 @@ std::string Counts(const ForceAnalysis& f) {
       "  states of self-stress: {}, mechanisms: {}, rigid motions: {}",
       f.members.size(), f.unknowns, GapText(f.rank), f.self_stress.size(), f.mechanisms.size(),
       f.rigid);
-  if (f.free_turns > 0) text += fmt::format(", turns that nothing resists: {}", f.free_turns);
+  if (f.free_turns > 0) text += fmt::format(", free rotations: {}", f.free_turns);
   text += "\n";
   if (f.classical) {
     const ClassicalCount& c = *f.classical;
@@ -50,14 +50,13 @@ std::string Prestress(const ForceAnalysis& f) {
                                       [](const SelfStress& s) { return s.feasible; });
   if (feasible == 0 && HasCables(f)) {
     text += "  no state of self-stress with all cables in tension was found";
-    text += f.rigid == 6 && HasCables(f)
-                ? " (--form --tension_n 10 looks for a form that has one)\n"
-                : "\n";
+    text += f.rigid == 6 && HasCables(f) ? " (--form --tension_n 10 finds a shape that has one)\n"
+                                         : "\n";
   } else if (feasible > 0 && !f.mechanism_stiffness.empty()) {
     const double least = f.mechanism_stiffness.front();
     text += fmt::format(
-        "  {}: prestress resists the mechanisms with {:.4g} times a cable's largest force density "
-        "at least\n",
+        "  {}: least stiffness of the mechanisms: {:.4g} times the largest force density of a "
+        "cable\n",
         least > 0 ? "stable by prestress" : "NOT STABLE by prestress", least);
   }
   return text;
@@ -67,7 +66,7 @@ std::string Prestress(const ForceAnalysis& f) {
 std::string States(const ModelDef& def, const ForceAnalysis& f) {
   const std::size_t shown = std::min(f.self_stress.size(), kMostStates);
   if (shown == 0) return {};
-  std::vector<std::string> head{"force / length"}, kinds{"N/m"};
+  std::vector<std::string> head{"force density"}, kinds{"N/m"};
   for (std::size_t s = 0; s < shown; ++s) {
     head.push_back(fmt::format("state {}", s + 1));
     kinds.push_back(f.self_stress[s].feasible ? "feasible" : "");
@@ -103,8 +102,8 @@ std::string States(const ModelDef& def, const ForceAnalysis& f) {
 }  // namespace
 
 std::string ForceTables(const ModelDef& def, const ForceAnalysis& forces) {
-  std::string text = "\nAs described\n" + Counts(forces) + Prestress(forces);
-  for (const std::string& part : forces.left_out) text += "  takes no part: " + part + "\n";
+  std::string text = "\nDescribed pose\n" + Counts(forces) + Prestress(forces);
+  for (const std::string& part : forces.left_out) text += "  left out: " + part + "\n";
   const std::string states = States(def, forces);
   return states.empty() ? text : text + "\n" + states;
 }

@@ -7,7 +7,7 @@
 
 #include "analyze_form.h"
 #include "output.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "table.h"
 #include "taut/form_finding.h"
 #include "taut/version.h"
@@ -30,7 +30,7 @@ FormOptions OptionsOf(const FormArguments& args, const ModelDef& def, bool weigh
 
 std::string FormTable(const ModelDef& before, const Form& form) {
   const ModelDef& def = form.robot.def;
-  Table cables({"cable", "length before", "length", "rest length", "tension", "tension / length"});
+  Table cables({"cable", "described length", "length", "rest length", "tension", "force density"});
   cables.Add({"", "m", "m", "m", "N", "N/m"});
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     const double length_m = CableLength(def.cables[c]), tension_n = CableTension(def.cables[c]);
@@ -49,15 +49,15 @@ int FindFormOf(const std::string& file, const RobotSpec& robot, bool weight,
   const Form form = FindForm(robot, OptionsOf(args, robot.def, weight), found);
   if (!found.ok()) return Fail(found, kBadInput);
   if (!form.found) {
-    fmt::print(stderr, "error: no form was found: {}\n", form.why);
+    fmt::print(stderr, "error: form finding failed: {}\n", form.why);
     return kFailed;
   }
-  fmt::print("Model {}: the form that its cables give it{}\n\n{}", robot.def.name,
-             weight ? ", under its weight" : ", without weight", FormTable(robot.def, form));
+  fmt::print("Model {}: equilibrium shape{}\n\n{}", robot.def.name,
+             weight ? ", with weight" : ", without weight", FormTable(robot.def, form));
   if (args.out.empty()) return kOk;
   const std::optional<std::string> text =
       ModelYaml(form.robot,
-                fmt::format("Made by taut {} from {}: the form that its cables give it.", kVersion,
+                fmt::format("Made by taut {} from {}: equilibrium shape by form finding.", kVersion,
                             std::filesystem::path(file).filename().string()),
                 found);
   if (!text) return Fail(found, kFailed);

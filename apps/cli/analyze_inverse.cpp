@@ -36,7 +36,7 @@ std::string Unbalance(const ModelDef& def, const HoldingForces& forces) {
   for (const Unbalanced& left : forces.left) {
     const Vec3 &f = left.force_n, &t = left.torque_n_m;
     text += fmt::format(
-        "  body {} is left with ({:.4g}, {:.4g}, {:.4g}) N and ({:.4g}, {:.4g}, {:.4g}) N m\n",
+        "  unbalanced on body {}: ({:.4g}, {:.4g}, {:.4g}) N and ({:.4g}, {:.4g}, {:.4g}) N m\n",
         BodyName(def, left.body), f.x, f.y, f.z, t.x, t.y, t.z);
   }
   return text;
@@ -48,18 +48,17 @@ std::string Text(const ModelDef& def, const Answer& answer) {
                                  answer.loads.weight ? "" : ", without weight");
   for (const std::string& note : forces.notes) text += "  " + note + "\n";
   if (!forces.found) {
-    return text + "  nothing holds this pose: " + forces.why + "\n" + Unbalance(def, forces);
+    return text + "  no cable forces hold this pose: " + forces.why + "\n" + Unbalance(def, forces);
   }
-  text += fmt::format("  balanced to {:.2g} N; the sum that is least is {:.6g}\n",
-                      forces.residual_n, forces.cost);
-  Table cables({"cable", "tension", "tension / length", "rest length", "command", ""});
+  text += fmt::format("  residual: {:.2g} N, objective: {:.6g}\n", forces.residual_n, forces.cost);
+  Table cables({"cable", "tension", "force density", "rest length", "command", ""});
   cables.Add({"", "N", "N/m", "m", "m", ""});
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     const auto& bound = forces.at_bound;
     const bool at_bound = std::find(bound.begin(), bound.end(), static_cast<int>(c)) != bound.end();
     cables.Add({def.cables[c].name, Fixed(forces.cable_tension_n[c], 3),
                 Fixed(forces.cable_force_density_n_per_m[c], 3), Fixed(forces.rest_length_m[c], 6),
-                Fixed(forces.command_m[c], 6), at_bound ? "at its bound" : ""});
+                Fixed(forces.command_m[c], 6), at_bound ? "at bound" : ""});
   }
   if (!def.cables.empty()) text += "\n" + cables.Text();
   Table bars({"bar", "force", "rest length"});
@@ -140,7 +139,7 @@ int Inverse(const std::string& file, const RobotSpec& robot, const std::vector<L
     for (const Answer& answer : answers) json["load_cases"].push_back(AnswerJson(def, answer));
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
   } else {
-    fmt::print("Model {}: cables that hold it as described, least {}\n", def.name,
+    fmt::print("Model {}: inverse statics of the described pose, least {}\n", def.name,
                HoldingCostName(args.minimise));
     for (const std::string& note : notes) fmt::print("  {}\n", note);
     for (const Answer& answer : answers) fmt::print("{}", Text(def, answer));

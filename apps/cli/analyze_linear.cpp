@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "output.h"
-#include "streams.h"
+#include "standard_streams.h"
 
 namespace taut::cli {
 namespace {
@@ -27,11 +27,11 @@ std::optional<int> Find(const std::vector<LinearSignal>& signals, const std::str
   if (!found) {
     const std::vector<std::string> names = NamesOf(signals);
     const std::string_view closest = ClosestMatch(name, names);
-    out.Error(
-        "linear.unknown_name", {file, 0, 0}, fmt::format("there is no {} \"{}\"", kind, name),
-        closest.empty() && !names.empty()
-            ? fmt::format("one of {} is \"{}\"; --json lists all", names.size(), names.front())
-            : DidYouMean(name, names));
+    out.Error("linear.unknown_name", {file, 0, 0}, fmt::format("there is no {} \"{}\"", kind, name),
+              closest.empty() && !names.empty()
+                  ? fmt::format("expected one of {} names, such as \"{}\"; --json lists all",
+                                names.size(), names.front())
+                  : DidYouMean(name, names));
   }
   return found;
 }
@@ -86,8 +86,8 @@ int Linear(const std::string& file, const ExperimentSpec& experiment,
   const double half_hz = 0.5 / system.period_s, to_hz = args.to_hz.value_or(half_hz);
   if (!args.responses.empty() && (to_hz > half_hz * (1 + 1e-9) || args.from_hz > to_hz)) {
     fmt::print(stderr,
-               "error: --from_hz {:g}, --to_hz {:g}: frequencies rise up to half the tick's, "
-               "{:g} Hz\n",
+               "error: --from_hz {:g}, --to_hz {:g}: expected increasing frequencies up to half "
+               "the tick rate, {:g} Hz\n",
                args.from_hz, to_hz, half_hz);
     return kUsage;
   }

@@ -44,7 +44,7 @@ void AddSignals(const char* kind, const std::vector<LinearSignal>& signals, Tabl
 }
 
 std::string Signals(const StateSpace& system) {
-  Table table({"signals", "name", "unit", "how many"});
+  Table table({"signals", "name", "unit", "count"});
   AddSignals("states", system.states, table);
   AddSignals("inputs", system.inputs, table);
   AddSignals("outputs", system.outputs, table);
@@ -58,8 +58,8 @@ bool IsNeutral(const LinearMode& mode) { return std::abs(mode.z - 1.0) < 1e-6; }
 bool Swings(const LinearMode& mode) { return mode.frequency_hz > 0 && mode.damping < 0.99; }
 
 std::string ModeTable(const LinearResult& result, int most) {
-  Table table({"swings", "frequency", "damping", "size after 1 s"});
-  table.Add({"", "Hz", "of critical", "times"});
+  Table table({"mode", "frequency", "damping", "amplitude after 1 s"});
+  table.Add({"", "Hz", "of critical", "ratio"});
   int swings = 0, neutral = 0, grow = 0;
   for (const LinearMode& mode : result.modes) {
     // Only one of a conjugate pair is listed.
@@ -75,10 +75,10 @@ std::string ModeTable(const LinearResult& result, int most) {
   }
   if (most == 0) return {};
   std::string text =
-      fmt::format("\nMotions by itself\n  that nothing brings back: {}, swings: {}, growing: {}\n",
+      fmt::format("\nFree motion\n  neutral modes: {}, oscillations: {}, growing modes: {}\n",
                   neutral, swings, grow);
   if (swings > 0) text += table.Text();
-  if (swings > most) text += fmt::format("  ... and {} that swing faster\n", swings - most);
+  if (swings > most) text += fmt::format("  ... and {} faster oscillations\n", swings - most);
   return text;
 }
 
@@ -105,13 +105,14 @@ Json SignalsJson(const std::vector<LinearSignal>& signals) {
 
 std::string LinearTables(const LinearResult& result, int most_modes) {
   const StateSpace& system = result.system;
-  std::string text = fmt::format("Model {}: what small changes do, about its rest\n", result.model);
+  std::string text = fmt::format("Model {}: linearization about the equilibrium\n", result.model);
   for (const std::string& note : result.notes) text += "  " + note + "\n";
   for (const std::string& remark : system.remarks) text += "  " + remark + "\n";
-  text += fmt::format("  a tick: {:g} s, in steps of {:g} s\n", system.period_s, system.step_s);
-  text += fmt::format("  derivatives: {}, at most {:.1e} off from {}\n\n",
-                      DerivativesName(system.derivatives), system.disagreement,
-                      system.derivatives == Derivatives::kExact ? "differences" : "exact ones");
+  text += fmt::format("  tick: {:g} s, step: {:g} s\n", system.period_s, system.step_s);
+  text += fmt::format(
+      "  derivatives: {}, at most {:.1e} from {}\n\n", DerivativesName(system.derivatives),
+      system.disagreement,
+      system.derivatives == Derivatives::kExact ? "finite differences" : "exact derivatives");
   text += Signals(system) + ModeTable(result, most_modes);
   for (const LinearResult::Response& response : result.responses) text += ResponseTable(response);
   return text;

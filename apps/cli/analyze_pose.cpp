@@ -15,14 +15,14 @@ namespace taut::cli {
 std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, Diagnostics& out) {
   const SourceRef at{args.file, 0, 0};
   if (std::filesystem::is_directory(args.file)) {
-    out.Error("file.is_folder", at, "is a folder", "its trace: " + args.file + "/trace.h5");
+    out.Error("file.is_folder", at, "expected a trace, but this is a folder",
+              "use its trace: " + args.file + "/trace.h5");
     return std::nullopt;
   }
   if (args.file.ends_with(".yaml")) {
     out.Error(
-        "trace.not_a_recording", at, "is no recording",
-        "a pose is a row of a trace (.h5, .csv, .csv.gz); a model in another pose is analysed "
-        "by itself");
+        "trace.not_a_recording", at, "a YAML file contains no recorded pose",
+        "expected a trace (.h5, .csv or .csv.gz); analyze a model in another pose without --pose");
     return std::nullopt;
   }
   const std::optional<Trace> trace = ReadTraceOfRun(args.file, out);
@@ -31,8 +31,8 @@ std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, 
   std::size_t row = time_s.empty() ? 0 : time_s.size() - 1;
   if (args.at_s && !time_s.empty()) {
     if (*args.at_s < time_s.front() || *args.at_s > time_s.back()) {
-      out.Error("trace.time_outside", at, fmt::format("has nothing at {:g} s", *args.at_s),
-                fmt::format("it goes from {:g} s to {:g} s", time_s.front(), time_s.back()));
+      out.Error("trace.time_outside", at, fmt::format("the trace has no row at {:g} s", *args.at_s),
+                fmt::format("expected {:g} s to {:g} s", time_s.front(), time_s.back()));
       return std::nullopt;
     }
     const auto nearer = [&](double a, double b) {

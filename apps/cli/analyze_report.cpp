@@ -23,8 +23,8 @@ std::vector<std::string> Factors(const MemberLoad& load) {
 }
 
 std::string Cables(const CaseResult& result) {
-  Table table({"cable", "length", "rest length", "tension", "tension / length", "yield", "strength",
-               "slack"});
+  Table table(
+      {"cable", "length", "rest length", "tension", "force density", "yield", "strength", "slack"});
   table.Add({"", "m", "m", "N", "N/m", "factor", "factor", "factor"});
   for (const MemberLoad& load : result.members) {
     if (load.kind != MemberKind::kCable) continue;
@@ -38,7 +38,7 @@ std::string Cables(const CaseResult& result) {
 }
 
 std::string BarsAndRods(const CaseResult& result) {
-  Table table({"bar or rod", "least force", "greatest", "buckling", "yield", "strength"});
+  Table table({"bar or rod", "min force", "max force", "buckling", "yield", "strength"});
   table.Add({"", "N", "N", "factor", "factor", "factor"});
   for (const MemberLoad& load : result.members) {
     if (load.kind == MemberKind::kCable) continue;
@@ -56,7 +56,7 @@ void AddCells(const Vec3& f, const Vec3& t, std::vector<std::string>& row) {
 
 /// Formats the forces that hold the robot in the world: supports, anchors, ground.
 std::string Reactions(const CaseResult& result) {
-  Table table({"held by", "force x", "y", "z", "torque x", "y", "z"});
+  Table table({"reaction", "force x", "y", "z", "torque x", "y", "z"});
   table.Add({"", "N", "N", "N", "N m", "N m", "N m"});
   std::size_t count = 0;
   const auto add = [&](const std::string& name, const Vec3& force, const Vec3& torque) {
@@ -82,17 +82,18 @@ std::string Reactions(const CaseResult& result) {
 }
 
 std::string Limit(double force_n) {
-  return std::isfinite(force_n) ? Fixed(force_n, 3) : "no limit";
+  return std::isfinite(force_n) ? Fixed(force_n, 3) : "unbounded";
 }
 
 /// Formats the forces that friction and redundant supports leave undetermined, each with its
 /// limits.
 std::string OpenForces(const CaseResult& result) {
   const CaseResult::Open& open = *result.open;
-  std::string text = fmt::format("\nFriction and supports leave {} forces open; each by itself\n",
-                                 open.forces.undetermined);
-  if (!open.forces.found) return text + "  no limits: " + open.forces.why + "\n";
-  Table table({"force", "at least", "at most"});
+  std::string text =
+      fmt::format("\nIndeterminate forces from friction and supports: {}; individual bounds\n",
+                  open.forces.undetermined);
+  if (!open.forces.found) return text + "  no bounds: " + open.forces.why + "\n";
+  Table table({"force", "min", "max"});
   table.Add({"", "N", "N"});
   std::size_t rows = 0;
   const auto add = [&](const std::string& name, const ForceInterval& limits) {
@@ -111,7 +112,8 @@ std::string OpenForces(const CaseResult& result) {
     add(name + ", y", open.forces.joint_y[j]);
     add(name + ", z", open.forces.joint_z[j]);
   }
-  return text + (rows > 0 ? table.Text() : "  along the ground alone: what it pushes up is sure\n");
+  return text +
+         (rows > 0 ? table.Text() : "  only along the ground; the normal forces are determinate\n");
 }
 
 std::string ModeTable(const CaseResult& result, int most) {
@@ -119,7 +121,7 @@ std::string ModeTable(const CaseResult& result, int most) {
   if (!modes.why.empty()) return "  none: " + modes.why + "\n";
   std::string text = fmt::format("  rigid motions: {}, mechanisms: {}, unstable: {}\n", modes.rigid,
                                  modes.mechanisms, modes.unstable);
-  Table table({"mode", "frequency", "what", "moves most"});
+  Table table({"mode", "frequency", "kind", "largest displacement"});
   table.Add({"", "Hz", "", ""});
   int number = 0;
   for (const Mode& mode : modes.modes) {
@@ -162,10 +164,10 @@ std::string CaseText(const CaseResult& result, int most_modes) {
   std::string text = fmt::format("\nLoad case {}", result.loads.name);
   if (!result.loads.weight) text += ", without weight";
   if (!result.at.found) return text + "\n  no equilibrium: " + result.at.why + "\n";
-  text += fmt::format("\n  in equilibrium to {:.2g} N after {} linear systems{}\n",
+  text += fmt::format("\n  equilibrium: residual {:.2g} N after {} linear solves{}\n",
                       result.at.residual_n, result.at.iterations, WayText(result.at.way));
   text += Verdict(result);
-  for (const std::string& part : result.at.left_out) text += "  takes no part: " + part + "\n";
+  for (const std::string& part : result.at.left_out) text += "  left out: " + part + "\n";
   const bool others = std::any_of(result.members.begin(), result.members.end(),
                                   [](const MemberLoad& m) { return m.kind != MemberKind::kCable; });
   if (!result.def.cables.empty()) text += "\n" + Cables(result);
@@ -173,7 +175,7 @@ std::string CaseText(const CaseResult& result, int most_modes) {
   const std::string reactions = Reactions(result);
   if (!reactions.empty()) text += "\n" + reactions;
   if (result.open) text += OpenForces(result);
-  if (result.modes) text += "\nModes about it\n" + ModeTable(result, most_modes);
+  if (result.modes) text += "\nModes about the equilibrium\n" + ModeTable(result, most_modes);
   return text;
 }
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "output.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/shape_run.h"
 
 namespace taut::cli {
@@ -35,7 +35,8 @@ int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
   if (!found.ok()) return Fail(found, kFailed);
   std::FILE* const to = json ? stderr : stdout;
   if (!json) fmt::print("\n");
-  if (written.empty()) fmt::print(to, "Nothing to look at: no mode, mechanism or self-stress\n");
+  if (written.empty())
+    fmt::print(to, "No shape to show: there is no mode, mechanism or self-stress\n");
   for (const std::string& path : written) fmt::print(to, "Shape: {}/trace.h5\n", path);
   return kOk;
 }

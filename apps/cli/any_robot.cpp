@@ -5,7 +5,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
-#include "shipped.h"
+#include "shipped_inputs.h"
 #include "taut/start.h"
 
 namespace taut::cli {
@@ -27,9 +27,10 @@ void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args) {
       ->allow_extra_args(false);
   command
       .add_option("--pose", args.pose.file,
-                  "The robot as this recording shows it, not where it starts (.h5, .csv, .csv.gz)")
+                  "Trace with the pose to use instead of the start (.h5, .csv, .csv.gz)")
       ->option_text("FILE");
-  command.add_option("--at_s", args.pose.at_s, "With --pose: at this time (default: at its end)")
+  command
+      .add_option("--at_s", args.pose.at_s, "With --pose: time of the pose [s] (default: last row)")
       ->option_text("NUMBER")
       ->check(NumberWithin(-1e12, 1e12))
       ->needs(command.get_option("--pose"));
@@ -62,8 +63,8 @@ std::optional<RobotSpec> LoadPlacedRobot(const PlacedRobotArguments& args, int& 
   if (!overrides) return std::nullopt;
   const auto kind = FileKind(args.path, found);
   if (kind && *kind != "model" && *kind != "experiment") {
-    found.Error("file.wrong_kind", {args.path, 0, 0}, "is a " + *kind,
-                "a model or an experiment is needed");
+    found.Error("file.wrong_kind", {args.path, 0, 0}, "the file is a " + *kind,
+                "expected a model or an experiment");
   }
   if (!found.ok()) return fail(kBadInput);
   ExperimentSpec experiment;

@@ -54,7 +54,7 @@ std::string ShapeText(const ShapeCount& shapes) {
 
 std::string Bodies(const ModelDef& def) {
   Table table(
-      {"body", "mass", "centre x", "y", "z", "principal inertia 1", "2", "3", "colliding shapes"});
+      {"body", "mass", "center x", "y", "z", "principal inertia 1", "2", "3", "colliding shapes"});
   table.Add({"", "kg", "m", "m", "m", "kg m^2", "kg m^2", "kg m^2", ""});
   const std::vector<ShapeCount> shapes = CollidingShapes(def);
   for (std::size_t i = 0; i < def.bodies.size(); ++i) {
@@ -88,7 +88,8 @@ std::string Cables(const ModelDef& def) {
 }
 
 std::string Loads(const ModelDef& def) {
-  Table table({"body", "cables pull x", "y", "z", "turn about x", "y", "z", "weight x", "y", "z"});
+  Table table(
+      {"body", "cable force x", "y", "z", "cable torque x", "y", "z", "weight x", "y", "z"});
   table.Add({"", "N", "N", "N", "N m", "N m", "N m", "N", "N", "N"});
   const std::vector<BodyLoad> loads = StartLoads(def);
   for (std::size_t i = 0; i < loads.size(); ++i) {
@@ -105,8 +106,9 @@ std::string Joints(const ModelDef& def) {
   const auto name = [&](int body) { return body == kWorld ? "world" : def.bodies[body].name; };
   const std::vector<JointLoad> loads = StartJointLoads(def);
   if (loads.empty()) {
-    return fmt::format("  They hold more than {} directions: too many to work out their loads.\n",
-                       kMostHeldDirections);
+    return fmt::format(
+        "  Joint loads are not computed: the joints constrain more than {} directions.\n",
+        kMostHeldDirections);
   }
   Table joints({"joint", "kind", "between", "force x", "y", "z", "torque x", "y", "z"});
   joints.Add({"", "", "", "N", "N", "N", "N m", "N m", "N m"});
@@ -117,7 +119,7 @@ std::string Joints(const ModelDef& def) {
                 name(joint.body_a) + " - " + name(joint.body_b), Fixed(f.x, 3), Fixed(f.y, 3),
                 Fixed(f.z, 3), Fixed(t.x, 4), Fixed(t.y, 4), Fixed(t.z, 4)});
   }
-  Table left({"body", "left x", "y", "z", "turn about x", "y", "z"});
+  Table left({"body", "net force x", "y", "z", "net torque x", "y", "z"});
   left.Add({"", "N", "N", "N", "N m", "N m", "N m"});
   const std::vector<LeftLoad> rest = LeftAtStart(def, loads);
   for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -125,8 +127,7 @@ std::string Joints(const ModelDef& def) {
     left.Add({def.bodies[i].name, Fixed(f.x, 3), Fixed(f.y, 3), Fixed(f.z, 3), Fixed(t.x, 4),
               Fixed(t.y, 4), Fixed(t.z, 4)});
   }
-  return joints.Text() + "\nLeft of these loads: what moves a body, or has to hold a fixed one\n" +
-         left.Text();
+  return joints.Text() + "\nNet loads of the bodies (cables, weight and joints)\n" + left.Text();
 }
 
 /// Formats the axial forces of rods and the forces that hold anchored bodies, if there are any.
@@ -135,15 +136,13 @@ std::string RodsAndAnchors(const ModelDef& def) {
   std::string text;
   const std::vector<StrutForce> struts = StrutForces(def, forces);
   if (!struts.empty()) {
-    Table table({"rod", "middle", "least", "greatest"});
+    Table table({"rod", "middle", "min", "max"});
     table.Add({"", "N", "N", "N"});
     for (const StrutForce& strut : struts) {
       table.Add({def.bodies[strut.body].name, Fixed(strut.axial.middle_n, 3),
                  Fixed(strut.axial.least_n, 3), Fixed(strut.axial.greatest_n, 3)});
     }
-    text +=
-        "\nForce along rods at the start, tension positive: in the middle, least and greatest\n" +
-        table.Text();
+    text += "\nAxial forces of the rods at the start, tension positive\n" + table.Text();
   }
   const std::vector<Reaction> anchors = AnchorReactions(def, forces);
   if (!anchors.empty()) {
@@ -154,7 +153,7 @@ std::string RodsAndAnchors(const ModelDef& def) {
       table.Add({def.bodies[anchor.body].name, Fixed(f.x, 3), Fixed(f.y, 3), Fixed(f.z, 3),
                  Fixed(t.x, 4), Fixed(t.y, 4), Fixed(t.z, 4)});
     }
-    text += "\nWhat holds anchored bodies at the start, their weights included\n" + table.Text();
+    text += "\nReactions at anchored bodies at the start, weights included\n" + table.Text();
   }
   return text;
 }
@@ -177,10 +176,10 @@ std::string Collisions(const ModelDef& def) {
   }
   const int terrain = static_cast<int>(def.planes.size() + def.terrain_boxes.size() +
                                        def.height_fields.size() + def.terrain_meshes.size());
-  std::string text = fmt::format("May collide: {} of bodies, {} of shapes; with ",
+  std::string text = fmt::format("Possible collisions: {} of bodies, {} of shapes; with ",
                                  Counted(pairs, "pair"), Counted(shape_pairs, "pair"));
-  text += terrain == 0 ? "terrain, which is the experiment's\n"
-                       : Counted(terrain, "terrain surface") + "\n";
+  text +=
+      terrain == 0 ? "the terrain of an experiment\n" : Counted(terrain, "terrain surface") + "\n";
   if (pairs > 0 && pairs <= kMostCollisions) text += table.Text();
   return text;
 }
@@ -191,7 +190,7 @@ std::string RobotTables(const RobotSpec& robot) {
   const ModelDef& def = robot.def;
   const Vec3 g = def.gravity_m_per_s2;
   std::string text = fmt::format(
-      "Model {}: {}, {}, {}; {:.6f} kg that move; gravity ({:g}, {:g}, {:g}) m/s^2\n", def.name,
+      "Model {}: {}, {}, {}; moving mass {:.6f} kg; gravity ({:g}, {:g}, {:g}) m/s^2\n", def.name,
       def.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", def.bodies.size()),
       Counted(def.cables.size(), "cable"), Counted(def.nodes.size(), "node"), TotalMass(def), g.x,
       g.y, g.z);
@@ -203,13 +202,12 @@ std::string RobotTables(const RobotSpec& robot) {
   if (!def.bodies.empty()) text += "\nBodies\n" + Bodies(def);
   if (!def.cables.empty()) text += "\nCables\n" + Cables(def);
   if (!def.cables.empty() || !def.joints.empty()) {
-    text += "\nLoads at the start: what the prestress does to each body, its weight beside it\n" +
-            Loads(def);
+    text += "\nLoads of the bodies at the start\n" + Loads(def);
   }
   if (!def.joints.empty()) {
     text +=
-        "\nJoints at the start: what each does to its second body there, by what it holds and "
-        "its spring\n" +
+        "\n"
+        "Loads of the joints at the start, on the second body\n" +
         Joints(def);
   }
   text += RodsAndAnchors(def);
@@ -221,7 +219,7 @@ std::string ExperimentTables(const ExperimentSpec& experiment) {
                                  experiment.duration_s, LongestStep(experiment),
                                  Counted(experiment.controllers.size(), "controller"));
   const std::vector<NodeDef>& nodes = experiment.robot.def.nodes;
-  Table table({"what", "name", "acts on", "when"});
+  Table table({"kind", "name", "target", "time"});
   for (const ControllerSpec& controller : experiment.controllers) {
     const std::size_t cables =
         controller.impedance ? controller.impedance->cables.size() : controller.position.size();
@@ -246,7 +244,7 @@ std::string ExperimentTables(const ExperimentSpec& experiment) {
   text += table.Text();
   if (experiment.environment) {
     const double period_s = experiment.environment->period_s;
-    text += fmt::format("Environment: {} and {} every {:g} s, {:.0f} an episode\n",
+    text += fmt::format("Environment: {} and {} every {:g} s, {:.0f} steps per episode\n",
                         Counted(experiment.environment->actions.size(), "action"),
                         Counted(ObservedChannels(experiment).size(), "observation"), period_s,
                         experiment.duration_s / period_s);

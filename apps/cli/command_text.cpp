@@ -49,9 +49,14 @@ std::string Row(const std::string& left, const std::string& right) {
   return begin + std::string(kColumn - begin.size(), ' ') + text;
 }
 
+/// Lists the subcommands below the headings of their groups.
 std::string CommandRows(const CommandText& command) {
-  std::string rows;
-  for (const CommandText& one : command.commands) rows += Row(one.Word(), one.what);
+  std::string rows, group;
+  for (const CommandText& one : command.commands) {
+    if (one.group != group) rows += "\n" + one.group + ":\n";
+    group = one.group;
+    rows += Row(one.Word(), one.what);
+  }
   return rows;
 }
 
@@ -70,6 +75,7 @@ std::string CommandText::Word() const { return name.substr(name.rfind(' ') + 1);
 CommandText Describe(const CLI::App& command) {
   CommandText text;
   text.name = FullName(command);
+  text.group = command.get_group();
   text.what = command.get_description();
   text.more = command.get_footer();
   for (const CLI::Option* option : command.get_options()) {
@@ -102,7 +108,7 @@ std::string HelpText(const CommandText& command) {
   std::string out = Wrapped(command.what, 0, kWidth) + "\n\nUsage: " + UsageLine(command) + "\n";
   if (!command.arguments.empty()) out += "\nArguments:\n";
   for (const WordText& argument : command.arguments) out += Row(argument.name, argument.help);
-  if (!command.commands.empty()) out += "\nCommands:\n" + CommandRows(command);
+  out += CommandRows(command);
   if (!command.flags.empty()) out += "\nFlags:\n";
   for (const WordText& flag : command.flags) {
     const std::string letter = flag.letter.empty() ? "" : flag.letter + ", ";
@@ -114,8 +120,9 @@ std::string HelpText(const CommandText& command) {
 }
 
 std::string OverviewText(const CommandText& taut) {
-  return Wrapped(taut.what, 0, kWidth) + "\n\nCommands:\n" + CommandRows(taut) +
-         "\n`taut run experiments/push_20n.yaml` runs one; `taut help COMMAND` tells more.\n";
+  return Wrapped(taut.what, 0, kWidth) + "\n" + CommandRows(taut) +
+         "\nExample: `taut run experiments/push_20n.yaml`. Help on a command: `taut help "
+         "COMMAND`\n";
 }
 
 std::string Wrapped(const std::string& text, std::size_t indent, std::size_t width) {

@@ -24,9 +24,10 @@ struct WordText {
 };
 
 struct CommandText {
-  std::string name;  ///< "taut gait export".
-  std::string what;  ///< A sentence.
-  std::string more;  ///< Examples and further information.
+  std::string name;   ///< "taut gait export".
+  std::string group;  ///< Heading of the command in the help text of its parent.
+  std::string what;   ///< A sentence.
+  std::string more;   ///< Examples and further information.
   std::vector<WordText> arguments, flags;
   std::vector<CommandText> commands;
 

@@ -4,7 +4,8 @@
 namespace taut::cli {
 
 void AddExport(CLI::App& app, int& exit_code) {
-  CLI::App* group = app.add_subcommand("export", "A robot for other programs.");
+  CLI::App* group = app.add_subcommand(
+      "export", "Convert a robot for other programs: MuJoCo, STL, glTF, statics tools.");
   group->require_subcommand(1);
   AddExportMjcf(*group, exit_code);
   AddExportShape(*group, exit_code);
@@ -14,8 +15,8 @@ void AddExport(CLI::App& app, int& exit_code) {
       "  taut export mjcf models/six_strut.yaml --out six_strut.xml\n"
       "  taut export shape models/six_strut.yaml --out six_strut.glb\n"
       "  taut export structure models/prism3.yaml --out prism3\n"
-      "`taut export COMMAND --help` tells more.\n"
-      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
+      "Help on a command: `taut export COMMAND --help`\n"
+      "Exit status: 0 success, 1 a file cannot be written, 2 bad usage, 3 bad input.");
 }
 
 }  // namespace taut::cli

@@ -9,7 +9,7 @@
 #include "export.h"
 #include "output.h"
 #include "overrides.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/shape_mesh.h"
 
 namespace taut::cli {
@@ -37,8 +37,7 @@ std::optional<Format> FormatOf(const ShapeArguments& args) {
 int ExportShape(const ShapeArguments& args) {
   const auto format = FormatOf(args);
   if (!format) {
-    fmt::print(stderr, "error: the name {} says no format: .stl or .glb; else --format is needed\n",
-               args.out);
+    fmt::print(stderr, "error: unknown format of {} (expected .stl, .glb or --format)\n", args.out);
     return kUsage;
   }
   int exit = kOk;
@@ -46,7 +45,8 @@ int ExportShape(const ShapeArguments& args) {
   if (!robot) return exit;
   const std::vector<ShapeMesh> shapes = ShapesOf(robot->def, args.options);
   if (shapes.empty()) {
-    fmt::print(stderr, "{}: error: has no shape and no cable to show\n", args.robot.path);
+    fmt::print(stderr, "{}: error: the robot has no shapes and no cables to export\n",
+               args.robot.path);
     return kBadInput;
   }
   OutputIsNews();
@@ -68,26 +68,27 @@ int ExportShape(const ShapeArguments& args) {
 void AddExportShape(CLI::App& group, int& exit_code) {
   auto args = std::make_shared<ShapeArguments>();
   CLI::App* command = group.add_subcommand(
-      "shape", "What a robot looks like: closed triangles as STL for printers, glTF for slides.");
+      "shape",
+      "Write the geometry of a robot: closed meshes as STL for 3D printers, glTF for slides.");
   AddPlacedRobot(*command, args->robot);
-  command->add_option("--out", args->out, "File to write: .stl or .glb")
+  command->add_option("--out", args->out, "Output file (.stl or .glb)")
       ->option_text("FILE")
       ->required();
   command
       ->add_option_function<std::string>(
           "--format", [args](const std::string& word) { args->format = kFormats.at(word); },
-          "Its format, whatever its name")
+          "Format (default: from the extension)")
       ->option_text("stl|gltf")
       ->check(OneOf({"stl", "gltf"}));
   command
       ->add_option("--cable_radius_m", args->options.cable_radius_m,
-                   "How thick cables are (default: 0.002); 0: without cables")
+                   "Radius of cables [m] (default: 0.002); 0: no cables")
       ->option_text("NUMBER")
       ->check(NumberWithin(0, 1e3));
   command
-      ->add_option("--scale", args->scale,
-                   "Times this all lengths; programs that print take what STL has for mm: 1000 for "
-                   "true size (default: 1)")
+      ->add_option(
+          "--scale", args->scale,
+          "Factor on all lengths (default: 1); 3D printers read STL in mm: 1000 is true size")
       ->option_text("NUMBER")
       ->check(NumberWithin(1e-6, 1e9));
   command->footer(
@@ -97,9 +98,9 @@ void AddExportShape(CLI::App& group, int& exit_code) {
       "0.001\n"
       "  taut export shape experiments/drop_six_strut.yaml --pose runs/drop_six_strut/trace.h5 \\\n"
       "    --at_s 0.5 --out falling.glb\n"
-      "STL has one set of triangles; in glTF bodies, shapes and cables have their names.\n"
-      "Exit status: 0 good, 1 the file cannot be written or no start found, 2 bad usage, 3 bad "
-      "input.");
+      "STL contains one mesh; glTF names bodies, shapes and cables.\n"
+      "Exit status: 0 success, 1 the file cannot be written or the robot does not settle,\n"
+      "2 bad usage, 3 bad input.");
   command->callback([args, &exit_code] { exit_code = ExportShape(*args); });
 }
 

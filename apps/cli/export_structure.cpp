@@ -10,10 +10,10 @@
 #include "any_robot.h"
 #include "export.h"
 #include "output.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "table.h"
-#include "taut/alone.h"
 #include "taut/analysis.h"
+#include "taut/minimal_experiment.h"
 #include "taut/pin_jointed.h"
 #include "taut/version.h"
 
@@ -161,7 +161,7 @@ std::string JsonOf(const ModelDef& def, const PinJointed& s) {
 }
 
 std::string TableOf(const ModelDef& def, const PinJointed& s) {
-  Table members({"member", "kind", "from", "to", "length", "force", "force / length"});
+  Table members({"member", "kind", "from", "to", "length", "force", "force density"});
   members.Add({"", "", "", "", "m", "N", "N/m"});
   for (const PinMember& m : s.members) {
     members.Add({m.name, KindOf(m), s.nodes[static_cast<std::size_t>(m.from)].name,
@@ -169,7 +169,7 @@ std::string TableOf(const ModelDef& def, const PinJointed& s) {
                  Fixed(m.force_n, 3), Fixed(m.force_density_n_per_m, 3)});
   }
   const std::size_t strings = s.members.size() - static_cast<std::size_t>(s.bars);
-  return fmt::format("Model {}: nodes: {}, bars: {}, strings: {}, their clusters: {}\n\n{}",
+  return fmt::format("Model {}: nodes: {}, bars: {}, strings: {}, clusters of strings: {}\n\n{}",
                      def.name, s.nodes.size(), s.bars, strings,
                      s.clusters.size() - static_cast<std::size_t>(s.bars), members.Text());
 }
@@ -179,7 +179,7 @@ int WriteFolder(const std::string& folder, const ModelDef& def, const PinJointed
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    fmt::print(stderr, "{}: error: cannot be made: {}\n", folder, error.message());
+    fmt::print(stderr, "{}: error: cannot create the folder: {}\n", folder, error.message());
     return kFailed;
   }
   std::vector<std::pair<std::string, std::string>> files;
@@ -232,26 +232,27 @@ void AddExportStructure(CLI::App& group, int& exit_code) {
   auto args = std::make_shared<StructureArguments>();
   CLI::App* command = group.add_subcommand(
       "structure",
-      "Points, bars and strings: the matrices N, C_b, C_s, q and S of tensegrity statics.");
+      "Write nodes, bars and strings: the matrices N, C_b, C_s, q and S of tensegrity statics.");
   AddPlacedRobot(*command, args->robot);
   command
-      ->add_option("--out", args->out,
-                   "Folder for N.csv, C_b.csv, C_s.csv, q.csv, S.csv, ... and structure.json")
+      ->add_option(
+          "--out", args->out,
+          "Output folder for N.csv, C_b.csv, C_s.csv, q.csv, S.csv, ... and structure.json")
       ->option_text("FOLDER");
   command->add_flag("--equilibrium", args->equilibrium,
-                    "In the equilibrium near there, as `taut analyze` finds it");
-  command->add_flag("--no_weight,--no-weight", args->weightless, "Without the robot's weight");
-  command->add_flag("--json", args->json, "Print all of it as JSON instead of the table");
+                    "Nearby equilibrium, as in `taut analyze`, instead of the start");
+  command->add_flag("--no_weight,--no-weight", args->weightless, "No weight of the robot");
+  command->add_flag("--json", args->json, "JSON instead of the table");
   command->footer(
       "Examples:\n"
       "  taut export structure models/prism3.yaml --out prism3\n"
       "  taut export structure models/t3_prism.yaml --equilibrium --no_weight --json\n"
       "  taut export structure experiments/drop_six_strut.yaml --pose "
       "runs/drop_six_strut/trace.h5\n"
-      "In MATLAB: N = readmatrix('prism3/N.csv'). N is 3 x nodes; C = [C_b; C_s] has a row a\n"
-      "member, -1 where it begins and 1 where it ends; q is tension by length. docs/export.md\n"
-      "Exit status: 0 good, 1 a file cannot be written or no start found, 2 bad usage, 3 bad "
-      "input.");
+      "In MATLAB: N = readmatrix('prism3/N.csv'). N is 3 x nodes; C = [C_b; C_s] has one row per\n"
+      "member, -1 at its first node and 1 at its second; q is the force density (docs/export.md).\n"
+      "Exit status: 0 success, 1 a file cannot be written or the robot does not settle,\n"
+      "2 bad usage, 3 bad input.");
   command->callback([args, &exit_code] { exit_code = ExportStructure(*args); });
 }
 

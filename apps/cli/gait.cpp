@@ -10,7 +10,7 @@
 #include "gait_report.h"
 #include "output.h"
 #include "overrides.h"
-#include "shipped.h"
+#include "shipped_inputs.h"
 #include "taut/gait.h"
 #include "taut/play.h"
 #include "taut/spec.h"
@@ -44,7 +44,7 @@ int Export(const GaitArguments& args) {
   const auto table = PlayGait(*gait, *robot, args.rate_hz, args.duration_s, found);
   if (!table) return Fail(found, kBadInput);
   if (gait->cpg && gait->cpg->feedback) {
-    fmt::print(stderr, "warning: the gait has feedback; a table has none\n");
+    fmt::print(stderr, "warning: the gait has feedback, which a table cannot contain\n");
   }
   return WriteOrPrint(args.out, GaitTableText(*table, gait->drives));
 }
@@ -81,8 +81,7 @@ int Values(const GaitArguments& args) {
 
 void AddGait(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<GaitArguments>();
-  CLI::App* gait =
-      app.add_subcommand("gait", "Gaits as files: export, import, create, list their values.");
+  CLI::App* gait = app.add_subcommand("gait", "Create, convert and list gaits.");
   gait->require_subcommand(1);
   const auto add_set = [&](CLI::App* command) {
     command->add_option("--set", args->set, "Parameter of the model")
@@ -90,61 +89,65 @@ void AddGait(CLI::App& app, int& exit_code) {
         ->allow_extra_args(false);
   };
 
-  CLI::App* export_ = gait->add_subcommand(
-      "export", "What a gait says to the cables, as a table in plain text (CSV).");
+  CLI::App* export_ =
+      gait->add_subcommand("export", "Write the cable signals of a gait as a table (CSV).");
   AddInput(*export_, "gait", args->input, "Gait file (YAML)")->required();
   AddInput(*export_, "robot", args->robot, "Model or experiment file (YAML)")->required();
-  export_->add_option("--rate_hz", args->rate_hz, "Rows a second; also the gait's own rate")
+  export_->add_option("--rate_hz", args->rate_hz, "Rate of the rows and of the gait [Hz]")
       ->option_text("X")
       ->check(NumberWithin(1e-3, 1e6))
       ->capture_default_str();
-  export_->add_option("--duration_s", args->duration_s, "Up to here [s]")
+  export_->add_option("--duration_s", args->duration_s, "Duration of the table [s]")
       ->option_text("S")
       ->check(NumberWithin(0.0, 1e6))
       ->capture_default_str();
-  export_->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
+  export_->add_option("--out", args->out, "Output file (default: standard output)")
+      ->option_text("FILE");
   add_set(export_);
   export_->footer(
-      "Example:\n  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out "
-      "commands.csv");
+      "Examples:\n"
+      "  taut gait export gaits/cpg_learned.yaml models/tetraspine3.yaml --out commands.csv");
   export_->callback([args, &exit_code] { exit_code = Export(*args); });
 
-  CLI::App* import_ = gait->add_subcommand("import", "A gait of NTRT's spines as a gait file.");
+  CLI::App* import_ =
+      gait->add_subcommand("import", "Convert a gait of NTRT's spines to a gait file.");
   import_
-      ->add_option(
-          "path", args->input,
-          "Folder with bestParameters-*.nnw, the hand-tuned controlVars.json, or the .json of a "
-          "controller with feedback")
+      ->add_option("path", args->input,
+                   "Folder with bestParameters-*.nnw, the controlVars.json of hand-tuned waves, or "
+                   "the .json of a controller with feedback")
       ->required();
   AddChoice(*import_, "--order", args->order, kOrders,
-            "Order of NTRT's cables when it learned (default: paper2015)");
+            "Cable order of the NTRT version that learned the gait (default: paper2015)");
   import_->add_option("--name", args->name, "Name of the gait")
       ->option_text("NAME")
       ->check(CheckName);
-  import_->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
+  import_->add_option("--out", args->out, "Output file (default: standard output)")
+      ->option_text("FILE");
   import_->footer(
-      "Example:\n  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out "
-      "sidewinder.yaml");
+      "Examples:\n"
+      "  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out sidewinder.yaml");
   import_->callback([args, &exit_code] { exit_code = Import(*args); });
 
   CLI::App* create = gait->add_subcommand(
-      "create", "A CPG with all couplings of a robot, weights and phases 0: a start for learning.");
+      "create",
+      "Write a CPG gait with all couplings of a robot, weights and phases 0, to start learning.");
   AddInput(*create, "robot", args->robot, "Model or experiment file (YAML)")->required();
   AddChoice(*create, "--symmetry", args->symmetry, kSymmetries,
-            "Which couplings are alike (default: segments)");
-  AddChoice(*create, "--drives", args->drives, kDrives, "What its signals are (default: velocity)");
+            "Couplings that share their parameters (default: segments)");
+  AddChoice(*create, "--drives", args->drives, kDrives, "Kind of signal (default: velocity)");
   create->add_option("--name", args->name, "Name of the gait")
       ->option_text("NAME")
       ->check(CheckName);
-  create->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
+  create->add_option("--out", args->out, "Output file (default: standard output)")
+      ->option_text("FILE");
   add_set(create);
-  create->footer("Example:\n  taut gait create models/tetraspine12.yaml --out blank.yaml");
+  create->footer("Examples:\n  taut gait create models/tetraspine12.yaml --out blank.yaml");
   create->callback([args, &exit_code] { exit_code = Create(*args); });
 
-  CLI::App* values = gait->add_subcommand("values", "Every number of a gait by name.");
+  CLI::App* values = gait->add_subcommand("values", "List every parameter of a gait by name.");
   AddInput(*values, "gait", args->input, "Gait file (YAML)")->required();
   values->add_flag("--json", args->json, "JSON instead of a table");
-  values->footer("Example:\n  taut gait values gaits/hand_tuned_sine.yaml");
+  values->footer("Examples:\n  taut gait values gaits/hand_tuned_sine.yaml");
   values->callback([args, &exit_code] { exit_code = Values(*args); });
 
   gait->footer(
@@ -153,8 +156,8 @@ void AddGait(CLI::App& app, int& exit_code) {
       "  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out sidewinder.yaml\n"
       "  taut gait create models/tetraspine12.yaml --out blank.yaml\n"
       "  taut gait values gaits/hand_tuned_sine.yaml\n"
-      "A table comes back as a gait by `table: {file: commands.csv}` (docs/formats/gait.md).\n"
-      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
+      "A gait file with `table: {file: commands.csv}` plays a table (docs/formats/gait.md).\n"
+      "Exit status: 0 success, 1 a file cannot be written, 2 bad usage, 3 bad input.");
 }
 
 }  // namespace taut::cli

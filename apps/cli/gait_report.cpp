@@ -31,7 +31,7 @@ std::string Matrix(const RobotSpec& robot, const CouplingGraph& graph, int width
   std::map<std::pair<int, int>, int> group;
   for (const auto& link : graph.couplings) group[{link.to, link.from}] = link.group;
   std::string out =
-      "Group of each coupling (row: who is pulled, column: by whom, as numbered below):\n";
+      "Groups of the couplings (row: driven oscillator, column: driving oscillator):\n";
   out += fmt::format("{:{}}", "", width + 4);
   for (int j = 0; j < count; ++j) out += fmt::format("{:>4}", j);
   out += '\n';
@@ -92,7 +92,8 @@ std::string CouplingTables(const RobotSpec& robot, const CouplingGraph& graph) {
   }
   std::string out = fmt::format(
       "{} oscillators, {} couplings, {} groups.\n"
-      "Numbers to learn: a weight and a phase a group, frequency and amplitude: {}.\n\n",
+      "Parameters to learn (weight and phase of each group, frequency, amplitude): {}.\n"
+      "\n",
       count, graph.couplings.size(), used, 2 * used + 2);
   if (count <= kLargestMatrix) {
     out += Matrix(robot, graph, width);
@@ -174,8 +175,9 @@ std::string CouplingSvg(const RobotSpec& robot, const CouplingGraph& graph) {
         cx, cy, cx, cy < kMargin ? cy - 8 : cy + 15, Name(robot, graph, i));
   }
   out += fmt::format(
-      "<text x=\"10\" y=\"{:.0f}\">red: one joint; blue: neighbouring joints, which share a "
-      "segment</text>\n</svg>\n",
+      "<text x=\"10\" y=\"{:.0f}\">red: same joint; blue: neighboring joints, which share a "
+      "segment</text>\n"
+      "</svg>\n",
       2 * kMargin + 12);
   return out;
 }

@@ -42,13 +42,14 @@ int Help(const CLI::App& app, const HelpArguments& args) {
 
 void AddHelp(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<HelpArguments>();
-  CLI::App* help = app.add_subcommand("help", "Tell about taut or about one of its commands.");
+  CLI::App* help = app.add_subcommand("help", "Print the help of taut or of a command.");
   std::vector<std::string> commands;
   for (const CommandText& one : Describe(app).commands) commands.push_back(one.Word());
-  help->add_option("command", args->words, "Command to tell about (default: taut itself)")
+  help->add_option("command", args->words, "Command to describe (default: taut itself)")
       ->option_text(Alternatives(commands));
-  auto* man = help->add_flag("--man", args->man, "All of it as a page for man");
-  help->add_option("--completion", args->shell, "What makes a shell complete taut's words")
+  auto* man = help->add_flag("--man", args->man, "Complete help as a manual page");
+  help->add_option("--completion", args->shell,
+                   "Completion script of commands, flags and files for a shell")
       ->option_text(Alternatives(Shells()))
       ->check(OneOf(Shells()))
       ->excludes(man);

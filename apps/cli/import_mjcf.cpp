@@ -26,7 +26,7 @@ const std::map<std::string, MjcfSlack> kSlack{{"tension_only", MjcfSlack::kTensi
 
 int Import(const Arguments& args) {
   if (!args.experiment.empty() && args.out.empty()) {
-    fmt::print(stderr, "error: --experiment goes with --out: it names that model file\n");
+    fmt::print(stderr, "error: --experiment needs --out: the experiment names the model file\n");
     return kUsage;
   }
   Diagnostics found;
@@ -40,8 +40,9 @@ int Import(const Arguments& args) {
     heading += "\n" + note;
   }
   if (terrain > 0 && args.experiment.empty()) {
-    fmt::print(stderr, "note: a model has no terrain: {} of the world {} for --experiment\n",
-               terrain, terrain == 1 ? "geom is" : "geoms are");
+    fmt::print(stderr,
+               "note: a model has no terrain: {} of the world left out (use --experiment)\n",
+               terrain == 1 ? "1 geom" : fmt::format("{} geoms", terrain));
   }
   const auto model = ModelYaml(made->robot, heading, found);
   if (!model) return Fail(found, kBadInput);
@@ -58,8 +59,8 @@ int Import(const Arguments& args) {
 
 void AddImportMjcf(CLI::App& import, int& exit_code) {
   auto args = std::make_shared<Arguments>();
-  CLI::App* mjcf =
-      import.add_subcommand("mjcf", "A tensegrity robot of MuJoCo's language as a model file.");
+  CLI::App* mjcf = import.add_subcommand(
+      "mjcf", "Convert a MuJoCo model (MJCF) of a tensegrity robot to a model file.");
   mjcf->add_option("file", args->input, "MJCF file (XML)")->required();
   const auto add_unit = [&](const char* flag, std::optional<double>& unit, const char* help) {
     mjcf->add_option_function<double>(
@@ -68,33 +69,34 @@ void AddImportMjcf(CLI::App& import, int& exit_code) {
         ->check(NumberWithin(1e-6, 1e6));
   };
   add_unit("--length_unit_m", args->options.length_unit_m,
-           "What 1 in the file is [m] (default: 1)");
-  add_unit("--mass_unit_kg", args->options.mass_unit_kg, "What 1 in the file is [kg] (default: 1)");
+           "Length unit of the file [m] (default: 1)");
+  add_unit("--mass_unit_kg", args->options.mass_unit_kg, "Mass unit of the file [kg] (default: 1)");
   AddChoice(*mjcf, "--slack", args->options.slack, kSlack,
-            "What springs do that are shorter than at rest: nothing, as cables, or push, as bars "
+            "Springs shorter than their rest length: without force, as cables, or pushing, as bars "
             "(default: tension_only)");
   mjcf->add_flag("--without_frictionloss", args->options.without_frictionloss,
-                 "Leave out the dry friction of tendons, for which a file is refused otherwise");
+                 "Ignore the dry friction of tendons, otherwise an error");
   mjcf->add_option("--keyframe", args->options.keyframe,
-                   "Start, with its controls, from this key of the file (a name, or a number from "
-                   "0; default: as bodies are described, controls 0)")
+                   "Key of the file with the start pose and controls: name, or index from 0 "
+                   "(default: described poses, controls 0)")
       ->option_text("KEY");
   mjcf->add_option("--name", args->options.name, "Name of the robot")
       ->option_text("NAME")
       ->check(CheckName);
-  mjcf->add_option("--out", args->out, "Model file to write (default: print)")->option_text("FILE");
-  mjcf->add_option("--experiment", args->experiment,
-                   "Experiment file to write: that model on the file's planes and boxes, with its "
-                   "timestep")
+  mjcf->add_option("--out", args->out, "Model file to write (default: standard output)")
+      ->option_text("FILE");
+  mjcf->add_option(
+          "--experiment", args->experiment,
+          "Experiment file to write: the model on the file's planes and boxes, with its timestep")
       ->option_text("FILE");
   mjcf->add_flag("--strict", args->strict, kStrictHelp);
   mjcf->footer(
       "Examples:\n"
       "  taut import mjcf prism.xml --out prism.yaml --experiment on_ground.yaml\n"
       "  taut import mjcf spine.xml --length_unit_m 0.1 --keyframe start --out spine.yaml\n"
-      "What is not read is refused by its name and line, all at once; what is left out is told in\n"
-      "a line (docs/from_mujoco.md).\n"
-      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input.");
+      "Unsupported elements are errors with name and line; omissions are notes "
+      "(docs/from_mujoco.md).\n"
+      "Exit status: 0 success, 1 a file cannot be written, 2 bad usage, 3 bad input.");
   mjcf->callback([args, &exit_code] { exit_code = Import(*args); });
 }
 

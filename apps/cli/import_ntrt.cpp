@@ -9,7 +9,7 @@
 #include "import.h"
 #include "output.h"
 #include "overrides.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/import_ntrt.h"
 
 namespace taut::cli {
@@ -28,7 +28,7 @@ std::string Counted(int count, const char* one, const char* many) {
 std::string Report(const NtrtImport& import, const std::string& out) {
   const NtrtCounts& c = import.counts;
   std::string text = fmt::format(
-      "Model: {}\n{} of {:.4g} kg and {}, {:.4g} m large\n  of {}: {}, {}; {}, {}, {}\n", out,
+      "Model: {}\n{} of {:.4g} kg, {}, size {:.4g} m\n  from {}: {}, {}; {}, {}, {}\n", out,
       Counted(c.bodies, "body", "bodies"), c.mass_kg, Counted(c.cables, "cable", "cables"),
       c.size_m, Counted(c.files, "file", "files"), Counted(c.nodes, "node", "nodes"),
       Counted(c.pairs, "pair", "pairs"), Counted(c.rods, "rod", "rods"),
@@ -37,9 +37,9 @@ std::string Report(const NtrtImport& import, const std::string& out) {
     if (!lines.empty()) text += fmt::format("\n{}:\n", title);
     for (const std::string& line : lines) text += fmt::format("  {}\n", line);
   };
-  list("As NTRT", import.as_ntrt);
-  list("Not as NTRT", import.different);
-  list("Left away", import.dropped);
+  list("Same as NTRT", import.as_ntrt);
+  list("Different from NTRT", import.different);
+  list("Left out", import.dropped);
   return text;
 }
 
@@ -57,8 +57,10 @@ int AskForUnit(const ImportNtrtArguments& args) {
         "at 0.01, as in its spines (gravity 981), {:.3g} m; at 1, {:.3g} m.",
         0.1 * size, 0.01 * size, size);
   }
-  fmt::print(stderr, "error: --length_unit_m is missing: NTRT's files do not say what 1 is{}\n",
-             hint);
+  fmt::print(
+      stderr,
+      "error: --length_unit_m is missing: NTRT's files do not define their unit of length{}\n",
+      hint);
   return kUsage;
 }
 
@@ -83,24 +85,27 @@ int Import(const ImportNtrtArguments& args) {
 void AddImportNtrt(CLI::App& import, int& exit_code) {
   auto args = std::make_shared<ImportNtrtArguments>();
   CLI::App* ntrt = import.add_subcommand(
-      "ntrt", "A structure of NASA's NTRT, with all files that it includes, as a model.");
-  ntrt->add_option("file", args->path, "NTRT's structure (YAML)")->required();
+      "ntrt", "Convert a structure of NASA's NTRT, with all included files, to a model.");
+  ntrt->add_option("file", args->path, "NTRT structure (YAML)")->required();
   ntrt->add_option("--length_unit_m", args->length_unit_m,
-                   "What 1 in the files is, which they do not say: 0.1, 0.01 ... [m]")
+                   "Length unit of the files [m], such as 0.1 or 0.01 (required: the files do not "
+                   "define it)")
       ->option_text("U")
       ->check(NumberWithin(1e-9, 1e9));
   ntrt->add_flag("--like_ntrt", args->like_ntrt,
-                 "As NTRT even where that is hardly meant: % ends a file, friction along the slip");
-  ntrt->add_option("--name", args->name, "Name of the model (default: that of the file)")
+                 "Follow NTRT even where its behavior is likely unintended: % ends a file, "
+                 "friction acts along the slip");
+  ntrt->add_option("--name", args->name, "Name of the model (default: name of the file)")
       ->option_text("NAME")
       ->check(CheckName);
-  ntrt->add_option("--out", args->out, "File to write (default: print)")->option_text("FILE");
+  ntrt->add_option("--out", args->out, "Output file (default: standard output)")
+      ->option_text("FILE");
   ntrt->add_flag("--strict", args->strict, kStrictHelp);
   ntrt->footer(
       "Examples:\n"
       "  taut import ntrt SuperBall.yaml --length_unit_m 0.1 --out superball.yaml\n"
       "  taut check superball.yaml\n"
-      "What is called what, and what is different: docs/from_ntrt.md.");
+      "Terms and differences: docs/from_ntrt.md.");
   ntrt->callback([args, &exit_code] { exit_code = Import(*args); });
 }
 

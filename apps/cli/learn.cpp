@@ -12,8 +12,8 @@
 #include "output.h"
 #include "overrides.h"
 #include "progress_line.h"
-#include "shipped.h"
-#include "streams.h"
+#include "shipped_inputs.h"
+#include "standard_streams.h"
 #include "taut/cluster.h"
 #include "taut/learn.h"
 #include "taut/run.h"
@@ -49,7 +49,7 @@ void Show(ProgressLine& line, const LearnProgress& p) {
 
 void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::string& folder) {
   fmt::print("{}: {} evaluations, {} failed", study.name, s.evaluations, s.failed);
-  if (s.resumed_from > 0) fmt::print(", {} of them from before", s.resumed_from);
+  if (s.resumed_from > 0) fmt::print(", {} of them from earlier", s.resumed_from);
   if (s.wall_s > 0) {
     fmt::print("; {} ({:.0f} simulated s/s)", Duration(s.wall_s), s.simulated_s / s.wall_s);
   }
@@ -59,7 +59,7 @@ void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::stri
   } else {
     fmt::print("best: none, every evaluation failed\n");
   }
-  fmt::print("`taut learn --best {0}` replays it, `taut learn --top 10 {0}` lists the best\n",
+  fmt::print("replay the best: taut learn --best {0}\nlist the ten best: taut learn --top 10 {0}\n",
              folder);
 }
 
@@ -93,7 +93,7 @@ int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& e
   if (!found.ok()) return Fail(found, summary.end == LearnEnd::kRefused ? kBadInput : kFailed);
   if (!args.quiet) PrintSummary(summary, study, options.folder);
   if (summary.end == LearnEnd::kInterrupted) {
-    fmt::print(stderr, "interrupted; the same command goes on from here\n");
+    fmt::print(stderr, "interrupted; run the same command again to resume\n");
     return kInterrupted;
   }
   return summary.best ? kOk : kFailed;
@@ -122,7 +122,7 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   if (!agree) {
     found.Error("cluster.different_studies", {args.path},
                 "the processes of the cluster have read different studies",
-                "does every machine see the same files, and the same taut?");
+                "give all machines the same files and the same version of taut");
     return Fail(found, kFailed);
   }
   return SearchAlone(*study, args, *cluster->Spread(*local, &interrupt_asked));
@@ -141,34 +141,36 @@ int Run(const LearnArguments& args) {
 
 void AddLearn(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<LearnArguments>();
-  CLI::App* learn = app.add_subcommand(
-      "learn", "Search for the numbers of a controller, gait or model that score best.");
+  CLI::App* learn =
+      app.add_subcommand("learn", "Search for the best parameters of a controller, gait or model.");
   AddInput(*learn, "study", args->path,
-           "Study file (YAML); for --best and --top a study's folder, for --parameters an "
-           "experiment")
+           "Study file (YAML); with --best and --top: folder of a study; with --parameters: "
+           "experiment file")
       ->required();
   learn->add_option("--set", args->set, "Parameter of the study, experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
-  learn->add_option("--out", args->out, "Folder to write into (default: runs/<study>)")
+  learn->add_option("--out", args->out, "Output folder (default: runs/<study>)")
       ->option_text("FOLDER");
-  learn->add_option("--threads", args->threads, "Threads, 0: one a core (default; 1 under mpirun)")
+  learn
+      ->add_option("--threads", args->threads,
+                   "Number of threads; 0: one per core (default: 0; 1 under mpirun)")
       ->option_text("N")
       ->check(WholeNumberWithin(0, 1024));
-  auto* best = learn->add_flag("--best", args->best,
-                               "Replay the best of a folder: trace, summary, report in best/");
-  auto* top = learn->add_option("--top", args->top, "List the best N of a folder")
+  auto* best =
+      learn->add_flag("--best", args->best,
+                      "Replay the best evaluation of a folder: trace, summary and report in best/");
+  auto* top = learn->add_option("--top", args->top, "List the best N evaluations of a folder")
                   ->option_text("N")
                   ->check(WholeNumberWithin(1, 1'000'000));
   auto* parameters = learn->add_flag("--parameters", args->parameters,
-                                     "List all that a study of an experiment can vary");
+                                     "List all parameters that a study of an experiment can vary");
   learn->add_flag("--json", args->json, "With --top: JSON instead of a table")->needs(top);
   learn
       ->add_flag("--skip_damaged", args->skip_damaged,
-                 "Where records of the folder are damaged: use the others; a search does these "
-                 "again")
+                 "Ignore damaged records of the folder; a search evaluates them again")
       ->excludes(parameters);
-  learn->add_flag("--quiet", args->quiet, "No progress and no summary");
+  learn->add_flag("--quiet", args->quiet, "No progress, no summary");
   learn->add_flag("--strict", args->strict, kStrictHelp);
   best->excludes(top)->excludes(parameters);
   top->excludes(parameters);
@@ -178,7 +180,7 @@ void AddLearn(CLI::App& app, int& exit_code) {
       "  taut learn --top 10 runs/sidewinder3\n"
       "  taut learn --best runs/sidewinder3\n"
       "  taut learn --parameters experiments/push_20n.yaml\n"
-      "Stopped by Ctrl-C or killed, the same command goes on where it was, to the same result.");
+      "After an interruption (Ctrl-C, kill) the same command resumes, with the same result.");
   learn->callback([args, &exit_code] { exit_code = Run(*args); });
 }
 

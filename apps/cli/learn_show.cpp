@@ -9,7 +9,7 @@
 
 #include "apps/viewer/report.h"
 #include "output.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/learn.h"
 #include "taut/summary.h"
 #include "taut/version.h"
@@ -98,13 +98,13 @@ int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
   if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
     if (study->taut_version == kVersion) {
       found.Error("replay.different_state", {folder},
-                  "the replay ends in another state than the logged run",
-                  "another build of taut can give other numbers");
+                  "the replay ends in a different state than the logged run",
+                  "results can differ between builds of taut");
     } else {
       found.Warning("replay.different_state", {folder},
-                    fmt::format("the replay ends in another state than the run of taut {}",
+                    fmt::format("the replay ends in a different state than the run of taut {}",
                                 study->taut_version),
-                    fmt::format("numbers of taut {} differ, see CHANGELOG.md", kVersion));
+                    fmt::format("results of taut {} differ, see CHANGELOG.md", kVersion));
     }
   }
   return Pass(found, false) ? kOk : Fail(found, kFailed);
@@ -126,8 +126,8 @@ int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json)
   std::size_t failed = 0;
   for (const Evaluation& evaluation : study->evaluations) failed += !evaluation.failed.empty();
   fmt::print("{}: {} evaluations, {} failed\n\n", study->name, study->evaluations.size(), failed);
-  fmt::print("{:>10} {:>12} {:>11} {:>9} {:>9} {:>14} {:>6}\n", "evaluation", "score", "distance_m",
-             "along_m", "energy_j", "max_tension_n", "fell");
+  fmt::print("{:>10} {:>12} {:>12} {:>9} {:>10} {:>15} {:>6}\n", "evaluation", "score",
+             "distance [m]", "along [m]", "energy [J]", "max tension [N]", "falls");
   for (const Evaluation* evaluation : top) {
     double distance = 0, along = 0, energy = 0, tension = 0;
     int fell = 0;
@@ -139,12 +139,13 @@ int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json)
       tension = std::max(tension, w.max_tension_n);
       fell += w.fell_s.has_value();
     }
-    fmt::print("{:>10} {:>12.6g} {:>11.4f} {:>9.4f} {:>9.3f} {:>14.2f} {:>6}\n", evaluation->id,
+    fmt::print("{:>10} {:>12.6g} {:>12.4f} {:>9.4f} {:>10.3f} {:>15.2f} {:>6}\n", evaluation->id,
                evaluation->score, distance, along, energy, tension, fell);
   }
   if (!top.empty() && top[0]->worlds.size() > 1) {
-    fmt::print("\nmeans of {} worlds; max_tension_n: of all; fell: how many\n",
-               top[0]->worlds.size());
+    fmt::print(
+        "\nmeans of {} worlds; max tension: largest of all worlds; falls: number of worlds\n",
+        top[0]->worlds.size());
   }
   return kOk;
 }

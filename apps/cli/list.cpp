@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
-#include "shipped.h"
+#include "shipped_inputs.h"
 
 namespace taut::cli {
 namespace {
@@ -44,8 +44,8 @@ int List(const ListArguments& args) {
   if (!found.ok()) return Fail(found, kBadInput);
   if (files.empty()) {
     fmt::print(stderr,
-               "error: the files that come with taut are not there (cmake --install puts them "
-               "into share/taut beside the command's folder)\n");
+               "error: the shipped files are missing (cmake --install installs them in share/taut, "
+               "next to the folder of the command)\n");
     return kFailed;
   }
   if (!args.json) {
@@ -67,8 +67,8 @@ int List(const ListArguments& args) {
 
 void AddList(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ListArguments>();
-  CLI::App* list = app.add_subcommand(
-      "list", "List the models, experiments, gaits, studies and fits that come along.");
+  CLI::App* list =
+      app.add_subcommand("list", "List the shipped models, experiments, gaits, studies and fits.");
   list->add_option("kind", args->kind, "models, experiments, gaits, studies or fits (default: all)")
       ->option_text(Alternatives(ShippedKinds()))
       ->check(OneOf(ShippedKinds()));
@@ -77,7 +77,7 @@ void AddList(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  taut list\n"
       "  taut list experiments --json\n"
-      "`taut new` writes a file of your own to start from.");
+      "`taut new` writes a template for a new file.");
   list->callback([args, &exit_code] { exit_code = List(*args); });
 }
 

@@ -12,10 +12,11 @@
 #include <string_view>
 #include <system_error>
 #include <typeinfo>
+#include <vector>
 
 #include "command_text.h"
 #include "commands.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/version.h"
 #include "usage.h"
 
@@ -24,10 +25,36 @@ namespace {
 
 const std::string kVersionText = std::string("taut ") + kVersion;
 
+struct CommandGroup {
+  const char* title;
+  std::vector<void (*)(CLI::App& app, int& exit_code)> commands;
+};
+
+/// Commands in the order of the help texts: the first group is the path of a beginner.
+const std::vector<CommandGroup> kGroups{
+    {"First steps", {AddNew, AddCheck, AddView, AddRun, AddReport}},
+    {"Analysis and optimization", {AddCompare, AddFit, AddAnalyze, AddLearn, AddSize}},
+    {"Files and other programs", {AddList, AddGait, AddExport, AddImport, AddTrace, AddSchema}},
+    {"Hardware and help", {AddRobot, AddHelp}}};
+
+std::vector<CLI::App*> AllSubcommands(CLI::App& app) {
+  return app.get_subcommands([](CLI::App*) { return true; });
+}
+
+void AddCommands(CLI::App& app, int& exit_code) {
+  for (const CommandGroup& group : kGroups) {
+    for (const auto add : group.commands) {
+      add(app, exit_code);
+      AllSubcommands(app).back()->group(group.title);
+    }
+  }
+}
+
 /// Sets options of all commands and subcommands: `--version` everywhere (listed in the help text of
 /// `taut` only), and no value for flags that take none (CLI11 reads `--csv=3` as yes).
 void SetUpCommands(CLI::App& app) {
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+  for (CLI::App* command : AllSubcommands(app)) {
+    if (app.get_parent() != nullptr) command->group("Commands");
     command->set_version_flag("-V,--version", kVersionText)->group("");
     for (CLI::Option* option : command->get_options()) {
       if (option->get_expected_max() == 0) option->disable_flag_override();
@@ -48,38 +75,22 @@ void SetUpCommands(CLI::App& app) {
 
 int Run(int argc, char** argv) {
   CLI::App app{
-      "taut simulates tensegrity robots: describe, simulate, control, learn, compare with "
-      "measurements.",
+      "taut simulates tensegrity robots: check, view and run models; compare, fit, analyze and "
+      "learn.",
       "taut"};
-  app.set_help_flag("-h,--help", "Print this and end");
-  app.set_version_flag("-V,--version", kVersionText, "Print the version and end");
+  app.set_help_flag("-h,--help", "Print this help and exit");
+  app.set_version_flag("-V,--version", kVersionText, "Print the version and exit");
   app.footer(
       "Examples:\n"
-      "  taut check models/tetraspine3.yaml\n"
-      "  taut run experiments/push_20n.yaml --csv\n"
-      "  taut compare simulated.h5 measured.csv\n"
-      "  taut view experiments/push_20n.yaml\n"
-      "`taut help COMMAND` tells more.\n"
-      "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input, 130 interrupted.");
+      "  taut new model my_robot\n"
+      "  taut check my_robot.yaml\n"
+      "  taut view my_robot.yaml\n"
+      "  taut run experiments/push_20n.yaml\n"
+      "  taut report runs/push_20n\n"
+      "Help on a command: `taut help COMMAND`\n"
+      "Exit status: 0 success, 1 failure, 2 bad usage, 3 bad input, 130 interrupted.");
   int exit_code = kOk;
-  AddAnalyze(app, exit_code);
-  AddCheck(app, exit_code);
-  AddRun(app, exit_code);
-  AddCompare(app, exit_code);
-  AddExport(app, exit_code);
-  AddFit(app, exit_code);
-  AddGait(app, exit_code);
-  AddImport(app, exit_code);
-  AddLearn(app, exit_code);
-  AddList(app, exit_code);
-  AddNew(app, exit_code);
-  AddReport(app, exit_code);
-  AddRobot(app, exit_code);
-  AddSchema(app, exit_code);
-  AddSize(app, exit_code);
-  AddTrace(app, exit_code);
-  AddView(app, exit_code);
-  AddHelp(app, exit_code);
+  AddCommands(app, exit_code);
   SetUpCommands(app);
   if (argc <= 1) {
     fmt::print("{}", OverviewText(Describe(app)));

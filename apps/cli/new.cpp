@@ -10,8 +10,8 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
-#include "shipped.h"
-#include "streams.h"
+#include "shipped_inputs.h"
+#include "standard_streams.h"
 #include "templates.h"
 
 namespace taut::cli {
@@ -38,11 +38,11 @@ std::string Schema(const std::string& kind) {
 std::string Text(const NewArguments& args, std::string& next) {
   const std::string schema = Schema(args.kind);
   if (args.kind == "model") {
-    next = "check";
+    next = "view";
     return NewModel(args.name, schema);
   }
   if (args.kind == "experiment") {
-    next = "run";
+    next = "view";
     return NewExperiment(args.name, schema,
                          args.model.empty() ? Shipped("models", "prism3.yaml") : args.model);
   }
@@ -52,19 +52,21 @@ std::string Text(const NewArguments& args, std::string& next) {
 
 int New(const NewArguments& args) {
   if (!args.model.empty() && args.kind != "experiment") {
-    fmt::print(stderr, "error: --model goes with an experiment only\n");
+    fmt::print(stderr, "error: --model needs an experiment\n");
     return kUsage;
   }
   OutputIsNews();
   const std::string path = args.name + ".yaml";
   std::error_code failed;
   if (std::filesystem::exists(std::filesystem::symlink_status(path, failed))) {
-    fmt::print(stderr, "{}: error: is there already (nothing is overwritten)\n", path);
+    fmt::print(stderr, "{}: error: the file exists already, and is not overwritten\n", path);
     return kFailed;
   }
   std::string next;
   const int exit = WriteNamed(path, Text(args, next));
-  if (exit == kOk) fmt::print("{0}; next: taut {1} {0}\n", path, next);
+  if (exit != kOk) return exit;
+  fmt::print("Written: {}\n", path);
+  SayNext({next, path});
   return exit;
 }
 
@@ -73,23 +75,24 @@ int New(const NewArguments& args) {
 void AddNew(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<NewArguments>();
   CLI::App* create =
-      app.add_subcommand("new", "Write a model, an experiment or a study to start from.");
+      app.add_subcommand("new", "Write a template of a model, an experiment or a study.");
   create->add_option("kind", args->kind, "model, experiment or study")
       ->required()
       ->option_text(Alternatives(kKinds))
       ->check(OneOf(kKinds));
-  create->add_option("name", args->name, "Its name; the file is NAME.yaml in this folder")
+  create->add_option("name", args->name, "Name; the file is NAME.yaml in the current folder")
       ->required()
       ->option_text("NAME")
       ->check(CheckName);
-  AddInput(*create, "--model", args->model, "Of an experiment: the robot's model file")
+  AddInput(*create, "--model", args->model,
+           "Model file of an experiment's robot (default: the shipped prism)")
       ->option_text("FILE");
   create->footer(
       "Examples:\n"
       "  taut new model my_robot\n"
       "  taut new experiment my_test --model my_robot.yaml\n"
       "  taut new study my_search\n"
-      "The files have comments and run as they are. `taut gait create` makes gaits.");
+      "The templates have comments and run unchanged. `taut gait create` writes gaits.");
   create->callback([args, &exit_code] { exit_code = New(*args); });
 }
 

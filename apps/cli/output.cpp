@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,21 @@
 #include "taut/trace.h"
 
 namespace taut::cli {
+namespace {
+
+/// Quotes a word for shells if it contains special characters.
+std::string ShellWord(const std::string& word) {
+  const bool plain = std::all_of(word.begin(), word.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("-_./:=+,@%").find(c) != std::string_view::npos;
+  });
+  if (plain && !word.empty()) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
 
 int Fail(const Diagnostics& found, Exit exit) {
   fmt::print(stderr, "{}", found.Format());
@@ -39,6 +56,12 @@ int WriteOrPrint(const std::string& path, const std::string& text) {
   if (!path.empty()) return WriteNamed(path, text);
   fmt::print("{}", text);
   return kOk;
+}
+
+void SayNext(const std::vector<std::string>& words) {
+  std::string line = "next: taut";
+  for (const std::string& word : words) line += " " + ShellWord(word);
+  fmt::print("{}\n", Printable(line));
 }
 
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,

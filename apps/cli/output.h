@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "taut/run.h"
@@ -22,13 +23,17 @@ bool Pass(Diagnostics& found, bool strict);
 bool Passes(Diagnostics& found, bool strict);
 
 /// Help text of `--strict`.
-inline constexpr const char* kStrictHelp = "Warnings about files are errors";
+inline constexpr const char* kStrictHelp = "Warnings are errors";
 
 /// Writes a file whose path the user gave. Reports errors on stderr, returns the exit status.
 int WriteNamed(const std::string& path, const std::string& text);
 
 /// Same as `WriteNamed`, but prints to standard output if the path is empty.
 int WriteOrPrint(const std::string& path, const std::string& text);
+
+/// Prints the usual next command, as the last line of a command's output:
+/// `next: taut view runs/hang`.
+void SayNext(const std::vector<std::string>& words);
 
 /// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` contain no
 /// traces; their `begin` may refuse the run before warnings about the start are printed. `more`:

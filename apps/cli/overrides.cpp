@@ -58,7 +58,7 @@ std::string Alternatives(const std::vector<std::string>& words) {
 
 std::string CheckName(const std::string& text) {
   if (IsName(text)) return {};
-  return fmt::format("\"{}\" cannot be a name: letters, digits, _ and -", text);
+  return fmt::format("\"{}\" is not a valid name (expected letters, digits, _ or -)", text);
 }
 
 }  // namespace taut::cli

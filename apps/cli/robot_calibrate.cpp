@@ -12,7 +12,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
-#include "robot.h"
+#include "robot_command.h"
 #include "taut/files.h"
 
 namespace taut::cli {
@@ -42,7 +42,7 @@ bool WaitForPerson(const std::string& text) {
 }
 
 /// Reads the load cell [counts]. Returns false after an interrupt or if the board is gone.
-bool ReadLoadCell(RobotDesk& desk, int motor, Mean& out) {
+bool ReadLoadCell(RobotConsole& desk, int motor, Mean& out) {
   const link::MotorFigures& figures = desk.driver().figures(motor);
   std::vector<double> counts;
   const double until_s = desk.driver().port().now_s() + kPatience_s;
@@ -83,7 +83,8 @@ std::string Today() {
 
 /// Merges the measurement into the calibration file; values of other cables, and other values of
 /// this cable, are kept.
-int Keep(const CalibrateArguments& args, const RobotDesk& desk, const CableCalibration& measured) {
+int Keep(const CalibrateArguments& args, const RobotConsole& desk,
+         const CableCalibration& measured) {
   Diagnostics found;
   Calibration all;
   if (std::filesystem::exists(args.out)) {
@@ -110,7 +111,7 @@ int Keep(const CalibrateArguments& args, const RobotDesk& desk, const CableCalib
   return kOk;
 }
 
-std::optional<int> FindMotor(const RobotDesk& desk, const std::string& cable) {
+std::optional<int> FindMotor(const RobotConsole& desk, const std::string& cable) {
   Diagnostics found;
   const auto motor = desk.MotorOf(cable, found);
   fmt::print(stderr, "{}", found.Format());
@@ -125,7 +126,7 @@ int LoadCell(const CalibrateArguments& args) {
     return kUsage;
   }
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   const auto motor = FindMotor(*desk, args.cable);
   if (!motor) return kBadInput;
@@ -151,8 +152,8 @@ int LoadCell(const CalibrateArguments& args) {
   const double gain = (n * xy - x * y) / spread;
   if (!(spread > 1.0) || !(gain > 0)) {
     fmt::print(stderr,
-               "error: the readings do not rise with the force: is it this cable's cell, and wired "
-               "the right way round?\n");
+               "error: the readings do not rise with the force (check the polarity of the load "
+               "cell, and that it belongs to this cable)\n");
     return kFailed;
   }
   const double zero = (x - y / gain) / n;
@@ -160,11 +161,11 @@ int LoadCell(const CalibrateArguments& args) {
   for (const auto& [counts, force_n] : points) {
     worst_n = std::max(worst_n, std::abs(gain * (counts - zero) - force_n));
   }
-  fmt::print("{:.5g} N a count, {:.2f} counts at zero; at most {:.2f} N off the line\n", gain, zero,
+  fmt::print("{:.5g} N per count, {:.2f} counts at zero; largest deviation {:.2f} N\n", gain, zero,
              worst_n);
   CableCalibration measured{
       args.cable, Today(),
-      fmt::format("Load cell: {} forces, {:.2f} N off at most.", points.size(), worst_n)};
+      fmt::format("Load cell: {} forces, largest deviation {:.2f} N.", points.size(), worst_n)};
   measured.load_cell_n_per_count = gain;
   measured.load_cell_counts_at_zero = zero;
   return Keep(args, *desk, measured);
@@ -172,7 +173,7 @@ int LoadCell(const CalibrateArguments& args) {
 
 int Encoder(const CalibrateArguments& args) {
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   const auto motor = FindMotor(*desk, args.cable);
   if (!motor) return kBadInput;
@@ -180,60 +181,59 @@ int Encoder(const CalibrateArguments& args) {
     desk->driver().Cycle(3);
     return desk->driver().state().motors[static_cast<std::size_t>(*motor)].encoder_counts;
   };
-  if (!WaitForPerson(fmt::format("Mark the cable {} where it enters.", args.cable))) return kFailed;
+  if (!WaitForPerson(fmt::format("Mark cable {} at its inlet.", args.cable))) return kFailed;
   const auto before = counts();
   // The board counts in 16 bits: the driver must follow the count to unwrap it.
-  if (!WaitForPerson(
-          fmt::format("Wind in {:g} m by hand, within what 32 767 counts are.", args.way_m))) {
+  if (!WaitForPerson(fmt::format("Wind in {:g} m by hand, at most 32 767 counts.", args.way_m))) {
     return kFailed;
   }
   const auto wound = counts() - before;
   if (wound <= 10) {
     fmt::print(stderr,
-               "error: {} counts: winding in has to count up by many (are A and B the right way "
-               "round?)\n",
+               "error: winding in changed the encoder by {} counts, expected more than 10 (check "
+               "the order of A and B)\n",
                wound);
     return kFailed;
   }
   CableCalibration measured{args.cable, Today(),
                             fmt::format("Encoder: {} counts over {:g} m.", wound, args.way_m)};
   measured.encoder_m_per_count = args.way_m / static_cast<double>(wound);
-  fmt::print("{} counts: {:.4g} m a count\n", wound, *measured.encoder_m_per_count);
+  fmt::print("{} counts: {:.4g} m per count\n", wound, *measured.encoder_m_per_count);
   return Keep(args, *desk, measured);
 }
 
 void AddCommon(CLI::App& command, CalibrateArguments& args) {
-  command.add_option("cable", args.cable, "Which cable, by its name")->required();
+  command.add_option("cable", args.cable, "Name of the cable")->required();
   AddPort(command, args);
   AddModel(command, args);
   command
       .add_option("--out", args.out,
-                  "Calibration file to write, or to add to (default: calibration.yaml)")
+                  "Calibration file to write or extend (default: calibration.yaml)")
       ->option_text("FILE");
 }
 
 }  // namespace
 
 void AddRobotCalibrate(CLI::App& robot, int& exit_code) {
-  CLI::App* calibrate = robot.add_subcommand(
-      "calibrate", "Find out what counts of load cells and encoders are worth.");
+  CLI::App* calibrate = robot.add_subcommand("calibrate", "Calibrate load cells and encoders.");
   calibrate->require_subcommand(1);
   auto cell_args = std::make_shared<CalibrateArguments>();
-  CLI::App* cell =
-      calibrate->add_subcommand("load_cell", "From two or more forces that somebody hangs on it.");
+  CLI::App* cell = calibrate->add_subcommand(
+      "load_cell", "Calibrate a load cell with two or more forces that you hang on the cable.");
   AddCommon(*cell, *cell_args);
-  cell->add_option("--force_n", cell_args->forces_n, "Forces [N], in the order of the questions")
+  cell->add_option("--force_n", cell_args->forces_n, "Forces [N], in the order of the prompts")
       ->required()
       ->option_text("N ...")
       ->check(NumberWithin(0.0, 150.0));
   cell->footer(
-      "Examples:\n  taut robot calibrate load_cell outer_top_1 --force_n 0 9.81 19.62\n"
-      "Motors are off. It asks for each force, reads for a second, fits a line and writes the "
-      "file.");
+      "Examples:\n"
+      "  taut robot calibrate load_cell outer_top_1 --force_n 0 9.81 19.62\n"
+      "Motors are off. The command prompts for each force, reads for 1 s, fits a line and writes "
+      "the file.");
   cell->callback([cell_args, &exit_code] { exit_code = LoadCell(*cell_args); });
   auto encoder_args = std::make_shared<CalibrateArguments>();
-  CLI::App* encoder =
-      calibrate->add_subcommand("encoder", "From a length of cable that somebody winds in.");
+  CLI::App* encoder = calibrate->add_subcommand(
+      "encoder", "Calibrate an encoder with a length of cable that you wind in.");
   AddCommon(*encoder, *encoder_args);
   encoder->add_option("--way_m", encoder_args->way_m, "Length to wind in [m]")
       ->required()

@@ -8,7 +8,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot.h"
+#include "robot_command.h"
 #include "taut/shipped.h"
 
 namespace taut::cli {
@@ -48,13 +48,14 @@ int Flash(const FlashArguments& args) {
   const std::string hex = HexPath(args);
   std::error_code error;
   if (hex.empty() || !fs::is_regular_file(hex, error)) {
-    found.Error("firmware.unknown", {hex.empty() ? "firmware" : hex}, "there is no such firmware",
-                "it is built where avr-g++ is (docs/hardware/firmware.md), or --hex names one");
+    found.Error("firmware.unknown", {hex.empty() ? "firmware" : hex},
+                "the firmware file is missing",
+                "build it with avr-g++ (docs/hardware/firmware.md), or name a file with --hex");
     return Fail(found, kBadInput);
   }
   if (args.fuses && args.programmer == "arduino") {
     found.Error("firmware.bootloader_sets_no_fuses", {}, "a bootloader cannot set fuses",
-                "--programmer usbasp or the like");
+                "use a programmer, such as --programmer usbasp");
     return Fail(found, kBadInput);
   }
   std::vector<std::string> words = Words(args, hex);
@@ -73,18 +74,18 @@ int Flash(const FlashArguments& args) {
   }
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) {
-    found.Error("firmware.avrdude_failed", {}, "avrdude did not end well");
+    found.Error("firmware.avrdude_failed", {}, "avrdude was killed or did not start");
   } else if (WEXITSTATUS(status) == 127) {
-    found.Error("firmware.avrdude_missing", {}, "there is no avrdude",
-                "Debian's package avrdude has it");
+    found.Error("firmware.avrdude_missing", {}, "the program avrdude is missing",
+                "install the package avrdude");
   } else if (WEXITSTATUS(status) != 0) {
     found.Error("firmware.avrdude_failed", {},
-                fmt::format("avrdude failed with {}", WEXITSTATUS(status)),
-                "is it this port, and does nobody else have it open?");
+                fmt::format("avrdude failed with exit status {}", WEXITSTATUS(status)),
+                "check the port, and close other programs that use it");
   }
   if (!found.ok()) return Fail(found, kFailed);
-  fmt::print("Board {} has the firmware. `taut robot scan` should show it at 0x{:02x}.\n",
-             args.board, board::BoardAddress(static_cast<std::uint8_t>(args.board)));
+  fmt::print("Firmware written to board {}. `taut robot scan` lists it at 0x{:02x}.\n", args.board,
+             board::BoardAddress(static_cast<std::uint8_t>(args.board)));
   return kOk;
 }
 
@@ -93,26 +94,30 @@ int Flash(const FlashArguments& args) {
 void AddRobotFlash(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<FlashArguments>();
   CLI::App* flash = robot.add_subcommand(
-      "flash", "Bring the firmware and its number to a board, by avrdude over its own USB.");
+      "flash", "Write firmware and board number to a board, by avrdude over the board's USB.");
   flash->add_option("--board", args->board, "Number of the board, 0 to 5")
       ->required()
       ->option_text("N")
       ->check(WholeNumberWithin(0, board::kBoards - 1));
   flash
       ->add_option("--port", args->port,
-                   "Serial port of the board itself, not the adapter's (default: /dev/ttyUSB0)")
+                   "Serial port of the board, not of the adapter (default: /dev/ttyUSB0)")
       ->option_text("PORT");
-  flash->add_option("--hex", args->hex, "Program (default: that of taut)")->option_text("FILE");
+  flash->add_option("--hex", args->hex, "Firmware file (default: shipped with taut)")
+      ->option_text("FILE");
   flash
       ->add_option("--programmer", args->programmer,
                    "avrdude's name of the programmer (default: arduino, the bootloader)")
       ->option_text("NAME");
-  flash->add_option("--baud", args->baud, "Of the bootloader (default: 57600; new ones: 115200)")
+  flash
+      ->add_option("--baud", args->baud,
+                   "Baud rate of the bootloader (default: 57600; new ones: 115200)")
       ->option_text("N")
       ->check(WholeNumberWithin(1200, 1'000'000));
-  flash->add_flag("--fuses", args->fuses, "Brown-out detection at 4.3 V; not by a bootloader");
-  flash->add_flag("--keep_identity", args->keep_identity, "Leave the EEPROM as it is");
-  flash->add_flag("--dry_run,--dry-run", args->dry_run, "Only print what avrdude would be told");
+  flash->add_flag("--fuses", args->fuses,
+                  "Set brown-out detection at 4.3 V; not possible with a bootloader");
+  flash->add_flag("--keep_identity", args->keep_identity, "Leave the EEPROM unchanged");
+  flash->add_flag("--dry_run,--dry-run", args->dry_run, "Print the avrdude command only");
   flash->footer(
       "Examples:\n  taut robot flash --board 0 --port /dev/ttyUSB0\n"
       "  taut robot flash --board 3 --programmer usbasp --port usb --fuses --dry_run\n"

@@ -6,7 +6,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot.h"
+#include "robot_command.h"
 #include "robot_recording.h"
 #include "taut/run_folder.h"
 #include "taut/version.h"
@@ -33,7 +33,7 @@ void ShowLine(const link::State& state, double since_s) {
     least = std::min(least, motor.tension_n);
     duty = std::max(duty, std::abs(motor.duty));
   }
-  fmt::print("{:7.1f} s  {}  {:.1f} to {:.1f} N  duty to {:.2f}  cycle {:.1f} ms, {} late\n",
+  fmt::print("{:7.1f} s  {}  {:.1f} to {:.1f} N  duty up to {:.2f}  cycle {:.1f} ms, {} late\n",
              since_s, link::ModeName(state.commanded), least, most, duty,
              state.link.mean_cycle_s * 1e3, state.link.late_cycles);
   std::fflush(stdout);
@@ -41,11 +41,11 @@ void ShowLine(const link::State& state, double since_s) {
 
 int Hold(const HoldArguments& args) {
   if (args.dry_run) {
-    fmt::print("would give power to all motors of {} and hold them where they are\n", args.port);
+    fmt::print("would turn on all motors of {} and hold their positions\n", args.port);
     return kOk;
   }
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   Diagnostics found;
   if (!desk->driver().Enable(board::Mode::kHold, false, found)) return Fail(found, kFailed);
@@ -73,7 +73,7 @@ int Release(const RobotArguments& args) {
     return kOk;
   }
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   link::Driver& driver = desk->driver();
   const link::PowerReport power = link::TurnOff(driver, kHoldConfirm_s);
@@ -116,7 +116,7 @@ int StopDirectly(const std::string& device, int boards) {
     return kOk;
   }
   fmt::print(stderr, "error: {} of {} boards have stopped{}: cut the motors' supply\n", stopped,
-             boards, heard ? "" : "; nobody acknowledged");
+             boards, heard ? "" : "; no acknowledgment");
   return kFailed;
 }
 
@@ -150,7 +150,7 @@ int Log(const HoldArguments& args) {
   const auto folder = RunFolder::Open(args.out, {"events.jsonl"}, found);
   if (!folder) return Fail(found, kFailed);
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   if (!folder->Begin(found)) return Fail(found, kFailed);
   const std::string trace = folder->Path("trace.h5");
@@ -166,7 +166,7 @@ int Log(const HoldArguments& args) {
   recording->BeginAt(begun_s);
   desk->on_cycle = [&](const link::State& state) { recording->Take(state); };
   desk->on_event = [&](double time_s, const std::string& text) { recording->Event(time_s, text); };
-  if (!args.quiet) fmt::print("Nothing is commanded. Ctrl-C ends it.\n");
+  if (!args.quiet) fmt::print("Recording, without commands. Ctrl-C ends it.\n");
   double shown_s = begun_s;
   desk->RunWhile([&] {
     const link::State& state = driver.state();
@@ -184,7 +184,7 @@ int Log(const HoldArguments& args) {
 }
 
 void AddDuration(CLI::App& command, HoldArguments& args) {
-  command.add_option("--duration_s", args.duration_s, "How long (default: until Ctrl-C)")
+  command.add_option("--duration_s", args.duration_s, "Duration [s] (default: until Ctrl-C)")
       ->option_text("S")
       ->check(NumberWithin(0.0, 1e9));
 }
@@ -193,26 +193,28 @@ void AddDuration(CLI::App& command, HoldArguments& args) {
 
 void AddRobotHold(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<HoldArguments>();
-  CLI::App* hold = robot.add_subcommand("hold", "Give motors power and hold them where they are.");
+  CLI::App* hold = robot.add_subcommand("hold", "Turn motors on and hold their positions.");
   AddPort(*hold, *args);
   AddModel(*hold, *args);
   AddDriving(*hold, *args);
   AddDuration(*hold, *args);
-  hold->add_flag("--quiet", args->quiet, "Only what goes wrong");
+  hold->add_flag("--quiet", args->quiet, "Print problems only");
   hold->footer(
-      "Examples:\n  taut robot hold\n  taut robot hold --port virtual --duration_s 5\n"
-      "At its end, Ctrl-C included, motors are turned off.");
+      "Examples:\n"
+      "  taut robot hold\n"
+      "  taut robot hold --port virtual --duration_s 5\n"
+      "At the end, also by Ctrl-C, the motors are turned off.");
   hold->callback([args, &exit_code] { exit_code = Hold(*args); });
 }
 
 void AddRobotRelease(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<RobotArguments>();
   CLI::App* release = robot.add_subcommand(
-      "release", "Turn motors off that hold since nobody drives them: they coast.");
+      "release", "Turn off motors that still hold without a driving program; they coast.");
   AddPort(*release, *args);
   AddModel(*release, *args);
-  release->add_flag("--dry_run,--dry-run", args->dry_run, "Only say what would be done");
-  release->add_flag("--quiet", args->quiet, "Only what goes wrong");
+  release->add_flag("--dry_run,--dry-run", args->dry_run, "Print the planned actions only");
+  release->add_flag("--quiet", args->quiet, "Print problems only");
   release->footer("Examples:\n  taut robot release\n  taut robot release --port /tmp/robot");
   release->callback([args, &exit_code] { exit_code = Release(*args); });
 }
@@ -220,30 +222,34 @@ void AddRobotRelease(CLI::App& robot, int& exit_code) {
 void AddRobotEstop(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<RobotArguments>();
   auto boards = std::make_shared<int>(board::kBoards);
-  CLI::App* estop = robot.add_subcommand(
-      "estop", "Emergency stop: all motors off, whoever drives them, from any terminal.");
+  CLI::App* estop = robot.add_subcommand("estop",
+                                         "Stop all motors (emergency stop) from any terminal, also "
+                                         "while another program drives them.");
   AddPort(*estop, *args);
-  estop->add_option("--boards", *boards, "How many must answer (default: 6)")
+  estop->add_option("--boards", *boards, "Number of boards that must answer (default: 6)")
       ->option_text("N")
       ->check(WholeNumberWithin(1, board::kBoards));
   estop->footer(
-      "Examples:\n  taut robot estop\n  taut robot estop --port virtual\n"
-      "Motors stay off until faults are cleared. It is no replacement for a switch in the motors'\n"
+      "Examples:\n"
+      "  taut robot estop\n"
+      "  taut robot estop --port virtual\n"
+      "Motors stay off until faults are cleared. This command does not replace a switch in the "
+      "motors'\n"
       "supply.\n"
-      "Exit status: 0 if all have stopped, else 1.");
+      "Exit status: 0 if all boards have stopped, else 1.");
   estop->callback([args, boards, &exit_code] { exit_code = Estop(*args, *boards); });
 }
 
 void AddRobotLog(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<HoldArguments>();
-  CLI::App* log =
-      robot.add_subcommand("log", "Record what boards sense, a row a cycle, and command nothing.");
+  CLI::App* log = robot.add_subcommand(
+      "log", "Record the sensors of the boards, one row per cycle, without commands.");
   AddPort(*log, *args);
   AddModel(*log, *args);
   AddDuration(*log, *args);
-  log->add_option("--out", args->out, "Folder to write into (default: runs/robot_log)")
+  log->add_option("--out", args->out, "Output folder (default: runs/robot_log)")
       ->option_text("FOLDER");
-  log->add_flag("--quiet", args->quiet, "Only what goes wrong");
+  log->add_flag("--quiet", args->quiet, "Print problems only");
   log->footer(
       "Examples:\n  taut robot log --duration_s 60 --out runs/by_hand\n"
       "  taut view runs/by_hand/trace.h5");

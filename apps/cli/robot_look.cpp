@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "output.h"
-#include "robot.h"
+#include "robot_command.h"
 
 namespace taut::cli {
 namespace {
@@ -35,7 +35,7 @@ int Scan(const RobotArguments& args) {
   link::UsbIss adapter(*line->port);
   const auto info = adapter.Identify();
   if (!info || !adapter.SetMode()) {
-    found.Error("adapter.no_answer", {device}, "nothing answers as a USB-ISS does");
+    found.Error("adapter.no_answer", {device}, "no USB-ISS adapter answers");
     return Fail(found, kFailed);
   }
   link::Requests requests(adapter);
@@ -67,24 +67,26 @@ int Scan(const RobotArguments& args) {
                            .dump(2));
     return boards > 0 ? kOk : kFailed;
   }
-  fmt::print("{}: USB-ISS {}, its program version {}\n", device, info->serial_number,
+  fmt::print("{}: USB-ISS {}, firmware version {}\n", device, info->serial_number,
              info->firmware_version);
   if (info->firmware_version < 8) {
-    fmt::print(stderr, "warning: before version 8 a board that does not answer holds up the bus\n");
+    fmt::print(
+        stderr,
+        "warning: with firmware before version 8 a board that does not answer blocks the bus\n");
   }
   for (const Found& one : all) {
     if (one.info) {
       fmt::print("0x{:02x}  board {}, firmware {}.{}, boot {}\n", one.address, one.info->board,
                  one.info->firmware_major, one.info->firmware_minor, one.info->nonce);
     } else {
-      fmt::print("0x{:02x}  something that is no board of taut\n", one.address);
+      fmt::print("0x{:02x}  unknown device\n", one.address);
     }
   }
-  if (boards == 0) fmt::print(stderr, "error: no board answers (have they power?)\n");
+  if (boards == 0) fmt::print(stderr, "error: no board answers (check their power supply)\n");
   return boards > 0 ? kOk : kFailed;
 }
 
-Json StatusJson(const RobotDesk& desk, const link::State& state,
+Json StatusJson(const RobotConsole& desk, const link::State& state,
                 const std::vector<link::CounterReport>& counters) {
   Json boards = Json::array(), motors = Json::array();
   for (std::size_t b = 0; b < state.boards.size(); ++b) {
@@ -117,7 +119,7 @@ Json StatusJson(const RobotDesk& desk, const link::State& state,
 
 int Status(const RobotArguments& args) {
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   link::Driver& driver = desk->driver();
   // The status byte with faults and temperatures is multiplexed: its turn is every sixteenth cycle.
@@ -149,18 +151,18 @@ int Status(const RobotArguments& args) {
                  link::FaultText(state, static_cast<int>(b), desk->cables()),
                  board.status.timeout ? "; timed out" : "",
                  board.status.was_reset
-                     ? "; began anew (" + link::ResetCauseNames(board.reset_cause) + ")"
+                     ? "; restarted (" + link::ResetCauseNames(board.reset_cause) + ")"
                      : "");
     }
-    fmt::print("\n{:<20}{:>11}{:>15}{:>10}{:>7}{:>12}\n", "cable", "tension/N", "rest length/m",
-               "encoder", "duty", "winding/degC");
+    fmt::print("\n{:<20}{:>13}{:>17}{:>10}{:>7}{:>16}\n", "cable", "tension [N]", "rest length [m]",
+               "encoder", "duty", "winding [degC]");
     for (std::size_t m = 0; m < state.motors.size(); ++m) {
       const link::MotorView& motor = state.motors[m];
-      fmt::print("{:<20}{:>11.2f}{:>15.4f}{:>10}{:>7.2f}{:>12}\n", desk->cables()[m],
+      fmt::print("{:<20}{:>13.2f}{:>17.4f}{:>10}{:>7.2f}{:>16}\n", desk->cables()[m],
                  motor.tension_n, motor.rest_length_m, motor.encoder_counts, motor.duty,
                  motor.temperature_c);
     }
-    fmt::print("\na cycle takes {:.1f} ms\n", state.link.mean_cycle_s * 1e3);
+    fmt::print("\nmean cycle time: {:.1f} ms\n", state.link.mean_cycle_s * 1e3);
   }
   if (!found.ok()) return Fail(found, kFailed);
   return well ? kOk : kFailed;
@@ -174,21 +176,25 @@ void AddRobotScan(CLI::App& robot, int& exit_code) {
   AddPort(*scan, *args);
   AddJson(*scan, *args);
   scan->footer(
-      "Examples:\n  taut robot scan\n  taut robot scan --port virtual --json\n"
-      "Exit status: 0 if a board answers.");
+      "Examples:\n"
+      "  taut robot scan\n"
+      "  taut robot scan --port virtual --json\n"
+      "Exit status: 0 if a board answers, else 1.");
   scan->callback([args, &exit_code] { exit_code = Scan(*args); });
 }
 
 void AddRobotStatus(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<RobotArguments>();
-  CLI::App* status =
-      robot.add_subcommand("status", "How boards and motors are. What holds goes on holding.");
+  CLI::App* status = robot.add_subcommand(
+      "status", "Show the state of boards and motors; motors that hold keep holding.");
   AddPort(*status, *args);
   AddModel(*status, *args);
   AddJson(*status, *args);
   status->footer(
-      "Examples:\n  taut robot status\n  taut robot status --port virtual --json\n"
-      "Exit status: 0 if all boards are there and well, else 1.");
+      "Examples:\n"
+      "  taut robot status\n"
+      "  taut robot status --port virtual --json\n"
+      "Exit status: 0 if all boards answer without faults, else 1.");
   status->callback([args, &exit_code] { exit_code = Status(*args); });
 }
 

@@ -12,7 +12,7 @@ std::unique_ptr<RobotRecording> RobotRecording::Start(const std::string& trace_p
   if (!recording->trace_) return nullptr;
   recording->trace_ = WriteBehind(std::move(recording->trace_), recording->log_.channels().size());
   if (recording->events_.Create() && recording->events_.Publish()) return recording;
-  out.Error("file.not_writable", {events_path}, "cannot be written: " + recording->events_.why());
+  out.Error("file.not_writable", {events_path}, "cannot write: " + recording->events_.why());
   return nullptr;
 }
 
@@ -29,7 +29,7 @@ void RobotRecording::Event(double time_s, const std::string& text) {
 bool RobotRecording::Finish(Diagnostics& out) {
   if (!trace_->Finish()) out.Error("trace.not_written", {}, trace_->error());
   if (!events_good_ || !events_.Sync()) {
-    out.Error("file.not_writable", {events_.path()}, "cannot be written: " + events_.why());
+    out.Error("file.not_writable", {events_.path()}, "cannot write: " + events_.why());
   }
   return out.ok();
 }

@@ -7,10 +7,10 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot.h"
+#include "robot_command.h"
 #include "robot_recording.h"
 #include "robot_view.h"
-#include "shipped.h"
+#include "shipped_inputs.h"
 #include "taut/run.h"
 #include "taut/run_folder.h"
 #include "taut/summary.h"
@@ -39,11 +39,11 @@ void ShowLink(const link::State& state, std::int64_t rows) {
   const link::LinkView& link = state.link;
   std::int64_t stale = 0;
   for (const link::BoardView& board : state.boards) stale += board.stale_frames;
-  fmt::print("{} cycles in the log ({} of the link); a cycle took {:.2f} ms, at most {:.2f} ms\n",
-             rows, link.cycles, link.mean_cycle_s * 1e3, link.longest_cycle_s * 1e3);
+  fmt::print("cycles: {} in the log, {} of the link; mean {:.2f} ms, longest {:.2f} ms\n", rows,
+             link.cycles, link.mean_cycle_s * 1e3, link.longest_cycle_s * 1e3);
   fmt::print(
-      "begun {:.2f} ms late in the mean, at most {:.2f} ms; {} left out, {} frames bad, {} "
-      "stale, {} transfers without a reply\n",
+      "lateness: mean {:.2f} ms, longest {:.2f} ms; {} late cycles, {} bad frames, {} stale "
+      "frames, {} transfers without a reply\n",
       link.mean_lateness_s * 1e3, link.longest_lateness_s * 1e3, link.late_cycles,
       link::BadFrames(state), stale, link.silent_transfers);
 }
@@ -53,8 +53,8 @@ void SayDryRun(const RunArguments& args, const ExperimentSpec& experiment) {
   const auto mode = link::ModeFor(experiment, found);
   const auto settings = link::SettingsFor(experiment.robot, args.encoder_lines);
   fmt::print(
-      "would set {} parameters on the boards of {}, give power, hold, and run {} for {:g} s "
-      "in mode {}\n",
+      "would set {} parameters on the boards of {}, turn motors on, hold, and run {} for {:g} s in "
+      "mode {}\n",
       settings.size() + link::GainsFor(experiment).size(), args.port, experiment.name,
       experiment.duration_s, mode ? link::ModeName(*mode) : "?");
   for (const link::Setting& setting : link::GainsFor(experiment)) {
@@ -63,7 +63,7 @@ void SayDryRun(const RunArguments& args, const ExperimentSpec& experiment) {
   }
 }
 
-int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& experiment,
+int RunOn(RobotConsole& desk, const RunArguments& args, const ExperimentSpec& experiment,
           RunFolder& folder, Diagnostics& found) {
   link::Driver& driver = desk.driver();
   std::unique_ptr<RobotView> view;
@@ -141,12 +141,13 @@ int RunOn(RobotDesk& desk, const RunArguments& args, const ExperimentSpec& exper
   } else if (!args.quiet) {
     fmt::print("{}\n", SummaryTable(*summary));
     ShowLink(at_end, recording->rows());
-    fmt::print("Trace, every cycle (host.h5), events, inputs and summary: {}\n", args.out);
+    fmt::print("Trace, cycle log (host.h5), events, inputs and summary: {}\n", args.out);
   }
   if (!off) return kFailed;
   if (desk.stop_asked()) return desk.stop_exit();
   if (whole) return kOk;
-  fmt::print(stderr, "error: ended at t = {:.2f} s: events.jsonl says why\n", summary->simulated_s);
+  fmt::print(stderr, "error: the run ended at t = {:.2f} s (see events.jsonl)\n",
+             summary->simulated_s);
   return kFailed;
 }
 
@@ -171,7 +172,7 @@ int Run(RunArguments args) {
   const auto folder = RunFolder::Open(args.out, {"host.h5", "events.jsonl"}, found);
   if (!folder) return Fail(found, kFailed);
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, &*experiment, exit);
+  const auto desk = RobotConsole::Open(args, &*experiment, exit);
   if (!desk) return exit;
   return RunOn(*desk, args, *experiment, *folder, found);
 }
@@ -187,28 +188,30 @@ void AddRobotRun(CLI::App& robot, int& exit_code) {
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
   AddDriving(*run, *args);
-  run->add_option("--duration_s", args->duration_s, "Duration instead of the file's [s]")
+  run->add_option("--duration_s", args->duration_s, "Duration [s] (overrides the file)")
       ->option_text("S")
       ->check(NumberWithin(0.0, 1e9));
-  run->add_option("--out", args->out, "Folder to write into (default: runs/<experiment>_on_robot)")
+  run->add_option("--out", args->out, "Output folder (default: runs/<experiment>_on_robot)")
       ->option_text("FOLDER");
-  auto* view = run->add_flag("--view", args->view, "A page in a browser to watch it, with a stop");
-  run->add_option("--view_port", args->server.port, "Its port (default: 8080; 0: any that is free)")
+  auto* view = run->add_flag("--view", args->view, "Browser page to watch and stop the run");
+  run->add_option("--view_port", args->server.port,
+                  "Port of the page (default: 8080; 0: any free port)")
       ->option_text("N")
       ->check(WholeNumberWithin(0, 65535))
       ->needs(view);
-  run->add_flag("--json", args->json, "The summary as JSON instead of the table");
-  run->add_flag("--quiet", args->quiet, "No progress and no table");
+  run->add_flag("--json", args->json, "Summary as JSON instead of the table");
+  run->add_flag("--quiet", args->quiet, "No progress, no table");
   run->footer(
       "Examples:\n"
       "  taut robot run experiments/push_20n_motors.yaml --port virtual --duration_s 10\n"
       "  taut robot run experiments/cpg_learned_motors.yaml --calibration lab.yaml --clear_faults\n"
       "  taut robot run experiments/push_20n_motors.yaml --port virtual --view\n"
       "  taut compare runs/push_20n_motors/trace.h5 runs/push_20n_motors_on_robot/trace.h5\n"
-      "Impedance control runs on the boards, a gait here. Cables have to be referenced (`taut "
-      "robot\n"
-      "reference`). The trace has what boards sense; forces of the experiment's timeline are for\n"
-      "somebody's hand. At its end, Ctrl-C included, motors are turned off.");
+      "Impedance control runs on the boards, gaits run on this computer. Reference the cables "
+      "first\n"
+      "(`taut robot reference`). The trace contains measurements of the boards; apply the forces "
+      "of the\n"
+      "experiment's timeline by hand. At the end, also by Ctrl-C, the motors are turned off.");
   run->callback([args, &exit_code] { exit_code = Run(*args); });
 }
 

@@ -7,7 +7,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot.h"
+#include "robot_command.h"
 
 namespace taut::cli {
 namespace {
@@ -26,7 +26,7 @@ struct Finding {
   bool good;
 };
 
-void LookAtBoards(RobotDesk& desk, std::vector<Finding>& findings) {
+void LookAtBoards(RobotConsole& desk, std::vector<Finding>& findings) {
   link::Driver& driver = desk.driver();
   driver.Cycle(board::kMores + 2);
   const link::State& state = driver.state();
@@ -49,7 +49,7 @@ void LookAtBoards(RobotDesk& desk, std::vector<Finding>& findings) {
   }
 }
 
-void LookAtSensors(RobotDesk& desk, std::vector<Finding>& findings) {
+void LookAtSensors(RobotConsole& desk, std::vector<Finding>& findings) {
   const link::State& state = desk.driver().state();
   for (std::size_t m = 0; m < state.motors.size(); ++m) {
     const link::MotorFigures& figures = desk.driver().figures(static_cast<int>(m));
@@ -62,7 +62,7 @@ void LookAtSensors(RobotDesk& desk, std::vector<Finding>& findings) {
 }
 
 /// Winds each motor in for a moment, and back, in turn; all others brake.
-bool MoveMotors(RobotDesk& desk, const SelftestArguments& args, std::vector<Finding>& findings,
+bool MoveMotors(RobotConsole& desk, const SelftestArguments& args, std::vector<Finding>& findings,
                 Diagnostics& found) {
   link::Driver& driver = desk.driver();
   if (!driver.Enable(board::Mode::kHold, false, found)) return false;
@@ -102,7 +102,7 @@ bool MoveMotors(RobotDesk& desk, const SelftestArguments& args, std::vector<Find
 
 int Selftest(const SelftestArguments& args) {
   if (args.dry_run) {
-    fmt::print("would look at all boards and sensors of {}{}\n", args.port,
+    fmt::print("would test all boards and sensors of {}{}\n", args.port,
                args.move ? fmt::format(", and drive each motor with duty {:g} for {:g} s, in and "
                                        "out",
                                        args.duty, args.time_s)
@@ -110,7 +110,7 @@ int Selftest(const SelftestArguments& args) {
     return kOk;
   }
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   std::vector<Finding> findings;
   Diagnostics found;
@@ -144,18 +144,20 @@ void AddRobotSelftest(CLI::App& robot, int& exit_code) {
   AddModel(*selftest, *args);
   AddDriving(*selftest, *args);
   selftest->add_flag("--move", args->move,
-                     "Each motor in turn winds in for a moment, and back: have the robot on a "
-                     "stand");
-  selftest->add_option("--duty", args->duty, "With --move: how strongly (default: 0.5)")
+                     "Wind each motor in briefly and back, in turn (put the robot on a stand)");
+  selftest->add_option("--duty", args->duty, "With --move: duty cycle, 0.05 to 1 (default: 0.5)")
       ->option_text("X")
       ->check(NumberWithin(0.05, 1.0));
-  selftest->add_option("--time_s", args->time_s, "With --move: how long (default: 0.1)")
+  selftest
+      ->add_option("--time_s", args->time_s, "With --move: duration per motor [s] (default: 0.1)")
       ->option_text("S")
       ->check(NumberWithin(0.02, 1.0));
   AddJson(*selftest, *args);
   selftest->footer(
-      "Examples:\n  taut robot selftest\n  taut robot selftest --move --duty 0.3\n"
-      "Exit status: 0 if all is good, else 1.");
+      "Examples:\n"
+      "  taut robot selftest\n"
+      "  taut robot selftest --move --duty 0.3\n"
+      "Exit status: 0 if all tests pass, else 1.");
   selftest->callback([args, &exit_code] { exit_code = Selftest(*args); });
 }
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "output.h"
-#include "robot.h"
+#include "robot_command.h"
 
 namespace taut::cli {
 namespace {
@@ -17,7 +17,7 @@ struct SetArguments : RobotArguments {
 };
 
 /// Returns the motors of the named cables; all motors if none is named.
-std::vector<int> MotorsOf(const RobotDesk& desk, const std::vector<std::string>& cables,
+std::vector<int> MotorsOf(const RobotConsole& desk, const std::vector<std::string>& cables,
                           Diagnostics& out) {
   std::vector<int> motors;
   for (const std::string& cable : cables) {
@@ -29,7 +29,7 @@ std::vector<int> MotorsOf(const RobotDesk& desk, const std::vector<std::string>&
   return motors;
 }
 
-int List(RobotDesk& desk, const std::vector<int>& motors, bool json, Diagnostics& found) {
+int List(RobotConsole& desk, const std::vector<int>& motors, bool json, Diagnostics& found) {
   nlohmann::ordered_json all;
   link::Requests& requests = desk.driver().requests();
   const auto show = [&](const std::string& who, const link::ParameterPlace& place,
@@ -67,7 +67,7 @@ int List(RobotDesk& desk, const std::vector<int>& motors, bool json, Diagnostics
 }
 
 /// Sends one action to all boards, with their boot numbers from the identification.
-bool DoOnAll(RobotDesk& desk, board::Action action, Diagnostics& found) {
+bool DoOnAll(RobotConsole& desk, board::Action action, Diagnostics& found) {
   link::Driver& driver = desk.driver();
   for (std::size_t b = 0; b < driver.state().boards.size(); ++b) {
     const int board = static_cast<int>(b);
@@ -87,12 +87,12 @@ int Set(const SetArguments& args) {
   if (!found.ok()) return Fail(found, kBadInput);
   if (args.dry_run) {
     for (const std::string& text : args.values) fmt::print("would set {}\n", text);
-    if (args.defaults) fmt::print("would set what the firmware brings\n");
-    if (args.store) fmt::print("would write the boards' memories\n");
+    if (args.defaults) fmt::print("would restore the defaults of the firmware\n");
+    if (args.store) fmt::print("would store the values in the boards' memories\n");
     return kOk;
   }
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   const std::vector<int> motors = MotorsOf(*desk, args.cables, found);
   if (!found.ok()) return Fail(found, kBadInput);
@@ -109,7 +109,7 @@ int Set(const SetArguments& args) {
       if (!desk->driver().requests().Set(setting, found)) return Fail(found, kFailed);
       const auto read = desk->driver().requests().Get(setting.place, found);
       if (!read || *read != setting.value) {
-        found.Error("board.setting_not_kept", {}, "a board does not keep what it was told");
+        found.Error("board.setting_not_kept", {}, "a board does not keep the value that was set");
         return Fail(found, kFailed);
       }
       ++done;
@@ -120,7 +120,7 @@ int Set(const SetArguments& args) {
     return List(*desk, motors, args.json, found);
   }
   fmt::print("{} values set{}.\n", done,
-             args.store ? " and kept in the boards' memories" : "; --store keeps them");
+             args.store ? " and stored in the boards' memories" : "; use --store to store them");
   return kOk;
 }
 
@@ -140,7 +140,7 @@ std::optional<ReferenceText> ParseReference(const std::string& text, Diagnostics
                     reference.rest_length_m >= 0 && reference.rest_length_m <= 2;
   if (good) return reference;
   out.Error("robot.bad_reference", {}, text + ": not of the form CABLE=REST_LENGTH_M",
-            "as outer_top_1=0.24, 0 to 2 m");
+            "expected a length of 0 to 2 m, such as outer_top_1=0.24");
   return std::nullopt;
 }
 
@@ -151,18 +151,18 @@ int Reference(const SetArguments& args, bool as_model) {
     if (const auto one = ParseReference(text, found)) references.push_back(*one);
   }
   if (args.values.empty() && !as_model) {
-    found.Error("robot.nothing_to_reference", {}, "nothing to reference",
-                "CABLE=REST_LENGTH_M ..., or --as_model");
+    found.Error("robot.nothing_to_reference", {}, "the rest lengths are missing",
+                "expected CABLE=REST_LENGTH_M ..., or --as_model");
   }
   if (!found.ok()) return Fail(found, kBadInput);
   if (args.dry_run) {
-    fmt::print("would tell the boards of {} {}\n", args.port,
-               as_model ? "that all cables have the model's rest lengths"
+    fmt::print("would set on the boards of {} {}\n", args.port,
+               as_model ? "the model's rest lengths of all cables"
                         : fmt::format("the rest lengths of {} cables", references.size()));
     return kOk;
   }
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   if (as_model) {
     for (const CableDef& cable : desk->robot().def.cables) {
@@ -185,15 +185,15 @@ int Reference(const SetArguments& args, bool as_model) {
 void AddRobotSet(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<SetArguments>();
   CLI::App* set = robot.add_subcommand("set", "Show or set parameters of the boards.");
-  set->add_option("values", args->values, "Parameters, as duty_limit=0.5; none: show all")
+  set->add_option("values", args->values, "Parameters, such as duty_limit=0.5 (default: show all)")
       ->option_text("NAME=VALUE");
   AddPort(*set, *args);
   AddModelFile(*set, *args);
-  set->add_option("--cable", args->cables, "Only of the motors of these cables")
+  set->add_option("--cable", args->cables, "Cables whose motors are set (default: all)")
       ->option_text("NAME");
-  set->add_flag("--defaults", args->defaults, "First all that the firmware brings");
-  set->add_flag("--store", args->store, "Keep what is set, through loss of power, too");
-  set->add_flag("--dry_run,--dry-run", args->dry_run, "Only say what would be done");
+  set->add_flag("--defaults", args->defaults, "Restore all defaults of the firmware first");
+  set->add_flag("--store", args->store, "Store the values permanently, through power loss");
+  set->add_flag("--dry_run,--dry-run", args->dry_run, "Print the planned actions only");
   AddJson(*set, *args);
   set->footer(
       "Examples:\n  taut robot set\n"
@@ -207,22 +207,23 @@ void AddRobotReference(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<SetArguments>();
   auto as_model = std::make_shared<bool>(false);
   CLI::App* reference =
-      robot.add_subcommand("reference", "Say which rest lengths cables have now.");
-  reference->add_option("values", args->values, "Cables, as outer_top_1=0.24")
+      robot.add_subcommand("reference", "Set the present rest lengths of cables.");
+  reference->add_option("values", args->values, "Rest lengths [m], such as outer_top_1=0.24")
       ->option_text("CABLE=REST_LENGTH_M");
   AddPort(*reference, *args);
   AddModel(*reference, *args);
   AddCalibration(*reference, *args);
   auto* flag =
-      reference->add_flag("--as_model", *as_model, "All cables are as the model describes them");
+      reference->add_flag("--as_model", *as_model, "Rest lengths of the model for all cables");
   reference->get_option("values")->excludes(flag);
-  reference->add_flag("--dry_run,--dry-run", args->dry_run, "Only say what would be done");
+  reference->add_flag("--dry_run,--dry-run", args->dry_run, "Print the planned actions only");
   reference->footer(
-      "Examples:\n  taut robot reference --as_model\n"
+      "Examples:\n"
+      "  taut robot reference --as_model\n"
       "  taut robot reference outer_top_1=0.243 outer_left_1=0.197\n"
-      "An encoder counts from where it was when its board began: after every reset somebody has "
-      "to\n"
-      "say where that is. Motors have to be off or hold.");
+      "Encoders count from the start of their board: repeat this command after every reset. Motors "
+      "must\n"
+      "be off or holding.");
   reference->callback([args, as_model, &exit_code] { exit_code = Reference(*args, *as_model); });
 }
 

@@ -52,16 +52,15 @@ board::Asking AskingFor(board::Request request, int motor, int gain, double valu
 
 bool IsSafeToServe(const viewer::ServerOptions& options) {
   if (viewer::IsLoopback(options.address)) return true;
-  fmt::print(
-      stderr,
-      "error: --listen {} does not go with a robot: who reads the network between could move "
-      "its motors. Leave it out, and connect from elsewhere by ssh -L {}:localhost:{} "
-      "MACHINE\n",
-      options.address, options.port, options.port);
+  fmt::print(stderr,
+             "error: --listen {} cannot be combined with a robot: the connection is not encrypted, "
+             "so others on the network could move its motors (leave it out, and connect with ssh "
+             "-L {}:localhost:{} MACHINE)\n",
+             options.address, options.port, options.port);
   return false;
 }
 
-std::unique_ptr<RobotView> RobotView::Open(RobotDesk& desk, const std::string& port,
+std::unique_ptr<RobotView> RobotView::Open(RobotConsole& desk, const std::string& port,
                                            RobotViewOptions options, int& exit) {
   exit = kFailed;
   std::string error;
@@ -81,7 +80,7 @@ std::unique_ptr<RobotView> RobotView::Open(RobotDesk& desk, const std::string& p
   what.recorder = std::move(options.recorder);
   what.record_at_once = options.record_at_once;
   view->session_ = std::make_shared<viewer::RobotSession>(options.title, std::move(what));
-  options.server.ends_on_signals = false;  // the desk turns motors off first
+  options.server.ends_on_signals = false;  // the console turns motors off first
   view->server_ =
       std::make_unique<viewer::Server>(*view->session_, viewer::ReadWebFiles(*web), options.server);
   if (!view->server_->Listen(error)) {
@@ -89,7 +88,7 @@ std::unique_ptr<RobotView> RobotView::Open(RobotDesk& desk, const std::string& p
     return nullptr;
   }
   SayAddresses(options.title, options.server, view->server_->port(),
-               "Ctrl-C turns motors off and ends it; closing the page does not.");
+               "Ctrl-C turns the motors off and ends the command; closing the page does not.");
   view->thread_ = std::thread([server = view->server_.get()] { server->Run(); });
   for (int motor = static_cast<int>(desk.cables().size()) - 1; motor >= 0; --motor) {
     for (int gain = 0; gain < board::kGains; ++gain) {
@@ -101,7 +100,7 @@ std::unique_ptr<RobotView> RobotView::Open(RobotDesk& desk, const std::string& p
 }
 
 RobotView::~RobotView() {
-  // The desk may still turn motors off.
+  // The console may still turn motors off.
   desk_.on_cycle = {};
   desk_.on_event = {};
   End();
@@ -126,13 +125,14 @@ void RobotView::Obey(const viewer::RobotCommand& command, const link::State& sta
   link::Driver& driver = desk_.driver();
   if (experiment_ && command.kind != Kind::kStop && command.kind != Kind::kOff &&
       command.kind != Kind::kGain) {
-    return session_->Refuse(command.client, "an experiment drives the robot; off and stop end it");
+    return session_->Refuse(command.client,
+                            "an experiment drives the robot; only off and stop are possible");
   }
   switch (command.kind) {
     case Kind::kStop:
       pending_.reset();
       armed_until_s_.reset();
-      driver.Stop(fmt::format("asked for by viewer {}", command.client));
+      driver.Stop(fmt::format("requested by viewer {}", command.client));
       return;
     case Kind::kOff:
       pending_.reset();
@@ -155,7 +155,7 @@ void RobotView::Obey(const viewer::RobotCommand& command, const link::State& sta
 
 void RobotView::Arm(int client, const link::State& state) {
   if (state.stage == Stage::kActive) {
-    return session_->Refuse(client, "motors have power; off comes first");
+    return session_->Refuse(client, "the motors are on; turn them off first");
   }
   if (const std::string why = WhyNotWell(state); !why.empty()) {
     return session_->Refuse(client, "not armed: " + why);
@@ -168,7 +168,7 @@ void RobotView::Arm(int client, const link::State& state) {
 void RobotView::GivePower(int client, bool impedance, const link::State& state) {
   link::Driver& driver = desk_.driver();
   if (state.stage != Stage::kReady && state.stage != Stage::kActive) {
-    return session_->Refuse(client, "arm first: motors get power in two steps");
+    return session_->Refuse(client, "arm first: motors are turned on in two steps");
   }
   // From any other mode, hold first: then the offsets are captured at rest.
   if (const std::string why = WhyNotWell(state); !why.empty() || !driver.Go(Mode::kHold)) {
@@ -189,15 +189,15 @@ void RobotView::Continue(const link::State& state) {
   if (driver.state().stage != Stage::kReady) armed_until_s_.reset();
   if (!pending_) return;
   if (driver.state().stage != Stage::kActive) {
-    session_->Refuse(pending_->client, "motors were turned off: events say why");
+    session_->Refuse(pending_->client, "motors were turned off: see the events");
     pending_.reset();
   } else if (link::AllAre(Mode::kHold, state)) {
     if (pending_->impedance) driver.Go(Mode::kImpedance, true);
     pending_.reset();
   } else if (state.time_s > pending_->until_s) {
     driver.Off();
-    session_->Refuse(pending_->client, "boards do not obey: motors are turned off");
-    session_->Event(state.time_s, "boards did not obey: all motors off");
+    session_->Refuse(pending_->client, "boards do not follow the command: motors are turned off");
+    session_->Event(state.time_s, "boards did not follow the command: all motors off");
     pending_.reset();
   }
 }
@@ -225,7 +225,7 @@ void RobotView::AskForGain() {
 
 void RobotView::SetGain(const viewer::RobotCommand& command) {
   if (*gains_under_way_ >= kMaxGainsUnderWay) {
-    return session_->Refuse(command.client, "boards have not answered what was asked before");
+    return session_->Refuse(command.client, "boards have not answered the previous requests");
   }
   ++*gains_under_way_;
   desk_.driver().Request(

@@ -12,7 +12,7 @@
 
 #include "apps/viewer/robot_session.h"
 #include "apps/viewer/server.h"
-#include "robot.h"
+#include "robot_command.h"
 
 namespace taut::cli {
 
@@ -32,8 +32,8 @@ bool IsSafeToServe(const viewer::ServerOptions& options);
 class RobotView {
  public:
   /// Starts the server and prints its address. Returns null after messages on stderr; then `exit`
-  /// is the status. The desk must outlive the view.
-  static std::unique_ptr<RobotView> Open(RobotDesk& desk, const std::string& port,
+  /// is the status. The console must outlive the view.
+  static std::unique_ptr<RobotView> Open(RobotConsole& desk, const std::string& port,
                                          RobotViewOptions options, int& exit);
   ~RobotView();
 
@@ -52,7 +52,7 @@ class RobotView {
     double until_s = 0;
   };
 
-  RobotView(RobotDesk& desk, bool experiment) : desk_(desk), experiment_(experiment) {}
+  RobotView(RobotConsole& desk, bool experiment) : desk_(desk), experiment_(experiment) {}
   void AskForGain();
   void Obey(const viewer::RobotCommand& command, const link::State& state);
   void Arm(int client, const link::State& state);
@@ -60,7 +60,7 @@ class RobotView {
   void SetGain(const viewer::RobotCommand& command);
   void Continue(const link::State& state);
 
-  RobotDesk& desk_;
+  RobotConsole& desk_;
   const bool experiment_;
   /// Shared with pending replies of the boards, which may arrive after the view has ended.
   std::shared_ptr<viewer::RobotSession> session_;

@@ -57,8 +57,8 @@ std::string FactorText(double factor) {
 }
 
 std::string DemandTable(const RunDemand& run) {
-  Table table({"cable", "force peak", "rms", "speed peak", "rms", "power peak", "rms",
-               "energy gross", "net", "wound", "stretch"});
+  Table table({"cable", "peak force", "rms", "peak speed", "rms", "peak power", "rms",
+               "gross energy", "net", "wound length", "extension"});
   table.Add({"", "N", "N", "m/s", "m/s", "W", "W", "J", "J", "m", "m"});
   for (const CableDemand& d : run.cables) {
     std::vector<std::string> row{d.cable, Fixed(d.peak_force_n, 2), Fixed(d.rms_force_n, 2)};
@@ -189,7 +189,7 @@ bool HaveSpools(const SizeArguments& args, const Catalogue& catalogue, Diagnosti
     if (motor.spool_radius_m) continue;
     out.Error("catalogue.motor_without_spool", {args.catalogue, 0, 0},
               "motor " + motor.name + " has no spool_radius_m",
-              "give it one, or all: --spool_radius_m");
+              "add the key, or set it for all motors with --spool_radius_m");
   }
   return out.ok();
 }
@@ -221,18 +221,22 @@ int Size(const SizeArguments& args) {
     return exit;
   }
   fmt::print("{}: {:g} to {:g} s, {} rows; peaks and energies of {}\n\n{}", run->experiment,
-             run->from_s, run->to_s, run->rows, run->every_step ? "every step" : "rows alone",
+             run->from_s, run->to_s, run->rows, run->every_step ? "every step" : "rows only",
              DemandTable(*run));
   if (!of.motors.empty()) {
-    fmt::print("\nMotors: the smallest of what there is over what is needed; {:g} is asked for\n{}",
-               of.factor, FitTable(choices, &Choice::motors));
-    fmt::print("  for all: {}\n", Joined(FitAll(choices, &Choice::motors, of.motors.size())));
+    fmt::print("\nMotors: smallest ratio of rating to requirement (required: {:g})\n{}", of.factor,
+               FitTable(choices, &Choice::motors));
+    fmt::print("  suitable for all cables: {}\n",
+               Joined(FitAll(choices, &Choice::motors, of.motors.size())));
     if (!no_motor.empty()) fmt::print("  no motor for: {}\n", Joined(no_motor));
   }
   if (!of.springs.empty()) {
-    fmt::print("\nSprings: the same, and how far their stiffness is from the cable's\n{}",
-               FitTable(choices, &Choice::springs));
-    fmt::print("  for all: {}\n", Joined(FitAll(choices, &Choice::springs, of.springs.size())));
+    fmt::print(
+        "\nSprings: smallest ratio of rating to requirement, and deviation from the cable's "
+        "stiffness\n{}",
+        FitTable(choices, &Choice::springs));
+    fmt::print("  suitable for all cables: {}\n",
+               Joined(FitAll(choices, &Choice::springs, of.springs.size())));
     if (!no_spring.empty()) fmt::print("  no spring for: {}\n", Joined(no_spring));
   }
   return exit;
@@ -243,13 +247,13 @@ int Size(const SizeArguments& args) {
 void AddSize(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<SizeArguments>();
   CLI::App* size =
-      app.add_subcommand("size", "Say what a run asks of motors and springs, and what bears it.");
+      app.add_subcommand("size", "List the requirements of a run on motors and springs.");
   size->add_option("run", args->folder, "Folder of the run, with trace.h5 and inputs.yaml")
       ->required();
-  size->add_option("--catalogue", args->catalogue, "Motors and springs (YAML)")
+  size->add_option("--catalogue", args->catalogue, "Catalogue of motors and springs (YAML)")
       ->option_text("FILE");
   size->add_option("--spool_radius_m", args->spool_radius_m,
-                   "Radius of all spools, whatever the catalogue says")
+                   "Radius of all spools [m] (overrides the catalogue)")
       ->option_text("NUMBER")
       ->check(NumberWithin(1e-6, 1e3));
   size->add_flag("--json", args->json, "JSON instead of tables");
@@ -259,7 +263,8 @@ void AddSize(CLI::App& app, int& exit_code) {
       "  taut size runs/sine_hand_tuned\n"
       "  taut size runs/sine_hand_tuned --catalogue examples/winches.yaml\n"
       "  taut size runs/sine_hand_tuned --catalogue examples/winches.yaml --spool_radius_m 0.012\n"
-      "Exit status: 0 every cable has what fits, 1 some have not, 2 bad usage, 3 bad input.");
+      "Exit status: 0 components for every cable, 1 none for some cable, 2 bad usage, 3 bad "
+      "input.");
   size->callback([args, &exit_code] { exit_code = Size(*args); });
 }
 

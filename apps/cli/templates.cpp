@@ -25,14 +25,14 @@ std::string Quoted(const std::string& path) {
 std::string NewModel(const std::string& name, const std::string& schema) {
   return Head("model", name, schema) + R"(description: Three struts and nine cables, a prism.
 
-# Numbers with names, for the expressions below. `--set radius_m=0.2` changes one for one run.
+# Parameters of the expressions below. `--set radius_m=0.2` changes one for a single command.
 parameters:
   radius_m: 0.1
   height_m: 0.2
   stiffness_n_per_m: 1000
 
-# A part is described once and placed as often as needed. A pair joins two nodes; its tags say
-# what builders make of it.
+# A part is defined once and placed any number of times. A pair connects two nodes; builders select
+# pairs by their tags.
 parts:
   strut:
     nodes:
@@ -41,7 +41,7 @@ parts:
     pairs:
       - {nodes: [bottom, top], tags: [rod]}
 
-# Three copies in a ring, each a third of a turn further, joined to the next one by cables.
+# Three copies in a ring, each rotated by a third of a turn, connected to the next one by cables.
 structure:
   - part: strut
     copies: 3
@@ -52,8 +52,8 @@ structure:
       - {name: upper, nodes: [top, top], tags: [cable]}
       - {name: side, nodes: [top, bottom], tags: [cable]}
 
-# What carries a tag becomes a rod, a cable, a sphere ... A cable is a spring and a damper that
-# pull and never push; without tension it has 0.9 of the length that it has here.
+# Builders turn nodes and pairs with a tag into rods, cables, spheres ... A cable is a spring and a
+# damper that pull and never push; its rest length is 0.9 of its length here.
 builders:
   - {match: rod, rod: {radius_m: 0.005, mass_kg: 0.03, friction: 0.5}}
   - {match: cable, cable: {stiffness_n_per_m: stiffness_n_per_m, damping_n_s_per_m: 5, rest_length_ratio: 0.9}}
@@ -64,25 +64,26 @@ std::string NewExperiment(const std::string& name, const std::string& schema,
                           const std::string& from) {
   return Head("experiment", name, schema) +
          "description: The robot falls onto the ground and comes to rest.\n\n"
-         "# The robot, seen from this file's folder. `set: {PARAMETER: VALUE}` changes its "
-         "numbers.\n"
+         "# The robot's model file, relative to this file's folder. `set: {PARAMETER: VALUE}` "
+         "changes\n"
+         "# its parameters.\n"
          "model: " +
          Quoted(from) + R"(
 
-# Where it is at the start: turned, then moved. The ground is level, at height 0.
+# Start pose: rotated, then moved. The ground is level, at height 0.
 place: {at_m: [0, 0, 0.3], rotate: {axis: x, angle_rad: 0.5}}
 terrain:
   - {name: ground, plane: {height_m: 0, friction: 0.5}}
 
 duration_s: 3
 
-# The table of `taut run` has a column for each phase. Pushes and drags are `events` beside them:
+# The table of `taut run` has a column for each phase. Pushes and drags are timeline `events`:
 #   events:
 #     - push: {name: tap, node: NODE, direction: [1, 0, 0], force_n: [[1, 0], [1.1, 5], [1.2, 0]]}
 timeline:
   phases: {falling: [0, 0.2], at_rest: [2, 3]}
 
-# What the trace holds: rows a second, and channels by pattern (all of them without `channels`).
+# Contents of the trace: rows per second, and `channels` by pattern (default: all).
 record:
   rate_hz: 100
 )";
@@ -90,29 +91,29 @@ record:
 
 std::string NewStudy(const std::string& name, const std::string& schema, const std::string& from) {
   return Head("study", name, schema) +
-         "description: How long is each cable's wave to wait, for the robot to get far?\n\n"
-         "# What is varied belongs to this experiment, seen from this file's folder.\n"
-         "# `taut learn --parameters EXPERIMENT` lists all that can be.\n"
+         "description: Phases of the cables' waves that move the robot far.\n\n"
+         "# Experiment with the parameters to vary, relative to this file's folder.\n"
+         "# `taut learn --parameters EXPERIMENT` lists them all.\n"
          "experiment: " +
          Quoted(from) + R"(
 seed: 1
 
-# `each` varies what fits one by one, `all` together.
+# `each` varies every match separately, `all` gives all matches one common value.
 vary:
   - {name: frequency, each: motion.sine.frequency_hz, low: 0.2, high: 2, scale: log}
   - {name: amplitude, all: motion.sine.*.amplitude_m_per_s, low: 0.02, high: 0.3}
   - {each: motion.sine.*.phase_rad, low: -pi, high: pi}
 
-# What is to be large.
+# Score to maximize.
 objective:
   measure: distance
   from_s: 2
   fall: {max_tilt_rad: 1.2, penalty: 0.5}
 
-# Every candidate is tried in so many worlds, which differ by this much; its score is the mean.
+# Each candidate runs in `count` worlds with random differences; its score is the mean.
 worlds: {count: 2, friction: 0.2}
 
-# One after the other, each from the best of those before. A thousand evaluations find a gait.
+# Stages, each from the best candidate of the stages before. 1000 evaluations find a gait.
 search:
   - {method: monte_carlo, evaluations: 32, batch: 16}
   - {method: hill_climbing, evaluations: 32, batch: 16, deviation: 0.1}

@@ -11,10 +11,10 @@
 #include "output.h"
 #include "overrides.h"
 #include "progress_line.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/convert_trace.h"
 #include "taut/run_folder.h"
-#include "trace.h"
+#include "trace_command.h"
 
 namespace taut::cli {
 namespace {
@@ -41,7 +41,7 @@ std::optional<ModelDef> RobotOf(const std::string& trace, Diagnostics& out) {
 int Convert(const ConvertArguments& args) {
   const bool mcap = args.out.ends_with(".mcap");
   if (!mcap && !args.out.ends_with(".csv")) {
-    fmt::print(stderr, "error: the name {} says no format: .csv or .mcap\n", args.out);
+    fmt::print(stderr, "error: unknown format of {} (expected .csv or .mcap)\n", args.out);
     return kUsage;
   }
   std::error_code error;
@@ -55,8 +55,8 @@ int Convert(const ConvertArguments& args) {
   if (mcap) robot = RobotOf(path, found);
   if (!found.ok()) return Fail(found, kBadInput);
   if (trace->unfinished) {
-    found.Warning("trace.unfinished", {path, 0, 0}, "was not finished",
-                  "what is there is converted");
+    found.Warning("trace.unfinished", {path, 0, 0}, "the trace is unfinished",
+                  "the recorded part is converted");
   }
   Pass(found, false);
 
@@ -88,32 +88,33 @@ int Convert(const ConvertArguments& args) {
 void AddTraceConvert(CLI::App& group, int& exit_code) {
   auto args = std::make_shared<ConvertArguments>();
   CLI::App* command = group.add_subcommand(
-      "convert", "A recording as CSV, or as MCAP for Foxglove, PlotJuggler and Rerun.");
-  command->add_option("recording", args->path, "Folder of a run, or a trace (.h5, .csv, .csv.gz)")
+      "convert", "Convert a recording to CSV, or to MCAP for Foxglove, PlotJuggler and Rerun.");
+  command->add_option("recording", args->path, "Trace (.h5, .csv, .csv.gz) or folder of a run")
       ->required();
-  command->add_option("--out", args->out, "File to write: .csv or .mcap")
+  command->add_option("--out", args->out, "Output file (.csv or .mcap)")
       ->option_text("FILE")
       ->required();
   command
       ->add_option("--channels", args->channels,
-                   "Only channels that fit a pattern such as 'cable/*/tension_n'; may be repeated")
+                   "Channels to convert, by patterns such as 'cable/*/tension_n' (default: all)")
       ->option_text("PATTERN")
       ->allow_extra_args(false);
   command
-      ->add_option("--period_s", args->period_s,
-                   "Only rows this far apart [s] (default: 0, all of them)")
+      ->add_option("--period_s", args->period_s, "Distance of the rows [s] (default: 0, all rows)")
       ->option_text("NUMBER")
       ->check(NumberWithin(0, 1e9));
-  command->add_flag("--quiet", args->quiet, "No progress, and nothing printed at the end");
+  command->add_flag("--quiet", args->quiet, "No progress, no result");
   command->footer(
       "Examples:\n"
       "  taut trace convert runs/push_20n --out push_20n.mcap\n"
       "  taut trace convert trace.h5 --out tensions.csv --channels 'cable/*/tension_n' \\\n"
       "    --period_s 0.1\n"
-      "MCAP has a topic for the first part of channels' names, frames of bodies (/tf) and, where\n"
-      "inputs.yaml is beside the trace, the robot to look at (/scene/robot, /scene/cables).\n"
-      "The file is there complete or not at all.\n"
-      "Exit status: 0 good, 1 a file cannot be written, 2 bad usage, 3 bad input, 130 "
+      "MCAP files contain one topic for each first part of the channel names, the frames of "
+      "bodies\n"
+      "(/tf) and, with inputs.yaml in the trace's folder, the robot (/scene/robot, "
+      "/scene/cables).\n"
+      "An interrupted conversion writes no file.\n"
+      "Exit status: 0 success, 1 a file cannot be written, 2 bad usage, 3 bad input, 130 "
       "interrupted.");
   command->callback([args, &exit_code] { exit_code = Convert(*args); });
 }

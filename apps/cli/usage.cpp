@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,12 +44,23 @@ bool IsFlag(const std::string& word) {
          !CLI::detail::lexical_cast(word, number);
 }
 
+/// Returns the command for a word that other programs use for it; empty if there is none.
+std::string CommandMeant(const std::string& word) {
+  static const std::map<std::string, std::string> kSynonyms{
+      {"convert", "trace convert"}, {"diff", "compare"}, {"init", "new"},
+      {"optimize", "learn"},        {"plot", "report"},  {"show", "view"},
+      {"simulate", "run"},          {"train", "learn"},  {"validate", "check"}};
+  const auto found = kSynonyms.find(word);
+  return found == kSynonyms.end() ? "" : found->second;
+}
+
 /// Explains an unknown flag, an unknown command or an extra argument. Returns false if there is
 /// none.
 bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   const std::vector<std::string> unknown = app.remaining();
   const auto flag = std::find_if(unknown.begin(), unknown.end(), IsFlag);
-  if (flag != unknown.end()) {
+  const bool of_command = command.commands.empty() || flag == unknown.begin();
+  if (flag != unknown.end() && of_command) {
     const std::string word = flag->substr(0, flag->find('='));
     const std::string meant = MeantFlags(command, word);
     fmt::print(stderr, "error: {} has no flag \"{}\"{}\n", command.name, word,
@@ -61,9 +73,9 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   } else {
     const bool compares = std::any_of(command.flags.begin(), command.flags.end(),
                                       [](const WordText& f) { return f.name == "--compare"; });
-    fmt::print(stderr, "error: \"{}\" is too much; usage: {}{}\n", unknown.front(),
+    fmt::print(stderr, "error: unexpected argument \"{}\"; usage: {}{}\n", unknown.front(),
                UsageLine(command),
-               compares ? fmt::format(" (beside another: --compare {})", unknown.front()) : "");
+               compares ? fmt::format(" (to compare: --compare {})", unknown.front()) : "");
   }
   return true;
 }
@@ -113,9 +125,12 @@ const CLI::App& NamedCommand(const CLI::App& app) {
 
 int NoSuchCommand(const CLI::App& command, const std::string& word) {
   const CommandText text = Describe(command);
-  const std::string before = text.name == "taut" ? "" : text.name.substr(5) + " ";
+  const bool top = command.get_parent() == nullptr;
+  const std::string before = top ? "" : text.name.substr(5) + " ";
+  const std::string meant = top ? CommandMeant(word) : "";
   fmt::print(stderr, "error: there is no command \"{}{}\" ({})\n", before, word,
-             DidYouMean(word, text.CommandWords()));
+             meant.empty() ? DidYouMean(word, text.CommandWords())
+                           : fmt::format("did you mean \"{}\"?", meant));
   return kUsage;
 }
 
@@ -129,7 +144,7 @@ int ExplainUsage(const CLI::App& app, const CLI::ParseError& error) {
               !ExplainMissing(named, command))) {
     fmt::print(stderr, "error: {}\n", error.what());
   }
-  fmt::print(stderr, "`{} --help` tells more.\n", command.name);
+  fmt::print(stderr, "see `{} --help`\n", command.name);
   return kUsage;
 }
 

@@ -19,9 +19,10 @@
 #include "commands.h"
 #include "output.h"
 #include "overrides.h"
-#include "shipped.h"
-#include "streams.h"
+#include "shipped_inputs.h"
+#include "standard_streams.h"
 #include "taut/run.h"
+#include "taut/run_folder.h"
 #include "taut/spec.h"
 #include "view_robot.h"
 #include "view_server.h"
@@ -82,7 +83,7 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
     std::error_code error;
     fs::create_directories(args.out, error);
     if (error) {
-      fmt::print(stderr, "{}: error: cannot make this folder: {}\n", args.out, error.message());
+      fmt::print(stderr, "{}: error: cannot create the folder: {}\n", args.out, error.message());
       return nullptr;
     }
   }
@@ -101,8 +102,8 @@ int Dashboard(const ViewArguments& args) {
   if (!args.file.empty() || !args.compare.empty() || args.settled || args.paused || args.max ||
       args.speed != 1 || args.step_s > 0) {
     fmt::print(stderr,
-               "error: --robot goes without a file, --compare, --settled, --paused, --max, --speed "
-               "and --step_s\n");
+               "error: --robot cannot be combined with a file, --compare, --settled, --paused, "
+               "--max, --speed or --step_s\n");
     return kUsage;
   }
   ViewRobotArguments robot = args.robot;
@@ -115,13 +116,15 @@ int Dashboard(const ViewArguments& args) {
 int View(ViewArguments args) {
   if (!args.robot.port.empty()) return Dashboard(args);
   if (args.file.empty()) {
-    fmt::print(stderr, "error: what is to be seen? a file, or --robot PORT\n");
+    fmt::print(stderr, "error: FILE is missing (expected a file, or --robot PORT)\n");
     return kUsage;
   }
   if (!args.robot.model.empty() || !args.robot.calibration.empty()) {
-    fmt::print(stderr, "error: --model and --calibration go with --robot\n");
+    fmt::print(stderr, "error: --model and --calibration need --robot\n");
     return kUsage;
   }
+  args.file = TraceOfRun(args.file);
+  for (std::string& other : args.compare) other = TraceOfRun(other);
   OutputIsNews();
   std::string error;
   const std::optional<std::string> web = viewer::FindWebFolder(error);
@@ -131,11 +134,12 @@ int View(ViewArguments args) {
   }
   if (IsTrace(args.file) &&
       (!args.set.empty() || args.settled || !args.out.empty() || args.step_s > 0)) {
-    fmt::print(stderr, "error: --set, --step_s, --settled and --out do not go with a trace\n");
+    fmt::print(stderr,
+               "error: --set, --step_s, --settled and --out cannot be combined with a trace\n");
     return kUsage;
   }
   if (!IsTrace(args.file) && !args.compare.empty()) {
-    fmt::print(stderr, "error: --compare goes with a trace only\n");
+    fmt::print(stderr, "error: --compare needs a trace\n");
     return kUsage;
   }
   if (!TokensOf(args.server)) return kUsage;
@@ -158,37 +162,39 @@ int View(ViewArguments args) {
 void AddView(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ViewArguments>();
   CLI::App* view =
-      app.add_subcommand("view", "Watch an experiment live, replay a trace, look at a model.");
-  AddInput(*view, "file", args->file, "Experiment or model (YAML), or trace (.h5, .csv, .csv.gz)");
+      app.add_subcommand("view", "Show a model, experiment, recorded run or robot in the browser.");
+  AddInput(*view, "file", args->file,
+           "Experiment or model (YAML), trace (.h5, .csv, .csv.gz) or folder of a run");
   args->robot.port.clear();
-  view->add_option("--robot", args->robot.port,
-                   "Instead of a file: drive the robot behind this serial port, or an emulated one")
+  view->add_option(
+          "--robot", args->robot.port,
+          "Robot to drive, instead of a file: serial port, or `virtual` for an emulated one")
       ->option_text("virtual|PORT");
   AddInput(*view, "--model", args->robot.model,
-           "Robot: its model (default: tetraspine3_motors.yaml of taut)")
+           "With --robot: model (default: tetraspine3_motors.yaml of taut)")
       ->option_text("FILE");
   AddInput(*view, "--calibration", args->robot.calibration,
-           "Robot: calibration file, set on the boards")
+           "With --robot: calibration file to set on the boards")
       ->option_text("FILE");
   view->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);
-  view->add_option("--step_s", args->step_s, "Step instead of the file's [s]")
+  view->add_option("--step_s", args->step_s, "Time step [s] (overrides the file)")
       ->option_text("S")
       ->check(NumberWithin(1e-9, 1.0));
-  auto* speed = view->add_option("--speed", args->speed, "Simulated seconds a second (default: 1)")
-                    ->option_text("X")
-                    ->check(NumberWithin(0.001, 1000.0));
-  view->add_flag("--max", args->max, "As fast as it can")->excludes(speed);
-  view->add_flag("--paused", args->paused, "Begin paused");
-  view->add_flag("--settled", args->settled, "Begin at rest, where the robot settles");
+  auto* speed =
+      view->add_option("--speed", args->speed, "Simulated seconds per second (default: 1)")
+          ->option_text("X")
+          ->check(NumberWithin(0.001, 1000.0));
+  view->add_flag("--max", args->max, "Run as fast as possible")->excludes(speed);
+  view->add_flag("--paused", args->paused, "Start paused");
+  view->add_flag("--settled", args->settled, "Start with the settled robot, at rest");
   view->add_option("--compare", args->compare,
-                   "Replay: traces of other runs, 7 at most, drawn beside this one, each with a "
+                   "Replay: traces or folders of at most 7 other runs to compare with, each with a "
                    "ghost of its robot")
       ->option_text("TRACE");
-  view->add_option(
-          "--out", args->out,
-          "Live, robot: folder to record into (trace, inputs, what was done); default: none")
+  view->add_option("--out", args->out,
+                   "Live, robot: folder for recordings (trace, inputs, events) (default: none)")
       ->option_text("FOLDER");
   view->add_option("--listen", args->server.address,
                    "Address to listen on (default: 127.0.0.1, this machine only)")
@@ -196,9 +202,11 @@ void AddView(CLI::App& app, int& exit_code) {
       ->check([](const std::string& address) {
         if (viewer::IsAddress(address)) return std::string();
         return fmt::format(
-            "\"{}\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 listens to all", address);
+            "\"{}\" is not an address (expected 127.0.0.1 for this machine only, or 0.0.0.0 for "
+            "all)",
+            address);
       });
-  view->add_option("--port", args->server.port, "Port (default: 8080; 0: any that is free)")
+  view->add_option("--port", args->server.port, "Port (default: 8080; 0: any free port)")
       ->option_text("N")
       ->check(WholeNumberWithin(0, 65535));
   view->footer(
@@ -207,11 +215,13 @@ void AddView(CLI::App& app, int& exit_code) {
       "  taut view runs/push_20n/trace.h5 --compare runs/a/trace.h5 runs/b/trace.h5\n"
       "  taut view models/tetraspine3.yaml --settled\n"
       "  taut view --robot virtual\n"
-      "It prints two addresses, each with a secret token, to open in a browser: who has the first\n"
-      "may look and drive, who has the second look. The tokens are new every time, unless the\n"
-      "environment names them: TAUT_TOKEN, TAUT_WATCH_TOKEN. With --robot only this machine is "
-      "listened\n"
-      "to, and Ctrl-C turns motors off.");
+      "The command prints two addresses with secret tokens, to open in a browser: the first to "
+      "watch\n"
+      "and drive, the second to watch only. The tokens are random, unless the environment "
+      "variables\n"
+      "TAUT_TOKEN and TAUT_WATCH_TOKEN set them. With --robot only this machine can connect, and "
+      "Ctrl-C\n"
+      "turns the motors off.");
   view->callback([args, &exit_code] { exit_code = View(*args); });
 }
 

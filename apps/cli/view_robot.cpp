@@ -10,7 +10,7 @@
 #include "interrupt.h"
 #include "robot_recording.h"
 #include "robot_view.h"
-#include "streams.h"
+#include "standard_streams.h"
 #include "taut/run_folder.h"
 #include "taut/version.h"
 #include "view_server.h"
@@ -84,7 +84,7 @@ int ViewRobot(ViewRobotArguments args) {
   OutputIsNews();
   if (!IsSafeToServe(args.server) || !TokensOf(args.server)) return kUsage;
   int exit = kOk;
-  const auto desk = RobotDesk::Open(args, nullptr, exit);
+  const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   const std::string& name = desk->robot().def.name;
   RobotViewOptions options;

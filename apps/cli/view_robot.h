@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/viewer/server.h"
-#include "robot.h"
+#include "robot_command.h"
 
 namespace taut::cli {
 

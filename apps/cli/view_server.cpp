@@ -38,16 +38,15 @@ bool TokensOf(viewer::ServerOptions& options) {
 
 void SayAddresses(const std::string& title, const viewer::ServerOptions& options,
                   std::uint16_t port, const std::string& ends) {
-  fmt::print("{}: {}\nOnly to watch: {}\n{}\n", title,
-             viewer::Url(options, port, options.drive_token),
+  fmt::print("{}: {}\nWatch only: {}\n{}\n", title, viewer::Url(options, port, options.drive_token),
              viewer::Url(options, port, options.watch_token), ends);
   std::fflush(stdout);
   if (viewer::IsLoopback(options.address)) return;
-  Tell(fmt::format(
-      "warning: this listens to other machines, and without encryption: whoever can read the "
-      "network between them and this one can read these addresses, and then drive. Where that "
-      "matters, leave --listen out and connect by ssh -L {0}:localhost:{0} MACHINE",
-      port));
+  Tell(
+      fmt::format("warning: other machines can connect, and the connection is not encrypted: "
+                  "others on the network can read these addresses, and then drive (to prevent "
+                  "this, leave out --listen and connect with ssh -L {0}:localhost:{0} MACHINE)",
+                  port));
 }
 
 void Tell(const std::string& text) {

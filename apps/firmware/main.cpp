@@ -5,11 +5,11 @@
 #include <avr/wdt.h>
 #include <util/atomic.h>
 
+#include "apps/firmware/board_memory.h"
+#include "apps/firmware/board_sensors.h"
 #include "apps/firmware/bus.h"
 #include "apps/firmware/drive.h"
-#include "apps/firmware/memory.h"
 #include "apps/firmware/pins.h"
-#include "apps/firmware/sensors.h"
 #include "taut/board/board.h"
 
 using namespace taut::board;

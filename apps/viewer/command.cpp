@@ -76,7 +76,7 @@ bool CheckFields(const nlohmann::json& json, const std::string& type, std::strin
   if (!known) {
     error = fmt::format("there is no message \"{}\"", type.substr(0, 40));
   } else if (found != json.size()) {
-    error = fmt::format("{} has a field that it may not have", type);
+    error = fmt::format("{} has an unknown field", type);
   }
   return known && found == json.size();
 }
@@ -110,7 +110,7 @@ std::optional<Command> ParseCommand(std::string_view text, std::string& error) {
   }
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("type") || !json["type"].is_string()) {
-    error = "a message is a JSON object with a text \"type\"";
+    error = "a message must be a JSON object with a string \"type\"";
     return std::nullopt;
   }
   Command command;

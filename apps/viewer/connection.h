@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "network.h"
+#include "network_address.h"
 
 namespace taut::viewer {
 

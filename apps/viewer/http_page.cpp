@@ -135,17 +135,17 @@ HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
   const Access access = AccessOf(request, options);
   if (access == Access::kNone) {
     return Refusal(request, http::status::forbidden,
-                   "Use the whole address that taut printed, with its token.");
+                   "Open the complete address that taut printed, with its token.");
   }
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
     HttpResponse response = Refusal(request, http::status::method_not_allowed,
-                                    "This server has pages to get, and nothing else.");
+                                    "This server supports only GET and HEAD.");
     response.set(http::field::allow, "GET, HEAD");
     return response;
   }
   const auto file = files.find(path);
   if (file == files.end()) {
-    return Refusal(request, http::status::not_found, "There is no such page here.");
+    return Refusal(request, http::status::not_found, "This page does not exist.");
   }
   HttpResponse response = Begin(request);
   response.result(http::status::ok);

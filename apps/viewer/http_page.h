@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "network.h"
+#include "network_address.h"
 #include "server.h"
 
 namespace taut::viewer {

@@ -55,7 +55,7 @@ template <class T>
 void CheckLength(const std::vector<T>& list, std::size_t wanted, const char* name, int robot) {
   if (list.empty() || list.size() == wanted) return;
   Wrong(
-      fmt::format("{} of robot {} has {} entries, the robot {}", name, robot, list.size(), wanted));
+      fmt::format("{} of robot {} has {} entries, expected {}", name, robot, list.size(), wanted));
 }
 
 double At(const std::vector<double>& list, std::size_t place) {
@@ -133,7 +133,7 @@ void JoinedRobots::AddTerrain(const ModelDef& robot, const std::string& prefix, 
 
 void JoinedRobots::Set(int robot, const RobotMoment& moment) {
   if (robot < 0 || robot >= static_cast<int>(robots_.size())) {
-    Wrong(fmt::format("there is no robot {}, there are {}", robot, robots_.size()));
+    Wrong(fmt::format("there is no robot {} (the page has {})", robot, robots_.size()));
   }
   Robot& own = robots_[static_cast<std::size_t>(robot)];
   const std::size_t cables = own.def.cables.size();

@@ -120,7 +120,7 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
   } else if (type == "speed") {
     pace_.SetSpeed(command.value, run_->time_s());
   } else if (type == "drop") {
-    if (dragging_) Log("let go");
+    if (dragging_) Log("released");
     dragging_ = false;
     run_->SetHand({});
   } else if (type == "drag" || type == "push") {
@@ -144,7 +144,7 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
   } else if (type == "set_setpoint" || type == "set_gain") {
     return SetControl(command, error);
   } else {
-    error = fmt::format("{} does not go with a live run", type);
+    error = fmt::format("{} is not possible in a live run", type);
     return false;
   }
   return true;
@@ -180,7 +180,7 @@ bool LiveSession::SetControl(const Command& command, std::string& error) {
     const CableDef& cable = experiment_.robot.def.cables[static_cast<std::size_t>(control.cable)];
     if (cable.name != command.name) continue;
     if (!(command.value >= 0)) {
-      error = "set points and gains are not negative";
+      error = "set points and gains must not be negative";
       return false;
     }
     if (command.type == "set_setpoint") {
@@ -206,7 +206,7 @@ bool LiveSession::SetControl(const Command& command, std::string& error) {
     scene_changed_ = true;
     return true;
   }
-  error = fmt::format("no motor drives a cable \"{}\"", command.name);
+  error = fmt::format("there is no actuated cable \"{}\"", command.name);
   return false;
 }
 
@@ -227,7 +227,7 @@ void LiveSession::Restart(Clock::time_point deadline) {
   StartHistory();
   Anchor();
   changed_ = scene_changed_ = true;
-  SayEvent(0, "from the start");
+  SayEvent(0, "restarted");
   for (const Diagnostic& warning : start->warnings) SayEvent(0, "warning: " + warning.what);
 }
 
@@ -273,7 +273,7 @@ bool LiveSession::StepOnce() {
   if (marks_.size() < mark_at_s_.size() && run_->time_s() >= mark_at_s_[marks_.size()]) Mark();
   if (!end_told_ && run_->time_s() >= experiment_.duration_s && mode() == "live") {
     end_told_ = true;
-    Log("the experiment's end; resume goes on");
+    Log("end of the experiment; resume to continue");
     Pause();
     return false;
   }

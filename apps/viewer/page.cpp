@@ -63,15 +63,17 @@ struct Page::Impl {
 
 std::unique_ptr<Page> Page::Open(const PageOptions& options, Diagnostics& out) {
   const auto check = [&](bool good, const std::string& what) {
-    if (!good) out.Error("page.bad_option", {}, "PageOptions: " + what);
+    if (!good) out.Error("page.bad_option", {}, "PageOptions." + what);
   };
   const auto finite = [](double value) { return std::isfinite(value); };
   check(finite(options.speed) && options.speed >= 0,
-        fmt::format("speed {:g} is below 0", options.speed));
+        fmt::format("speed must not be negative, got {:g}", options.speed));
   check(finite(options.history_period_s) && options.history_period_s > 0,
-        fmt::format("history_period_s {:g} is not above 0", options.history_period_s));
+        fmt::format("history_period_s must be positive, got {:g}", options.history_period_s));
   check(viewer::IsAddress(options.address),
-        fmt::format("address \"{}\" is none; 127.0.0.1 is this machine", options.address));
+        fmt::format(
+            "address \"{}\" is not an IP address (expected for example 127.0.0.1, this machine)",
+            options.address));
   std::string error;
   const auto web = viewer::FindWebFolder(error, options.web_folder);
   if (!web) out.Error("page.not_made", {}, error);

@@ -88,7 +88,7 @@ void PageSession::Handle(int client, const Command& command) {
   if (Drive(command)) {
     goes_on_.notify_all();
   } else {
-    SayError(client, fmt::format("{} does not go with what a program shows", command.type));
+    SayError(client, fmt::format("{} is not possible in the page of a program", command.type));
   }
 }
 

@@ -46,7 +46,7 @@ std::unique_ptr<Recorded> Recorded::LoadAlone(const std::string& path, Diagnosti
   auto trace = ReadTraceOfRun(path, out);
   if (!trace) return nullptr;
   if (trace->time_s.empty()) {
-    out.Error("trace.no_rows", {path}, "has no rows: there is nothing to show");
+    out.Error("trace.no_rows", {path}, "the trace has no rows");
     return nullptr;
   }
   auto recorded = std::make_unique<Recorded>();
@@ -55,7 +55,7 @@ std::unique_ptr<Recorded> Recorded::LoadAlone(const std::string& path, Diagnosti
   recorded->FindInputs();
   if (recorded->trace_.unfinished) {
     std::string& notice = recorded->notice_;
-    notice += fmt::format("{}the trace is not finished: its run goes on, or was killed",
+    notice += fmt::format("{}the trace is unfinished: its run continues, or was killed",
                           notice.empty() ? "" : "; ");
   }
   recorded->FindColumns();
@@ -74,9 +74,9 @@ std::unique_ptr<Recorded> Recorded::Load(const std::string& path,
   }
   bool good = recorded != nullptr;
   if (others.size() > kMaxComparedRuns) {
-    out.Error(
-        "report.too_many_runs", {path},
-        fmt::format("is compared with {} runs, the most are {}", others.size(), kMaxComparedRuns));
+    out.Error("report.too_many_runs", {path},
+              fmt::format("the trace is compared with {} runs, expected at most {}", others.size(),
+                          kMaxComparedRuns));
     good = false;
   }
   std::vector<std::unique_ptr<Recorded>> compared;
@@ -101,7 +101,7 @@ void Recorded::FindInputs() {
   const fs::path inputs = BesideTrace(path_, "inputs", ".yaml");
   std::error_code failed;
   if (!fs::exists(inputs, failed)) {
-    notice_ = fmt::format("no {} beside the trace: bodies are shown as balls",
+    notice_ = fmt::format("there is no {} in the trace's folder: bodies are shown as spheres",
                           inputs.filename().string());
     return;
   }
@@ -109,7 +109,7 @@ void Recorded::FindInputs() {
   experiment_ = LoadExperiment(inputs.string(), {}, found);
   if (experiment_ && !Belongs(trace_, *experiment_)) experiment_.reset();
   if (!experiment_) {
-    notice_ = fmt::format("{} is not of this trace: bodies are shown as balls",
+    notice_ = fmt::format("{} belongs to another trace: bodies are shown as spheres",
                           inputs.filename().string());
     return;
   }
@@ -242,7 +242,7 @@ Json Recorded::ComparedRun() const {
               {"bodies", Json::array()},
               {"cables", Json::array()}};
   if (!has_poses()) {
-    run["notice"] = "no ghost: there are no poses of bodies in this trace";
+    run["notice"] = "no ghost: the trace contains no poses of bodies";
     return run;
   }
   const Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);

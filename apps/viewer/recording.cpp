@@ -44,7 +44,7 @@ bool Recording::Begin(LiveRun& run, const ExperimentSpec& experiment, Diagnostic
 
 bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagnostics& out) {
   const auto fail = [&](const NewFile& file) {
-    out.Error("file.not_writable", {file.path()}, "cannot be written: " + file.why());
+    out.Error("file.not_writable", {file.path()}, "cannot write: " + file.why());
     return false;
   };
   const std::string id = NewRunId();
@@ -81,7 +81,7 @@ bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagn
 void Recording::Restart(LiveRun& run, const ExperimentSpec& experiment) {
   Finish();
   if ((rows_ > 1 || event_count_ > 0) && part_ < kMaxParts && ++part_ == kMaxParts) {
-    say_(fmt::format("{} is the last part that is recorded: every restart replaces it from now on",
+    say_(fmt::format("{} is the last part of the recording: every further restart replaces it",
                      Path("trace", ".h5")));
   }
   resumed_.clear();
@@ -89,8 +89,8 @@ void Recording::Restart(LiveRun& run, const ExperimentSpec& experiment) {
   if (!Begin(run, experiment, found)) return Fail(found.Format());
   if (failure_.empty()) return;
   failure_.clear();
-  resumed_ = fmt::format(
-      "recorded again, from the start of part {} on; after {} something is missing", part_, since_);
+  resumed_ = fmt::format("recording resumed at the start of part {}; data after {} are missing",
+                         part_, since_);
   say_(resumed_);
   Event(time_s_, resumed_);
 }
@@ -108,7 +108,7 @@ void Recording::Event(double time_s, const std::string& text) {
   if (!failure_.empty()) return;
   ++event_count_;
   if (events_->WriteAllOrNone(Dump({{"time_s", time_s}, {"text", text}}) + "\n")) return;
-  Fail(fmt::format("{}: cannot be written: {}", events_->path(), events_->why()));
+  Fail(fmt::format("{}: cannot write: {}", events_->path(), events_->why()));
 }
 
 void Recording::FlushOld() {
@@ -123,7 +123,7 @@ bool Recording::Finish() {
 /// Checks the file's identity, because writing into a deleted file causes no error.
 bool Recording::IsThere() {
   if (IdentityOf(Path("trace", ".h5")) == identity_) return true;
-  Fail(Path("trace", ".h5") + ": is no longer there");
+  Fail(Path("trace", ".h5") + ": the file was deleted or replaced");
   return false;
 }
 
@@ -131,9 +131,9 @@ void Recording::Fail(const std::string& why) {
   if (!failure_.empty()) return;
   complete_ = false;
   since_ = fmt::format("t = {:g} s of part {}", time_s_, part_);
-  failure_ = fmt::format("nothing is recorded any more, since {}: {}", since_, why);
+  failure_ = fmt::format("recording stopped at {}: {}", since_, why);
   while (failure_.back() == '\n') failure_.pop_back();
-  failure_ += "; once that is mended, a reset goes on recording";
+  failure_ += "; solve this problem, then reset to resume recording";
   writer_.reset();
   events_.reset();
   say_(failure_);

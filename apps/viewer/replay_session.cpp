@@ -69,7 +69,7 @@ void ReplaySession::Handle(int client, const Command& command) {
     Anchor(times[static_cast<std::size_t>(std::clamp<std::int64_t>(row, 0, last))]);
     paused_ = true;
   } else {
-    SayError(client, fmt::format("{} does not go with a replay", type));
+    SayError(client, fmt::format("{} is not possible in a replay", type));
   }
 }
 

@@ -24,9 +24,9 @@ const char* Start(StartKind start) {
     case StartKind::kAsDescribed:
       return "as described";
     case StartKind::kSettled:
-      return "at rest, where the robot settles on its ground";
+      return "settled on the ground, at rest";
     case StartKind::kSettledFloating:
-      return "at rest, where the robot settles without weight and ground";
+      return "settled without weight and ground, at rest";
   }
   return "";
 }

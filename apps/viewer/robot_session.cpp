@@ -70,25 +70,25 @@ void RobotSession::StartHistory() {
 
 void RobotSession::Show(const link::State& state) {
   const std::lock_guard lock(own_mutex_);
-  if (!left_.states.empty() && left_.states.back().time_s == state.time_s) {
-    left_.states.back() = state;
+  if (!handover_.states.empty() && handover_.states.back().time_s == state.time_s) {
+    handover_.states.back() = state;
     return;
   }
-  if (left_.states.size() >= kMaxStates) {
-    ++left_.lost;
+  if (handover_.states.size() >= kMaxStates) {
+    ++handover_.lost;
     return;
   }
-  left_.states.push_back(state);
+  handover_.states.push_back(state);
 }
 
 void RobotSession::Event(double time_s, const std::string& text) {
   const std::lock_guard lock(own_mutex_);
-  left_.events.push_back({time_s, text});
+  handover_.events.push_back({time_s, text});
 }
 
 void RobotSession::BeginAt(double time_s) {
   const std::lock_guard lock(own_mutex_);
-  left_.begins_s = time_s;
+  handover_.begins_s = time_s;
 }
 
 std::vector<RobotCommand> RobotSession::TakeCommands() {
@@ -98,7 +98,7 @@ std::vector<RobotCommand> RobotSession::TakeCommands() {
 
 void RobotSession::Refuse(int client, const std::string& why) {
   const std::lock_guard lock(own_mutex_);
-  left_.errors.push_back({client, why});
+  handover_.errors.push_back({client, why});
 }
 
 void RobotSession::SetGain(int motor, int gain, double value) {
@@ -116,7 +116,7 @@ void RobotSession::AnswerGain(const RobotCommand& command, bool good, const std:
       {"good", good},
       {"text", text}};
   const std::lock_guard lock(own_mutex_);
-  left_.answers.push_back(answer);
+  handover_.answers.push_back(answer);
 }
 
 // --- the server's thread
@@ -180,12 +180,13 @@ void RobotSession::Handle(int client, const Command& command) {
   }
   if (command.type == "drop") return;  // a dragging client has left; a robot has no drags
   if (command.type == "robot_gain") {
-    return SayError(client, fmt::format("no motor drives a cable \"{}\"", command.name));
+    return SayError(client, fmt::format("there is no actuated cable \"{}\"", command.name));
   }
   if (command.type != "record") {
-    return SayError(client, fmt::format("{} does not go with a robot", command.type));
+    return SayError(client, fmt::format("{} is not possible with a robot", command.type));
   }
-  if (!options_.recorder) return SayError(client, "what is recorded was settled when it began");
+  if (!options_.recorder)
+    return SayError(client, "this recording was configured at the start and cannot be changed");
   if (!now_) return SayError(client, "there is nothing to record yet");
   Record(command.on);
 }
@@ -206,7 +207,7 @@ void RobotSession::Record(bool on) {
   all_recorded_ = all_recorded_ && whole;
 }
 
-void RobotSession::Happened(const Happening& event) {
+void RobotSession::Happened(const LogEvent& event) {
   if (!recording_.empty()) options_.recorder->Event(event.time_s, event.text);
   last_events_.push_back(event);
   if (last_events_.size() > kEvents) last_events_.erase(last_events_.begin());
@@ -265,17 +266,17 @@ void RobotSession::ShowStatus() {
   status["alarms"] = AlarmsOf(*now_, options_.cables, options_.port, age_s);
   status["recording"] = options_.recorder ? recording_ : options_.recording;
   status["events"] = Json::array();
-  for (const Happening& event : last_events_) {
+  for (const LogEvent& event : last_events_) {
     status["events"].push_back({{"time_s", event.time_s - begun_s_}, {"text", event.text}});
   }
   SetStatus({{"type", "robot"}, {"status", std::move(status)}});
 }
 
 void RobotSession::TakeWhatIsLeft() {
-  Left left;
+  Handover left;
   {
     const std::lock_guard lock(own_mutex_);
-    std::swap(left, left_);
+    std::swap(left, handover_);
   }
   if (left.begins_s) {
     begun_s_ = *left.begins_s;
@@ -285,10 +286,10 @@ void RobotSession::TakeWhatIsLeft() {
     moment_ = {};
   }
   for (const link::State& state : left.states) Take(state);
-  for (const Happening& event : left.events) Happened(event);
+  for (const LogEvent& event : left.events) Happened(event);
   if (left.lost > 0) {
     Happened({now_ ? now_->time_s : 0,
-              fmt::format("{} cycles were not kept: this computer is too busy", left.lost)});
+              fmt::format("{} cycles were not recorded: this computer is overloaded", left.lost)});
   }
   for (const Outgoing& error : left.errors) SayError(error.client, error.text);
   for (const Json& answer : left.answers) Say(0, answer);

@@ -78,14 +78,14 @@ class RobotSession final : public Session {
   bool Finish() override;
 
  private:
-  struct Happening {
+  struct LogEvent {
     double time_s;
     std::string text;
   };
   /// Data passed from the driving thread to the session's thread.
-  struct Left {
+  struct Handover {
     std::vector<link::State> states;
-    std::vector<Happening> events;
+    std::vector<LogEvent> events;
     std::vector<Outgoing> errors;
     std::vector<Json> answers;
     std::optional<double> begins_s;
@@ -100,7 +100,7 @@ class RobotSession final : public Session {
   void StartHistory();
   void TakeWhatIsLeft();
   void Take(const link::State& state);
-  void Happened(const Happening& event);
+  void Happened(const LogEvent& event);
   void Record(bool on);
   void ShowFrame();
   void ShowStatus();
@@ -113,7 +113,7 @@ class RobotSession final : public Session {
 
   // Protected by this mutex:
   std::mutex own_mutex_;
-  Left left_;
+  Handover handover_;
   std::vector<RobotCommand> commands_;
   Gains gains_;
 
@@ -127,7 +127,7 @@ class RobotSession final : public Session {
   double begun_s_ = 0;
   Frame moment_;
   std::vector<Frame::Body> described_;
-  std::vector<Happening> last_events_;
+  std::vector<LogEvent> last_events_;
   std::string recording_;  ///< Empty: not recorded by this session.
   bool all_recorded_ = true, begun_ = false, true_pose_ = false;
   int run_ = 1;

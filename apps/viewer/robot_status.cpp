@@ -71,7 +71,7 @@ std::vector<std::string> AlarmsOf(const link::State& state, const std::vector<st
   std::vector<std::string> alarms;
   if (state.stopping) alarms.push_back("emergency stop: motors stay off until faults are cleared");
   if (!state.link.connected) {
-    alarms.push_back(fmt::format("the adapter at {} is gone: what is shown is old", port));
+    alarms.push_back(fmt::format("the adapter at {} is gone: the displayed data are old", port));
     return alarms;  // boards that do not answer
   }
   if (age_s > kSilence_s) alarms.push_back(fmt::format("no cycle for {:.1f} s", age_s));
@@ -99,7 +99,7 @@ std::vector<std::string> AlarmsOf(const link::State& state, const std::vector<st
   };
   say(absent, "does not answer", "do not answer");
   say(faulty, "has latched faults", "have latched faults");
-  say(timed_out, "heard no broadcast in time", "heard no broadcast in time");
+  say(timed_out, "timed out without a broadcast", "timed out without a broadcast");
   say(stopped, "was stopped: clear faults", "were stopped: clear faults");
   return alarms;
 }

@@ -21,7 +21,7 @@
 namespace taut::viewer {
 namespace {
 
-/// Watchers are limited further, so that clients who may drive find a place.
+/// Watchers are limited further, so that clients that may drive find a place.
 constexpr std::size_t kMaxClients = 64, kMaxWatchers = 48;
 
 }  // namespace
@@ -38,7 +38,7 @@ struct Server::Impl {
       return Answer(request, files, options);
     }
     if (clients.size() >= (access == Access::kDrive ? kMaxClients : kMaxWatchers)) {
-      return Refusal(request, http::status::service_unavailable, "Too many look at this already.");
+      return Refusal(request, http::status::service_unavailable, "Too many viewers are connected.");
     }
     Open(stream.release_socket(), request, access);
     return std::nullopt;
@@ -87,15 +87,15 @@ struct Server::Impl {
     std::optional<Command> command = ParseCommand(text, reason);
     if (!command) return false;
     if (!who.may_drive() && command->type != "want_series") {
-      who.SendText(
-          Dump({{"type", "error"},
-                {"text", "this link is for watching only; taut printed another to drive"}}));
+      who.SendText(Dump(
+          {{"type", "error"},
+           {"text", "this address is for watching only; taut printed another address to drive"}}));
       return true;
     }
     const int before = drivers.driver();
     if (!drivers.Allow(who.client(), command->type)) {
       who.SendText(Dump({{"type", "error"},
-                         {"text", fmt::format("client {} drives; take control first", before)}}));
+                         {"text", fmt::format("viewer {} drives; take control first", before)}}));
       return true;
     }
     TellDriver(before);
@@ -216,7 +216,7 @@ bool Server::Listen(std::string& error) {
   for (int next = port + 1; next <= 65535 && next <= port + 100; ++next) {
     tcp::acceptor trial(impl_->io);
     if (!Bind(trial, {address, static_cast<std::uint16_t>(next)}, failed)) continue;
-    error += fmt::format("; the next that is free: --port {}", next);
+    error += fmt::format("; next free port: --port {}", next);
     break;
   }
   return false;

@@ -23,8 +23,8 @@ std::optional<std::string> FindWebFolder(std::string& error, const std::string& 
   std::error_code failed;
   if (fs::exists(folder / "index.html", failed)) return folder.string();
   error =
-      "the viewer's pages are missing; they are built with taut where node and npm are "
-      "(apt-get install nodejs npm, then script/build)";
+      "the viewer's pages are missing (to build them: apt-get install nodejs npm, then "
+      "script/build)";
   return std::nullopt;
 }
 

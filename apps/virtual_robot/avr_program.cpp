@@ -79,19 +79,19 @@ std::optional<std::uint32_t> FindSymbol(const Image& image, std::string_view nam
 
 std::shared_ptr<const AvrProgram> ReadAvrProgram(const std::string& path, Diagnostics& out) {
   const auto bytes =
-      base::ReadInputFile(path, kMostBytes, "a program for an ATmega328P is smaller", out);
+      base::ReadInputFile(path, kMostBytes, "expected a program for an ATmega328P", out);
   if (!bytes) return nullptr;
   const auto refuse = [&](std::string what, std::string hint) {
     out.Error("firmware.not_readable", {path}, std::move(what), std::move(hint));
     return nullptr;
   };
   const Image image(*bytes);
-  const std::string hint = "firmware is the .elf that avr-gcc -mmcu=atmega328p links";
-  if (bytes->substr(0, 4) != "\177ELF") return refuse("is not an ELF file", hint);
+  const std::string hint = "expected the .elf file linked by avr-gcc -mmcu=atmega328p";
+  if (bytes->substr(0, 4) != "\177ELF") return refuse("the firmware is not an ELF file", hint);
   if (image.At(4, 1) != 1 || image.At(18, 2) != kMachineAvr) {
-    return refuse("is an ELF file of another machine than AVR", hint);
+    return refuse("the firmware is an ELF file for another machine than AVR", hint);
   }
-  if (image.At(16, 2) != 2) return refuse("is not a linked program", hint);
+  if (image.At(16, 2) != 2) return refuse("the firmware is not a linked program", hint);
   auto program = std::make_shared<AvrProgram>();
   const std::uint32_t headers = image.At(28, 4), entry = image.At(42, 2), count = image.At(44, 2);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -99,25 +99,27 @@ std::shared_ptr<const AvrProgram> ReadAvrProgram(const std::string& path, Diagno
     const std::uint32_t offset = image.At(header + 4, 4), load_at = image.At(header + 12, 4),
                         size = image.At(header + 16, 4);
     if (image.At(header, 4) != kLoad || size == 0) continue;
-    if (!image.Has(offset, size)) return refuse("is cut short", "copy it again");
+    if (!image.Has(offset, size)) return refuse("the firmware is truncated", "copy the file again");
     const std::vector<std::uint8_t> segment = image.Copy(offset, size);
     if (load_at < kMemoryBase) {
       // Two bytes are reserved for the emulator's endless loop.
       if (!Place(segment, load_at, AvrProgram::kFlashBytes - 2, program->flash)) {
-        return refuse("does not fit into 32 kB of flash", "");
+        return refuse("the firmware does not fit into 32 kB of flash", "");
       }
     } else if (load_at >= kEepromBase && load_at < kEepromBase + 0x1'0000 &&
                !Place(segment, load_at - kEepromBase, AvrProgram::kEepromBytes, program->eeprom)) {
-      return refuse("does not fit into 1 kB of EEPROM", "");
+      return refuse("the firmware does not fit into 1 kB of EEPROM", "");
     }
   }
-  if (program->flash.empty()) return refuse("holds no program", hint);
+  if (program->flash.empty()) return refuse("the firmware contains no program", hint);
   const auto end = FindSymbol(image, "_end");
-  if (!end) return refuse("does not say where its variables end", "do not strip its symbols");
+  if (!end)
+    return refuse("the firmware has no symbol _end, the end of its variables",
+                  "do not strip the symbols");
   program->free_memory = *end - kMemoryBase;
   if (program->free_memory < AvrProgram::kMemoryStart ||
       program->free_memory > AvrProgram::kMemoryEnd) {
-    return refuse("has more variables than 2 kB of memory hold", "");
+    return refuse("the variables of the firmware do not fit into 2 kB of memory", "");
   }
   return program;
 }

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "apps/virtual_robot/emulated_robot.h"
 #include "apps/virtual_robot/motor_plant.h"
-#include "apps/virtual_robot/robot.h"
 #include "apps/virtual_robot/robot_port.h"
 #include "taut/calibration.h"
 #include "taut/link/robot_plant.h"
@@ -45,7 +45,7 @@ class BoardsPlant final : public taut::Plant {
   Commands& commands() override { return plant_.commands(); }
   void Advance(const double* step_s, const double* to_s) override;
   void Restart(int lane) override { plant_.Restart(lane); }
-  bool Goes(int lane) const override { return truth_->Goes(lane); }
+  bool IsRunning(int lane) const override { return truth_->IsRunning(lane); }
   World* world() noexcept override { return truth_->world(); }
 
   link::Driver& driver() { return driver_; }

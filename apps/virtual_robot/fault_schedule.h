@@ -10,8 +10,7 @@
 
 namespace taut::virtual_robot {
 
-/// Combined effect of the active faults. If several set the same quantity, the last one that began
-/// wins.
+/// Combined effect of the active faults. If several set the same quantity, the last to begin wins.
 struct FaultState {
   struct OfBoard {
     std::optional<double> drift_ppm;

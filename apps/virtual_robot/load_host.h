@@ -2,7 +2,7 @@
 /// robot, and ignores all replies.
 #pragma once
 
-#include "apps/virtual_robot/robot.h"
+#include "apps/virtual_robot/emulated_robot.h"
 
 namespace taut::virtual_robot {
 

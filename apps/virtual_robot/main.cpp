@@ -67,7 +67,7 @@ std::optional<Overrides> ParseSet(const std::vector<std::string>& set) {
   for (const std::string& one : set) {
     const std::size_t equals = one.find('=');
     if (equals == std::string::npos || equals == 0) {
-      fmt::print(stderr, "error: --set {}: not of the form name=value\n", one);
+      fmt::print(stderr, "error: --set {}: expected name=value\n", one);
       return std::nullopt;
     }
     overrides.emplace_back(one.substr(0, equals), one.substr(equals + 1));
@@ -119,11 +119,11 @@ int Measure(Robot& robot, double seconds) {
   const double processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
   fmt::print("{:.2f} x real time: {:.2f} s of {} boards in {:.2f} s\n", done_s / took_s, done_s,
              robot.board_count(), took_s);
-  fmt::print("{:.2f} x by the processor's time, {:.0f} million cycles/s\n", done_s / processor_s,
-             16.0 * robot.board_count() * done_s / processor_s);
+  fmt::print("{:.2f} x real time per processor time, {:.0f} million cycles/s\n",
+             done_s / processor_s, 16.0 * robot.board_count() * done_s / processor_s);
   fmt::print(
-      "a broadcast and {} reads took {:.2f} ms with USB, at most {:.2f} ms; boards held the "
-      "clock for {:.1f} us a byte, at most {:.1f} us\n",
+      "broadcast and {} reads with USB: mean {:.2f} ms, longest {:.2f} ms; clock stretching per "
+      "byte: mean {:.1f} us, longest {:.1f} us\n",
       robot.board_count(), host.mean_cycle_s() * 1e3, host.longest_cycle_s() * 1e3,
       1e6 * ToSeconds(robot.bus().stretch().sum) / static_cast<double>(robot.bus().stretch().bytes),
       1e6 * ToSeconds(robot.bus().stretch().longest));
@@ -179,7 +179,7 @@ int RunAnExperiment(const Arguments& arguments, const Overrides& overrides) {
   if (!found.ok()) return Fail(found);
   LogFile log;
   if (!log.Open(arguments.log)) {
-    fmt::print(stderr, "error: {} cannot be written\n", arguments.log);
+    fmt::print(stderr, "error: cannot write {}\n", arguments.log);
     return kFailed;
   }
   options.robot.log = log.Sink();
@@ -220,9 +220,10 @@ int RunInRealTime(const Arguments& arguments, MotorPlant& plant, Robot& robot, c
     std::fflush(stdout);
   };
   paced.on_late = [&](double late_s) {
-    std::fputs(fmt::format("warning: {:.2f} s late: this machine is too slow or too busy\n", late_s)
-                   .c_str(),
-               stderr);
+    std::fputs(
+        fmt::format("warning: {:.2f} s late: this machine is too slow or overloaded\n", late_s)
+            .c_str(),
+        stderr);
   };
   if (!RunPaced(robot, paced, stop_asked, found)) {
     fmt::print(stderr, "{}", found.Format());
@@ -252,7 +253,7 @@ int Run(const Arguments& arguments) {
   fmt::print(stderr, "{}", found.Format());  // warnings
   LogFile log;
   if (!log.Open(arguments.log)) {
-    fmt::print(stderr, "error: {} cannot be written\n", arguments.log);
+    fmt::print(stderr, "error: cannot write {}\n", arguments.log);
     return kFailed;
   }
   options.log = log.Sink();
@@ -264,88 +265,89 @@ int Run(const Arguments& arguments) {
 
 int Main(int argc, char** argv) {
   CLI::App app{
-      "The boards of a robot, emulated instruction by instruction, with taut's physics at their "
-      "motors.\nPrints the device that stands for the robot's USB-ISS, and runs in real time until "
-      "Ctrl-C.",
+      "Emulates the boards of a robot instruction by instruction, with taut's physics at their "
+      "motors.\n"
+      "Prints the device that emulates the robot's USB-ISS, and runs in real time until Ctrl-C.",
       "taut_virtual_robot"};
   Arguments arguments;
-  app.set_help_flag("-h,--help", "Print this and end");
+  app.set_help_flag("-h,--help", "Print this help and exit");
   app.set_version_flag("-V,--version", std::string("taut ") + kVersion,
-                       "Print the version and end");
+                       "Print the version and exit");
   CLI::Option* model =
       app.add_option("--model", arguments.model,
-                     "The robot: a model whose actuators are motors, on a floor of friction 0.5")
+                     "Model of the robot, with motors as actuators, on a floor with friction 0.5")
           ->option_text("FILE");
-  app.add_option("--experiment", arguments.experiment,
-                 "The robot and the terrain of an experiment, instead; its controllers do nothing")
+  app.add_option(
+         "--experiment", arguments.experiment,
+         "Experiment with robot and terrain, instead of --model; its controllers are ignored")
       ->option_text("FILE")
       ->excludes(model);
-  app.add_option("--set", arguments.set, "Change a parameter of the model")
-      ->option_text("NAME=VALUE ...");
-  app.add_option("--firmware", arguments.firmware, "Program of the boards; that of taut if absent")
+  app.add_option("--set", arguments.set, "Parameter of the model")->option_text("NAME=VALUE ...");
+  app.add_option("--firmware", arguments.firmware,
+                 "Firmware of the boards (default: shipped with taut)")
       ->option_text("ELF");
-  app.add_option("--faults", arguments.faults, "What goes wrong and when (docs/formats/faults.md)")
+  app.add_option("--faults", arguments.faults, "Faults to inject (docs/formats/faults.md)")
       ->option_text("FILE");
-  app.add_option("--link", arguments.link, "Make a symbolic link to the device")
+  app.add_option("--link", arguments.link, "Symbolic link to create to the device")
       ->option_text("PATH");
   CLI::Option* stand = app.add_flag(
       "--stand", arguments.stand,
       "Hold the robot on a stand until the drivers of all boards have been on for 0.1 s");
   CLI::Option* truth =
       app.add_option("--truth", arguments.truth,
-                     "Say what the robot truly does at a socket (docs/formats/truth.md)")
+                     "Socket that serves the true state of the robot (docs/formats/truth.md)")
           ->option_text("PATH");
-  app.add_option("--slip_s", arguments.slip_s,
-                 "Where it is late by more, its time does not catch up (default: 1)")
+  app.add_option("--slip_s", arguments.slip_s, "Largest lateness to catch up [s] (default: 1)")
       ->option_text("S")
       ->check(CLI::Range(0.001, 1000.0));
-  app.add_flag("--with_parent", arguments.with_parent,
-               "End when the program ends that has started this one");
-  app.add_option("--log", arguments.log, "Write down what happens; - for the standard error")
-      ->option_text("FILE");
-  app.add_flag("--frames", arguments.frames, "The log has all frames of USB, too");
-  app.add_option("--seed", arguments.seed, "Of all noise")->option_text("NUMBER");
-  app.add_option("--drift_ppm", arguments.drift_ppm, "How fast the clock of each board is")
+  app.add_flag("--with_parent", arguments.with_parent, "Exit with the parent process");
+  app.add_option("--log", arguments.log, "Log file; -: standard error")->option_text("FILE");
+  app.add_flag("--frames", arguments.frames, "Log all USB frames, too");
+  app.add_option("--seed", arguments.seed, "Seed of all noise")->option_text("NUMBER");
+  app.add_option("--drift_ppm", arguments.drift_ppm, "Clock drift of each board [ppm]")
       ->expected(1, 6)
       ->check(CLI::Range(-100'000.0, 100'000.0))
       ->option_text("NUMBER ...");
   CLI::Option* measure =
       app.add_option("--measure", arguments.measure_s,
-                     "Instead: run so long with a busy host at full speed, and say how fast it was")
+                     "Benchmark instead: emulated time [s] at full speed with a busy host")
           ->check(CLI::Range(0.01, 3600.0))
           ->option_text("SECONDS");
-  CLI::Option* run =
-      app.add_flag("--run", arguments.run,
-                   "Instead: run the experiment in virtual time, with a PC that drives the boards");
+  CLI::Option* run = app.add_flag(
+      "--run", arguments.run,
+      "Run the experiment in virtual time instead, with an emulated PC that drives the boards");
   for (CLI::Option* in_real_time : {stand, truth}) in_real_time->excludes(measure)->excludes(run);
-  app.add_option("--out", arguments.out, "With --run: the folder; runs/NAME_on_boards if absent")
+  app.add_option("--out", arguments.out, "With --run: output folder (default: runs/NAME_on_boards)")
       ->option_text("FOLDER")
       ->needs(run);
-  app.add_option("--duration_s", arguments.duration_s, "With --run: instead of the file's")
+  app.add_option("--duration_s", arguments.duration_s,
+                 "With --run: duration [s] (overrides the file)")
       ->option_text("S")
       ->check(CLI::Range(0.0, 1e9))
       ->needs(run);
   app.add_option("--recover_s", arguments.recover_s,
-                 "With --run: when the PC configures all anew, clears faults, and goes on")
+                 "With --run: time at which the PC configures all boards again, clears faults and "
+                 "resumes [s]")
       ->option_text("S")
       ->check(CLI::Range(0.0, 1e9))
       ->needs(run);
   app.add_option("--board", arguments.board,
-                 "With --run: a parameter of all motors or boards (docs/hardware/parameters.md)")
+                 "With --run: parameter of all motors or boards (docs/hardware/parameters.md)")
       ->option_text("NAME=VALUE ...")
       ->needs(run);
-  app.add_option(
-         "--calibration", arguments.calibration,
-         "With --run: what the PC believes of load cells, encoders and springs, in place of "
-         "what is so (docs/formats/calibration.md)")
+  app.add_option("--calibration", arguments.calibration,
+                 "With --run: calibration assumed by the PC, instead of the true values "
+                 "(docs/formats/calibration.md)")
       ->option_text("FILE")
       ->needs(run);
-  app.add_flag("--csv", arguments.csv, "With --run: trace.csv and host.csv, too")->needs(run);
-  app.add_flag("--quiet", arguments.quiet, "With --run: no table, no progress")->needs(run);
-  app.add_option("--noise_counts", arguments.noise_counts, "Of load cells, standard deviation")
+  app.add_flag("--csv", arguments.csv, "With --run: also write trace.csv and host.csv")->needs(run);
+  app.add_flag("--quiet", arguments.quiet, "With --run: no progress, no table")->needs(run);
+  app.add_option("--noise_counts", arguments.noise_counts,
+                 "Standard deviation of the load cells' noise [counts]")
       ->option_text("NUMBER")
       ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--usb_latency_s", arguments.usb_latency_s, "Of the adapter, each way")
+  app.add_option("--usb_latency_s", arguments.usb_latency_s,
+                 "Latency of the adapter in each direction [s]")
       ->option_text("S")
       ->check(CLI::Range(0.0, 0.1));
   app.footer(
@@ -358,7 +360,7 @@ int Main(int argc, char** argv) {
       "  taut_virtual_robot --experiment experiments/push_20n_motors.yaml --run --csv "
       "--calibration calibrations/as_assumed.yaml\n"
       "This program contains libsimavr and is under the GNU General Public License, version 3.\n"
-      "Exit status: 0 good, 1 failed, 2 bad usage, 3 bad input.");
+      "Exit status: 0 success, 1 failure, 2 bad usage, 3 bad input.");
   try {
     app.parse(argc, argv);
     for (std::string* path :
@@ -368,7 +370,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "error: {}; taut_virtual_robot --help tells more\n", error.what());
+    fmt::print(stderr, "error: {}; see `taut_virtual_robot --help`\n", error.what());
     return kUsage;
   }
   if (arguments.model.empty() && arguments.experiment.empty()) {
@@ -381,7 +383,8 @@ int Main(int argc, char** argv) {
   }
   if (arguments.firmware.empty()) arguments.firmware = OwnFirmware();
   if (arguments.firmware.empty()) {
-    fmt::print(stderr, "error: --firmware ELF is missing: taut's own is not there\n");
+    fmt::print(stderr,
+               "error: --firmware ELF is missing, because taut was built without firmware\n");
     return kUsage;
   }
   return Run(arguments);

@@ -22,18 +22,19 @@ std::unique_ptr<MotorPlant> MotorPlant::Make(const RobotSpec& robot, Diagnostics
     if (cable.actuator.kind == ActuatorDef::Kind::kNone) continue;
     if (cable.actuator.kind != ActuatorDef::Kind::kDcMotor) {
       const SourceRef at = i < robot.cable_sources.size() ? robot.cable_sources[i] : file;
-      out.Error("actuator.not_a_motor", at, "the actuator of cable " + cable.name + " is no motor",
-                "boards drive motors: `actuator: {dc_motor: {}}`");
+      out.Error("actuator.not_a_motor", at,
+                "the actuator of cable " + cable.name + " is not a motor",
+                "expected `actuator: {dc_motor: {}}`");
     }
     cables.push_back(static_cast<int>(i));
     names.push_back(cable.name);
   }
   if (cables.empty()) {
     out.Error("robot.no_motors", file, "no cable has a motor",
-              "a virtual robot needs 1 to 12 of them");
+              "expected 1 to 12 cables with motors");
   } else if (cables.size() > kMostMotors) {
     out.Error("robot.too_many_motors", file, std::to_string(cables.size()) + " cables have a motor",
-              "six boards drive 12 at most");
+              "six boards drive at most 12");
   }
   if (out.items().size() != errors_before) return nullptr;
   auto model = Model::Compile(robot.def, out);

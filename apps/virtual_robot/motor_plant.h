@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/virtual_robot/plant.h"
+#include "apps/virtual_robot/emulated_plant.h"
 #include "taut/batch.h"
 #include "taut/spec.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "apps/virtual_robot/robot.h"
+#include "apps/virtual_robot/emulated_robot.h"
 #include "taut/diagnostics.h"
 
 namespace taut::virtual_robot {

@@ -18,7 +18,7 @@ namespace {
 std::string MakeLink(const std::string& target, const std::string& link) {
   struct stat there {};
   if (lstat(link.c_str(), &there) == 0 && !S_ISLNK(there.st_mode)) {
-    return "is there already and no symbolic link";
+    return "the path exists and is not a symbolic link";
   }
   const std::string fresh = link + "." + std::to_string(getpid()) + ".new";
   if (symlink(target.c_str(), fresh.c_str()) != 0) return std::strerror(errno);
@@ -56,7 +56,7 @@ std::optional<Pty> Pty::Open(const std::string& link, Diagnostics& out) {
   if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 ||
       ptsname_r(master, name, sizeof name) != 0) {
     out.Error("pseudo_terminal.not_opened", {"pseudo-terminal"},
-              std::string("cannot be opened: ") + std::strerror(errno));
+              std::string("cannot open: ") + std::strerror(errno));
     if (master >= 0) close(master);
     return std::nullopt;
   }
@@ -64,7 +64,7 @@ std::optional<Pty> Pty::Open(const std::string& link, Diagnostics& out) {
   termios settings{};
   if (slave < 0 || tcgetattr(slave, &settings) != 0) {
     out.Error("pseudo_terminal.not_opened", {name},
-              std::string("cannot be opened: ") + std::strerror(errno));
+              std::string("cannot open: ") + std::strerror(errno));
     if (slave >= 0) close(slave);
     close(master);
     return std::nullopt;
@@ -75,8 +75,8 @@ std::optional<Pty> Pty::Open(const std::string& link, Diagnostics& out) {
     const std::string why = MakeLink(name, link);
     if (!why.empty()) {
       out.Error("pseudo_terminal.not_linked", {link},
-                "cannot become a link to " + std::string(name) + ": " + why,
-                "name a place where nothing is yet");
+                "cannot create the link to " + std::string(name) + ": " + why,
+                "choose an unused path");
       close(slave);
       close(master);
       return std::nullopt;

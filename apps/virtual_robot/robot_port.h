@@ -1,7 +1,7 @@
 /// Adapter of an emulated robot as a port of the link's driver, in the robot's virtual time.
 #pragma once
 
-#include "apps/virtual_robot/robot.h"
+#include "apps/virtual_robot/emulated_robot.h"
 #include "taut/link/port.h"
 
 namespace taut::virtual_robot {

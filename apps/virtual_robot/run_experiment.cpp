@@ -189,9 +189,9 @@ int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
   if (!out.ok()) return Fail(out, kFailed);
   if (!run.quiet) {
     fmt::print("{}\n", SummaryTable(*summary));
-    fmt::print("boards: a tick took {:.0f} us, at most {:.0f} us\n", times.mean_us(),
+    fmt::print("boards: tick mean {:.0f} us, longest {:.0f} us\n", times.mean_us(),
                times.longest_us());
-    fmt::print("bus: a cycle took {:.2f} ms, at most {:.2f} ms; {} late, {} frames bad\n",
+    fmt::print("bus: cycle mean {:.2f} ms, longest {:.2f} ms; {} late cycles, {} bad frames\n",
                plant.heard().link.mean_cycle_s * 1e3, plant.heard().link.longest_cycle_s * 1e3,
                plant.heard().link.late_cycles, plant.bad_frames());
     for (std::size_t b = 0; b < plant.heard().boards.size(); ++b) {
@@ -204,7 +204,7 @@ int RunOnBoards(const ExperimentSpec& experiment, const BoardsOptions& options,
                  board.status.timeout ? ", timed out" : "",
                  link::FaultText(plant.heard(), static_cast<int>(b), motors->cable_names()));
     }
-    fmt::print("Trace, what the PC heard (host.h5), inputs and summary: {}\n", path);
+    fmt::print("Trace, PC log (host.h5), inputs and summary: {}\n", path);
   }
   return summary->interrupted ? kInterrupted : kGood;
 }

@@ -26,7 +26,7 @@ void Stand::Step(Time now) {
   // A driver that is on only briefly, as in its test, does not hold the robot yet.
   if (now - driven_since_ < kDrivenFor) return;
   plant_.SetHeld(false);
-  if (log_) log_(now, "stand", "let go: the drivers of all boards have been on for 0.1 s");
+  if (log_) log_(now, "stand", "released: the drivers of all boards have been on for 0.1 s");
 }
 
 }  // namespace taut::virtual_robot

@@ -1,9 +1,9 @@
 /// Stand that holds the robot until its boards do.
 #pragma once
 
-#include "apps/virtual_robot/log.h"
+#include "apps/virtual_robot/emulated_robot.h"
 #include "apps/virtual_robot/motor_plant.h"
-#include "apps/virtual_robot/robot.h"
+#include "apps/virtual_robot/robot_log.h"
 
 namespace taut::virtual_robot {
 

@@ -37,13 +37,13 @@ int NewSocket() { return socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOE
 std::string MakeRoom(const std::string& path, const sockaddr_un& address) {
   struct stat there {};
   if (lstat(path.c_str(), &there) != 0) return errno == ENOENT ? "" : std::strerror(errno);
-  if (!S_ISSOCK(there.st_mode)) return "is there already and no socket";
+  if (!S_ISSOCK(there.st_mode)) return "the path exists and is not a socket";
   const int probe = NewSocket();
   if (probe < 0) return std::strerror(errno);
   const int result = connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address);
   const int why = result == 0 ? 0 : errno;
   close(probe);
-  if (why == 0 || why == EAGAIN) return "is a socket that another program listens at";
+  if (why == 0 || why == EAGAIN) return "another program listens at this socket";
   if (why != ECONNREFUSED) return std::strerror(why);
   return unlink(path.c_str()) == 0 ? "" : std::strerror(errno);
 }
@@ -92,27 +92,27 @@ std::unique_ptr<TruthServer> TruthServer::Open(const std::string& path, const Mo
   sockaddr_un address{};
   if (!UnixAddress(path, &address)) {
     out.Error("socket.bad_path", {path},
-              fmt::format("cannot become a socket: a path of 1 to {} bytes is wanted",
+              fmt::format("the path is not usable for a socket (expected 1 to {} bytes)",
                           sizeof address.sun_path - 1));
     return nullptr;
   }
   if (const std::string why = MakeRoom(path, address); !why.empty()) {
-    out.Error("socket.not_made", {path}, "cannot become a socket: " + why,
-              "name a place where nothing is yet");
+    out.Error("socket.not_made", {path}, "cannot create the socket: " + why,
+              "choose an unused path");
     return nullptr;
   }
   const int listener = NewSocket();
   if (listener < 0 ||
       bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     out.Error("socket.not_made", {path},
-              std::string("cannot become a socket: ") + std::strerror(errno));
+              std::string("cannot create the socket: ") + std::strerror(errno));
     if (listener >= 0) close(listener);
     return nullptr;
   }
   std::unique_ptr<TruthServer> server(new TruthServer(listener, path, plant));
   if (listen(listener, kWaitingClients) != 0) {
     out.Error("socket.not_listening", {path},
-              std::string("cannot be listened at: ") + std::strerror(errno));
+              std::string("cannot listen at the socket: ") + std::strerror(errno));
     return nullptr;
   }
   return server;

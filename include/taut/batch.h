@@ -228,9 +228,12 @@ class Batch {
   /// waiting.
   void Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept;
 
-  /// Advances by one step the worlds with `goes[world]` != 0; the others keep their bits. Costs as
+  /// Advances by one step the worlds with `mask[world]` != 0; the others keep their bits. Costs as
   /// much as a step of all worlds, and allocates memory.
-  void StepSome(double step_s, std::span<const std::uint8_t> goes);
+  void StepMasked(double step_s, std::span<const std::uint8_t> mask);
+  [[deprecated("StepMasked")]] void StepSome(double step_s, std::span<const std::uint8_t> mask) {
+    StepMasked(step_s, mask);
+  }
 
   /// Returns the simulated time of a world [s].
   double Time(int world) const noexcept;

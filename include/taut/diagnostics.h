@@ -26,15 +26,17 @@ class MessageId {
     for (const char c : text_) {
       const bool is_letter =
           (c >= 'a' && c <= 'z') || (is_word && (c == '_' || (c >= '0' && c <= '9')));
-      if (!is_letter && !(c == '.' && is_word && !has_dot)) throw "not a message identifier";
+      if (!is_letter && !(c == '.' && is_word && !has_dot)) NotAMessageIdentifier();
       has_dot = has_dot || c == '.';
       is_word = is_letter;
     }
-    if (!has_dot || !is_word) throw "not a message identifier";
+    if (!has_dot || !is_word) NotAMessageIdentifier();
   }
   constexpr std::string_view text() const noexcept { return text_; }
 
  private:
+  static void NotAMessageIdentifier();  ///< Never defined: a call of it does not compile.
+
   std::string_view text_;
 };
 

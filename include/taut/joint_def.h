@@ -81,7 +81,7 @@ struct HeldMotions {
   bool twist = false;   ///< Rotation about the axis.
 };
 /// Returns the motions that a kind of joint constrains.
-constexpr HeldMotions HeldBy(JointKind kind) noexcept {
+constexpr HeldMotions ConstrainedMotions(JointKind kind) noexcept {
   switch (kind) {
     case JointKind::kBall:
       return {true, true, false, false};
@@ -106,7 +106,14 @@ constexpr HeldMotions HeldBy(JointKind kind) noexcept {
 }
 
 /// Returns the distance between a joint's two points along the directions that it constrains [m].
-double HeldGap(const JointDef& joint) noexcept;
+double JointError(const JointDef& joint) noexcept;
+
+[[deprecated("ConstrainedMotions")]] constexpr HeldMotions HeldBy(JointKind kind) noexcept {
+  return ConstrainedMotions(kind);
+}
+[[deprecated("JointError")]] inline double HeldGap(const JointDef& joint) noexcept {
+  return JointError(joint);
+}
 
 /// Pair of bodies without contacts between them.
 struct ApartDef {

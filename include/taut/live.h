@@ -44,7 +44,7 @@ class LiveRun {
   /// is found. `brought`: custom controllers and sensors in addition to the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on = {},
-                                        const Brought& brought = {});
+                                        const Extensions& extensions = {});
   virtual ~LiveRun() = default;
 
   /// Advances by one step of the integrator; it may pass the experiment's end. Returns false,

@@ -150,13 +150,13 @@ class Plant {
   /// lane's state before.
   virtual void Restart(int lane) = 0;
 
-  /// Saves or restores a lane's clock and commands, like `Controller::Carry`. It does not include
-  /// the state of the simulated world.
-  virtual void Carry(plant::LaneState& state) { (void)state; }
+  /// Saves or restores a lane's clock and commands, like `Controller::Serialize`. It does not
+  /// include the state of the simulated world.
+  virtual void Serialize(plant::LaneState& state) { (void)state; }
 
   /// Returns whether a lane is running. False if its state is not finite, its recording has ended,
   /// or its robot does not answer.
-  virtual bool Goes(int lane) const = 0;
+  virtual bool IsRunning(int lane) const = 0;
 
   /// Returns the simulated world, or null if the plant is not a simulation.
   virtual World* world() noexcept { return nullptr; }
@@ -210,7 +210,7 @@ class Controller {
   }
   /// Saves or restores a lane's memory, for environments that save and restore episodes.
   /// Controllers of taut implement it.
-  virtual void Carry(plant::LaneState& state) { (void)state; }
+  virtual void Serialize(plant::LaneState& state) { (void)state; }
 
   // --- interactive changes in lane 0; controllers without such quantities keep these defaults ----
   /// Returns the gains of a cable, if it has any.
@@ -234,15 +234,17 @@ class SensorModel {
   /// Returns the controllers' observation; valid until the next sample.
   virtual const Observation& seen() const = 0;
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
-  virtual void Carry(plant::LaneState& state) { (void)state; }  ///< As in `Controller`.
+  virtual void Serialize(plant::LaneState& state) { (void)state; }  ///< As in `Controller`.
 };
 
 /// Custom controllers, which act after the experiment's controllers in this order and may overrule
 /// them, and custom sensors, whose input is the output of the experiment's sensors. Factories are
 /// called once per plant, from the thread that runs it.
-struct Brought {
+struct Extensions {
   std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> controllers;
   std::function<std::unique_ptr<SensorModel>(const ControlSetup&)> sensors;
 };
+
+using Brought [[deprecated("Extensions")]] = Extensions;
 
 }  // namespace taut

@@ -49,7 +49,7 @@ struct RolloutOptions {
   const std::atomic<bool>* stop = nullptr;  ///< Once true, unfinished worlds are abandoned.
   /// Custom controllers and sensors in addition to the experiment's. Factories are called from
   /// several threads concurrently.
-  Brought brought;
+  Extensions extensions;
   /// Replaces the objective's measure; penalties still apply. Called from several threads
   /// concurrently.
   std::function<std::unique_ptr<Score>(const ControlSetup&)> score;

@@ -123,7 +123,7 @@ struct RunOptions {
   /// Writers that get every recorded row; created by the caller, finished by the run.
   std::vector<TraceWriter*> traces;
   /// Custom controllers and sensors in addition to the experiment's.
-  Brought brought;
+  Extensions extensions;
   /// Custom friction law (taut/friction.h) of the simulation, including settling. Null: the law of
   /// the model. Without effect on a `plant`.
   std::shared_ptr<const ContactFriction> friction;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "taut/alone.h"
+#include "taut/minimal_experiment.h"
 #include "taut/start.h"
 #include "text.h"
 
@@ -33,7 +33,7 @@ LoadCaseSpec CaseOf(const ExperimentSpec& experiment, const std::string& name, D
   const std::vector<std::string> names = NamesOf(experiment.load_cases);
   said.Error("load_case.unknown", {experiment.files.empty() ? "" : experiment.files[0]},
              "there is no load case \"" + name + "\"",
-             names.empty() ? "load_cases of an experiment" : DidYouMean(name, names));
+             names.empty() ? "define `load_cases` in an experiment" : DidYouMean(name, names));
   return {};
 }
 
@@ -325,7 +325,7 @@ void AddAnalyses(py::module_& module) {
   module.def("analyze", &Analyse, py::arg("experiment"), py::arg("load_case") = py::none(), words);
   module.def(
       "analyze",
-      [](const RobotSpec& robot) { return Analyse(ExperimentWith(robot), std::nullopt); },
+      [](const RobotSpec& robot) { return Analyse(MinimalExperiment(robot), std::nullopt); },
       py::arg("robot"), words);
 }
 

@@ -29,7 +29,7 @@ py::object Load(const std::string& given, const py::kwargs& set) {
     if (kind == "model") robot = LoadRobot(path, overrides, said);
   }
   if (kind && kind != "experiment" && kind != "model") {
-    said.Error("file.wrong_kind", {path, 1, 1}, "a file of the kind \"" + *kind + "\"",
+    said.Error("file.wrong_kind", {path, 1, 1}, "the file has the kind \"" + *kind + "\"",
                "taut.load reads models and experiments");
   }
   if (!experiment && !robot) Refuse(said);

@@ -47,7 +47,9 @@ class Environments {
                const py::object& judge)
       : observe_(observe), judge_(judge) {
     CheckWorlds(worlds);
-    if (own_observations < 0) throw py::value_error("own_observations: 0 or more");
+    if (own_observations < 0)
+      throw py::value_error(
+          fmt::format("own_observations: {}; expected 0 or more", own_observations));
     EnvOptions options;
     options.worlds = worlds;
     options.threads = Threads(threads);
@@ -59,7 +61,9 @@ class Environments {
     for (const auto& [name, mode] : kAutoresets) {
       if (autoreset == name) options.autoreset = mode, known = true;
     }
-    if (!known) throw py::value_error("autoreset: next_step, same_step or disabled");
+    if (!known)
+      throw py::value_error("autoreset: \"" + autoreset +
+                            "\"; expected next_step, same_step or disabled");
     same_step_ = options.autoreset == Autoreset::kSameStep;
     if (!observe.is_none())
       options.observe = [this](const EnvView& v) { Call(observe_, v, false); };

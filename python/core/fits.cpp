@@ -53,7 +53,7 @@ void CheckProfiles(const Identification& fit, const std::vector<std::string>& pr
     if (name.find('*') != name.npos || std::find(names.begin(), names.end(), name) != names.end()) {
       continue;
     }
-    said.Error("profile.unknown_name", {}, "profiles: nothing is called \"" + name + "\"",
+    said.Error("profile.unknown_name", {}, "profiles: there is no parameter \"" + name + "\"",
                DidYouMean(name, names));
   }
 }
@@ -93,7 +93,7 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
   fitted->outcome = RunFit(*fitted->fit, asked.how);
   if (unreadable()) return nullptr;
   if (const std::string why = fitted->fit->memory_error(); !why.empty()) {
-    said.Error("fit.memory_not_writable", {options.memory_file}, "cannot be written: " + why);
+    said.Error("fit.memory_not_writable", {options.memory_file}, "cannot write: " + why);
   }
   if (!fitted->outcome.interrupted && !fitted->outcome.why.empty()) {
     said.Error("fit.failed", {asked.path}, "no fit: " + fitted->outcome.why);

@@ -95,7 +95,7 @@ const Evaluation& EvaluationOf(const StudyResult& r, std::optional<py::ssize_t> 
     return r.evaluations[static_cast<std::size_t>(Index(*which, count, "evaluation"))];
   }
   if (const Evaluation* best = r.best()) return *best;
-  throw py::value_error("every evaluation failed: there is no best");
+  throw py::value_error("there is no best evaluation: all evaluations failed");
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
   for (const auto& [known, simd] : kSimd) {
     if (*name == known) return simd;
   }
-  throw py::value_error("simd: \"" + *name + "\"; there are scalar, sse2, neon, avx2 and avx512");
+  throw py::value_error("simd: \"" + *name + "\"; expected scalar, sse2, neon, avx2 or avx512");
 }
 
 namespace {
@@ -115,7 +115,7 @@ int Threads(py::ssize_t threads) {
   constexpr int kMost = 1024;
   if (threads < 0 || threads > kMost) {
     throw py::value_error(
-        fmt::format("threads: {}; expected 0 (one a core) to {}", threads, kMost));
+        fmt::format("threads: {}; expected 0 (one per core) to {}", threads, kMost));
   }
   return static_cast<int>(threads);
 }
@@ -123,7 +123,7 @@ int Threads(py::ssize_t threads) {
 int Index(py::ssize_t index, int count, const char* what) {
   const py::ssize_t from_start = index < 0 ? index + count : index;
   if (from_start < 0 || from_start >= count) {
-    throw py::index_error(fmt::format("{} {} is not there: there are {}", what, index, count));
+    throw py::index_error(fmt::format("{} {} is out of range: there are {}", what, index, count));
   }
   return static_cast<int>(from_start);
 }
@@ -169,7 +169,7 @@ void CheckArray(const py::object& given, const py::dtype& kind,
                                               py::str(py::object(kind)).cast<std::string>())
                                                  .c_str());
   if (!py::isinstance<py::array>(given)) {
-    throw py::value_error(fmt::format("{}: no array; expected {}", what, expected));
+    throw py::value_error(fmt::format("{}: not an array; expected {}", what, expected));
   }
   const py::array a = py::reinterpret_borrow<py::array>(given);
   const std::vector<py::ssize_t> has(a.shape(), a.shape() + a.ndim());

@@ -22,7 +22,7 @@ from taut._errors import Complaint, InputError, InputWarning
 from taut._results import rollout, tunables
 
 Status = _enum.IntFlag("Status", _core.status_bits)  # type: ignore[misc]
-Status.__doc__ = "What a world has to say for itself; 0 is good."
+Status.__doc__ = "Condition bits of a world; 0: no error."
 
 __version__ = _core.version
 __all__ = ["Analysis", "Batch", "Complaint", "Experiment", "Fitted", "InputError", "InputWarning", "LinearSystem",

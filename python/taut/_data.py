@@ -15,7 +15,7 @@ def data_path(*parts: Union[str, "os.PathLike[str]"]) -> str:
     exist."""
     folder = _core.data_folder()
     if folder is None:
-        raise FileNotFoundError(f"the files that come with taut are neither beside {_core.__file__} nor in a "
+        raise FileNotFoundError(f"the files that come with taut are neither next to {_core.__file__} nor in a "
                                 "share/taut above it")
     path = pathlib.Path(folder, *parts)
     if not path.exists():

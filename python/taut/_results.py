@@ -18,16 +18,16 @@ def _plain(thing):
     """Converts NumPy numbers and arrays for json."""
     if hasattr(thing, "tolist"):
         return thing.tolist()
-    raise TypeError(f"objective: {thing!r} is no number, text, list or dict")
+    raise TypeError(f"objective: {thing!r}; expected a number, text, list or dict")
 
 
 def _world(number: int, world: World):
     if not isinstance(world, Mapping):
-        raise ValueError(f"worlds[{number}]: {world!r}; a dict of numbers by name, {{\"seed\": 3}}")
+        raise ValueError(f"worlds[{number}]: {world!r}; expected a dict of numbers by name, {{\"seed\": 3}}")
     seed, values = None, []
     for name, value in world.items():
         if not isinstance(value, numbers.Real) or isinstance(value, bool):
-            raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; a number")
+            raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; expected a number")
         if name == "seed":
             if not isinstance(value, numbers.Integral) or not 0 <= int(value) < 2**64:
                 raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; expected a whole number, 0 to 2**64 - 1")
@@ -59,7 +59,7 @@ def rollout(experiment: Experiment, objective: Objective, worlds: Union[int, Seq
         objective = {"measure": objective}
     if isinstance(worlds, (int, np.integer)):
         if worlds < 0:
-            raise ValueError(f"worlds: {worlds}; 0 or more")
+            raise ValueError(f"worlds: {worlds}; expected 0 or more")
         worlds = [{"seed": (experiment.seed + i) % 2**64} for i in range(worlds)]
     given = [_world(number, world) for number, world in enumerate(worlds)]
     columns = _core.rollout(experiment, json.dumps(dict(objective), default=_plain), given, threads, simd, progress)

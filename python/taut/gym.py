@@ -42,7 +42,7 @@ else:
 
 EpisodeEnd = _enum.IntEnum(  # type: ignore[misc]
     "EpisodeEnd", [(name.upper(), value) for name, value in _core.episode_ends])
-EpisodeEnd.__doc__ = "Why an episode is over: time and none end nothing badly; see docs/environments.md."
+EpisodeEnd.__doc__ = "Reason why an episode ended; NONE and TIME are no failures. See docs/environments.md."
 
 _AUTORESET = {AutoresetMode.NEXT_STEP: "next_step", AutoresetMode.SAME_STEP: "same_step",
               AutoresetMode.DISABLED: "disabled"}
@@ -51,11 +51,11 @@ _AUTORESET = {AutoresetMode.NEXT_STEP: "next_step", AutoresetMode.SAME_STEP: "sa
 def _experiment(experiment, set_):
     if isinstance(experiment, _core.Experiment):
         if set_:
-            raise ValueError("set: only of an experiment that is given as a path")
+            raise ValueError("set: supported only for an experiment given as a path")
         return experiment
     loaded = _core.load(str(experiment), **(set_ or {}))
     if not isinstance(loaded, _core.Experiment):
-        raise ValueError(f"{experiment}: a model; environments are made of experiments")
+        raise ValueError(f"{experiment}: a model; expected an experiment")
     return loaded
 
 
@@ -88,7 +88,7 @@ class VectorEnv(_VectorBase):
                  own_observations=0, observe=None, judge=None):
         dtype = _np.dtype(dtype)
         if dtype not in (_np.float32, _np.float64):
-            raise ValueError(f"dtype: {dtype}; float32 or float64")
+            raise ValueError(f"dtype: {dtype}; expected float32 or float64")
         if not isinstance(autoreset_mode, AutoresetMode):
             autoreset_mode = AutoresetMode(autoreset_mode)
         if seed is not None:
@@ -146,7 +146,7 @@ class VectorEnv(_VectorBase):
         options = dict(options or {})
         mask = options.pop("reset_mask", None)
         if options:
-            raise ValueError(f"options: there is no {', '.join(sorted(options))}; only reset_mask")
+            raise ValueError(f"options: unknown {', '.join(sorted(options))}; expected only reset_mask")
         seeds = None
         if seed is not None:
             if _np.ndim(seed) == 0:
@@ -209,7 +209,7 @@ class VectorEnv(_VectorBase):
         self._core.restore(snapshot, world)
 
     def render(self):
-        raise NotImplementedError("taut draws nothing here: run `experiment(world)` and look at it with `taut view`")
+        raise NotImplementedError("rendering is not supported: run `experiment(world)` and open the run with `taut view`")
 
     def close(self, **kwargs):
         self.closed = True
@@ -243,7 +243,7 @@ class Env(_EnvBase):
         if _EnvBase is not object:
             super().reset(seed=seed)
         if options:
-            raise ValueError(f"options: there is no {', '.join(sorted(options))}")
+            raise ValueError(f"options: unknown {', '.join(sorted(options))}")
         observations, _ = self._one.reset(seed=seed)
         return observations[0], {}
 

@@ -8,7 +8,7 @@ from robustness.scenarios import Reader, digest
 from validation.runs import ROOT
 
 OLD = b"old content\n"
-LOST_OUTPUT = "warning: standard output cannot be written"
+LOST_OUTPUT = "warning: cannot write to standard output"
 PART = re.compile(r".*\.\d+\.part")  # an unfinished file, left by a command that is killed or cannot delete it
 WINCHES = """\
 taut: 1

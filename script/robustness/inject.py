@@ -1,4 +1,4 @@
-"""Runs a program whose n-th call of some kind fails, with tests/faults/faults.cpp preloaded."""
+"""Runs a program whose n-th call of some kind fails, with tests/faults/inject_faults.cpp preloaded."""
 
 import dataclasses
 import errno

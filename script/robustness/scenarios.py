@@ -54,7 +54,7 @@ def said(outcome):
         return "hangs"
     if outcome.status < 0:
         return f"ended by {signal.Signals(-outcome.status).name}"
-    if outcome.status != 0 and not re.search(r"error: |cannot be ", outcome.errors):
+    if outcome.status != 0 and not re.search(r"error: |cannot (be|write)\b", outcome.errors):
         return f"status {outcome.status} and no error: {outcome.errors!r}"
     return None
 

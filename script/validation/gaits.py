@@ -321,7 +321,7 @@ def command_values(taut, ntrts):
     taut.folder.mkdir(parents=True, exist_ok=True)
     waves = export(taut, "gaits/hand_tuned_sine.yaml")
     fine = export(taut, "gaits/cpg_learned_ntrt.yaml")
-    shipped = export(taut, "gaits/cpg_learned.yaml", 100)  # limited to the rate of its own steps
+    shipped = export(taut, "gaits/cpg_learned.yaml", 100)  # no faster than the gait's steps
     return {
         "sine_command": f"{worst_command(ntrts[SINE.key], SINE, waves, {}, 60):.1e}",
         "cpg_command_10": f"{worst_command(ntrts[CPG.key], CPG, fine, signs, 10):.1e}",

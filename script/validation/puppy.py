@@ -240,7 +240,7 @@ def picture(trace):
 
 def page(taut):
     started = time.monotonic()
-    mass_kg = float(taut("check", "models/puppy.yaml").split(" kg that move")[0].split()[-1])
+    mass_kg = float(taut("check", "models/puppy.yaml").split("moving mass ")[1].split()[0])
     stand = Variant("puppy_stand", "puppy_stand", record(", 'push/*'"), full_trace=True)
     trots = {name: Variant("puppy_" + name.replace(" ", "_"), "puppy_trot", keys + record(), full_trace=True,
                            any_status=True)

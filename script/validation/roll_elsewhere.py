@@ -1,7 +1,7 @@
 """Generalization of a policy and a sine gait to changed conditions: roll_elsewhere.py FOLDER, the folder of ppo.py's
 training.
 
-Prints JSON, a list of [change, metres of the policy, metres of the sine]. For the python3 of taut's module.
+Prints JSON, a list of [change, meters of the policy, meters of the sine]. For the python3 of taut's module.
 """
 
 import json

@@ -2,7 +2,7 @@
 // and Calladine, 1986).
 #include <cmath>
 
-#include "analysis/members.h"
+#include "analysis/structure_members.h"
 #include "analysis/whole_motions.h"
 #include "math/vec.h"
 
@@ -78,7 +78,7 @@ class Counter {
       FillSpan(column, joint.a, joint.b);
       return true;
     }
-    const HeldMotions held = HeldBy(joint.def.kind);
+    const HeldMotions held = ConstrainedMotions(joint.def.kind);
     if (held.swing || held.twist || (joint.def.stiffness > 0)) return false;
     const Vec3 along =
         UnitOf(joint.def, HeldRowsOf(joint.def)[static_cast<std::size_t>(member.part)]).force;

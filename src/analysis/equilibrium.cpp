@@ -35,27 +35,32 @@ std::string WrongWith(const ModelDef& def, const LoadCaseSpec& loads,
     return index < 0 || static_cast<std::size_t>(index) >= count;
   };
   for (const auto& force : loads.forces) {
-    if (outside(force.node, def.nodes.size())) return "a load is on a node that is not there";
+    if (outside(force.node, def.nodes.size()))
+      return "the load case has a force on a node that does not exist";
   }
   for (const auto& longer : loads.cables) {
-    if (outside(longer.index, def.cables.size())) return "a cable that gets longer is not there";
+    if (outside(longer.index, def.cables.size()))
+      return "the load case lengthens a cable that does not exist";
   }
   for (const auto& longer : loads.bars) {
-    if (outside(longer.index, def.joints.size())) return "a bar that gets longer is not there";
+    if (outside(longer.index, def.joints.size()))
+      return "the load case lengthens a bar that does not exist";
     const JointDef& joint = def.joints[static_cast<std::size_t>(longer.index)];
-    if (!IsBar(joint)) return "joint \"" + joint.name + "\", which gets longer, is no bar";
+    if (!IsBar(joint))
+      return "the load case lengthens joint \"" + joint.name + "\", which is not a bar";
   }
   for (const auto& settled : loads.settlements) {
-    if (outside(settled.joint, def.joints.size())) return "a support that settles is not there";
+    if (outside(settled.joint, def.joints.size()))
+      return "the load case moves a support that does not exist";
     const JointDef& joint = def.joints[static_cast<std::size_t>(settled.joint)];
     if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) {
-      return "joint \"" + joint.name + "\", which settles, is no support";
+      return "the load case moves joint \"" + joint.name + "\", which is not a support";
     }
   }
   if (!options.from) return "";
   if (options.from->bodies.size() != def.bodies.size() ||
       options.from->rest_lengths_m.size() != def.cables.size()) {
-    return "the pose to begin with is that of another model";
+    return "the start pose belongs to another model";
   }
   return "";
 }
@@ -123,16 +128,16 @@ class Finder {
     if (structure_.touches.empty()) {
       const bool other_ground = !def_.terrain_boxes.empty() || !def_.height_fields.empty() ||
                                 !def_.terrain_meshes.empty();
-      return resultant + "nothing holds the robot in the world" +
-             (other_ground ? ": of terrain, statics knows planes only" : "");
+      return resultant + "no support holds the robot in the world" +
+             (other_ground ? ": statics supports planes as ground, no other terrain" : "");
     }
     if (def_.planes.size() > 1) return "";
     const Vec3& n = def_.planes[0].normal;
     const double into = -Dot(n, sum);
-    if (into <= least) return resultant + "the plane can only push the other way";
+    if (into <= least) return resultant + "the plane can push only in the opposite direction";
     const Vec3 along = sum + into * n;
     if (std::sqrt(Dot(along, along)) > std::max(least, 1e-9 * into)) {
-      return resultant + "along the plane nothing holds the robot: statics knows no friction";
+      return resultant + "no support holds the robot along the plane: statics ignores friction";
     }
     return "";
   }
@@ -229,7 +234,7 @@ class Finder {
       }
       if (now.depth_m <= depth) continue;
       return "\"" + NameOf(now.a) + "\" and \"" + NameOf(now.b) + "\" overlap by " +
-             Brief(now.depth_m) + " m there: statics supports contact with planes only";
+             Brief(now.depth_m) + " m in equilibrium: statics supports contact with planes only";
     }
     return "";
   }
@@ -293,12 +298,13 @@ class Finder {
     }
     if (!e.contacts.empty()) {
       e.left_out.emplace_back(
-          "friction on the ground: with it, forces there may be shared in many ways");
+          "friction on the ground: with it, the ground forces would not be unique");
     }
   }
 
   std::string Why() const {
-    if (search_.runs_away) return "the robot moves away without end: nothing stops it";
+    if (search_.runs_away)
+      return "the robot moves away without limit: no support or cable stops it";
     Eigen::VectorXd gradient;
     structure_.Energy(search_.at, gradient, nullptr);
     structure_.AddReactions(search_.at, search_.holding, gradient, nullptr);
@@ -311,8 +317,9 @@ class Finder {
     std::string text = "no equilibrium was found";
     if (most >= 0) {
       const std::size_t body = static_cast<std::size_t>(structure_.bodies[worst]);
-      text += ": after " + std::to_string(search_.iterations) + " linear systems body \"" +
-              def_.bodies[body].name + "\" has " + Brief(most) + " N left";
+      text += ": after " + std::to_string(search_.iterations) +
+              " linear systems the residual force on body \"" + def_.bodies[body].name + "\" is " +
+              Brief(most) + " N";
     }
     return text;
   }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/members.h"
 #include "analysis/point_metric.h"
 #include "analysis/quadratic_program.h"
+#include "analysis/structure_members.h"
 #include "analysis/whole_motions.h"
 #include "math/vec.h"
 #include "taut/analysis.h"

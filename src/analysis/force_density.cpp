@@ -18,13 +18,15 @@ bool Check(const FormNet& net, Diagnostics& out) {
   const std::size_t before = out.items().size();
   const int nodes = static_cast<int>(net.nodes_m.size());
   if (!net.fixed.empty() && net.fixed.size() != net.nodes_m.size()) {
-    out.Error("net.supports_unknown", {}, "the net does not say of every node whether it is fixed");
+    out.Error("net.supports_unknown", {},
+              "the net has " + std::to_string(net.fixed.size()) + " flags of fixed nodes for " +
+                  std::to_string(nodes) + " nodes");
   }
   for (std::size_t m = 0; m < net.members.size(); ++m) {
     const auto& [a, b] = net.members[m];
     if (a < 0 || b < 0 || a >= nodes || b >= nodes || a == b) {
       out.Error("net.member_outside", {},
-                "member " + std::to_string(m) + " is not between two nodes of the net");
+                "member " + std::to_string(m) + " does not connect two nodes of the net");
     }
   }
   return out.items().size() == before;
@@ -75,7 +77,7 @@ class FreeSearch {
             .rightCols(n - 1);
     const Eigen::ColPivHouseholderQR<MatrixXd> spanned(start);
     if (n < 5 || spanned.rank() < 3) {
-      form.why = "the nodes are in a plane, or fewer than five";
+      form.why = "the net needs at least five nodes, not all in one plane";
       return form;
     }
     MatrixXd x = MatrixXd(spanned.householderQ()).leftCols(3);
@@ -135,7 +137,7 @@ class FreeSearch {
                   const Eigen::RowVector3d& middle) const {
     FreeForm form;
     if (std::fabs(a[0]) < kZero) {
-      form.why = "the members of the first group bear nothing";
+      form.why = "the members of the first group carry no force";
       return form;
     }
     a /= Matrix(a).trace() < 0 ? -std::fabs(a[0]) : std::fabs(a[0]);  // tension is positive
@@ -152,8 +154,10 @@ class FreeSearch {
     }
     form.group_force_density_n_per_m.assign(a.data(), a.data() + a.size());
     if (zero < 4) {
-      form.why = "no force densities balance the groups near this form: they leave " +
-                 std::to_string(left) + " of them";
+      form.why =
+          "no force densities of the groups are in equilibrium near this form: the relative "
+          "residual is " +
+          std::to_string(left);
       return form;
     }
     double most = 0;
@@ -207,8 +211,8 @@ std::optional<std::vector<Vec3>> FindNetForm(const FormNet& net,
   const MatrixXd known = right(free, Eigen::all) - d(free, fixed) * x(fixed, Eigen::all);
   const Eigen::FullPivLU<MatrixXd> factors(MatrixXd(d(free, free)));
   if (!factors.isInvertible()) {
-    out.Error("net.not_held", {}, "these force densities do not hold every node of the net",
-              "some node hangs on nothing, or tensions and compressions cancel");
+    out.Error("net.not_held", {}, "the force densities do not determine the position of every node",
+              "connect every node to a fixed one; tensions and compressions must not cancel");
     return std::nullopt;
   }
   x(free, Eigen::all) = factors.solve(known);
@@ -217,7 +221,7 @@ std::optional<std::vector<Vec3>> FindNetForm(const FormNet& net,
 
 FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnostics& out) {
   FreeForm none;
-  none.why = "the net is wrong";
+  none.why = "the net is invalid";
   if (!Check(net, out)) return none;
   const std::size_t before = out.items().size();
   if (group.size() != net.members.size()) {
@@ -226,7 +230,8 @@ FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnos
                   std::to_string(net.members.size()) + " members");
   }
   if (std::find(net.fixed.begin(), net.fixed.end(), true) != net.fixed.end()) {
-    out.Error("net.has_fixed_nodes", {}, "the net has fixed nodes", "FindNetForm finds its form");
+    out.Error("net.has_fixed_nodes", {}, "FindFreeForm does not support nets with fixed nodes",
+              "call FindNetForm");
   }
   int groups = 0;
   for (const int g : group) groups = std::max(groups, g + 1);
@@ -236,7 +241,8 @@ FreeForm FindFreeForm(const FormNet& net, const std::vector<int>& group, Diagnos
   }
   const bool negative = std::any_of(group.begin(), group.end(), [](int g) { return g < 0; });
   if (negative || groups == 0 || std::find(has.begin(), has.end(), false) != has.end()) {
-    out.Error("net.bad_groups", {}, "groups must be numbers from 0 on, each with a member");
+    out.Error("net.bad_groups", {},
+              "groups must be numbered from 0, each with at least one member");
   }
   if (out.items().size() > before) return none;
   return FreeSearch(net, group, groups).Run();

@@ -164,7 +164,8 @@ class Intervals {
     out.left = balance_.Left(x);
     out.why = out.left.empty()
                   ? "no forces within their bounds balance the loads"
-                  : "no forces within their bounds balance " + balance_.Words(out.left);
+                  : "no forces within their bounds balance the loads; out of balance: " +
+                        balance_.Words(out.left);
     return false;
   }
 
@@ -340,7 +341,7 @@ ForceIntervals FindForceIntervals(const ModelDef& def, const LoadCaseSpec& loads
     out.Error("force_intervals.bad_tolerance", {}, "the tolerance must be a number of at least 0");
   if (out.items().size() > before) {
     ForceIntervals none;
-    none.why = "the options are wrong";
+    none.why = "the options are invalid";
     return none;
   }
   return InParts(def, loads, options).Run();

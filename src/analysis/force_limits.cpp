@@ -89,17 +89,17 @@ void CheckHolding(const ModelDef& def, const LoadCaseSpec& loads,
   const int bodies = static_cast<int>(def.bodies.size());
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const TouchDef& touch = touches[i];
-    const std::string what = "touch " + std::to_string(i);
+    const std::string what = "contact " + std::to_string(i);
     const auto is_body = [&](int body) { return body >= kWorld && body < bodies; };
     if (!is_body(touch.body) || !is_body(touch.other) || touch.body == touch.other) {
       out.Error("contact.bad_bodies", {},
-                what + " is not between two bodies, or a body and the world");
+                what + " does not connect two bodies, or a body and the world");
     }
     if (!IsUnit(touch.normal))
-      out.Error("contact.bad_normal", {}, "the normal of " + what + " is no unit vector");
+      out.Error("contact.bad_normal", {}, "the normal of " + what + " is not a unit vector");
     if (!(touch.friction >= 0) || !std::isfinite(touch.friction)) {
       out.Error("contact.bad_friction", {},
-                "the friction of " + what + " must be a number of at least 0");
+                "the friction of " + what + " must be a finite number of at least 0");
     }
   }
   if (!bounds.empty() && bounds.size() != def.cables.size()) {
@@ -120,20 +120,21 @@ void CheckHolding(const ModelDef& def, const LoadCaseSpec& loads,
       const double most = std::min(b.at_most_n, b.at_most_n_per_m * length);
       if (least > most) {
         out.Error("bounds.empty", {},
-                  "cable " + name + " is to have at least " + std::to_string(least) +
-                      " N and at most " + std::to_string(most) + " N");
+                  "the lower bound of cable " + name + ", " + std::to_string(least) +
+                      " N, is above its upper bound of " + std::to_string(most) + " N");
       }
     }
   }
   if (!loads.settlements.empty()) {
     out.Error("load_case.moves_supports", {},
-              "load case " + loads.name + " moves supports, but the pose is given",
-              "describe the pose that they have then");
+              "load case " + loads.name +
+                  " moves supports, but forces are computed in the described pose",
+              "describe the pose with the moved supports");
   }
   for (const LoadCaseSpec::NodeForce& force : loads.forces) {
     if (force.node < 0 || force.node >= static_cast<int>(def.nodes.size())) {
       out.Error("load_case.force_on_no_node", {},
-                "load case " + loads.name + " has a force on no node of the model");
+                "load case " + loads.name + " has a force on a node that does not exist");
     }
   }
 }

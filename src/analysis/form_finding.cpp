@@ -26,7 +26,7 @@ bool Check(const RobotSpec& robot, const FormOptions& options, Diagnostics& out)
   const bool densities = !options.force_density_n_per_m.empty();
   if (densities == !options.tension_n.empty()) {
     out.Error("form_finding.densities_or_tensions", {},
-              "a form needs force densities or tensions of the cables, one of both");
+              "form finding needs either force densities or tensions of the cables");
     return false;
   }
   const std::vector<double>& given = densities ? options.force_density_n_per_m : options.tension_n;
@@ -61,7 +61,7 @@ class FormSearch {
       const Equilibrium relaxed =
           FindEquilibrium(WithDensities(robot_.def, density), loads_, equilibrium_);
       if (!relaxed.found) {
-        form.why = "its cables bring it into no form: " + relaxed.why;
+        form.why = "the cables have no equilibrium form: " + relaxed.why;
         return form;
       }
       pose = relaxed.pose;
@@ -74,21 +74,22 @@ class FormSearch {
       }
       if (change < kSame) break;
       if (round + 1 == kMostRounds) {
-        form.why = "tensions did not come to rest; they still change by " + std::to_string(change);
+        form.why =
+            "tensions did not converge; their last relative change is " + std::to_string(change);
         return form;
       }
       density = next;
     }
     if (Collapsed(pose, form.why)) return form;
     if (!SetRestLengths(density, pose, out)) {
-      form.why = "there are cables that are too soft";
+      form.why = "some cables are too soft";
       return form;
     }
     form.robot = RobotAt(robot_, pose);
     equilibrium_.from = std::nullopt;
     form.equilibrium = FindEquilibrium(form.robot.def, loads_, equilibrium_);
     form.found = form.equilibrium.found;
-    if (!form.found) form.why = "it does not stay in the form: " + form.equilibrium.why;
+    if (!form.found) form.why = "the form is not in equilibrium: " + form.equilibrium.why;
     return form;
   }
 
@@ -111,8 +112,8 @@ class FormSearch {
     for (const CableDef& cable : there.cables) longest = std::fmax(longest, CableLength(cable));
     for (const CableDef& cable : there.cables) {
       if (CableLength(cable) > kNothing * longest) continue;
-      why = "the form is flat: cable " + cable.name +
-            " draws its ends together, and others are too weak to keep them apart";
+      why = "the form collapses: cable " + cable.name +
+            " pulls its ends into one point, and other members are too weak to keep them apart";
       return true;
     }
     return false;
@@ -129,9 +130,10 @@ class FormSearch {
       if (pose.rest_lengths_m[i] > 0) continue;
       out.Error("form_finding.cable_too_soft",
                 i < robot_.cable_sources.size() ? robot_.cable_sources[i] : SourceRef{},
-                "cable " + cable.name + " is too soft: with " + std::to_string(tension) +
-                    " N it would be longer than the " + std::to_string(length) + " m it has",
-                "ask for less tension, or give it more stiffness");
+                "cable " + cable.name + " is too soft: " + std::to_string(tension) +
+                    " N would stretch it by more than its length of " + std::to_string(length) +
+                    " m",
+                "reduce its tension, or increase its stiffness");
     }
     return out.items().size() == before;
   }
@@ -146,7 +148,7 @@ class FormSearch {
 
 Form FindForm(const RobotSpec& robot, const FormOptions& options, Diagnostics& out) {
   Form none;
-  none.why = "the options are wrong";
+  none.why = "the options are invalid";
   if (!Check(robot, options, out)) return none;
   return FormSearch(robot, options).Run(out);
 }

@@ -62,7 +62,8 @@ class Holding {
     if (out.found) return out;
     out.left = balance_.Left(x);
     if (!out.left.empty()) {
-      out.why = "no forces within their bounds balance " + balance_.Words(out.left);
+      out.why = "no forces within their bounds balance the loads; out of balance: " +
+                balance_.Words(out.left);
     }
     return out;
   }
@@ -74,7 +75,7 @@ class Holding {
     const ForceBalance::Solutions all = balance_.Solve();
     const double load = balance_.LargestLoad();
     if (all.left_n > kBalanced * load) {
-      why = "no forces at all balance the loads";
+      why = "no forces balance the loads, even without bounds";
       return false;
     }
     const double heaviest = weights_.size() > 0 ? weights_.maxCoeff() : 0;
@@ -94,7 +95,7 @@ class Holding {
     }
     why = answer.outcome == analysis::QuadraticOutcome::kInfeasible
               ? "no forces within their bounds balance the loads"
-              : "the search for forces did not end";
+              : "the search for forces did not converge";
     return false;
   }
 
@@ -148,7 +149,8 @@ class Holding {
                                               : cable.actuator.min_rest_length_m);
       if (rest <= least) {
         out.notes.push_back("cable " + cable.name + " would need a rest length of " +
-                            std::to_string(rest) + " m: it is too soft, or cannot wind so far");
+                            std::to_string(rest) +
+                            " m: it is too soft, or its actuator cannot wind that far");
       }
     }
   }
@@ -170,13 +172,12 @@ HoldingForces FindHoldingForces(const ModelDef& def, const LoadCaseSpec& loads,
   if (!options.calibration_rest_m.empty() &&
       options.calibration_rest_m.size() != def.cables.size()) {
     out.Error("inverse_statics.wrong_number_of_rest_lengths", {},
-              "there are " + std::to_string(options.calibration_rest_m.size()) +
-                  " rest lengths of the calibration for " + std::to_string(def.cables.size()) +
-                  " cables");
+              "the calibration has " + std::to_string(options.calibration_rest_m.size()) +
+                  " rest lengths for " + std::to_string(def.cables.size()) + " cables");
   }
   if (out.items().size() > before) {
     HoldingForces none;
-    none.why = "the options are wrong";
+    none.why = "the options are invalid";
     return none;
   }
   return Holding(def, loads, options).Run();

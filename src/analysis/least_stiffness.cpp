@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/members.h"
 #include "analysis/point_metric.h"
+#include "analysis/structure_members.h"
 #include "analysis/tangent.h"
 #include "analysis/whole_motions.h"
 #include "taut/analysis.h"

@@ -27,7 +27,7 @@ class Checks {
     Positive(task_.yield_factor, "the safety factor of yielding");
     True(std::all_of(task_.force_n.begin(), task_.force_n.end(),
                      [](double f) { return std::isfinite(f); }),
-         "forces must be numbers");
+         "forces must be finite numbers");
   }
   bool ok() const { return out_.items().size() == before_; }
 
@@ -69,9 +69,9 @@ std::optional<SizedMember> LightestRod(const SizingTask& task, Diagnostics& out)
   checks.Positive(task.material.young_pa, "Young's modulus");
   checks.Positive(task.buckling_factor, "the safety factor of buckling");
   checks.True(task.buckling_length_m >= 0 && std::isfinite(task.buckling_length_m),
-              "the buckling length must be a number of at least 0");
+              "the buckling length must be a finite number of at least 0");
   checks.True(task.inner_radius_share >= 0 && task.inner_radius_share < 1,
-              "the inner radius must be a share from 0 to below 1 of the outer one");
+              "the ratio of inner to outer radius must be at least 0 and below 1");
   if (task.slenderness) checks.Positive(*task.slenderness, "the slenderness");
   if (!checks.ok()) return std::nullopt;
 
@@ -104,7 +104,7 @@ std::optional<SizedMember> LightestCable(const SizingTask& task, Diagnostics& ou
   checks.Common();
   checks.True(
       std::none_of(task.force_n.begin(), task.force_n.end(), [](double f) { return f < 0; }),
-      "a cable cannot be pressed");
+      "forces of a cable must not be compressive (negative)");
   if (!checks.ok()) return std::nullopt;
   SizedMember sized = OfRadius(task, YieldRadius(task, 0), 0);
   sized.member.second_moment_m4 = 0;  // a cable has no bending stiffness

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/members.h"
+#include "analysis/structure_members.h"
 #include "analysis/tangent.h"
 #include "analysis/whole_motions.h"
 #include "math/angle.h"
@@ -44,8 +44,7 @@ void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixX
   if (basis.cols() == 0) return;
   const Eigen::LLT<Eigen::MatrixXd> root(basis.transpose() * mass * basis);
   if (root.info() != Eigen::Success) {
-    out.why =
-        "the mass of a motion is not positive: members' own masses are more than their bodies";
+    out.why = "the mass matrix is not positive definite: members are heavier than their bodies";
     return;
   }
   const Eigen::MatrixXd lower = root.matrixL();
@@ -99,7 +98,7 @@ Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads) {
   const Structure s(def, loads, true);
   Modes out;
   if (s.bodies.empty()) {
-    out.why = "no body moves";
+    out.why = "all bodies are fixed";
     return out;
   }
   const auto [holding, stiffness] = StiffnessAsDescribed(s);

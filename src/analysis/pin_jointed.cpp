@@ -76,11 +76,11 @@ class Maker {
     const double share = 1 - on_wheels_m / path.length_m();
     AddStrings(cable, ends, starts, cable.rest_length_m - on_wheels_m, share, tension_n);
     if (on_wheels_m > 0) {
-      Note("cable " + cable.name + " lies on wheels over " + base::Brief(on_wheels_m) +
-           " m, which its strings and its rest length here lack");
+      Note("cable " + cable.name + ": its strings and rest length exclude the " +
+           base::Brief(on_wheels_m) + " m on wheels");
     }
     if (cable.touches != CableTouches::kNone) {
-      Note("cable " + cable.name + " is straight here, whatever it lies against");
+      Note("cable " + cable.name + " is straight: its wrapping around obstacles is ignored");
     }
   }
   static double ArcAt(const math::DescribedPath& path, int point) {
@@ -133,7 +133,7 @@ class Maker {
   }
 
   void AddJoint(const JointDef& joint) {
-    const HeldMotions held = HeldBy(joint.kind);
+    const HeldMotions held = ConstrainedMotions(joint.kind);
     const bool a_stands = analysis::IsPinned(def_, joint.body_a),
                b_stands = analysis::IsPinned(def_, joint.body_b);
     if (joint.kind == JointKind::kDistance) {
@@ -145,20 +145,20 @@ class Maker {
     } else if ((a_stands || b_stands) && (held.along || held.across)) {
       places_.Hold(b_stands ? FromOf(joint) : ToOf(joint), joint.axis, held.along);
     } else {
-      Note("joint " + joint.name + " takes no part: its points slide on each other");
+      Note("joint " + joint.name + " is left out: its points slide on each other");
       return;
     }
     if (held.swing || held.twist) {
-      Note("joint " + joint.name + " holds its point and no turn");
+      Note("joint " + joint.name + " holds its point, but no rotation");
     }
-    if (joint.stiffness > 0) Note("the spring of joint " + joint.name + " takes no part");
+    if (joint.stiffness > 0) Note("the spring of joint " + joint.name + " is left out");
   }
   int FromOf(const JointDef& joint) { return places_.At(joint.body_a, joint.from_m); }
   int ToOf(const JointDef& joint) { return places_.At(joint.body_b, joint.to_m); }
 
   void AddDistance(const JointDef& joint) {
     if (!IsBar(joint) && !HoldsLength(joint)) {
-      Note("joint " + joint.name + " takes no part: it has stops alone");
+      Note("joint " + joint.name + " is left out: it has only limits");
       return;
     }
     Draft draft;
@@ -193,7 +193,7 @@ class Maker {
     std::vector<Draft> rods, braces;
     for (std::size_t b = 0; b < def_.bodies.size(); ++b) {
       if (places_.OfBody(static_cast<int>(b)).empty()) {
-        Note("body " + def_.bodies[b].name + " takes no part: nothing is tied to it");
+        Note("body " + def_.bodies[b].name + " is left out: no member is attached to it");
         continue;
       }
       const analysis::PinBody body = analysis::PinBodyOf(def_, static_cast<int>(b), places_);
@@ -335,8 +335,8 @@ class Maker {
       largest_n = std::max(largest_n, Of(node.load_n).norm());
     }
     if (most_n > kBalanced * largest_n) {
-      Note("forces do not balance: at node " + out_.nodes[worst].name + " " + base::Brief(most_n) +
-           " N are left; the robot is not at rest like this");
+      Note("forces do not balance: the residual at node " + out_.nodes[worst].name + " is " +
+           base::Brief(most_n) + " N; the robot is not at rest in this pose");
     }
   }
 

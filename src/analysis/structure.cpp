@@ -74,7 +74,7 @@ void Structure::AddCables(const LoadCaseSpec& load_case) {
 
 void Structure::AddJoints(const LoadCaseSpec& load_case) {
   for (const JointDef& joint : def_.joints) {
-    const HeldMotions held = HeldBy(joint.kind);
+    const HeldMotions held = ConstrainedMotions(joint.kind);
     PlacedJoint placed{joint, AnchorAt(joint.body_a, joint.from_m),
                        AnchorAt(joint.body_b, joint.to_m)};
     const std::size_t number = joints.size();

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/members.h"
+#include "analysis/structure_members.h"
 #include "analysis/whole_motions.h"
 #include "base/brief.h"
 #include "math/vec.h"

@@ -1,7 +1,7 @@
 // Tangent stiffness and mass matrix of a structure (docs/theory/statics.md, section 3).
 #include "analysis/tangent.h"
 
-#include "analysis/members.h"
+#include "analysis/structure_members.h"
 
 #include <Eigen/QR>
 #include <Eigen/SVD>

@@ -64,9 +64,9 @@ std::vector<std::string> WhatIsLeftOut(const ModelDef& def) {
   names(def.cables, slips, "cable", "friction along the path");
   names(
       def.cables, [](const CableDef& c) { return c.touches != CableTouches::kNone; }, "cable",
-      "what the path may come to lie against");
+      "obstacles along the path");
   names(
-      def.joints, [](const JointDef& j) { return j.least || j.most; }, "joint", "the stops");
+      def.joints, [](const JointDef& j) { return j.least || j.most; }, "joint", "the limits");
   names(
       def.joints, [](const JointDef& j) { return j.friction > 0; }, "joint", "friction");
   return out;

@@ -15,7 +15,7 @@ std::unique_ptr<FolderLock> FolderLock::Take(const std::string& folder, Diagnost
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    out.Error("folder.not_made", {folder}, "cannot make this folder: " + error.message());
+    out.Error("folder.not_made", {folder}, "cannot create the folder: " + error.message());
     return nullptr;
   }
   const std::string path = (std::filesystem::path(folder) / ".lock").string();
@@ -23,17 +23,17 @@ std::unique_ptr<FolderLock> FolderLock::Take(const std::string& folder, Diagnost
   std::unique_ptr<FolderLock> lock(new FolderLock(path, descriptor));
   if (descriptor < 0) {
     out.Error("folder.not_writable", {folder},
-              std::string("cannot be written to: ") + std::strerror(errno));
+              std::string("cannot write to the folder: ") + std::strerror(errno));
   } else if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     if (errno == EWOULDBLOCK) {
       out.Error("folder.locked", {folder}, "another process is writing into this folder",
                 "wait for it, stop it, or give `--out` another folder");
     } else {
       out.Error("folder.lock_failed", {path},
-                std::string("cannot be locked: ") + std::strerror(errno));
+                std::string("cannot lock the file: ") + std::strerror(errno));
     }
   } else if (!lock->Holds()) {
-    out.Error("folder.deleted", {folder}, "was deleted just now");
+    out.Error("folder.deleted", {folder}, "the folder has just been deleted");
   } else {
     return lock;
   }

@@ -20,21 +20,23 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
   };
   std::error_code ignored;
   const auto size_limit = [&] {
-    return refuse("is larger than " + std::to_string(most_bytes / 1'000'000) + " MB", hint);
+    return refuse("the file is larger than " + std::to_string(most_bytes / 1'000'000) + " MB",
+                  hint);
   };
-  if (std::filesystem::is_directory(path, ignored)) return refuse("is a directory, not a file");
+  if (std::filesystem::is_directory(path, ignored))
+    return refuse("the path is a directory, not a file");
   if (std::filesystem::is_regular_file(path, ignored)) {
     if (std::filesystem::file_size(path, ignored) > most_bytes && !ignored) return size_limit();
   } else if (named_by == NamedBy::kFile && std::filesystem::exists(path, ignored)) {
-    return refuse("is a pipe, socket or device (expected a regular file)");
+    return refuse("the path is a pipe, socket or device (expected a regular file)");
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return unreadable("cannot be opened: ", errno);
+  if (!in) return unreadable("cannot open: ", errno);
   std::string text;
   for (std::array<char, 65536> chunk; in && text.size() <= most_bytes;) {
     errno = 0;
     in.read(chunk.data(), chunk.size());
-    if (in.bad()) return unreadable("cannot be read: ", errno != 0 ? errno : EIO);
+    if (in.bad()) return unreadable("cannot read: ", errno != 0 ? errno : EIO);
     text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
   }
   if (text.size() <= most_bytes) return text;

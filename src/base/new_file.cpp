@@ -108,7 +108,7 @@ bool NewFile::Sync() { return SyncDescriptor(descriptor_) || Fail(); }
 bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out) {
   NewFile file(path);
   if (file.Create() && file.Write(text) && file.Publish()) return true;
-  out.Error("file.not_writable", {path}, "cannot be written: " + file.why());
+  out.Error("file.not_writable", {path}, "cannot write: " + file.why());
   return false;
 }
 

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <thread>
 
-#include "cluster/alone.h"
-#include "cluster/message.h"
+#include "cluster/cluster_message.h"
+#include "cluster/single_process.h"
 #include "cluster/started.h"
 
 namespace taut {

@@ -1,4 +1,4 @@
-#include "cluster/alone.h"
+#include "cluster/single_process.h"
 #include "cluster/started.h"
 
 namespace taut {
@@ -6,8 +6,8 @@ namespace taut {
 std::unique_ptr<Cluster> Cluster::Join(Diagnostics& out) {
   if (!cluster::StartedByLauncher()) return cluster::MakeAlone();
   out.Error("cluster.no_mpi", {},
-            "started as one of several processes, but this taut was built without MPI",
-            "install libopenmpi-dev, configure and build again; or start it alone");
+            "taut was started as one of several processes, but built without MPI",
+            "install libopenmpi-dev, configure and build again; or start a single process");
   return nullptr;
 }
 

@@ -84,8 +84,8 @@ std::string LagCell(const ChannelComparison& channel, int width) {
 
 void AppendGroup(const Group& group, std::string& out) {
   out += fmt::format("\n{}\n{:<{}}{:>10}{:>10}{:>11}{:>9}{:>8}{:>7}{:>10}{:>10}{:>8}\n",
-                     GroupTitle(group), "", group.name_width, "rmse", "bias", "max error", "at s",
-                     "lag s", "corr", "max a", "max b", "err %");
+                     GroupTitle(group), "", group.name_width, "rmse", "bias", "max error", "at [s]",
+                     "lag [s]", "corr", "max a", "max b", "err [%]");
   for (const auto& [name, channel] : group.rows) {
     out += fmt::format("{:<{}}", name, group.name_width);
     out += Cell(channel->rmse, 10) + Cell(channel->bias, 10) + Cell(channel->error.value, 11);
@@ -173,8 +173,8 @@ void AppendMissing(const Comparison& comparison, std::string& out) {
   if (missing.empty()) return;
   std::stable_sort(missing.begin(), missing.end(),
                    [](const auto& x, const auto& y) { return x.second > y.second; });
-  out += fmt::format("channels with missing values ({}), of {:g} s:\n", missing.size(),
-                     comparison.to_s - comparison.from_s);
+  out += fmt::format("channels with missing values ({}), seconds missing of {:g} s:\n",
+                     missing.size(), comparison.to_s - comparison.from_s);
   constexpr std::size_t kMost = 8;
   for (std::size_t i = 0; i < std::min(missing.size(), kMost); ++i) {
     out += fmt::format("  {}: {:.4g} s\n", missing[i].first, missing[i].second);
@@ -250,7 +250,7 @@ std::string ComparisonTable(const Comparison& comparison, const std::string& nam
   AppendGaps(comparison.a, "a", out);
   AppendGaps(comparison.b, "b", out);
   AppendMissing(comparison, out);
-  AppendList("signs not aligned, a component of the quaternion is missing",
+  AppendList("signs not aligned (a component of the quaternion is missing)",
              comparison.unknown_signs, out);
   AppendList("only in a", comparison.only_a, out);
   AppendList("only in b", comparison.only_b, out);

@@ -11,11 +11,11 @@ std::vector<std::string> ExceededLimits(const Comparison& comparison, const Comp
   if (const auto most = limits.max_error_percent) {
     for (const SystemMaximum& system : comparison.system) {
       if (std::abs(system.error_percent) <= *most) continue;  // in this form NaN exceeds the limit
-      exceeded.push_back(fmt::format("the largest {} is {:+.2f} % off, more than {:g} %",
+      exceeded.push_back(fmt::format("the largest {} differs by {:+.2f} %, more than {:g} %",
                                      system.pattern, system.error_percent, *most));
     }
     if (comparison.system.empty()) {
-      exceeded.push_back("no compared channel is one of those whose largest value is limited");
+      exceeded.push_back("no compared channel is subject to the limit of the largest value");
     }
   }
   if (const auto most = limits.max_rmse) {

@@ -45,7 +45,7 @@ class MappingReader {
 
   std::optional<Mapping> Read() {
     const auto text =
-        base::ReadInputFile(path_, kMaxBytes, "expected a few rules", out_, base::NamedBy::kUser);
+        base::ReadInputFile(path_, kMaxBytes, "expected a mapping", out_, base::NamedBy::kUser);
     if (!text) return std::nullopt;
     const Json json = Parse(*text);
     if (good_) Root(json);
@@ -70,7 +70,7 @@ class MappingReader {
       return Json::parse(text, watch);
     } catch (const Json::exception& failure) {
       const std::string what = failure.what();  // "[json...] parse error at line 1, ...: ..."
-      Error("mapping.not_json", "", "is not JSON: " + what.substr(what.find("] ") + 2));
+      Error("mapping.not_json", "", "the mapping is not JSON: " + what.substr(what.find("] ") + 2));
       return {};
     }
   }
@@ -83,10 +83,10 @@ class MappingReader {
     }
     if (root.value("version", Json()) != 1) {
       Error("mapping.unknown_version", "version",
-            "is not 1, the version of mapping files that this taut reads");
+            "must be 1, the version of mapping files that this taut reads");
     }
     if (root.contains("description") && !root["description"].is_string()) {
-      Error("mapping.description_no_text", "description", "is not a text");
+      Error("mapping.description_no_text", "description", "must be a string");
     }
     if (root.contains("table")) Table(root["table"]);
     ReadAxes(root);
@@ -108,15 +108,15 @@ class MappingReader {
       const std::string letter = text.substr(negative ? 1 : 0);
       if (letter != "x" && letter != "y" && letter != "z") {
         Error("mapping.bad_axis", fmt::format("axes.{}", kAxisNames[i]),
-              "is none of x, y, z, -x, -y, -z");
+              "must be one of x, y, z, -x, -y, -z");
         return;
       }
       axes_[i] = {letter[0] - 'x', negative ? -1.0 : 1.0};
     }
     if (Handedness(axes_) == 0.0) {
-      Error("mapping.duplicate_axis", "axes", "names an axis twice");
+      Error("mapping.duplicate_axis", "axes", "uses an axis twice");
     } else if (Handedness(axes_) < 0.0) {
-      Error("mapping.mirrored_axes", "axes", "is a mirror image, not a rotation");
+      Error("mapping.mirrored_axes", "axes", "must be a rotation, not a reflection");
     }
   }
 
@@ -125,7 +125,7 @@ class MappingReader {
                          Number(rule, "scale", at, 1.0), Number(rule, "offset", at, 0.0)};
     result.scale *= FromUnit(rule, result, at);
     if (StarsDiffer(result))
-      Error("mapping.unpaired_star", at, "one of \"from\" and \"to\" has a `*`, the other not");
+      Error("mapping.unpaired_star", at, "has a `*` in only one of \"from\" and \"to\"");
     mapping_.rules.push_back(std::move(result));
   }
 
@@ -137,7 +137,7 @@ class MappingReader {
       if (!given.is_array() || given.size() != 3 ||
           !std::all_of(given.begin(), given.end(), [](const Json& j) { return j.is_number(); })) {
         Error("mapping.bad_offset", at + ".offset",
-              "is not a list of three numbers, along taut's x, y and z");
+              "must be a list of three numbers, along taut's x, y and z");
         return;
       }
       for (std::size_t i = 0; i < 3; ++i) offset[i] = given[i];
@@ -160,11 +160,10 @@ class MappingReader {
   double UnitIn(const std::string& name, const std::string& wanted, const std::string& at) {
     const auto unit = FindUnit(name);
     if (!unit) {
-      Error("mapping.unknown_unit", at,
-            fmt::format("is \"{}\", which is no unit that taut knows", name),
+      Error("mapping.unknown_unit", at, fmt::format("is the unknown unit \"{}\"", name),
             DidYouMean(name, UnitNames()));
     } else if (unit->si != wanted) {
-      Error("mapping.wrong_unit", at, fmt::format("is {}, and the result is in {}", name, wanted));
+      Error("mapping.wrong_unit", at, fmt::format("is {}, but the result is in {}", name, wanted));
     }
     return unit ? unit->factor : 1.0;
   }
@@ -178,12 +177,12 @@ class MappingReader {
     }
     const double skip = Number(json, "skip_lines", "table", 0.0);
     if (!(skip >= 0 && skip <= 1e6 && skip == static_cast<int>(skip))) {
-      Error("mapping.bad_skip_lines", "table.skip_lines", "is not a whole number of lines");
+      Error("mapping.bad_skip_lines", "table.skip_lines", "must be a whole number of lines");
     } else {
       table.skip_lines = static_cast<int>(skip);
     }
     if (json.contains("header") && !json["header"].is_boolean()) {
-      Error("mapping.bad_header", "table.header", "is neither true nor false");
+      Error("mapping.bad_header", "table.header", "must be true or false");
     } else {
       table.header = json.value("header", true);
     }
@@ -196,17 +195,18 @@ class MappingReader {
     table.name_columns = Texts(json, "names");
     if (json.contains("value")) table.value_column = Text(json, "value", "table");
     if (json.contains("names") != json.contains("value")) {
-      Error("mapping.names_without_value", "table",
-            "has one of \"names\" and \"value\", the other not",
-            "they say where the channel and its number are, one a row");
+      Error(
+          "mapping.names_without_value", "table",
+          "must have both \"names\" and \"value\", or neither",
+          "they select the columns of channel names and values, for tables with one value per row");
     }
     if (!table.header && table.columns.empty()) {
       Error("mapping.no_columns", "table.columns", "is missing",
-            "where no header names the columns, the mapping does");
+            "list the names of the columns, because the table has no header");
     }
     if (!json.contains("time")) {
       Error("mapping.no_time", "table.time", "is missing",
-            "{\"column\": \"t\", \"unit\": \"ms\"} or {\"row_s\": 1}");
+            "expected {\"column\": \"t\", \"unit\": \"ms\"} or {\"row_s\": 1}");
     } else if (IsObject(json["time"], "table.time",
                         {"column", "unit", "zero", "offset_s", "row_s"})) {
       Clock(json["time"], table);
@@ -217,7 +217,7 @@ class MappingReader {
     std::string text = json.is_string() ? json.get<std::string>() : "";
     if (text == "," || text == ";" || text == "\t" || text == " " || text == "|") return text;
     Error("mapping.bad_separator", "table.separator",
-          "is none of \",\", \";\", \"|\", \"\\t\" and \" \"");
+          "must be one of \",\", \";\", \"|\", \"\\t\" and \" \"");
     return {};
   }
 
@@ -226,7 +226,7 @@ class MappingReader {
     const Json& list = json[key];
     if (!list.is_array() || list.empty() ||
         !std::all_of(list.begin(), list.end(), [](const Json& j) { return j.is_string(); })) {
-      Error("mapping.bad_list", "table." + key, "is not a list of texts");
+      Error("mapping.bad_list", "table." + key, "must be a list of strings");
       return {};
     }
     return list.get<std::vector<std::string>>();
@@ -236,7 +236,7 @@ class MappingReader {
     table.offset_s = Number(json, "offset_s", "table.time", 0.0);
     if (json.contains("row_s")) {
       table.row_s = Number(json, "row_s", "table.time", 1.0);
-      if (!(*table.row_s > 0)) Error("mapping.bad_row_s", "table.time.row_s", "is not above 0");
+      if (!(*table.row_s > 0)) Error("mapping.bad_row_s", "table.time.row_s", "must be above 0");
       for (const char* other : {"column", "unit", "zero"}) {
         if (json.contains(other))
           Error("mapping.two_times", "table.time", fmt::format("has both row_s and {}", other));
@@ -252,7 +252,7 @@ class MappingReader {
       table.zero.reset();
     } else if (json.contains("zero")) {
       if (!json["zero"].is_number()) {
-        Error("mapping.bad_zero", "table.time.zero", "is neither a number nor \"first\"");
+        Error("mapping.bad_zero", "table.time.zero", "must be a number or \"first\"");
         return;
       }
       table.zero = json["zero"];
@@ -282,11 +282,11 @@ class MappingReader {
       const std::size_t mark = text.find(kAxisMark);
       if (mark == text.npos || text.find(kAxisMark, mark + 1) != text.npos) {
         Error("mapping.no_axis_place", fmt::format("{}.{}", at, key),
-              "does not have one {axis}, where x, y and z go");
+              "must contain {axis} once, in the place of x, y and z");
       }
     }
     if (StarsDiffer(result))
-      Error("mapping.unpaired_star", at, "one of \"from\" and \"to\" has a `*`, the other not");
+      Error("mapping.unpaired_star", at, "has a `*` in only one of \"from\" and \"to\"");
     return result;
   }
 
@@ -312,12 +312,12 @@ class MappingReader {
       std::string text = *found;
       if (std::any_of(text.begin(), text.end(), base::IsControl)) {
         Error("mapping.control_character", fmt::format("{}.{}", at, key),
-              "has a control character in it");
+              "contains a control character");
       }
       return text;
     }
     Error("mapping.missing_text", fmt::format("{}.{}", at, key),
-          found == object.end() ? "is missing" : "is not a text");
+          found == object.end() ? "is missing" : "must be a string");
     return {};
   }
 
@@ -325,18 +325,19 @@ class MappingReader {
     const auto found = object.find(key);
     if (found == object.end()) return otherwise;
     if (found->is_number()) return *found;
-    Error("mapping.not_a_number", fmt::format("{}.{}", at, key), "is not a number");
+    Error("mapping.not_a_number", fmt::format("{}.{}", at, key), "must be a number");
     return otherwise;
   }
 
   bool IsObject(const Json& json, const std::string& at, const std::vector<std::string>& keys) {
     if (!json.is_object()) {
-      Error("mapping.not_an_object", at, "is not an object { ... }");
+      Error("mapping.not_an_object", at,
+            at.empty() ? "the mapping must be an object { ... }" : "must be an object { ... }");
       return false;
     }
     for (const auto& [key, value] : json.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      Error("mapping.unknown_key", at.empty() ? key : at + "." + key, "is not known here",
+      Error("mapping.unknown_key", at.empty() ? key : at + "." + key, "is not a known key",
             DidYouMean(key, keys));
     }
     return true;
@@ -346,7 +347,7 @@ class MappingReader {
   void ForEach(const Json& root, const char* key, const std::vector<std::string>& keys,
                const Use& use) {
     if (!root.contains(key)) return;
-    if (!root[key].is_array()) return Error("mapping.not_a_list", key, "is not a list [ ... ]");
+    if (!root[key].is_array()) return Error("mapping.not_a_list", key, "must be a list [ ... ]");
     for (std::size_t i = 0; i < root[key].size(); ++i) {
       const std::string at = fmt::format("{}[{}]", key, i);
       if (IsObject(root[key][i], at, keys)) use(root[key][i], at);

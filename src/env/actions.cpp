@@ -84,7 +84,7 @@ void Actions::Apply(plant::Loop& loop) {
   next_ = (next_ + 1) % slots_;
 }
 
-void Actions::Carry(plant::LaneState& state, plant::Loop& loop) {
+void Actions::Serialize(plant::LaneState& state, plant::Loop& loop) {
   for (std::size_t age = 1; age <= slots_; ++age) {
     for (std::size_t i = 0; i < count_; ++i) {
       state.Value(At((next_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));

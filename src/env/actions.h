@@ -25,9 +25,9 @@ class Actions {
   /// Applies the actions of all lanes to commands and controllers, once all have been read.
   void Apply(plant::Loop& loop);
 
-  /// Serializes a lane's actions, like a controller's `Carry`. On reading, which requires `Begin`,
-  /// it also restores the numbers of the loop's controllers.
-  void Carry(plant::LaneState& state, plant::Loop& loop);
+  /// Serializes a lane's actions, like a controller's `Serialize`. On reading, which requires
+  /// `Begin`, it also restores the numbers of the loop's controllers.
+  void Serialize(plant::LaneState& state, plant::Loop& loop);
 
  private:
   double& At(std::size_t slot, std::size_t i, std::size_t lane) noexcept {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "base/thread_pool.h"
-#include "env/group.h"
 #include "env/snapshot.h"
+#include "env/world_group.h"
 #include "plant/recorder.h"
 #include "sim/batch/check_index.h"
 #include "taut/study.h"
@@ -110,7 +110,8 @@ class LaneEnv final : public Env {
     const auto saved = env::Unsealed(Kind(), snapshot, out);
     if (!saved) return false;
     if (group.Restore(LaneOf(world), *saved)) return true;
-    out.Error("snapshot.other_model", {}, "the snapshot's state is not one of this model");
+    out.Error("snapshot.other_model", {},
+              "the state in the snapshot does not belong to this model");
     return false;
   }
 

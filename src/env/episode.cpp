@@ -3,7 +3,7 @@
 #include "math/elementary.h"
 #include "math/random.h"
 #include "math/vec.h"
-#include "plant/streams.h"
+#include "plant/random_streams.h"
 #include "rollout/vary.h"
 
 namespace taut::env {

@@ -118,7 +118,7 @@ void Observer::Begin(int lane, int delay) {
   }
 }
 
-void Observer::Carry(plant::LaneState& state) {
+void Observer::Serialize(plant::LaneState& state) {
   for (std::size_t age = 0; age < slots_; ++age) {
     for (std::size_t i = 0; i < count_; ++i) {
       state.Value(At((now_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));

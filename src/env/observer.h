@@ -35,9 +35,9 @@ class Observer {
   /// periods.
   void Begin(int lane, int delay);
 
-  /// Serializes the observations of the last periods, like a controller's `Carry`. Reading requires
-  /// `Begin`.
-  void Carry(plant::LaneState& state);
+  /// Serializes the observations of the last periods, like a controller's `Serialize`. Reading
+  /// requires `Begin`.
+  void Serialize(plant::LaneState& state);
 
   template <class T>
   void Emit(int lane, T* row) const;

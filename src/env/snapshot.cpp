@@ -44,17 +44,17 @@ std::optional<std::span<const std::uint8_t>> Unsealed(std::uint64_t kind,
   const std::uint64_t magic = seal.magic;
   if (sealed.size() >= sizeof seal) std::memcpy(&seal, sealed.data(), sizeof seal);
   if (sealed.size() < sizeof seal || seal.magic != magic) {
-    out.Error("snapshot.not_a_snapshot", {}, "this is no snapshot of an environment");
+    out.Error("snapshot.not_a_snapshot", {}, "the bytes are not a snapshot of an environment");
     return std::nullopt;
   }
   const auto saved = sealed.subspan(sizeof seal);
   if (seal.kind != kind) {
     out.Error("snapshot.other_environment", {}, "the snapshot is of another environment",
-              "the experiment, its randomisation and its autoreset must be the same");
+              "experiment, randomization and autoreset must be the same");
     return std::nullopt;
   }
   if (seal.sum != SumOf(saved)) {
-    out.Error("snapshot.damaged", {}, "the snapshot is damaged: its checksum is another one");
+    out.Error("snapshot.damaged", {}, "the snapshot is damaged: its checksum does not match");
     return std::nullopt;
   }
   return saved;

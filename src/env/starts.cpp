@@ -1,6 +1,6 @@
 #include "env/starts.h"
 
-#include "plant/start.h"
+#include "plant/find_start.h"
 
 namespace taut::env {
 
@@ -17,7 +17,7 @@ std::shared_ptr<const std::vector<std::uint8_t>> Workplace::Prepare(const Episod
   alone_.SetParameter(plant::kTheWorld, Parameter::kGravityZ, 0, gravity.z);
   Diagnostics complaints;
   if (!plant::PrepareStart(experiment_, alone_, complaints)) {
-    failed = complaints.items().empty() ? "no start" : complaints.items()[0].what;
+    failed = complaints.items().empty() ? "unknown reason" : complaints.items()[0].what;
     return nullptr;
   }
   return std::make_shared<const std::vector<std::uint8_t>>(alone_.Save(plant::kTheWorld));

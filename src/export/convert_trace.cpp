@@ -140,9 +140,9 @@ std::optional<Trace> SelectFrom(Trace trace, const std::vector<std::string>& cha
     thin(kept.values.back());
   }
   if (kept.channels.empty()) {
-    out.Error("trace.no_matching_channel", {path, 0, 0}, "has no channel that fits",
-              trace.channels.empty() ? "it has none at all"
-                                     : "there is \"" + trace.channels.front().name + "\"");
+    out.Error("trace.no_matching_channel", {path, 0, 0}, "the trace has no channel that matches",
+              trace.channels.empty() ? "it has no channels"
+                                     : "such as \"" + trace.channels.front().name + "\"");
     return std::nullopt;
   }
   kept.time_s = std::move(trace.time_s);
@@ -172,13 +172,14 @@ Conversion WriteTraceMcap(const Trace& trace, const ModelDef* robot, const std::
                           const GoOn& go_on, Diagnostics& out) {
   if (!trace.time_s.empty() &&
       !(trace.time_s.back() - std::min(trace.time_s.front(), 0.0) < kMostSeconds)) {
-    out.Error("trace.times_too_long", {path, 0, 0}, "cannot have times beyond 570 years");
+    out.Error("trace.times_too_long", {path, 0, 0},
+              "times beyond 570 years do not fit into the file");
     return Conversion::kFailed;
   }
   ToMcap to(trace, robot, path);
   const Conversion end = to.Run(go_on);
   if (end == Conversion::kFailed) {
-    out.Error("file.not_writable", {path, 0, 0}, "cannot be written: " + to.why());
+    out.Error("file.not_writable", {path, 0, 0}, "cannot write: " + to.why());
   }
   return end;
 }

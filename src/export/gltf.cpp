@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "export/appearance.h"
 #include "export/little_endian.h"
-#include "export/look.h"
 #include "math/vec.h"
 #include "taut/shape_mesh.h"
 #include "taut/version.h"
@@ -139,7 +139,7 @@ class Glb {
   int Material(ShapeMesh::Kind kind) {
     const auto known = materials_.find(kind);
     if (known != materials_.end()) return known->second;
-    const exporting::Look& look = exporting::LookOf(kind);
+    const exporting::Appearance& look = exporting::AppearanceOf(kind);
     const int index = Push(
         "materials", {{"name", look.name},
                       {"pbrMetallicRoughness",

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/fixed.h"
+#include "export/appearance.h"
 #include "export/cable_points.h"
-#include "export/look.h"
 #include "export/message_tree.h"
 #include "math/convex_hull.h"
 #include "math/vec.h"
@@ -33,7 +33,7 @@ ordered_json PoseOf(const Vec3& at, const Quat& q) {
           {"orientation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
 }
 ordered_json ColourOf(ShapeMesh::Kind kind) {
-  const Look& look = LookOf(kind);
+  const Appearance& look = AppearanceOf(kind);
   return {{"r", look.Screen(0)}, {"g", look.Screen(1)}, {"b", look.Screen(2)}, {"a", 1.0}};
 }
 

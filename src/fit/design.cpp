@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/linear.h"
-#include "fit/words.h"
+#include "fit/format.h"
+#include "fit/linear_solve.h"
 #include "math/elementary.h"
 
 namespace taut {
@@ -18,7 +18,7 @@ std::vector<std::string> Wrong(const std::vector<FitParameter>& parameters,
                                const DesignCandidate& candidate) {
   std::vector<std::string> wrong;
   if (candidate.jacobian.size() != candidate.sd.size() * parameters.size()) {
-    wrong.push_back(candidate.name + ": its Jacobian has not one row a standard deviation");
+    wrong.push_back(candidate.name + ": its Jacobian must have one row per standard deviation");
   }
   for (const double sd : candidate.sd) {
     if (sd > 0) continue;
@@ -104,7 +104,7 @@ DesignRanking RankDesigns(const std::vector<FitParameter>& parameters, const Des
     ranking.greedy.push_back(std::move(worth));
   }
   const std::size_t n = parameters.size();
-  ranking.sentences.push_back("what is measured now fixes " + Fixes(ranking.now, n));
+  ranking.sentences.push_back("the present measurements determine " + Fixes(ranking.now, n));
   double before = ranking.now.information;
   for (const DesignWorth& worth : ranking.greedy) {
     ranking.sentences.push_back("with " + worth.name + ": " + Fixes(worth, n) + ", " +

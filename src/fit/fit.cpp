@@ -36,12 +36,12 @@ FitResult Fit(const FitProblem& problem, const FitOptions& options, const FitSta
   const std::size_t starts = static_cast<std::size_t>(std::max(options.starts, 1));
   std::vector<std::string> wrong = CheckFitProblem(problem);
   if (!from.tracks.empty() && from.tracks.size() != starts) {
-    wrong.emplace_back("the state to go on from has another number of starts");
+    wrong.emplace_back("the state to resume from has a different number of starts");
   }
   for (const FitTrack& track : from.tracks) {
     if (track.values.size() != problem.parameters.size() ||
         track.weight.size() != problem.parameters.size()) {
-      wrong.emplace_back("the state to go on from has other parameters");
+      wrong.emplace_back("the state to resume from has different parameters");
       break;
     }
   }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/linear.h"
-#include "fit/words.h"
+#include "fit/format.h"
+#include "fit/linear_solve.h"
 #include "taut/fit_verdict.h"
 
 namespace taut {
@@ -157,10 +157,10 @@ std::string Together(const FitProblem& problem, const Identifiability& all, std:
   for (std::size_t i = 0; i < n; ++i) {
     const double r = all.correlation[j * n + i];
     if (i != j && std::fabs(r) > kTogether) {
-      names.push_back(problem.parameters[i].name + " (correlation " + Brief(r) + ")");
+      names.push_back(problem.parameters[i].name + " (" + Brief(r) + ")");
     }
   }
-  return names.empty() ? "" : "; it goes with " + fit::List(names);
+  return names.empty() ? "" : "; it is correlated with " + fit::List(names);
 }
 
 /// Returns whether a standard error exceeds a step that had to be shortened.
@@ -185,14 +185,16 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
       break;
     case Determined::kAtBound:
       text = value + ": at its " + (v.value <= p.low ? "lower" : "upper") +
-             " bound, and the data would have it beyond";
+             " bound; the optimum lies beyond it";
       break;
     case Determined::kDead:
       text = p.name + ": dead; no residual depends on it";
-      if (column.curved > kDead) text = p.name + ": dead here; it acts by its square only";
+      if (column.curved > kDead)
+        text = p.name + ": dead here; residuals depend on it only to second order";
       break;
     case Determined::kWeak:
-      text = value + error + ": the data say too little, even if all others were known (+- " +
+      text = value + error +
+             ": the data determine it too weakly, even if all others were known (+- " +
              Brief(v.se_alone, p.unit) + ")";
       if (v.sd_ratio < kInfinite && v.se_alone < 0.9 * v.se) text += Together(problem, all, j);
       break;
@@ -210,10 +212,11 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
     text += "; its derivative depends on the step by " + Brief(100 * column.kink_share) +
             " %, and no shorter step resolves it: a kink or noise, so its error is unreliable";
   } else if (Bends(column, v.se)) {
-    text += "; its derivative is from steps of " + Brief(column.step, p.unit) +
-            ", shorter than its error, and longer ones disagree, so its error is unreliable";
+    text += "; its derivative was computed with steps of " + Brief(column.step, p.unit) +
+            ", shorter than its error, and longer steps disagree, so its error is unreliable";
   }
-  if (!column.failed.empty()) text += "; points beside it could not be computed: " + column.failed;
+  if (!column.failed.empty())
+    text += "; neighboring points could not be computed: " + column.failed;
   return text;
 }
 

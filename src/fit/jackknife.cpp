@@ -1,7 +1,7 @@
 // Standard errors by the delete-one-group jackknife (docs/theory/identification.md, eq. F.14).
 #include <cmath>
 
-#include "fit/linear.h"
+#include "fit/linear_solve.h"
 #include "taut/fit_verdict.h"
 
 namespace taut {
@@ -69,7 +69,7 @@ JackknifeResult JackknifeGroups(const FitProblem& problem, const std::vector<dou
   result.se.resize(values.size());
   const std::vector<int> groups = fit::Groups(problem);
   if (how == Jackknife::kOff) {
-    result.why = "it was not asked for";
+    result.why = "it was not requested";
   } else if (groups.size() < kLeastGroups) {
     result.why = "there are fewer than three groups to leave out";
   }

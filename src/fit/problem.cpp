@@ -13,13 +13,13 @@ std::string Wrong(const FitParameter& p) {
   const double infinite = std::numeric_limits<double>::infinity();
   if (!std::isfinite(p.start)) return "its start is not a number";
   if (std::isnan(p.low) || std::isnan(p.high) || !(p.low < p.high)) {
-    return "its lower bound is not below its upper one";
+    return "its lower bound is not below its upper bound";
   }
   if (p.start < p.low || p.start > p.high) return "its start is not within its bounds";
   if (!(p.prior_sd > 0)) return "its prior's standard deviation is not above 0";
   if (p.prior_mean && !std::isfinite(*p.prior_mean)) return "its prior's mean is not a number";
   if (p.prior_mean && p.prior_sd == infinite)
-    return "its prior has a mean and no standard deviation";
+    return "its prior has a mean, but no standard deviation";
   if (!(p.scale >= 0) || p.scale == infinite) return "its scale is negative or not a number";
   if (!(p.step > 0) || p.step == infinite) return "its step is not above 0";
   return {};
@@ -37,13 +37,13 @@ double FitScale(const FitParameter& p) {
 
 std::vector<std::string> CheckFitProblem(const FitProblem& problem) {
   std::vector<std::string> wrong;
-  if (!problem.forward) wrong.push_back("there is nothing that computes residuals");
+  if (!problem.forward) wrong.push_back("there is no forward model");
   if (problem.parameters.empty()) wrong.push_back("there is no parameter to estimate");
-  if (problem.rows.empty()) wrong.push_back("there is no datum");
+  if (problem.rows.empty()) wrong.push_back("there are no data");
   std::set<std::string> names;
   for (const FitParameter& p : problem.parameters) {
     if (const std::string what = Wrong(p); !what.empty()) wrong.push_back(p.name + ": " + what);
-    if (!names.insert(p.name).second) wrong.push_back(p.name + ": there are two of this name");
+    if (!names.insert(p.name).second) wrong.push_back(p.name + ": the name is used twice");
   }
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
     const FitRow& row = problem.rows[i];
@@ -62,8 +62,8 @@ namespace {
 
 std::string WhyUnusable(const Residuals& answer, std::size_t rows) {
   if (answer.value.size() != rows) {
-    return "gave " + std::to_string(answer.value.size()) + " residuals instead of " +
-           std::to_string(rows);
+    return "the forward model returned " + std::to_string(answer.value.size()) +
+           " residuals instead of " + std::to_string(rows);
   }
   for (std::size_t i = 0; i < rows; ++i) {
     if (!std::isfinite(answer.value[i]))

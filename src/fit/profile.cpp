@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "fit/format.h"
 #include "fit/problem.h"
-#include "fit/words.h"
 #include "taut/fit_verdict.h"
 
 namespace taut {
@@ -189,7 +189,7 @@ std::string Sentence(const FitParameter& p, const FitProfile& profile, double co
             ": the data do not bound it there";
   }
   if (profile.better)
-    text += "; the fit was not the lowest point, it should start again from there";
+    text += "; the profile has a lower point than the fit: start the fit from there";
   return text;
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "fit/words.h"
+#include "fit/format.h"
 #include "taut/fit_verdict.h"
 
 namespace taut {
@@ -42,14 +42,14 @@ ProportionCheck CheckProportion(std::span<const ProportionPoint> points, const s
   std::map<int, Sums> groups;
   for (const ProportionPoint& p : points) {
     if (!std::isfinite(p.expected) || !std::isfinite(p.measured) || !(p.sd > 0)) {
-      check.why = "a point is not a number, or its standard deviation is not above 0";
+      check.why = "a point is not finite, or its standard deviation is not above 0";
       return check;
     }
     all.Add(p);
     groups[p.group].Add(p);
   }
   if (points.size() < 2 || !(all.xx > 0)) {
-    check.why = "there are fewer than two points, or nothing is expected of them";
+    check.why = "there are fewer than two points, or all expected values are 0";
     return check;
   }
   check.slope = all.xy / all.xx;
@@ -64,14 +64,14 @@ ProportionCheck CheckProportion(std::span<const ProportionPoint> points, const s
   check.z = (check.slope - 1) / check.se;
   check.consistent = std::fabs(check.z) <= 3 && check.p >= 0.001;
   check.sentence = what + " " + fit::Brief(100 * check.slope) + " +- " +
-                   fit::Brief(100 * check.se) + " % of what is expected: ";
+                   fit::Brief(100 * check.se) + " % of the expected value: ";
   if (check.consistent) {
-    check.sentence += "the data agree with themselves";
+    check.sentence += "the data are consistent";
   } else if (std::fabs(check.z) > 3) {
-    check.sentence += "they miss 100 % by " + fit::Brief(std::fabs(check.z)) +
-                      " standard errors, which no model of the robot mends";
+    check.sentence += "the difference from 100 % is " + fit::Brief(std::fabs(check.z)) +
+                      " standard errors, which no model of the robot can correct";
   } else {
-    check.sentence += "but they are not proportional (chi-square " + fit::Brief(check.chi2) +
+    check.sentence += "the forces are not proportional (chi-square " + fit::Brief(check.chi2) +
                       " with " + fit::Brief(freedom) + " degrees of freedom)";
   }
   return check;

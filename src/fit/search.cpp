@@ -207,7 +207,7 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
   ++track.iterations;
   if (cosine <= options_.gradient_tolerance) {
     if (!CheckFirst(t) && !Jump(t))
-      End(t, FitEnd::kConverged, "the residuals are orthogonal to every column");
+      End(t, FitEnd::kConverged, "the residuals are orthogonal to every column of the Jacobian");
     return;
   }
   double damping = options_.dampings > 1 ? 0.1 * track.damping : track.damping;
@@ -268,8 +268,8 @@ void Search::Choose(std::size_t t, std::span<Trial> trials,
     if (Jump(t)) return;
     const bool stuck = !vanished && !nothing;
     End(t, stuck ? FitEnd::kStuck : FitEnd::kConverged,
-        stuck ? "no step lowers the cost: the differences do not say where it falls"
-              : "no step lowers the cost by what can be told from rounding");
+        stuck ? "no step lowers the cost: the finite differences give no descent direction"
+              : "no step lowers the cost by more than rounding errors");
     return;
   }
   ++track.rejected;
@@ -304,7 +304,7 @@ bool Search::Try() {
   }
   for (std::size_t t = 0; t < jobs_.size(); ++t) {
     if (Running(t) && state_.tracks[t].iterations >= options_.most_iterations) {
-      End(t, FitEnd::kIterations, "as many iterations as were allowed");
+      End(t, FitEnd::kIterations, "the limit of iterations was reached");
     }
   }
   return true;

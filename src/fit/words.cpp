@@ -1,4 +1,4 @@
-#include "fit/words.h"
+#include "fit/format.h"
 
 #include <cmath>
 

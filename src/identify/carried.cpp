@@ -65,10 +65,11 @@ void AddCable(const CableDef& cable, Cut& cut) {
   if (!crosses) return;
   const auto wheel = [](const AttachmentDef& at) { return at.wheel.has_value(); };
   if (HasFriction(cable)) {
-    cut.wrong.push_back("cable " + cable.name + " has friction on its way, and no one tension");
+    cut.wrong.push_back("cable " + cable.name +
+                        " has friction along its path, so its tension is not uniform");
   } else if (cable.touches != CableTouches::kNone ||
              std::any_of(cable.attachments.begin(), cable.attachments.end(), wheel)) {
-    cut.wrong.push_back("cable " + cable.name + " goes round something");
+    cut.wrong.push_back("cable " + cable.name + " runs over wheels or around obstacles");
   }
 }
 
@@ -76,7 +77,7 @@ void AddJoint(const JointDef& joint, Cut& cut) {
   const bool a = cut.bodies.count(joint.body_a) > 0, b = cut.bodies.count(joint.body_b) > 0;
   if (a == b) return;
   if (!IsBar(joint)) {
-    cut.wrong.push_back("joint " + joint.name + " holds them, whose force is not along a line");
+    cut.wrong.push_back("joint " + joint.name + ", which holds the bodies, is not a bar");
     return;
   }
   cut.members.push_back({{"joint/" + joint.name + "/axial_n"},
@@ -149,10 +150,11 @@ void CheckCut(const FitCarried& asked, const FitExperiment& one,
   const std::string of = "carried: " + asked.name + " of " + one.name + ": ";
   const Cut cut = CutAbout(one.experiment.robot.def, asked.bodies);
   for (const std::string& what : cut.wrong) {
-    out.Error("carried.not_held", asked.at, of + what, "bodies that only cables and bars hold");
+    out.Error("carried.not_held", asked.at, of + what,
+              "expected bodies that only cables and bars hold");
   }
   if (cut.members.empty() && cut.wrong.empty())
-    out.Error("carried.not_held", asked.at, of + "nothing holds them");
+    out.Error("carried.not_held", asked.at, of + "no member holds the bodies");
   std::set<std::string> missing;
   for (const CutMember& member : cut.members) {
     const auto has = [&](const MeasuredForces& m) { return !ChannelOf(member, m).empty(); };
@@ -160,8 +162,8 @@ void CheckCut(const FitCarried& asked, const FitExperiment& one,
     missing.insert(member.channels[0]);
   }
   for (const std::string& channel : missing) {
-    out.Error("carried.not_compared", asked.at, of + "nothing compares " + channel,
-              "all members between the bodies and the rest have to be measured");
+    out.Error("carried.not_compared", asked.at, of + channel + " is not compared",
+              "add all members between the bodies and the rest to `residuals`");
   }
 }
 
@@ -184,8 +186,7 @@ CarriedLoad CarriedBy(const FitCarried& asked, const FitExperiment& one,
     }
     if (std::fabs(held_n - applied_n) > kClosed * std::max(size_n, 1.0)) {
       other = fmt::format(
-          "something else than members holds the bodies, the ground perhaps: {:.4g} "
-          "N of {:.4g} N",
+          "other supports than members, such as the ground, hold the bodies: {:.4g} N of {:.4g} N",
           applied_n - held_n, applied_n);
       return false;
     }

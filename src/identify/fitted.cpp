@@ -33,7 +33,7 @@ std::string FittedExperimentYaml(const Identification& fit, std::size_t experime
   }
   std::error_code ignored;
   const auto base = std::filesystem::relative(one.experiment_file, folder, ignored);
-  std::string out = "# " + one.name + " with what the fit " + fit.spec().name + " found\n";
+  std::string out = "# " + one.name + " with the values found by the fit " + fit.spec().name + "\n";
   out += "taut: 1\nkind: experiment\nname: " + fit.spec().name + "_" + one.name + "\n";
   out += "base: " + (base.empty() ? one.experiment_file : base.string()) + "\n";
   for (const auto& [key, numbers] : {std::pair("parameters", &own), {"set", &of_model}}) {

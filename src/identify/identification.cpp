@@ -8,9 +8,9 @@
 #include "base/pattern.h"
 #include "description/yaml/reader.h"
 #include "identify/carried.h"
-#include "identify/memory.h"
+#include "identify/fit_memory.h"
 #include "identify/models.h"
-#include "identify/rows.h"
+#include "identify/residual_rows.h"
 #include "taut/version.h"
 
 namespace taut {
@@ -146,7 +146,7 @@ void Made::CheckActing(Diagnostics& out) {
     const FitEstimate& e = spec_.estimates[i];
     if (acts[i] || e.kind == FitEstimate::Kind::kParameter) continue;
     out.Error("estimate.compared_with_nothing", e.at,
-              "estimate: nothing that is compared has anything of " + e.name,
+              "estimate: no compared channel is affected by " + e.name,
               e.channels.empty() ? "" : DidYouMean(e.channels, {names.begin(), names.end()}));
   }
 }
@@ -244,7 +244,7 @@ Residuals Made::Compose(const Set& set, const std::vector<double>& all,
     if (!model.failed.empty()) return {{}, one.name + ": " + model.failed};
     const auto value = ValueOf(tied.row, model, tied.channels, sum(tied.delays));
     if (!value || !std::isfinite(*value)) {
-      return {{}, one.name + ": no number for " + tied.row.channel + ", " + tied.row.point.where};
+      return {{}, one.name + ": no value of " + tied.row.channel + ", " + tied.row.point.where};
     }
     double x = *value;
     for (const std::size_t i : tied.gains) x *= all[i];
@@ -335,11 +335,11 @@ bool Made::Begin(Diagnostics& out) {
     const std::string why = WhyNoRest(one.experiment);
     if (!why.empty()) {
       out.Error("fit.no_rest", one.at,
-                "experiments: " + one.name + " has no rest at its set points: " + why,
-                "forward: dynamic");
+                "experiments: " + one.name + " has no equilibrium at its set points: " + why,
+                "use `forward: dynamic`");
     } else if (SetPoints(one.experiment).empty()) {
       out.Error("fit.no_setpoints", one.at, "experiments: " + one.name + " has no set points",
-                "where a program of rest lengths or a push comes to another value");
+                "a set point is where a program of rest lengths or a push reaches a new value");
     }
   }
   for (const FitResidual& residual : spec_.residuals) {
@@ -369,9 +369,9 @@ bool Made::Begin(Diagnostics& out) {
   for (const std::size_t i : estimates_) known += spec_.estimates[i].range.sd ? 1 : 0;
   if (known < estimates_.size()) {
     out.Error("fit.few_data", {spec_.files[0]},
-              fmt::format("{} numbers are to be found from {} data and priors together",
+              fmt::format("{} numbers cannot be estimated from {} data and priors together",
                           estimates_.size(), known),
-              "priors with `sd`, more data, or fewer numbers");
+              "add priors with `sd` or data, or estimate fewer numbers");
   }
   if (out.items().size() != errors_before || !OpenMemory(out)) return false;
   MakeProblem(train_);

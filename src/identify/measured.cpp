@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "compare/orientation.h"
-#include "identify/rows.h"
+#include "identify/residual_rows.h"
 #include "taut/compare.h"
 #include "taut/run_folder.h"
 
@@ -40,15 +40,15 @@ std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out)
   auto trace = Read(one, out);
   if (trace) measured.trace = std::move(*trace);
   if (trace && measured.trace.time_s.empty()) {
-    out.Error("data.no_rows", {one.data_file}, "has no rows");
+    out.Error("data.no_rows", {one.data_file}, "the data have no rows");
     trace.reset();
   }
   if (one.forward == FitForward::kLoadCases && trace &&
       measured.trace.time_s.size() != one.experiment.load_cases.size()) {
     out.Error("data.rows_differ_from_load_cases", one.data_at,
-              fmt::format("experiments: {} has {} load cases, its data {} rows", one.name,
+              fmt::format("experiments: {} has {} load cases, but its data have {} rows", one.name,
                           one.experiment.load_cases.size(), measured.trace.time_s.size()),
-              "row i of the data is that of load case i");
+              "row i of the data must belong to load case i");
     trace.reset();
   }
   if (one.setpoints_file.empty()) return trace ? std::optional(measured) : std::nullopt;
@@ -58,16 +58,16 @@ std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out)
     measured.ours_s = times->values[*ours];
     if (!Rises(measured.ours_s)) {
       out.Error("data.clock_not_increasing", {one.setpoints_file},
-                std::string(kOurClock) + " does not rise");
+                std::string(kOurClock) + " must increase from row to row");
       return std::nullopt;
     }
   } else if (times && times->time_s.size() != measured.setpoint_s.size()) {
     out.Error("data.rows_differ_from_setpoints", one.setpoints_at,
-              fmt::format("experiments: {} has {} set points, its file of them {} rows", one.name,
-                          measured.setpoint_s.size(), times->time_s.size()),
-              std::string("a set point is where a program of rest lengths or a push comes to "
-                          "another value; a column ") +
-                  kOurClock + " says otherwise");
+              fmt::format("experiments: {} has {} set points, but its `setpoints` file {} rows",
+                          one.name, measured.setpoint_s.size(), times->time_s.size()),
+              std::string("a set point is where a program of rest lengths or a push reaches a new "
+                          "value; a column ") +
+                  kOurClock + " overrides this");
     return std::nullopt;
   }
   if (!trace || !times) return std::nullopt;

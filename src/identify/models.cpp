@@ -102,7 +102,7 @@ Models::Answer Models::ComputeOne(const Job& job) const {
     if (unreadable != errors.end()) {
       out.unreadable = unreadable->at.file + ": " + unreadable->what;
     } else {
-      out.failed = errors.empty() ? "it cannot be read" : errors[0].what;
+      out.failed = errors.empty() ? "the experiment cannot be read" : errors[0].what;
     }
     return std::make_shared<const Computed>(std::move(out));
   }

@@ -70,7 +70,7 @@ bool CheckDependence(const Identification& fit, Diagnostics& out) {
   const std::string& file = fit.spec().files[0];
   if (!d.done) {
     out.Error("fit.start_not_computed", {file},
-              "where the search starts nothing can be computed: " + d.why);
+              "the start of the search cannot be computed: " + d.why);
     return false;
   }
   bool good = true;
@@ -81,9 +81,8 @@ bool CheckDependence(const Identification& fit, Diagnostics& out) {
       continue;
     }
     const FitEstimate& e = fit.spec().estimates[fit.estimates()[i]];
-    out.Error("estimate.no_influence", e.at,
-              "estimate: nothing that is compared depends on " + e.name,
-              "the experiment does not use it, or not for what is compared");
+    out.Error("estimate.no_influence", e.at, "estimate: no compared value depends on " + e.name,
+              "leave it out, or compare a channel that it affects");
     good = false;
   }
   return good;

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "identify/words.h"
+#include "identify/labels.h"
 #include "taut/version.h"
 
 namespace taut {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "identify/labels.h"
 #include "identify/plot.h"
-#include "identify/words.h"
 #include "taut/version.h"
 
 namespace taut {
@@ -81,8 +81,8 @@ std::string Looks(const Identification& fit, const std::vector<std::string>& loo
             (one.train ? "" : ", held out") + "</li>\n";
   }
   if (list.empty()) return {};
-  return "<h2>Before and after</h2>\n<p class=\"note\">The robot as fitted, beside it the ghost of "
-         "the untuned one; the links lead to files beside this page.</p>\n<ul>\n" +
+  return "<h2>Before and after</h2>\n<p class=\"note\">The fitted robot, with the untuned one as a "
+         "ghost; the links lead to files in the folder of this page.</p>\n<ul>\n" +
          list + "</ul>\n";
 }
 
@@ -90,13 +90,12 @@ std::string Looks(const Identification& fit, const std::vector<std::string>& loo
 std::string Carried(const Identification& fit, const FitOutcome& outcome) {
   if (outcome.carried.empty()) return {};
   std::string out =
-      "<h2>Do the data agree with themselves?</h2>\n<p class=\"note\">What measured forces carry, "
-      "as "
-      "a share of the load that was applied: 1 if all of it goes through what was measured.</p>\n";
+      "<h2>Consistency of measured forces</h2>\n<p class=\"note\">Load carried by the measured "
+      "forces, as a share of the applied load: 1 if the measured members carry all of it.</p>\n";
   for (const CarriedLoad& carried : outcome.carried) {
     Plot plot{carried.name + " of " + fit.spec().experiments[carried.experiment].name,
               "applied [N]",
-              "carried as a share",
+              "carried share",
               {{carried.check.consistent ? "fitted" : "held", {}}},
               {1},
               {}};
@@ -125,7 +124,7 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
         const bool cases = fit.spec().experiments[p.experiment].forward == FitForward::kLoadCases;
         plot = {WithUnit(p.channel, p.unit),
                 cases ? "load case" : "time [s]",
-                "computed less measured",
+                "computed minus measured",
                 {{"untuned", {}}, {"fitted", {}}, {"held", {}}},
                 {0},
                 {}};
@@ -141,13 +140,13 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
   std::string out =
       "<h2>Residuals</h2>\n<p class=\"key\"><span><i class=\"dot\" "
       "style=\"background:#b4bcc6\"></i>"
-      "untuned</span><span><i class=\"dot\" style=\"background:#1f6fb2\"></i>fitted, trained on"
-      "</span><span><i class=\"dot\" style=\"background:#d9822b\"></i>fitted, held "
-      "out</span></p>\n";
+      "untuned</span><span><i class=\"dot\" style=\"background:#1f6fb2\"></i>fitted data"
+      "</span><span><i class=\"dot\" style=\"background:#d9822b\"></i>held-out "
+      "data</span></p>\n";
   constexpr std::size_t kMost = 24;
   for (std::size_t i = 0; i < std::min(order.size(), kMost); ++i) out += Svg(plots[order[i]]);
   if (order.size() > kMost) {
-    out += fmt::format("<p class=\"note\">... and {} channels more, in summary.json</p>\n",
+    out += fmt::format("<p class=\"note\">... and {} more channels in summary.json</p>\n",
                        order.size() - kMost);
   }
   return out;
@@ -156,8 +155,8 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
 std::string ProfileSection(const Identification& fit, const FitOutcome& outcome) {
   if (outcome.profiles.empty()) return {};
   std::string out =
-      "<h2>Profiles</h2>\n<p class=\"note\">Rise of chi-square where one parameter is held and all "
-      "others are fitted anew; the line is where a 95 % interval ends.</p>\n";
+      "<h2>Profiles</h2>\n<p class=\"note\">Rise of chi-square with one parameter fixed and all "
+      "others refitted; the line marks the ends of the 95 % interval.</p>\n";
   for (const FitProfile& profile : outcome.profiles) {
     const FitParameter& p = fit.train().parameters[profile.parameter];
     Plot plot{p.name,
@@ -194,8 +193,8 @@ std::string Correlations(const Identification& fit, const FitOutcome& outcome) {
     out += "</tr>\n";
   }
   out +=
-      "</table></div>\n<p class=\"note\">What the data say of combinations, in each parameter's "
-      "scale: a singular value above 1.7 halves what was unknown.</p>\n";
+      "</table></div>\n<p class=\"note\">Combinations of parameters, each in units of its scale: a "
+      "singular value above 1.7 halves the uncertainty.</p>\n";
   std::vector<std::vector<std::string>> rows{
       {"singular value", "fixed by the data", "combination"}};
   for (const FitDirection& d : id.directions) {
@@ -230,21 +229,21 @@ std::string Jackknifed(const Identification& fit, const FitOutcome& outcome) {
     row.push_back(fit.train().group_names[static_cast<std::size_t>(j.groups[i].group)]);
     for (const double x : j.groups[i].values) row.push_back(G(x));
   }
-  return "<h2>Leaving groups out</h2>\n" + Table(rows);
+  return "<h2>Estimates without one group</h2>\n" + Table(rows);
 }
 
 std::string Design(const FitOutcome& outcome, std::size_t parameters) {
   if (!outcome.design || !outcome.design->wrong.empty()) return {};
   const DesignRanking& design = *outcome.design;
-  std::vector<std::vector<std::string>> rows{{"measured", "bits more", "combinations fixed"}};
+  std::vector<std::vector<std::string>> rows{{"measurements", "bits more", "combinations fixed"}};
   const auto add = [&](const std::string& name, const DesignWorth& worth) {
     rows.push_back({name, G((worth.information - design.now.information) / std::log(2.0)),
                     fmt::format("{} of {}", worth.fixed, parameters)});
   };
-  add("what there is", design.now);
+  add("present data", design.now);
   for (const DesignWorth& worth : design.alone) add("with " + worth.name, worth);
-  for (const DesignWorth& worth : design.greedy) add("and then " + worth.name, worth);
-  return "<h2>What to measure next</h2>\n" + Table(rows);
+  for (const DesignWorth& worth : design.greedy) add("and " + worth.name, worth);
+  return "<h2>Value of further measurements</h2>\n" + Table(rows);
 }
 
 }  // namespace
@@ -266,8 +265,8 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
   for (const std::string& sentence : v.sentences) out += Escaped(sentence) + "<br>\n";
   out += "</div>\n";
   out += ParameterSection(fit, outcome);
-  out += "<h2>Errors</h2>\n" + Errors("trained on", fit.train_points(), outcome.train) +
-         Errors("held out", fit.test_points(), outcome.test);
+  out += "<h2>Errors</h2>\n" + Errors("fitted data", fit.train_points(), outcome.train) +
+         Errors("held-out data", fit.test_points(), outcome.test);
   out += Looks(fit, looks) + Carried(fit, outcome);
   out += ResidualPlots(fit, outcome) + ProfileSection(fit, outcome) + Correlations(fit, outcome) +
          Jackknifed(fit, outcome) + Design(outcome, problem.parameters.size());

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "identify/words.h"
+#include "identify/labels.h"
 
 namespace taut {
 namespace identify {
@@ -20,7 +20,7 @@ const char* WordOf(Determined kind) {
     case Determined::kDead:
       return "dead";
     case Determined::kWeak:
-      return "hardly told";
+      return "weakly determined";
     case Determined::kScattered:
       return "scattered";
     case Determined::kTraded:
@@ -38,7 +38,7 @@ const char* WordOf(FitJudgement judgement) {
     case FitJudgement::kUnidentifiable:
       return "not identifiable";
     case FitJudgement::kWorse:
-      return "worse than untuned on what was held out";
+      return "worse than untuned on held-out data";
     case FitJudgement::kNone:
       break;
   }
@@ -54,7 +54,7 @@ std::string ErrorText(double se) { return std::isfinite(se) ? fmt::format("{:.3g
 std::string CarriedText(const Identification& fit, const CarriedLoad& carried) {
   if (carried.check.why.empty()) return carried.check.sentence;
   return carried.name + " of " + fit.spec().experiments[carried.experiment].name +
-         ": what is carried cannot be told: " + carried.check.why;
+         ": the carried load cannot be determined: " + carried.check.why;
 }
 
 }  // namespace identify
@@ -105,16 +105,15 @@ std::string DesignTable(const DesignRanking& design, std::size_t parameters) {
   std::string out;
   for (const std::string& wrong : design.wrong) out += "design: " + wrong + "\n";
   if (!design.wrong.empty()) return out;
-  out += fmt::format("\n{:<28} {:>9} {:>18}\n", "what to measure next", "bits more",
-                     "combinations fixed");
+  out += fmt::format("\n{:<28} {:>9} {:>18}\n", "measurements", "bits more", "combinations fixed");
   const double now = design.now.information;
   const auto line = [&](const std::string& name, const DesignWorth& worth) {
     out += fmt::format("{:<28} {:>9.2f} {:>11} of {}\n", name,
                        (worth.information - now) / std::log(2.0), worth.fixed, parameters);
   };
-  line("what there is", design.now);
+  line("present data", design.now);
   for (const DesignWorth& worth : design.alone) line("with " + worth.name, worth);
-  if (design.greedy.size() > 1) out += "one after the other:\n";
+  if (design.greedy.size() > 1) out += "in the best order:\n";
   for (const DesignWorth& worth : design.greedy) {
     if (design.greedy.size() > 1) line("and " + worth.name, worth);
   }
@@ -136,8 +135,8 @@ std::string OutcomeText(const Identification& fit, const FitOutcome& outcome) {
       out += fmt::format("{} trial points failed: {}\n", count, why);
     }
   }
-  out += ErrorTable("trained on", fit.train_points(), outcome.train);
-  out += ErrorTable("held out", fit.test_points(), outcome.test);
+  out += ErrorTable("fitted data", fit.train_points(), outcome.train);
+  out += ErrorTable("held-out data", fit.test_points(), outcome.test);
   if (!outcome.carried.empty()) out += "\n";
   for (const CarriedLoad& carried : outcome.carried) out += CarriedText(fit, carried) + "\n";
   for (const FitProfile& profile : outcome.profiles) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "compare/orientation.h"
-#include "identify/rows.h"
+#include "identify/residual_rows.h"
 
 namespace taut::identify {
 namespace {

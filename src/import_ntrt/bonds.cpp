@@ -43,7 +43,8 @@ std::optional<NodeOnEdge> ReadNodeOnEdge(const Reading& in, int first, int secon
   if (!ReadTwo(line, a, b, in.out)) return std::nullopt;
   const std::size_t edges = AtSlashes(a).size() * AtSlashes(b).size();
   if (edges != 2) {
-    in.out.Error("ntrt.bond_of_node_and_edge", line.at, "a node_edge bond joins a node and an edge",
+    in.out.Error("ntrt.bond_of_node_and_edge", line.at,
+                 "a node_edge bond must join a node and an edge",
                  "such as [top1, bottom1/bottom2]");
     return std::nullopt;
   }
@@ -81,8 +82,8 @@ void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   const Vec3 first_1 = bonds[0].in_first - centre_1;
   if (!(Length(first_1) > 0.0) || !(Length(first_2) > 0.0)) {
     in.out.Error("ntrt.bond_in_center", bonds[0].at,
-                 "the first node_edge bond lies in the centre of all",
-                 "it gives the direction; begin with another one");
+                 "the first node_edge bond lies at the center of all bonds",
+                 "begin with another bond, because the first one gives the direction");
     return;
   }
   in.model.Turn(second, centre_1, Between(first_2, first_1, normal_1));
@@ -100,9 +101,9 @@ void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
     if (!below(in.node(pair.from).structure) && !below(in.node(pair.to).structure)) continue;
     in.out.Warning("ntrt.bond_moves_bonded", at,
                    "this bond moves \"" + in.structure(second).tags[0] +
-                       "\", to which earlier bonds lead: NTRT leaves their ends behind, here they "
-                       "go with it",
-                   "write it before the others");
+                       "\", to which earlier bonds are attached: NTRT leaves the ends of these "
+                       "bonds behind, taut moves them, too",
+                   "move this bond before the others");
     return;
   }
 }
@@ -126,11 +127,12 @@ void RunThrough(const Reading& in, int parent, int first, int second, const Node
   for (const int structure : {first, second}) {
     if (Remove(in, structure, bond.edge_from, bond.edge_to, found)) continue;
     in.out.Error("ntrt.bond_edge_is_solid", bond.at,
-                 "the edge of a node_edge bond must be a cable, and is a solid");
+                 "the edge of a node_edge bond must be a cable, not a solid");
   }
   if (!found) {
-    in.out.Warning("ntrt.bond_without_cable", bond.at,
-                   "no cable runs along this edge: NTRT adds two and takes none away");
+    in.out.Warning(
+        "ntrt.bond_without_cable", bond.at,
+        "no cable runs along this edge, so the bond adds two cables and removes none, as in NTRT");
   }
   for (const NodeOnEdge& other : all) {
     if (in.model.ComparedTooMuch()) return;
@@ -146,7 +148,7 @@ void BondNodesAndEdges(const Reading& in, int parent, int first, int second,
                        const std::string& tags, const Value& lines) {
   const auto& items = ListOf(&lines, "a node_edge bond", in.out);
   if (items.size() < 3) {
-    in.out.Error("ntrt.few_bonds", lines.at, "a node_edge bond needs three lines at least");
+    in.out.Error("ntrt.few_bonds", lines.at, "a node_edge bond needs at least three lines");
     return;
   }
   std::vector<NodeOnEdge> bonds;
@@ -185,12 +187,12 @@ void ReadChain(const Reading& in, int parent, const std::string& bonds, const st
   names.pop_back();
   if (kind != "node_node" && kind != "node_edge") {
     in.out.Error("ntrt.bond_kind", entry.key_at,
-                 "\"" + bonds + "\" does not end with the kind of the bond",
-                 "node_node or node_edge, such as t1/t2/node_node");
+                 "\"" + bonds + "\" does not end with a kind of bond",
+                 "expected node_node or node_edge, such as t1/t2/node_node");
     return;
   }
   if (names.size() < 2) {
-    in.out.Error("ntrt.bond_of_one", entry.key_at, "a bond joins two substructures at least",
+    in.out.Error("ntrt.bond_of_one", entry.key_at, "a bond must join at least two substructures",
                  "such as t1/t2/" + kind);
     return;
   }
@@ -218,8 +220,9 @@ void ReadBonds(const Reading& in, int structure, const Value* bonds) {
     for (const Entry& inner : MapOf(outer.value.get(), outer.key, in.out)) {
       if (is_bond(outer.key) == is_bond(inner.key)) {
         in.out.Error("ntrt.nested_bond", inner.key_at,
-                     is_bond(inner.key) ? "a bond in a bond" : "a tag in a tag, without a bond",
-                     "a tag holds bonds such as t1/t2/node_node, or a bond holds tags");
+                     is_bond(inner.key) ? "a bond cannot contain another bond"
+                                        : "a tag contains another tag instead of a bond",
+                     "put bonds such as t1/t2/node_node into a tag, or tags into a bond");
         continue;
       }
       ReadChain(in, structure, is_bond(outer.key) ? outer.key : inner.key,

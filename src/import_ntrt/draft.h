@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "import_ntrt/build.h"
+#include "import_ntrt/ntrt_build.h"
 #include "import_ntrt/si.h"
 
 namespace taut::import_ntrt {

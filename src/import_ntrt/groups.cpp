@@ -96,7 +96,7 @@ class Grouper {
     const auto same = [](const Vec3& a, const Vec3& b) { return std::fabs(Dot(a, b)) > 1 - 1e-12; };
     const double w = 2 * builder.is.width * u_, h = 2 * builder.is.height * u_;
     group.kind = "box";
-    group.comment += ", where width and height are half of these";
+    group.comment += ", whose width and height are half of these";
     if (same(width, Rotate(beam, {0, 1, 0}))) {
       group.fields = {{"width_m", w}, {"height_m", h}};
     } else if (same(width, Rotate(beam, {0, 0, 1}))) {
@@ -115,9 +115,8 @@ class Grouper {
     DraftNode& to = draft_.nodes[static_cast<std::size_t>(solid.to)];
     const SourceRef& at = model_.pairs[static_cast<std::size_t>(solid.pair)].at;
     if (from.structure != to.structure) {
-      out_.Error("ntrt.tilted_box", at,
-                 "a box that is not level, between two substructures, has no place in a model",
-                 "tgRodInfo builds a rod there");
+      out_.Error("ntrt.tilted_box", at, "a tilted box between two substructures cannot be imported",
+                 "use tgRodInfo to build a rod instead");
       return;
     }
     const Quat back =
@@ -136,7 +135,7 @@ class Grouper {
     }
     group.kind = "convex";
     group.on_nodes = true;
-    group.comment = std::string(NameOf(Class::kBox)) + ", turned as NTRT turns it";
+    group.comment = std::string(NameOf(Class::kBox)) + ", oriented as in NTRT";
     group.fields = {{"corners_m", 0.0, corners + "]"}};
     AddSurface(builder.is, group.fields);
     if (to.fixed_to.empty()) to.fixed_to = from.name;
@@ -160,8 +159,8 @@ class Grouper {
                    "cables of \"" + builder.search[0] + "\" start with a rest length of " +
                        NumberText(shortest_[b]) + ", below min_rest_length, which is " +
                        NumberText(builder.is.min_rest_length) +
-                       ": to NTRT they jump there with the first command; here the least is where "
-                       "they start");
+                       ": in NTRT they jump to it at the first command; the import takes the start "
+                       "as their minimum");
     }
   }
   SourceRef PlaceOfBuilder(const Builder& builder) const {
@@ -232,7 +231,7 @@ class Grouper {
       done[body] = true;
       Group group;
       group.kind = "anchor";
-      group.comment = "no mass: it stands still";
+      group.comment = "no mass, so it is fixed";
       group.on_nodes = true;
       Add(std::move(group), solid.from,
           {draft_.nodes[static_cast<std::size_t>(solid.from)].full_name});
@@ -250,9 +249,9 @@ class Grouper {
 
 /// Ensures that each group's match selects no other items of its kind; if tags cannot distinguish
 /// the group, adds a new tag.
-class Teller {
+class ReportWriter {
  public:
-  explicit Teller(Draft& draft) : draft_(draft) {}
+  explicit ReportWriter(Draft& draft) : draft_(draft) {}
 
   void Run() {
     for (Group& group : draft_.groups) {
@@ -349,15 +348,15 @@ void ReportDropped(const Model& model, const Built& built, NtrtImport& import) {
     return [name](const Builder& builder) { return builder.written.count(name) > 0; };
   };
   say("history", "a run records every cable", writes("history"));
-  say("roll_friction", "nothing resists rolling", [](const Builder& builder) {
+  say("roll_friction", "rolling friction is not modeled", [](const Builder& builder) {
     return IsSolid(builder.kind) && builder.is.roll_friction != 0.0;
   });
   say("radius, motor_friction, motor_inertia and back_drivable",
-      "the rest length moves by the limits alone, as with tgBasicActuatorInfo; dc_motor is a motor",
+      "the actuator has limits only, as with tgBasicActuatorInfo; `dc_motor` adds a motor",
       [](const Builder& builder) {
         return builder.kind == Class::kKinematic || builder.kind == Class::kKinematicContact;
       });
-  say("contact", "the cables pass through what they meet; touches: rods lets them lie against it",
+  say("contact", "the cables pass through obstacles; `touches: rods` lets them wrap around rods",
       [](const Builder& builder) {
         return builder.kind == Class::kBasicContact || builder.kind == Class::kKinematicContact;
       });
@@ -368,7 +367,7 @@ void ReportDropped(const Model& model, const Built& built, NtrtImport& import) {
 void AddGroups(const Model& model, const Built& built, const NtrtOptions& options, Draft& draft,
                NtrtImport& import, Diagnostics& out) {
   Grouper(model, built, options, draft, out).Run();
-  Teller(draft).Run();
+  ReportWriter(draft).Run();
   ReportDropped(model, built, import);
 }
 

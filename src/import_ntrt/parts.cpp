@@ -17,9 +17,9 @@ struct Part {
   std::set<std::string> pairs;  ///< Pairs of all copies, by their number and text.
 };
 
-class Texter {
+class YamlText {
  public:
-  Texter(const Model& model, const Draft& draft, double length_unit_m)
+  YamlText(const Model& model, const Draft& draft, double length_unit_m)
       : model_(model), draft_(draft), u_(length_unit_m), grid_(SizeOf()) {}
 
   std::string Run() {
@@ -203,7 +203,7 @@ class Texter {
 }  // namespace
 
 std::string PartsText(const Model& model, const Draft& draft, double length_unit_m) {
-  return Texter(model, draft, length_unit_m).Run();
+  return YamlText(model, draft, length_unit_m).Run();
 }
 
 }  // namespace taut::import_ntrt

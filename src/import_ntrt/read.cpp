@@ -58,7 +58,7 @@ class Reader {
     if (file.root->kind != Value::Kind::kMap) {
       out_.Error(
           "ntrt.not_a_map", file.root->at,
-          "an NTRT structure is a map, not " + std::string(description::KindName(*file.root)));
+          "an NTRT structure must be a map, not " + std::string(description::KindName(*file.root)));
       file.root = nullptr;
       return file;
     }
@@ -80,10 +80,11 @@ class Reader {
         const bool cut = in_.options.like_ntrt;
         out_.Warning(
             "ntrt.percent_line", {path, line, 1},
-            cut ? "a line that begins with % ends the file for NTRT: what follows is lost"
-                : "read as a comment; for NTRT a line that begins with % ends the file, "
-                  "and what follows is lost",
-            "comments begin with #" + std::string(cut ? "" : "; --like_ntrt loses it, too"));
+            cut ? "a line that begins with % ends the file, as in NTRT: the rest is ignored"
+                : "a line that begins with % is read as a comment; NTRT ends the file there and "
+                  "ignores the rest",
+            "begin comments with #" +
+                std::string(cut ? "" : "; --like_ntrt ignores the rest, too"));
         if (cut) {
           text.resize(begin);
           return count;
@@ -134,7 +135,7 @@ class Reader {
       if (model_.nodes.size() >= kMostItems) {
         model_.full = true;
         out_.Error("ntrt.too_many_nodes", entry.key_at,
-                   "more than " + std::to_string(kMostItems) + " nodes");
+                   "the structure has more than " + std::to_string(kMostItems) + " nodes");
         return;
       }
       in_.structure(structure).nodes.push_back(static_cast<int>(model_.nodes.size()));
@@ -194,7 +195,8 @@ class Reader {
       out_.Error("ntrt.too_deep", path->at,
                  open_.size() >= kDeepest
                      ? "files include files more than " + std::to_string(kDeepest) + " levels deep"
-                     : "more than " + std::to_string(kMostStructures) + " substructures");
+                     : "the structure has more than " + std::to_string(kMostStructures) +
+                           " substructures");
       model_.full = true;
       return;
     }
@@ -240,8 +242,8 @@ class Reader {
     const Value *axis = rotation.Find("axis"), *angle = rotation.Find("angle");
     if (!axis || !angle) {
       out_.Warning("ntrt.rotation_without_effect", rotation.at,
-                   "without axis and angle NTRT does not rotate",
-                   "give both, or leave `rotation` away");
+                   "a rotation without axis and angle has no effect, as in NTRT",
+                   "give both, or leave out `rotation`");
       return;
     }
     const Vec3 about = ReadPoint(*axis, "axis", out_);
@@ -370,7 +372,8 @@ void AddPair(const Reading& in, int structure, int from, int to, Words tags, con
   if (in.model.full) return;
   if (in.model.pairs.size() >= kMostItems) {
     in.model.full = true;
-    in.out.Error("ntrt.too_many_pairs", at, "more than " + std::to_string(kMostItems) + " pairs");
+    in.out.Error("ntrt.too_many_pairs", at,
+                 "the structure has more than " + std::to_string(kMostItems) + " pairs");
     return;
   }
   in.structure(structure).pairs.push_back(static_cast<int>(in.model.pairs.size()));
@@ -384,8 +387,8 @@ std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& o
   Reader(options, model, out).Run(path);
   if (out.items().size() != errors_before) return std::nullopt;
   if (model.nodes.empty()) {
-    out.Error("ntrt.no_nodes", {path, 1, 1}, "describes no nodes",
-              "an NTRT structure has `nodes:`, or `substructures:` that have");
+    out.Error("ntrt.no_nodes", {path, 1, 1}, "the structure has no nodes",
+              "expected `nodes:`, or `substructures:` with nodes");
     return std::nullopt;
   }
   for (const Node& node : model.nodes) {
@@ -394,8 +397,8 @@ std::optional<Model> ReadStructure(const std::string& path, const NtrtOptions& o
     if (std::isfinite(node.place.x + node.place.y + node.place.z) && farthest <= kFarthest)
       continue;
     out.Error("ntrt.node_too_far", node.at,
-              "the scales and turns of its structures move this node too far",
-              "coordinates are within 1e12");
+              "the scales and rotations of its structures move this node too far away",
+              "coordinates must be within 1e12");
     return std::nullopt;
   }
   return model;

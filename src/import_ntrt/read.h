@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "description/yaml/yaml_tree.h"
-#include "import_ntrt/structure.h"
+#include "import_ntrt/ntrt_structure.h"
 
 namespace taut::import_ntrt {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "learn/draw.h"
 #include "learn/optimizers.h"
+#include "learn/random_points.h"
 #include "math/elementary.h"
 
 namespace taut::learn {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "learn/draw.h"
 #include "learn/optimizers.h"
+#include "learn/random_points.h"
 #include "math/elementary.h"
 
 namespace taut::learn {

@@ -33,23 +33,23 @@ std::vector<std::string> Texts(Row& row, int column) {
     good = list[i].is_string();
     if (good) out.push_back(list[i].get<std::string>());
   }
-  if (!good || out.empty()) row.Wrong(column, "is not a list of texts");
+  if (!good || out.empty()) row.Wrong(column, "is not a list of strings");
   return out;
 }
 
 /// Returns a description of invalid data in an evaluation; empty if there are none. Conditions are
 /// written so that NaN fails.
 std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& parameters) {
-  if (e.id < 0 || e.search < 0) return "a negative id or search";
+  if (e.id < 0 || e.search < 0) return "its id or search is negative";
   if (e.values.size() != parameters.size()) {
-    return std::to_string(e.values.size()) + " values where the study has " +
+    return "it has " + std::to_string(e.values.size()) + " values, but the study has " +
            std::to_string(parameters.size()) + " parameters";
   }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (e.values[i] >= parameters[i].low && e.values[i] <= parameters[i].high) continue;
     return "the value of " + parameters[i].name + " is beyond its bounds";
   }
-  if (std::isfinite(e.score) != e.failed.empty()) return "its score does not fit its failure";
+  if (std::isfinite(e.score) != e.failed.empty()) return "its score and failure are inconsistent";
   if (!(e.elapsed_s >= 0) || !std::isfinite(e.elapsed_s)) return "elapsed_s is not a time";
   if (e.worlds.empty()) return "its worlds are missing";
   for (std::size_t w = 0; w < e.worlds.size(); ++w) {
@@ -156,7 +156,7 @@ void ReadParameters(Database& database, LogContents& contents, std::string& erro
     p.log = row.Integer(5) != 0;
     p.targets = Texts(row, 6);
     if (!std::isfinite(p.low) || !std::isfinite(p.high) || !(p.low <= p.high)) {
-      row.Wrong(3, "and high are no bounds");
+      row.Wrong(3, "and high are not valid bounds");
     }
     if (!row.wrong().empty()) error = "parameter " + std::to_string(expected) + ": " + row.wrong();
     contents.parameters.push_back(std::move(p));
@@ -299,7 +299,7 @@ LogContents ReadRows(Database& database, int version, std::string& error) {
   if (own_version != std::to_string(version) ||
       (version > 1 &&
        (application != kApplicationId || checksum != base::HashText(Checksum(contents))))) {
-    error = "facts or parameters were changed";
+    error = "its metadata or parameters were changed";
     return contents;
   }
 
@@ -313,7 +313,7 @@ LogContents ReadRows(Database& database, int version, std::string& error) {
     if (f.wrong.empty()) f.wrong = wrong;
     if (f.wrong.empty()) f.wrong = WhatIsWrong(f.evaluation, contents.parameters);
     if (f.wrong.empty() && version > 1 && f.checksum != base::HashText(Checksum(f.evaluation))) {
-      f.wrong = "its checksum says that it was changed";
+      f.wrong = "its checksum does not match its content";
     }
   }
   if (version == 1) CheckCountsOfWorlds(found);
@@ -330,7 +330,7 @@ LogContents ReadRows(Database& database, int version, std::string& error) {
     std::uint64_t written = 0;
     std::from_chars(tally.data(), tally.data() + tally.size(), written);
     contents.damage.push_back(std::to_string(written) + " evaluations were written, " +
-                              std::to_string(contents.evaluations.size()) + " of them are good");
+                              std::to_string(contents.evaluations.size()) + " of them are intact");
   }
   return contents;
 }

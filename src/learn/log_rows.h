@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "learn/log.h"
+#include "learn/study_log.h"
 
 namespace taut::learn {
 

@@ -1,6 +1,6 @@
 // Monte Carlo search (uniform random points).
-#include "learn/draw.h"
 #include "learn/optimizers.h"
+#include "learn/random_points.h"
 
 namespace taut::learn {
 namespace {

@@ -6,8 +6,8 @@
 #include <mutex>
 #include <thread>
 
-#include "learn/draw.h"
 #include "learn/optimizers.h"
+#include "learn/random_points.h"
 
 namespace taut::learn {
 namespace {

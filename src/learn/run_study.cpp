@@ -7,8 +7,8 @@
 #include <map>
 
 #include "learn/difference.h"
-#include "learn/draw.h"
-#include "learn/log.h"
+#include "learn/random_points.h"
+#include "learn/study_log.h"
 #include "taut/files.h"
 #include "taut/learn.h"
 #include "taut/optimizer.h"
@@ -111,9 +111,9 @@ class StudyRun {
       });
       if (same) return true;
       out.Error("study.other_study", {LogPath(options_.folder)},
-                "this folder holds another study: evaluation " + std::to_string(id) +
-                    " now ends in another state",
-                "another build of taut made it; give `--out` another folder");
+                "the folder contains another study: evaluation " + std::to_string(id) +
+                    " now ends in a different state",
+                "another build of taut wrote it; choose another folder with `--out`");
       return false;
     }
     return true;
@@ -160,9 +160,10 @@ class StudyRun {
       if (logged == known_.end()) {
         missing.push_back({id, std::move(values)});
       } else if (logged->second.values != values) {
-        out.Error("study.other_values", {LogPath(options_.folder)},
-                  "evaluation " + std::to_string(id) + " was of other values than now asked for",
-                  "the file was changed, or written by another build of taut");
+        out.Error(
+            "study.other_values", {LogPath(options_.folder)},
+            "evaluation " + std::to_string(id) + " has other values than the search requests now",
+            "the file was changed, or written by another build of taut");
         return End(LearnEnd::kRefused);
       } else {
         scores[static_cast<std::size_t>(id - first)] = logged->second.score;
@@ -186,7 +187,7 @@ class StudyRun {
         });
     if (out.ok() && !evaluator_.error().empty()) {
       out.Error("study.not_evaluated", {}, evaluator_.error(),
-                "run the same command again to go on");
+                "run the same command again to resume");
     }
     if (!out.ok()) return End(LearnEnd::kFailed);
     return finished || End(LearnEnd::kInterrupted);
@@ -264,11 +265,12 @@ bool Claim(const StudySpec& study, const std::string& folder, LogContents& log, 
     if (is_new) log.version = 0;  // empty, or its process was killed immediately
     if (is_new || fact->second == text) continue;
     if (fact->first == "experiment" && SameExperiment(folder, fact->second, text)) continue;
-    out.Error("study.other_study", {LogPath(folder)},
-              std::string("this folder holds another study: its ") + name + " differs\n" +
-                  learn::Difference(fact->second, text),
-              "give `--out` another folder, or undo the change; only the last search's evaluations "
-              "may change");
+    out.Error(
+        "study.other_study", {LogPath(folder)},
+        std::string("the folder contains another study: its ") + name + " differs\n" +
+            learn::Difference(fact->second, text),
+        "choose another folder with `--out`, or undo the change; only `evaluations` of the last "
+        "search may change");
   }
   if (log.version == 0) log.parameters = study.parameters;
   return out.ok();
@@ -305,7 +307,7 @@ std::optional<StudyResult> ReadStudyFolder(const std::string& folder, Diagnostic
   auto contents = log ? log->Read(out) : std::nullopt;
   if (!contents || !Accept(*contents, path, skip_damaged, out)) return std::nullopt;
   if (contents->version == 0) {
-    out.Error("study.log_empty", {path}, "is empty", "did `taut learn STUDY` end at once?");
+    out.Error("study.log_empty", {path}, "the log is empty", "run `taut learn STUDY` first");
     return std::nullopt;
   }
   StudyResult result;

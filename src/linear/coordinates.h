@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "linear/tick.h"
-#include "linear/world.h"
+#include "linear/linear_tick.h"
+#include "linear/linear_world.h"
 #include "math/vec.h"
 #include "simd/vec3.h"
 #include "taut/state_space.h"

@@ -186,7 +186,7 @@ std::vector<std::string> WriteShapeRuns(const std::string& folder, const Experim
   int number = 0;
   for (const Mode& mode : modes.modes) {
     if (mode.kind == Mode::Kind::kRigid || number == most_modes) continue;
-    const char* const kind = mode.kind == Mode::Kind::kUnstable ? ", which grows" : "";
+    const char* const kind = mode.kind == Mode::Kind::kUnstable ? ", unstable" : "";
     write({fmt::format("mode_{}", ++number),
            fmt::format("Mode of {:.6g} Hz{}, slowed down and enlarged.", mode.frequency_hz, kind),
            mode.translation_m,
@@ -196,7 +196,7 @@ std::vector<std::string> WriteShapeRuns(const std::string& folder, const Experim
   number = 0;
   for (const Mode& mechanism : forces.mechanisms) {
     write({fmt::format("mechanism_{}", ++number),
-           "A motion that lengthens no member, to first order.",
+           "Infinitesimal mechanism: a motion that changes no member's length to first order.",
            mechanism.translation_m,
            mechanism.turn_rad,
            {}});
@@ -208,8 +208,8 @@ std::vector<std::string> WriteShapeRuns(const std::string& folder, const Experim
     shape.name = fmt::format("self_stress_{}", ++number);
     shape.description =
         state.feasible
-            ? "Forces in balance without any load, 100 N for the largest; all cables pull."
-            : "Forces in balance without any load, 100 N for the largest; some cables push.";
+            ? "Self-stress, scaled to a largest force of 100 N; all cables are in tension."
+            : "Self-stress, scaled to a largest force of 100 N; some cables are in compression.";
     shape.tension_n.assign(cables, 0.0);
     for (std::size_t i = 0; i < forces.members.size(); ++i) {
       const StaticMember& member = forces.members[i];

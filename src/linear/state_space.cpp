@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "linear/coordinates.h"
-#include "linear/rest.h"
-#include "plant/start.h"
+#include "linear/linear_equilibrium.h"
+#include "plant/find_start.h"
 
 namespace taut {
 namespace linear {
@@ -275,7 +275,7 @@ bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, 
   std::vector<Column> exact, rough, apart(all.size());
   for (std::size_t j = 0; j < all.size(); ++j) {
     if (options.go_on && !options.go_on()) {
-      out.why = "it was stopped";
+      out.why = "it was interrupted";
       return false;
     }
     rough.push_back(finder.Differences(*all[j], at_rest, apart[j]));
@@ -286,9 +286,9 @@ bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, 
   for (std::size_t j = 0; j < all.size(); ++j) {
     std::size_t which = 0;
     if (!(sizes.Share(all[j]->kind, apart[j], which) < kKink)) {
-      out.why = "a contact or cable is at an edge: " + name_of(which) +
-                " goes differently with more and with less of " + all[j]->signal.name;
-      out.hint = "another start, other rest lengths or more friction take it from there";
+      out.why = "a contact or cable is at a limit: the derivatives of " + name_of(which) +
+                " for an increase and a decrease of " + all[j]->signal.name + " differ";
+      out.hint = "change the start or the rest lengths, or increase friction";
       return false;
     }
     const double share = sizes.Share(all[j]->kind, Less(exact[j], rough[j]), which);
@@ -300,10 +300,11 @@ bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, 
   if (options.differences || !finder.has_exact() || !(out.disagreement < kAgrees)) {
     out.derivatives = Derivatives::kDifferences;
     if (!options.differences) {
-      out.remarks.push_back(finder.has_exact()
-                                ? "derivatives are differences: exact ones leave something out (" +
-                                      worst + ")"
-                                : "derivatives are differences: this build has no exact ones");
+      out.remarks.push_back(
+          finder.has_exact()
+              ? "derivatives are finite differences: the exact ones deviate from them (" + worst +
+                    ")"
+              : "derivatives are finite differences: this build has no exact ones");
     }
   }
   std::vector<Column>& of = out.derivatives == Derivatives::kExact ? exact : rough;

@@ -63,24 +63,24 @@ std::string Driver::MotorName(int motor) const {
 bool Driver::FindBoards(Diagnostics& out) {
   const auto info = adapter_.Identify();
   if (!info) {
-    out.Error("adapter.no_answer", {}, "nothing answers as a USB-ISS does",
-              "is it this port, and does nobody else talk to it?");
+    out.Error("adapter.no_answer", {}, "no USB-ISS adapter answers at the port",
+              "check the port, and close other programs that use the adapter");
     return false;
   }
   adapter_info_ = *info;
   if (info->module_id != kModuleId) {
     out.Error("adapter.unknown_module", {},
-              "this is no USB-ISS: its number is " + std::to_string(info->module_id) + ", not " +
-                  std::to_string(kModuleId));
+              "the adapter is not a USB-ISS: its module number is " +
+                  std::to_string(info->module_id) + ", not " + std::to_string(kModuleId));
     return false;
   }
   if (info->firmware_version < kGoodAdapter) {
     out.Warning("adapter.old_firmware", {},
-                "the adapter's program is version " + std::to_string(info->firmware_version) +
-                    ": before 8 a board that does not answer holds up the bus");
+                "the adapter has firmware version " + std::to_string(info->firmware_version) +
+                    ": before 8, a board that does not answer blocks the bus");
   }
   if (!adapter_.SetMode()) {
-    out.Error("adapter.no_i2c", {}, "the adapter refuses to work as I2C at 400 kHz");
+    out.Error("adapter.no_i2c", {}, "the adapter rejects I2C mode at 400 kHz");
     return false;
   }
   bool good = true;
@@ -97,10 +97,10 @@ bool Driver::FindBoards(Diagnostics& out) {
         said->protocol_max < board::kProtocolVersion ||
         said->parameters_version != board::kParametersVersion) {
       out.Error("board.other_firmware", {},
-                "board " + std::to_string(b) + " has a firmware of another version, " +
+                "board " + std::to_string(b) + " has an incompatible firmware version, " +
                     std::to_string(said->firmware_major) + "." +
                     std::to_string(said->firmware_minor),
-                "`taut robot flash` brings this one's");
+                "install the firmware of this taut with `taut robot flash`");
       good = false;
     }
   }
@@ -316,10 +316,10 @@ bool Driver::Enable(Mode mode, bool capture, Diagnostics& out) {
         out.Error("board.no_answer", {}, who + " does not answer");
       } else if (board.status.mode != Mode::kOff || board.status.faulty || board.status.timeout) {
         out.Error("board.not_ready", {},
-                  who + " is not well: " + ModeName(board.status.mode) +
+                  who + " is not ready: " + ModeName(board.status.mode) +
                       (board.status.timeout ? ", timed out" : "") +
                       (board.status.faulty ? ", faults latched" : ""),
-                  "`taut robot status` names faults, --clear_faults takes them back");
+                  "list faults with `taut robot status`, clear them with --clear_faults");
       }
     }
     if (state_.stopping)
@@ -344,11 +344,11 @@ bool Driver::Enable(Mode mode, bool capture, Diagnostics& out) {
     const BoardView& board = state_.boards[static_cast<std::size_t>(b)];
     if (board.there && !board.status.faulty && board.status.mode == say_.mode) continue;
     out.Error("board.does_not_obey", {},
-              "board " + std::to_string(b) + " does not obey: it is in mode " +
+              "board " + std::to_string(b) + " did not follow the command: it is in mode " +
                   ModeName(board.status.mode) +
                   (board.faults != 0 ? " (" + BoardFaultNames(board.faults) + ")" : ""));
   }
-  if (out.ok()) out.Error("board.does_not_obey", {}, "the boards did not obey");
+  if (out.ok()) out.Error("board.does_not_obey", {}, "the boards did not follow the command");
   Off();
   Cycle(2);
   return false;

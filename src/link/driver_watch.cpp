@@ -82,23 +82,23 @@ void Driver::LookAt(int board, const BoardView& before) {
   const board::Status& is = now.status;
   deaf_[b] = is.sequence == was.sequence ? deaf_[b] + 1 : 0;
   if (deaf_[b] == options_.lost_after) {
-    Event(who + " hears no broadcasts");
-    React(who + " hears no broadcasts");
+    Event(who + " receives no broadcasts");
+    React(who + " receives no broadcasts");
   }
   if (is.mode != was.mode) Event(who + ": " + ModeName(was.mode) + " -> " + ModeName(is.mode));
   if (is.was_reset && !was.was_reset) {
-    Event(who + " has begun anew");
+    Event(who + " was reset");
     Request(board, AskForFaults(), [this, b, who](const std::optional<board::Reply>& reply) {
       if (!reply) return;
       const FaultReport report = DecodeFaults(*reply);
       state_.boards[b].reset_cause = report.reset_cause;
-      Event(who + " began anew: " + ResetCauseNames(report.reset_cause));
+      Event(who + ": reset cause " + ResetCauseNames(report.reset_cause));
     });
-    React(who + " has begun anew");
+    React(who + " was reset");
   }
   if (is.timeout && !was.timeout) {
-    Event(who + " heard no broadcast in time");
-    React(who + " heard no broadcast in time");
+    Event(who + " received no broadcast in time");
+    React(who + " received no broadcast in time");
   }
   if (is.faulty && !was.faulty) {
     Request(board, AskForFaults(), [this, board](const std::optional<board::Reply>& reply) {
@@ -107,7 +107,7 @@ void Driver::LookAt(int board, const BoardView& before) {
       TakeFaults(board, board::kMotors, report.board);
       for (int m = 0; m < board::kMotors; ++m) TakeFaults(board, m, report.motor[m]);
     });
-    React(who + " is not well");
+    React(who + " has a fault");
   }
   if (!is.faulty && was.faulty) {
     for (int index = 0; index <= board::kMotors; ++index) TakeFaults(board, index, 0);
@@ -144,7 +144,7 @@ void Driver::LookAtCable(int motor) {
     const double way_m = static_cast<double>(std::abs(now.encoder_counts - watch.counts)) *
                          figures_[At(motor)].m_per_count;
     watch.stands = way_m > kShowing_m;
-    if (watch.stands) Event(MotorName(motor) + ": its load cell stands still");
+    if (watch.stands) Event(MotorName(motor) + ": its load cell reading does not change");
   }
 }
 
@@ -174,7 +174,7 @@ void Driver::EndCycle() {
   if (unheard_in_row_ >= kResetAfter) {
     unheard_in_row_ = 0;
     ++link.adapter_resets;
-    Event("nobody hears broadcasts: the adapter's bus begins anew");
+    Event("no board acknowledges broadcasts: the adapter's bus is reset");
     adapter_.SetMode();
   }
   state_.commanded = say_.mode;

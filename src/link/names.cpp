@@ -52,7 +52,7 @@ std::optional<ParameterValue> ReadParameter(const std::string& text, const std::
                         ? std::from_chars_result{number, std::errc::invalid_argument}
                         : std::from_chars(number, end, value);
   if (read.ec != std::errc() || read.ptr != end) {
-    out.Error("board.bad_assignment", {}, what + " " + text + ": not of the form name=number");
+    out.Error("board.bad_assignment", {}, what + " " + text + ": expected the form name=number");
     return std::nullopt;
   }
   std::vector<std::string> keys;
@@ -73,7 +73,7 @@ std::optional<ParameterValue> ReadParameter(const std::string& text, const std::
   }
   const std::string_view close = ClosestMatch(name, keys);
   out.Error("board.unknown_parameter", {}, what + " " + text + ": boards have no parameter " + name,
-            close.empty() ? "docs/hardware/parameters.md lists them" : DidYouMean(name, keys));
+            close.empty() ? "see docs/hardware/parameters.md" : DidYouMean(name, keys));
   return std::nullopt;
 }
 
@@ -131,15 +131,15 @@ const char* AnswerText(board::Answer answer) {
     case board::Answer::kUnknown:
       return "there is no such parameter, action or motor";
     case board::Answer::kOutOfRange:
-      return "out of the parameter's range";
+      return "the value is out of the parameter's range";
     case board::Answer::kNotInThisMode:
-      return "not in the mode that it is in";
+      return "not allowed in its present mode";
     case board::Answer::kBusy:
       return "its memory is being written";
     case board::Answer::kStale:
-      return "it has begun anew since it was asked who it is";
+      return "it was reset after its information was read";
   }
-  return "an answer that nobody knows";
+  return "unknown answer";
 }
 
 }  // namespace taut::link

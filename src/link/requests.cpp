@@ -66,11 +66,12 @@ std::optional<board::Reply> Requests::Ask(int board, const board::Asking& asking
     if (reply->answer == board::Answer::kGood) return reply;
     out.Error("board.request_refused", {},
               who + " refuses " + DescribeRequest(asking) + ": " + AnswerText(reply->answer),
-              "docs/hardware/protocol.md lists requests and answers");
+              "see docs/hardware/protocol.md");
     return std::nullopt;
   }
   out.Error("board.no_answer", {}, who + " does not answer",
-            port.is_open() ? "`taut robot scan` shows who is there" : "the adapter is gone");
+            port.is_open() ? "list the boards that answer with `taut robot scan`"
+                           : "the adapter is gone");
   return std::nullopt;
 }
 

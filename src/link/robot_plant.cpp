@@ -79,7 +79,7 @@ void RobotPlant::Restart(int /*lane*/) {
   }
 }
 
-bool RobotPlant::Goes(int /*lane*/) const {
+bool RobotPlant::IsRunning(int /*lane*/) const {
   return driver_.state().stage == Stage::kActive && !driver_.state().stopping;
 }
 

@@ -15,15 +15,16 @@ std::string RuntimeFolder(Diagnostics& out) {
                                                           : "/tmp/taut-" + std::to_string(getuid());
   if (mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) {
     out.Error("folder.not_made", {folder},
-              std::string("cannot make this folder: ") + std::strerror(errno));
+              std::string("cannot create the folder: ") + std::strerror(errno));
     return {};
   }
   // Any user may have made a folder of that name in /tmp.
   struct stat is {};
   if (lstat(folder.c_str(), &is) != 0 || !S_ISDIR(is.st_mode) || is.st_uid != getuid() ||
       (is.st_mode & 077) != 0) {
-    out.Error("folder.not_private", {folder}, "has to be a folder that is yours alone",
-              "chmod 700, or delete it");
+    out.Error("folder.not_private", {folder},
+              "the folder must be yours, and accessible to you only",
+              "run chmod 700 on it, or delete it");
     return {};
   }
   return folder;

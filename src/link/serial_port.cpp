@@ -120,9 +120,9 @@ std::unique_ptr<Port> OpenSerialPort(const std::string& device, PortUse use, Dia
               "to stop the robot, run `taut robot estop`");
     return nullptr;
   }
-  out.Error("robot.not_opened", {device, 0, 0}, "cannot be opened: " + why,
-            "the adapter is /dev/ttyACM0 or the like, which the group dialout may open; "
-            "--port virtual is an emulated robot");
+  out.Error("robot.not_opened", {device, 0, 0}, "cannot open: " + why,
+            "the adapter is usually /dev/ttyACM0, for users in the group dialout; --port virtual "
+            "selects the emulated robot");
   return nullptr;
 }
 

@@ -49,7 +49,7 @@ std::vector<int> MotorCables(const RobotSpec& robot, Diagnostics& out) {
   const SourceRef file{robot.files.empty() ? "model" : robot.files.front()};
   if (cables.empty()) {
     out.Error("robot.no_actuators", file, "no cable has an actuator",
-              "a robot needs 1 to 12 of them");
+              "a robot needs 1 to 12 actuators");
   } else if (cables.size() > board::kCables) {
     out.Error("robot.too_many_actuators", file,
               std::to_string(cables.size()) + " cables have an actuator",
@@ -72,8 +72,8 @@ std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) 
   std::string names;
   for (const std::string& name : without) names += (names.empty() ? "" : ", ") + name;
   const SourceRef file{experiment.files.empty() ? "experiment" : experiment.files.front()};
-  out.Error("robot.no_impedance_control", file, "no impedance control of " + names,
-            "boards control all of their motors by it, or none");
+  out.Error("robot.no_impedance_control", file, "no impedance control of cables " + names,
+            "use it for all cables with actuators, or for none");
   return std::nullopt;
 }
 

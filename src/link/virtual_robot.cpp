@@ -42,7 +42,7 @@ std::string FolderOfIt(Diagnostics& out) {
   std::string folder = runtime + "/virtual";
   if (mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return folder;
   out.Error("folder.not_made", {folder},
-            std::string("cannot make this folder: ") + std::strerror(errno));
+            std::string("cannot create the folder: ") + std::strerror(errno));
   return {};
 }
 
@@ -112,7 +112,8 @@ std::unique_ptr<VirtualRobot> VirtualRobot::Start(const std::vector<std::string>
   argv.push_back(nullptr);
   int says[2];
   if (pipe2(says, O_CLOEXEC) != 0) {
-    out.Error("virtual_robot.no_pipe", {}, std::string("no pipe: ") + std::strerror(errno));
+    out.Error("virtual_robot.no_pipe", {},
+              std::string("cannot create a pipe: ") + std::strerror(errno));
     return nullptr;
   }
   const pid_t child = fork();
@@ -131,9 +132,9 @@ std::unique_ptr<VirtualRobot> VirtualRobot::Start(const std::vector<std::string>
     if (ended) robot->process_ = -1;
     const bool missing = ended && WIFEXITED(status) && WEXITSTATUS(status) == 127;
     out.Error("virtual_robot.not_started", {program},
-              missing ? "there is no such program" : "did not start",
-              missing ? "it is built where avr-g++ and libsimavr are (docs/hardware/"
-                        "virtual_robot.md); TAUT_VIRTUAL_ROBOT may name it"
+              missing ? "the program does not exist" : "the program did not start",
+              missing ? "install avr-g++ and libsimavr and build taut (docs/hardware/"
+                        "virtual_robot.md), or set TAUT_VIRTUAL_ROBOT to its path"
                       : "");
     return nullptr;
   }

@@ -7,8 +7,8 @@
 
 namespace taut {
 
-double HeldGap(const JointDef& j) noexcept {
-  const HeldMotions held = HeldBy(j.kind);
+double JointError(const JointDef& j) noexcept {
+  const HeldMotions held = ConstrainedMotions(j.kind);
   const Vec3 d = j.to_m - j.from_m;
   const double along = Dot(j.axis, d), across2 = std::fmax(Dot(d, d) - along * along, 0.0);
   if (held.along && held.across) return std::sqrt(Dot(d, d));

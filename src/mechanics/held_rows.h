@@ -28,7 +28,7 @@ inline JointAxes AxesOf(const JointDef& j) {
 }
 
 inline std::vector<HeldRow> HeldRowsOf(const JointDef& j) {
-  const HeldMotions held = HeldBy(j.kind);
+  const HeldMotions held = ConstrainedMotions(j.kind);
   std::vector<HeldRow> rows;
   if (held.along) rows.push_back(HeldRow::kAlong);
   if (held.across) rows.insert(rows.end(), {HeldRow::kAcross1, HeldRow::kAcross2});

@@ -126,7 +126,7 @@ const char* NameOf(MemberLimit limit) noexcept {
 std::string Describe(const Overload& overload) {
   using base::Brief;
   const char* const limit = overload.limit == MemberLimit::kStrength ? "its strength of "
-                            : overload.limit == MemberLimit::kYield  ? "the force at yield of "
+                            : overload.limit == MemberLimit::kYield  ? "its yield force of "
                                                                      : "its buckling load of ";
   return std::string(NameOf(overload.kind)) + " " + overload.name + " carried " +
          Brief(overload.carried_n) + " N, more than " + limit + Brief(overload.bears_n) +

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mjcf/scene.h"
+#include "mjcf/mjcf_scene.h"
 
 namespace taut::mjcf {
 namespace {
@@ -32,7 +32,7 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   const auto number = [&](const char* name, double if_absent) {
     const double given = layers.Number(name, if_absent);
     if (layers.Has(name) && given < 0)
-      layers.Error("mjcf.negative", name, std::string(name) + " is negative");
+      layers.Error("mjcf.negative", name, std::string(name) + " must not be negative");
     return given;
   };
   if (e.name == "general") {
@@ -53,7 +53,8 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
     // Here a positive number is a damping ratio, which MuJoCo converts once it knows the masses.
     if (layers.Has("dampratio")) s.bias[2] = number("dampratio", 0);
     if (layers.Has("kv") && layers.Has("dampratio")) {
-      layers.Error("mjcf.kv_and_dampratio", "dampratio", "it has both kv and dampratio");
+      layers.Error("mjcf.kv_and_dampratio", "dampratio", "kv and dampratio are both given",
+                   "leave out one of them");
     }
     if (layers.Has("timeconst")) {
       s.lag_s = number("timeconst", 0);
@@ -118,16 +119,16 @@ class ActuatorReader {
     for (const Element* const layer : layers.all()) {
       if (IsRead(layer->name)) continue;
       const std::string under =
-          layer == &e ? "" : " are not read; its class sets one in line " + LineOf(*layer);
+          layer == &e ? "" : " are not supported; its class sets one in line " + LineOf(*layer);
       Refuse("mjcf.actuator_kind", e,
-             under.empty() ? "actuators of kind " + e.name + " are not read"
+             under.empty() ? "actuators of kind " + e.name + " are not supported"
                            : "actuators of kind " + layer->name + under);
       return;
     }
     for (const char* other : {"joint", "jointinparent", "site", "body", "cranksite"}) {
       if (!e.Find(other)) continue;
       Refuse("mjcf.actuator_transmission", e,
-             std::string("an actuator on a ") + other + " is not read (expected a tendon)");
+             std::string("an actuator on a ") + other + " is not supported (expected a tendon)");
       return;
     }
     actuator.tendon = Find(scene_.tendon_by_name, e, "tendon", "tendon", out_);
@@ -135,10 +136,11 @@ class ActuatorReader {
     const ActuatorSettings s = MergedUntil315(layers.all(), out_);
     const ActuatorSettings since = MergedSince316(layers.all());
     if (!s.Equals(since)) {
-      Refuse("mjcf.defaults_differ", e,
-             "versions of MuJoCo disagree on its defaults: " + Text(s) + " until 3.15, " +
-                 Text(since) + " since 3.16",
-             "set these parameters in the element: its classes set other kinds of actuators");
+      Refuse(
+          "mjcf.defaults_differ", e,
+          "versions of MuJoCo differ in its defaults: " + Text(s) + " until 3.15, " + Text(since) +
+              " since 3.16",
+          "set these parameters in the element, because its classes set other kinds of actuators");
       return;
     }
     ReadLaw(layers, s, actuator);
@@ -179,7 +181,7 @@ class ActuatorReader {
     }
     const bool affine = s.biastype == "affine";
     if (affine && s.bias[2] > 0 && s.gain == -s.bias[1]) {
-      layers.Error("mjcf.dampratio", "dampratio", "dampratio is not read", "kv is");
+      layers.Error("mjcf.dampratio", "dampratio", "dampratio is not supported", "use kv");
     }
     // The actuator's length is the tendon's times the gear; its force on the tendon is also scaled
     // by the gear.
@@ -207,12 +209,12 @@ class ActuatorReader {
     if (unsure && !warned_) {
       warned_ = true;
       out_.Warning("mjcf.forcerange", e.at,
-                   e.Called() + ": forcerange has no forcelimited; here it applies",
-                   "MuJoCo 2 ignores such a forcerange: set forcelimited");
+                   e.Called() + ": forcerange without forcelimited takes effect",
+                   "set forcelimited, because MuJoCo 2 ignores such a forcerange");
     }
     if (!actuator.state) return;
     if (layers.Range("actlimited", "actrange", scene_.settings)) {
-      layers.Error("mjcf.actrange", "actrange", "actrange is not read", "use ctrlrange");
+      layers.Error("mjcf.actrange", "actrange", "actrange is not supported", "use ctrlrange");
     }
   }
 
@@ -224,7 +226,8 @@ class ActuatorReader {
                    "inheritrange does not apply to dyntype filter");
     } else if (layers.Has("ctrlrange") &&
                layers.Numbers("ctrlrange", {0, 0}, 2, 2) != std::vector<double>{0, 0}) {
-      layers.Error("mjcf.inheritrange", "inheritrange", "it has both ctrlrange and inheritrange");
+      layers.Error("mjcf.inheritrange", "inheritrange", "ctrlrange and inheritrange are both given",
+                   "leave out one of them");
     } else if (!range) {
       layers.Error("mjcf.inheritrange", "inheritrange",
                    "inheritrange is given, but its tendon has no range");
@@ -242,7 +245,7 @@ class ActuatorReader {
     for (const char* key : {"damping", "armature"}) {
       const auto n = layers.Numbers(key, {0, 0, 0}, 1, 3);
       if (n == std::vector<double>{0, 0, 0}) continue;
-      layers.Error("mjcf.not_read", key, std::string(key) + " of an actuator is not read");
+      layers.Error("mjcf.not_read", key, std::string(key) + " of an actuator is not supported");
     }
     if (const double delay_s = layers.Number("delay", 0); delay_s != 0) {
       actuator.lag_s += delay_s;

@@ -5,7 +5,7 @@
 
 #include "math/principal_axes.h"
 #include "math/vec.h"
-#include "mjcf/scene.h"
+#include "mjcf/mjcf_scene.h"
 
 namespace taut::mjcf {
 namespace {
@@ -78,10 +78,11 @@ class BodyReader {
     const Layers layers({&element}, out_);
     its.frame = InWorld(frame, layers.ReadPose(scene_.settings));
     if (layers.Number("gravcomp", 0) != 0)
-      layers.Error("mjcf.gravcomp", "gravcomp", "gravcomp is not read");
+      layers.Error("mjcf.gravcomp", "gravcomp", "gravcomp is not supported");
     if (layers.Flag("mocap", false)) {
-      out_.Warning("mjcf.mocap", element.at,
-                   element.Called() + " is moved by a program; here it stands still");
+      out_.Warning(
+          "mjcf.mocap", element.at,
+          element.Called() + " is a mocap body, which a program moves; it is imported as fixed");
     }
     // A body without a joint is part of its parent; in the world it is a static body.
     its.root = scene_.Moves(parent) ? scene_.bodies[Scene::Index(parent)].root : body;
@@ -108,12 +109,12 @@ class BodyReader {
       if (!is_free) continue;
       Body& its = scene_.bodies[Scene::Index(body)];
       if (its.is_free)
-        out_.Error("mjcf.several_free_joints", child.at, "a body has one free joint, not two");
+        out_.Error("mjcf.several_free_joints", child.at, "the body has more than one free joint");
       its.is_free = true;
       its.root = body;
       if (parents_.back() != 0) {
         out_.Error("mjcf.nested_free_joint", child.at,
-                   child.Called() + ": a body within another one has no free joint");
+                   child.Called() + ": a body inside another body cannot have a free joint");
       }
     }
   }
@@ -124,7 +125,7 @@ class BodyReader {
         (body == 0 ? "the world" : "body \"" + scene_.bodies[Scene::Index(body)].name + "\"");
     if (body == 0) {
       out_.Error("mjcf.joint_of_world", joint.at,
-                 joint.Called() + whose + ": the world does not move");
+                 joint.Called() + whose + ": the world cannot have joints");
       return;
     }
     const Layers layers = Over(joint, cls);
@@ -136,12 +137,13 @@ class BodyReader {
     if (type != "free") {
       out_.Error(
           "mjcf.joint_type", joint.at,
-          joint.Called() + whose + " is of type " + type + ": only bodies that are free are read",
-          "joints of taut's own are added to the model by hand: docs/theory/joints.md");
+          joint.Called() + whose + " is of type " + type + ": only free joints are supported",
+          "add joints to the imported model by hand: docs/theory/joints.md");
       return;
     }
     if (layers.Number("frictionloss", 0) > 0) {
-      layers.Error("mjcf.frictionloss", "frictionloss", "frictionloss of a free joint is not read");
+      layers.Error("mjcf.frictionloss", "frictionloss",
+                   "frictionloss of a free joint is not supported");
     }
     for (const char* key : {"damping", "stiffness", "armature"}) {
       if (layers.Numbers(key, {0}, 1, 3)[0] == 0) continue;
@@ -170,7 +172,7 @@ class BodyReader {
     if (++geom_count_ == kMostGeoms + 1) {
       out_.Error("mjcf.too_many_geoms", geom.element->at,
                  "there are more than " + std::to_string(kMostGeoms) + " geoms",
-                 "all pairs of them are tested for contact");
+                 "use fewer: the import tests all pairs of geoms for contact");
     }
     if (geom_count_ <= kMostGeoms) geoms_.push_back(std::move(geom));
   }
@@ -184,9 +186,9 @@ class BodyReader {
     if (body == 0 || inertial_.first == nullptr || !has_mass_) return;
     const Layers layers({inertial_.first}, out_);
     const Pose pose = InWorld(inertial_.second, layers.ReadPose(scene_.settings));
-    if (!layers.Has("mass")) layers.Error("mjcf.no_mass", "mass", "it has no mass");
+    if (!layers.Has("mass")) layers.Error("mjcf.no_mass", "mass", "mass is missing");
     if (!layers.Has("pos") && !scene_.settings.global)
-      layers.Error("mjcf.no_pos", "pos", "it has no pos");
+      layers.Error("mjcf.no_pos", "pos", "pos is missing");
     Body& its = scene_.bodies[Scene::Index(body)];
     its.own_masses = false;
     its.mass.mass_kg = layers.Number("mass", 0);
@@ -200,7 +202,8 @@ class BodyReader {
       own = {n[0], n[1], n[2], 0, 0, 0};
     }
     its.mass.inertia_kg_m2 = Turned(pose.q, own);
-    if (its.mass.mass_kg < 0) layers.Error("mjcf.negative_mass", "mass", "its mass is negative");
+    if (its.mass.mass_kg < 0)
+      layers.Error("mjcf.negative_mass", "mass", "the mass must not be negative");
   }
 
   /// `first`: index of the body's first shape; its shapes are the last ones. A search through all
@@ -282,17 +285,17 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
   if (kind == kKinds.end() || layers.Has("mesh") || layers.Has("hfield")) {
     const bool weighs = !body_has_mass && layers.Number("mass", 1) != 0 && from.body != 0;
     if (!touches && !weighs) {
-      ++scene_.left_out["geom of type " + type + " that only shows"];
+      ++scene_.left_out["visual geom of type " + type];
       return;
     }
     const bool known = type == "mesh" || type == "hfield" || type == "ellipsoid" || type == "sdf";
     layers.Error("mjcf.geom_type", known || kind != kKinds.end() ? "name" : "type",
                  known || kind != kKinds.end()
                      ? "geoms of type " + type + (kind == kKinds.end() ? "" : " from a mesh") +
-                           " are not read"
-                     : "there is no type \"" + type + "\"",
-                 "sphere, capsule, cylinder, box and plane are; what only shows, with contype and "
-                 "conaffinity 0 and without mass, is left out");
+                           " are not supported"
+                     : "there is no geom type \"" + type + "\"",
+                 "use sphere, capsule, cylinder, box or plane; visual geoms (contype and "
+                 "conaffinity 0, no mass) are left out");
     return;
   }
   const Attribute* const name = from.element->Find("name");
@@ -308,7 +311,7 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
   const auto friction = layers.Numbers("friction", {1, 0.005, 0.0001}, 1, 3);
   shape.friction = shape.condim == 1 ? 0 : friction[0];
   if (friction[0] < 0)
-    layers.Error("mjcf.negative_friction", "friction", "its friction is negative");
+    layers.Error("mjcf.negative_friction", "friction", "friction must not be negative");
   const bool twists =
       shape.condim > 3 && (friction[1] > 0 || (shape.condim > 4 && friction[2] > 0));
   if (twists && touches) scene_.twisting.push_back(shape.at);
@@ -323,13 +326,13 @@ void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::st
   const bool is_long = shape.kind == Shape::Kind::kCapsule || shape.kind == Shape::Kind::kCylinder;
   if (shape.kind == Shape::Kind::kPlane) {
     if (scene_.Moves(shape.body))
-      layers.Error("mjcf.plane_in_body", "type", "a plane in a body that moves");
+      layers.Error("mjcf.plane_in_body", "type", "a plane cannot be part of a moving body");
     return;
   }
   std::vector<double> needed{size[0]};
   if (line) {
     if (shape.kind == Shape::Kind::kSphere)
-      layers.Error("mjcf.sphere_fromto", "fromto", "a sphere has no fromto");
+      layers.Error("mjcf.sphere_fromto", "fromto", "fromto does not apply to a sphere");
     const Vec3 from = InWorld(frame, {line->first, {}}).p,
                to = InWorld(frame, {line->second, {}}).p;
     shape.from = from, shape.to = to;
@@ -359,7 +362,7 @@ void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
   const std::vector<double>& groups = scene_.settings.inertia_groups;
   const int group = layers.Whole("group", 0);
   if (layers.Flag("shellinertia", false))
-    layers.Error("mjcf.shellinertia", "shellinertia", "shells are not read");
+    layers.Error("mjcf.shellinertia", "shellinertia", "shellinertia is not supported");
   const double r = shape.radius, l = std::sqrt(Dot(shape.to - shape.from, shape.to - shape.from));
   double volume = 0;
   switch (shape.kind) {
@@ -382,7 +385,7 @@ void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
   shape.mass = layers.Has("mass") ? layers.Number("mass", 0) : density * volume;
   if (shape.mass < 0)
     layers.Error("mjcf.negative_mass", layers.Has("mass") ? "mass" : "density",
-                 "its mass is negative");
+                 "the mass must not be negative");
   if (group < groups[0] || group > groups[1]) shape.mass = 0;
 }
 

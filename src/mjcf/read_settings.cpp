@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "mjcf/scene.h"
+#include "mjcf/mjcf_scene.h"
 
 namespace taut::mjcf {
 namespace {
@@ -14,7 +14,8 @@ void ReadCompiler(const Layers& layers, CompilerSettings& s) {
                           const std::vector<std::string>& words) {
     std::string text = layers.Text(name, usual);
     if (std::find(words.begin(), words.end(), text) != words.end()) return text;
-    layers.Error("mjcf.bad_setting", name, std::string(name) + " is \"" + text + '"',
+    layers.Error("mjcf.bad_setting", name,
+                 std::string(name) + " has the unknown value \"" + text + '"',
                  DidYouMean(text, words));
     return usual;
   };
@@ -50,8 +51,8 @@ void ReadFlags(const Element& element, Scene& scene, Diagnostics& out) {
       out.Error("mjcf.bad_flag", a.at,
                 "flag." + a.name + " must be enable or disable, not \"" + a.value + '"');
     } else if (a.name == "override" && a.value == "enable") {
-      out.Error("mjcf.not_read", a.at, "flag.override=\"enable\" is not read",
-                "friction is that of each geom; o_friction replaces it only with this flag");
+      out.Error("mjcf.not_read", a.at, "flag.override=\"enable\" is not supported",
+                "remove the flag; each geom then has its own friction instead of o_friction");
     } else if (a.value == "disable") {
       if (a.name == "gravity") scene.gravity = {};
       if (a.name == "contact") scene.has_contacts = false;
@@ -61,7 +62,7 @@ void ReadFlags(const Element& element, Scene& scene, Diagnostics& out) {
       for (const char* whole :
            {"constraint", "passive", "spring", "damper", "actuation", "equality"}) {
         if (a.name == whole)
-          out.Error("mjcf.not_read", a.at, "flag." + a.name + "=\"disable\" is not read");
+          out.Error("mjcf.not_read", a.at, "flag." + a.name + "=\"disable\" is not supported");
       }
     }
   }
@@ -78,7 +79,8 @@ void ReadOption(const Layers& layers, Scene& scene, Diagnostics& out) {
   }
   for (const char* fluid : {"density", "viscosity"}) {
     if (layers.Number(fluid, 0) != 0)
-      layers.Error("mjcf.fluid", fluid, "a fluid is not read", "there is none");
+      layers.Error("mjcf.fluid", fluid, "a surrounding fluid is not supported",
+                   "set density and viscosity to 0");
   }
   scene.only_pairs = layers.Text("collision", "all") == "predefined";
   if (layers.Has("actuatorgroupdisable")) {
@@ -106,7 +108,7 @@ void Register(std::map<std::string, int>& by_name, const Element& element, int i
   const Attribute* const name = element.Find("name");
   if (!name || name->value.empty()) return;
   if (!by_name.emplace(name->value, index).second) {
-    out.Error("mjcf.duplicate_name", name->at, "there are two of " + element.Called());
+    out.Error("mjcf.duplicate_name", name->at, element.Called() + " is defined twice");
   }
 }
 
@@ -156,12 +158,12 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
         const auto friction = layers.Numbers("friction", {1, 1, 0.005, 0.0001, 0.0001}, 1, 5);
         const int condim = layers.Whole("condim", 3);
         if (friction[0] < 0)
-          layers.Error("mjcf.negative_friction", "friction", "its friction is negative");
+          layers.Error("mjcf.negative_friction", "friction", "friction must not be negative");
         if (condim > 1 && friction[0] != friction[1]) {
           layers.Error(
               "mjcf.anisotropic_friction", "friction",
-              "friction that differs between the two tangents is not read",
-              "the first two numbers are those of the tangents; the second is 1 if absent");
+              "friction that differs between the two tangential directions is not supported",
+              "give the first two numbers the same value; the second is 1 if absent");
         }
         if (condim > 3) scene.twisting.push_back(e.at);
         scene.pairs.push_back({e.at, a, b, condim == 1 ? 0 : friction[0]});
@@ -175,16 +177,17 @@ void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene,
     for (const Element& e : section->children) {
       const Layers layers = defaults.Over(e, "", out);
       if (!layers.Flag("active", true)) {
-        ++scene.left_out["equality that is not active"];
+        ++scene.left_out["inactive equality"];
         continue;
       }
       if (e.name != "weld") {
-        out.Error("mjcf.equality", e.at, "the equality " + e.Called() + " is not read",
-                  "weld is: two bodies become one");
+        out.Error("mjcf.equality", e.at, "the equality " + e.Called() + " is not supported",
+                  "use weld, which joins two bodies into one");
         continue;
       }
       if (e.Find("site1")) {
-        out.Error("mjcf.weld_of_sites", e.at, "a weld of sites is not read", "a weld of bodies is");
+        out.Error("mjcf.weld_of_sites", e.at, "a weld of sites is not supported",
+                  "weld the bodies instead");
         continue;
       }
       const int a = Find(scene.body_by_name, e, "body1", "body", out);
@@ -193,8 +196,8 @@ void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene,
       const auto n = layers.Numbers("relpose", {0, 1, 0, 0, 0, 0, 0}, 7, 7);
       const bool as_described = n[3] == 0 && n[4] == 0 && n[5] == 0 && n[6] == 0;
       if (!as_described) {
-        layers.Error("mjcf.relpose", "relpose", "a weld with a relpose is not read",
-                     "put the bodies where they are to be, and leave it out");
+        layers.Error("mjcf.relpose", "relpose", "a weld with a relpose is not supported",
+                     "give the bodies their final poses, and leave out relpose");
       }
       // A body welded to a static body is static.
       const int root_a = scene.bodies[Scene::Index(a)].root,

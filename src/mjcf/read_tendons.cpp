@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mjcf/scene.h"
+#include "mjcf/mjcf_scene.h"
 
 namespace taut::mjcf {
 namespace {
@@ -19,7 +19,8 @@ void ReadSpringLength(const Layers& layers, Tendon& tendon, Diagnostics& out) {
   if (l[0] == -1 && l[1] == -1) return;
   if (l[0] > l[1] || l[1] < 0) {
     layers.Error("mjcf.springlength", "springlength",
-                 "springlength must increase and not be negative", "-1 is the length at the start");
+                 "springlength must neither decrease nor be negative",
+                 "-1 stands for the length at the start");
   }
 }
 
@@ -48,23 +49,24 @@ void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Di
       for (const char* polynomial : {"stiffness", "damping"}) {
         const auto n = layers.Numbers(polynomial, {0, 0, 0}, 1, 3);
         if (n[1] == 0 && n[2] == 0) continue;
-        layers.Error("mjcf.polynomial", polynomial,
-                     std::string(polynomial) + " that is not constant is not read");
+        layers.Error(
+            "mjcf.polynomial", polynomial,
+            std::string(polynomial) + " with higher coefficients other than zero is not supported");
       }
       ReadSpringLength(layers, tendon, out);
       tendon.friction = scene.has_dry_friction ? layers.Number("frictionloss", 0) : 0;
       if (layers.Number("armature", 0) != 0) {
-        layers.Error("mjcf.armature", "armature", "armature of a tendon is not read");
+        layers.Error("mjcf.armature", "armature", "armature of a tendon is not supported");
       }
       for (const char* key : {"stiffness", "damping", "frictionloss"}) {
         if (layers.Numbers(key, {0}, 1, 3)[0] < 0) {
-          layers.Error("mjcf.negative", key, std::string(key) + " is negative");
+          layers.Error("mjcf.negative", key, std::string(key) + " must not be negative");
         }
       }
       tendon.range = layers.Range("limited", "range", scene.settings);
       if (layers.Range("actuatorfrclimited", "actuatorfrcrange", scene.settings)) {
-        layers.Error("mjcf.actuatorfrcrange", "actuatorfrcrange", "actuatorfrcrange is not read",
-                     "forcerange is");
+        layers.Error("mjcf.actuatorfrcrange", "actuatorfrcrange",
+                     "actuatorfrcrange is not supported", "use forcerange of the actuator");
       }
       scene.tendons.push_back(std::move(tendon));
     }

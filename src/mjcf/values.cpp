@@ -7,7 +7,7 @@
 
 #include "math/rotation.h"
 #include "math/vec.h"
-#include "mjcf/schema.h"
+#include "mjcf/mjcf_schema.h"
 
 namespace taut::mjcf {
 namespace {
@@ -120,7 +120,8 @@ std::optional<std::pair<double, double>> Layers::Range(std::string_view flag,
   const bool limited =
       Text(flag, "auto") == "auto" ? settings.autolimits && n[0] != n[1] : Flag(flag, false);
   if (!limited) return std::nullopt;
-  if (!(n[0] < n[1])) Error("mjcf.empty_range", range, std::string(range) + " must rise");
+  if (!(n[0] < n[1]))
+    Error("mjcf.empty_range", range, std::string(range) + " must be two increasing numbers");
   return std::pair(n[0], n[1]);
 }
 
@@ -129,7 +130,7 @@ std::optional<std::pair<Vec3, Vec3>> Layers::FromTo() const {
   const std::vector<double> n = Numbers("fromto", {0, 0, 0, 0, 0, 1}, 6, 6);
   const Vec3 from{n[0], n[1], n[2]}, to{n[3], n[4], n[5]};
   if (Length(to - from) < 1e-14) {
-    Error("mjcf.no_length", "fromto", "its two points are one");
+    Error("mjcf.no_length", "fromto", "the two points of fromto coincide");
     return std::pair(from, from + Vec3{0, 0, 1});
   }
   return std::pair(from, to);
@@ -139,7 +140,7 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
   const auto unit = [&](const char* name, const Vec3& v) {
     const double length = Length(v);
     if (length > 1e-14) return (1 / length) * v;
-    Error("mjcf.zero_vector", name, std::string(name) + " has no length");
+    Error("mjcf.zero_vector", name, std::string(name) + " must not be a zero vector");
     return Vec3{0, 0, 1};
   };
   const double angle = settings.degrees ? std::numbers::pi / 180 : 1;
@@ -148,7 +149,8 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
     ways += element().Find(name) != nullptr;
   }
   if (ways > 1)
-    Error("mjcf.orientation_given_twice", "pos", "its orientation is given in several ways");
+    Error("mjcf.orientation_given_twice", "pos", "the orientation is given in several ways",
+          "keep one of quat, axisangle, xyaxes, zaxis and euler");
   if (Has("axisangle")) {
     const auto n = Numbers("axisangle", {0, 0, 1, 0}, 4, 4);
     return AboutAxis(unit("axisangle", {n[0], n[1], n[2]}), angle * n[3]);
@@ -180,7 +182,7 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
   const auto n = Numbers("quat", {1, 0, 0, 0}, 4, 4);
   const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3]);
   if (length < 1e-14) {
-    Error("mjcf.zero_orientation", "quat", "quat has no length");
+    Error("mjcf.zero_orientation", "quat", "quat must not be zero");
     return {};
   }
   return {n[0] / length, n[1] / length, n[2] / length, n[3] / length};
@@ -198,7 +200,7 @@ void Defaults::Add(const Element& element, const Class* in, Diagnostics& out) {
     if (!called.empty() && classes_.empty()) main_ = called;
     if (called.empty()) called = main_;
   } else if (called.empty()) {
-    out.Error("mjcf.unnamed_default", element.at, "a default within another one has no class");
+    out.Error("mjcf.unnamed_default", element.at, "a default inside another default has no class");
     return;
   }
   const auto [entry, fresh] = classes_.try_emplace(called);
@@ -206,7 +208,7 @@ void Defaults::Add(const Element& element, const Class* in, Diagnostics& out) {
   if (fresh && in != nullptr) its->in = in, its->inherited = in->settings.size();
   if (!fresh && (in != nullptr || called != main_)) {
     out.Error("mjcf.duplicate_default", name->at,
-              "there are two default classes \"" + called + "\"");
+              "the default class \"" + called + "\" is defined twice");
     return;
   }
   for (const Element& child : element.children) {

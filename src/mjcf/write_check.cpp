@@ -35,35 +35,38 @@ class Refuser {
         continue;
       }
       Refuse("the joint \"" + joint.name + "\"",
-             IsBar(joint) ? "of bars, springs and dampers with a rest length are written"
-                          : "bars are written");
+             IsBar(joint)
+                 ? "of bars only the spring, the damper and a rest length above 0 can be exported"
+                 : "only bars can be exported");
     }
     for (const MotionDef& motion : def_.motions) {
       Refuse("the motion of the body \"" + def_.bodies[static_cast<std::size_t>(motion.body)].name +
              "\"");
     }
     for (const TerrainMeshDef& mesh : def_.terrain_meshes) {
-      Refuse("the terrain mesh \"" + mesh.name + "\"", "MuJoCo would fill its hollows");
+      Refuse("the terrain mesh \"" + mesh.name + "\"",
+             "MuJoCo would replace it by its convex hull");
     }
     for (const HeightFieldDef& field : def_.height_fields) {
       if (options_.as_peer) continue;
-      Refuse("the height field \"" + field.name + "\"", "MuJoCo 2.2.2 reads heights from a file");
+      Refuse("the height field \"" + field.name + "\"",
+             "MuJoCo 2.2.2 reads heights only from a file");
     }
     if (options_.cables == MjcfCables::kSpring && options_.keyframe) {
       out_.Error("mjcf.springs_without_keyframe", {},
-                 "cables that are springs have no controls for a keyframe");
+                 "cables exported as springs have no controls, which a keyframe needs");
     }
   }
 
  private:
   void Refuse(const std::string& what, const std::string& hint = {}) {
-    out_.Error("mjcf.not_expressible", {}, "MJCF cannot say " + what, hint);
+    out_.Error("mjcf.not_expressible", {}, "MJCF cannot express " + what, hint);
   }
 
   void LookAt(const CableDef& cable) {
     const std::string name = "the cable \"" + cable.name + "\": ";
     if (cable.touches != CableTouches::kNone) {
-      Refuse(name + "it comes to lie against what it touches");
+      Refuse(name + "it wraps around obstacles");
     }
     for (const AttachmentDef& at : cable.attachments) {
       if (!at.wheel && at.friction == 0) continue;
@@ -102,8 +105,8 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
     if (IsSpecial(m)) special.push_back(name);
   });
   warn(restitution, "restitution");
-  warn(sticking, "friction at rest where it is more than while sliding,");
-  warn(special, "friction by speed or direction");
+  warn(sticking, "static friction other than kinetic friction,");
+  warn(special, "dependence on speed or direction of the friction");
   for (const CableDef& cable : def.cables) {
     const ActuatorDef::Kind kind = cable.actuator.kind;
     const bool moves = kind != ActuatorDef::Kind::kNone;
@@ -116,24 +119,24 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
     }
   }
   warn(motors, options.cables == MjcfCables::kSpring ? "the motor" : "the motor's limits");
-  warn(dampers, "the limit of dampers at the spring's force (`damping_law: clamped`)");
+  warn(dampers, "the limit of the damper force to the spring force (`damping_law: clamped`)");
   for (const BodyDef& body : def.bodies) {
     const Vec3 &v = body.velocity_m_per_s, &w = body.angular_velocity_rad_per_s;
     const bool moves = v.x != 0 || v.y != 0 || v.z != 0 || w.x != 0 || w.y != 0 || w.z != 0;
     if (!body.fixed && moves) speeds.push_back(body.name);
   }
-  if (!options.keyframe) warn(speeds, "the velocity (a keyframe would have it)");
+  if (!options.keyframe) warn(speeds, "the initial velocity (export a keyframe to keep it)");
   if (options.cables == MjcfCables::kSpring) {
     const auto damped = std::find_if(def.cables.begin(), def.cables.end(),
                                      [](const CableDef& c) { return c.damping_n_s_per_m > 0; });
     if (damped != def.cables.end()) {
       out.Warning("mjcf.dampers_of_slack_tendons", {},
-                  "MuJoCo's dampers of tendons act on slack cables, too, and push",
-                  "cables as actuators do not push");
+                  "dampers of MuJoCo's tendons also act on slack cables, and push",
+                  "export cables as actuators, which do not push");
     }
   }
   if (def.friction_law != FrictionLaw::kCone)
-    out.Warning("mjcf.friction_along_slip", {}, "left out: friction along the slip");
+    out.Warning("mjcf.friction_along_slip", {}, "left out: the friction law along the slip");
 }
 
 }  // namespace taut::mjcf

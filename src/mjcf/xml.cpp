@@ -78,7 +78,7 @@ class XmlReader {
     if (!text) return std::nullopt;
     files_.push_back(path);
     if (std::any_of(text->begin(), text->end(), base::IsControl)) {
-      out_.Error("mjcf.control_character", {path}, "there are control characters in this file");
+      out_.Error("mjcf.control_character", {path}, "the file contains control characters");
       return std::nullopt;
     }
     if (!Fits(*text, path)) return std::nullopt;
@@ -87,13 +87,13 @@ class XmlReader {
         document.RootElement() == nullptr) {
       const bool empty = document.ErrorID() == tinyxml2::XML_ERROR_EMPTY_DOCUMENT;
       out_.Error("mjcf.not_xml", {path, empty ? 0 : document.ErrorLineNum()},
-                 empty ? "this file is empty" : "this is no XML: " + Why(document));
+                 empty ? "the file is empty" : "the file is not valid XML: " + Why(document));
       return std::nullopt;
     }
     if (document.RootElement()->NextSiblingElement() != nullptr) {
       out_.Error("mjcf.second_root",
                  {path, document.RootElement()->NextSiblingElement()->GetLineNum()},
-                 "there is a second element beside the root");
+                 "the file has a second root element");
       return std::nullopt;
     }
     Element root;
@@ -110,8 +110,8 @@ class XmlReader {
     elements_ += count.nodes;
     if (elements_ > kMostElements) {
       out_.Error("mjcf.too_many_elements", {path},
-                 "there are more than " + std::to_string(kMostElements) +
-                     " elements and comments up to the end of this file");
+                 "the model has more than " + std::to_string(kMostElements) +
+                     " elements and comments in all files up to this one");
     } else if (count.attributes > kMostAttributes) {
       const auto from = text.begin(), to = from + static_cast<std::ptrdiff_t>(count.crowded_at);
       out_.Error("mjcf.too_many_attributes",
@@ -126,13 +126,13 @@ class XmlReader {
   static std::string Why(const tinyxml2::XMLDocument& document) {
     const std::string id = tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID());
     if (document.ErrorID() == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT) {
-      return "an element is closed by another name";
+      return "the end tag of an element has another name";
     }
     if (document.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED) {
       return "elements are nested too deeply";
     }
     if (document.ErrorID() == tinyxml2::XML_ERROR_PARSING_ATTRIBUTE) {
-      return "an attribute is not key=\"value\", or is there twice";
+      return "an attribute is not key=\"value\", or occurs twice";
     }
     std::string words;  // XML_ERROR_PARSING_ELEMENT: "parsing element"
     for (const char c : id.substr(id.rfind("ERROR_") == id.npos ? 0 : id.rfind("ERROR_") + 6)) {
@@ -143,9 +143,9 @@ class XmlReader {
 
   bool Take(const tinyxml2::XMLElement& from, const std::string& path, Element& to) {
     if (depth_ >= kDeepest) {
-      out_.Error(
-          "mjcf.too_deep", {path, from.GetLineNum()},
-          "elements of all files are nested more than " + std::to_string(kDeepest) + " deep");
+      out_.Error("mjcf.too_deep", {path, from.GetLineNum()},
+                 "elements are nested more than " + std::to_string(kDeepest) +
+                     " levels deep, across all files");
       return false;
     }
     to.name = from.Name();
@@ -155,7 +155,7 @@ class XmlReader {
       const std::string value = a->Value();
       if (std::any_of(value.begin(), value.end(), base::IsControl)) {
         out_.Error("mjcf.control_character", at,
-                   to.name + "." + a->Name() + " has control characters");
+                   to.name + "." + a->Name() + " contains control characters");
         return false;
       }
       to.attributes.push_back({a->Name(), value, at});
@@ -177,7 +177,7 @@ class XmlReader {
     const SourceRef at{path, include.GetLineNum(), 0};
     const char* const name = include.Attribute("file");
     if (name == nullptr) {
-      out_.Error("mjcf.include_without_file", at, "include has no file");
+      out_.Error("mjcf.include_without_file", at, "include has no attribute file");
       return false;
     }
     const std::string file = (folder_ / name).lexically_normal().string();
@@ -187,12 +187,12 @@ class XmlReader {
     }
     if (files_.size() >= static_cast<std::size_t>(kMostFiles)) {
       out_.Error("mjcf.too_many_files", at,
-                 "there are more than " + std::to_string(kMostFiles) + " files");
+                 "the model has more than " + std::to_string(kMostFiles) + " files");
       return false;
     }
     auto root = Read(file);
     if (!root) {
-      out_.Error("mjcf.include_not_read", at, "what it includes cannot be read");
+      out_.Error("mjcf.include_not_read", at, "the included file cannot be read");
       return false;
     }
     for (Element& child : root->children) to.children.push_back(std::move(child));

@@ -42,7 +42,7 @@ class CommandRows {
   }
 
   /// Serializes the commands of a lane, except the rest lengths.
-  void Carry(LaneState& state) {
+  void Serialize(LaneState& state) {
     for (std::vector<double>* row : {&set_point_n_, &velocity_input_m_per_s_, &signal_}) {
       state.Row(*row);
     }

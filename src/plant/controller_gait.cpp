@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "plant/controller_kinds.h"
-#include "plant/gait_kinds.h"
+#include "plant/player_kinds.h"
 #include "plant/schedule.h"
 #include "taut/control/clock.h"
 
@@ -60,8 +60,8 @@ class GaitController final : public Controller {
     for (std::size_t g = 0; g < players_.size(); ++g) players_[g]->Retune(lane, GaitOf(input, g));
   }
 
-  void Carry(LaneState& state) override {
-    for (const auto& player : players_) player->Carry(state);
+  void Serialize(LaneState& state) override {
+    for (const auto& player : players_) player->Serialize(state);
     Lane& own = lanes_[static_cast<std::size_t>(state.lane())];
     for (Part* part : {&own.now, &own.before}) state.Values(part->gait, part->from_tick);
     state.Value(own.blend_from_s);

@@ -49,7 +49,7 @@ class ImpedanceController final : public Controller {
     for (std::size_t i = 0; i < cables_.size(); ++i) Set(i, lane, gains[i]);
   }
 
-  void Carry(LaneState& state) override {
+  void Serialize(LaneState& state) override {
     for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
       state.Row(*memory);
     }

@@ -23,14 +23,14 @@ inline constexpr MakeController kControllerKinds[] = {MakeGait, MakeImpedance, M
 /// Returns the controllers of an experiment, each with its kinds in order, then the controllers
 /// that the calling program adds.
 inline std::vector<std::unique_ptr<Controller>> MakeControllers(const ControlSetup& setup,
-                                                                const Brought& brought) {
+                                                                const Extensions& extensions) {
   std::vector<std::unique_ptr<Controller>> made;
   for (std::size_t i = 0; i < setup.experiment.controllers.size(); ++i) {
     for (const MakeController make : kControllerKinds) {
       if (auto controller = make(setup, i)) made.push_back(std::move(controller));
     }
   }
-  for (const auto& make : brought.controllers) made.push_back(make(setup));
+  for (const auto& make : extensions.controllers) made.push_back(make(setup));
   return made;
 }
 

@@ -50,7 +50,7 @@ class PositionController final : public Controller {
 
   /// Serializes the lengths that cables without a program had at their first tick. A program that
   /// `Hold` has replaced stays replaced.
-  void Carry(LaneState& state) override {
+  void Serialize(LaneState& state) override {
     for (double& length_m : lanes_[static_cast<std::size_t>(state.lane())].start_m) {
       state.Value(length_m);
     }

@@ -5,7 +5,7 @@
 #include "math/elementary.h"
 #include "math/random.h"
 #include "math/vec.h"
-#include "plant/streams.h"
+#include "plant/random_streams.h"
 
 namespace taut::plant {
 namespace {

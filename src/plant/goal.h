@@ -29,7 +29,7 @@ class GoalSensor final : public SensorModel {
   void Sample(const Tick& tick, const Observation& exact) override;
   const Observation& seen() const override { return shown_; }
   void Restart(int lane, const RolloutWorld& world) override;
-  void Carry(LaneState& state) override { state.Row(rows_); }
+  void Serialize(LaneState& state) override { state.Row(rows_); }
 
  private:
   GoalSpec goal_;

@@ -43,7 +43,7 @@ class LaneClock {
     together_ = ticks_.size() == 1;
   }
   /// Serializes the counter of a lane; restores into a lane that was restarted.
-  void Carry(LaneState& state) { state.Row(ticks_); }
+  void Serialize(LaneState& state) { state.Row(ticks_); }
 
  private:
   control::Clock<double> clock_;

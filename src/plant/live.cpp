@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "math/vec.h"
+#include "plant/find_start.h"
 #include "plant/loop.h"
 #include "plant/member_watch.h"
 #include "plant/recorder.h"
-#include "plant/start.h"
 
 namespace taut {
 namespace {
@@ -23,11 +23,11 @@ ExperimentSpec RecordingAll(ExperimentSpec experiment) {
 
 class Live final : public LiveRun {
  public:
-  Live(const ExperimentSpec& experiment, Batch batch, const Brought& brought)
+  Live(const ExperimentSpec& experiment, Batch batch, const Extensions& extensions)
       : experiment_(RecordingAll(experiment)),
         batch_(std::move(batch)),
         plant_(PlantOf(batch_)),
-        loop_(experiment_, *plant_, brought),
+        loop_(experiment_, *plant_, extensions),
         recorder_(experiment_),
         watch_(experiment_.robot.def),
         channels_(recorder_.channels()) {
@@ -46,7 +46,7 @@ class Live final : public LiveRun {
   }
 
   bool Step() override {
-    if (!loop_.Goes()) return false;
+    if (!loop_.IsRunning()) return false;
     std::erase_if(pushes_, [&](const auto& p) { return p.until_s <= loop_.time_s() + 1e-12; });
     std::vector<NodeForce> forces;
     for (const TimedPush& push : pushes_) forces.push_back(push.force);
@@ -192,14 +192,14 @@ class Live final : public LiveRun {
 
 std::unique_ptr<LiveRun> LiveRun::Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on,
-                                        const Brought& brought) {
+                                        const Extensions& extensions) {
   const auto model = Model::Compile(experiment.robot.def, out);
   if (!model) return nullptr;
   Batch batch(model, {});
   std::optional<SettledStart> settled;
   if (!plant::PrepareStart(experiment, batch, out, go_on, &settled)) return nullptr;
   if (settled) WarnOfStart(settled->change, out);
-  return std::make_unique<Live>(experiment, std::move(batch), brought);
+  return std::make_unique<Live>(experiment, std::move(batch), extensions);
 }
 
 }  // namespace taut

@@ -10,7 +10,7 @@
 namespace taut::plant {
 
 Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes,
-           Plant& plant, const Brought& brought)
+           Plant& plant, const Extensions& extensions)
     : experiment_(experiment),
       plant_(plant),
       many_(dynamic_cast<ManySteps*>(&plant)),
@@ -35,8 +35,8 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
     add(std::make_unique<Sensors>(*experiment.sensors, experiment.robot.def.cables.size(),
                                   std::move(seeds)));
   }
-  if (brought.sensors) add(brought.sensors(setup));
-  for (auto& controller : MakeControllers(setup, brought)) {
+  if (extensions.sensors) add(extensions.sensors(setup));
+  for (auto& controller : MakeControllers(setup, extensions)) {
     const LaneClock clock(controller->clock(), plant_lanes_);
     laws_.push_back({std::move(controller), clock});
   }
@@ -152,19 +152,19 @@ void Loop::Retune(int lane, const std::vector<ControllerSpec>& controllers) {
   for (Law& law : laws_) law.controller->Retune(lane, controllers);
 }
 
-void Loop::Carry(LaneState& state) {
+void Loop::Serialize(LaneState& state) {
   const auto lane = static_cast<std::size_t>(state.lane());
-  schedules_[schedules_.size() == 1 ? 0 : lane].Carry(state);
-  timelines_[lane].Carry(state);
+  schedules_[schedules_.size() == 1 ? 0 : lane].Serialize(state);
+  timelines_[lane].Serialize(state);
   for (Sensor& sensor : sensors_) {
-    sensor.model->Carry(state);
-    sensor.clock.Carry(state);
+    sensor.model->Serialize(state);
+    sensor.clock.Serialize(state);
   }
   for (Law& law : laws_) {
-    law.controller->Carry(state);
-    law.clock.Carry(state);
+    law.controller->Serialize(state);
+    law.clock.Serialize(state);
   }
-  plant_.Carry(state);
+  plant_.Serialize(state);
 }
 
 /// Returns the time of the next tick or corner.

@@ -21,10 +21,10 @@ class Loop {
   /// does; their results are not used. The plant must be at the experiment's start. Experiment and
   /// plant must outlive the loop.
   Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes, Plant& plant,
-       const Brought& brought);
+       const Extensions& extensions);
   /// Creates the loop of one lane under the unchanged experiment.
-  Loop(const ExperimentSpec& experiment, Plant& plant, const Brought& brought = {})
-      : Loop(experiment, plant, brought, WorldOf(experiment)) {}
+  Loop(const ExperimentSpec& experiment, Plant& plant, const Extensions& extensions = {})
+      : Loop(experiment, plant, extensions, WorldOf(experiment)) {}
 
   /// Samples the sensors that are due, before their controllers act, so that observations are
   /// current.
@@ -50,12 +50,12 @@ class Loop {
 
   /// Serializes the state of a lane: controllers, sensors, clocks, timeline and commands. To
   /// restore, first restart the lane, retune it if it was retuned, and restore the plant's state.
-  void Carry(LaneState& state);
+  void Serialize(LaneState& state);
 
   double time_s(int lane = 0) const noexcept { return ScheduleOf(lane).time_s(); }
   /// Length of the last step of each lane.
   const double* step_s() const noexcept { return step_s_.data(); }
-  bool Goes(int lane = 0) const { return plant_.Goes(lane); }
+  bool IsRunning(int lane = 0) const { return plant_.IsRunning(lane); }
   int lanes() const noexcept { return count_; }
 
   Plant& plant() const noexcept { return plant_; }
@@ -78,9 +78,9 @@ class Loop {
   void SetRestLength(int cable, double rest_length_m);
 
  private:
-  Loop(const ExperimentSpec& experiment, Plant& plant, const Brought& brought,
+  Loop(const ExperimentSpec& experiment, Plant& plant, const Extensions& extensions,
        const RolloutWorld& world)
-      : Loop(experiment, std::array{&world}, plant, brought) {}
+      : Loop(experiment, std::array{&world}, plant, extensions) {}
 
   struct Sensor {
     std::unique_ptr<SensorModel> model;

@@ -8,9 +8,9 @@
 #include <cstdlib>
 
 #include "base/out_of_memory.h"
-#include "plant/gait_kinds.h"
 #include "plant/lane_kernel.h"
 #include "plant/other_lanes.h"
+#include "plant/player_kinds.h"
 
 namespace taut::plant {
 
@@ -27,8 +27,8 @@ class OscillatorPlayer : public GaitPlayer {
     retuned_ = true;
   }
 
-  void Carry(LaneState& state) override {
-    GaitPlayer::Carry(state);
+  void Serialize(LaneState& state) override {
+    GaitPlayer::Serialize(state);
     state.Row(States(), state_count());
   }
 

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/brief.h"
-#include "plant/start.h"
+#include "plant/find_start.h"
 #include "taut/start.h"
 
 namespace taut {
@@ -67,21 +67,21 @@ bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, boo
     const bool deep = overlap.depth_m > overlap.half_thickness_m;
     if (!deep && (!warn || overlap.depth_m <= kTouching * overlap.half_thickness_m)) continue;
     const std::string a = NameOf(robot.def, overlap.a), b = NameOf(robot.def, overlap.b);
-    const std::string depth = Brief(overlap.depth_m) + " m deep in ";
-    const std::string what =
-        with_terrain ? a + " is " + depth + b : a + " and " + b + " are " + depth + "each other";
+    const std::string depth = Brief(overlap.depth_m) + " m";
+    const std::string what = with_terrain ? a + " is " + depth + " deep in " + b
+                                          : a + " and " + b + " overlap by " + depth;
     if (deep) {
       out.Error("start.deep_overlap", PlaceOf(robot, overlap),
                 what + " at the start, more than half the thickness of the thinner one, " +
                     Brief(overlap.half_thickness_m) + " m",
                 with_terrain
-                    ? "`place` moves the robot"
+                    ? "move the robot with `place`"
                     : "move one of them, write `collides: false`, or list both bodies in `apart` "
                       "of the model");
       good = false;
     } else {
       out.Warning("start.overlap", PlaceOf(robot, overlap), what + " at the start",
-                  "it is pushed out, without speed");
+                  "the contact solver separates them without adding velocity");
     }
   }
   return good;

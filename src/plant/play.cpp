@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "plant/gait_kinds.h"
+#include "plant/player_kinds.h"
 
 namespace taut {
 

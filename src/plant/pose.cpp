@@ -6,7 +6,7 @@
 #include "math/vec.h"
 #include "mechanics/mass_properties.h"
 #include "mechanics/placed_parts.h"
-#include "plant/start.h"
+#include "plant/find_start.h"
 #include "taut/start.h"
 
 namespace taut {

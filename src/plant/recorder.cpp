@@ -219,8 +219,8 @@ bool CheckChannels(const ExperimentSpec& experiment, const std::vector<std::stri
     good = false;
     const bool contact = experiment.record.contacts == 0 && pattern.starts_with("contact/");
     out.Error("record.no_channel", i < places.size() ? places[i] : SourceRef{},
-              what + ": no channel fits \"" + pattern + "\"",
-              contact ? "record.contacts says how many contacts have channels, and is 0"
+              what + ": no channel matches \"" + pattern + "\"",
+              contact ? "set record.contacts, the number of contacts with channels, which is 0"
                       : DidYouMean(pattern, known));
   }
   return good;

@@ -74,7 +74,7 @@ class ReplayPlant final : public Plant, public Bodies {
     Read();
   }
 
-  bool Goes(int) const override {
+  bool IsRunning(int) const override {
     return time_s_ < TimeOf(trace_.time_s.size() - 1) - kTimeToleranceS;
   }
 
@@ -143,13 +143,13 @@ class ReplayPlant final : public Plant, public Bodies {
 
 std::unique_ptr<Plant> ReplayOf(const Trace& trace, const RobotSpec& robot, Diagnostics& out) {
   if (trace.time_s.empty()) {
-    out.Error("replay.no_rows", {}, "the log has no row");
+    out.Error("replay.no_rows", {}, "the recording has no rows");
     return nullptr;
   }
   auto plant = std::make_unique<ReplayPlant>(trace, robot);
   if (plant->HasCables()) return plant;
-  out.Error("replay.no_cables", {}, "the log knows no cable of " + robot.def.name,
-            "its channels have to be called cable/NAME/tension_n and the like");
+  out.Error("replay.no_cables", {}, "the recording has no channels of a cable of " + robot.def.name,
+            "expected channels such as cable/NAME/tension_n");
   return nullptr;
 }
 

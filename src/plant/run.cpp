@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "plant/find_start.h"
 #include "plant/loop.h"
 #include "plant/recorder.h"
-#include "plant/start.h"
 #include "plant/statistics.h"
 
 namespace taut {
@@ -53,7 +53,7 @@ class Runner {
   Runner(const ExperimentSpec& experiment, const RunOptions& options, Plant& plant)
       : experiment_(experiment),
         options_(options),
-        loop_(experiment, plant, options.brought),
+        loop_(experiment, plant, options.extensions),
         recorder_(experiment, &plant),
         statistics_(experiment) {}
 
@@ -87,7 +87,7 @@ class Runner {
                                   std::chrono::duration<double>(now - start).count()});
         }
       }
-      if (!loop_.Goes()) good = false;
+      if (!loop_.IsRunning()) good = false;
     }
     if (rows == 0) {
       loop_.Prepare();

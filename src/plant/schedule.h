@@ -41,7 +41,9 @@ class Schedule {
     if (std::fabs(step_s_ - wanted_s_) < 1e-9 * wanted_s_) step_s_ = wanted_s_;
   }
 
-  void Carry(LaneState& state) { state.Values(time_s_, step_s_, from_s_, until_s_, steps_, done_); }
+  void Serialize(LaneState& state) {
+    state.Values(time_s_, step_s_, from_s_, until_s_, steps_, done_);
+  }
 
   /// Counts one step.
   void Advance() {

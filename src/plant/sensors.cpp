@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "math/random.h"
-#include "plant/streams.h"
+#include "plant/random_streams.h"
 #include "taut/control/impedance.h"
 
 namespace taut::plant {
@@ -55,9 +55,9 @@ void Sensors::Restart(int lane, const RolloutWorld& world) {
 }
 
 /// Slots are counted from the lane's first tick, so their meaning is the same in every lane.
-void Sensors::Carry(LaneState& state) {
-  tension_delay_.Carry(state);
-  rest_delay_.Carry(state);
+void Sensors::Serialize(LaneState& state) {
+  tension_delay_.Serialize(state);
+  rest_delay_.Serialize(state);
   for (std::size_t i = static_cast<std::size_t>(state.lane()); i < errors_.size();
        i += seeds_.size()) {
     Errors& of = errors_[i];

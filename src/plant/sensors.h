@@ -20,7 +20,7 @@ class Sensors final : public SensorModel {
   /// Returns the last sample, delayed by the sensors' delay.
   const Observation& seen() const override { return shown_; }
   void Restart(int lane, const RolloutWorld& world) override;
-  void Carry(LaneState& state) override;
+  void Serialize(LaneState& state) override;
 
  private:
   /// Delay line: returns the sample of d ticks ago; before that, the first sample. Ticks are
@@ -32,7 +32,7 @@ class Sensors final : public SensorModel {
     double Oldest(std::size_t i, std::int64_t tick) noexcept {
       return Slot(i, tick < delay_ ? 0 : tick - delay_);
     }
-    void Carry(LaneState& state) { state.Row(ring_); }
+    void Serialize(LaneState& state) { state.Row(ring_); }
 
    private:
     double& Slot(std::size_t i, std::int64_t tick) noexcept {

@@ -67,13 +67,15 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   }
 
   /// Rest lengths and the motors' enable states are part of the batch's snapshots.
-  void Carry(plant::LaneState& state) override {
+  void Serialize(plant::LaneState& state) override {
     state.Row(time_s_);
-    rows_.Carry(state);
+    rows_.Serialize(state);
     state.Row(off_);
   }
 
-  bool Goes(int lane) const override { return (batch_.Status(lane).bits & kStatusNonFinite) == 0; }
+  bool IsRunning(int lane) const override {
+    return (batch_.Status(lane).bits & kStatusNonFinite) == 0;
+  }
   World* world() noexcept override { return this; }
 
   BodyState Body(int lane, int body) const override { return batch_.Body(lane, body); }
@@ -155,7 +157,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     for (const double length : lengths) {
       if (!(length > 0)) continue;
       for (std::size_t j = 0; j < goes_.size(); ++j) goes_[j] = step_s[j] == length;
-      batch_.StepSome(length, goes_);
+      batch_.StepMasked(length, goes_);
     }
   }
 

@@ -7,7 +7,7 @@
 #include "base/brief.h"
 #include "math/align.h"
 #include "math/vec.h"
-#include "plant/start.h"
+#include "plant/find_start.h"
 #include "taut/start.h"
 
 namespace taut {
@@ -106,7 +106,7 @@ std::string SomeOf(const Items& items, F name) {
 }  // namespace
 
 void WarnOfStart(const StartChange& change, Diagnostics& out) {
-  const char* const hint = "`taut check --settled` shows what is left, `taut view` how it looks";
+  const char* const hint = "see the settled robot with `taut check --settled` or `taut view`";
   if (!change.slack_cables.empty()) {
     const std::size_t slack = change.slack_cables.size();
     out.Warning("start.slack_cables", {},
@@ -122,14 +122,14 @@ void WarnOfStart(const StartChange& change, Diagnostics& out) {
     const double part = change.largest_displacement_m / change.size_m;
     out.Warning("start.other_shape", {},
                 "the robot settles to another shape: the node \"" + change.displaced_node +
-                    "\" ends " + Brief(change.largest_displacement_m) +
-                    " m from its place in the shape described, " + Brief(100 * part) +
+                    "\" moves " + Brief(change.largest_displacement_m) +
+                    " m from its described position, " + Brief(100 * part) +
                     " % of the robot's size of " + Brief(change.size_m) + " m",
                 hint);
   }
   if (!change.new_contacts.empty()) {
     out.Warning("start.new_contacts", {},
-                "bodies that were apart as described press on each other after settling: " +
+                "bodies that are apart as described touch after settling: " +
                     SomeOf(change.new_contacts,
                            [](const auto& pair) { return pair.first + " on " + pair.second; }),
                 hint);

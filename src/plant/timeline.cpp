@@ -99,7 +99,7 @@ void Timeline::Restart() {
   set_n_.assign(nodes_.size(), kNothingYet);
 }
 
-void Timeline::Carry(LaneState& state) {
+void Timeline::Serialize(LaneState& state) {
   const auto all = [&state](auto& list) {
     for (auto& x : list) state.Value(x);
   };

@@ -37,7 +37,7 @@ class Timeline {
   /// Restarts from the beginning, without hand forces.
   void Restart();
   /// Serializes the state, except hand forces.
-  void Carry(LaneState& state);
+  void Serialize(LaneState& state);
 
   /// Sets forces by a person's hand, outside the experiment, until the next call. They add to its
   /// pushes and drags.

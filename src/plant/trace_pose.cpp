@@ -27,8 +27,8 @@ class RowOfTrace {
       const std::string name = before + names[i];
       const auto channel = trace_.Find(name);
       if (!channel) {
-        out_.Error("pose.no_channel", at_, "has no channel " + name,
-                   "a pose needs place and turn of every body");
+        out_.Error("pose.no_channel", at_, "the trace has no channel " + name,
+                   "a pose needs the position and orientation of every body");
         good = false;
         continue;
       }
@@ -37,7 +37,7 @@ class RowOfTrace {
       out_.Error(
           "pose.not_finite", at_,
           name + " is " + base::Brief(values[i]) + " at " + base::Brief(trace_.time_s[row_]) + " s",
-          "take another row");
+          "choose another row");
       good = false;
     }
     return good;
@@ -58,7 +58,7 @@ class RowOfTrace {
     if (std::fabs(size - 1) > kUnit) {
       out_.Error("pose.bad_quaternion", at_,
                  "the orientation of body " + name + " has the length " + base::Brief(size),
-                 "a turn is a quaternion of length 1: w, x, y, z");
+                 "expected a unit quaternion: w, x, y, z");
       return;
     }
     state.orientation = {q[0] / size, q[1] / size, q[2] / size, q[3] / size};
@@ -72,7 +72,7 @@ class RowOfTrace {
       rest_m = value[0];
     } else {
       out_.Error("pose.bad_value", at_, channel + " is " + base::Brief(value[0]),
-                 "it must be above 0");
+                 "expected a value above 0");
     }
   }
 
@@ -85,12 +85,11 @@ class RowOfTrace {
       if (!channel) continue;
       const double recorded_m = trace_.values[*channel][row_], length_m = CableLength(cable);
       if (!(std::fabs(recorded_m - length_m) > kSameLength * length_m)) continue;
-      out_.Warning("pose.cable_length_differs", at_,
-                   "cable " + cable.name + " is " + base::Brief(length_m) +
-                       " m long in this pose, and " + base::Brief(recorded_m) +
-                       " m in the recording",
-                   "orientations count from the pose that the file describes: take the experiment "
-                   "that was recorded");
+      out_.Warning(
+          "pose.cable_length_differs", at_,
+          "cable " + cable.name + " is " + base::Brief(length_m) + " m long in this pose, but " +
+              base::Brief(recorded_m) + " m in the recording",
+          "use the experiment of the recording: orientations are relative to its described pose");
     }
   }
 
@@ -107,7 +106,7 @@ std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std:
                                 const SourceRef& at, Diagnostics& out) {
   const ModelDef& def = robot.def;
   if (row >= trace.time_s.size()) {
-    out.Error("pose.no_rows", at, "has no row to take a pose from");
+    out.Error("pose.no_rows", at, "the trace has no rows, so it contains no pose");
     return std::nullopt;
   }
   const std::size_t before = out.items().size();

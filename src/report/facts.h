@@ -30,8 +30,8 @@ inline std::string LeftOutText(const RunSummary& summary) {
   const LeftOutContacts& left = summary.left_out;
   if (left.contacts == 0) return {};
   return std::to_string(left.contacts) + " contacts in " + std::to_string(left.rows) +
-         " rows had no channels; record.contacts: " + std::to_string(left.most_touching) +
-         " has room for all";
+         " rows were not recorded; set record.contacts: " + std::to_string(left.most_touching) +
+         " to record all";
 }
 
 }  // namespace taut::report

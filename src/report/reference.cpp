@@ -65,17 +65,17 @@ std::string ReferenceLines(const RunSummary& run) {
       worst_share = share;
       worst = &value;
     }
-    out += fmt::format("\nbeside {}: {} {} of {} cables, {}\n  ", reference.source,
+    out += fmt::format("\ncompared with {}: {} {} of {} cables, {}\n  ", reference.source,
                        StatisticName(reference), QuantityName(reference), reference.values.size(),
                        reference.phase.empty() ? "whole run" : reference.phase);
     if (worst == nullptr) {
-      out += "not reached";
+      out += "the run did not reach this phase";
       continue;
     }
     const double ours_n = OurValue(run, reference, worst->cable);
-    out += fmt::format("at most {:.2f} % off: {} {:.3f} N, there {:.3f} N", 100 * worst_share,
-                       run.cables[static_cast<std::size_t>(worst->cable)].name, ours_n,
-                       worst->force_n);
+    out += fmt::format("largest difference {:.2f} %: {} {:.3f} N, reference {:.3f} N",
+                       100 * worst_share, run.cables[static_cast<std::size_t>(worst->cable)].name,
+                       ours_n, worst->force_n);
   }
   return out.empty() ? out : out + "\n";
 }

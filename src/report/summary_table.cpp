@@ -81,8 +81,8 @@ std::string PhaseTable(const RunSummary& run, std::size_t first, std::size_t las
 
 std::string SystemLines(const RunSummary& run) {
   std::string out = fmt::format(
-      "\nlargest system tension: {:.3f} N in {}\n"
-      "elastic part alone: {:.3f} N",
+      "\nlargest tension: {:.3f} N in {}\n"
+      "largest elastic part: {:.3f} N",
       run.system_max_tension_n, run.system_max_tension_cable, run.system_max_elastic_n);
   if (run.simulated_s > 5) {
     out += fmt::format("; from 5 s on: {:.3f} N", run.system_max_elastic_after_start_n);
@@ -108,12 +108,12 @@ std::string LoadTables(const RunSummary& run) {
   }
   if (!run.anchors.empty()) {
     const std::size_t name_width = NameWidth(run.anchors);
-    out += fmt::format("\n{:<{}} {:>12}{:>16}\n", "anchor", name_width, "max force N",
-                       "max torque N m");
+    out += fmt::format("\n{:<{}} {:>14}{:>18}\n", "anchor", name_width, "max force [N]",
+                       "max torque [N m]");
     for (const AnchorSummary& anchor : run.anchors) {
       out += fmt::format("{:<{}} {}{}\n", anchor.name, name_width,
-                         Cell(anchor.max_force_n, DecimalsFor(anchor.max_force_n), 12),
-                         Cell(anchor.max_torque_n_m, DecimalsFor(anchor.max_torque_n_m), 16));
+                         Cell(anchor.max_force_n, DecimalsFor(anchor.max_force_n), 14),
+                         Cell(anchor.max_torque_n_m, DecimalsFor(anchor.max_torque_n_m), 18));
     }
   }
   return out;
@@ -124,10 +124,10 @@ std::string OverloadTable(const RunSummary& run) {
   if (run.overloads.empty()) return {};
   const std::size_t name_width = NameWidth(run.overloads);
   std::string out =
-      fmt::format("\n{:<{}} {:<8}{:<10}{:>12}{:>12}{:>12}\n", "overloaded", name_width, "member",
-                  "limit", "capacity N", "max force N", "first at s");
+      fmt::format("\n{:<{}} {:<8}{:<10}{:>14}{:>15}{:>14}\n", "overloaded", name_width, "member",
+                  "limit", "capacity [N]", "max force [N]", "first at [s]");
   for (const Overload& one : run.overloads) {
-    out += fmt::format("{:<{}} {:<8}{:<10}{:>12.4g}{:>12.4g}{:>12.4g}\n", one.name, name_width,
+    out += fmt::format("{:<{}} {:<8}{:<10}{:>14.4g}{:>15.4g}{:>14.4g}\n", one.name, name_width,
                        NameOf(one.kind), NameOf(one.limit), one.bears_n, one.carried_n,
                        one.first_time_s);
   }
@@ -153,13 +153,13 @@ std::string ActuatorTable(const RunSummary& run) {
   const std::size_t name_width = NameWidth(run.cables);
   for (const CableSummary& cable : run.cables) {
     if (cable.max_force_n == 0.0 && cable.max_speed_m_per_s == 0.0) continue;
-    rows += fmt::format("{:<{}} {:>12.2f}{:>16.4f}{:>14.3f}{:>12.3f}{:>12.3f}\n", cable.name,
+    rows += fmt::format("{:<{}} {:>14.2f}{:>17.4f}{:>15.3f}{:>12.3f}{:>12.3f}\n", cable.name,
                         name_width, cable.max_force_n, cable.max_speed_m_per_s, cable.max_power_w,
                         cable.energy_j, cable.net_energy_j);
   }
   if (rows.empty()) return {};
-  return fmt::format("\n{:<{}} {:>12}{:>16}{:>14}{:>12}{:>12}\n", "actuator", name_width,
-                     "max force N", "max speed m/s", "max power W", "energy J", "net J") +
+  return fmt::format("\n{:<{}} {:>14}{:>17}{:>15}{:>12}{:>12}\n", "actuator", name_width,
+                     "max force [N]", "max speed [m/s]", "max power [W]", "energy [J]", "net [J]") +
          rows;
 }
 
@@ -174,15 +174,15 @@ std::string MotorTable(const RunSummary& run) {
     supply_j += m.energy_from_supply_j;
     cable_j += m.energy_to_cable_j;
     winding_j += m.energy_in_winding_j;
-    rows += fmt::format("{:<{}} {:>12.3f}{:>12.3f}{:>12.3f}{:>16.3f}{:>14.1f}\n", cable.name,
+    rows += fmt::format("{:<{}} {:>12.3f}{:>12.3f}{:>13.3f}{:>17.3f}{:>15.1f}\n", cable.name,
                         name_width, m.energy_from_supply_j, m.energy_to_cable_j,
                         m.energy_in_winding_j, m.max_current_a, m.max_winding_temperature_c);
   }
   if (rows.empty()) return {};
-  return fmt::format("\n{:<{}} {:>12}{:>12}{:>12}{:>16}{:>14}\n", "motor", name_width, "supply J",
-                     "cable J", "winding J", "max current A", "winding degC") +
+  return fmt::format("\n{:<{}} {:>12}{:>12}{:>13}{:>17}{:>15}\n", "motor", name_width, "supply [J]",
+                     "cable [J]", "winding [J]", "max current [A]", "winding [degC]") +
          rows +
-         fmt::format("{:<{}} {:>12.3f}{:>12.3f}{:>12.3f}\n", "all", name_width, supply_j, cable_j,
+         fmt::format("{:<{}} {:>12.3f}{:>12.3f}{:>13.3f}\n", "all", name_width, supply_j, cable_j,
                      winding_j);
 }
 

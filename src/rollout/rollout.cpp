@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "base/thread_pool.h"
+#include "plant/find_start.h"
 #include "plant/loop.h"
-#include "plant/start.h"
 #include "rollout/scorer.h"
 
 namespace taut {
@@ -78,7 +78,7 @@ class LaneRollouts final : public Rollouts {
     place.alone.Restore(plant::kTheWorld, place.fresh);
     Diagnostics complaints;
     if (!plant::PrepareStart(ExperimentOf(experiment_, world), place.alone, complaints)) {
-      failed = complaints.items().empty() ? "no start" : complaints.items()[0].what;
+      failed = complaints.items().empty() ? "the start failed" : complaints.items()[0].what;
       return false;
     }
     return place.group.Restore(lane, place.alone.Save(plant::kTheWorld));
@@ -99,7 +99,7 @@ class LaneRollouts final : public Rollouts {
       }
     }
     const auto plant = PlantOf(batch);
-    plant::Loop loop(experiment_, lanes, *plant, options_.brought);
+    plant::Loop loop(experiment_, lanes, *plant, options_.extensions);
     rollout::Scorer scorer({experiment_, lanes}, objective_, loop,
                            options_.score ? options_.score({experiment_, lanes}) : nullptr);
     for (std::int64_t steps = 0; loop.time_s() < experiment_.duration_s; ++steps) {

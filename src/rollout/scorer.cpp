@@ -8,7 +8,7 @@
 #include "plant/center_of_mass.h"
 #include "plant/goal.h"
 #include "plant/set_points.h"
-#include "rollout/look.h"
+#include "rollout/termination.h"
 
 namespace taut::rollout {
 namespace {

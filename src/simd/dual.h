@@ -7,7 +7,7 @@
 /// taken. In memory a Dual is two doubles, like a number of two lanes.
 #pragma once
 
-#include "simd/angle.h"
+#include "simd/wide_angle.h"
 
 namespace taut::simd {
 

@@ -12,16 +12,16 @@ namespace {
 
 /// Returns the flaw of a channel name; empty if there is none. `taken`: all names.
 std::string_view Flaw(std::string_view name, const std::set<std::string_view>& taken) {
-  if (name == "time_s") return "is the trace's own clock";
+  if (name == "time_s") return "is reserved for the clock of the trace";
   for (const char c : name) {
     if (static_cast<unsigned char>(c) < ' ' || c == ',' || c == '"') {
-      return "holds a comma, a quote or a control character";
+      return "contains a comma, a quote or a control character";
     }
   }
   for (std::size_t from = 0; from <= name.size();) {
     const std::size_t to = std::min(name.find('/', from), name.size());
     const std::string_view part = name.substr(from, to - from);
-    if (part.empty() || part == ".") return "has an empty part or a lone dot between slashes";
+    if (part.empty() || part == ".") return "has an empty part or a single dot between slashes";
     if (to < name.size() &&
         (taken.contains(name.substr(0, to)) || name.substr(0, to) == "time_s")) {
       return "continues the name of another channel after a slash";

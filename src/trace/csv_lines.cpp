@@ -21,10 +21,11 @@ std::string WhyItEnds(gzFile file, const std::string& path) {
   int code = 0;
   std::string_view why = gzerror(file, &code);
   if (code == Z_OK || code == Z_STREAM_END) return {};
-  if (code == Z_ERRNO) return fmt::format("cannot be read: {}", std::strerror(errno));
-  if (code == Z_BUF_ERROR) return "is cut off after this line: its packed data goes on";
+  if (code == Z_ERRNO) return fmt::format("cannot read: {}", std::strerror(errno));
+  if (code == Z_BUF_ERROR)
+    return "the file is truncated after this line: its compressed data is incomplete";
   if (why.starts_with(path + ": ")) why.remove_prefix(path.size() + 2);
-  return fmt::format("is damaged after this line: {}", why);
+  return fmt::format("the file is damaged after this line: {}", why);
 }
 
 bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
@@ -42,13 +43,14 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
         if (tail == CsvTail::kLine && !text.empty()) use(text);
         return true;
       }
-      out.Error("csv.damaged_gzip", {path, lines}, why, "`zcat` into a .csv keeps what is there");
+      out.Error("csv.damaged_gzip", {path, lines}, why,
+                "save the readable part with `zcat` into a .csv");
       return false;
     }
     unpacked_bytes += count;
     if (unpacked_bytes > MostUnpackedBytes(file_bytes)) {
-      out.Error("trace.too_large", {path}, fmt::format("unpacks to {}", kUnpackLimit),
-                "if it is what it should be, unpack it with `gunzip` first");
+      out.Error("trace.too_large", {path}, fmt::format("the file unpacks to {}", kUnpackLimit),
+                "if this size is intended, unpack it with `gunzip` first");
       return false;
     }
     text.append(block, static_cast<std::size_t>(count));
@@ -59,7 +61,7 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
     }
     text.erase(0, from);
     if (text.size() > kMaxLineBytes) {
-      out.Error("csv.no_line_end", {path}, "is not a CSV file: no line end in 8 MB");
+      out.Error("csv.no_line_end", {path}, "the file is not CSV: it has no line end within 8 MB");
       return false;
     }
   }
@@ -77,8 +79,7 @@ bool ReadCsvLines(const std::string& path, CsvTail tail,
                   const std::function<bool(std::string_view)>& use, Diagnostics& out) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (file == nullptr) {
-    out.Error("file.not_readable", {path},
-              fmt::format("cannot be opened: {}", std::strerror(errno)));
+    out.Error("file.not_readable", {path}, fmt::format("cannot open: {}", std::strerror(errno)));
     return false;
   }
   struct stat info {};

@@ -29,13 +29,13 @@ class CsvParser {
       return true;
     }
     if (empty_line_ > 0)
-      return Error("csv.empty_line", empty_line_, 0, "an empty line between rows");
+      return Error("csv.empty_line", empty_line_, 0, "there is an empty line between rows");
     Row(line);
     return error_count_ < kMaxErrors;
   }
 
   std::optional<Trace> Take() {
-    if (line_ == 0) Error("csv.no_header", 1, 0, "has no header line");
+    if (line_ == 0) Error("csv.no_header", 1, 0, "the trace has no header line");
     if (error_count_ > 0) return std::nullopt;
     return std::move(trace_);
   }
@@ -49,7 +49,7 @@ class CsvParser {
         trace_.channels.push_back({std::string(cell), UnitOfName(cell)});
       } else if (cell != "time_s") {
         Error("csv.no_time", 1, 1, fmt::format("the first column is \"{}\"", cell),
-              "the first column of a trace is time_s");
+              "expected time_s");
       }
     });
     trace_.values.resize(trace_.channels.size());
@@ -74,13 +74,14 @@ class CsvParser {
     });
     if (row_.size() != trace_.channels.size() + 1) {
       good = Error("csv.ragged_row", line_, 0,
-                   fmt::format("{} values where the header names {}", row_.size(),
+                   fmt::format("the row has {} values, but the header has {} columns", row_.size(),
                                trace_.channels.size() + 1));
     }
     if (!good) return;
     if (!std::isfinite(row_[0]) || (!trace_.time_s.empty() && !(row_[0] > trace_.time_s.back()))) {
       Error("csv.times_not_increasing", line_, 1,
-            fmt::format("time {} does not come after the row before", row_[0]), "times must rise");
+            fmt::format("the time {} is not after the time of the previous row", row_[0]),
+            "times must increase");
       return;
     }
     trace_.time_s.push_back(row_[0]);

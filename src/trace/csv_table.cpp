@@ -47,10 +47,10 @@ class TableParser {
 
   std::optional<Trace> Take() {
     if (errors_ == 0 && columns_.empty()) {
-      Error("csv.no_rows", std::max(line_, 1), 0, "ends before the rows begin",
+      Error("csv.no_rows", std::max(line_, 1), 0, "the table ends before its rows begin",
             fmt::format("the mapping skips {} lines", layout_.skip_lines));
     }
-    if (errors_ == 0 && rows_ == 0) Error("csv.no_rows", line_, 0, "has no rows");
+    if (errors_ == 0 && rows_ == 0) Error("csv.no_rows", line_, 0, "the table has no rows");
     if (errors_ > 0) return std::nullopt;
     if (is_long()) Spread();
     return std::move(trace_);
@@ -92,11 +92,12 @@ class TableParser {
     const auto index = [&](const std::string& name) {
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end()) {
-        Error("csv.no_column", line, 0, fmt::format("has no column \"{}\"", name),
+        Error("csv.no_column", line, 0, fmt::format("the table has no column \"{}\"", name),
               DidYouMean(name, names));
       } else if (std::find(found + 1, names.end(), name) != names.end()) {
-        Error("csv.duplicate_column", line, 0, fmt::format("has two columns \"{}\"", name),
-              "give them names: `columns` of the mapping");
+        Error("csv.duplicate_column", line, 0,
+              fmt::format("the table has two columns \"{}\"", name),
+              "rename them with `columns` in the mapping");
       }
       return static_cast<std::size_t>(found - names.begin());
     };
@@ -128,9 +129,10 @@ class TableParser {
     double number = kNan;
     const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
     if (failure != std::errc() || end != text.data() + text.size()) {
-      Error(
-          "csv.not_a_number", line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),
-          "of lines before the rows: `skip_lines` of the mapping; of a column of texts: `ignore`");
+      Error("csv.not_a_number", line_, cell.column,
+            fmt::format("\"{}\" is not a number", cell.text),
+            "skip lines before the rows with `skip_lines` in the mapping, a column of text with "
+            "`ignore`");
       return kNan;
     }
     return number;
@@ -140,7 +142,8 @@ class TableParser {
     const std::size_t errors_before = errors_;
     if (cells.size() != columns_.size()) {
       Error("csv.ragged_row", line_, 0,
-            fmt::format("{} values where there are {} columns", cells.size(), columns_.size()));
+            fmt::format("the row has {} values, but the table has {} columns", cells.size(),
+                        columns_.size()));
       return;
     }
     double time_s = layout_.row_s ? *layout_.row_s * static_cast<double>(rows_) : kNan;
@@ -173,14 +176,15 @@ class TableParser {
     auto& last = last_[name];
     if (!std::isfinite(time_s)) {
       Error("csv.not_a_number", line_, time_at, "the time is not a number",
-            "a row without a time is to be left out");
+            "leave out rows without a time");
     } else if (last.line > 0 && !(time_s > last.time_s)) {
       const bool midnight = last.time_s - time_s > 0.5 * kDay_s;
       Error("csv.times_not_increasing", line_, time_at,
             fmt::format("the time {} s {} {} s in line {}", time_s,
-                        time_s == last.time_s ? "is again that of" : "comes before", last.time_s,
-                        last.line),
-            midnight ? "has the clock passed midnight?" : "times must rise");
+                        time_s == last.time_s ? "equals the time" : "is before the time",
+                        last.time_s, last.line),
+            midnight ? "times must increase; the clock may have passed midnight"
+                     : "times must increase");
     } else if (is_long()) {
       long_[name].emplace_back(time_s, values[0]);
     } else {

@@ -36,7 +36,7 @@ class CsvWriter final : public TraceWriter {
 
   bool Append(double time_s, const double* values) override {
     if (!error_.empty()) return false;
-    if (finished_) return Fail("was finished before this row");
+    if (finished_) return Fail("the trace was already finished");
     AppendNumber(time_s);
     for (std::size_t i = 0; i < channel_count_; ++i) {
       text_ += ',';
@@ -79,7 +79,7 @@ class CsvWriter final : public TraceWriter {
   }
 
   bool Fail(std::string why) {
-    error_ = fmt::format("{}: cannot be written: {}", path_, why);
+    error_ = fmt::format("{}: cannot write: {}", path_, why);
     return false;
   }
 

@@ -57,7 +57,7 @@ Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error) {
     const std::string part = name.substr(0, end);
     H5L_info_t link{};
     if (H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT) < 0) {
-      error = "has no dataset " + name;
+      error = "the file has no dataset " + name;
       return {};
     }
     if (link.type != H5L_TYPE_HARD) {

@@ -91,7 +91,7 @@ std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   const H5D_layout_t layout = plan ? H5Pget_layout(plan) : H5D_LAYOUT_ERROR;
   if (const std::string why = WhyElsewhere(plan); !why.empty())
-    return why + "; a trace is one file";
+    return why + "; a trace must be a single file";
   const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   const Hdf5Id space(H5Dget_space(dataset), H5Sclose);
   const H5T_class_t kind = type ? H5Tget_class(type) : H5T_NO_CLASS;
@@ -106,7 +106,7 @@ std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
     const H5Z_filter_t filter = H5Pget_filter2(plan, static_cast<unsigned>(i), &flags, &none,
                                                nullptr, sizeof name, name, nullptr);
     if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
-    return fmt::format("is packed with filter {} \"{}\", which this HDF5 library does not have",
+    return fmt::format("is compressed with filter {} \"{}\", which this HDF5 library does not have",
                        static_cast<int>(filter), name);
   }
   H5Sget_simple_extent_dims(space, &column.rows, nullptr);
@@ -121,7 +121,7 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   const Walk& walk = *static_cast<Walk*>(context);
   if (link->type == H5L_TYPE_SOFT) return 0;
   if (link->type != H5L_TYPE_HARD) {
-    walk.error = fmt::format("/{} is a link to another file; a trace is one file", name);
+    walk.error = fmt::format("/{} is a link to another file; a trace must be a single file", name);
     return -1;
   }
   Hdf5Id object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
@@ -131,7 +131,7 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   Hdf5Column column;
   column.name = name;
   const std::string why =
-      H5Iget_type(object) == H5I_DATASET ? WhyNoColumn(object, column) : "is no dataset";
+      H5Iget_type(object) == H5I_DATASET ? WhyNoColumn(object, column) : "is not a dataset";
   if (!why.empty()) {
     walk.error = fmt::format("/{} {}", name, why);
     return -1;
@@ -140,7 +140,8 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   const std::optional<int> place = NumberAttribute(object, "column");
   // An attribute that exists but cannot be read is an error, unlike a missing one.
   if ((!unit && H5Aexists(object, "unit") != 0) || (!place && H5Aexists(object, "column") != 0)) {
-    walk.error = fmt::format("is damaged: unit or place of /{} cannot be read", name);
+    walk.error = fmt::format(
+        "the trace is damaged: the unit or the column number of /{} cannot be read", name);
     return -1;
   }
   column.unit = unit.value_or("1");
@@ -172,8 +173,8 @@ bool FitsInMemory(double file_bytes, const Hdf5File& trace, std::string& error) 
   }
   if (bytes <= MostUnpackedBytes(file_bytes)) return true;
   error = fmt::format(
-      "is damaged or packed too tightly: its numbers take {:.0f} MiB, {}; if it is what it should "
-      "be, unpack it with `h5repack -f NONE` first",
+      "the trace is damaged or compressed too strongly: its numbers take {:.0f} MiB, {}; if this "
+      "size is intended, unpack it with `h5repack -f NONE` first",
       bytes / (1 << 20), kUnpackLimit);
   return false;
 }
@@ -184,8 +185,8 @@ bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
   double stored_bytes = 0;
   for (const Hdf5Column* column : AllColumns(trace)) {
     if (column->rows != trace.time.rows) {
-      error = fmt::format("is damaged: {} has {} rows, time_s has {}", column->name, column->rows,
-                          trace.time.rows);
+      error = fmt::format("the trace is damaged: {} has {} rows, but time_s has {}", column->name,
+                          column->rows, trace.time.rows);
       return false;
     }
     const Hdf5Id type(H5Dget_type(column->dataset), H5Tclose);
@@ -199,12 +200,12 @@ bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
       rows = chunks * column->chunk_rows;
     }
     if (rows >= column->rows) continue;
-    error =
-        fmt::format("is damaged: {} claims {} rows and holds {}", column->name, column->rows, rows);
+    error = fmt::format("the trace is damaged: {} declares {} rows, but contains {}", column->name,
+                        column->rows, rows);
     return false;
   }
   if (stored_bytes <= file_bytes) return true;
-  error = "is damaged: its columns share their place";
+  error = "the trace is damaged: its columns overlap in the file";
   return false;
 }
 
@@ -225,28 +226,29 @@ std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& erro
     trace.cut_off = true;
   }
   if (!trace.file) {
-    error = fmt::format("is not HDF5 or is damaged: {}", quiet.why());
+    error = fmt::format("the file is not HDF5 or is damaged: {}", quiet.why());
     return std::nullopt;
   }
   if (TextAttribute(trace.file, "format") != kFormatName) {
-    error = fmt::format("is HDF5 but not a trace: no attribute \"format\" that says \"{}\"",
-                        kFormatName);
+    error = fmt::format(
+        "the file is HDF5 but not a trace: it has no attribute \"format\" with the value \"{}\"",
+        kFormatName);
     return std::nullopt;
   }
   const std::optional<int> version = NumberAttribute(trace.file, "format_version");
   if (version != kFormatVersion) {
-    error = fmt::format("has trace format version {}; this taut reads version {}",
+    error = fmt::format("the trace has the format version {}; this taut reads version {}",
                         version ? std::to_string(*version) : "none", kFormatVersion);
     return std::nullopt;
   }
   trace.metadata = ReadMetadata(trace.file);
   Walk walk{trace, error};
   if (H5Lvisit(trace.file, H5_INDEX_NAME, H5_ITER_INC, AddColumn, &walk) < 0) {
-    if (error.empty()) error = fmt::format("is damaged: {}", quiet.why());
+    if (error.empty()) error = fmt::format("the trace is damaged: {}", quiet.why());
     return std::nullopt;
   }
   if (!trace.time.dataset) {
-    error = "is damaged: has no column /time_s";
+    error = "the trace is damaged: it has no column /time_s";
     return std::nullopt;
   }
   std::stable_sort(trace.channels.begin(), trace.channels.end(),
@@ -254,7 +256,7 @@ std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& erro
   for (std::size_t i = 0; i < trace.channels.size(); ++i) {
     const int place = trace.channels[i].place;
     if (place == INT_MAX || place == static_cast<int>(i) + 1) continue;
-    error = fmt::format("is damaged: column {} is missing", i + 1);
+    error = fmt::format("the trace is damaged: column {} is missing", i + 1);
     return std::nullopt;
   }
   trace.rows = trace.time.rows;
@@ -275,7 +277,8 @@ bool ReadHdf5Rows(const Hdf5Column& column, hsize_t from, hsize_t count, double*
       H5Dread(column.dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, to) >= 0) {
     return true;
   }
-  error = fmt::format("is damaged: column {} cannot be read: {}", column.name, quiet.why());
+  error =
+      fmt::format("the trace is damaged: column {} cannot be read: {}", column.name, quiet.why());
   return false;
 }
 

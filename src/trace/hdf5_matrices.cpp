@@ -72,7 +72,7 @@ bool Fill(hid_t file, const Hdf5Content& content) {
 bool WriteHdf5(const std::string& path, const Hdf5Content& content, Diagnostics& out) {
   NewFile made(path);
   const auto fail = [&](const std::string& why) {
-    out.Error("file.not_writable", {path}, "cannot be written: " + why);
+    out.Error("file.not_writable", {path}, "cannot write: " + why);
     return false;
   };
   if (!made.Create()) return fail(made.why());

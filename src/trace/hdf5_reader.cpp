@@ -146,7 +146,7 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
     std::string what = receiver.error;
     if (what.empty()) {
       const std::string how = child.End();
-      what = "is damaged: reading it " + (how.empty() ? "gave nonsense" : how);
+      what = "the trace is damaged: reading it " + (how.empty() ? "returned invalid data" : how);
     }
     out.Error("hdf5.damaged", {path}, what);
     return std::nullopt;
@@ -154,7 +154,7 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
   const std::size_t rows = RisingRows(trace.time_s);
   if (rows < trace.time_s.size() && !trace.unfinished) {
     out.Error("trace.damaged", {path},
-              fmt::format("is damaged: time does not rise at row {}", rows));
+              fmt::format("the trace is damaged: time does not increase at row {}", rows));
     return std::nullopt;
   }
   // If the writer was cut off between allocating rows and writing them, these rows are not data.

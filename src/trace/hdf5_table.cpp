@@ -23,17 +23,17 @@ std::string OpenTable(const std::string& path, const std::string& name, double m
                       double file_bytes, Hdf5Id& file, Hdf5Id& set, hsize_t size[2]) {
   const QuietHdf5 quiet;
   file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file) return "is not HDF5 or is damaged: " + quiet.why();
+  if (!file) return "the file is not HDF5 or is damaged: " + quiet.why();
   std::string error;
   set = OpenDataset(file, name, error);
   if (!set) return error;
   const Hdf5Id type(H5Dget_type(set), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type);
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return name + " holds no numbers";
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return name + " contains no numbers";
   const Hdf5Id space(H5Dget_space(set), H5Sclose);
   const int dimensions = H5Sget_simple_extent_ndims(space);
   if (dimensions != 2) {
-    return fmt::format("{} has {} dimensions, a table has 2", name, dimensions);
+    return fmt::format("{} has {} dimensions instead of 2", name, dimensions);
   }
   H5Sget_simple_extent_dims(space, size, nullptr);
   if (static_cast<double>(size[0]) * static_cast<double>(size[1]) > most) {
@@ -42,7 +42,7 @@ std::string OpenTable(const std::string& path, const std::string& name, double m
   const double bytes = sizeof(double) * static_cast<double>(size[0]) * static_cast<double>(size[1]);
   if (bytes > MostUnpackedBytes(file_bytes)) {
     return fmt::format(
-        "has too high a compression ratio: {} unpacks to {:.0f} MiB, {}; unpack it "
+        "the file has too high a compression ratio: {} unpacks to {:.0f} MiB, {}; unpack it "
         "with `h5repack -f NONE` first",
         name, bytes / (1 << 20), kUnpackLimit);
   }
@@ -60,7 +60,7 @@ void SendTable(const std::string& path, const std::string& name, double most, do
     const QuietHdf5 quiet;
     values.resize(size[0] * size[1]);
     if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-      error = "is damaged: " + name + " cannot be read: " + quiet.why();
+      error = "the file is damaged: " + name + " cannot be read: " + quiet.why();
     }
   }
   const std::uint64_t head[3] = {error.size(), size[0], size[1]};
@@ -75,7 +75,7 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
                                        double most, Diagnostics& out) {
   // Reports in the system's words if the file cannot be opened.
   constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-  const auto bytes = base::ReadInputFile(path, kMostBytes, "fewer numbers", out);
+  const auto bytes = base::ReadInputFile(path, kMostBytes, "use fewer numbers", out);
   if (!bytes) return std::nullopt;
   const auto file_bytes = static_cast<double>(bytes->size());
   ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, most, file_bytes, to); },
@@ -99,7 +99,7 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
   }
   if (!good) {
     const std::string how = child.End();
-    error = "is damaged: reading it " + (how.empty() ? "gave nonsense" : how);
+    error = "the file is damaged: reading it " + (how.empty() ? "returned invalid data" : how);
   }
   if (!error.empty()) {
     out.Error("hdf5.bad_table", {path}, error);

@@ -72,7 +72,7 @@ class Hdf5Writer final : public TraceWriter {
   bool Start(const std::vector<ChannelInfo>& channels, const TraceMetadata& metadata);
 
   bool Append(double time_s, const double* values) override {
-    if (!file_) return Fail("was finished before this row");
+    if (!file_) return Fail("the trace was already finished");
     if (!error_.empty()) return false;
     double* row = rows_.data() + row_count_ * width_;
     row[0] = time_s;
@@ -143,7 +143,7 @@ class Hdf5Writer final : public TraceWriter {
   /// /dev/null, so that neither memory nor, after removal of the file, its disk space is held.
   /// After an internal failure of the library its identifiers are abandoned.
   bool Fail(const Hdf5Failure& failure) {
-    if (error_.empty()) error_ = fmt::format("{}: cannot be written: {}", path_, failure.why);
+    if (error_.empty()) error_ = fmt::format("{}: cannot write: {}", path_, failure.why);
     const bool nowhere = failure.of_system && WriteNowhere();
     if (!nowhere) {
       for (Hdf5Id& column : columns_) column.Abandon();

@@ -49,7 +49,7 @@ bool IsLeftover(std::string_view name) {
 bool RemoveOld(const std::string& path, Diagnostics& out) {
   if (unlink(path.c_str()) == 0 || errno == ENOENT) return true;
   out.Error("folder.old_file_kept", {path},
-            fmt::format("of the run before cannot be removed: {}", std::strerror(errno)));
+            fmt::format("cannot remove this file of the previous run: {}", std::strerror(errno)));
   return false;
 }
 
@@ -267,7 +267,7 @@ bool RunFolder::Prepare(const std::string& experiment, Diagnostics& out) {
   if (inputs_->Create() && inputs_->Write(InputsOfRun(id_, experiment)) && inputs_->Sync()) {
     return true;
   }
-  out.Error("file.not_writable", {Path(kInputs)}, "cannot be written: " + inputs_->why());
+  out.Error("file.not_writable", {Path(kInputs)}, "cannot write: " + inputs_->why());
   return false;
 }
 
@@ -285,14 +285,14 @@ bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) 
     if (!RemoveOld(Path(name), out)) return false;
   }
   if (!inputs_ || inputs_->Publish()) return true;
-  out.Error("file.not_writable", {Path(kInputs)}, "cannot be written: " + inputs_->why());
+  out.Error("file.not_writable", {Path(kInputs)}, "cannot write: " + inputs_->why());
   return false;
 }
 
 bool RunFolder::Finish(const std::string& summary_json, Diagnostics& out) {
   if (lock_->Holds()) return WriteWholeFile(Path(kSummary), summary_json, out);
   out.Error("folder.deleted", {folder_},
-            "was deleted while the run wrote into it: there is no summary");
+            "the folder was deleted while the run wrote into it, so there is no summary");
   return false;
 }
 
@@ -331,9 +331,9 @@ std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
   for (const Piece& piece : pieces) {
     if (piece.id == pieces.front().id) continue;
     out.Error("trace.other_run", {piece.path},
-              fmt::format("is not of the run of {} (run {}, there {})", pieces.front().path,
-                          shown(piece), shown(pieces.front())),
-              "take away the one that does not belong there, or run the experiment again");
+              fmt::format("the file is of another run than {} (run {}, not {})",
+                          pieces.front().path, shown(piece), shown(pieces.front())),
+              "remove the file that does not belong there, or run the experiment again");
     return std::nullopt;
   }
   return trace;

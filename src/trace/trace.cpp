@@ -20,18 +20,17 @@ std::optional<std::size_t> Trace::Find(const std::string& name) const {
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) {
-    out.Error("file.not_readable", {path},
-              fmt::format("cannot be opened: {}", std::strerror(errno)));
+    out.Error("file.not_readable", {path}, fmt::format("cannot open: {}", std::strerror(errno)));
     return std::nullopt;
   }
   if (!S_ISREG(info.st_mode)) {
-    out.Error("file.not_regular", {path}, "is not a regular file");
+    out.Error("file.not_regular", {path}, "the trace is not a regular file");
     return std::nullopt;
   }
   if (path.ends_with(".h5")) return trace::ReadHdf5(path, out);
   if (path.ends_with(".csv") || path.ends_with(".csv.gz")) return trace::ReadCsv(path, out);
-  out.Error("trace.unknown_format", {path}, "is of no known kind",
-            "the name of a trace ends with .h5, .csv or .csv.gz");
+  out.Error("trace.unknown_format", {path}, "unknown trace format",
+            "expected .h5, .csv or .csv.gz");
   return std::nullopt;
 }
 

@@ -12,7 +12,7 @@ inline constexpr double kAlwaysUnpackedBytes = 256.0 * (1 << 20);
 /// half or a tenth, traces of a robot at rest to a fiftieth; deflate's limit is 1032.
 inline constexpr double kMostUnpackedPerByte = 100.0;
 
-inline constexpr char kUnpackLimit[] = "more than 256 MiB and than 100 times its size";
+inline constexpr char kUnpackLimit[] = "more than 256 MiB and more than 100 times its size";
 
 inline double MostUnpackedBytes(double file_bytes) {
   return std::max(kAlwaysUnpackedBytes, kMostUnpackedPerByte * file_bytes);

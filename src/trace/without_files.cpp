@@ -9,7 +9,7 @@ namespace {
 
 void Refuse(const std::string& path, const char* what, Diagnostics& out) {
   out.Error("browser.no_files", {path, 0, 0}, std::string(what) + " cannot be read in a browser",
-            "the command taut reads them");
+            "use the command-line program taut");
 }
 
 }  // namespace

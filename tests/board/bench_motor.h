@@ -1,5 +1,5 @@
-/// A board on a bench: two motors that wind springs whose other ends are held, and a PC's
-/// broadcasts. All by closed forms of its own, so that the board's text alone is under test.
+/// A board on a bench: two motors that wind springs whose other ends are fixed, and a PC's
+/// broadcasts. The motors use closed forms, so that only the board's code is under test.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace taut::board {
 struct BenchMotor {
   double stiffness_n_per_m = 227, speed_m_per_s = 0.07, time_constant_s = 0.0084;
   double stall_n = 67;
-  double wound_m = 0.05;  ///< Of the spring: its stretch; negative is slack.
+  double wound_m = 0.05;  ///< Stretch of the spring; negative: slack.
   double speed_now_m_per_s = 0;
   double encoder_sign = 1;
   bool cut = false, blocked = false;
-  int adc_stuck = -1;  ///< >= 0: the reading.
+  int adc_stuck = -1;  ///< >= 0: a constant reading.
 
   double Tension() const { return cut ? 0.0 : std::max(0.0, stiffness_n_per_m * wound_m); }
   void Advance(double duty, bool powered, double h) {
@@ -43,13 +43,13 @@ class Bench {
   explicit Bench(const Boot& boot = Boot()) {
     SetDefaults(board.parameters);
     Start(boot, board);
-    for (int m = 0; m < kMotors; ++m) {  // the encoder's counter is 0 where the board began
+    for (int m = 0; m < kMotors; ++m) {  // the encoder's counter is 0 at the board's start
       board.loops[m].encoder = motors[m].Encoder();
       board.loops[m].tension_counts = motors[m].Adc();
     }
   }
 
-  /// One millisecond.
+  /// Steps one millisecond.
   void Step(std::uint8_t elapsed = 1) {
     Inputs in{};
     in.elapsed = elapsed;
@@ -74,13 +74,13 @@ class Bench {
     Encode(message, frame);
     Receive(frame, sizeof frame, true, board);
   }
-  /// A broadcast of what `say` holds, with the next number.
+  /// Broadcasts the contents of `say` with the next sequence number.
   void Say() {
     ++say.sequence;
     Send(say);
     say.clear_faults = false;
   }
-  /// A broadcast every 10 ms.
+  /// Steps with a broadcast every 10 ms.
   void Run(int milliseconds) {
     for (int i = 0; i < milliseconds; ++i) {
       if (ms % 10 == 0) Say();
@@ -114,7 +114,7 @@ class Bench {
                 Answer::kGood);
     }
   }
-  /// The two steps of arming, then the mode.
+  /// Runs the two steps of arming, then the mode.
   void ArmInto(Mode mode, bool capture = true) {
     say.clear_faults = true;
     say.mode = Mode::kOff;

@@ -1,4 +1,4 @@
-// A board's modes, what it obeys, and its parameters.
+// Modes, commands and parameters of a board.
 #include "taut/board/board.h"
 
 #include <gtest/gtest.h>
@@ -51,14 +51,14 @@ TEST(Board, CapturesLengthAndTensionAndHoldsThemByImpedance) {
   EXPECT_EQ(bench.board.mode, Mode::kImpedance);
   const double T_n = bench.motors[0].Tension();
   EXPECT_NEAR(bench.Get(kTensionOffset, 0), T_n, 0.3);
-  // l = L + T / k: the reference's 0.2 m is where the encoder began
+  // l = L + T / k: the reference of 0.2 m is the start of the encoder
   EXPECT_NEAR(bench.Get(kLengthOffset, 0), 0.2 + T_n / 227, 2e-3);
   bench.Run(3000);
   EXPECT_NEAR(bench.motors[0].Tension(), T_n, 0.5);
   EXPECT_EQ(bench.board.faults[0], 0);
 }
 
-// With V0 the tension's set point moves by -B V0 (eq. 3), and the loop follows.
+// V0 shifts the set point of the tension by -B V0 (eq. 3), and the loop follows.
 TEST(Board, FollowsV0ByTheImpedanceLaw) {
   Bench bench;
   bench.Set(kPositionGain, 0, 0);
@@ -137,7 +137,7 @@ TEST(BoardParameters, ChangeSlowlyWhileMotorsRunOrNotAtAll) {
   ASSERT_EQ(bench.Set(kPositionGain, 0, 600), Answer::kGood);
   EXPECT_EQ(bench.board.loops[0].gains.position_gain_n_per_m, 100);
   bench.Run(500);
-  EXPECT_NEAR(bench.board.loops[0].gains.position_gain_n_per_m, 350, 10);  // 500 N/m a second
+  EXPECT_NEAR(bench.board.loops[0].gains.position_gain_n_per_m, 350, 10);  // 500 N/m per second
   bench.Run(700);
   EXPECT_EQ(bench.board.loops[0].gains.position_gain_n_per_m, 600);
 }

@@ -1,4 +1,4 @@
-// At the ends of what a board can be told and can read: what its fuzz target found first.
+// Boundary values of a board's commands and readings: cases first found by its fuzz target.
 #include <gtest/gtest.h>
 
 #include "board/bench_motor.h"
@@ -38,7 +38,7 @@ TEST(Board, GoesOffInSilenceWhereItIsToldToWhateverElseIsWrong) {
   }
 }
 
-// Its driver is off then, but a duty would be reported, and taken for heat.
+// The driver is off then, but a duty would be reported and counted as heat.
 TEST(Board, WithoutPowerItPaysNothingOut) {
   Bench bench;
   bench.ArmInto(Mode::kHold);
@@ -57,7 +57,7 @@ TEST(Board, WithoutANumberItTakesNoBroadcastButAStop) {
   Boot boot;
   boot.board = 7;
   Bench bench(boot);
-  bench.ArmInto(Mode::kHold);  // its part would stand behind the message
+  bench.ArmInto(Mode::kHold);  // its part would be behind the end of the message
   EXPECT_FALSE(IsPowered(bench.board));
   EXPECT_FALSE(bench.board.heard);
   EXPECT_EQ(bench.board.counters.bad_messages, 4);
@@ -104,7 +104,7 @@ TEST(Board, RefusesAReferenceThatAFloatDoesNotHave) {
   EXPECT_EQ(bench.board.loops[0].counts, -kMostReference);
 }
 
-// As with `winding_counts_per_count` at the end of its range and an encoder that jumps.
+// Occurs with `winding_counts_per_count` at the end of its range and an encoder that jumps.
 TEST(Board, ReportsATensionThatHasNoPlaceInAFrameAsTheMost) {
   Bench bench;
   for (const float counts : {1100.0f, 17000.0f, 3e5f}) {

@@ -1,4 +1,4 @@
-// What docs/hardware says of the boards is what the headers say.
+// Agreement of docs/hardware with the headers of the boards.
 #include <gtest/gtest.h>
 
 #include <cstdio>

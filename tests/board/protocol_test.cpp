@@ -1,5 +1,5 @@
-// The wire between PC and boards: checksums with published values, every message there and back,
-// every single damage noticed.
+// Protocol between PC and boards: checksums with published values, encoding and decoding of every
+// message, detection of every single error.
 #include "taut/board/protocol.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ TEST(BoardCrc, HasThePublishedCheckValues) {
   EXPECT_EQ(Crc8(kCheck, sizeof kCheck), 0xf4);
 }
 
-// The definition of a CRC, a bit at a time.
+// The definition of a CRC, bit by bit.
 TEST(BoardCrc, IsThePolynomialsRemainder) {
   std::uint16_t crc16 = kCrc16Start;
   std::uint8_t crc8 = kCrc8Start;
@@ -88,7 +88,7 @@ TEST(BoardProtocol, EachFlagHasABitOfItsOwn) {
   }
 }
 
-// A CRC of 16 bits notices every burst of up to 16 bits.
+// A CRC of 16 bits detects every burst of up to 16 bits.
 TEST(BoardProtocol, NoBurstOfDamagePassesForABroadcast) {
   std::uint8_t good[kCyclicSize];
   Encode(SomeCyclic(), good);
@@ -116,7 +116,7 @@ TEST(BoardProtocol, SaysWhatIsWrongWithABroadcast) {
   EXPECT_EQ(Decode(frame, kCyclicSize, 0, got), Decoded::kWrongVersion);
   frame[0] = 0x31;
   EXPECT_EQ(Decode(frame, kCyclicSize, 0, got), Decoded::kUnknown);
-  for (int mode = 5; mode < 8; ++mode) {  // nobody commands a reply or a stop this way
+  for (int mode = 5; mode < 8; ++mode) {  // a reply or a stop is never commanded this way
     Cyclic odd = SomeCyclic();
     odd.mode = static_cast<Mode>(mode);
     Encode(odd, frame);
@@ -192,7 +192,7 @@ TEST(BoardProtocol, AStatusIsReadAsItWasWritten) {
   EXPECT_EQ(got.more, 0x5a);
 }
 
-// Where nobody answers the adapter gives 0xff; another board's frame is no answer either.
+// Without a reply the adapter returns 0xff; another board's frame is not a reply either.
 TEST(BoardProtocol, WhatIsNotOfThisBoardIsNoFrame) {
   std::uint8_t frame[kFrameSize];
   Encode(Status{}, 3, frame);

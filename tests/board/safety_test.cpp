@@ -1,5 +1,4 @@
-// What a board does of its own accord when something is wrong: the table of
-// docs/hardware/firmware.md.
+// Automatic reactions of a board to faults: the table of docs/hardware/firmware.md.
 #include "taut/board/board.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ TEST(Board, FreezesItsInputsAfter30MsOfSilence) {
   bench.Silence(6);
   EXPECT_EQ(bench.board.loops[0].velocity_input_m_per_s, 0.0f);
   EXPECT_FALSE(bench.board.timeout);
-  bench.Run(20);  // heard again in time: goes on
+  bench.Run(20);  // broadcasts resume in time: it continues
   EXPECT_EQ(bench.board.loops[0].velocity_input_m_per_s, 500 * kSpeedUnit_m_per_s);
   EXPECT_EQ(bench.board.counters.missed, 1);
 }
@@ -37,7 +36,7 @@ TEST(Board, HoldsAfter100MsOfSilenceUntilItIsCleared) {
   const double here_m = bench.motors[0].wound_m;
   bench.Silence(2000);
   EXPECT_NEAR(bench.motors[0].wound_m, here_m, 2e-3) << "it ran at 7 cm/s";
-  bench.Run(200);  // the PC is back, and still says position
+  bench.Run(200);  // the PC is back, and still commands position control
   EXPECT_EQ(bench.board.mode, Mode::kHold);
   bench.say.mode = Mode::kHold;
   bench.say.clear_faults = true;
@@ -65,7 +64,7 @@ TEST(Board, RefusesAPositionWithoutAReference) {
   EXPECT_NE(bench.board.board_faults & kUnreferenced, 0);
   EXPECT_EQ(bench.board.loops[0].drive, 0.0f);
   Bench other;
-  other.ArmInto(Mode::kImpedance, false);  // whose L0 means nothing
+  other.ArmInto(Mode::kImpedance, false);  // whose L0 is undefined
   EXPECT_NE(other.board.mode, Mode::kImpedance);
 }
 
@@ -112,7 +111,7 @@ TEST(Board, NeverPullsAboveItsLimitByItself) {
 TEST(Board, PaysOutWhenPulledAboveItsLimit) {
   Bench bench;
   bench.ArmInto(Mode::kHold);
-  bench.motors[0].wound_m = 55.0 / 227;  // somebody pulls
+  bench.motors[0].wound_m = 55.0 / 227;  // an external pull
   bench.board.loops[0].encoder = bench.motors[0].Encoder();
   bench.Run(20);
   EXPECT_NE(bench.board.faults[0] & kOverTension, 0);
@@ -205,7 +204,7 @@ TEST(Board, ComputesHowWarmItsWindingsAre) {
   bench.say.values[0] = 32767;
   bench.Run(5000);
   // 12 V at 19.8 ohm: 7.27 W; after 5 s the winding is 72.7 K (1 - exp(-5 / 5.6)) above the
-  // housing, that 4.7 K above 25
+  // housing, and the housing 4.7 K above 25
   const double expected_c =
       25 + 72.7 * (1 - std::exp(-5.0 / 5.6)) + 210.9 * (1 - std::exp(-5.0 / 220));
   EXPECT_NEAR(bench.board.temperature_c[0], expected_c, 2.0);
@@ -214,8 +213,8 @@ TEST(Board, ComputesHowWarmItsWindingsAre) {
   EXPECT_EQ(bench.board.loops[0].drive, 0.0f);
 }
 
-// Ten times a second the other way: the motor hardly moves, and is as warm as one that stands under
-// full voltage, less what it turns. The same from the current, tick by tick.
+// The drive reverses at 10 Hz: the motor hardly moves, and is as warm as a stalled motor under full
+// voltage, less its back EMF. The reference is the heat of the current, summed over ticks.
 TEST(Board, ComputesHeatOfADriveThatChangesItsSign) {
   Bench bench;
   bench.ArmInto(Mode::kDuty);
@@ -270,7 +269,7 @@ TEST(Board, TakesNoBroadcastTwiceAndNoneThatIsDamaged) {
   bench.Run(50);
   Cyclic again = bench.say;
   again.values[0] = 900;
-  bench.Send(again);  // the same number
+  bench.Send(again);  // the same sequence number
   bench.Step();
   EXPECT_EQ(bench.board.loops[0].velocity_input_m_per_s, 0.0f);
   ++again.sequence;
@@ -281,7 +280,7 @@ TEST(Board, TakesNoBroadcastTwiceAndNoneThatIsDamaged) {
   bench.Step();
   EXPECT_EQ(bench.board.loops[0].velocity_input_m_per_s, 0.0f);
   EXPECT_EQ(bench.board.counters.bad_messages, 1);
-  for (int i = 0; i < 110; ++i) {  // damaged ones do not keep it awake
+  for (int i = 0; i < 110; ++i) {  // damaged messages do not prevent the timeout
     Receive(frame, sizeof frame, true, bench.board);
     bench.Step();
   }
@@ -310,7 +309,7 @@ TEST(Board, BeginsWarmAfterAResetThatWasNoPowerOn) {
   EXPECT_GT(bench.board.temperature_c[0], 60);
 }
 
-// Whatever comes, in whatever state: the duty stays a duty, and no number becomes none.
+// For any input in any state: the duty stays within its limits, and no number becomes NaN.
 TEST(Board, RandomMessagesAndReadingsBreakNothing) {
   std::uint32_t random = 12345;
   const auto next = [&random] { return (random = random * 1664525u + 1013904223u) >> 8; };
@@ -359,7 +358,7 @@ TEST(Board, RandomMessagesAndReadingsBreakNothing) {
   }
 }
 
-// Off, and its cable unwinds it: no current flows, whatever the encoder says.
+// Off, and unwound by its cable: no current flows, whatever the encoder's reading.
 TEST(Heat, IsNotOfAMotorThatCoasts) {
   Bench bench;
   bench.Run(300);

@@ -1,4 +1,4 @@
-/// A step allocates nothing.
+/// Test that a step allocates no memory.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Rows of bodies, and where groups lie: what `Batch::Body` and `Batch::Cable` say, at the places
-// that the header names.
+// Rows of bodies, and the memory layout of groups: the values of `Batch::Body` and `Batch::Cable`
+// at the documented places.
 #include "taut/body_rows.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// Worlds rich in contacts and stiff cables, where neighbours touch at other places, go other ways
-// through the solver and need other numbers of its steps: each gives the bits that it gives alone.
+// Bitwise reproducibility of worlds with many contacts and stiff cables in SIMD groups: their
+// neighbors touch at other places, take other branches of the solver and need other numbers of its
+// steps, yet each world has the bits of a single world.
 #include <gtest/gtest.h>
 
 #include "tests/physics/world.h"
@@ -16,7 +17,7 @@ namespace {
 constexpr int kWorlds = 8;
 constexpr double kStepS = 1e-3;
 
-/// Every body gets a velocity of its own, up to 0.1 m/s each way.
+/// Adds a different velocity to every body, up to 0.1 m/s in each direction.
 void Jolt(Batch& batch, int world, int number) {
   std::uint64_t state = static_cast<std::uint64_t>(number) + 1;
   const auto chance = [&state] {
@@ -36,7 +37,7 @@ void ExpectTheSameInAnyCompany(const ModelDef& def, int steps) {
   BatchOptions wide;
   wide.worlds = kWorlds;
   Batch together = MakeBatch(def, wide);
-  wide.simd = Simd::kAvx2;  // what the machine lacks falls back to what it has
+  wide.simd = Simd::kAvx2;  // falls back to an available instruction set
   wide.threads = 2;
   Batch reversed = MakeBatch(def, wide);
   for (int i = 0; i < kWorlds; ++i) {
@@ -75,7 +76,7 @@ TEST(Company, ABallInANetOfStiffCables) {
 }
 TEST(Company, ASpineOnRubble) { ExpectTheSameInAnyCompany(scenes::SpineOnRubble().Def(), 300); }
 TEST(Company, RodsOnDifferentPartsOfAFieldOfManyBoxes) {
-  // Each world has them at another place of the field, and one beside it.
+  // Each world has the rods at another place of the field, and one world next to it.
   scenes::Chance chance(4);
   scenes::RodHeap heap;
   heap.rods = 5;

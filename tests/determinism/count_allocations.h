@@ -1,4 +1,5 @@
-/// Replaces the allocation functions of a program with ones that count. Included by one file of it.
+/// Replaces a program's allocation functions with versions that count calls. To be included by
+/// exactly one file of the program.
 #pragma once
 
 #include <atomic>
@@ -17,7 +18,7 @@ std::atomic<long> allocations{0};  ///< By all threads, of all kinds.
 }
 
 #ifndef TAUT_SANITIZED
-// glibc's own entry points; the C++ operators below and everything else come through these.
+// glibc's entry points; the C++ operators below and all other allocations pass through these.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);

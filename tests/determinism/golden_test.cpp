@@ -1,6 +1,6 @@
-/// Hashes of worlds after some seconds, as they were when the results last changed on purpose: the
-/// same with either compiler, any build type and any instruction set, on any processor.
-/// TAUT_BLESS=1 writes the file anew instead of comparing; a change of it is a change of results
+/// Golden hashes of worlds after some seconds, as of the last intended change of results: the same
+/// with either compiler, any build type, any instruction set and any processor. TAUT_BLESS=1
+/// rewrites the file instead of comparing; a change of the file is a change of results
 /// (CHANGELOG.md).
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Golden {
   ModelDef def;
   double step_s;
   int steps;
-  std::function<void(Batch&, int when)> command;  ///< Before every tenth of the run.
+  std::function<void(Batch&, int when)> command;  ///< Called before every tenth of the run.
 };
 
 std::vector<Golden> Goldens() {

@@ -1,7 +1,8 @@
 # cmake -DOBJDUMP=... -DSETS=scalar,sse2,... -DOBJECTS=a.o,b.o,... -P kernels_fuse_nothing.cmake
 #
-# No kernel has a fused multiply-add, which rounds once instead of twice: other bits than on machines
-# without. Compilers are told so; g++ 12 makes some all the same (cmake/instruction_sets.cmake).
+# Checks that no kernel contains a fused multiply-add, which rounds once instead of twice and so gives
+# other bits than machines without it. Compiler options forbid it; g++ 12 still generates some
+# (cmake/instruction_sets.cmake).
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" objects "${OBJECTS}")
 string(REPLACE "," "|" sets "${SETS}")

@@ -1,8 +1,8 @@
 # cmake -DNM=... -DSETS=scalar,sse2,... -DOBJECTS=a.o,b.o,... -P kernels_need_no_library.cmake
 #
-# The text of a step, pairs of shapes included, calls nothing but itself: no heap, no container, no
-# exception, no libm. Compilers may copy and fill memory, sanitizers add calls of their own, and g++ names its
-# exception handling wherever a function that is noexcept calls one that is not.
+# Checks that the code of a step, pairs of shapes included, calls no library: no heap, no container, no
+# exception, no libm. Allowed are copies and fills of memory by compilers, calls by sanitizers, and g++'s
+# reference to its exception handling in noexcept functions that call functions without noexcept.
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" objects "${OBJECTS}")
 string(REPLACE "," "|" sets "${SETS}")

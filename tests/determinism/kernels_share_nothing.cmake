@@ -1,8 +1,8 @@
 # cmake -DNM=... -DSETS=scalar,sse2,... -DOBJECTS=a.o,b.o,... -P kernels_share_nothing.cmake
 #
-# No function is emitted by two of src/sim/step/step_*.cpp, nor by two of src/plant/lane_*.cpp: the linker
-# would keep one of them, perhaps that with instructions which the machine lacks. Optimisation hides
-# it, so debug builds tell most.
+# Checks that no two of src/sim/step/step_*.cpp, and no two of src/plant/lane_*.cpp, emit the same
+# function: the linker would keep one of them, possibly with instructions that the machine lacks.
+# Optimization hides such functions, so debug builds detect most.
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "," ";" objects "${OBJECTS}")
 string(REPLACE "," "|" sets "${SETS}")

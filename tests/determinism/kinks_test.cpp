@@ -1,5 +1,5 @@
-/// A robot whose cables go slack and get taut all the time, in lanes that do so at different times:
-/// each as it is alone.
+/// Cables that continually go slack and become taut, at different times in each SIMD lane: each
+/// world has the bits of a single world.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-/// A world gives the same bits alone, in any lane, on any number of threads, on any instruction
-/// set.
+/// Bitwise reproducibility: a world has the same bits alone, in any lane, on any number of threads
+/// and with any instruction set.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace taut::test {
 namespace {
 
-/// A batch of `worlds` on this instruction set; nothing if the machine lacks it.
+/// Returns a batch of `worlds` on this instruction set; nothing if the machine lacks it.
 std::optional<Batch> BatchOn(Simd simd, const ModelDef& def, int worlds, int threads) {
   BatchOptions options;
   options.worlds = worlds;
@@ -49,7 +49,7 @@ TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
     }
     for (int i = 0; i < kWorlds; ++i) {
       EXPECT_EQ(batch.Save(i), expected[static_cast<std::size_t>(i)].snapshot) << i;
-      // The hash sees what happens: no two worlds are alike, none is broken.
+      // The hash distinguishes worlds: no two are alike, none is broken.
       EXPECT_NE(batch.Hash(i), batch.Hash((i + 1) % kWorlds)) << i;
       EXPECT_EQ(batch.Status(i).bits & kStatusNonFinite, 0u) << i;
     }
@@ -200,7 +200,7 @@ TEST(Threads, ZeroMeansOneACoreAndGivesTheSameBits) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(batch.Hash(i), Alone(def, i).hashes.back()) << i;
 }
 
-/// Sets an environment variable for as long as it lives.
+/// Sets an environment variable during its lifetime.
 class WithEnvironment {
  public:
   WithEnvironment(const char* name, const char* value) : name_(name) {
@@ -225,7 +225,8 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
     options.worlds = worlds;
     return MakeBatch(def, options).lanes();
   };
-  // What the machine lacks falls back to what it has, and either name of two lanes will do.
+  // An instruction set that the machine lacks falls back to an available one; both names of the
+  // sets with two lanes are accepted.
   const auto widest_up_to = [&](Simd wish) {
     int lanes = 1;
     for (const auto& [name, simd] : kInstructionSets) {
@@ -240,7 +241,7 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
   EXPECT_EQ(lanes_of("avx2", 3), widest_up_to(Simd::kAvx2));
   EXPECT_EQ(lanes_of("avx512", 3), widest_up_to(Simd::kAvx512));
   EXPECT_EQ(lanes_of("", 3), widest_up_to(Simd::kAvx512));
-  // A single world is scalar; what a program asks for counts more than the environment.
+  // A single world is scalar; the program's choice overrides the environment.
   EXPECT_EQ(lanes_of("sse2", 1), 1);
   const WithEnvironment environment("TAUT_SIMD", "scalar");
   EXPECT_EQ(BestSimd(), Simd::kScalar);

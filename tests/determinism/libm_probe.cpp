@@ -1,5 +1,5 @@
-/// Prints a number that depends on the last bits of the C library's elementary functions: another
-/// one where it has taken other variants of them.
+/// Prints a number that depends on the last bits of the C library's elementary functions and so
+/// identifies the selected variants.
 
 #include <cinttypes>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <cstring>
 
 int main() {
-  // Through volatile pointers: no compiler computes these by itself.
+  // The volatile pointers prevent evaluation by the compiler.
   double (*volatile const functions[])(double) = {std::sin, std::cos, std::exp, std::atan,
                                                   std::log};
   std::uint64_t hash = 14695981039346656037u;

@@ -1,10 +1,10 @@
 # cmake -DPROBE=... -DPROGRAM=test [-DEXPERIMENT=file -DWORK_DIR=folder] -P masked_libm.cmake
 #
-# glibc picks variants of sin, exp and others by processor: those with fused multiply-add give other
-# last bits than those of an older machine. Here they are masked, as on such a machine:
-#   PROGRAM               a test program passes all the same
+# glibc selects variants of sin, exp and others by processor: variants with fused multiply-add differ in
+# the last bits from the variants of older machines. This test masks them, as on an older machine:
+#   PROGRAM               a test program passes with the mask, too
 #   PROGRAM, EXPERIMENT   `taut run` of the experiment ends in the same state, with the same inputs
-# First the probe shows that the mask does change the C library's results: else nothing is tested.
+# First the probe shows that the mask changes the C library's results: otherwise the test is void.
 set(mask GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4)
 
 function(run_probe result)
@@ -43,7 +43,7 @@ foreach(kind plain masked)
   file(READ ${WORK_DIR}/${kind}/summary.json summary)
   string(JSON hash_${kind} GET "${summary}" state_hash)
   file(READ ${WORK_DIR}/${kind}/inputs.yaml inputs)
-  string(REGEX REPLACE "^# run [^\n]*\n" "" inputs "${inputs}")  # every run has its own
+  string(REGEX REPLACE "^# run [^\n]*\n" "" inputs "${inputs}")  # differs from run to run
   string(SHA256 inputs_${kind} "${inputs}")
 endforeach()
 if(NOT hash_plain STREQUAL hash_masked OR NOT inputs_plain STREQUAL inputs_masked)

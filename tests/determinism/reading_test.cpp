@@ -1,4 +1,4 @@
-/// Const functions of a batch, called from several threads at once.
+/// Thread safety of a batch's const functions: calls from several threads at once.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-/// Some of all that can be read of a world; cables are sensed when somebody asks for the first.
+/// Returns a sample of a world's readings; cables are evaluated at the first call.
 std::vector<double> ReadingsOf(const Batch& batch, int world) {
   std::vector<double> out;
   for (int c = 0; c < static_cast<int>(batch.model().def().cables.size()); ++c) {

@@ -1,4 +1,5 @@
-/// Snapshots: all that determines a world's future, and nothing of its neighbours.
+/// Serialization of worlds: a snapshot holds all data that determine a world's future, and none of
+/// its neighbors' data.
 
 #include <gtest/gtest.h>
 
@@ -54,7 +55,7 @@ TEST(Snapshot, AWorldGoesOnAlikeInAnotherLaneAndItsNewNeighboursDoNotNotice) {
       }
       batch.Step(1e-3, 90);
       without.Step(1e-3, 90);
-      // World 1 lies on the ground by now and world 10 gets its state, and 3 that of a guest.
+      // World 1 lies on the ground by now. World 10 gets its state, world 3 the state of a guest.
       Batch guest = MakeBatch(def);
       Scatter(guest, 0, 40);
       guest.Step(1e-3, 150);
@@ -103,7 +104,7 @@ TEST(Snapshot, AWorldGoesOnAlikeWhateverStepsItsNewGroupMadeBefore) {
 TEST(Snapshot, TheStatusComesAlong) {
   ModelDef def = scenes::Jumble().Def();
   BatchOptions options;
-  options.tolerance_m_per_s = 1e-30;  // nothing with a contact gets there
+  options.tolerance_m_per_s = 1e-30;  // not reachable with a contact
   Batch world = MakeBatch(def, options);
   world.Step(1e-3, 300);
   ASSERT_NE(world.Status(0).bits & kStatusNotConverged, 0u);

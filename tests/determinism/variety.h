@@ -1,4 +1,4 @@
-/// Worlds of one model that have little in common, and what they come to.
+/// Diverse worlds of one model, and hashes of their runs.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 
 namespace taut::test {
 
-/// Numbers that look random and are the same everywhere.
+/// Pseudorandom numbers that are the same on every machine.
 class Dice {
  public:
   explicit Dice(int seed) : state_(0x9e3779b97f4a7c15u * static_cast<std::uint64_t>(seed + 1)) {}
-  /// Between -size and size.
+  /// Returns a number between -size and size.
   double Roll(double size) {
     state_ = state_ * 6364136223846793005u + 1442695040888963407u;
     const auto top = static_cast<double>(state_ >> 11);  // 53 bits
@@ -34,7 +34,7 @@ class Dice {
   std::uint64_t state_;
 };
 
-/// A spine whose cables are wound by motors, no two of them alike, on two supplies.
+/// Returns a spine whose cables are wound by motors with different parameters, on two supplies.
 inline ModelDef MotorizedSpine() {
   ModelDef def = scenes::Tetraspine().Def();
   def.name = "tetraspine3_motors";
@@ -62,8 +62,8 @@ inline std::vector<ModelDef> VariedModels() {
   along_slip.name = "tetraspine3_along_slip";
   along_slip.friction_law = FrictionLaw::kAlongSlip;
   for (CableDef& cable : along_slip.cables) cable.damping_law = DampingLaw::kClamped;
-  // In a wedge a box touches both planes, with other corners in every world: their directions and
-  // numbers of contacts differ from lane to lane.
+  // In a wedge a box touches both planes, with other corners in every world: directions and numbers
+  // of contacts differ between lanes.
   ModelDef wedge = scenes::BlockOnSlope{{.angle_rad = 0.6}}.Def();
   wedge.name = "block_in_wedge";
   wedge.planes.push_back(wedge.planes[0]);
@@ -75,7 +75,7 @@ inline std::vector<ModelDef> VariedModels() {
           prism.Def(), block.Def(),      scenes::Jumble().Def(),     MotorizedSpine()};
 }
 
-/// Starts world `world` in a way that belongs to `seed`: other places, speeds, parameters.
+/// Sets the start of world `world` as determined by `seed`: places, velocities, parameters.
 inline void Scatter(Batch& batch, int world, int seed) {
   const ModelDef& def = batch.model().def();
   Dice dice(seed);
@@ -85,7 +85,7 @@ inline void Scatter(Batch& batch, int world, int seed) {
     batch.SetParameter(world, Parameter::kBodyMass, b,
                        def.bodies[static_cast<std::size_t>(b)].mass_kg * (1 + dice.Roll(0.2)));
     BodyState state = batch.Body(world, b);
-    // Every third world stays where it is, upright; the others start higher and askew.
+    // Every third world stays upright at its place; the others start higher and oblique.
     if (seed % 3 != 0) {
       state.position_m = state.position_m + together + dice.Roll3(0.01) + Vec3{0, 0, 0.2};
       state.orientation = scenes::Turn({0, 0, 1}, dice.Roll(3)) * state.orientation;
@@ -102,8 +102,8 @@ inline void Scatter(Batch& batch, int world, int seed) {
     batch.SetParameter(world, Parameter::kCableDamping, c, damping);
     double stiffness = cable.stiffness_n_per_m * (1 + dice.Roll(0.5));
     if (seed % 4 == 3 && c % 2 == 0) {
-      // Too stiff for explicit forces: neighbours take another path through the code. The tension
-      // stays what it would be.
+      // Too stiff for explicit forces: neighbors use the other cable scheme. The tension is
+      // preserved.
       const double tension = std::max(
           stiffness * (batch.Cable(world, c).length_m - batch.Cable(world, c).rest_length_m), 0.0);
       stiffness *= 1e4;
@@ -117,7 +117,7 @@ inline void Scatter(Batch& batch, int world, int seed) {
   batch.SetParameter(world, Parameter::kGravityX, 0, dice.Roll(1));
 }
 
-/// New commands and forces, as they come during a run; not all worlds get some every time.
+/// Sets new commands and forces, as during a run; not all worlds get some every time.
 inline void Disturb(Batch& batch, int world, int seed, int when) {
   const ModelDef& def = batch.model().def();
   Dice dice(1000 * seed + when);
@@ -141,7 +141,7 @@ inline void Disturb(Batch& batch, int world, int seed, int when) {
 inline constexpr int kStretches = 8, kStepsAStretch = 40;
 inline constexpr double kVarietyStepS = 1e-3;
 
-/// What `seed` comes to: hashes after each stretch, and the last snapshot.
+/// Outcome of a seed: hashes after each stretch, and the last snapshot.
 struct Outcome {
   std::vector<std::uint64_t> hashes;
   std::vector<std::uint8_t> snapshot;

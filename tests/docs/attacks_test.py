@@ -1,4 +1,4 @@
-"""Every test that docs/robustness.md names as holding an attack is there, by its name in ctest."""
+"""Checks that every test named in docs/robustness.md exists, under its ctest name."""
 
 import ast
 import re
@@ -9,7 +9,7 @@ TESTS = ROOT / "tests"
 
 
 def names():
-    """Suite.Name of all tests."""
+    """Returns Suite.Name of all tests."""
     found = set()
     for path in TESTS.rglob("*.cpp"):
         found |= {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_[FP])?\((\w+), (\w+)\)", path.read_text(), re.M)}

@@ -1,6 +1,6 @@
-"""Runs the cells of a notebook, in one session: a JSON list of texts comes in, one of what each printed goes out.
+"""Runs the cells of a notebook in one session: reads a JSON list of texts, writes a JSON list of their outputs.
 
-As in a notebook, the value of an expression at a cell's end is shown, and what a cell raises ends the session.
+As in a notebook, the value of an expression at the end of a cell is shown, and an exception ends the session.
 """
 
 import ast
@@ -12,7 +12,7 @@ import traceback
 
 
 def run(text, number, session):
-    """What a cell prints, and whether the next may run."""
+    """Returns the output of a cell and whether the next cell may run."""
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
         try:

@@ -1,4 +1,4 @@
-"""docs/cli.md names the subcommands and flags that taut has: all of them and no others.
+"""Checks that docs/cli.md names all subcommands and flags of taut, and no others.
 
 Usage: cli_page_test.py TAUT
 """
@@ -19,7 +19,7 @@ def help_of(taut, *subcommand):
 
 
 def part(text, title):
-    """The indented lines below a line "Title:"."""
+    """Returns the indented lines below a line "Title:"."""
     match = re.search(rf"^{title}:\n((?:  .*\n)+)", text, re.MULTILINE)
     return match[1] if match else ""
 
@@ -33,11 +33,13 @@ def arguments_of_help(text):
 
 
 def subcommands_of_help(text):
-    return re.findall(r"^  (\w+)", part(text, "Commands"), re.MULTILINE)
+    """The commands, which are listed in groups before the flags."""
+    groups = re.findall(r"^(?!Arguments:)\w[\w ]*:\n((?:  .*\n)+)", text.split("\nFlags:\n")[0], re.MULTILINE)
+    return re.findall(r"^  (\w+)", "".join(groups), re.MULTILINE)
 
 
 def sections_of_page():
-    """For each heading "## taut ...": the first cells of its tables."""
+    """Returns the first cells of the tables under each heading "## taut ..."."""
     sections, current = {}, None
     for _, line in Page(PAGE).prose:
         heading = re.match(r"## `?(taut.*?)`?$", line)

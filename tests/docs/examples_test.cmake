@@ -1,6 +1,6 @@
 # cmake -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=... -DCXX=... -DCXX_FLAGS=... -P examples_test.cmake
 #
-# examples/ builds and passes as a project of its own, with an installed taut.
+# Builds and tests examples/ as a separate project with an installed taut.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(failed)

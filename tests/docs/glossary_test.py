@@ -1,4 +1,4 @@
-"""Each term of docs/glossary.md occurs in another document and in a header, so that a search finds both."""
+"""Checks that each term of docs/glossary.md occurs in another document and in a header, so that a search finds both."""
 
 import pathlib
 import re

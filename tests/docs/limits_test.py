@@ -1,11 +1,11 @@
-"""docs/limits.md: the tests in its tables exist, and its numbers equal the constants of the code."""
+"""Checks docs/limits.md: the tests in its tables exist, and its numbers equal the constants of the code."""
 
 import re
 
 from attacks_test import names
 from page import ROOT, Page, refuse
 
-# First words of a row: the file, and the constant that equals the first number of the row.
+# First words of a row: the file, and the constant that equals the first number of the row
 CONSTANTS = {
     "YAML file": ("src/description/yaml/yaml_tree.h", "kMaxFileBytes"),
     "nodes of a YAML file": ("src/description/yaml/yaml_tree.h", "kMaxYamlNodes"),
@@ -44,8 +44,8 @@ CONSTANTS = {
     "files of": ("src/mjcf/xml.cpp", "kMostFiles"),
     "nesting of MJCF elements, with": ("src/mjcf/xml.cpp", "kDeepest"),
     "geoms of": ("src/mjcf/read_bodies.cpp", "kMostGeoms"),
-    "nodes of an NTRT structure": ("src/import_ntrt/structure.h", "kMostItems"),
-    "pairs of an NTRT structure": ("src/import_ntrt/structure.h", "kMostItems"),
+    "nodes of an NTRT structure": ("src/import_ntrt/ntrt_structure.h", "kMostItems"),
+    "pairs of an NTRT structure": ("src/import_ntrt/ntrt_structure.h", "kMostItems"),
     "substructures of": ("src/import_ntrt/read.cpp", "kMostStructures"),
     "NTRT files": ("src/import_ntrt/read.cpp", "kDeepest"),
     "line of": ("src/trace/csv_lines.cpp", "kMaxLineBytes"),
@@ -71,13 +71,13 @@ CONSTANTS = {
     "parts of": ("apps/viewer/recording.h", "kMaxParts"),
     "history of": ("apps/viewer/history.h", "kMaxBytes"),
     "numbers in a report": ("apps/viewer/report.h", "kMaxReportNumbers"),
-    "frames of the animation": ("apps/viewer/report.cpp", "kMaxFrames"),
+    "frames of the animation": ("apps/viewer/report_page.cpp", "kMaxFrames"),
     "corners drawn": ("apps/viewer/scene.cpp", "kMostCorners"),
     "names in": ("src/base/diagnostics.cpp", "kMostNamed"),
     "linear systems": ("include/taut/batch.h", "max_linear_solves"),
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
 }
-# Rows without a constant: ranges of keys, and the limit of a library.
+# Rows without a constant: ranges of keys, and the limit of a library
 WITHOUT = ("columns, and rows", "nesting of MJCF elements of one file", "starts of", "step", "duration")
 UNITS = {"MB": 1e6, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30}
 

@@ -1,4 +1,4 @@
-"""Every link of every page leads to a file of the project, and to a heading that is there.
+"""Checks that every link of every page leads to a file of the project and, where given, to an existing heading.
 
 Usage: links_test.py
 """

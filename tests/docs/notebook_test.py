@@ -1,4 +1,4 @@
-"""script/notebook: what it makes of a page is a notebook with the page's cells, in their order."""
+"""Checks that script/notebook converts a page to a notebook with the page's cells in their order."""
 
 import json
 import pathlib

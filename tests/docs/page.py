@@ -1,4 +1,4 @@
-"""Reads a page of documentation: its fenced blocks, its links, its headings."""
+"""Parser of a documentation page: fenced blocks, links, headings"""
 
 import pathlib
 import re
@@ -13,7 +13,7 @@ def refuse(wrong):
 
 
 class Block:
-    """A fenced block. `info` is what stands behind the opening fence, `line` the line after it."""
+    """A fenced block. `info` is the text after the opening fence, `line` the number of the line after the fence."""
 
     def __init__(self, info, line, lines):
         self.info, self.line, self.lines = info, line, lines
@@ -48,14 +48,14 @@ class Page:
         return str(self.path.relative_to(ROOT))
 
     def links(self):
-        """(line number, target) of every link that is not to the web."""
+        """Yields (line number, target) of every link except links to the web."""
         for number, line in self.prose:
             for target in re.findall(r"\]\(([^)\s]+)\)", re.sub(r"`[^`]*`", "", line)):
                 if not re.match(r"[a-z]+:", target):
                     yield number, target
 
     def anchors(self):
-        """What GitHub calls its headings."""
+        """Returns the anchors that GitHub generates for the headings."""
         found = set()
         for _, line in self.prose:
             heading = re.match(r"#+ (.*)", line)

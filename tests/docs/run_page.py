@@ -1,20 +1,22 @@
-"""What a page shows is true: its commands run, print what it says, and its files are the real ones.
+"""Checks the examples of a page: commands run and print the output shown, and files equal the real ones.
 
 Usage: run_page.py TAUT PAGE
 
 In a page,
-  ```console            lines that start with "$ " are run, in order, in a fresh folder; the lines
-                        below a command are what it prints. A line "..." there stands for any lines.
-  ```console status=3   the block's last command ends with this exit status, not with 0
-  ```yaml FILE          the block is that file, seen from the page's folder (any language)
-  ```yaml in FILE       the block is some lines of that file, without a gap
-  ```python cell        a notebook's: all of a page run in order, in one session; a block ```text output
-                        right behind one is what it prints, and without that it prints nothing
-Blocks of other kinds are left alone. A page docs/x.md with a folder docs/x/ runs among copies of
+  ```console            lines that start with "$ " are run, in order, in a new folder; the lines
+                        below a command are its expected output. A line "..." stands for any lines.
+  ```console status=3   the last command of the block ends with this exit status instead of 0
+  ```yaml FILE          the block equals that file, relative to the page's folder (any language)
+  ```yaml in FILE       the block equals consecutive lines of that file
+  ```python cell        notebook cell: all cells of a page run in order, in one session. A block ```text output
+                        directly after a cell is its expected output; without one the cell prints nothing.
+
+Blocks of other kinds are ignored. A page docs/x.md with a folder docs/x/ runs among copies of
 that folder's files, other pages among the folders of the project.
 
-With TAUT_BLESS=1 in the environment, what the commands print now is put into the page instead, and
-pictures that cells have written go to the page's images/, where the page shows them. Exit status 77: all is good, but some commands were left out for want of a Python module.
+With TAUT_BLESS=1 in the environment, the actual output of the commands is written into the page instead, and
+pictures written by cells are copied to the page's images/, where the page shows them. Exit status 77: no errors, but
+some commands were left out because a Python module is missing.
 """
 
 import importlib.util
@@ -35,7 +37,7 @@ SHOWN_FOLDERS = ["docs", "examples", "share"]
 
 
 class Command:
-    """A command of a page and what the page says that it prints."""
+    """A command of a page and its expected output"""
 
     def __init__(self, line, text):
         self.line, self.text = line, text
@@ -63,17 +65,17 @@ def commands_of(block):
 
 
 def steady(line):
-    """A line without what differs from run to run and from machine to machine."""
+    """Returns a line without parts that differ between runs and machines."""
     return re.sub(r"simulated in \S+ s \(\S+ times real time\)", "simulated in ...", line)
 
 
 def printed_lines(text):
-    """Without the progress lines that only slow machines show."""
+    """Returns the lines without the progress lines that only slow machines print."""
     return [line for line in text.splitlines() if not re.match(r"t = .* s left$", line)]
 
 
 def same(expected, printed):
-    """Whether `printed` is `expected`, in which one line may be "..."."""
+    """Returns whether `printed` matches `expected`, in which one line may be "..."."""
     expected, printed = [steady(x) for x in expected], [steady(x) for x in printed]
     if "..." not in expected:
         return expected == printed
@@ -87,7 +89,7 @@ def same(expected, printed):
 
 
 def shortened(expected, printed):
-    """`printed`, cut where `expected` was."""
+    """Returns `printed`, shortened at the place where `expected` has "..."."""
     if "..." not in expected:
         return printed
     at = expected.index("...")
@@ -96,7 +98,7 @@ def shortened(expected, printed):
 
 
 def prepare(page, folder, taut):
-    """A folder to run in, and a search path on which `taut` and `python3` are the wanted ones."""
+    """Returns a working folder and an environment whose search path leads to the given `taut` and this `python3`."""
     programs = folder / "programs"
     programs.mkdir()
     (programs / "taut").symlink_to(taut)
@@ -119,7 +121,7 @@ def prepare(page, folder, taut):
 
 
 def missing_import(text):
-    """A module that a Python program imports and this machine lacks."""
+    """Returns a module that a Python program imports and this machine lacks, or None."""
     for module in re.findall(r"^(?:import|from) (\w+)", text, re.MULTILINE):
         if importlib.util.find_spec(module) is None:
             return module
@@ -127,13 +129,13 @@ def missing_import(text):
 
 
 def missing_module(command, work):
-    """The same of the program that a command runs."""
+    """Returns a missing module of the program that a command runs, or None."""
     program = re.match(r"python3 (\S+)", command.text)
     return missing_import((work / program[1]).read_text()) if program else None
 
 
 def check_files(page):
-    """How many blocks show a file, and what is wrong with them."""
+    """Returns the number of blocks that show a file, and their errors."""
     count, wrong = 0, []
     for block in page.blocks:
         match = re.fullmatch(r"\w+ (in )?(\S+\.\w+)", block.info)
@@ -152,7 +154,7 @@ def check_files(page):
 
 
 def cells_of(page):
-    """[(block, the block of what it prints or None), ...]"""
+    """Returns [(block, block of its output or None), ...]."""
     found = []
     for block in page.blocks:
         if block.info == "python cell":
@@ -166,7 +168,7 @@ def cells_of(page):
 
 
 def run_cells(page, work, environment, bless):
-    """The same as of `run`, of a notebook; what is to be replaced as (line, how many lines, lines)."""
+    """Runs the cells of a page. Returns the values of `run`, and the replacements as (line, number of lines, lines)."""
     cells = cells_of(page)
     if not cells:
         return 0, [], [], []
@@ -182,7 +184,7 @@ def run_cells(page, work, environment, bless):
         printed = text.rstrip("\n").splitlines()
         if same(output.lines if output else [], printed):
             continue
-        end = block.line + len(block.lines) + 1  # the line behind the cell
+        end = block.line + len(block.lines) + 1  # the line after the cell
         if output and printed:
             replaced.append((output.line - 1, len(output.lines), shortened(output.lines, printed)))
         elif printed:
@@ -202,7 +204,7 @@ def run_cells(page, work, environment, bless):
 
 
 def run(page, taut, bless):
-    """How many commands ran, what is wrong with them, and which were left out."""
+    """Returns the number of commands that ran, their errors, and the commands that were left out."""
     count, wrong, left_out, replaced = 0, [], [], []
     with tempfile.TemporaryDirectory() as folder:
         work, environment = prepare(page, pathlib.Path(folder), taut)

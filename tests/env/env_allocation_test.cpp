@@ -1,4 +1,4 @@
-// A step of an environment allocates nothing.
+// Memory allocations of environment steps: none
 #include "env/env_fixture.h"
 #include "tests/determinism/count_allocations.h"
 
@@ -14,7 +14,8 @@ class EnvAllocation : public testing::Test {
   }
 };
 
-/// Of steps from the first one of an episode on, in which worlds begin at different times.
+/// Returns the number of allocations of the steps, from the first step of an episode on, with
+/// worlds that begin at different times.
 long OfSteps(const ExperimentSpec& experiment, int threads, int steps) {
   const auto env = MakeEnv(experiment, {.worlds = 37, .threads = threads});
   Arrays<float> arrays(*env);

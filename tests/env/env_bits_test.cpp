@@ -1,5 +1,5 @@
-// What a world goes through depends on its seed and its actions alone, and without actions on what
-// the experiment does: bit for bit.
+// Reproducibility of environments: a world's states depend, bit for bit, on its seed and actions
+// only, and equal the experiment's run if there are no actions.
 #include <array>
 
 #include "env/env_fixture.h"
@@ -9,7 +9,7 @@
 namespace taut::test {
 namespace {
 
-/// An experiment with a gait, a sensor, pushes and impedance, whose actions add to V0.
+/// An experiment with a gait, a sensor, pushes and impedance control, whose actions add to V0
 ExperimentSpec Controlled(double duration_s) {
   ExperimentSpec experiment = LoadFrom("push_20n", duration_s);
   experiment.pushes.clear();
@@ -48,7 +48,7 @@ std::uint64_t HashOfRun(const ExperimentSpec& experiment) {
   return run ? run->state_hash : 0;
 }
 
-/// All worlds to the end of their episodes, without actions.
+/// Steps all worlds to the end of their episodes, without actions.
 void RunOut(Env& env) {
   Arrays<> arrays(env);
   for (std::int64_t i = 0; i < env.episode_steps(); ++i) arrays.Step(env);
@@ -60,7 +60,7 @@ TEST(EnvBits, WithoutActionsAWorldIsTheRun) {
     const auto env = MakeEnv(experiment, {.worlds = 3, .randomise = false});
     RunOut(*env);
     EXPECT_EQ(env->Hash(0), HashOfRun(experiment)) << name;
-    EXPECT_EQ(env->Hash(2), env->Hash(0)) << name;  // nothing depends on the seed
+    EXPECT_EQ(env->Hash(2), env->Hash(0)) << name;  // independent of the seed
   }
 }
 
@@ -75,7 +75,7 @@ TEST(EnvBits, SoItIsWithControllersSensorsAndPushes) {
         own.sensors.reset();
         own.environment->actions.clear();
         own.environment->observations = {"push/*"};
-      } else if (!measured) {  // ticks alone stand between steps
+      } else if (!measured) {  // only control ticks between steps
         own.pushes.clear();
         own.environment->observations = {"sensor/*"};
       }
@@ -141,7 +141,8 @@ TEST(EnvBits, EveryEpisodeIsTheRunOfItsExperiment) {
   }
 }
 
-/// Hashes of everything that worlds give over some steps in which episodes end at different times.
+/// Returns hashes of all outputs of the worlds over some steps in which episodes end at different
+/// times.
 template <class T>
 std::vector<std::uint64_t> Trail(const ExperimentSpec& experiment, EnvOptions options, int steps,
                                  std::vector<std::vector<T>>* rows = nullptr) {
@@ -149,7 +150,7 @@ std::vector<std::uint64_t> Trail(const ExperimentSpec& experiment, EnvOptions op
   Arrays<T> arrays(*env);
   std::vector<std::uint64_t> trail;
   for (std::int64_t step = 0; step < steps; ++step) {
-    if (step == 3) {  // from here on worlds are at different times of their episodes
+    if (step == 3) {  // from here on the worlds are at different times of their episodes
       std::vector<std::uint8_t> mask(arrays.worlds);
       for (std::size_t w = 0; w < mask.size(); w += 3) mask[w] = 1;
       EXPECT_TRUE(arrays.Reset(*env, {}, mask));

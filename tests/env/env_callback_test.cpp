@@ -1,4 +1,4 @@
-// Observations, rewards and ends of one's own, over whole batches.
+// User-defined observations, rewards and terminations, as callbacks on whole batches
 #include <limits>
 
 #include "env/env_fixture.h"
@@ -7,7 +7,7 @@
 namespace taut::test {
 namespace {
 
-/// Rows of five worlds, whose callbacks see and say this.
+/// Calls and rows that the callbacks of five worlds have recorded
 struct Callbacks {
   int observed = 0, judged = 0;
   std::vector<std::uint8_t> observed_rows, judged_rows;
@@ -61,14 +61,15 @@ TEST(EnvCallback, SeesWhatIsThereAndHasTheLastWord) {
   plains.Step(*plain);
   EXPECT_EQ(arrays.rewards[1], plains.rewards[1] + (0.01 + 0.25));
   EXPECT_EQ(env->Episode(1).reward, arrays.rewards[1]);
-  // not a number: 0, and the end
+  // NaN reward: counts as 0 and terminates the episode
   EXPECT_EQ(arrays.rewards[4], 0);
   EXPECT_EQ(arrays.terminated, (std::vector<std::uint8_t>{0, 0, 0, 0, 1}));
   EXPECT_EQ(env->Episode(4).end, EpisodeEnd::kCalled);
   arrays.Step(*env);
   EXPECT_EQ(arrays.terminated, (std::vector<std::uint8_t>{0, 0, 0, 1, 0}));
   EXPECT_EQ(env->Episode(3).end, EpisodeEnd::kCalled);
-  EXPECT_EQ(calls.judged_rows, (std::vector<std::uint8_t>{1, 1, 1, 1, 0}));  // 4 began anew
+  EXPECT_EQ(calls.judged_rows,
+            (std::vector<std::uint8_t>{1, 1, 1, 1, 0}));  // world 4 started a new episode
   EXPECT_EQ(arrays.Row(4)[arrays.width - 1], 0);
   EXPECT_EQ(arrays.rewards[4], 0);
   arrays.Step(*env);

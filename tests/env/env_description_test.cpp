@@ -1,11 +1,13 @@
-// What a file says of an environment, and what is wrong with it: all at once, with its place.
+// Environment section of experiment files: values, and errors, which are reported all at once with
+// their places
 #include "env/env_fixture.h"
 #include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
 namespace {
 
-/// On the fixture's experiment, whose controller holds `left` and `right`, from line 22 on.
+/// Environment section for the fixture's experiment, whose controller holds `left` and `right`;
+/// begins at line 22
 constexpr const char* kEnvironment = R"(environment:
   period_s: 0.02
   actions:
@@ -18,11 +20,11 @@ constexpr const char* kEnvironment = R"(environment:
 
 class EnvDescription : public ExperimentErrors {
  protected:
-  /// The complaints of reading it with one text in place of another; "good" if there are none.
+  /// Returns the errors of reading the file with one text replaced, or "good".
   std::string Wrong(const std::string& old_text, const std::string& new_text) {
     return Complained(old_text, new_text, false);
   }
-  /// The same, and of `CheckEnvironment`.
+  /// As `Wrong`, with the errors of `CheckEnvironment`.
   std::string Unfit(const std::string& old_text, const std::string& new_text) {
     return Complained(old_text, new_text, true);
   }
@@ -91,11 +93,11 @@ TEST_F(EnvDescription, EveryMistakeIsNamedAtOnce) {
 )"
       R"(24:3: error: unknown key "acts" in environment (one of: period_s, actions, observations, reward, max_tension_n, randomise)
 )"
-      R"(25:3: error: environment.observations is empty (a learner needs one at least)
+      R"(25:3: error: environment.observations is empty (add at least one entry)
 )"
       R"(26:21: error: environment.reward.measure cannot be "nearest" (did you mean "nearer"?)
 )"
-      R"(26:30: error: environment.reward.from_s is not before the experiment's end (that is at 10 s)
+      R"(26:30: error: environment.reward.from_s must be before the end of the experiment (the end is at 10 s)
 )"
       R"(26:55: error: environment.reward.alive_per_s must not be negative, got -1
 )"
@@ -111,20 +113,20 @@ TEST_F(EnvDescription, ActionsMoveWhatTheyCan) {
       R"(25:16: error: environment.actions.cables: no cable matches drivn (no cable is called or tagged "drivn"; did you mean "driven"?)
 )");
   EXPECT_EQ(Wrong("cables: driven, velocity_input", "cables: passive, velocity_input"),
-            R"(25:16: error: environment.actions: no action can move loose (it has no actuator)
+            R"(25:16: error: environment.actions: no action can change loose (it has no actuator)
 )");
   EXPECT_EQ(
       Wrong("velocity_input_m_per_s: 0.1", "rest_length_m: 0.1"),
-      R"(25:16: error: environment.actions: no action can move left, right (controller hold drives it)
+      R"(25:16: error: environment.actions: no action can change left, right (controller hold drives it)
 )");
   EXPECT_EQ(
       Wrong("velocity_input_m_per_s: 0.1", "rest_length_m: 0.1, rest_length_rate_m_per_s: 1"),
-      R"(25:44: error: environment.actions has both rest_length_m and rest_length_rate_m_per_s (only one of them may be there)
+      R"(25:44: error: environment.actions has both rest_length_m and rest_length_rate_m_per_s (give only one of them)
 )");
   EXPECT_EQ(
       Wrong("velocity_input_m_per_s: 0.1}",
             "velocity_input_m_per_s: 0.1}\n    - {cables: left, velocity_input_m_per_s: 1}"),
-      R"(26:16: error: environment.actions: no action can move left (it has an action already, in line 25)
+      R"(26:16: error: environment.actions: no action can change left (it already has an action, in line 25)
 )");
 }
 
@@ -170,25 +172,24 @@ TEST_F(EnvDescription, ActionsOnNumbersMoveWhatTheyCan) {
   const std::string old_text = "{cables: driven, velocity_input_m_per_s: 0.1}";
   EXPECT_EQ(
       Wrong(old_text, "{each: hold.*.tension_n, by: 5}"),
-      R"(25:14: error: environment.actions.each: nothing is called "hold.*.tension_n" (`taut learn --parameters EXPERIMENT` lists them all)
+      R"(25:14: error: environment.actions.each: there is no parameter "hold.*.tension_n" (`taut learn --parameters EXPERIMENT` lists them all)
 )");
   EXPECT_EQ(
       Wrong(old_text, "{each: hold.left.tension_offset_n}"),
       R"(25:7: error: environment.actions needs one of rest_length_m, rest_length_rate_m_per_s, velocity_input_m_per_s, by
 )");
   EXPECT_EQ(Wrong(old_text, "{each: hold.left.tension_offset_n, rest_length_m: 1, name: x}"),
-            R"(25:42: error: environment.actions.rest_length_m goes with `cables` only
+            R"(25:42: error: environment.actions.rest_length_m is allowed with `cables` only
 )"
-            R"(25:60: error: environment.actions.name goes with `all` only
+            R"(25:60: error: environment.actions.name is allowed with `all` only
 )");
   EXPECT_EQ(Wrong(old_text, "{cables: driven, by: 1, name: x}"),
-            R"(25:24: error: environment.actions.by goes with `each` or `all` only
+            R"(25:24: error: environment.actions.by is allowed with `each` or `all` only
 )"
-            R"(25:31: error: environment.actions.name goes with `all` only
+            R"(25:31: error: environment.actions.name is allowed with `all` only
 )");
-  EXPECT_EQ(
-      Wrong(old_text, "{all: hold.*.tension_offset_n, each: x, by: 1}"),
-      R"(25:8: error: environment.actions has both each and all (only one of them may be there)
+  EXPECT_EQ(Wrong(old_text, "{all: hold.*.tension_offset_n, each: x, by: 1}"),
+            R"(25:8: error: environment.actions has both each and all (give only one of them)
 )");
   EXPECT_EQ(Wrong(old_text, "{by: 1}"),
             R"(25:7: error: environment.actions needs one of cables, each, all
@@ -198,7 +199,7 @@ TEST_F(EnvDescription, ActionsOnNumbersMoveWhatTheyCan) {
 )");
   EXPECT_EQ(
       Wrong(old_text, "{each: hold.*.tension_offset_n, by: 5}\n    - {all: hold.left.*, by: 1}"),
-      R"(26:13: error: environment.actions: two actions move hold.left.tension_offset_n (the first is in line 25)
+      R"(26:13: error: environment.actions: two actions change hold.left.tension_offset_n (the first is in line 25)
 )");
   EXPECT_EQ(Wrong(old_text,
                   "{all: hold.left.t*, by: 5, name: a}\n"
@@ -214,7 +215,7 @@ TEST_F(EnvDescription, WhatBelongsTogetherIsThere) {
 )");
   EXPECT_EQ(
       Wrong("measure: heading, direction: [0, 3, 4]", "measure: nearer"),
-      R"(27:12: error: environment.reward.measure: nearer needs a goal (the experiment has no `goal`)
+      R"(27:12: error: environment.reward.measure: nearer needs a goal (add a `goal` to the experiment)
 )");
   EXPECT_EQ(Wrong("{mass: 0.1", "{start: {goal_rad: 1}, mass: 0.1"),
             R"(29:15: error: environment.randomise.start.goal_rad: the experiment has no `goal`
@@ -228,25 +229,25 @@ TEST_F(EnvDescription, WhatBelongsTogetherIsThere) {
 TEST_F(EnvDescription, ChannelsAndClocksFit) {
   EXPECT_EQ(
       Unfit("cable/*/tension_n", "cable/*/tensions"),
-      R"(26:18: error: environment.observations: no channel fits "cable/*/tensions" (did you mean "cable/*/tension_n"?)
+      R"(26:18: error: environment.observations: no channel matches "cable/*/tensions" (did you mean "cable/*/tension_n"?)
 )");
   EXPECT_EQ(
       Unfit("period_s: 0.02", "period_s: 0.0002"),
-      R"(23:3: error: environment.period_s must be a whole multiple of the period of controller hold, 0.001 s (so that each action meets the same ticks)
+      R"(23:3: error: environment.period_s must be a whole multiple of the period of controller hold, 0.001 s (each action must span the same number of ticks)
 )"
       R"(23:3: error: environment.period_s must be a whole multiple of the step, got 0.2 steps (step_s is 0.001)
 )");
   EXPECT_EQ(
       Unfit("force_n: [[3, 0], [4, push_n]]", "force_n: [[3, 0], [4.00037, push_n]]"),
-      R"(23:3: error: environment: push tap has a corner that is no whole number of steps, 4.00037 s (step_s is 0.001; worlds whose steps differ cannot share a register)
+      R"(23:3: error: environment: a corner of push tap must be a whole number of steps, got 4.00037 s (step_s is 0.001; all worlds must step at the same times)
 )");
   EXPECT_EQ(
       Unfit("- name: hold", "- name: hold\n    period_s: 0.003"),
-      R"(24:3: error: environment.period_s must be a whole multiple of the period of controller hold, 0.003 s (so that each action meets the same ticks)
+      R"(24:3: error: environment.period_s must be a whole multiple of the period of controller hold, 0.003 s (each action must span the same number of ticks)
 )");
   EXPECT_EQ(
       Unfit("duration_s: 10", "duration_s: 10.01"),
-      R"(23:3: error: environment.period_s must go into duration_s a whole number of times, got 500.5 (an episode lasts duration_s, 10.01 s)
+      R"(23:3: error: environment.period_s must divide duration_s into whole periods, got 500.5 (an episode lasts duration_s, 10.01 s)
 )");
 }
 
@@ -263,15 +264,16 @@ TEST_F(EnvDescription, AWrongChannelIsToldWithWhatElseIsWrong) {
   EXPECT_FALSE(LoadExperimentAndChannels(Path("env.yaml"), {}, out));
   EXPECT_EQ(
       Without(Path("env.yaml") + ":", ErrorsOf(out)),
-      R"(21:34: error: record.channels: no channel fits "body/*/position" (did you mean "body/*/position_x_m"?)
+      R"(21:34: error: record.channels: no channel matches "body/*/position" (did you mean "body/*/position_x_m"?)
 )"
-      R"(26:18: error: environment.observations: no channel fits "cable/*/tensions" (did you mean "cable/*/tension_n"?)
+      R"(26:18: error: environment.observations: no channel matches "cable/*/tensions" (did you mean "cable/*/tension_n"?)
 )"
       R"(29:76: error: environment.randomise.starts must be a whole number within 0..100000, got -1
 )");
   change("starts: -1", "starts: 12");
   Write("env.yaml", text);
-  EXPECT_TRUE(LoadExperimentAndChannels(Path("env.yaml"), {}, out = {}));  // for others to say
+  EXPECT_TRUE(
+      LoadExperimentAndChannels(Path("env.yaml"), {}, out = {}));  // left to CheckEnvironment
   EXPECT_TRUE(out.ok());
 }
 

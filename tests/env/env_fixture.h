@@ -1,4 +1,4 @@
-/// Environments of small experiments, and what they give, for tests.
+/// Environments of small experiments, and arrays for their outputs
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ inline std::unique_ptr<Env> MakeEnv(const ExperimentSpec& experiment, const EnvO
   return env;
 }
 
-/// Arrays of the right size for an environment.
+/// Arrays of the right size for an environment
 template <class T = double>
 struct Arrays {
   explicit Arrays(const Env& env)
@@ -77,8 +77,8 @@ struct Arrays {
   std::vector<std::uint8_t> terminated, truncated;
 };
 
-/// Actions that differ from step to step and from world to world, and are multiples of 1/64, so
-/// that float and double have the same.
+/// Sets actions that differ from step to step and from world to world. They are multiples of 1/64,
+/// so that float and double represent them exactly.
 template <class T>
 void Wiggle(Arrays<T>& arrays, std::int64_t step, std::size_t first_world = 0) {
   for (std::size_t w = 0; w < arrays.worlds; ++w) {

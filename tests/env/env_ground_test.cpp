@@ -1,4 +1,4 @@
-// Ground of its own for each episode: the robot somewhere on a large terrain.
+// Randomized placement of the robot on a large terrain, a new place for each episode
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ std::shared_ptr<const Model> Compiled(const ModelDef& def) {
   return model;
 }
 
-/// A robot that stands on nothing.
+/// A robot without ground planes
 ModelDef Bare() {
   ModelDef def = LoadFrom("drop_six_strut").robot.def;
   def.planes.clear();
@@ -32,7 +32,7 @@ TEST(GroundHeight, IsThatOfTheHighestPart) {
   const double slope = 0.3, c = std::cos(slope), s = std::sin(slope);
   def.planes.push_back({"slope", {-s, 0, c}, {0, 0, 0.1}, {}});
   EXPECT_NEAR(sim::GroundHeight(*Compiled(def), 1, 2), 0.1 + std::tan(slope), 1e-15);
-  // a cube of edge 2, turned by an eighth about y: its edge is sqrt(2) above its middle
+  // A cube of edge 2, rotated by pi/4 about y: its edge is sqrt(2) above its center.
   const double eighth = std::acos(-1) / 8;
   def.terrain_boxes.push_back(
       {"wall", {1, 2, 3}, {std::cos(eighth), 0, std::sin(eighth), 0}, {1, 1, 1}, {}});
@@ -94,7 +94,7 @@ TEST(EnvGround, OnAPlaneTheRobotIsElsewhereAndElseTheSame) {
       EXPECT_EQ(own.z, 0);
     }
   }
-  for (int k = 0; k < 2; ++k) {  // 40 even draws: an outer quarter is missed once in 1e5
+  for (int k = 0; k < 2; ++k) {  // 40 uniform draws miss an outer quarter once in 1e5
     EXPECT_LT(least[k], -1);
     EXPECT_GT(most[k], 1);
   }
@@ -114,13 +114,14 @@ TEST(EnvGround, OnHillsNoPointComesNearerToTheGroundAndOneStaysAsItIs) {
       const Vec3 along = rod.to_m - rod.from_m;
       for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         const Vec3 p = rod.from_m + part * along;
-        // between samples as far apart as the rod is thick hills of slope 1/2 may rise by a quarter
+        // The ground is sampled at distances of the rod's thickness. Between samples hills of slope
+        // 1/2 may rise by a quarter of that.
         const double nearer = height(p + by) - height(p);
         EXPECT_GE(nearer, -0.5 * rod.radius_m);
         least = std::min(least, nearer);
       }
     }
-    EXPECT_LE(least, 0.02);  // not in the air: within the hills' height of its own
+    EXPECT_LE(least, 0.02);  // close to the ground, within the height of the hills
     highest = std::max(highest, by.z), lowest = std::min(lowest, by.z);
     Diagnostics out;
     const auto run = RunExperiment(env->Experiment(w), {}, out);
@@ -146,7 +147,7 @@ TEST(EnvGround, AnEpisodeIsTheRunOfItsExperimentAndTheGoalGoesAlong) {
     const auto run = RunExperiment(env->Experiment(w), {}, out);
     ASSERT_TRUE(run) << out.Format();
     EXPECT_EQ(env->Hash(w), run->state_hash);
-    // the same way to the same goal: what differs is rounding of sums at other places
+    // the same path to the same goal, up to rounding of sums at other places
     EXPECT_NEAR(env->Episode(w).reward, same->Episode(0).reward, 1e-6);
   }
 }
@@ -155,7 +156,7 @@ TEST(EnvGround, BeyondTheTerrainThereIsNoStart) {
   const ExperimentSpec experiment = Placed("hills", 400);
   Diagnostics out;
   EXPECT_FALSE(Env::Create(experiment, {.worlds = 2}, out));
-  EXPECT_NE(out.Format().find("puts the robot beyond its terrain"), std::string::npos)
+  EXPECT_NE(out.Format().find("moves the robot off its terrain"), std::string::npos)
       << out.Format();
 }
 

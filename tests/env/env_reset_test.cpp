@@ -1,10 +1,10 @@
-// Episodes begin and end as Gymnasium's three modes of autoreset have it.
+// Start and end of episodes in Gymnasium's three autoreset modes
 #include "env/env_fixture.h"
 
 namespace taut::test {
 namespace {
 
-/// Episodes of five steps that differ by their seeds.
+/// Returns an experiment with episodes of five steps that differ by their seeds.
 ExperimentSpec Short() {
   ExperimentSpec experiment = LoadFrom("learn_spine", 0.05);
   experiment.environment->randomise.action_delay_s = 0;
@@ -15,7 +15,7 @@ EnvOptions With(Autoreset autoreset, int worlds = 5) {
   return {.worlds = worlds, .autoreset = autoreset, .seed = 7};
 }
 
-/// The rows of a fresh environment after a reset with these seeds and then some steps.
+/// The rows of a new environment after a reset with these seeds and then some steps
 struct Fresh {
   Fresh(const ExperimentSpec& experiment, const std::vector<std::uint64_t>& seeds)
       : env(MakeEnv(experiment, With(Autoreset::kDisabled, static_cast<int>(seeds.size())))),
@@ -53,7 +53,7 @@ TEST(EnvReset, NextStepBeginsInTheStepAfterAndIgnoresItsAction) {
   EXPECT_EQ(env->Last(2).reward, earned);
   Fresh fresh(experiment, {env->Episode(2).seed});
   EXPECT_EQ(arrays.Row(2), fresh.arrays.Row(0));
-  // and what follows is as after a reset
+  // subsequent steps equal the steps after a reset
   for (int step = 0; step < 3; ++step) {
     Wiggle(arrays, step);
     Wiggle(fresh.arrays, step, 2);
@@ -83,7 +83,7 @@ TEST(EnvReset, SameStepReturnsTheNextEpisodesFirstObservationAndTheLast) {
     const Fresh fresh(experiment, {env->Episode(static_cast<int>(w)).seed});
     EXPECT_EQ(arrays.Row(w), fresh.arrays.Row(0));
   }
-  // of worlds that go on, rows of final observations stay as they are
+  // rows of final observations of worlds whose episode continues are not written
   std::fill(arrays.finals.begin(), arrays.finals.end(), -7.0);
   arrays.Step(*env, true);
   EXPECT_EQ(arrays.finals, std::vector<double>(arrays.finals.size(), -7.0));
@@ -153,7 +153,7 @@ TEST(EnvReset, SeedsCountModuloTheNumberOfStarts) {
   EXPECT_NE(arrays.Row(1), arrays.Row(2));
   EXPECT_EQ(env->Episode(6).seed, 1u);
   std::vector<int> met(3);
-  for (int step = 0; step < 180; ++step) {  // thirty episodes, whose seeds do not run in a circle
+  for (int step = 0; step < 180; ++step) {  // thirty episodes, whose seeds do not cycle
     arrays.Step(*env);
     if (env->Episode(0).steps == 0) ++met[env->Episode(0).seed];
   }
@@ -163,12 +163,12 @@ TEST(EnvReset, SeedsCountModuloTheNumberOfStarts) {
 TEST(EnvReset, AStartThatIsNoneIsSaidAndTheWorldGoesOn) {
   ExperimentSpec experiment = Short();
   experiment.environment->randomise = {};
-  experiment.environment->randomise.start.any_pose = true;  // some poses reach into the ground
+  experiment.environment->randomise.start.any_pose = true;  // some poses penetrate the ground
   experiment.robot.def.planes[0].point_m.z = -0.15;
   Diagnostics out;
   std::unique_ptr<Env> env;
   std::uint64_t seed = 0;
-  for (; !env && seed < 200; ++seed) {  // one to begin with
+  for (; !env && seed < 200; ++seed) {  // the first seed with a valid start
     env = Env::Create(experiment, {.worlds = 1, .seed = seed}, out = {});
   }
   ASSERT_TRUE(env);
@@ -185,7 +185,7 @@ TEST(EnvReset, AStartThatIsNoneIsSaidAndTheWorldGoesOn) {
     EXPECT_NE(env->Hash(0), 0u);
   }
   EXPECT_EQ(refused, 1) << hash;
-  for (int step = 0; step < 40; ++step) arrays.Step(*env);  // episodes go on all the same
+  for (int step = 0; step < 40; ++step) arrays.Step(*env);  // episodes still continue
   EXPECT_TRUE(arrays.AllFinite());
 }
 

@@ -1,4 +1,4 @@
-// What steps are worth: the score of a study, split over its steps; and when episodes end early.
+// Rewards of environment steps, which sum to a study's score, and early terminations
 #include <limits>
 
 #include "env/env_fixture.h"
@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-/// A study's own result with this objective.
+/// Returns the result of a study's rollout with this objective.
 RolloutResult StudyResult(const ExperimentSpec& experiment, const ObjectiveSpec& objective) {
   Diagnostics out;
   const auto rollouts = Rollouts::Create(experiment, objective, {}, out);
@@ -16,7 +16,7 @@ RolloutResult StudyResult(const ExperimentSpec& experiment, const ObjectiveSpec&
   return rollouts->Run(world)[0];
 }
 
-/// The rewards of an episode without actions.
+/// Returns the rewards of an episode without actions.
 std::vector<double> Rewards(const ExperimentSpec& experiment) {
   const auto env = MakeEnv(experiment, {.worlds = 2, .randomise = false});
   Arrays<> arrays(*env);
@@ -34,7 +34,7 @@ double Sum(const std::vector<double>& numbers) {
   return sum;
 }
 
-/// A robot that moves by itself: a gait that is the experiment's, not the learner's.
+/// A robot that moves without actions: the experiment contains its gait.
 ExperimentSpec Moving(double duration_s) {
   ExperimentSpec experiment = LoadFrom("sine_hand_tuned", duration_s);
   EnvironmentSpec& spec = experiment.environment.emplace();
@@ -57,7 +57,7 @@ TEST(EnvReward, RewardsOfAnEpisodeAddUpToTheScoreOfAStudy) {
       ASSERT_EQ(study.failed, "");
       ASSERT_GT(study.max_tension_n, 15);
       const std::vector<double> rewards = Rewards(experiment);
-      // sums of 20 differences of numbers below 5: their rounding
+      // rounding of sums of 20 differences of numbers below 5
       EXPECT_NEAR(Sum(rewards), study.score, 20 * 5 * 2.3e-16);
       EXPECT_NE(rewards[10], rewards[15]);
     }
@@ -75,7 +75,7 @@ TEST(EnvReward, WorkAndTimeArePaidForAsTheyPass) {
   EXPECT_EQ(Rewards(experiment), std::vector<double>(20, 3 * 0.1));
 }
 
-/// The six-strut robot in free fall, its ground far below.
+/// The six-strut robot in free fall, its ground far below
 ExperimentSpec Falling(double duration_s) {
   ExperimentSpec experiment = LoadFrom("drop_six_strut", duration_s);
   experiment.robot.def.planes[0].point_m.z = -100;
@@ -109,7 +109,7 @@ Ended RunToTheEnd(const ExperimentSpec& experiment, EnvOptions options = {}) {
   return ended;
 }
 
-/// The first period that ends when a fall from rest has gone on for longer than this.
+/// Returns the first period that ends after a fall from rest has lasted longer than `fall_s`.
 std::int64_t PeriodAfter(double fall_s) {
   return static_cast<std::int64_t>(std::floor(fall_s / 0.01)) + 1;
 }
@@ -142,7 +142,7 @@ TEST(EnvReward, AFallEndsAnEpisodeWhenTheClosedFormSaysSo) {
 
 TEST(EnvReward, ABlownUpWorldFails) {
   ExperimentSpec experiment = Falling(1);
-  experiment.robot.def.cables.clear();  // struts that fall for themselves, without any spin
+  experiment.robot.def.cables.clear();  // struts that fall separately, without rotation
   experiment.robot.cable_tags.clear();
   experiment.robot.cable_sources.clear();
   for (BodyDef& body : experiment.robot.def.bodies) {
@@ -176,7 +176,7 @@ TEST(EnvReward, AWorldThatIsNotFiniteEndsWithFiniteNumbersAndTheOthersGoOn) {
   spec.reward.failure_penalty = 3;
   spec.reward.tension_limit = TensionLimit{1, 1};
   spec.reward.work_penalty_per_j = 1;
-  // A motor that pays out for ever, at once: no file may say that.
+  // A motor of unlimited speed that pays out for ever; files do not allow it.
   CableDef& cable = experiment.robot.def.cables[0];
   cable.actuator = {};
   cable.actuator.kind = ActuatorDef::Kind::kIdeal;
@@ -206,7 +206,7 @@ TEST(EnvReward, AWorldThatIsNotFiniteEndsWithFiniteNumbersAndTheOthersGoOn) {
       EXPECT_EQ(arrays.terminated[0], 0);
     }
     EXPECT_TRUE(ended);
-    EXPECT_EQ(env->Status(1).bits & kStatusNonFinite, 0u);  // the next episode is a good one
+    EXPECT_EQ(env->Status(1).bits & kStatusNonFinite, 0u);  // the next episode is finite
     EXPECT_EQ(env->Episode(1).end, EpisodeEnd::kNone);
   }
 }
@@ -222,7 +222,7 @@ TEST(EnvReward, AnActionThatIsNoNumberFails) {
   EXPECT_EQ(env->Episode(0).end, EpisodeEnd::kWrongAction);
   EXPECT_EQ(arrays.terminated[0], 1);
   EXPECT_EQ(arrays.rewards[0], -1);
-  EXPECT_EQ(env->Hash(0), calm->Hash(0));  // it counted as 0
+  EXPECT_EQ(env->Hash(0), calm->Hash(0));  // NaN counted as 0
   EXPECT_EQ(env->Episode(1).end, EpisodeEnd::kNone);
 }
 
@@ -246,7 +246,7 @@ TEST(EnvReward, AnActionOfOneIsWhatTheFileSays) {
   for (std::size_t i = 0; i < arrays.action_width; ++i) arrays.actions[i] = 0.5;
   for (int step = 0; step < 3; ++step) arrays.Step(*env);
   for (std::size_t i = 0; i < arrays.action_width; ++i) {
-    // to the rounding of lengths below 0.5 m
+    // rounding of lengths below 0.5 m
     EXPECT_NEAR(arrays.Row(0)[i] - arrays.Row(1)[i], 0.5 * 0.03, 1.2e-16);
   }
   EXPECT_EQ(env->action_channels()[0].unit, "m");

@@ -1,5 +1,5 @@
-// A world that is restored goes on through the bits that would have followed: in its own place, in
-// another one, in another environment with other registers and threads.
+// Serialization of environment worlds: a restored world continues bit for bit, in the same lane, in
+// another lane, and in another environment with other registers and threads.
 #include <algorithm>
 
 #include "env/env_fixture.h"
@@ -30,7 +30,8 @@ EnvironmentAction Moves(std::string number, double by) {
   return action;
 }
 
-/// With pushes, drags, sensors that remember, and actions on V0 and on a set point.
+/// Returns an experiment with pushes, drags, sensors with memory, and actions on V0 and on a set
+/// point.
 ExperimentSpec Pushed() {
   ExperimentSpec experiment = LoadFrom("push_20n", 0.4);
   experiment.pushes.clear();
@@ -55,7 +56,7 @@ ExperimentSpec Pushed() {
   return experiment;
 }
 
-/// By a PID, with a sine whose frequency actions change.
+/// Returns an experiment with a PID controller and a sine whose frequency the actions change.
 ExperimentSpec Waving() {
   ExperimentSpec experiment = LoadFrom("sine_hand_tuned", 0.4);
   ImpedanceSpec& impedance = *experiment.controllers[0].impedance;
@@ -73,7 +74,7 @@ ExperimentSpec Of(const std::string& name, const std::string& number, double by)
   return experiment;
 }
 
-/// Whose rest lengths are so far from what they were at the start.
+/// Actions are offsets of the rest lengths from their values at the start.
 ExperimentSpec ByLength() {
   ExperimentSpec experiment = LoadFrom("learn_spine", 0.4);
   const std::vector<EnvironmentAction> actions = experiment.environment->actions;
@@ -82,7 +83,7 @@ ExperimentSpec ByLength() {
   return experiment;
 }
 
-/// Whose rest lengths go on from where they are.
+/// Actions are rates of the rest lengths.
 ExperimentSpec ByRate() {
   ExperimentSpec experiment = ByLength();
   std::vector<EnvironmentAction> actions = experiment.environment->actions;
@@ -119,7 +120,7 @@ std::vector<Named> All() {
           {"toward goal", Of("roll_to_goal", "motion.toward_goal.beat_hz", 0.1)}};
 }
 
-/// What a world gives in each of some steps under actions that depend on the step alone.
+/// Outputs of a world over some steps under actions that depend on the step only
 struct Trail {
   std::vector<std::vector<double>> rows;
   std::vector<double> rewards;
@@ -152,11 +153,11 @@ Trail Follow(Env& env, std::size_t world, int from, int steps) {
 
 TEST(EnvSnapshot, WhatIsRestoredGoesOnAsItWouldHave) {
   for (const Named& of : All()) {
-    for (const int before : {1, 7, 20}) {  // that is where the episode is over
+    for (const int before : {1, 7, 20}) {  // 20 steps: the end of the episode
       const auto env = MakeEnv(of.experiment, {.worlds = 5, .threads = 2, .seed = 3});
       Follow(*env, 2, 0, before);
       const std::vector<std::uint8_t> saved = env->Save(2);
-      // on to the end of the episode and into the next one
+      // through the end of the episode into the next one
       const Trail expected = Follow(*env, 2, before, 25);
       const auto other = MakeEnv(of.experiment, {.worlds = 3, .simd = Simd::kScalar, .seed = 90});
       Follow(*other, 1, 40, 4);
@@ -213,8 +214,8 @@ TEST(EnvSnapshot, WhatIsNoneIsRefusedAndNothingChanges) {
     EXPECT_EQ(env->Hash(0), hash);
     EXPECT_EQ(env->Episode(0).steps, 5);
   };
-  refused({}, "no snapshot");
-  refused(std::vector<std::uint8_t>(100, 7), "no snapshot");
+  refused({}, "not a snapshot");
+  refused(std::vector<std::uint8_t>(100, 7), "not a snapshot");
   for (const std::size_t size : {std::size_t{30}, saved.size() - 1}) {
     refused({saved.begin(), saved.begin() + static_cast<std::ptrdiff_t>(size)}, "damaged");
   }

@@ -1,5 +1,6 @@
-// Actions on set points of impedance control and on numbers of gaits: an action that never changes
-// is a run whose experiment has the other number, to the bit; one that changes keeps the phase.
+// Actions on set points of impedance control and on parameters of gaits: a constant action equals,
+// to the bit, a run of the experiment with the changed number; a changing action preserves the
+// phase.
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +47,8 @@ std::uint64_t HashOfRun(const ExperimentSpec& experiment) {
   return run ? run->state_hash : 0;
 }
 
-/// Of an episode under one action all along, in a world among several that do otherwise.
+/// Returns the hash of an episode under one constant action, in a world among others with other
+/// actions.
 std::uint64_t HashUnder(const ExperimentSpec& experiment, double x) {
   const auto env = MakeEnv(experiment, {.worlds = 3, .seed = experiment.seed});
   Arrays<> arrays(*env);
@@ -121,8 +123,8 @@ TEST(EnvTuning, NumbersStayWhereTheyMakeSense) {
   EXPECT_EQ(HashUnder(experiment, -1), HashOfRun(other));
 }
 
-/// V0 of the first cable with a wave, tick by tick, is offset + amplitude cos(phase), with a phase
-/// that is the integral of the frequency: from period to period it goes on where it was.
+/// V0 of the first cable with a wave is offset + amplitude cos(phase) at each tick. The phase is
+/// the integral of the frequency and continuous across periods.
 TEST(EnvTuning, AFrequencyChangesWithoutAJumpOfThePhase) {
   ExperimentSpec experiment =
       With("sine_hand_tuned", 1, {Moves({"impedance.sine.frequency_hz"}, 0.4)});
@@ -155,7 +157,7 @@ TEST(EnvTuning, AFrequencyChangesWithoutAJumpOfThePhase) {
   EXPECT_GT(steepest, 0.01);
 }
 
-/// Everything at once, for bits.
+/// All kinds of actions at once, for comparisons of bits
 ExperimentSpec Mixed(const std::string& name, const std::string& gait) {
   ExperimentSpec experiment = With(name, 0.2,
                                    {Moves({"impedance.inner_top_1.tension_offset_n"}, 8),
@@ -219,8 +221,8 @@ TEST(EnvTuning, ANewEpisodeKnowsNothingOfWhatTheLastOneWasToldOrSaid) {
   }
 }
 
-/// Phases, amplitudes and what was heard go on: a number that changes by next to nothing changes
-/// next to nothing.
+/// Phases, amplitudes and received signals persist: a tiny change of a number causes a tiny change
+/// of the motion.
 TEST(EnvTuning, WhatAGaitRemembersStays) {
   for (const auto& [name, number] : {std::pair{"sine_hand_tuned", "impedance.sine.frequency_hz"},
                                      {"cpg_learned", "impedance.cpg.amplitude_m_per_s"},
@@ -239,18 +241,18 @@ TEST(EnvTuning, WhatAGaitRemembersStays) {
       apart = std::max(apart, std::fabs(arrays.Row(0)[i] - arrays.Row(1)[i]));
       most = std::max(most, std::fabs(arrays.Row(0)[i]));
     }
-    EXPECT_LT(apart, 1e-5) << name;  // a contact makes 1e4 times as much of a difference
+    EXPECT_LT(apart, 1e-5) << name;  // a contact amplifies the difference by 1e4
     EXPECT_GT(most, 0.01) << name;
   }
 }
 
 TEST(EnvTuning, WhatNoActionCanMoveIsSaid) {
-  for (const char* const number : {"motion.nothing", "model.friction",
-                                   "motion.feedback_cpg.frequency_hz"}) {  // that at the start
+  for (const char* const number :
+       {"motion.nothing", "model.friction",
+        "motion.feedback_cpg.frequency_hz"}) {  // this name refers to the start value
     Diagnostics out;
     EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {Moves({number}, 1)}), out));
-    EXPECT_NE(out.Format().find("no action can move a number called \"" + std::string(number)),
-              std::string::npos)
+    EXPECT_NE(out.Format().find("there is no number \"" + std::string(number)), std::string::npos)
         << out.Format();
   }
   Diagnostics out;

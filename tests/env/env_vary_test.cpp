@@ -1,4 +1,4 @@
-// How episodes differ: factors, slope, delays.
+// Domain randomization of episodes: factors, slope, delays
 #include <algorithm>
 #include <set>
 
@@ -28,7 +28,7 @@ TEST(EnvVary, FactorsAndStartsStayWithinTheirSharesAndFillThem) {
       most[k] = std::max(most[k], scale.factor);
     }
   }
-  for (std::size_t k = 0; k < 4; ++k) {  // 200 even draws: 0.9 of the way is missed once in 1e9
+  for (std::size_t k = 0; k < 4; ++k) {  // 200 uniform draws miss 0.9 of the range once in 1e9
     EXPECT_LT(least[k], 1 - 0.9 * shares[k]);
     EXPECT_GT(most[k], 1 + 0.9 * shares[k]);
   }
@@ -57,7 +57,7 @@ TEST(EnvVary, OnASlopeAFreeRobotFallsAslant) {
     ++quadrants[(g.x > 0 ? 1 : 0) + (g.y > 0 ? 2 : 0)];
     const double fall[] = {g.x, g.y, g.z};
     for (std::size_t k = 0; k < 3; ++k) {
-      // the scheme's parabola is exact: 200 steps' rounding of numbers of size 1
+      // The integrator is exact for a parabola: rounding of 200 steps on numbers of size 1.
       EXPECT_NEAR(arrays.Row(w)[k] - before[3 * w + k], 0.5 * 0.2 * 0.2 * fall[k], 1e-13);
     }
   }
@@ -65,7 +65,8 @@ TEST(EnvVary, OnASlopeAFreeRobotFallsAslant) {
   for (const int count : quadrants) EXPECT_GT(count, 4);
 }
 
-/// Rows of worlds under an action that differs from step to step, which begins `late` steps later.
+/// Returns the rows of world 0 under an action that changes from step to step and begins after
+/// `late` steps.
 std::vector<std::vector<double>> Rows(Env& env, int late, int steps) {
   Arrays<> arrays(env);
   EXPECT_TRUE(arrays.Reset(env, std::vector<std::uint64_t>(arrays.worlds, 3)));
@@ -79,7 +80,7 @@ std::vector<std::vector<double>> Rows(Env& env, int late, int steps) {
   return rows;
 }
 
-/// An environment whose episodes differ by their delays alone.
+/// An environment whose episodes differ by their delays only
 ExperimentSpec Delayed(double action_delay_s, double observation_delay_s) {
   ExperimentSpec experiment = LoadFrom("learn_spine", 1);
   experiment.environment->randomise = {};
@@ -90,7 +91,7 @@ ExperimentSpec Delayed(double action_delay_s, double observation_delay_s) {
 
 constexpr int kSteps = 8;
 
-/// The rows of a world with this seed.
+/// Returns the rows of a world with this seed.
 std::vector<std::vector<double>> RowsOf(const ExperimentSpec& experiment, std::uint64_t seed) {
   const auto env = MakeEnv(experiment, {.worlds = 1});
   Arrays<> arrays(*env);

@@ -1,4 +1,4 @@
-"""Runs `taut` and other programs for the tests of this folder."""
+"""Helpers that run `taut` and other programs for the tests of this folder"""
 
 import json
 import pathlib
@@ -12,14 +12,14 @@ NODE_TESTS = ROOT / "web" / "test"
 
 
 def taut(command, folder, *words, status=0):
-    """Its output, or, where it is to fail, its complaints."""
+    """Runs taut. Returns its standard output or, if `status` is not 0, its error messages."""
     done = subprocess.run([command, *map(str, words)], cwd=folder, capture_output=True, text=True)
     assert done.returncode == status, f"{words}: {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout if status == 0 else done.stderr
 
 
 def node(script, *words, needs):
-    """What a program of web/test prints as JSON. Skips where there is no node or not what it needs."""
+    """Returns the JSON output of a program of web/test. Skips the test if node or a needed package is missing."""
     if shutil.which("node") is None:
         skip("there is no node (apt-get install nodejs npm)")
     for package in needs:
@@ -36,7 +36,7 @@ def skip(why):
 
 
 def main(tests):
-    """Runs the test that the command line names: NAME TAUT."""
+    """Runs the test given on the command line: NAME TAUT."""
     name, command = sys.argv[1:3]
     with tempfile.TemporaryDirectory() as folder:
         tests[name](str(pathlib.Path(command).resolve()), pathlib.Path(folder))

@@ -1,5 +1,5 @@
-// Traces for other programs: rows and channels that are taken, and what is there when it stops.
-// What @mcap/core reads out of the files is in mcap_test.py.
+// Conversion of traces for other programs: selection of rows and channels, and behavior on errors.
+// mcap_test.py checks the files with @mcap/core.
 #include "taut/convert_trace.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ class ConvertTrace : public testing::Test {
 };
 
 TEST_F(ConvertTrace, RowsOnAGridAreTaken) {
-  // Of every 0.1 s, whose multiples are no exact numbers, each third.
+  // Rows every 0.1 s, whose multiples are inexact in binary; every third is selected.
   const auto kept = SelectFrom(Rows(100, 0, 0.1), {}, 0.3, "t", found_);
   ASSERT_TRUE(kept);
   ASSERT_EQ(kept->time_s.size(), 34u);
@@ -54,13 +54,13 @@ TEST_F(ConvertTrace, RowsOnAGridAreTaken) {
     EXPECT_DOUBLE_EQ(kept->time_s[i], 0.3 * static_cast<double>(i));
     EXPECT_EQ(kept->values[1][i], static_cast<double>(30 * i + 1));
   }
-  // One that rounding has put a little before its place on the grid is there.
+  // A row that rounding has placed slightly before its grid point is selected.
   Trace early = Rows(4, 0, 0.3);
   early.time_s[2] = 0.6 - 1e-9;
   const auto all = SelectFrom(early, {}, 0.3, "t", found_);
   ASSERT_TRUE(all);
   EXPECT_EQ(all->time_s, early.time_s);
-  // Where there are none for a while, the next ones are, and the grid stays.
+  // After a gap the next rows are selected, and the grid keeps its offset.
   Trace gap = Rows(10, 5, 0.1);
   gap.time_s = {5, 5.1, 5.2, 5.3, 7.05, 7.1, 7.25, 7.3, 7.6, 7.9};
   const auto after = SelectFrom(gap, {"x_m"}, 0.3, "t", found_);

@@ -1,6 +1,6 @@
-"""What `taut export shape` writes as glTF, as the Khronos Group's validator and three.js see it.
+"""glTF files of `taut export shape`, checked by the Khronos Group's validator and three.js
 
-Usage: glb_test.py TEST TAUT. One test of this file, by the name of its function; 77: what it needs is not there.
+Usage: glb_test.py TEST TAUT. TEST is the name of a function of this file; status 77: a required program is missing.
 """
 
 import json
@@ -34,7 +34,7 @@ def ThreeLoadsWhatTheModelSays(taut, folder):
     for body in said["bodies"]:
         assert body["name"] in seen["nodes"], seen["nodes"]
     by_name = {mesh["name"]: mesh for mesh in seen["meshes"]}
-    # Cables are cylinders of their length, whatever three makes of them.
+    # The volume of a cable's mesh equals the volume of a cylinder of its length.
     for cable in said["cables"]:
         volume = math.pi * 1e-6 * cable["length_m"]
         assert abs(by_name[cable["name"]]["volume"] - volume) < 1e-4 * volume
@@ -45,7 +45,7 @@ def ThreeLoadsWhatTheModelSays(taut, folder):
     volume = math.pi * radius**2 * (length + 4 / 3 * radius)
     assert abs(rod["volume"] - volume) < 1e-4 * volume, (rod["volume"], volume)
     assert rod["material"] == "rod" and rod["parent"] == "strut_0"
-    # As seen: #39414b, which glTF has as light.
+    # The color is #39414b (sRGB); glTF stores linear light.
     light = [((c / 255 + 0.055) / 1.055) ** 2.4 for c in (0x39, 0x41, 0x4B)]
     assert all(abs(a - b) < 1e-6 for a, b in zip(rod["colour"], light)), rod["colour"]
 
@@ -61,10 +61,10 @@ def APoseAndAScaleAreWhereTheyShouldBe(taut, folder):
         if f"body/{name}/position_x_m" not in at:
             continue
         x, y, z = (at[f"body/{name}/position_{axis}_m"] for axis in "xyz")
-        # Up is y.
+        # glTF's up axis is y.
         assert all(abs(a - b) < 1e-5 for a, b in zip(place, (10 * x, 10 * z, -10 * y))), (name, place, x, y, z)
     assert any(f"body/{name}/position_x_m" in at for name in seen["places"])
-    # A rod's middle, which is its body's centre, is the middle of what is drawn of it.
+    # The center of a rod's mesh is the center of its body.
     for mesh in seen["meshes"]:
         if mesh["material"] == "rod":
             assert all(abs(a - b) < 1e-4 for a, b in zip(mesh["middle"], seen["places"][mesh["parent"]])), mesh
@@ -72,7 +72,7 @@ def APoseAndAScaleAreWhereTheyShouldBe(taut, folder):
 
 def WhatIsWrongIsSaid(taut, folder):
     prism = ROOT / "share/models" / "prism3.yaml"
-    assert "says no format" in run.taut(taut, folder, "export", "shape", prism, "--out", "x.obj", status=2)
+    assert "unknown format" in run.taut(taut, folder, "export", "shape", prism, "--out", "x.obj", status=2)
     assert "--out" in run.taut(taut, folder, "export", "shape", prism, status=2)
     for wrong in ("0", "-1", "nan", "x"):
         run.taut(taut, folder, "export", "shape", prism, "--out", "x.stl", "--scale", wrong, status=2)
@@ -83,7 +83,7 @@ def WhatIsWrongIsSaid(taut, folder):
         "taut: 1\nkind: model\nname: p\nnodes: {a: [0, 0, 1]}\nbuilders:\n  - {match: a, point_mass: {mass_kg: 1}}\n"
     )
     complaint = run.taut(taut, folder, "export", "shape", "point.yaml", "--out", "x.stl", status=3)
-    assert "no shape and no cable" in complaint, complaint
+    assert "no shapes and no cables" in complaint, complaint
     assert not (folder / "x.stl").exists() and not (folder / "x.obj").exists()
 
 

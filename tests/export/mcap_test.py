@@ -1,6 +1,6 @@
-"""What `taut trace convert` writes: MCAP as @mcap/core reads it, beside the numbers of the HDF5 file.
+"""MCAP files of `taut trace convert`, read by @mcap/core and compared with the HDF5 file
 
-Usage: mcap_test.py TEST TAUT. One test of this file, by the name of its function; 77: what it needs is not there.
+Usage: mcap_test.py TEST TAUT. TEST is the name of a function of this file; status 77: a required program is missing.
 """
 
 import shutil
@@ -21,7 +21,7 @@ NEEDS = ["@mcap/core"]
 
 
 def record(taut, folder, name="push_20n_motors", duration_s=0.6):
-    """A short run of an experiment."""
+    """Makes a short run of an experiment."""
     experiment = ROOT / "share/experiments" / f"{name}.yaml"
     run.taut(taut, folder, "run", experiment, "--duration_s", duration_s, "--csv", "--quiet", "--out", "run")
     return folder / "run"
@@ -33,7 +33,7 @@ def convert(taut, folder, what, *words):
 
 
 def trace_of(path):
-    """Its time and its columns, by name."""
+    """Returns the times and the columns by name."""
     columns = {}
     with h5py.File(path) as file:
         file.visititems(lambda name, item: columns.__setitem__(name, item[:]) if isinstance(item, h5py.Dataset) else None)
@@ -64,13 +64,13 @@ def check_numbers(seen, time_s, columns):
             for part in path[:-1]:
                 found = found.get(part, {})
             found = found.get(path[-1])
-            # To the bit; JSON has no word for what is not finite.
+            # Equal to the bit; JSON cannot represent values that are not finite.
             assert found == value if np.isfinite(value) else found is None, (name, t, found, value)
     return topics
 
 
 def EveryNumberComesBack(taut, folder):
-    """Motors, and contacts of which there are none at times: 200 channels and more."""
+    """200 and more channels, of motors and of contacts, whose slots are empty at times"""
     (folder / "contacts.yaml").write_text(
         f"taut: 1\nkind: experiment\nname: contacts\nbase: {ROOT}/share/experiments/drop_six_strut.yaml\n"
         "record: {rate_hz: 100, contacts: 6}\n"
@@ -103,7 +103,7 @@ def TheIndexLeadsToEveryMessage(taut, folder):
     seen = convert(taut, folder, folder_of_run)
     time_s, _, _ = trace_of(folder_of_run / "trace.h5")
     assert seen["done"]
-    # The same by the index and from the beginning to the end.
+    # Reading by the index and reading from start to end give the same messages.
     assert seen["indexed"] == seen["streamed"]
     assert seen["header"]["profile"] == "" and seen["header"]["library"].startswith("taut ")
     statistics = seen["statistics"]
@@ -117,7 +117,7 @@ def TheIndexLeadsToEveryMessage(taut, folder):
     records = seen["records"]
     assert records["DataEnd"] == records["Header"] == records["Footer"] == records["Statistics"] == 1
     assert records["SummaryOffset"] == 5 and records["MetadataIndex"] == records["Metadata"] == 1
-    # What @mcap/core does not look at: the sum of the data, and where which part of the summary is.
+    # Fields that @mcap/core does not check: the checksum of the data and the offsets of the summary's groups
     data = (folder / "out.mcap").read_bytes()
     start, end = int(seen["footer"]["summaryStart"]), int(seen["footer"]["summaryOffsetStart"])
     assert data[start - 13] == 0x0F and seen["data_crc"] == zlib.crc32(data[: start - 13])
@@ -127,12 +127,12 @@ def TheIndexLeadsToEveryMessage(taut, folder):
         assert int(group_start) == at and data[at] == opcode, (at, opcode, group_start)
         at += int(length)
     assert at == end
-    # Sought for, a part of it comes, and no more.
+    # A time range returns the messages of that range only.
     low, high = ns(time_s[20]), ns(time_s[40])
     part = run.node("read_mcap.mjs", folder / "out.mcap", low, high, needs=NEEDS)["indexed"]
     assert part == [m for m in seen["indexed"] if low <= int(m["log_time"]) <= high]
     assert 0 < len(part) < len(seen["indexed"])
-    # A byte that is another one is seen.
+    # A changed byte is detected.
     damaged = bytearray((folder / "out.mcap").read_bytes())
     damaged[len(damaged) // 2] ^= 1
     (folder / "damaged.mcap").write_bytes(damaged)
@@ -177,7 +177,7 @@ def FramesAndCablesAreWhereTheRobotIs(taut, folder):
     [line] = lines["lines"]
     points = [vector(p) for p in line["points"]]
     assert len(points) == 48 and line["type"] == 2
-    # Grey is what is slack: red and green are less apart than they are in the blue of the others.
+    # Slack cables are gray: their red and blue differ less than in the blue of the taut cables.
     slack = [values[row] <= 0 for name, values in columns.items() if name.endswith("/tension_n")]
     grey = [abs(c["r"] - c["b"]) < 0.1 for c in line["colors"]]
     assert grey[::2] == grey[1::2] == slack, (grey, slack)
@@ -191,26 +191,26 @@ def FramesAndCablesAreWhereTheRobotIs(taut, folder):
         entity = entities[name]
         assert entity["frame_id"] == name and entity["frame_locked"]
         [rod] = entity["cylinders"]
-        # The cylinder's axis is its own z: from one ball at its end to the other.
+        # The cylinder's axis is its local z axis, between the balls at its ends.
         along = turned(rod["pose"]["orientation"], [0, 0, 0.5 * rod["size"]["z"]])
         middle = vector(rod["pose"]["position"])
         balls = [vector(ball["pose"]["position"]) for ball in entity["spheres"]]
         assert np.allclose(sorted(map(tuple, balls)), sorted([tuple(middle - along), tuple(middle + along)]), atol=1e-12)
         ends += [vector(frame["translation"]) + turned(frame["rotation"], ball) for ball in balls]
-    # Every cable's line begins and ends at the ends of rods, and is as long as was recorded.
+    # Every cable's line begins and ends at ends of rods and has the recorded length.
     for point in points:
         assert min(np.linalg.norm(point - end) for end in ends) < 1e-9
     lengths = sorted(np.linalg.norm(b - a) for a, b in zip(points[::2], points[1::2]))
     recorded = sorted(values[row] for name, values in columns.items() if name.endswith("/length_m"))
     assert np.allclose(lengths, recorded, rtol=0, atol=1e-9)
-    # A trace alone has frames and no shapes.
+    # A trace without its run has frames and no shapes.
     shutil.copy(folder_of_run / "trace.h5", folder / "alone.h5")
     alone = by_topic(convert(taut, folder, "alone.h5")["indexed"])
     assert "/tf" in alone and not any(topic.startswith("/scene") for topic in alone), list(alone)
 
 
 def fits(value, schema, where="message"):
-    """Whether a message has all that a schema has, of its types, and nothing else."""
+    """Returns whether a message has exactly the fields of a schema, with their types."""
     kind = schema.get("type")
     if kind == "object":
         properties = schema.get("properties", {})
@@ -230,7 +230,7 @@ def fits(value, schema, where="message"):
 
 
 def MessagesAreThoseThatFoxgloveKnows(taut, folder):
-    """By the schemas that Foxglove publishes."""
+    """Checks messages against the schemas that Foxglove publishes."""
     folder_of_run = record(taut, folder, "drop_six_strut")
     seen = convert(taut, folder, folder_of_run)
     schemas = run.node("foxglove_schemas.mjs", "FrameTransforms", "SceneUpdate", needs=["@foxglove/schemas"])
@@ -250,7 +250,7 @@ def CsvIsThatOfTheRun(taut, folder):
     folder_of_run = record(taut, folder)
     run.taut(taut, folder, "trace", "convert", "run", "--out", "out.csv")
     assert (folder / "out.csv").read_bytes() == (folder_of_run / "trace.csv").read_bytes()
-    # From CSV, too; pipes are written to as they are.
+    # CSV input gives the same file.
     run.taut(taut, folder, "trace", "convert", "run/trace.csv", "--out", "again.csv")
     assert (folder / "again.csv").read_bytes() == (folder / "out.csv").read_bytes()
 
@@ -274,7 +274,7 @@ def SomeChannelsAndSomeRows(taut, folder):
 
 
 def rows_of(path):
-    """Of a trace that is written meanwhile."""
+    """Returns the number of rows of a trace that is being written."""
     try:
         with h5py.File(path, "r", libver="latest", swmr=True) as file:
             return file["time_s"].shape[0]
@@ -283,7 +283,7 @@ def rows_of(path):
 
 
 def AnUnfinishedTraceIsConverted(taut, folder):
-    """One whose writer was killed lacks its end and says so."""
+    """A trace whose writer was killed is converted, with a warning that it is unfinished."""
     experiment = ROOT / "share/experiments" / "drop_six_strut.yaml"
     going = subprocess.Popen([taut, "run", experiment, "--duration_s", "1e6", "--quiet", "--out", "run"], cwd=folder)
     while rows_of(folder / "run" / "trace.h5") < 50:
@@ -292,7 +292,7 @@ def AnUnfinishedTraceIsConverted(taut, folder):
     going.kill()
     going.wait()
     done = subprocess.run([taut, "trace", "convert", "run", "--out", "out.mcap", "--period_s", "0.1"], cwd=folder, capture_output=True, text=True)
-    assert done.returncode == 0 and "was not finished" in done.stderr, done.stderr
+    assert done.returncode == 0 and "the trace is unfinished" in done.stderr, done.stderr
     seen = run.node("read_mcap.mjs", folder / "out.mcap", needs=NEEDS)
     assert seen["done"] and len(by_topic(seen["indexed"])["/tf"]) > 2
 
@@ -301,19 +301,19 @@ def NothingHalfWrittenStays(taut, folder):
     record(taut, folder)
     for name in ("out.mcap", "out.csv"):
         (folder / name).write_text("before")
-        # A limit on the size of files is a disk that is full.
+        # A limit on the size of files acts like a full disk.
         done = subprocess.run(["bash", "-c", f"ulimit -f 64; exec {taut} trace convert run --out {name}"], cwd=folder, capture_output=True, text=True)
-        assert done.returncode == 1 and "cannot be written" in done.stderr, (name, done.returncode, done.stderr)
+        assert done.returncode == 1 and "cannot write" in done.stderr, (name, done.returncode, done.stderr)
         assert (folder / name).read_text() == "before"
         assert not list(folder.glob("*.part")), list(folder.iterdir())
 
 
 def WhatIsWrongIsSaid(taut, folder):
     record(taut, folder)
-    assert "says no format" in run.taut(taut, folder, "trace", "convert", "run", "--out", "x.h5", status=2)
+    assert "unknown format" in run.taut(taut, folder, "trace", "convert", "run", "--out", "x.h5", status=2)
     assert "--out" in run.taut(taut, folder, "trace", "convert", "run", status=2)
-    assert "cannot be opened" in run.taut(taut, folder, "trace", "convert", "no.h5", "--out", "x.csv", status=3)
-    assert "no channel that fits" in run.taut(taut, folder, "trace", "convert", "run", "--channels", "cables/*", "--out", "x.csv", status=3)
+    assert "cannot open" in run.taut(taut, folder, "trace", "convert", "no.h5", "--out", "x.csv", status=3)
+    assert "no channel that matches" in run.taut(taut, folder, "trace", "convert", "run", "--channels", "cables/*", "--out", "x.csv", status=3)
     run.taut(taut, folder, "trace", "convert", "run", "--period_s=-1", "--out", "x.csv", status=2)
     run.taut(taut, folder, "trace", "convert", "run", "--period_s=nan", "--out", "x.csv", status=2)
     run.taut(taut, folder, "trace", "convert", "run", "--out", "no/x.mcap", status=1)

@@ -1,4 +1,5 @@
-// Robots as points, bars and strings: against closed forms, and against structures of TsgFEM.
+// Robots as pin-jointed structures (nodes, bars, strings): against closed forms and structures of
+// TsgFEM
 #include "taut/pin_jointed.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ const PinMember& MemberOf(const PinJointed& s, const std::string& name) {
   return s.members.front();
 }
 
-/// What members and loads leave at a node, by the sum over its members.
+/// Returns the unbalanced force at a node: its load plus the forces of its members.
 Vec3 LeftAt(const PinJointed& s, std::size_t node) {
   Vec3 sum = s.nodes[node].load_n;
   for (const PinMember& m : s.members) {
@@ -70,7 +71,7 @@ TEST(PinJointed, WhatFallsHasNoWeightForItsMembers) {
   test::AddCable(def, {{rod, {0, 0, 1}}, {other, {1, 1, 1}}}, 100, 1);
   def.planes.emplace_back();  // far below
   for (const PinNode& node : PinJointedOf(def).nodes) EXPECT_EQ(node.load_n.z, 0);
-  // It lies on the ground: there it has.
+  // The robot lies on the ground: now its nodes have weight.
   def.planes[0].point_m.z = 0.99;
   double weight = 0;
   for (const PinNode& node : PinJointedOf(def).nodes) {
@@ -83,7 +84,7 @@ TEST(PinJointed, WhatFallsHasNoWeightForItsMembers) {
 TEST(PinJointed, ARodBetweenTwoCablesIsPressed) {
   ModelDef def;
   const int rod = AddRod(def, "rod", {0, 0, 0}, {1, 0, 0}, 1);
-  // Both pull inwards, from the middle of the rod's length, on either side of it.
+  // All cables pull inward, toward anchors on either side of the rod's center.
   for (const double y : {-0.5, 0.5}) {
     for (const double x : {0.0, 1.0}) {
       test::AddCable(def, {{rod, {x, 0, 0}}, {kWorld, {0.5, y, 0}}}, 100, 0.5);
@@ -92,7 +93,7 @@ TEST(PinJointed, ARodBetweenTwoCablesIsPressed) {
   const PinJointed s = PinJointedOf(def, false);
   const double tension = 100 * (std::sqrt(0.5) - 0.5);
   EXPECT_EQ(s.bars, 1);
-  // Two cables at each end, at 45 degrees.
+  // Two cables at each end, at 45 degrees
   EXPECT_NEAR(MemberOf(s, "rod").force_n, -2 * tension * std::sqrt(0.5), 1e-9);
   EXPECT_EQ(MemberOf(s, "rod").stiffness_n_per_m, 0);
   EXPECT_EQ(MemberOf(s, "rod").rest_length_m, 1);
@@ -114,7 +115,7 @@ TEST(PinJointed, ARodThatACablePullsAsideBendsAndItsTrussBalancesAllTheSame) {
     EXPECT_NEAR(LeftAt(s, n).y, 0, 1e-9);
     EXPECT_NEAR(LeftAt(s, n).z, 0, 1e-9);
   }
-  // The rod is two bars, and two points beside it.
+  // The rod becomes two bars and two points next to its axis.
   MemberOf(s, "rod_1"), MemberOf(s, "rod_2");
   int beside = 0;
   for (const PinNode& node : s.nodes) beside += node.name.starts_with("rod_beside_");
@@ -126,7 +127,8 @@ TEST(PinJointed, APlateUnderPullsAcrossItIsRigid) {
   const int plate = test::AddPoint(def, "plate", {0, 0, 0}, 1);
   def.nodes.clear();
   double up = 1;
-  // At the corners of a square up and down in turn: no bar in the plane could bear that.
+  // Forces at the corners of a square, alternately up and down: bars in the plane cannot carry
+  // them.
   for (const Vec3 corner : {Vec3{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}}) {
     test::AddCable(def, {{plate, corner}, {kWorld, corner + Vec3{0, 0, up}}}, 100, 0.9);
     up = -up;
@@ -172,7 +174,7 @@ TEST(PinJointed, CablesThroughEyeletsShareWhatTheyAreByLength) {
   EXPECT_NEAR(all.rest_length_m, 3.5, 1e-12);
   EXPECT_NEAR(all.stiffness_n_per_m, 200, 1e-9);
   EXPECT_NEAR(all.force_n, 100, 1e-9);
-  // Of each part the same force follows from its own length and stiffness.
+  // Each part has the same force, computed from its length and its stiffness.
   for (const PinMember& part : s.members) {
     EXPECT_NEAR(part.stiffness_n_per_m * (part.length_m - part.rest_length_m), 100, 1e-9);
   }
@@ -200,7 +202,7 @@ TEST(PinJointed, ACableOnAWheelPullsWhereItArrivesAndLeaves) {
   EXPECT_NEAR(cable.rest_length_m, 2 - arc, 1e-12);
   EXPECT_NEAR(cable.force_n, 100 * arc, 1e-9);
   EXPECT_NEAR(cable.stiffness_n_per_m * (cable.length_m - cable.rest_length_m), 100 * arc, 1e-9);
-  // Its block is pulled down by twice the tension, which nothing balances.
+  // The block is pulled down by twice the tension; no other force balances it.
   EXPECT_EQ(s.notes.size(), 2u);
   double down = 0;
   for (std::size_t n = 0; n < s.nodes.size(); ++n) {
@@ -233,10 +235,10 @@ TEST(PinJointed, AJointThatSlidesIsSaidToTakeNoPart) {
   test::AddJoint(def, JointKind::kPrismatic, a, {1, 0, 0}, b, {1, 0, 0});
   const PinJointed s = PinJointedOf(def, false);
   ASSERT_EQ(s.notes.size(), 1u);
-  EXPECT_NE(s.notes[0].find("joint0 takes no part"), std::string::npos) << s.notes[0];
+  EXPECT_NE(s.notes[0].find("joint0 is left out"), std::string::npos) << s.notes[0];
 }
 
-/// Bars and strings of another program's structures have the forces and densities that it says.
+/// Checks member forces and force densities against structures of another program.
 TEST(PinJointed, StructuresOfTsgFemHaveItsForceDensities) {
   int looked = 0;
   for (const char* name : {"tsgfem_static_tower_2prism", "tsgfem_static_half_Tbar",
@@ -245,7 +247,7 @@ TEST(PinJointed, StructuresOfTsgFemHaveItsForceDensities) {
     if (!file) continue;
     ++looked;
     ModelDef def = test::TrussOf(*file, MemberMass::kLumped);
-    // Bars as rigid ones: their forces then have to come out of equilibrium alone.
+    // Rigid bars: their forces follow from equilibrium only.
     for (JointDef& joint : def.joints) {
       if (IsBar(joint)) joint.stiffness = 0;
     }

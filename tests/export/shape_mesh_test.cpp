@@ -1,4 +1,4 @@
-// Shapes against closed forms, and STL read back by the reader of models.
+// Shape meshes against closed forms; STL files read back by the model reader
 #include "taut/shape_mesh.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ void ExpectClosed(const ShapeMesh& mesh) {
   EXPECT_GT(VolumeOf(mesh), 0) << mesh.name;
   if (mesh.normals.empty()) return;
   ASSERT_EQ(mesh.normals.size(), mesh.corners_m.size());
-  // A normal is on the same side as the faces that meet there.
+  // Normals are on the outer side of the adjacent faces.
   std::vector<Vec3> faces(mesh.corners_m.size());
   for (const auto& t : mesh.triangles) {
     const auto at = [&](int k) { return mesh.corners_m[static_cast<std::size_t>(k)]; };
@@ -109,7 +109,7 @@ TEST(ShapeMesh, EnclosesTheVolumeOfWhatItStandsFor) {
 }
 
 TEST(ShapeMesh, IsNearTheSurfaceThatItStandsFor) {
-  // Corners of a faceted ball are no farther from the true one than facets have to be wide.
+  // The distance of the corners from the center is the radius, within 2 %.
   const ShapeMesh ball = ShapesOf(AllKinds(), {})[2];
   for (const Vec3& corner : ball.corners_m) {
     const Vec3 out = corner - Vec3{-1, 0.5, 2};
@@ -136,8 +136,8 @@ TEST(ShapeMesh, CablesLieOnTheirWheels) {
     def.cables[0].attachments[1].wheel->counterclockwise = other_way;
     const ShapeMesh mesh = ShapesOf(def, {0.001}).front();
     ExpectClosed(mesh);
-    // Over it, along half its circumference, or below it, straight: a chord per ten degrees is
-    // that much shorter.
+    // The cable passes over the wheel, along half its circumference, or below it, straight. Chords
+    // of ten degrees make the mesh shorter by a known share.
     const double length_m = CableLength(def.cables[0]);
     EXPECT_NEAR(VolumeOf(mesh), std::numbers::pi * 1e-6 * length_m,
                 2e-3 * std::numbers::pi * 1e-6 * length_m);
@@ -145,7 +145,8 @@ TEST(ShapeMesh, CablesLieOnTheirWheels) {
     double highest = -2;
     for (const Vec3& corner : mesh.corners_m) highest = std::max(highest, corner.z);
     over += length_m > 2.2;
-    // Straight up, over it and down again; the other way round it does not touch.
+    // Straight up, over the wheel and down again; with the other direction the cable does not touch
+    // the wheel.
     EXPECT_NEAR(length_m, length_m > 2.2 ? 2 + 0.1 * std::numbers::pi : 0.2, 1e-9);
     EXPECT_NEAR(highest, length_m > 2.2 ? 0.1 : -1, 2e-3);
   }
@@ -176,7 +177,7 @@ TEST(ShapeMesh, EveryShippedModelIsClosedAndItsStlIsToo) {
     ASSERT_TRUE(read) << found.Format();
     EXPECT_EQ(read->triangles.size(), triangles);
     EXPECT_NEAR(math::SixVolumes(read->corners, read->triangles) / 6, 1e9 * volume, 1e4 * volume);
-    // Corners that are equal joined, every edge still has two triangles.
+    // With equal corners merged, every edge still has two triangles.
     const auto faults = math::FindFaults(read->corners, read->triangles, true, 10);
     EXPECT_TRUE(faults.empty()) << file.path() << ": " << faults.size();
   }

@@ -1,6 +1,6 @@
-"""What `taut export structure` writes, as numpy and the equations of tensegrity statics see it.
+"""Files of `taut export structure`, checked with numpy against the equations of tensegrity statics
 
-Usage: structure_test.py TEST TAUT. One test of this file, by the name of its function; 77: there is no numpy.
+Usage: structure_test.py TEST TAUT. TEST is the name of a function of this file; status 77: numpy is missing.
 """
 
 import csv
@@ -14,8 +14,8 @@ except ImportError:
     run.skip("there is no numpy (apt-get install python3-numpy)")
 
 ROOT = run.ROOT
-# In equilibrium without weight: rods; bars that give, and supports; bodies of several rods; cables beside
-# the axes of rods; a load in the middle; cables through eyelets.
+# In equilibrium without weight: rods; elastic bars, and supports; bodies of several rods; cables that end off the axes
+# of rods; a load in the middle; cables through eyelets
 MODELS = {
     "prism3": [],
     "six_strut": [],
@@ -28,7 +28,7 @@ MODELS = {
 
 
 class Structure:
-    """The files of a folder."""
+    """The files of an exported folder"""
 
     def __init__(self, folder):
         for name in ("N", "C_b", "C_s", "S", "q", "W", "R", "pinned"):
@@ -49,11 +49,11 @@ class Structure:
         return np.linalg.norm(self.N @ self.C.T, axis=0)
 
     def unbalanced(self):
-        """N C' diag(q) C - W: what has to act on the nodes besides."""
+        """Returns N C' diag(q) C - W: the additional forces that equilibrium needs at the nodes."""
         return self.N @ self.C.T @ np.diag(self.q) @ self.C - self.W
 
     def free(self):
-        """Nodes that nothing but members and weight acts on."""
+        """Returns a mask of the nodes on which only members and weight act."""
         ground = np.array([node["on_ground"] == "1" for node in self.nodes])
         return ~ground & (self.pinned.sum(axis=0) == 0)
 
@@ -81,7 +81,7 @@ def MatricesSayTheSameAsTheTable(taut, folder):
         assert (s.S.sum(axis=0) == 1).all() and s.S.shape == (len(s.clusters), members)
         assert np.allclose(s.lengths(), s.column("length_m"), rtol=0, atol=1e-14)
         assert np.allclose(s.q * s.lengths(), s.column("force_n"), rtol=1e-13, atol=1e-13)
-        # Clustered tools: l_c = S l, and one force along all of a cable, t = S' t_c.
+        # For tools with clustered members: l_c = S l, and one force along the whole cable, t = S' t_c
         assert np.allclose(s.S @ s.lengths(), [float(c["length_m"]) for c in s.clusters], rtol=1e-13)
         assert np.allclose(s.S.T @ [float(c["force_n"]) for c in s.clusters], s.column("force_n"), rtol=1e-12, atol=1e-12)
         assert len({node["name"] for node in s.nodes}) == nodes
@@ -103,14 +103,14 @@ def ForcesOfModelsAtRestBalance(taut, folder):
 
 
 def WhatIsLeftIsWhatTautSaysIsLeft(taut, folder):
-    """Of bodies that are points, as they are described: far from equilibrium, on their supports, with weight."""
+    """Bodies that are points, in the described pose: far from equilibrium, on their supports, with weight"""
     s = export(taut, folder, model("t3_prism"))
     said = json.loads(run.taut(taut, folder, "check", model("t3_prism"), "--json"))
     assert len(s.nodes) == 6 and len(s.members) == 12
     joints = {joint["name"]: np.array(joint["force_n"]) for joint in said["joints"]}
     for n, (node, body) in enumerate(zip(s.nodes, said["bodies"])):
         assert node["name"] == body["name"]
-        # What supports do to it and what then still is left: -R is what nothing here balances.
+        # Reaction of the support, and the force that remains unbalanced: -R has no counterpart here.
         support = joints.get(node["name"], np.zeros(3))
         left = np.array(body["left_force_n"]) - support
         assert np.allclose(-s.R[:, n], left, atol=1e-6), (node, s.R[:, n], left)
@@ -130,7 +130,7 @@ def TensionsLengthsAndRodsAreAsTautSays(taut, folder):
         rods = {m["name"]: float(m["force_n"]) for m in s.members if m["kind"] == "rod"}
         if name != "prism3":
             continue
-        # Of a rod alone taut has a law of its own (docs/theory/loads.md, eq. 4).
+        # For a single rod taut has a separate law (docs/theory/loads.md, eq. 4).
         for strut in said["struts"]:
             [force] = [f for rod, f in rods.items() if rod.startswith(strut["body"] + ".")]
             assert abs(force - strut["axial_n"]) < 1e-9 * abs(force), (strut, force)
@@ -146,7 +146,7 @@ def ARunThatHasComeToRestBalancesOnItsFeet(taut, folder):
     feet = ~s.free()
     assert 3 <= feet.sum() <= 6, feet
     left = s.unbalanced()
-    # The ground bears the weight, no more; all else balances, as far as it has come to rest.
+    # The ground carries exactly the weight; all other nodes balance, up to the residual motion.
     assert abs(left[2, feet].sum() - weight) < 1e-3 * weight, (left[2, feet].sum(), weight)
     assert np.abs(left[:, ~feet]).max() < 1e-3 * weight, np.abs(left[:, ~feet]).max()
 
@@ -162,11 +162,12 @@ def RoutedCablesAreClusters(taut, folder):
         assert abs(float(own["length_m"]) - cable["length_m"]) < 1e-12
         k, rest = float(own["stiffness_n_per_m"]), float(own["rest_length_m"])
         assert abs(k * (cable["length_m"] - rest) - cable["tension_n"]) < 1e-9
-    # With friction in the eyelets each side can have a force of its own.
+    # With friction in the eyelets each side may have a different force.
     parted = export(taut, folder, model("tetraspine3_eyelets"))
     assert len(parted.clusters) - len(parted.C_b) == 24
     assert (parted.S.sum(axis=1) == 1).all()
-    # Trusses bear what they bear: on each body is left what its cables do to it as a whole.
+    # The truss is in equilibrium, so that the total unbalanced force and torque of a body are the total force and
+    # torque of its cables.
     for body in said["bodies"]:
         own = [n for n, node in enumerate(s.nodes) if node["name"].startswith(body["name"])]
         forces, arms = -s.R[:, own].T, s.N[:, own].T - body["com_m"]
@@ -176,7 +177,8 @@ def RoutedCablesAreClusters(taut, folder):
 
 def APrismHasTheForceDensitiesOfTheLiterature(taut, folder):
     s = export(taut, folder, model("prism3"))
-    # Of a prism of three rods: sides carry sqrt(3) times the density of the bases, rods the same, and push.
+    # Prism of three rods: side cables have sqrt(3) times the force density of the base cables; rods the same, in
+    # compression.
     kinds = {"lower": [], "upper": [], "side": [], "strut": []}
     for member, q in zip(s.members, s.q):
         kinds[member["name"].split("_")[0]].append(q)
@@ -194,7 +196,7 @@ def WhatIsWrongIsSaid(taut, folder):
     assert "no flag" in run.taut(taut, folder, "export", "structure", prism, "--folder", "x", status=2)
     assert "at_s" in run.taut(taut, folder, "export", "structure", prism, "--at_s", "1", status=2)
     assert "gait" in run.taut(taut, folder, "export", "structure", ROOT / "share/gaits" / "hand_tuned_sine.yaml", status=3)
-    assert "cannot be opened" in run.taut(taut, folder, "export", "structure", prism, "--pose", "no.h5", status=3)
+    assert "cannot open" in run.taut(taut, folder, "export", "structure", prism, "--pose", "no.h5", status=3)
     (folder / "file").write_text("")
     run.taut(taut, folder, "export", "structure", prism, "--out", "file", status=1)
     run.taut(taut, folder, "export", "structure", prism, "--out", "file/x", status=1)

@@ -1,6 +1,6 @@
-"""script/faults finds what is wrong, and only that.
+"""script/faults finds errors, and reports nothing else.
 
-Usage: faults_test.py TAUT LIBRARY TEST. One test of this file, by the name of its function.
+Usage: faults_test.py TAUT LIBRARY TEST. TEST is the name of a function of this file.
 """
 
 import pathlib
@@ -19,7 +19,7 @@ def faults(*words, taut=TAUT):
 
 
 def instead(folder, lines):
-    """A command in the place of taut: of its arguments "$@" it makes what `lines` say."""
+    """Returns a command that replaces taut and handles the arguments "$@" with the shell code `lines`."""
     path = pathlib.Path(folder, "taut")
     path.write_text(f"#!/bin/sh\ntaut={TAUT}\n{lines}\n")
     path.chmod(0o755)
@@ -62,17 +62,17 @@ def AFileThatCannotBeReadEndsAFitAndIsNoFailedTrial():
     calls = faults("fit", "--at", "read 1 once").stdout
     count = int(re.search(r"(\d+) read", calls)[1])
     run = faults("fit", *(word for part in (4, 5, 6) for word in ("--at", f"read {count // part} sticky")))
-    assert run.returncode == 0 and run.stdout.count("the same command goes on from here") > 0, run
+    assert run.returncode == 0 and run.stdout.count("run the same command again to resume") > 0, run
 
 
 def AnImportThatCannotCheckItsModelSaysSo():
     run = faults("import_ntrt", "--at", "open 1 once", "--at", "read 3 once", "--at", "name 1 once")
-    assert run.returncode == 0 and run.stdout.count("cannot check the model: its temporary file cannot be") == 3, run
+    assert run.returncode == 0 and run.stdout.count("cannot check the model: temporary file: cannot") == 3, run
     assert "refuses the model" not in run.stdout, run
 
 
 def MemoryThatIsMissingWhereNothingMayBeThrownIsSaid():
-    # Of these, some fail while texts of JSON go, which needs memory, too.
+    # Some of these fail during the destruction of JSON texts, which also allocates memory.
     calls = faults("top", "--at", "memory 1 once").stdout
     count = int(re.search(r"calls: (\d+) memory", calls)[1])
     run = faults("top", *(word for back in range(100, 400, 23) for word in ("--at", f"memory {count - back} sticky")))

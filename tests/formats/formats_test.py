@@ -1,8 +1,8 @@
-"""What an earlier release wrote is read by this one: every kind of file, as that release left it.
+"""Reads files of every format as written by earlier releases.
 
-Usage: formats_test.py TAUT TEST. One test of this file, by the name of its function; it is done with each folder
-beside this file, which is named by a release. Its files are never changed. That of a new release is made by it, in a copy of
-the last one's descriptions:
+Usage: formats_test.py TAUT TEST. TEST is the name of a function of this file; it runs for each folder next to this
+file. Each folder is named after a release. Its files are never changed. A new release makes its folder in a copy of the
+previous release's descriptions:
 
   taut run experiment.yaml --csv --quiet --out run; taut learn study.yaml --threads 1 --quiet --out study
   rm -f */.lock study/experiment.yaml; gzip -9n run/trace.h5 study/study.sqlite
@@ -25,11 +25,11 @@ PAGES = (TAUT.parent / "web/report.html").exists()
 
 
 class Skipped(Exception):
-    """Why a test is left out."""
+    """Reason for skipping a test"""
 
 
 def taut(folder, *words, status=0):
-    """Standard output of a command that ends with this status."""
+    """Runs taut and checks its exit status. Returns its standard output."""
     done = subprocess.run([TAUT, *words], cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     assert done.returncode == status, f"taut {' '.join(words)}: {done.returncode}\n{done.stdout}{done.stderr}"
     return done.stdout
@@ -56,7 +56,7 @@ def DescriptionsAreGood(folder):
 
 
 def ResolvedInputsRunAsTheExperimentDoes(folder):
-    # to this version's last bit; whether that is the release's, too, is said by CHANGELOG.md
+    # equal to the last bit in this version; CHANGELOG.md lists releases that changed bits
     assert end_of(folder, "run/inputs.yaml") == end_of(folder, "experiment.yaml")
     taut(folder, "run", "table_experiment.yaml", "--quiet")
 
@@ -90,7 +90,7 @@ def ViewShowsTheTrace(folder):
     said = ""
     while "Ctrl-C" not in said and (line := view.stdout.readline()):
         said += line
-    with urllib.request.urlopen(re.search(r"http://\S+", said)[0]) as page:  # it serves
+    with urllib.request.urlopen(re.search(r"http://\S+", said)[0]) as page:  # the server responds
         assert page.status == 200
     view.send_signal(signal.SIGINT)
     rest = view.communicate()[0]
@@ -104,8 +104,8 @@ def StudyIsListedAndGoesOn(folder):
     study.write_text(study.read_text().replace("evaluations: 4", "evaluations: 6"))
     done = subprocess.run([TAUT, "learn", "study.yaml", "--out", "study", "--threads", "1", "--quiet"], cwd=folder,
                           capture_output=True, text=True)
-    if done.returncode == 3:  # results changed since: a search must not mix them, and says so
-        assert "now ends in another state" in done.stderr, done.stderr
+    if done.returncode == 3:  # results have changed since: a search must not mix them and reports an error
+        assert "now ends in a different state" in done.stderr, done.stderr
         return
     assert done.returncode == 0, f"{done.returncode}: {done.stderr}"
     listed = taut(folder, "learn", "--top", "9", "study", "--json")

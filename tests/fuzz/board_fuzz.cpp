@@ -1,6 +1,6 @@
-// Any bytes as what a motor board lives through: messages of the bus, whole and damaged, readings
-// of its sensors, ticks that come late, a memory that gets done. After every tick its duties are
-// duties, nothing has power that may not have it, and what it says is a frame of its own.
+// Fuzz target of a motor board: valid and damaged messages on its bus, sensor readings, late ticks,
+// completed memory accesses. After every tick its duties are within their limits, unarmed motors
+// have no power, and its status is a valid frame of this board.
 #include <cmath>
 #include <cstring>
 
@@ -13,7 +13,7 @@ namespace {
 using fuzz::Must;
 
 constexpr int kMaxTicks = 300;       // of an input
-constexpr std::uint8_t kNobody = 7;  // a board that was given no number
+constexpr std::uint8_t kNobody = 7;  // number of a board without one
 
 /// Draws from the first byte to the last; zeros follow.
 class Draw {
@@ -35,7 +35,7 @@ class Draw {
   const std::uint8_t* const end_;
 };
 
-/// Whether the message of a good checksum is the same after being understood.
+/// Checks that a message with a correct checksum is unchanged after decoding and encoding.
 void CheckMessage(const std::uint8_t* bytes, std::size_t size, bool to_all) {
   if (!to_all) {
     Asking asking;
@@ -100,7 +100,7 @@ class Life {
           Memorise();
           break;
         case 6:
-          board_.reply_due = false;  // it was read
+          board_.reply_due = false;  // the reply was read
           break;
         default:
           Ticks(draw_.Byte() % 64, 1);
@@ -111,7 +111,7 @@ class Life {
   }
 
  private:
-  /// A message as the bus brings it: no byte behind it is the board's.
+  /// Delivers a message like the bus: no byte behind it belongs to the board.
   void Deliver(const std::uint8_t* bytes, std::size_t size, bool to_all) {
     const std::vector<std::uint8_t> message(bytes, bytes + size);
     CheckMessage(message.data(), size, to_all);
@@ -139,7 +139,8 @@ class Life {
     Deliver(frame, sizeof frame, true);
   }
 
-  /// With a good checksum, mostly a good nonce, and half of the values those of a range's ends.
+  /// Sends a request with a correct checksum, mostly a correct nonce, and range ends as half of the
+  /// values.
   void Request() {
     const std::uint8_t what = draw_.Byte();
     Asking asking;
@@ -165,13 +166,13 @@ class Life {
     }
   }
 
-  /// Any bytes, some of them with a good checksum.
+  /// Sends arbitrary bytes, some of them with a correct checksum.
   void Bytes() {
     const std::uint8_t how = draw_.Byte();
     std::uint8_t bytes[kMaxMessageSize];
     const std::size_t size = draw_.Byte() % (kMaxMessageSize + 1);
     for (std::size_t i = 0; i < size; ++i) bytes[i] = draw_.Byte();
-    if (how % 4 == 1 && size >= 4) {  // an emergency stop, or something like it
+    if (how % 4 == 1 && size >= 4) {  // an emergency stop, or nearly one
       bytes[0] = kStopHead;
       bytes[1] = 'S';
       bytes[2] = 'T';
@@ -192,7 +193,8 @@ class Life {
     }
   }
 
-  /// What the chip's side does: it has stored, or has loaded what it stored (here: the defaults).
+  /// Completes a memory access like the chip: parameters are stored, or loaded (here: the
+  /// defaults).
   void Memorise() {
     if (board_.memory == Memory::kLoad) {
       SetDefaults(board_.parameters);
@@ -209,14 +211,14 @@ class Life {
       for (std::size_t m = 0; m < kMotors; ++m) {
         encoder_[m] = static_cast<std::uint16_t>(encoder_[m] + step_[m]);
         in.encoder[m] = encoder_[m];
-        // no converter gives the same number over and over
+        // no converter repeats the same number
         in.adc[m] = static_cast<std::uint16_t>(adc_[m] ^ (frozen_ ? 0 : ticks_ % 2));
       }
       const Before before(board_);
       Tick(in, board_);
       CheckTick(before);
       Feel(board_);
-      if (board_.mode != before.mode) CheckParameters();  // it may have captured some
+      if (board_.mode != before.mode) CheckParameters();  // some may have been captured
       if (ticks_ % 4 == 0) CheckFrame();
       DoSlowWork(board_);
       for (const Watch& watch : board_.watches) {
@@ -226,7 +228,7 @@ class Life {
     }
   }
 
-  /// Of a board, what tells whether its next tick was right.
+  /// State of a board before a tick, for the checks after it.
   struct Before {
     explicit Before(const Board& board)
         : mode(board.mode),
@@ -272,7 +274,7 @@ class Life {
                std::isfinite(motor.pid.integral) && std::isfinite(motor.pid.error_before) &&
                std::isfinite(motor.tension_counts) && std::isfinite(motor.counts_per_tick),
            "a motor's numbers are numbers");
-      // A law that takes over leaves the duties as they are for this tick.
+      // A law that takes over keeps the duties for this tick.
       const bool stays = taken && motor.width == before.width[m];
       Must(stays || motor.width == static_cast<std::int16_t>(motor.drive),
            "the duty is what was decided");
@@ -287,7 +289,7 @@ class Life {
     }
   }
 
-  /// L0 is, after a capture, what was measured.
+  /// Checks the parameters; after a capture, L0 is a measured value.
   void CheckParameters() const {
     for (std::uint8_t m = 0; m < kMotors; ++m) {
       const float* const p = board_.parameters.motor[m];

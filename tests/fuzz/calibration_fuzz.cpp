@@ -1,4 +1,4 @@
-// Any text as a calibration. An accepted one is written and read back.
+// Fuzz target of calibration files. An accepted file is written and read back.
 #include "taut/calibration.h"
 
 #include "fuzz/refusals.h"
@@ -27,7 +27,7 @@ void CheckSame(const Calibration& a, const Calibration& b) {
 
 }  // namespace
 
-/// Inputs of odd size are for a robot with known cables.
+/// Inputs of odd size are read for a robot with known cables.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const taut::fuzz::Folder folder;
   std::vector<std::string> cables;

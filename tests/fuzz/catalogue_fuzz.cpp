@@ -1,4 +1,4 @@
-// Any text as a catalogue of motors and springs.
+// Fuzz target of catalogs of motors and springs.
 #include "taut/catalogue.h"
 
 #include <cmath>

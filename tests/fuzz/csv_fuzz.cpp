@@ -1,4 +1,4 @@
-// Any bytes as a trace in CSV; what can be read is compared with itself and written again.
+// Fuzz target of CSV traces; a readable trace is compared with a copy of itself and written again.
 #include <bit>
 
 #include "fuzz/fuzz_folder.h"
@@ -26,7 +26,7 @@ void CheckTrace(const Trace& trace, const taut::fuzz::Folder& folder) {
   const std::string path = folder.Path("again.csv");
   Diagnostics out;
   const auto writer = CreateCsvTrace(path, trace.channels, out);
-  if (!writer) return;  // names of foreign programs that taut does not write
+  if (!writer) return;  // channel names that taut does not write
   std::vector<double> row(trace.channels.size());
   for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = trace.values[c][i];
@@ -47,7 +47,7 @@ void CheckTrace(const Trace& trace, const taut::fuzz::Folder& folder) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const taut::fuzz::Folder folder;
-  // gzip is found by its first bytes, so both kinds of file come this way.
+  // gzip is detected by its first bytes, so one target covers both kinds of file.
   Diagnostics out;
   const auto trace = taut::ReadTrace(folder.Write("t.csv", data, size), out);
   Must(trace.has_value() == out.ok(), "a trace or complaints");

@@ -38,7 +38,7 @@ class Damage {
       case 2:
         text.insert(at, kPieces[Below(std::size(kPieces))]);
         break;
-      case 3: {  // a line somewhere else
+      case 3: {  // move a line
         const std::size_t begin = text.rfind('\n', at), end = text.find('\n', at);
         if (begin == std::string::npos || end == std::string::npos) break;
         const std::string line = text.substr(begin, end - begin);

@@ -1,5 +1,5 @@
-// Any bytes as an experiment file, the shipped models beside it.
-#include "fuzz/readers.h"
+// Fuzz target of experiment files, next to the shipped models.
+#include "fuzz/reader_targets.h"
 
 namespace {
 
@@ -11,7 +11,7 @@ struct Folders {
     for (const char* name : {"models", "mappings"}) {
       fs::copy(fs::path(TAUT_SOURCE_DIR) / "share" / name, folder.Path(name));
     }
-    // Bases of experiments, under the names by which the shipped ones are known.
+    // Base experiments, under the names of the shipped files.
     for (const auto& entry : fs::directory_iterator(TAUT_SOURCE_DIR "/share/experiments")) {
       fs::copy(entry.path(), folder.Path("experiments/" + entry.path().filename().string()));
     }

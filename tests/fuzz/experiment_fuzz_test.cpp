@@ -1,9 +1,9 @@
-// Experiment files with random damage: reading one ends, throws nothing and gives either an
-// experiment or at least one error; and what it gives can be compiled or is refused then.
+// Experiment files with random damage: reading terminates, throws nothing and returns either an
+// experiment or at least one error; an experiment can be compiled or is refused then.
 #include <gtest/gtest.h>
 
 #include "fuzz/damage.h"
-#include "fuzz/readers.h"
+#include "fuzz/reader_targets.h"
 
 namespace taut {
 namespace {
@@ -16,11 +16,11 @@ void ReadDamaged(const std::string& name, const std::string& good, unsigned coun
     const std::string bad = test::Damage(seed).To(good);
     read += fuzz::CheckExperimentFile(folder.Write(name, bad.data(), bad.size()), folder);
   }
-  EXPECT_GT(read, 0u);         // some damage is harmless: a comment, a number
+  EXPECT_GT(read, 0u);         // some damage is harmless: in a comment, a number
   EXPECT_LT(read, count / 2);  // most is not
 }
 
-/// A shipped experiment that can be read from anywhere.
+/// Returns the text of a shipped experiment with absolute paths.
 std::string Shipped(const std::string& name) {
   std::string text = fuzz::ReadAll(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml");
   const std::string from = "../models/", to = TAUT_SOURCE_DIR "/share/models/";

@@ -1,4 +1,4 @@
-// Any text as a script of faults of a robot's boards. The first byte is the number of motors.
+// Fuzz target of fault scripts of a robot's boards. The first byte is the number of motors.
 #include "taut/faults.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const std::vector<std::string> all{"outer_top_1",  "outer_left_1", "outer_right_1",
                                             "inner_top_1",  "inner_left_2", "inner_right_1",
                                             "outer_right_2"};
-  // Scripts of the tree begin with '#' or 't', which keeps all motors.
+  // Scripts in the source tree begin with '#' or 't', which keeps all motors.
   const std::size_t count = size == 0 ? 0 : std::min<std::size_t>(data[0] % 36, all.size());
   const std::vector<std::string> cables(all.begin(), all.begin() + static_cast<long>(count));
   taut::Diagnostics out;

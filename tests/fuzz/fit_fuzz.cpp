@@ -1,4 +1,4 @@
-// Any text as a fit, in a folder with the shipped experiments and measurements.
+// Fuzz target of fit files, in a folder with the shipped experiments and measurements.
 #include "fuzz/refusals.h"
 #include "fuzz/shipped_folder.h"
 #include "fuzz/text_input.h"

@@ -1,5 +1,5 @@
-/// What the fuzz targets share: a folder in memory for the files to read, a check that ends the
-/// program, and damage to good files.
+/// Common helpers of the fuzz targets: a folder in memory for input files, a check that ends the
+/// program, and damage to valid files.
 #pragma once
 
 #include <unistd.h>
@@ -14,14 +14,14 @@
 
 namespace taut::fuzz {
 
-/// Ends the program, and so shows the input to the fuzzer.
+/// Ends the program if `good` is false, which reports the input to the fuzzer.
 inline void Must(bool good, const std::string& what) {
   if (good) return;
   std::fprintf(stderr, "this must not be: %s\n", what.c_str());
   std::abort();
 }
 
-/// A folder of this process alone; goes away with it.
+/// A folder of this process, deleted by the destructor.
 class Folder {
  public:
   Folder() {
@@ -61,8 +61,8 @@ inline std::string ReadAll(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The file that an input stands for. Its first byte chooses a base, patches of four bytes follow:
-/// place (3), value (1). Where there is no such base the rest of the input is the file.
+/// Returns the file that an input encodes. Its first byte selects a base, patches of four bytes
+/// follow: place (3), value (1). If there is no such base, the rest of the input is the file.
 inline std::string Damaged(const std::vector<std::string>& bases, const std::uint8_t* data,
                            std::size_t size) {
   if (data[0] >= bases.size()) return {data + 1, data + size};

@@ -1,4 +1,4 @@
-// Any text as a gait. An accepted one is written and read back.
+// Fuzz target of gait files. An accepted gait is written and read back.
 #include "taut/gait.h"
 
 #include "fuzz/refusals.h"

@@ -1,8 +1,8 @@
-// Any bytes as OBJ, STL or heights in CSV: ground on which a rod falls, or errors.
+// Fuzz target of terrain files in OBJ, STL or CSV heights: ground on which a rod falls, or errors.
 #include "description/assets/mesh_file.h"
 #include "fuzz/on_ground.h"
 
-/// The first byte contains the kind of the others (0 OBJ, 1 STL, 2 CSV), and whether meshes are
+/// The first byte encodes the format of the rest (0 OBJ, 1 STL, 2 CSV), and whether meshes are
 /// closed.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const taut::fuzz::Folder folder;

@@ -1,6 +1,7 @@
-// Good HDF5 traces with damage, or any bytes. HDF5 itself may crash on them: the caller must not.
+// Fuzz target of HDF5 traces: valid ones with damage, or any bytes. HDF5 may crash on them: its
+// caller must not.
 //
-// Input: as `Damaged` takes it. Bases: a finished trace, one whose writer was cut off, one in
+// Input: as for `Damaged`. Bases: a finished trace, a trace with an interrupted writer, a trace in
 // HDF5's old layout, which has no checksums.
 #include "fuzz/fuzz_folder.h"
 #include "tests/unit/trace/hdf5_old_layout.h"
@@ -16,7 +17,7 @@ std::vector<taut::ChannelInfo> Columns() {
   return {{"cable/a/tension_n", "N"}, {"cable/b/tension_n", "N"}};
 }
 
-/// The file as it is after `kRows` rows, finished or not.
+/// Returns the file after `kRows` rows, finished or not.
 std::string Written(const std::string& path, bool finish) {
   taut::Diagnostics out;
   const auto writer = CreateHdf5Trace(path, Columns(), {{"seed", "0"}}, out);

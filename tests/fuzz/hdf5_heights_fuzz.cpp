@@ -1,6 +1,6 @@
-// Tables of heights in HDF5, with damage, or any bytes.
+// Fuzz target of height tables in HDF5, with damage, or any bytes.
 //
-// Input: as `Damaged` takes it. Bases: doubles in compressed chunks, 16-bit integers in one piece,
+// Input: as for `Damaged`. Bases: doubles in compressed chunks, 16-bit integers in one piece,
 // big-endian floats in the new layout, which has checksums.
 #include <hdf5.h>
 
@@ -11,7 +11,7 @@ namespace {
 using taut::fuzz::Folder;
 using taut::fuzz::Must;
 
-/// A file with a table /z of 9 rows and 12 columns of this type.
+/// Returns a file with a table /z of 9 rows and 12 columns of this type.
 std::string Table(const std::string& path, hid_t type, bool chunked, bool new_layout) {
   const hsize_t size[2] = {9, 12}, chunk[2] = {4, 5};
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS), plan = H5Pcreate(H5P_DATASET_CREATE);

@@ -1,8 +1,7 @@
-// Gray PNG images as heights, with damage, or any bytes.
+// Fuzz target of gray PNG images as heights, with damage, or any bytes.
 //
-// Input: as `Damaged` takes it. Bases: images of 1 to 16 bits, plain, interlaced, with an alpha
-// channel, with a palette. Inputs of odd size get correct checksums: libpng stops at a wrong
-// one.
+// Input: as for `Damaged`. Bases: images of 1 to 16 bits, plain, interlaced, with an alpha channel,
+// with a palette. Inputs of odd size get correct checksums: libpng stops at a wrong one.
 #include <png.h>
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-// Any bytes as a mapping file, applied to a trace as NTRT writes them.
+// Fuzz target of mapping files, applied to a trace in NTRT's format.
 #include "fuzz/fuzz_folder.h"
 #include "taut/compare.h"
 

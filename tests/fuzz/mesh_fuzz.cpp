@@ -1,8 +1,9 @@
-// Triangles from OBJ and STL files as ground and as convex solids.
+// Fuzz target of triangles from OBJ and STL files as ground and as convex solids.
 //
 // Input: byte 0 is the kind of file (OBJ, STL, triangles), byte 1 its use (closed ground, sheet,
 // convex solid with a density, with a mass). The rest is the file, or: byte 2 the number of copies,
-// byte 3 how copies differ, then triangles of nine floats each, which become a binary STL.
+// byte 3 the difference between copies, then triangles of nine floats each, which become a binary
+// STL.
 #include <cmath>
 
 #include "fuzz/on_ground.h"
@@ -22,7 +23,7 @@ void Append(std::string& file, const void* data, std::size_t size) {
   file.append(static_cast<const char*>(data), size);
 }
 
-/// One copy of a corner: in place, shifted, nearly in place, scaled, rotated.
+/// Returns one copy of a corner: in place, shifted, nearly in place, scaled, rotated.
 taut::fuzz::Corner Copied(taut::fuzz::Corner corner, int copy, int how) {
   const auto k = static_cast<float>(copy);
   if (how == 1) corner[0] += k;

@@ -1,13 +1,13 @@
-// A random model that mixes all features of a step: cables that touch rods and terrain, stiff and
-// soft, with and without friction, pulleys and eyelets, motors, joints, hulls, bodies with motions,
-// height fields and meshes; eight worlds, moved a little against each other, on every instruction
-// set. Checks: no step exceeds its work limit, non-finite values have a status, all sets have the
-// same bits, and touching cables alone create no energy.
+// Fuzz target that mixes all features of a step in a random model: cables that touch rods and
+// terrain, stiff and soft, with and without friction, pulleys and eyelets, motors, joints, hulls,
+// kinematic bodies, height fields and meshes; eight worlds, slightly displaced from each other,
+// with every instruction set. Checks: no step exceeds its work limit, non-finite values have a
+// status, all sets have the same bits, and touching cables alone create no energy.
 #include <string>
 
-#include "fuzz/draw.h"
 #include "fuzz/finite.h"
 #include "fuzz/fuzz_folder.h"
+#include "fuzz/random_input.h"
 
 namespace taut::fuzz {
 namespace {
@@ -19,7 +19,7 @@ constexpr long kEnough = 20'000;
 
 struct Mix {
   ModelDef def;
-  bool conserves = false;  ///< Nothing but touching cables without friction acts.
+  bool conserves = false;  ///< Only frictionless touching cables act.
 };
 
 Material Surface(Draw& draw, bool rough) {
@@ -28,7 +28,7 @@ Material Surface(Draw& draw, bool rough) {
   return m;
 }
 
-/// A rod, a ball, a box or a hull somewhere in a room of 2 m.
+/// Adds a rod, a ball, a box or a hull at a random place in a room of 2 m.
 void AddBody(ModelDef& def, Draw& draw) {
   const int index = static_cast<int>(def.bodies.size());
   const Vec3 center = draw.Point(0.5) + Vec3{0, 0, 0.8}, along = draw.Direction();
@@ -262,7 +262,7 @@ void Run(const std::uint8_t* data, std::size_t size) {
     const bool known = std::any_of(sets.begin(), sets.end(), [&](const Batch& other) {
       return other.lanes() == batch.lanes();
     });
-    if (known) continue;  // this machine or build has no such set
+    if (known) continue;  // this machine or build lacks the set
     MoveApart(batch, mix.def, apart);
     sets.push_back(std::move(batch));
   }

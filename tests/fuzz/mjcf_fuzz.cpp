@@ -1,8 +1,8 @@
-// Any text as an MJCF model. An accepted one is written as a model file, as an experiment file and
-// as MJCF, and read back.
+// Fuzz target of MJCF models. An accepted model is written as a model file, as an experiment file
+// and as MJCF, and read back.
 #include "taut/mjcf.h"
 
-#include "fuzz/readers.h"
+#include "fuzz/reader_targets.h"
 #include "fuzz/refusals.h"
 #include "fuzz/text_input.h"
 
@@ -50,7 +50,7 @@ void CheckExport(const ImportedMjcf& made, const taut::MjcfExport& options, cons
 
 }  // namespace
 
-/// The size of the input chooses the options.
+/// The size of the input selects the options.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Folder folder;
   taut::MjcfImport options;

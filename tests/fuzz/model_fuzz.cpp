@@ -1,5 +1,5 @@
-// Any bytes as a model file.
-#include "fuzz/readers.h"
+// Fuzz target of model files.
+#include "fuzz/reader_targets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const taut::fuzz::Folder folder;

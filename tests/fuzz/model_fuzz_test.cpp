@@ -1,9 +1,9 @@
-// Model files with random damage: whatever stands in a file, reading it ends, throws nothing and
-// gives either a robot or at least one error.
+// Model files with random damage: for any contents, reading terminates, throws nothing and returns
+// either a robot or at least one error.
 #include <gtest/gtest.h>
 
 #include "fuzz/damage.h"
-#include "fuzz/readers.h"
+#include "fuzz/reader_targets.h"
 
 namespace taut {
 namespace {
@@ -17,7 +17,7 @@ void ReadDamaged(const std::string& model, unsigned count) {
     const std::string bad = test::Damage(seed).To(good);
     robots += fuzz::CheckModelFile(folder.Write("model.yaml", bad.data(), bad.size()));
   }
-  EXPECT_GT(robots, 0u);         // some damage is harmless: a comment, a number
+  EXPECT_GT(robots, 0u);         // some damage is harmless: in a comment, a number
   EXPECT_LT(robots, count / 2);  // most is not
 }
 

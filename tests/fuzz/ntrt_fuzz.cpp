@@ -1,8 +1,8 @@
-// Any text as a structure of NTRT, in a folder with structures that it may include.
+// Fuzz target of NTRT structures, in a folder with structures for their includes.
 #include "taut/import_ntrt.h"
 
 #include "description/yaml/yaml_tree.h"
-#include "fuzz/readers.h"
+#include "fuzz/reader_targets.h"
 #include "fuzz/refusals.h"
 #include "fuzz/text_input.h"
 
@@ -12,7 +12,7 @@ using taut::fuzz::Must;
 namespace fs = std::filesystem;
 
 /// Copies of all structures: in the folder of the input, and by the name of their folder in folders
-/// next to the input and one level above, so that most relative paths of the seeds lead to a file.
+/// next to the input and one level above, so that most relative paths of the seeds are valid.
 struct Structures {
   taut::fuzz::Folder folder;
   Structures() {

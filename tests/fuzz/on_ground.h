@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "fuzz/readers.h"
+#include "fuzz/reader_targets.h"
 #include "fuzz/refusals.h"
 
 namespace taut::fuzz {
@@ -30,7 +30,7 @@ inline void DropARod(ModelDef def, int steps) {
   Must(std::isfinite(p.x + p.y + p.z), "a finite position");
 }
 
-/// Writes a model of one rod, and an experiment with this terrain; reads the experiment.
+/// Writes a model of one rod and an experiment with this terrain; reads the experiment.
 inline std::optional<ExperimentSpec> ReadTerrain(const Folder& folder, const std::string& terrain,
                                                  Diagnostics& out) {
   const std::string model =
@@ -46,7 +46,7 @@ inline std::optional<ExperimentSpec> ReadTerrain(const Folder& folder, const std
   return read;
 }
 
-/// The height field of `ReadTerrain` alone, with a height for each corner.
+/// Returns the height field of `ReadTerrain` alone, with a height for each corner.
 inline ModelDef HeightsOf(const ExperimentSpec& read) {
   ModelDef def;
   def.height_fields = read.robot.def.height_fields;

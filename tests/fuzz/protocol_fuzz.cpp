@@ -1,6 +1,6 @@
-// Any texts as messages of a browser, a line each: a message is refused with a reason or is a
-// command whose numbers are in their ranges. All commands go to a live run, which still answers
-// after them.
+// Fuzz target of messages from a browser, one per line: a message is refused with a reason, or
+// becomes a command whose numbers are in their ranges. All commands go to a live run, which must
+// still answer after them.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <semaphore>
@@ -18,8 +18,8 @@ using taut::viewer::LiveOptions;
 using taut::viewer::LiveSession;
 
 const std::string kExperiment = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
-constexpr int kMaxMessages = 100;       // a session keeps 256 questions at most
-constexpr int kClient = 1, kAsker = 2;  // what the asker is told is the answer to its only question
+constexpr int kMaxMessages = 100;       // a session keeps at most 256 questions
+constexpr int kClient = 1, kAsker = 2;  // kAsker receives only the answer to its single question
 
 taut::ExperimentSpec Experiment() {
   taut::Diagnostics out;
@@ -38,7 +38,7 @@ void CheckCommand(const Command& command) {
   Must(command.type != "speed" || command.value >= 0, "time goes on");
 }
 
-/// True once the asker was answered. All that is said must be a message.
+/// Returns true once kAsker received its answer. All output must be valid messages.
 bool Answered(LiveSession& session) {
   bool answered = false;
   for (const taut::viewer::Outgoing& message : session.TakeMessages()) {

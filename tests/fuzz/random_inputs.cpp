@@ -16,13 +16,14 @@
 namespace taut::fuzz {
 namespace {
 
-/// What the handler of a failure needs, made ready before the target runs: it may not allocate.
+/// Data of the failure handler, prepared before the target runs, because the handler must not
+/// allocate.
 struct Current {
   const std::uint8_t* data = nullptr;
   std::size_t size = 0;
-  std::array<char, 4096> path{};     ///< Where to keep the input; empty: nowhere.
-  std::array<char, 8192> message{};  ///< What to say.
-  std::array<char, 128> count{};     ///< What to say on standard output.
+  std::array<char, 4096> path{};     ///< File for a failing input; empty: none.
+  std::array<char, 8192> message{};  ///< Text for standard error.
+  std::array<char, 128> count{};     ///< Text for standard output.
 };
 Current current;
 volatile std::sig_atomic_t interrupted = 0;
@@ -53,7 +54,7 @@ extern "C" void FailedInput(int signal) {
 }
 extern "C" void Interrupt(int) { interrupted = 1; }
 
-/// Failures end in FailedInput, on a stack of its own: the target's may be full.
+/// Failures end in FailedInput, on a separate stack: the target's stack may be full.
 void CatchFailures() {
   static std::array<char, 1 << 16> stack;
   stack_t other{};
@@ -73,15 +74,15 @@ void Print(std::array<char, N>& to, const char* form, Values... values) {
   std::snprintf(to.data(), to.size(), form, values...);
 }
 
-/// So much processor time from now on: a machine that is busy with other things makes no input
-/// hang. 0: any.
+/// Limits the processor time from now on, so that other load on the machine makes no input time
+/// out. 0: no limit.
 void Allow(unsigned seconds) {
   itimerval timer{};
   timer.it_value.tv_sec = seconds;
   setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-/// An exception ends the program, as an abort does.
+/// Exceptions terminate the program, as an abort does.
 void TryOne(const std::vector<std::uint8_t>& input, unsigned timeout_s, Target target) noexcept {
   current.data = input.data();
   current.size = input.size();
@@ -132,7 +133,7 @@ int TryRandomInputs(const Campaign& campaign, Target target) {
     Print(current.message,
           "input %ld of seed %llu; again: --seed %llu --first %ld --inputs 1%s%s\n", index, seed,
           seed, index, current.path[0] != 0 ? "; kept as " : "", current.path.data());
-    Print(current.count, "stat::number_of_executed_units: %ld\n", tried);  // as libFuzzer says it
+    Print(current.count, "stat::number_of_executed_units: %ld\n", tried);  // libFuzzer's format
     TryOne(RandomInput(campaign.seed, static_cast<std::uint64_t>(index)), campaign.timeout_s,
            target);
   }

@@ -1,5 +1,6 @@
-/// A fuzz target at full speed: without libFuzzer, without sanitizers, in any build. Its inputs are
-/// random numbers that follow from a seed and the input's index, so that each can be had again.
+/// Runs a fuzz target at full speed: without libFuzzer, without sanitizers, in any build. Its
+/// inputs are pseudorandom and determined by a seed and the input's index, so that each can be
+/// reproduced.
 #pragma once
 
 #include <cstddef>
@@ -13,25 +14,26 @@ namespace taut::fuzz {
 
 using Target = int (*)(const std::uint8_t* data, std::size_t size);
 
-/// 1 to 256 bytes, by math::Random(seed, 0, index): the first number's remainder by 256 is the
-/// length less one, the next ones are the bytes, eight each, the lowest first.
+/// Returns 1 to 256 bytes, by math::Random(seed, 0, index): the first number modulo 256 is the
+/// length minus one, the next numbers are the bytes, eight each, the lowest first.
 std::vector<std::uint8_t> RandomInput(std::uint64_t seed, std::uint64_t index);
 
 struct Campaign {
   std::uint64_t seed = 1;
   long first = 0, count = 0;
-  double seconds = 0;          ///< Ends then; 0: when all have been tried.
-  unsigned timeout_s = 300;    ///< Of processor time; an input that takes more hangs.
-  std::string found_prefix;    ///< An input that fails is kept as this, seed and index.
-  bool shows_progress = true;  ///< On standard error.
+  double seconds = 0;          ///< Time limit [s]; 0: ends after all inputs.
+  unsigned timeout_s = 300;    ///< Of processor time [s]; longer inputs count as hangs.
+  std::string found_prefix;    ///< A failing input is written to a file named by this prefix, seed
+                               ///< and index.
+  bool shows_progress = true;  ///< To standard error.
 };
 
-/// Gives the target its inputs. 0, or 130 after Ctrl-C; how many were tried is in the last line of
-/// standard output. An input at which the target crashes, aborts or hangs ends the program with
-/// status 1, after saying which and keeping it.
+/// Runs the target on the inputs. Returns 0, or 130 after Ctrl-C; the last line of standard output
+/// contains the number of inputs run. An input at which the target crashes, aborts or hangs ends
+/// the program with status 1, after it was reported and written to a file.
 int TryRandomInputs(const Campaign& campaign, Target target);
 
-/// Gives the target the contents of a file. Ends the program as above.
+/// Runs the target on the contents of a file. Ends the program as above.
 void TryFile(const std::string& path, unsigned timeout_s, Target target);
 
 }  // namespace taut::fuzz

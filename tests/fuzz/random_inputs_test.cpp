@@ -1,4 +1,4 @@
-// What gives fuzz targets random inputs: the same ones again, and none that fails stays unnoticed.
+// Random inputs of fuzz targets: reproducibility, and detection of every failing input.
 #include "fuzz/random_inputs.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(RandomInputs, DifferInAllAndAreTheSameAgain) {
       lengths.insert(input.size());
     }
   }
-  EXPECT_GE(all.size(), 1990u);  // of one byte there are but 256
+  EXPECT_GE(all.size(), 1990u);  // only 256 inputs of one byte exist
   EXPECT_EQ(*lengths.begin(), 1u);
   EXPECT_EQ(*lengths.rbegin(), 256u);
 }

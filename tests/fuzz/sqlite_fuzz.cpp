@@ -1,7 +1,6 @@
-// Logs of studies with damage, or any bytes.
+// Fuzz target of study logs with damage, or any bytes.
 //
-// Input: as `Damaged` takes it. Bases: a log of this version, and of version 1, which has no
-// checksums.
+// Input: as for `Damaged`. Bases: a log of this version, and of version 1, which has no checksums.
 #include "fuzz/fuzz_folder.h"
 #include "tests/unit/learn/study_log_files.h"
 

@@ -1,4 +1,4 @@
-// Any text as a study, in a folder with the shipped experiments.
+// Fuzz target of study files, in a folder with the shipped experiments.
 #include "taut/study.h"
 
 #include "fuzz/refusals.h"

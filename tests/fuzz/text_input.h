@@ -1,4 +1,4 @@
-/// libFuzzer's mutator for targets whose input is only a text. Included once in a target.
+/// libFuzzer's mutator for targets with text input. To be included once in a target.
 #pragma once
 
 #include "fuzz/text_mutator.h"

@@ -23,7 +23,7 @@ class TextMutation {
  public:
   explicit TextMutation(unsigned seed) : random_(seed) {}
 
-  /// Replaces a number by one at the edge of a range, or a word by another word of the text.
+  /// Replaces a number by a number at the edge of a range, or a word by another word of the text.
   void ReplaceWord(std::string& text) {
     static const char* const kEdges[] = {
         "0",    "-0",         "1",      "-1",    "2",      "0.5",   "1e-9",
@@ -59,7 +59,7 @@ class TextMutation {
   static bool InWord(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
   }
-  /// Bounds of the first word at or behind `at`.
+  /// Returns the bounds of the first word at or behind `at`.
   static std::pair<std::size_t, std::size_t> Word(const std::string& text, std::size_t at) {
     while (at > 0 && InWord(text[at - 1])) --at;
     while (at < text.size() && !InWord(text[at])) ++at;

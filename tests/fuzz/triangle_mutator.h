@@ -1,5 +1,5 @@
 /// Mutations of lists of triangles for libFuzzer's custom mutator: long, degenerate, coincident,
-/// nearly coincident and subdivided ones, closed solids.
+/// nearly coincident and subdivided triangles, closed solids.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace taut::fuzz {
 using Corner = std::array<float, 3>;
 using Triangle = std::array<Corner, 3>;
 
-/// Triangles as bytes: nine floats each.
+/// Returns the triangles encoded in bytes, nine floats each.
 inline std::vector<Triangle> TrianglesIn(const std::uint8_t* data, std::size_t size) {
   std::vector<Triangle> triangles(size / sizeof(Triangle));
   if (!triangles.empty()) std::memcpy(triangles.data(), data, triangles.size() * sizeof(Triangle));
@@ -80,7 +80,7 @@ class TriangleMutator {
   }
   Corner Random() { return {Between(-1, 1), Between(-1, 1), Between(-1, 1)}; }
 
-  /// Puts the last corner on, or nearly on, the line through the others.
+  /// Moves the last corner onto, or nearly onto, the line through the others.
   void Flatten(Triangle& triangle) {
     const float share = Below(3) == 0 ? 0 : Between(-1, 2);
     const float off = Below(2) == 0 ? 0 : Size(1e-12F, 1e-4F);
@@ -102,7 +102,7 @@ class TriangleMutator {
     t.push_back({middle, whole[1], whole[2]});
   }
 
-  /// A tetrahedron, a box or a strip of squares, counter-clockwise seen from outside or above.
+  /// Adds a tetrahedron, a box or a strip of squares, counterclockwise seen from outside or above.
   void AddSolid(std::vector<Triangle>& t) {
     const Corner at = Random();
     const Corner size{Between(0.01F, 1), Between(0.01F, 1), Size(1e-4F, 1)};
@@ -137,7 +137,7 @@ class TriangleMutator {
     }
   }
 
-  /// Thin triangles around one corner.
+  /// Adds thin triangles around one corner.
   void AddFan(std::vector<Triangle>& t) {
     const Corner top = Random();
     const float width = Size(1e-7F, 1), reach = Size(0.1F, 1e3F);

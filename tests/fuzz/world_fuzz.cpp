@@ -1,13 +1,13 @@
-// A random model of bodies, cables and terrain, stepped 1000 times with random commands: no step
-// takes more work than what it was allowed, and a number that is not finite is never seen without a
-// status that says so.
+// Fuzz target of random models of bodies, cables and terrain, stepped 1000 times with random
+// commands: no step exceeds its work limit, and non-finite numbers never occur without a status
+// that reports them.
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "fuzz/draw.h"
 #include "fuzz/finite.h"
 #include "fuzz/fuzz_folder.h"
+#include "fuzz/random_input.h"
 
 namespace taut::fuzz {
 namespace {
@@ -15,15 +15,15 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSteps = 1000, kStepsPerStretch = 50;
 
-/// Linear systems that a step may solve, an island (BatchOptions::max_linear_solves).
+/// Limit of linear systems per step and island (BatchOptions::max_linear_solves).
 constexpr int kMaxLinearSolves = 50;
-/// What solvers in lanes may take besides, a body: 10 iterations at most, and 4 rounds of impacts.
+/// Additional limit per body for solvers in lanes: at most 10 iterations, and 4 rounds of impacts.
 constexpr int kMaxInLanes = 10 * 5;
-/// The most of a step, a body. Each is an island of its own: solved in lanes in vain, then by
-/// itself, then pushed out. Two systems, and so one more than allowed, are for one direction at
-/// times.
+/// Limit of a step per body. Each body is at most one island: solved in lanes without success, then
+/// separately, then by position projection. One direction sometimes takes two systems, and so one
+/// more than the limit.
 constexpr int kMaxOfABody = kMaxInLanes + 2 * (kMaxLinearSolves + 1);
-/// Linear systems after which an input has been seen enough of.
+/// Linear systems after which an input ends.
 constexpr long kEnough = 10'000;
 
 void AddBody(ModelDef& def, Draw& draw) {
@@ -122,7 +122,7 @@ ModelDef RandomModel(Draw& draw) {
     def.planes.push_back(
         {"plane", draw.Coin() ? Vec3{0, 0, 1} : draw.Direction(), draw.Point(0.2), draw.Surface()});
   }
-  // More than a few are looked up another way.
+  // Longer lists of boxes use the bounding volume hierarchy.
   for (int block = draw.Coin() ? draw.Int(1, 16) : 0; block > 0; --block) {
     def.terrain_boxes.push_back({"block",
                                  draw.Point(1),
@@ -137,7 +137,7 @@ ModelDef RandomModel(Draw& draw) {
   return def;
 }
 
-/// Mostly what a controller could ask for; now and then what a broken one does.
+/// Returns mostly valid commands of a controller, and sometimes invalid ones.
 double Command(Draw& draw) {
   switch (draw.Int(0, 30)) {
     case 0:

@@ -1,5 +1,5 @@
-// `taut import ntrt` as a user types it.
-#include "system/command.h"
+// The command `taut import ntrt`
+#include "system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -12,8 +12,8 @@ TEST_F(ImportNtrtCommand, TheModelGoesToTheFileOrIsPrinted) {
   const CommandResult written =
       Taut({"import", "ntrt", kSuperBall, "--length_unit_m", "0.1", "--out", "m.yaml"});
   EXPECT_EQ(written.status, 0) << written.errors;
-  EXPECT_EQ(written.output.rfind("Model: m.yaml\n6 bodies of 20.99 kg and 24 cables", 0), 0u);
-  EXPECT_NE(written.output.find("\nLeft away:\n  history of superball_string"), std::string::npos);
+  EXPECT_EQ(written.output.rfind("Model: m.yaml\n6 bodies of 20.99 kg, 24 cables", 0), 0u);
+  EXPECT_NE(written.output.find("\nLeft out:\n  history of superball_string"), std::string::npos);
   const CommandResult printed = Taut({"import", "ntrt", kSuperBall, "--length_unit_m", "0.1"});
   EXPECT_EQ(printed.output, Read(Path("m.yaml")));
   EXPECT_EQ(Taut({"check", "m.yaml", "--strict", "--quiet"}).status, 0);
@@ -46,10 +46,10 @@ TEST_F(ImportNtrtCommand, WhyCheckRefusesTheModelIsAWarning) {
   EXPECT_NE(warned.errors.find("hinge.yaml: warning: `taut check` refuses the model: "),
             std::string::npos)
       << warned.errors;
-  EXPECT_NE(warned.errors.find("0.02 m deep in each other"), std::string::npos) << warned.errors;
+  EXPECT_NE(warned.errors.find("overlap by 0.02 m"), std::string::npos) << warned.errors;
   EXPECT_NE(warned.errors.find("list both bodies in `apart` of the model"), std::string::npos);
   EXPECT_EQ(Taut({"check", "m.yaml", "--quiet"}).status, 3);
-  // The advice helps.
+  // Applying the hint fixes the model.
   Write("m.yaml", Read(Path("m.yaml")) + "apart: [[a1-a2, b1-b2]]\n");
   EXPECT_EQ(Taut({"check", "m.yaml", "--quiet"}).status, 0);
   EXPECT_EQ(Taut({"import", "ntrt", "hinge.yaml", "--length_unit_m", "0.1", "--strict"}).status, 3);
@@ -58,14 +58,15 @@ TEST_F(ImportNtrtCommand, WhyCheckRefusesTheModelIsAWarning) {
 TEST_F(ImportNtrtCommand, BadInputIsRefused) {
   const CommandResult none = Taut({"import", "ntrt", "none.yaml", "--length_unit_m", "1"});
   EXPECT_EQ(none.status, 3);
-  EXPECT_EQ(none.errors, "none.yaml: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(none.errors, "none.yaml: error: cannot open: No such file or directory\n");
   EXPECT_EQ(Taut({"import", "ntrt", ".", "--length_unit_m", "1"}).status, 3);
   EXPECT_EQ(Taut({"import", "ntrt", "none.yaml"}).status, 2);
   Write("s.yaml",
         "nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups: {rod: [[a, b]], wire: [[a, b]]}\n");
   const CommandResult warned = Taut({"import", "ntrt", "s.yaml", "--length_unit_m", "1"});
   EXPECT_EQ(warned.status, 0);
-  EXPECT_EQ(warned.errors.find("s.yaml:2:37: warning: another pair joins"), 0u) << warned.errors;
+  EXPECT_EQ(warned.errors.find("s.yaml:2:37: warning: another pair already joins"), 0u)
+      << warned.errors;
   const CommandResult strict =
       Taut({"import", "ntrt", "s.yaml", "--length_unit_m", "1", "--strict", "--out", "m.yaml"});
   EXPECT_EQ(strict.status, 3);

@@ -1,4 +1,4 @@
-// What is wrong with NTRT's YAML.
+// Errors in NTRT's YAML files
 #include "import_ntrt/ntrt_yaml.h"
 
 namespace taut {
@@ -45,18 +45,19 @@ TEST_F(NtrtYaml, AllThatIsWrongIsSaidAtOnce) {
 TEST_F(NtrtYaml, SizesHaveLimitsThatAreSaidOnce) {
   std::string nodes = "nodes:\n";
   for (int i = 0; i <= 20'000; ++i) nodes += "  n" + std::to_string(i) + ": [0, 0, 0]\n";
-  EXPECT_EQ(Complaints(nodes), "s.yaml:20002:3: error: more than 20000 nodes\n");
+  EXPECT_EQ(Complaints(nodes), "s.yaml:20002:3: error: the structure has more than 20000 nodes\n");
   std::string pairs = "nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups:\n  string:\n";
   for (int i = 0; i < 20'010; ++i) pairs += "    - [a, b]\n";
-  EXPECT_EQ(Complaints(pairs), "s.yaml:20004:7: error: more than 20000 pairs\n");
+  EXPECT_EQ(Complaints(pairs), "s.yaml:20004:7: error: the structure has more than 20000 pairs\n");
 
   Write("part.yaml", kTwoRods);
   std::string parts = "substructures:\n";
-  for (int i = 1'000; i < 3'200; ++i) {  // 100 a key, as keys of YAML have 1024 letters at most
+  for (int i = 1'000; i < 3'200; ++i) {  // 100 per key: YAML keys have at most 1024 characters
     parts += std::string(i % 100 == 0 ? "  p" : "/p") + std::to_string(i) +
              (i % 100 == 99 ? ": {path: part.yaml}\n" : "");
   }
-  EXPECT_EQ(Complaints(parts), "s.yaml:21:611: error: more than 2000 substructures\n");
+  EXPECT_EQ(Complaints(parts),
+            "s.yaml:21:611: error: the structure has more than 2000 substructures\n");
   for (int i = 0; i < 40; ++i) {
     Write(std::to_string(i) + ".yaml",
           "substructures: {p: {path: " + std::to_string(i + 1) + ".yaml}}\n");
@@ -86,22 +87,22 @@ TEST_F(NtrtYaml, BondsAndSubstructuresAreChecked) {
       "s.yaml:2:43: error: the axis of a rotation must not be zero\n"
       "s.yaml:2:72: error: scale must be positive\n"
       "s.yaml:3:3: error: there is no substructure \"r\" (one of its entries needs a `path`)\n"
-      "s.yaml:4:13: error: path: there is no file \"nowhere.yaml\" (as seen from the folder of the "
-      "file that names it)\n"
+      "s.yaml:4:13: error: path: there is no file \"nowhere.yaml\" (paths are relative to the "
+      "folder of the file that contains them)\n"
       "s.yaml:5:24: error: unknown key \"turn\" (one of: path, rotation, translation, scale, "
       "offset)\n"
-      "s.yaml:8:5: error: \"p/q/node_face\" does not end with the kind of the bond (node_node or "
-      "node_edge, such as t1/t2/node_node)\n"
-      "s.yaml:9:5: error: a bond joins two substructures at least (such as t1/t2/node_node)\n"
+      "s.yaml:8:5: error: \"p/q/node_face\" does not end with a kind of bond (expected node_node "
+      "or node_edge, such as t1/t2/node_node)\n"
+      "s.yaml:9:5: error: a bond must join at least two substructures (such as t1/t2/node_node)\n"
       "s.yaml:10:5: error: there is no substructure \"x\"\n"
-      "s.yaml:11:20: error: a node_edge bond needs three lines at least\n"
-      "s.yaml:12:31: error: a node_edge bond joins a node and an edge (such as [top1, "
+      "s.yaml:11:20: error: a node_edge bond needs at least three lines\n"
+      "s.yaml:12:31: error: a node_edge bond must join a node and an edge (such as [top1, "
       "bottom1/bottom2])\n"
       "s.yaml:12:43: error: there is no node \"e\" (did you mean \"a\"?)\n"
-      "s.yaml:13:5: error: a tag in a tag, without a bond (a tag holds bonds such as "
-      "t1/t2/node_node, or a bond holds tags)\n"
-      "s.yaml:14:19: error: a bond in a bond (a tag holds bonds such as t1/t2/node_node, or a bond "
-      "holds tags)\n"
+      "s.yaml:13:5: error: a tag contains another tag instead of a bond (put bonds such as "
+      "t1/t2/node_node into a tag, or tags into a bond)\n"
+      "s.yaml:14:19: error: a bond cannot contain another bond (put bonds such as t1/t2/node_node "
+      "into a tag, or tags into a bond)\n"
       "self.yaml:1:28: error: the file includes itself\n");
 }
 
@@ -115,17 +116,17 @@ TEST_F(NtrtYaml, EdgesAreCablesThatSpanAPlane) {
            lines + "}}\n";
   };
   EXPECT_EQ(Complaints(bonds("[[d, a/d], [e, b/c], [f, c/a]]")),
-            "s.yaml:2:40: error: the edge of a node_edge bond must be a cable, and is a solid\n");
+            "s.yaml:2:40: error: the edge of a node_edge bond must be a cable, not a solid\n");
   EXPECT_EQ(Complaints(bonds("[[d, a/b], [e, a/b], [f, c/a]]")),
             "s.yaml:2:40: error: the first three node_edge bonds lie on a line (they must span a "
             "plane in both structures)\n"
-            "s.yaml:2:50: warning: no cable runs along this edge: NTRT adds two and takes none "
-            "away\n");
+            "s.yaml:2:50: warning: no cable runs along this edge, so the bond adds two cables and "
+            "removes none, as in NTRT\n");
   Diagnostics found;
   EXPECT_TRUE(Import(bonds("[[d, a/b], [e, b/c], [f, a/f]]"), found));
   EXPECT_EQ(Shown(found),
-            "s.yaml:2:60: warning: no cable runs along this edge: NTRT adds two and takes none "
-            "away\n");
+            "s.yaml:2:60: warning: no cable runs along this edge, so the bond adds two cables and "
+            "removes none, as in NTRT\n");
 }
 
 TEST_F(NtrtYaml, EarlierBondsGoWithWhatIsMoved) {
@@ -141,8 +142,9 @@ TEST_F(NtrtYaml, EarlierBondsGoWithWhatIsMoved) {
       found);
   EXPECT_TRUE(import);
   EXPECT_EQ(Shown(found),
-            "s.yaml:5:20: warning: this bond moves \"q\", to which earlier bonds lead: NTRT leaves "
-            "their ends behind, here they go with it (write it before the others)\n");
+            "s.yaml:5:20: warning: this bond moves \"q\", to which earlier bonds are attached: "
+            "NTRT leaves the ends of these bonds behind, taut moves them, too (move this bond "
+            "before the others)\n");
 }
 
 TEST_F(NtrtYaml, WhatNtrtCannotBuildIsRefused) {
@@ -150,23 +152,25 @@ TEST_F(NtrtYaml, WhatNtrtCannotBuildIsRefused) {
                 .find("s.yaml:0:0"),
             std::string::npos);
   EXPECT_NE(Complaints("nodes: {a: [0, 0, 0], b: [0, 1, 0]}\npair_groups: {tendon: [[a, b]]}\n")
-                .find("s.yaml: error: NTRT builds no solid from it"),
+                .find("s.yaml: error: the builders of this structure build no solid"),
             std::string::npos);
-  EXPECT_NE(Complaints("nodes: {a: [0, 0, 0], b: [0, 1, 0], c: [1, 1, 1]}\n"
-                       "pair_groups: {rod: [[a, b]], string: [[b, c]]}\n")
-                .find("s.yaml:1:37: error: a cable ends at the node \"c\", where no solid is"),
-            std::string::npos);
+  EXPECT_NE(
+      Complaints("nodes: {a: [0, 0, 0], b: [0, 1, 0], c: [1, 1, 1]}\n"
+                 "pair_groups: {rod: [[a, b]], string: [[b, c]]}\n")
+          .find("s.yaml:1:37: error: a cable ends at the node \"c\", where there is no solid"),
+      std::string::npos);
   EXPECT_NE(Complaints("nodes: {a: [0, 0, 0], b: [0, 0, 0]}\npair_groups: {rod: [[a, b]]}\n")
-                .find("s.yaml:2:21: error: a rod or box without a length"),
+                .find("s.yaml:2:21: error: both ends of a rod or box are at the same place"),
             std::string::npos);
-  EXPECT_NE(Complaints("substructures: {}\n").find("s.yaml:1:1: error: describes no nodes"),
+  EXPECT_NE(Complaints("substructures: {}\n").find("s.yaml:1:1: error: the structure has no nodes"),
             std::string::npos);
-  EXPECT_NE(Complaints("[]\n").find("an NTRT structure is a map, not a list"), std::string::npos);
-  EXPECT_NE(Complaints("nodes: [\n").find("error: not valid YAML"), std::string::npos);
+  EXPECT_NE(Complaints("[]\n").find("an NTRT structure must be a map, not a list"),
+            std::string::npos);
+  EXPECT_NE(Complaints("nodes: [\n").find("error: the file is not valid YAML"), std::string::npos);
 }
 
 TEST_F(NtrtYaml, NamesWithoutAWordAreRefused) {
-  // Such a substructure was found by any name, and such a builder built every pair.
+  // Such a substructure would match any name, and such a builder would build every pair.
   Write("part.yaml", kTwoRods);
   EXPECT_EQ(Complaints("substructures: {\" \": {path: part.yaml}, p/: {path: part.yaml}}\n"),
             "s.yaml:1:17: error: a substructure needs a name\n"
@@ -190,7 +194,7 @@ TEST_F(NtrtYaml, ScalesThatOverflowAreRefused) {
 }
 
 TEST_F(NtrtYaml, StructuresThatWouldTakeHoursAreRefused) {
-  // Each bond looked through all cables once for each other bond.
+  // Each bond would search all cables once for each other bond.
   constexpr int kNodes = 600;
   std::string nodes = "nodes:\n", cables = "pair_groups:\n  string:\n", bonds;
   for (int i = 0; i < kNodes; ++i) {
@@ -204,7 +208,7 @@ TEST_F(NtrtYaml, StructuresThatWouldTakeHoursAreRefused) {
   EXPECT_NE(Complaints("substructures: {p/q: {path: part.yaml}}\n"
                        "bond_groups:\n  string:\n    p/q/node_edge:\n" +
                        bonds)
-                .find("s.yaml: error: is too large: "),
+                .find("s.yaml: error: the structure is too large: "),
             std::string::npos);
 }
 

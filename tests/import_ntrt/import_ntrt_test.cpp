@@ -1,4 +1,4 @@
-// What NTRT's YAML may say. Whole structures: import_ntrt_test.py.
+// Features of NTRT's YAML; import_ntrt_test.py tests whole structures.
 #include <cmath>
 
 #include "import_ntrt/ntrt_yaml.h"
@@ -12,7 +12,7 @@ TEST_F(NtrtYaml, UnitsAndAxesBecomeTauts) {
   const RobotSpec robot = Robot(kTwoRods + kBuilders);
   ASSERT_EQ(robot.def.bodies.size(), 2u);
   ASSERT_EQ(robot.def.cables.size(), 2u);
-  // y up; NTRT's x is taut's y
+  // NTRT's y axis is up; NTRT's x is taut's y
   EXPECT_EQ(robot.def.nodes[3].position_m.y, 0.3);
   EXPECT_EQ(robot.def.nodes[3].position_m.z, 0.4);
   const double pi = std::acos(-1.0);
@@ -33,7 +33,7 @@ TEST_F(NtrtYaml, UnitsAndAxesBecomeTauts) {
   EXPECT_EQ(robot.def.friction_combine, CombineRule::kProduct);
   EXPECT_EQ(robot.def.restitution_combine, CombineRule::kProduct);
   EXPECT_EQ(robot.def.friction_law, FrictionLaw::kCone);
-  // To Bullet a single cylinder is one; only compounds are boxes.
+  // Bullet treats a single cylinder exactly; only compounds have the inertia of boxes.
   const Inertia inertia = robot.def.bodies[0].inertia_kg_m2;
   const double m = robot.def.bodies[0].mass_kg;
   EXPECT_NEAR(inertia.zz, m * 0.02 * 0.02 / 2, 1e-15);
@@ -67,15 +67,15 @@ TEST_F(NtrtYaml, AFileThatIncludesOthersHasTheLastWord) {
   ASSERT_EQ(robot.def.bodies.size(), 4u);
   EXPECT_EQ(robot.def.capsules[3].radius_m, 0.01);
   EXPECT_EQ(robot.def.cables.size(), 6u);
-  // One part, placed twice.
+  // One part, placed twice
   EXPECT_NE(text_.find("{part: part, name: q, at_m: [1, 0, 0]}"), text_.npos) << text_;
   EXPECT_NE(text_.find("- tags: [string, p, q, p-q]"), text_.npos) << text_;
 }
 
 TEST_F(NtrtYaml, AttributesOfASubstructureAddUp) {
   Write("part.yaml", "nodes: {a: [0, 0, 0], b: [0, 4, 0]}\npair_groups: {rod: [[a, b]]}\n");
-  // By two keys: turned about NTRT's z from y to -x and then twice as large, both about the middle
-  // (0, 2, 0); then moved.
+  // Two keys: rotation about NTRT's z from y to -x, then scaling by 2, both about the center (0, 2,
+  // 0); then translation.
   const RobotSpec robot = Robot(
       "substructures:\n"
       "  p: {path: part.yaml, scale: 2}\n"
@@ -96,7 +96,7 @@ TEST_F(NtrtYaml, AttributesOfASubstructureAddUp) {
   EXPECT_NE(text_.find("rotate: {axis: x, angle_rad: pi / 2}"), text_.npos) << text_;
 }
 
-// A builder's words are looked for among the tags of a pair and the name of its structure.
+// A builder's words match the tags of a pair and the name of its structure.
 TEST_F(NtrtYaml, PairsHaveTheNameOfTheirStructure) {
   Write("part.yaml", kTwoRods);
   const RobotSpec robot = Robot(
@@ -112,7 +112,7 @@ TEST_F(NtrtYaml, PairsHaveTheNameOfTheirStructure) {
   EXPECT_EQ(thick, 2);
 }
 
-// What matches by tags of NTRT's alone would match more than one of taut's builders.
+// If NTRT's tags alone would match several of taut's builders, the import adds tags.
 TEST_F(NtrtYaml, TagsThatDoNotTellGetOthersBeside) {
   std::string yaml = kTwoRods;
   yaml.replace(yaml.find("rod: [[a, b], [c, d]]"), 21, "rod: [[a, b]]\n  rod thick: [[c, d]]");
@@ -139,7 +139,7 @@ TEST_F(NtrtYaml, ItsOwnSumsAreThoseOfTheModel) {
   EXPECT_EQ(counts_.bodies, 2);
 }
 
-// NTRT's normals within 1e-5 of each other count as the same: what leans by less goes on leaning.
+// NTRT treats normals within 1e-5 of each other as equal: a smaller tilt is preserved.
 TEST_F(NtrtYaml, BondsLeaveSmallTiltsAlone) {
   const auto part = [](const std::string& height) {
     return "nodes: {a: [0, 0, 0], b: [4, " + height +
@@ -159,7 +159,7 @@ TEST_F(NtrtYaml, BondsLeaveSmallTiltsAlone) {
   }
 }
 
-// The normals are opposite, and along x: half a turn about the line through the first two.
+// The normals are opposite, along x: half a turn about the line through the first two points.
 TEST_F(NtrtYaml, BondsTurnPlanesOver) {
   Write("part.yaml",
         "nodes: {a: [0, 0, 0], b: [0, 4, 0], c: [0, 0, 4], d: [3, 0, 0], e: [3, 4, 0], f: [3, 0, "
@@ -215,17 +215,18 @@ TEST_F(NtrtYaml, BoxesHaveHalfExtentsAndTheirOwnTurn) {
            "}\npair_groups: {box: [[a, b]]}\nbuilders:\n"
            "  box: {class: tgBoxInfo, parameters: {width: 0.5, height: 1, density: 3}}\n";
   };
-  // Up: the width is along NTRT's x, taut's y.
+  // Vertical: the width is along NTRT's x, taut's y.
   const RobotSpec up = Robot(box("[0, 4, 0]"));
   EXPECT_NEAR(up.def.bodies[0].mass_kg, 3 * 4 * 1 * 2, 1e-12);
   const double m = up.def.bodies[0].mass_kg;
   EXPECT_NEAR(up.def.bodies[0].inertia_kg_m2.zz, m / 12 * (0.1 * 0.1 + 0.2 * 0.2), 1e-14);
   EXPECT_NEAR(up.def.bodies[0].inertia_kg_m2.yy, m / 12 * (0.4 * 0.4 + 0.2 * 0.2), 1e-14);
-  // Along NTRT's x, taut's y: turned from up about NTRT's -z, so the width points down.
+  // Along NTRT's x, taut's y: rotated from vertical about NTRT's -z, so that the width points down.
   const RobotSpec level = Robot(box("[4, 0, 0]"));
   EXPECT_NEAR(level.def.bodies[0].inertia_kg_m2.zz, m / 12 * (0.4 * 0.4 + 0.2 * 0.2), 1e-14);
   EXPECT_NEAR(level.def.bodies[0].inertia_kg_m2.xx, m / 12 * (0.4 * 0.4 + 0.1 * 0.1), 1e-14);
-  // Anyhow: only corners say it. Its inertia about the axis is the same.
+  // Oblique: only a convex shape with corners represents it. Its inertia about the axis is the
+  // same.
   const RobotSpec tilted = Robot(box("[2, 2, 2.8284271247461903]"));
   EXPECT_EQ(tilted.def.hulls.size(), 1u) << text_;
   EXPECT_NEAR(tilted.def.bodies[0].mass_kg, m, 1e-10);
@@ -261,10 +262,10 @@ TEST_F(NtrtYaml, CablesThatAreLeftAwayAreNotCounted) {
   EXPECT_EQ(robot.def.cables.size(), 2u);
   EXPECT_EQ(counts_.cables, 2);
   EXPECT_EQ(warnings_,
-            "s.yaml:8:28: warning: another pair joins these two nodes already; as in NTRT both are "
-            "built (leave one of them away)\n"
-            "s.yaml:8:28: warning: the cable ends twice on one body, where it does nothing: left "
-            "away (leave the pair away)\n");
+            "s.yaml:8:28: warning: another pair already joins these two nodes; both are built, as "
+            "in NTRT (leave out one of them)\n"
+            "s.yaml:8:28: warning: both ends of the cable are on the same body, so it has no "
+            "effect and is left out (remove the pair)\n");
 }
 
 TEST_F(NtrtYaml, ABodyWithoutMassStandsStill) {
@@ -280,15 +281,16 @@ TEST_F(NtrtYaml, ABodyWithoutMassStandsStill) {
 TEST_F(NtrtYaml, ALineWithPercentEndsTheFileForNtrtAlone) {
   const std::string yaml = kTwoRods + "% a remark\n" + kBuilders;
   EXPECT_EQ(Robot(yaml).def.capsules[0].radius_m, 0.02);
-  EXPECT_EQ(warnings_,
-            "s.yaml:9:1: warning: read as a comment; for NTRT a line that begins with % ends the "
-            "file, and what follows is lost (comments begin with #; --like_ntrt loses it, too)\n");
+  EXPECT_EQ(
+      warnings_,
+      "s.yaml:9:1: warning: a line that begins with % is read as a comment; NTRT ends the file "
+      "there and ignores the rest (begin comments with #; --like_ntrt ignores the rest, too)\n");
   const RobotSpec lost = Robot(yaml, {0.1, true, ""});
   EXPECT_EQ(lost.def.capsules[0].radius_m, 0.05);
   EXPECT_EQ(lost.def.friction_law, FrictionLaw::kAlongSlip);
   EXPECT_EQ(warnings_,
-            "s.yaml:9:1: warning: a line that begins with % ends the file for NTRT: what follows "
-            "is lost (comments begin with #)\n");
+            "s.yaml:9:1: warning: a line that begins with % ends the file, as in NTRT: the rest is "
+            "ignored (begin comments with #)\n");
 }
 
 TEST_F(NtrtYaml, ADirectiveAtTheHeadOfAFileIsOne) {
@@ -307,10 +309,11 @@ TEST_F(NtrtYaml, WhatNtrtPassesOverIsSaid) {
   EXPECT_EQ(counts_.duplicate_pairs, 1);
   EXPECT_EQ(counts_.ignored_pairs, 1);
   EXPECT_EQ(warnings_,
-            "s.yaml:8:28: warning: another pair joins these two nodes already; as in NTRT both are "
-            "built (leave one of them away)\n"
-            "s.yaml:9:12: warning: no builder has the tag \"tendon\": NTRT leaves the pair away "
-            "(tags with builders of their own are rod, string, box, sphere)\n");
+            "s.yaml:8:28: warning: another pair already joins these two nodes; both are built, as "
+            "in NTRT (leave out one of them)\n"
+            "s.yaml:9:12: warning: no builder has the tag \"tendon\", so the pair is left out, as "
+            "in NTRT "
+            "(the tags rod, string, box and sphere have default builders)\n");
 }
 
 TEST_F(NtrtYaml, WhatModelsDoNotHaveIsListed) {
@@ -321,7 +324,7 @@ TEST_F(NtrtYaml, WhatModelsDoNotHaveIsListed) {
         "motor_friction: 3, motor_inertia: 4, back_drivable: 1}}\n");
   ASSERT_EQ(dropped_.size(), 4u);
   EXPECT_EQ(dropped_[0], "history of string: a run records every cable");
-  EXPECT_EQ(dropped_[1], "roll_friction of rod: nothing resists rolling");
+  EXPECT_EQ(dropped_[1], "roll_friction of rod: rolling friction is not modeled");
   EXPECT_EQ(dropped_[2].find("radius, motor_friction, motor_inertia and back_drivable of string"),
             0u);
   EXPECT_EQ(dropped_[3].find("contact of string"), 0u);

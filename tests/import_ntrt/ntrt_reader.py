@@ -1,6 +1,6 @@
-"""NTRT's structures once more, apart from taut's reader: matrices in place of quaternions, points in place of nodes.
+"""A reader of NTRT's structures, independent of taut's: matrices instead of quaternions, points instead of nodes
 
-`read(path)` gives solids and cables in the files' units, with y up, as NTRT's builder has them.
+`read(path)` returns solids and cables in the files' units, with y up, as NTRT's builder makes them.
 """
 
 import itertools
@@ -22,7 +22,7 @@ DEFAULTS = {
 
 
 class Points:
-    """A structure: named points, pairs of points, and structures inside."""
+    """A structure: named points, pairs of points, and nested structures"""
 
     def __init__(self, name):
         self.name, self.nodes, self.pairs, self.children = name, [], [], []
@@ -44,7 +44,7 @@ class Points:
         return next(point for s in structure.levels() for name, point in s.nodes if name == last)
 
     def points(self):
-        """Every array once: pairs share those of the nodes."""
+        """Returns every array once: pairs share the arrays of the nodes."""
         return [point for s in self.levels() for _, point in s.nodes]
 
     def move(self, matrix, about, shift):
@@ -53,7 +53,7 @@ class Points:
 
 
 def turn(axis, angle):
-    """Rodrigues."""
+    """Returns the rotation matrix of an axis and an angle (Rodrigues' formula)."""
     x, y, z = numpy.array(axis, float) / numpy.linalg.norm(axis)
     k = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return numpy.eye(3) + math.sin(angle) * k + (1 - math.cos(angle)) * (k @ k)
@@ -195,7 +195,7 @@ def read(path, like_ntrt=False):
     build(top)
     for number, solid in enumerate(solids):
         solid["body"] = number
-    for solid in solids:  # what shares a point is one
+    for solid in solids:  # solids that share a point are one body
         for end in solid["ends"]:
             numbers = {other["body"] for other in touching(solids, end)}
             for other in solids if len(numbers) > 1 else []:

@@ -1,4 +1,4 @@
-/// NTRT structures as texts, imported, and the models that come out.
+/// Fixture that imports NTRT structures from text
 #pragma once
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ class NtrtYaml : public testing::Test {
     EXPECT_EQ(import.has_value(), out.ok());
     return Shown(out);
   }
-  /// The robot of the model that comes out.
+  /// Imports the text. Returns the robot of the resulting model.
   RobotSpec Robot(const std::string& yaml, const NtrtOptions& options = {0.1, false, ""}) {
     Diagnostics out;
     const auto import = Import(yaml, out, options);

@@ -1,5 +1,5 @@
-// Rests from which the solver has nothing to do: the laws hold at once with the impulses of the
-// step before, and their derivatives still have to come out.
+// Linearization at rests where the solver has nothing to do: the laws hold at once with the
+// warm-start impulses, and their derivatives must still be available.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-/// A ball on a rope from the ceiling.
+/// Returns a ball on a rope from the ceiling.
 ExperimentSpec OnARope(double stiffness_n_per_m) {
   ModelDef def;
   BodyDef body;
@@ -25,7 +25,7 @@ ExperimentSpec OnARope(double stiffness_n_per_m) {
   return ExperimentOf(def);
 }
 
-/// A rod on a hinge, its centre half a metre below.
+/// Returns a rod on a hinge, its center half a meter below.
 ExperimentSpec OnAHinge() {
   ExperimentSpec e = OnARope(1);
   ModelDef& def = e.robot.def;
@@ -44,7 +44,7 @@ StateSpace Find(const ExperimentSpec& experiment) {
   EXPECT_TRUE(out.ok()) << out.Format();
   EXPECT_TRUE(system.found) << system.why;
   for (const std::string& remark : system.remarks) {
-    if (remark.rfind("derivatives are differences", 0) != 0) ADD_FAILURE() << remark;
+    if (remark.rfind("derivatives are finite differences", 0) != 0) ADD_FAILURE() << remark;
   }
   return system;
 }
@@ -59,10 +59,10 @@ std::vector<double> Swings(const StateSpace& system) {
 }
 
 TEST(ExactRest, AStiffRope) {
-  // Groups that are implicit with their directions have differences (linear.md, section 3).
+  // Groups that are implicit in tension and direction use differences (linear.md, section 3).
   const StateSpace system = Find(OnARope(4e6));
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
-  // As a pendulum it swings to both sides, its length is that of the rope under the weight.
+  // Like a pendulum it swings to both sides, with the length of the rope under the weight.
   const std::vector<double> swings_hz = Swings(system);
   const double pendulum_hz = std::sqrt(9.81 / (1 + 0.5 * 9.81 / 4e6)) / (2 * std::numbers::pi);
   ASSERT_GE(swings_hz.size(), 2u);
@@ -71,7 +71,7 @@ TEST(ExactRest, AStiffRope) {
 }
 
 TEST(ExactRest, AHinge) {
-  // So have held joints.
+  // Groups with held joints use differences, too.
   const StateSpace system = Find(OnAHinge());
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
   const double own_hz = std::sqrt(0.5 * 9.81 * 0.5 / (1e-3 + 0.5 * 0.25)) / (2 * std::numbers::pi);
@@ -80,7 +80,7 @@ TEST(ExactRest, AHinge) {
   EXPECT_NEAR(swings_hz[0], own_hz, 1e-5 * own_hz);
 }
 
-/// A ball that lies on the ground: pushed, it rolls at once.
+/// A ball on the ground: pushed, it rolls at once.
 TEST(ExactRest, ABallOnTheGround) {
   ExperimentSpec e = OnARope(1);
   ModelDef& def = e.robot.def;
@@ -99,8 +99,8 @@ TEST(ExactRest, ABallOnTheGround) {
     EXPECT_TRUE(i && j) << row << column;
     return i && j ? system.A(*i, *j) : NAN;
   };
-  // An impulse P at the ground stops the slip v - r w of a ball that slides: with J = I / r,
-  // v' = v - P / m, w' = w + r P / I, v' = r w' (by w = spin_y).
+  // An impulse P at the ground stops the slip v - r w of a sliding ball: with J = I / r, v' = v - P
+  // / m, w' = w + r P / I, v' = r w' (by w = spin_y).
   const double m = 0.5, I = 1e-3, r = 0.1, kept = m * r * r / (I + m * r * r);
   EXPECT_NEAR(entry("body/weight/velocity_x", "body/weight/velocity_x"), kept, 1e-9);
   EXPECT_NEAR(entry("body/weight/spin_y", "body/weight/velocity_x"), kept / r, 1e-8);

@@ -1,4 +1,4 @@
-/// Robots about whose rest the linear system is looked at.
+/// Robots at rest as test cases of the linear system.
 #pragma once
 
 #include "taut/state_space.h"
@@ -7,7 +7,7 @@
 
 namespace taut::test {
 
-/// As an experiment that starts settled; names are made where a scene has none.
+/// Returns the model as an experiment that starts settled; unnamed elements get names.
 inline ExperimentSpec ExperimentOf(ModelDef def) {
   ExperimentSpec e;
   const auto name = [](auto& list, const char* kind) {
@@ -24,7 +24,7 @@ inline ExperimentSpec ExperimentOf(ModelDef def) {
   return e;
 }
 
-/// Impedance control of all cables that keeps the rest that the experiment has now.
+/// Returns the experiment with impedance control of all cables that keeps its rest.
 inline ExperimentSpec UnderImpedance(ExperimentSpec e, double position_gain, double velocity_gain) {
   for (CableDef& cable : e.robot.def.cables) {
     if (cable.actuator.kind == ActuatorDef::Kind::kNone) {

@@ -1,3 +1,4 @@
+// Shape runs: mechanisms, states of self-stress and modes written as runs.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -74,7 +75,7 @@ TEST_F(ShapeRun, SwingsAsTheModeAndIsReadLikeARun) {
     greatest_m = std::max(greatest_m, std::sqrt(Dot(t, t)));
   }
   const double amplitude = 0.08 * SizeOf(def) / greatest_m;
-  for (const std::size_t row : {0u, 15u, 30u, 45u, 120u}) {  // 60 rows a swing
+  for (const std::size_t row : {0u, 15u, 30u, 45u, 120u}) {  // 60 rows per oscillation
     const double share = std::sin(2 * std::numbers::pi * static_cast<double>(row) / 60);
     for (std::size_t b = 0; b < def.bodies.size(); ++b) {
       const std::string& name = def.bodies[b].name;
@@ -84,7 +85,7 @@ TEST_F(ShapeRun, SwingsAsTheModeAndIsReadLikeARun) {
       const Vec3 turn = amplitude * share * first->turn_rad[b];
       EXPECT_NEAR(2 * std::acos(std::min(1.0, At(*trace, "body/" + name + "/orientation_w", row))),
                   std::sqrt(Dot(turn, turn)), 1e-7);
-      // The way of the turn, too: of half an angle the sine.
+      // The same for the rotation: the sine of half its angle.
       const double half = std::sqrt(Dot(turn, turn)) / 2, by = half > 0 ? std::sin(half) / half : 1;
       EXPECT_NEAR(At(*trace, "body/" + name + "/orientation_x", row), by * turn.x / 2, 1e-12);
       EXPECT_NEAR(At(*trace, "body/" + name + "/orientation_y", row), by * turn.y / 2, 1e-12);
@@ -104,8 +105,8 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
   WriteShapeRuns(folder_.string(), experiment_, {}, forces, 0, {}, out_);
   const auto trace = ReadTraceOfRun((folder_ / "self_stress_1/trace.h5").string(), out_);
   ASSERT_TRUE(trace) << out_.Format();
-  // By hand: a base cable's force over its length is that of a side cable over
-  // 2 sin(60 degrees) (share/models/prism3.yaml says so).
+  // By hand: the force density of a side cable is 2 sin(60 degrees) times the density of a base
+  // cable (share/models/prism3.yaml).
   double density[2] = {};
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     const std::string name = "cable/" + def.cables[c].name + "/";
@@ -117,7 +118,7 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
     of = q;
   }
   EXPECT_NEAR(density[1] / density[0], 2 * std::sin(std::numbers::pi / 3), 1e-9);
-  // In per cent, so that colours tell; equal cables have equal numbers.
+  // In percent, for a color scale; equal cables have equal numbers.
   EXPECT_EQ(At(*trace, "cable/side_1/tension_n", 0), 100);
   EXPECT_EQ(At(*trace, "cable/side_2/tension_n", 0), 100);
   EXPECT_EQ(At(*trace, "cable/lower_1/tension_n", 0), At(*trace, "cable/upper_2/tension_n", 0));

@@ -1,3 +1,4 @@
+// State space of the linearized step against simulated steps and closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ StateSpace Find(const ExperimentSpec& experiment, const LinearOptions& options =
   return system;
 }
 
-/// Worlds side by side at a system's equilibrium, with all that the step remembers there.
+/// Worlds at a system's equilibrium, with all of the step's memory there.
 class Worlds {
  public:
   Worlds(const ExperimentSpec& e, const StateSpace& system, int count)
@@ -48,7 +49,8 @@ class Worlds {
   Batch batch_;
 };
 
-/// Position, small turn since `from`, velocity and spin of a body, one after the other.
+/// Returns position, small rotation since `from`, velocity and angular velocity of a body, in this
+/// order.
 std::vector<double> MotionOf(const BodyState& s, const BodyState& from) {
   Quat turn = s.orientation * Conjugate(from.orientation);
   if (turn.w < 0) turn = {-turn.w, -turn.x, -turn.y, -turn.z};
@@ -57,11 +59,12 @@ std::vector<double> MotionOf(const BodyState& s, const BodyState& from) {
   return {x.x, x.y, x.z, 2 * turn.x, 2 * turn.y, 2 * turn.z, v.x, v.y, v.z, w.x, w.y, w.z};
 }
 
-/// Whether motions are where their kinds' largest entries of A are: position, turn, velocity, spin.
+/// Returns the kind of a motion, by which A's entries are scaled: position, rotation, velocity,
+/// angular velocity.
 int KindOf(int motion) { return motion % 12 / 3; }
 
-/// What steps of the simulation make of small changes of each body's motion, in lanes, against A^n.
-/// `lift_m`: as docs/theory/linear.md says of gaps.
+/// Compares the effect of steps on small changes of each body's motion, in lanes, with A^n.
+/// `lift_m`: height by which bodies are lifted off their contacts (docs/theory/linear.md).
 void ComparesWithSteps(const ExperimentSpec& e, int steps, double lift_m) {
   const StateSpace system = Find(e);
   ASSERT_TRUE(system.found) << system.why;
@@ -96,7 +99,7 @@ void ComparesWithSteps(const ExperimentSpec& e, int steps, double lift_m) {
   }
   batch.Step(kStep, steps);
 
-  // A^n of the columns; what is set by hand is also what the step takes for the velocity before.
+  // Columns of A^n; a velocity set by hand is also the step's previous velocity.
   const int n = system.A.rows;
   const auto number = [&](const std::string& name) {
     const auto found = FindSignal(system.states, name);
@@ -175,19 +178,20 @@ TEST(StateSpace, IsExactUnderImpedanceControl) {
   EXPECT_LT(system.disagreement, 2e-6);
 }
 
-/// The prism's cables are stiff at its step: implicit with their directions (linear.md, section 3).
+/// The prism's cables are stiff at its step: implicit in tension and direction (linear.md, section
+/// 3).
 TEST(StateSpace, OfImplicitGroupsHasDifferences) {
   const StateSpace system = Find(UnderImpedance(ExperimentOf(Standing("prism3")), 100, 3));
   ASSERT_TRUE(system.found) << system.why;
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
 }
 
-/// Tetraspine3 that has slid to its rest, and from there on does not slide any more.
+/// Tetraspine3 that has slid to its rest and sticks from there on.
 TEST(StateSpace, IsExactForASpineThatSticks) {
   ExperimentSpec e = ExperimentOf(Standing("tetraspine3"));
   const StateSpace sliding = Find(e);
   EXPECT_FALSE(sliding.found);
-  EXPECT_NE(sliding.why.find("is at the edge of slipping"), std::string::npos) << sliding.why;
+  EXPECT_NE(sliding.why.find("is at the limit of slipping"), std::string::npos) << sliding.why;
   Diagnostics out;
   LinearOptions options;
   options.at = FindSettledStart(e, out)->pose;
@@ -213,8 +217,9 @@ TEST(StateSpace, JointsAndLimitedActuators) {
   EXPECT_LT(system.disagreement, 1e-5);
 }
 
-/// Undamped and afloat, the step is the leapfrog scheme: (I4) of docs/theory/integrator.md says its
-/// frequencies from those of the structure, which statics computes without any step.
+/// Undamped and floating, the step is the leapfrog scheme: (I4) of docs/theory/integrator.md gives
+/// its frequencies from the structure's natural frequencies, which statics computes without any
+/// step.
 TEST(StateSpace, FrequenciesAreThoseOfStaticsWithTheStepsDispersion) {
   Diagnostics out;
   const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out);
@@ -222,7 +227,7 @@ TEST(StateSpace, FrequenciesAreThoseOfStaticsWithTheStepsDispersion) {
   ExperimentSpec e = ExperimentOf(robot->def);
   e.robot.def.gravity_m_per_s2 = {};
   for (CableDef& cable : e.robot.def.cables) cable.damping_n_s_per_m = 0;
-  e.step_s = 2e-4;  // at 1 ms its cables are stiff ones
+  e.step_s = 2e-4;  // at 1 ms its cables are stiff
   const StateSpace system = Find(e);
   ASSERT_TRUE(system.found) << system.why;
   std::vector<double> swings_hz;
@@ -246,7 +251,7 @@ TEST(StateSpace, FrequenciesAreThoseOfStaticsWithTheStepsDispersion) {
   }
 }
 
-/// A weight on one damped cable: its response is that of an oscillator, in closed form.
+/// A weight on one damped cable: its response equals a damped oscillator's, in closed form.
 TEST(StateSpace, RespondsLikeAnOscillator) {
   ModelDef def;
   BodyDef body;
@@ -272,7 +277,7 @@ TEST(StateSpace, RespondsLikeAnOscillator) {
     const std::complex<double> s(0, 2 * std::numbers::pi * r.frequency_hz[i]);
     const std::complex<double> x =
         1.0 / (0.5 * s * s + 2.0 * s + 200.0) * std::exp(-s * (kStep / 2));
-    // Held from step to step (half a step late), and the scheme's error of second order.
+    // Zero-order hold (half a step late), and the scheme's error of second order.
     const double w_h = std::abs(s) * kStep, bound = 2 * w_h * w_h + 1e-4;
     EXPECT_NEAR(r.magnitude[i], std::abs(x), bound * std::abs(x)) << r.frequency_hz[i];
     EXPECT_NEAR(std::remainder(r.phase_rad[i] - std::arg(x), 2 * std::numbers::pi), 0, bound);
@@ -291,7 +296,7 @@ TEST(StateSpace, RefusesWhatHasNoDerivative) {
   options.most_s = 2;
   system = FindStateSpace(trembling, options, out);
   EXPECT_FALSE(system.found);
-  EXPECT_NE(system.why.find("does not come to rest within 2 s: then it moves at"),
+  EXPECT_NE(system.why.find("does not come to rest within 2 s: its speed is then"),
             std::string::npos)
       << system.why;
 }

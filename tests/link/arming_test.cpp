@@ -1,4 +1,4 @@
-// Power and its end: two steps to it, one away from it, and what is told to motors in between.
+// Power on and off: two steps to arm, one to disarm, and the commands to motors in between.
 #include "link/fake_robot.h"
 
 namespace taut::link {
@@ -78,7 +78,7 @@ TEST(Enable, CapturesWhatIsMeasured) {
   EXPECT_NEAR(rig.board(2).core.parameters.motor[1][board::kTensionOffset], 11.35, 0.2);
 }
 
-// Values that nobody set must not move a robot: 0 m of rest length would wind in all there is.
+// Default values must not move a robot: a rest length of 0 m would wind in all cables.
 TEST(Enable, APositionThatNobodyNamedIsWhereTheMotorIs) {
   Rig rig;
   rig.Run(Mode::kPosition);
@@ -231,7 +231,7 @@ TEST(TheEndOfADriver, ComesWithoutAnAdapterToo) {
   pulled.robot.gone = true;
   pulled.driver->Cycle(2);
   pulled.driver.reset();
-  Rig mute;  // it is plugged in again, and says nothing
+  Rig mute;  // it is plugged in again, and sends nothing
   mute.Run(Mode::kHold);
   mute.robot.gone = true;
   mute.driver->RunUntil(mute.robot.now_s() + 0.1);

@@ -1,5 +1,4 @@
-// Calibration files: what they say, what is refused and where, and that what is written is read as
-// the same numbers.
+// Calibration files: contents, errors and their places, and a round trip of written numbers.
 #include "taut/calibration.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +27,7 @@ class CalibrationFile : public testing::Test {
     return Load("taut: 1\nkind: calibration\nname: c\nparameters: {gain: 0.15}\ncables:\n" +
                 cables);
   }
-  /// What is said about one entry, which begins on line 6: "LINE: message (hint)".
+  /// Returns the diagnostics of one entry, which begins on line 6: "LINE: message (hint)".
   std::string Wrong(const std::string& entry) {
     EXPECT_FALSE(LoadCables("  - " + entry + "\n")) << entry;
     std::string messages;
@@ -68,11 +67,12 @@ TEST_F(CalibrationFile, WhatIsWrongIsNamedWithItsLine) {
                 .rfind("6: there is no actuated cable \"bak\" (", 0),
             0u)
       << Wrong("{cable: bak, " + day + ", stiffness_n_per_m: 1}");
-  EXPECT_EQ(Wrong("{cable: back, " + day + "}"), "6: cable says nothing that was measured\n");
+  EXPECT_EQ(Wrong("{cable: back, " + day + "}"), "6: cable has no measured value\n");
   for (const char* text : {"yesterday", "2026-13-01", "2026-00-01", "2026-11-32", "2026-11-00",
                            "26-11-23", "2026/11/23", "2026-11-2x", "1066-11-23", "2026-11-023"}) {
     EXPECT_EQ(Wrong(std::string("{cable: back, measured: \"") + text + "\", stiffness_n_per_m: 1}"),
-              std::string("6: \"") + text + "\" is not a day (year, month, day, as 2026-11-23)\n");
+              std::string("6: \"") + text +
+                  "\" is not a date (expected year, month and day, such as 2026-11-23)\n");
   }
   for (const char* value :
        {"load_cell_n_per_count: 0", "load_cell_n_per_count: 11", "load_cell_counts_at_zero: -1",
@@ -90,7 +90,7 @@ TEST_F(CalibrationFile, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_NE(Wrong("{" + day + ", stiffness_n_per_m: 1}").find("cable"), std::string::npos);
   EXPECT_EQ(Wrong("{cable: back, " + day + ", stiffness_n_per_m: 1}\n  - {cable: back, " + day +
                   ", stiffness_n_per_m: 2}"),
-            "7: cable \"back\" was there already\n");
+            "7: the cable \"back\" has two entries\n");
 }
 
 TEST_F(CalibrationFile, AllMistakesAreSaidAtOnce) {

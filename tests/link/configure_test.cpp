@@ -1,4 +1,4 @@
-// Finding a robot: who answers, who does not, and what is refused.
+// Discovery of a robot's boards: present, missing and refused boards.
 #include "link/fake_robot.h"
 
 namespace taut::link {
@@ -41,7 +41,7 @@ TEST(Configure, NamesAllBoardsThatAreNotThere) {
   EXPECT_EQ(rig.state().stage, Stage::kUnconfigured);
 }
 
-/// Makes the reply to `Asked::kInfo` of board 1 another one.
+/// Replaces the reply to `Asked::kInfo` of board 1.
 void SpoilInfo(Rig& rig, void (*spoil)(board::Info& info)) {
   rig.robot.spoil = [spoil](const Bytes& frame, Bytes& reply) {
     if (frame != UsbIss::ReadFrame(0x11, board::kFrameSize)) return;
@@ -66,7 +66,7 @@ TEST(Configure, RefusesFirmwareOfAnotherVersion) {
     Rig rig;
     SpoilInfo(rig, spoil);
     EXPECT_FALSE(rig.Configure());
-    EXPECT_NE(rig.out.Format().find("board 1 has a firmware of another version, 0.2"),
+    EXPECT_NE(rig.out.Format().find("board 1 has an incompatible firmware version, 0.2"),
               std::string::npos)
         << rig.out.Format();
   }
@@ -79,8 +79,10 @@ TEST(Configure, SaysWhichValueIsRefusedAndWhy) {
   Rig rig;
   EXPECT_FALSE(rig.Configure({{{3, 1, board::kTensionLimit}, 500}}));
   const std::string said = rig.out.Format();
-  EXPECT_NE(said.find("board 3 refuses tension_limit_n of motor 1: out of the parameter's range"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find(
+          "board 3 refuses tension_limit_n of motor 1: the value is out of the parameter's range"),
+      std::string::npos)
       << said;
 }
 
@@ -88,25 +90,25 @@ TEST(Configure, WantsAUsbIssThatIsThere) {
   Rig silent;
   silent.robot.swallow = [](const Bytes&) { return true; };
   EXPECT_FALSE(silent.Configure());
-  EXPECT_NE(silent.out.Format().find("nothing answers as a USB-ISS"), std::string::npos);
+  EXPECT_NE(silent.out.Format().find("no USB-ISS adapter answers"), std::string::npos);
   Rig gone;
   gone.robot.gone = true;
   EXPECT_FALSE(gone.Configure());
-  EXPECT_NE(gone.out.Format().find("nothing answers as a USB-ISS"), std::string::npos);
+  EXPECT_NE(gone.out.Format().find("no USB-ISS adapter answers"), std::string::npos);
   Rig other;
   other.robot.module_id = 9;
   EXPECT_FALSE(other.Configure());
-  EXPECT_NE(other.out.Format().find("this is no USB-ISS: its number is 9, not 7"),
+  EXPECT_NE(other.out.Format().find("the adapter is not a USB-ISS: its module number is 9, not 7"),
             std::string::npos)
       << other.out.Format();
   Rig refuses;
   refuses.robot.refuses_mode = true;
   EXPECT_FALSE(refuses.Configure());
-  EXPECT_NE(refuses.out.Format().find("refuses to work as I2C"), std::string::npos);
+  EXPECT_NE(refuses.out.Format().find("rejects I2C mode"), std::string::npos);
   Rig old;
   old.robot.firmware_version = 7;
   EXPECT_TRUE(old.Configure());
-  EXPECT_NE(old.out.Format().find("before 8 a board that does not answer holds up the bus"),
+  EXPECT_NE(old.out.Format().find("before 8, a board that does not answer blocks the bus"),
             std::string::npos);
 }
 
@@ -239,9 +241,9 @@ TEST(SetReference, IsWhereTheCableIsAndWantsMotorsThatRest) {
   rig.driver->Cycle(2);
   EXPECT_NEAR(rig.state().motors[3].rest_length_m, 0.15, 1e-5);
   EXPECT_EQ(rig.state().motors[3].encoder_counts, 3731);
-  rig.board(1).Begin(board::kBrownOut);  // it is another boot now
+  rig.board(1).Begin(board::kBrownOut);  // another boot
   EXPECT_FALSE(rig.driver->SetReference(3, 0.15, rig.out));
-  EXPECT_NE(rig.out.Format().find("it has begun anew since it was asked who it is"),
+  EXPECT_NE(rig.out.Format().find("it was reset after its information was read"),
             std::string::npos);
 }
 
@@ -251,7 +253,7 @@ TEST(SetReference, OfMotorsThatRunIsRefused) {
   rig.driver->RunUntil(rig.robot.now_s() + 0.0123);  // in the middle of a cycle
   const std::int64_t counts = rig.state().motors[0].encoder_counts;
   EXPECT_FALSE(rig.driver->SetReference(0, 0.1, rig.out));
-  EXPECT_NE(rig.out.Format().find("not in the mode that it is in"), std::string::npos);
+  EXPECT_NE(rig.out.Format().find("not allowed in its present mode"), std::string::npos);
   rig.driver->Cycle(3);
   EXPECT_NEAR(static_cast<double>(rig.state().motors[0].encoder_counts),
               static_cast<double>(counts), 200);

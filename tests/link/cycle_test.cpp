@@ -1,4 +1,4 @@
-// Cycles: when, what is asked, what is made of the answers, and what if there are none.
+// Communication cycles: timing, requests, replies, and missing replies.
 #include "link/fake_robot.h"
 
 namespace taut::link {
@@ -41,7 +41,7 @@ TEST(Cycles, ThatComeLateAreCountedAndNotMadeUpFor) {
   rig.driver->Cycle(3);
   rig.driver->ForgetStatistics();
   rig.driver->Cycle(1);
-  rig.robot.Wait(rig.robot.now_s() + 0.035);  // the PC was about something else
+  rig.robot.Wait(rig.robot.now_s() + 0.035);  // the PC was busy
   const std::size_t from = rig.robot.frames.size();
   rig.driver->RunUntil(rig.robot.now_s() + 0.0995);
   EXPECT_EQ(rig.state().link.late_cycles, 1);
@@ -281,7 +281,8 @@ TEST(Groups, FallBackToSingleReadsWhereOneIsAbsent) {
   EXPECT_TRUE(rig.state().boards[1].there) << "it may have been a moment";
   rig.driver->Cycle(3);
   EXPECT_FALSE(rig.state().boards[1].there);
-  // Now groups are of those that are there, and it is looked for now and then.
+  // Now group reads include only the boards that reply, and the missing board is polled from time
+  // to time.
   const std::size_t later = rig.robot.frames.size();
   rig.driver->Cycle(10);
   singles = 0;

@@ -1,4 +1,4 @@
-/// A board's own text behind a bus, natively: what the firmware's main loop does around it, and two
+/// The board's own code behind a bus, run natively: the firmware's main loop around it, and two
 /// motors on a bench (board/bench_motor.h).
 #pragma once
 
@@ -18,7 +18,7 @@ class FakeBoard {
     Begin(board::kPowerOn);
   }
 
-  /// As after a reset: RAM is lost, motors are where they are.
+  /// Resets the board: RAM is lost, motors keep their state.
   void Begin(std::uint8_t cause) {
     const board::Parameters parameters = core.parameters;
     core = {};
@@ -29,13 +29,13 @@ class FakeBoard {
     boot.nonce = ++nonce;
     boot.reset_cause = cause;
     board::Start(boot, core);
-    for (int m = 0; m < board::kMotors; ++m) {  // the encoder's counter is 0 where the board began
+    for (int m = 0; m < board::kMotors; ++m) {  // the encoder's counter is 0 at the board's start
       core.loops[m].encoder = motors[m].Encoder();
       core.loops[m].tension_counts = motors[m].Adc();
     }
     Publish();
   }
-  /// A millisecond.
+  /// Steps one millisecond.
   void Tick() {
     if (!there) return;
     if (looks_in_ticks_ > 0 && --looks_in_ticks_ == 0) {
@@ -60,7 +60,7 @@ class FakeBoard {
     }
     if (core.status_due) Publish();
   }
-  /// Acknowledged?
+  /// Receives bytes; returns true if they are acknowledged.
   bool Hear(const std::vector<std::uint8_t>& bytes, bool to_all) {
     if (!there || (to_all ? deaf : mute)) return false;
     if (to_all) {
@@ -71,7 +71,7 @@ class FakeBoard {
     }
     return true;
   }
-  /// The frame that a read gets; nothing: nobody acknowledges the address.
+  /// Returns the frame for a read; nothing: the address is not acknowledged.
   std::optional<std::vector<std::uint8_t>> Say() {
     if (!there) return std::nullopt;
     std::vector<std::uint8_t> bytes(frame_, frame_ + sizeof frame_);
@@ -86,9 +86,9 @@ class FakeBoard {
   board::Board core;
   board::BenchMotor motors[board::kMotors];
   bool there = true;            ///< On the bus, and with power.
-  bool deaf = false;            ///< For broadcasts.
-  bool mute = false;            ///< Does not take requests.
-  bool always_replies = false;  ///< Says the same reply for ever.
+  bool deaf = false;            ///< Ignores broadcasts.
+  bool mute = false;            ///< Ignores requests.
+  bool always_replies = false;  ///< Repeats the same reply forever.
   bool driver_fault = false;
   std::uint16_t nonce = 0;
 
@@ -100,7 +100,7 @@ class FakeBoard {
 
   std::uint8_t number_;
   std::vector<std::uint8_t> request_;
-  int looks_in_ticks_ = 0;  ///< A board answers a request when it gets round to it.
+  int looks_in_ticks_ = 0;  ///< Delay until the board handles a request.
   std::uint8_t frame_[board::kFrameSize] = {};
 };
 

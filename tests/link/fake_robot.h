@@ -1,5 +1,5 @@
-/// A robot in a few lines: boards that run natively, a USB-ISS that does what a script says, and a
-/// clock that goes as fast as it can. Takes no emulator.
+/// A simple fake robot: boards that run natively, a USB-ISS adapter with scripted faults, and a
+/// simulated clock. It needs no emulator.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,13 @@ class FakeRobot final : public Port {
     for (int b = 0; b < board_count; ++b) boards.push_back(std::make_unique<FakeBoard>(b));
   }
 
-  // --- as a port ---------------------------------------------------------------------------------
+  // --- Port interface ----------------------------------------------------------------------------
   bool Write(std::span<const std::uint8_t> bytes) override {
     if (gone) open_ = false;
     if (!open_) return false;
     const Bytes frame(bytes.begin(), bytes.end());
     frames.emplace_back(now_s(), frame);
-    // Whoever does not wait for a reply is not heard.
+    // A frame sent before the reply to the last one would be lost.
     EXPECT_TRUE(!under_way_ || now_s() - written_s_ >= 0.03)
         << "a frame before the reply to the last";
     under_way_ = true;
@@ -59,20 +59,20 @@ class FakeRobot final : public Port {
     return open_;
   }
 
-  // --- what goes wrong ---------------------------------------------------------------------------
-  /// What comes instead of the adapter's reply, which it may change; it has acted by then.
+  // --- Faults ------------------------------------------------------------------------------------
+  /// Changes or replaces the adapter's reply; the adapter has executed the frame by then.
   std::function<void(const Bytes& frame, Bytes& reply)> spoil;
-  /// Frames that are swallowed: neither acted on nor answered.
+  /// Frames that are dropped: neither executed nor answered.
   std::function<bool(const Bytes& frame)> swallow;
-  double delay_s = 0;  ///< Of replies.
-  bool gone = false;   ///< Pulled out.
+  double delay_s = 0;  ///< Delay of replies.
+  bool gone = false;   ///< Unplugged.
   std::uint8_t module_id = 7, firmware_version = 8;
   bool refuses_mode = false;
   int reopened = 0;
 
-  // --- what happened -----------------------------------------------------------------------------
-  std::vector<std::pair<double, Bytes>> frames;  ///< As they were written, and when [s].
-  /// The broadcasts among them, from frame number `from` on.
+  // --- Record ------------------------------------------------------------------------------------
+  std::vector<std::pair<double, Bytes>> frames;  ///< All frames written, with their times [s].
+  /// Returns the broadcasts among them, from frame number `from` on.
   std::vector<board::Cyclic> Broadcasts(std::size_t from = 0) const {
     std::vector<board::Cyclic> all;
     for (std::size_t i = from; i < frames.size(); ++i) {
@@ -199,7 +199,7 @@ class FakeRobot final : public Port {
   Bytes frame_, reply_, arrived_;
 };
 
-/// What a driver says and does with six such boards.
+/// A driver with such a robot of six boards, and its events.
 struct Rig {
   explicit Rig(DriverOptions options = {}, int motors = board::kCables)
       : robot((motors + board::kMotors - 1) / board::kMotors) {
@@ -213,7 +213,7 @@ struct Rig {
     out = {};
     return driver->Configure(settings, out);
   }
-  /// Configured, referenced, and in this mode.
+  /// Configures and references the robot and enables this mode.
   void Run(board::Mode mode, bool capture = false) {
     ASSERT_TRUE(Configure()) << out.Format();
     for (std::size_t m = 0; m < state().motors.size(); ++m) {

@@ -1,4 +1,4 @@
-// What goes to a USB-ISS and what comes back, byte by byte as Devantech has it (usb_iss_tech,
+// Frames to and from a USB-ISS adapter, byte by byte as documented by Devantech (usb_iss_tech,
 // usb_iss_i2c_tech).
 #include "link/fake_robot.h"
 
@@ -92,7 +92,7 @@ TEST(UsbIssTransfers, WhatComesTooLateIsNotTheNextReply) {
   robot.Wait(robot.now_s() + 0.04);
   EXPECT_EQ(adapter.Poll(), UsbIss::State::kSilent);
   robot.delay_s = 0;
-  robot.Wait(robot.now_s() + 0.1);  // until it is there
+  robot.Wait(robot.now_s() + 0.1);  // until it has arrived
   const auto version = adapter.Transfer(Bytes{0x5a, 0x01}, {3});
   ASSERT_TRUE(version);
   EXPECT_EQ((*version)[0], 7);

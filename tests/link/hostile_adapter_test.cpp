@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -47,7 +47,7 @@ class HostileRobot : public CommandTest {
     }
     EXPECT_TRUE(done());
   }
-  /// Waits for an end, at most kSoon_s.
+  /// Waits for the end of a process, at most kSoon_s.
   CommandResult EndSoon(pid_t pid) {
     siginfo_t ended{};
     Await([&] {

@@ -1,4 +1,4 @@
-// Names of what goes over the wire, parameters as a user types them, and the rows of a log.
+// Names of bytes on the wire, parameters as typed by a user, and the rows of a log.
 #include "taut/link/names.h"
 
 #include "link/fake_robot.h"
@@ -31,7 +31,7 @@ TEST(ReadParameter, TakesANameAndANumber) {
 TEST(ReadParameter, IsStrict) {
   for (const char* text : {"duty_limit", "duty_limit=", "duty_limit=half", "duty_limit=0.5x",
                            "duty_limit= 0.5", "duty_limit=0.5 ", "=", ""}) {
-    EXPECT_NE(Wrong(text).find("not of the form name=number"), std::string::npos) << Wrong(text);
+    EXPECT_NE(Wrong(text).find("expected the form name=number"), std::string::npos) << Wrong(text);
   }
   for (const char* text :
        {"duty_limit=1.01", "duty_limit=-0.01", "duty_limit=nan", "duty_limit=inf", "supply_v=4"}) {
@@ -68,7 +68,7 @@ TEST(Names, GoThereAndBack) {
             "driver, overruns, parameters_lost, unreferenced, not_armed, bus_stuck");
   EXPECT_EQ(ResetCauseNames(board::kBrownOut | board::kWatchdog), "brown_out, watchdog");
   for (int answer = 0; answer < 6; ++answer) {
-    EXPECT_STRNE(AnswerText(static_cast<board::Answer>(answer)), "an answer that nobody knows");
+    EXPECT_STRNE(AnswerText(static_cast<board::Answer>(answer)), "unknown answer");
   }
 }
 

@@ -1,5 +1,5 @@
-// A robot as a plant: what controllers see of it, what becomes of what they command, and what an
-// experiment says to the boards.
+// A robot as a plant: readings for controllers, the effect of their commands, and the settings of
+// an experiment for the boards.
 #include "taut/link/robot_plant.h"
 
 #include "link/fake_robot.h"
@@ -25,7 +25,7 @@ const ExperimentSpec& Sway() {
   return experiment;
 }
 
-/// Of this motor and parameter among settings; NaN: none.
+/// Returns the value of this motor and parameter among settings; NaN: none.
 double Of(const std::vector<Setting>& settings, int motor, int parameter) {
   for (const Setting& setting : settings) {
     if (setting.place.board == motor / 2 && setting.place.index == motor % 2 &&
@@ -147,7 +147,7 @@ TEST(RobotPlant, ShowsWhatBoardsSense) {
     EXPECT_NEAR(rig.plant.commands().set_point_n[rig.Row(m)], motor.set_point_n, 1e-9) << m;
   }
   EXPECT_EQ(rig.plant.Observe().time_s[0], 0.05);
-  EXPECT_TRUE(rig.plant.Goes(0));
+  EXPECT_TRUE(rig.plant.IsRunning(0));
 }
 
 TEST(RobotPlant, RatesAreOfRestLengths) {
@@ -204,12 +204,12 @@ TEST(RobotPlant, SaysWhatIsWrongWithACable) {
   EXPECT_EQ(faults[rig.Row(3)], kFaultActuator);
   EXPECT_EQ(faults[rig.Row(4)], kFaultActuator);
   EXPECT_EQ(faults[rig.Row(5)], kFaultActuator);
-  EXPECT_TRUE(rig.plant.Goes(0)) << "motors hold";
+  EXPECT_TRUE(rig.plant.IsRunning(0)) << "motors hold";
   rig.board(4).there = false;
   rig.Advance(0.25);
   EXPECT_EQ(rig.plant.Observe().faults[rig.Row(8)], kFaultNoReading);
   EXPECT_EQ(rig.plant.Observe().faults[rig.Row(10)], kFaultNone);
-  EXPECT_FALSE(rig.plant.Goes(0)) << "all were stopped";
+  EXPECT_FALSE(rig.plant.IsRunning(0)) << "all were stopped";
 }
 
 TEST(RobotPlant, WithoutAnAdapterHasNoReadings) {

@@ -1,4 +1,4 @@
-// What goes wrong between PC and boards, and on boards, and what all motors then do.
+// Faults between PC and boards, and on boards, and the reaction of all motors.
 #include "link/fake_robot.h"
 
 namespace taut::link {
@@ -40,16 +40,16 @@ TEST(ALostBoard, OfARobotAtRestIsToldAndNoMore) {
 TEST(ADeafBoard, IsNoticed) {
   Rig rig;
   rig.Run(Mode::kImpedance);
-  rig.board(5).deaf = true;  // it is read, and says what it said before
+  rig.board(5).deaf = true;  // its frames are read, but do not change
   rig.driver->Cycle(6);
-  EXPECT_EQ(rig.Heard("all motors hold: board 5 hears no broadcasts"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("all motors hold: board 5 receives no broadcasts"), 1) << rig.Events();
   rig.driver->Cycle(20);
-  EXPECT_EQ(rig.Heard("board 5 hears no broadcasts"), 2) << "told once: " << rig.Events();
+  EXPECT_EQ(rig.Heard("board 5 receives no broadcasts"), 2) << "told once: " << rig.Events();
   EXPECT_EQ(rig.board(0).core.mode, Mode::kHold);
   EXPECT_TRUE(rig.board(5).core.timeout) << "and it helps itself";
   rig.board(5).deaf = false;
   rig.driver->Cycle(3);
-  EXPECT_EQ(rig.Heard("board 5 heard no broadcast in time"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("board 5 received no broadcast in time"), 1) << rig.Events();
 }
 
 TEST(OnFault, HoldOffOrStop) {
@@ -68,7 +68,7 @@ TEST(OnFault, HoldOffOrStop) {
     }
     EXPECT_EQ(rig.state().stopping, what == OnFault::kStop);
     EXPECT_EQ(rig.Heard("d: slack"), 1) << rig.Events();
-    EXPECT_EQ(rig.Heard("board 1 is not well"), 1) << rig.Events();
+    EXPECT_EQ(rig.Heard("board 1 has a fault"), 1) << rig.Events();
     EXPECT_EQ(rig.state().motors[3].faults, board::kSlack);
   }
 }
@@ -97,20 +97,20 @@ TEST(ABoardThatBeginsAnew, HoldsTheOthersAndSaysWhy) {
   rig.Run(Mode::kImpedance);
   rig.board(3).Begin(board::kWatchdog);
   rig.driver->Cycle(6);
-  EXPECT_EQ(rig.Heard("board 3 began anew: watchdog"), 1) << rig.Events();
-  EXPECT_EQ(rig.Heard("all motors hold: board 3 has begun anew"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("board 3: reset cause watchdog"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("all motors hold: board 3 was reset"), 1) << rig.Events();
   EXPECT_EQ(rig.board(0).core.mode, Mode::kHold);
   EXPECT_FALSE(rig.board(3).IsPowered());
   EXPECT_EQ(rig.state().boards[3].reset_cause, board::kWatchdog);
 }
 
-// Its flag was up before: what it then refuses gives it away.
+// Its reset flag was set before: the refused command reveals the reset.
 TEST(ABoardThatBeginsAnew, IsNoticedIfNobodyClearedItsFirstBeginning) {
   Rig rig;
   ASSERT_TRUE(rig.Configure());
   ASSERT_TRUE(rig.driver->Enable(Mode::kHold, false, rig.out)) << rig.out.Format();
   ASSERT_TRUE(rig.state().boards[3].status.was_reset);
-  EXPECT_EQ(rig.Heard("begun anew"), 0) << "who has just begun is no news: " << rig.Events();
+  EXPECT_EQ(rig.Heard("was reset"), 0) << "who has just begun is no news: " << rig.Events();
   rig.board(3).Begin(board::kWatchdog);
   rig.driver->Cycle(20);
   EXPECT_EQ(rig.Heard("board 3: hold -> off"), 1) << rig.Events();
@@ -120,9 +120,9 @@ TEST(ABoardThatBeginsAnew, IsNoticedIfNobodyClearedItsFirstBeginning) {
 TEST(ATimeout, IsTold) {
   Rig rig;
   rig.Run(Mode::kImpedance);
-  rig.robot.Wait(rig.robot.now_s() + 0.15);  // the PC was about something else
+  rig.robot.Wait(rig.robot.now_s() + 0.15);  // the PC was busy
   rig.driver->Cycle(3);
-  EXPECT_EQ(rig.Heard("board 2 heard no broadcast in time"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("board 2 received no broadcast in time"), 1) << rig.Events();
   EXPECT_EQ(rig.Heard("all motors hold"), 1) << rig.Events();
   EXPECT_EQ(rig.state().link.late_cycles, 1);
   rig.driver->ClearFaults();
@@ -156,7 +156,7 @@ TEST(Broadcasts, ThatNobodyHearsForLongMakeTheAdapterBeginAnew) {
   const std::size_t from = rig.robot.frames.size();
   rig.driver->Cycle(2);
   EXPECT_GE(rig.state().link.adapter_resets, 1);
-  EXPECT_GE(rig.Heard("nobody hears broadcasts"), 1);
+  EXPECT_GE(rig.Heard("no board acknowledges broadcasts"), 1);
   EXPECT_TRUE(std::any_of(rig.robot.frames.begin() + static_cast<std::ptrdiff_t>(from),
                           rig.robot.frames.end(), [](const auto& frame) {
                             return frame.second == Bytes{0x5a, 0x02, 0x70, 0x04};
@@ -236,7 +236,7 @@ TEST(AnAdapterThatIsPulledOut, IsOpenedAgainAndMotorsHold) {
   EXPECT_TRUE(rig.state().link.connected);
   EXPECT_EQ(rig.state().link.reconnections, 1);
   EXPECT_EQ(rig.Heard("the adapter is back"), 1) << rig.Events();
-  EXPECT_EQ(rig.Heard("board 0 heard no broadcast in time"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("board 0 received no broadcast in time"), 1) << rig.Events();
   EXPECT_EQ(rig.robot.Broadcasts().back().mode, Mode::kHold) << "not where it left off";
   rig.driver->ClearFaults();
   rig.driver->Cycle(3);

@@ -1,4 +1,4 @@
-// What the PC tells of cables that boards do not take for faults.
+// Warnings of the PC about cables that boards do not report as faults.
 #include "link/fake_robot.h"
 
 namespace taut::link {
@@ -30,31 +30,31 @@ TEST(ACableWithoutTension, OfAMotorWithoutPowerIsNoNews) {
   EXPECT_EQ(rig.Heard("slack"), 0) << rig.Events();
 }
 
-// At rest a reading may well be the same for long.
+// At rest a reading may be constant for long.
 TEST(ALoadCellThatStands, IsToldOnceItsMotorHasMoved) {
   Rig rig;
   rig.Run(Mode::kPosition);
   rig.board(3).motors[0].adc_stuck = 120;
   rig.driver->Cycle(100);
-  EXPECT_EQ(rig.Heard("stands"), 0) << rig.Events();
+  EXPECT_EQ(rig.Heard("does not change"), 0) << rig.Events();
   rig.driver->SetValue(6, 0.19);
   rig.driver->SetValue(7, 0.19);
   rig.driver->Cycle(60);
-  EXPECT_EQ(rig.Heard("motor 6: its load cell stands still"), 1) << rig.Events();
-  EXPECT_EQ(rig.Heard("stands"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("motor 6: its load cell reading does not change"), 1) << rig.Events();
+  EXPECT_EQ(rig.Heard("does not change"), 1) << rig.Events();
 }
 
-// Two readings that are the same by chance, with a gap between them.
+// Two readings that are equal by chance, with a gap between them.
 TEST(ALoadCellThatStands, IsNotOneReadingTwice) {
   Rig rig;
   rig.Run(Mode::kPosition);
   board::BenchMotor& motor = rig.board(3).motors[0];
   for (int i = 0; i < 40; ++i) {
-    if (i % 4 == 0) motor.adc_stuck = 100 + i;  // the filter lingers for a cycle or two
+    if (i % 4 == 0) motor.adc_stuck = 100 + i;  // the filter settles within a cycle or two
     if (i % 4 == 2) motor.wound_m += i % 8 == 2 ? 0.005 : -0.005;
     rig.driver->Cycle(1);
   }
-  EXPECT_EQ(rig.Heard("stands"), 0) << rig.Events();
+  EXPECT_EQ(rig.Heard("does not change"), 0) << rig.Events();
 }
 
 }  // namespace

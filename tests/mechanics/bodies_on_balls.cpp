@@ -1,4 +1,4 @@
-/// A rigid body on a ball joint: spinning top and spherical pendulum.
+/// Rigid body on a ball joint: spinning top and spherical pendulum.
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "tests/constants.h"
 #include "tests/mechanics/energy_range.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/mechanics/runge_kutta.h"
-#include "tests/mechanics/scene.h"
 #include "tests/physics/world.h"
 
 namespace taut::mechanics {
@@ -17,8 +17,9 @@ using test::Distance;
 using test::MakeBatch;
 using test::StepsIn;
 
-/// A body of 1 kg on a ball joint at the origin. Moments about the center of mass along its axes,
-/// of which z goes through the joint; it starts turned by `tilt_rad` about the y axis of W.
+/// A body of 1 kg on a ball joint at the origin. The moments are about the center of mass along the
+/// body's axes, whose z axis passes through the joint; the body starts rotated by `tilt_rad` about
+/// the y axis of W.
 struct BodyOnBall {
   Vec3 moments_kg_m2;
   double arm_m;  ///< Of the center of mass, along the body's z axis.
@@ -50,7 +51,7 @@ ModelDef ModelOf(const BodyOnBall& top) {
   return def;
 }
 
-/// The center of mass after `time_s` by Euler's equations about the joint.
+/// Returns the center of mass after `time_s` by Euler's equations about the joint.
 Vec3 ReferencePlace(const BodyOnBall& top, double time_s) {
   const double extra = top.arm_m * top.arm_m;
   const double a = top.moments_kg_m2.x + extra, b = top.moments_kg_m2.y + extra,
@@ -105,7 +106,7 @@ void SphericalPendulum(Report& report) {
   const EnergyRange seen = Run(world, 1e-3, report.IsFull() ? 600 : 120);
   report.AtMost("energy off, 1 ms", "J", seen.Off(), 3e-5);
   report.AtMost("gap of the joint", "m", seen.gap_m, 1e-11);
-  // Three different moments, and a spin about no axis of symmetry.
+  // Three different moments, and an angular velocity along no axis of symmetry.
   const BodyOnBall uneven{{0.02, 0.05, 0.03}, -0.5, 0.3, {3, 1, 5}};
   const double at_1ms = PlaceError(uneven, 1e-3, 2), at_half = PlaceError(uneven, 5e-4, 2);
   report.AtMost("place after 2 s, three different moments, 1 ms", "m", at_1ms, 1e-4);

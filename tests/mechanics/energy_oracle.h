@@ -14,18 +14,18 @@ namespace taut::mechanics {
 
 inline double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 
-/// The energy of a model of points and straight rods, whose bodies move by coordinates of the
-/// oracle: points along the directions that their joint with the world leaves, rods by five
-/// coordinates, or by two about a ball joint with the world.
+/// Energy of a model of points and straight rods in the oracle's coordinates: points move along the
+/// free directions of their joint with the world, rods by five coordinates, or by two about a ball
+/// joint with the world.
 class EnergyOracle {
  public:
-  /// `step_m` is too short for a taut cable to get slack.
+  /// `step_m` must be too short for a taut cable to become slack.
   explicit EnergyOracle(const ModelDef& def, double step_m = 1e-3) : def_(def), step_(step_m) {
     for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) AddBody(b);
   }
 
-  /// The smallest eigenvalue of the energy's second derivative over the squared displacements of
-  /// all places, without the `zeros` eigenvalues next to zero.
+  /// Returns the smallest eigenvalue of the energy's second derivative over the squared
+  /// displacements of all places [N/m], without the `zeros` eigenvalues next to zero.
   double LeastStiffness(int zeros) const {
     const Eigen::MatrixXd moves = Jacobian();
     const Eigen::MatrixXd metric = moves.transpose() * moves;
@@ -40,14 +40,14 @@ class EnergyOracle {
 
  private:
   struct Body {
-    Vec3 origin, direction;  ///< A rod's; `direction` is zero for points.
+    Vec3 origin, direction;  ///< Of a rod; `direction` is zero for points.
     Vec3 across[2];
-    std::vector<Vec3> slides;  ///< Unit vectors by which the origin moves.
-    int first = 0;             ///< Coordinate.
+    std::vector<Vec3> slides;  ///< Unit vectors along which the origin moves.
+    int first = 0;             ///< Index of the first coordinate.
   };
   struct Place {
     int body;
-    double along;  ///< From the origin along the direction.
+    double along;  ///< Distance from the origin along the direction.
   };
 
   void AddBody(int b) {
@@ -132,7 +132,7 @@ class EnergyOracle {
     return energy;
   }
 
-  /// Of order 4 in the step.
+  /// Returns the second difference along `by`, of order 4 in the step.
   double Second(const Eigen::VectorXd& by) const {
     return (-Energy(2 * by) + 16 * Energy(by) - 30 * Energy(0 * by) + 16 * Energy(-by) -
             Energy(-2 * by)) /

@@ -23,7 +23,7 @@ inline EnergyRange Run(Batch& world, double step_s, double time_s) {
   for (int n = test::StepsIn(time_s, step_s); n > 0; --n) {
     world.Step(step_s);
     const double change = test::EnergyOf(world) - start;
-    // Not a number counts as a gain.
+    // NaN counts as a gain.
     if (!(change <= seen.gain_j)) seen.gain_j = change;
     seen.loss_j = std::max(seen.loss_j, -change);
     for (int i = 0; i < joints; ++i) seen.gap_m = std::max(seen.gap_m, world.Joint(0, i).gap_m);

@@ -1,7 +1,7 @@
 /// Free rotation of a body with three different moments of inertia.
 
+#include "tests/mechanics/known_scene.h"
 #include "tests/mechanics/runge_kutta.h"
-#include "tests/mechanics/scene.h"
 #include "tests/physics/world.h"
 
 namespace taut::mechanics {
@@ -9,7 +9,8 @@ namespace {
 
 constexpr Vec3 kMoments{0.01, 0.02, 0.028}, kSpin{0.5, 6, 0.5};
 
-/// Orientation after `time_s` from Euler's equations: quaternion w, x, y, z and body rates.
+/// Returns the orientation after `time_s` from Euler's equations: quaternion w, x, y, z and body
+/// rates.
 Quat ReferenceOrientation(double time_s) {
   const auto rates = [](double, const std::array<double, 7>& y) {
     const double w = y[0], x = y[1], v = y[2], z = y[3], p = y[4], q = y[5], r = y[6];
@@ -26,7 +27,7 @@ Quat ReferenceOrientation(double time_s) {
 }
 
 double AngleBetween(const Quat& a, const Quat& b) {
-  // Of the vector part of a^-1 b, which is exact for small angles.
+  // From the vector part of a^-1 b, which is exact for small angles.
   const double x = a.w * b.x - b.w * a.x - (a.y * b.z - a.z * b.y);
   const double y = a.w * b.y - b.w * a.y - (a.z * b.x - a.x * b.z);
   const double z = a.w * b.z - b.w * a.z - (a.x * b.y - a.y * b.x);

@@ -1,4 +1,4 @@
-/// Slabs on rods and heaps of rods: every step is solved, within a bounded multiple of the mean
+/// Slabs on rods and heaps of rods: every step converges, within a bounded multiple of the mean
 /// work.
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/world.h"
 #include "tests/scenes/heap.h"
 #include "tests/scenes/stacks.h"
@@ -20,10 +20,10 @@ constexpr double kMostRelaxationMPerS = 1e-6;
 /// Number of linear systems of the worst step, as a multiple of the scene's mean.
 constexpr double kMostOfMean = 30;
 
-/// Six light rods around the middle carry a slab.
+/// A slab on six light rods around the center.
 struct Slab {
-  double mass_ratio;   ///< Of the slab and a rod.
-  double crooked_rad;  ///< Each rod points up to this much to either side of x.
+  double mass_ratio;   ///< Mass of the slab over the mass of a rod.
+  double crooked_rad;  ///< Largest deviation of each rod's direction to either side of x.
   Vec3 velocity_m_per_s{}, spin_rad_per_s{};
 
   static constexpr double kRodKg = 0.1;
@@ -93,7 +93,7 @@ double ForceOfTheGround(const Batch& world) {
   return sum;
 }
 
-/// One slab in several starts, until it lies still.
+/// Runs one slab from several starts, until it is at rest.
 void Settle(Report& report, const Slab& slab) {
   Steps steps;
   double weight = 0, speed = 0;

@@ -1,4 +1,4 @@
-/// Stability limit of the step under joint forces (docs/theory/joints.md, eq. 8): stable and
+/// Stability limit of the time step under joint forces (docs/theory/joints.md, eq. 8): stable and
 /// without status just below it, unstable and reported just above.
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/joint_scenes.h"
 
 namespace taut::mechanics {
@@ -54,9 +54,9 @@ Outcome Follow(const ModelDef& def, int b) {
 }
 
 /// `scene(load)`: a scene at that share of the load with w h = 2. All bodies start with 1 um/s
-/// sideways. Above, x(n+1) - 2 x(n) + x(n-1) = -(w h)^2 x(n) grows by a + sqrt(a^2 - 1) a step, a =
-/// (w h)^2 / 2 - 1, until the deviation changes the joint forces. In step 10 stable modes still
-/// have up to 1/40 of it.
+/// sideways. Above the limit, x(n+1) - 2 x(n) + x(n-1) = -(w h)^2 x(n) grows by a + sqrt(a^2 - 1) a
+/// step, a = (w h)^2 / 2 - 1, until the deviation changes the joint forces. In step 10 stable modes
+/// still contribute up to 1/40 of the deviation.
 template <class F>
 void AroundTheLimit(Report& report, double margin, int body, const F& scene) {
   const Outcome below = Follow(scene(1 - margin), body), above = Follow(scene(1 + margin), body);

@@ -1,4 +1,4 @@
-/// Joint stops: holding, rebound and release.
+/// Joint limits: holding, rebound and release.
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <string>
 
 #include "tests/mechanics/jointed_mass.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/mechanics/runge_kutta.h"
-#include "tests/mechanics/scene.h"
 #include "tests/physics/joint_scenes.h"
 
 namespace taut::mechanics {
@@ -15,7 +15,7 @@ namespace {
 
 using test::EnergyOf, test::MakeBatch, test::Norm, test::StepsIn;
 
-/// A thin rod of 1 m and 1 kg that turns about its end at the origin.
+/// Returns a thin rod of 1 m and 1 kg that rotates about its end at the origin.
 ModelDef RodAlong(const Vec3& to) {
   ModelDef def;
   scenes::AddRod(def, "rod", 1, 1e-3, {}, to, {});
@@ -27,7 +27,7 @@ std::string At(double step_s, double restitution) {
   return "e " + std::to_string(restitution).substr(0, 3) + ", " + std::to_string(us) + " us";
 }
 
-/// A mass on a rope of 0.5 m.
+/// Returns a mass on a rope of 0.5 m.
 ModelDef Rope(const Vec3& at, const Vec3& velocity, double restitution = 0) {
   ModelDef def = PointMass(at, velocity);
   JointDef rope = JointAt(JointKind::kDistance, {}, {0, 0, 1});
@@ -64,8 +64,8 @@ void SwingingRope(Report& report) {
   }
 }
 
-/// From the lowest point with v^2 = 3.5 g L a mass leaves its circle 120 degrees further and flies
-/// a parabola until the rope snatches.
+/// Released at the lowest point with v^2 = 3.5 g L, a mass leaves its circle after 120 degrees and
+/// flies on a parabola until the rope snatches.
 struct Flight {
   static constexpr double kLength = 0.5;
   double speed = std::sqrt(3.5 * kG * kLength);
@@ -116,7 +116,7 @@ void SlackRope(Report& report) {
 }
 
 void SpinningBodyOnRope(Report& report) {
-  // The rope is tied to it 0.1 m from its centre of mass; 38 J.
+  // The rope is attached 0.1 m from the body's center of mass; 38 J.
   const double spin = 200, tilt = 0.3;
   double change[2] = {};
   for (int k = 0; k < 2; ++k) {
@@ -146,7 +146,7 @@ void SpinningBodyOnRope(Report& report) {
 }
 
 void CircleInCone(Report& report) {
-  // The rod starts inside the cone, swings onto it and moves around along it.
+  // The rod starts inside the cone, swings onto it and circles along it.
   const double start = 0.55, limit = 0.6;
   const Vec3 along{std::sin(start), 0, -std::cos(start)}, turn{0, 0, 6};
   for (const double h : {1e-3, 2.5e-4}) {
@@ -179,7 +179,8 @@ void CircleInCone(Report& report) {
   }
 }
 
-/// Two rods at a right angle, pinned at an end; a spring of 50 N m presses their elbow on its stop.
+/// Returns two rods at a right angle, pinned at an end; a spring of 50 N m presses their elbow
+/// against its limit.
 ModelDef Elbow(bool pinned) {
   ModelDef def;
   scenes::AddRod(def, "upper", 1, 0.01, {}, {0.4, 0, 0}, {});
@@ -198,7 +199,7 @@ void PressedElbow(Report& report) {
   const double inertia = 0.4 * 0.4 / 3 + 1e-4 / 4 +  // upper
                          0.5 * (0.3 * 0.3 / 12 + 1e-4 / 4 + 0.4 * 0.4 + 0.15 * 0.15);
   const auto rates = [&](double, const std::array<double, 2>& y) {
-    // The elbow is at (cos a, -sin a) 0.4; a turn about y takes x to -z, and z to x.
+    // The elbow is at (cos a, -sin a) 0.4; a rotation about y moves x to -z, and z to x.
     const double x = 0.2 * std::cos(y[0]), x2 = 0.4 * std::cos(y[0]) + 0.15 * std::sin(y[0]);
     return std::array<double, 2>{y[1], kG * (x + 0.5 * x2) / inertia};
   };
@@ -246,7 +247,7 @@ void FreeElbow(Report& report) {
 constexpr double kSteps[] = {4e-3, 1e-3, 2.5e-4}, kRestitutions[] = {0.5, 0.8, 1.0};
 
 /// Reports the largest error of `error(restitution, step, which)` over some starts, for all
-/// restitutions and steps: second order, plus the share `lost` of the energy at any step.
+/// restitutions and steps: second order, plus the share `lost` of the energy at any step size.
 template <class F>
 void Rebounds(Report& report, double bound_1ms, double lost, const F& error) {
   const int starts = report.IsFull() ? 20 : 5;
@@ -274,14 +275,14 @@ void BouncingSlider(Report& report) {
     slide.least = -height, slide.restitution = e;
     def.joints.push_back(slide);
     Batch world = MakeBatch(def);
-    world.Step(h, StepsIn(falls_s * (1 + e), h));  // up again: the top is halfway to there
+    world.Step(h, StepsIn(falls_s * (1 + e), h));  // up again: the apex is halfway to that time
     const BodyState now = world.Body(0, 0);
     const double v = now.velocity_m_per_s.z, top = now.position_m.z + v * v / (2 * kG);
     return std::abs(top / (e * e * height) - 1);
   });
 }
 
-/// Returns the number of steps until the joint's rate is no longer positive.
+/// Steps until the joint's rate is no longer positive.
 void StepPastRebound(Batch& world, double step_s) {
   double last = 0;
   while (world.Time(0) < 10 && !(last > 0 && world.Joint(0, 0).rate <= 0)) {
@@ -291,8 +292,8 @@ void StepPastRebound(Batch& world, double step_s) {
 }
 
 void HingeStop(Report& report) {
-  // A level rod falls on a stop below it: after the rebound its energy is e^2 times that of the
-  // fall.
+  // A level rod falls on a limit below it: after the rebound its energy is e^2 times the energy of
+  // the fall.
   Rebounds(report, 2e-4, kPinTakes, [](double e, double h, int i) {
     const double stop = 1.2 + 0.013 * i;
     ModelDef def = RodAlong({1, 0, 0});

@@ -5,7 +5,7 @@
 
 namespace taut::mechanics {
 
-/// A mass of 1 kg at `at`, far smaller than all distances.
+/// Returns a mass of 1 kg at `at`, far smaller than all distances.
 inline ModelDef PointMass(const Vec3& at, const Vec3& velocity, double inertia_kg_m2 = 1e-6) {
   ModelDef def;
   BodyDef body;

@@ -1,4 +1,4 @@
-/// Several bodies on joints: loops, nets, redundant rows, chains.
+/// Several bodies on joints: kinematic loops, nets, redundant rows, chains.
 
 #include <algorithm>
 #include <map>
@@ -8,7 +8,7 @@
 
 #include "tests/constants.h"
 #include "tests/mechanics/energy_range.h"
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/world.h"
 #include "tests/scenes/rod.h"
 
@@ -20,7 +20,7 @@ using test::EnergyOf;
 using test::MakeBatch;
 using test::StepsIn;
 
-/// Rods between nodes: all rods of a node are joined to the first of them there.
+/// Rods between nodes: at each node all rods are joined to the first rod.
 struct RodNet {
   ModelDef def;
   std::map<int, std::vector<int>> at;  ///< The rods of a node.
@@ -47,7 +47,7 @@ struct RodNet {
     joint.from_m = joint.to_m = Node(node);
     def.joints.push_back(joint);
   }
-  /// A cable between two nodes, shorter by a hundredth than their distance.
+  /// Adds a cable between two nodes, shorter by a hundredth than their distance.
   void Tie(int from, int to, double stiffness_n_per_m) {
     CableDef cable;
     cable.name = "cable" + std::to_string(def.cables.size());
@@ -59,7 +59,8 @@ struct RodNet {
   const Vec3& Node(int i) const { return nodes_m[static_cast<std::size_t>(i)]; }
 };
 
-/// The same with bodies and joints in the opposite order, each joint described from its other body.
+/// Returns the same model with bodies and joints in the opposite order, and the two bodies of each
+/// joint exchanged.
 ModelDef Reversed(ModelDef def) {
   const int count = static_cast<int>(def.bodies.size());
   const auto renumber = [&](int& body) { body = body == kWorld ? kWorld : count - 1 - body; };
@@ -77,7 +78,7 @@ ModelDef Reversed(ModelDef def) {
   return def;
 }
 
-/// The largest distance between a body of one world and the same body of the other.
+/// Returns the largest distance between a body of one world and the same body of the other.
 double WorstDistance(const Batch& one, const Batch& reversed) {
   const int count = static_cast<int>(one.model().def().bodies.size());
   double worst = 0;
@@ -137,7 +138,7 @@ void TumblingFrames(Report& report) {
   ReportFrame(report, "octahedron with a diagonal, 1 redundant row", octahedron, 1e-6);
 }
 
-/// Bounds for a net: solved, without energy gain, in any order of its lists.
+/// Bounds for a net: converged, without energy gain, for any order of its lists.
 struct NetBounds {
   double gain_j, gap_m, order_m;
   bool may_be_flagged;  ///< Too stiff for the step.
@@ -160,7 +161,7 @@ void ReportNet(Report& report, const std::string& name, const ModelDef& def, dou
 
 void RedundantRows(Report& report) {
   {
-    // Both ends of the second rod are held, so its length is held twice.
+    // Both ends of the second rod are fixed, so its length is constrained twice.
     RodNet net({{0, 0, 1}, {0, 0.2, 1.15}, {0.2, 0, 1.35}});
     net.AddRod(0, 2), net.AddRod(0, 1);
     net.JoinAll(), net.Pin(0), net.Join(kWorld, 1, 1);
@@ -176,7 +177,8 @@ void RedundantRows(Report& report) {
   }
 }
 
-/// A net of `n` by `n` squares of class-k nodes, pinned at its corners, with a cable across each.
+/// Returns a net of `n` by `n` squares of class-k nodes, pinned at its corners, with a cable across
+/// each.
 ModelDef Net(int n, double stiffness_n_per_m) {
   const auto node = [n](int i, int j) { return i * (n + 1) + j; };
   std::vector<Vec3> nodes;
@@ -214,8 +216,9 @@ void Nets(Report& report) {
   report.AtMost("2 by 2 squares, cables of 1e6 N/m: largest gap", "m", seen.gap_m, 1e-5);
 }
 
-/// A cardan joint: two shafts whose axes are apart by `angle_rad` and a cross, each of its arms on
-/// two hinges. 30 rows act on 3 bodies with one degree of freedom: 13 of them are redundant.
+/// Returns a cardan joint: two shafts whose axes differ by `angle_rad` and a cross, each of its
+/// arms on two hinges. 30 rows act on 3 bodies with one degree of freedom: 13 of them are
+/// redundant.
 ModelDef CardanJoint(double angle_rad, double spin_rad_per_s) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -264,14 +267,14 @@ void CardanJoints(Report& report) {
   }
   report.AtMost("ratio of the shafts' speeds off, 1 rad, 1 ms", "1", ratio_off, 5e-5);
   report.AtMost("energy off", "of it", off / start, 1e-5);
-  // The shafts exchange 0.05 J and turn by 1 rad in 0.1 s: torques of some 0.1 N m on arms of
+  // The shafts exchange 0.05 J and rotate by 1 rad in 0.1 s: torques of some 0.1 N m on arms of
   // 0.02 m.
   report.AtMost("largest force of a joint", "N", force_n, 10);
   report.AtMost("steps with a status bit", "1", flagged, 0);
 }
 
-/// Rods in a straight line between two pins: the rows are dependent, and with the small sag the
-/// tension is a thousand times the weight.
+/// Returns rods in a straight line between two pins: the rows are dependent, and with the small sag
+/// the tension is a thousand times the weight.
 ModelDef StraightChain(int rods) {
   std::vector<Vec3> nodes;
   for (int i = 0; i <= rods; ++i) nodes.push_back({0.2 * i, 0, 1});

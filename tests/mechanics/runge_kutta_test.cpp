@@ -1,4 +1,4 @@
-/// The reference integrator against closed forms.
+/// Tests of the reference integrator against closed forms.
 
 #include "tests/mechanics/runge_kutta.h"
 

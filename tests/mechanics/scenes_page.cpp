@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 
 int main(int argc, char** argv) {
   using namespace taut::mechanics;

@@ -1,4 +1,4 @@
-/// Ground of pieces that meet, and bodies that cross their seams.
+/// Ground of adjacent pieces, and bodies that cross their seams.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Patch {
   double x0, x1, y0, y1;
   int cells_x = 4, cells_y = 4;
   double height_m = 0, slope = 0;  ///< height_m + slope (x - x0)
-  double depth_m = 1;              ///< Of boxes and solids, below the lower end.
+  double depth_m = 1;              ///< Depth of boxes and solids below the lower end.
   double HeightAt(double x) const { return height_m + slope * (x - x0); }
 };
 
@@ -76,7 +76,8 @@ inline TerrainMeshDef MeshOf(const Patch& p, bool solid, const Material& materia
   return mesh;
 }
 
-/// Fields need square cells: cells_x counts along x, those along y follow.
+/// Returns a height field with square cells: cells_x counts along x, and the number along y
+/// follows.
 inline HeightFieldDef FieldOf(const Patch& p, const Material& material) {
   HeightFieldDef field;
   field.material = material;
@@ -117,7 +118,7 @@ inline void AddPiece(ModelDef& def, Piece kind, const Patch& p, const Material& 
   }
 }
 
-/// Turns meshes and boxes about the z axis of W.
+/// Rotates meshes and boxes about the z axis of W.
 inline void TurnTerrain(ModelDef& def, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   const auto turned = [&](const Vec3& p) {
@@ -143,13 +144,13 @@ inline const char* NameOf(Guest g) {
 }
 
 inline constexpr double kHalfM = 0.1, kRadiusM = 0.03;
-/// Height of its center above level ground.
+/// Returns the height of the body's center above level ground.
 inline double RestHeight(Guest g) {
   return g == Guest::kRodAlong || g == Guest::kRodAcross || g == Guest::kTurnedRod ? kRadiusM
                                                                                    : kHalfM;
 }
 
-/// A body of 1 kg and 0.2 m.
+/// Adds a body of 1 kg and 0.2 m.
 inline void AddGuest(ModelDef& def, Guest guest, const Vec3& at, const Vec3& velocity,
                      const Material& material) {
   const bool turned =

@@ -1,11 +1,11 @@
-/// Hinges that spin by many radians a step, and their dampers.
+/// Hinges that rotate by many radians a step, and their dampers.
 
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
 #include "tests/mechanics/jointed_mass.h"
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/world.h"
 
 namespace taut::mechanics {
@@ -13,7 +13,7 @@ namespace {
 
 using test::MakeBatch;
 
-/// A rotor on a hinge along y without gravity, `beside_m` off its axis.
+/// Returns a rotor on a hinge along y without gravity, `beside_m` off its axis.
 ModelDef Rotor(double rate_rad_per_s, double beside_m = 0) {
   ModelDef def = PointMass({0, 0, beside_m}, {beside_m * rate_rad_per_s, 0, 0}, 0.01);
   def.gravity_m_per_s2 = {};

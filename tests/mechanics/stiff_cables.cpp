@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "taut/cable_scheme.h"
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/world.h"
 #include "tests/scenes/six_strut.h"
 
@@ -18,7 +18,7 @@ using test::MakeBatch;
 using test::Norm;
 using test::StepsIn;
 
-/// Numbers in -1 .. 1 that are the same on every machine.
+/// Pseudorandom numbers in -1 .. 1 that are the same on every machine.
 class Chance {
  public:
   explicit Chance(unsigned seed) : state_(seed) {}
@@ -31,7 +31,7 @@ class Chance {
   unsigned state_;
 };
 
-/// Rods of 0.6 m and 0.1 kg.
+/// Returns a robot with rods of 0.6 m and 0.1 kg.
 scenes::SixStrut Robot(double stiffness_n_per_m, double damping_n_s_per_m) {
   scenes::SixStrut robot;
   robot.length_m = 0.6;
@@ -45,12 +45,12 @@ scenes::SixStrut Robot(double stiffness_n_per_m, double damping_n_s_per_m) {
 struct Drop {
   double tension_n;  ///< 0: stretched by a tenth.
   double stiffness_n_per_m, damping_n_s_per_m, step_s;
-  unsigned tumble;  ///< Seed of attitude and turn; 0: straight.
+  unsigned tumble;  ///< Seed of attitude and angular velocity; 0: upright and without rotation.
   double time_s;
 };
 
 struct Fall {
-  double gained = 0;  ///< Largest energy above that of the start, as a share of it.
+  double gained = 0;  ///< Largest energy gain as a share of the initial energy.
   unsigned bits = 0;
   double height_m = 0, kinetic_j = 0;
 };
@@ -123,7 +123,7 @@ void Drops(Report& report) {
   const std::string all = std::to_string(drops.size()) + " drops of 0.45 m";
   report.AtMost(all + ", largest gain of energy", "1", gained, 1e-6);
   report.AtMost(all + " with a status", "1", with_status, 0);
-  // Standing on three rods or having rolled over, bouncing by a few centimeters at most.
+  // The robot stands on three rods or has rolled over, bouncing by a few centimeters at most.
   report.AtMost(all + ", highest center at the end", "m", highest, 0.36);
   report.AtMost(all + ", 0.26 m less the lowest", "m", 0.26 - lowest, 0);
   report.AtMost(all + ", kinetic energy at the end", "J", fastest, report.IsFull() ? 0.05 : 0.5);
@@ -132,8 +132,8 @@ void Drops(Report& report) {
 const SceneEntry kDrops("stiff cables", "Six-strut that falls, straight and tumbling",
                         "energy does not rise; it comes to stand", Drops);
 
-/// Stretched by a tenth, without weight. `kicked`: random velocities of its rods; else parallel
-/// rods are too far apart.
+/// Stretched by a tenth, without gravity. `kicked`: random velocities of the rods; otherwise
+/// parallel rods start too far apart.
 void KeepsEnergy(Report& report, double k, double h, bool kicked, double time_s) {
   scenes::SixStrut robot = Robot(k, 0);
   robot.tension_n = 0.1 * robot.cable_m() * k;
@@ -178,8 +178,8 @@ void FreeMotion(Report& report) {
 const SceneEntry kFreeMotion("stiff cables", "Six-strut that vibrates and tumbles, undamped",
                              "energy and angular momentum are conserved", FreeMotion);
 
-/// A weight with frequency `wh` on one cable, released at zero stretch. Returns the step after
-/// which the tension is within 1 %.
+/// Simulates a weight with frequency `wh` on one cable, released at zero stretch. Returns the step
+/// after which the tension is within 1 %.
 int StepsUntilRight(double wh, double zeta) {
   const double h = 1e-3, k = 1e6, g = 9.81, m = k * h * h / (wh * wh);
   ModelDef def;
@@ -208,7 +208,7 @@ int StepsUntilRight(double wh, double zeta) {
 void LightNodes(Report& report) {
   for (const double wh : {3.0, 10.0, 100.0, 1000.0}) {
     for (const double zeta : {0.05, 0.5, 1.0}) {
-      // Ten time constants or five steps; eight where a step is a time constant or so.
+      // Ten time constants or five steps; eight steps where a step is about one time constant.
       const double limit = std::max(10 / (zeta * wh), wh < 5 ? 8.0 : 5.0);
       report.AtMost("w h = " + std::to_string(static_cast<int>(wh)) + ", damping ratio " +
                         std::to_string(zeta).substr(0, 4) + ": steps until 1 %",
@@ -220,7 +220,8 @@ void LightNodes(Report& report) {
 const SceneEntry kLightNodes("stiff cables", "Light node that comes to hang on a damped cable",
                              "its weight", LightNodes);
 
-/// Three bodies in flight, on one cable through an eyelet and on another between two of them.
+/// Returns three bodies in flight, on one cable through an eyelet and on another between two of
+/// them.
 ModelDef Eyelets(double stiffness_n_per_m, double damping_n_s_per_m) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -279,7 +280,7 @@ void ThroughEyelets(Report& report) {
 const SceneEntry kEyelets("stiff cables", "Three bodies in flight on a cable through an eyelet",
                           "energy and momenta are conserved", ThroughEyelets);
 
-/// A stiff robot of elastic rods: it rebounds and never gains.
+/// A stiff robot of elastic rods: it rebounds without a gain of energy.
 void Rebound(Report& report) {
   scenes::SixStrut robot = Robot(1e6, 0);
   robot.tension_n = 300;
@@ -305,7 +306,7 @@ void Rebound(Report& report) {
 const SceneEntry kRebound("stiff cables", "Six-strut of elastic rods that rebounds",
                           "energy does not rise", Rebound);
 
-/// Thresholds: h^2 K = 0.1; with dampers h^2 K = 4; and unsupported elements.
+/// Thresholds of the cable schemes: h^2 K = 0.1; with dampers h^2 K = 4; and unsupported elements.
 void Schemes(Report& report) {
   const auto count = [](double k, double b, double h, CableScheme scheme, bool touches = false) {
     scenes::SixStrut robot = Robot(k, b);

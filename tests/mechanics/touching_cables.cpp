@@ -1,10 +1,10 @@
-/// Cables that touch free rods.
+/// Cable wrapping on free rods: energy and momentum.
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/touch_scenes.h"
 
 namespace taut::mechanics {
@@ -13,10 +13,10 @@ namespace {
 struct Gain {
   double most = 0;   ///< Largest energy gain, as a share of the initial energy.
   int touched = 0;   ///< Largest number of rods touched at once.
-  double drift = 0;  ///< Change of momentum, as a share of the initial one.
+  double drift = 0;  ///< Change of momentum as a share of the initial momentum.
 };
 
-/// Rods and balls as arranged, or displaced and rotated at random.
+/// Returns rods and balls as arranged, or displaced and rotated at random.
 ModelDef Scene(int rods, double stiffness, double friction, unsigned seed) {
   ModelDef def = test::AcrossFreeRods(rods, stiffness);
   def.cables[0].touch_friction = friction;
@@ -57,7 +57,7 @@ Gain Fly(const ModelDef& def, double step_s) {
   return gain;
 }
 
-/// Of 1 to 20 rods, from starts `first` to `last`.
+/// Returns the largest gains with 1 to 20 rods, from starts `first` to `last`.
 Gain Worst(double stiffness, double friction, unsigned first, unsigned last) {
   Gain worst;
   for (const int rods : {1, 2, 3, 5, 10, 20}) {
@@ -84,7 +84,7 @@ void IntoFreeRods(Report& report) {
     report.AtMost("energy above the start's, " + name, "1", worst.most, 1e-3);
     report.AtMost("change of momentum, " + name, "1", worst.drift, 1e-11);
     if (!report.IsFull() || c.friction > 0) continue;
-    // One of 36 is above 1e-3: ten rods that pass through each other.
+    // One of 36 starts is above 1e-3: ten rods that pass through each other.
     report.AtMost("energy above the start's, two random starts, " + name, "1",
                   Worst(c.stiffness, 0, 1, 2).most, 2.5e-3);
   }

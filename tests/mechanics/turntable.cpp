@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tests/mechanics/scene.h"
+#include "tests/mechanics/known_scene.h"
 #include "tests/physics/world.h"
 #include "tests/scenes/ball.h"
 #include "tests/scenes/box.h"
@@ -16,9 +16,9 @@ constexpr double kRadius = 0.03;
 
 enum class TurnedBy { kMotion, kHinge };
 
-/// A table that turns with `spin` about the vertical through `axis`, and on it a ball at (0.5, 0)
-/// that rolls with 0.4 m/s along y. The table on a hinge is so heavy that the ball does not slow it
-/// down.
+/// Returns a table that rotates with `spin` about the vertical through `axis`, and on it a ball at
+/// (0.5, 0) that rolls with 0.4 m/s along y. The table on a hinge is so heavy that the ball does
+/// not slow it down.
 ModelDef Turntable(double spin, const Vec3& axis, TurnedBy by) {
   ModelDef def;
   const Material rough{5, 5};
@@ -47,7 +47,7 @@ ModelDef Turntable(double spin, const Vec3& axis, TurnedBy by) {
   return def;
 }
 
-/// The ball's center goes round a fixed point with 2/7 of the table's angular velocity. Source: the
+/// The ball's center circles a fixed point with 2/7 of the table's angular velocity. Source: the
 /// classical problem, e.g. Weltner, Am. J. Phys. 47 (1979) 984.
 void RollInACircle(Report& report, double spin, double h, const Vec3& axis, TurnedBy by) {
   const ModelDef def = Turntable(spin, axis, by);

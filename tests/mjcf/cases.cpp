@@ -1,13 +1,14 @@
-// What taut says of the models that it writes as MJCF, for tests/mjcf/mujoco3.mjs: a JSON list of
+// Models that taut exports as MJCF, with their properties, for tests/mjcf/mujoco3.mjs: a JSON list
+// of
 //   name, mjcf    the model
 //   spring        the same with cables as springs
-//   masses_kg, inertias_kg_m2 (xx yy zz xy xz yz), lengths_m, tensions_n   as described
+//   masses_kg, inertias_kg_m2 (xx yy zz xy xz yz), lengths_m, tensions_n   in the described pose
 //   free          the same without contacts and with shorter cables, as MJCF
-//   step_s, steps, positions_m   where its bodies are after that
+//   step_s, steps, positions_m   positions of the bodies after these steps
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "mjcf/shipped.h"
+#include "mjcf/shipped_robots.h"
 #include "taut/batch.h"
 #include "taut/statics.h"
 

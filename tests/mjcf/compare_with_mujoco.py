@@ -1,8 +1,9 @@
-"""compare_with_mujoco.py TAUT [COUNT [SEED]]: random MJCF files, as `taut import mjcf` reads them and as MuJoCo compiles them.
+"""compare_with_mujoco.py TAUT [COUNT [SEED]]: compares `taut import mjcf` with MuJoCo's compiler on random MJCF files.
 
-Each file has tendons, nested default classes and actuators of all kinds, with random attributes. Of every file that taut
-accepts, stiffness, damping, tension and limits of each cable must be MuJoCo's, and each limit, lag and push that a cable
-lacks must be a warning. Every refusal must name a line. Skipped (77) without the Python package `mujoco`.
+Each file has tendons, nested default classes and actuators of all kinds, with random attributes. For every file that
+taut accepts, stiffness, damping, tension and limits of each cable must equal MuJoCo's, and each limit, lag and push
+that a cable lacks must cause a warning. Every rejection must contain a line number. Skipped (77) without the Python
+package `mujoco`.
 """
 
 import collections
@@ -28,7 +29,7 @@ NEWER = int(mujoco.__version__.split(".")[0]) >= 4
 
 
 class Writer:
-    """Random files. Seldom values are seldom so that most files are accepted."""
+    """Writer of random files. Rare values are rare so that most files are accepted."""
 
     def __init__(self, rng):
         self.rng = rng
@@ -40,7 +41,7 @@ class Writer:
         return f"{self.rng.uniform(low, high):.3g}"
 
     def attributes(self, **choices):
-        """A random half of the attributes; of a pair, its second is the share."""
+        """Returns a random selection of the attributes. In a pair, the second element is the probability."""
         text = ""
         for name, made in choices.items():
             make, share = made if isinstance(made, tuple) else (made, 0.4)
@@ -141,7 +142,7 @@ class Writer:
                 f"<tendon>\n{tendons}</tendon>\n<actuator>\n{actuators}</actuator>\n"), controls
 
     def with_key(self, xml, controls):
-        """The number of activations is known to the compiler only."""
+        """Adds a keyframe. Only the compiler knows the number of activations."""
         try:
             model = mujoco.MjModel.from_xml_string(xml + "</mujoco>")
         except ValueError as error:
@@ -152,7 +153,7 @@ class Writer:
 
 
 def taut_cables(text):
-    """Cables of the model that taut wrote, by name: stiffness, damping, rest length."""
+    """Returns the cables of the model written by taut, by name: stiffness, damping, rest length."""
     cables = {}
     for match, keys in re.findall(r"^  - \{match: ([^,]+|\[[^\]]*\]), cable: \{(.*)\}\}$", text, re.M):
         number = lambda key, if_absent=0.0: float((re.findall(rf"\b{key}: ([-+.\de]+)", keys) or [if_absent])[0])
@@ -173,7 +174,7 @@ class Comparison:
         self.wrong = []
 
     def settle(self):
-        """Activations where their controls lead them: taut's cables follow at once."""
+        """Sets activations to their steady values: taut's cables follow at once."""
         for a in range(self.m.nu):
             if self.m.actuator_actadr[a] >= 0:
                 u, clamped = self.d.ctrl[a], not self.m.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_CLAMPCTRL)

@@ -1,9 +1,9 @@
-// What taut writes, in MuJoCo 2.2.2 and back in taut.
+// MJCF export, checked in MuJoCo 2.2.2 and by importing the file again
 #include <map>
 
 #include "mjcf/mjcf_folder.h"
 #include "mjcf/mujoco_model.h"
-#include "mjcf/shipped.h"
+#include "mjcf/shipped_robots.h"
 #include "sim/contacts/combine.h"
 #include "taut/batch.h"
 #include "taut/statics.h"
@@ -47,13 +47,14 @@ TEST_P(Shipment, HasItsMassesLengthsAndTensionsInMujoco) {
   }
 }
 
-/// Both at one small step. What is left is the error of MuJoCo's scheme, which is of first order.
+/// Both engines use one small step. The remaining difference is the error of MuJoCo's first-order
+/// integrator.
 TEST_P(Shipment, MovesFreelyAsItDoesInMujoco) {
   ModelDef def = robot_.def;
   for (SphereDef& s : def.spheres) s.collides = false;
   for (CapsuleDef& c : def.capsules) c.collides = false;
   for (HullDef& h : def.hulls) h.collides = false;
-  // Nothing is at rest, but no cable is jerked: its damper would pull in MuJoCo while it is slack.
+  // Puts all bodies in motion, without slack cables, whose dampers would pull in MuJoCo.
   for (CableDef& cable : def.cables) cable.rest_length_m *= 0.98;
   const double step_s = 2e-5;
   const int steps = 5000;
@@ -76,7 +77,8 @@ TEST_P(Shipment, ComesBackAsTheSameRobot) {
   const ModelDef& def = robot_.def;
   if (HasHulls(def)) {
     Write("model.xml", Exported(def));
-    EXPECT_NE(Refused(Exported(def)).find("geoms of type mesh are not read"), std::string::npos);
+    EXPECT_NE(Refused(Exported(def)).find("geoms of type mesh are not supported"),
+              std::string::npos);
     return;
   }
   const auto made = Import(Exported(def), {.name = def.name});
@@ -143,8 +145,8 @@ TEST(MjcfExport, SpringsHaveADeadBandFromZeroToTheRestLength) {
   EXPECT_EQ(text.find("<actuator>"), std::string::npos);
 }
 
-/// Every part that a model may have besides rods and spheres, on every ground but fields and
-/// meshes.
+/// Returns a model with every part besides rods and spheres, on every terrain except height fields
+/// and meshes.
 ModelDef Everything() {
   ModelDef def;
   def.name = "everything";
@@ -224,7 +226,7 @@ TEST(MjcfExport, BoxesHullsBarsFixedBodiesAndTerrainAreThere) {
     ExpectNear(MujocoModel::Of(theirs.model().geom_size + 3 * g), half, kSame);
   }
   ExpectNear(theirs.GeomAxis(geom("slope"), 2), def.planes[0].normal, kSame);
-  // MuJoCo holds corners in single precision.
+  // MuJoCo stores corners in single precision.
   const int hull = geom("hb"), mesh = theirs.model().geom_dataid[hull];
   const float* const corners = theirs.model().mesh_vert + 3 * theirs.model().mesh_vertadr[mesh];
   ASSERT_EQ(theirs.model().mesh_vertnum[mesh], 4);
@@ -239,7 +241,7 @@ TEST(MjcfExport, BoxesHullsBarsFixedBodiesAndTerrainAreThere) {
     }
     EXPECT_LT(nearest, 1e-6);
   }
-  EXPECT_EQ(theirs.model().nv, 12);  // "held" stands still
+  EXPECT_EQ(theirs.model().nv, 12);  // "held" is static
   const int bar = theirs.Id(mjOBJ_TENDON, "bar");
   const double length = std::sqrt(0.01 + 0.04 + 1);
   EXPECT_NEAR(theirs.data().ten_length[bar], length, kSame);
@@ -256,7 +258,8 @@ bool Meet(MujocoModel& m, const std::string& one, const std::string& two) {
   return (type[a] & with[b]) != 0 || (type[b] & with[a]) != 0;
 }
 
-/// A rod whose ends carry spheres meets the ground with these (mechanics/contact_roles.h).
+/// A rod whose ends carry spheres contacts the ground with these spheres
+/// (mechanics/contact_roles.h).
 TEST(MjcfExport, ShapesMeetWhatTheyMeetInTaut) {
   ModelDef def = Everything();
   def.boxes.push_back(def.boxes[0]);
@@ -273,7 +276,8 @@ TEST(MjcfExport, ShapesMeetWhatTheyMeetInTaut) {
   EXPECT_FALSE(Meet(on_ground, "segment_0.right", "segment_1.left"));
 }
 
-/// What MuJoCo makes of two geoms: that of a pair, else of the higher priority, else the larger.
+/// Returns MuJoCo's friction of two geoms: the value of a pair, else of the higher priority, else
+/// the larger.
 double Theirs(MujocoModel& m, const std::string& one, const std::string& two) {
   const int a = m.Id(mjOBJ_GEOM, one), b = m.Id(mjOBJ_GEOM, two);
   for (int i = 0; i < m.model().npair; ++i) {
@@ -338,14 +342,14 @@ TEST(MjcfExport, WhatMjcfCannotSayIsRefusedByName) {
                                .material = {}});
   def.terrain_meshes.push_back({.name = "rock", .corners_m = {}, .triangles = {}, .material = {}});
   const std::string why = Why(def);
-  for (const char* part : {"the cable \"c\": it comes to lie against",
+  for (const char* part : {"the cable \"c\": it wraps around obstacles",
                            "the cable \"rubs\": it has friction or runs over wheels",
                            "the joint \"bar\"", "the motion of the body \"b\"",
                            "the height field \"hills\"", "the terrain mesh \"rock\""}) {
     EXPECT_NE(why.find(part), std::string::npos) << part << "\n" << why;
   }
   EXPECT_NE(Why(Everything(), {.cables = MjcfCables::kSpring, .keyframe = true})
-                .find("no controls for a keyframe"),
+                .find("no controls, which a keyframe needs"),
             std::string::npos);
 }
 
@@ -358,15 +362,14 @@ TEST(MjcfExport, WhatIsLeftOutIsAWarning) {
   def.friction_law = FrictionLaw::kAlongSlip;
   Diagnostics out;
   ASSERT_TRUE(ExportMjcf(def, {}, out));
-  EXPECT_EQ(
-      out.Format(),
-      "warning: left out: friction along the slip\n"
-      "warning: left out: friction at rest where it is more than while sliding, of \"ba\"\n"
-      "warning: left out: restitution of \"ba\"\n"
-      "warning: left out: the limit of dampers at the spring's force (`damping_law: clamped`) of "
-      "\"c\"\n"
-      "warning: left out: the motor's limits of \"c\"\n"
-      "warning: left out: the velocity (a keyframe would have it) of \"a\"\n");
+  EXPECT_EQ(out.Format(),
+            "warning: left out: restitution of \"ba\"\n"
+            "warning: left out: static friction other than kinetic friction, of \"ba\"\n"
+            "warning: left out: the friction law along the slip\n"
+            "warning: left out: the initial velocity (export a keyframe to keep it) of \"a\"\n"
+            "warning: left out: the limit of the damper force to the spring force (`damping_law: "
+            "clamped`) of \"c\"\n"
+            "warning: left out: the motor's limits of \"c\"\n");
 }
 
 }  // namespace

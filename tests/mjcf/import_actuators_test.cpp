@@ -1,5 +1,5 @@
-// Actuators and tendons with the defaults of their classes. tests/mjcf/compare_with_mujoco.py
-// compares random files of this kind with MuJoCo.
+// MJCF actuators and tendons with class defaults. tests/mjcf/compare_with_mujoco.py compares random
+// files of this kind with MuJoCo.
 #include "mjcf/mjcf_folder.h"
 
 namespace taut::test {
@@ -8,7 +8,8 @@ namespace {
 class MjcfActuators : public MjcfFolder {};
 
 TEST_F(MjcfActuators, ActuatorsInheritEachParameterOfTheirClasses) {
-  // Stiffness, damping and rest length from biasprm and gainprm of MuJoCo 4.0.0's compiled models.
+  // Stiffness, damping and rest length computed from biasprm and gainprm of models compiled by
+  // MuJoCo 4.0.0
   struct Case {
     const char *defaults, *actuator;
     double stiffness, damping, rest;
@@ -59,7 +60,7 @@ TEST_F(MjcfActuators, WhereVersionsOfMujocoInheritOtherParametersTheActuatorIsRe
   for (const auto& [defaults, actuator] : cases) {
     EXPECT_NE(Refused(Pulled("stiffness=\"9\" springlength=\"0 0.5\"", actuator,
                              "\n<default>" + std::string(defaults) + "</default>"))
-                  .find("\"a\": versions of MuJoCo disagree on its defaults: gain "),
+                  .find("\"a\": versions of MuJoCo differ in its defaults: gain "),
               std::string::npos)
         << defaults << "\n"
         << Said();
@@ -71,7 +72,7 @@ TEST_F(MjcfActuators, OneSpringLengthReplacesBothOfAClass) {
                                 "<default><tendon springlength=\"0 0.6\"/></default>"),
                            {.slack = MjcfSlack::kAsMujoco});
   ASSERT_TRUE(made);
-  ASSERT_EQ(made->robot.def.joints.size(), 1u);  // A dead band would not be a bar.
+  ASSERT_EQ(made->robot.def.joints.size(), 1u);  // A dead band would not become a bar.
   EXPECT_EQ(made->robot.def.joints[0].rest, 0.5);
 }
 
@@ -94,17 +95,17 @@ TEST_F(MjcfActuators, InheritedRangesOfTendonsLimitControls) {
 }
 
 TEST_F(MjcfActuators, TensionsAtTheStartThatNoCableHasAreRefused) {
-  // 80 (0.7 - 0.6) - 2 in MuJoCo, where the spring is slack by itself; at most 5 of the actuator.
+  // MuJoCo: 80 (0.7 - 0.6) - 2, because the spring alone is slack; the actuator's limit is 5.
   EXPECT_NE(Refused(Pulled("stiffness=\"50\" springlength=\"0 0.9\"",
                            "<general tendon=\"c\" biastype=\"affine\" biasprm=\"0 -80 0\"/>"))
-                .find("model.xml:1: error: tendon \"c\" starts with a tension of 56 in MuJoCo "
-                      "and 46 as a cable"),
+                .find("model.xml:1: error: tendon \"c\" starts with a tension of 56 in MuJoCo, but "
+                      "46 as a cable"),
             std::string::npos)
       << Said();
   EXPECT_NE(Refused(Pulled("stiffness=\"50\" springlength=\"0 0.5\"",
                            "<general tendon=\"c\" biastype=\"affine\" biasprm=\"0 -80 0\" "
                            "forcerange=\"-5 0\"/>"))
-                .find("starts with a tension of 15 in MuJoCo and 66 as a cable"),
+                .find("starts with a tension of 15 in MuJoCo, but 66 as a cable"),
             std::string::npos)
       << Said();
 }

@@ -1,5 +1,5 @@
-// Files in the styles in which people write tensegrity robots, each beside what MuJoCo 2.2.2 makes
-// of the same text.
+// MJCF import of tensegrity robots in common styles, each compared with MuJoCo 2.2.2 on the same
+// text
 #include "mjcf/mjcf_folder.h"
 #include "mjcf/mujoco_model.h"
 #include "taut/statics.h"
@@ -11,8 +11,8 @@ constexpr double kSame = 1e-12;
 
 class MjcfImportTest : public MjcfFolder {
  protected:
-  /// Imports the text and compares each body of the robot with that of its name in MuJoCo, each
-  /// node with the site, and each cable's length and tension with the tendon's.
+  /// Imports the text and compares each body of the robot with MuJoCo's body of the same name, each
+  /// node with its site, and each cable's length and tension with its tendon.
   std::optional<ImportedMjcf> Same(const std::string& xml, const MjcfImport& options = {},
                                    int key = -1, double inertia_share = kSame) {
     auto made = Import(xml, options);
@@ -47,7 +47,7 @@ class MjcfImportTest : public MjcfFolder {
     return made;
   }
 
-  /// Shapes by the order of each kind, which both keep within a body.
+  /// Compares shapes by their order within each kind, which both preserve within a body.
   static void ExpectGeoms(const ImportedMjcf& made, MujocoModel& theirs) {
     const ModelDef& def = made.robot.def;
     for (const BodyDef& body : def.bodies) {
@@ -91,7 +91,7 @@ class MjcfImportTest : public MjcfFolder {
   }
 };
 
-/// `parts` in a free body that is turned and moved.
+/// Returns `parts` in a free body that is rotated and moved.
 std::string Turned(const std::string& parts, const std::string& more = "") {
   return "<mujoco model=\"one\">" + more +
          "<worldbody><body name=\"one\" pos=\"0.3 -0.2 1\" euler=\"20 30 -40\"><freejoint/>" +
@@ -111,7 +111,7 @@ TEST_F(MjcfImportTest, EveryShapeWeighsWhatItDoesInMujoco) {
         R"(<geom type="box" size="0.1" fromto="0 0.1 0.2 0.4 -0.1 0.3"/>)"}) {
     SCOPED_TRACE(geom);
     Same(Turned(geom));
-    // MuJoCo finds principal axes of a sum to some 1e-9 only: it is told of two bodies.
+    // MuJoCo's principal axes of a sum are exact to about 1e-9 only; therefore it gets two bodies.
     const std::string more = R"(<geom type="sphere" size="0.05" pos="-0.3 0.1 0"/>)";
     const auto both = Import(Turned(geom + more));
     ASSERT_TRUE(both);
@@ -143,7 +143,7 @@ TEST_F(MjcfImportTest, AnInertialCountsAsTheCompilerSays) {
        R"(<inertial pos="0 0 0.1" mass="0.5" fullinertia="0.02 0.03 0.04 0.001 -0.002 0.003"/>)"}) {
     for (const char* how : {"auto", "true", "false"}) {
       SCOPED_TRACE(std::string(inertial) + how);
-      // Of a full matrix MuJoCo finds the principal axes to some 1e-9 only.
+      // MuJoCo's principal axes of a full matrix are exact to about 1e-9 only.
       const bool is_full = std::string(inertial).find("full") != std::string::npos;
       const bool counts = std::string(how) != "true";
       const std::string xml =
@@ -217,7 +217,7 @@ TEST_F(MjcfImportTest, SpringsAndActuatorsOfATendonAreOneCable) {
   EXPECT_EQ(c.stiffness_n_per_m, 100);
   EXPECT_EQ(c.damping_n_s_per_m, 3);
   EXPECT_EQ(c.actuator.kind, ActuatorDef::Kind::kNone);
-  c = k(Hung(R"(stiffness="100")"));  // as long as it is
+  c = k(Hung(R"(stiffness="100")"));  // default: the length at the start
   EXPECT_NEAR(c.rest_length_m, 0.7, kSame);
   c = k(Pulled("", R"(<general tendon="c" gainprm="80" biastype="affine" biasprm="40 -80 -2"
                       forcelimited="true" forcerange="-1e12 0"/>)"));
@@ -248,15 +248,16 @@ TEST_F(MjcfImportTest, AnActuatorWithALagIsWhatItHasComeTo) {
                            {.keyframe = "k"}, 0);
     return made ? made->robot.def.cables.at(0).rest_length_m : NAN;
   };
-  EXPECT_NEAR(at("act=\"0.4\" ctrl=\"0.6\""), 0.4, kSame);  // as in MuJoCo, which goes on to 0.6
-  EXPECT_NE(Said().find("tendon \"c\" has actuators that follow their controls with a lag "
-                        "(dyntype), of up to 0.3 s; here rest lengths follow at once"),
+  EXPECT_NEAR(at("act=\"0.4\" ctrl=\"0.6\""), 0.4,
+              kSame);  // as in MuJoCo, where it then changes to 0.6
+  EXPECT_NE(Said().find("tendon \"c\" has actuators with a lag behind their controls (dyntype), of "
+                        "up to 0.3 s; rest lengths of cables follow at once"),
             std::string::npos)
       << Said();
   const auto ctrl_only =
       Import(Pulled("", lags, R"(<keyframe><key ctrl="0.6"/></keyframe>)"), {.keyframe = "0"});
   ASSERT_TRUE(ctrl_only);
-  EXPECT_NEAR(ctrl_only->robot.def.cables.at(0).rest_length_m, 0.6, kSame);  // where it will be
+  EXPECT_NEAR(ctrl_only->robot.def.cables.at(0).rest_length_m, 0.6, kSame);  // the steady value
   EXPECT_TRUE(Import(Pulled("", R"(<position tendon="c" kp="60" timeconst="0.2"/>)",
                             R"(<keyframe><key ctrl="0.6"/></keyframe>)"),
                      {.keyframe = "0"}));
@@ -265,11 +266,12 @@ TEST_F(MjcfImportTest, AnActuatorWithALagIsWhatItHasComeTo) {
 
 TEST_F(MjcfImportTest, WhatWouldPushIsCounted) {
   Import(Hung(R"(stiffness="100" springlength="0.9" damping="1")"));
-  EXPECT_NE(Said().find("1 tendon would push in MuJoCo when shorter than at rest; here cables only "
-                        "pull. 1 of them would do so at the start"),
+  EXPECT_NE(Said().find("1 tendon would push in MuJoCo when shorter than the rest length, but "
+                        "cables only pull; 1 of them would push at the start"),
             std::string::npos)
       << Said();
-  EXPECT_NE(Said().find("1 damper of tendons would act in MuJoCo while slack"), std::string::npos);
+  EXPECT_NE(Said().find("1 damper of tendons would also act on slack tendons in MuJoCo"),
+            std::string::npos);
   const auto bar = Import(Hung(R"(stiffness="100" springlength="0.9" damping="1")"),
                           {.slack = MjcfSlack::kAsMujoco});
   ASSERT_TRUE(bar);
@@ -284,7 +286,7 @@ TEST_F(MjcfImportTest, WhatWouldPushIsCounted) {
   EXPECT_TRUE(out_.warnings().empty()) << Said();
   Import(Pulled("", R"(<general tendon="c" gainprm="80" biastype="affine" biasprm="40 -80 0"
                        forcelimited="true" forcerange="-50 0"/>)"));
-  EXPECT_NE(Said().find("tendon \"c\" has a largest tension (forcerange) that is left out"),
+  EXPECT_NE(Said().find("tendon \"c\" has a maximum tension (forcerange), which is left out"),
             std::string::npos)
       << Said();
 }
@@ -303,7 +305,7 @@ TEST_F(MjcfImportTest, WhatIsWeldedIsOneBody) {
   MujocoModel theirs(Turned(inside));
   const ModelDef& def = nested->robot.def;
   ASSERT_EQ(def.bodies.size(), 1u);
-  // MuJoCo keeps both; together they are what their subtree is.
+  // MuJoCo keeps both bodies; compare with their subtree.
   const double mass = theirs.model().body_subtreemass[1];
   EXPECT_NEAR(def.bodies[0].mass_kg, mass, kSame * mass);
   ExpectNear(def.bodies[0].com_m, MujocoModel::Of(theirs.data().subtree_com + 3), kSame);
@@ -322,7 +324,7 @@ TEST_F(MjcfImportTest, AKeyframeSaysWhereTheRobotIs) {
     </worldbody><tendon><spatial name="c" stiffness="100"><site site="top"/><site site="s"/></spatial></tendon>
     <keyframe><key/><key name="moved" qpos="0.4 0.3 1.2 0.5 0.5 -0.5 0.5" qvel="1 2 3 0.4 0.5 0.6"/></keyframe>
     </mujoco>)";
-  // The model is called as its only body.
+  // The model has the name of its only body.
   const auto made = Same(xml, {.keyframe = "moved", .name = "a"}, 1);
   ASSERT_TRUE(made);
   MujocoModel theirs(xml);
@@ -342,16 +344,17 @@ TEST_F(MjcfImportTest, UnitsAreScaledAndAskedFor) {
     <tendon><spatial name="c" stiffness="100" springlength="0 1.5" damping="2"><site site="top"/><site site="s"/></spatial></tendon>
     </mujoco>)";
   Import(xml);
-  EXPECT_NE(Said().find("a rod is 16 m long: is 1 in this file a metre?"), std::string::npos);
-  EXPECT_NE(Said().find("a body weighs 60 kg: is 1 in this file a kilogram?"), std::string::npos);
+  EXPECT_NE(Said().find("a rod is 16 m long: check that 1 in this file is a meter"),
+            std::string::npos);
+  EXPECT_NE(Said().find("a body weighs 60 kg: check that 1 in this file is a kilogram"),
+            std::string::npos);
   const auto made = Import(xml, {.length_unit_m = 0.1, .mass_unit_kg = 0.01});
   ASSERT_TRUE(made);
   EXPECT_EQ(Said(),
-            "model.xml: warning: with this unit of length gravity is 0.981 m/s^2, as MuJoCo has it "
-            "for the "
+            "model.xml: warning: gravity is 0.981 m/s^2 with this unit of length, the value of the "
             "file (to change it, set gravity_m_per_s2 in the model)\n"
-            "model.xml:4: warning: 1 damper of tendons would act in MuJoCo while slack, too; here "
-            "dampers act only under tension\n");
+            "model.xml:4: warning: 1 damper of tendons would also act on slack tendons in MuJoCo; "
+            "dampers of cables act only under tension\n");
   const ModelDef& def = made->robot.def;
   EXPECT_NEAR(def.gravity_m_per_s2.z, -0.981, kSame);
   EXPECT_NEAR(def.bodies[0].mass_kg, 0.6, kSame);

@@ -1,4 +1,4 @@
-// What stands around the robot, what touches what, and what nobody needs.
+// MJCF import: surroundings, contact pairs, and elements that are ignored
 #include <cmath>
 
 #include "math/vec.h"
@@ -78,12 +78,12 @@ TEST_F(MjcfWorld, WhatIsLeftOutIsToldInALine) {
   EXPECT_TRUE(made->robot.def.cables.empty());
   ASSERT_GE(made->notes.size(), 2u);
   EXPECT_EQ(made->notes[0],
-            "left out: asset, camera, geom of type mesh that only shows, geom.rgba, light, "
-            "sensor, spatial.width, visual");
-  EXPECT_EQ(made->notes[1], "left out: 1 tendon without stiffness and actuator, which only show");
+            "left out: asset, camera, geom.rgba, light, sensor, spatial.width, visual, visual geom "
+            "of type mesh");
+  EXPECT_EQ(made->notes[1], "left out: 1 visual tendon without stiffness and actuator");
   EXPECT_EQ(Said(),
-            "model.xml:3: warning: geom.solref is left out: contacts are rigid here; in MuJoCo "
-            "these numbers make them soft\n");
+            "model.xml:3: warning: geom.solref is left out: contacts are rigid in taut; in MuJoCo "
+            "these values make them soft\n");
 }
 
 TEST_F(MjcfWorld, WhatChangesAForceOrAPlaceIsAWarningWithItsLine) {
@@ -95,7 +95,8 @@ TEST_F(MjcfWorld, WhatChangesAForceOrAPlaceIsAWarningWithItsLine) {
       {"solimp=\"0.8 0.9 0.01\"",
        "model.xml:3: warning: geom.solimp is left out: contacts are rigid"},
       {"margin=\"0.01\"",
-       "model.xml:3: warning: geom.margin is left out: contacts begin where shapes touch here"},
+       "model.xml:3: warning: geom.margin is left out: contacts begin where shapes touch; in "
+       "MuJoCo"},
       {"margin=\"0.01\" gap=\"0.01\"", "geom.margin and 1 more are left out"},
       {"condim=\"4\"", "model.xml:3: warning: torsional and rolling friction (condim above 3)"},
   };
@@ -109,7 +110,7 @@ TEST_F(MjcfWorld, WhatChangesAForceOrAPlaceIsAWarningWithItsLine) {
 }
 
 TEST_F(MjcfWorld, APairThatGivesNoFrictionHasOne) {
-  // Neither MuJoCo 2.2.2 nor 4.0.0 takes the geoms' friction for a pair; here geoms give 0.4.
+  // Neither MuJoCo 2.2.2 nor 4.0.0 uses the geoms' friction, here 0.4, for a pair without friction.
   const auto said = [&](const std::string& of_pair, const std::string& defaults = "") {
     Import("<mujoco>" + defaults + R"(<worldbody>
     <geom name="f" type="plane" size="1 1 1" friction="0.3"/><body name="a" pos="0 0 1">
@@ -118,7 +119,7 @@ TEST_F(MjcfWorld, APairThatGivesNoFrictionHasOne) {
            of_pair + "/></contact></mujoco>");
     return Said();
   };
-  const std::string another = "1 pair of geoms have another friction here";
+  const std::string another = "the friction of 1 pair of geoms differs from MuJoCo";
   EXPECT_NE(said("").find(another), std::string::npos) << Said();
   EXPECT_EQ(said("friction=\"0.4 0.4\""), "");
   EXPECT_EQ(said("", "<default><pair friction=\"0.4 0.4\"/></default>"), "");
@@ -128,7 +129,7 @@ TEST_F(MjcfWorld, DryFrictionOfATendonIsABarsOrLeftOutWhenAsked) {
   const std::string rough = Hung(R"(stiffness="100" springlength="0.9" frictionloss="0.5")");
   const auto cable = Import(rough, {.without_frictionloss = true});
   ASSERT_TRUE(cable);
-  EXPECT_NE(Said().find("tendon \"c\" has a dry friction (frictionloss) that is left out"),
+  EXPECT_NE(Said().find("tendon \"c\" has dry friction (frictionloss), which is left out"),
             std::string::npos)
       << Said();
   const auto bar = Import(rough, {.length_unit_m = 0.1, .slack = MjcfSlack::kAsMujoco});
@@ -146,8 +147,7 @@ TEST_F(MjcfWorld, ATendonInOneBodyIsLeftOut) {
   const auto made = Import(xml);
   ASSERT_TRUE(made);
   EXPECT_EQ(made->robot.def.cables.size(), 1u);
-  EXPECT_NE(Said().find("tendon \"own\" has all sites in one body, where nothing comes of it: left "
-                        "out"),
+  EXPECT_NE(Said().find("tendon \"own\" has all sites in one body and no effect: left out"),
             std::string::npos)
       << Said();
 }

@@ -1,4 +1,4 @@
-/// Files of MJCF, and what taut makes of them.
+/// Fixture that imports MJCF from text
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace taut::test {
 
 class MjcfFolder : public ExperimentFolder {
  protected:
-  /// What becomes of the text. It is written as a model and read back, too: what comes back is
-  /// the same robot, or ModelYaml complains.
+  /// Imports the text, and writes the result as a model, which reads it back and reports an error
+  /// if the robot differs.
   std::optional<ImportedMjcf> Import(const std::string& xml, MjcfImport options = {}) {
     Write("model.xml", xml);
     out_ = {};
@@ -26,7 +26,7 @@ class MjcfFolder : public ExperimentFolder {
     EXPECT_TRUE(writing.ok()) << writing.Format();
     return made;
   }
-  /// The complaints about the text, without the folder's name.
+  /// Returns the errors of the text, without the folder's name.
   std::string Refused(const std::string& xml, MjcfImport options = {}) {
     Write("model.xml", xml);
     out_ = {};
@@ -46,7 +46,7 @@ class MjcfFolder : public ExperimentFolder {
   std::string yaml_;
 };
 
-/// A rod under a ceiling on two cables that are made in every way.
+/// Returns MJCF of a rod below a site of the world, on one tendon with these attributes.
 inline std::string Hung(const std::string& tendon, const std::string& more = "") {
   return "<mujoco model=\"rod\"><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"rod\" "
          "pos=\"0 0 1\">"

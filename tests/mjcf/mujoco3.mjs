@@ -1,12 +1,12 @@
-// Whether MuJoCo 3, in WebAssembly, makes the same of models that taut has written: standard input is what
-// tests/mjcf/cases.cpp says. Run by mujoco3_test.py, with the package beside benchmarks/wasm.
+// Compares models exported by taut with MuJoCo 3 in WebAssembly. Standard input is the output of tests/mjcf/cases.cpp.
+// Run by mujoco3_test.py, with the npm package of benchmarks/wasm.
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
 const { default: load } = await import(pathToFileURL(process.argv[2]).href);
 const mujoco = await load({ print: (text) => console.error(text), printErr: (text) => console.error(text) });
 const SAME = 1e-12;
-const MOVED_M = 1e-4; // both at a step of 0.02 ms, which leaves g t h / 2 = 1e-5 of free fall to the schemes
+const MOVED_M = 1e-4; // both with steps of 0.02 ms; integration error of free fall: g t h / 2 = 1e-5
 
 function near(what, ours, theirs, size) {
   if (!(Math.abs(ours - theirs) <= SAME * size)) throw new Error(`${what}: ${theirs} in place of ${ours}`);
@@ -43,7 +43,7 @@ for (const one of JSON.parse(readFileSync(0, "utf8"))) {
     bodies(actuated, one);
     one.lengths_m.forEach((length, c) => {
       near(`length ${c}`, length, actuated.data.ten_length[c], 1);
-      const { model, data } = actuated; // one actuator a cable, in their order
+      const { model, data } = actuated; // one actuator per cable, in the same order
       near(`tension ${c}`, one.tensions_n[c], tension(model, data, c), model.actuator_gainprm[10 * c]);
     });
     actuated.done();

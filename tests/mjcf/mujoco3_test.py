@@ -1,4 +1,4 @@
-"""mujoco3_test.py CASES: runs mujoco3.mjs on what that program says; skipped (77) without node or the package."""
+"""mujoco3_test.py CASES: runs mujoco3.mjs on the output of CASES; skipped (77) without node or the package."""
 
 import os
 import pathlib

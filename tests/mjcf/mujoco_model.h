@@ -1,4 +1,4 @@
-/// What MuJoCo's own compiler makes of a text of MJCF: the oracle of these tests.
+/// MJCF text compiled by MuJoCo's compiler: the oracle of these tests
 #pragma once
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ class MujocoModel {
   static Vec3 Of(const mjtNum* n) { return {n[0], n[1], n[2]}; }
   static Quat QuatOf(const mjtNum* n) { return {n[0], n[1], n[2], n[3]}; }
   Vec3 Com(int body) const { return Of(data_->xipos + 3 * body); }
-  /// In axes of W.
+  /// Returns the inertia in axes of W.
   Inertia InertiaOf(int body) const {
     const mjtNum *r = data_->ximat + 9 * body, *j = model_->body_inertia + 3 * body;
     const auto entry = [&](int x, int y) {
@@ -76,7 +76,7 @@ class MujocoModel {
     return {r[axis], r[3 + axis], r[6 + axis]};
   }
   Vec3 SitePlace(int site) const { return Of(data_->site_xpos + 3 * site); }
-  /// Of springs, dampers and actuators together, positive if it pulls.
+  /// Returns the total force of springs, dampers and actuators, positive if it pulls.
   double Tension(int tendon) const {
     const mjtNum l = data_->ten_length[tendon];
     double tension = model_->tendon_stiffness[tendon] * (l - model_->tendon_lengthspring[tendon]);

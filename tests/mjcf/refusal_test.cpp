@@ -1,4 +1,4 @@
-// What is not read is refused by name and line, all of it at once.
+// Unsupported MJCF: every element is rejected by name and line, all of them at once.
 #include <array>
 
 #include "mjcf/mjcf_folder.h"
@@ -8,7 +8,7 @@ namespace {
 
 class MjcfRefusal : public MjcfFolder {};
 
-/// Line 3 is in a free body, line 6 among tendons, line 8 among actuators, line 10 beside these.
+/// Line 3 is in a free body, line 6 among tendons, line 8 among actuators, line 10 after them.
 std::string With(const std::string& in_body, const std::string& in_tendons = "",
                  const std::string& in_actuators = "", const std::string& beside = "") {
   return "<mujoco><worldbody><site name=\"top\" pos=\"0 0 2\"/><body name=\"a\" pos=\"0 0 "
@@ -33,63 +33,67 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
       {"<body name=\"b\"><joint type=\"slide\"/><geom size=\"0.1\"/></body>", "", "", "",
        "type slide"},
       {"<body name=\"b\"><freejoint/><geom size=\"0.1\"/></body>", "", "", "",
-       "3: error: freejoint: a body within another one has no free joint"},
+       "3: error: freejoint: a body inside another body cannot have a free joint"},
       {"<geom name=\"m\" type=\"mesh\" mesh=\"x\"/>", "", "", "",
-       "3: error: geom \"m\": geoms of type mesh are not read"},
+       "3: error: geom \"m\": geoms of type mesh are not supported"},
       {"<geom type=\"hfield\" hfield=\"x\"/>", "", "", "",
-       "3: error: geom: geoms of type hfield are not read"},
+       "3: error: geom: geoms of type hfield are not supported"},
       {"<geom type=\"ellipsoid\" size=\"1 1 1\"/>", "", "", "",
-       "geoms of type ellipsoid are not read"},
+       "geoms of type ellipsoid are not supported"},
       {"<geom type=\"balloon\" size=\"1\"/>", "", "", "",
-       "3: error: geom: there is no type \"balloon\""},
+       "3: error: geom: there is no geom type \"balloon\""},
       {"<geom type=\"plane\" size=\"1 1 1\"/>", "", "", "",
-       "3: error: geom: a plane in a body that moves"},
+       "3: error: geom: a plane cannot be part of a moving body"},
       {"<geom type=\"box\" size=\"1 1\"/>", "", "", "",
        "3: error: geom: a box needs 3 positive sizes"},
       {"<geom type=\"capsule\" size=\"0.1\"/>", "", "", "", "a capsule needs 2 positive sizes"},
       {"<geom size=\"0.1x\"/>", "", "", "",
        "3: error: geom: size must be 1 to 3 numbers, not \"0.1x\""},
       {"<geom size=\"nan\"/>", "", "", "", "size must be 1 to 3 numbers, not \"nan\""},
-      {"<geom size=\"0.1\" mass=\"-1\"/>", "", "", "", "3: error: geom: its mass is negative"},
-      {"<geom size=\"0.1\" collor=\"1\"/>", "", "", "", "3: error: geom has no \"collor\" in MJCF"},
+      {"<geom size=\"0.1\" mass=\"-1\"/>", "", "", "",
+       "3: error: geom: the mass must not be negative"},
+      {"<geom size=\"0.1\" collor=\"1\"/>", "", "", "",
+       "3: error: geom has no attribute \"collor\" in MJCF"},
       {"<geom size=\"0.1\" size=\"0.2\"/>", "", "", "",
-       "3: error: this is no XML: an attribute is not key=\"value\", or is there twice"},
+       "3: error: the file is not valid XML: an attribute is not key=\"value\", or occurs twice"},
       {"<geom size=\"0.1\" class=\"x\"/>", "", "", "", "3: error: there is no default class \"x\""},
-      {"<geom size=\"0.1\" quat=\"0 0 0 0\"/>", "", "", "", "3: error: geom: quat has no length"},
+      {"<geom size=\"0.1\" quat=\"0 0 0 0\"/>", "", "", "",
+       "3: error: geom: quat must not be zero"},
       {"<geom size=\"0.1\" quat=\"1 0 0 0\" euler=\"1 2 3\"/>", "", "", "",
-       "its orientation is given in several ways"},
-      {"<composite type=\"cable\"/>", "", "", "", "3: error: composite in body is not read"},
-      {"<flexcomp/>", "", "", "", "3: error: flexcomp in body is not read"},
-      {"<replicate/>", "", "", "", "3: error: replicate in body is not read"},
+       "the orientation is given in several ways"},
+      {"<composite type=\"cable\"/>", "", "", "", "3: error: composite in body is not supported"},
+      {"<flexcomp/>", "", "", "", "3: error: flexcomp in body is not supported"},
+      {"<replicate/>", "", "", "", "3: error: replicate in body is not supported"},
       {"<wheel/>", "", "", "", "3: error: body has no element \"wheel\" in MJCF"},
-      {"<site name=\"s\"/>", "", "", "", "3: error: there are two of site \"s\""},
-      {"", "<fixed name=\"f\"/>", "", "", "6: error: fixed \"f\" in tendon is not read"},
+      {"<site name=\"s\"/>", "", "", "", "3: error: site \"s\" is defined twice"},
+      {"", "<fixed name=\"f\"/>", "", "", "6: error: fixed \"f\" in tendon is not supported"},
       {"", "<spatial name=\"d\"><site site=\"top\"/><geom geom=\"g\"/><site site=\"s\"/></spatial>",
-       "", "", "6: error: geom in spatial is not read"},
+       "", "", "6: error: geom in spatial is not supported"},
       {"",
        "<spatial name=\"d\"><site site=\"top\"/><pulley divisor=\"2\"/><site "
        "site=\"s\"/></spatial>",
-       "", "", "6: error: pulley in spatial is not read"},
+       "", "", "6: error: pulley in spatial is not supported"},
       {"", with("frictionloss=\"1\""), "", "",
-       "6: error: tendon \"d\": frictionloss of a cable is not read (--without_frictionloss"},
+       "6: error: tendon \"d\": frictionloss of a cable is not supported (leave it out with "
+       "--without_frictionloss"},
       {"", with("frictionloss=\"-1\""), "", "",
-       "6: error: spatial \"d\": frictionloss is negative"},
-      {"", with("armature=\"1\""), "", "", "armature of a tendon is not read"},
-      {"", with("damping=\"-1\""), "", "", "6: error: spatial \"d\": damping is negative"},
+       "6: error: spatial \"d\": frictionloss must not be negative"},
+      {"", with("armature=\"1\""), "", "", "armature of a tendon is not supported"},
+      {"", with("damping=\"-1\""), "", "", "6: error: spatial \"d\": damping must not be negative"},
       {"", "<spatial name=\"d\" damping=\"1\">" + spatial, "", "",
-       "6: error: tendon \"d\" is a damper without stiffness"},
+       "6: error: tendon \"d\" has damping but no stiffness"},
       {"", "<spatial name=\"d\" limited=\"true\" range=\"0 1\">" + spatial, "", "",
-       "6: error: tendon \"d\" has a limit of its length and no stiffness"},
+       "6: error: tendon \"d\" has a length limit (range) but no stiffness"},
       {"", "<spatial name=\"d\" stiffness=\"1\" springlength=\"0\">" + spatial, "", "",
-       "6: error: tendon \"d\" has no rest length"},
+       "6: error: the rest length of tendon \"d\" at the start must be positive, got"},
       {"", "<spatial name=\"d\" stiffness=\"1\"><site site=\"top\"/></spatial>", "", "",
        "6: error: spatial \"d\" has fewer than two sites"},
       {"", "<spatial name=\"d\"><site site=\"tip\"/><site site=\"s\"/></spatial>", "", "",
        "6: error: there is no site \"tip\""},
       {"", "", "<muscle name=\"m\" tendon=\"c\"/>", "",
-       "8: error: muscle \"m\": actuators of kind muscle are not read"},
+       "8: error: muscle \"m\": actuators of kind muscle are not supported"},
       {"", "", "<motor name=\"m\" joint=\"j\"/>", "",
-       "8: error: motor \"m\": an actuator on a joint is not read"},
+       "8: error: motor \"m\": an actuator on a joint is not supported"},
       {"", "", "<general name=\"m\" tendon=\"c\" dyntype=\"user\"/>", "",
        "8: error: general \"m\": its dyntype is user"},
       {"", "", "<position name=\"m\" tendon=\"c\" kp=\"5\"/>",
@@ -98,74 +102,80 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
        "its gaintype is affine"},
       {"", "", "<general name=\"m\" tendon=\"c\" biastype=\"muscle\"/>", "",
        "its biastype is muscle"},
-      {"", "", "<position name=\"m\" tendon=\"c\" dampratio=\"1\"/>", "", "dampratio is not read"},
-      {"", "", "<position name=\"m\" tendon=\"c\" kv=\"-1\"/>", "", "kv is negative"},
+      {"", "", "<position name=\"m\" tendon=\"c\" dampratio=\"1\"/>", "",
+       "dampratio is not supported"},
+      {"", "", "<position name=\"m\" tendon=\"c\" kv=\"-1\"/>", "", "kv must not be negative"},
       {"", "", "<position name=\"m\" tendon=\"c\"/>",
        "<default><position dampratio=\"1\"/></default>",
-       "10: error: position \"m\": dampratio is not read"},
+       "10: error: position \"m\": dampratio is not supported"},
       {"", "", "<general name=\"m\" tendon=\"c\"/>", "<default><muscle/></default>",
-       "8: error: general \"m\": actuators of kind muscle are not read; its class sets one in line "
+       "8: error: general \"m\": actuators of kind muscle are not supported; its class sets one in "
+       "line "
        "10"},
       {"", "", "<intvelocity name=\"m\" tendon=\"c\"/>", "", "its dyntype is integrator"},
       {"", "", "<motor name=\"m\" tendon=\"c\" damping=\"1\"/>", "",
-       "8: error: motor \"m\": damping of an actuator is not read"},
+       "8: error: motor \"m\": damping of an actuator is not supported"},
       {"", "", "<motor name=\"m\" tendon=\"c\"/>", "<default><motor armature=\"1\"/></default>",
-       "10: error: motor \"m\": armature of an actuator is not read"},
+       "10: error: motor \"m\": armature of an actuator is not supported"},
       {"", "", "<motor name=\"m\" tendon=\"c\" group=\"2\"/>",
        "<option actuatorgroupdisable=\"1 2\"/>", "8: error: motor \"m\": its group is disabled"},
       {"", "",
        "<general name=\"m\" tendon=\"c\" dyntype=\"filter\" actlimited=\"true\" actrange=\"0 1\"/>",
-       "", "actrange is not read"},
+       "", "actrange is not supported"},
       {"", "", "<position name=\"m\" tendon=\"c\" inheritrange=\"1\"/>", "",
        "inheritrange is given, but its tendon has no range"},
       {"", "", "<motor name=\"m\" tendon=\"c\" ctrlrange=\"1 0\"/>", "",
-       "8: error: motor \"m\": ctrlrange must rise"},
+       "8: error: motor \"m\": ctrlrange must be two increasing numbers"},
       {"", "", "<pid name=\"m\" tendon=\"c\" kp=\"5\" ki=\"1\"/>", "",
-       "8: error: pid \"m\": actuators of kind pid are not read"},
-      {"", with("springyield=\"1\""), "", "", "6: error: spatial \"d\": springyield is not read"},
+       "8: error: pid \"m\": actuators of kind pid are not supported"},
+      {"", with("springyield=\"1\""), "", "",
+       "6: error: spatial \"d\": springyield is not supported"},
       {"", tendon.substr(0, tendon.find("springlength")) + "springlength=\"2 1\">" + spatial, "",
-       "", "springlength must increase and not be negative"},
+       "", "springlength must neither decrease nor be negative"},
       {"", "<spatial name=\"d\" frictionloss=\"1\">" + spatial, "", "",
        "6: error: tendon \"d\" has dry friction (frictionloss) but no stiffness"},
-      {"<geom size=\"0.1\" adhesion=\"1\"/>", "", "", "", "3: error: geom: adhesion is not read"},
+      {"<geom size=\"0.1\" adhesion=\"1\"/>", "", "", "",
+       "3: error: geom: adhesion is not supported"},
       {"<geom size=\"0.1\" surfacevel=\"1 0 0\"/>", "", "", "",
-       "3: error: geom: surfacevel is not read"},
+       "3: error: geom: surfacevel is not supported"},
       {"", "", "", "<option><flag override=\"enable\"/></option>",
-       "10: error: flag.override=\"enable\" is not read"},
+       "10: error: flag.override=\"enable\" is not supported"},
       {"", "", "",
        "<worldbody><geom name=\"f\" type=\"plane\" size=\"1 1 1\"/></worldbody><contact><pair "
        "geom1=\"f\" geom2=\"g\" friction=\"0.5\"/></contact>",
-       "10: error: pair: friction that differs between the two tangents is not read"},
+       "10: error: pair: friction that differs between the two tangential directions is not "
+       "supported"},
       {"", "", "<motor name=\"m\" tendon=\"e\"/>", "", "8: error: there is no tendon \"e\""},
       {"", "<spatial name=\"d\">" + spatial, "<motor tendon=\"d\"/>", "",
-       "6: error: tendon \"d\" is pulled by a force, without stiffness"},
+       "6: error: tendon \"d\" has an actuator but no stiffness"},
       {"", "<spatial name=\"d\">" + spatial, "<position tendon=\"d\" kp=\"5\"/>",
-       "<keyframe><key name=\"k\" ctrl=\"0.5\"/></keyframe>", "--keyframe k has others"},
+       "<keyframe><key name=\"k\" ctrl=\"0.5\"/></keyframe>", "choose others with --keyframe k"},
       {"", "", "", "<equality><connect name=\"e\" body1=\"a\" anchor=\"0 0 0\"/></equality>",
-       "10: error: the equality connect \"e\" is not read"},
+       "10: error: the equality connect \"e\" is not supported"},
       {"", "", "", "<equality><weld body1=\"a\" relpose=\"0 0 1 1 0 0 0\"/></equality>",
-       "10: error: weld: a weld with a relpose is not read"},
+       "10: error: weld: a weld with a relpose is not supported"},
       {"", "", "", "<extension><plugin plugin=\"x\"/></extension>",
-       "10: error: extension in mujoco is not read"},
-      {"", "", "", "<deformable/>", "10: error: deformable in mujoco is not read"},
-      {"", "", "", "<option density=\"1.2\"/>", "10: error: option: a fluid is not read"},
+       "10: error: extension in mujoco is not supported"},
+      {"", "", "", "<deformable/>", "10: error: deformable in mujoco is not supported"},
+      {"", "", "", "<option density=\"1.2\"/>",
+       "10: error: option: a surrounding fluid is not supported"},
       {"", "", "", "<option><flag equality=\"disable\"/></option>",
-       "10: error: flag.equality=\"disable\" is not read"},
+       "10: error: flag.equality=\"disable\" is not supported"},
       {"", "", "", "<compiler angle=\"degrees\"/>",
-       "10: error: compiler: angle is \"degrees\" (did you mean"},
+       "10: error: compiler: angle has the unknown value \"degrees\" (did you mean"},
       {"", "", "", "<compiler eulerseq=\"xy\"/>", "eulerseq must be three of"},
       {"", "", "", "<keyframe><key qpos=\"1 2\"/></keyframe>",
        "10: error: key: qpos must be 7 numbers"},
       {"", "", "", "<contact><exclude body1=\"a\" body2=\"z\"/></contact>",
        "10: error: there is no body \"z\""},
-      {"", "", "", "<include file=\"gone.xml\"/>", "10: error: what it includes cannot be read"},
+      {"", "", "", "<include file=\"gone.xml\"/>", "10: error: the included file cannot be read"},
       {"", "", "", "<include file=\"model.xml\"/>", "10: error: \"model.xml\" is included twice"},
       {"", "", "", "<worldbody><body name=\"b\"><freejoint/></body></worldbody>",
        "10: error: the body \"b\" has no mass"},
       {"", "", "",
        "<worldbody><body name=\"b\"><freejoint/><inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 "
        "1 5\"/></body></worldbody>",
-       "10: error: the moments of inertia of the body \"b\" are those of no body"},
+       "10: error: the moments of inertia of the body \"b\" are impossible"},
   };
   for (const auto& c : cases) {
     const std::string said = Refused(With(c[0], c[1], c[2], c[3]));
@@ -188,30 +198,34 @@ TEST_F(MjcfRefusal, SpringsThatAreNoBarsAreNamedWhereTheyAreToPush) {
                    "<spatial name=\"d\" stiffness=\"1\" springlength=\"1\"><site site=\"top\"/>"
                    "<site site=\"s\"/><site site=\"top\"/></spatial>"),
               push)
-          .find("6: error: tendon \"d\" pushes, and is no bar"),
+          .find("6: error: tendon \"d\" can push, but cannot become a bar"),
       std::string::npos)
       << Said();
 }
 
 TEST_F(MjcfRefusal, WhatIsNoXmlOrNotMjcfIsSaid) {
-  EXPECT_NE(Refused("").find("model.xml: error: this file is empty"), std::string::npos) << Said();
-  EXPECT_NE(Refused("<mujoco>\n<worldbody>\n</mujoco>")
-                .find("error: this is no XML: an element is closed by another name"),
-            std::string::npos)
+  EXPECT_NE(Refused("").find("model.xml: error: the file is empty"), std::string::npos) << Said();
+  EXPECT_NE(
+      Refused("<mujoco>\n<worldbody>\n</mujoco>")
+          .find("error: the file is not valid XML: the end tag of an element has another name"),
+      std::string::npos)
       << Said();
-  EXPECT_NE(Refused("taut: 1\nkind: model\n").find("this is no XML"), std::string::npos) << Said();
+  EXPECT_NE(Refused("taut: 1\nkind: model\n").find("the file is not valid XML"), std::string::npos)
+      << Said();
   EXPECT_NE(Refused("<robot name=\"x\"/>")
                 .find("the root element is \"robot\", not mujoco (this is URDF"),
             std::string::npos)
       << Said();
   EXPECT_NE(Refused("<mujoco/>").find("there is no body in this file"), std::string::npos)
       << Said();
-  EXPECT_NE(Refused("<mujoco/><mujoco/>").find("there is a second element"), std::string::npos);
-  EXPECT_NE(Refused("<mujoco model=\"&#27;[31m\"/>").find("has control characters"),
+  EXPECT_NE(Refused("<mujoco/><mujoco/>").find("the file has a second root element"),
+            std::string::npos);
+  EXPECT_NE(Refused("<mujoco model=\"&#27;[31m\"/>").find("contains control characters"),
             std::string::npos)
       << Said();
-  EXPECT_NE(Refused(With("<site name=\"u\"/>"), {.keyframe = "z"}).find("there is no key \"z\""),
-            std::string::npos);
+  EXPECT_NE(
+      Refused(With("<site name=\"u\"/>"), {.keyframe = "z"}).find("there is no keyframe \"z\""),
+      std::string::npos);
 }
 
 TEST_F(MjcfRefusal, SizesHaveLimits) {
@@ -221,10 +235,11 @@ TEST_F(MjcfRefusal, SizesHaveLimits) {
     return all;
   };
   EXPECT_EQ(Refused(many(1000, "<body>")),
-            "model.xml:1: error: this is no XML: elements are nested too deeply\n");
+            "model.xml:1: error: the file is not valid XML: elements are nested too deeply\n");
   const std::string elements =
-      "model.xml: error: there are more than 50000 elements and comments up to the end of this "
-      "file\n";
+      "model.xml: error: the model has more than 50000 elements and comments in all files up to "
+      "this "
+      "one\n";
   EXPECT_EQ(Refused("<mujoco>" + many(50'000, "<a/>") + "</mujoco>"), elements);
   EXPECT_EQ(Refused("<mujoco>" + many(50'000, "<!---->") + "</mujoco>"), elements);
   // Comments, CDATA and attribute values contain no elements.
@@ -243,11 +258,11 @@ TEST_F(MjcfRefusal, SizesHaveLimits) {
     files += "<include file=\"" + name + "\"/>";
   }
   EXPECT_EQ(Refused("<mujoco>\n" + files + "</mujoco>"),
-            "model.xml:2: error: there are more than 100 files\n");
+            "model.xml:2: error: the model has more than 100 files\n");
   std::filesystem::resize_file(Path("model.xml"), (64 << 20) + 1);
   out_ = {};
   EXPECT_FALSE(ImportMjcf(Path("model.xml"), {}, out_));
-  EXPECT_EQ(Said(), "model.xml: error: is larger than 67 MB (expected an MJCF model)\n");
+  EXPECT_EQ(Said(), "model.xml: error: the file is larger than 67 MB (expected an MJCF model)\n");
 }
 
 TEST_F(MjcfRefusal, TimestepsAreThoseOfExperiments) {
@@ -268,7 +283,8 @@ TEST_F(MjcfRefusal, FilesThatIncludeFilesHaveOneDepthTogether) {
                                                     "</mujoco>");
   }
   EXPECT_NE(Refused("<mujoco><worldbody><include file=\"part_1.xml\"/></worldbody></mujoco>")
-                .find("part_6.xml:1: error: elements of all files are nested more than 500 deep"),
+                .find("part_6.xml:1: error: elements are nested more than 500 levels deep, across "
+                      "all files"),
             std::string::npos)
       << Said();
 }

@@ -1,8 +1,8 @@
 # cmake -DKIND=find_package|add_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
 #       -DCXX=... -DCXX_FLAGS=... -DBUILD_TYPE=... -DVERSION=... -P package_test.cmake
 #
-# A program outside of the tree builds with an installed taut, or with taut as a subfolder, and runs.
-# All flags are those of the build under test, so that a compiler cache has the objects already.
+# Builds and runs a program outside of the tree with an installed taut, or with taut as a subfolder. All flags equal the
+# flags of the build under test, so that a compiler cache has the objects.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(failed)
@@ -23,13 +23,13 @@ if(KIND STREQUAL find_package)
   run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${prefix})
   run(${configure} -DCMAKE_PREFIX_PATH=${prefix} -DTAUT_WANTED_VERSION=${VERSION})
   set(model ${prefix}/share/taut/models/tetraspine3.yaml)
-  # the installed command works where it is, with the installed files
+  # the installed command works with the installed files
   run(${prefix}/bin/taut --version)
   if(NOT output MATCHES "taut ${VERSION}")
     message(FATAL_ERROR "the installed command says it is \"${output}\", not taut ${VERSION}")
   endif()
   run(${prefix}/bin/taut check ${prefix}/share/taut/experiments/push_20n.yaml)
-  # what a shell, man and a reader look for
+  # files for shells, man and readers
   foreach(file IN ITEMS share/man/man1/taut.1 share/bash-completion/completions/taut
       share/zsh/site-functions/_taut share/fish/vendor_completions.d/taut.fish
       share/doc/taut/LICENSE share/doc/taut/NOTICE share/doc/taut/docs/cli.md
@@ -47,7 +47,7 @@ if(KIND STREQUAL find_package)
   if(at EQUAL -1)
     message(FATAL_ERROR "the installed command lists \"${output}\"")
   endif()
-  # nothing installed points back into the build or the sources
+  # no installed file refers to the build or source folder
   file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.h ${prefix}/*.yaml ${prefix}/share/man/*
     ${prefix}/share/bash-completion/* ${prefix}/share/zsh/* ${prefix}/share/fish/*)
   foreach(file IN LISTS texts)
@@ -59,7 +59,7 @@ if(KIND STREQUAL find_package)
       endif()
     endforeach()
   endforeach()
-  # the Python module is a component of its own, for the python3 that it was built with
+  # the Python module is a separate component, for the python3 of the build
   file(GLOB_RECURSE strangers ${prefix}/*_core*)
   if(strangers)
     message(FATAL_ERROR "${strangers} is installed with taut")
@@ -72,7 +72,7 @@ if(KIND STREQUAL find_package)
       message(FATAL_ERROR "the installed module says \"${output}\"")
     endif()
   endif()
-  # what is under the GPL is not part of it, but a component of its own, with its firmware
+  # GPL parts are a separate component, with their firmware
   file(GLOB_RECURSE strangers ${prefix}/*virtual_robot ${prefix}/*simavr* ${prefix}/*.elf)
   if(strangers)
     message(FATAL_ERROR "${strangers} is installed with taut")
@@ -88,7 +88,7 @@ share/taut/firmware/taut_board.elf;share/taut/firmware/taut_board.hex")
     set(short ${robot}/bin/taut_virtual_robot --run --duration_s 0.1 --quiet
       --experiment ${prefix}/share/taut/experiments/push_20n_motors.yaml)
     run(${short} --out ${WORK_DIR}/on_boards)
-    # it was its own firmware, not that of the build
+    # the virtual robot used the installed firmware, not the firmware of the build
     file(REMOVE_RECURSE ${robot}/share/taut/firmware)
     execute_process(COMMAND ${short} --out ${WORK_DIR}/none RESULT_VARIABLE status ERROR_VARIABLE said)
     if(NOT status EQUAL 2 OR NOT said MATCHES "firmware ELF is missing")

@@ -1,3 +1,4 @@
+// Version of taut: header against CMake
 #include "taut/version.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
-// Robots on the ground in taut, MuJoCo, Bullet and ODE: prints as JSON what
-// docs/validation/peers.md shows. No test: contact is where the engines do different things on
-// purpose.
+// Robots on the ground in taut, MuJoCo, Bullet and ODE: prints the data of docs/validation/peers.md
+// as JSON. Not a test: the engines' contact laws differ by design.
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -8,7 +7,7 @@
 
 #include "benchmarks/peers/settings.h"
 #include "math/vec.h"
-#include "tests/peers/robots.h"
+#include "tests/peers/peers_robots.h"
 #include "tests/peers/sled.h"
 
 namespace taut::peers {
@@ -17,7 +16,7 @@ namespace {
 using nlohmann::json;
 constexpr double kStepS = 0.001;
 
-/// taut as a peer of its peers.
+/// taut behind the interface of the other engines.
 class Ours final : public World {
  public:
   explicit Ours(const ModelDef& def) : batch_(Compiled(def), {}) {}
@@ -40,7 +39,7 @@ class Ours final : public World {
   Batch batch_;
 };
 
-/// The same for every engine and setting, by name.
+/// Runs the same for every engine and setting, by name.
 json Each(const ModelDef& def, const std::function<json(World&)>& run) {
   json out = json::object();
   Ours ours(def);
@@ -63,7 +62,7 @@ Vec3 Centre(const ModelDef& def, const World& world) {
   return (1 / mass_kg) * sum;
 }
 
-/// After 20 s: height, tensions, contacts; and the centre's way in the next 5 s.
+/// Returns height, tensions and contacts after 20 s, and the motion of the center in the next 5 s.
 json Stand(const ModelDef& def, World& world) {
   world.Step(kStepS, 20000);
   const Vec3 before = Centre(def, world);
@@ -80,7 +79,8 @@ json Stand(const ModelDef& def, World& world) {
           {"creep_m_per_s", std::hypot(way.x, way.y) / 5}};
 }
 
-/// Weight that leans by 10 degrees towards `heading_rad`: the same as a slope.
+/// Returns the model with gravity inclined by 10 degrees towards `heading_rad`, which is equivalent
+/// to a slope.
 ModelDef Leaning(ModelDef def, double heading_rad) {
   const double lean = 10 * std::numbers::pi / 180, g = 9.81;
   def.gravity_m_per_s2 = {g * std::sin(lean) * std::cos(heading_rad),
@@ -98,7 +98,8 @@ json Report() {
   json out;
   for (const char* robot : {"tetraspine3", "six_strut"}) {
     ModelDef def = test::OnGround(test::Robot(robot));
-    // Six struts dropped upright would balance on two ends for as long as rounding lets them.
+    // Six struts dropped upright would balance on two ends until rounding errors break the
+    // symmetry.
     for (BodyDef& body : def.bodies) body.velocity_m_per_s = {0.1, 0.05, 0};
     json names = json::array();
     for (const CableDef& cable : def.cables) names.push_back(cable.name);

@@ -1,5 +1,5 @@
-// Where the engines differ in contact, and why: docs/validation/peers.md shows how much that is on
-// robots.
+// Differences between the contact laws of the engines, and their causes; docs/validation/peers.md
+// shows their size on robots.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,14 +26,14 @@ class ContactOf : public EngineTest {
 };
 
 TEST_P(ContactOf, SlidingStopsAsCoulombSaysAlongAnAxis) {
-  // Half a step's way is what moving by the velocity before or after the step makes; MuJoCo's soft
+  // Moving by the velocity before or after the step differs by half a step's travel; MuJoCo's soft
   // contact yields by less than that.
   EXPECT_NEAR(WayOf(0), 1 / (2 * 0.5 * 9.81), kStepS);
 }
 
 TEST_P(ContactOf, SlidingOnTheDiagonalShowsTheShapeOfItsCone) {
   // |f| is mu N in every direction only if the cone is round. A pyramid with its corners on the
-  // axes has 1 / sqrt(2) of it between them; a box has sqrt(2).
+  // axes has 1 / sqrt(2) of it on the diagonals; a box has sqrt(2).
   const bool pyramid = GetParam().engine == Engine::kMujoco && !GetParam().options.elliptic;
   const bool box = GetParam().engine == Engine::kOde;
   const double mu = 0.5 * (pyramid ? std::sqrt(0.5) : box ? std::sqrt(2.0) : 1);
@@ -41,11 +41,12 @@ TEST_P(ContactOf, SlidingOnTheDiagonalShowsTheShapeOfItsCone) {
 }
 
 TEST_P(ContactOf, OnlyBulletSlidesUnderACouple) {
-  // Bullet's friction leaves out the velocity that external torques will give a body in the step,
-  // (I^-1 torque) h at the lever of the contact: by just that every contact slips, however rough.
+  // Bullet's friction omits the velocity that external torques will add to a body in the step,
+  // (I^-1 torque) h at the lever of the contact: every contact slips by exactly this, for any
+  // friction coefficient.
   const ModelDef def = test::Turned(test::Sled());
   Options options = GetParam().options;
-  options.iterations = 1000;  // so that nothing is for want of iterations
+  options.iterations = 1000;  // so that the iterations converge
   const auto world = MakeWorld(GetParam().engine, def, options);
   world->Step(kStepS, 1000);
   const double lever_m = def.bodies[0].com_m.z;
@@ -59,8 +60,8 @@ TEST_P(ContactOf, OnlyBulletSlidesUnderACouple) {
 }
 
 TEST_P(ContactOf, BoxesLieAsTheyAreTurned) {
-  // On a slope of 0.3 rad a block lies flat, rough enough not to slide: turned otherwise it would
-  // stand on an edge and fall. The bottom one of two carries the other.
+  // On a slope of 0.3 rad a block lies flat, rough enough not to slide: with a wrong orientation it
+  // would stand on an edge and fall. The lower of two blocks carries the other.
   scenes::BlockOnSlope scene;
   scene.slope.angle_rad = 0.3;
   scene.slope.material = scene.material = {0.8, 0.8, 0.0};
@@ -87,7 +88,7 @@ std::string CaseName(const testing::TestParamInfo<Setting>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Peers, ContactOf, testing::ValuesIn(kSettings), CaseName);
 
-/// taut beside them.
+/// The same for taut.
 TEST(PeersContact, OursDoesNeither) {
   Diagnostics complaints;
   for (const double heading_rad : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {

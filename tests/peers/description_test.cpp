@@ -1,11 +1,11 @@
-// What MuJoCo, Bullet and ODE make of the very description that taut runs, before anything moves.
+// Models in MuJoCo, Bullet and ODE, converted from taut's description, before any step.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "math/vec.h"
-#include "tests/peers/robots.h"
+#include "tests/peers/peers_robots.h"
 
 namespace taut::peers {
 namespace {
@@ -23,7 +23,7 @@ class Description : public testing::TestWithParam<std::tuple<Engine, std::string
   std::unique_ptr<World> world_;
 };
 
-/// Diagonalising a 3x3 matrix and turning it back: some tens of roundings of its largest entry.
+/// Diagonalizing a 3x3 matrix and rotating it back: some tens of roundings of its largest entry.
 constexpr double kRoundings = 64 * std::numeric_limits<double>::epsilon();
 
 TEST_P(Description, MassCentreAndInertiaAreThose) {
@@ -56,7 +56,7 @@ TEST_P(Description, CableLengthsAndTensionsAtRestAreOurs) {
     SCOPED_TRACE(cable.name);
     const CableState want = ours.Cable(0, static_cast<int>(c));
     const CableState have = world_->Cable(static_cast<int>(c));
-    // Lengths are differences of positions of the order of a metre.
+    // Lengths are differences of positions of the order of a meter.
     EXPECT_NEAR(have.length_m, want.length_m, kRoundings);
     EXPECT_NEAR(have.rate_m_per_s, 0, kRoundings);
     EXPECT_EQ(have.rest_length_m, cable.rest_length_m);

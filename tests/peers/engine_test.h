@@ -1,4 +1,4 @@
-/// A test of one engine with one of its settings; skipped where that is not built in.
+/// Base of tests of one engine with one of its settings; skipped where the engine is not built in.
 #pragma once
 
 #include <gtest/gtest.h>

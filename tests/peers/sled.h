@@ -1,14 +1,14 @@
-/// A plate on three feet, for what contact does.
+/// A plate on three feet, for contact tests.
 #pragma once
 
 #include <cmath>
 #include <string>
 
-#include "tests/peers/robots.h"
+#include "tests/peers/peers_robots.h"
 
 namespace taut::test {
 
-/// Friction 0.5. Moves in the direction `heading_rad`, or lies still.
+/// Returns a sled with friction 0.5 that moves in the direction `heading_rad`, or is at rest.
 inline ModelDef Sled(double speed_m_per_s = 0, double heading_rad = 0) {
   ModelDef def;
   def.name = "sled";
@@ -31,8 +31,8 @@ inline ModelDef Sled(double speed_m_per_s = 0, double heading_rad = 0) {
   return def;
 }
 
-/// Lies still while two long soft cables, one up and one down, turn it about y: a couple of
-/// 0.2 N m and no force.
+/// Returns the sled at rest with two long soft cables, one up and one down, that exert a couple of
+/// 0.2 N m about y and no force.
 inline ModelDef Turned(ModelDef def) {
   for (const double side : {1.0, -1.0}) {
     const Vec3 at{-0.1 * side, 0, 0.02};

@@ -1,13 +1,13 @@
-// A robot that swings in empty space or between ceiling and floor, in taut and in MuJoCo, Bullet
-// and ODE. Nothing here is tuned: as the step gets smaller all must come to the same trajectory,
-// and how near they are at a given step follows from what halving it changes.
+// Motion of a robot in empty space or between ceiling and floor, in taut and in MuJoCo, Bullet and
+// ODE. Nothing is tuned: with decreasing steps all engines must converge to the same trajectory,
+// and the bound at a given step follows from the change when the step is halved.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "math/vec.h"
-#include "tests/peers/robots.h"
+#include "tests/peers/peers_robots.h"
 
 namespace taut::peers {
 namespace {
@@ -19,7 +19,7 @@ using Trajectory = std::vector<double>;
 
 void Append(Trajectory& out, const Vec3& v) { out.insert(out.end(), {v.x, v.y, v.z}); }
 
-/// What `engine.Body` and `engine.Cable` say: of a World, or of taut.
+/// Returns the values of `engine.Body` and `engine.Cable`, for a World or taut.
 template <class BodyOf, class CableOf>
 Trajectory Look(const ModelDef& def, BodyOf body, CableOf cable) {
   Trajectory out;
@@ -60,7 +60,7 @@ double Distance(const Trajectory& a, const Trajectory& b) {
   return std::sqrt(sum);
 }
 
-/// Where a first-order scheme goes as its step goes to zero, from two steps of ratio two.
+/// Returns the limit of a first-order scheme for a step of zero, from two steps of ratio two.
 Trajectory Limit(const Trajectory& coarse, const Trajectory& fine) {
   Trajectory out(coarse.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = 2 * fine[i] - coarse[i];
@@ -79,7 +79,7 @@ class Swing : public testing::TestWithParam<std::tuple<Engine, std::string, bool
 };
 
 TEST_P(Swing, KeepsAllCablesTautAndTouchesNothing) {
-  // So that neither contact nor MuJoCo's other law for slack cables plays a part.
+  // Excludes contact and MuJoCo's different law for slack cables.
   Diagnostics complaints;
   Batch world(Model::Compile(def_, complaints), {});
   for (int i = 0; i < 1000; ++i) {
@@ -98,18 +98,18 @@ TEST_P(Swing, AllComeToTheSameTrajectoryAsTheStepGoesToZero) {
                                 Theirs(engine(), def_, 4 * kSteps)};
   const Trajectory ours[2] = {Ours(def_, 2 * kSteps), Ours(def_, 4 * kSteps)};
 
-  // They are of first order: halving the step halves the error.
+  // The engines are of first order: halving the step halves the error.
   const double first = Distance(theirs[0], theirs[1]), second = Distance(theirs[1], theirs[2]);
   EXPECT_NEAR(first / second, 2.0, 0.2);
-  // So they are going to `limit`, with an error of second order that is a third of what it
-  // changed by; ours likewise, of second order itself. All three of it are allowed for the sum.
+  // They converge to `limit`, with an error of second order that is a third of the last change;
+  // taut, of second order, likewise. Three times these errors are allowed in sum.
   const Trajectory coarse = Limit(theirs[0], theirs[1]), limit = Limit(theirs[1], theirs[2]);
   const double theirs_off = Distance(coarse, limit), ours_off = Distance(ours[0], ours[1]);
   const double rounding = 4 * kSteps * 64 * std::numeric_limits<double>::epsilon();
   const double apart = Distance(limit, ours[1]);
   SCOPED_TRACE(testing::Message() << "h and h/2 are " << first << " apart, the limits " << apart);
   EXPECT_LE(apart, theirs_off + ours_off + rounding);
-  // That says something: what is left is far less than what one engine's step alone changes.
+  // The bound is meaningful: it is far below the change by one engine's step alone.
   EXPECT_LT(theirs_off + ours_off, first / 20);
 }
 

@@ -1,5 +1,5 @@
-/// Actuators: what a commanded rest length becomes (docs/theory/cables.md). Limits are per
-/// second: each test runs at three step sizes.
+/// Actuators between commanded and actual rest lengths (docs/theory/cables.md). Limits are per
+/// second, so each test runs at three step sizes.
 
 #include <gtest/gtest.h>
 
@@ -38,8 +38,8 @@ ActuatorDef Limited(double speed, double acceleration = kNone, double force = kN
 
 double Rest(const Batch& world) { return world.Cable(0, 0).rest_length_m; }
 
-/// A body too heavy to move hangs on a motor that winds in 0.1 mm at 0.1 m/s: what it gets in
-/// 4 ms must not depend on how many steps those are.
+/// A body too heavy to move hangs on a motor that winds in 0.1 mm at 0.1 m/s: its impulse within 4
+/// ms must not depend on the number of steps.
 TEST(Actuator, TheImpulseOfAMotorThatArrivesDoesNotDependOnTheStep) {
   constexpr double kMass = 1e6, kStiffness = 1000, kStretch = 0.01;
   constexpr double kTime = 4e-3, kSpeed = 0.1, kWay = 1e-4, kArrives = kWay / kSpeed;
@@ -62,7 +62,7 @@ TEST(Actuator, TheImpulseOfAMotorThatArrivesDoesNotDependOnTheStep) {
       world.SetRestLengthTarget(0, 0, 1 - kStretch - kWay);
       world.Step(kTime / steps, steps);
       EXPECT_EQ(Rest(world), 1 - kStretch - kWay);
-      // Its own motion changes the stretch by less than 1e-9 of itself.
+      // The body's motion changes the stretch by a share of less than 1e-9.
       const double impulse = -world.Body(0, 0).velocity_m_per_s.x * kMass;
       EXPECT_NEAR(impulse, kStiffness * stretch_time, 1e-8 * kStiffness * stretch_time)
           << steps << " steps, " << (ideal ? "ideal" : "limited");
@@ -83,7 +83,7 @@ TEST(Actuator, AnIdealOneIsAtItsTargetAfterOneStep) {
   ideal.kind = ActuatorDef::Kind::kIdeal;
   for (const double h : kThreeStepsS) {
     Batch world = MakeBatch(Winch(ideal));
-    EXPECT_EQ(world.RestLengthTarget(0, 0), 1.5);  // where it is, until told otherwise
+    EXPECT_EQ(world.RestLengthTarget(0, 0), 1.5);  // present rest length until the first command
     world.Step(h);
     EXPECT_EQ(Rest(world), 1.5);
     for (const double target : {0.4, 2.0, 0.9}) {
@@ -120,7 +120,8 @@ TEST(Actuator, WindsAtItsSpeedAndStopsExactlyAtTheTarget) {
 
 TEST(Actuator, AnAccelerationLimitGivesATrapezoidWithoutOvershoot) {
   const double speed = 0.2, a = 0.8;
-  // The speed is reached (and not reached) on the way: d / v + v / a, and 2 sqrt(d / a).
+  // Duration of a move over `way` with the speed limit reached, d / v + v / a, and not reached, 2
+  // sqrt(d / a).
   for (const double way : {0.3, 0.03}) {
     const bool reached = way > speed * speed / a;
     const double time = reached ? way / speed + speed / a : 2 * std::sqrt(way / a);
@@ -134,13 +135,14 @@ TEST(Actuator, AnAccelerationLimitGivesATrapezoidWithoutOvershoot) {
           const double last = Rest(world);
           world.Step(h);
           rate = direction * (Rest(world) - last) / h;
-          // Differences of lengths of 2 m, divided by h.
+          // Differences of lengths of up to 2 m, divided by h.
           const double rounding = RoundOff(1, 2) / h;
           ASSERT_LE(rate, speed + rounding) << h;
           ASSERT_LE(std::fabs(rate - before), a * h + 2 * rounding) << h << ", step " << n;
           ASSERT_LE(direction * (Rest(world) - target), RoundOff(1, 2)) << "overshoot, " << h;
           before = rate;
-          // The scheme's speeds are at most a h below the trapezoid's; it may be late by two steps.
+          // The scheme's speeds are at most a h below the trapezoidal profile; the motor may lag by
+          // two steps.
           const double t = n * h - 2 * h;
           const double way_up = std::max(t, 0.0) * std::max(t, 0.0) * a / 2;
           if (t < std::min(time / 2, speed / a)) {
@@ -170,7 +172,8 @@ TEST(Actuator, AnAccelerationLimitBrakesBeforeItTurnsBack) {
       before = rate;
       least = std::min(least, Rest(world));
     }
-    // v^2 / 2a further on it stands; the steps' sum is short of that by half a step's way.
+    // The motor stops after another v^2 / 2a; the sum over steps falls short of that by half a
+    // step's travel.
     EXPECT_NEAR(turn - least, speed * speed / (2 * a), speed * h / 2 + RoundOff(100, 2)) << h;
     EXPECT_NEAR(Rest(world), 1.6, RoundOff(100, 2));
   }
@@ -187,7 +190,7 @@ TEST(Actuator, NeverWindsPastItsForce) {
         ASSERT_LE(world.Cable(0, 0).tension_n, force + RoundOff(1, 1000)) << h;
       }
       EXPECT_NEAR(world.Cable(0, 0).tension_n, force, 1e-9 * force) << h;
-      // The command has not been forgotten; a higher stiffness would need less winding.
+      // The target is kept: with a higher stiffness the force would be reached with less winding.
       EXPECT_EQ(world.RestLengthTarget(0, 0), 0.1);
     }
   }
@@ -228,7 +231,8 @@ TEST(Actuator, DoesNotWindInWhileTheCableIsShorterThanItsLeastLength) {
 }
 
 TEST(Actuator, LiftsAWeightByAsMuchAsItWinds) {
-  // Wound up slowly, a weight rises with the rest length; the elastic force stays its weight.
+  // Lifted slowly, the weight rises with the rest length; the elastic force stays equal to the
+  // weight.
   for (const double h : kThreeStepsS) {
     scenes::HangingMass scene;
     scene.damping_n_s_per_m = 20;

@@ -1,5 +1,5 @@
 // Friction, springs and dampers of ball joints against closed forms (docs/theory/joints.md, section
-// 5): what acts about every axis alike, wherever the joint's axis points.
+// 5). They act equally about every axis, whatever the direction of the joint's axis.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,10 +11,11 @@ namespace taut::test {
 namespace {
 
 constexpr double kInertia = 0.01;                ///< [kg m^2]
-const Vec3 kSkew{2.0 / 7, 3.0 / 7, 6.0 / 7};     ///< Along no axis.
-const Vec3 kAcross{6.0 / 7, 2.0 / 7, -3.0 / 7};  ///< At right angles to it.
+const Vec3 kSkew{2.0 / 7, 3.0 / 7, 6.0 / 7};     ///< Not along a coordinate axis.
+const Vec3 kAcross{6.0 / 7, 2.0 / 7, -3.0 / 7};  ///< At right angles to `kSkew`.
 
-/// A ball of 1 kg that turns about its centre, in zero gravity. Its joint's axis is a skew one.
+/// Returns a ball of 1 kg that rotates about its center in zero gravity, on a joint with a skew
+/// axis.
 ModelDef BallOnBall(const Vec3& spin_rad_per_s) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -61,7 +62,7 @@ TEST(BallTurn, ASpringSwingsWithTheFrequencyOfItsStiffness) {
 }
 
 TEST(BallTurn, ASpringTurnsBackByTheTurnVector) {
-  // Let go from 2.5 rad about a skew axis: the torque is along that axis, k times the angle.
+  // Released at 2.5 rad about a skew axis: the torque is along that axis, k times the angle.
   ModelDef def = BallOnBall({});
   def.joints[0].stiffness = 2;
   const double half = 0.5 * 2.5;
@@ -75,7 +76,8 @@ TEST(BallTurn, ASpringTurnsBackByTheTurnVector) {
 }
 
 TEST(BallTurn, ASpringsTorqueFollowsFromItsEnergyAtAnyTurn) {
-  // Turned by r, the work of a small turn d against the spring is what its energy grows by.
+  // At a rotation r, the work of a small rotation d against the spring equals the growth of its
+  // energy.
   const auto turned = [](double angle_rad, const Vec3& axis) {
     const double s = std::sin(0.5 * angle_rad);
     return Quat{std::cos(0.5 * angle_rad), s * axis.x, s * axis.y, s * axis.z};
@@ -97,7 +99,7 @@ TEST(BallTurn, ASpringsTorqueFollowsFromItsEnergyAtAnyTurn) {
     EXPECT_LT(Distance(torque, -2.0 * angle * kSkew), 1e-8) << angle;
     const double d = 1e-6;
     for (const Vec3& about : {kSkew, kAcross, Cross(kSkew, kAcross)}) {
-      if (angle > 3.1) break;  // beyond the half turn it goes the other way
+      if (angle > 3.1) break;  // beyond half a turn the spring acts the other way
       const double more = EnergyOf(start(d, about)) - EnergyOf(start(-d, about));
       EXPECT_NEAR(more / (2 * d), -Dot(torque, about), 1e-8) << angle;
     }
@@ -105,7 +107,8 @@ TEST(BallTurn, ASpringsTorqueFollowsFromItsEnergyAtAnyTurn) {
 }
 
 TEST(BallTurn, ASpringThatSwingsAboutChangingAxesKeepsItsEnergy) {
-  // Of second order: also where the turn's axis and the spin's differ.
+  // The energy error is of second order, also where the axes of rotation and of the angular
+  // velocity differ.
   double off[2] = {};
   for (int k = 0; k < 2; ++k) {
     const double h = k == 0 ? 1e-3 : 5e-4;
@@ -155,7 +158,8 @@ TEST(BallTurn, FrictionStopsASpinAboutAnyAxisAndThenHoldsIt) {
 }
 
 TEST(BallTurn, FrictionsLimitIsTheSameAboutEveryAxis) {
-  // A rod of 1 m held level: its weight turns it with m g / 2, about an axis that goes around.
+  // A rod of 1 m held level: its weight exerts the torque m g / 2, about an axis whose heading
+  // varies.
   for (int i = 0; i < 24; ++i) {
     const double heading = i * std::numbers::pi / 12 + 0.05;
     const double torque = 0.5 * kG;
@@ -172,7 +176,7 @@ TEST(BallTurn, FrictionsLimitIsTheSameAboutEveryAxis) {
         EXPECT_LT(turns, 1e-9) << i;
         EXPECT_NEAR(Norm(world.Joint(0, 0).torque_n_m), torque, 1e-9);
       } else {
-        // m g / 2 (1 - share) / (m / 3), a second long
+        // m g / 2 (1 - share) / (m / 3), for one second
         EXPECT_NEAR(turns, 1e-4 * torque * 3, 1e-6) << i;
         EXPECT_NEAR(Norm(world.Joint(0, 0).torque_n_m), share * torque, 1e-9);
       }
@@ -182,7 +186,7 @@ TEST(BallTurn, FrictionsLimitIsTheSameAboutEveryAxis) {
 }
 
 TEST(BallTurn, WhatFrictionTakesIsItsTorqueTimesTheTurn) {
-  // A thin rod that swings in space: the energy that goes is that of tau |w| over time.
+  // A thin rod that swings in space: the energy loss is tau |w|, integrated over time.
   double off[2] = {};
   for (int k = 0; k < 2; ++k) {
     const double h = k == 0 ? 1e-3 : 5e-4;
@@ -203,8 +207,8 @@ TEST(BallTurn, WhatFrictionTakesIsItsTorqueTimesTheTurn) {
     EXPECT_EQ(world.Status(0).bits, kStatusOk);
     EXPECT_GT(taken, 2);
     off[k] = std::fabs(EnergyOf(world) - start + taken);
-    // Closing the gap moves the rod in all by h^2 / 8 times the change of its centripetal
-    // acceleration, below that at the foot of a free fall from upright: 3 g.
+    // Closing the joint's gap moves the rod in all by h^2 / 8 times the change of its centripetal
+    // acceleration, which is below 3 g, its value at the bottom of a free fall from upright.
     EXPECT_LT(off[k], h * h / 8 * 3 * kG * kG);
   }
   EXPECT_NEAR(off[0] / off[1], 4, 0.5);
@@ -214,7 +218,7 @@ TEST(BallTurn, AChainWithFrictionSpringsAndDampersFreezesOrSwingsAndStaysTogethe
   for (const bool holds : {true, false}) {
     ModelDef def = Chain(16, {0.06, 0.08, 0}, 1);
     for (std::size_t i = 0; i < def.joints.size(); ++i) {
-      // The first carries 16 kg on 0.8 m: 125.6 N m
+      // The first joint carries 16 kg at 0.8 m: 125.6 N m
       const double load =
           kG * 0.05 * (16.0 - static_cast<double>(i)) * (16.0 - static_cast<double>(i));
       def.joints[i].friction = (holds ? 1.01 : 0.3) * load;

@@ -1,4 +1,5 @@
-/// Bodies that touch each other.
+/// Collisions of two bodies: impulses, momentum, kinetic friction and continuous collision
+/// detection.
 
 #include <gtest/gtest.h>
 
@@ -15,9 +16,9 @@ ModelDef Weightless() {
   return def;
 }
 
-/// Runs until after the collision; momentum must be kept on the way.
+/// Steps until after the collision and checks that linear and angular momentum are kept.
 void Collide(Batch& world, double h, double time_s) {
-  const double momentum = 1;  // more than anything has in these tests [kg m/s]
+  const double momentum = 1;  // above all momenta in these tests [kg m/s]
   const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
   bool touched = false;
   for (int n = 1; n <= StepsIn(time_s, h); ++n) {
@@ -65,7 +66,7 @@ TEST(BodyContact, BallsThatMeetAskewKeepLinearAndAngularMomentum) {
     Batch world = MakeBatch(def);
     Collide(world, h, 0.6);
     EXPECT_TRUE(world.Contacts(0).empty());
-    EXPECT_GT(Norm(world.Body(0, 1).angular_velocity_rad_per_s), 0.1);  // friction turned it
+    EXPECT_GT(Norm(world.Body(0, 1).angular_velocity_rad_per_s), 0.1);  // friction has rotated it
   }
 }
 
@@ -85,7 +86,7 @@ TEST(BodyContact, CrossingRodsKeepLinearAndAngularMomentum) {
 }
 
 TEST(BodyContact, RodsThatCrossInTheirMiddlesReboundByNewtonsLaw) {
-  // As point masses in line: the impulse is along the common normal z.
+  // As for two point masses in line: the impulse is along the common normal z.
   for (const double e : {0.0, 0.5, 1.0}) {
     for (const double h : kThreeStepsS) {
       ModelDef def = Weightless();
@@ -102,8 +103,8 @@ TEST(BodyContact, RodsThatCrossInTheirMiddlesReboundByNewtonsLaw) {
 }
 
 TEST(BodyContact, ARodHitNearItsEndTurnsAsNewtonsLawSays) {
-  // A ball hits a rod of 1 m squarely, `a` beside its middle: the rod's effective mass is there
-  // 1 / (1 / M + a^2 / J).
+  // A ball hits a rod of 1 m squarely at the distance `a` from its center, where the rod's
+  // effective mass is 1 / (1 / M + a^2 / J).
   const double m = 0.2, mass = 0.5, v = 1.2, a = 0.48, h = 1e-3;
   for (const double e : {0.0, 0.7}) {
     ModelDef def = Weightless();
@@ -118,15 +119,15 @@ TEST(BodyContact, ARodHitNearItsEndTurnsAsNewtonsLawSays) {
       ASSERT_LT(steps, 250);
       world.Step(h);
     }
-    // It rebounds in the step that moved the rod; two more change nothing.
+    // The ball rebounds in the step that moved the rod; two more steps change nothing.
     world.Step(h, 2);
     const double impulse = (1 + e) * v / (1 / m + 1 / mass + a * a / moment);
-    // Meanwhile the rod turns by 3 h w, and the point of contact wanders by that times the distance
-    // of the two centres, 0.07 m, which changes `a` by that share.
+    // Meanwhile the rod rotates by 3 h w, and the contact point shifts by that times 0.07 m, the
+    // distance of the two centers, which changes `a` by `share`.
     const double w = impulse * a / moment, share = 2 * 3 * h * w * 0.07 / a;
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, -v + impulse / m, share * v) << e;
     EXPECT_NEAR(world.Body(0, 1).velocity_m_per_s.z, -impulse / mass, share * v) << e;
-    // A downward blow at +x turns about +y.
+    // A downward impact at +x rotates the rod about +y.
     EXPECT_NEAR(world.Body(0, 1).angular_velocity_rad_per_s.y, w, share * v / a) << e;
   }
 }
@@ -139,8 +140,8 @@ TEST(BodyContact, OneRodSlidesAlongAnotherWithKineticFriction) {
   scenes::AddRod(def, "rail", 1, 0.02, {-1, 0.2, 0}, {2, 0.2, 0}, material);
   const int rod = scenes::AddRod(def, "rod", 0.1, 0.02, {0, -0.3, 0.04}, {0, 0.3, 0.04}, material);
   def.bodies[0].fixed = def.bodies[1].fixed = true;
-  // Friction acts below its axis and would make it roll: so large a moment does not let it. What
-  // is left is mu m g r^2 / J = 1e-9 m/s^2 at its underside.
+  // Friction acts below the rod's axis and would make it roll, which so large a moment of inertia
+  // prevents. The remaining acceleration at its underside is mu m g r^2 / J = 1e-9 m/s^2.
   def.bodies[2].inertia_kg_m2 = {1e-3, 1e6, 1e-3, 0, 0, 0};
   def.bodies[2].velocity_m_per_s = {1, 0, 0};
   Batch world = MakeBatch(def);
@@ -169,7 +170,8 @@ TEST(BodyContact, ShapesOfOneBodyAndShapesThatDoNotCollidePassThroughEachOther) 
 }
 
 TEST(BodyContact, AFastBallDoesNotPassThroughAnother) {
-  // 0.4 m a step, far more than their size: the way of a step is part of the search.
+  // 0.4 m a step, far more than the balls' size: the search for contacts includes the travel of a
+  // step.
   ModelDef def = Weightless();
   const Material material{0.5, 0.5, 1};
   scenes::AddBall(def, "one", 0.2, 0.02, {-1.03, 0, 0}, material);
@@ -183,7 +185,7 @@ TEST(BodyContact, AFastBallDoesNotPassThroughAnother) {
 
 TEST(BodyContact, ATowerOfEverHeavierBallsStands) {
   // Four balls on top of each other, each ten times as heavy as the one below, kept upright by
-  // symmetry: hard for an iteration that goes from contact to contact.
+  // symmetry: a hard case for Gauss-Seidel sweeps over the contacts.
   ModelDef def;
   const Material material{0.5, 0.5, 0};
   scenes::AddGround(def, material);

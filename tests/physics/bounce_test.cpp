@@ -1,4 +1,4 @@
-/// Impacts: how high things bounce, and that nothing bounces at rest (docs/theory/contact.md).
+/// Impacts: height of rebounds, and no bounces at rest (docs/theory/contact.md).
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 namespace taut::test {
 namespace {
 
-/// Steps until the ball has bounced `bounces` times and is in free flight again; the height above
-/// the ground to which it will rise. In flight that is known exactly: the scheme keeps parabolas.
+/// Steps until the ball has bounced `bounces` times and is in flight again. Returns the apex of its
+/// flight above the ground [m], which is exact: the scheme keeps parabolas.
 double HeightAfter(Batch& world, int bounces, double radius_m, double h) {
   int seen = 0, flying = 0;
   double before = world.Body(0, 0).velocity_m_per_s.z;
@@ -36,7 +36,7 @@ double HeightAfter(Batch& world, int bounces, double radius_m, double h) {
 TEST(Bounce, ABallRisesToESquaredTimesItsHeightAtAnyStepSize) {
   for (const double e : {0.2, 0.5, 0.9}) {
     for (const double h : kThreeStepsS) {
-      // Heights whose impacts fall into the step early and late.
+      // Heights whose impacts fall early and late in a step.
       for (const double drop : {1.0, 1.003, 1.007, 1.011, 1.017}) {
         scenes::Ball scene;
         scene.drop_m = drop;
@@ -64,7 +64,7 @@ TEST(Bounce, EveryFurtherBounceLosesTheSameShare) {
 }
 
 TEST(Bounce, ABallWithoutWeightReboundsWithETimesItsSpeed) {
-  // No force during the impact: exactly e v.
+  // No force acts during the impact: the rebound is exactly e v.
   for (const double e : {0.0, 0.2, 0.5, 0.9, 1.0}) {
     for (const double h : kThreeStepsS) {
       scenes::Ball scene;
@@ -90,9 +90,10 @@ TEST(Bounce, AnImpactWithoutRestitutionStopsAtTheSurface) {
       world.Step(h);
       lowest = std::min(lowest, world.Body(0, 0).position_m.z - scene.radius_m);
     }
-    // It arrives with 4.43 m/s, and contacts are found at the middle of a step: half a step's way.
+    // The ball arrives at 4.43 m/s, and contacts are found at the middle of a step: half a step's
+    // travel.
     EXPECT_GT(lowest, -4.43 * h / 2);
-    // What it went in comes out by displacements.
+    // Position projection corrects the penetration.
     world.Step(h, 300);
     EXPECT_NEAR(world.Body(0, 0).position_m.z, scene.radius_m, 1e-9);
     EXPECT_LT(Norm(world.Body(0, 0).velocity_m_per_s), 1e-9);
@@ -111,8 +112,8 @@ TEST(Bounce, AtRestNothingSinksOrJitters) {
         const double z = world.Body(0, 0).position_m.z;
         for (int n = 0; n < StepsIn(10, h); ++n) {
           world.Step(h);
-          // A velocity may be left that the solver does not see; at most a step long, before it is
-          // seen as a gap.
+          // A velocity below the solver's tolerance may remain, for at most one step, until it has
+          // become a gap.
           ASSERT_LE(Norm(world.Body(0, 0).velocity_m_per_s), SolverError(1)) << def.name << e << h;
           ASSERT_NEAR(world.Body(0, 0).position_m.z, z, SolverError(1)) << def.name << e << h;
         }

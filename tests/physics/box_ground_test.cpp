@@ -19,7 +19,7 @@ void AddFlat(ModelDef& def, int form, const Material& material) {
   field.split = form == 0 ? Split::kSame : form == 1 ? Split::kAlternating : Split::kShortest;
   if (form < 3) {
     def.height_fields.push_back(field);
-  } else {  // the upper side of a solid
+  } else {  // upper face of a solid
     TerrainMeshDef slab;
     slab.name = "slab";
     slab.material = material;
@@ -57,7 +57,7 @@ TEST(BoxOnGround, OnAFlatFieldABoxMovesAsOnAPlane) {
 }
 
 TEST(BoxOnGround, ThreePeaksCarryTheirSharesOfABox) {
-  // Statics: the centre of mass is at (0.02, 0.01); the loads' moments about it vanish.
+  // Statics: the center of mass is at (0.02, 0.01); the moments of the loads about it vanish.
   const double p[3][2] = {{-0.06, -0.05}, {0.08, -0.04}, {0.01, 0.07}};
   ModelDef def;
   TerrainMeshDef mesh;
@@ -98,7 +98,8 @@ TEST(BoxOnGround, ThreePeaksCarryTheirSharesOfABox) {
 
 enum class Form { kField, kSheet, kSolid };
 
-/// A field's triangles with walls and a bottom, or alone.
+/// Returns the triangles of a height field as a mesh: as a solid with walls and a bottom, or as a
+/// surface.
 TerrainMeshDef AsMesh(const HeightFieldDef& field, bool solid) {
   TerrainMeshDef mesh = scenes::MeshOf(field);
   mesh.solid = solid;
@@ -146,7 +147,8 @@ ModelDef BoxesOverHills(std::uint64_t seed, Form form = Form::kField) {
   return def;
 }
 
-/// How deep points of hills and a box are in each other, from points along all of their edges.
+/// Returns the deepest penetration of hills and a box [m], sampled along the edges of the triangles
+/// and of the box.
 double DeepestOf(const BoxDef& box, const BodyState& body, const BodyDef& start,
                  const sim::SurfaceTable& hills) {
   const Quat turn = body.orientation * box.orientation;
@@ -168,7 +170,7 @@ double DeepestOf(const BoxDef& box, const BodyState& body, const BodyDef& start,
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     for (int axis = 0; axis < 3; ++axis) {
-      // The steepest slope of these hills is 1 in 2: below that the nearest way out is upwards.
+      // The steepest slope of these hills is 1 in 2: below it the shortest way out is upwards.
       along(p, corner(a | 1 << axis),
             [&](const Vec3& x) { return std::sqrt(0.8) * sim::DepthBelow(hills, x); });
     }

@@ -1,4 +1,4 @@
-/// The law of a cable between two points (docs/theory/cables.md): paper eq. (1), slackness, stiff
+/// Force law of a cable between two points (docs/theory/cables.md): paper eq. (1), slack and stiff
 /// cables.
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ double Rise(const Batch& world) { return world.Body(0, 0).velocity_m_per_s.z; }
 
 TEST(Cable, AnUndampedSpringFollowsTheLeapfrogsClosedFormForAHundredPeriods) {
   // x_n = A cos(n theta), v_n = -A w^2 h sin(n theta) / sin(theta), cos(theta) = 1 - (w h)^2 / 2,
-  // about the sag: the amplitude is kept exactly and the period is short by (w h)^2 / 24.
+  // about the sag: the amplitude is exact, the period is short by (w h)^2 / 24 of it.
   scenes::HangingMass scene;
   const double amplitude = 0.004, w = std::sqrt(scene.stiffness_n_per_m / scene.mass_kg);
   const double middle = scene.rest_length_m + scene.sag_m();
@@ -29,8 +29,8 @@ TEST(Cable, AnUndampedSpringFollowsTheLeapfrogsClosedFormForAHundredPeriods) {
     const int steps = StepsIn(100 * 6.2831853 / w, h);
     for (int n = 1; n <= steps; ++n) {
       world.Step(h);
-      // Each step rounds lengths of 1 m, and k times that rounding is a wrong kick w^2 h eps: as
-      // an amplitude, w h eps < eps. Errors of an oscillator add up, they do not grow.
+      // Each step rounds lengths of 1 m, and k times that rounding is a wrong velocity change w^2 h
+      // eps: as an amplitude, w h eps < eps. Errors of an oscillator add up, they do not grow.
       ASSERT_NEAR(-Height(world) - middle, amplitude * std::cos(n * theta), RoundOff(n, 1)) << h;
       ASSERT_NEAR(-Rise(world), -amplitude * w * w * h * std::sin(n * theta) / std::sin(theta),
                   RoundOff(n, w))
@@ -40,16 +40,16 @@ TEST(Cable, AnUndampedSpringFollowsTheLeapfrogsClosedFormForAHundredPeriods) {
   }
 }
 
-/// The scheme for a mass on a damped spring, by itself: the spring of the middle of the step, the
-/// damper with the mean of the rates before and after it. The first step does not know yet what
-/// else pulls: it takes the tension at rest for balanced. `x`, `v`: downward from where the spring
-/// holds the weight.
+/// The integration scheme of a mass on a damped spring: the spring at the middle of the step, the
+/// damper with the mean of the rates before and after the step. In its first step the other forces
+/// on the mass are unknown: the scheme assumes that they balance the tension at rest. `x`, `v`:
+/// downward from the static equilibrium.
 struct DampedSpring {
   double k, b, m, x, v;
   bool first = true;
   void Step(double h) {
     const double g = 9.81, middle = x + h / 2 * v;
-    // But for the tension's own part:
+    // Without the tension's contribution:
     const double mean = v + h / 2 * (first ? (k * middle + m * g) / m : g);
     const double tension = (k * (middle + m * g / k) + b * mean) / (1 + h * b / (2 * m));
     v += h * (g - tension / m);
@@ -76,8 +76,8 @@ TEST(Cable, ADampedSpringFollowsTheSchemesRecurrence) {
 }
 
 TEST(Cable, ADamperThatHoldsTheTensionAtZeroDoesSoWhileTheCableIsStretched) {
-  // A mass runs towards the other end so fast that b dl outweighs k (l - L): it must coast until
-  // the cable is slack, and after that, too.
+  // A mass moves towards the other end so fast that b dl outweighs k (l - L): it must keep its
+  // speed until the cable is slack, and after that, too.
   const double speed = 0.5, stretch = 0.1;
   for (const double damping : {200.0, 2000.0, 2e5}) {  // h b / m from 0.1 to 400 at these steps
     for (const double h : kThreeStepsS) {
@@ -122,7 +122,7 @@ TEST(Cable, ADampedSpringDecaysAsTheDifferentialEquationSaysToSecondOrder) {
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.2);
 }
 
-/// Two balls without shapes on the x axis, 1 m of cable between them.
+/// Returns two balls without shapes on the x axis with 1 m of cable between them.
 ModelDef Couple(double stiffness, double damping, double distance, double closing_m_per_s) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -146,7 +146,7 @@ ModelDef Couple(double stiffness, double damping, double distance, double closin
 }
 
 TEST(Cable, ASlackCableIsAbsentAndItsDamperToo) {
-  for (const double stiffness : {1e3, 1e7}) {  // explicit, and left to the solver
+  for (const double stiffness : {1e3, 1e7}) {  // explicit force, and solved implicitly
     for (const double closing : {0.4, -0.4}) {
       const double start = closing > 0 ? 0.99 : 0.55;
       Batch world = MakeBatch(Couple(stiffness, 50, start, closing));
@@ -173,14 +173,15 @@ TEST(Cable, ATautCableConservesMomentumAndPullsItsEndsTogether) {
   EXPECT_LE(Distance(world.Momentum(0), before), RoundOff(300, 0.1));
 }
 
-/// What a cable of k = 1000 N/m, b = 50 N s/m does at a stretch of 0.01 m, spring 10 N, while its
-/// ends part at `rate`: the tension that is reported, and the one that one step shows.
+/// Returns the tension of a cable [N] with k = 1000 N/m and b = 50 N s/m at `stretch` (at 0.01 m
+/// the spring pulls with 10 N), while its ends part at `rate`: as reported, and as computed from
+/// the velocity change of one step.
 std::array<double, 2> TensionAt(DampingLaw law, double stretch, double rate) {
   ModelDef def = Couple(1e3, 50, 1 + stretch, -rate);
   def.cables[0].damping_law = law;
   Batch world = MakeBatch(def);
   const double reported = world.Cable(0, 0).tension_n;
-  // A short step: the stretch changes by 1e-7 of itself at most.
+  // A short step: the stretch changes by a share of 1e-7 at most.
   const double h = 1e-9;
   world.Step(h);
   return {reported, (world.Body(0, 0).velocity_m_per_s.x + rate / 2) * 0.2 / h};
@@ -195,7 +196,7 @@ TEST(Cable, TheTensionIsSpringPlusDamperAndNeverNegative) {
       {DampingLaw::kExact, 0.01, 0.1, 15},   {DampingLaw::kExact, 0.01, 1.0, 60},
       {DampingLaw::kExact, 0.01, -0.1, 5},   {DampingLaw::kExact, 0.01, -0.5, 0},
       {DampingLaw::kExact, -0.01, 1.0, 0},   {DampingLaw::kExact, -0.01, -1.0, 0},
-      {DampingLaw::kClamped, 0.01, 0.1, 15},  // |damper| = 5 < spring = 10: as the exact law
+      {DampingLaw::kClamped, 0.01, 0.1, 15},  // |damper| = 5 < spring = 10: equal to the exact law
       {DampingLaw::kClamped, 0.01, -0.1, 5},  //
       {DampingLaw::kClamped, 0.01, 1.0, 20},  // damper 50, limited to the spring's 10
       {DampingLaw::kClamped, 0.01, -0.5, 0},  // damper -25, limited to -10
@@ -208,14 +209,14 @@ TEST(Cable, TheTensionIsSpringPlusDamperAndNeverNegative) {
                              std::to_string(c.rate);
     // The stretch is the difference of lengths of 1 m: rounded to 1e-16 m, times k.
     EXPECT_NEAR(reported, c.tension, RoundOff(1, 1e3)) << what;
-    // Rounding of the velocity, divided by h / m; and the stretch moves by rate h / 2.
+    // Rounding of the velocity, divided by h / m; and the stretch changes by rate h / 2.
     EXPECT_NEAR(felt, c.tension, RoundOff(1, 1) * 0.2 / 1e-9 + 1e-6 * c.tension) << what;
   }
 }
 
 TEST(Cable, AStiffCableFollowsTheMidpointRulesClosedFormAndKeepsItsEnergy) {
-  // Too stiff for explicit forces, the implicit midpoint rule takes over: x_n is a rotation by
-  // theta with tan(theta / 2) = w h / 2 in the plane of x and v / w, whatever w h.
+  // Too stiff for explicit forces, the cable is integrated by the implicit midpoint rule: x_n is a
+  // rotation by theta with tan(theta / 2) = w h / 2 in the plane of x and v / w, for any w h.
   for (const double stiffness : {1e6, 1e7, 1e9}) {
     scenes::HangingMass scene;
     scene.stiffness_n_per_m = stiffness;
@@ -223,14 +224,14 @@ TEST(Cable, AStiffCableFollowsTheMidpointRulesClosedFormAndKeepsItsEnergy) {
     const double middle = scene.rest_length_m + sag, theta = 2 * std::atan(w * h / 2);
     scene.length_m = middle;
     Batch world = MakeBatch(scene.Def());
-    const double amplitude = 0.7 * sag;  // it stays taut
+    const double amplitude = 0.7 * sag;  // the cable stays taut
     world.SetBodyState(0, 0, {{0, 0, -middle - amplitude}, {}, {}, {}});
     const double x0 = -Height(world) - middle;
     for (int n = 1; n <= 2000; ++n) {
       world.Step(h);
       const double x = x0 * std::cos(n * theta);
-      // A velocity that is off by the solver's tolerance moves the oscillation by that over w.
-      // The length's rounding is at most an angle of w h: a velocity of w^2 h eps, or an
+      // A velocity error of the size of the solver's tolerance changes the oscillation by that over
+      // w. The length's rounding is at most an angle of w h: a velocity of w^2 h eps, or an
       // amplitude of w h eps.
       const double allowed = SolverError(n) / w + RoundOff(n, 1 + w * h);
       ASSERT_NEAR(-Height(world) - middle, x, allowed) << stiffness << " N/m, step " << n;

@@ -1,4 +1,4 @@
-/// Friction of cables at eyelets and wheels (docs/theory/cables.md, section 5).
+/// Capstan friction of cables at eyelets and wheels (docs/theory/cables.md, section 5).
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ AttachmentDef Round(int body, const Vec3& center, double radius_m, double fricti
   return {body, center, friction, WheelDef{{0, 1, 0}, radius_m, counterclockwise, turns}};
 }
 
-/// `tension`: along all of it at the start.
+/// Adds a cable with the same `tension` [N] along its whole length at the start.
 void AddCable(ModelDef& def, std::vector<AttachmentDef> attachments, double stiffness,
               double tension) {
   CableDef cable;
@@ -38,7 +38,7 @@ void AddCable(ModelDef& def, std::vector<AttachmentDef> attachments, double stif
   def.cables.push_back(cable);
 }
 
-/// Two masses on a cable over fixed wheels on half a circle.
+/// Returns two masses on a cable over fixed wheels on a semicircle (Atwood's machine).
 ModelDef Atwood(double m1, double m2, double friction, int wheels = 1, double stiffness = 1e5) {
   const double arch = 0.1, radius = wheels == 1 ? arch : 0.005;
   const double x = arch + (wheels == 1 ? 0 : radius);
@@ -130,7 +130,7 @@ TEST(Capstan, AFreePulleyTurnsWithTheCable) {
 }
 
 TEST(Capstan, OverThreeQuartersOfATurn) {
-  // Both ends pull: the one on the right, down, until it slips.
+  // The ball on the right pulls down and the tension at the other end up to the slip limit.
   ModelDef def;
   const Vec3 p{-0.5, 0, -0.1}, q{-0.1, 0, -0.4};
   def.bodies = {Ball(1, q)};
@@ -139,7 +139,7 @@ TEST(Capstan, OverThreeQuartersOfATurn) {
   def.cables[0].actuator.kind = ActuatorDef::Kind::kIdeal;
   def.cables[0].damping_n_s_per_m = 100;
   Batch world = MakeBatch(def);
-  // Let out at the first end until it holds the ball by friction only, sliding.
+  // Wind out at the first end until friction alone holds the ball, while the cable slides.
   world.Step(1e-3, 2000);
   const double rest = world.Cable(0, 0).rest_length_m;
   for (int i = 0; i < 200; ++i) {
@@ -151,8 +151,8 @@ TEST(Capstan, OverThreeQuartersOfATurn) {
   EXPECT_NEAR(std::exp(0.3 * 1.5 * std::numbers::pi), 4.111207, 5e-7);
 }
 
-/// Lots of spans at random: each place sticks within its ratio, or slips at it and the right way;
-/// from the other end it is the same.
+/// Random chains of spans: at each place the cable sticks within the tension ratio, or slips at it
+/// in the right direction; the reversed chain has the same solution.
 TEST(Capstan, AllPlacesTogetherAreWithinTheirRatios) {
   struct Tag {};
   std::mt19937_64 bits(1);
@@ -201,8 +201,8 @@ TEST(Capstan, AllPlacesTogetherAreWithinTheirRatios) {
   }
 }
 
-/// Also where places slip, and where a damper is at its bound: the slopes that Newton's method
-/// takes.
+/// The derivatives that Newton's method uses, also where the cable slips and where a damper is at
+/// its bound.
 TEST(Capstan, ItsDerivativesAreThoseOfTheImpulses) {
   struct Tag {};
   using Num = simd::Wide<1, Tag>;
@@ -271,7 +271,7 @@ TEST(Capstan, MomentaAreKeptAndEnergyOnlyFalls) {
   EXPECT_LT(Distance(world.AngularMomentum(0), l), 1e-11);
 }
 
-/// As good as none: the same as a cable without, also while it is wound and damped.
+/// A cable with negligible friction equals a frictionless one, also while it is wound and damped.
 TEST(Capstan, HardlyAnyFrictionIsNone) {
   double tension[2];
   for (const double friction : {0.0, 1e-9}) {
@@ -290,9 +290,9 @@ TEST(Capstan, HardlyAnyFrictionIsNone) {
     world.Step(1e-3, 500);
     tension[friction > 0] = world.Cable(0, 0).tension_n;
   }
-  // 20 N, a way of 0.1 m and 0.035 m wound at 200 N/m, a damper at 0.2 m/s.
+  // 20 N, 0.1 m of motion and 0.035 m of winding at 200 N/m, a damper at 0.2 m/s.
   EXPECT_NEAR(tension[0], 20 + 200 * 0.135 + 20 * 0.2, 0.01);
-  EXPECT_NEAR(tension[1], tension[0], 0.03);  // a mean over the step beside its end
+  EXPECT_NEAR(tension[1], tension[0], 0.03);  // mean over the step against the value at its end
 }
 
 TEST(Capstan, LanesAreLikeWorldsAlone) {

@@ -1,6 +1,6 @@
-/// Undamped cables that go slack and get taut again and again keep the energy
-/// (docs/theory/cables.md, eq. 8-11): every catch is a kink of the force, and none may give or
-/// take.
+/// Energy of undamped cables that repeatedly go slack and become taut (docs/theory/cables.md, eq.
+/// 8-11): every catch is a kink of the force, at which the scheme must neither add nor remove
+/// energy.
 
 #include <gtest/gtest.h>
 
@@ -45,8 +45,8 @@ BodyState StartOf(int phase) {
   state.velocity_m_per_s = {0.5, 0.4 - 0.1 * phase, 1};
   return state;
 }
-/// A ball thrown up beside the point that 0.5 m of cable hold it at: it falls into the cable,
-/// bounces and swings, in three dimensions. Eight worlds, thrown differently.
+/// Returns a ball thrown up to one side of the point that 0.5 m of cable tie it to: it falls into
+/// the cable, bounces and swings in three dimensions. Eight worlds with different throws.
 Batch Thrown(double stiffness, double damping = 0, DampingLaw law = DampingLaw::kExact,
              int worlds = kPhases) {
   ModelDef def;
@@ -61,16 +61,16 @@ Batch Thrown(double stiffness, double damping = 0, DampingLaw law = DampingLaw::
   for (int i = 0; i < worlds; ++i) batch.SetBodyState(i, 0, StartOf(i));
   return batch;
 }
-/// Above that of hanging still from a rigid cable [J].
+/// Returns the energy above the rest position on a rigid cable [J].
 double EnergyAbove(const Batch& batch, int world) {
   const Energy e = batch.TotalEnergy(world);
   return e.kinetic_j + e.gravity_j + e.elastic_j + kMass * 9.81 * 0.5;
 }
 
 struct Range {
-  double least = 1, most = 1, end = 1;  ///< The end's: that of all worlds that is furthest from 1.
+  double least = 1, most = 1, end = 1;  ///< `end`: final value that is furthest from 1.
 };
-/// Of the energies of all worlds, each as a share of its start's.
+/// Returns the range of the worlds' energies over time, each as a share of its initial value.
 template <class F>
 Range Follow(Batch& batch, double time_s, const F& energy) {
   Range range;
@@ -95,7 +95,7 @@ TEST(Catch, ImplicitTensionsKeepTheEnergyOfAMinuteOfCatches) {
   for (const double wh : kStiff) {
     Batch batch = Thrown(StiffnessFor(wh));
     const Range energy = Follow(batch, 60, EnergyAbove);
-    // The cable's direction is that of the step's middle: an error of third order a step.
+    // The cable's direction is taken at the middle of the step: an error of third order per step.
     EXPECT_LT(energy.most, 1 + 1e-4) << "w h = " << wh;
     EXPECT_GT(energy.least, 0.995) << "w h = " << wh;
     for (int i = 0; i < kPhases; ++i) EXPECT_EQ(batch.Status(i).bits, kStatusOk) << wh;
@@ -107,7 +107,8 @@ TEST(Catch, ExplicitTensionsKeepTheEnergyOfAMinuteOfCatches) {
     Batch batch = Thrown(StiffnessFor(wh));
     const Range energy = Follow(batch, 60, EnergyAbove);
     EXPECT_LT(energy.most, 1.002) << "w h = " << wh;
-    // While taut, leapfrog keeps v^2 + w^2 x^2 / (1 - w^2 h^2 / 4): the energy swings below that.
+    // While taut, leapfrog keeps v^2 + w^2 x^2 / (1 - w^2 h^2 / 4): the energy oscillates below its
+    // initial value.
     EXPECT_GT(energy.least, 1 - 0.25 * wh * wh - 0.002) << "w h = " << wh;
   }
 }
@@ -150,7 +151,7 @@ double Total(const Batch& batch, int world) {
   return e.kinetic_j + e.gravity_j + e.elastic_j;
 }
 
-/// Two balls in a row of three cables, thrown across them.
+/// Returns two balls in a row of three cables, thrown across the row.
 Batch Chain(double stiffness, double across) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -163,8 +164,9 @@ Batch Chain(double stiffness, double across) {
 }
 
 TEST(Catch, SeveralStiffCablesKeepTheEnergyToWhatIsMeasured) {
-  // Not solved: bodies move across several cables, whose directions are those of the middle. The
-  // bounds are measured; what is not in the list gains without end (docs/theory/cables.md).
+  // A known limitation: bodies move across several cables, whose directions are taken at the middle
+  // of the step. The bounds are measured; other cases gain energy without limit
+  // (docs/theory/cables.md).
   struct Case {
     double wh, least, most;
   };

@@ -1,8 +1,8 @@
-/// A T-bar and a D-bar with clustered cables, one of them through an eyelet at the end of the other
-/// bar: the examples of CTSFEM (S. Ma, M. Chen, R. E. Skelton). Exact linearisation of their
-/// equations gives 1.14402, 34.52647 and 41.24972 Hz, and 63.34215 and 88.54425 Hz, whether the
-/// bars are elastic or rigid; with cables without mass, as here, 1.148527, 34.634486 and 41.729113,
-/// and 63.515182 and 89.679860.
+/// Natural frequencies of a T-bar and a D-bar with clustered cables, one of them through an eyelet
+/// at the end of the other bar: examples of CTSFEM (S. Ma, M. Chen, R. E. Skelton). Exact
+/// linearization of their equations gives 1.14402, 34.52647 and 41.24972 Hz, and 63.34215 and
+/// 88.54425 Hz, whether the bars are elastic or rigid; with massless cables, as here, 1.148527,
+/// 34.634486 and 41.729113, and 63.515182 and 89.679860.
 
 #include <gtest/gtest.h>
 
@@ -14,14 +14,14 @@
 namespace taut::test {
 namespace {
 
-/// Two bars across each other, from (0, 0) to (2, 0) and from (1, half) to (1, -half).
+/// Two crossed bars, from (0, 0) to (2, 0) and from (1, half) to (1, -half).
 struct Bars {
-  double half, mass[2], stiffness, rest;  ///< Of a cable of one side.
+  double half, mass[2], stiffness, rest;  ///< Stiffness and rest length of a cable along one side.
 };
 constexpr Bars kTBar{2, {2.4746351864, 13.9986379133}, 31107.8383, 2.2324739177};
 constexpr Bars kDBar{1, {7.8255358022, 7.8255358022}, 311079.532, 1.4119404794};
 
-/// x and y of a bar's middle and its turn, of both bars.
+/// Center (x, y) and rotation of each of the two bars.
 using Shape = std::array<double, 6>;
 
 ModelDef Model(const Bars& cross) {
@@ -52,7 +52,8 @@ ModelDef Model(const Bars& cross) {
   return def;
 }
 
-/// Of free vibration in one shape, by when its share of the motion is zero.
+/// Returns the frequency [Hz] of free vibration in one mode, from the zero crossings of the modal
+/// coordinate.
 double FrequencyOf(const Bars& cross, const Shape& shape, int cycles) {
   constexpr double kStep = 1e-4, kAmplitude = 1e-5;
   const ModelDef def = Model(cross);

@@ -1,4 +1,4 @@
-/// What a closed system keeps: momentum to rounding, energy within bounds and without drift.
+/// Conservation in closed systems: momentum to rounding, energy within bounds and without drift.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-/// A model without ground, weight, dampers and shapes.
+/// Returns the model without ground, gravity, dampers and shapes.
 ModelDef Closed(ModelDef def) {
   def.gravity_m_per_s2 = {0, 0, 0};
   def.planes.clear();
@@ -26,8 +26,8 @@ double Total(const Batch& world) {
   return e.kinetic_j + e.elastic_j;
 }
 
-/// Runs for 60 s at 1 kHz. The energy may swing by `share` of what is in motion at the start, and
-/// no second has more or less than that.
+/// Runs for 60 s at 1 kHz and checks that momenta are kept and that the energy changes by less than
+/// `share` of its initial value.
 void KeepsEverything(const ModelDef& def, double share) {
   Batch world = MakeBatch(def);
   const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
@@ -45,8 +45,8 @@ void KeepsEverything(const ModelDef& def, double share) {
 }
 
 TEST(Conservation, APrismIsInEquilibriumWithItsSelfStress) {
-  // The scene's form and force densities are those of the closed form: nothing moves, and there is
-  // no other equilibrium nearby that it would move to.
+  // The scene's shape and force densities equal the closed form: nothing moves, and there is no
+  // other equilibrium nearby to which it could move.
   Batch world = MakeBatch(Closed(scenes::Prism3().Def()));
   for (int c = 0; c < 9; ++c) {
     const CableState cable = world.Cable(0, c);
@@ -74,7 +74,7 @@ TEST(Conservation, AFreeTetraspineKeepsMomentumAndEnergyForAMinute) {
 }
 
 TEST(Conservation, ACableThroughEyeletsOnFreeBodiesKeepsMomentum) {
-  // Ends, and an eyelet, beside the centres of mass, so that everything turns.
+  // Ends and an eyelet off the centers of mass, so that every body rotates.
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   const Vec3 centers[3] = {{-0.5, 0, 0}, {0, 0.2, 0.1}, {0.6, -0.1, 0}};
@@ -106,7 +106,7 @@ TEST(Conservation, ACableThroughEyeletsOnFreeBodiesKeepsMomentum) {
   bool turned = false;
   for (int n = 1; n <= 5000; ++n) {
     world.Step(1e-3);
-    // Impulses of k (l - L) h are at most a hundred times the momenta that they leave.
+    // Impulses of k (l - L) h are at most a hundred times the momenta that remain.
     ASSERT_LE(Distance(world.Momentum(0), p0), RoundOff(n, 10));
     ASSERT_LE(Distance(world.AngularMomentum(0), l0), RoundOff(n, 10));
     turned = turned || Norm(world.Body(0, 1).angular_velocity_rad_per_s) > 1;

@@ -1,5 +1,5 @@
-/// Heaps of things, wedges and thrown spines: the contact solve gets there, and what has not got
-/// there at least respects Coulomb's cone.
+/// Convergence of the contact solver on heaps, wedged bodies and thrown spines; an unconverged
+/// solution at least satisfies Coulomb's cone.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 namespace taut::test {
 namespace {
 
-/// A cable 10^4 times too stiff whose rest length jumps shoots a heap apart; what flies like this
-/// passes a whole scene in one step.
+/// Returns true for a heap driven apart by a jump of the rest length of a cable that is 10^4 times
+/// too stiff. Bodies at such speeds cross a whole scene in one step.
 bool ShotApart(const Batch& batch) {
   for (int b = 0; b < static_cast<int>(batch.model().def().bodies.size()); ++b) {
     if (Norm(batch.Body(0, b).velocity_m_per_s) > 300) return true;
@@ -42,7 +42,7 @@ TEST(Convergence, RoughWorldsAreSolvedAtEveryStep) {
 }
 
 /// The spine of seed 2 falls on its side and wedges its segments into each other; loads shared by
-/// ten contacts at once took thousands of sweeps when each was solved by itself.
+/// ten contacts took thousands of sweeps when each contact was solved separately.
 TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
   Batch batch = MakeBatch(scenes::Tetraspine().Def());
   Scatter(batch, 0, 2);
@@ -54,7 +54,7 @@ TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
       most = std::max(most, batch.Status(0).linear_solves);
     }
   }
-  EXPECT_GT(most, 32);  // or this tests nothing: plain Newton ends within twelve
+  EXPECT_GT(most, 32);  // otherwise the test is void: plain Newton ends within twelve
   EXPECT_LE(most, 128);
 }
 

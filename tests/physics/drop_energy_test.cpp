@@ -1,10 +1,10 @@
-/// Impacts never give energy: whatever is dropped, it never has more than at the start
-/// (docs/theory/contact.md, section 3). Drops are random, the same on every machine. Friction at
-/// several contacts at once is where Newton's law of impact gains (Kane's and Levinson's pendulum),
-/// balls of unlike restitution on each other are where taking turns does.
+/// Random drops in which impacts must not add energy: the energy never exceeds its initial value
+/// (docs/theory/contact.md, section 3). The drops are the same on every machine. Newton's law of
+/// impact gains energy with friction at several contacts at once (Kane's and Levinson's pendulum),
+/// sequential impacts with stacked balls of different restitution.
 ///
-/// A sample of them runs always, all 3550 with `script/test --full` or `drop_energy_test
-/// --gtest_filter='AllDrops.*'`, which says the kind, the number and the gain of each that fails.
+/// A sample of the drops always runs, all 3550 with `script/test --full` or `drop_energy_test
+/// --gtest_filter='AllDrops.*'`; each failure reports its kind, number and gain.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@
 namespace taut::test {
 namespace {
 
-/// One drop: what, over which ground, with which step.
+/// One drop: model, ground and step size.
 class Drop {
  public:
   Drop(std::uint64_t kind, std::uint64_t number) : chance_(1000000 * kind + number) {
@@ -68,7 +68,8 @@ class Drop {
     }
     return def;
   }
-  /// Of its own material and with dampers of any strength up to its own.
+  /// Returns a robot with the drop's restitution and its cables' damping scaled by a random factor
+  /// from 0 to 1.
   ModelDef Robot(ModelDef def) {
     const ModelDef ground = OnGround();
     def.friction_combine = ground.friction_combine;
@@ -126,8 +127,8 @@ ModelDef MakeDrop(const std::string& kind, Drop& drop) {
   return drop.Robot(scenes::Tetraspine().Def());
 }
 
-/// None of `count` drops, each of 1.5 s, is ever above its start by a thousandth of what is in
-/// motion and of a fall of 0.3 m.
+/// Runs `count` drops of 1.5 s each. The energy may rise above its initial value by at most a
+/// thousandth of the initial kinetic energy plus the energy of a fall of 0.3 m.
 void NeverGains(std::uint64_t kind, const std::string& name, int count) {
   double worst = -1;
   int unsolved = 0;
@@ -149,7 +150,7 @@ void NeverGains(std::uint64_t kind, const std::string& name, int count) {
     worst = std::max(worst, gain);
   }
   testing::Test::RecordProperty("worst_gain_ppm", static_cast<int>(1e6 * worst));
-  // Heaps may leave one step in some thousand unsolved (docs/theory/contact.md, section 6).
+  // Heaps may leave one step in some thousand unconverged (docs/theory/contact.md, section 6).
   EXPECT_LE(unsolved, name == "boxes" ? count / 10 : 0) << name;
 }
 

@@ -1,4 +1,4 @@
-/// Bodies that nothing touches: flight and free rotation (docs/theory/integrator.md).
+/// Bodies without contacts or cables: free flight and rotation (docs/theory/integrator.md).
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace taut::test {
 namespace {
 
 TEST(FreeMotion, FlightIsTheExactParabolaAtEveryStep) {
-  // Half a drift, kick, half a drift: x' = x + h (v + v') / 2 with v' = v + h g, so that
-  // x_n = x_0 + v_0 (nh) + g (nh)^2 / 2 without any error of the scheme.
+  // Half a drift, kick, half a drift: x' = x + h (v + v') / 2 with v' = v + h g, so that x_n = x_0
+  // + v_0 (nh) + g (nh)^2 / 2 without an error of the scheme.
   const Vec3 g{0.1, -0.2, -9.81}, v0{3, -1, 5}, x0{0.5, -0.25, 10};
   for (const double h : kThreeStepsS) {
     ModelDef def;
@@ -35,7 +35,7 @@ TEST(FreeMotion, FlightIsTheExactParabolaAtEveryStep) {
 }
 
 TEST(FreeMotion, AForceOnABallGivesItsMomentum) {
-  // F t, whatever the mass; and the mass says how fast that is.
+  // The momentum is F t for any mass; the velocity follows from the mass.
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   scenes::AddBall(def, "ball", 0.3, 0.1, {0, 0, 0}, {});
@@ -50,14 +50,15 @@ TEST(FreeMotion, AForceOnABallGivesItsMomentum) {
   EXPECT_LE(Distance(world.Momentum(0), 0.5 * f), RoundOff(1000, 1));
 }
 
-/// The scheme names the axes such that the moments of x and y are nearest to each other, and turns
-/// a free body about y, z and y in turn, and about L: the exact flows of Y = (1/Iy - 1/Ix) ly^2 /
-/// 2, of Z, and of L^2 / 2Ix, which commutes with all. It keeps not the energy but that + h^2 E2 +
+/// Returns the second-order term E2 of the energy that the rotation scheme conserves. The scheme
+/// orders the axes such that the moments of x and y are nearest to each other, and rotates a free
+/// body about y, z and y in turn, and about L: the exact flows of Y = (1/Iy - 1/Ix) ly^2 / 2, of Z,
+/// and of L^2 / 2Ix, which commutes with all. It keeps not the energy but the energy + h^2 E2 +
 /// O(h^4), with (from the symmetric Baker-Campbell-Hausdorff series; {.,.} Poisson brackets; up to
 /// sign)
 ///   E2 = {Y,{Y,Z}} / 24 + {Z,{Y,Z}} / 12
-/// and {lx, ly} = lz and so on. So the energy moves by h^2 (max E2 - min E2) along an orbit and
-/// never drifts; if Ix = Iy, then Y = 0, and it does not move at all.
+/// and {lx, ly} = lz and so on. So the energy changes by h^2 (max E2 - min E2) along an orbit and
+/// never drifts; if Ix = Iy, then Y = 0, and it is constant.
 double SecondOrderEnergy(Vec3 l, Vec3 moments) {
   const auto unlike = [](double a, double b) { return std::fabs(a - b) / (a + b); };
   const double xy = unlike(moments.x, moments.y), yz = unlike(moments.y, moments.z),
@@ -73,7 +74,7 @@ double SecondOrderEnergy(Vec3 l, Vec3 moments) {
 }
 
 /// Runs a free body for 60 s at 1 kHz; the angular momentum must not change by a single bit, and
-/// the energy must stay within what the scheme's own series allows.
+/// the energy must stay within the bounds of the scheme's series.
 void TumblesForAMinute(const Vec3& moments, const Vec3& w) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -118,8 +119,8 @@ TEST(FreeMotion, ABodyThatFlipsAboutItsMiddleAxisKeepsItsMomentumAndEnergy) {
 }
 
 TEST(FreeMotion, AThinRodSpinningFastAboutItselfKeepsItsMomentumAndEnergy) {
-  // Of 0.38 m length and 6 mm thickness; each axis is the rod's once, for the scheme has to find
-  // it.
+  // A rod of 0.38 m length and 6 mm thickness along each axis in turn: the scheme selects its axes
+  // by the moments of inertia.
   const double across = 2.4e-4, own = 9e-8;
   TumblesForAMinute({own, across, across}, {200, 1.5, 0.5});
   TumblesForAMinute({across, own, across}, {1.5, 200, 0.5});
@@ -170,8 +171,8 @@ TEST(FreeMotion, ABodyFlipsAboutItsMiddleAxisAtTheTimeOfEulersSolution) {
 }
 
 TEST(FreeMotion, ASpinAboutAPrincipalAxisTurnsByItsSpeedTimesTime) {
-  // tan(a / 2) of a turn by a is taken as y (1 + y^2 / 3), y = a / 2: the angle is short by
-  // 2 y^5 / 15 times two at most. A step has two turns by h w / 2.
+  // tan(a / 2) of a rotation by a is approximated by y (1 + y^2 / 3), y = a / 2: the angle is short
+  // by at most 2 times 2 y^5 / 15. A step has two rotations by h w / 2.
   const double w = 200, h = 1e-3;
   scenes::FreeRod rod;
   rod.angular_velocity_rad_per_s = {w, 0, 0};
@@ -183,7 +184,7 @@ TEST(FreeMotion, ASpinAboutAPrincipalAxisTurnsByItsSpeedTimesTime) {
     world.Step(h);
     const Vec3 p = world.NodePosition(0, 2);
     const double c = std::cos(w * h * n), s = std::sin(w * h * n);
-    // Across the radius: the angle by which it lags. Along: still on the rim.
+    // Across the radius: the lag angle. Along the radius: the point stays on the rim.
     const double lag = (p.y * c + p.z * s) / 0.003;
     ASSERT_LE(std::fabs(lag), n * short_by + RoundOff(n, 1)) << n;
     ASSERT_NEAR(Norm(p), 0.003, RoundOff(n, 0.003));
@@ -191,14 +192,14 @@ TEST(FreeMotion, ASpinAboutAPrincipalAxisTurnsByItsSpeedTimesTime) {
 }
 
 TEST(FreeMotion, ASlantedRodPrecessesAboutItsMomentumAtTheClosedFormsRate) {
-  // An axisymmetric body: its axis turns about L at |L| / I_across. The rod lies askew in W, so its
-  // principal axes do, too. What error there is is that of the turns' angles.
+  // An axisymmetric body: its axis precesses about L at |L| / I_across. The rod is oblique in W, so
+  // its principal axes are, too. The only error is in the angles of the rotations.
   const Vec3 axis{2.0 / 7, 3.0 / 7, 6.0 / 7};
   const Vec3 spin = 40.0 * axis + Vec3{3, -2, 0};  // the second part is across the axis
   scenes::FreeRod rod;
   rod.from_m = -0.19 * axis;
   rod.to_m = 0.19 * axis;
-  rod.radius_m = 0.02;  // thick, so that the spin matters to the direction of L
+  rod.radius_m = 0.02;  // thick, so that the spin affects the direction of L
   rod.angular_velocity_rad_per_s = spin;
   const double across = rod.mass_kg * (0.38 * 0.38 / 12 + rod.radius_m * rod.radius_m / 4);
   const double own = rod.mass_kg * rod.radius_m * rod.radius_m / 2;
@@ -218,8 +219,8 @@ TEST(FreeMotion, ASlantedRodPrecessesAboutItsMomentumAtTheClosedFormsRate) {
     const Vec3 now = (1 / 0.38) * (world.NodePosition(0, 1) - world.NodePosition(0, 0));
     errors[i] = Distance(now, expected);
   }
-  // A body with an axis of symmetry turns about its momentum and that axis, which commute: only the
-  // tangents of the half angles err, by angle (h w)^4 / 80 or so.
+  // A body with an axis of symmetry rotates about its momentum and that axis; these rotations
+  // commute, so only the tangents of the half angles err, by angle (h w)^4 / 80 or so.
   EXPECT_LT(errors[0], angle * 1e-12 * Dot(spin, spin) * Dot(spin, spin));
   EXPECT_NEAR(errors[0] / errors[1], 16, 0.5);
 }

@@ -1,4 +1,4 @@
-/// Friction by speed, by direction, and by a class of the user's (docs/theory/friction.md), against
+/// Velocity-dependent, anisotropic and user-defined friction laws (docs/theory/friction.md) against
 /// closed forms.
 
 #include "taut/friction.h"
@@ -14,9 +14,9 @@
 namespace taut::test {
 namespace {
 
-constexpr double kBlockHeight_m = 0.03;  ///< Of a block's centre above what it stands on.
+constexpr double kBlockHeight_m = 0.03;  ///< Height of the block's center above its support.
 
-/// A block on a level or tilted plane, or on a terrain box with the same surface.
+/// Returns a block on a level or tilted plane, or on a terrain box with the same surface.
 ModelDef Block(double angle_rad, const Material& material, bool on_box = false) {
   scenes::BlockOnSlope scene;
   scene.slope.angle_rad = angle_rad;
@@ -59,7 +59,7 @@ TEST(FrictionLaws, ABlockStopsAfterTheTimeAndTheWayOfStribecksCurve) {
     int steps = 0;
     while (world.Body(0, 0).velocity_m_per_s.x > 1e-9 && steps < 100000) world.Step(h), ++steps;
     EXPECT_NEAR(steps * h, time, 1.5 * h) << h;
-    // The second order's error: with a' = da/dv, h^2 |a'| v0 / 12 and its like.
+    // Second-order errors of the size h^2 |a'| v0 / 12, with a' = da/dv.
     EXPECT_NEAR(world.Body(0, 0).position_m.x, way, 1.5 * h * h + 1e-9) << h;
     EXPECT_EQ(world.Status(0).bits, kStatusOk);
   }
@@ -118,7 +118,8 @@ TEST(FrictionLaws, ABlockSlidesDownWithTheCoefficientOfItsDirection) {
 }
 
 TEST(FrictionLaws, WhatGroundSaysOfDirectionsHoldsForWhatSlidesOverIt) {
-  // The ground's forward: it slides forward where the block slides backward.
+  // Forward direction of the ground's material: a body slides forward over it like a block with
+  // that material slides backward.
   const double angle = 0.5, mu = 0.3, h = 1e-3;
   const scenes::Slope slope{angle, {}};
   for (const double sign : {1.0, -1.0}) {
@@ -149,7 +150,8 @@ TEST(FrictionLaws, ARodSlidesByItsOwnAxisWithoutSayingWhich) {
 }
 
 TEST(FrictionLaws, BetweenTwoAnglesABlockGoesForwardOnly) {
-  // Skin of a snake: on a slope between both angles it holds backward and slides forward.
+  // Like snakeskin: on a slope between the two friction angles the block sticks backward and slides
+  // forward.
   const double angle = std::atan(0.3);
   const scenes::Slope slope{angle, {}};
   for (const double h : kThreeStepsS) {
@@ -166,9 +168,9 @@ TEST(FrictionLaws, BetweenTwoAnglesABlockGoesForwardOnly) {
 }
 
 TEST(FrictionLaws, AskewABlockSlidesAsThePrincipleOfMostDissipationSays) {
-  // Of all forces of the ellipse with half axes m1, m2 the one that takes most power:
-  // f = -N (m1^2 v1, m2^2 v2) / |(m1 v1, m2 v2)|. The step is Euler's implicit one, so in the test:
-  // v' = v - g h f(v'), by iteration.
+  // Of all forces in the ellipse with half axes m1, m2, the force of greatest dissipation: f = -N
+  // (m1^2 v1, m2^2 v2) / |(m1 v1, m2 v2)|. The step is an implicit Euler step; the test solves v' =
+  // v - g h f(v') by iteration.
   const double m1 = 0.1, m2 = 0.4, h = 1e-3;
   ModelDef def = Block(0, Directed(0.2, m1 / 0.2, 9, m2 / 0.2, {2, 0, 0}));
   def.bodies[0].velocity_m_per_s = {1, 0.7, 0};
@@ -187,11 +189,11 @@ TEST(FrictionLaws, AskewABlockSlidesAsThePrincipleOfMostDissipationSays) {
     ASSERT_NEAR(v.y, y, SolverError(n + 1)) << n;
   }
   EXPECT_GT(x, 0.5);
-  EXPECT_LT(y, 0.12);  // it has turned towards where it slides easily
+  EXPECT_LT(y, 0.12);  // it has turned towards the direction of lower friction
 }
 
 TEST(FrictionLaws, TwoBodiesRubByDirectionAndKeepTheirMomentum) {
-  // A block on a slab that slides freely: m dv/dt = -mu m g, M dV/dt = mu m g.
+  // A block on a freely sliding slab: m dv/dt = -mu m g, M dV/dt = mu m g.
   for (const double sign : {1.0, -1.0}) {
     ModelDef def;
     const double m = 0.5, M = 2;
@@ -209,7 +211,7 @@ TEST(FrictionLaws, TwoBodiesRubByDirectionAndKeepTheirMomentum) {
   }
 }
 
-/// mu = base + by_time t + by_place x, and what it was asked.
+/// User-defined law: mu = base + by_time t + by_place x.
 struct OwnLaw final : ContactFriction {
   double base = 0, by_time = 0, by_place = 0;
   double Coefficient(const FrictionContact& c) const noexcept override {
@@ -231,15 +233,15 @@ TEST(FrictionLaws, ALawOfOnesOwnDecidesByTime) {
     Batch world = WithLaw(def, law);
     const int n = StepsIn(0.4, h);
     world.Step(h, n);
-    // Asked at the start of each step: sum of h (base + by_time i h).
+    // Evaluated at the start of each step: sum of h (base + by_time i h).
     const double v = 1 - kG * (law.base * n * h + law.by_time * h * h * n * (n - 1) / 2);
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, v, SolverError(n)) << h;
   }
 }
 
 TEST(FrictionLaws, ALawOfOnesOwnDecidesByPlace) {
-  // The block leans on its front: friction is that of the centre of pressure, c mu in front of the
-  // block's middle, c the height of its centre. mu = (base + k x) / (1 - k c), so x'' = -g mu:
+  // The block leans on its front edge: friction acts at the center of pressure, at c mu ahead of
+  // the block's center, c the height of the center. mu = (base + k x) / (1 - k c), so x'' = -g mu:
   // x = (v0 / w) sin wt - (base / k) (1 - cos wt), w^2 = g k / (1 - k c).
   OwnLaw law;
   law.base = 0.1, law.by_place = 0.5;
@@ -306,7 +308,8 @@ TEST(FrictionLaws, BelowZeroIsZeroAndWhatIsNoNumberHaltsTheWorld) {
 }
 
 TEST(FrictionLaws, AWorldHasTheSameBitsInCompanyAsAlone) {
-  // Rods with scales and Stribeck's curve on a plane, a box and each other, each world differently.
+  // Rods with scales and Stribeck's curve on a plane, a box and each other, different in each
+  // world.
   ModelDef def;
   Material scales = Directed(0.4, 0.5, 1.5, 1.2, {});
   scales.stribeck = StribeckDef{0.1, 0.05};
@@ -360,18 +363,17 @@ TEST(FrictionLaws, WrongNumbersAreNamed) {
   for (const char* what :
        {"box block: Stribeck's speed must be a positive number",
         "box block: viscous friction must be zero or a positive number",
-        "box block: factor of friction forward must be zero or a positive number",
-        "box block: factor of friction backward must be zero or a positive number",
-        "box block: factor of friction sideways must be zero or a positive number",
-        "box block: the axis of friction must not be zero; only rods have one of their own",
-        "box block: friction by direction needs FrictionLaw::kCone"}) {
+        "box block: forward friction factor must be zero or a positive number",
+        "box block: backward friction factor must be zero or a positive number",
+        "box block: sideways friction factor must be zero or a positive number",
+        "box block: the friction axis must not be zero; only rods have a default axis",
+        "box block: directional friction needs FrictionLaw::kCone"}) {
     EXPECT_NE(all.find(what), std::string::npos) << what << "\n" << all;
   }
   def.boxes[0].material.directions->axis = {std::nan(""), 0, 0};
   complaints = {};
   EXPECT_EQ(Model::Compile(def, complaints), nullptr);
-  EXPECT_NE(complaints.Format().find("box block: axis of friction must be finite"),
-            std::string::npos);
+  EXPECT_NE(complaints.Format().find("box block: friction axis must be finite"), std::string::npos);
 }
 
 }  // namespace

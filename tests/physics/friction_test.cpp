@@ -1,4 +1,4 @@
-/// Exact Coulomb friction: sticking, sliding, the same in all directions (docs/theory/contact.md).
+/// Exact Coulomb friction: sticking and sliding, equal in all directions (docs/theory/contact.md).
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ ModelDef Sled(double angle_rad, double static_friction, double kinetic_friction,
   return scene.Def();
 }
 
-/// What slides down slopes in these tests: a box on its corners, a sled on its balls.
+/// Bodies that slide down slopes: a box on its corners, a sled on its balls.
 struct Slider {
   const char* name;
   ModelDef (*def)(double angle_rad, double static_friction, double kinetic_friction);
@@ -57,7 +57,7 @@ TEST(Friction, NothingCreepsBelowTheFrictionAngle) {
 }
 
 TEST(Friction, ASliderSlidesDownAtGTimesSineMinusMuCosine) {
-  // A constant force, so the scheme has no error: v_n = a n h. It starts from rest.
+  // A constant force, so the scheme has no error: v_n = a n h, starting from rest.
   for (const Slider& slider : kSliders) {
     for (const double mu : {0.0, 0.2, 0.5}) {
       const double angle = 0.6, a = kG * (std::sin(angle) - mu * std::cos(angle));
@@ -104,9 +104,9 @@ TEST(Friction, BetweenTheTwoFrictionAnglesASliderStaysUntilItIsPushedAndThenSlid
 }
 
 TEST(Friction, ASliderAtRestSticksWithItsStaticFrictionWhicheverWayTheGroundTilts) {
-  // It has been at rest on level ground; then gravity tilts beyond the kinetic, not the static
-  // angle. Friction is the same sum however its contacts share it, on the edges of their cones or
-  // not.
+  // The slider rests on level ground; then gravity tilts beyond the kinetic but not the static
+  // friction angle. The sum of friction does not depend on its distribution over the contacts, on
+  // the edges of their cones or inside.
   for (const Slider& slider : kSliders) {
     for (int direction = 0; direction < 8; ++direction) {
       const double a = direction * std::numbers::pi / 4 + 0.1;
@@ -122,14 +122,14 @@ TEST(Friction, ASliderAtRestSticksWithItsStaticFrictionWhicheverWayTheGroundTilt
       EXPECT_LT(Distance(world.NodePosition(0, 0), before), 1e-9) << slider.name << direction;
       tilt(world, 0.51);
       world.Step(1e-3, 1000);
-      // Now it slides, with kinetic friction from the second step on.
+      // The slider now slides, with kinetic friction from the second step on.
       EXPECT_NEAR(Norm(world.NodeVelocity(0, 0)), 0.21 * kG, 0.2 * kG * 1e-3 + SolverError(1000))
           << slider.name << direction;
     }
   }
 }
 
-/// Distance and last place of something that slides on level ground from `v0` until it stops.
+/// Returns the displacement of a body that slides on level ground from `v0` until it stops.
 Vec3 SlideOut(Batch& world, const Vec3& v0, double h, double time_s) {
   BodyState body = world.Body(0, 0);
   body.velocity_m_per_s = v0;
@@ -139,7 +139,7 @@ Vec3 SlideOut(Batch& world, const Vec3& v0, double h, double time_s) {
   return world.NodePosition(0, 0) - start;
 }
 
-/// The scheme's own sum of h (v + v') / 2 with v' = max(v - mu g h, 0).
+/// Returns the sliding distance of the scheme: sum of h (v + v') / 2 with v' = max(v - mu g h, 0).
 double SlidingDistance(double v, double mu, double h) {
   double x = 0;
   while (v > 0) {
@@ -165,8 +165,8 @@ TEST(Friction, ASliderStopsAfterVSquaredOverTwoMuG) {
 }
 
 TEST(Friction, ASledStopsAfterTheSameDistanceInEveryDirection) {
-  // With the exact cone, and with friction along the slip without contact: for a sled that does not
-  // turn, all balls slip the same way, and both are the same law.
+  // With the exact cone and with friction along the contact-free slip: on a sled that does not
+  // rotate, all balls slip in the same direction, so the two laws agree.
   const double v = 1, mu = 0.4, h = 1e-3;
   for (const FrictionLaw law : {FrictionLaw::kCone, FrictionLaw::kAlongSlip}) {
     for (int direction = 0; direction < 8; ++direction) {
@@ -185,8 +185,9 @@ TEST(Friction, ASledStopsAfterTheSameDistanceInEveryDirection) {
 }
 
 TEST(Friction, ASlidingSledPushedAsideTurnsItsWayAsTheConeSays) {
-  // Friction opposes the velocity, whatever pushes: for a point with a force f across, the scheme
-  // gives v' = v_free (1 - mu g h / |v_free|). Friction along each axis by itself would not.
+  // Friction opposes the velocity, whatever the applied force: for a point with a force f across,
+  // the scheme gives v' = v_free (1 - mu g h / |v_free|). Separate friction along each axis would
+  // not.
   const double mu = 0.4, h = 1e-3, push = 2.0;  // [m/s^2]
   Batch world = MakeBatch(Sled(0, mu, mu));
   world.SetParameter(0, Parameter::kGravityY, 0, push);
@@ -210,10 +211,10 @@ Vec3 Solve(const Inertia& j, const Vec3& a) {
 }
 
 TEST(Friction, TheConeHoldsAFootInBothDirectionsAndFrictionAlongSlipInOneOnly) {
-  // A rod stands askew on rough ground and gravity pulls obliquely. Without contact its foot would
-  // get h g in this step. The cone stops all of that. Friction along the slip stops the two
-  // components n and s; the rod's inertia answers these two impulses with a motion across, which
-  // nothing stops.
+  // A rod stands obliquely on rough ground and gravity pulls obliquely. Without contact its foot
+  // would gain h g in this step. The cone stops the foot completely. Friction along the slip stops
+  // only the two components n and s; the rod's inertia converts these two impulses into motion
+  // across, which nothing stops.
   const Vec3 g{1.5, -0.8, -9.81};
   const double h = 1e-3;
   ModelDef def;
@@ -239,16 +240,16 @@ TEST(Friction, TheConeHoldsAFootInBothDirectionsAndFrictionAlongSlipInOneOnly) {
     Batch world = MakeBatch(def);
     world.Step(h);
     const Vec3 expected = law == FrictionLaw::kCone ? Vec3{} : across * c;
-    // In the second half of the step the rod turns by h w / 2, and the velocities of its foot with
-    // it: v + w x r, each part below h g and below w times 0.3 m.
+    // In the second half of the step the rod rotates by h w / 2, and the velocities of its foot
+    // rotate with it: v + w x r, each part below h g and below w times 0.3 m.
     const double w = Norm(world.Body(0, 0).angular_velocity_rad_per_s);
     EXPECT_LE(Distance(world.NodeVelocity(0, 2), expected), h * w * 0.3 * w + SolverError(1));
   }
 }
 
 TEST(Friction, ASlidingBallRollsInTheEndWithFiveSeventhsOfItsSpeed) {
-  // Angular momentum about a line of the ground is kept by friction; a solid ball that rolls has
-  // then 5/7 of its first speed, at any step size.
+  // Friction keeps the angular momentum about a line of the ground; a rolling solid ball then has
+  // 5/7 of its initial speed, at any step size.
   const double v = 2;
   for (const double mu : {0.1, 0.4}) {
     for (const double h : kThreeStepsS) {
@@ -268,7 +269,7 @@ TEST(Friction, ASlidingBallRollsInTheEndWithFiveSeventhsOfItsSpeed) {
       // Sliding for 2 v / (7 mu g), over 12/49 v^2 / (mu g), then rolling.
       const double sliding_s = 2 * v / (7 * mu * kG);
       const double way = 12.0 / 49 * v * v / (mu * kG) + 5.0 / 7 * v * (steps * h - sliding_s);
-      // The scheme ends sliding in the middle of a step: by less than half of a step's change.
+      // Sliding ends within a step: an error below half of a step's change.
       EXPECT_NEAR(std::hypot(ball.position_m.x, ball.position_m.y), way,
                   h * mu * kG * h + SolverError(steps));
     }

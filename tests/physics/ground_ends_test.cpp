@@ -1,4 +1,4 @@
-// Ends that shapes of a body share, and rods over ridges, on height fields (docs/theory/ground.md,
+// Shared ends of a body's shapes, and rods over ridges, on height fields (docs/theory/ground.md,
 // section 2; docs/theory/contact.md, eq. 12).
 #include <gtest/gtest.h>
 
@@ -34,8 +34,8 @@ TEST(GroundEnds, ANodeOfSeveralRodsTouchesAFieldOnceAsItDoesAPlane) {
 }
 
 TEST(GroundEnds, ARodOverThreeRidgesIsNotPushedIn) {
-  // The middle ridge is higher: the rod lies on it and on one beside it, and near the third, so
-  // that no motion closes all three gaps.
+  // The middle ridge is higher: the rod lies on it and on one neighbor, close to the third, so that
+  // no motion closes all three gaps.
   const Material material{0.5, 0.5, 0};
   const double r = 0.01, higher = 1e-5;
   ModelDef def;

@@ -1,5 +1,5 @@
-// Height fields and meshes under balls, rods and robots (docs/theory/ground.md). Speeds that a flat
-// field must leave alone, closed forms, and what never happens on hills.
+// Height fields and meshes under balls, rods and robots (docs/theory/ground.md): motion as on a
+// plane, closed forms, and bounds of energy and penetration on hills.
 #include <gtest/gtest.h>
 
 #include "tests/constants.h"
@@ -14,7 +14,7 @@ namespace {
 
 using Split = HeightFieldDef::Split;
 
-/// One flat ground in all its forms.
+/// A flat ground: a height field with one of three triangle splits, or a mesh.
 struct Ground {
   const char* name;
   int form;
@@ -62,7 +62,7 @@ TEST(Ground, ABallRollsOverTheTrianglesOfAPlaneAsOnAPlane) {
 }
 
 TEST(Ground, WhoeverFallsOffSaysSo) {
-  // A ball beside two fields, from 0.2 m above the lower one's plane.
+  // A ball next to two fields, from 0.2 m above the plane of the lower field.
   const double h = 1e-3, fall = std::sqrt(2 * 0.2 / kG);
   ModelDef def;
   scenes::AddBall(def, "far", 1, 0.05, {0, 0, 1.05}, {0.5, 0.5, 0});
@@ -88,7 +88,7 @@ TEST(Ground, WhoeverFallsOffSaysSo) {
     EXPECT_EQ(status.body, 1);
     EXPECT_EQ(status.ground, 1);
     EXPECT_NEAR(status.first_time_s, fall, h);
-    // Sticky; gone when somebody says so and the ball is back.
+    // The status persists until ClearStatus with the ball back above the field.
     BodyState back = world.Body(1, 1);
     back.position_m.z = 0.2;
     back.velocity_m_per_s = {};
@@ -105,7 +105,7 @@ TEST(Ground, WhoeverFallsOffSaysSo) {
     world.Step(h, StepsIn(0.3, h));
     return world.Status(0).bits;
   };
-  ModelDef caught = def;  // by a plane, at last
+  ModelDef caught = def;  // finally caught by a plane
   caught.planes.push_back({"floor", {0, 0, 1}, {0, 0, -9}, {}});
   EXPECT_EQ(bits(caught), kStatusOk);
   ModelDef held = def;
@@ -130,7 +130,7 @@ TEST(Ground, ARodSlidesAsFarAsOnAPlane) {
       const Vec3 along{std::cos(turn), std::sin(turn), 0};
       const Vec3 middle{-0.5, 0.013, r};
       scenes::AddRod(def, "rod", 0.1, r, middle - 0.19 * along, middle + 0.19 * along, material);
-      // Along itself it slides, and does not roll.
+      // The rod slides along its axis and does not roll.
       def.bodies[0].velocity_m_per_s = 1.0 * along;
       ground.AddTo(def, 0, material);
       Batch world = MakeBatch(def);
@@ -174,7 +174,7 @@ TEST(Ground, AFlatFieldIsThePlane) {
   ModelDef on_field = on_plane;
   scenes::AddGround(on_plane, material);
   Ground{"alternating", 1}.AddTo(on_field, 0, material);
-  // The two solve the same equations in other directions, each to its tolerance.
+  // Both batches solve the same equations in different directions, each to its tolerance.
   BatchOptions options;
   options.tolerance_m_per_s = 1e-12;
   Batch plane = MakeBatch(on_plane, options), field = MakeBatch(on_field, options);
@@ -187,7 +187,7 @@ TEST(Ground, AFlatFieldIsThePlane) {
   EXPECT_EQ(field.Status(0).bits, kStatusOk);
 }
 
-/// What a robot of six struts does on hills.
+/// A six-strut robot that drops onto hills.
 struct OnHills {
   static ModelDef Def(std::uint64_t seed, double drop_m) {
     scenes::SixStrut robot;
@@ -206,7 +206,7 @@ struct OnHills {
   }
 };
 
-/// Rods and balls of several sizes that fall onto hills.
+/// Returns rods and balls of several sizes that fall onto hills.
 ModelDef ThingsOverHills(std::uint64_t seed) {
   const Material material{0.6, 0.5, 0.0};
   ModelDef def;
@@ -284,7 +284,7 @@ TEST(Ground, LanesOnDifferentHillsHaveTheBitsOfAWorldAlone) {
 }
 
 TEST(Ground, WhenItIsLookedAtChangesNothing) {
-  // After a restored state everything is looked at again; a world that goes on looks when it has
+  // After Restore all pairs are tested again; a world that continues tests a pair only when it has
   // come near.
   const ModelDef def = OnHills::Def(5, 0.05);
   Batch goes_on = MakeBatch(def), looks = MakeBatch(def);
@@ -296,7 +296,7 @@ TEST(Ground, WhenItIsLookedAtChangesNothing) {
   }
 }
 
-/// Two rods, tied by a stiff cable, that fall onto bumps of a few centimetres.
+/// Returns two rods, tied by a stiff cable, that fall onto bumps of a few centimeters.
 ModelDef TiedRodsOverBumps() {
   const Material material{0.6, 0.5, 0.2};
   ModelDef def;
@@ -334,7 +334,7 @@ TEST(Ground, WorldsWithManyContactsAndWithFewHaveTheBitsOfAWorldAlone) {
     alone.push_back(MakeBatch(def));
     start(alone.back(), 0, w);
   }
-  // A pair of rods has room for seven contacts where worlds are solved in lanes.
+  // A pair of rods has room for seven contacts where worlds share SIMD registers.
   std::size_t most = 0, fewest = 1000;
   for (int i = 0; i < 50; ++i) {
     all.Step(1e-3, 20);

@@ -1,5 +1,5 @@
-/// Cables that hang between points, and stiff ones between light bodies: tensions and places
-/// against closed forms.
+/// Hanging cables, and stiff cables between light bodies: tensions and positions against closed
+/// forms.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ void AddCable(ModelDef& def, const AttachmentDef& from, const AttachmentDef& to,
 
 /// Equal masses on a line of equal elastic cables between two points of the same height. With the
 /// horizontal force H everywhere, cable i has the vertical force V_i = m g ((n - 1) / 2 - i), the
-/// tension sqrt(H^2 + V_i^2) and the length L + T_i / k: every place follows.
+/// tension sqrt(H^2 + V_i^2) and the length L + T_i / k, from which all positions follow.
 struct Chain {
   int cables = 20;
   double mass_kg = 0.05, rest_length_m = 0.1, stiffness_n_per_m = 500, horizontal_n = 3;
@@ -72,8 +72,8 @@ struct Chain {
 };
 
 TEST(Hanging, AChainOfMassesStaysInItsClosedForm) {
-  // It starts there, undamped: were it not the simulation's equilibrium, too, it would swing about
-  // another one, by twice what that is off.
+  // The chain starts in the closed form, undamped: if the simulation's equilibrium differed, the
+  // chain would swing about it, with twice the difference.
   for (const double stiffness : {500.0, 1e5, 1e6}) {
     for (const double h : kThreeStepsS) {
       Chain chain;
@@ -119,7 +119,7 @@ TEST(Hanging, AChainOfManyMassesHangsAsDeepAsTheCatenary) {
 
 TEST(Hanging, StiffCablesBetweenLightBodiesCarryTheirWeightsAfterAFall) {
   // Three bodies of 0.1 kg one below the other, on cables of 1e6 N/m that are slack by 1 mm at the
-  // start: they fall, are caught, and settle with the damping of a cable (a tenth of critical).
+  // start: they fall, are caught, and settle with the cables' damping (a tenth of critical).
   for (const double stiffness : {1e6, 1e7}) {
     for (const double h : kThreeStepsS) {
       ModelDef def;
@@ -150,9 +150,9 @@ TEST(Hanging, StiffCablesBetweenLightBodiesCarryTheirWeightsAfterAFall) {
 }
 
 TEST(Hanging, AnUndampedCableAtOmegaH006KeepsPeriodAndAmplitudeForAHundredPeriods) {
-  // The mark that integrators are measured by: period within 0.1 %, amplitude within 1 %. Found
-  // from the motion, not from the scheme's formula: upward crossings and highest points, by a
-  // parabola through three samples (right to (w h)^4).
+  // A common benchmark of integrators: period within 0.1 %, amplitude within 1 %. Measured from the
+  // motion, not from the scheme's formula: upward crossings and highest points, by a parabola
+  // through three samples (accurate to (w h)^4).
   const double h = 1e-3, w = 0.06 / h, mass = 0.1, stiffness = mass * w * w;
   const double sag = mass * kG / stiffness, amplitude = 0.5 * sag;
   ModelDef def;
@@ -188,10 +188,11 @@ TEST(Hanging, AnUndampedCableAtOmegaH006KeepsPeriodAndAmplitudeForAHundredPeriod
 }
 
 TEST(Hanging, AMassThatACableCatchesAgainAndAgainKeepsTheEnergyOfItsFall) {
-  // The force has a kink where the cable goes slack, and what a step makes of it depends on where
-  // in the step it lies. Without damping, for a minute, some hundred catches.
+  // The force has a kink where the cable goes slack, and its effect depends on its place within the
+  // step. Without damping, for a minute, some hundred catches.
   const double h = 1e-3;
-  // From w h = 0.3 on the midpoint rule takes over: it may lose energy in a catch, but not add any.
+  // From w h = 0.3 the implicit midpoint rule applies: it may lose energy in a catch, but not add
+  // any.
   for (const double angle : {0.03, 0.06, 0.1, 0.5, 0.7, 0.9}) {  // w h
     for (int i = 0; i < 5; ++i) {
       const double mass = 0.5, stiffness = mass * angle * angle / (h * h), fall = 0.05 + 0.002 * i;

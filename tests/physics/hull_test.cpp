@@ -1,4 +1,4 @@
-// Bodies with flat faces: statics and slopes in closed form, boxes, and what is kept in flight.
+// Convex hulls: statics and slopes in closed form, comparison with boxes, conservation in flight.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@
 namespace taut::test {
 namespace {
 
-/// What corners about the origin span, of 700 kg/m^3, moved to `at_m`. Returns the body's index.
+/// Adds the convex hull of corners about the origin, of 700 kg/m^3, moved to `at_m`. Returns the
+/// body's index.
 int AddHull(ModelDef& def, const std::string& name, std::vector<Vec3> corners_m, const Vec3& at_m,
             const Quat& q, const Material& material) {
   for (Vec3& p : corners_m) p = at_m + Rotate(q, p);
@@ -38,7 +39,7 @@ std::vector<Vec3> BoxCorners(const Vec3& half_m) {
   return corners;
 }
 
-/// Around y, standing on a side; `count` even.
+/// Returns the corners of a prism about y that stands on a side; `count` even.
 std::vector<Vec3> PrismCorners(int count, double radius_m, double width_m) {
   std::vector<Vec3> corners;
   for (int i = 0; i < count; ++i) {
@@ -50,8 +51,8 @@ std::vector<Vec3> PrismCorners(int count, double radius_m, double width_m) {
   return corners;
 }
 
-/// A regular one on its face in the level plane z = 0, an edge of which is at right angles to x at
-/// the front.
+/// Returns a regular tetrahedron with a face in the plane z = 0 and the front edge of that face at
+/// right angles to x.
 std::vector<Vec3> TetrahedronCorners(double edge_m) {
   const double r = edge_m / std::sqrt(3.0), h = edge_m * std::sqrt(2.0 / 3.0);
   return {{0.5 * r, 0.5 * edge_m, 0}, {0.5 * r, -0.5 * edge_m, 0}, {-r, 0, 0}, {0, 0, h}};
@@ -70,7 +71,7 @@ std::vector<Vec3> AnyCorners(scenes::Chance& chance, int count, double size_m) {
 enum class Floor { kPlane, kBox, kField, kHull };
 constexpr Floor kFloors[] = {Floor::kPlane, Floor::kBox, Floor::kField, Floor::kHull};
 
-/// Level, at z = 0.
+/// Adds a level floor at z = 0.
 void AddFloor(ModelDef& def, Floor floor, const Material& material) {
   switch (floor) {
     case Floor::kPlane:
@@ -92,7 +93,7 @@ void AddFloor(ModelDef& def, Floor floor, const Material& material) {
   }
 }
 
-/// Down along x, as a slope of this angle would have it.
+/// Sets gravity as on a slope of this angle that descends along x.
 void Slope(ModelDef& def, double angle_rad) {
   def.gravity_m_per_s2 = {kG * std::sin(angle_rad), 0, -kG * std::cos(angle_rad)};
 }
@@ -124,8 +125,8 @@ TEST(Hull, OfABoxSlidesAndSpinsAsTheBox) {
 }
 
 TEST(Hull, ATetrahedronTipsOverWhereItsWeightPassesItsEdge) {
-  // The centre is at a quarter of the height a sqrt(2/3), a / sqrt(12) behind the edge: tan =
-  // sqrt 2.
+  // The center is at a quarter of the height a sqrt(2/3), a / sqrt(12) behind the edge: tan = sqrt
+  // 2.
   const double tips = std::atan(std::sqrt(2.0));
   const Material material{3, 3, 0};
   for (const Floor floor : kFloors) {
@@ -174,7 +175,7 @@ TEST(Hull, APrismRollsFromHalfTheAngleOfASide) {
 }
 
 TEST(Hull, ALeverCarriesItsLoadsOnTwoPrisms) {
-  // A rod on two ridges at x = -0.3 and 0.2, its middle at 0: they carry 2/5 and 3/5.
+  // A rod on two ridges at x = -0.3 and 0.2, its center at 0: they carry 2/5 and 3/5.
   const Material material{0.5, 0.5, 0};
   ModelDef def;
   for (const double x : {-0.3, 0.2}) {
@@ -256,7 +257,7 @@ ModelDef Heap(std::uint64_t seed, bool on_hills) {
   scenes::Chance chance(seed);
   ModelDef def;
   for (int i = 0; i < 5; ++i) {
-    // One by one: compilers evaluate arguments in any order.
+    // In separate statements: the evaluation order of arguments is unspecified.
     const std::vector<Vec3> corners = AnyCorners(chance, 8 + 3 * i, 0.06);
     const Vec3 at{chance.Within(-0.1, 0.1), chance.Within(-0.1, 0.1), 0.15 + 0.15 * i};
     const Vec3 axis = chance.Direction();
@@ -303,13 +304,13 @@ TEST(Hull, AHeapComesToRestAndNothingIsInEachOther) {
       for (int i = 0; i < 400; ++i) {
         world.Step(1e-3, 10);
         const double energy = EnergyOf(world);
-        EXPECT_LE(energy, most + 5e-5 * weight_n) << i;  // lifts it by 50 um
+        EXPECT_LE(energy, most + 5e-5 * weight_n) << i;  // 5e-5 * weight_n: a lift by 50 um
         most = std::min(most, energy);
         for (const Overlap& overlap : world.Overlaps(0))
           deepest = std::max(deepest, overlap.depth_m);
       }
-      EXPECT_LT(deepest, 5e-4) << seed;  // as boxes that fall on each other at 4 m/s
-      if (on_hills) continue;            // some roll on
+      EXPECT_LT(deepest, 5e-4) << seed;  // as for boxes that fall on each other at 4 m/s
+      if (on_hills) continue;            // some hulls roll on
       EXPECT_LT(last, 2e-5) << seed;
       EXPECT_EQ(world.Status(0).bits, kStatusOk);
       for (int b = 0; b < 7; ++b) {

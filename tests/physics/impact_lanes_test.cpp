@@ -1,5 +1,5 @@
-/// Impacts, push-out and passing of one world leave the others in its register alone: each gives
-/// the bits that it gives by itself (docs/determinism.md).
+/// Impacts, position projection and continuous collision detection in one SIMD lane do not change
+/// the other lanes: each world has the bits of a single world (docs/determinism.md).
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@ namespace taut::test {
 namespace {
 
 constexpr int kWorlds = 8;
-constexpr int kBusy = 3;  ///< The world in which something happens.
+constexpr int kBusy = 3;  ///< Index of the world that is disturbed.
 constexpr double kStepS = 1e-3;
 
-/// Body 0 of a world gets another start.
+/// Changes the start of body 0 in one world.
 void Throw(Batch& batch, int world, const BodyState& start) {
   BodyState at = batch.Body(world, 0);
   at.position_m = at.position_m + start.position_m;
@@ -28,7 +28,8 @@ void Throw(Batch& batch, int world, const BodyState& start) {
   batch.SetBodyState(world, 0, at);
 }
 
-/// Of eight worlds seven rest and one does not; then all eight rest.
+/// Checks seven resting worlds and a disturbed one against single worlds, for every instruction
+/// set.
 void OneDisturbsNoOther(const ModelDef& def, const BodyState& start, int steps) {
   Batch alone = MakeBatch(def), resting = MakeBatch(def);
   Throw(alone, 0, start);
@@ -38,7 +39,7 @@ void OneDisturbsNoOther(const ModelDef& def, const BodyState& start, int steps) 
   for (const Simd simd : {Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
     BatchOptions wide;
     wide.worlds = kWorlds;
-    wide.simd = simd;  // what the machine lacks falls back to what it has
+    wide.simd = simd;  // falls back to an available instruction set
     Batch batch = MakeBatch(def, wide);
     Throw(batch, kBusy, start);
     batch.Step(kStepS, steps);
@@ -49,7 +50,7 @@ void OneDisturbsNoOther(const ModelDef& def, const BodyState& start, int steps) 
   }
 }
 
-/// A box with restitution and friction that lies on the ground.
+/// Returns a box with restitution and friction that lies on the ground.
 ModelDef BoxOnGround() {
   ModelDef def;
   def.name = "box";
@@ -65,8 +66,8 @@ const BodyState kSunk{{0, 0, -2e-3}, {}, {0.3, 0.1, 0}, {2, 1, -3}};
 TEST(ImpactLanes, ABoxOnTheGround) { OneDisturbsNoOther(BoxOnGround(), kDropped, 300); }
 
 TEST(ImpactLanes, EightBoxesThatFallOnTheirEdgesAtOnce) {
-  // Friction and full restitution: some impacts would gain energy and go back by shares of their
-  // own.
+  // Friction and full restitution: some impacts would gain energy and are scaled back, each by a
+  // different share.
   ModelDef def = BoxOnGround();
   def.boxes[0].material = def.planes[0].material = {0.7, 0.7, 1};
   std::vector<BodyState> starts;

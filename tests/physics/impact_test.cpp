@@ -1,4 +1,4 @@
-/// Impacts in which several contacts take part, and how exact one is (docs/theory/contact.md,
+/// Impacts with several contacts, and the accuracy of a single impact (docs/theory/contact.md,
 /// section 3).
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace taut::test {
 namespace {
 
 TEST(Impact, ABallOnARestingBallBouncesForeverWithItsEnergy) {
-  // The blow goes through the lower ball into the ground and comes back in the same step.
+  // The impulse passes through the lower ball into the ground and returns in the same step.
   const double r = 0.02;
   for (const double h : {1e-3, 2.5e-4}) {
     for (const double drop : {0.1, 0.1013, 0.17}) {
@@ -47,7 +47,8 @@ TEST(Impact, ABallOnARestingBallBouncesForeverWithItsEnergy) {
   }
 }
 
-/// A ball with 1 m/s against four at rest, `gap` apart: velocities after 0.6 s.
+/// Returns the velocities [m/s], after 0.6 s, of Newton's cradle: a ball with 1 m/s against four at
+/// rest, `gap` apart.
 std::array<double, 5> Cradle(double gap, double h) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -65,7 +66,7 @@ std::array<double, 5> Cradle(double gap, double h) {
 }
 
 TEST(Impact, OfACradleWithGapsOnlyTheLastBallLeaves) {
-  // One impact after the other, each between two equal balls: they exchange their velocities.
+  // Successive impacts, each between two equal balls, which exchange their velocities.
   for (const double gap : {1e-5, 1e-3}) {
     for (const double h : {1e-3, 1e-4}) {
       const std::array<double, 5> v = Cradle(gap, h);
@@ -76,8 +77,8 @@ TEST(Impact, OfACradleWithGapsOnlyTheLastBallLeaves) {
 }
 
 TEST(Impact, ACradleThatTouchesFollowsNewtonsLawAndKeepsItsEnergy) {
-  // At once: the first pair parts with the speed of its approach, every other pair stays together.
-  // Momentum: v0 + 4 v = 1, and v - v0 = 1.
+  // Simultaneous impacts: the first pair parts with the speed of its approach, every other pair
+  // stays together. Momentum: v0 + 4 v = 1, and v - v0 = 1.
   for (const double h : {1e-3, 1e-4}) {
     const std::array<double, 5> v = Cradle(0, h);
     double energy = 0;
@@ -89,8 +90,8 @@ TEST(Impact, ACradleThatTouchesFollowsNewtonsLawAndKeepsItsEnergy) {
   }
 }
 
-/// Twenty balls between six walls, all smooth and elastic, for 20 s: the lowest and the highest
-/// energy, as a share of that at the start.
+/// Lowest and highest energy of twenty balls between six walls, all smooth and elastic, over 20 s,
+/// as shares of the initial energy.
 struct Shares {
   double low = 1, high = 1;
 };
@@ -135,20 +136,21 @@ TEST(Impact, AGasOfTwentyBallsKeepsItsEnergy) {
 }
 
 TEST(Impact, AnEndThatTheOthersReboundThrowsDownReboundsInTheSameStep) {
-  // A smooth rod comes down with 1 m/s at one end and 0.2 m/s at the other. The first hits; without
-  // rebound the other would go on with 0.7 m/s, with it with 1.2 m/s, and only so does it close its
-  // gap of 0.85 m/s h: it joins in a second round. Both then leave as they came.
+  // A smooth rod descends with 1 m/s at one end and 0.2 m/s at the other. The first end hits;
+  // without a rebound the other end would continue with 0.7 m/s, with a rebound with 1.2 m/s, and
+  // only then does it close its gap of 0.85 m/s h: it joins in a second round. Both ends then leave
+  // at their speeds of arrival.
   const double h = 1e-3, r = 0.003;
   for (const bool moves : {false, true}) {
     ModelDef def;
     def.gravity_m_per_s2 = {0, 0, 0};
     const Material material{0, 0, 1};
-    // Half a step before.
+    // Half a step before the impact.
     scenes::AddRod(def, "rod", 0.1, r, {-0.2, 0, r + (0.1 + 0.5) * h},
                    {0.2, 0, r + (0.85 + 0.1) * h}, material);
     def.bodies[0].velocity_m_per_s = {0, 0, -0.6};
     def.bodies[0].angular_velocity_rad_per_s = {0, -0.4 / 0.2, 0};
-    if (moves) {  // onto two balls that are as good as fixed
+    if (moves) {  // onto two balls of practically infinite mass
       scenes::AddBall(def, "left", 1e9, 0.1, {-0.2, 0, -0.1}, material);
       scenes::AddBall(def, "right", 1e9, 0.1, {0.2, 0, -0.1}, material);
     } else {
@@ -165,9 +167,8 @@ TEST(Impact, AnEndThatTheOthersReboundThrowsDownReboundsInTheSameStep) {
 }
 
 TEST(Impact, ABallRisesToESquaredTimesItsHeightWhereverInTheStepItLands) {
-  // 60 heights, so that impacts fall everywhere into the step. In flight the height to come is
-  // known exactly: the scheme keeps parabolas. The error is of second order (contact.md, section
-  // 3).
+  // 60 heights, so that impacts fall everywhere within a step. In flight the apex is known exactly:
+  // the scheme keeps parabolas. The error is of second order (contact.md, section 3).
   const double r = 0.05, h = 1e-3;
   const struct {
     double e, limit;

@@ -1,4 +1,5 @@
-/// An index out of range ends the program and says which; it never writes somewhere else.
+/// Index checks of Batch: an index out of range ends the program with a message that names it, and
+/// never writes elsewhere.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@
 namespace taut::test {
 namespace {
 
-/// Two worlds, each with one body and one cable.
+/// Returns two worlds, each with one body and one cable.
 Batch TwoWorlds() {
   BatchOptions options;
   options.worlds = 2;
@@ -23,7 +24,7 @@ Batch TwoWorlds() {
 TEST(IndexDeathTest, ACableThatTheModelLacksIsNamedAndNothingElseIsWritten) {
   Batch batch = TwoWorlds();
   ASSERT_EQ(batch.model().def().cables.size(), 1u);
-  // Damping of cable 0 lies behind stiffness of cable 0.
+  // In memory, the damping of cable 0 follows the stiffness of cable 0.
   EXPECT_DEATH(batch.SetParameter(0, Parameter::kCableStiffness, 1, 7.0),
                "taut: Batch::SetParameter: there is no cable 1: they are 0 to 0");
   EXPECT_DEATH(batch.Cable(0, -1), "taut: Batch::Cable: there is no cable -1: they are 0 to 0");
@@ -54,7 +55,7 @@ TEST(IndexDeathTest, EveryFunctionLooksAtEveryIndex) {
   struct Call {
     std::string function;
     std::function<void(Batch&, int world, int index)> call;
-    int indices = 0;  ///< That `index` may be; 0: it is not used.
+    int indices = 0;  ///< Number of valid values of `index`; 0: unused.
   };
   const std::vector<Call> calls = {
       {"Time", [](Batch& b, int w, int) { b.Time(w); }},
@@ -85,7 +86,7 @@ TEST(IndexDeathTest, EveryFunctionLooksAtEveryIndex) {
         << each.function << ' ' << world << ' ' << index;
   };
   for (const Call& each : calls) {
-    each.call(batch, 1, 0);  // the last world is one
+    each.call(batch, 1, 0);  // the last world is valid
     dies(each, 2, 0);
     dies(each, -1, 0);
     if (each.indices == 0) continue;

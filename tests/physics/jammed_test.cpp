@@ -7,15 +7,15 @@ namespace taut::test {
 namespace {
 
 TEST(Jammed, ABallThatWedgesInASledTakesBoundedWorkAndComesFree) {
-  // In this start a ball is shot between two runners of the sled that a stiff cable ties it to. Any
-  // squeeze solves the laws of contact then.
+  // This start shoots a ball between two runners of the sled to which a stiff cable ties it. Then
+  // any squeeze force satisfies the contact laws.
   Batch world = MakeBatch(scenes::Jumble().Def());
   Scatter(world, 0, 8);
   double energy_j = EnergyOf(world);
   for (int i = 0; i < 200; ++i) {
     world.Step(1e-3);
     const WorldStatus status = world.Status(0);
-    // The implicit integration, its fallback, and pushing out.
+    // Implicit integration, its fallback, and position projection.
     EXPECT_LE(status.linear_solves, 3 * BatchOptions().max_linear_solves) << i;
     EXPECT_EQ(status.bits & ~kStatusNotConverged, 0u) << i;
     EXPECT_LE(EnergyOf(world), energy_j + 1e-2) << i;

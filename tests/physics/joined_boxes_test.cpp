@@ -1,4 +1,4 @@
-// Boxes of the terrain that touch each other are one surface (docs/theory/ground.md, section 8).
+// Touching terrain boxes as one surface (docs/theory/ground.md, section 8).
 #include <gtest/gtest.h>
 
 #include "tests/constants.h"
@@ -14,7 +14,7 @@ namespace {
 
 const Material kMaterial{0.5, 0.4, 0};
 
-/// A floor with its top in z = 0.
+/// Adds a floor of boxes with its top at z = 0.
 void AddTiles(ModelDef& def, int columns, int rows, double x_m, double y_m) {
   for (int i = 0; i < columns; ++i) {
     for (int j = 0; j < rows; ++j) {
@@ -94,8 +94,8 @@ TEST_P(OnTiles, ItMovesAsOnThePlane) {
 INSTANTIATE_TEST_SUITE_P(Things, OnTiles, testing::ValuesIn(kThings));
 
 TEST(JoinedBoxes, ABoxHasItsFourCornersOnTiles) {
-  // Which corner carries what is left open by statics, and turns with the memory of contacts:
-  // hence not as exactly as what has fewer.
+  // Statics does not determine the loads of the four corners; their distribution depends on warm
+  // starts. Hence larger tolerances than for bodies with fewer contacts.
   ModelDef plane;
   scenes::AddBox(plane, "box", 0.3, {0.05, 0.07, 0.03}, {-0.1, 0, 0.03}, {}, kMaterial);
   plane.bodies[0].velocity_m_per_s = {0.5, 0.2, 0};
@@ -112,8 +112,8 @@ TEST(JoinedBoxes, ABoxHasItsFourCornersOnTiles) {
 }
 
 TEST(JoinedBoxes, AStepIsAStep) {
-  // Two treads and a riser between them: a ball that rolls is stopped by the riser and then
-  // touches both; so is a box that slides.
+  // Two treads and a riser between them: a rolling ball is stopped by the riser and then touches
+  // both; so is a sliding box.
   for (const bool ball : {true, false}) {
     ModelDef def;
     if (ball) {
@@ -136,8 +136,8 @@ TEST(JoinedBoxes, AStepIsAStep) {
 }
 
 TEST(JoinedBoxes, ARodThatHangsOverIsHeldByTheBorder) {
-  // By 8 of 18 parts, on the line between two rows of tiles: both end there, though they go on to
-  // the other side, where they hold the rod's end.
+  // 8 of 18 parts of the rod overhang, on the line between two rows of tiles. Both tiles end there,
+  // though they continue on the other side, where they support the rod's end.
   for (const double side : {-1.0, 1.0}) {
     ModelDef def;
     AddTiles(def, 4, 2, 0.1, 0.1);
@@ -145,7 +145,7 @@ TEST(JoinedBoxes, ARodThatHangsOverIsHeldByTheBorder) {
     Batch world = MakeBatch(def);
     world.Step(1e-3, 300);
     EXPECT_NEAR(world.Body(0, 0).position_m.z, 0.01, 1e-6);
-    // Statics: an end at 0.1, the border at 0.2, the middle at 0.19.
+    // Statics: the end at 0.1, the border at 0.2, the center at 0.19.
     double at_border = 0, at_end = 0;
     for (const ContactState& c : world.Contacts(0)) {
       (c.point_m.x * side > 0.15 ? at_border : at_end) += c.force_n.z;
@@ -156,7 +156,8 @@ TEST(JoinedBoxes, ARodThatHangsOverIsHeldByTheBorder) {
 }
 
 TEST(JoinedBoxes, ABoxThatIsALittleInTwoTilesIsPushedUpByBoth) {
-  // By 0.1 mm down, and 0.01 mm over the border of the second, whose side is the shortest way out.
+  // The box is 0.1 mm deep, and 0.01 mm across the border of the second tile, whose side would be
+  // the shortest way out.
   ModelDef def;
   scenes::AddBox(def, "box", 0.3, {0.05, 0.04, 0.03}, {-0.05 + 1e-5, 0.01, 0.03 - 1e-4}, {},
                  kMaterial);

@@ -1,4 +1,4 @@
-// What joints carry at the start (taut/statics.h) against statics by hand, and against the step.
+// Joint loads at the start (taut/statics.h) against statics by hand and against the first step.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ double MostLeft(const ModelDef& def, const std::vector<JointLoad>& loads) {
 }
 
 TEST(JointLoads, APinnedRodOnACableIsHeldAsByHand) {
-  // 3 kg and 2 m, level; the cable from its end to the wall, 1.5 m above the pin: T 0.6 2 = m g 1.
+  // 3 kg and 2 m, level; a cable from the rod's end to the wall, 1.5 m above the pin: T 0.6 2 = m g
+  // 1.
   for (const JointKind kind : {JointKind::kBall, JointKind::kHinge}) {
     ModelDef def;
     scenes::AddRod(def, "rod", 3.0, 0.01, {}, {2, 0, 0}, {});
@@ -42,7 +43,7 @@ TEST(JointLoads, APinnedRodOnACableIsHeldAsByHand) {
 }
 
 TEST(JointLoads, AnArchOfTwoRodsThrustsOutwards) {
-  // Spans 2 a, rises h: at its feet a thrust of w a / 2 h and the weight w of a rod each.
+  // Span 2 a, rise h: a thrust of w a / 2 h and the weight w of a rod at each foot.
   const double a = 1.2, h = 0.5, w = 2 * kG, thrust = w * a / (2 * h);
   ModelDef def;
   scenes::AddRod(def, "left", 2.0, 0.01, {-a, 0, 0}, {0, 0, h}, {});
@@ -56,7 +57,7 @@ TEST(JointLoads, AnArchOfTwoRodsThrustsOutwards) {
 }
 
 TEST(JointLoads, WhatTwoSupportsMayShareTheyShare) {
-  // On two balls what pushes along the rod is not determined: nothing does.
+  // Between two ball joints the force along the rod is indeterminate: the result is zero.
   ModelDef def;
   scenes::AddRod(def, "beam", 4.0, 0.01, {-1, 0, 0}, {1, 0, 0}, {});
   def.joints = {Pin(kWorld, 0, {-1, 0, 0}), Pin(kWorld, 0, {1, 0, 0})};
@@ -78,12 +79,12 @@ TEST(JointLoads, AClampedBeamTurnsItsWall) {
 TEST(JointLoads, ARodThatIsLetGoLevelPullsWithAQuarterOfItsWeight) {
   const ModelDef def = Pendulum(std::numbers::pi / 2);
   const auto loads = StartJointLoads(def);
-  EXPECT_LT(Distance(loads[0].force_n, {0, 0, kG / 4}), 1e-5);  // it has a radius of 1 mm
+  EXPECT_LT(Distance(loads[0].force_n, {0, 0, kG / 4}), 1e-5);  // the rod has a radius of 1 mm
   EXPECT_NEAR(LeftAtStart(def, loads)[0].force_n.z, -0.75 * kG, 1e-5);
 }
 
 TEST(JointLoads, ASpringHoldsWhatItIsWoundUpFor) {
-  // The weight of a level rod turns it with m g / 2 about y.
+  // The weight of a level rod exerts the torque m g / 2 about y.
   for (const JointKind kind : {JointKind::kHinge, JointKind::kBall}) {
     ModelDef def = Pendulum(std::numbers::pi / 2, kind);
     JointDef& j = def.joints[0];
@@ -105,7 +106,8 @@ TEST(JointLoads, ThoseOfEveryKindAreThoseOfTheFirstMoment) {
   for (const JointKind kind : {JointKind::kBall, JointKind::kHinge, JointKind::kWeld,
                                JointKind::kPrismatic, JointKind::kCylindrical, JointKind::kPlanar,
                                JointKind::kLine, JointKind::kPlane, JointKind::kDistance}) {
-    // Three rods in a row from the world, the middle one on the joint; a cable pulls at the last.
+    // Three rods in a row from the world, the middle one on the joint; a cable pulls at the last
+    // rod.
     ModelDef def = Chain(3, {0.1, 0.2, 0.05}, 2);
     def.bodies[1].inertia_kg_m2 = {0.01, 0.02, 0.015, 1e-3, 2e-3, -1e-3};
     JointDef& j = def.joints[1];

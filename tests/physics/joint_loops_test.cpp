@@ -1,4 +1,5 @@
-// Joints in loops, in lanes, in snapshots, and what is wrong with them (docs/theory/joints.md).
+// Joints in kinematic loops, in SIMD lanes and in serialization, and their diagnostics
+// (docs/theory/joints.md).
 #include <gmock/gmock.h>
 
 #include "math/vec.h"
@@ -7,7 +8,8 @@
 namespace taut::test {
 namespace {
 
-/// Four rods in a square in the plane of x and z, on hinges about y, the lower one's ends pinned.
+/// Returns a parallelogram linkage in the plane of x and z: three rods on hinges about y, pinned to
+/// the world at both lower ends.
 ModelDef FourBars(JointKind kind) {
   ModelDef def;
   const Vec3 corners[] = {{0, 0, 0}, {0.2, 0, 1}, {1.2, 0, 1}, {1, 0, 0}};
@@ -26,8 +28,8 @@ ModelDef FourBars(JointKind kind) {
 }
 
 TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
-  // Two rods that turn about their ends and one that is carried: (1/3 + 1/3 + 1) m L^2 w' =
-  // (1/2 + 1/2 + 1) m g L sin(a). Against a fine solution of that.
+  // Two rods rotate about their ends and carry a third: (1/3 + 1/3 + 1) m L^2 w' = (1/2
+  // + 1/2 + 1) m g L sin(a). Compared with a fine integration of this equation.
   const ModelDef def = FourBars(JointKind::kHinge);
   const double L = std::sqrt(1.04), k = 2.0 / (5.0 / 3) * kG / L;
   Batch world = MakeBatch(def);
@@ -46,8 +48,8 @@ TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
 }
 
 TEST(Joint, HowThickRodsAreIsNothingToAnOpenOrClosedChainOfBalls) {
-  // Two cables pull a folded square of four rods through itself and out again, all in space. What
-  // turns a thin rod about its axis would cost next to nothing.
+  // Two cables pull a folded square of four rods through itself and out again, all in space. Spin
+  // of a thin rod about its axis would cost next to no energy.
   for (const bool closed : {true, false}) {
     for (const double radius_m : {0.05, 1e-4}) {
       double off[2] = {};
@@ -136,7 +138,7 @@ TEST(JointLong, AnHourOfSwingsLeavesNoGap) {
       world.Step(1e-3);
       gap = std::max(gap, WorstGap(world, def));
       if (world.Status(0).bits == kStatusOk) continue;
-      // A parallelogram that goes through its flat pose has one more redundant row there.
+      // At its flat pose a parallelogram has one more redundant row.
       ASSERT_EQ(world.Status(0).bits, kStatusNotConverged) << n;
       ASSERT_LT(world.Status(0).residual_m_per_s, 1e-7) << n;
       world.ClearStatus(0);
@@ -163,7 +165,7 @@ void ExpectLanesLikeAlone(const ModelDef& def) {
   }
   for (const int lanes : {2, 4, 8}) {
     BatchOptions options;
-    options.worlds = kWorlds, options.simd = static_cast<Simd>(lanes);  // or what there is
+    options.worlds = kWorlds, options.simd = static_cast<Simd>(lanes);  // or the widest available
     Batch together = MakeBatch(def, options);
     for (int w = 0; w < kWorlds; ++w) prepare(together, w, w);
     together.Step(1e-3, 1500);
@@ -189,8 +191,8 @@ TEST(Joint, LanesOfBallsWithFrictionAndSpringsHaveTheBitsOfAWorldAlone) {
 }
 
 TEST(Joint, LanesOfStopsThatPressAndOfFastRotorsHaveTheBitsOfAWorldAlone) {
-  // The damper slows the rotor, body 1, in each world at its time: some turn slowly enough for the
-  // drift's series when others still turn by sine and cosine.
+  // The damper slows the rotor, body 1, at a different time in each world: some rotate slowly
+  // enough for the series of the drift while others still use sine and cosine.
   ModelDef def = Chain(1, {0.06, 0.08, 0}, 1);
   def.joints[0].kind = JointKind::kHinge, def.joints[0].most = 0.2;
   scenes::AddRod(def, "rotor", 1, 0.1, {2, 0, 0}, {2, 0.1, 0}, {});
@@ -249,8 +251,8 @@ TEST(Joint, WrongOnesAreAllNamed) {
   };
   using testing::HasSubstr;
   EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 1; }),
-              HasSubstr("both of its bodies"));
-  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 7; }), HasSubstr("not there"));
+              HasSubstr("connects a body to itself"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].body_a = 7; }), HasSubstr("does not exist"));
   EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].to_m.y = 0.2; }), HasSubstr("0.2 m apart"));
   EXPECT_THAT(complaints([](ModelDef& d) {
                 d.joints[1].axis = {0, 0, 2};
@@ -259,18 +261,19 @@ TEST(Joint, WrongOnesAreAllNamed) {
   EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].friction = -1; }),
               HasSubstr("friction must be zero or"));
   EXPECT_THAT(complaints([](ModelDef& d) { d.joints[1].rest = 1; }),
-              HasSubstr("at rest as described"));
+              HasSubstr("at rest in the described pose"));
   EXPECT_THAT(complaints([](ModelDef& d) {
                 d.joints[1].kind = JointKind::kHinge;
                 d.joints[1].least = 1, d.joints[1].most = 0;
               }),
-              HasSubstr("must rise"));
-  EXPECT_THAT(complaints([](ModelDef& d) { d.bodies[0].fixed = true; }), HasSubstr("can move"));
+              HasSubstr("must be below its upper limit"));
+  EXPECT_THAT(complaints([](ModelDef& d) { d.bodies[0].fixed = true; }),
+              HasSubstr("both of its bodies are fixed"));
   const std::string all = complaints([](ModelDef& d) {
     d.joints[0].axis = {}, d.joints[1].restitution = 2, d.apart.push_back({0, 5});
   });
   EXPECT_THAT(all, testing::AllOf(HasSubstr("unit vector"), HasSubstr("restitution"),
-                                  HasSubstr("kept apart")));
+                                  HasSubstr("a pair of bodies that do not collide")));
 }
 
 TEST(Joint, WhatItJoinsDoesNotTouchUnlessItSaysSo) {

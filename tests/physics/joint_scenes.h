@@ -1,4 +1,4 @@
-/// Rods on joints, for tests.
+/// Scenes of rods on joints, for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@
 
 namespace taut::test {
 
-/// A thin rod of 1 m and 1 kg that hangs from the world at its upper end, turned out of the plumb.
+/// Returns a thin rod of 1 m and 1 kg that hangs from the world at its upper end, rotated from the
+/// vertical.
 inline ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {
   ModelDef def;
   const Vec3 end{std::sin(angle_rad), 0, -std::cos(angle_rad)};
@@ -25,7 +26,7 @@ inline ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {
   return def;
 }
 
-/// Rods of 0.1 m in a row from the origin along `step`, the first of them pinned there.
+/// Returns rods of 0.1 m in a row from the origin along `step`, the first of them pinned there.
 inline ModelDef Chain(int rods, const Vec3& step_m, double last_mass_kg) {
   return scenes::RodChain(rods, step_m, last_mass_kg);
 }

@@ -9,7 +9,8 @@
 namespace taut::test {
 namespace {
 
-/// When the pin's rod swings through the plumb the n-th time, from rest; linear between steps.
+/// Returns the time [s] of the n-th passage of the pendulum through the vertical, from rest; linear
+/// between steps.
 double CrossingTime(Batch& world, double step_s, int crossings) {
   double before = world.Body(0, 0).position_m.x;
   for (int n = 1, found = 0; n < 100000; ++n) {
@@ -24,7 +25,8 @@ double CrossingTime(Batch& world, double step_s, int crossings) {
 }
 
 TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
-  // Of a rod about its end w^2 = 3 g / 2 L. From 90 degrees: times 2 K(1/sqrt 2) / pi.
+  // For a rod about its end, w^2 = 3 g / 2 L. From 90 degrees the period is 2 K(1/sqrt 2) / pi
+  // times as long.
   const double small = 2 * std::numbers::pi * std::sqrt(2.0 / (3 * kG)),
                wide = 1.180340599016096 * small;
   EXPECT_NEAR(small, 1.63795, 1e-5);
@@ -38,7 +40,7 @@ TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
 
 TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
   // The energy oscillates with the rod by O(h^2). The velocity projection at the end of a step is
-  // of third order and accumulates: at most in proportion to time.
+  // of third order and accumulates at most in proportion to time.
   double worst[3] = {}, last[3] = {};
   for (int k = 0; k < 3; ++k) {
     const double h = kThreeStepsS[k];
@@ -78,8 +80,8 @@ TEST(Joint, AChainWithAThousandfoldMassAtItsEndCarriesItsWeight) {
 }
 
 TEST(Joint, AChainThatSwingsWithAHeavyEndStaysTogether) {
-  // Ten times: across a rod of 1 kg under 400 N it swings 200 times a second. A thousandfold mass
-  // would make that 1.5 kHz, beyond what steps of 1 ms can follow.
+  // Ten times the mass of a rod: a rod of 1 kg under 400 N oscillates across at 200 Hz. A
+  // thousandfold mass would make that 1.5 kHz, beyond the resolution of steps of 1 ms.
   const ModelDef def = Chain(64, {0.1, 0, 0}, 10);
   Batch world = MakeBatch(def);
   const double start = EnergyOf(world);
@@ -93,7 +95,7 @@ TEST(Joint, AChainThatSwingsWithAHeavyEndStaysTogether) {
 }
 
 TEST(Joint, AChainThatCarriesTooMuchForTheStepSaysSo) {
-  // Of rods that carry F at both ends, across: w^2 = 12 F / (m l), so 2 / w is 1.2 ms at 14 kN.
+  // For rods that carry F at both ends, across: w^2 = 12 F / (m l), so 2 / w is 1.2 ms at 14 kN.
   const auto status = [](double last_kg, const Vec3& along, double step_s) {
     const ModelDef def = Chain(16, along, last_kg);
     Batch world = MakeBatch(def);
@@ -142,7 +144,7 @@ TEST(Joint, AFreeChainKeepsItsMomenta) {
   EXPECT_LT(WorstGap(world, def), 1e-9);
 }
 
-/// A box of 1 kg and 0.1 m, its centre at `at`, on a joint with the world there.
+/// Returns a box of 1 kg and 0.1 m, its center at `at`, on a joint with the world there.
 ModelDef BoxOn(JointKind kind, const Vec3& axis, const Vec3& at = {}) {
   ModelDef def;
   scenes::AddRod(def, "body", 1.0, 0.05, at - Vec3{0.1, 0, 0}, at + Vec3{0.1, 0, 0}, {});
@@ -155,7 +157,7 @@ ModelDef BoxOn(JointKind kind, const Vec3& axis, const Vec3& at = {}) {
 double InertiaAlongY(const ModelDef& def) { return def.bodies[0].inertia_kg_m2.yy; }
 
 TEST(Joint, WhatAKindLeavesFreeIsFreeAndTheRestIsHeld) {
-  // Pushed along and turned about every axis of a skew frame: what moves is what it says.
+  // Pushed along and rotated about every axis of a skew frame: only the free coordinates move.
   const Vec3 n{2.0 / 7, 3.0 / 7, 6.0 / 7}, s{6.0 / 7, 2.0 / 7, -3.0 / 7}, t = Cross(n, s);
   const struct {
     JointKind kind;
@@ -187,7 +189,8 @@ TEST(Joint, WhatAKindLeavesFreeIsFreeAndTheRestIsHeld) {
 }
 
 TEST(Joint, AWeldCarriesForceAndTorqueLikeAClampedBeam) {
-  // A rod of 1 m that sticks out of a wall: its weight, and that times half its length.
+  // A rod of 1 m that sticks out of a wall: the force is its weight, the torque its weight times
+  // half its length.
   ModelDef def;
   scenes::AddRod(def, "rod", 2.0, 0.01, {}, {1, 0, 0}, {});
   JointDef joint;
@@ -207,7 +210,7 @@ TEST(Joint, AHingesSpringTurnsWithTheFrequencyOfItsStiffness) {
   const double w = std::sqrt(5 / InertiaAlongY(def)), h = 1e-3;
   Batch world = MakeBatch(def);
   const double start = EnergyOf(world);
-  // The mean of start and end makes it tan(w h / 2): a little slower.
+  // The mean of start and end makes it tan(w h / 2): a slightly lower frequency.
   const double seen = 2 / h * std::atan(w * h / 2);
   for (int n = 1; n <= 2000; ++n) {
     world.Step(h);
@@ -238,7 +241,7 @@ TEST(Joint, FrictionHoldsUpToItsLimitAndSlowsBeyondIt) {
     const double wanted = limit > kG ? 0 : limit - kG;
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, wanted, 1e-10);
   }
-  // Of a hinge: a spinning body stops, after w J / F, and stays.
+  // Friction of a hinge: a spinning body stops after w J / F, and stays at rest.
   ModelDef def = BoxOn(JointKind::kHinge, {0, 1, 0});
   def.bodies[0].angular_velocity_rad_per_s = {0, 10, 0};
   def.joints[0].friction = 0.1;
@@ -254,7 +257,7 @@ TEST(Joint, AHingeCountsItsTurns) {
   def.bodies[0].angular_velocity_rad_per_s = {0, -20, 0};
   Batch world = MakeBatch(def);
   for (int n = 0; n < 3000; ++n) world.Step(1e-3);
-  // A drift turns by h w (1 - (h w)^4 / 120).
+  // A drift rotates by h w (1 - (h w)^4 / 120).
   EXPECT_NEAR(world.Joint(0, 0).coordinate, -60 * (1 - std::pow(0.01, 4) / 120), 1e-11);
 }
 
@@ -272,7 +275,8 @@ TEST(Joint, StopsHoldAndSendBack) {
     EXPECT_GT(far, 0.1 - 2e-3);
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, -restitution, 1e-6);
   }
-  // Pressed against it by its weight: it stands there, and the stop carries the weight.
+  // Pressed against its limit by its weight, the body rests there, and the limit carries the
+  // weight.
   ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
   def.joints[0].least = -0.05;
   Batch world = MakeBatch(def);
@@ -283,7 +287,8 @@ TEST(Joint, StopsHoldAndSendBack) {
 }
 
 TEST(Joint, AStopThatIsPassedAtTheStartLetsItsBodyReturnSlowly) {
-  // By 1 cm, pressed by its weight: no faster than the weight would take it further, h g / 2.
+  // The body starts 1 cm beyond the limit, pressed by its weight. It returns no faster than the
+  // weight would move it further, h g / 2.
   ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
   def.joints[0].least = 0.01;
   Batch world = MakeBatch(def);

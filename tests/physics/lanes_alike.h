@@ -1,4 +1,4 @@
-/// Worlds side by side in a register, each with the bits of itself alone.
+/// Check that worlds in the lanes of a SIMD register have the bits of single worlds.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 
 namespace taut::test {
 
-/// Eight worlds, the n-th moved by n `step_m` at the start, stepped `steps` times by 1 ms with each
-/// instruction set.
+/// Compares eight worlds, the n-th moved by n `step_m` at the start, with single worlds after
+/// `steps` steps of 1 ms, with each instruction set.
 inline void ExpectLanesLikeWorldsAlone(const ModelDef& def, const Vec3& step_m, int steps) {
   const auto start = [&](Batch& batch, int world, int which) {
     for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {

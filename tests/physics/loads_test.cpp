@@ -1,4 +1,4 @@
-/// Fixed bodies, forces on nodes, parameters of a world.
+/// Fixed bodies, node forces, and parameters of a world.
 
 #include <gtest/gtest.h>
 
@@ -19,14 +19,14 @@ TEST(Loads, AFixedBodyHoldsACableAsTheWorldDoes) {
   post.name = "post";
   post.fixed = true;
   post.com_m = {0.3, -0.2, 0.5};
-  post.velocity_m_per_s = {1, 2, 3};  // of a body that does not move: ignored
+  post.velocity_m_per_s = {1, 2, 3};  // ignored on a fixed body
   def.bodies.push_back(post);
   def.cables[0].attachments[0].body = 1;
   Batch by_post = MakeBatch(def);
   for (int n = 1; n <= 500; ++n) {
     by_world.Step(1e-3);
     by_post.Step(1e-3);
-    // The attachment is 0.5 m from the post's middle: that sum is rounded.
+    // The attachment is 0.5 m from the post's center: that sum is rounded.
     ASSERT_NEAR(by_world.Body(0, 0).position_m.z, by_post.Body(0, 0).position_m.z, RoundOff(n, 1));
   }
   const BodyState still = by_post.Body(0, 1);
@@ -48,11 +48,11 @@ TEST(Loads, AFixedBodyDoesNotYieldToForcesAndContacts) {
   world.Step(1e-3, 500);
   EXPECT_EQ(Norm(world.Body(0, post).position_m), 0);
   EXPECT_EQ(Norm(world.Body(0, post).velocity_m_per_s), 0);
-  EXPECT_NEAR(world.Body(0, ball).position_m.z, 0.2, 1e-9);  // balanced on top of it
+  EXPECT_NEAR(world.Body(0, ball).position_m.z, 0.2, 1e-9);  // balanced on top of the post
 }
 
 TEST(Loads, AForceOnANodePushesAndTurnsItsBody) {
-  // From rest, one step: v = h F / m, w = h I^-1 (r x F), in the axes of a body that lies askew.
+  // From rest, one step: v = h F / m, w = h I^-1 (r x F), in the axes of an oblique body.
   const Quat askew = scenes::Turn({2.0 / 7, 3.0 / 7, 6.0 / 7}, 0.7);
   const Inertia principal{0.01, 0.02, 0.025, 0, 0, 0};
   ModelDef def;
@@ -79,14 +79,14 @@ TEST(Loads, AForceOnANodePushesAndTurnsItsBody) {
   EXPECT_LE(Distance(world.AngularMomentum(0),
                      h * Cross(arm, f) + Cross(state.position_m, world.Momentum(0))),
             RoundOff(4, 0.1));
-  // In the second half of the step the body turns by h w / 2, which turns w and shares L out anew
-  // among moments of a ratio of 2.5.
+  // In the second half of the step the body rotates by h w / 2, which rotates w and redistributes L
+  // among moments of inertia with a ratio of 2.5.
   EXPECT_LE(Distance(state.angular_velocity_rad_per_s, spin),
             2.5 * Norm(spin) * (h * Norm(spin) / 2));
   EXPECT_LE(Distance(world.NodeVelocity(0, 1), state.velocity_m_per_s + Cross(spin, arm)),
             2 * h * Norm(spin) * Norm(spin));  // the arm has turned by h w / 2
 
-  // The same force on the middle as well, and then none.
+  // The same force on the center as well, and then none.
   world.SetNodeForce(0, 0, f);
   world.Step(h);
   EXPECT_LE(Distance(world.Momentum(0), (3 * h) * f), RoundOff(2, 0.01));
@@ -99,7 +99,7 @@ TEST(Loads, AForceOnANodePushesAndTurnsItsBody) {
 }
 
 TEST(Loads, AForceOnARodsEndDoesTheWorkThatTheRodGains) {
-  // The force stays on its node while the rod turns; work F . d, to second order.
+  // The force stays on its node while the rod rotates; its work is F . d, to second order.
   scenes::FreeRod rod;
   double errors[2];
   for (int i = 0; i < 2; ++i) {
@@ -157,7 +157,8 @@ TEST(Loads, ParametersAreThoseOfOneWorld) {
 TEST(Loads, AnInertiaScalesWithItsMassAndTheSpinStays) {
   scenes::FreeRod rod;
   rod.angular_velocity_rad_per_s = {5, 1, -2};
-  // A rounding of the momentum along the rod is this much larger in its spin.
+  // A rounding error of the momentum along the rod is amplified by across / own in its angular
+  // velocity.
   const Vec3 along = rod.to_m - rod.from_m;
   const double own = rod.radius_m * rod.radius_m / 2;
   const double across = Dot(along, along) / 12 + own / 2;

@@ -1,5 +1,5 @@
-// Terrain of many boxes, of which a step looks up those near a body (docs/theory/contact.md,
-// section 7): it may miss none, and changes no bit.
+// Terrain of many boxes, selected by a bounding volume hierarchy (docs/theory/contact.md, section
+// 7): the broad phase must miss no contact and change no bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 const Material kMaterial{0.6, 0.6, 0.2};
 
-/// Boxes of all sizes that lie about in a square of 4 m, turned anyhow, one of them under all. With
-/// `apart` none touches another: those that do are one surface, of which bodies know nothing.
+/// Returns boxes of many sizes in a square of 4 m, at random orientations, and one below all. With
+/// `apart` none touches another: touching boxes would be one surface, which bodies do not form.
 std::vector<TerrainBoxDef> Field(int count, std::uint64_t seed, bool apart = false) {
   scenes::Chance chance(seed);
   std::vector<TerrainBoxDef> boxes;
@@ -37,14 +37,15 @@ std::vector<TerrainBoxDef> Field(int count, std::uint64_t seed, bool apart = fal
   return boxes;
 }
 
-/// A ball far from all, as a part of `body`. How long a pass of two bodies is followed depends, in
-/// the last bits, on how far both reach; with it all fixed things reach as far.
+/// Adds a ball far from all others to `body`. The time span over which continuous collision
+/// detection follows a pair depends, in the last bits, on the extents of both bodies; with this
+/// ball all fixed bodies have the same extent.
 void AddFarBall(int body, ModelDef& def) {
   def.spheres.push_back({"far", body, {0, 0, -60}, 0.01, kMaterial});
 }
 
-/// The same boxes as bodies that do not move: each is a partner of its own, with a bound of its
-/// own, and none is looked up.
+/// Adds the same boxes as fixed bodies: each is a separate partner with its own bounds, without the
+/// hierarchy.
 void AddAsBodies(const std::vector<TerrainBoxDef>& boxes, ModelDef& def) {
   for (const TerrainBoxDef& box : boxes) {
     BodyDef body;
@@ -57,8 +58,8 @@ void AddAsBodies(const std::vector<TerrainBoxDef>& boxes, ModelDef& def) {
   }
 }
 
-/// Rods, balls and boxes above the field, in motion. Each has one shape, so that the order of its
-/// contacts is that of the boxes, whoever finds them.
+/// Returns moving rods, balls and boxes above the field. Each has one shape, so that its contacts
+/// are in the order of the boxes, with and without the hierarchy.
 ModelDef Tumblers(std::uint64_t seed) {
   scenes::Chance chance(seed);
   ModelDef def;
@@ -119,8 +120,8 @@ TEST(ManyBoxes, GiveTheBitsOfAsManyFixedBodies) {
 }
 
 TEST(ManyBoxes, GiveTheBitsOfTheFewInReach) {
-  // Bodies of several shapes have their contacts by shape, then by box. Seven boxes lie in a well
-  // that holds the robot, 400 outside of it, before and after them in the list.
+  // Bodies of several shapes have their contacts by shape, then by box. Seven boxes form a well
+  // that holds the robot, 400 lie outside of it, before and after the seven in the list.
   const auto well = [](ModelDef& def) {
     scenes::Chance chance(5);
     const auto add = [&](const Vec3& at, const Vec3& half, const Quat& q) {
@@ -174,7 +175,7 @@ TEST(ManyBoxes, GiveTheBitsOfTheFewInReach) {
 }
 
 TEST(ManyBoxes, LetNothingThrough) {
-  // What is in what is looked up without the tree.
+  // Overlaps are computed without the hierarchy.
   ModelDef def = Tumblers(8);
   def.terrain_boxes = Field(400, 8);
   Batch world = MakeBatch(def);
@@ -189,7 +190,7 @@ TEST(ManyBoxes, LetNothingThrough) {
 }
 
 TEST(ManyBoxes, ABallThatIsSetDownElsewhereLooksAgain) {
-  // It has flown far from all boxes, with a long look ahead.
+  // The ball moves far from all boxes, so its clearance covers many steps.
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   def.restitution_combine = CombineRule::kMaximum;
@@ -208,8 +209,8 @@ TEST(ManyBoxes, ABallThatIsSetDownElsewhereLooksAgain) {
 }
 
 TEST(ManyBoxes, AreFoundInTheTreeByTheirBounds) {
-  // Stones of millimetres beside walls of kilometres, some in one place: marked are those whose
-  // bounds are near, no other and none left out.
+  // Stones of millimeters next to walls of kilometers, some at the same place: exactly the boxes
+  // whose bounds are near are marked.
   scenes::Chance chance(3);
   ModelDef def;
   scenes::AddBall(def, "ball", 0.2, 0.1, {0, 0, 20}, kMaterial);

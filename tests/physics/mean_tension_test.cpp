@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kStepS = 1e-3;
 
-/// A mass that hangs on a damped cable of 1 m, which begins without stretch.
+/// Returns a mass that hangs on a damped cable of 1 m, initially unstretched.
 scenes::HangingMass LightMass(double mass_kg, double stiffness_n_per_m, double damping_ratio) {
   scenes::HangingMass scene;
   scene.mass_kg = mass_kg;
@@ -28,7 +28,7 @@ scenes::HangingMass LightMass(double mass_kg, double stiffness_n_per_m, double d
 
 double LengthOf(const Batch& world) { return Norm(world.Body(0, 0).position_m); }
 
-/// Tension by the law (cables.md, eq. 1) at this moment.
+/// Returns the instantaneous tension [N] by the law (cables.md, eq. 1).
 double AtOnce(const Batch& world, double rest_length_m) {
   const CableState cable = world.Cable(0, 0);
   const double stretch = cable.length_m - rest_length_m;
@@ -54,8 +54,8 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
           ASSERT_NEAR(cable.tension_n, tension,
                       SolverError(1) * mass / kStepS + stiffness * RoundOff(1, 1))
               << mass << ' ' << stiffness << ' ' << ratio << ' ' << n;
-          // Spring part: stored energy over the displacement of its end. Two stages, of damped
-          // cables that the step does not resolve (cables.md, 12e), part that way.
+          // Spring part: stored energy over the displacement of the cable's end. The two stages of
+          // damped cables that the step does not resolve (cables.md, 12e) differ from it.
           if (ratio > 0 && stiffness / mass * kStepS * kStepS > 4) continue;
           const double stretch = LengthOf(world) - 1;
           const double a = std::max(stretch_before, 0.0), b = std::max(stretch, 0.0);
@@ -69,8 +69,8 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
   }
 }
 
-/// 1 g on 1e7 N/m, half of critical: at rest after 0.06 ms, a sixteenth of a step. The initial
-/// vibration in the means decays within forty steps.
+/// 1 g on 1e7 N/m, half of the critical damping: at rest after 0.06 ms, a sixteenth of a step. The
+/// initial vibration in the means decays within forty steps.
 TEST(MeanTension, OfALightMassOnAStiffCableIsItsWeightFromTheFirstStepOn) {
   Batch world = MakeBatch(LightMass(1e-3, 1e7, 0.5).Def());
   for (int n = 0; n < 300; ++n) {
@@ -80,7 +80,7 @@ TEST(MeanTension, OfALightMassOnAStiffCableIsItsWeightFromTheFirstStepOn) {
 }
 
 TEST(MeanTension, BeforeAStepAndAfterAChangeByHandItIsThatOfTheMoment) {
-  scenes::HangingMass scene = LightMass(1e-3, 1e7, 0);  // whose tension swings from step to step
+  scenes::HangingMass scene = LightMass(1e-3, 1e7, 0);  // the tension oscillates from step to step
   scene.length_m = scene.rest_length_m + 5e-10;
   const auto change = [&](const char* what, double rest_length_m, const auto& by_hand) {
     Batch world = MakeBatch(scene.Def());
@@ -132,7 +132,7 @@ TEST(MeanTension, ComesAlongInASnapshot) {
   }
 }
 
-/// A world that is no longer finite shows the last moment at which it was.
+/// A world that is no longer finite returns the values of its last finite state.
 TEST(MeanTension, OfAWorldThatIsHaltedIsThatOfTheMoment) {
   Batch world = MakeBatch(LightMass(1e-3, 1e7, 0.05).Def());
   world.Step(kStepS, 7);

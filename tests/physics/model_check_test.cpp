@@ -1,4 +1,4 @@
-/// Model::Compile answers every wrong number with a sentence that names it.
+/// Diagnostics of Model::Compile: every invalid number is reported with the name of its element.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One of everything, and nothing wrong with it.
+/// Returns a valid model with one element of each kind.
 ModelDef Good() {
   ModelDef def = scenes::BlockOnSlope().Def();
   scenes::AddRod(def, "rod", 0.1, 0.01, {0, 0, 1}, {1, 0, 1}, {});
@@ -52,7 +52,7 @@ const std::vector<Mistake>& Mistakes() {
        [](ModelDef& d) { d.cables[0].member.young_pa = -1; }},
       {"cable stay: strength must be zero or a positive number",
        [](ModelDef& d) { d.cables[0].member.strength_n = kInfinity; }},
-      {"cable stay: mass of its own must be zero or a positive number",
+      {"cable stay: member mass must be zero or a positive number",
        [](ModelDef& d) { d.cables[0].member.mass_kg = -1e-9; }},
       {"rod rod: yield stress must be zero or a positive number",
        [](ModelDef& d) { d.capsules[0].member.yield_pa = -1; }},
@@ -65,7 +65,7 @@ const std::vector<Mistake>& Mistakes() {
       {"body rod: mass must be a positive number", [](ModelDef& d) { d.bodies[1].mass_kg = kNan; }},
       {"body rod: mass must be a positive number",
        [](ModelDef& d) { d.bodies[1].mass_kg = kInfinity; }},
-      {"body block: centre of mass must be finite",
+      {"body block: center of mass must be finite",
        [](ModelDef& d) { d.bodies[0].com_m.z = kNan; }},
       {"body block: velocity must be finite",
        [](ModelDef& d) { d.bodies[0].velocity_m_per_s.y = kInfinity; }},
@@ -77,11 +77,11 @@ const std::vector<Mistake>& Mistakes() {
        [](ModelDef& d) { d.bodies[0].inertia_kg_m2 = {1, 1, 1, 2, 0, 0}; }},  // 1 - 2 < 0
       {"body block: each principal moment of inertia must be a positive number",
        [](ModelDef& d) { d.bodies[0].inertia_kg_m2.xy = kNan; }},
-      {"sphere ball refers to a body that is not there",
+      {"sphere ball refers to a body that does not exist",
        [](ModelDef& d) { d.spheres[0].body = 2; }},
-      {"sphere ball refers to a body that is not there",
+      {"sphere ball refers to a body that does not exist",
        [](ModelDef& d) { d.spheres[0].body = -2; }},
-      {"sphere ball: centre must be finite", [](ModelDef& d) { d.spheres[0].center_m.x = kNan; }},
+      {"sphere ball: center must be finite", [](ModelDef& d) { d.spheres[0].center_m.x = kNan; }},
       {"sphere ball: radius must be a positive number",
        [](ModelDef& d) { d.spheres[0].radius_m = 0; }},
       {"sphere ball: kinetic friction must be zero or a positive number",
@@ -90,19 +90,19 @@ const std::vector<Mistake>& Mistakes() {
        [](ModelDef& d) { d.spheres[0].material.static_friction = kNan; }},
       {"sphere ball: static friction must not be below kinetic friction",
        [](ModelDef& d) { d.spheres[0].material.static_friction = 0.4; }},
-      {"sphere ball: restitution must be 0..1",
+      {"sphere ball: restitution must be within 0..1",
        [](ModelDef& d) { d.spheres[0].material.restitution = 1.1; }},
-      {"sphere ball: restitution must be 0..1",
+      {"sphere ball: restitution must be within 0..1",
        [](ModelDef& d) { d.spheres[0].material.restitution = -0.1; }},
-      {"rod rod refers to a body that is not there", [](ModelDef& d) { d.capsules[0].body = 7; }},
+      {"rod rod refers to a body that does not exist", [](ModelDef& d) { d.capsules[0].body = 7; }},
       {"rod rod: end must be finite", [](ModelDef& d) { d.capsules[0].from_m.y = kNan; }},
       {"rod rod: end must be finite", [](ModelDef& d) { d.capsules[0].to_m.y = kInfinity; }},
       {"rod rod: radius must be a positive number",
        [](ModelDef& d) { d.capsules[0].radius_m = -1; }},
-      {"rod rod: restitution must be 0..1",
+      {"rod rod: restitution must be within 0..1",
        [](ModelDef& d) { d.capsules[0].material.restitution = kNan; }},
-      {"box block refers to a body that is not there", [](ModelDef& d) { d.boxes[0].body = 2; }},
-      {"box block: centre must be finite", [](ModelDef& d) { d.boxes[0].center_m.x = kNan; }},
+      {"box block refers to a body that does not exist", [](ModelDef& d) { d.boxes[0].body = 2; }},
+      {"box block: center must be finite", [](ModelDef& d) { d.boxes[0].center_m.x = kNan; }},
       {"box block: the orientation must be a unit quaternion",
        [](ModelDef& d) {
          d.boxes[0].orientation = {0, 0, 0, 0};
@@ -113,7 +113,7 @@ const std::vector<Mistake>& Mistakes() {
        [](ModelDef& d) { d.boxes[0].half_extents_m.y = 0; }},
       {"box block: static friction must not be below kinetic friction",
        [](ModelDef& d) { d.boxes[0].material.kinetic_friction = 0.6; }},
-      {"terrain box wall: centre must be finite",
+      {"terrain box wall: center must be finite",
        [](ModelDef& d) { d.terrain_boxes[0].center_m.x = kNan; }},
       {"terrain box wall: the orientation must be a unit quaternion",
        [](ModelDef& d) {
@@ -121,9 +121,9 @@ const std::vector<Mistake>& Mistakes() {
        }},
       {"terrain box wall: half extent must be a positive number",
        [](ModelDef& d) { d.terrain_boxes[0].half_extents_m.z = -1; }},
-      {"terrain box wall: restitution must be 0..1",
+      {"terrain box wall: restitution must be within 0..1",
        [](ModelDef& d) { d.terrain_boxes[0].material.restitution = 2; }},
-      {"at most 8 planes", [](ModelDef& d) { d.planes.resize(9, d.planes[0]); }},
+      {"the model has more than 8 planes", [](ModelDef& d) { d.planes.resize(9, d.planes[0]); }},
       {"plane slope: point must be finite", [](ModelDef& d) { d.planes[0].point_m.x = kNan; }},
       {"plane slope: the normal must be a unit vector",
        [](ModelDef& d) {
@@ -133,11 +133,11 @@ const std::vector<Mistake>& Mistakes() {
        [](ModelDef& d) { d.planes[0].normal.x = kNan; }},
       {"plane slope: kinetic friction must be zero or a positive number",
        [](ModelDef& d) { d.planes[0].material.kinetic_friction = kInfinity; }},
-      {"node block refers to a body that is not there", [](ModelDef& d) { d.nodes[0].body = 9; }},
+      {"node block refers to a body that does not exist", [](ModelDef& d) { d.nodes[0].body = 9; }},
       {"node block: position must be finite", [](ModelDef& d) { d.nodes[0].position_m.x = kNan; }},
       {"cable stay needs two attachments or more",
        [](ModelDef& d) { d.cables[0].attachments.resize(1); }},
-      {"cable stay refers to a body that is not there",
+      {"cable stay refers to a body that does not exist",
        [](ModelDef& d) { d.cables[0].attachments[1].body = 2; }},
       {"cable stay: attachment must be finite",
        [](ModelDef& d) { d.cables[0].attachments[0].position_m.z = kNan; }},
@@ -153,9 +153,9 @@ const std::vector<Mistake>& Mistakes() {
        [](ModelDef& d) { d.cables[0].actuator.max_acceleration_m_per_s2 = kNan; }},
       {"cable stay: largest force must be positive",
        [](ModelDef& d) { d.cables[0].actuator.max_force_n = -5; }},
-      {"cable stay: least rest length must be zero or a positive number",
+      {"cable stay: smallest rest length must be zero or a positive number",
        [](ModelDef& d) { d.cables[0].actuator.min_rest_length_m = -1; }},
-      {"cable stay: least length must be zero or a positive number",
+      {"cable stay: smallest length must be zero or a positive number",
        [](ModelDef& d) { d.cables[0].actuator.min_length_m = kNan; }},
   };
   return mistakes;
@@ -193,7 +193,7 @@ TEST(ModelCheck, AllMistakesAreToldAtOnce) {
 }
 
 TEST(ModelCheck, SizesThatGrowWithTheSquareOfAModelHaveLimits) {
-  // 3163^2 > 10^7 > 3162^2, and a body of 5000 spheres meets the wall and 2000 others.
+  // 3163^2 > 10^7 > 3162^2, and a body of 5000 spheres with the wall and 2000 other spheres.
   ModelDef cables = Good();
   cables.cables.resize(3162, cables.cables[0]);
   ModelDef one_more = cables;
@@ -206,9 +206,9 @@ TEST(ModelCheck, SizesThatGrowWithTheSquareOfAModelHaveLimits) {
     return Model::Compile(def, complaints) == nullptr ? complaints.Format() : std::string();
   };
   EXPECT_EQ(complaint(one_more), "error: more than 10000000 pairs of cables share a body\n");
-  EXPECT_EQ(complaint(shapes),
-            "error: more than 10000000 pairs of shapes may collide; shapes that cannot meet need "
-            "not collide\n");
+  EXPECT_EQ(
+      complaint(shapes),
+      "error: more than 10000000 pairs of shapes may collide: exclude shapes that cannot meet\n");
   for (BoxDef& box : shapes.boxes) box.collides = false;
   for (SphereDef& sphere : shapes.spheres) sphere.collides = false;
   EXPECT_EQ(complaint(shapes), "");
@@ -225,7 +225,7 @@ TEST(ModelCheck, AFixedBodyNeedsNeitherMassNorInertia) {
 
 TEST(ModelCheck, AnActuatorsNumbersCountOnlyIfItHasLimits) {
   ModelDef def = Good();
-  def.cables[0].actuator = {};  // none: no limits given
+  def.cables[0].actuator = {};  // no actuator: no limits given
   Diagnostics complaints;
   EXPECT_NE(Model::Compile(def, complaints), nullptr) << complaints.Format();
 }

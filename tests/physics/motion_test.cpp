@@ -1,4 +1,4 @@
-// Bodies that move as a program says, against closed forms (docs/theory/motion.md).
+// Kinematic bodies against closed forms (docs/theory/motion.md).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ int Box(ModelDef& def, const std::string& name, double mass_kg, const Vec3& cent
   return scenes::AddBox(def, name, mass_kg, half_m, center_m, {}, material);
 }
 
-/// A slab whose upper side is at z = 0, with a motion.
+/// Returns a slab whose upper face is at z = 0, with a motion.
 ModelDef Slab(double friction, MotionDef motion) {
   ModelDef def;
   def.friction_combine = CombineRule::kMinimum;
@@ -43,7 +43,7 @@ TimeLaw Speeds(std::vector<std::pair<double, double>> points) {
 }
 
 TEST(Motion, ATurntableThrowsABlockOffAtTheSpeedWhereFrictionEnds) {
-  // mu g = w^2 r: at 7.0036 rad/s, 0.1 m from the middle with a coefficient of 0.5.
+  // mu g = w^2 r: at 7.0036 rad/s, 0.1 m from the axis with a coefficient of 0.5.
   const double limit = std::sqrt(0.5 * kG / 0.1);
   EXPECT_NEAR(limit, 7.0036, 1e-4);
   for (const double share : {0.9995, 1.0005}) {
@@ -67,8 +67,8 @@ TEST(Motion, ATurntableThrowsABlockOffAtTheSpeedWhereFrictionEnds) {
 }
 
 TEST(Motion, ABeltTakesABlockAlong) {
-  // From rest to 1 m/s at mu g: it slips by v^2 / (2 mu g), and friction turns as much of the
-  // belt's work into heat as into motion.
+  // From rest to 1 m/s at mu g: the block slips by v^2 / (2 mu g), and friction turns equal parts
+  // of the belt's work into heat and into motion.
   ModelDef def = Slab(0.5, Sliding({1, 0, 0}, Speeds({{0, 1}})));
   const int block = Box(def, "block", 0.3, {0, 0, 0.01}, {0.05, 0.05, 0.01}, {1, 1});
   Batch world = MakeBatch(def);
@@ -93,8 +93,8 @@ TEST(Motion, APlatformLiftsAndItsWorkIsThatOfTheWeight) {
 }
 
 TEST(Motion, AShakerDrivesASpringLikeTheClosedForm) {
-  // x'' = w0^2 (y - x), y = A sin(w t), all at rest before: x = A / (1 - r^2) (sin w t - r sin w0
-  // t), r = w / w0. What the shaker does is what the mass and its spring have.
+  // x'' = w0^2 (y - x), y = A sin(w t), from rest: x = A / (1 - r^2) (sin w t - r sin w0 t), r = w
+  // / w0. The shaker's work is the energy of the mass and its spring.
   double error[2] = {}, lost[2] = {};
   for (int k = 0; k < 2; ++k) {
     const double h = k == 0 ? 1e-3 : 0.5e-3, w0 = 20, f = 2, A = 0.01,
@@ -126,7 +126,7 @@ TEST(Motion, AShakerDrivesASpringLikeTheClosedForm) {
 }
 
 TEST(Motion, CablesThatItPullsHaveTheTensionOfTheAcceleration) {
-  // Stiff ones are found by the solver, soft ones are not.
+  // Stiff cables are solved implicitly, soft ones are not.
   for (const double stiffness : {200.0, 2e6}) {
     ModelDef def = Slab(0.5, Sliding({0, 0, 1}, Speeds({{1, 0}, {3, 4}})));
     Box(def, "mass", 0.5, {0, 0, -1.1}, {0.05, 0.05, 0.05}, {});
@@ -175,7 +175,8 @@ TEST(Motion, ARodWeldedToATurntableIsHeldByTheForceOfItsCircle) {
   EXPECT_NEAR(world.Motion(0, 0).turn_rad, 15, 1e-12);
 }
 
-/// A table that turns and rises, a heap on it, a rod that hangs from it on a hinge and a cable.
+/// Returns a table that rotates and rises, a heap on it, a rod that hangs from it on a hinge, and a
+/// cable.
 ModelDef Busy() {
   MotionDef motion = Turning(Speeds({{0, 0}, {0.5, 4}}));
   motion.slide = {{}, 0.01, 3, 0.5};
@@ -257,9 +258,9 @@ TEST(Motion, WrongOnesAreAllNamed) {
   def.motions[2].body = 7;
   Diagnostics out;
   EXPECT_EQ(Model::Compile(def, out), nullptr);
-  EXPECT_THAT(out.Format(),
-              AllOf(HasSubstr("times must rise"), HasSubstr("unit vector"),
-                    HasSubstr("another motion"), HasSubstr("frequency"), HasSubstr("not there")));
+  EXPECT_THAT(out.Format(), AllOf(HasSubstr("times must increase"), HasSubstr("unit vector"),
+                                  HasSubstr("already has a motion"), HasSubstr("frequency"),
+                                  HasSubstr("does not exist")));
   def = Slab(0.5, {});
   def.bodies[0].fixed = false;
   EXPECT_EQ(Model::Compile(def, out), nullptr);

@@ -1,4 +1,4 @@
-/// What the tests of motors share: motors that wind a cable between two fixed points, or a weight.
+/// Scenes for the tests of motors: motors that wind a cable between two fixed points, or a weight.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace taut::test {
 
-/// The figures of the data sheet alone: nothing sticks, no gear takes power, no supply sags, and
-/// the winding's resistance does not follow its heat.
+/// Returns a motor with the parameters of the data sheet only: without stiction, gear losses,
+/// supply resistance and temperature dependence of the winding's resistance.
 inline DcMotorDef PlainMotor() {
   DcMotorDef motor;
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 0;
@@ -24,7 +24,7 @@ inline void Wind(CableDef& cable, const DcMotorDef& motor) {
   cable.actuator.dc_motor = motor;
 }
 
-/// A cable between two fixed points, 1 m apart, with a rest length of `rest_m`.
+/// Returns a motor on a cable between two fixed points, 1 m apart, with a rest length of `rest_m`.
 inline ModelDef MotorAlone(const DcMotorDef& motor, double rest_m = 100,
                            double stiffness_n_per_m = 1000) {
   ModelDef def;
@@ -38,7 +38,7 @@ inline ModelDef MotorAlone(const DcMotorDef& motor, double rest_m = 100,
   return def;
 }
 
-/// A weight that hangs still on a motor.
+/// Returns a weight that hangs at rest on a motor.
 inline scenes::HangingMass Weight(double mass_kg, double stiffness_n_per_m,
                                   double damping_n_s_per_m = 0) {
   scenes::HangingMass scene;

@@ -1,5 +1,5 @@
-/// Motors that stand and motors that stop, to the bit and within a step (docs/theory/motor.md,
-/// sections 2 and 3): what looks the same from afar whichever way it is computed.
+/// Sticking and stopping motors, to the bit and within a step (docs/theory/motor.md, sections 2 and
+/// 3): details that long runs do not resolve.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@ namespace {
 double Speed(const Batch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
 double Angle(const Batch& world) { return world.Motor(0, 0).rotor_angle_rad; }
 
-// Whatever the weight does, a motor that holds is a fixed end: the same bits as without a motor,
-// above all where the rotor is so light that the cable would feel it turn.
+// A motor that holds is a fixed end for any motion of the weight: the same bits as without a motor,
+// also with a rotor so light that the cable would be affected by its rotation.
 TEST(MotorStick, AMotorThatHoldsIsAFixedEnd) {
   DcMotorDef motor;
   motor.gear_ratio = 2;
@@ -39,9 +39,9 @@ TEST(MotorStick, AMotorThatHoldsIsAFixedEnd) {
   }
 }
 
-// Braked, with friction, no cable: w_1 = (w_0 - F h / J (1 + z / 2)) / p is 0 from the step on that
-// (M.10) says, and the way of that step is h w_0 / (2 + z), of one that is a little shorter that of
-// (M.8).
+// Braked, with friction, no cable: w_1 = (w_0 - F h / J (1 + z / 2)) / p is 0 from the step length
+// of (M.10) on, in which the rotor travels h w_0 / (2 + z); in a slightly shorter step it travels
+// the distance of (M.8).
 TEST(MotorStick, ItStopsInTheStepThatFrictionAndBrakeHaveTimeIn) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 4e-4;
@@ -72,15 +72,15 @@ TEST(MotorStick, ItStopsInTheStepThatFrictionAndBrakeHaveTimeIn) {
   }
 }
 
-// Where torque and cable hold each other a little before the end of the spool, the motor stays
-// there, though without the cable it would be at the end within a step.
+// Where torque and tension balance just before the end of the spool, the motor stays there, though
+// without the cable it would reach the end within a step.
 TEST(MotorStick, TheEndOfTheSpoolIsNotReachedAgainstTheCable) {
   DcMotorDef motor = PlainMotor();
   motor.gear_ratio = 1;
   const double tension_n =
       motor.torque_constant_n_m_per_a * motor.supply_voltage_v / motor.resistance_ohm / Way(motor);
   const double rest_m = 1 - tension_n / 1000;
-  ModelDef def = MotorAlone(motor, rest_m + 1e-8, 1000);  // a little to do
+  ModelDef def = MotorAlone(motor, rest_m + 1e-8, 1000);  // a small remaining travel
   def.cables[0].actuator.min_rest_length_m = rest_m - 1e-7;
   Batch world = MakeBatch(def);
   world.SetDuty(0, 0, 1);
@@ -88,7 +88,7 @@ TEST(MotorStick, TheEndOfTheSpoolIsNotReachedAgainstTheCable) {
   EXPECT_NEAR(world.Cable(0, 0).rest_length_m, rest_m, 2e-8);
 }
 
-// Not even by a rounding is a rest length shorter than the shortest.
+// No rounding error makes a rest length shorter than the minimum.
 TEST(MotorStick, TheEndOfTheSpoolIsNeverPassed) {
   for (int i = 0; i < 40; ++i) {
     ModelDef def = MotorAlone(DcMotorDef(), 0.2);
@@ -105,7 +105,7 @@ TEST(MotorStick, TheEndOfTheSpoolIsNeverPassed) {
   }
 }
 
-// A gear that locks is never driven back, however hard the cable that stops the rotor within a
+// A self-locking gear is never driven back, however stiff the cable that stops the rotor within a
 // step.
 TEST(MotorStick, ACableThatStopsItDoesNotTurnItBack) {
   DcMotorDef motor;
@@ -132,7 +132,7 @@ TEST(MotorStick, ACableThatStopsItDoesNotTurnItBack) {
   }
 }
 
-// Nor one that a weight pulls taut as it falls into it, whose tension nobody can expect.
+// Nor by a weight that falls into its slack cable, whose tension cannot be predicted.
 TEST(MotorStick, AWeightThatFallsIntoItsCableDoesNotTurnItBack) {
   DcMotorDef motor;
   motor.gear_efficiency = 0.4;
@@ -159,8 +159,8 @@ TEST(MotorStick, AWeightThatFallsIntoItsCableDoesNotTurnItBack) {
   }
 }
 
-// What turns round within a step still has gone on before: w_m of (M.8), friction against the way
-// that it goes in the end.
+// A rotor that reverses within a step still travels forward first: w_m of (M.8), with friction
+// against the final direction.
 TEST(MotorStick, WhatTurnsRoundWithinAStepWentOnBefore) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
@@ -188,15 +188,15 @@ TEST(MotorStick, WhatTurnsRoundWithinAStepWentOnBefore) {
   }
 }
 
-// Driven out against a gear that locks, the cable holds the rotor the more the more it pulls: what
-// would be a negative stiffness in series is none.
+// Winding out through a self-locking gear: the friction that holds the rotor grows with the
+// tension, which must not become a negative stiffness in series.
 TEST(MotorStick, PaysOutThroughAGearThatLocks) {
   DcMotorDef motor;
   motor.gear_ratio = 1;
   motor.gear_efficiency = 0.3;
   for (const double stiffness : {1e3, 1e5, 1e6}) {
     for (const double h : kThreeStepsS) {
-      const double tension_n = 0.3;  // of 1.3 that the torque at stall makes of it
+      const double tension_n = 0.3;  // stall torque: 1.3 N
       Batch world = MakeBatch(MotorAlone(motor, 1 - tension_n / stiffness, stiffness));
       world.SetDuty(0, 0, -1);
       double before_n = tension_n;
@@ -212,8 +212,7 @@ TEST(MotorStick, PaysOutThroughAGearThatLocks) {
   }
 }
 
-// Where it turns evenly, its torque is that of back EMF and of (M.5), whose bend is at Stribeck's
-// speed.
+// At constant speed, its torque balances back EMF and (M.5), whose bend is at Stribeck's speed.
 TEST(MotorStick, FrictionFallsWithTheSquareOfTheSpeed) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = 8e-5;
@@ -231,7 +230,7 @@ TEST(MotorStick, FrictionFallsWithTheSquareOfTheSpeed) {
   }
 }
 
-// Put somewhere by its rest length, its flanks are together there.
+// Setting the rest length closes the backlash.
 TEST(MotorStick, AMotorThatIsPutSomewhereHasNoSlackInItsGear) {
   DcMotorDef motor;
   motor.backlash_rad = 0.1;

@@ -18,7 +18,7 @@ ModelDef TwoMotors(const DcMotorDef& a, const DcMotorDef& b) {
 // Two stalled motors at duty d: V = V0 - r I, I = sum of d (d V / R).
 TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
   DcMotorDef motor = PlainMotor();
-  motor.supply_resistance_ohm = 5;  // so much that a lagging voltage would swing
+  motor.supply_resistance_ohm = 5;  // so large that a lagging voltage would oscillate
   motor.resistance_ohm = 4;
   DcMotorDef apart = motor;
   apart.supply = "other";
@@ -33,7 +33,7 @@ TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
     }
     EXPECT_NEAR(world.Motor(0, 0).current_a, volts / 4, 1e-6 * volts);
     EXPECT_NEAR(world.Motor(0, 1).voltage_v, volts / 2, 1e-6 * volts);
-    // Of its own supply each has what it would have alone.
+    // On separate supplies each motor has the voltage of a single motor.
     Batch two = MakeBatch(TwoMotors(motor, apart));
     two.SetDuty(0, 0, 1);
     two.SetDuty(0, 1, 0.5);
@@ -43,7 +43,7 @@ TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
   }
 }
 
-// One that is off draws nothing, whatever its duty was.
+// A motor that is off draws nothing, whatever its last duty.
 TEST(MotorSupply, DoesNotSagByAMotorThatIsOff) {
   DcMotorDef motor = PlainMotor();
   motor.supply_resistance_ohm = 5;
@@ -55,7 +55,7 @@ TEST(MotorSupply, DoesNotSagByAMotorThatIsOff) {
   EXPECT_NEAR(world.Motor(0, 0).supply_voltage_v, 12 / (1 + 5 / motor.resistance_ohm), 1e-5);
 }
 
-// The duty of a servo that moves is what its damping leaves of it (M.6), in (M.7), too.
+// The duty of a moving servo is reduced by its damping (M.6), in (M.7), too.
 TEST(MotorSupply, SagsByWhatAServoDrawsWhileItMoves) {
   DcMotorDef motor = PlainMotor();
   motor.supply_resistance_ohm = 5;
@@ -75,7 +75,7 @@ TEST(MotorSupply, SagsByWhatAServoDrawsWhileItMoves) {
   }
 }
 
-// What a braking motor gives back does not lift the supply above its voltage without load.
+// The returned current of a braking motor does not raise the supply above its no-load voltage.
 TEST(MotorSupply, IsNotChargedAboveItsVoltage) {
   DcMotorDef motor = PlainMotor();
   motor.supply_resistance_ohm = 5;

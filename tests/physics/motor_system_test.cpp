@@ -1,4 +1,4 @@
-/// Motors in company: energies, heat, backlash, the servo, and what a step's length does.
+/// Motors in a system: energies, heat, backlash, the servo, and the effect of the step size.
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ double RotorEnergy(const Batch& world, const DcMotorDef& motor) {
   return 0.5 * motor.rotor_inertia_kg_m2 * w * w;
 }
 
-// Without friction, what comes from the supply is in the winding, in the driver, in the rotor and
-// in the cable, whatever happens; the scheme's own loss is of the step's square.
+// Without friction, the supply's energy equals the sum over winding, driver, rotor and cable at all
+// times; the scheme's loss is of the order of the squared step.
 TEST(MotorEnergy, IsAllAccountedFor) {
   DcMotorDef motor = PlainMotor();
   motor.driver_resistance_ohm = 0.45;
@@ -47,7 +47,7 @@ TEST(MotorEnergy, IsAllAccountedFor) {
   }
 }
 
-// What a motor gives to its cable is what the weight and the spring have more of.
+// The energy that a motor supplies to its cable is the gain of the weight and the spring.
 TEST(MotorEnergy, ToTheCableIsWhatItStoresAndLifts) {
   for (const double stiffness : {300.0, 1e5}) {
     Batch world = MakeBatch(MotorWithWeight(DcMotorDef(), Weight(1.5, stiffness)));
@@ -58,12 +58,12 @@ TEST(MotorEnergy, ToTheCableIsWhatItStoresAndLifts) {
     const double given = world.Motor(0, 0).energy_to_cable_j;
     EXPECT_NEAR(given, EnergyOf(world) - start, 1e-3 * given) << stiffness;
     EXPECT_NEAR(given, 1.5 * 9.81 * 0.1, 0.02 * given) << stiffness;
-    // Gear and winding take most of what it draws.
+    // Gear and winding dissipate most of the energy drawn.
     EXPECT_GT(world.Motor(0, 0).energy_from_supply_j, given / 0.66);
   }
 }
 
-// At a steady speed: from the supply V i, to the cable T v, and the difference is heat and
+// At a constant speed: V i from the supply, T v to the cable, and the difference is heat and
 // friction.
 TEST(MotorEnergy, OfASteadyLiftIsThatOfTheLaw) {
   DcMotorDef motor;
@@ -86,8 +86,8 @@ TEST(MotorEnergy, OfASteadyLiftIsThatOfTheLaw) {
               1e-3 * load * way * speed * 5);
 }
 
-// A stalled motor whose housing stays cold: the winding's temperature rises by
-// P Rth (1 - exp(-t / 5.6 s)); with the air alone to cool it, by P (Rth1 + Rth2) in the end.
+// A stalled motor whose housing stays cold: the winding's temperature rises by P Rth (1 - exp(-t /
+// 5.6 s)); cooled by the air alone, by P (Rth1 + Rth2) in the end.
 TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
   DcMotorDef motor = PlainMotor();
   DcMotorDef cold = motor;
@@ -100,7 +100,7 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
   EXPECT_NEAR(m.winding_temperature_c - 22, 10 * power * (1 - std::exp(-1.0)), 0.005 * 10 * power);
   EXPECT_NEAR(m.energy_in_winding_j, power * 5.6, 0.01 * power * 5.6);
 
-  motor.winding_thermal_time_s = 0.56;  // sooner over
+  motor.winding_thermal_time_s = 0.56;  // for an earlier steady state
   motor.housing_thermal_time_s = 2.2;
   Batch warm = MakeBatch(MotorAlone(motor, 1, 1e5));
   warm.SetDuty(0, 0, 0.5);
@@ -117,7 +117,8 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
   EXPECT_NEAR(copper.Motor(0, 0).winding_temperature_c - 22, rise, 1e-6 * rise);
 }
 
-// The rotor turns through the backlash while the spool stands, and back; taut, there is none.
+// With a slack cable the rotor crosses the backlash while the spool stands, in both directions;
+// with a taut cable there is none.
 TEST(MotorBacklash, IsFeltWhereTheCableIsSlack) {
   DcMotorDef motor;
   motor.backlash_rad = 0.1;
@@ -161,7 +162,8 @@ TEST(MotorBacklash, AWeightKeepsTheFlanksTogether) {
   EXPECT_EQ(loose.Motor(0, 0).backlash_m, 0);
 }
 
-// Small ways, without friction: tau e'' + (1 + v D) e' + v P e = 0 with v the speed at full duty.
+// Small displacements, without friction: tau e'' + (1 + v D) e' + v P e = 0 with v the speed at
+// full duty.
 TEST(MotorServo, IsTheLinearLawOfItsGains) {
   DcMotorDef motor = PlainMotor();
   motor.servo_gain_per_m = 3000;
@@ -242,10 +244,10 @@ TEST(Motor, ADutyBeyondItsEndsCountsAsTheEndAndNotANumberHaltsTheWorld) {
   world.Step(1e-3, 10);
   EXPECT_EQ(world.Status(0).bits & kStatusNonFinite, kStatusNonFinite);
   EXPECT_EQ(Rest(world), rest);
-  EXPECT_EQ(world.Motor(0, 0).duty, -1);  // as it was
+  EXPECT_EQ(world.Motor(0, 0).duty, -1);  // unchanged
 }
 
-// A motor starts where it is put, at rest, with the angle of that rest length.
+// A motor starts at rest at the given rest length, with the corresponding angle.
 TEST(Motor, IsPutSomewhereByItsRestLength) {
   const DcMotorDef motor;
   Batch world = MakeBatch(MotorAlone(motor, 1.5));
@@ -257,7 +259,7 @@ TEST(Motor, IsPutSomewhereByItsRestLength) {
   EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad, 0.3 / Way(motor), 1e-9);
 }
 
-/// The end of a second of lifting and lowering, by the servo and by duties.
+/// Returns the final state of one second of lifting and lowering, by the servo and by duties.
 std::vector<double> EndOfARun(double h, double stiffness, double damping, double gear_ratio,
                               bool* finite = nullptr) {
   DcMotorDef motor;
@@ -265,7 +267,8 @@ std::vector<double> EndOfARun(double h, double stiffness, double damping, double
   motor.supply_resistance_ohm = 0.3;
   Batch world = MakeBatch(MotorWithWeight(motor, Weight(0.8, stiffness, damping)));
   const double fastest = Way(motor) * 12 / motor.torque_constant_n_m_per_a;
-  // Where a weight is caught that falls from some millimetres, or as fast as the motor lets it.
+  // Tension peak of catching a weight that falls by some millimeters, or at the motor's highest
+  // speed.
   const double jerk = 3 * (fastest + 0.3) * std::sqrt(0.8 * stiffness);
   double most = 0;
   for (int i = 0; i < StepsIn(1.0, h); ++i) {
@@ -284,8 +287,8 @@ std::vector<double> EndOfARun(double h, double stiffness, double damping, double
           m.energy_from_supply_j};
 }
 
-// What a step leaves out shrinks with it, at least in proportion: stops and starts within a step,
-// and the servo's saturation, are of first order, all else of second.
+// The error of a step shrinks at least in proportion to the step: stops and starts within a step
+// and the servo's saturation are of first order, all else of second.
 TEST(MotorStep, ConvergesWithTheStep) {
   for (const double stiffness : {227.0, 1e4, 1e5}) {
     const double damping = 0.4 * std::sqrt(stiffness * 0.8);
@@ -301,8 +304,7 @@ TEST(MotorStep, ConvergesWithTheStep) {
   }
 }
 
-// Whatever the spring, the gear and the step, up to 4 ms: heavy rotors behind a gear and light ones
-// without.
+// For any spring, gear and step up to 4 ms: heavy rotors behind a gear and light ones without.
 TEST(MotorStep, NothingBlowsUp) {
   for (const double stiffness : {227.0, 1e4, 1e5, 1e6, 1e7}) {
     for (const double gear_ratio : {76.0, 20.0, 5.0, 1.0}) {

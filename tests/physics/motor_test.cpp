@@ -1,4 +1,4 @@
-/// Motors against closed forms (docs/theory/motor.md): running up and down, stall, back-driving,
+/// DC motors against closed forms (docs/theory/motor.md): running up and down, stall, back-driving,
 /// holding.
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ namespace {
 double Speed(const Batch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
 double Rest(const Batch& world) { return world.Cable(0, 0).rest_length_m; }
 
-// The data sheet of the Faulhaber 1524T012SR: 9800 rpm and 7 mA without load, 6.92 mN m at stall,
-// a mechanical time constant of 8.3 ms. Its numbers fit each other to some 1 %.
+// Data sheet of the Faulhaber 1524T012SR: 9800 rpm and 7 mA without load, 6.92 mN m at stall, a
+// mechanical time constant of 8.3 ms. These numbers agree with each other to some 1 %.
 TEST(Motor, DoesWhatItsDataSheetSays) {
   DcMotorDef motor;
   motor.driver_resistance_ohm = 0;
@@ -34,8 +34,8 @@ TEST(Motor, DoesWhatItsDataSheetSays) {
   EXPECT_NEAR(torque - motor.friction_torque_n_m, 6.92e-3, 0.01 * 6.92e-3);
 }
 
-// w_n = w_inf (1 - p^-n), p = 1 + z + z^2 / 2, z = h / tau, is our scheme's exp(-t / tau)
-// (motor.md, M.8), whose error in time is z^2 / 6.
+// w_n = w_inf (1 - p^-n), p = 1 + z + z^2 / 2, z = h / tau, is the scheme's approximation of exp(-t
+// / tau) (motor.md, M.8), whose error in time is z^2 / 6.
 TEST(Motor, RunsUpExponentially) {
   const DcMotorDef motor = PlainMotor();
   const double k = motor.torque_constant_n_m_per_a;
@@ -52,7 +52,7 @@ TEST(Motor, RunsUpExponentially) {
       EXPECT_NEAR(Speed(world), expected, RoundOff(steps, std::fabs(final_speed)));
       EXPECT_NEAR(Speed(world), final_speed * (1 - std::exp(-0.016 / tau)),
                   std::fabs(final_speed) * z * z * 0.1);
-      // The way is what the speeds add up to: J dw = k i dt, V = R i + k dtheta/dt.
+      // The angle is the sum of the speeds: J dw = k i dt, V = R i + k dtheta/dt.
       const double angle = (final_speed * 0.016 - Speed(world) * tau);
       EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad, angle, RoundOff(steps, 1e5));
       EXPECT_NEAR(Rest(world), 100 - Way(motor) * angle, RoundOff(steps, 200));
@@ -60,7 +60,7 @@ TEST(Motor, RunsUpExponentially) {
   }
 }
 
-// Without a driver only friction is left: the speed falls in a line and is exactly 0 in the end.
+// With the driver off only friction acts: the speed falls linearly and is exactly 0 in the end.
 TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
@@ -77,7 +77,7 @@ TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
     EXPECT_EQ(world.Motor(0, 0).current_a, 0);
     world.Step(h, StepsIn(start / falls - 0.4 + h, h) + 1);
     EXPECT_EQ(Speed(world), 0);
-    // The last step stops within itself; it takes half of it for that.
+    // The motor stops within the last step, in half of it.
     EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad - angle, start * start / (2 * falls),
                 0.5 * falls * h * h + RoundOff(4000, 1e6));
     const double rest = Rest(world);
@@ -86,7 +86,7 @@ TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
   }
 }
 
-// The same with viscous friction: w = (w0 + c) exp(-t / tau) - c, c = friction / viscous.
+// With viscous friction: w = (w0 + c) exp(-t / tau) - c, c = friction / viscous.
 TEST(Motor, ViscousFrictionSlowsItDown) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 2e-5;
@@ -121,7 +121,7 @@ TEST(Motor, DutyZeroBrakes) {
   EXPECT_LT(world.Motor(0, 0).current_a, 0);
 }
 
-// Wound up to where the drive's torque is that of friction and of the cable through the gear.
+// Wound up to the balance of the drive's torque with friction and the cable through the gear.
 TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
@@ -135,10 +135,11 @@ TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
       Batch world = MakeBatch(MotorAlone(motor, 1, 2e4));
       world.SetDuty(0, 0, duty);
       world.Step(h, StepsIn(2.0, h));
-      EXPECT_NEAR(Speed(world), 0, 1e-8);  // exponentially, where friction is the same at any speed
-      // It comes to rest from below; the mass of the rotor carries it no more than this beyond.
+      // exponential decay, as friction does not depend on the speed
+      EXPECT_NEAR(Speed(world), 0, 1e-8);
+      // The tension is approached from below; the rotor's inertia overshoots by less than this.
       EXPECT_NEAR(world.Cable(0, 0).tension_n, tension, 1e-3 * tension);
-      // What holds it between winding in and being pulled out is the friction on both sides.
+      // Between winding in and being pulled out, friction in both directions holds the motor.
       const double rest = Rest(world);
       world.SetDuty(0, 0, 0.8 * duty);
       world.Step(h, 500);
@@ -147,14 +148,15 @@ TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
   }
 }
 
-/// What the cable's torque, less the gear's friction, must not exceed for the motor to hold.
+/// Returns the largest cable tension [N] that the motor's static friction holds, the gear's
+/// friction included.
 double LargestHeldN(const DcMotorDef& motor) {
-  const double share = 2 - 1 / motor.gear_efficiency;  // arrives at the rotor
+  const double share = 2 - 1 / motor.gear_efficiency;  // share of the cable's torque at the rotor
   return share > 0 ? motor.static_friction_torque_n_m / (Way(motor) * share) : INFINITY;
 }
 
-// A weight that friction can hold stays where it is, to the bit, for as long as one looks; one that
-// is 1 % heavier goes down.
+// A weight that friction can hold keeps its position to the bit indefinitely; a weight heavier by 1
+// % descends.
 TEST(Motor, SwitchedOffItHoldsWhatItsFrictionCan) {
   DcMotorDef motor;
   for (const double efficiency : {1.0, 0.66, 0.5, 0.3}) {
@@ -175,7 +177,7 @@ TEST(Motor, SwitchedOffItHoldsWhatItsFrictionCan) {
   }
 }
 
-// While its cable rings, too, without any creep.
+// Also while its cable vibrates, without any creep.
 TEST(Motor, HoldsARingingCableWithoutCreep) {
   DcMotorDef motor;
   for (const double stiffness : {227.0, 1e4, 1e6}) {
@@ -213,7 +215,8 @@ TEST(Motor, AWeightDrivesItBack) {
   }
 }
 
-// Braked, it sinks at the speed at which the short circuit's torque is what is left of the load's.
+// Braked, it sinks at the speed at which the torque of the short circuit balances the load less
+// friction.
 TEST(Motor, SinksEvenlyWhenBraked) {
   DcMotorDef motor;
   motor.resistance_rise_per_k = 0;
@@ -225,12 +228,13 @@ TEST(Motor, SinksEvenlyWhenBraked) {
     world.SetDuty(0, 0, 0);
     world.Step(h, StepsIn(2.0, h));
     const double expected = -torque * ohm / (k * k);
-    // Above Stribeck's speed a share of (10 / 150)^2 of the friction at rest is left.
+    // Above Stribeck's speed, a share of (10 / 150)^2 of the Stribeck term remains.
     EXPECT_NEAR(Speed(world), expected, 0.003 * std::fabs(expected));
   }
 }
 
-// What breaks away at the friction of rest goes on at that of sliding, and runs away.
+// A motor that breaks away at its static friction continues against the lower kinetic friction and
+// runs away.
 TEST(Motor, BreaksAwayAtTheFrictionOfRest) {
   DcMotorDef motor = PlainMotor();
   motor.friction_torque_n_m = 8e-5;
@@ -244,12 +248,12 @@ TEST(Motor, BreaksAwayAtTheFrictionOfRest) {
   EXPECT_EQ(Rest(world), 100);
   world.SetDuty(0, 0, 1.05 * 3e-4 / per_duty);
   world.Step(1e-3, 1000);
-  // (torque - friction) R / k^2, with what Stribeck's law leaves at that speed.
+  // (torque - friction) R / k^2, less the Stribeck term at that speed.
   const double k = motor.torque_constant_n_m_per_a;
   const double expected = (1.05 * 3e-4 - 8e-5) * motor.resistance_ohm / (k * k);
   const double more = 2.2e-4 / (1 + expected * expected) * motor.resistance_ohm / (k * k);
   EXPECT_NEAR(Speed(world), expected - more, 0.2 * more);
-  // It stays in motion below that torque, down to the friction of sliding.
+  // Below that torque it stays in motion, down to the kinetic friction.
   world.SetDuty(0, 0, 2e-4 / per_duty);
   world.Step(1e-3, 1000);
   EXPECT_GT(Speed(world), 10);

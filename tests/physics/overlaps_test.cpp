@@ -1,4 +1,4 @@
-/// What is in each other, against what is known of spheres, rods and boxes.
+/// Overlaps (penetration depths) of spheres, rods and boxes against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ PlaneDef Ground() {
   return ground;
 }
 
-/// The only overlap.
+/// Returns the only overlap.
 Overlap OnlyOne(const Batch& world) {
   const std::vector<Overlap> found = world.Overlaps(0);
   EXPECT_EQ(found.size(), 1u);
@@ -63,13 +63,13 @@ TEST(Overlaps, TwoBodiesAreOneOverlapWithTheWorstOfTheirShapes) {
   ModelDef def;
   def.bodies = {BodyAt({0, 0, 1}), BodyAt({0, 0.1, 1})};
   def.capsules = {{"a", 0, {-1, 0, 1}, {1, 0, 1}, 0.06, {}, true},
-                  {"b", 1, {-1, 0.1, 1}, {1, 0.1, 1}, 0.05, {}, true}};  // 1 cm: a fifth of b
-  def.spheres = {{"thin", 1, {0, 0.065, 1}, 0.01, {}, true}};            // 5 mm: half of it
+                  {"b", 1, {-1, 0.1, 1}, {1, 0.1, 1}, 0.05, {}, true}};  // 1 cm: a fifth of `b`
+  def.spheres = {{"thin", 1, {0, 0.065, 1}, 0.01, {}, true}};            // 5 mm: half of the radius
   Overlap overlap = OnlyOne(MakeBatch(def));
   EXPECT_EQ(overlap.depth_m > 0 ? overlap.half_thickness_m : 0, 0.01);
   EXPECT_NEAR(overlap.depth_m, 0.005, 1e-15);
   EXPECT_EQ(overlap.b.list == List::kSpheres || overlap.a.list == List::kSpheres, true);
-  // What does not collide is in nothing.
+  // Shapes that do not collide have no overlaps.
   def.spheres[0].collides = false;
   overlap = OnlyOne(MakeBatch(def));
   EXPECT_NEAR(overlap.depth_m, 0.01, 1e-15);

@@ -1,4 +1,4 @@
-/// Limits of the parameters of a world: those of model files.
+/// Limits of the parameters of a world, equal to the limits in model files.
 
 #include <gtest/gtest.h>
 

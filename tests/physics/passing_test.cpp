@@ -1,5 +1,5 @@
-/// What passes by is not deflected, what meets is, and what lies keeps its contacts
-/// (docs/theory/contact.md, section 7).
+/// Continuous collision detection: bodies that pass each other are not deflected, bodies that meet
+/// rebound, and resting bodies keep their contacts (docs/theory/contact.md, section 7).
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,12 @@ namespace {
 constexpr double kStepS = 1e-3;
 const Material kSmooth{0, 0, 0};
 
-/// A model whose body 0 flies along x past what body 1 or the terrain is: as far behind the origin
-/// as `back_m` says, and `clear_m` away from it.
+/// Returns a model whose body 0 flies along x past body 1 or the terrain: it starts `back_m` behind
+/// the origin and passes at a distance of `clear_m`.
 using Flyby = std::function<ModelDef(double clear_m, double back_m)>;
 
-/// How many of 16 flights, whose steps begin at 16 places of the way of a step, change anything.
+/// Returns how many of 16 flights, with starts shifted by sixteenths of a step's travel, change any
+/// velocity.
 int Deflected(const Flyby& flyby, double clear_m, double speed_m_per_s, double spin_rad_per_s = 0) {
   int deflected = 0;
   for (int phase = 0; phase < 16; ++phase) {
@@ -96,7 +97,7 @@ TEST(Passing, ARodPassesTheEndOfARod) {
 }
 
 TEST(Passing, ARodPassesOverTheEdgesOfAWall) {
-  // Across its way, askew, and endways.
+  // The wall lies across the path, oblique to it, and along it.
   for (const Vec3& half : {Vec3{0, 0.2, 0}, Vec3{0.08, 0.12, 0}, Vec3{0.1, 0, 0}}) {
     PassesAtAnySpeed([&](double clear, double back) { return OverTheWall(clear, back, half); });
   }
@@ -107,7 +108,7 @@ TEST(Passing, ABoxPassesABox) {
   const struct {
     Quat q;
     double reach_m;
-  } cases[] = {{{}, 0.05},  // face over face; an edge along the way, and across it
+  } cases[] = {{{}, 0.05},  // face over face; an edge along the path, and across it
                {scenes::Turn({1, 0, 0}, pi / 4), 0.05 * std::sqrt(2.0)},
                {scenes::Turn({0, 1, 0}, pi / 4), 0.05 * std::sqrt(2.0)}};
   for (const auto& c : cases) {
@@ -126,8 +127,8 @@ TEST(Passing, ASpinningBallPassesABall) {
 }
 
 TEST(Passing, ABallThatMeetsAnEdgeReboundsFromWhereTheyTouch) {
-  // The edge at half a radius below the ball's centre: the normal is that of the moment of touch,
-  // 30 degrees askew, and goes through the centre, so that a smooth ball gets no spin.
+  // The edge is half a radius below the ball's center: the normal at the moment of contact is 30
+  // degrees oblique and passes through the center, so that a smooth ball gets no spin.
   const double s = 0.5, c = std::sqrt(1 - s * s);
   for (const double speed : {1.0, 3.0, 10.0, 30.0}) {
     for (int phase = 0; phase < 16; ++phase) {
@@ -141,7 +142,7 @@ TEST(Passing, ABallThatMeetsAnEdgeReboundsFromWhereTheyTouch) {
       Batch world = MakeBatch(def);
       world.Step(kStepS, StepsIn(0.5 / speed, kStepS));
       const BodyState ball = world.Body(0, 0);
-      // Balls count as touching from a thousandth of a step's way on; over r of lever.
+      // Balls count as touching within a thousandth of a step's travel; divided by the lever arm r.
       const double off = 4e-3 * speed * kStepS / kBallM;
       EXPECT_NEAR(EnergyOf(world), 0.5 * speed * speed, 1e-9 * speed * speed) << speed;
       EXPECT_LE(Distance((1 / speed) * ball.velocity_m_per_s, {1 - 2 * c * c, 0, 2 * c * s}), off)
@@ -184,8 +185,8 @@ TEST(Passing, WhatMeetsAWallOrABoxReboundsWithItsEnergy) {
 }
 
 TEST(Passing, ASlabOnBallsKeepsAllItsContacts) {
-  // All fall alike before contacts hold them: only the free motion of one against another tells
-  // what meets, and there is none.
+  // Before contacts hold the bodies, all fall alike. Contacts are detected from their relative free
+  // motion, which is zero.
   for (const bool fixed : {true, false}) {
     ModelDef def;
     const Material material{0.5, 0.5, 0};

@@ -1,5 +1,5 @@
-/// What a high tension does across a cable: a string's stiffness T / l, which no scheme along the
-/// cable takes care of (docs/theory/cables.md, eq. 12).
+/// Transverse stiffness T / l of a cable under high tension, which no scheme along the cable covers
+/// (docs/theory/cables.md, eq. 12).
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 namespace taut::test {
 namespace {
 
-/// A mass of 0.1 kg in the middle of a cable of 2 m that is tight by `tension_n`, off the line by
-/// `off_m`. It swings across with w^2 = 2 T / (m l), l = 1 m.
+/// Returns a mass of 0.1 kg in the middle of a cable of 2 m with the tension `tension_n`, displaced
+/// from the line by `off_m`. It oscillates transversely with w^2 = 2 T / (m l), l = 1 m.
 ModelDef Plucked(double tension_n, double off_m) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -37,7 +37,7 @@ ModelDef Plucked(double tension_n, double off_m) {
 
 TEST(Prestress, AcrossAStiffCableAMassSwingsByTheMidpointRuleAtAnyTension) {
   // z_n = A cos(n theta), tan(theta / 2) = w h / 2. The tension grows with z^2 / 2, here by 1e-12
-  // of a meter: the angle by 1e-5 of itself at most, and A is a micrometer.
+  // of a meter: the angle changes by a share of 1e-5 at most, and A is a micrometer.
   const double h = 1e-3, off = 1e-6;
   for (const double share : {1e-4, 0.01, 0.5, 0.99, 1.01, 10.0, 25.0}) {  // (w h)^2 / 4
     const double tension = share * 2 * 0.1 / (h * h), theta = 2 * std::atan(std::sqrt(share));
@@ -51,7 +51,8 @@ TEST(Prestress, AcrossAStiffCableAMassSwingsByTheMidpointRuleAtAnyTension) {
   }
 }
 
-/// Cables that look for terrain keep the directions of the middle of the step.
+/// Returns the same model with cables that test for terrain contacts and so keep the directions of
+/// the middle of the step.
 ModelDef PluckedOfOtherCables(double tension_n, double off_m) {
   ModelDef def = Plucked(tension_n, off_m);
   for (CableDef& cable : def.cables) {
@@ -62,8 +63,8 @@ ModelDef PluckedOfOtherCables(double tension_n, double off_m) {
 }
 
 TEST(Prestress, AcrossAStiffCableWithFixedDirectionsAMassSwingsAsTheLeapfrogsClosedFormSays) {
-  // z_n = A cos(n theta), cos(theta) = 1 - (w h)^2 / 2, though along the cable it is the midpoint
-  // rule.
+  // z_n = A cos(n theta), cos(theta) = 1 - (w h)^2 / 2, though along the cable the midpoint rule
+  // applies.
   const double h = 1e-3, off = 1e-6;
   for (const double share : {1e-4, 0.01, 0.5, 0.99}) {  // of the limit (w h)^2 = 4
     const double tension = share * 2 * 0.1 / (h * h), theta = std::acos(1 - 2 * share);
@@ -78,7 +79,7 @@ TEST(Prestress, AcrossAStiffCableWithFixedDirectionsAMassSwingsAsTheLeapfrogsClo
 }
 
 TEST(Prestress, BeyondTheLimitOfFixedDirectionsAPluckedCableSwingsEverWider) {
-  // What (12) rules out does happen: the limit is sharp.
+  // The limit of eq. (12) is sharp: just beyond it the oscillation grows.
   const double h = 1e-3, off = 1e-6;
   Batch world = MakeBatch(PluckedOfOtherCables(1.01 * 2 * 0.1 / (h * h), off));
   double widest = 0;
@@ -92,8 +93,8 @@ TEST(Prestress, BeyondTheLimitOfFixedDirectionsAPluckedCableSwingsEverWider) {
   EXPECT_GE(world.Status(0).cable, 0);
 }
 
-/// Tetraspine3 with cables 10^4 times as stiff and the same rest lengths: 200 kN in its top cables.
-/// Nothing but its cables acts.
+/// Returns Tetraspine3 with cables 10^4 times as stiff and the same rest lengths, with 200 kN in
+/// its top cables. Only the cables act.
 ModelDef OverwoundSpine() {
   ModelDef def = scenes::Tetraspine().Def();
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -114,7 +115,7 @@ double EnergyOf(const Batch& world) {
 }
 
 TEST(Prestress, ASpineWoundTo200KilonewtonKeepsItsEnergyAtAStepThatResolvesIt) {
-  // Its cables fly apart, go slack and catch, at 5000 rad/s: w h = 0.05 here.
+  // Its cables snap apart, go slack and become taut again, at 5000 rad/s: w h = 0.05 here.
   Batch world = MakeBatch(OverwoundSpine());
   const double start = EnergyOf(world), h = 1e-5;
   EXPECT_NEAR(world.Cable(0, 2).tension_n, 2e5, 1);

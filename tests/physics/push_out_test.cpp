@@ -1,4 +1,5 @@
-/// What starts inside comes out, and takes no speed with it (docs/theory/contact.md, section 3).
+/// Position projection: bodies that start in penetration separate without gaining speed
+/// (docs/theory/contact.md, section 3).
 
 #include <gtest/gtest.h>
 
@@ -32,11 +33,11 @@ TEST(PushOut, ABallInTheGroundComesOutAndDoesNotRise) {
   }
 }
 
-/// Two seconds of a robot whose lowest points start `depth` in the ground.
+/// Two seconds of a robot whose lowest points start `depth` deep in the ground.
 struct Rise {
-  double speed_m_per_s = 0;  ///< The fastest that any body went up.
-  double height_m = 0;       ///< The highest that any was above its start.
-  double gap_m = 0;          ///< The deepest contact at the end.
+  double speed_m_per_s = 0;  ///< Largest upward speed of any body.
+  double height_m = 0;       ///< Largest rise of any body above its start.
+  double gap_m = 0;          ///< Deepest contact at the end.
 };
 Rise RiseOf(ModelDef def, double depth, double h) {
   double low = 1;
@@ -74,9 +75,9 @@ TEST(PushOut, ASpineInTheGroundGoesUpNoFasterThanOneOnIt) {
 }
 
 TEST(PushOut, APrismInTheGroundComesOutNoHigherThanItWasDeep) {
-  // Its rods are displaced one by one, which stretches cables: they carry it on, alike at all
-  // steps at which they are explicit. At 1 ms they are implicit, and penetration is resolved by
-  // velocities.
+  // Position projection displaces each rod separately and so stretches cables, which then move the
+  // prism, equally at all steps with explicit cable forces. At 1 ms they are implicit, and
+  // penetration is resolved by velocities.
   scenes::Prism3 scene;
   scene.damping_n_s_per_m = 10;
   for (const double depth : {1e-3, 5e-3}) {
@@ -86,7 +87,7 @@ TEST(PushOut, APrismInTheGroundComesOutNoHigherThanItWasDeep) {
       EXPECT_LE(rise.speed_m_per_s, 42 * depth) << depth;
       EXPECT_GE(rise.gap_m, -1e-9) << depth;
     }
-    // What the cables throw up first lasts a few steps of 1 ms.
+    // The initial upward motion caused by the cables lasts a few steps of 1 ms.
     EXPECT_NEAR(coarse.speed_m_per_s, fine.speed_m_per_s, 0.04 * fine.speed_m_per_s) << depth;
     EXPECT_NEAR(coarse.height_m, fine.height_m, 0.02 * fine.height_m) << depth;
   }

@@ -1,12 +1,12 @@
 /// Free motion against histories of MOTES (Goyal, Chen, Majji, Skelton: rigid bars without inertia
-/// about their own axes, strings without mass). The histories are not ours to ship: they lie beside
-/// the checkout or where TAUT_REFERENCE says.
+/// about their axes, massless strings). taut does not ship the histories: the tests read them next
+/// to the checkout or from the folder TAUT_REFERENCE.
 ///
-/// What differs: a bar of MOTES has no moment of inertia about its own axis, one of taut has
-/// m r^2 / 2. Strings pull at the bars' axes and give no moment about them, so a bar that does not
-/// spin at the start never spins, and that inertia takes no part. MOTES integrates with a fixed
-/// step of 1 ms (Runge and Kutta's fourth order) and writes every tenth; strings that are slack
-/// pull as little as ours.
+/// Differences: a bar of MOTES has no moment of inertia about its axis, a bar of taut has m r^2 /
+/// 2. Strings attach at the bars' axes and exert no moment about them, so a bar without initial
+/// spin never spins, and that inertia has no effect. MOTES integrates with a fixed step of 1 ms
+/// (Runge and Kutta's fourth order) and writes every tenth step; slack strings have no force in
+/// both.
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -48,19 +48,20 @@ Vec3 Column(const json& matrix, std::size_t column) {
   return {matrix[0][column], matrix[1][column], matrix[2][column]};
 }
 
-/// Node `node` in row `row` of a history: an array of 3 x nodes x rows.
+/// Returns the position of node `node` in row `row` of a history: an array of 3 x nodes x rows.
 Vec3 At(const json& history, std::size_t node, std::size_t row) {
   return {history[0][node][row], history[1][node][row], history[2][node][row]};
 }
 
-/// Nodes of bars of class k are one place: ball joints between them, or with the world.
+/// Adds joints between coincident nodes of class-k bars: hinges between bars, or with the world.
 void JoinNodes(const json& run, const std::string& debug, ModelDef& def) {
   const json& pins = run[debug + ".sys_def.P"];
   if (pins.empty()) return;
   for (std::size_t i = 0; i < pins[0].size(); ++i) {
     JointDef joint;
     joint.name = "pin_" + std::to_string(i);
-    joint.kind = JointKind::kHinge;  // in the plane of x and y: out of it the square is unstable
+    // motion in the plane of x and y: out of it the square is unstable
+    joint.kind = JointKind::kHinge;
     for (std::size_t node = 0; node < pins.size(); ++node) {
       if (pins[node][i] == 0.0) continue;
       const NodeDef& at = def.nodes[node];
@@ -71,7 +72,7 @@ void JoinNodes(const json& run, const std::string& debug, ModelDef& def) {
   }
 }
 
-/// The model of a MOTES run: bars of 1 kg, or nodes with masses, and strings k (l - l0).
+/// Returns the model of a MOTES run: bars of 1 kg, or nodes with masses, and strings k (l - l0).
 ModelDef ModelOf(const json& run) {
   const std::string debug = run.contains("debug.sys_def.m") ? "debug" : "sim_debug";
   ModelDef def;
@@ -88,7 +89,7 @@ ModelDef ModelOf(const json& run) {
         if (bars[bar][node] == -1.0) from = node;
         if (bars[bar][node] == 1.0) to = node;
       }
-      // So thin that its moments across are those of a line: m l^2 / 12.
+      // So thin that its transverse moments equal a line's: m l^2 / 12.
       body_of[from] = body_of[to] =
           scenes::AddRod(def, "bar_" + std::to_string(bar), mass[bar], 1e-4, Column(nodes, from),
                          Column(nodes, to), {});
@@ -140,7 +141,8 @@ struct Apart {
   double place_m = 0, speed_m_per_s = 0, way_m = 0;
 };
 
-/// Largest differences over all rows of the history, with `steps` steps a row of 10 ms.
+/// Returns the largest differences over all rows of the history, with `steps` steps per row of 10
+/// ms.
 Apart Compare(const json& run, int steps) {
   const json &places = run["History.Nhist"], &speeds = run["History.Ndhist"];
   Batch world = MakeBatch(ModelOf(run));
@@ -172,7 +174,8 @@ TEST(Reference, TheFreeCrossBarOfClass1MovesAsInMotes) {
   if (!run) GTEST_SKIP() << "no structural reference: set TAUT_REFERENCE";
   const Apart usual = Compare(*run, 10), half = Compare(*run, 20), fine = Compare(*run, 160);
   EXPECT_LT(usual.place_m, 0.0025 * usual.way_m) << "5 s at 1 ms, w h up to 0.05";
-  // Ours is of second order, theirs of fourth: what is left is ours and goes with h^2.
+  // taut's scheme is of second order, the scheme of MOTES of fourth: the remaining error is taut's
+  // and decreases with h^2.
   EXPECT_NEAR(usual.place_m / half.place_m, 4, 0.1);
   EXPECT_NEAR(usual.speed_m_per_s / half.speed_m_per_s, 4, 0.1);
   EXPECT_LT(fine.place_m, 1e-5 * fine.way_m);
@@ -180,12 +183,13 @@ TEST(Reference, TheFreeCrossBarOfClass1MovesAsInMotes) {
 
 TEST(Reference, BarsOfClassKMoveAsInMotes) {
   // A bar pinned at its end, with 10 rad/s at the start and a force on its tip; four bars in a
-  // closed square, one corner pinned, with two strings across: rows of its joints are redundant.
+  // closed square, one corner pinned, with two strings across: some of its joints' rows are
+  // redundant.
   for (const char* name : {"motes_dyn_pendulum_classK", "motes_dyn_Dbar_classK"}) {
     const auto run = Reference(name);
     if (!run) GTEST_SKIP() << "no structural reference: set TAUT_REFERENCE";
     const Apart usual = Compare(*run, 10), half = Compare(*run, 20), fine = Compare(*run, 160);
-    // A midpoint step turns a pinned bar by 2 atan(w h / 2): behind by (w h)^2 / 12 of the angle.
+    // A midpoint step rotates a pinned bar by 2 atan(w h / 2): short by (w h)^2 / 12 of the angle.
     const double angle = 10 * 0.01 * static_cast<double>((*run)["History.Nhist"][0][0].size());
     EXPECT_LT(usual.place_m, 1e-4 / 12 * angle * usual.way_m) << name << ", w h up to 0.01";
     EXPECT_NEAR(usual.place_m / half.place_m, 4, 0.1) << name;
@@ -195,7 +199,8 @@ TEST(Reference, BarsOfClassKMoveAsInMotes) {
 
 TEST(Reference, TheDBarOfClassKSwingsWithTheFrequenciesOfTsgFem) {
   // Six bars between two apexes and a ring of three nodes, three strings around it and one from
-  // apex to apex. One apex is held, the other slides along the axis. Their bars give, ours do not.
+  // apex to apex. One apex is fixed, the other slides along the axis. The bars of TsgFEM are
+  // elastic, the bars of taut are rigid.
   const auto file = Reference("tsgfem_static_3d_Dbar_folding");
   if (!file) GTEST_SKIP() << "no structural reference: set TAUT_REFERENCE";
   ModelDef def;
@@ -240,7 +245,7 @@ TEST(Reference, TheDBarOfClassKSwingsWithTheFrequenciesOfTsgFem) {
   for (std::size_t i = 2; i < 5; ++i) {
     def.nodes.push_back({"ring_" + std::to_string(i), body_of[i], Column(nodes, i)});
   }
-  // Pushes that the other mode does not feel, and what it does not move.
+  // Each push excites one mode only, and the measured velocity excludes the other mode.
   const auto frequency = [&](int first_node, int last_node, const Vec3& push_n, double Vec3::*way) {
     Batch world = MakeBatch(def);
     const auto push = [&](const Vec3& force_n) {
@@ -283,8 +288,9 @@ TEST(Reference, TheFreeNetOfStringsMovesAsInMotes) {
   if (!run) GTEST_SKIP() << "no structural reference: set TAUT_REFERENCE";
   const Apart usual = Compare(*run, 10), fine = Compare(*run, 160);
   EXPECT_LT(usual.place_m, 1e-4 * usual.way_m);
-  // Strings go slack, where their force has a kink and fourth order is lost: MOTES's own method at
-  // a tenth of its step is 11.8 micrometres from its history. That is what is left here.
+  // When strings go slack, their force has a kink and fourth order is lost: the method of MOTES at
+  // a tenth of its step differs by 11.8 micrometers from its history. The remaining difference has
+  // this size.
   EXPECT_LT(fine.place_m, 1.3e-5);
 }
 
@@ -304,7 +310,7 @@ TEST(Reference, TheTBarStaysInTheEquilibriumOfTheStructuralTools) {
     }
     const double force = (*file)["t"][i][0], rest = (*file)["l0"][i][0];
     const Vec3 a = Column(nodes, from), b = Column(nodes, to);
-    if (force < 0) {  // a bar; they cross without a joint
+    if (force < 0) {  // a bar; bars cross without a joint
       body_of[from] = body_of[to] =
           scenes::AddRod(def, "bar_" + std::to_string(i), (*file)["mass"][i][0], 0.005, a, b, {});
       def.capsules.back().collides = false;

@@ -1,4 +1,4 @@
-/// Rolling, the change from sliding to rolling, and spinning on the spot, against closed forms.
+/// Rolling, the transition from sliding to rolling, and spinning on the spot, against closed forms.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace taut::test {
 namespace {
 
-/// A round thing of radius 0.1 m at rest on a slope; it rolls towards +x. `share` is its moment of
-/// inertia about the axis it rolls about, over m r^2.
+/// A round body of radius 0.1 m at rest on a slope that rolls towards +x. `share` is its moment of
+/// inertia about the axis of rolling over m r^2.
 struct Roller {
   const char* name;
   double share;
@@ -57,7 +57,7 @@ TEST(Rolling, DownASlopeTheAccelerationIsGSineOverOnePlusTheInertiasShare) {
 }
 
 TEST(Rolling, DownASlopeTooSteepItSlidesAndFrictionTurnsIt) {
-  // It slips where tan(angle) > mu (1 + share) / share. Then friction has its kinetic value.
+  // The body slips where tan(angle) > mu (1 + share) / share. Then friction has its kinetic value.
   const double angle = 0.9, mu = 0.2;
   const scenes::Slope slope{angle, {}};
   for (const Roller& roller : kRollers) {
@@ -78,8 +78,8 @@ TEST(Rolling, DownASlopeTooSteepItSlidesAndFrictionTurnsIt) {
 }
 
 TEST(Rolling, ASlidingRodRollsInTheEndWithTwoThirdsOfItsSpeed) {
-  // As the ball with its 5/7 (friction_test.cpp): angular momentum about a line of the ground is
-  // kept. It slides for v / (3 mu g), over 5/18 v^2 / (mu g).
+  // Like the ball with its 5/7 (friction_test.cpp): angular momentum about a line of the ground is
+  // kept. The rod slides for v / (3 mu g), over 5/18 v^2 / (mu g).
   const double v = 2;
   for (const double mu : {0.1, 0.4}) {
     for (const double h : kThreeStepsS) {
@@ -94,7 +94,7 @@ TEST(Rolling, ASlidingRodRollsInTheEndWithTwoThirdsOfItsSpeed) {
       EXPECT_LE(Distance(rod.angular_velocity_rad_per_s, {0, 2.0 / 3 * v / 0.1, 0}),
                 SolverError(steps) / 0.1);
       const double way = 5.0 / 18 * v * v / (mu * kG) + 2.0 / 3 * v * (1 - v / (3 * mu * kG));
-      // Sliding ends in the middle of a step: off by less than half of a step's change.
+      // Sliding ends within a step: an error below half of a step's change.
       EXPECT_NEAR(rod.position_m.x, way, h * mu * kG * h + SolverError(steps)) << mu << h;
     }
   }
@@ -108,7 +108,7 @@ TEST(Rolling, OnLevelGroundItLosesNothing) {
     body.angular_velocity_rad_per_s = {0, 15, 0};
     world.SetBodyState(0, 0, body);
     world.Step(1e-3, 60000);
-    // Below the solver's tolerance nothing is corrected: no slip, no loss that adds up.
+    // Below the solver's tolerance nothing is corrected: no slip, and no loss that accumulates.
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, 1.5, SolverError(1)) << roller.name;
     EXPECT_NEAR(world.Body(0, 0).position_m.x, 90, 60 * SolverError(1) + RoundOff(60000, 90))
         << roller.name;
@@ -116,10 +116,10 @@ TEST(Rolling, OnLevelGroundItLosesNothing) {
 }
 
 TEST(Rolling, ARodSpinningOnTheGroundStopsAsItsTwoEndsSay) {
-  // A rod touches with its two ends, at a distance a from the middle, each with half the weight:
-  // w' = -mu m g a / J. It stops after the time w0 / |w'|, turned by w0^2 / (2 |w'|). Friction
-  // spread evenly along the rod would have half that moment: rods here are straight and stiff, and
-  // what is straight and stiff touches rough ground somewhere near its ends.
+  // A rod touches with its two ends, at a distance a from the center, each with half the weight: w'
+  // = -mu m g a / J. It stops after the time w0 / |w'|, rotated by w0^2 / (2 |w'|). Friction
+  // distributed evenly along the rod would have half that moment. Rods are straight and stiff here,
+  // and such a body touches rough ground somewhere near its ends.
   const double w0 = 8, a = 0.25, mu = 0.3;
   for (const double h : kThreeStepsS) {
     ModelDef def;
@@ -144,7 +144,7 @@ TEST(Rolling, ARodSpinningOnTheGroundStopsAsItsTwoEndsSay) {
     }
     ASSERT_LT(stops_s, 0.3);
     EXPECT_NEAR(turned, w0 * w0 / (2 * slowing), 0.005 * turned) << h;
-    // It has turned on the spot.
+    // It has rotated on the spot.
     EXPECT_LE(Distance(world.Body(0, 0).position_m, {0, 0, 0.01}), SolverError(StepsIn(0.4, h)));
     const Quat q = world.Body(0, 0).orientation;
     EXPECT_NEAR(2 * std::atan2(q.z, q.w), turned, 1e-3) << h;
@@ -152,7 +152,7 @@ TEST(Rolling, ARodSpinningOnTheGroundStopsAsItsTwoEndsSay) {
 }
 
 TEST(Rolling, ABallSpinningOnItsPoleGoesOn) {
-  // A contact is a point and has no arm: friction cannot turn about the normal.
+  // A contact is a point without a lever arm: friction exerts no torque about the normal.
   Batch world = MakeBatch(kRollers[0].Def(0, 0.5));
   BodyState ball = world.Body(0, 0);
   ball.angular_velocity_rad_per_s = {0, 0, 30};

@@ -1,4 +1,4 @@
-/// The energy of bodies that turn freely (docs/theory/integrator.md, section 2).
+/// Energy of freely rotating bodies (docs/theory/integrator.md, section 2).
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,8 @@
 namespace taut::test {
 namespace {
 
-/// A rod with an axial moment of a thousandth of the other, along a unit `axis`.
+/// Returns a rod with an axial moment of inertia of a thousandth of the transverse one, along a
+/// unit `axis`.
 ModelDef ThinRod(const Vec3& axis, const Vec3& w) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -22,9 +23,9 @@ ModelDef ThinRod(const Vec3& axis, const Vec3& w) {
 }
 
 TEST(RotationEnergy, AThinRodKeepsItToRoundingHoweverFastItSpinsAboutItself) {
-  // H = L^2 / 2Ix + (1 / Iz - 1 / Ix) lz^2 / 2 for a body with an axis z of symmetry: its two parts
-  // commute, so that turns about L and z are its exact motion. Askew, too, where the two equal
-  // moments come out of the eigenvalues with rounding errors.
+  // H = L^2 / 2Ix + (1 / Iz - 1 / Ix) lz^2 / 2 for a body with an axis z of symmetry: the two parts
+  // commute, so that rotations about L and z are its exact motion. Also for an oblique axis, where
+  // the two equal moments are eigenvalues with rounding errors.
   const Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2.0 / 7, 3.0 / 7, 6.0 / 7}};
   for (const Vec3& axis : axes) {
     for (const double h : kThreeStepsS) {
@@ -35,7 +36,8 @@ TEST(RotationEnergy, AThinRodKeepsItToRoundingHoweverFastItSpinsAboutItself) {
         ASSERT_NEAR((i.xx + i.yy + i.zz) / 2.001 / 0.1, 0.25 * 0.25 / 3, 1e-4);
         Batch world = MakeBatch(def);
         const double start = EnergyOf(world);
-        // An axis that is off by eps turns momentum across into momentum along, which is as fast.
+        // An axis that is off by eps turns transverse momentum into axial momentum, with the large
+        // axial angular velocity.
         const double size = Norm(world.AngularMomentum(0)) * (spin + 4);
         const int steps = StepsIn(20, h);
         for (int n = 1; n <= steps; ++n) {
@@ -47,8 +49,8 @@ TEST(RotationEnergy, AThinRodKeepsItToRoundingHoweverFastItSpinsAboutItself) {
   }
 }
 
-/// How far the energy of a turning box is from its start, lowest and highest: over the first ten
-/// seconds and over the last of a hundred.
+/// Lowest and highest energy of a rotating box relative to the start: over the first ten seconds
+/// and over the last ten of a hundred.
 struct Range {
   double low = 0, high = 0;
   void Take(double x) {

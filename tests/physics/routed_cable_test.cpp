@@ -1,4 +1,4 @@
-/// Cables through eyelets: one length, one tension (docs/theory/cables.md).
+/// Routed cables through eyelets: one length, one tension (docs/theory/cables.md).
 
 #include <gtest/gtest.h>
 
@@ -26,9 +26,10 @@ CableDef Cable(std::vector<AttachmentDef> attachments, double stiffness, double 
   return cable;
 }
 
-/// A mass that slides without friction on a cable between two points a span `d` apart, one `e`
-/// higher than the other. One tension means that both parts make the same angle a with the
-/// vertical: sin a = d / l, and 2 T cos a = m g with T = k (l - L) gives the length.
+/// Checks the equilibrium of a mass that slides without friction on a cable between two points
+/// `span` apart, one higher than the other by `rise`. With one tension, both parts make the same
+/// angle a with the vertical: sin a = span / l, and 2 T cos a = m g with T = k (l - L) gives the
+/// length.
 void HangsStill(double span, double rise) {
   const double m = 0.4, g = 9.81, k = 300, rest = 1.3;
   double low = std::hypot(span, rise), high = 10;
@@ -47,9 +48,9 @@ void HangsStill(double span, double rise) {
   EXPECT_NEAR(world.Cable(0, 0).length_m, l, RoundOff(1, l));
   EXPECT_NEAR(world.Cable(0, 0).tension_n, k * (l - rest), RoundOff(1, k));
   world.Step(1e-3, 2000);
-  // Rounding of lengths of 1 m is all that could move it.
+  // Only the rounding of lengths of 1 m may move it.
   EXPECT_LE(Distance(world.Body(0, 0).position_m, p), RoundOff(2000, 1));
-  // Pulled aside it is not in equilibrium: the test would notice.
+  // Displaced sideways it is not in equilibrium, which the test detects.
   world.SetBodyState(0, 0, {p + Vec3{0.01, 0, 0}, {}, {}, {}});
   world.Step(1e-3, 100);
   EXPECT_LT(world.Body(0, 0).velocity_m_per_s.x, -1e-3);
@@ -82,7 +83,7 @@ TEST(RoutedCable, AHeavyRingHangsOnOneMetreOfCable) {
 }
 
 TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
-  // The mass hangs vertically; what the cable does before the last eyelet only adds to its length.
+  // The mass hangs vertically; the part before the last eyelet only adds to the cable's length.
   const double m = 0.5, k = 400, rest = 2.0, h = 1e-3, a = 0.004;
   const double before = 0.5 + 0.5;  // anchor to eyelet to eyelet
   const double hang = rest + m * 9.81 / k - before;
@@ -102,8 +103,8 @@ TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
   }
 }
 
-/// Two masses on one cable over an eyelet. Whatever the tension does, it is the same on both sides,
-/// so m1 z1 - m2 z2 falls as (m1 - m2) g t^2 / 2.
+/// Returns two masses on one cable over two eyelets. The tension is equal on both sides, so m1 z1 -
+/// m2 z2 falls as (m1 - m2) g t^2 / 2.
 ModelDef Atwood(double m1, double m2, double stiffness, double stretch) {
   ModelDef def;
   def.bodies.push_back(PointMass("one", m1, {-0.1, 0, -0.7}));
@@ -128,8 +129,8 @@ TEST(RoutedCable, BothSidesOfAnEyeletPullEquallyHoweverTheCableSwings) {
 }
 
 TEST(RoutedCable, AtwoodsMachineAcceleratesAtItsClosedFormForAnyStiffness) {
-  // Started with the tension 2 m1 m2 g / (m1 + m2), the length stays and the masses move as on a
-  // rigid rope, exactly on parabolas.
+  // Started with the tension 2 m1 m2 g / (m1 + m2), the length stays constant and the masses move
+  // as on a rigid rope, exactly on parabolas.
   const double m1 = 0.3, m2 = 0.5, g = 9.81;
   const double tension = 2 * m1 * m2 / (m1 + m2) * g, a = (m2 - m1) / (m1 + m2) * g;
   for (const double stiffness : {500.0, 2e4, 1e6}) {
@@ -137,7 +138,8 @@ TEST(RoutedCable, AtwoodsMachineAcceleratesAtItsClosedFormForAnyStiffness) {
       Batch world = MakeBatch(Atwood(m1, m2, stiffness, tension / stiffness));
       const int steps = StepsIn(0.4, h);
       world.Step(h, steps);
-      // What a solve leaves over swings on, at the frequency w of the two masses on the cable.
+      // The solver's residual continues as an oscillation at the frequency w of the two masses on
+      // the cable.
       const double solved = SolverError(steps), w = std::sqrt(stiffness * (1 / m1 + 1 / m2));
       const double allowed = RoundOff(steps, 2) + solved * 0.4;
       EXPECT_NEAR(world.Body(0, 0).position_m.z + 0.7, a * 0.08, allowed) << stiffness << " " << h;
@@ -149,7 +151,7 @@ TEST(RoutedCable, AtwoodsMachineAcceleratesAtItsClosedFormForAnyStiffness) {
 }
 
 TEST(RoutedCable, ABeadOnATautCableSlidesFreely) {
-  // On a straight cable the pulls on the bead cancel; a cable tied to it would hold it.
+  // On a straight cable the forces on the bead cancel; a fixed attachment would hold it.
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   def.bodies.push_back(PointMass("bead", 0.1, {0.3, 0, 0}));
@@ -167,7 +169,8 @@ TEST(RoutedCable, ABeadOnATautCableSlidesFreely) {
 }
 
 TEST(RoutedCable, AnEyeletBesideTheCentreOfMassTurnsItsBody) {
-  // T (u2 - u1) acts at the eyelet: with parts that leave up and to the right, T (1, 0, 1).
+  // T (u2 - u1) acts at the eyelet: with parts of the cable that leave upwards and to the right, T
+  // (1, 0, 1).
   const double tension = 12, h = 1e-6;
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -182,8 +185,9 @@ TEST(RoutedCable, AnEyeletBesideTheCentreOfMassTurnsItsBody) {
   const Vec3 force{tension, 0, tension}, torque = Cross(eyelet, force);
   const BodyState body = world.Body(0, 0);
   EXPECT_LE(Distance((1 / h) * body.velocity_m_per_s, 0.5 * force), RoundOff(1, 1200));
-  // Rates of w, torque / I, are below 120 rad/s^2. In the second half of the step the body turns by
-  // up to 120 h^2 / 2, which turns w and shares L out anew among moments of a ratio of 3.
+  // Rates of w, torque / I, are below 120 rad/s^2. In the second half of the step the body rotates
+  // by up to 120 h^2 / 2, which rotates w and redistributes L among moments of inertia with a ratio
+  // of 3.
   EXPECT_LE(Distance((1 / h) * body.angular_velocity_rad_per_s,
                      {torque.x / 0.01, torque.y / 0.02, torque.z / 0.03}),
             120 * 3 * (120 * h * h / 2));

@@ -1,5 +1,5 @@
-/// No constant of the step has a length or a speed of its own that shows: a robot and its model by
-/// Froude's rules do the same.
+/// Scale invariance: a robot and its scale model by Froude's rules behave alike, so no constant of
+/// the step has the dimension of a length or a speed.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,8 @@
 namespace taut::test {
 namespace {
 
-/// Lengths by s, masses by s^3, times by sqrt(s): weight and strains stay what they are.
+/// Returns the model with lengths scaled by s, masses by s^3, times by sqrt(s): gravity and strains
+/// stay the same.
 ModelDef Scaled(ModelDef def, double s) {
   const double area = s * s, volume = s * s * s;
   for (BodyDef& body : def.bodies) {

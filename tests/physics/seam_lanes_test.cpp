@@ -1,5 +1,5 @@
-// Seams of terrain in lanes, and terrain whose pieces do not meet (docs/theory/ground.md, section
-// 9).
+// Seams between terrain pieces in SIMD lanes, and terrain pieces that do not meet
+// (docs/theory/ground.md, section 9).
 #include <gtest/gtest.h>
 
 #include "tests/mechanics/seam_ground.h"
@@ -10,7 +10,7 @@ namespace {
 
 using namespace seams;
 
-/// All kinds of bodies in a row across three pieces.
+/// Returns all kinds of bodies in a row across three pieces of terrain.
 ModelDef Crossing(Piece a, Piece b, double apart_m) {
   const Material material{0.2, 0.2, 0};
   ModelDef def;

@@ -1,4 +1,4 @@
-/// Bodies that rest on each other: who carries what, in closed form, and what is hard for a solver.
+/// Stacked bodies: contact forces in closed form, and hard cases for the solver.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ int AddBox(ModelDef& def, const std::string& name, double mass_kg, const Vec3& c
   return index;
 }
 
-/// Force of body `b` (or the world) on body `a`, over all their contacts.
+/// Returns the force of body `b` (or the world) on body `a`, over all their contacts [N].
 Vec3 ForceOn(const Batch& world, int a, int b) {
   Vec3 sum;
   for (const ContactState& contact : world.Contacts(0)) {
@@ -36,7 +36,7 @@ Vec3 ForceOn(const Batch& world, int a, int b) {
   return sum;
 }
 
-/// Nothing has moved since the start, and nothing moves.
+/// Checks that bodies are at their initial positions and at rest.
 void ExpectAtRest(const Batch& world, const ModelDef& def, double within_m) {
   for (int i = 0; i < static_cast<int>(def.bodies.size()); ++i) {
     const BodyDef& body = def.bodies[static_cast<std::size_t>(i)];
@@ -46,7 +46,7 @@ void ExpectAtRest(const Batch& world, const ModelDef& def, double within_m) {
 }
 
 TEST(Stack, ARodOnTwoRodsWeighsOnThemByTheLawOfTheLever) {
-  // Two fixed rods at x = -a and x = b under a rod whose centre is at x = 0.
+  // Two fixed rods at x = -a and x = b under a rod whose center is at x = 0.
   const Material material{0.5, 0.5, 0};
   for (const double a : {0.1, 0.2, 0.3}) {
     const double b = 0.4 - a;
@@ -69,7 +69,7 @@ TEST(Stack, ARodOnTwoRodsWeighsOnThemByTheLawOfTheLever) {
 }
 
 TEST(Stack, ARodOnTwoRodsOnTheGroundStaysThoughAllCouldRoll) {
-  // A neutral equilibrium: any numerical push would make it roll away.
+  // A neutral equilibrium: any numerical disturbance would make the rod roll away.
   const Material material{0.5, 0.5, 0};
   ModelDef def;
   scenes::AddGround(def, material);
@@ -116,14 +116,14 @@ TEST(Stack, BoxesOnEachOtherCarryAllThatIsAboveThem) {
 }
 
 TEST(Stack, ARodInAGrooveSlidesAsItsWalledInFrictionSays) {
-  // A groove of two planes, each at an angle b from the middle plane, tilted by t along x: each
+  // A groove of two planes, each at an angle b from the vertical plane, tilted by t along x: each
   // wall carries m g cos t / (2 sin b), so that a = g (sin t - mu cos t / sin b).
   const double b = 0.6, t = 0.7, mu = 0.2;
   const double a = kG * (std::sin(t) - mu * std::cos(t) / std::sin(b));
   ASSERT_GT(a, 0.5);
   const Material material{mu, mu, 0};
   ModelDef def;
-  // The groove is level and gravity tilts, so that all directions are simple.
+  // The groove is level and gravity is tilted, so that all directions are simple.
   def.gravity_m_per_s2 = {kG * std::sin(t), 0, -kG * std::cos(t)};
   for (const double side : {-1.0, 1.0}) {
     PlaneDef plane;
@@ -151,7 +151,7 @@ TEST(Stack, ARodInAGrooveSlidesAsItsWalledInFrictionSays) {
 
 TEST(Stack, ABallBetweenAWallAndASlopeWedgesItself) {
   // A ball between a vertical wall and a plane at 45 degrees, without friction: the wall's force is
-  // m g tan 45 = m g, the slope's m g / cos 45.
+  // m g tan 45 = m g, the slope's force m g / cos 45.
   const double r = 0.1, s = std::sqrt(0.5);
   ModelDef def;
   PlaneDef slope;
@@ -159,7 +159,7 @@ TEST(Stack, ABallBetweenAWallAndASlopeWedgesItself) {
   slope.normal = {s, 0, s};
   slope.material = {0, 0, 0};
   def.planes.push_back(slope);
-  // The ball touches the slope at (-r s, 0, -r s) from its centre at x = 1, z = r sqrt(2) - 1.
+  // The ball touches the slope at (-r s, 0, -r s) from its center at x = 1, z = r sqrt(2) - 1.
   const Vec3 center{1, 0, r / s - 1};
   def.terrain_boxes.push_back({"wall", {1 + r + 0.5, 0, 0}, {}, {0.5, 2, 2}, {0, 0, 0}});
   scenes::AddBall(def, "ball", 0.3, r, center, {0, 0, 0});
@@ -196,14 +196,14 @@ TEST(Stack, ASlabTenThousandTimesAsHeavyAsThirtyBallsStandsOnThem) {
   }
   double ground = 0;
   for (int i = 0; i < 30; ++i) ground += ForceOn(world, i, kWorld).z;
-  // The slab's weight is off by its mass times what its velocity may be off.
+  // The error of the slab's weight is its mass times the error of its velocity, per step.
   EXPECT_NEAR(ground, weight, ratio * mass * SolverError(1) / 1e-3);
   ExpectAtRest(world, def, 1e-8);
 }
 
 TEST(Stack, BoxesThatAlternateByTenThousandOverSixtyContactsConverge) {
-  // Fifteen boxes on each other, every other one 10^4 times as heavy as those below and above: for
-  // an iteration from contact to contact the worst there is.
+  // Fifteen boxes on each other, every other one 10^4 times as heavy as its neighbors: the worst
+  // case for Gauss-Seidel sweeps.
   const Material material{0.5, 0.5, 0};
   const Vec3 half{0.1, 0.08, 0.02};
   ModelDef def;
@@ -229,7 +229,7 @@ TEST(Stack, BoxesThatAlternateByTenThousandOverSixtyContactsConverge) {
 }
 
 TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
-  // Cut short where it would need more: no step with a large residual is silent.
+  // With a low limit of linear solves, every step with a large residual reports it.
   const Material material{0.5, 0.5, 0};
   const Vec3 half{0.1, 0.08, 0.02};
   ModelDef def;
@@ -250,7 +250,7 @@ TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
     ASSERT_EQ(says, status.residual_m_per_s > options.tolerance_m_per_s) << n;
     if (!says) continue;
     ++stopped;
-    // All that it may for velocities, and at most as many to push out.
+    // All solves allowed for velocities, and at most as many for position projection.
     ASSERT_GE(status.linear_solves, options.max_linear_solves) << n;
     ASSERT_LE(status.linear_solves, 2 * options.max_linear_solves) << n;
   }

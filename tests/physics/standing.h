@@ -1,4 +1,4 @@
-/// Robots that stand with fixed rest lengths, and how still they stand.
+/// Robots that stand with fixed rest lengths, and a check that they do not creep.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 namespace taut::test {
 
-/// Every contact has a coefficient of 0.5, on both sides.
+/// Returns a standing robot. Every contact has a friction coefficient of 0.5, on both sides.
 inline ModelDef Standing(const std::string& robot) {
   const Material material{0.5, 0.5, 0};
   ModelDef def;
@@ -28,7 +28,7 @@ inline ModelDef Standing(const std::string& robot) {
     return def;
   }
   if (robot == "six_strut") {
-    // On the triangle that three ends form below, the (1, 1, 1) corner down.
+    // It stands on the triangle of three rod ends, the (1, 1, 1) corner down.
     scenes::SixStrut scene;
     scene.damping_n_s_per_m = 20;
     scene.orientation = scenes::Turn({std::sqrt(0.5), -std::sqrt(0.5), 0},
@@ -47,8 +47,8 @@ inline ModelDef Standing(const std::string& robot) {
   return def;
 }
 
-/// Settles for 20 s on ground that is tilted by `slope_deg` (or rather: gravity is), then stands
-/// for `time_s`: no node creeps by more than 1e-9 m/s.
+/// Settles for 20 s on ground tilted by `slope_deg` (by a tilt of gravity), then stands for
+/// `time_s`; checks that no node creeps by more than 1e-9 m/s.
 inline void StandsStill(const std::string& robot, double slope_deg, double time_s) {
   const double slope = slope_deg * std::numbers::pi / 180, h = 1e-3;
   const ModelDef def = Standing(robot);

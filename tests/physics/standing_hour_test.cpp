@@ -1,4 +1,4 @@
-/// An hour of standing still. standing_test.cpp has the minute that every build takes.
+/// An hour of standing without creep. standing_test.cpp checks the minute that every build runs.
 
 #include "tests/physics/standing.h"
 

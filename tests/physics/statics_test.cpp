@@ -1,5 +1,5 @@
-/// Robots find the forms that statics knows in closed form (Connelly and Terrell 1995; Tibert and
-/// Pellegrino 2003), whatever their rest lengths: prisms, the six-strut, Snelson's X, the T-bar.
+/// Equilibrium shapes with closed forms (Connelly and Terrell 1995; Tibert and Pellegrino 2003),
+/// for any rest lengths: prisms, the six-strut, Snelson's X, the T-bar.
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@
 namespace taut::test {
 namespace {
 
-/// Lets a robot without weight come to rest: whenever its kinetic energy begins to fall, all
-/// velocities are set to zero (kinetic damping), so that mechanisms, which cables damp least, come
-/// to rest as fast as anything else. Returns the largest speed of a node in its last second.
+/// Brings a robot without gravity to rest: whenever its kinetic energy begins to fall, all
+/// velocities are set to zero (kinetic damping), so that mechanisms, which cables damp least,
+/// settle as fast as other motions. Returns the largest speed of a node in the last second.
 double Settle(Batch& world, double time_s) {
   const double h = 1e-3;
   const ModelDef& def = world.model().def();
@@ -56,8 +56,8 @@ void AddCable(ModelDef& def, int node_a, int node_b, double stiffness, double re
   def.cables.push_back(cable);
 }
 
-/// A prism of n struts, all nodes somewhat out of place. Nodes 2 i and 2 i + 1 are the lower and
-/// upper end of strut i; cables: n lower, n upper, n sides.
+/// Returns a prism of n struts with displaced nodes. Nodes 2 i and 2 i + 1 are the lower and upper
+/// end of strut i; cables: n lower, n upper, n sides.
 ModelDef Prism(int n, double polygon_rest_m, double side_rest_m, double twist_off_rad) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -72,7 +72,7 @@ ModelDef Prism(int n, double polygon_rest_m, double side_rest_m, double twist_of
                    corner(a + twist, height), {});
   }
   for (CapsuleDef& rod : def.capsules)
-    rod.collides = false;  // eight thin struts may meet on the way
+    rod.collides = false;  // eight thin struts may meet while settling
   for (int i = 0; i < n; ++i) AddCable(def, 2 * i, 2 * ((i + 1) % n), 2000, polygon_rest_m);
   for (int i = 0; i < n; ++i) AddCable(def, 2 * i + 1, 2 * ((i + 1) % n) + 1, 2000, polygon_rest_m);
   for (int i = 0; i < n; ++i) AddCable(def, 2 * i, 2 * ((i + n - 1) % n) + 1, 2000, side_rest_m);
@@ -80,8 +80,9 @@ ModelDef Prism(int n, double polygon_rest_m, double side_rest_m, double twist_of
 }
 
 TEST(Statics, APrismSettlesAtItsTwistWithItsSelfStress) {
-  // Twist along a side cable 90 - 180/n degrees (150 degrees along a strut for n = 3); tension over
-  // length in a polygon is 1 / (2 sin(pi / n)) of that in a side: neither depends on rest lengths.
+  // Twist along a side cable 90 - 180/n degrees (150 degrees along a strut for n = 3); the force
+  // density of a polygon cable is 1 / (2 sin(pi / n)) times the force density of a side cable:
+  // neither depends on rest lengths.
   for (const int n : {3, 4, 5, 6, 8}) {
     for (const double twist_off : {-0.15, 0.1}) {
       for (const double side_rest : {0.42, 0.48}) {
@@ -90,7 +91,7 @@ TEST(Statics, APrismSettlesAtItsTwistWithItsSelfStress) {
         const double speed = Settle(world, 20);
         const std::string what = std::to_string(n) + " struts, side " + std::to_string(side_rest);
         EXPECT_LT(speed, 1e-9) << what;
-        // Directions from the axis, which goes through the centres of the two polygons.
+        // Directions from the axis, which passes through the centers of the two polygons.
         Vec3 low, high;
         for (int i = 0; i < n; ++i) {
           low = low + (1.0 / n) * world.NodePosition(0, 2 * i);
@@ -146,8 +147,8 @@ TEST(Statics, ASixStrutSettlesWhereItsStrutsAreSqrt8ThirdsOfItsCables) {
   }
 }
 
-/// Two crossing struts that pass through each other, lengths `a` along x and `b` along y, turned
-/// against each other and moved by a little; four cables around them.
+/// Returns two crossing struts that pass through each other, lengths `a` along x and `b` along y,
+/// slightly rotated and displaced relative to each other, with four cables around them.
 ModelDef Cross(double a, double b, double stiffness, const std::vector<double>& rest_length) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
@@ -172,7 +173,7 @@ TEST(Statics, SnelsonsXSettlesAsASquareWhoseStrutsCarrySqrt2OfItsCables) {
       EXPECT_NEAR(world.Cable(0, c).length_m, side, 1e-10) << c;
       EXPECT_NEAR(world.Cable(0, c).tension_n, 1000 * (side - rest), 1e-7) << c;
     }
-    // A strut carries what its end gets from its two cables, along itself.
+    // A strut carries the axial component of the forces of the two cables at its end.
     const Vec3 end = world.NodePosition(0, 0), along = end - world.NodePosition(0, 1);
     Vec3 pull;
     for (const int other : {2, 3}) {
@@ -187,7 +188,7 @@ TEST(Statics, SnelsonsXSettlesAsASquareWhoseStrutsCarrySqrt2OfItsCables) {
 
 TEST(Statics, ATBarSettlesAsARhombusWithOneForceDensity) {
   // Struts of 2 m and 4 m that bisect each other at a right angle: cables of sqrt(5) m, all with
-  // the same tension over length q, the struts with -q. (T-bar of the structural tools: 50 N/m.)
+  // the same force density q, the struts with -q. (T-bar of the structural tools: 50 N/m.)
   const double side = std::sqrt(5.0), stiffness = 5000, q = 50, rest = side - q * side / stiffness;
   Batch world = MakeBatch(Cross(2, 4, stiffness, {rest, rest, rest, rest}));
   EXPECT_LT(Settle(world, 60), 1e-9);

@@ -1,4 +1,4 @@
-/// A world says what is wrong with it, and keeps it to itself.
+/// Status of a world: error conditions are reported and do not affect other worlds.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,8 @@ bool Finite(const Batch& batch, int world, int body) {
                        state.orientation.x + state.orientation.y + state.orientation.z);
 }
 
-/// Breaks world 1 of three after 0.05 s; it must say so, stand still, and be alone with that.
+/// Breaks world 1 of three after 0.05 s and checks that it reports the error and halts, and that
+/// the other worlds are unaffected.
 void BreaksAlone(const std::function<void(Batch&)>& breaks, int body) {
   for (const auto& [name, simd] : kInstructionSets) {
     SCOPED_TRACE(name);
@@ -42,7 +43,7 @@ void BreaksAlone(const std::function<void(Batch&)>& breaks, int body) {
     EXPECT_EQ(status.bits & kStatusNonFinite, kStatusNonFinite);
     EXPECT_EQ(status.body, body);
     EXPECT_NEAR(status.first_time_s, 0.05, RoundOff(50, 0.05));
-    // It stands still where it was before the step that broke it.
+    // The world keeps its state before the step that broke it.
     for (int b = 0; b < 3; ++b) EXPECT_TRUE(Finite(batch, 1, b)) << b;
     EXPECT_EQ(batch.Time(1), status.first_time_s);
     const std::uint64_t hash = batch.Hash(1);
@@ -88,7 +89,7 @@ TEST(Status, AWorldThatIsMendedGoesOn) {
   world.Step(1e-3, 50);
   healthy.Step(1e-3, 50);
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
-  // What the contacts remembered is lost: not the same bits, but the same motion.
+  // The impulses for the warm start are lost: not the same bits, but the same motion.
   EXPECT_LE(Distance(world.Body(0, 0).position_m, healthy.Body(0, 0).position_m), 1e-5);
 }
 
@@ -98,7 +99,8 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   ModelDef def;
   const Material material{0.5, 0.5, 0};
   scenes::AddGround(def, material);
-  // One sweep does not carry a weight through four contacts. The gap: nothing is to be pushed out.
+  // One sweep does not propagate a weight through four contacts. The gaps avoid position
+  // projection.
   const double gap_m = 1e-9;
   for (int i = 0; i < 4; ++i) {
     scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + gap_m + (0.2 + gap_m) * i}, material);
@@ -121,7 +123,7 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
 }
 
 TEST(Status, ATurnTooFastForItsQuaternionHaltsTheWorldInTheSameStep) {
-  // The square of the turn's quaternion overflows before any number of the state does.
+  // The square of the rotation quaternion overflows before any number of the state does.
   ModelDef def;
   scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 1}, {});
   def.bodies[0].inertia_kg_m2 = scenes::BoxInertia(0.1, {0.1, 0.2, 0.25});
@@ -140,7 +142,7 @@ TEST(Status, ATurnTooFastForItsQuaternionHaltsTheWorldInTheSameStep) {
 }
 
 TEST(Status, PushingOutCountsAsWorkOfItsOwn) {
-  // The same column, 1 mm in each other: one linear system for velocities, one for displacements.
+  // The same column with overlaps of 1 mm: one linear system for velocities, one for displacements.
   BatchOptions options;
   options.max_linear_solves = 1;
   ModelDef def;
@@ -155,7 +157,7 @@ TEST(Status, PushingOutCountsAsWorkOfItsOwn) {
 }
 
 TEST(Status, MoreContactsThanRoomAreSaidAndTheOthersStillHold) {
-  // A body of 60 balls on a box that moves: more contacts than a model of two bodies has room for.
+  // A body of 60 balls on a moving box: more contacts than a model of two bodies has room for.
   ModelDef def;
   const Material material{0.5, 0.5, 0};
   scenes::AddGround(def, material);

@@ -1,4 +1,4 @@
-/// Contacts that stick do so to second order (docs/theory/contact.md, eq. 12a): against closed
+/// Second-order accuracy of sticking contacts (docs/theory/contact.md, eq. 12a) against closed
 /// forms.
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 constexpr double kRadian = 57.29577951308232;
 const Material kRough{100, 100, 0};
 
-/// A thin rod falls over about its lower end from 5 degrees; its speed at 45 degrees against that
-/// of w^2 = 3 g / L (cos 5 - cos 45).
+/// Returns the angular speed at 45 degrees of a thin rod that falls over about its lower end from 5
+/// degrees, relative to w^2 = 3 g / L (cos 5 - cos 45).
 double SpeedAt45(double h) {
   const double length = 1, r = 1e-4, start = 5 / kRadian, end = 45 / kRadian;
   ModelDef def;
@@ -43,7 +43,7 @@ double SpeedAt45(double h) {
 }
 
 TEST(Sticking, ARodFallsOverAboutItsEndToSecondOrder) {
-  // The rod rolls on a tip of 0.1 mm, which alone makes it slower by 1.06e-4.
+  // The rod rolls on a tip of 0.1 mm, which alone slows it by a share of 1.06e-4.
   for (const double h : {2e-3, 1e-3, 5e-4, 2.5e-4}) {
     EXPECT_NEAR(SpeedAt45(h) - 1, -1.06e-4, 5e-6 * (h / 2e-3) * (h / 2e-3) + 1e-6) << h;
   }
@@ -53,11 +53,11 @@ struct TopMotion {
   double precession_rad_per_s = 0, least_deg = 90, largest_deg = 0;
 };
 
-/// A disc on a stem of 50 mm that spins on its tip with 400 rad/s, 20 degrees askew, and precesses
-/// as steadily as the closed form says.
+/// A disc on a stem of 50 mm that spins on its tip with 400 rad/s, inclined by 20 degrees, in the
+/// steady precession of the closed form.
 constexpr double kStem = 0.05, kDisc = 0.03, kTopMass = 0.2, kSpin = 400, kTilt = 20 / kRadian;
 double SteadyPrecession() {
-  // I1 W^2 cos a - I3 s W + m g l = 0, I1 about the tip, s the whole spin about the axis
+  // I1 W^2 cos a - I3 s W + m g l = 0, I1 about the tip, s the total spin about the axis
   const double i3 = kTopMass * kDisc * kDisc / 2, i1 = i3 / 2 + kTopMass * kStem * kStem;
   const double a = i1 * std::cos(kTilt), b = -i3 * kSpin, c = kTopMass * kG * kStem;
   return (-b - std::sqrt(b * b - 4 * a * c)) / (2 * a);

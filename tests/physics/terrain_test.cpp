@@ -1,4 +1,4 @@
-/// Boxes, walls and several planes.
+/// Terrain of boxes, walls and several planes.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ namespace taut::test {
 namespace {
 
 TEST(Terrain, ABallRollsOffAStepAndFallsAsAParabola) {
-  // It rolls without slipping on a terrain box, leaves the edge, lands on the plane below and rolls
-  // on: after the edge it keeps its spin, in flight its horizontal speed.
+  // The ball rolls without slipping on a terrain box, leaves the edge, lands on the plane below and
+  // continues to roll: it keeps its spin after the edge and its horizontal speed in flight.
   const double v = 3, r = 0.1, top = 0.5;
   ModelDef def;
   const Material material{0.5, 0.5, 0};
@@ -32,7 +32,8 @@ TEST(Terrain, ABallRollsOffAStepAndFallsAsAParabola) {
     ASSERT_NEAR(world.Body(0, 0).velocity_m_per_s.x, v, SolverError(n));
     ASSERT_NEAR(world.Body(0, 0).position_m.z, top + r, SolverError(n));
   }
-  // v^2 > g r: it loses contact right at the edge. Until the first step after the edge it is held.
+  // v^2 > g r: the ball loses contact right at the edge. The box supports it until the first step
+  // after the edge.
   int steps = on_box;
   while (world.Body(0, 0).velocity_m_per_s.z > -kG * h / 2) {
     world.Step(h);
@@ -53,8 +54,8 @@ TEST(Terrain, ABallRollsOffAStepAndFallsAsAParabola) {
   EXPECT_NEAR(world.Body(0, 0).position_m.x - off.position_m.x, off.velocity_m_per_s.x * time,
               SolverError(1) + RoundOff(1000, 3));
   world.Step(h, 1000);
-  // Landing turns no more than rolling needs: the contact point has no slip to begin with, but for
-  // what the edge did.
+  // Landing needs hardly any change of spin: the contact point has no initial slip, except from the
+  // edge.
   EXPECT_NEAR(world.Body(0, 0).position_m.z, r, 1e-9);
   const BodyState end = world.Body(0, 0);
   EXPECT_NEAR(end.velocity_m_per_s.x, r * end.angular_velocity_rad_per_s.y, SolverError(1));
@@ -159,8 +160,8 @@ TEST(Terrain, AWedgeOfTwoPlanesHoldsABall) {
 }
 
 TEST(Terrain, ARodJammedAcrossAGrooveStaysAndItsForcesDoNotGrow) {
-  // It hangs by friction, at whatever force along it: two points that stick have six rows, and one
-  // of them too many. Gaps that differ by 1e-11 m contradict each other there.
+  // The rod is held by friction, with an indeterminate force along it: two sticking points have six
+  // rows, of which one is redundant. Gaps that differ by 1e-11 m make them inconsistent contacts.
   for (std::uint64_t seed = 1; seed < 6; ++seed) {
     scenes::Chance chance(seed);
     scenes::RodInWedge rod;
@@ -193,7 +194,7 @@ TEST(Terrain, ABallThatFallsBesideAPlaneOrABoxDoesNotTouchIt) {
   ModelDef def;
   const Material material{0.5, 0.5, 0};
   def.terrain_boxes.push_back({"post", {0, 0, 0}, {}, {0.5, 0.5, 0.5}, material});
-  scenes::AddBall(def, "ball", 0.2, 0.1, {0.61, 0, 1}, material);  // 10 mm beside it
+  scenes::AddBall(def, "ball", 0.2, 0.1, {0.61, 0, 1}, material);  // 10 mm from the post
   Batch world = MakeBatch(def);
   world.Step(1e-3, 1000);
   EXPECT_NEAR(world.Body(0, 0).position_m.z, 1 - kG / 2, RoundOff(1000, 10));

@@ -1,4 +1,4 @@
-/// Cables that touch with friction (docs/theory/cables.md, section 7).
+/// Capstan friction of cables in contact with terrain and rods (docs/theory/cables.md, section 7).
 
 #include <gtest/gtest.h>
 
@@ -13,14 +13,15 @@
 namespace taut::test {
 namespace {
 
-/// The spans' rest lengths are those of the whole cable.
+/// Checks that the spans' rest lengths add up to the rest length of the cable.
 void ExpectNothingLost(const Batch& world) {
   double sum = 0;
   for (int i = 0; i < world.CableSpans(0); ++i) sum += world.CableSpan(0, 0, i).rest_length_m;
   ASSERT_NEAR(sum, world.Cable(0, 0).rest_length_m, 1e-12);
 }
 
-/// Two bodies come down from above, beside what their cable then lies over, and rest there.
+/// Lowers two bodies from above to both sides of an obstacle, so that their cable lies over it, and
+/// stops them.
 void Lower(Batch& world, const Vec3& from, const Vec3& to) {
   constexpr double kAbove = 0.2, kBeside = 0.3;
   for (int i = 1; i <= 100; ++i) {
@@ -38,7 +39,7 @@ void Lower(Batch& world, const Vec3& from, const Vec3& to) {
   }
 }
 
-/// Two masses on a cable over the two edges of a wall: half a turn in all.
+/// Returns two masses on a cable over the two edges of a wall: a wrap angle of half a turn in all.
 Batch Atwood(double m1, double m2, double friction, double damping,
              ActuatorDef::Kind actuator = ActuatorDef::Kind::kNone) {
   const double radius = 1e-3;
@@ -110,7 +111,7 @@ TEST(TouchFriction, WhatIsWoundComesFromTheFirstSpan) {
   ExpectNothingLost(world);
 }
 
-/// Whoever is put elsewhere has a cable that lies against nothing until it comes to it.
+/// A cable whose bodies are repositioned has no contacts until it reaches an obstacle again.
 TEST(TouchFriction, PutElsewhereItHasOneSpan) {
   Batch world = Atwood(1, 0.4, 0.2, 20);
   world.Step(1e-3, 100);
@@ -127,8 +128,7 @@ TEST(TouchFriction, PutElsewhereItHasOneSpan) {
   ExpectNothingLost(world);
 }
 
-/// A rod on an axle, to which a cable comes from above, with so much friction that it does not
-/// slip.
+/// A rod on an axle that a cable wraps from above, with so much friction that it does not slip.
 TEST(TouchFriction, ARodThatTurnsCarriesTheCableAlong) {
   const double radius = 0.05, inertia = 0.002, m2 = 0.7;
   const Vec3 from{-radius, 0, -1}, to{radius, 0, -1};
@@ -158,11 +158,11 @@ TEST(TouchFriction, ARodThatTurnsCarriesTheCableAlong) {
   ExpectNothingLost(world);
 }
 
-/// A ridge along y, and a cable over it whose ends, too heavy to be stopped, go along that.
+/// A ridge along y and a cable over it whose ends, too heavy to be slowed, move along the ridge.
 struct Across {
   static constexpr double kSpeed = 0.05, kRadius = 1e-4, kFriction = 0.3;
   const Vec3 from{-0.2, 0, -0.1}, to{0.2, 0, -0.1};
-  /// How far they are from the ridge, and how far round it the cable goes.
+  /// Tangent length from an end to the ridge, wrap angle at the ridge, and lag of the bend.
   const double far_m = std::sqrt(0.2 * 0.2 + 0.1 * 0.1 - kRadius * kRadius);
   const double theta =
       2 * std::numbers::pi - 2 * std::atan2(0.2, 0.1) - 2 * std::atan2(far_m, kRadius);
@@ -180,7 +180,7 @@ struct Across {
   }
 };
 
-/// Both parts pull at it with T sin b along the ridge, against mu T theta.
+/// Both parts pull with T sin b along the ridge, against the friction mu T theta.
 TEST(TouchFriction, AcrossItSticksAndThenTrailsBehind) {
   const Across across;
   Batch world = MakeBatch(across.def);
@@ -208,8 +208,8 @@ TEST(TouchFriction, AcrossItSticksAndThenTrailsBehind) {
   EXPECT_NEAR((world.CableFrictionLoss(0, 0) - loss) / (at_middle() - went), force, 1e-3 * force);
 }
 
-/// A cable goes askew over both edges of a wall; then one end goes up, until it is off the first
-/// edge, and down again: the second edge still has it where it had it.
+/// A cable crosses both edges of a wall obliquely; then one end rises until the cable leaves the
+/// first edge, and descends again: the contact at the second edge keeps its position.
 TEST(TouchFriction, WhatIsHeldStaysWhereOtherBendsComeAndGo) {
   for (const bool first : {true, false}) {
     const Vec3 from{-0.3, 0, -0.1}, to{0.4, 0, -0.1};
@@ -242,7 +242,7 @@ TEST(TouchFriction, WhatIsHeldStaysWhereOtherBendsComeAndGo) {
     };
     world.Step(1e-3);
     int fewest = 2;
-    const int moves = first ? 1 : 0;  // beyond the edge that is left
+    const int moves = first ? 1 : 0;  // end beyond the edge that the cable leaves
     go(moves, {0, first ? -0.1 : 0.1, 0}, 2000, &fewest);
     ASSERT_EQ(fewest, 2);
     const std::vector<Vec3> askew = world.CableBendPlaces(0, 0);
@@ -254,7 +254,8 @@ TEST(TouchFriction, WhatIsHeldStaysWhereOtherBendsComeAndGo) {
   }
 }
 
-/// A cable that runs over the edge, and along it: so does what friction pulls.
+/// A cable that slips over the edge and along it at the same time: friction opposes the resulting
+/// slip.
 TEST(TouchFriction, WhereItSlipsFrictionIsAgainstItsWay) {
   Across across;
   const double runs = 0.03, aside = 0.02, far = std::hypot(0.2, 0.1);
@@ -271,7 +272,7 @@ TEST(TouchFriction, WhereItSlipsFrictionIsAgainstItsWay) {
   EXPECT_NEAR(behind / before, c, 1e-3);
   const std::vector<CablePoint> path = world.CablePath(0, 0);
   ASSERT_EQ(path.size(), 4u);
-  // What pulls at the edge along it, but for what friction along the cable has there.
+  // Force of the cable along the edge, at the mean tension.
   const auto rise = [&](std::size_t i) {
     const Vec3 way = path[i].position_m - path[i - 1].position_m;
     return way.y / std::sqrt(Dot(way, way));
@@ -303,7 +304,7 @@ TEST(TouchFriction, AFlightKeepsMomentaAndEnergyOnlyFalls) {
   EXPECT_GT(world.CableFrictionLoss(0, 0), 3e-4);
 }
 
-/// Also on what is thick: askew over a rod, as a wheel has it.
+/// Also on a thick obstacle: obliquely over a rod, like over a wheel.
 TEST(TouchFriction, WithHardlyAnyItLiesAsWithout) {
   const Vec3 from{-0.3, -0.1, -0.2}, to{0.4, 0.25, -0.1}, up{0, 0, 1};
   double length[2];

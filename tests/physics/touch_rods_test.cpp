@@ -1,4 +1,4 @@
-/// Cables that touch several free rods (docs/theory/cables.md, section 6).
+/// Cable wrapping on several free rods (docs/theory/cables.md, section 6).
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-/// Rods are at different places in each world, so that the cables touch different ones.
+/// Moves the rods to different places in each world, so that the cables touch different ones.
 void MoveRods(Batch& batch, int world, int rods, int which) {
   for (int rod = 0; rod < rods; ++rod) {
     BodyState state = batch.Body(world, rod);
@@ -56,7 +56,7 @@ TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
 }
 
 /// A cable lowered over an arch of twelve rods: it has at most eight bends, the status reports the
-/// overflow, and its length does not exceed that over all of them.
+/// overflow, and its length does not exceed the length over all of them.
 TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   constexpr int kRods = 12;
   constexpr double kArch = 0.3;
@@ -73,7 +73,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   }
   Batch world = MakeBatch(def);
   int most = 0;
-  double full = 0;  // when the ninth rod is reached
+  double full = 0;  // drop [m] at which the ninth rod is reached
   for (int i = 1; i <= 200; ++i) {
     const Vec3 down{0, 0, -0.004 * i};
     Lead(world, 0, from + down);
@@ -91,7 +91,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
   EXPECT_LT(world.Cable(0, 0).length_m, 2 * 0.8 + std::numbers::pi * (kArch + 0.011));
 }
 
-/// Two balls that have gone past each other, so that their cable makes a loop around the rods: its
+/// Two balls that have passed each other, so that their cable forms a loop around the rods: its
 /// parts pass a rod outside the loop on different sides without touching it.
 TEST(TouchRods, APathInALoopComesToNoRodThatItHasNotMet) {
   for (const double step_s : {1e-3, 2.5e-4}) {

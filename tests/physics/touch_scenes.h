@@ -1,4 +1,4 @@
-/// Cables that come to lie against boxes and rods.
+/// Scenes of cable wrapping on boxes and rods.
 #pragma once
 
 #include "tests/physics/world.h"
@@ -34,7 +34,7 @@ inline TerrainBoxDef Box(const Vec3& low, const Vec3& high) {
   return box;
 }
 
-/// A step in which a body goes somewhere, so slowly that nothing else happens.
+/// Step [s] in which a body is moved to a point, so short that nothing else changes.
 inline constexpr double kStep = 1e-9;
 inline void Lead(Batch& world, int body, const Vec3& p) {
   BodyState state = world.Body(0, body);
@@ -42,7 +42,7 @@ inline void Lead(Batch& world, int body, const Vec3& p) {
   world.SetBodyState(0, body, state);
 }
 
-/// A rod along y, as heavy as it takes to stay where it is.
+/// Adds a rod along y; the default mass keeps it in place.
 inline void AddRod(ModelDef& def, const Vec3& center, double half_m, double radius_m,
                    double mass_kg = 1e9) {
   BodyDef body = Ball(mass_kg, center);
@@ -58,7 +58,7 @@ inline void AddRod(ModelDef& def, const Vec3& center, double half_m, double radi
   def.capsules.push_back(rod);
 }
 
-/// Two ends that are led, and a rod at the origin.
+/// Returns two guided ends of a cable, and a rod at the origin.
 inline ModelDef OverARod(const Vec3& from, const Vec3& to, double radius_m, double cable_radius_m) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -69,7 +69,7 @@ inline ModelDef OverARod(const Vec3& from, const Vec3& to, double radius_m, doub
   return def;
 }
 
-/// A massive rod, whose axis is a unit vector.
+/// Returns a massive rod, whose axis is a unit vector.
 inline BodyDef RodOf(double mass_kg, const Vec3& center, const Vec3& axis, double half_m,
                      double radius_m) {
   BodyDef body = Ball(mass_kg, center);
@@ -82,8 +82,8 @@ inline BodyDef RodOf(double mass_kg, const Vec3& center, const Vec3& axis, doubl
   return body;
 }
 
-/// Two balls fly with a cable of 1.1 m between them into free rods that lie across its way, five in
-/// a layer. Nothing pulls at them else, and the rods pass through each other.
+/// Returns two balls that fly with a cable of 1.1 m between them into free rods across their path,
+/// five in a layer. No other forces act, and the rods pass through each other.
 inline ModelDef AcrossFreeRods(int rods, double stiffness_n_per_m) {
   constexpr double kRodKg = 0.2, kHalfM = 0.5, kRadiusM = 0.004;
   ModelDef def;
@@ -100,8 +100,8 @@ inline ModelDef AcrossFreeRods(int rods, double stiffness_n_per_m) {
   return def;
 }
 
-/// NTRT's MuscleNP as it stands there, all turned by 45 degrees about y: a rod and a box fly with a
-/// cable of 8 m between them into a third rod. Its momentum falls to 0.86 of what it was there.
+/// Returns NTRT's scene MuscleNP, rotated by 45 degrees about y: a rod and a box fly with a cable
+/// of 8 m between them into a third rod. In NTRT the momentum falls to 0.86 of its initial value.
 inline ModelDef MuscleNp() {
   const double share = std::sqrt(0.5), rod_kg = 0.3927, box_kg = 0.5, side_m = 0.5, long_m = 2;
   const Vec3 across{share, 0, -share}, ahead{share, 0, share}, up{0, 1, 0};
@@ -127,7 +127,7 @@ inline ModelDef MuscleNp() {
   return def;
 }
 
-/// Likewise, askew.
+/// Returns a similar, oblique scene.
 inline ModelDef Flight() {
   ModelDef def;
   def.gravity_m_per_s2 = {};

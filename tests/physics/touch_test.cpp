@@ -1,4 +1,4 @@
-/// Cables that come to lie against edges of the terrain (docs/theory/cables.md, section 6).
+/// Cable wrapping on edges of the terrain (docs/theory/cables.md, section 6).
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ AttachmentDef Round(const Vec3& center, double radius) {
   return {kWorld, center, 0.0, WheelDef{{0, 1, 0}, radius, true, 0}};
 }
 
-/// The length of a path over the edges of a wall from x = 0 to 0.1 and 0.06 high.
+/// Returns the length of a path over the edges of a wall from x = 0 to 0.1 and 0.06 high.
 double OverTheWall(const Vec3& from, const Vec3& to, double radius) {
   CableDef cable = Cable({kWorld, from}, {kWorld, to}, 1, 1, radius);
   cable.attachments = {
@@ -43,7 +43,7 @@ TEST(Touch, ACableAcrossAWallLiesOverItsTwoEdges) {
   }
 }
 
-/// Down on it from above, along it and up again: nowhere a jump.
+/// Down onto the wall from above, along it and up again: the length has no jumps.
 TEST(Touch, LengthsAreThoseOfThePathWhereverItGoes) {
   const double radius = 1e-3;
   ModelDef def;
@@ -61,7 +61,7 @@ TEST(Touch, LengthsAreThoseOfThePathWhereverItGoes) {
     world.Step(kStep);
     const Vec3 a = world.Body(0, 0).position_m, b = world.Body(0, 1).position_m;
     Lead(world, 0, a), Lead(world, 1, b);
-    world.Step(kStep);  // what it lies against is that of a step's middle
+    world.Step(kStep);  // contacts are found in the middle of a step
     EXPECT_NEAR(world.Cable(0, 0).length_m, OverTheWall(a, b, radius), 1e-12) << i;
     const int now = world.CableBends(0, 0);
     changes += now != last;
@@ -105,12 +105,12 @@ TEST(Touch, ABarIsPassedOnTheSideToWhichItTakesLess) {
     world.Step(kStep);
     return world.CableBendPlaces(0, 0).at(0);
   };
-  // In 25 mm below its top and out 5 mm above its bottom, and the other way up.
+  // In 25 mm below the top and out 5 mm above the bottom, and mirrored.
   EXPECT_LT(Distance(middle_of({-0.3, 0, 0.125}, {0.4, 0, -0.085}), {0, 0, 0}), 2e-3);
   EXPECT_LT(Distance(middle_of({-0.3, 0, -0.065}, {0.4, 0, 0.145}), {0, 0, 0.06}), 2e-3);
 }
 
-/// A ridge of a height field, whose edge is cut into pieces, and a mesh that is a box.
+/// A ridge of a height field, whose edge consists of pieces, and a mesh in the shape of a box.
 TEST(Touch, RidgesOfFieldsAndMeshesAreEdges) {
   const double radius = 1e-3, height = 0.06;
   HeightFieldDef field;
@@ -199,7 +199,7 @@ TEST(Touch, ASkewCableOverARodMeetsItAtTheSameAngleBeforeAndBehind) {
   EXPECT_NEAR(world.Cable(0, 0).length_m, 0.820470984681, 5e-13);
 }
 
-/// As fast as may be: in one step from above to far below.
+/// From above to far below the rod, at the highest speed in one step.
 TEST(Touch, NoCableGoesThroughARodHoweverFast) {
   for (const double speed : {0.01, 5.0, 50.0, 500.0}) {
     const Vec3 from{-0.3, 0.1, 0.02}, to{0.4, -0.1, 0.02};
@@ -211,7 +211,7 @@ TEST(Touch, NoCableGoesThroughARodHoweverFast) {
     EXPECT_EQ(world.CableBends(0, 0), 1) << speed;
     EXPECT_GT(world.Cable(0, 0).length_m, std::hypot(0.7, 0.2) + 1e-4) << speed;
   }
-  // Beside its end there is nothing.
+  // Beyond the rod's end there is no contact.
   ModelDef def = OverARod({-0.3, 0.31, 0.1}, {0.4, 0.31, 0.1}, 0.003, 1e-4);
   def.bodies[0].velocity_m_per_s = def.bodies[1].velocity_m_per_s = {0, 0, -5.0};
   Batch world = MakeBatch(def);
@@ -220,7 +220,7 @@ TEST(Touch, NoCableGoesThroughARodHoweverFast) {
   EXPECT_EQ(world.CableBends(0, 0), 0);
 }
 
-/// Led along it, both ends at once.
+/// Both ends of the cable are moved along the rod or edge.
 TEST(Touch, WhereARodOrAnEdgeEndsItSlipsOff) {
   const Vec3 from{-0.3, 0, 0.02}, to{0.4, 0, 0.02};
   ModelDef rod = OverARod(from, to, 0.03, 1e-3), wall;
@@ -230,7 +230,7 @@ TEST(Touch, WhereARodOrAnEdgeEndsItSlipsOff) {
   wall.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, 1e-3)};
   for (const bool is_rod : {true, false}) {
     Batch world = MakeBatch(is_rod ? rod : wall);
-    // Of a box three radii before the corner.
+    // On a box, three radii before the corner.
     const double end = is_rod ? 0.3 : 0.297;
     for (const double along : {0.0, 0.1, 0.2, end - 1e-4, end + 1e-4, 0.32}) {
       Lead(world, 0, from + Vec3{0, along, 0});
@@ -239,7 +239,7 @@ TEST(Touch, WhereARodOrAnEdgeEndsItSlipsOff) {
       Lead(world, 0, world.Body(0, 0).position_m);
       Lead(world, 1, world.Body(0, 1).position_m);
       world.Step(kStep);
-      int over = 0;  // round the wall's end it may still go
+      int over = 0;  // bends over the top; around the wall's end further bends are allowed
       for (const Vec3& bend : world.CableBendPlaces(0, 0)) over += bend.z > 0.025;
       const int most = is_rod ? 1 : 2;
       EXPECT_EQ(over, along < end ? most : 0) << is_rod << " " << along;
@@ -255,7 +255,7 @@ TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
   Batch world = MakeBatch(OverARod(from, {far, 0, 0.01}, radius, 1e-4));
   const double tangent = std::sqrt(far * far - radius * radius);
   for (int i = 0; i <= 810; ++i) {
-    // Downwards, and three turns and a half round, and back.
+    // Downwards, three and a half turns around, and back.
     const double turn = 0.5 - 0.06 * (i <= 400 ? i : 800 - i);
     const Vec3 to{far * std::cos(turn), 0, far * std::sin(turn)};
     Lead(world, 1, to);
@@ -268,13 +268,13 @@ TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
     const std::vector<Vec3> bends = world.CableBendPlaces(0, 0);
     ASSERT_EQ(bends.size(), theta > 0 ? 1u : 0u) << i;
     if (bends.empty()) continue;
-    const double middle = 0.5 * (std::acos(-1.0) + turn);  // between the ends, on the side it winds
+    const double middle = 0.5 * (std::acos(-1.0) + turn);  // between the ends, on the wrapped side
     const Vec3 expected_m{radius * std::cos(middle), 0, radius * std::sin(middle)};
     ASSERT_LT(Distance(bends[0], expected_m), 1e-12) << i;
   }
 }
 
-/// On a rod that flies and turns: the rate that sensors see, against a difference of lengths.
+/// On a flying and rotating rod: the rate for sensors against a difference of lengths.
 TEST(Touch, TheRateIsThatOfTheLength) {
   Batch world = MakeBatch(OverARod({-0.3, 0.1, -0.02}, {0.4, 0.05, 0.03}, 0.02, 1e-3));
   BodyState rod = world.Body(0, 2);
@@ -291,8 +291,8 @@ TEST(Touch, TheRateIsThatOfTheLength) {
   EXPECT_GT(std::fabs(behind.rate_m_per_s), 0.05);
 }
 
-/// Flies for 10 s and counts the steps in which the cable touches. Momenta stay to 1e-12, the
-/// energy to a share of it.
+/// Flies for 10 s and counts the steps in which the cable touches. Momenta are kept to 1e-12, the
+/// energy to `energy_share`.
 void FlyKeepingAll(double energy_share, Batch& world, int& touched) {
   const double energy = EnergyOf(world);
   const Vec3 momentum = world.Momentum(0), angular = world.AngularMomentum(0);

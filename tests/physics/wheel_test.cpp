@@ -1,4 +1,4 @@
-/// Cables round wheels without friction (docs/theory/cables.md, section 4).
+/// Cable wrapping on frictionless wheels (docs/theory/cables.md, section 4).
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ TEST(Wheel, APathOfThreeQuartersOfATurnHasTheLengthOfItsTangentsAndArc) {
                      Round(kWorld, {}, {0, 1, 0}, radius, counterclockwise, turns),
                      {kWorld, {-0.1, 0, -0.4}}});
   };
-  // The straight way passes it by; a turn more is three quarters of one that lie on.
+  // The straight path misses the wheel; with a full turn added, three quarters of a turn lie on it.
   EXPECT_NEAR(length(false, 0), 0.5, 1e-15);
   EXPECT_NEAR(length(false, 1), 1.371238898, 5e-10);
   EXPECT_NEAR(length(false, 1), 0.5 + 0.4 + 1.5 * std::numbers::pi * radius, 1e-14);
@@ -55,7 +55,7 @@ TEST(Wheel, APathOfThreeQuartersOfATurnHasTheLengthOfItsTangentsAndArc) {
   EXPECT_NEAR(length(true, 0), 0.9 + radius * (1.5 * std::numbers::pi + between - tangents), 1e-14);
 }
 
-/// A skew path is straight on the unrolled cylinder: as steep before it as behind.
+/// An oblique path is straight on the unrolled cylinder: the same slope before and behind it.
 TEST(Wheel, ASkewPathMeetsTheAxisAtTheSameAngleBeforeAndBehind) {
   const CableDef cable = Cable({{kWorld, {-0.3, -0.1, -0.2}},
                                 Round(kWorld, {}, {0, 1, 0}, 0.01, true),
@@ -66,7 +66,7 @@ TEST(Wheel, ASkewPathMeetsTheAxisAtTheSameAngleBeforeAndBehind) {
   EXPECT_NEAR(path.length_m(), 0.820470984681, 5e-13);
   EXPECT_NEAR(path.points()[1].u.y, 0.304703036, 5e-10);
   EXPECT_NEAR(path.points()[3].u.y, path.points()[1].u.y, 1e-15);
-  // No neighbouring path is shorter: points moved on the cylinder, with the geodesic between them.
+  // No neighboring path is shorter: points moved on the cylinder, with the geodesic between them.
   const Vec3 from = path.points()[0].p, to = path.points()[3].p;
   const auto length = [&](double turn_a, double slide_a, double turn_b, double slide_b) {
     const auto moved = [](Vec3 p, double turn, double slide) {
@@ -108,8 +108,8 @@ TEST(Wheel, TwoThinOnesAreTheEdgesOfAWallThatIsUnfolded) {
   }
 }
 
-/// Masses that hang at `angle` to the vertical symmetrically would not move vertically: they hang
-/// below the sides of one wheel, or of the outer two of several on an arch.
+/// Returns Atwood's machine: the masses hang vertically below the sides of one wheel, or of the
+/// outer two of several wheels on an arch, so that they move vertically.
 ModelDef Atwood(double m1, double m2, int wheels, double stiffness = 1e5) {
   const double arch = 0.1, radius = wheels == 1 ? arch : 0.005;
   std::vector<AttachmentDef> path{{0, {-arch - (wheels == 1 ? 0 : radius), 0, -1}}};
@@ -139,12 +139,12 @@ TEST(Wheel, AtwoodsMachineIsThatOfAFreePulleyWhateverItRunsOver) {
 }
 
 TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
-  // Three turns about a free drum whose end is on its rim: pulled straight, the drum spins up as
-  // under a force at its radius, and rolls all of it off.
+  // Three turns about a free drum to whose rim the cable's end is fixed: pulled straight, the drum
+  // spins up as under a force at its radius, and all cable unwinds.
   const double radius = 0.05, inertia = 0.002, turns = 3;
   const Vec3 center{0, 0, 0}, end{1, 0, -radius};
   const double wound = 2 * std::numbers::pi * turns;
-  // It leaves the drum below its middle, towards x.
+  // The cable leaves the drum below its center, towards x.
   const Vec3 rim{radius * std::sin(std::numbers::pi + wound), 0,
                  radius * std::cos(std::numbers::pi + wound)};
   ModelDef def;
@@ -168,7 +168,7 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
   (void)turned;
 }
 
-/// NTRT's MuscleNP: two bodies in flight on one cable, a free rod in its way.
+/// Returns a scene like NTRT's MuscleNP: two bodies in flight on one cable, a free rod in its way.
 ModelDef Flight() {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -193,15 +193,15 @@ TEST(Wheel, MomentaAndEnergyAreKeptInFreeFlightOverAFreeRod) {
     off = std::max(off, std::fabs(EnergyOf(world) - energy));
     on = std::max(on, Norm(world.Body(0, 2).velocity_m_per_s));
   }
-  EXPECT_GT(on, 0.4);  // it was met
+  EXPECT_GT(on, 0.4);  // the cable touched the rod
   EXPECT_LT(Distance(world.Momentum(0), p), 1e-12);
   EXPECT_LT(Distance(world.AngularMomentum(0), l), 1e-11);
   EXPECT_LT(off, 1e-4 * energy);
 }
 
 TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
-  // Of three wheels in a row on bodies that are anywhere: the length's change with each coordinate
-  // of a body is minus what the tension pulls with, force and torque.
+  // Three wheels in a row on bodies at arbitrary poses: minus the derivative of the length by each
+  // coordinate of a body equals the force and torque of a unit tension.
   const auto cable_of = [](const Vec3& shift, int which) {
     std::vector<AttachmentDef> path{{0, {-1, 0.1, 0}},
                                     Round(1, {-0.4, 0, 0.3}, {0, 0.8, 0.6}, 0.1, true),
@@ -232,7 +232,7 @@ TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
   }
 }
 
-/// Also on a body that turns: the rate that sensors see, against a difference of lengths.
+/// Also on a rotating body: the rate for sensors against a difference of lengths.
 TEST(Wheel, TheRateIsThatOfTheLength) {
   const double d = 1e-6;
   const auto at = [&](double time_s) {
@@ -240,7 +240,7 @@ TEST(Wheel, TheRateIsThatOfTheLength) {
     def.gravity_m_per_s2 = {};
     const Vec3 center{0.2, 0.1, 0.3};
     def.bodies = {Ball(1, center)};
-    // The wheel is off the middle of its body.
+    // The wheel is off the center of its body.
     def.cables.push_back(Cable({{kWorld, {-1, 0, 0}},
                                 Round(0, center + Vec3{0.1, 0, 0.2}, {0, 1, 0}, 0.05, true),
                                 {kWorld, {1, 0.2, 0}}},
@@ -263,7 +263,8 @@ TEST(Wheel, TheRateIsThatOfTheLength) {
 TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
   const auto worst = [](double step_s) {
     ModelDef def;
-    // As high as the peg: it comes to rest there again, on the other side, and winds nothing up.
+    // As high as the peg: the pendulum comes to rest at that height on the other side, without
+    // winding up.
     const Vec3 start{0.8, 0, -0.6};
     def.bodies = {Ball(0.2, start)};
     std::vector<AttachmentDef> path{
@@ -279,7 +280,7 @@ TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
       off = std::max(off, std::fabs(EnergyOf(world) - energy) / fall);
       most = std::max(most, -world.Body(0, 0).position_m.x);
     }
-    EXPECT_GT(most, 0.2);  // it was interrupted, or it would swing out to 0.8
+    EXPECT_GT(most, 0.2);  // the peg interrupts it: otherwise it would swing out to 0.8
     EXPECT_LT(most, 0.5);
     return off;
   };

@@ -1,4 +1,4 @@
-/// What the tests of the core share: worlds from scenes, distances, and how much rounding may do.
+/// Common helpers of the physics tests: worlds from scenes, distances, bounds of rounding errors.
 #pragma once
 
 #include <cmath>
@@ -24,22 +24,23 @@ inline int StepsIn(double time_s, double step_s) {
   return static_cast<int>(std::lround(time_s / step_s));
 }
 
-/// A sum of `n` terms, each rounded to a relative half epsilon and no partial sum above `size`, is
-/// off by no more than n size eps / 2. A position gets two additions a step, and its velocity's own
-/// error n speed eps / 2 adds up to n (time speed) eps / 4; products add as much again. So this
-/// bounds both, with `size` at least the largest position and the largest path.
+/// Returns a bound of rounding errors. A sum of `n` terms, each rounded to a relative half epsilon
+/// and no partial sum above `size`, is off by at most n size eps / 2. A position gets two additions
+/// a step, and its velocity's error n speed eps / 2 adds up to n (time speed) eps / 4; products
+/// contribute as much again. So this bounds both, with `size` at least the largest position and the
+/// largest path.
 inline double RoundOff(int steps, double size) {
   return 4 * steps * std::numeric_limits<double>::epsilon() * size;
 }
 
-/// What n contact solves may be off by together. A residual is what one step of the natural map
-/// would still change (docs/theory/contact.md, eq. 16), and below the tolerance. The solution may
-/// be further away where contacts share loads: ten times that is taken.
+/// Returns a bound of the accumulated error of n contact solves [m/s]. A residual is the change by
+/// one step of the natural map (docs/theory/contact.md, eq. 16), and below the tolerance. The
+/// distance from the solution may be larger where contacts share loads: a factor of ten is assumed.
 inline double SolverError(int solves, double tolerance_m_per_s = BatchOptions().tolerance_m_per_s) {
   return 10 * solves * tolerance_m_per_s;
 }
 
-/// Of world 0: kinetic, of weight and of cables [J].
+/// Returns the energy of world 0: kinetic, gravity and elastic [J].
 inline double EnergyOf(const Batch& world) {
   const Energy e = world.TotalEnergy(0);
   return e.kinetic_j + e.gravity_j + e.elastic_j;
@@ -48,7 +49,8 @@ inline double EnergyOf(const Batch& world) {
 inline double Norm(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 inline double Distance(const Vec3& a, const Vec3& b) { return Norm(a - b); }
 
-/// Of a body, upwards, in the second half of a time, when the start has died away [m/s^2].
+/// Returns the upward acceleration of a body in the second half of a time span, after the initial
+/// transient [m/s^2].
 inline double AccelerationOf(Batch& world, int body, double time_s) {
   const int steps = StepsIn(time_s, 1e-3);
   world.Step(1e-3, steps / 2);

@@ -1,6 +1,6 @@
-"""The website and a release are made by command, and what cannot be made is answered.
+"""The website and a release are made by command; impossible requests fail with an error.
 
-Usage: publishing_test.py AREA.TEST [TAUT BUILD_FOLDER]. One test of this file, by the name of its function.
+Usage: publishing_test.py AREA.TEST [TAUT BUILD_FOLDER]. TEST is the name of a function of this file.
 """
 
 import html.parser
@@ -20,11 +20,11 @@ from publishing import contents, deb, release, stage  # noqa: E402
 
 
 class Skipped(Exception):
-    """Why a test is left out."""
+    """Reason for skipping a test"""
 
 
 def problem(function, *arguments):
-    """What a Problem says; an assertion if there is none."""
+    """Returns the message of the Problem that the call raises; fails if it raises none."""
     try:
         function(*arguments)
     except stage.Problem as found:
@@ -45,7 +45,7 @@ def write(root, files):
 
 
 def copied(place):
-    """The working tree in a git of its own, with changes to be released, and the environment to use it in."""
+    """Copies the working tree into a new git repository, with changes to release. Returns it and its environment."""
     root = pathlib.Path(place) / "tree"
     listed = run("git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", cwd=ROOT)
     for name in filter(None, listed.split("\0")):
@@ -53,7 +53,7 @@ def copied(place):
             (root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, root / name)
     text = (root / "CHANGELOG.md").read_text()
-    if "(not yet released)" not in text:  # a release has just been made
+    if "(not yet released)" not in text:  # directly after a release
         write(root, {"CHANGELOG.md": text.replace("\n## ", "\n## Next (not yet released)\n\n- New.\n\n## ", 1)})
     (pathlib.Path(place) / "gitconfig").write_text("[user]\n\tname = somebody\n\temail = somebody@example.org\n")
     env = dict(os.environ, GIT_CONFIG_GLOBAL=f"{place}/gitconfig")
@@ -68,7 +68,7 @@ def next_version(root):
     return f"{first}.{second + 1}.0"
 
 
-# The website.
+# Website
 
 
 def ALinkToCodeLeadsToAPageOfIt():
@@ -142,7 +142,7 @@ def IsBuiltWithoutAWarning():
         assert "BatchOptions" in (site / "api/batch.html").read_text()
 
 
-# Releases.
+# Releases
 
 
 def AVersionComesAfterTheLast():
@@ -211,7 +211,7 @@ def ATagIsNotMovedEver():
 
 
 def ADryRunLeavesNothingButFiles():
-    """The packaging of what is built already, as if this version came after one before it."""
+    """Packages the existing build, with the previous version set to 0.0.1."""
     if lacking := deb.missing():
         raise Skipped(f"there is no {', '.join(lacking)}")
     taut, built = pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
@@ -247,7 +247,7 @@ def IsCompiledInstalledAndRuns():
         assert len(list(pathlib.Path(place, "packages").glob("*.deb"))) == 2
 
 
-# What GitHub reads.
+# Files for GitHub
 
 
 def WhatGitHubReadsCanBeRead():
@@ -261,7 +261,7 @@ def WhatGitHubReadsCanBeRead():
     assert job["container"] == "debian:12" and {"run": "script/setup"} in job["steps"], job
     parts = {each["part"]: each["command"] for each in job["strategy"]["matrix"]["include"]}
     known = re.search(r"case \$part in ([a-z0-9| ]+)\)", (ROOT / "script/test").read_text())[1].split(" | ")
-    known.remove("long")  # at night
+    known.remove("long")  # nightly only
     assert parts == {"lint": "script/lint --recent", **{part: f"script/test --part {part}" for part in known}}, parts
     job = read[".github/workflows/nightly.yml"]["jobs"]["debian12"]
     nightly = re.search(r"^all=\((.*)\)", (ROOT / "script/nightly").read_text(), re.MULTILINE)[1].split()

@@ -1,4 +1,4 @@
-"""Rollouts, sequences of commands and rows without copies: against runs, steps and copies, and wrong calls.
+"""Rollouts, command sequences and zero-copy rows: compared with runs, steps and copies; wrong calls.
 
 ahead_test.py TAUT [unittest's arguments]
 """
@@ -22,7 +22,7 @@ class Rollouts(unittest.TestCase):
         rows = taut.rollout(experiment, "distance", [{}, {"seed": 3}, {FREQUENCY: 2.0}, {"model.friction": 0.5}],
                             threads=2)
         self.assertEqual(rows["state_hash"][0], taut.run(experiment).state_hash)
-        self.assertEqual(rows["state_hash"][0], rows["state_hash"][1])  # nothing of it depends on the seed
+        self.assertEqual(rows["state_hash"][0], rows["state_hash"][1])  # independent of the seed
         self.assertEqual(len(set(rows["state_hash"])), 3)
         self.assertTrue((rows["failed"] == "").all() and np.isfinite(rows["score"]).all())
         np.testing.assert_array_equal(rows["score"], rows["distance_m"])
@@ -45,7 +45,7 @@ class Rollouts(unittest.TestCase):
         experiment.duration_s, experiment.seed = 0.05, 4
         rows = taut.rollout(experiment, "nearer", 2)
         same = taut.rollout(experiment, "nearer", [{"seed": 4}, {"seed": np.int64(5)}])
-        self.assertEqual(rows.tobytes(), same.tobytes())  # NaN and all
+        self.assertEqual(rows.tobytes(), same.tobytes())  # equal bytes, including NaN
         experiment.seed = 5
         ran = taut.run(experiment)
         self.assertEqual(rows["state_hash"][1], ran.state_hash)
@@ -74,7 +74,8 @@ class Rollouts(unittest.TestCase):
             taut.rollout(gait(), {"measure": "distanse", "form_s": 1, "from_s": 9},
                          [{"motion.sine.frequency": 1}, {FREQUENCY: -1}, {FREQUENCY: math.nan}])
         said = str(caught.exception)
-        for what in ("distanse", "form_s", "is not before the experiment's end", 'worlds[0]: nothing is called "motion.sine.frequency"', "did you mean",
+        for what in ("distanse", "form_s", "must be before the end of the experiment",
+                     'worlds[0]: there is no parameter "motion.sine.frequency"', "did you mean",
                      "worlds[1]: " + FREQUENCY, "worlds[2]"):
             self.assertIn(what, said)
         for objective, why in (({"measure": "nearer"}, "goal"), ({"measure": "distance", "from_s": 9}, "before"),
@@ -120,7 +121,7 @@ class Sequences(unittest.TestCase):
         out = np.empty_like(positions)
         self.assertIs(whole.rollout(targets, 1e-3, 3, start, out), out)
         np.testing.assert_array_equal(out, positions)
-        self.assertFalse((whole.rollout(targets, 1e-3, 3) == positions).any())  # goes on from there
+        self.assertFalse((whole.rollout(targets, 1e-3, 3) == positions).any())  # continues from the current state
 
     def test_wrong_calls(self):
         batch = taut.Batch(taut.load(PUSH), worlds=2)
@@ -142,7 +143,7 @@ class Sequences(unittest.TestCase):
 
 class Rows(unittest.TestCase):
     def check(self, batch):
-        """Every row against the copies of the batch's methods."""
+        """Compares every row with the copies returned by the batch's methods."""
         rows, worlds = batch.rows, np.arange(batch.worlds)
         group, lane = worlds // batch.lanes, worlds % batch.lanes
         for name in ("body_position_m", "body_velocity_m_per_s", "rest_length_m", "rest_length_target_m", "cable_length_m",
@@ -189,7 +190,7 @@ class Rows(unittest.TestCase):
         rows = taut.Batch(taut.load(PUSH), worlds=200).rows.body_position_m
         kept = rows.copy()
         gc.collect()
-        taut.Batch(taut.load(PRISM), worlds=200)  # memory that was free would be used again
+        taut.Batch(taut.load(PRISM), worlds=200)  # would reuse freed memory
         np.testing.assert_array_equal(rows, kept)
 
 

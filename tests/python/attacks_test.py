@@ -1,4 +1,4 @@
-"""Attacks on the Python module: an exception or an answer, never a hang, an abort or a crash.
+"""Attacks on the Python module: it raises an exception or returns a result, and never hangs, aborts or crashes.
 
 attacks_test.py TAUT [unittest's arguments]
 """
@@ -20,7 +20,7 @@ import taut.gym
 from helpers import GAIT, PUSH, ROOT, interrupted, main
 
 SPINE = str(ROOT / "share/experiments" / "learn_spine.yaml")
-TOO_LONG_S = 60  # for what should end within a second or two, on a busy machine
+TOO_LONG_S = 60  # for programs that need a second or two, on a busy machine
 HEAD = """
 import os, resource, sys, threading, time, taut, taut.gym, numpy as np
 
@@ -31,7 +31,8 @@ def limit_memory(bytes):
 
 
 def program(text, *arguments):
-    """Runs a Python program that knows taut, PUSH and SPINE: its exit status and both of its streams."""
+    """Runs a Python program in which taut, PUSH and SPINE are defined. Returns its exit status and its output and
+    errors."""
     names = f"PUSH, SPINE = {PUSH!r}, {SPINE!r}\n"
     ran = subprocess.run([sys.executable, "-c", HEAD + names + textwrap.dedent(text), *arguments], stdout=subprocess.PIPE,
                          stderr=subprocess.STDOUT, text=True, timeout=TOO_LONG_S)
@@ -94,7 +95,7 @@ class Callbacks(Attack):
                     kept.append([(a, a.copy()) for a in arrays])
 
                 experiment = taut.load(SPINE)
-                experiment.duration_s = 0.03  # episodes end on the way
+                experiment.duration_s = 0.03  # episodes end during the loop
                 env = taut.gym.make_vec(experiment, 64, judge=keep, observe=keep, copy=copy, autoreset_mode=mode)
                 env.reset(seed=0)
                 actions = np.zeros(env.action_space.shape, np.float32)
@@ -143,7 +144,7 @@ class Processes(Attack):
                 assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0""")
 
     def test_the_program_ends_while_daemon_threads_work(self):
-        # Four at once: on a busy machine the threads still work when static variables are destroyed.
+        # Four at once: on a busy machine the threads are still running when static variables are destroyed.
         for work in ("batch.step(1e-3, 10**8)", "taut.run(endless)", "env.step(zero)", "taut.rollout(endless, 'distance', 8)",
                      "taut.run(endless, progress=lambda *_: time.sleep(1e-3))", "batch.time_s()"):
             text = f"""
@@ -258,7 +259,7 @@ class Interrupts(unittest.TestCase):
         before = time.monotonic()
         interrupted(self, lambda: batch.step(1e-3, 2 * 10**9))
         self.assertLess(time.monotonic() - before, 30)
-        batch.step(1e-3, 5)  # is of use still
+        batch.step(1e-3, 5)  # still usable
         steps = batch.time_s() / 1e-3
         np.testing.assert_allclose(steps, np.round(steps), atol=1e-3)
         targets = np.tile(batch.rest_length_target_m()[:, None], (1, 1, 1))
@@ -319,7 +320,7 @@ class Nonsense(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, rf"values\[1\]: {name} must be .*, got "):
                     batch.set_parameter(name, [2 * good[0], value, good[2]])
             self.assertEqual(batch.hash(1), before)
-            np.testing.assert_array_equal(batch.parameter(name), good)  # of none
+            np.testing.assert_array_equal(batch.parameter(name), good)  # no world was changed
 
     def test_commands_are_finite(self):
         batch = taut.Batch(taut.load(PUSH), worlds=2)

@@ -1,4 +1,4 @@
-"""taut.gym: Gymnasium's contract, written out, and the bits of the command; with Gymnasium its own checker."""
+"""taut.gym: Gymnasium's contract in tests, bits equal to the command's, and Gymnasium's checker if it is installed"""
 
 import math
 import os
@@ -21,7 +21,7 @@ ROLL = str(ROOT / "share/experiments" / "learn_roll.yaml")
 
 
 def short(seconds=0.05):
-    """Episodes of five steps."""
+    """Returns an experiment with episodes of five steps."""
     experiment = taut.load(SPINE)
     experiment.duration_s = seconds
     return experiment
@@ -295,7 +295,7 @@ class WithGymnasium(unittest.TestCase):
     def test_its_checker_finds_nothing(self):
         from gymnasium.utils.env_checker import check_env
         with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", ".*Box observation space")  # it warns of bounds that are infinite
+            warnings.filterwarnings("ignore", ".*Box observation space")  # it warns about infinite bounds
             check_env(taut.gym.Env(short()), skip_render_check=True)
 
     def test_many_are_as_its_own_vectors_of_single_ones(self):
@@ -312,10 +312,10 @@ class WithGymnasium(unittest.TestCase):
 
 
 class OtherGymnasiums(unittest.TestCase):
-    """What stands in for versions that are not installed here has of them what taut.gym takes."""
+    """Stubs of versions that are not installed here, with the names that taut.gym uses"""
 
     def imported(self, version, init=""):
-        """Output of a program that imports taut.gym beside this gymnasium."""
+        """Returns the output of a program that imports taut.gym with this stub of gymnasium."""
         spaces = (ROOT / "python/taut/_spaces.py").read_text()
         files = {"__init__.py": f"{init}\n__version__ = {version!r}\nclass Env:\n    def reset(self, *, seed=None): pass\n",
                  "spaces.py": spaces, "vector/utils.py": spaces, "vector/__init__.py": "class VectorEnv: pass\n"}

@@ -1,4 +1,4 @@
-"""What several tests of the Python module need."""
+"""Helpers of several tests of the Python module"""
 
 import os
 import pathlib
@@ -26,7 +26,7 @@ def gait(seconds=0.3):
 
 
 def interrupted(case, call):
-    """What `call` leaves behind when Ctrl-C comes while it is at work."""
+    """Checks that `call` raises KeyboardInterrupt if Ctrl-C comes while it runs."""
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with case.assertRaises(KeyboardInterrupt):
@@ -35,7 +35,7 @@ def interrupted(case, call):
 
 
 def main():
-    """The tests of the program; the command's path is its first argument."""
+    """Runs the tests of the program; the first argument is the command's path."""
     del sys.argv[1]
     warnings.simplefilter("error")
     unittest.main()

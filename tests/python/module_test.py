@@ -1,4 +1,4 @@
-"""The Python module against the command, and what it does with wrong calls.
+"""The Python module compared with the command; errors of wrong calls
 
 module_test.py TAUT [unittest's arguments]
 """
@@ -172,7 +172,7 @@ class Batches(unittest.TestCase):
         batch = taut.Batch(taut.load(PRISM), worlds=2)
         before, steps, step_s = batch.body_position_m(), 100, 1e-3
         batch.step(step_s, steps)
-        fallen = (before - batch.body_position_m()).mean(axis=1)  # three rods of one mass
+        fallen = (before - batch.body_position_m()).mean(axis=1)  # three rods of equal mass
         np.testing.assert_allclose(fallen[:, 2], 0.5 * 9.81 * (steps * step_s) ** 2, rtol=0.02)
         np.testing.assert_allclose(batch.time_s(), 0.1, rtol=1e-12)
 
@@ -243,7 +243,7 @@ class Batches(unittest.TestCase):
         frozen = np.empty((2, 12))
         frozen.setflags(write=False)
         for bad, why in ((np.empty((2, 11)), "shape"), (np.empty((2, 12), np.float32), "float32"),
-                         (np.empty((12, 2)).T, "contiguous"), (frozen, "writeable"), ([0], "no array")):
+                         (np.empty((12, 2)).T, "contiguous"), (frozen, "writeable"), ([0], "not an array")):
             with self.assertRaisesRegex(ValueError, why):
                 batch.tension_n(out=bad)
 

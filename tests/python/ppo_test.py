@@ -1,4 +1,5 @@
-"""examples/ppo.py: its sums against others, a task that it must learn, three updates of the robot, runs beside the sine."""
+"""examples/ppo.py: sums against independent computations, a task with a known optimum, three updates of the robot, and
+runs compared with the sine"""
 
 import contextlib
 import csv
@@ -34,8 +35,9 @@ FEW = ppo.Settings(worlds=8, periods=8)
 
 
 class Aim:
-    """Worlds in which an action is worth 1 less its squared distance from twice what is seen first. Episodes have four
-    periods; those of odd worlds, which is what is seen second, fail then. What is best to do, and its worth, is known."""
+    """Environment with a known optimal policy and value. The reward is 1 less the squared distance of the action from
+    twice the first observation. Episodes have four periods; the second observation marks odd worlds, whose episodes
+    end with a failure."""
 
     observation_channels, action_channels = ["it", "odd"], ["aim"]
     period_s, episode_steps = 0.5, 4
@@ -153,7 +155,7 @@ class Sums(unittest.TestCase):
 class Collecting(unittest.TestCase):
     def test_what_followed_an_end_is_the_last_of_its_own_episode_or_nothing(self):
         torch.manual_seed(1)
-        envs, policy = Aim(4), ppo.Policy(Aim.observation_channels, 2, FEW)  # which looks at the first alone
+        envs, policy = Aim(4), ppo.Policy(Aim.observation_channels, 2, FEW)  # which uses the first observation only
         steps = []
         true_step = envs.step
         envs.step = lambda actions: steps.append(true_step(actions)) or steps[-1]
@@ -192,7 +194,7 @@ class Learning(unittest.TestCase):
         np.testing.assert_allclose(means, [-0.6, 0, 0.6] * 2, atol=0.1)
         self.assertLess(said["deviation"], 0.25)
         self.assertAlmostEqual(said["per_s"], (1 - said["deviation"] ** 2) / Aim.period_s, delta=0.05)
-        # 1 + 1/2 + 1/4 ... for ever, or of four periods, and who sees it does not see which
+        # 1 + 1/2 + 1/4 ... for truncated episodes; the mean over four periods for failing ones, as time is not observed
         both = np.array([2, (1 + 1.5 + 1.75 + 1.875) / 4]) * (1 - said["deviation"] ** 2)
         np.testing.assert_allclose(worth, both, atol=0.1)
 
@@ -330,7 +332,7 @@ class BesideTheSine(unittest.TestCase):
         envs = taut.gym.make_vec(str(ppo.TASK))
         policy = ppo.Policy(envs.observation_channels, 24, FEW)
         with torch.no_grad():
-            policy.actor[4].weight.mul_(300)  # beyond -1..1 mostly
+            policy.actor[4].weight.mul_(300)  # mostly outside of -1..1
         make, made = taut.gym.make_vec, []
         with unittest.mock.patch("taut.gym.make_vec", lambda *a, **how: made.append(make(*a, **how)) or made[-1]):
             way_m = ppo_play.roll(policy, ppo.TASK, 3, 5, self.folder)

@@ -1,4 +1,4 @@
-"""Studies, fits, analyses and linear systems from Python: against the command, closed forms, and wrong calls.
+"""Studies, fits, analyses and linear systems from Python: against the command, closed forms, and wrong calls
 
 results_test.py TAUT [unittest's arguments]
 """
@@ -125,7 +125,7 @@ class Studies(InAFolder):
         self.assertRaisesRegex(ValueError, "threads", lambda: taut.learn(self.study, threads=-1))
 
 
-# A mass on a cable that is wound in, hangs at 1 - (L + m g / k): the fit's truth is k = 110 N/m.
+# A mass on a cable that is wound in hangs at 1 - (L + m g / k); the true value for the fit is k = 110 N/m.
 HANGING = """taut: 1
 kind: model
 name: hanging
@@ -177,7 +177,7 @@ class Fits(InAFolder):
         fitted = taut.fit(self.fit)
         k, se = fitted.values["k_n_per_m"], fitted.standard_errors["k_n_per_m"]
         self.assertLess(abs(k - 110), 4 * se)
-        # sd of five means through dz/dk = m g / k^2, with the prior
+        # sd of five means through dz/dk = m g / k^2, combined with the prior
         alone = 0.001 / math.sqrt(5) / (0.5 * 10 / k**2)
         self.assertAlmostEqual(math.sqrt(fitted.covariance[0, 0]), 1 / math.hypot(1 / alone, 1 / 20), delta=0.02 * alone)
         np.testing.assert_allclose(fitted.correlation, [[1]])
@@ -203,7 +203,7 @@ class Fits(InAFolder):
             self.assertEqual(fitted.standard_errors[one["name"]], larger)
         first = fitted.data["parameters"][0]
         self.assertAlmostEqual(math.sqrt(fitted.covariance[0, 0]), first["se"], delta=1e-9)
-        self.assertGreater(first["se"], 3 * 0.001 / (5 / 110**2))  # alone it would be known much better
+        self.assertGreater(first["se"], 3 * 0.001 / (5 / 110**2))  # with a known mass its error would be much smaller
         self.assertGreater(fitted.correlation[0, 1], 0.9)
 
     def test_a_folder_keeps_what_was_computed(self):
@@ -242,9 +242,9 @@ class Analyses(unittest.TestCase):
         self.assertTrue(found.found, found.why)
         self.assertEqual(found.load_case, "own_weight")
         np.testing.assert_allclose(found.tension_n, [0.5 * 9.81], rtol=1e-9)
-        mass = 0  # the ceiling stands still: no body
+        mass = 0  # the ceiling is fixed and no body
         np.testing.assert_allclose(found.body_position_m[mass], [0, 0, 2 - 1 - 0.5 * 9.81 / 400], atol=1e-9)
-        # up and down sqrt(k / m), sideways a pendulum
+        # vertical sqrt(k / m), horizontal a pendulum
         up, sideways = math.sqrt(400 / 0.5), math.sqrt(9.81 / (1 + 0.5 * 9.81 / 400))
         swings = found.mode_frequency_hz[[kind == "elastic" for kind in found.mode_kinds]]
         np.testing.assert_allclose(swings, np.array([sideways, sideways, up]) / 2 / math.pi, rtol=1e-6)
@@ -252,7 +252,7 @@ class Analyses(unittest.TestCase):
         np.testing.assert_allclose(np.abs(found.mode_translation_m[-1, mass]), [0, 0, 1], atol=1e-9)
         at = 6 * found.moving_bodies.index(mass)
         self.assertAlmostEqual(found.stiffness[at + 2, at + 2], 400, delta=1e-6)
-        self.assertAlmostEqual(found.stiffness[at, at], 0.5 * sideways**2, delta=1e-6)  # there, not as described
+        self.assertAlmostEqual(found.stiffness[at, at], 0.5 * sideways**2, delta=1e-6)  # at equilibrium
         self.assertAlmostEqual(found.mass[at, at], 0.5, delta=1e-12)
 
     def test_a_prism_has_one_state_of_self_stress(self):
@@ -289,7 +289,7 @@ builders:
             path.write_text(text % "1")
             with self.assertRaisesRegex(taut.InputError, "rotate about x and y through .0, 0, 0., and the loads topple"):
                 taut.analyze(taut.load(str(path)))
-            path.write_text(text % "-1")  # it hangs: m g l / 2 over the displacement of its center, l / 2
+            path.write_text(text % "-1")  # hanging: m g l / 2 per displacement of its center, l / 2
             self.assertAlmostEqual(taut.analyze(taut.load(str(path))).least_stiffness_n_per_m, 2 * 9.81, delta=1e-9)
 
     def test_says_what_the_command_says(self):
@@ -340,16 +340,16 @@ class LinearSystems(InAFolder):
         self.assertAlmostEqual(system.output_at[system.outputs.index("node/mass/position_z")],
                                2 - 1 - 0.5 * 9.81 / 400, delta=1e-7)
         z = np.linalg.eigvals(system.A).astype(complex)
-        swings = np.log(z[np.abs(z) > 0.5]) / system.period_s  # what is gone in a tick or two does not swing
+        swings = np.log(z[np.abs(z) > 0.5]) / system.period_s  # modes that decay within a tick or two do not oscillate
         fast = swings[np.argmax(swings.imag)]
         self.assertAlmostEqual(fast.imag, math.sqrt(400 / 0.5 - (4 / 0.5 / 2) ** 2), delta=0.02)
         self.assertAlmostEqual(fast.real, -4 / 0.5 / 2, delta=0.02)
-        # far below resonance a force moves it by 1 / k; far above, by 1 / (m w^2), half a turn behind
+        # far below resonance the displacement is 1 / k; far above 1 / (m w^2), with opposite phase
         gain, phase = system.response("node/mass/force_z", "node/mass/position_z", [0.01, 100])
         self.assertAlmostEqual(gain[0], 1 / 400, delta=1e-5)
         self.assertAlmostEqual(gain[1] * 0.5 * (200 * math.pi) ** 2, 1, delta=0.05)
         self.assertAlmostEqual(phase[0], 0, delta=1e-3)
-        self.assertAlmostEqual(abs(phase[1]), math.pi, delta=0.5)  # and about a tick's 0.63 rad
+        self.assertAlmostEqual(abs(phase[1]), math.pi, delta=0.5)  # plus about 0.63 rad of the tick's delay
 
     def test_is_what_the_command_writes(self):
         try:

@@ -1,4 +1,4 @@
-"""What a type checker has to say of a program that uses taut: nothing, but for the lines that are meant to be wrong."""
+"""Program for type checkers: they must report the lines marked as wrong, and no others."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""taut as a wheel, of a build that is there: what is in it, and that it works in an environment of its own.
+"""taut as a wheel of an existing build: its contents, and its function in a virtual environment
 
 wheel_test.py BUILD VERSION    77: this machine lacks pip or venv
 """
@@ -27,7 +27,7 @@ print(taut.__version__, f"{taut.run(experiment).state_hash:016x}")
 
 
 def sources(folder):
-    """What the wheel is made of, in a folder of its own: links, so that the tree stays as it is."""
+    """Links the sources of the wheel into a separate folder, so that the tree stays unchanged."""
     for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE", "NOTICE", "include", "python", "share"):
         (folder / name).symlink_to(ROOT / name)
     return folder

@@ -5,7 +5,7 @@
 
 namespace taut::scenes {
 
-/// Appends a solid ball as a body of its own; returns the body's index.
+/// Appends a solid ball as a separate body; returns the body's index.
 inline int AddBall(ModelDef& def, const std::string& name, double mass_kg, double radius_m,
                    const Vec3& center_m, const Material& material) {
   const int index = static_cast<int>(def.bodies.size());
@@ -20,7 +20,7 @@ inline int AddBall(ModelDef& def, const std::string& name, double mass_kg, doubl
   return index;
 }
 
-/// The ground z = 0.
+/// Adds the ground z = 0.
 inline void AddGround(ModelDef& def, const Material& material) {
   PlaneDef plane;
   plane.name = "ground";
@@ -37,7 +37,7 @@ struct Ball {
   ModelDef Def() const {
     ModelDef def;
     def.name = "ball";
-    AddGround(def, material);  // the geometric mean and the maximum of equals are the same again
+    AddGround(def, material);  // geometric mean and maximum of equal coefficients are unchanged
     AddBall(def, "ball", mass_kg, radius_m, {0, 0, radius_m + drop_m}, material);
     return def;
   }

@@ -10,7 +10,7 @@ struct Slope {
   double angle_rad = 0.0;
   Material material{0.5, 0.5, 0.0};
 
-  /// Turns z into the plane's normal and x into the way downhill.
+  /// Returns the rotation of z to the plane's normal and of x to the downhill direction.
   Quat orientation() const { return Turn({0, 1, 0}, angle_rad); }
   Vec3 normal() const { return {std::sin(angle_rad), 0, std::cos(angle_rad)}; }
   Vec3 downhill() const { return {std::cos(angle_rad), 0, -std::sin(angle_rad)}; }
@@ -51,11 +51,11 @@ struct SledOnSlope {
   Slope slope;
   double mass_kg = 0.6;
   double runner_radius_m = 0.01;
-  double reach_m = 0.1;      ///< From the middle to the balls.
+  double reach_m = 0.1;      ///< From the center to the balls.
   double heading_rad = 0.0;  ///< Of the first ball, about the normal.
   Material material{0.5, 0.5, 0.0};
 
-  /// Three balls of a third of the mass each.
+  /// Returns a sled of three balls, each with a third of the mass.
   ModelDef Def() const {
     ModelDef def;
     def.name = "sled_on_slope";

@@ -1,11 +1,11 @@
-/// A solid box as a body of its own.
+/// A solid box as a separate body.
 #pragma once
 
 #include "tests/scenes/solids.h"
 
 namespace taut::scenes {
 
-/// Appends it, with a node at its centre; returns the body's index.
+/// Appends a box with a node at its center; returns the body's index.
 inline int AddBox(ModelDef& def, const std::string& name, double mass_kg, const Vec3& half_m,
                   const Vec3& center_m, const Quat& orientation, const Material& material) {
   const int index = static_cast<int>(def.bodies.size());

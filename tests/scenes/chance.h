@@ -1,4 +1,4 @@
-/// Numbers that look random and follow from a seed: the same on every machine, so that a scene is.
+/// Pseudorandom numbers from a seed, the same on every machine, so that scenes are reproducible.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@ class Chance {
  public:
   explicit Chance(std::uint64_t seed) : state_(seed) {}
 
-  /// In [low, high).
+  /// Returns a number in [low, high).
   double Within(double low, double high) {
     return low + (high - low) * static_cast<double>(Bits() >> 11) * 0x1p-53;
   }
-  /// Each part in [-size, size).
+  /// Returns a vector with each component in [-size, size).
   Vec3 Jolt(double size) {
     const double x = Within(-size, size), y = Within(-size, size), z = Within(-size, size);
     return {x, y, z};
   }
-  /// A unit vector, no direction more likely than another.
+  /// Returns a unit vector, uniformly distributed over all directions.
   Vec3 Direction() {
     while (true) {
       const Vec3 v = Jolt(1);

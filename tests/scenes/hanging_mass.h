@@ -1,4 +1,4 @@
-/// A mass on a cable from a point of the world: the oscillator of every textbook.
+/// A mass on a cable from a point of the world: a vertical oscillator.
 #pragma once
 
 #include "tests/scenes/solids.h"

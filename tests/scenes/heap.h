@@ -1,5 +1,5 @@
-/// Things that fall into a funnel and lie on each other as it comes: forces that are not unique,
-/// bodies that hold others from several sides.
+/// Random heaps: bodies that fall into a funnel onto each other, with indeterminate contact forces
+/// and bodies held from several sides.
 #pragma once
 
 #include "tests/scenes/ball.h"
@@ -9,8 +9,8 @@
 
 namespace taut::scenes {
 
-/// The ground and four walls that lean outwards: at the height z they are 0.3 m + 0.3 z from the
-/// middle.
+/// Adds the ground and four walls that lean outwards: at the height z they are 0.3 m + 0.3 z from
+/// the center.
 inline void AddFunnel(ModelDef& def, const Material& material) {
   AddGround(def, material);
   const double along = 1 / std::sqrt(1.09), up = 0.3 / std::sqrt(1.09);
@@ -30,7 +30,7 @@ struct RodHeap {
   std::uint64_t seed = 1;
   double friction = 0.5;
   double half_length_m = 0.2, radius_m = 0.01, mass_kg = 0.1;
-  double first_m = 0.3, apart_m = 0.06;  ///< Heights: of the lowest, and from one to the next.
+  double first_m = 0.3, apart_m = 0.06;  ///< Height of the lowest rod, and distance to the next.
 
   ModelDef Def() const {
     ModelDef def;
@@ -39,7 +39,7 @@ struct RodHeap {
     AddFunnel(def, material);
     Chance chance(seed);
     for (int i = 0; i < rods; ++i) {
-      // So flat that two neighbours start apart.
+      // So flat that neighboring rods start apart.
       const double heading = chance.Within(-3.2, 3.2), slope = chance.Within(-0.09, 0.09);
       const Vec3 along = Scaled(half_length_m / std::sqrt(1 + slope * slope),
                                 {std::cos(heading), std::sin(heading), slope});
@@ -52,7 +52,7 @@ struct RodHeap {
   }
 };
 
-/// Balls and boxes of several sizes in turn.
+/// Balls and boxes of several sizes, alternating.
 struct MixedHeap {
   int things = 20;
   std::uint64_t seed = 1;

@@ -1,5 +1,5 @@
-/// A bit of everything, falling: a box, a ball, a rod and a sled over a floor, a wall, a ramp and a
-/// step, and cables of all kinds between them. No two starts touch the same things.
+/// A mixed scene: a box, a ball, a rod and a sled fall onto a floor, a wall, a ramp and a step,
+/// with cables of all kinds between them. Different starts lead to different contacts.
 #pragma once
 
 #include <limits>

@@ -1,4 +1,4 @@
-/// Few bodies and many rows: contacts or stiff cables that share what fewer could carry.
+/// Overconstrained scenes of few bodies and many rows: contacts or stiff cables that share a load.
 #pragma once
 
 #include "tests/scenes/ball.h"
@@ -6,10 +6,10 @@
 
 namespace taut::scenes {
 
-/// A disc on a ring of feet that a cable drags about: three of them would carry it.
+/// A disc on a ring of feet, dragged by a cable: three feet would carry it.
 struct FootedDisc {
   int feet = 64;
-  double left_m = 0.2;  ///< Of the cable's far end, a metre ahead.
+  double left_m = 0.2;  ///< Of the cable's far end, a meter ahead.
   Material material{0.5, 0.5, 0.0};
 
   ModelDef Def() const {
@@ -37,12 +37,12 @@ struct FootedDisc {
   }
 };
 
-/// A square net of knots that hangs at its rim, and a heavy ball that lies in it.
+/// A square net of knots that hangs at its rim, with a heavy ball in it.
 struct BallInNet {
-  int knots = 5;  ///< Along a side, those of the rim counted.
+  int knots = 5;  ///< Along a side, including the rim.
   double stiffness_n_per_m = 1e6, damping_n_s_per_m = 0;
   double ball_kg = 50;
-  std::uint64_t seed = 1;  ///< Of where the ball lies.
+  std::uint64_t seed = 1;  ///< For the position of the ball.
   Material material{0.5, 0.5, 0.0};
 
   ModelDef Def() const {

@@ -1,5 +1,5 @@
-/// The three-strut prism: the simplest tensegrity in space. Its form and its self-stress are known
-/// in closed form (Connelly and Terrell 1995; docs/theory/statics.md): the upper triangle is turned
+/// Three-strut prism, the simplest tensegrity in space. Its shape and its self-stress are known in
+/// closed form (Connelly and Terrell 1995; docs/theory/statics.md): the upper triangle is rotated
 /// by 150 degrees from one end of a strut to the other, and the force densities of strut, side
 /// cable and triangle cable are as -1 : 1 : 1 / sqrt(3).
 #pragma once
@@ -21,7 +21,7 @@ struct Prism3 {
   double clearance_m = 0.0;            ///< Of the lowest points above the ground.
   Material material{0.5, 0.5, 0.0};
 
-  /// Three rods; cables bottom_0..2, top_0..2, side_0..2.
+  /// Returns three rods; cables bottom_0..2, top_0..2, side_0..2.
   ModelDef Def() const {
     ModelDef def;
     def.name = "prism3";
@@ -44,8 +44,8 @@ struct Prism3 {
       const int j = (i + 1) % 3;
       Cable(def, "top_" + std::to_string(i), i, top, j, top, triangle);
     }
-    // A side cable leads from a bottom corner to the top corner 30 degrees further: that of the
-    // strut before.
+    // A side cable leads from a bottom corner to the top corner 30 degrees further, which belongs
+    // to the previous strut.
     for (int i = 0; i < 3; ++i) {
       Cable(def, "side_" + std::to_string(i), i, bottom, (i + 2) % 3, top, side);
     }

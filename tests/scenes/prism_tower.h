@@ -1,4 +1,4 @@
-/// Three-strut prisms on each other, a plate on each: cables carry what contacts carry in a stack.
+/// A tower of three-strut prisms with a plate on each: a stack whose loads pass through cables.
 #pragma once
 
 #include "tests/scenes/ball.h"
@@ -10,7 +10,7 @@ namespace taut::scenes {
 
 struct PrismTower {
   int levels = 4;
-  std::uint64_t seed = 1;  ///< Of how each plate lies.
+  std::uint64_t seed = 1;  ///< For the position of each plate.
   double plate_kg = 0.1;
   Material material{0.6, 0.6, 0.0};
 
@@ -37,7 +37,7 @@ struct PrismTower {
   }
 
  private:
-  /// Bodies, capsules, nodes and cables of another model, which has nothing else.
+  /// Appends bodies, capsules, nodes and cables of another model, which has no other elements.
   static void Append(ModelDef& def, const ModelDef& part, const std::string& prefix) {
     const int first = static_cast<int>(def.bodies.size());
     const auto moved = [&](auto item) {

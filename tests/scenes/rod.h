@@ -1,11 +1,11 @@
-/// A rod: a slender cylinder that touches as a capsule.
+/// A rod: a slender cylinder, in collisions a capsule.
 #pragma once
 
 #include "tests/scenes/solids.h"
 
 namespace taut::scenes {
 
-/// Appends a rod as a body of its own, with nodes `name`.from and `name`.to; returns the body's
+/// Appends a rod as a separate body, with nodes `name`.from and `name`.to; returns the body's
 /// index.
 inline int AddRod(ModelDef& def, const std::string& name, double mass_kg, double radius_m,
                   const Vec3& from_m, const Vec3& to_m, const Material& material) {
@@ -19,7 +19,7 @@ inline int AddRod(ModelDef& def, const std::string& name, double mass_kg, double
   return index;
 }
 
-/// A rod in empty space, without weight.
+/// A rod in empty space without gravity.
 struct FreeRod {
   double mass_kg = 0.02;
   double radius_m = 0.003;

@@ -1,12 +1,12 @@
-/// Rods on ball joints, one behind the other.
+/// Chain of rods on ball joints.
 #pragma once
 
 #include "tests/scenes/rod.h"
 
 namespace taut::scenes {
 
-/// `rods` of 1 kg in a row from the origin along `step_m`, the first of them pinned there, the last
-/// one of another mass. They do not touch.
+/// Returns `rods` of 1 kg in a row from the origin along `step_m`, the first of them pinned there,
+/// the last one with a different mass. They do not collide.
 inline ModelDef RodChain(int rods, const Vec3& step_m, double last_mass_kg) {
   ModelDef def;
   Vec3 at;

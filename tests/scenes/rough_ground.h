@@ -1,4 +1,4 @@
-/// Ground that is not flat: height fields, and the same as meshes.
+/// Uneven ground: height fields, and equivalent meshes.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace taut::scenes {
 
-/// Heights by a function of x and y [m], counted from the middle.
+/// Returns a height field with heights from a function of x and y [m], relative to its center.
 template <class Height>
 HeightFieldDef Field(int columns, int rows, double cell_m, const Material& material,
                      const Height& height) {
@@ -27,7 +27,7 @@ HeightFieldDef Field(int columns, int rows, double cell_m, const Material& mater
   return field;
 }
 
-/// NTRT's hills: 0.02 sin(i) cos(j) m high, with corners every 4 cm.
+/// Returns NTRT's hills: 0.02 sin(i) cos(j) m high, with corners every 4 cm.
 inline HeightFieldDef Hills(int columns, int rows, const Material& material,
                             double height_m = 0.02) {
   constexpr double kCell_m = 0.04;
@@ -36,7 +36,8 @@ inline HeightFieldDef Hills(int columns, int rows, const Material& material,
   });
 }
 
-/// A field as an open mesh. `seed`: cells are split along diagonals by chance; 0: as the field's.
+/// Returns a field as an open mesh. `seed`: cells are split along random diagonals; 0: along the
+/// field's diagonals.
 inline TerrainMeshDef MeshOf(const HeightFieldDef& field, std::uint64_t seed = 0) {
   TerrainMeshDef mesh;
   mesh.name = "mesh";

@@ -1,4 +1,4 @@
-/// A single rod where friction decides all.
+/// Single rods whose motion is dominated by friction.
 #pragma once
 
 #include "tests/scenes/ball.h"
@@ -6,8 +6,9 @@
 
 namespace taut::scenes {
 
-/// A thin rod that slides on its lower end: Painleve's. Steep and rough enough, friction turns it
-/// into the ground faster than the ground can turn it out, and no force would do; an impulse does.
+/// Painleve's rod: a thin rod that slides on its lower end. If it is steep and rough enough,
+/// friction rotates it into the ground faster than the normal force can rotate it out, so that no
+/// finite force is a solution; an impulse is.
 struct PainleveRod {
   double angle_rad = 1.0;  ///< Above the ground; its upper end is towards -x.
   double friction = 1.0;
@@ -27,8 +28,8 @@ struct PainleveRod {
   }
 };
 
-/// A rod across a groove of two planes: held by friction alone at whatever angle it jams. Each end
-/// meets one plane, and the force along the rod is not unique.
+/// A rod across a groove of two planes: held by friction alone at the angle at which it jams. Each
+/// end touches one plane, and the force along the rod is indeterminate.
 struct RodInWedge {
   double opening_rad = 0.8;  ///< Between the planes.
   double tilt_rad = 0.2;     ///< Of the rod against the horizontal.
@@ -47,7 +48,7 @@ struct RodInWedge {
       plane.material = material;
       def.planes.push_back(plane);
     }
-    // The middle is as high as the end that is nearer to its plane needs.
+    // The height of the center follows from the end that is nearer to its plane.
     const Vec3 half{0.5 * length_m * std::cos(tilt_rad), 0, 0.5 * length_m * std::sin(tilt_rad)};
     const double z = (radius_m + c * half.x) / s + std::fabs(half.z) + 0.001;
     const Vec3 middle{0, 0, z};

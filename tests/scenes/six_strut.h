@@ -1,6 +1,6 @@
-/// The six-strut tensegrity (expanded octahedron): six equal struts in three parallel pairs and 24
+/// Six-strut tensegrity (expanded octahedron): six equal struts in three parallel pairs and 24
 /// cables, in its prestressed equilibrium: parallel struts are half a strut's length apart, all
-/// cables are sqrt(3/8) of a strut long, and carry the same tension (docs/theory/statics.md).
+/// cables are sqrt(3/8) of a strut long and have the same tension (docs/theory/statics.md).
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct SixStrut {
   double stiffness_n_per_m = 1000;
   double damping_n_s_per_m = 0;
   double tension_n = 50;
-  /// Distance of parallel struts over the strut's length; it stays in equilibrium at 1/2 only. The
-  /// rest lengths are those of the equilibrium whatever the start.
+  /// Distance of parallel struts over the strut's length; in equilibrium at 1/2 only. The rest
+  /// lengths are the equilibrium's for any start.
   double spacing = 0.5;
   Vec3 center_m{0, 0, 1};
   Quat orientation;
@@ -42,7 +42,7 @@ struct SixStrut {
       AddRod(def, "strut_" + std::to_string(i), rod_mass_kg, rod_radius_m, ends[i][0], ends[i][1],
              material);
     }
-    // An end is tied to the four nearest ends of the struts of other directions.
+    // An end is connected to the four nearest ends of struts of other directions.
     for (std::size_t i = 0; i < 6; ++i) {
       for (std::size_t end = 0; end < 2; ++end) {
         for (std::size_t j = i + 1; j < 6; ++j) {

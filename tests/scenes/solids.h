@@ -1,4 +1,4 @@
-/// Masses and inertias of simple solids, and what scenes need of vector arithmetic.
+/// Masses and inertias of simple solids, and vector arithmetic for scenes.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ inline Vec3 Between(const Vec3& from, const Vec3& to) {
 }
 inline double LengthOf(const Vec3& a) { return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
 
-/// A rotation by `angle_rad` about a unit `axis`.
+/// Returns a rotation by `angle_rad` about a unit `axis`.
 inline Quat Turn(const Vec3& axis, double angle_rad) {
   const double c = std::cos(angle_rad / 2), s = std::sin(angle_rad / 2);
   return {c, s * axis.x, s * axis.y, s * axis.z};
@@ -37,7 +37,7 @@ inline Inertia BoxInertia(double mass_kg, const Vec3& half_m) {
   return {.xx = mass_kg / 3 * (y + z), .yy = mass_kg / 3 * (x + z), .zz = mass_kg / 3 * (x + y)};
 }
 
-/// An inertia with principal moments j.xx, j.yy, j.zz about axes turned by q.
+/// Returns an inertia with principal moments j.xx, j.yy, j.zz about axes rotated by q.
 inline Inertia TurnedInertia(const Inertia& j, const Quat& q) {
   const Vec3 a = Turned(q, Vec3{1, 0, 0}), b = Turned(q, Vec3{0, 1, 0}),
              c = Turned(q, Vec3{0, 0, 1});
@@ -48,7 +48,7 @@ inline Inertia TurnedInertia(const Inertia& j, const Quat& q) {
           entry(&Vec3::x, &Vec3::y), entry(&Vec3::x, &Vec3::z), entry(&Vec3::y, &Vec3::z)};
 }
 
-/// Adds up parts of a rigid body: mass, centre and inertia about W's origin, then about the centre.
+/// Adds up parts of a rigid body: mass, center and inertia about W's origin, then about the center.
 class Parts {
  public:
   void AddPoint(double mass_kg, const Vec3& p) {
@@ -68,7 +68,7 @@ class Parts {
     inertia_.yy += own.yy;
     inertia_.zz += own.zz;
   }
-  /// A solid cylinder.
+  /// Adds a solid cylinder.
   void AddCylinder(double mass_kg, const Vec3& from, const Vec3& to, double radius_m) {
     // Two points on the axis at 1/sqrt(3) of the half length have a thin rod's moments.
     const Vec3 mid = Scaled(0.5, Sum(from, to)), half = Scaled(0.5, Between(from, to));
@@ -76,7 +76,8 @@ class Parts {
     AddPoint(mass_kg / 2, Sum(mid, Scaled(-1 / std::sqrt(3.0), half)));
     const Vec3 d = Between(from, to);
     const Vec3 u = Scaled(1 / LengthOf(d), d);
-    const double across = mass_kg * radius_m * radius_m / 4;  // twice that about its own axis
+    // twice that about the cylinder's axis
+    const double across = mass_kg * radius_m * radius_m / 4;
     inertia_.xx += across * (1 + u.x * u.x);
     inertia_.yy += across * (1 + u.y * u.y);
     inertia_.zz += across * (1 + u.z * u.z);
@@ -85,7 +86,7 @@ class Parts {
     inertia_.yz += across * u.y * u.z;
   }
 
-  /// Fills in mass, centre of mass and inertia of a body.
+  /// Returns a body with the mass, center of mass and inertia of the sum.
   BodyDef Body(const std::string& name) const {
     BodyDef body;
     body.name = name;

@@ -1,5 +1,5 @@
-/// Tetraspine3 with slack cables, dropped onto boxes that lie about: its segments slide into each
-/// other and rods meet rods, edges and corners.
+/// Tetraspine3 with slack cables, dropped onto scattered boxes: its segments slide into each other
+/// and rods touch rods, edges and corners.
 #pragma once
 
 #include "tests/scenes/chance.h"
@@ -10,7 +10,7 @@ namespace taut::scenes {
 struct SpineOnRubble {
   int boxes = 12;
   std::uint64_t seed = 1;
-  double slack = 1.25;  ///< Times the cables' rest lengths.
+  double slack = 1.25;  ///< Factor of the cables' rest lengths.
   double drop_m = 0.2;
   Material material{0.6, 0.6, 0.0};
 

@@ -1,4 +1,4 @@
-/// Things that were put on each other: each layer carries all above it.
+/// Stacks: each layer carries all layers above it.
 #pragma once
 
 #include "tests/scenes/ball.h"
@@ -8,13 +8,13 @@
 
 namespace taut::scenes {
 
-/// Boxes that fall a centimetre onto each other, a little aside and a little turned: the heavier
-/// the load above, the less an edge may give way.
+/// Boxes that fall a centimeter onto each other, slightly displaced and rotated: the heavier the
+/// load above, the less an edge may yield.
 struct BoxStack {
   int boxes = 10;
   std::uint64_t seed = 1;
   double half_m = 0.05, mass_kg = 0.5;
-  double aside_m = 0.02, turned_rad = 0.05;  ///< At most.
+  double aside_m = 0.02, turned_rad = 0.05;  ///< Largest values.
   Material material{0.6, 0.6, 0.0};
 
   ModelDef Def() const {
@@ -32,13 +32,13 @@ struct BoxStack {
   }
 };
 
-/// Layers of two logs, each across the one below: a cabin.
+/// Layers of two logs, each across the layer below, like a log cabin.
 struct LogPile {
   int layers = 10;
   std::uint64_t seed = 1;
   double half_length_m = 0.3, radius_m = 0.02, mass_kg = 0.5;
-  double aside_m = 0.2;     ///< Of a log, from the middle.
-  double crooked_m = 0.01;  ///< By which each end is off, sideways, at most.
+  double aside_m = 0.2;     ///< Of a log, from the center.
+  double crooked_m = 0.01;  ///< Largest lateral deviation of each end.
   Material material{0.5, 0.5, 0.0};
 
   ModelDef Def() const {
@@ -59,10 +59,10 @@ struct LogPile {
   }
 };
 
-/// A slab on three thin rods: what is light is held between what is heavy and the ground.
+/// A slab on three thin rods: light bodies between a heavy one and the ground.
 struct SlabOnRods {
-  double mass_ratio = 1e4;  ///< Of the slab and a rod.
-  std::uint64_t seed = 1;   ///< Of the ways that the rods point.
+  double mass_ratio = 1e4;  ///< Mass of the slab over the mass of a rod.
+  std::uint64_t seed = 1;   ///< For the directions of the rods.
   double rod_kg = 0.01, rod_radius_m = 0.01;
   Material material{0.5, 0.5, 0.0};
 
@@ -85,10 +85,10 @@ struct SlabOnRods {
   }
 };
 
-/// A wall of bricks, each on two of the course below, without mortar. Every brick is off by a
-/// little, so that none lies quite flat.
+/// A wall of bricks, each on two of the course below, without mortar. Every brick is slightly
+/// displaced, so that none lies quite flat.
 struct BrickWall {
-  int courses = 4, bricks = 4;  ///< Of every other course one brick less.
+  int courses = 4, bricks = 4;  ///< Every other course has one brick less.
   std::uint64_t seed = 1;
   Vec3 half_m{0.1, 0.05, 0.03};
   double mass_kg = 1.8, off_m = 0.001;

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""script/bench, without regard to how fast anything is.
+"""script/bench, regardless of speed
 
-Usage: bench_test.py PROGRAM TEST. One test of this file, by the name of its function; PROGRAM is taut_bench,
-or empty where it could not be built.
+Usage: bench_test.py PROGRAM TEST. TEST is the name of a function of this file; PROGRAM is taut_bench, or empty if it
+could not be built.
 """
 
 import json
@@ -30,7 +30,7 @@ def bench(*words, **more):
 
 
 def measured(folder, only=FEW):
-    """The list of one short repetition of some benchmarks."""
+    """Returns the path and the results of one short repetition of some benchmarks."""
     path = pathlib.Path(folder, "results.json")
     run = bench("--program", PROGRAM, "--repetitions", 1, "--seconds", 0.001, "--filter", only, "--json", path)
     assert run.returncode == 0, run.stderr
@@ -38,7 +38,7 @@ def measured(folder, only=FEW):
 
 
 def elsewhere(only):
-    """What the program prints for another MuJoCo."""
+    """Returns the JSON output of the program for another MuJoCo."""
     return json.loads(subprocess.run([PROGRAM, "--mjcf", only], capture_output=True, check=True).stdout)
 
 
@@ -127,7 +127,7 @@ def AMujocoElsewhereGetsTheRobotAsText():
     assert one["name"] == "one/mujoco_wasm/euler_pyramidal/tetraspine3/1/1/1", one["name"]
     file = one["file"]
     tree = xml.etree.ElementTree.fromstring(file["mjcf"])
-    # share/models/tetraspine3.yaml: three segments, four cables between neighbours and as many from edge to edge
+    # share/models/tetraspine3.yaml: three segments, four cables between neighbors and four from edge to edge per pair
     assert file["bodies"] == len(tree.findall("worldbody/body")) == 3
     assert len(tree.findall("tendon/spatial")) == 12 and len(tree.findall("worldbody/geom[@type='plane']")) == 1
     assert len(tree.find("keyframe/key").get("qvel").split()) == 18
@@ -145,7 +145,7 @@ def AMujocoElsewhereIsTheSame():
     needs_webassembly()
     for item in wasm.measured("rates", json.dumps(elsewhere("^one/.*pyramidal|spine_4/|footed_4/")), 1, 0.001):
         assert item["steps_per_s"] > 0 and item["apart_m"] < 1e-12, item  # rounding of 100 steps
-        assert item["contacts"] >= 3, item  # it stands
+        assert item["contacts"] >= 3, item  # the robot stands
 
 
 def AMujocoThatDiffersIsNotMeasured():

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""script/bench on contact-rich scenes, without regard to how fast anything is.
+"""script/bench on contact-rich scenes, regardless of speed
 
-Usage: contact_bench_test.py PROGRAM TEST. One test of this file, by the name of its function; PROGRAM is
-taut_contact_bench.
+Usage: contact_bench_test.py PROGRAM TEST. TEST is the name of a function of this file; PROGRAM is taut_contact_bench.
 """
 
 import json
@@ -27,7 +26,7 @@ def bench(*words):
 
 
 def start(scene, mean, engine="taut", setting="default", lanes=1, steps=100, **more):
-    """What the program says of one start."""
+    """Returns the program's result line of one start."""
     run = {"scene": scene, "seed": 1, "engine": engine, "setting": setting, "lanes": lanes, "held_out": False,
            "bodies": 1, "cables": 0, "steps": steps, "planned_steps": steps,
            "time_us": {"mean": mean, "median": mean / 2, "p99": 3 * mean, "p999": 4 * mean, "worst": 5 * mean}}
@@ -81,7 +80,7 @@ def StartsOfASceneBecomeOneItem():
                        start("pile_20", 40, steps=300, worst_residual_m_per_s=1e-3, share_within_16_of_ode=0.8))
     assert (item["steps"], item["solved"], item["share_solved"], item["repetitions"]) == (400, 399, 399 / 400, 2), item
     assert item["time_us"]["mean"] == 32.5 and item["steps_per_s"] == 1e6 / 32.5, item  # (100 10 + 300 40) / 400
-    assert item["time_us"]["median"] == 12.5, item  # of 5 and 20
+    assert item["time_us"]["median"] == 12.5, item  # mean of 5 and 20
     assert (item["time_us"]["p99"], item["time_us"]["worst"]) == (120, 200), item  # of the worse start
     assert item["worst_residual_m_per_s"] == 1e-3 and abs(item["share_within_16_of_ode"] - 0.85) < 1e-12, item
 

@@ -1,6 +1,6 @@
-"""script/validate answers what it cannot do, and its pages take no figure from elsewhere.
+"""script/validate reports invalid requests, and its pages contain computed figures only.
 
-Usage: validation_test.py TEST. One test of this file, by the name of its function.
+Usage: validation_test.py TEST. TEST is the name of a function of this file.
 """
 
 import os
@@ -22,7 +22,7 @@ def validate(*arguments, cwd=ROOT):
 
 
 def problem(function, *arguments):
-    """What a Problem says; an assertion if there is none."""
+    """Returns the message of the Problem that the call raises; fails if it raises none."""
     try:
         function(*arguments)
     except runs.Problem as found:
@@ -36,7 +36,7 @@ def AnUnknownPageIsAnError():
 
 
 def AMissingTautIsAnError():
-    with tempfile.TemporaryDirectory() as folder:  # --taut is seen from where the user is
+    with tempfile.TemporaryDirectory() as folder:  # --taut is relative to the user's folder
         run = validate("--taut", "no_taut", "push", cwd=folder)
         assert run.returncode == 1 and "no_taut; build it with script/build" in run.stderr, run
         assert str(pathlib.Path(folder).resolve() / "no_taut") in run.stderr, run
@@ -62,7 +62,7 @@ def AVariantChangesWhatIsThere():
 
 
 def TheStaircaseHasTheSteps():
-    """NTRT's force of 22.563 N (t - 30) / 5 in steps of 0.05 s: 100 up, 100 down, three forces."""
+    """NTRT's force of 22.563 N (t - 30) / 5 in steps of 0.05 s: 100 up, 100 down, three forces"""
     text = push.staircase()
     assert text.count("[30.05, 0.01 * push_n]") == 3, text
     assert text.count("[35.00, 1 * push_n]") == 3 and text.count("[45.00, 0 * push_n]") == 3, text

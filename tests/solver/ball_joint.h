@@ -1,7 +1,7 @@
-/// A third kind of constraint, for tests: two points, of two bodies or of one and the world, that
-/// stay together. It shows what the solver asks of a new kind: this file, and its name in Pools.
+/// Ball joint as a third kind of constraint, for tests: two points, of two bodies or of a body and
+/// the world, that coincide. A new kind needs only a file like this, and its name in Pools.
 ///
-///   u + bias = 0,   u: velocity of the one point against the other;   l: any
+///   u + bias = 0,   u: relative velocity of the two points;   l: any
 #pragma once
 
 #include "tests/solver/island_of.h"
@@ -12,10 +12,10 @@ template <class N>
 struct BallJoint {
   using Number = N;
   static constexpr int kRows = 3;
-  struct Branch {};  ///< There is but one.
+  struct Branch {};  ///< There is only one branch.
 
   N W[3][3], inverse[3][3], w;  ///< Inverse effective mass [1/kg]; its inverse; a bound of it.
-  N bias[3];                    ///< Wanted: u = -bias [m/s].
+  N bias[3];                    ///< Target: u = -bias [m/s].
   N l[3];                       ///< Impulses along the axes of W [N s].
   int link_count;
   sim::Link<N, 3> links[2];
@@ -31,7 +31,7 @@ struct BallJoint {
     return {};
   }
   void ProjectFrozen(const N* u, const N* center, N e, const N*, N* out) const noexcept {
-    Project(u, center, e, out);  // convex as it is
+    Project(u, center, e, out);  // already convex
   }
   void Derivative(const Branch&, N e, N* g) const noexcept {
     for (int i = 0; i < 9; ++i) g[i] = N::Splat(0.0);
@@ -68,7 +68,8 @@ inline double Violation(const Joint& j, const Rows<3>& u, const Rows<3>& l) {
   return Largest(NewtonFunction(j, u, l, l, 0));
 }
 
-/// Joins the point `arm_a` from a's centre to `arm_b` from b's, or to the world (b < 0).
+/// Joins the point `arm_a` from the center of a to `arm_b` from the center of b, or to the world (b
+/// < 0).
 template <class Island>
 Joint& AddJoint(Island& island, int a, const Vec3& arm_a, int b, const Vec3& arm_b,
                 const Vec3& bias) {

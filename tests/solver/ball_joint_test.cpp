@@ -1,5 +1,5 @@
-// A new kind of constraint needs its law and nothing else: ball joints (ball_joint.h) pass the
-// tests of laws, swing as rods do, and carry loads together with contacts and cables.
+// Ball joints (ball_joint.h) as an example of a new kind of constraint: they satisfy the tests of
+// laws, swing like rods, and carry loads together with contacts and cables.
 #include "tests/solver/ball_joint.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@ constexpr double kMass = 0.5, kLength = 0.4, kGravity = 9.81, kStep_s = 1e-3;
 const Vec3 kKick = {0, 0, -kStep_s* kGravity};
 using JointIsland = OwnIsland<Joint, Contact2, Cable>;
 
-/// Of a thin rod in the plane of x and z; about its axis it has next to no inertia.
+/// Returns the inverse inertia of a thin rod in the plane of x and z, with next to no inertia about
+/// its axis.
 Inertia InverseInertia(const Vec3& a) {
   const double across = 12 / (kMass * kLength * kLength), more = 1e3 * across;
   const double xz = more * a.x * a.z;
@@ -44,21 +45,22 @@ struct Rod {
   Vec3 p, v, w;
   double angle;  ///< About y, from hanging down.
   Vec3 Axis() const { return {-std::sin(angle), 0, -std::cos(angle)}; }
-  Vec3 End(double sign) const { return (sign * kLength / 2) * Axis(); }  ///< -1: the upper one,
+  Vec3 End(double sign) const { return (sign * kLength / 2) * Axis(); }  ///< -1: the upper end,
   Vec3 Point(double sign) const { return p + End(sign); }                ///< as a position.
 };
 
-/// Two rods in a chain under the origin.
+/// Two rods in a chain below the origin.
 struct DoublePendulum {
   Rod rods[2];
-  double gap = 0;  ///< Of the joints, the larger one [m]; impulses. Both of the last step.
+  double gap = 0;  ///< Largest gap of the joints [m], and their impulses in the last step.
   std::vector<double> l;
   DoublePendulum(double first, double second) : rods{} {
     rods[0].angle = first, rods[1].angle = second;
     rods[0].p = rods[0].End(1);
     rods[1].p = 2.0 * rods[0].p + rods[1].End(1);
   }
-  /// Kick, joints that close their gaps by the step's end, drift; in a plane, so no gyroscopes.
+  /// Kick, joints that close their gaps by the step's end, drift; in a plane, so without gyroscopic
+  /// terms.
   void Step() {
     JointIsland island;
     for (const Rod& r : rods) island.AddBody(1 / kMass, InverseInertia(r.Axis()), r.v + kKick, r.w);
@@ -86,8 +88,9 @@ TEST(BallJoint, HangingAtRestCarriesTheWeightBelow) {
 }
 
 TEST(BallJoint, ADoublePendulumSwingsInItsTwoModes) {
-  // Rods of equal length: w^2 = (3 -+ 6 / sqrt 7) g / L, the angles as 1 : (3 - 8/3 x) / x with
-  // x = w^2 L / g. Kick and drift make it cos(n b) - tan(b / 2) sin(n b), cos b = 1 - (w h)^2 / 2.
+  // Rods of equal length: w^2 = (3 -+ 6 / sqrt 7) g / L, the angles as 1 : (3 - 8/3 x) / x with x =
+  // w^2 L / g. With kick and drift the motion is cos(n b) - tan(b / 2) sin(n b), cos b = 1 - (w
+  // h)^2 / 2.
   const double amplitude = 1e-4;
   for (const double x : {3 - 6 / std::sqrt(7.0), 3 + 6 / std::sqrt(7.0)}) {
     const double ratio = (3 - 8.0 / 3 * x) / x;
@@ -100,13 +103,13 @@ TEST(BallJoint, ADoublePendulumSwingsInItsTwoModes) {
       worst = std::max({worst, std::abs(chain.rods[0].angle - wanted),
                         std::abs(chain.rods[1].angle - ratio * wanted)});
     }
-    // Larger angles swing slower: this is 161 amplitude^3 from 1e-5 to 1e-3.
+    // Larger angles swing slower: the difference is 161 amplitude^3 from 1e-5 to 1e-3.
     EXPECT_LT(worst, 200 * amplitude * amplitude * amplitude);
   }
 }
 
 TEST(BallJoint, GapsStayOfSecondOrderInTheStep) {
-  // A step closes the gap but for the bending of the arms' paths: (h w)^2 / 2 of each arm.
+  // A step closes the gap except for the curvature of the arms' paths: (h w)^2 / 2 of each arm.
   DoublePendulum chain(1.5, 1.5);
   for (int n = 0; n < 2000; ++n) {
     const double w0 = chain.rods[0].w.y, w1 = chain.rods[1].w.y;
@@ -117,7 +120,7 @@ TEST(BallJoint, GapsStayOfSecondOrderInTheStep) {
 }
 
 TEST(BallJoint, TwoRodsLeanOnEachOtherHeldByFrictionOrByACable) {
-  // Each pushes its foot outwards by half its weight times the tangent of its angle.
+  // Each rod pushes its foot outwards by half its weight times the tangent of its angle.
   const double angle = 0.5, weight = kStep_s * kMass * kGravity,
                push = weight / 2 * std::tan(angle);
   for (const bool friction : {true, false}) {

@@ -1,5 +1,5 @@
-// The blocks of a sparse matrix over bodies, point masses and rotors: ordered and filled as
-// counting by hand says, and solved as a dense matrix is, and as its transpose.
+// Block-sparse matrix over bodies, point masses and rotors: elimination order and fill against
+// counting by hand, solutions against a dense matrix and its transpose.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -10,7 +10,7 @@
 namespace taut::test {
 namespace {
 
-using Edges = std::set<std::pair<int, int>>;  ///< Both ways.
+using Edges = std::set<std::pair<int, int>>;  ///< Both directions.
 
 Edges RandomEdges(int count, double share, math::Random& random) {
   Edges edges;
@@ -22,7 +22,7 @@ Edges RandomEdges(int count, double share, math::Random& random) {
   return edges;
 }
 
-/// Eliminates `node`: its neighbours become each other's. Returns them.
+/// Eliminates `node` by connecting all its neighbors, which it returns.
 std::set<int> Remove(Edges& edges, int node, int count) {
   std::set<int> neighbours;
   for (int i = 0; i < count; ++i) {
@@ -37,7 +37,7 @@ std::set<int> Remove(Edges& edges, int node, int count) {
   return neighbours;
 }
 
-/// A pattern with its memory.
+/// A block pattern with its memory.
 struct OwnPattern {
   std::vector<int> slot, below, first_below, order, place;
   sim::BlockPattern pattern{};
@@ -56,10 +56,10 @@ struct OwnPattern {
     sim::BodyGraph graph{bits.data(), count, words};
     graph.Clear();
     for (const auto& [i, j] : edges) graph.Join(i, j);
-    for (int i = 0; i < count; ++i) graph.Join(i, i);  // nobody acts on himself
+    for (int i = 0; i < count; ++i) graph.Join(i, i);  // self-edges are ignored
     return sim::Eliminate(graph, capacity, order.data(), place.data(), pattern);
   }
-  /// By hand, in any order.
+  /// Computes the fill by hand, for any order.
   void Fill(Edges edges, const std::vector<int>& in_order) {
     const int count = pattern.count;
     order = in_order;
@@ -124,7 +124,7 @@ TEST(Elimination, TakesTheLowestOfLeastDegreeAndFillsWhatItMust) {
   }
 }
 
-/// What the matrix needs of a law: rows on up to three bodies.
+/// The parts of a law that the matrix needs: rows on up to three bodies.
 struct ThreeLinks {
   static constexpr int kRows = 3;
   int link_count;
@@ -140,8 +140,9 @@ struct System {
   std::vector<double> rhs;
 };
 
-/// M + sum of J^T G J, G positive definite, or not symmetric but nearly so. `mixed`: some unknowns
-/// have 3 velocities or 1; of what they lack the dense matrix has a one on its diagonal.
+/// Returns M + sum of J^T G J, with G positive definite, or nonsymmetric but nearly so. `mixed`:
+/// some unknowns have 3 velocities or 1; for the missing ones the dense matrix has a one on its
+/// diagonal.
 System RandomSystem(int count, bool symmetric, math::Random& random, bool mixed = false) {
   System s;
   const std::size_t n = At(6 * count);
@@ -214,7 +215,7 @@ System RandomSystem(int count, bool symmetric, math::Random& random, bool mixed 
   return s;
 }
 
-/// The system's solution by blocks, its bodies renumbered as the pattern says.
+/// Returns the system's solution by blocks, with the bodies in the order of the pattern.
 std::vector<double> BlockSolve(const System& s, const OwnPattern& own, bool symmetric,
                                bool transposed = false) {
   const int count = own.pattern.count;
@@ -258,7 +259,7 @@ TEST(BodyMatrix, SolvesAsADenseMatrixDoesInAnyOrder) {
         OwnPattern own(count);
         if (trial == 0) {
           ASSERT_TRUE(own.Eliminate(s.edges, count * count));
-        } else {  // forwards, backwards, anyhow
+        } else {  // forward, backward, random
           if (trial == 2) std::reverse(order.begin(), order.end());
           for (std::size_t i = order.size(); trial == 3 && i-- > 1;) {
             std::swap(order[i], order[random.Bits() % (i + 1)]);

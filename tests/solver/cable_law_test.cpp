@@ -1,6 +1,7 @@
-// The law of a stiff cable is the mean of its spring's tension over the step, with a damper while
-// it is stretched (docs/theory/cables.md, eq. 8-11): a line while taut at both ends, a curve where
-// it goes slack or gets taut, between zero and its limit. Its derivatives are those of the law.
+// Law of a stiff cable: the mean of its spring's tension over the step, with a damper while it is
+// stretched (docs/theory/cables.md, eq. 8-11). The law is linear while taut at both ends of the
+// step, a curve where the cable goes slack or becomes taut, and between zero and its limit. Its
+// derivatives are checked, too.
 #include <gtest/gtest.h>
 
 #include "tests/solver/law_instances.h"
@@ -17,8 +18,8 @@ struct State {
   Rows<1> u, l;
 };
 
-/// Which case u is, off the kinks by 0.05 at least and no flatter than that, else kCases; nor is it
-/// where Wish divides by little.
+/// Returns the case of u, or kCases if u is less than 0.05 from a kink, on a flatter slope, or
+/// where Wish divides by a small number.
 Case CaseOf(const Cable& c, const Rows<1>& u) {
   constexpr double kOff = 0.05;
   const double z = EndOf(c, u), z0 = c.start[0], wish = Wish(c, u);
@@ -33,7 +34,7 @@ Case CaseOf(const Cable& c, const Rows<1>& u) {
 
 bool IsInside(Case which) { return which == kTaut || which == kEnters || which == kLeaves; }
 
-/// A solution of another cable each, `f(cable, case, random, state)`.
+/// Calls `f(cable, case, random, state)` with solutions of different cables.
 template <class F>
 void ForEachInstance(const F& f) {
   for (int i = 0; i < kInstances; ++i) {
@@ -66,12 +67,12 @@ TEST(CableLaw, SolutionsStayWhereTheyAre) {
 TEST(CableLaw, NothingElseStays) {
   constexpr double kSteepest = 15;  // of a curve 0.1 wide, with winding
   ForEachInstance([](const Cable& c, Case, math::Random&, const State& s) {
-    for (const double off : {-0.04, 0.04}) {  // pushes; beyond its limit; not the spring's
+    for (const double off : {-0.04, 0.04}) {  // pushes; beyond its limit; off the spring's law
       const Rows<1> l = {s.l[0] + off};
       ASSERT_GT(Violation(c, s.u, l), 1e-3);
       EXPECT_GT(ResidualOf(c, s.u, l), 1e-4);
       for (const double e : kSoftnesses) {
-        // A soft cable moves by 1 / (1 + slope e A) of what is missing.
+        // A soft cable corrects 1 / (1 + slope e A) of the error.
         const double moves = std::abs(Projected(c, s.u, l, e)[0] - l[0]);
         EXPECT_GT(moves, 0.5 * std::abs(off) / (1 + kSteepest * e * c.A[0])) << "e = " << e;
       }
@@ -83,7 +84,7 @@ TEST(CableLaw, ResidualIsWhatSolvingItAloneWouldChange) {
   ForEachInstance([](const Cable& c, Case, math::Random& random, State s) {
     ExpectResidualIsNewtons(c, s.u, s.l);
     s.u[0] += random.Uniform(-0.5, 0.5), s.l[0] += random.Uniform(-0.5, 0.5);
-    // To first order: along the line, or along the curve where it is on one.
+    // To first order: along the line, or along the curve.
     const bool crosses = (c.start[0] > 0) != (EndOf(c, s.u) > 0);
     const double a = InverseMassOf(c)[0][0];
     const double slope = crosses ? std::max(SlopeOfWish(c, s.u), 0.0) : c.gain[0];
@@ -124,8 +125,8 @@ TEST(CableLaw, AloneItIsSolved) {
     const Cable& c = cable.law;
     const Rows<1> l0 = {random.Uniform(0, std::min(c.upper[0], 2.0))};
     const auto [u, l] = SolvedAlone(c, RandomRows<1>(random, 3), l0);
-    if (EndOf(c, u) == c.start[0]) continue;  // Wish has no value there
-    // Rounding of u, through impulses and masses, and of the law's own terms.
+    if (EndOf(c, u) == c.start[0]) continue;  // Wish is undefined there
+    // Rounding of u, through impulses and masses, and of the law's terms.
     const double moved = InverseMassOf(c)[0][0] * (l[0] + l0[0]);
     const double sizes = 1 + std::abs(c.base[0]) + (1 + c.gain[0]) * (Largest(u) + moved);
     const double steepness = 1 / std::min(1.0, std::abs(EndOf(c, u) - c.start[0]));
@@ -143,7 +144,7 @@ TEST(CableLaw, ClampedImpulsesAreAdmissibleAndAdmissibleOnesStay) {
 }
 
 TEST(CableLaw, ACableThatEndsAsItStartedHasTheTensionOfItsStretch) {
-  // The mean over no way at all: the formula's limit, not 0 / 0.
+  // The mean over zero travel: the limit of the formula, not 0 / 0.
   for (const double z : {1.0, 1e-3, 1e-15, 0.0, -1e-15, -1.0}) {
     math::Random random(13, 0, 0);
     OwnedCable cable(random);

@@ -1,5 +1,5 @@
-// The law of a contact is Coulomb's (docs/theory/contact.md, C1 and C2), its derivatives are those
-// of the law, and alone it is solved however steep its cone.
+// Law of a contact: Coulomb friction with complementarity (docs/theory/contact.md, C1 and C2), its
+// derivatives, and the solution of a single contact for any steepness of its cone.
 #include <gtest/gtest.h>
 
 #include "tests/solver/law_instances.h"
@@ -15,7 +15,7 @@ struct State {
   Rows<3> u, l;
 };
 
-/// A solution, its impulses and gaps between 0.2 and 1.2.
+/// Returns a solution with impulses and gaps between 0.2 and 1.2.
 State Solution(const Contact2& c, Case which, math::Random& random) {
   State s{};
   const double bias[3] = {c.bias[0][0], c.bias[1][0], c.bias[2][0]};
@@ -41,7 +41,7 @@ State Solution(const Contact2& c, Case which, math::Random& random) {
   return s;
 }
 
-/// Calls f(contact, case, random) for as many contacts of each case, with cones and lines.
+/// Calls f(contact, case, random) for equally many contacts of each case, with cones and lines.
 template <class F>
 void ForEachInstance(const F& f) {
   for (int i = 0; i < kInstances; ++i) {
@@ -72,31 +72,31 @@ TEST(ContactLaw, NothingElseStays) {
     const State s = Solution(c, which, random);
     const double off = random.Uniform(0.05, 0.2);
     State x = s;
-    x.u[0] = -c.bias[0][0] - off;  // penetrates
+    x.u[0] = -c.bias[0][0] - off;  // penetration
     ExpectNoSolution(c, x.u, x.l);
-    x = s, x.l[0] = -off;  // pulls
+    x = s, x.l[0] = -off;  // adhesion
     ExpectNoSolution(c, x.u, x.l);
-    x = s, x.u[0] += off, x.l[0] += off;  // pushes from afar
+    x = s, x.u[0] += off, x.l[0] += off;  // a normal force at a distance
     ExpectNoSolution(c, x.u, x.l);
     if (which == kOpen) {
-      x = s, x.l[1] = off;  // rubs from afar
+      x = s, x.l[1] = off;  // friction at a distance
       ExpectNoSolution(c, x.u, x.l);
     }
     if (which == kSticking) {
-      x = s, x.u[1] += off;  // slips with less than all its friction
+      x = s, x.u[1] += off;  // slip below the friction limit
       ExpectNoSolution(c, x.u, x.l);
     }
     if (which == kSliding) {
-      for (const double factor : {-1.0, 0.8, 1.2}) {  // speeds up; too little friction; too much
+      for (const double factor : {-1.0, 0.8, 1.2}) {  // accelerates; too little friction; too much
         x = s, x.l[1] *= factor, x.l[2] *= factor;
         ExpectNoSolution(c, x.u, x.l);
       }
-      x = s, x.l[1] = 1.3 * s.l[1], x.l[2] = 1.3 * s.l[2];  // sticks by more than it may
+      x = s, x.l[1] = 1.3 * s.l[1], x.l[2] = 1.3 * s.l[2];  // sticks beyond its limit
       for (std::size_t r = 1; r < 3; ++r) x.u[r] = -c.bias[r][0];
       ExpectNoSolution(c, x.u, x.l);
     }
     if (which == kSliding && !c.one_direction) {
-      const double cosine = std::cos(off), sine = std::sin(off);  // friction askew
+      const double cosine = std::cos(off), sine = std::sin(off);  // friction at a wrong angle
       x = s, x.l[1] = cosine * s.l[1] - sine * s.l[2], x.l[2] = sine * s.l[1] + cosine * s.l[2];
       ExpectNoSolution(c, x.u, x.l);
     }
@@ -113,7 +113,7 @@ TEST(ContactLaw, ReachIsWhereARayOfImpulsesLeavesItsBranch) {
     const State s = Solution(c, which, random);
     const auto branch = c.BranchOf(Packed(s.u), Packed(s.l));
     Rows<3> dl = RandomRows<3>(random);
-    if (random.Uniform(0, 1) < 0.5) dl[0] += 3;  // some never leave
+    if (random.Uniform(0, 1) < 0.5) dl[0] += 3;  // some never leave their branch
     const double t = c.Reach(branch, Packed(s.l), Packed(dl))[0];
     if (which == kOpen) {
       EXPECT_EQ(t, 1e300);
@@ -183,7 +183,8 @@ TEST(ContactLaw, DerivativesEqualDifferences) {
     for (double& x : s.u) x += random.Uniform(-0.05, 0.05);
     for (const double e : {1.0, 1e-2}) checked[which] += CheckDerivative(c, s.u, s.l, e);
     if (which != kOpen) return;
-    s.u[1] = -c.bias[1][0], s.u[2] = -c.bias[2][0];  // open and not slipping: no friction to come
+    // open and not slipping: no friction to be expected
+    s.u[1] = -c.bias[1][0], s.u[2] = -c.bias[2][0];
     EXPECT_TRUE(CheckDerivative(c, s.u, s.l, 1.0));
   });
   for (const int count : checked) EXPECT_GT(count, 0.95 * 2 * 2 * kInstances) << "next to a kink";
@@ -241,7 +242,7 @@ TEST(ContactLaw, MassesAreThoseOfItsLinks) {
     }
     EXPECT_NEAR(c.inv_wnn[0] * w[0][0], 1, 1e-14);
     EXPECT_NEAR(c.inv_wt[0] * c.wt[0], 1, 1e-14);
-    // wt bounds the largest eigenvalue of the tangents' part.
+    // wt bounds the largest eigenvalue of the tangential block.
     const double mean = (w[1][1] + w[2][2]) / 2;
     const double most = mean + std::hypot((w[1][1] - w[2][2]) / 2, w[1][2]);
     EXPECT_GE(c.wt[0], (c.one_direction ? w[1][1] : most) * (1 - 1e-14));
@@ -261,7 +262,7 @@ TEST(ContactLaw, AloneItIsSolvedHoweverSteepItsCone) {
     EXPECT_LT(Violation(c, u, l), 1e-12 * (1 + Largest(l))) << "instance " << i;
     const double edge = c.mu[0] * l[0];
     ++found[l[0] == 0 ? kOpen : std::hypot(l[1], l[2]) < edge * (1 - 1e-9) ? kSticking : kSliding];
-    // Painleve's: friction alone would press the contact together.
+    // Painleve's paradox: friction alone would press the contact together.
     const auto w = InverseMassOf(c);
     steep += c.mu[0] * std::hypot(w[1][0], one_direction ? 0 : w[2][0]) > w[0][0];
   }

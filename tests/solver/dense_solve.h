@@ -1,4 +1,4 @@
-/// A linear system without blocks, order or symmetry, to hold those with them against.
+/// Dense linear solver without blocks, order or symmetry, as a reference for sparse solvers.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace taut::test {
 
 using Dense = std::vector<std::vector<double>>;
 
-/// x with A x = b; Gauss with pivots.
+/// Returns x with A x = b; Gaussian elimination with pivoting.
 inline std::vector<double> DenseSolve(Dense a, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {

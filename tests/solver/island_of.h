@@ -1,5 +1,5 @@
-/// An island with memory of its own, from bodies and constraints of any kinds; and stored problems
-/// as such.
+/// Island that owns its memory, built from bodies and constraints of any kind or from a stored
+/// problem, for tests.
 #pragma once
 
 #include <deque>
@@ -41,7 +41,7 @@ inline Inertia Inverse(const Inertia& m) {
 
 inline constexpr int kManyBlocks = 1 << 20;
 
-/// Bodies first, then constraints between them; Start() numbers them for the solver.
+/// Add bodies first, then constraints between them; Start() numbers them for the solver.
 template <class... K>
 class OwnIsland {
  public:
@@ -65,15 +65,15 @@ class OwnIsland {
     return static_cast<int>(bodies_.size()) - 1;
   }
   int AddPointMass(double mass, const Vec3& free_v) { return AddSmall(3, mass, free_v); }
-  /// Its rows have their lever as lin.x.
+  /// Adds a rotor; the rows of its links hold their lever in lin.x.
   int AddRotor(double inertia, double free_spin) { return AddSmall(1, inertia, {free_spin, 0, 0}); }
-  /// Its velocity is given. Before any link to it is made.
+  /// Prescribes the body's velocity. Call it before any link to the body is made.
   void Prescribe(int body) {
     sim::Unknown<Num>& b = bodies_[At(body)];
     prescribed_[At(body)] = true;
     b.inv_mass = Num::Splat(0.0), b.inv_inertia = WideInertia({});
   }
-  /// One row of a link: what an impulse along `lin` with the lever `ang` does to the body.
+  /// Sets one row of a link: the effect of an impulse along `lin` with the lever `ang` on the body.
   template <int R>
   void SetRow(sim::Link<Num, R>& link, int row, int body, const Vec3& lin, const Vec3& ang) {
     const sim::Unknown<Num>& b = bodies_[At(body)];
@@ -83,15 +83,15 @@ class OwnIsland {
     link.ang[row] = Wide3(ang);
     link.turn[row] = b.inv_inertia * link.ang[row];
   }
-  /// A new constraint of a kind. Its impulses `l` are what the solver starts from.
+  /// Adds a constraint of a kind. The solver starts from its impulses `l`.
   template <class Law>
   Law& Add() {
     return std::get<std::vector<Law>>(laws_).emplace_back();
   }
-  /// Memory for the links of a kind that does not hold its own.
+  /// Returns memory for the links of a kind that does not store them.
   sim::Link<Num, 1>* Links(std::size_t count) { return links_.emplace_back(count).data(); }
   int PlaceOf(int body) const { return place_[At(body)]; }
-  /// Of a body by its first number.
+  /// Returns the velocity of a body by its original number.
   Vec3 VelocityOf(int body) const { return Plain3(TwistOf(body).v); }
   Vec3 SpinOf(int body) const { return Plain3(TwistOf(body).w); }
   std::vector<double> Impulses() const {
@@ -102,8 +102,8 @@ class OwnIsland {
 
   sim::Island<Num, P> island{};
 
-  /// Orders the bodies, hands out memory and starts from the laws' l; once. With more blocks than
-  /// `block_capacity` there are no matrices.
+  /// Orders the bodies, allocates memory and starts from the impulses of the laws; call it once.
+  /// With more blocks than `block_capacity` there are no matrices.
   void Start(int block_capacity = kManyBlocks) {
     const int n = island.body_count = static_cast<int>(bodies_.size());
     (SetPool<K>(), ...);
@@ -129,7 +129,7 @@ class OwnIsland {
       for (int r = 0; r < sim::LawOf<decltype(law)>::kRows; ++r) m.l[row + r] = law.l[r];
     });
   }
-  /// The residual that the solver reports [m/s].
+  /// Returns the residual that the solver reports [m/s].
   double Solve(sim::SolverWork& work, double tolerance = 1e-10) {
     return sim::SolveIsland(island, sim::Target{tolerance}, work);
   }
@@ -151,7 +151,7 @@ class OwnIsland {
     b.inertia = b.inv_inertia = WideInertia({});
     return body;
   }
-  /// Those that are prescribed go behind the others, which are ordered among themselves.
+  /// Places prescribed bodies behind the others, which the elimination orders.
   void Order(int block_capacity) {
     const int all = island.body_count;
     std::vector<int> number, solved, order;
@@ -199,7 +199,7 @@ class OwnIsland {
 
 using StepIsland = OwnIsland<Contact2, Cable>;
 
-/// A stored problem, all of it in one island.
+/// Returns a stored problem as one island.
 inline StepIsland IslandOf(const ContactProblem& p, int block_capacity = kManyBlocks) {
   StepIsland out;
   for (const ProblemBody& b : p.bodies) {

@@ -1,5 +1,5 @@
-// Islands out of real runs: their bookkeeping is that of the equations, each stage says truly how
-// far it got, and together they solve what they met.
+// Islands from real runs: their bookkeeping matches the equations, each solver stage reports its
+// true residual, and together the stages solve the problems.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -20,7 +20,7 @@ std::string Name(const ContactProblem& p) {
   return p.scene + ", problem " + std::to_string(&p - All().data());
 }
 
-/// Impulses of the size of those remembered, some of them not admissible.
+/// Returns impulses of the size of the warm start, some of them not admissible.
 std::vector<double> RandomImpulses(const ContactProblem& p, math::Random& random) {
   std::vector<double> l;
   for (const ProblemContact& c : p.contacts) {
@@ -34,7 +34,7 @@ void SetImpulses(StepIsland& own, const std::vector<double>& l) {
   for (std::size_t i = 0; i < l.size(); ++i) own.island.m.l[i] = Num::Splat(l[i]);
 }
 
-/// A sum's rounding: what was summed up, times a few units in the last place.
+/// Returns the scale of rounding errors of a sum of velocities.
 double SizeOf(const std::vector<ProblemVelocity>& v) {
   double size = 0;
   for (const ProblemVelocity& x : v) size = std::max({size, Dot(x.v, x.v), Dot(x.w, x.w)});
@@ -94,8 +94,9 @@ TEST(Island, ForcesDoTheWorkThatImpulsesDo) {
 }
 
 /// Runs `stage` on a fresh island of each problem, from admissible impulses. The residual that it
-/// returns must be that of the problem's own equations, up to `inexact` and twice the relaxation of
-/// contacts, which also changes slip directions. Returns by scene how many it did not solve.
+/// returns must equal the residual of the problem's equations, up to `inexact` and twice the
+/// relaxation of contacts, which also changes slip directions. Returns the number of unsolved
+/// problems by scene.
 template <class Stage>
 std::map<std::string, int> Unsolved(const Stage& stage, double inexact = 0) {
   std::map<std::string, int> unsolved;
@@ -151,8 +152,8 @@ TEST(Island, StoredProblemsAreSolved) {
         return sim::SolveIsland(island, sim::Target{kTolerance}, work);
       },
       kTolerance);
-  // Twenty rods wedged in a funnel with a friction of 0.8: of 42 problems a few end between 1e-10
-  // and 1e-9, their rounds used up.
+  // Twenty rods wedged in a funnel with a friction coefficient of 0.8: of 42 problems a few end
+  // between 1e-10 and 1e-9, at the limit of their rounds.
   const std::map<std::string, int> known = {{"pile_20_mu.8", 3}};
   for (const auto& [scene, count] : unsolved) {
     const auto it = known.find(scene);
@@ -188,7 +189,7 @@ TEST(Island, ItsWorkIsBoundedAndWhatItHasThenIsAdmissible) {
 TEST(Island, WithoutRoomForMatricesItIsSwept) {
   int solved = 0;
   for (const ContactProblem& p : All()) {
-    if (p.bodies.size() > 3) continue;  // the others take sweeps by the thousand
+    if (p.bodies.size() > 3) continue;  // the others take thousands of sweeps
     StepIsland own = IslandOf(p, 0);
     ASSERT_FALSE(own.island.has_matrix);
     sim::SolverWork work{0, 1000};

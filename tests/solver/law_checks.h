@@ -1,8 +1,9 @@
-/// What every law must be, whatever its kind (sim/constraint/links.h, ConstraintLaw). A kind brings
-///   Violation(law, u, l)             how far u and l are from the law as theory states it
-///   NewtonFunction(law, u, l, center, e)   what Newton's method makes zero; row by row a velocity
-///                                    where it matters, that is times the law's inverse mass
-/// as overloads, written from the theory and not from the law.
+/// Checks that every constraint law must pass, whatever its kind (sim/constraint/links.h,
+/// ConstraintLaw). A kind provides
+///   Violation(law, u, l): distance of u and l from the law as stated in theory
+///   NewtonFunction(law, u, l, center, e): function whose root Newton's method finds; row by row a
+///   velocity where the scale matters, that is, multiplied by the law's inverse mass
+/// as overloads, derived from the theory and not from the law's code.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +18,8 @@
 
 namespace taut::test {
 
-/// Own numbers of one lane: no template of a test is one of the library's.
+/// Number type of one lane that is unique to the tests, so that they share no template instance
+/// with the library.
 struct TestNumbers {};
 using Num = simd::Wide<1, TestNumbers>;
 using Contact2 = sim::ContactPoint<Num, 2>;
@@ -88,19 +90,19 @@ double ResidualOf(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l) {
 
 constexpr double kSoftnesses[] = {1.0, 1e-2, 1e-6};
 
-/// A solution stays where it is whatever the softness, and has no residual. u, l of order 1.
+/// Checks that a solution stays unchanged for every softness and has no residual. u, l of order 1.
 template <class Law>
 void ExpectSolution(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l) {
   ASSERT_LT(Violation(law, u, l), 1e-14) << "the test's own instance";
   for (const double e : kSoftnesses) {
-    // What u + bias rounds to counts 1 / e times.
+    // The rounding error of u + bias is amplified by 1 / e.
     EXPECT_LT(Largest(Difference(Projected(law, u, l, e), l)), 1e-14 + 1e-15 / e) << "e = " << e;
   }
   EXPECT_LT(ResidualOf(law, u, l), 2e-14);
   EXPECT_LT(Largest(NewtonFunction(law, u, l, l, 0.0)), 2e-14);
 }
 
-/// What is far from the law moves, and by more the harder the law is.
+/// Checks that values far from the law change, and by more the harder the law is.
 template <class Law>
 void ExpectNoSolution(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l) {
   ASSERT_GT(Violation(law, u, l), 1e-4) << "the test's own instance";
@@ -110,14 +112,14 @@ void ExpectNoSolution(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l
   EXPECT_GT(ResidualOf(law, u, l), 1e-4);
 }
 
-/// The residual is the largest entry of Newton's function, in metres a second.
+/// Checks that the residual is the largest entry of Newton's function [m/s].
 template <class Law>
 void ExpectResidualIsNewtons(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l) {
   const double expected = Largest(NewtonFunction(law, u, l, l, 0.0));
   EXPECT_NEAR(ResidualOf(law, u, l), expected, 1e-13 * (1 + expected));
 }
 
-/// d f_i / d x_j by central differences of a function of rows.
+/// Returns d f_i / d x_j by central differences of a function of rows.
 template <std::size_t R, class F>
 std::array<std::array<double, R>, R> Differences(const F& f, const std::array<double, R>& x,
                                                  double step) {
@@ -131,7 +133,8 @@ std::array<std::array<double, R>, R> Differences(const F& f, const std::array<do
   return out;
 }
 
-/// Whether `step` in any row leads over a kink of f: the differences of both sides then differ.
+/// Returns true if a change by `step` in any row crosses a kink of f: its one-sided differences
+/// then differ.
 template <std::size_t R, class F>
 bool HasKink(const F& f, const std::array<double, R>& x, double step, double scale) {
   const auto here = f(x);
@@ -146,8 +149,8 @@ bool HasKink(const F& f, const std::array<double, R>& x, double step, double sca
 
 constexpr double kStep = 1e-6;
 
-/// Derivative is that of Project; with what lies under the diagonal as above it, that of
-/// ProjectFrozen. False next to a kink.
+/// Checks Derivative against Project and, with its upper triangle mirrored to the lower one,
+/// against ProjectFrozen. Returns false next to a kink.
 template <class Law>
 bool CheckDerivative(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& center, double e) {
   constexpr int R = Law::kRows;
@@ -174,7 +177,7 @@ bool CheckDerivative(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& ce
   return true;
 }
 
-/// The frozen law is the gradient of a convex function: it only ever pushes back.
+/// The frozen law is the gradient of a convex function: its impulses only oppose the motion.
 template <class Law>
 void ExpectFrozenPushesBack(const Law& law, const RowsOf<Law>& u1, const RowsOf<Law>& u2,
                             const RowsOf<Law>& center, const RowsOf<Law>& l0, double e) {
@@ -185,8 +188,8 @@ void ExpectFrozenPushesBack(const Law& law, const RowsOf<Law>& u1, const RowsOf<
   EXPECT_LE(power, 1e-15 / e);
 }
 
-/// A dl + S du = r is Newton's equation of NewtonFunction: row by row the same up to a factor.
-/// False next to a kink.
+/// Checks that A dl + S du = r is Newton's equation of NewtonFunction: row by row equal up to a
+/// factor. Returns false next to a kink.
 template <class Law>
 bool CheckLinearize(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l, double e) {
   constexpr int R = Law::kRows;
@@ -204,7 +207,7 @@ bool CheckLinearize(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l, 
       wanted[At(j)] = by_l[At(i)][At(j)], wanted[At(R + j)] = by_u[At(i)][At(j)];
     }
     mine[2 * R] = linear.r[i][0], wanted[2 * R] = -f[At(i)];
-    // The factor is what makes the largest derivative the same.
+    // The factor equates the largest derivatives.
     const auto largest = std::max_element(wanted.begin(), wanted.end() - 1, [](double a, double b) {
       return std::abs(a) < std::abs(b);
     });
@@ -218,7 +221,7 @@ bool CheckLinearize(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l, 
   return true;
 }
 
-/// J M^-1 J^T of the law's own links, from their directions and levers.
+/// Returns J M^-1 J^T of the law's links, from their directions and levers.
 template <class Law>
 Matrix<Law::kRows> InverseMassOf(const Law& law) {
   Num sum[Law::kRows * Law::kRows] = {};
@@ -230,7 +233,7 @@ Matrix<Law::kRows> InverseMassOf(const Law& law) {
   return out;
 }
 
-/// Where SolveAlone leads from u0, l0: impulses, and the velocities that they make.
+/// Returns the impulses of SolveAlone from u0, l0, and the velocities that they cause.
 template <class Law>
 std::array<RowsOf<Law>, 2> SolvedAlone(const Law& law, RowsOf<Law> u, const RowsOf<Law>& l0) {
   Packed<Law::kRows> l(l0);
@@ -250,7 +253,7 @@ RowsOf<Law> Clamped(const Law& law, const RowsOf<Law>& from) {
   return l.Plain();
 }
 
-/// Random rows in [-size, size].
+/// Returns random rows in [-size, size].
 template <int R>
 Rows<R> RandomRows(math::Random& random, double size = 1) {
   Rows<R> x;

@@ -1,4 +1,4 @@
-/// Random contacts and cables between two bodies, and their laws as theory states them.
+/// Random contacts and cables between two bodies, and their laws as stated in theory.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ inline Vec3 RandomVector(math::Random& random) {
 }
 inline Vec3 Unit(const Vec3& v) { return (1 / std::sqrt(Dot(v, v))) * v; }
 
-/// Inverse mass and inverse inertia of order 1, both positive definite.
+/// Appends an inverse mass and an inverse inertia of order 1, both positive definite.
 inline void AddMasses(math::Random& random, std::vector<double>& out) {
   out.push_back(random.Uniform(0.3, 3));
   const Vec3 a = RandomVector(random), b = RandomVector(random), c = RandomVector(random);
@@ -30,7 +30,7 @@ inline void AddVector(const Vec3& v, std::vector<double>& out) {
   out.insert(out.end(), {v.x, v.y, v.z});
 }
 
-/// A contact in the numbers that ReadContact takes.
+/// Returns a contact in the numbers that ReadContact takes.
 inline std::vector<double> RandomContactNumbers(math::Random& random, double max_mu) {
   std::vector<double> out = {1, random.Uniform(0.1, max_mu)};
   for (const double x : RandomRows<3>(random, 0.5)) out.push_back(x);
@@ -43,7 +43,8 @@ inline std::vector<double> RandomContactNumbers(math::Random& random, double max
   }
   return out;
 }
-/// A cable in the numbers that ReadCable takes. Half of them have no damper, and half no limit.
+/// Returns a cable in the numbers that ReadCable takes. Half of the cables have no damper, and half
+/// no limit.
 inline std::vector<double> RandomCableNumbers(math::Random& random) {
   const double start = random.Uniform(-1, 1), end = random.Uniform(-1, 1);
   const double spring = random.Uniform(0.1, 1), damper = random.Uniform(-1, 1);
@@ -75,13 +76,13 @@ struct OwnedCable {
   OwnedCable(const OwnedCable&) = delete;
 };
 
-/// Velocities against what is wanted: (C1) and (C2) want them zero.
+/// Returns the difference of the velocities from their targets, which is zero in (C1) and (C2).
 inline Rows<3> Excess(const Contact2& c, const Rows<3>& u) {
   return {u[0] + c.bias[0][0], u[1] + c.bias[1][0], u[2] + c.bias[2][0]};
 }
 
-/// (C1), (C2) of docs/theory/contact.md, as they stand there. With one direction of friction the
-/// second tangent has no impulse, and its velocity is free.
+/// Violation of (C1), (C2) of docs/theory/contact.md. With one direction of friction the second
+/// tangent has no impulse, and its velocity is free.
 inline double Violation(const Contact2& c, const Rows<3>& u, const Rows<3>& l) {
   const Rows<3> v = Excess(c, u);
   const double mu = c.mu[0], v2 = c.one_direction ? 0 : v[2];
@@ -107,18 +108,18 @@ inline Rows<3> NewtonFunction(const Contact2& c, const Rows<3>& u, const Rows<3>
   return {w[0] * (l[0] - y[0]), w[1] * (l[1] - shrink * y[1]), w[2] * (l[2] - shrink * y[2])};
 }
 
-/// Twice the stretch, per step, at its end.
+/// Returns twice the stretch at the step's end, divided by the step.
 inline double EndOf(const Cable& c, const Rows<1>& u) { return c.end[0] - u[0]; }
 
-/// Eq. 8 and 9 of docs/theory/cables.md, without limits: what the spring stores on its way, and
-/// what the damper takes while it is stretched, by how far its length goes and its rest length
-/// winds.
+/// Returns the impulse of eq. 8 and 9 of docs/theory/cables.md, without limits: change of the
+/// spring's energy per change of the stretch, plus the damper while stretched, whose rate includes
+/// the change of length and the winding of the rest length.
 inline double Wish(const Cable& c, const Rows<1>& u) {
   const double z = EndOf(c, u), z0 = c.start[0], way = z - z0;
   const double p = std::max(z, 0.0), p0 = std::max(z0, 0.0);
   return (c.spring[0] * (p * p - p0 * p0) + c.damper[0] * (p - p0) * (way + c.winding[0])) / way;
 }
-/// -d Wish / du, by the rule of the quotient.
+/// -d Wish / du, by the quotient rule.
 inline double SlopeOfWish(const Cable& c, const Rows<1>& u) {
   const double z = EndOf(c, u), z0 = c.start[0], way = z - z0, far = way + c.winding[0];
   const double gone = std::max(z, 0.0) - std::max(z0, 0.0);
@@ -130,7 +131,8 @@ inline double Violation(const Cable& c, const Rows<1>& u, const Rows<1>& l) {
   return std::abs(l[0] - std::clamp(Wish(c, u), 0.0, c.upper[0]));
 }
 
-/// Times what its velocity changes by per impulse, alone and taut at both ends.
+/// The error of the impulse times the change of velocity per impulse of a single cable that is taut
+/// at both ends.
 inline Rows<1> NewtonFunction(const Cable& c, const Rows<1>& u, const Rows<1>& l, const Rows<1>&,
                               double) {
   const double a = InverseMassOf(c)[0][0];

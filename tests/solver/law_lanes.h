@@ -1,5 +1,5 @@
-/// A law that is written out as plain doubles, a world a row, and all that it answers: the same
-/// text for every number of lanes. Without the standard library, because files compiled for other
+/// Evaluation of all functions of a law for plain doubles, one world per row: the same source for
+/// every number of lanes. Without the standard library, because files compiled for other
 /// instruction sets include it and must share no function with the rest.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace taut::test {
 
-/// Doubles of lane i: [i * stride], [i * stride + 1] ...
+/// Reads the doubles of lane i: [i * stride], [i * stride + 1] ...
 template <class W>
 struct LaneReader {
   const double* at;
@@ -37,7 +37,7 @@ struct LaneWriter {
   }
 };
 
-/// A link of R rows: inverse mass, inverse inertia (xx yy zz xy xz yz), directions, arm.
+/// Reads a link of R rows: inverse mass, inverse inertia (xx yy zz xy xz yz), directions, arm.
 template <class W, int R>
 sim::Link<W, R> ReadLink(LaneReader<W>& in) noexcept {
   sim::Link<W, R> link;
@@ -96,7 +96,7 @@ sim::CableRow<W> ReadCable(LaneReader<W>& in, sim::Link<W, 1>* links) noexcept {
   return c;
 }
 
-/// All that a law of R rows answers to u, center, e, share.
+/// Numbers of inputs (u, center, e, share) and results of a law of R rows.
 template <int R>
 inline constexpr int kQuestionNumbers = 2 * R + 2;
 template <int R>
@@ -130,7 +130,7 @@ void Ask(const Law& law, LaneReader<W>& in, LaneWriter<W>& out) noexcept {
   for (const W x : l) out.Put(x);
 }
 
-/// W::kLanes contacts and their questions, answered side by side; likewise of cables.
+/// Evaluates W::kLanes contacts in SIMD lanes, or cables.
 template <class W>
 void AskContacts(const double* in, double* out, bool one_direction) noexcept {
   LaneReader<W> from{in, kContactNumbers + kQuestionNumbers<3>};

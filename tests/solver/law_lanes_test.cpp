@@ -1,4 +1,4 @@
-// A law gives bit for bit the same in a lane as alone, whatever the other lanes hold.
+// Laws in SIMD lanes give the same bits as in a single lane, whatever the other lanes hold.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -11,11 +11,12 @@ namespace {
 constexpr int kMostLanes = 8;
 
 struct Question {
-  std::vector<double> numbers;  ///< Of all lanes.
+  std::vector<double> numbers;  ///< Inputs of all lanes.
   int stride;
 };
 
-/// Contacts about their law's solutions, so that the lanes of a group are on all its branches.
+/// Returns contacts near solutions of their law, so that the lanes of a group are on all its
+/// branches.
 Question AboutContacts(std::uint64_t index) {
   Question q{{}, kContactNumbers + kQuestionNumbers<3>};
   for (int lane = 0; lane < kMostLanes; ++lane) {
@@ -46,7 +47,7 @@ Question AboutCables(std::uint64_t index) {
   return q;
 }
 
-/// Compares `count` lanes' answers, found side by side, with those that each lane gets alone.
+/// Compares the results of `lanes` lanes, evaluated together, with the results of single lanes.
 template <int R, class Together, class Alone>
 void ExpectSameBits(const Question& q, int lanes, const Together& together, const Alone& alone) {
   std::vector<double> mine(At(lanes * kAnswerNumbers<R>)), wanted = mine;

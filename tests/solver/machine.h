@@ -1,4 +1,4 @@
-/// Unknowns of all kinds in one island, for tests.
+/// Island with unknowns of all kinds (body, point mass, rotor, driven belt), for tests.
 #pragma once
 
 #include "tests/solver/ball_joint.h"
@@ -18,8 +18,8 @@ inline const Vec3 kBeltSpeed = {0.2, -0.1, 0}, kBeltSpin = {0, 0, 0.3};
 inline const Vec3 kNormal[3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
 inline const Vec3 kFoot = {0.1, 0.05, -0.2}, kOnBelt = {0.4, 0, 0.1}, kPull = {0.6, 0, 0.8};
 
-/// A body stands with a foot on a belt that is driven. A point mass hangs from a cable that a rotor
-/// winds and a second body holds by its end; a joint ties the two bodies.
+/// Builds a body whose foot stands on a driven belt. A point mass hangs from a cable that a rotor
+/// winds and a second body holds at its end; a joint connects the two bodies.
 inline void Build(Machine& m, double friction, const Vec3& belt_speed = kBeltSpeed) {
   MixedIsland& island = m.island;
   const Inertia inertia = {{{90, 5, 0}, {5, 110, -8}, {0, -8, 70}}};
@@ -41,7 +41,7 @@ inline void Build(Machine& m, double friction, const Vec3& belt_speed = kBeltSpe
   auto& cable = island.Add<Cable>();
   cable.live = Num::Splat(1.0), cable.SetLine(Num::Splat(kBase), Num::Splat(kGain));
   cable.upper = Num::Splat(1.0), cable.link_count = 3, cable.links = island.Links(3);
-  // Its rate of shortening: the rotor takes in, the ends come nearer.
+  // The cable's rate of shortening: the rotor winds in, the ends approach each other.
   island.SetRow(cable.links[0], 0, m.rotor, {-kRadius, 0, 0}, {});
   island.SetRow(cable.links[1], 0, m.mass, kPull, {});
   island.SetRow(cable.links[2], 0, m.lever, -1.0 * kPull, Cross(kPull, {0.1, 0, 0.05}));

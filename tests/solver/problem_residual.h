@@ -1,5 +1,5 @@
-/// A stored problem's equations (tests/solver/README.md, docs/theory/contact.md and cables.md),
-/// from its own numbers alone: what the solver's bookkeeping is held against.
+/// Equations and residual of a stored problem (tests/solver/README.md, docs/theory/contact.md and
+/// cables.md), computed from its numbers only, as a reference for the solver's bookkeeping.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline Vec3 Times(const std::array<std::array<double, 3>, 3>& m, const Vec3& a) 
 /// One row of J: directions and levers on bodies.
 using ProblemRow = std::vector<ProblemLink>;
 
-/// All rows: of each contact n, t1, t2, then of each cable one.
+/// Returns all rows: n, t1, t2 for each contact, then one for each cable.
 inline std::vector<ProblemRow> AllRows(const ContactProblem& p) {
   std::vector<ProblemRow> rows;
   for (const ProblemContact& c : p.contacts) {
@@ -35,7 +35,7 @@ inline std::vector<ProblemRow> AllRows(const ContactProblem& p) {
   return rows;
 }
 
-/// v_free + M^-1 J^T l
+/// Returns v_free + M^-1 J^T l.
 inline std::vector<ProblemVelocity> VelocitiesOf(const ContactProblem& p,
                                                  const std::vector<double>& l) {
   std::vector<ProblemVelocity> out;
@@ -52,7 +52,7 @@ inline std::vector<ProblemVelocity> VelocitiesOf(const ContactProblem& p,
   return out;
 }
 
-/// J v
+/// Returns J v.
 inline std::vector<double> RatesOf(const ContactProblem& p, const std::vector<ProblemVelocity>& v) {
   std::vector<double> out;
   for (const ProblemRow& row : AllRows(p)) {
@@ -66,7 +66,7 @@ inline std::vector<double> RatesOf(const ContactProblem& p, const std::vector<Pr
   return out;
 }
 
-/// An entry of J M^-1 J^T.
+/// Returns an entry of the Delassus operator J M^-1 J^T.
 inline double InverseMass(const ContactProblem& p, const ProblemRow& x, const ProblemRow& y) {
   double sum = 0;
   for (const ProblemLink& a : x) {
@@ -80,8 +80,8 @@ inline double InverseMass(const ContactProblem& p, const ProblemRow& x, const Pr
   return sum;
 }
 
-/// How far u and l are from all laws [m/s]: what is missing in an equation of velocities as it is,
-/// in one of impulses times the inverse mass that the row has (of tangents, a bound of it).
+/// Returns the distance of u and l from all laws [m/s]: the error of an equation of velocities, or
+/// the error of an equation of impulses times the row's inverse mass (for tangents, a bound of it).
 inline double ResidualOf(const ContactProblem& p, const std::vector<double>& u,
                          const std::vector<double>& l) {
   const std::vector<ProblemRow> rows = AllRows(p);
@@ -114,7 +114,8 @@ inline double ResidualOf(const ContactProblem& p, const std::vector<double>& u,
   return worst;
 }
 
-/// Pushes only, friction in its cone, cables between slack and limit: up to roundings.
+/// Returns true if contacts only push, friction is in its cone, and cables are between slack and
+/// limit, up to rounding.
 inline bool IsAdmissible(const ContactProblem& p, const std::vector<double>& l) {
   std::size_t i = 0;
   for (const ProblemContact& c : p.contacts) {

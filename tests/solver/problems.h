@@ -1,5 +1,5 @@
-/// Contact problems that a solver has to answer, out of real runs: tests/solver/README.md says what
-/// they are, where they come from and how the file is laid out.
+/// Stored contact problems from real runs, as test cases of the contact solver:
+/// tests/solver/README.md describes their origin and the file format.
 #pragma once
 
 #include <zlib.h>
@@ -32,26 +32,26 @@ struct ProblemContact {
   std::array<Vec3, 3> lever_a, lever_b;  ///< Arm x n, t1, t2 [m]; of the world: zero.
   double bias = 0;                       ///< The normal velocity is at least -bias [m/s].
   double mu = 0;
-  std::array<double, 3> impulse{};  ///< What was remembered of the step before [N s].
+  std::array<double, 3> impulse{};  ///< Warm start: impulse of the previous step [N s].
 };
 
 struct ProblemLink {
   int body = 0;
-  Vec3 pull, lever;  ///< Of the impulse 1; the lever is arm x pull.
+  Vec3 pull, lever;  ///< For the impulse 1; the lever is arm x pull.
 };
 
 /// An impulse max(0, min(base - gain u, upper)), u: the links' pull . v + lever . w, summed.
 struct ProblemCable {
   double base = 0, gain = 0, upper = 0;  ///< [N s], [kg], [N s]
-  double impulse = 0;                    ///< What was remembered of the step before [N s].
+  double impulse = 0;                    ///< Warm start: impulse of the previous step [N s].
   std::vector<ProblemLink> links;
 };
 
 struct ContactProblem {
   std::string scene;
   double step_s = 0;
-  int sweeps = 0;               ///< Of the solver that met the problem first,
-  double residual_m_per_s = 0;  ///< and where it ended: above 1e-10 it had given up.
+  int sweeps = 0;               ///< Sweeps of the original solver,
+  double residual_m_per_s = 0;  ///< and its final residual: above 1e-10 it did not converge.
   std::vector<ProblemBody> bodies;
   std::vector<ProblemContact> contacts;
   std::vector<ProblemCable> cables;
@@ -63,7 +63,7 @@ constexpr char kMagic[] = "tautcontacts";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kNameBytes = 16;
 
-/// Hands out what the file holds, in order; never past its end.
+/// Returns the file's contents in order; never reads past its end.
 class Content {
  public:
   explicit Content(const std::string& path) {
@@ -97,7 +97,7 @@ class Content {
   std::span<const unsigned char> left_;
 };
 
-/// The two streams that problems are made of.
+/// The two streams that problems are stored in.
 struct Streams {
   std::vector<int> ints;
   std::vector<double> numbers;
@@ -107,7 +107,8 @@ struct Streams {
     for (std::size_t i = 0; i < int_count; ++i) {
       ints.push_back(static_cast<std::int32_t>(file.Unsigned()));
     }
-    // Bytes of the same place value stand together: so they are alike, and gzip makes them small.
+    // Bytes of the same place value are stored together: they are similar, which improves
+    // compression.
     std::vector<std::uint64_t> bits(number_count);
     for (unsigned place = 0; place < 8; ++place) {
       const auto plane = file.Take(number_count);
@@ -123,7 +124,7 @@ struct Streams {
   bool empty() const { return next_int == ints.size() && next_number == numbers.size(); }
 };
 
-/// One number of every item, then the next number of every item.
+/// Reads the first number of every item, then the next number of every item.
 template <class Items, class... Fields>
 void Columns(Streams& from, Items& items, Fields... fields) {
   const auto column = [&](auto field) {
@@ -153,8 +154,8 @@ inline void ReadBodies(Streams& from, std::vector<ProblemBody>& bodies) {
   }
 }
 
-/// The tangents follow from the normal: the first is the part across it of that axis, x or y of W,
-/// which is certainly not along it.
+/// Computes the tangents from the normal: the first is the component, perpendicular to the normal,
+/// of the axis x or y of W, whichever is certainly not parallel to it.
 inline void MakeTangents(ProblemContact& c) {
   const Vec3 axis = std::abs(c.n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 across = axis - Dot(axis, c.n) * c.n;
@@ -208,7 +209,7 @@ inline void ReadCables(Streams& from, std::vector<ProblemCable>& cables) {
 
 }  // namespace problem_file
 
-/// All problems of a file; throws if it is not such a file, or not whole.
+/// Returns all problems of a file; throws if it is not such a file, or incomplete.
 inline std::vector<ContactProblem> LoadProblems(const std::string& path = TAUT_SOURCE_DIR
                                                 "/tests/solver/problems.bin.gz") {
   using problem_file::kMagic;

@@ -1,5 +1,5 @@
-// The stored contact problems are read as they were stored, and are what they say: a solver that
-// fails on one of them must not find the fault in the problem.
+// Stored contact problems: bits as stored, and validity of their data, so that a failure of a
+// solver is not a fault of the problem.
 #include "tests/solver/problems.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ const std::vector<ContactProblem>& All() {
 
 double LengthOf(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 
-/// FNV-1a over the bits of all that a problem is given as.
+/// FNV-1a hash of the bits of all given values of a problem.
 class Checksum {
  public:
   void Add(double x) {
@@ -33,7 +33,7 @@ class Checksum {
   std::uint64_t sum_ = 0xcbf29ce484222325;
 };
 
-/// Of one problem's contents, without what the reader makes of them (tangents and levers).
+/// Adds one problem's contents, without values that the reader computes (tangents and levers).
 void Add(const ContactProblem& p, Checksum& sum) {
   sum.Add(p.step_s);
   for (const ProblemBody& b : p.bodies) {
@@ -53,7 +53,7 @@ void Add(const ContactProblem& p, Checksum& sum) {
   }
 }
 
-/// Where the fault is.
+/// Returns the name of a problem for failure messages.
 std::string Name(const ContactProblem& p) {
   return p.scene + ", problem " + std::to_string(&p - All().data());
 }
@@ -80,7 +80,7 @@ TEST(ContactProblems, AreAsManyOfEachSceneAsWereStored) {
 TEST(ContactProblems, AreBitForBitWhatWasStored) {
   Checksum sum;
   for (const ContactProblem& p : All()) Add(p, sum);
-  // Found by another program (in Python) over what the runs had written.
+  // Computed by a separate program (in Python) from the output of the runs.
   EXPECT_EQ(sum.sum(), std::uint64_t{0x92d529e3b6d56d4e});
 }
 
@@ -112,8 +112,8 @@ TEST(ContactProblems, HaveNormalsAndTangentsAcrossEachOther) {
 }
 
 TEST(ContactProblems, HaveLeversOfOneArm) {
-  // arm x n, arm x t1, arm x t2: each across its own direction, and from any two the arm's third
-  // part is the same: n . (arm x t1) = -t1 . (arm x n).
+  // arm x n, arm x t1, arm x t2: each perpendicular to its direction, and any two give the same
+  // third component of the arm: n . (arm x t1) = -t1 . (arm x n).
   for (const ContactProblem& p : All()) {
     for (const ProblemContact& c : p.contacts) {
       for (const std::array<Vec3, 3>& l : {c.lever_a, c.lever_b}) {
@@ -130,10 +130,10 @@ TEST(ContactProblems, HaveLeversOfOneArm) {
 }
 
 TEST(ContactProblems, HaveContactsOnTheSideThatTheirNormalSays) {
-  // In these scenes all bodies are convex, their centres inside: a contact lies on the other side
-  // of A's centre than where its normal points, and of B's where it points. That is arm . n, which
-  // is t2 . (arm x t1): n = t1 x t2. Rods that cross at a small angle share one normal among two
-  // contacts, which need not be so; hence no piles.
+  // In these scenes all bodies are convex, their centers inside: seen from the center of A, a
+  // contact lies against its normal, and from the center of B along it. The check uses arm . n,
+  // which is t2 . (arm x t1): n = t1 x t2. Rods that cross at a small angle share one normal
+  // between two contacts, for which this need not hold; hence no piles.
   for (const ContactProblem& p : All()) {
     const std::string kind = p.scene.substr(0, p.scene.find('_'));
     if (kind == "pile" || kind == "spine3" || kind == "wall12" || kind == "six") continue;
@@ -164,7 +164,7 @@ TEST(ContactProblems, NameBodiesThatAreThere) {
   }
 }
 
-/// What the reader says of a file that begins as ours but goes on like this.
+/// Returns the reader's error for a file that begins with this content.
 std::string Complaint(const std::string& content) {
   const auto path = std::filesystem::path(testing::TempDir()) / "problems_test.bin";
   std::FILE* const file = std::fopen(path.c_str(), "wb");

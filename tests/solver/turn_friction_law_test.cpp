@@ -1,6 +1,6 @@
-// The law of a ball joint's friction: impulses within a ball, against the turn where they are at
-// its edge (docs/theory/joints.md, eq. 10). Its derivatives are those of the law, and alone it is
-// solved however unlike the inverse masses are about different axes.
+// Law of a ball joint's friction: impulses within a ball, opposite to the rotation at its surface
+// (docs/theory/joints.md, eq. 10); its derivatives, and the solution of a single joint for any
+// ratio of the inverse masses about different axes.
 #include "sim/constraint/turn_friction.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ static Rows<3> Scaled(double by, Rows<3> x) {
 }
 static double InverseMass(const Friction& f) { return f.w[0]; }
 
-/// How far |l| is beyond the limit, and u from zero or from -l, as what is at the edge slides.
+/// Returns the excess of |l| over the limit, and the distance of u from zero, or from the direction
+/// of -l at the limit, where the joint slides.
 static double Violation(const Friction& f, const Rows<3>& u, const Rows<3>& l) {
   const double limit = f.limit[0], beyond = std::max(0.0, Length(l) - limit);
   if (Length(l) < limit * (1 - 1e-9)) return std::max(beyond, Length(u));
@@ -30,7 +31,7 @@ static double Violation(const Friction& f, const Rows<3>& u, const Rows<3>& l) {
   for (std::size_t r = 0; r < 3; ++r) askew[r] += slides * along[r];
   return std::max(beyond, Length(askew));
 }
-/// Sticking: u + e w (l - center). Sliding: w (l - limit y / |y|), y = center - ... of the same.
+/// Sticking: u + e w (l - center). Sliding: w (l - limit y / |y|), y = l - u / w - e (l - center).
 static Rows<3> NewtonFunction(const Friction& f, const Rows<3>& u, const Rows<3>& l,
                               const Rows<3>& center, double e) {
   const double w = InverseMass(f), limit = f.limit[0];
@@ -43,7 +44,7 @@ static Rows<3> NewtonFunction(const Friction& f, const Rows<3>& u, const Rows<3>
 
 namespace {
 
-/// One body, or two, with moments of inertia that differ by `spread`.
+/// Returns the friction of one body, or two, with moments of inertia that differ by `spread`.
 Friction RandomFriction(math::Random& random, double spread) {
   Friction f{};
   f.limit = Num::Splat(random.Uniform(0.3, 1.0));
@@ -91,18 +92,18 @@ bool IsEven(const Friction& f) { return InverseMass(f) < 1e3; }
 
 TEST(TurnFrictionLaw, SolutionsStayWhereTheyAreAndNothingElseDoes) {
   ForEachInstance([](const Friction& f, State s, bool slides, math::Random& random) {
-    if (!IsEven(f)) return;  // the tolerances are of inverse masses of order 1
+    if (!IsEven(f)) return;  // the tolerances assume inverse masses of order 1
     ExpectSolution(f, s.u, s.l);
     EXPECT_EQ(f.BranchOf(Packed(s.u), Packed(s.l)).slides[0], slides);
     const double off = random.Uniform(0.05, 0.2);
     if (!slides) {
-      ExpectNoSolution(f, {off, 0, 0}, s.l);  // turns with less than all its friction
+      ExpectNoSolution(f, {off, 0, 0}, s.l);  // rotates below the friction limit
       return;
     }
-    ExpectNoSolution(f, s.u, Scaled(1 + off, s.l));  // more than there is
+    ExpectNoSolution(f, s.u, Scaled(1 + off, s.l));  // beyond the limit
     ExpectNoSolution(f, s.u, Scaled(1 - off, s.l));
-    ExpectNoSolution(f, s.u, Scaled(-1, s.l));           // speeds up
-    ExpectNoSolution(f, {s.u[1], s.u[2], s.u[0]}, s.l);  // askew
+    ExpectNoSolution(f, s.u, Scaled(-1, s.l));           // accelerates
+    ExpectNoSolution(f, {s.u[1], s.u[2], s.u[0]}, s.l);  // wrong direction
   });
 }
 

@@ -1,6 +1,6 @@
-// Unknowns of other kinds than bodies in one island: a rotor that winds a cable, a point mass, and
-// a body whose velocity is given, tied by a ball joint, a cable and a contact. Where no law changes
-// its branch the equations are linear, and a dense matrix of all of them says what must come out.
+// Islands with unknowns other than bodies: a rotor that winds a cable, a point mass, and a
+// prescribed body, connected by a ball joint, a cable and a contact. Where no law changes its
+// branch the equations are linear, and a dense matrix of all of them is the reference.
 #include <gtest/gtest.h>
 
 #include "tests/solver/dense_solve.h"
@@ -9,8 +9,8 @@
 namespace taut::test {
 namespace {
 
-/// All of the equations in one matrix: M v - J^T l = M v_free, J v + C l = r, of the columns that
-/// are not prescribed. `C`: compliance and what else binds a row's impulses.
+/// All equations in one matrix: M v - J^T l = M v_free, J v + C l = r, for the columns that are not
+/// prescribed. `C`: compliance and other relations between a row's impulses.
 struct Reference {
   Dense a;
   std::vector<double> b;
@@ -53,7 +53,7 @@ Reference Equations(const Machine& machine, bool slides, const double (&s)[2]) {
         for (int c = 0; c < island.bodies[link.body].size; ++c) {
           const int column = out.first[At(link.body)];
           if (column < 0) {
-            out.b[at] -= j[c][0] * free[c][0];  // moves the row by itself
+            out.b[at] -= j[c][0] * free[c][0];  // prescribed velocity: goes to the right-hand side
           } else {
             out.a[at][At(column + c)] += j[c][0];
             out.a[At(column + c)][at] -= j[c][0];
@@ -101,7 +101,7 @@ TEST(Unknowns, ARotorAPointMassAndADrivenBeltMoveAsADenseMatrixSays) {
     for (std::size_t r = 0; r < l.size(); ++r) {
       EXPECT_NEAR(l[r], x[x.size() - l.size() + r], 1e-9) << "row " << r;
     }
-    // On the branches that the equations take for granted.
+    // The solution is on the branches that the equations assume.
     EXPECT_GT(l[3], 0.01);
     EXPECT_TRUE(l[6] > 0.001 && l[6] < 0.999) << l[6];
     if (!slides) {
@@ -115,7 +115,7 @@ TEST(Unknowns, ARotorAPointMassAndADrivenBeltMoveAsADenseMatrixSays) {
 }
 
 TEST(Unknowns, ALockedRotorAndAHeavyOneAreTheSame) {
-  // A rotor with the inertia of a mountain keeps its speed, as one that is prescribed does.
+  // A rotor with a very large inertia keeps its speed, like a prescribed rotor.
   double wound[2];
   for (const bool locked : {false, true}) {
     OwnIsland<Cable> island;

@@ -1,9 +1,9 @@
-// Load cases of `taut analyze` against what a rod between two ropes does by hand.
+// Load cases of `taut analyze` against closed forms for a rod between two ropes
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "system/command.h"
+#include "system/taut_command.h"
 
 namespace taut {
 namespace {
@@ -12,7 +12,8 @@ using nlohmann::json;
 
 class AnalyzeCases : public test::CommandTest {
  protected:
-  /// A rod of 1 kg that hangs on a rope and is held down by another; 20 N in both without weight.
+  /// Writes a model of a rod of 1 kg that hangs on a rope and is pulled down by another; both have
+  /// 20 N without weight.
   void WriteRod() const {
     Write("rod.yaml",
           "taut: 1\nkind: model\nname: rod\n"
@@ -55,7 +56,7 @@ TEST_F(AnalyzeCases, OfItsWeightHalfIsOnEachRope) {
   EXPECT_NEAR(Member(own, "upper")["tension_n"].get<double>(), 20 + half_n, 1e-6);
   EXPECT_NEAR(Member(own, "lower")["tension_n"].get<double>(), 20 - half_n, 1e-6);
   ExpectMember(own, "rod", 20 - half_n, 20 + half_n);
-  // Four times as heavy and a little, and the lower one is slack.
+  // At 20 / (9.81 / 2) times the weight the lower rope goes slack.
   EXPECT_NEAR(Member(own, "lower")["slack_factor"].get<double>(), 20 / half_n, 1e-6);
   EXPECT_TRUE(Member(own, "upper")["slack_factor"].is_null());
 }
@@ -68,8 +69,8 @@ TEST_F(AnalyzeCases, WithoutWeightAForceGoesThroughTheRod) {
   ExpectMember(pulled, "rod", 25, 25);
 }
 
-/// Sideways the ropes' tensions bring it back: omega^2 = (T / l1 + T / l2) / m. A rope that is
-/// longer counts once: the pose that the modes are about has it.
+/// The ropes' tensions restore lateral displacements: omega^2 = (T / l1 + T / l2) / m. The longer
+/// rest length counts once, because the modes are about the equilibrium with it.
 TEST_F(AnalyzeCases, AModeIsAboutTheEquilibriumOfItsLoadCase) {
   WriteRod();
   const json longer = Case("cases.yaml", "longer");
@@ -83,7 +84,8 @@ TEST_F(AnalyzeCases, AModeIsAboutTheEquilibriumOfItsLoadCase) {
   EXPECT_LT(nearest, 1e-3);
 }
 
-/// On the ground, and drawn up by a rope: the ground bears the rest, from below through the rod.
+/// A rod on the ground, pulled up by a rope: the ground carries the rest, in compression through
+/// the rod.
 TEST_F(AnalyzeCases, TheGroundPushesThroughARodThatStands) {
   Write("stands.yaml",
         "taut: 1\nkind: model\nname: stands\n"
@@ -104,7 +106,7 @@ TEST_F(AnalyzeCases, TheGroundPushesThroughARodThatStands) {
   EXPECT_NEAR(held_n, 9.81, 1e-6);
 }
 
-/// What holds an anchored rod bears its weight, too, if there is any.
+/// The anchor of a rod also carries the rod's weight, if the load case has weight.
 TEST_F(AnalyzeCases, AnAnchorBearsItsOwnWeightOnlyWhereItHasOne) {
   Write("post.yaml",
         "taut: 1\nkind: model\nname: post\n"
@@ -127,8 +129,8 @@ TEST_F(AnalyzeCases, AnAnchorBearsItsOwnWeightOnlyWhereItHasOne) {
   EXPECT_NEAR(held_z("pulled"), 10, 1e-6);
 }
 
-/// Two ropes of 0.5 m and 1 m, one behind the other, hold a ball: T1 + T2 = m g, and the sum that
-/// is least says how they share it.
+/// Two ropes of 0.5 m and 1 m in the same line hold a ball: T1 + T2 = m g, and the minimized
+/// objective determines their shares.
 TEST_F(AnalyzeCases, WhatIsLeastSaysHowRopesShare) {
   Write("shared.yaml",
         "taut: 1\nkind: model\nname: shared\n"

@@ -1,8 +1,9 @@
-// Flags of `taut analyze`: poses, shapes to look at, forces that friction leaves open.
+// Flags of `taut analyze`: poses, mode shapes as runs, contact forces that equilibrium does not
+// determine
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "system/command.h"
+#include "system/taut_command.h"
 
 namespace taut {
 namespace {
@@ -14,7 +15,7 @@ const std::string kPrism = TAUT_SOURCE_DIR "/share/models/prism3.yaml";
 
 class AnalyzeFlags : public test::CommandTest {
  protected:
-  /// Two ropes hold a ball; in its pose they have 20 N each and more.
+  /// Writes a model of a ball on two ropes with at least 20 N each in the described pose.
   void WriteHanger() const {
     Write("hanger.yaml",
           "taut: 1\nkind: model\nname: hanger\n"
@@ -31,14 +32,14 @@ class AnalyzeFlags : public test::CommandTest {
           "  - {name: own, weight: true}\n"
           "  - {name: more, forces: [{node: ball, force_n: [0, 0, -30]}]}\n");
   }
-  /// The ball 0.8 m below the ropes' ends, then 0.4 m.
+  /// Returns a recording: the ball 0.8 m below the ropes' ends, then 0.4 m.
   static std::string Seen() {
     return "time_s,body/hanger/position_x_m,body/hanger/position_y_m,body/hanger/position_z_m,"
            "body/hanger/orientation_w,body/hanger/orientation_x,body/hanger/orientation_y,"
            "body/hanger/orientation_z\n"
            "0,0,0,0.2,1,0,0,0\n1,0,0,0.6,1,0,0,0\n";
   }
-  /// A box on the ground.
+  /// Writes an experiment with a box on the ground.
   void WriteSlab() const {
     Write("slab.yaml",
           "taut: 1\nkind: model\nname: slab\nnodes:\n  slab: [0, 0, 0.05]\nbuilders:\n"
@@ -63,7 +64,7 @@ class AnalyzeFlags : public test::CommandTest {
 
 TEST_F(AnalyzeFlags, APoseIsThatOfARecordingsRow) {
   WriteHanger(), Write("seen.csv", Seen());
-  // At 0.8 m below, ropes are sqrt(0.09 + 0.64) m long, and their tensions hold the weight.
+  // At 0.8 m below, the ropes are sqrt(0.09 + 0.64) m long, and their tensions carry the weight.
   const double length_m = std::sqrt(0.73);
   const json first =
       Json({"analyze", "hanger.yaml", "--pose", "seen.csv", "--at_s", "0.3", "--json"});
@@ -85,7 +86,7 @@ TEST_F(AnalyzeFlags, APoseIsThatOfARecordingsRow) {
   }
 }
 
-/// Commands count from the rest lengths of the file, whatever the recording has had them at.
+/// Commands are relative to the rest lengths of the file, not to the recorded ones.
 TEST_F(AnalyzeFlags, RestLengthsOfARecordingCount) {
   WriteHanger();
   std::string seen = Seen();
@@ -141,20 +142,23 @@ TEST_F(AnalyzeFlags, PosesThatAreNoneAreNamed) {
   Write("half.csv", "time_s,body/hanger/position_x_m\n0,0\n");
   Write("none.csv", "time_s,body/hanger/position_x_m\n");
   Refuses({"analyze", "hanger.yaml", "--pose", "half.csv"}, 3,
-          "half.csv: error: has no channel body/hanger/position_y_m");
+          "half.csv: error: the trace has no channel body/hanger/position_y_m");
   Refuses({"analyze", "hanger.yaml", "--pose", "half.csv"}, 3,
-          "half.csv: error: has no channel body/hanger/orientation_z");
+          "half.csv: error: the trace has no channel body/hanger/orientation_z");
   Refuses({"analyze", "hanger.yaml", "--pose", "none.csv"}, 3, "none.csv");
   Refuses({"analyze", "hanger.yaml", "--pose", "nowhere.csv"}, 3, "nowhere.csv");
-  Refuses({"analyze", "hanger.yaml", "--pose", "."}, 3, "is a folder (its trace: ./trace.h5)");
-  Refuses({"analyze", "hanger.yaml", "--pose", "hanger.yaml"}, 3, "is no recording (a pose is");
+  Refuses({"analyze", "hanger.yaml", "--pose", "."}, 3,
+          "this is a folder (use its trace: ./trace.h5)");
+  Refuses({"analyze", "hanger.yaml", "--pose", "hanger.yaml"}, 3,
+          "contains no recorded pose (expected a trace");
   Refuses({"analyze", "hanger.yaml", "--pose", "seen.csv", "--at_s", "2"}, 3,
-          "has nothing at 2 s (it goes from 0 s to 1 s)");
+          "has no row at 2 s (expected 0 s to 1 s)");
   Refuses({"analyze", "hanger.yaml", "--at_s", "2"}, 2, "--at_s requires --pose");
   Refuses({"analyze", "hanger.yaml", "--pose", "seen.csv", "--at_s", "soon"}, 2, "\"soon\"");
 }
 
-/// Turns count from the pose that the file has: a model alone is not placed as its experiment did.
+/// Rotations are relative to the described pose: a model without its experiment is placed
+/// differently.
 TEST_F(AnalyzeFlags, ARecordingOfAnotherPlacementIsAWarning) {
   WriteHanger();
   std::string seen = Seen();
@@ -164,7 +168,7 @@ TEST_F(AnalyzeFlags, ARecordingOfAnotherPlacementIsAWarning) {
   Write("seen.csv", seen);
   const test::CommandResult shown = Taut({"analyze", "hanger.yaml", "--pose", "seen.csv"});
   EXPECT_EQ(shown.status, 0);
-  EXPECT_NE(shown.errors.find("warning: cable l is 0.5 m long in this pose, and 0.6 m in the"),
+  EXPECT_NE(shown.errors.find("warning: cable l is 0.5 m long in this pose, but 0.6 m in the"),
             std::string::npos)
       << shown.errors;
   Refuses({"analyze", "hanger.yaml", "--pose", "seen.csv", "--strict"}, 3, "error: cable l is");
@@ -178,7 +182,7 @@ TEST_F(AnalyzeFlags, ShapesAreRuns) {
     EXPECT_NE(shown.output.find("Shape: " + folder + "/trace.h5\n"), std::string::npos)
         << shown.output;
     EXPECT_EQ(Taut({"check", folder + "/inputs.yaml", "--quiet"}).status, 0) << name;
-    // Readers of runs read them, and so each is the same run as itself.
+    // The files are readable as runs; each equals itself.
     EXPECT_EQ(Taut({"compare", folder + "/trace.h5", folder + "/trace.h5"}).status, 0) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(Path("shapes/mode_3")));
@@ -202,7 +206,7 @@ TEST_F(AnalyzeFlags, ShapesOfSeveralLoadCasesHaveAFolderEach) {
     const std::string inputs = Path(std::string("shapes/") + name + "/mode_1/inputs.yaml");
     EXPECT_TRUE(std::filesystem::exists(inputs)) << shown.output;
   }
-  // They swing about the equilibrium under their loads: with 30 N more the ball hangs lower.
+  // The modes are about the equilibrium under the load case: with 30 N more the ball hangs lower.
   const auto height = [&](const std::string& name) {
     const json pose = Json({"analyze", "shapes/" + name + "/mode_1/inputs.yaml", "--pose",
                             "shapes/" + name + "/mode_1/trace.h5", "--at_s", "0", "--json"});
@@ -230,7 +234,8 @@ TEST_F(AnalyzeFlags, ForcesThatSupportsLeaveOpenHaveLimits) {
   const json shown = Json({"analyze", "lies.yaml", "--json"});
   const json& own = shown["load_cases"][0];
   const double weight_n = 3 * kGravity;
-  // Four corners: two and two across bear half each, so none more than that.
+  // Four corners: two diagonal pairs can carry half the weight each, so that no corner carries more
+  // than that.
   ASSERT_EQ(own["open_forces"]["ground"].size(), 4u);
   for (const json& corner : own["open_forces"]["ground"]) {
     EXPECT_NEAR(corner["normal_force_n"]["low_n"].get<double>(), 0, 1e-6);
@@ -238,15 +243,16 @@ TEST_F(AnalyzeFlags, ForcesThatSupportsLeaveOpenHaveLimits) {
     EXPECT_EQ(corner["friction"], 0.5);
   }
   const test::CommandResult text = Taut({"analyze", "lies.yaml"});
-  EXPECT_NE(text.output.find("  ground at slab     0.000   14.715\n"), std::string::npos)
+  EXPECT_NE(text.output.find("  ground at slab  0.000  14.715\n"), std::string::npos)
       << text.output;
-  // Its turn on the ground is one of its motions as a whole, and no mode by itself.
+  // The rotation on the ground is a rigid motion, not a mechanism.
   EXPECT_EQ(own["modes"]["rigid"], 3);
   EXPECT_EQ(own["modes"]["mechanisms"], 0);
 }
 
-/// A rod that lies on both its ends: they may push it along against each other, but what each bears
-/// is sure. Where cables hold rods that stand on one end each, nothing is open.
+/// A rod that lies on both its ends: friction forces of the ends may oppose each other, but the
+/// normal forces are determined. For rods on one end each, held by cables, all forces are
+/// determined.
 TEST_F(AnalyzeFlags, OnTwoEndsOnlyFrictionIsOpen) {
   Write("rod.yaml",
         "taut: 1\nkind: model\nname: rod\nnodes:\n  a: [0, 0, 0.01]\n  b: [0.4, 0, 0.01]\n"
@@ -263,7 +269,7 @@ TEST_F(AnalyzeFlags, OnTwoEndsOnlyFrictionIsOpen) {
     EXPECT_NEAR(end["normal_force_n"]["low_n"].get<double>(), kGravity / 2, 1e-6);
     EXPECT_NEAR(end["normal_force_n"]["high_n"].get<double>(), kGravity / 2, 1e-6);
   }
-  EXPECT_NE(Taut({"analyze", "lies.yaml", "--modes", "0"}).output.find("along the ground alone"),
+  EXPECT_NE(Taut({"analyze", "lies.yaml", "--modes", "0"}).output.find("only along the ground"),
             std::string::npos);
   const std::string six = TAUT_SOURCE_DIR "/share/experiments/drop_six_strut.yaml";
   EXPECT_TRUE(
@@ -278,11 +284,11 @@ TEST_F(AnalyzeFlags, ForcesThatNothingLeavesOpenHaveNone) {
 
 TEST_F(AnalyzeFlags, WithoutASelfStressTheHintIsTheForm) {
   const std::string six = TAUT_SOURCE_DIR "/share/models/six_strut.yaml";
-  EXPECT_NE(Taut({"analyze", six, "--modes", "0"}).output.find("(--form --tension_n 10 looks for"),
+  EXPECT_NE(Taut({"analyze", six, "--modes", "0"}).output.find("(--form --tension_n 10 finds"),
             std::string::npos);
   EXPECT_EQ(Taut({"analyze", six, "--form", "--tension_n", "10"}).status, 0) << "as it says";
   EXPECT_EQ(Taut({"analyze", kPrism, "--modes", "0"}).output.find("--form"), std::string::npos);
-  WriteHanger();  // it hangs in the world: no form has a self-stress
+  WriteHanger();  // it hangs from the world: no form with a self-stress exists
   EXPECT_EQ(Taut({"analyze", "hanger.yaml", "--modes", "0"}).output.find("--form"),
             std::string::npos);
 }

@@ -1,11 +1,11 @@
-// `taut analyze --linear` and `--response`.
+// Linear systems and frequency responses: `taut analyze --linear` and `--response`
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "system/command.h"
+#include "system/taut_command.h"
 
 namespace taut {
 namespace {
@@ -31,7 +31,7 @@ class AnalyzeLinear : public test::CommandTest {
   }
 };
 
-/// 1 / (m s^2 + c s + k); the force is held from step to step, which is half a step late.
+/// Closed form 1 / (m s^2 + c s + k); holding the force during a step adds a delay of half a step.
 TEST_F(AnalyzeLinear, AMassOnASpringAndADamperRespondsAsItsClosedForm) {
   const test::CommandResult shown = Taut(Damped({"--response", kForce, kPlace, "--from_hz", "0.5",
                                                  "--to_hz", "32", "--points", "13", "--json"}));
@@ -54,7 +54,7 @@ TEST_F(AnalyzeLinear, AMassOnASpringAndADamperRespondsAsItsClosedForm) {
                 0, bound)
         << f;
   }
-  // It swings by itself as the same equation says: s = (-c +- sqrt(c^2 - 4 m k)) / 2 m.
+  // Poles of the closed form: s = (-c +- sqrt(c^2 - 4 m k)) / 2 m.
   const double own = std::sqrt(400 / 0.5), share = 4 / (2 * std::sqrt(400 * 0.5));
   int swings = 0;
   for (const json& mode : result["modes"]) {
@@ -110,7 +110,9 @@ TEST_F(AnalyzeLinear, NamesThatAreNoneAreErrors) {
       "nothing", "--response", kForce,       "node/mas/position_z"};
   const std::string it = kMass + ": error: there is no ";
   Refuses(wrong, 3, it + "input \"node/mass/force_y1\" (did you mean \"node/mass/force_y\"?)");
-  Refuses(wrong, 3, it + "output \"nothing\" (one of 6 is \"cable/cable/tension\"; --json lists");
+  Refuses(wrong, 3,
+          it + "output \"nothing\" (expected one of 6 names, such as \"cable/cable/tension\"; "
+               "--json lists");
   Refuses(wrong, 3, it + "output \"node/mas/position_z\" (did you mean \"node/mass/position_z\"?)");
 }
 
@@ -125,7 +127,8 @@ TEST_F(AnalyzeLinear, FlagsThatDoNotGoTogetherAreBadUsage) {
     more.insert(more.begin(), response.begin(), response.end());
     return with(more);
   };
-  Refuses(responds({"--to_hz", "501"}), 2, "frequencies rise up to half the tick's, 500 Hz");
+  Refuses(responds({"--to_hz", "501"}), 2,
+          "increasing frequencies up to half the tick rate, 500 Hz");
   Refuses(responds({"--from_hz", "20", "--to_hz", "10"}), 2, "--from_hz 20, --to_hz 10");
   Refuses(responds({"--from_hz", "0"}), 2, "\"0\" is not a number from");
   Refuses(responds({"--points", "0"}), 2, "\"0\" is not a whole number from 1");
@@ -143,11 +146,10 @@ TEST_F(AnalyzeLinear, FlagsThatDoNotGoTogetherAreBadUsage) {
 }
 
 TEST_F(AnalyzeLinear, AFileThatCannotBeWrittenIsAnError) {
-  Refuses({"analyze", kMass, "--linear", "nowhere/x.h5"}, 1,
-          "nowhere/x.h5: error: cannot be written");
+  Refuses({"analyze", kMass, "--linear", "nowhere/x.h5"}, 1, "nowhere/x.h5: error: cannot write");
 }
 
-/// A box may lie anywhere on the ground: where a recording has it, it is looked at.
+/// A box may lie anywhere on the ground: it is linearized at its recorded place.
 TEST_F(AnalyzeLinear, ThePoseOfARecordingIsWhereItRests) {
   Write("box.yaml",
         "taut: 1\nkind: model\nname: box\nnodes:\n  box: [0, 0, 0.05]\nbuilders:\n"
@@ -168,7 +170,7 @@ TEST_F(AnalyzeLinear, ThePoseOfARecordingIsWhereItRests) {
   EXPECT_TRUE(std::filesystem::exists(Path("x.h5")));
 }
 
-/// A box that a cord pulls over the ground until friction holds it: then that bears all it can.
+/// A box that a cord pulls over the ground until friction stops it: friction is then at its limit.
 TEST_F(AnalyzeLinear, WhatIsAboutToSlipIsRefusedWithWhatMayHelp) {
   Write("pulled.yaml",
         "taut: 1\nkind: model\nname: pulled\nparameters: {friction: 0.5}\n"
@@ -182,12 +184,12 @@ TEST_F(AnalyzeLinear, WhatIsAboutToSlipIsRefusedWithWhatMayHelp) {
         "taut: 1\nkind: experiment\nname: pull\nmodel: pulled.yaml\nduration_s: 1\n"
         "start: settled\nterrain:\n  - {name: ground, plane: {height_m: 0, friction: 0.5}}\n");
   Refuses({"analyze", "pull.yaml", "--linear", "x.h5"}, 1,
-          "error: there is no linear system: body pulled is at the edge of slipping: friction "
-          "bears all it can (give it");
+          "error: there is no linear system: body pulled is at the limit of slipping: its "
+          "friction force is the largest possible (increase");
   EXPECT_FALSE(std::filesystem::exists(Path("x.h5")));
 }
 
-/// Gains at which the push test's discrete law trembles for ever.
+/// A ball in free fall, which has no equilibrium
 TEST_F(AnalyzeLinear, WhatTremblesIsRefusedWithWhatMayHelp) {
   const test::CommandResult shown = Taut({"analyze", "never.yaml", "--linear", "x.h5"});
   EXPECT_EQ(shown.status, 3) << "there is no such file";

@@ -1,9 +1,9 @@
-// `taut analyze` of supported structures: rigid motions, missing supports, warnings
-// about large displacements, safety factors and slack.
+// `taut analyze` of supported structures: rigid motions, missing supports, warnings about large
+// displacements, safety factors and slack
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "system/command.h"
+#include "system/taut_command.h"
 
 namespace taut {
 namespace {
@@ -12,7 +12,7 @@ using nlohmann::json;
 
 class AnalyzeSupports : public test::CommandTest {
  protected:
-  /// A prism of 2 m on ball joints under its first feet, with load cases.
+  /// Writes a prism of 2 m on ball joints under its first `supports` feet, with load cases.
   void WriteTower(int supports) const {
     std::string text =
         "taut: 1\nkind: model\nname: tower\nnodes:\n"
@@ -66,7 +66,7 @@ TEST_F(AnalyzeSupports, ATowerOnTooFewSupportsIsRefusedBeforeItIsSolved) {
   EXPECT_NE(shown.errors.find("can still rotate about (0.866, -0.5, 0) through (1, 0, 0), and"),
             std::string::npos)
       << shown.errors;
-  // A robot that nothing holds and nothing loads is a question of self-stress.
+  // A robot without supports and loads is analyzed for self-stress.
   WriteTower(0);
   shown = Taut({"analyze", "tower.yaml"});
   EXPECT_EQ(shown.status, 0) << shown.errors;
@@ -118,7 +118,7 @@ TEST_F(AnalyzeSupports, ANodeThatMovesFarIsAWarning) {
   EXPECT_EQ(Taut({"analyze", "soft.yaml", "--strict"}).status, 1);
 }
 
-/// Three cables in a row: their two nodes move aside against the anchors.
+/// Three cables in a row between anchors: their two nodes can move laterally.
 TEST_F(AnalyzeSupports, ARowBetweenAnchorsHasMechanisms) {
   Write("row.yaml",
         "taut: 1\nkind: model\nname: row\ngravity_m_per_s2: [0, 0, 0]\nnodes:\n"

@@ -1,6 +1,6 @@
-"""Fits against truths that they are not told, of docs/validation: a sample of what script/validate does.
+"""Fits against hidden true values, of docs/validation: a sample of the fits of script/validate
 
-Usage: blind_pages_test.py TEST TAUT. One test of this file, by the name of its function.
+Usage: blind_pages_test.py TEST TAUT. TEST is the name of a function of this file.
 """
 
 import os
@@ -17,7 +17,7 @@ FAR = 4  # standard errors: once in 16 000 by chance
 
 
 def near(fit, truth, wanted):
-    """Numbers that were found are told, and where they are."""
+    """Checks that the fit reports these parameters as estimated, close to their true values."""
     for name in wanted:
         p = fit.parameters[name]
         assert p["verdict"] == "estimated" and abs(blind.off(p, truth[name])) < FAR, (p, truth[name])
@@ -28,7 +28,7 @@ def ATwinIsFoundAndItsAliasNamed(taut):
     fit = one.fit()
     assert not fit.judgements() and fit.status == 0, fit.judgements()
     near(fit, one.truth, one.truth)
-    # Worth something only if the model was wrong before.
+    # The test is meaningful only if the model's start values were wrong.
     for name in ("stiffness_n_per_m", "ground_friction"):
         p = fit.parameters[name]
         assert abs(p["start"] - one.truth[name]) > 5 * blind.error_of(p), p

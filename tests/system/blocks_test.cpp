@@ -1,4 +1,4 @@
-// Robots on terrain of many boxes, as they are shipped.
+// Shipped experiments on terrain of many boxes
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-/// Where the bodies are in the first and the last row, and the lowest of them ever.
+/// Positions of the bodies in the first and the last row, and the lowest height of any body
 class Places final : public test::RowWatch {
  public:
   explicit Places(std::size_t bodies) : bodies_(bodies) {}
@@ -21,7 +21,7 @@ class Places final : public test::RowWatch {
     for (std::size_t b = 0; b < bodies_; ++b) lowest_m = std::min(lowest_m, values[3 * b + 2]);
     return true;
   }
-  /// Mean over the bodies of coordinate `axis`.
+  /// Returns the mean over the bodies of coordinate `axis`.
   double Mean(const std::vector<double>& row, std::size_t axis) const {
     double sum = 0;
     for (std::size_t b = 0; b < bodies_; ++b) sum += row[3 * b + axis];
@@ -57,7 +57,7 @@ Places Drive(const std::string& name, std::size_t bodies, double duration_s) {
 TEST(ManyBoxes, TwelveSegmentsCrawlOverABlockField) {
   const Places places = Drive("block_field", 12, 20);
   EXPECT_GT(places.Mean(places.last, 0), places.Mean(places.first, 0) + 0.3);
-  // Its rods, 6 mm thick, lie on the ground or on blocks of 25 mm above it, and its centres above.
+  // The rods, 6 mm thick, lie on the ground or on blocks of 25 mm; the centers of mass are higher.
   EXPECT_GT(places.lowest_m, 0.02);
   EXPECT_LT(places.Mean(places.last, 2), 0.3);
 }

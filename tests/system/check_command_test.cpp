@@ -1,4 +1,4 @@
-// `taut check` as a person or a script calls it.
+// The command `taut check`
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -45,15 +45,15 @@ TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
   EXPECT_EQ(spine.status, 0);
   EXPECT_EQ(spine.errors, "");
   EXPECT_EQ(spine.output.rfind("share/models/tetraspine3.yaml: good\n", 0), 0u);
-  for (const char* part : {"3 bodies, 12 cables, 18 nodes; 2.349243 kg that move",
+  for (const char* part : {"3 bodies, 12 cables, 18 nodes; moving mass 2.349243 kg",
                            "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
                            " 0.0157328  0.0241226  8 rods, 6 spheres\n",
                            "inner_top_1    0.213953     0.126678   20.000     229.16       20  "
                            "segment_0 - segment_1  0.07 m/s 50 N\n",
-                           "segment_0        -30.913  0.000  -12.946        0.0000  -2.5616  "
+                           "segment_0        -30.913  0.000  -12.946          0.0000  -2.5616  "
                            "0.0000     0.000  0.000  -6.995\n",
-                           "May collide: 3 pairs of bodies, 588 pairs of shapes; with terrain, "
-                           "which is the experiment's\n",
+                           "Possible collisions: 3 pairs of bodies, 588 pairs of shapes; with the "
+                           "terrain of an experiment\n",
                            "segment_0 - segment_2              196\n"}) {
     EXPECT_NE(spine.output.find(part), std::string::npos) << part << "\nis not in\n"
                                                           << spine.output;
@@ -117,7 +117,7 @@ TEST_F(CheckCommand, ErrorsGoToStderrWithTheirPlace) {
   EXPECT_EQ(json["errors"][0]["line"], 4);
   const Outcome missing = Run("no_such.yaml");
   EXPECT_EQ(missing.status, 3);
-  EXPECT_EQ(missing.errors, "no_such.yaml: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(missing.errors, "no_such.yaml: error: cannot open: No such file or directory\n");
 }
 
 TEST_F(CheckCommand, WarningsAreErrorsWithStrict) {
@@ -132,7 +132,7 @@ TEST_F(CheckCommand, WarningsAreErrorsWithStrict) {
                "back: [-length_m / 2, 0, 0.5]");
   std::ofstream(path) << text;
   const std::string what =
-      ": nothing reads the parameter \"height_m\" (its value changes nothing)\n";
+      ": the parameter \"height_m\" is not used (remove it, or use it in an expression)\n";
   const Outcome warned = Run("'" + path + "' " + where + " --json");
   EXPECT_EQ(warned.status, 0);
   EXPECT_EQ(warned.errors, where + ": warning" + what);
@@ -166,17 +166,16 @@ TEST_F(CheckCommand, ARobotInTheGroundIsRefused) {
                          "terrain: [{name: ground, plane: {height_m: 0}}]\n";
   const Outcome refused = Run("'" + path + "'");
   EXPECT_EQ(refused.status, 3);
-  EXPECT_EQ(
-      refused.errors,
-      path +
-          ":7:11: error: the rod \"back-front\" is 0.015 m deep in the terrain \"ground\" at "
-          "the start, more than half the thickness of the thinner one, 0.005 m (`place` moves "
-          "the robot)\n");
+  EXPECT_EQ(refused.errors,
+            path +
+                ":7:11: error: the rod \"back-front\" is 0.015 m deep in the terrain \"ground\" at "
+                "the start, more than half the thickness of the thinner one, 0.005 m (move the "
+                "robot with `place`)\n");
   EXPECT_EQ(
       Run("'" + path + "' --set height_m=0.002 --quiet").errors,
       path +
           ":7:11: warning: the rod \"back-front\" is 0.003 m deep in the terrain \"ground\" at "
-          "the start (it is pushed out, without speed)\n");
+          "the start (the contact solver separates them without adding velocity)\n");
 }
 
 TEST_F(CheckCommand, AnInstructionSetThatNobodyKnowsIsRefused) {

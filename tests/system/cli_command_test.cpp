@@ -1,8 +1,8 @@
-// The command line as somebody meets it who does not know it: overview, help, what is said of a
-// word that is misspelt, and files to start from.
+// The command line for new users: overview, help, errors for misspelled words, shipped files to
+// start from
 #include <nlohmann/json.hpp>
 
-#include "system/command.h"
+#include "system/taut_command.h"
 #include "taut/version.h"
 
 namespace taut {
@@ -12,7 +12,7 @@ const char* const kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class CliCommand : public test::CommandTest {
  protected:
-  /// The first line of what is said to a wrong command line.
+  /// Returns the first line of the error for a wrong command line.
   std::string Refusal(const std::vector<std::string>& arguments) {
     const test::CommandResult result = Taut(arguments);
     EXPECT_EQ(result.status, 2) << result.errors;
@@ -20,27 +20,47 @@ class CliCommand : public test::CommandTest {
     return result.errors.substr(0, result.errors.find('\n'));
   }
   std::vector<std::vector<std::string>> Commands() const {
-    return {{"check"},
+    return {{"new"},
+            {"check"},
+            {"view"},
             {"run"},
+            {"report"},
             {"compare"},
+            {"fit"},
+            {"analyze"},
+            {"learn"},
+            {"size"},
+            {"list"},
             {"gait"},
             {"gait", "export"},
             {"gait", "import"},
             {"gait", "create"},
             {"gait", "values"},
-            {"learn"},
-            {"list"},
-            {"new"},
-            {"report"},
             {"export"},
+            {"export", "mjcf"},
             {"export", "shape"},
             {"export", "structure"},
             {"import"},
+            {"import", "mjcf"},
             {"import", "ntrt"},
-            {"schema"},
             {"trace"},
             {"trace", "convert"},
-            {"view"},
+            {"schema"},
+            {"robot"},
+            {"robot", "scan"},
+            {"robot", "status"},
+            {"robot", "run"},
+            {"robot", "log"},
+            {"robot", "calibrate"},
+            {"robot", "calibrate", "load_cell"},
+            {"robot", "calibrate", "encoder"},
+            {"robot", "reference"},
+            {"robot", "hold"},
+            {"robot", "release"},
+            {"robot", "set"},
+            {"robot", "flash"},
+            {"robot", "selftest"},
+            {"robot", "estop"},
             {"help"}};
   }
 };
@@ -50,11 +70,71 @@ TEST_F(CliCommand, AloneItSaysWhatThereIs) {
   EXPECT_EQ(alone.status, 0);
   EXPECT_EQ(alone.errors, "");
   EXPECT_EQ(alone.output.rfind("taut simulates tensegrity robots", 0), 0u) << alone.output;
+  std::size_t before = alone.output.find("\n\nFirst steps:\n");
+  ASSERT_NE(before, std::string::npos) << alone.output;
   for (const auto& command : Commands()) {
     if (command.size() > 1) continue;
-    EXPECT_NE(alone.output.find("\n  " + command[0] + " "), std::string::npos) << command[0];
+    const std::size_t at = alone.output.find("\n  " + command[0] + " ");
+    ASSERT_NE(at, std::string::npos) << command[0];
+    EXPECT_GT(at, before) << command[0] << " is too early in\n" << alone.output;
+    before = at;
   }
-  EXPECT_LT(std::count(alone.output.begin(), alone.output.end(), '\n'), 24);  // of a terminal
+  EXPECT_LE(std::count(alone.output.begin(), alone.output.end(), '\n'), 32);
+}
+
+TEST_F(CliCommand, HelpListsTheSameGroups) {
+  const std::string help = Taut({"--help"}).output;
+  for (const char* const group : {"First steps", "Analysis and optimization",
+                                  "Files and other programs", "Hardware and help"}) {
+    EXPECT_NE(help.find(std::string("\n\n") + group + ":\n  "), std::string::npos) << help;
+  }
+  EXPECT_NE(Taut({"gait", "--help"}).output.find("\n\nCommands:\n  export "), std::string::npos);
+}
+
+TEST_F(CliCommand, EveryCommandHasAnExample) {
+  for (std::vector<std::string> command : Commands()) {
+    std::string example = "\nExamples:\n  taut";
+    for (const std::string& word : command) example += command[0] == "help" ? "" : " " + word;
+    command.push_back("--help");
+    const std::string text = Taut(command).output;
+    EXPECT_NE(text.find(example), std::string::npos) << example << " is not in\n" << text;
+  }
+}
+
+TEST_F(CliCommand, WordsOfOtherProgramsNameTheCommand) {
+  for (const auto& [word, command] :
+       std::vector<std::pair<std::string, std::string>>{{"init", "new"},
+                                                        {"plot", "report"},
+                                                        {"simulate", "run"},
+                                                        {"validate", "check"},
+                                                        {"train", "learn"},
+                                                        {"convert", "trace convert"}}) {
+    const std::string refusal =
+        "error: there is no command \"" + word + "\" (did you mean \"" + command + "\"?)";
+    EXPECT_EQ(Refusal({word, "a.yaml", "--out", "b"}), refusal);
+    EXPECT_EQ(Refusal({"help", word}), refusal);
+  }
+  EXPECT_EQ(Refusal({"gait", "train"}).find("learn"), std::string::npos);
+}
+
+TEST_F(CliCommand, TheLastLineIsTheNextCommand) {
+  Taut({"new", "model", "mine"});
+  const auto last_line = [](const std::string& text) {
+    return text.substr(text.rfind('\n', text.size() - 2) + 1);
+  };
+  EXPECT_EQ(last_line(Taut({"new", "experiment", "trial", "--model", "mine.yaml"}).output),
+            "next: taut view trial.yaml\n");
+  EXPECT_EQ(last_line(Taut({"new", "study", "search"}).output), "next: taut learn search.yaml\n");
+  EXPECT_EQ(last_line(Taut({"check", "mine.yaml", "--settled"}).output),
+            "next: taut view mine.yaml --settled\n");
+  EXPECT_EQ(last_line(Taut({"check", "trial.yaml", "--set", "radius_m=0.12"}).output),
+            "next: taut run trial.yaml --set radius_m=0.12\n");
+  EXPECT_EQ(last_line(Taut({"run", "trial.yaml", "--duration_s", "0.1", "--out", "my run"}).output),
+            "next: taut view 'my run'\n");
+  for (const char* const command : {"check", "run"}) {
+    EXPECT_EQ(Taut({command, "trial.yaml", "--quiet"}).output, "");
+    EXPECT_EQ(Taut({command, "trial.yaml", "--json"}).output.find("next:"), std::string::npos);
+  }
 }
 
 TEST_F(CliCommand, HelpOfACommandIsItsHelpFlag) {
@@ -76,7 +156,7 @@ TEST_F(CliCommand, HelpShowsNothingOfTheParser) {
   for (std::vector<std::string> command : Commands()) {
     command.push_back("--help");
     const std::string text = Taut(command).output;
-    for (const char* const inside : {"ENUM", "TEXT", "FLOAT", "INT", "->", "REQUIRED", " VALUE",
+    for (const char* const inside : {"ENUM", "TEXT", "FLOAT", "INT", "->", "REQUIRED", " VALUE ",
                                      "Excludes", "Needs", "POSITIONAL"}) {
       EXPECT_EQ(text.find(inside), std::string::npos) << inside << " in\n" << text;
     }
@@ -127,15 +207,14 @@ TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
   EXPECT_EQ(Refusal({"check"}),
             "error: FILE is missing (Model, experiment or gait file (YAML)); usage: taut check "
             "[FLAGS] FILE");
-  EXPECT_EQ(Refusal({"compare", "a.h5"}),
-            "error: B is missing (Trace, or folder of a run: the reference); usage: taut compare "
-            "[FLAGS] A B");
-  EXPECT_EQ(Refusal({"check", "a.yaml", "b.yaml"}),
-            "error: \"b.yaml\" is too much; usage: taut check [FLAGS] FILE");
   EXPECT_EQ(
-      Refusal({"view", "a.h5", "b.h5"}),
-      "error: \"b.h5\" is too much; usage: taut view [FLAGS] [FILE] (beside another: --compare "
-      "b.h5)");
+      Refusal({"compare", "a.h5"}),
+      "error: B is missing (Reference: trace or folder of a run); usage: taut compare [FLAGS] A B");
+  EXPECT_EQ(Refusal({"check", "a.yaml", "b.yaml"}),
+            "error: unexpected argument \"b.yaml\"; usage: taut check [FLAGS] FILE");
+  EXPECT_EQ(Refusal({"view", "a.h5", "b.h5"}),
+            "error: unexpected argument \"b.h5\"; usage: taut view [FLAGS] [FILE] (to compare: "
+            "--compare b.h5)");
   EXPECT_EQ(Refusal({"run", kHang, "--out"}), "error: --out needs a value: --out FOLDER");
   EXPECT_EQ(Refusal({"run", kHang, "--csv=3"}), "error: --csv takes no value");
   EXPECT_EQ(Refusal({"run", kHang, "--out", "a", "--out", "b"}),
@@ -158,7 +237,7 @@ TEST_F(CliCommand, ListNamesWhatComesAlong) {
     const auto json = nlohmann::json::parse(Taut({"list", kind, "--json"}).output);
     for (const auto& file : json) {
       EXPECT_EQ(file["kind"].get<std::string>()[0], kind[0]);
-      EXPECT_NE(file["description"], "") << file;  // every file that is shipped says what it is
+      EXPECT_NE(file["description"], "") << file;  // every shipped file has a description
       EXPECT_TRUE(std::filesystem::exists(file["path"].get<std::string>())) << file;
     }
     EXPECT_GE(json.size(), kind == std::string("fits") ? 1u : 2u);
@@ -168,7 +247,8 @@ TEST_F(CliCommand, ListNamesWhatComesAlong) {
 }
 
 TEST_F(CliCommand, ANewModelIsGood) {
-  EXPECT_EQ(Taut({"new", "model", "mine"}).output, "mine.yaml; next: taut check mine.yaml\n");
+  EXPECT_EQ(Taut({"new", "model", "mine"}).output,
+            "Written: mine.yaml\nnext: taut view mine.yaml\n");
   const test::CommandResult checked = Taut({"check", "mine.yaml", "--strict"});
   EXPECT_EQ(checked.status, 0) << checked.errors;
   EXPECT_NE(checked.output.find("Model mine: 3 bodies, 9 cables"), std::string::npos);
@@ -197,10 +277,10 @@ TEST_F(CliCommand, NewOverwritesNothing) {
   Write("mine.yaml", "what I wrote");
   const test::CommandResult again = Taut({"new", "model", "mine"});
   EXPECT_EQ(again.status, 1);
-  EXPECT_EQ(again.errors, "mine.yaml: error: is there already (nothing is overwritten)\n");
+  EXPECT_EQ(again.errors, "mine.yaml: error: the file exists already, and is not overwritten\n");
   EXPECT_EQ(Read(Path("mine.yaml")), "what I wrote");
   EXPECT_EQ(Refusal({"new", "model", "a/b"}),
-            "error: name: \"a/b\" cannot be a name: letters, digits, _ and -");
+            "error: name: \"a/b\" is not a valid name (expected letters, digits, _ or -)");
   EXPECT_EQ(Refusal({"new", "modle", "a"}),
             "error: kind: \"modle\" is unknown (did you mean \"model\"?)");
 }
@@ -214,7 +294,7 @@ TEST_F(CliCommand, RunPrintsItsSummaryAsJson) {
   EXPECT_EQ(nlohmann::json::parse(good.output)["experiment"], "hang");
 }
 
-/// What bash offers for the last of these words.
+/// Bash's completions of the last of these words
 class Completion : public CliCommand {
  protected:
   std::string Offered(const std::string& words) {
@@ -238,7 +318,7 @@ TEST_F(Completion, BashKnowsCommandsFlagsChoicesAndFiles) {
   EXPECT_EQ(Offered("taut schema m"), "model\n");
   EXPECT_EQ(Offered("taut check robot."), "robot.yaml\n");
   EXPECT_EQ(Offered("taut run a.yaml --out rob"), "robots\n");
-  EXPECT_EQ(Offered("taut run a.yaml --step_s ''"), "\n");  // a number is nobody's guess
+  EXPECT_EQ(Offered("taut run a.yaml --step_s ''"), "\n");  // no suggestions for numbers
 }
 
 TEST_F(Completion, EveryShellAndTheManualKnowEveryFlag) {

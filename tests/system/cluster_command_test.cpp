@@ -1,4 +1,4 @@
-// `taut learn` in several processes: the same result, and what happens when one dies.
+// `taut learn` in several processes (MPI): the same result, and behavior if a process dies
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -40,7 +40,7 @@ class Mpi : public RanksTest {
     RanksTest::SetUp();
   }
 
-  /// Of `taut learn`.
+  /// Starts `taut learn`.
   pid_t StartRanks(int ranks, const std::string& out, const std::string& study = "study.yaml") {
     return RanksTest::StartRanks(ranks, {"learn", study, "--out", out, "--quiet"});
   }
@@ -92,7 +92,8 @@ TEST_F(Mpi, ARankThatDiesEndsAllAndTheSearchGoesOn) {
   ASSERT_GT(last, 0);
   kill(last, SIGKILL);
   EXPECT_NE(End(pid).status, 0);
-  // All that it did is the beginning of a longer search: here, of one that it has passed or not.
+  // The completed evaluations are a prefix of any longer search. The new budget may be smaller or
+  // larger than their number.
   const std::size_t done = Evaluations("dying").size();
   Write("long.yaml", Study(static_cast<int>(std::max<std::size_t>(done, 50)) - 50 + 10));
   const CommandResult resumed = End(StartRanks(2, "dying", "long.yaml"));

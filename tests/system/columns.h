@@ -1,4 +1,4 @@
-/// What a run records, kept in memory.
+/// Recorded rows of a run, kept in memory
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace taut {
 
-/// By the names of channels; the rows' times are "time_s".
+/// Values by channel name; times under "time_s"
 using Columns = std::map<std::string, std::vector<double>>;
 
 class Rows final : public test::RowWatch {

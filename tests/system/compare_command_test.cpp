@@ -1,4 +1,4 @@
-// `taut compare` as a person or a script calls it.
+// The command `taut compare`
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -45,7 +45,7 @@ class CompareCommand : public TraceFolder {
 };
 
 TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
-  // largest of a: 30 N; largest of b: 11 lbf, here 44 N; so -31.82 %
+  // Maximum of a: 30 N; maximum of b: 11 lbf, here 44 N; the error is -31.82 %.
   Outcome outcome = Run("a.h5 b.csv --map map.json --max_error_percent 32");
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("largest cable/*/tension_n: error -31.82 %"), std::string::npos)
@@ -53,13 +53,13 @@ TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
   EXPECT_NE(outcome.output.find("\nPASS: within the limits\n"), std::string::npos);
   outcome = Run("a.h5 b.csv --map map.json --max_error_percent 31");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.output.find("\nFAIL: the largest cable/*/tension_n is -31.82 % off"),
+  EXPECT_NE(outcome.output.find("\nFAIL: the largest cable/*/tension_n differs by -31.82 %"),
             std::string::npos)
       << outcome.output;
   outcome = Run("a.h5 b.csv --map map.json");
   EXPECT_EQ(outcome.status, 0) << "no limit, no verdict";
   EXPECT_EQ(outcome.output.find("PASS"), std::string::npos);
-  // b's 6 lbf are 24 N: the RMSE of cable b is exactly 6 N
+  // 6 lbf of b are 24 N: the RMSE of cable b is exactly 6 N.
   EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max_rmse 6.01").status, 0);
   EXPECT_EQ(Run("a.h5 b.csv --map map.json --channels 'cable/b/*' --max_rmse 5.99").status, 1);
   EXPECT_EQ(Run("b.csv a.h5 --map_a map.json --max_error_percent 46.7").status, 0);
@@ -90,8 +90,8 @@ TEST_F(CompareCommand, BadInputEndsWithThreeAndSaysWhatIsWrong) {
   Outcome outcome = Run("none.h5 b.csv --map none.json");
   EXPECT_EQ(outcome.status, 3);
   EXPECT_EQ(outcome.errors,
-            "none.h5: error: cannot be opened: No such file or directory\n"
-            "none.json: error: cannot be opened: No such file or directory\n");
+            "none.h5: error: cannot open: No such file or directory\n"
+            "none.json: error: cannot open: No such file or directory\n");
   EXPECT_EQ(outcome.output, "");
   outcome = Run("a.h5 b.csv");
   EXPECT_EQ(outcome.status, 3);
@@ -100,14 +100,15 @@ TEST_F(CompareCommand, BadInputEndsWithThreeAndSaysWhatIsWrong) {
   EXPECT_NE(outcome.output.find("only in b (2): a_lbf b_lbf\n"), std::string::npos);
   outcome = Run("a.h5 b.csv --map map.json --from_s 20");
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_EQ(outcome.errors, "error: the traces have no time in common\n");
+  EXPECT_EQ(outcome.errors, "error: the time ranges of the traces do not overlap\n");
 }
 
 TEST_F(CompareCommand, BadUsageEndsWithTwo) {
   for (const std::string phase : {"25:30", "x=30:25", "x=25", "=1:2", "x=a:3"}) {
     const Outcome outcome = Run("a.h5 b.csv --phase " + phase);
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_NE(outcome.errors.find("\"" + phase + "\" is not like before=25:30"), std::string::npos)
+    EXPECT_NE(outcome.errors.find("\"" + phase + "\" is not of the form NAME=FROM:TO"),
+              std::string::npos)
         << outcome.errors;
   }
   EXPECT_EQ(Run("a.h5").status, 2);

@@ -1,11 +1,11 @@
-// `taut fit` in several processes: the same bits, whatever their number.
+// `taut fit` in several processes (MPI): equal bits for any number of processes
 #include "tests/system/ranks.h"
 #include "tests/unit/description/hanging_model.h"
 
 namespace taut::test {
 namespace {
 
-/// Runs, rests and references at once; the clock is late, so that the same run counts differently.
+/// Rows, equilibria and references together; the clock delay makes the same run count differently.
 const std::string kExperiment = R"(taut: 1
 kind: experiment
 name: pull
@@ -64,7 +64,7 @@ TEST_F(FitRanks, OneAndThreeProcessesFindTheSameBits) {
     ASSERT_EQ(done.status, 0) << done.errors;
     EXPECT_EQ(Read(Path(out + "/summary.json")), whole) << ranks;
   }
-  // What three have computed, one goes on with.
+  // One process resumes the work of three.
   std::filesystem::remove(Path("of_3/summary.json"));
   const CommandResult resumed = Taut({"fit", "fit.yaml", "--out", "of_3", "--resume", "--quiet"});
   EXPECT_EQ(resumed.status, 0) << resumed.errors;
@@ -75,7 +75,7 @@ TEST_F(FitRanks, MistakesAreSaidOnceAndEndAll) {
   Write("rests.csv", "time_s,node/ball/position_z_m\n0,0.0375\n");
   const CommandResult done = End(StartRanks(3, {"fit", "fit.yaml", "--out", "bad"}));
   EXPECT_EQ(done.status, 3);
-  const std::string message = "has 2 load cases, its data 1 rows";
+  const std::string message = "has 2 load cases, but its data have 1 rows";
   const std::size_t at = done.errors.find(message);
   ASSERT_NE(at, std::string::npos) << done.errors;
   EXPECT_EQ(done.errors.find(message, at + 1), std::string::npos);

@@ -1,11 +1,11 @@
-// `taut fit`: twins with a known truth, verdicts as exit statuses, accidents.
+// `taut fit`: synthetic data of known parameters, verdicts as exit statuses, interruptions
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <thread>
 
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -51,7 +51,7 @@ class FitCommand : public CommandTest {
     WriteData("a.csv", 110, 0.001, 1);
     WriteData("b.csv", 110, 0.001, 2);
   }
-  /// Where the mass hangs, 1 - (L + m g / k), and noise.
+  /// Writes the height of the mass, 1 - (L + m g / k), with noise.
   void WriteData(const std::string& name, double k_n_per_m, double sd_m, unsigned seed) const {
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(0, sd_m);
@@ -77,7 +77,8 @@ class FitCommand : public CommandTest {
 };
 
 TEST_F(FitCommand, FindsASpringConstantWithDefaultSteps) {
-  // 22 periods of a swing, noise-free: a default step of damping_n_s_per_m is too long there.
+  // 22 periods of an oscillation, without noise: the default difference step of damping_n_s_per_m
+  // is too long here.
   const std::string hang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
   ASSERT_EQ(End(Start({"run", hang, "--set", "stiffness_n_per_m=410", "--set", "hang_m=1.03",
                        "--set", "damping_n_s_per_m=0.5", "--out", "truth", "--quiet", "--csv"}))
@@ -101,7 +102,7 @@ TEST_F(FitCommand, FindsWhatATwinWasMadeWith) {
   const auto summary = Summary();
   const auto& k = summary["parameters"][0];
   EXPECT_EQ(k["verdict"], "estimated");
-  // z falls by m g / k^2 a unit of k: ten data of 1 mm tell it to 1e-3 / sqrt(10) k^2 / 5
+  // z falls by m g / k^2 per unit of k: ten samples of 1 mm determine k to 1e-3 / sqrt(10) k^2 / 5.
   const double se = 1e-3 / std::sqrt(10.0) * 110 * 110 / 5;
   EXPECT_NEAR(k["se"], se, 0.05 * se);
   EXPECT_NEAR(k["value"], 110, 3 * se);
@@ -110,7 +111,7 @@ TEST_F(FitCommand, FindsWhatATwinWasMadeWith) {
   EXPECT_NEAR(
       summary["profiles"][0]["high"].get<double>() - summary["profiles"][0]["low"].get<double>(),
       2 * 1.96 * se, 0.1 * se);
-  // What was found, as an experiment to go on with.
+  // The fitted model, as an experiment.
   EXPECT_EQ(End(Start({"check", "out/fitted_a.yaml", "--quiet"})).status, 0);
   EXPECT_NE(Read(Path("out/fitted_a.yaml")).find("k_n_per_m: 1"), std::string::npos);
   EXPECT_NE(Read(Path("out/report.html")).find("<svg"), std::string::npos);
@@ -131,7 +132,7 @@ TEST_F(FitCommand, LeavesEachExperimentBeforeAndAfter) {
               "--json", "--channels", "body/hanging/position_z_m"});
     ASSERT_EQ(compared.status, 0) << compared.errors;
     const auto json = nlohmann::json::parse(compared.output);
-    // It hangs m g / k lower than the untuned one, whose k is 100 N/m.
+    // It hangs m g / k lower than the untuned model, whose k is 100 N/m.
     EXPECT_NEAR(json["channels"][0]["bias"].get<double>(), 5.0 / 100 - 5.0 / k_n_per_m,
                 forward[0] == 's' ? 1e-8 : 1e-4)
         << json;
@@ -139,14 +140,14 @@ TEST_F(FitCommand, LeavesEachExperimentBeforeAndAfter) {
                                "untuned_a/trace.h5\n"),
               std::string::npos)
         << done.output;
-    if (forward[0] == 's') {  // at rest the cable bears the weight, and the summary says so
+    if (forward[0] == 's') {  // at rest the cable carries the weight, as the summary reports
       const auto rests = nlohmann::json::parse(Read(Path(of + "fitted_a/summary.json")));
       EXPECT_NEAR(rests["system_max_tension_n"].get<double>(), 5, 1e-6) << rests;
     }
     for (const char* run : {"untuned_a", "fitted_a", "untuned_b", "fitted_b"}) {
       EXPECT_TRUE(std::filesystem::exists(Path(of + run + "/summary.json"))) << run;
     }
-    // The page leads to what there is.
+    // The page links to the existing files.
     EXPECT_EQ(
         Read(Path(of + "report.html")).find("href=\"fitted_a/report.html\"") != std::string::npos,
         std::filesystem::exists(Path(of + "fitted_a/report.html")));
@@ -173,20 +174,21 @@ TEST_F(FitCommand, SaysWhetherMeasuredForcesCarryTheLoad) {
   const CommandResult done = Fit(text);
   EXPECT_LE(done.status, 1) << done.errors;
   // 4.5 N of 5 N, each to 0.1 N: 90 % to 2 % / sqrt(10)
-  EXPECT_NE(done.output.find("ball of a: measured forces carry 90 +- 0.6325 % of what is expected: "
-                             "they miss 100 % by 15.81 standard errors"),
-            std::string::npos)
+  EXPECT_NE(
+      done.output.find("ball of a: measured forces carry 90 +- 0.6325 % of the expected value: "
+                       "the difference from 100 % is 15.81 standard errors"),
+      std::string::npos)
       << done.output << done.errors;
   const auto carried = Summary()["carried"];
   ASSERT_EQ(carried.size(), 1u);
   EXPECT_FALSE(carried[0]["consistent"]);
   EXPECT_NEAR(carried[0]["share"], 0.9, 1e-9);
-  EXPECT_NE(Read(Path("out/report.html")).find("Do the data agree with themselves?"),
+  EXPECT_NE(Read(Path("out/report.html")).find("Consistency of measured forces"),
             std::string::npos);
 }
 
 TEST_F(FitCommand, AnAliasIsNamedAndNoGoodFit) {
-  // Only m / k can be seen at rest.
+  // At rest only m / k is identifiable.
   const CommandResult done =
       Fit(Replaced(kFit, "{parameter: k_n_per_m, prior: {sd: 20}}",
                    "{parameter: k_n_per_m, scale: 20}\n  - {parameter: mass_kg, scale: 0.1}"));
@@ -198,25 +200,25 @@ TEST_F(FitCommand, AnAliasIsNamedAndNoGoodFit) {
 }
 
 TEST_F(FitCommand, AModelThatTheDataContradictIsRejected) {
-  WriteData("a.csv", 110, 0.01, 1);  // ten times the noise that is said
+  WriteData("a.csv", 110, 0.01, 1);  // ten times the stated noise
   EXPECT_EQ(Fit(kFit).status, 1);
   EXPECT_TRUE(Summary()["rejected"]);
 }
 
 TEST_F(FitCommand, AParameterThatNothingReadsIsAMistake) {
-  // A point's size moves nothing at rest.
+  // A point's radius has no effect at rest.
   const CommandResult done =
       Fit(Replaced(kFit, "k_n_per_m, prior: {sd: 20}", "radius_m, prior: {sd: 0.001}"));
   EXPECT_EQ(done.status, 3) << done.output;
   EXPECT_EQ(done.errors,
-            "fit.yaml:8:5: error: estimate: nothing that is compared depends on radius_m (the "
-            "experiment does not use it, or not for what is compared)\n");
+            "fit.yaml:8:5: error: estimate: no compared value depends on radius_m (leave it "
+            "out, or compare a channel that it affects)\n");
 }
 
 TEST_F(FitCommand, ChecksWithoutFitting) {
   const CommandResult done = Fit(kFit, {"--check"});
   EXPECT_EQ(done.status, 0) << done.errors;
-  EXPECT_NE(done.output.find("f: 1 numbers from 10 data in 10 groups, 10 data held out"),
+  EXPECT_NE(done.output.find("f: 1 parameters from 10 data points in 10 groups, 10 held out"),
             std::string::npos)
       << done.output;
   EXPECT_FALSE(std::filesystem::exists(Path("out")));
@@ -230,14 +232,15 @@ TEST_F(FitCommand, GoesOnFromWhatItKnowsToTheSameBits) {
   EXPECT_EQ(Read(Path("out/summary.json")), first);
   const CommandResult other = Fit(Replaced(kFit, "sd: 0.001", "sd: 0.002"));
   EXPECT_EQ(other.status, 3);
-  EXPECT_NE(other.errors.find("holds another fit: it differs in data, fit"), std::string::npos)
+  EXPECT_NE(other.errors.find("belongs to another fit, which differs in data, fit"),
+            std::string::npos)
       << other.errors;
 }
 
 TEST_F(FitCommand, KilledAgainAndAgainItComesToTheSameEnd) {
   ASSERT_EQ(Fit(Replaced(kFit, "forward: static", "forward: dynamic")).status, 0);
   const std::string whole = Read(Path("out/summary.json"));
-  for (double wait_s = 0.03;; wait_s *= 1.3) {  // grows, so that it ends on any machine
+  for (double wait_s = 0.03;; wait_s *= 1.3) {  // grows, so that the loop ends on any machine
     const pid_t pid = Start({"fit", "fit.yaml", "--out", "killed", "--quiet"});
     std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
     kill(pid, SIGKILL);

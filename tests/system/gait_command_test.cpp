@@ -1,8 +1,8 @@
-// `taut gait` and `taut check --couplings` as a user types them.
+// The commands `taut gait` and `taut check --couplings`
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "system/command.h"
+#include "system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -16,14 +16,14 @@ TEST_F(GaitCommand, CouplingsAreShownCountedAndDrawn) {
   const CommandResult text = Taut({"check", spine, "--couplings", "--svg", "c.svg"});
   EXPECT_EQ(text.status, 0) << text.errors;
   EXPECT_EQ(text.output.find("12 oscillators, 132 couplings, 57 groups.\n"), 0u) << text.output;
-  EXPECT_NE(text.output.find("frequency and amplitude: 116."), std::string::npos);
+  EXPECT_NE(text.output.find("frequency, amplitude): 116."), std::string::npos);
   EXPECT_NE(text.output.find("same.outer_right.outer_left"), std::string::npos);
   const std::string svg = Read(Path("c.svg"));
   std::size_t circles = 0, lines = 0;
   for (std::size_t at = 0; (at = svg.find("<circle", at)) != svg.npos; ++at) ++circles;
   for (std::size_t at = 0; (at = svg.find("<line", at)) != svg.npos; ++at) ++lines;
   EXPECT_EQ(circles, 12u);
-  EXPECT_EQ(lines, 66u);  // 132 couplings, a line for both ways
+  EXPECT_EQ(lines, 66u);  // 132 couplings, one line for both directions
   EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
 
   const CommandResult free =
@@ -49,8 +49,7 @@ TEST_F(GaitCommand, WhatCannotBeDrawnOrWrittenFails) {
   EXPECT_EQ(Taut({"check", spine, "--couplings", "--svg", "/nowhere/c.svg"}).status, 1);
   const CommandResult created = Taut({"gait", "create", spine, "--out", "/nowhere/g.yaml"});
   EXPECT_EQ(created.status, 1);
-  EXPECT_EQ(created.errors,
-            "/nowhere/g.yaml: error: cannot be written: No such file or directory\n");
+  EXPECT_EQ(created.errors, "/nowhere/g.yaml: error: cannot write: No such file or directory\n");
 }
 
 TEST_F(GaitCommand, ACreatedGaitIsGoodAndHasEveryNumber) {
@@ -60,7 +59,7 @@ TEST_F(GaitCommand, ACreatedGaitIsGoodAndHasEveryNumber) {
   const CommandResult values = Taut({"gait", "values", "g.yaml", "--json"});
   const auto json = nlohmann::json::parse(values.output);
   EXPECT_EQ(json["name"], "blank");
-  EXPECT_EQ(json["values"].size(), 3u + 114);  // the paper's 116 and the convergence
+  EXPECT_EQ(json["values"].size(), 3u + 114);  // 116 of the paper, and the convergence rate
   EXPECT_EQ(json["values"][3]["name"], "cpg.front.outer_right.outer_right.weight_per_m");
   EXPECT_EQ(json["values"][3]["unit"], "1/m");
 }
@@ -98,11 +97,11 @@ TEST_F(GaitCommand, WrongFilesAreAnsweredWithTheirPlace) {
   EXPECT_EQ(Taut({"gait", "values", "none.yaml"}).status, 3);
   EXPECT_EQ(Taut({"gait", "import", "none"}).status, 3);
   EXPECT_EQ(Taut({"gait", "export", "g.yaml", "none.yaml"}).status, 3);
-  // all at once: the gait's errors and the robot's
+  // errors of the gait and of the robot, reported together
   const CommandResult both = Taut({"gait", "export", "g.yaml", "none.yaml"});
   EXPECT_NE(both.errors.find("g.yaml:4"), std::string::npos);
   EXPECT_NE(both.errors.find("none.yaml"), std::string::npos);
-  // the table of a gait that does not fit the robot
+  // the table of a gait that does not match the robot
   const CommandResult misfit = Taut(
       {"gait", "export", kRoot + "share/gaits/cpg_learned.yaml", kRoot + "share/models/rod.yaml"});
   EXPECT_EQ(misfit.status, 3);

@@ -1,5 +1,5 @@
-// The paper's two motion experiments beside NTRT's runs of them: the main figures of
-// docs/validation/gaits.md.
+// The paper's two gait experiments compared with NTRT's runs: the main figures of
+// docs/validation/gaits.md
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace taut {
 namespace {
 
 const std::string kRoot = TAUT_SOURCE_DIR "/";
-constexpr double kRowS = 0.04;  // of NTRT's traces in tests/data
+constexpr double kRowS = 0.04;  // period of NTRT's traces in tests/data
 
 ExperimentSpec Load(const std::string& name) {
   Diagnostics out;
@@ -47,7 +47,7 @@ Outcome Simulate(ExperimentSpec experiment) {
   return outcome;
 }
 
-/// From 30 to 60 s.
+/// Returns the rows from 30 to 60 s.
 std::vector<double> Walking(const std::vector<double>& values) {
   EXPECT_EQ(values.size(), 1501u);
   return {values.begin() + 750, values.begin() + 1500};
@@ -59,8 +59,8 @@ double Mean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The frequency of the strongest line [Hz]: that of the window's grid, then between its
-/// neighbours.
+/// Returns the frequency of the strongest spectral line [Hz]: the best of the window's grid, then
+/// refined between its neighbors.
 double Strongest(const std::vector<double>& values) {
   const double mean = Mean(values), count = static_cast<double>(values.size());
   const auto size = [&](double hz) {
@@ -94,7 +94,8 @@ double ComMoved(const Columns& columns, const char* axis, double time_s) {
   return values[static_cast<std::size_t>(std::lround(time_s / kRowS))] - values[0];
 }
 
-/// From the rear segment to the front one, against the start; to the left is positive [rad].
+/// Returns the heading from the rear to the front segment, relative to the start; positive to the
+/// left [rad].
 double Turned(const Columns& columns) {
   const auto at = [&](const char* segment, const char* axis) {
     return columns.at(std::string("body/") + segment + "/position_" + axis + "_m").back();
@@ -103,7 +104,7 @@ double Turned(const Columns& columns) {
                     at("segment_0", "x") - at("segment_2", "x"));
 }
 
-/// NTRT's tensions by the names of ours.
+/// Returns NTRT's tensions under taut's channel names.
 Columns NtrtTensions(const std::string& file) {
   Diagnostics out;
   const auto trace = ReadTrace(kRoot + "tests/data/ntrt/" + file, out);
@@ -120,7 +121,7 @@ Columns NtrtTensions(const std::string& file) {
   return columns;
 }
 
-/// Means within `mean_percent` of NTRT's largest tension, strongest lines within 1 %.
+/// Expects means within `mean_percent` of NTRT's largest tension, and strongest lines within 1 %.
 void ExpectLikeNtrt(const Outcome& outcome, const Columns& ntrt, double largest_n,
                     double mean_percent) {
   EXPECT_NEAR(outcome.largest_n, largest_n, 0.005 * largest_n);
@@ -128,17 +129,17 @@ void ExpectLikeNtrt(const Outcome& outcome, const Columns& ntrt, double largest_
     const std::vector<double> its = Walking(values), own = Walking(outcome.columns.at(name));
     EXPECT_NEAR(Mean(own), Mean(its), mean_percent / 100 * largest_n) << name;
     const double its_hz = Strongest(its), own_hz = Strongest(own);
-    // The hand-tuned gait gives outer left 1 and outer right 1 two lines of one strength.
+    // The hand-tuned gait causes two lines of equal strength in outer left 1 and outer right 1.
     const bool two_lines = own_hz > 2 * its_hz && Mean(its) < 5.0;
     EXPECT_NEAR(own_hz, (two_lines ? 3 : 1) * its_hz, 0.01 * own_hz) << name;
   }
 }
 
-// NTRT's largest tensions are of 100 Hz samples (26.93 N and 30.27 N).
+// NTRT's largest tensions are from 100 Hz samples (26.93 N and 30.27 N).
 TEST(Gaits, TheHandTunedGaitUnderNtrtsLawsIsNtrts) {
   const Outcome outcome = Simulate(Load("sine_hand_tuned_ntrt"));
   ExpectLikeNtrt(outcome, NtrtTensions("sine_hand_tuned_1000hz.csv.gz"), 26.9256, 0.3);
-  // NTRT: 18.2 cm, and 17.0 to 25.0 cm with other steps and solvers; straight on
+  // NTRT: 18.2 cm straight ahead; 17.0 to 25.0 cm with other steps and solvers
   EXPECT_GT(ComMoved(outcome.columns, "x", 60), 0.17);
   EXPECT_LT(ComMoved(outcome.columns, "x", 60), 0.27);
   EXPECT_NEAR(ComMoved(outcome.columns, "y", 60), 0.0, 0.005);
@@ -159,12 +160,12 @@ TEST(Gaits, UnderTautsOwnLawsTheyGoTheSameWays) {
   ExpectLikeNtrt(sine, NtrtTensions("sine_hand_tuned_1000hz.csv.gz"), 26.9256, 0.3);
   EXPECT_NEAR(ComMoved(sine.columns, "x", 60), 0.21, 0.03);
   const Outcome learned = Simulate(Load("cpg_learned"));
-  EXPECT_NEAR(learned.largest_n, 31.46, 0.1);  // the gait is read at 100 Hz
+  EXPECT_NEAR(learned.largest_n, 31.46, 0.1);  // the gait is sampled at 100 Hz
   EXPECT_NEAR(ComMoved(learned.columns, "y", 60), 0.62, 0.06);
   EXPECT_LT(Turned(learned.columns), -0.4);
 }
 
-/// Distance of the centre of mass in 20 s, mean over starts a micrometre apart [m].
+/// Returns the distance of the center of mass in 20 s, mean over starts a micrometer apart [m].
 double Distance(const std::string& name, double step_s, int starts) {
   double sum = 0;
   for (int start = 0; start < starts; ++start) {
@@ -184,7 +185,7 @@ double Distance(const std::string& name, double step_s, int starts) {
   return sum / starts;
 }
 
-// On one controller clock, with the sensor that a board has.
+// With one controller clock, and rates from differences as on a board.
 TEST(Gaits, DistanceHardlyDependsOnTheStep) {
   const double learned_m = Distance("cpg_learned", 0.00025, 1);
   for (const double step_s : {0.001, 0.004}) {

@@ -1,4 +1,4 @@
-// `taut learn` and accidents: killed, interrupted, resumed, disks full, worlds that blow up.
+// `taut learn` and interruptions: kill, Ctrl-C, resume, full disks, diverging worlds
 #include <sys/resource.h>
 
 #include <chrono>
@@ -14,7 +14,7 @@ TEST_F(Learn, KilledAgainAndAgainItComesToTheSameEnd) {
   ASSERT_EQ(Search("whole").status, 0);
   ASSERT_EQ(Result("whole").evaluations.size(), 84u);
   int kills = 0;
-  for (double wait_s = 0.02;; wait_s *= 1.2) {  // grows, so that it ends on any machine
+  for (double wait_s = 0.02;; wait_s *= 1.2) {  // grows, so that the loop ends on any machine
     const pid_t pid = Start({"learn", "study.yaml", "--out", "killed", "--quiet"});
     std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
     kill(pid, SIGKILL);
@@ -30,15 +30,15 @@ TEST_F(Learn, KilledAgainAndAgainItComesToTheSameEnd) {
 TEST_F(Learn, InterruptedItSaysSoAndGoesOn) {
   Write("study.yaml", Replaced(kStudy, "evaluations: 24", "evaluations: 100000"));
   const pid_t pid = Start({"learn", "study.yaml", "--out", "long"});
-  // It has begun for sure when its log is there.
+  // The log's existence proves that the search has begun.
   while (!std::filesystem::exists(Path("long/study.sqlite"))) std::this_thread::yield();
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   kill(pid, SIGINT);
   const CommandResult result = End(pid);
   EXPECT_EQ(result.status, 130) << result.errors;
-  EXPECT_NE(result.errors.find("interrupted; the same command goes on from here"),
+  EXPECT_NE(result.errors.find("interrupted; run the same command again to resume"),
             std::string::npos);
-  // What it did is the beginning of any longer search.
+  // The completed evaluations are a prefix of any longer search.
   Write("study.yaml", kStudy);
   const std::size_t done = Result("long").evaluations.size();
   if (done < 84) {
@@ -72,7 +72,7 @@ TEST_F(Learn, ALargerBudgetGoesOnAsIfItHadBeenSoFromTheStart) {
   Write("study.yaml", Replaced(kStudy, "evaluations: 24", "evaluations: 40"));
   const CommandResult result = Search("grown");
   ASSERT_EQ(result.status, 0) << result.errors;
-  EXPECT_NE(result.output.find("small: 100 evaluations, 0 failed, 84 of them from before"),
+  EXPECT_NE(result.output.find("small: 100 evaluations, 0 failed, 84 of them from earlier"),
             std::string::npos)
       << result.output;
   ASSERT_EQ(Search("large").status, 0);
@@ -84,13 +84,14 @@ TEST_F(Learn, AChangedStudyOrExperimentIsRefusedWithTheDifference) {
   Write("study.yaml", Replaced(kStudy, "high: 4, scale: log", "high: 5, scale: log"));
   CommandResult result = Search("run");
   EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(result.errors,
-            "run/study.sqlite: error: this folder holds another study: its study differs\n"
-            "  - parameter frequency.motion.sine.frequency_hz: 0.5..4 Hz log targets "
-            "motion.sine.frequency_hz\n"
-            "  + parameter frequency.motion.sine.frequency_hz: 0.5..5 Hz log targets "
-            "motion.sine.frequency_hz (give `--out` another folder, or undo the change; only the "
-            "last search's evaluations may change)\n");
+  EXPECT_EQ(
+      result.errors,
+      "run/study.sqlite: error: the folder contains another study: its study differs\n"
+      "  - parameter frequency.motion.sine.frequency_hz: 0.5..4 Hz log targets "
+      "motion.sine.frequency_hz\n"
+      "  + parameter frequency.motion.sine.frequency_hz: 0.5..5 Hz log targets "
+      "motion.sine.frequency_hz (choose another folder with `--out`, or undo the change; only "
+      "`evaluations` of the last search may change)\n");
   Write("study.yaml", kStudy);
   Write("experiment.yaml", Replaced(kExperiment, "0.8", "0.9"));
   result = Search("run");
@@ -104,18 +105,19 @@ TEST_F(Learn, AChangedStudyOrExperimentIsRefusedWithTheDifference) {
 
 TEST_F(Learn, AnotherBuildThatGivesOtherNumbersIsRefused) {
   ASSERT_EQ(Search("run").status, 0);
-  // As another build would have written it.
+  // as if written by another build
   Change("run", [](learn::LogContents& log) { log.evaluations[0].worlds[1].state_hash = 1; });
   const CommandResult result = Search("run");
   EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(result.errors,
-            "run/study.sqlite: error: this folder holds another study: evaluation 0 now ends in "
-            "another state (another build of taut made it; give `--out` another folder)\n");
+  EXPECT_EQ(
+      result.errors,
+      "run/study.sqlite: error: the folder contains another study: evaluation 0 now ends in a "
+      "different state (another build of taut wrote it; choose another folder with `--out`)\n");
 }
 
 TEST_F(Learn, AFolderOfAnotherVersionGoesOnIfItsNumbersAreTheSame) {
   ASSERT_EQ(Search("run").status, 0);
-  // As a version before had written it, which did not know noise of the start.
+  // as if written by an earlier version, without start noise
   Change("run", [](learn::LogContents& log) {
     log.facts["taut_version"] = "0.0.1";
     std::string& text = log.facts["experiment"];
@@ -126,20 +128,20 @@ TEST_F(Learn, AFolderOfAnotherVersionGoesOnIfItsNumbersAreTheSame) {
   });
   const CommandResult result = Search("run");
   EXPECT_EQ(result.status, 0) << result.errors;
-  EXPECT_NE(result.output.find("small: 84 evaluations, 0 failed, 50 of them from before"),
+  EXPECT_NE(result.output.find("small: 84 evaluations, 0 failed, 50 of them from earlier"),
             std::string::npos)
       << result.output;
 }
 
 TEST_F(Learn, AFullDiskStopsItAndLosesNothing) {
   const CommandResult full = Search("full", {}, [] {
-    const rlimit limit{150'000, 150'000};  // of any file, as on a disk that fills up
+    const rlimit limit{150'000, 150'000};  // limit of every file, like a disk that fills up
     setrlimit(RLIMIT_FSIZE, &limit);
   });
   EXPECT_EQ(full.status, 1);
-  EXPECT_NE(full.errors.find("full/study.sqlite: error: cannot be written: "), std::string::npos)
+  EXPECT_NE(full.errors.find("full/study.sqlite: error: cannot write: "), std::string::npos)
       << full.errors;
-  EXPECT_NE(full.errors.find("what it holds is safe"), std::string::npos) << full.errors;
+  EXPECT_NE(full.errors.find("the logged evaluations are safe"), std::string::npos) << full.errors;
   const std::size_t kept = Result("full").evaluations.size();
   EXPECT_GT(kept, 0u);
   EXPECT_LT(kept, 84u);
@@ -218,10 +220,11 @@ TEST_F(Learn, TheBestIsReplayedToTheSameState) {
   EXPECT_GE(list[0].at("score"), list[1].at("score"));
   EXPECT_GE(list[1].at("score"), list[2].at("score"));
   const CommandResult best = Taut({"learn", "--best", "run"});
-  ASSERT_EQ(best.status, 0) << best.errors;  // 1 if its state is not the one that was logged
+  ASSERT_EQ(best.status, 0)
+      << best.errors;  // status 1 if the final state differs from the logged state
   const StudyResult study = Result("run");
   EXPECT_EQ(study.best()->score, list[0].at("score").get<double>());
-  // What it ran is there, and is the same again.
+  // The written inputs reproduce the run.
   const CommandResult again = Taut({"run", "run/best/inputs.yaml", "--quiet", "--out", "again"});
   ASSERT_EQ(again.status, 0) << again.errors;
   const auto summary = nlohmann::json::parse(Read(Path("again/summary.json")));
@@ -235,15 +238,17 @@ TEST_F(Learn, TheBestIsReplayedToTheSameState) {
 TEST_F(Learn, FoldersThatHoldNoStudyAreSaid) {
   CommandResult result = Taut({"learn", "--best", "nowhere"});
   EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(result.errors,
-            "nowhere/study.sqlite: error: there is no such file (give the folder that `taut learn "
-            "STUDY` wrote)\n");
+  EXPECT_EQ(
+      result.errors,
+      "nowhere/study.sqlite: error: the file does not exist (give the folder that `taut learn "
+      "STUDY` wrote)\n");
   std::filesystem::create_directories(Path("other"));
   Write("other/study.sqlite", "not a database, but long enough to look at for a while");
   result = Taut({"learn", "--top", "3", "other"});
   EXPECT_EQ(result.status, 3);
   const std::string expected =
-      "other/study.sqlite: error: is not the log of a study, or damaged: file is not a database\n";
+      "other/study.sqlite: error: the file is not the log of a study, or damaged: file is not a "
+      "database\n";
   EXPECT_EQ(result.errors, expected);
   result = Search("other");
   EXPECT_EQ(result.status, 3);

@@ -1,4 +1,4 @@
-// `taut learn` and a folder that is not what it was: damaged records, deleted or moved meanwhile.
+// `taut learn` with a changed folder: damaged records, folder deleted or moved during the search
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -8,16 +8,16 @@ namespace taut::test {
 namespace {
 
 const std::string kThree =
-    "run/study.sqlite: error: 84 evaluations were written, 81 of them are good\n"
-    "run/study.sqlite: error: evaluation 17: 0 values where the study has 7 parameters\n"
-    "run/study.sqlite: error: evaluation 40: its checksum says that it was changed\n"
+    "run/study.sqlite: error: 84 evaluations were written, 81 of them are intact\n"
+    "run/study.sqlite: error: evaluation 17: it has 0 values, but the study has 7 parameters\n"
+    "run/study.sqlite: error: evaluation 40: its checksum does not match its content\n"
     "run/study.sqlite: error: evaluation 83: score is not a number\n"
-    "run/study.sqlite: error: is damaged; 81 evaluations are good (`--skip_damaged` uses these; a "
-    "search does the others once more)\n";
+    "run/study.sqlite: error: the log is damaged; 81 evaluations are intact (use these with "
+    "`--skip_damaged`; a search repeats the others)\n";
 
 class DamagedLearn : public Learn {
  protected:
-  /// A finished search in `run` of which three records are damaged.
+  /// Makes a finished search in `run`, in which three records are damaged.
   void MakeThree() {
     ASSERT_EQ(Search("run").status, 0);
     Sql("run", "UPDATE evaluation SET parameter_values = '[]' WHERE id = 17");
@@ -45,11 +45,12 @@ TEST_F(DamagedLearn, TheRestIsUsedIfToldSo) {
   CommandResult result = Taut({"learn", "--top", "100", "--json", "--skip_damaged", "run"});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(nlohmann::json::parse(result.output).size(), 81u);
-  EXPECT_EQ(result.errors,
-            "warning: run: skipped: evaluation 17: 0 values where the study has 7 parameters\n"
-            "warning: run: skipped: evaluation 40: its checksum says that it was changed\n"
-            "warning: run: skipped: evaluation 83: score is not a number\n"
-            "warning: run: skipped: 84 evaluations were written, 81 of them are good\n");
+  EXPECT_EQ(
+      result.errors,
+      "warning: run: skipped: evaluation 17: it has 0 values, but the study has 7 parameters\n"
+      "warning: run: skipped: evaluation 40: its checksum does not match its content\n"
+      "warning: run: skipped: evaluation 83: score is not a number\n"
+      "warning: run: skipped: 84 evaluations were written, 81 of them are intact\n");
   EXPECT_EQ(Taut({"learn", "--best", "--quiet", "--skip_damaged", "run"}).status, 0);
 }
 
@@ -58,11 +59,11 @@ TEST_F(DamagedLearn, ASearchDoesTheDamagedOnesOnceMoreToTheSameEnd) {
   ASSERT_EQ(Search("whole").status, 0);
   CommandResult result = Search("run", {"--skip_damaged"});
   ASSERT_EQ(result.status, 0) << result.errors;
-  EXPECT_NE(result.output.find("84 evaluations, 0 failed, 81 of them from before"),
+  EXPECT_NE(result.output.find("84 evaluations, 0 failed, 81 of them from earlier"),
             std::string::npos)
       << result.output;
   ExpectSame("whole", "run");  // reads without skipping
-  // What was there is still to be looked at.
+  // The damaged log is kept for inspection.
   std::filesystem::create_directory(Path("kept"));
   std::filesystem::rename(Path("run/study.sqlite.damaged"), Path("kept/study.sqlite"));
   result = Taut({"learn", "--top", "3", "kept"});
@@ -76,19 +77,21 @@ TEST_F(DamagedLearn, ALogWithoutItsStudyIsNotUsedAtAll) {
   for (const char* flag : {"--quiet", "--skip_damaged"}) {
     const CommandResult result = Search("run", {flag});
     EXPECT_EQ(result.status, 3);
-    EXPECT_EQ(result.errors,
-              "run/study.sqlite: error: is damaged: facts or parameters were changed (without that "
-              "no evaluation means anything; give `--out` another folder)\n");
+    EXPECT_EQ(
+        result.errors,
+        "run/study.sqlite: error: the log is damaged: its metadata or parameters were changed "
+        "(its evaluations are unusable; choose another folder with `--out`)\n");
   }
 }
 
-/// Starts a long search, does something to its folder once it has logged, and waits for the end.
+/// Starts a long search, changes its folder after the first records, and waits for the end.
 class GoneLearn : public Learn {
  protected:
   CommandResult While(const std::function<void()>& accident) {
     Write("study.yaml", Replaced(kStudy, "evaluations: 24", "evaluations: 100000"));
     const pid_t pid = Start({"learn", "study.yaml", "--out", "run", "--quiet"});
-    // The first page of the log's journal comes before the first evaluation, and this is larger.
+    // The first page of the log's journal is written before the first evaluation and is smaller
+    // than this.
     const auto grown = [&] {
       std::error_code none;
       const auto bytes = std::filesystem::file_size(Path("run/study.sqlite-wal"), none);
@@ -99,8 +102,8 @@ class GoneLearn : public Learn {
     return End(pid);
   }
   const std::string kGone =
-      "run/study.sqlite: error: is gone: it or its folder was deleted or moved during the search "
-      "(if it was moved, `--out` with its new place goes on)\n";
+      "run/study.sqlite: error: the log or its folder was deleted or moved during the search (if "
+      "it was moved, resume with `--out` and its new path)\n";
 };
 
 TEST_F(GoneLearn, AFolderDeletedMeanwhileIsAnError) {

@@ -1,4 +1,4 @@
-/// What the tests of `taut learn` share: a small study, and how to look at what it found.
+/// Fixture of the tests of `taut learn`: a small study, and access to its results
 #pragma once
 
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "learn/log.h"
+#include "learn/study_log.h"
 #include "taut/learn.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 
@@ -62,23 +62,23 @@ class Learn : public CommandTest {
     return result.value_or(StudyResult{});
   }
 
-  /// Changes what the log in a folder holds, as if it had been written so.
+  /// Changes the contents of the log in a folder, with valid checksums.
   void Change(const std::string& out, const std::function<void(learn::LogContents&)>& change) {
     Diagnostics found;
     const auto log = learn::Log::Open(Path(out + "/study.sqlite"), found);
     auto contents = log ? log->Read(found) : std::nullopt;
     ASSERT_TRUE(contents) << found.Format();
     change(*contents);
-    contents->version = 0;  // it is written anew
+    contents->version = 0;  // forces a new version
     EXPECT_TRUE(log->Begin(*contents, found)) << found.Format();
   }
-  /// Changes the log as another program would.
+  /// Changes the log by SQL, as another program would.
   void Sql(const std::string& out, const std::string& sql) {
     learn::Database log(Path(out + "/study.sqlite"), learn::Database::Open::kThatIsThere);
     EXPECT_TRUE(log.Execute(sql)) << log.TakeError();
   }
 
-  /// All that a study finds, but for when.
+  /// Expects equal studies, except for times.
   void ExpectSame(const std::string& a, const std::string& b) {
     const StudyResult x = Result(a), y = Result(b);
     ASSERT_EQ(x.evaluations.size(), y.evaluations.size());

@@ -1,4 +1,4 @@
-// The gaits that are shipped as learned still travel.
+// Shipped learned gaits: minimum travel
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace taut {
 namespace {
 
-/// In worlds with other friction, masses, stiffnesses; 20 s.
+/// Returns the least distance in 20 s over worlds with varied friction, mass and stiffness.
 double LeastDistance(const std::string& name) {
   Diagnostics out;
   auto experiment = LoadExperiment(
@@ -30,7 +30,7 @@ double LeastDistance(const std::string& name) {
   return least;
 }
 
-// NTRT's learned gait gets 0.20 m in 20 s on three segments.
+// NTRT's learned gait travels 0.20 m in 20 s on three segments.
 TEST(LearnedGait, ThreeSegmentsTravelThreeTimesAsFarAsNtrts) {
   EXPECT_GT(LeastDistance("sidewinder3"), 0.5);
 }
@@ -39,12 +39,12 @@ TEST(LearnedGait, TwelveSegmentsTravelMoreThanAMetre) {
   EXPECT_GT(LeastDistance("sidewinder12"), 1.0);
 }
 
-// The study's aim was 5 m in 60 s; docs/validation/rolling.md counts the turns.
+// The study's target was 5 m in 60 s; docs/validation/rolling.md counts the turns.
 TEST(LearnedGait, ASixStrutRobotRollsFiveMetres) {
   EXPECT_GT(LeastDistance("roll_six_strut"), 5.0);
 }
 
-/// How far from the goal the robot's centre of mass was at the nearest.
+/// Least distance of the robot's center of mass from the goal during a run
 class Nearest final : public Score {
  public:
   explicit Nearest(const ControlSetup& setup)
@@ -69,7 +69,8 @@ class Nearest final : public Score {
   std::vector<double> least_m_;
 };
 
-/// Of eight starts in any pose, how many come within half a metre of the goal in 30 s.
+/// Returns the number of eight random start poses from which the robot comes within 0.5 m of the
+/// goal in 30 s.
 int Arrivals(const std::string& name) {
   Diagnostics out;
   auto experiment = LoadExperiment(
@@ -88,7 +89,7 @@ int Arrivals(const std::string& name) {
   return arrived;
 }
 
-// docs/validation/roll_to_goal.md: nearly all of fifty arrive on each.
+// docs/validation/roll_to_goal.md: nearly all of fifty arrive on each terrain.
 TEST(LearnedGait, ASixStrutRobotRollsToAGoal) {
   EXPECT_GE(Arrivals("roll_to_goal"), 7);
   EXPECT_GE(Arrivals("roll_to_goal_hills"), 7);

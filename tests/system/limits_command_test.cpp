@@ -1,5 +1,5 @@
-// The command at its limits: nothing to simulate, the longest and shortest steps, files that are
-// absent or too large, numbers that are none.
+// The command at its limits: nothing to simulate, longest and shortest steps, missing or too large
+// files, invalid numbers
 #include <linux/capability.h>
 #include <sys/prctl.h>
 
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "taut/trace.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -16,7 +16,7 @@ const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class Limits : public CommandTest {
  protected:
-  /// The trace of a run with these arguments, which must go well (with these warnings).
+  /// Runs with these arguments and expects success and these warnings. Returns the trace.
   Trace Run(std::vector<std::string> arguments, const std::string& warnings = "") {
     arguments.insert(arguments.begin(), "run");
     arguments.insert(arguments.end(), {"--quiet", "--out", Path("run")});
@@ -52,9 +52,9 @@ TEST_F(Limits, AnExperimentOfOneStepRecordsItsStartAndItsEnd) {
 }
 
 TEST_F(Limits, StepsOfASecondAndOfANanosecondAreTaken) {
-  // A pendulum of 1 m cannot be followed at a step of a second: its period is two. But at that step
-  // its cable is implicit with its directions, which no tension makes unstable (theory/cables.md,
-  // 12a).
+  // The period of a pendulum of 1 m is 2 s, so that steps of 1 s cannot resolve it. At this step
+  // its cable is implicit in tension and direction, a scheme that is stable at any tension
+  // (theory/cables.md, 12a).
   const Trace coarse = Run({kHang, "--step_s", "1"});
   // Steps also end at the corners of the push: 0.5, 0.55 and 0.6 s.
   EXPECT_EQ(coarse.time_s.front(), 0.0);
@@ -66,7 +66,7 @@ TEST_F(Limits, StepsOfASecondAndOfANanosecondAreTaken) {
       for (const double value : column) EXPECT_TRUE(std::isfinite(value));
     }
   }
-  // It hangs in equilibrium.
+  // The mass is in equilibrium.
   const auto length = fine.Find("cable/cable/length_m");
   ASSERT_TRUE(length);
   EXPECT_NEAR(fine.values[*length][1], fine.values[*length][0], 1e-15);
@@ -76,54 +76,54 @@ TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
   for (const std::string text : {"0", "-1", "nan", "inf", "1e-10", "2", "fast"}) {
     ExpectRefused({"run", kHang, "--step_s", text}, 2,
                   "error: --step_s: \"" + text +
-                      "\" is not a number from 1e-09 to 1\n`taut run --help` tells more.\n");
+                      "\" is not a number from 1e-09 to 1\nsee `taut run --help`\n");
   }
   for (const std::string text : {"-1", "nan", "inf", "2e9"}) {
     ExpectRefused({"run", kHang, "--duration_s", text}, 2,
                   "error: --duration_s: \"" + text +
-                      "\" is not a number from 0 to 1e+09\n`taut run --help` tells more.\n");
+                      "\" is not a number from 0 to 1e+09\nsee `taut run --help`\n");
   }
   for (const std::string command : {"learn", "fit"}) {
     ExpectRefused({command, "a.yaml", "--threads", "1025"}, 2,
-                  "error: --threads: \"1025\" is not a whole number from 0 to 1024\n`taut " +
-                      command + " --help` tells more.\n");
+                  "error: --threads: \"1025\" is not a whole number from 0 to 1024\nsee `taut " +
+                      command + " --help`\n");
   }
 }
 
 TEST_F(Limits, FilesThatAreAbsentOrUnreadableAreBadInput) {
   for (const char* const command : {"run", "check"}) {
     ExpectRefused({command, "none.yaml"}, 3,
-                  "none.yaml: error: cannot be opened: No such file or directory\n");
-    ExpectRefused({command, "."}, 3, ".: error: is a directory, not a file\n");
+                  "none.yaml: error: cannot open: No such file or directory\n");
+    ExpectRefused({command, "."}, 3, ".: error: the path is a directory, not a file\n");
   }
-  ExpectRefused({"learn", "."}, 3, ".: error: is a directory, not a file\n");
-  ExpectRefused({"gait", "values", "."}, 3, ".: error: is a directory, not a file\n");
+  ExpectRefused({"learn", "."}, 3, ".: error: the path is a directory, not a file\n");
+  ExpectRefused({"gait", "values", "."}, 3, ".: error: the path is a directory, not a file\n");
   Write("a.csv", "time_s,x_m\n0,1\n1,2\n");
   ExpectRefused({"compare", "a.csv", "a.csv", "--map", "."}, 3,
-                ".: error: is a directory, not a file\n");
+                ".: error: the path is a directory, not a file\n");
   for (const char* const folder : {"folder.h5", "folder.csv"}) {
     std::filesystem::create_directory(Path(folder));
     const CommandResult result = Taut({"compare", "a.csv", folder});
     EXPECT_EQ(result.status, 3) << result.errors;
-    EXPECT_EQ(result.errors, std::string(folder) +
-                                 "/trace.h5: error: cannot be opened: No such file or directory\n");
+    EXPECT_EQ(result.errors,
+              std::string(folder) + "/trace.h5: error: cannot open: No such file or directory\n");
   }
   ExpectRefused({"compare", "a.csv", "a.csv", "--map", "folder.csv"}, 3,
-                "folder.csv: error: is a directory, not a file\n");
+                "folder.csv: error: the path is a directory, not a file\n");
   ExpectRefused({"compare", "none.h5", "none.csv"}, 3,
-                "none.csv: error: cannot be opened: No such file or directory\n"
-                "none.h5: error: cannot be opened: No such file or directory\n");
+                "none.csv: error: cannot open: No such file or directory\n"
+                "none.h5: error: cannot open: No such file or directory\n");
 }
 
 TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
-  ExpectRefused({"simulate", "a.yaml"}, 2,
-                "error: there is no command \"simulate\" (one of: analyze, check, run, "
-                "compare, export, fit, gait, import, learn, list, new, report, ...)\n`taut --help` "
-                "tells more.\n");
+  ExpectRefused({"levitate", "a.yaml"}, 2,
+                "error: there is no command \"levitate\" (one of: new, check, view, run, report, "
+                "compare, fit, analyze, learn, size, list, gait, ...)\nsee `taut --help`\n");
 }
 
 TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {
-  const std::string warning = "nothing reads the parameter \"idle\" (its value changes nothing)\n";
+  const std::string warning =
+      "the parameter \"idle\" is not used (remove it, or use it in an expression)\n";
   Write("odd.yaml",
         "taut: 1\nkind: experiment\nbase: " + kHang + "\nname: odd\nparameters: {idle: 1}\n");
   const CommandResult run = Taut({"run", "odd.yaml", "--quiet", "--duration_s", "0"});
@@ -142,42 +142,41 @@ TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {
 TEST_F(Limits, AFileThatMayNotBeReadIsBadInput) {
   const std::string closed = Write("closed.yaml", "taut: 1\n");
   ASSERT_EQ(chmod(closed.c_str(), 0), 0);
-  const auto as_others_do = [] {  // root may read everything, unless it gives that up
+  const auto as_others_do = [] {  // root can read everything unless it drops these capabilities
     for (const int right : {CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH}) {
       if (prctl(PR_CAPBSET_DROP, right) != 0 && geteuid() == 0) _exit(95);
     }
   };
-  ExpectRefused({"check", "closed.yaml"}, 3,
-                "closed.yaml: error: cannot be opened: Permission denied\n", as_others_do);
+  ExpectRefused({"check", "closed.yaml"}, 3, "closed.yaml: error: cannot open: Permission denied\n",
+                as_others_do);
 }
 
 TEST_F(Limits, AModelOfAMillionNodesIsRefusedAtOnce) {
   std::string text = "taut: 1\nkind: model\nname: many\nnodes:\n";
   for (int i = 0; i < 1'000'000; ++i) text += "  n" + std::to_string(i) + ": [0, 0, 1]\n";
   Write("listed.yaml", text);
-  ExpectRefused({"check", "listed.yaml"}, 3,
-                "listed.yaml: error: is larger than 10 MB (write repeated parts once, with "
-                "`copies:`)\n");
+  ExpectRefused(
+      {"check", "listed.yaml"}, 3,
+      "listed.yaml: error: the file is larger than 10 MB (write repeated parts once, with "
+      "`copies:`)\n");
   text.resize(text.find("  n100000:"));
   Write("fewer.yaml", text);
-  ExpectRefused(
-      {"check", "fewer.yaml"}, 3,
-      "fewer.yaml:40004:11: error: more than 200000 YAML nodes (an alias counts as often as "
-      "it is used)\n");
+  ExpectRefused({"check", "fewer.yaml"}, 3,
+                "fewer.yaml:40004:11: error: the file has more than 200000 YAML nodes (an alias "
+                "counts once for each use)\n");
 
   text = "taut: 1\nkind: model\nname: many\nbuilders: []\nparts:\n  seg:\n    nodes:\n";
   for (int i = 0; i < 100; ++i) text += "      n" + std::to_string(i) + ": [0, 0, 1]\n";
   Write("copied.yaml", text + "structure:\n  - {part: seg, copies: 10000}\n");
   ExpectRefused({"check", "copied.yaml"}, 3,
-                "copied.yaml:109:5: error: the model has more than 100000 nodes (with the 10000 "
+                "copied.yaml:109:5: error: the model has more than 100000 nodes (reduce the 10000 "
                 "copies of this placement)\n");
 }
 
 TEST_F(Limits, MorePairsThanThereIsRoomForAreRefusedAtOnce) {
   ExpectRefused(
       {"check", TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", "--set", "segments=1000"}, 3,
-      "error: more than 10000000 pairs of shapes may collide; shapes that cannot meet "
-      "need not collide\n");
+      "error: more than 10000000 pairs of shapes may collide: exclude shapes that cannot meet\n");
 }
 
 TEST_F(Limits, ARecordedChannelThatIsNotThereIsBadInput) {
@@ -193,10 +192,9 @@ TEST_F(Limits, ARecordedChannelThatIsNotThereIsBadInput) {
   for (const char* const command : {"run", "check"}) {
     ExpectRefused(
         {command, "e.yaml"}, 3,
-        "e.yaml:9:7: error: record.channels: no channel fits \"cable/*/tenson_n\" (did you "
+        "e.yaml:9:7: error: record.channels: no channel matches \"cable/*/tenson_n\" (did you "
         "mean \"cable/*/tension_n\"?)\n"
-        "e.yaml:10:7: error: record.channels: no channel fits "
-        "\"*a*a*a*a*a*a*a*a*a*a*a*a*b\" (" +
+        "e.yaml:10:7: error: record.channels: no channel matches \"*a*a*a*a*a*a*a*a*a*a*a*a*b\" (" +
             known + ")\n");
   }
   EXPECT_FALSE(std::filesystem::exists(Path("runs"))) << "nothing may be overwritten";

@@ -1,6 +1,6 @@
-"""What `taut analyze --linear` writes, as a Python program reads it: against runs and closed forms.
+"""HDF5 files of `taut analyze --linear`, read in Python: against runs and closed forms
 
-Usage: linear_file_test.py TEST TAUT. One test of this file, by the name of its function; 77: there is no h5py.
+Usage: linear_file_test.py TEST TAUT. TEST is the name of a function of this file; status 77: h5py is missing.
 """
 
 import pathlib
@@ -17,7 +17,7 @@ except ImportError:
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
-# A ball on three soft damped ropes, pushed for a tenth of a second, and let go.
+# A ball on three soft damped ropes, pushed for 0.1 s and released
 MODEL = """\
 taut: 1
 kind: model
@@ -86,7 +86,7 @@ def in_folder(act):
 
 
 def AFreeResponseIsThatOfTheRun(command):
-    """x' = A x + B u from rest under the push, then x' = A x, beside the simulation."""
+    """x' = A x + B u from rest under the push, then x' = A x, compared with the simulation"""
 
     def act(folder):
         push_n = 3e-3
@@ -112,7 +112,7 @@ def AFreeResponseIsThatOfTheRun(command):
         u[system.number("inputs", "node/ball/force_z")] = 0.8 * push_n
         x, said = np.zeros(n), []
         for at_s in time_s:
-            pushed = u * np.interp(at_s + system.step_s / 2, [0.098, 0.1], [1, 0])  # as in the middle of a step
+            pushed = u * np.interp(at_s + system.step_s / 2, [0.098, 0.1], [1, 0])  # force in the middle of the step
             said.append(system.C @ x + system.D @ pushed)
             x = system.A @ x + system.B @ pushed
         said = np.array(said)
@@ -129,7 +129,7 @@ def AFreeResponseIsThatOfTheRun(command):
 
 
 def EigenvaluesAreTheRingDownOfAMassOnASpring(command):
-    """The step's own closed form: leapfrog swings with 2 sin(w h / 2) = h sqrt(k / m), undamped."""
+    """Closed form of the integrator: leapfrog oscillates with 2 sin(w h / 2) = h sqrt(k / m), undamped."""
 
     def act(folder):
         taut(command, folder, "analyze", ROOT / "share/models/hanging_mass.yaml", "--linear", "mass.h5")
@@ -164,14 +164,14 @@ def NamesUnitsAndTheRestAreThere(command):
         length_m = system.at["outputs"][system.number("outputs", f"cable/{system.cables[0]}/length")]
         tension_n = system.at["outputs"][system.number("outputs", f"cable/{system.cables[0]}/tension")]
         assert length_m > system.rest_m[0] and tension_n > 0
-        # A tension answers its own length: dT = k dl + ..., so C has the cable's stiffness in it.
+        # C contains the cable's stiffness: dT = k dl + ...
         assert np.isfinite(system.A).all() and np.isfinite(system.C).all()
 
     in_folder(act)
 
 
 def TheRestIsHowBodiesAreTurned(command):
-    """A box that floats stays as a recording has it turned."""
+    """A floating box keeps its recorded orientation."""
 
     def act(folder):
         (folder / "box.yaml").write_text("taut: 1\nkind: model\nname: box\nnodes:\n  box: [0, 0, 0]\nbuilders:\n"

@@ -1,5 +1,5 @@
-// The quasi-static push of Mirletz et al. (2015) beside NTRT's run of it, and the figures that
-// docs/validation/push.md shows.
+// The quasi-static push of Mirletz et al. (2015) compared with NTRT's run, and the figures of
+// docs/validation/push.md
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,12 +36,12 @@ RunSummary Simulate(const ExperimentSpec& experiment) {
   return *summary;
 }
 
-/// A CSV file of names and one number each.
+/// Reads a CSV file of names and one number each.
 std::map<std::string, double> ReadNumbers(const std::string& path) {
   std::map<std::string, double> numbers;
   std::ifstream file(kRoot + path);
   std::string line;
-  std::getline(file, line);  // the head
+  std::getline(file, line);  // the header
   while (std::getline(file, line)) {
     const auto comma = line.find(',');
     numbers[line.substr(0, comma)] = std::stod(line.substr(comma + 1));
@@ -50,7 +50,7 @@ std::map<std::string, double> ReadNumbers(const std::string& path) {
   return numbers;
 }
 
-/// Of the system, over every step of NTRT's run: the paper's measure [N].
+/// Returns the maximum over all cables and all steps of NTRT's run, the paper's measure [N].
 double NtrtLargestTension() {
   double largest_n = 0;
   for (const auto& [cable, n] : ReadNumbers("tests/data/ntrt/push_maxima.csv")) {
@@ -59,8 +59,8 @@ double NtrtLargestTension() {
   return largest_n;
 }
 
-/// The largest difference between a mean elastic tension and NTRT's, over 12 cables and the three
-/// phases, in percent of NTRT's largest tension.
+/// Returns the largest difference between a mean elastic tension and NTRT's, over 12 cables and
+/// three phases, in percent of NTRT's largest tension.
 double WorstMeanPercent(const RunSummary& run) {
   Diagnostics out;
   const auto ntrt = ReadTrace(kRoot + "tests/data/ntrt/push_1000hz.csv.gz", out);
@@ -115,7 +115,7 @@ TEST(Push, NtrtExperimentHasItsLaws) {
                      0.075);
   }
   for (const CableDef& cable : def.cables) EXPECT_EQ(cable.damping_law, DampingLaw::kClamped);
-  // Segment 0 in NTRT: Ixx 106.32264 kg cm^2 about its x, taut's y; mass and size in float there.
+  // Segment 0 in NTRT: Ixx 106.32264 kg cm^2 about its x, taut's y; mass and size are float there.
   EXPECT_NEAR(def.bodies[0].inertia_kg_m2.yy, 106.32264e-4, 1e-8);
   ASSERT_EQ(experiment.controllers.size(), 1u);
   const ImpedanceSpec& control = *experiment.controllers[0].impedance;
@@ -129,7 +129,7 @@ TEST(Push, NtrtExperimentHasItsLaws) {
   EXPECT_DOUBLE_EQ(experiment.pushes[0].force_n[1].second, 22.563);
 }
 
-/// The first table below a heading of the page: its head, and its rows by their first cell.
+/// The first table below a heading of the page: its header, and its rows by their first cell
 struct PageTable {
   std::vector<std::string> head;
   std::map<std::string, std::vector<std::string>> rows;
@@ -158,7 +158,7 @@ struct PageTable {
     return cells;
   }
 
-  /// A number is what the page says, to the digit.
+  /// Expects the page's number, to its last digit.
   void Expect(const std::string& row, const std::string& column, double value) const {
     const auto at = std::find(head.begin(), head.end(), column);
     ASSERT_NE(at, head.end()) << "no column " << column;

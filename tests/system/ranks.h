@@ -1,9 +1,9 @@
-/// Runs `taut` in several processes, as mpirun starts them.
+/// Fixture that runs `taut` in several processes with mpirun
 #pragma once
 
 #include <cstring>
 
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 
@@ -13,7 +13,7 @@ class RanksTest : public CommandTest {
     if (std::strcmp(TAUT_MPIRUN, "") == 0) GTEST_SKIP() << "built without MPI, or no mpirun";
   }
 
-  /// Of `taut` with these arguments on this many processes, which are mpirun's children.
+  /// Starts `taut` with these arguments on this many processes, which are mpirun's children.
   pid_t StartRanks(int ranks, const std::vector<std::string>& arguments) const {
     const pid_t pid = fork();
     if (pid != 0) return pid;

@@ -3,7 +3,7 @@
 
 #include "taut/spec.h"
 #include "taut/trace.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -21,8 +21,8 @@ class Replay : public CommandTest {
 };
 
 TEST_F(Replay, SaysWhatWasSaidAndWhereItIsFrom) {
-  // Recorded at 100 Hz, the experiment's rate, and controlled at 1 kHz: what hangs on the last row
-  // alone comes out the same.
+  // Recorded at 100 Hz, the experiment's rate, and controlled at 1 kHz: quantities that depend on
+  // the last row only are equal.
   const auto run = Taut({"run", kGait, "--duration_s", "2", "--out", "first"});
   ASSERT_EQ(run.status, 0) << run.errors;
   const auto again = Taut({"run", kGait, "--replay", "first/trace.h5", "--out", "again", "--csv"});
@@ -42,7 +42,7 @@ TEST_F(Replay, SaysWhatWasSaidAndWhereItIsFrom) {
     EXPECT_EQ(first.values[*a], said.values[*b]) << name;
   }
   EXPECT_FALSE(said.Find("system/kinetic_j"));
-  // From text, too, and less of it.
+  // From CSV, with a shorter duration.
   const auto text = Taut({"run", kGait, "--replay", "again/trace.csv", "--duration_s", "0.5",
                           "--out", "third", "--quiet"});
   ASSERT_EQ(text.status, 0) << text.errors;
@@ -54,7 +54,8 @@ TEST_F(Replay, OfWhatIsNoLogOfThisRobotIsAnError) {
   Write("other.csv", "time_s,cable/nobody/tension_n\n0,1\n");
   const auto other = Taut({"run", kGait, "--replay", "other.csv"});
   EXPECT_EQ(other.status, 3);
-  EXPECT_NE(other.errors.find("the log knows no cable of tetraspine3"), std::string::npos)
+  EXPECT_NE(other.errors.find("the recording has no channels of a cable of tetraspine3"),
+            std::string::npos)
       << other.errors;
   Write("empty.csv", "time_s,cable/outer_top_1/tension_n\n");
   EXPECT_EQ(Taut({"run", kGait, "--replay", "empty.csv"}).status, 3);

@@ -1,4 +1,4 @@
-// `taut report` as a user meets it.
+// The command `taut report`
 #include "tests/system/view_command.h"
 
 namespace taut::test {
@@ -6,7 +6,7 @@ namespace {
 
 using ReportCommand = ViewCommand;
 
-/// The data of a report.
+/// Returns the data of a report.
 Json DataOf(const std::string& page) {
   const std::string open = R"(<script type="application/json" id="taut-report">)";
   const std::size_t from = page.find(open) + open.size();
@@ -29,7 +29,7 @@ TEST_F(ReportCommand, AReportHoldsTheRunAndTheNumbersOfItsSummary) {
   const std::size_t numbers =
       report["frame_count"].get<std::size_t>() * report["frame_values"].get<std::size_t>();
   EXPECT_EQ(report["frames_base64"].get<std::string>().size(), (8 * numbers + 2) / 3 * 4);
-  EXPECT_EQ(report["frame_count"], 151);  // 30 a second, both ends
+  EXPECT_EQ(report["frame_count"], 151);  // 30 per second, including both ends
   ASSERT_EQ(report["rows"].size(), 1u);
   EXPECT_EQ(report["rows"][0]["count"], 1001);  // every row: 5 s at 200 Hz
   EXPECT_EQ(report["rows"][0]["channels"].size(), report["scene"]["channels"].size());
@@ -64,7 +64,8 @@ TEST_F(ReportCommand, ARunMayBeGivenAsItsFolder) {
   EXPECT_EQ(result.output, "Report: a/report.html\n");
   const Json report = DataOf(Read(Path("a/report.html")));
   EXPECT_EQ(report["scene"]["run_name"], "hang (a/trace.h5)");
-  EXPECT_EQ(report["scene"]["compared"][0]["name"], "b/trace.csv");  // which has no name of its run
+  EXPECT_EQ(report["scene"]["compared"][0]["name"],
+            "b/trace.csv");  // this file lacks the name of its run
   std::filesystem::create_directory(Path("empty"));
   result = Run({"report", "empty"});
   EXPECT_EQ(result.status, 3);
@@ -92,8 +93,8 @@ TEST_F(ReportCommand, EveryRunThatCannotBeReadIsNamed) {
   const CommandResult result =
       Run({"report", "a/trace.h5", "--compare", "none.h5", Write("broken.h5", "no trace")});
   EXPECT_EQ(result.status, 3);
-  EXPECT_NE(result.errors.find("none.h5: error: cannot be opened"), std::string::npos);
-  EXPECT_NE(result.errors.find("broken.h5: error: is not HDF5"), std::string::npos);
+  EXPECT_NE(result.errors.find("none.h5: error: cannot open"), std::string::npos);
+  EXPECT_NE(result.errors.find("broken.h5: error: the file is not HDF5"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(Path("a/report.html")));
 }
 
@@ -121,20 +122,19 @@ TEST_F(ReportCommand, AReportThatCannotBeMadeIsSaid) {
   EXPECT_EQ(result.status, 3);
   result = Run({"report", "run/trace.h5", "--out", "no/such/folder.html"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors,
-            "no/such/folder.html: error: cannot be written: No such file or directory\n");
+  EXPECT_EQ(result.errors, "no/such/folder.html: error: cannot write: No such file or directory\n");
   Write("web/report.html", "<p>some other page");
   result = Run({"report", "run/trace.h5"});
-  EXPECT_NE(result.errors.find("is not the page that reports are made of"), std::string::npos);
+  EXPECT_NE(result.errors.find("this page is not the template of reports"), std::string::npos);
   result = Run({"run", kHang, "--quiet", "--report", "--out", "run"}, "nowhere");
   EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.errors.find("run/report.html: error: the report cannot be made: the viewer's "
+  EXPECT_NE(result.errors.find("run/report.html: error: cannot create the report: the viewer's "
                                "pages are missing"),
             std::string::npos)
       << result.errors;
 }
 
-/// The page that was built: nothing in a report makes a browser ask another host.
+/// The built page: a report contains no reference to another host.
 TEST_F(ReportCommand, ARealReportLoadsNothing) {
   if (!std::filesystem::exists(TAUT_WEB_FOLDER "/report.html")) GTEST_SKIP() << "no pages built";
   const CommandResult run = Run({"run", kHang, "--report", "--out", "run"}, TAUT_WEB_FOLDER);

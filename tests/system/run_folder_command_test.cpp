@@ -1,4 +1,4 @@
-// A run is one transaction: its folder has one writer, and holds one run or says that it does not.
+// A run folder as a transaction: one writer, and either one complete run or an explicit notice
 #include <sys/resource.h>
 
 #include <chrono>
@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "taut/run_folder.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -27,7 +27,7 @@ class RunCommand : public CommandTest {
   }
   ~RunCommand() override { unsetenv("TAUT_WEB"); }
 
-  /// The run's id by its trace; empty if there is none.
+  /// Returns the run's id from its trace, or an empty string.
   std::string IdOfTrace(const std::string& path) const {
     Diagnostics not_yet;
     const auto trace = ReadTrace(Path(path), not_yet);
@@ -37,8 +37,8 @@ class RunCommand : public CommandTest {
     return {};
   }
 
-  /// Starts a run that would take hours, and waits until it has written a row. `id`: of the trace
-  /// that is there already.
+  /// Starts a run that would take hours, and waits until it has written a row. `id`: id of the
+  /// existing trace, if any.
   pid_t StartLong(const std::string& folder, const std::string& id = "") const {
     const pid_t pid = Start({"run", kHang, "--duration_s", "1e6", "--out", folder, "--quiet"});
     for (std::string now; now.empty() || now == id; now = IdOfTrace(folder + "/trace.h5")) {
@@ -61,7 +61,7 @@ class RunCommand : public CommandTest {
     return names;
   }
 
-  /// The scene's notice in a report.
+  /// Returns the scene's notice in a report.
   std::string NoticeOf(const std::string& report) const {
     const std::string page = Read(Path(report));
     const std::string key = R"("notice":")";
@@ -107,7 +107,7 @@ TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
   const CommandResult report = Taut({"report", "run/trace.h5"});
   EXPECT_EQ(report.status, 0) << report.errors;
   for (const std::string& said : {NoticeOf("run/report.html"), report.errors}) {
-    EXPECT_NE(said.find("the trace is not finished"), std::string::npos) << said;
+    EXPECT_NE(said.find("the trace is unfinished"), std::string::npos) << said;
   }
   EXPECT_NE(Read(Path("run/report.html")).find(R"("summary":null)"), std::string::npos);
 }
@@ -117,10 +117,10 @@ TEST_F(RunCommand, PiecesOfDifferentRunsAreBadInput) {
   ASSERT_EQ(Taut({"run", kHang, "--out", "b", "--quiet"}).status, 0);
   fs::copy_file(Path("a/summary.json"), Path("b/summary.json"),
                 fs::copy_options::overwrite_existing);
-  const std::string said = "b/summary.json: error: is not of the run of b/trace.h5 (run " +
-                           IdOfTrace("a/trace.h5") + ", there " + IdOfTrace("b/trace.h5") +
-                           ") (take away the one that does not belong there, or run the "
-                           "experiment again)\n";
+  const std::string said =
+      "b/summary.json: error: the file is of another run than b/trace.h5 (run " +
+      IdOfTrace("a/trace.h5") + ", not " + IdOfTrace("b/trace.h5") +
+      ") (remove the file that does not belong there, or run the experiment again)\n";
   for (const auto& words : {std::vector<std::string>{"report", "b/trace.h5"},
                             {"report", "a/trace.h5", "--compare", "b/trace.h5"},
                             {"compare", "b/trace.h5", "a/trace.h5"},
@@ -136,13 +136,13 @@ TEST_F(RunCommand, ARunThatCannotBeginLeavesTheRunBefore) {
   ASSERT_EQ(Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
   const std::vector<std::string> names = Names("run");
   const std::string summary = Read(Path("run/summary.json")), id = IdOfTrace("run/trace.h5");
-  // no room: to a program, a limit of a file's size is as a disk that fills up
+  // no space: a limit of the file size acts like a full disk
   const CommandResult full = Taut({"run", kHang, "--out", "run", "--quiet"}, [] {
     const rlimit size{500, 500};
     setrlimit(RLIMIT_FSIZE, &size);
   });
   EXPECT_EQ(full.status, 1) << full.errors;
-  // no equilibrium to start from: a ball falls for ever
+  // no equilibrium to start from: a ball in free fall
   WriteNeverSettles();
   const CommandResult never = Taut({"run", "never.yaml", "--out", "run", "--quiet"});
   EXPECT_EQ(never.status, 1) << never.errors;
@@ -170,11 +170,12 @@ TEST_F(RunCommand, LinksInTheFolderAreReplacedAndNotFollowed) {
 TEST_F(RunCommand, AFolderThatIsDeletedUnderTheRunIsSaid) {
   const pid_t run = StartLong("run");
   fs::remove_all(Path("run"));
-  fs::create_directory(Path("run"));  // somebody else's
+  fs::create_directory(Path("run"));  // created by another program
   const CommandResult result = Kill(run, SIGTERM);
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors,
-            "run: error: was deleted while the run wrote into it: there is no summary\n");
+  EXPECT_EQ(
+      result.errors,
+      "run: error: the folder was deleted while the run wrote into it, so there is no summary\n");
   EXPECT_TRUE(fs::is_empty(Path("run")));
 }
 

@@ -1,7 +1,7 @@
-// Robots that settle, and poses that are written as models, as the commands have them.
+// Commands with settled starts, and poses written as models
 #include <nlohmann/json.hpp>
 
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 #include "tests/unit/scenes/heap_models.h"
 
 namespace taut::test {
@@ -85,7 +85,7 @@ TEST_F(SettledCommand, WhatCannotBeWrittenIsSaid) {
 
   EXPECT_EQ(Taut({"check", "stands.yaml", "--out", "m.yaml"}).status, 2);
   EXPECT_EQ(Taut({"run", "stands.yaml", "--replay", "log.csv", "--final_pose", "m.yaml"}).errors,
-            "error: --final_pose does not go with --replay: nothing moves then\n");
+            "error: --final_pose cannot be combined with --replay, which simulates no motion\n");
 }
 
 }  // namespace

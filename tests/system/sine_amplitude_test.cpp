@@ -1,5 +1,5 @@
-// The hand-tuned gait with the simulation's and the robot's own amplitudes: two cells of
-// docs/validation/sine_amplitude.md.
+// The hand-tuned gait with the amplitudes of the simulation and of the robot: two cells of
+// docs/validation/sine_amplitude.md
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kSegments = 3, kPerSegment = 5;  // x, y, z, and x, y of the orientation
 
-/// How near neighbours come to each other, and how upright all stay.
+/// Least distance of neighboring segments and least uprightness
 class Watch final : public test::RowWatch {
  public:
   bool Append(double, const double* values) override {
@@ -30,7 +30,7 @@ class Watch final : public test::RowWatch {
     }
     return true;
   }
-  double nearest_m = 1, uprightness = 1;  ///< The latter: cosine of the tilt.
+  double nearest_m = 1, uprightness = 1;  ///< Uprightness: cosine of the tilt.
 };
 
 Watch Walk(double factor, const std::string& ground_friction) {
@@ -57,7 +57,7 @@ Watch Walk(double factor, const std::string& ground_friction) {
   return watch;
 }
 
-// Ground friction is times 0.15, the robot's: 0.075 as NTRT has it, and 1.2.
+// Ground friction times the robot's 0.15: 0.075 as in NTRT, and 1.2
 TEST(HandTunedSine, KeepsItsSegmentsApart) {
   for (const char* const ground : {"0.5", "8"}) {
     const Watch watch = Walk(1, ground);

@@ -1,6 +1,6 @@
-"""A landing and a roll of docs/validation come out as their pages show them: a sample of what script/validate --check does.
+"""A landing and a roll of docs/validation reproduce their pages: a sample of script/validate --check
 
-Usage: six_strut_pages_test.py TEST TAUT. One test of this file, by the name of its function.
+Usage: six_strut_pages_test.py TEST TAUT. TEST is the name of a function of this file.
 """
 
 import os
@@ -15,7 +15,7 @@ from validation import landing, rolling, runs  # noqa: E402
 
 
 def run_one(command, variant):
-    """The folder of the variant's run, in build/ so that experiments/ is found from there."""
+    """Runs the variant. Returns its folder, which is in build/ so that experiments/ is found from there."""
     folder = tempfile.TemporaryDirectory(dir=ROOT / "build")
     runs.Taut(pathlib.Path(command).resolve(), pathlib.Path(folder.name)).run([variant])
     return folder, pathlib.Path(folder.name) / variant.name
@@ -42,12 +42,12 @@ def ARollIsAsThePageShowsIt(command):
     shown = next(line for line in (ROOT / "docs/validation/rolling.md").read_text().splitlines()
                  if line.startswith("| level ground |"))
     ours = rolling.moving_row("level ground", [run], lambda r: r.way_m)
-    for place in (1, 3, 4, 6, 7, 9):  # the cells of this start alone
+    for place in (1, 3, 4, 6, 7, 9):  # the cells of this start only
         assert shown.split("|")[place + 1].strip() == ours[place], f"{shown}\n{ours}"
     assert run.way_m >= 5 and run.turns >= 1
 
 
 if __name__ == "__main__":
     taut = pathlib.Path(sys.argv[2]).resolve()
-    os.chdir(ROOT)  # variants name their base from there
+    os.chdir(ROOT)  # variants name their base relative to this folder
     globals()[sys.argv[1]](taut)

@@ -1,9 +1,9 @@
 // The paper's measure of step-size sensitivity: the largest tension of each of the six front cables
-// over the whole push test. NTRT's changes by 5.86 % at 250 Hz and by 1.335 % at 4 kHz.
+// over the whole push test. In NTRT it changes by 5.86 % at 250 Hz and by 1.335 % at 4 kHz.
 //
-// A controller at 250 Hz and motors of 0.07 m/s keep the tensions dithering by 0.06 N, and the
-// phase of that is chance: runs that start a micrometre apart differ by up to 0.2 % in a maximum.
-// So each step is run from several such starts, and means are compared.
+// With a controller at 250 Hz and motors of 0.07 m/s the tensions oscillate by 0.06 N with a random
+// phase: maxima of runs that start a micrometer apart differ by up to 0.2 %. Therefore each step
+// size is run from several such starts, and means are compared.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr int kStarts = 48;
 constexpr double kApartM = 1e-6;
 constexpr int kFrontCables = 6;
 
-/// Where the front segment is, at two times.
+/// Displacement of the front segment between two times
 class Watch final : public test::RowWatch {
  public:
   explicit Watch(const ExperimentSpec& experiment) {
@@ -46,7 +46,7 @@ class Watch final : public test::RowWatch {
 };
 
 struct Outcome {
-  double max_n[kFrontCables] = {};  ///< Of the spring alone, mean over the starts.
+  double max_n[kFrontCables] = {};  ///< Spring only, mean over the starts.
   double slide_m = 0;
 };
 

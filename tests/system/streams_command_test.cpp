@@ -1,16 +1,16 @@
-// Standard streams that are closed or full end nothing and lose nothing; what was to be printed and
-// was not is an error all the same.
+// Closed or full standard streams: no run ends or loses data, but output that was not printed is an
+// error.
 #include <nlohmann/json.hpp>
 
 #include "taut/trace.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
 
 const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
-/// The streams as a shell makes them: `2>&-`, `>/dev/full`.
+/// Closed and full streams as by a shell: `2>&-`, `>/dev/full`
 std::function<void()> Closed(std::vector<int> descriptors) {
   return [descriptors] {
     for (const int descriptor : descriptors) close(descriptor);
@@ -24,7 +24,7 @@ std::function<void()> Full(std::vector<int> descriptors) {
     }
   };
 }
-/// `| head -0`
+/// Output to a closed pipe, as in `| head -0`
 void NobodyReads() {
   int ends[2];
   if (pipe(ends) != 0 || dup2(ends[1], STDOUT_FILENO) < 0 || dup2(ends[1], STDERR_FILENO) < 0) {
@@ -40,7 +40,7 @@ class Streams : public CommandTest {
     if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this machine has no /dev/full";
   }
 
-  /// A run that has something to say on both: a table, and a warning that its step is too long.
+  /// Runs with output on both streams: a table, and a warning that the step is too long.
   CommandResult RunCoarse(const std::function<void()>& before) {
     std::filesystem::remove_all(Path("run"));
     const CommandResult result = Taut({"run", kHang, "--step_s", "1", "--out", "run"}, before);
@@ -62,7 +62,7 @@ TEST_F(Streams, ThatAreClosedLoseNothingOfARun) {
     EXPECT_EQ(result.status, 0) << result.errors;
     if (closed == std::vector<int>{1}) {
       EXPECT_NE(
-          result.errors.find("warning: standard output cannot be written: Bad file descriptor\n"),
+          result.errors.find("warning: cannot write to standard output: Bad file descriptor\n"),
           std::string::npos)
           << result.errors;
     }
@@ -74,9 +74,9 @@ TEST_F(Streams, ThatAreFullLoseNothingOfARun) {
     const CommandResult result = RunCoarse(Full(full));
     EXPECT_EQ(result.status, 0) << result.errors;
     if (full == std::vector<int>{1}) {
-      EXPECT_NE(result.errors.find(
-                    "warning: standard output cannot be written: No space left on device\n"),
-                std::string::npos)
+      EXPECT_NE(
+          result.errors.find("warning: cannot write to standard output: No space left on device\n"),
+          std::string::npos)
           << result.errors;
     }
   }
@@ -106,11 +106,11 @@ TEST_F(Streams, WhatWasToBePrintedAndWasNotIsAFailure) {
                             {"--version"}}) {
     const CommandResult full = Taut(words, Full({1}));
     EXPECT_EQ(full.status, 1) << words[0];
-    EXPECT_EQ(full.errors, "error: standard output cannot be written: No space left on device\n")
+    EXPECT_EQ(full.errors, "error: cannot write to standard output: No space left on device\n")
         << words[0];
     const CommandResult closed = Taut(words, Closed({1}));
     EXPECT_EQ(closed.status, 1) << words[0];
-    EXPECT_EQ(closed.errors, "error: standard output cannot be written: Bad file descriptor\n")
+    EXPECT_EQ(closed.errors, "error: cannot write to standard output: Bad file descriptor\n")
         << words[0];
     EXPECT_EQ(Taut(words, NobodyReads).status, 1) << words[0];
   }

@@ -1,4 +1,4 @@
-// `taut run` and accidents: killed, interrupted, disks full, folders that cannot be written.
+// `taut run` and interruptions: kill, Ctrl-C, full disks, unwritable folders
 #include <pty.h>
 #include <sys/resource.h>
 
@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "taut/trace.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -19,8 +19,8 @@ namespace {
 constexpr double kRowS = 0.005;  // of share/experiments/hang.yaml
 const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
-/// A run that would take hours, its progress on a terminal. It writes a line at most every 200 ms
-/// of its own clock.
+/// A run that would take hours, with its progress on a terminal. It prints a line at most every 200
+/// ms of wall time.
 class LongRun {
  public:
   explicit LongRun(const std::string& folder, bool nohup = false) {
@@ -28,7 +28,7 @@ class LongRun {
                                    "--duration_s", "1e6", "--out", folder};
     pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
     if (pid_ != 0) {
-      // Else other runs would keep it, and this one would not end with the test.
+      // Otherwise other runs would inherit the terminal, and this run would not end with the test.
       fcntl(terminal_, F_SETFD, FD_CLOEXEC);
       return;
     }
@@ -61,7 +61,7 @@ class LongRun {
 
   void Send(int number) const { kill(pid_, number); }
 
-  /// Sends the signal, reads what is left to read, and says how the run ended.
+  /// Sends the signal, reads the remaining output, and returns the exit status, or 128 + signal.
   int End(int number) {
     Send(number);
     ReadLines(SIZE_MAX);
@@ -71,7 +71,7 @@ class LongRun {
     return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   }
 
-  /// Simulated times of the progress lines, as printed.
+  /// Returns the simulated times of the progress lines, as printed.
   const std::vector<double>& times() const { return times_; }
 
  private:
@@ -83,7 +83,8 @@ class LongRun {
 
 class Survival : public CommandTest {
  protected:
-  /// Every row is there, from the first on. Returns how many; nothing if the trace is not good.
+  /// Checks that rows are complete from the first on. Returns their number; nothing if the trace is
+  /// invalid.
   static std::optional<std::size_t> Rows(const std::string& path) {
     Diagnostics out;
     const auto trace = ReadTrace(path, out);
@@ -98,8 +99,8 @@ class Survival : public CommandTest {
     return trace->time_s.size();
   }
 
-  /// The line five before the last was written a second or more before the last, by the clock of
-  /// the run itself: what it showed must be in the trace.
+  /// The fifth line before the last was printed at least one second before the last by the run's
+  /// clock: rows up to its time must be in the trace.
   void ExpectAllButTheLastSecond(const LongRun& run, const std::string& path) {
     const auto rows = Rows(path);
     ASSERT_TRUE(rows);
@@ -109,7 +110,7 @@ class Survival : public CommandTest {
     EXPECT_GE(static_cast<double>(*rows) * kRowS, shown_s);
   }
 
-  /// Runs that are killed after random times of up to `longest_s`, some at once.
+  /// Kills runs after random times of up to `longest_s`, several at a time.
   void Kill(int count, int at_once, double longest_s) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> life_s(0.2, longest_s);
@@ -121,7 +122,7 @@ class Survival : public CommandTest {
           const std::string folder = Path("run_" + std::to_string(i));
           LongRun run(folder);
           run.ReadLines(std::max<std::size_t>(lines, 1));
-          // not only just after a line
+          // not only directly after a line
           std::this_thread::sleep_for(std::chrono::milliseconds(37 * i % 200));
           EXPECT_EQ(run.End(SIGKILL), 128 + SIGKILL);
           ExpectAllButTheLastSecond(run, folder + "/trace.h5");
@@ -159,13 +160,13 @@ TEST_F(Survival, UnderNohupARunOutlivesItsTerminal) {
   LongRun run(Path("run"), true);
   run.ReadLines(1);
   run.Send(SIGHUP);
-  run.ReadLines(4);  // one that is interrupted says no more than one
+  run.ReadLines(4);  // an interrupted run prints at most one more line
   EXPECT_EQ(run.times().size(), 4u);
 }
 
 TEST_F(Survival, AFullDiskIsSaidAndWhatFitsIsReadable) {
-  // To a program, a limit of a file's size is as a disk that fills up. The trace's head takes 9 kB,
-  // and every 1024 rows 150 kB.
+  // A limit of the file size acts like a disk that fills up. The trace's head needs 9 kB, and every
+  // 1024 rows 150 kB.
   const auto at_most = [](rlim_t bytes) {
     return [bytes] {
       const rlimit size{bytes, bytes};
@@ -175,12 +176,12 @@ TEST_F(Survival, AFullDiskIsSaidAndWhatFitsIsReadable) {
   const CommandResult small = Taut({"run", kHang, "--quiet", "--out", "a"}, at_most(500));
   EXPECT_EQ(small.status, 1);
   EXPECT_EQ(small.errors,
-            "error: a/trace.h5: cannot be written: File too large\n"
-            "a/inputs.yaml: error: cannot be written: File too large\n");
+            "error: a/trace.h5: cannot write: File too large\n"
+            "a/inputs.yaml: error: cannot write: File too large\n");
   const CommandResult larger =
       Taut({"run", kHang, "--duration_s", "30", "--quiet", "--out", "b"}, at_most(500'000));
   EXPECT_EQ(larger.status, 1);
-  EXPECT_EQ(larger.errors, "error: b/trace.h5: cannot be written: File too large\n");
+  EXPECT_EQ(larger.errors, "error: b/trace.h5: cannot write: File too large\n");
   Diagnostics out;
   const auto trace = ReadTrace(Path("b/trace.h5"), out);
   ASSERT_TRUE(trace) << out.Format();
@@ -195,7 +196,7 @@ TEST_F(Survival, AFolderThatCannotBeMadeIsAFailure) {
     const CommandResult result = Taut({"run", kHang, "--quiet", "--out", out});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(result.errors,
-              std::string(out) + ": error: cannot make this folder: Not a directory\n");
+              std::string(out) + ": error: cannot create the folder: Not a directory\n");
   }
 }
 
@@ -203,7 +204,7 @@ TEST_F(Survival, AFileThatCannotBeWrittenIsAFailure) {
   std::filesystem::create_directories(Path("run/inputs.yaml"));  // a folder of that name
   const CommandResult result = Taut({"run", kHang, "--quiet", "--out", "run"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.errors, "error: run/inputs.yaml: cannot be written: Is a directory\n");
+  EXPECT_EQ(result.errors, "error: run/inputs.yaml: cannot write: Is a directory\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A tensegrity with four legs stands and trots (docs/validation/puppy.md).
+// Standing and trotting of a tensegrity with four legs (docs/validation/puppy.md)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,14 +17,14 @@ namespace {
 
 constexpr int kSlots = 8;
 
-/// What a run of an experiment leaves, and which feet carry in each of its rows.
+/// Recorded columns of a run, and the feet in contact in each row
 struct Outcome {
   Columns columns;
   std::map<std::string, std::vector<bool>> carries;  ///< By the leg's name.
-  bool only_feet = true;                             ///< Nothing else touched anything.
+  bool only_feet = true;                             ///< No other contacts occurred.
 };
 
-/// `friction`: a factor on all coefficients.
+/// Runs an experiment. `friction`: factor of all coefficients.
 Outcome Simulate(const std::string& name, double friction = 1) {
   Outcome outcome;
   Diagnostics out;
@@ -45,7 +45,7 @@ Outcome Simulate(const std::string& name, double friction = 1) {
   outcome.columns = std::move(rows.columns);
   const std::size_t count = outcome.columns["time_s"].size();
 
-  std::map<long, std::string> leg_of;  // by the place of its shank among the bodies
+  std::map<long, std::string> leg_of;  // by the index of the shank's body
   for (std::size_t b = 0; b < experiment->robot.def.bodies.size(); ++b) {
     const std::string& body = experiment->robot.def.bodies[b].name;
     for (const char* leg : {"front_left", "front_right", "rear_left", "rear_right"}) {
@@ -77,7 +77,7 @@ double Ahead(const Outcome& outcome) {
   return x.back() - x.front();
 }
 
-/// The least height of the two girdles' centres of mass [m].
+/// Returns the least height of the centers of mass of the two girdles [m].
 double Lowest(const Outcome& outcome) {
   double lowest_m = std::numeric_limits<double>::infinity();
   for (const char* body : {"vertebra_0.centre-left", "vertebra_3.centre-left"}) {
@@ -88,7 +88,7 @@ double Lowest(const Outcome& outcome) {
   return lowest_m;
 }
 
-/// How far the vertical of a girdle leans at most [rad].
+/// Returns the largest tilt of a girdle's vertical axis [rad].
 double Tilt(const Outcome& outcome) {
   double least = 1;
   for (const char* body : {"vertebra_0.centre-left", "vertebra_3.centre-left"}) {
@@ -102,7 +102,8 @@ double Tilt(const Outcome& outcome) {
   return std::acos(std::max(-1.0, least));
 }
 
-/// From 2 s on, for which share of the time two feet do the same: both carry or none.
+/// Returns the share of the time from 2 s on in which two feet are in the same state, in contact or
+/// not.
 double Alike(const Outcome& outcome, const std::string& one, const std::string& other) {
   const std::vector<bool>& a = outcome.carries.at(one);
   const std::vector<bool>& b = outcome.carries.at(other);
@@ -142,9 +143,9 @@ TEST(Puppy, MovesTheLegsOfADiagonalTogether) {
   ASSERT_EQ(outcome.carries.size(), 4u);
   EXPECT_GT(Alike(outcome, "front_left", "rear_right"), 0.7);
   EXPECT_GT(Alike(outcome, "front_right", "rear_left"), 0.7);
-  EXPECT_LT(Alike(outcome, "front_left", "rear_left"), 0.4);  // a pace
+  EXPECT_LT(Alike(outcome, "front_left", "rear_left"), 0.4);  // pace
   EXPECT_LT(Alike(outcome, "front_right", "rear_right"), 0.4);
-  EXPECT_LT(Alike(outcome, "front_left", "front_right"), 0.4);  // a bound
+  EXPECT_LT(Alike(outcome, "front_left", "front_right"), 0.4);  // bound
   EXPECT_LT(Alike(outcome, "rear_left", "rear_right"), 0.4);
 }
 

@@ -1,11 +1,11 @@
-/// `taut view` and `taut report` with a page of a few words.
+/// Fixture for `taut view` and `taut report` with a minimal page
 #pragma once
 
 #include <chrono>
 #include <regex>
 #include <thread>
 
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 #include "tests/viewer/client.h"
 
 namespace taut::test {
@@ -13,9 +13,9 @@ namespace taut::test {
 inline const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 inline const std::string kPush = TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml";
 inline const std::string kNoPages =
-    "error: the viewer's pages are missing; they are built with taut where node and npm are "
-    "(apt-get install nodejs npm, then script/build)\n";
-/// What reports are made of, without what makes it a page.
+    "error: the viewer's pages are missing (to build them: apt-get install nodejs npm, then "
+    "script/build)\n";
+/// Template of reports, reduced to its data element
 inline const std::string kTemplate =
     R"(<!doctype html><script type="application/json" id="taut-report"></script><p>end)";
 
@@ -34,7 +34,7 @@ class ViewCommand : public CommandTest {
     return Taut(arguments, [&] { setenv("TAUT_WEB", web.c_str(), 1); });
   }
 
-  /// Starts `taut view` on a free port, with the tokens that tests use, and waits for its address.
+  /// Starts `taut view` on a free port, with the tests' tokens, and waits for its address.
   pid_t StartView(std::vector<std::string> arguments, const std::function<void()>& before = {}) {
     arguments.insert(arguments.begin(), "view");
     arguments.insert(arguments.end(), {"--port", "0"});
@@ -46,7 +46,7 @@ class ViewCommand : public CommandTest {
       if (before) before();
     });
     viewing_ = pid;
-    const std::regex address("http://([^:]+):([0-9]+)/([^\n]*)\nOnly to watch: ([^\n]*)\n");
+    const std::regex address("http://([^:]+):([0-9]+)/([^\n]*)\nWatch only: ([^\n]*)\n");
     std::smatch found;
     while (waitpid(pid, nullptr, WNOHANG) == 0) {
       const std::string said = Read(Path("out.txt"));

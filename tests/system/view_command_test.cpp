@@ -1,4 +1,4 @@
-// `taut view` as a user meets it.
+// The command `taut view`
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -17,7 +17,7 @@ TEST_F(ViewCommand, ServesALiveRunUntilCtrlC) {
   EXPECT_EQ(query_, "?token=" + kDriveToken);
   EXPECT_EQ(watch_, fmt::format("http://localhost:{}/?token={}", port_, kWatchToken));
   EXPECT_EQ(Get(port_, "/").body, "<p>the page");
-  EXPECT_EQ(Get(port_, "/report.html").status, 404u);  // a template is no page
+  EXPECT_EQ(Get(port_, "/report.html").status, 404u);  // a template is not served
   {
     Client client(port_);
     EXPECT_EQ(client.Await("hello")["mode"], "live");
@@ -105,15 +105,18 @@ TEST_F(ViewCommand, ListeningToOthersIsSaidToBeReadable) {
   EXPECT_EQ(Get(port_, "/" + query_, {{"Cookie", ""}}).status, 200u);
   EXPECT_EQ(Stop(pid), 0);
   const std::string said = Read(Path("err.txt"));
-  EXPECT_EQ(said.rfind("warning: this listens to other machines, and without encryption: ", 0), 0u);
-  EXPECT_NE(said.find(fmt::format("ssh -L {0}:localhost:{0} MACHINE\n", port_)), said.npos) << said;
+  EXPECT_EQ(
+      said.rfind("warning: other machines can connect, and the connection is not encrypted: ", 0),
+      0u);
+  EXPECT_NE(said.find(fmt::format("ssh -L {0}:localhost:{0} MACHINE)\n", port_)), said.npos)
+      << said;
 }
 
 TEST_F(ViewCommand, WhatMovesMotorsListensToThisMachineOnly) {
   for (const std::string address : {"0.0.0.0", "::", "192.0.2.1"}) {
     const CommandResult result = Run({"view", "--robot", "virtual", "--listen", address});
     EXPECT_EQ(result.status, 2);
-    EXPECT_NE(result.errors.find("--listen " + address + " does not go with a robot"),
+    EXPECT_NE(result.errors.find("--listen " + address + " cannot be combined with a robot"),
               result.errors.npos)
         << result.errors;
     EXPECT_NE(result.errors.find("ssh -L 8080:localhost:8080 MACHINE"), result.errors.npos);
@@ -125,7 +128,7 @@ TEST_F(ViewCommand, WhatMovesMotorsListensToThisMachineOnly) {
   EXPECT_EQ(Run({"view", "--robot", "/absent", "--port", "0"}).status, 1);
 }
 
-/// A limit to the size of files stands for a full disk: writes fail in the same way.
+/// A limit of the file size acts like a full disk: writes fail in the same way.
 TEST_F(ViewCommand, AFullDiskIsSaidToAllAndAtTheTerminal) {
   const auto limit = [] {
     const rlimit bytes{400'000, 400'000};
@@ -156,9 +159,8 @@ TEST_F(ViewCommand, AFullDiskIsSaidToAllAndAtTheTerminal) {
       return message["type"] == "scene" && message["scene"].contains("notice");
     })["scene"]["notice"];
     const std::string file = trace ? "recorded/trace.h5" : "recorded/events.jsonl";
-    EXPECT_EQ(notice.rfind("nothing is recorded any more, since t = ", 0), 0u) << notice;
-    EXPECT_NE(notice.find(" of part 1: " + file + ": cannot be written: File too large"),
-              notice.npos)
+    EXPECT_EQ(notice.rfind("recording stopped at t = ", 0), 0u) << notice;
+    EXPECT_NE(notice.find(" of part 1: " + file + ": cannot write: File too large"), notice.npos)
         << notice;
     Client late(port_);
     EXPECT_EQ(late.Await("scene")["scene"]["notice"], notice);
@@ -178,10 +180,9 @@ TEST_F(ViewCommand, APortInUseIsNamed) {
   const pid_t pid = StartView({kHang, "--paused"});
   const CommandResult second = Run({"view", kHang, "--port", std::to_string(port_)});
   EXPECT_EQ(second.status, 1);
-  EXPECT_EQ(
-      second.errors.rfind(
-          "error: port " + std::to_string(port_) + " is in use; the next that is free: --port ", 0),
-      0u)
+  EXPECT_EQ(second.errors.rfind(
+                "error: port " + std::to_string(port_) + " is in use; next free port: --port ", 0),
+            0u)
       << second.errors;
   EXPECT_EQ(Stop(pid), 0);
 }
@@ -205,6 +206,16 @@ TEST_F(ViewCommand, AModelStandsStillAsDescribedOrSettled) {
   EXPECT_LT(energies[1], energies[0]);
 }
 
+TEST_F(ViewCommand, AFolderOfARunShowsItsTrace) {
+  ASSERT_EQ(Run({"run", kHang, "--duration_s", "0.1", "--out", "run", "--quiet"}).status, 0);
+  const pid_t pid = StartView({"run", "--compare", "run"});
+  Client client(port_);
+  EXPECT_EQ(client.Await("hello")["mode"], "replay");
+  EXPECT_EQ(client.Await("scene")["scene"]["compared"].size(), 1u);
+  client.Close();
+  EXPECT_EQ(Stop(pid), 0);
+}
+
 TEST_F(ViewCommand, ATraceCutOffInTheMiddleIsReplayed) {
   const pid_t run = Start({"run", kHang, "--duration_s", "1e6", "--out", "cut", "--quiet"});
   for (std::optional<Trace> trace; !trace || trace->time_s.size() < 300;) {
@@ -221,7 +232,7 @@ TEST_F(ViewCommand, ATraceCutOffInTheMiddleIsReplayed) {
   EXPECT_GT(scene["duration_s"].get<double>(), 1);
   const auto notice = scene["notice"].get<std::string>();
   EXPECT_EQ(notice.rfind("the trace ends at ", 0), 0u);
-  EXPECT_TRUE(notice.ends_with("; the trace is not finished: its run goes on, or was killed"));
+  EXPECT_TRUE(notice.ends_with("; the trace is unfinished: its run continues, or was killed"));
   client.Close();
   EXPECT_EQ(Stop(pid), 0);
 }
@@ -237,8 +248,8 @@ TEST_F(ViewCommand, BadInputIsSaidAtOnce) {
   EXPECT_EQ(result.errors, kNoPages);
   result = Run({"view", kHang, "--listen", "here"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_NE(result.errors.find("\"here\" is not an address; 127.0.0.1 is this machine, 0.0.0.0 "
-                               "listens to all\n"),
+  EXPECT_NE(result.errors.find("\"here\" is not an address (expected 127.0.0.1 for this machine "
+                               "only, or 0.0.0.0 for all)\n"),
             std::string::npos)
       << result.errors;
   EXPECT_EQ(Run({"view", kHang, "--speed", "0"}).status, 2);
@@ -250,10 +261,10 @@ TEST_F(ViewCommand, BadInputIsSaidAtOnce) {
   EXPECT_EQ(Run({"view", kHang, "--set", "luck=1"}).status, 3);
   const std::string good = Write("good.csv", "time_s,a/tension_n\n0,1\n1,2\n");
   for (const auto& [words, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"absent.h5"}, "absent.h5: error: cannot be opened: No such file or directory"},
-           {{Write("broken.h5", "not a trace")}, "broken.h5: error: is not HDF5"},
+           {{"absent.h5"}, "absent.h5: error: cannot open: No such file or directory"},
+           {{Write("broken.h5", "not a trace")}, "broken.h5: error: the file is not HDF5"},
            {{Write("empty.csv", "time_s,a/tension_n\n")}, "has no rows"},
-           {{good, "--compare", "absent.h5"}, "absent.h5: error: cannot be opened"}}) {
+           {{good, "--compare", "absent.h5"}, "absent.h5: error: cannot open"}}) {
     std::vector<std::string> all{"view"};
     all.insert(all.end(), words.begin(), words.end());
     result = Run(all);
@@ -263,10 +274,11 @@ TEST_F(ViewCommand, BadInputIsSaidAtOnce) {
   }
   result = Run({"view", kHang, "--compare", "a.h5"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(result.errors, "error: --compare goes with a trace only\n");
+  EXPECT_EQ(result.errors, "error: --compare needs a trace\n");
   result = Run({"view", "a.h5", "--out", "folder"});
   EXPECT_EQ(result.status, 2);
-  EXPECT_EQ(result.errors, "error: --set, --step_s, --settled and --out do not go with a trace\n");
+  EXPECT_EQ(result.errors,
+            "error: --set, --step_s, --settled and --out cannot be combined with a trace\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Twelve segments over a wall (docs/validation/wall.md).
+// Twelve segments that crawl over a wall (docs/validation/wall.md)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace taut {
 namespace {
 
 constexpr double kFarSideM = 1.20;
-constexpr double kReachM = 0.25;  // no point of a segment is further from its centre of mass
+constexpr double kReachM = 0.25;  // no point of a segment is further from its center of mass
 
-/// Where the last segment is in the last row, and how far any segment ever was to a side.
+/// x of the rearmost segment in the last row, and the largest lateral displacement of any segment
 class Watch final : public test::RowWatch {
  public:
   explicit Watch(std::size_t segments) : segments_(segments) {}
@@ -50,7 +50,7 @@ void ExpectOver(const std::string& height_m, double within_s, const std::string&
   ASSERT_TRUE(summary) << out.Format();
   EXPECT_EQ(summary->status_text, "");
   EXPECT_GT(watch.rearmost_m, kFarSideM + kReachM);
-  EXPECT_LT(watch.aside_m, 2.5);  // not round the wall, which reaches 3 m to either side
+  EXPECT_LT(watch.aside_m, 2.5);  // not around the wall, which extends 3 m to either side
 }
 
 TEST(Wall, TwelveSegmentsCrawlOverAWallAsHighAsNtrts) { ExpectOver("0.02", 40); }

@@ -1,10 +1,10 @@
-/// Ways to step cables, for comparison: masses that hang below each other on cables, in one
-/// dimension. taut has none of these; its own two schemes are measured in its own core
+/// Integration schemes of cables, for comparison: masses that hang below each other on cables, in
+/// one dimension. taut uses none of these; its two schemes are measured in its core
 /// (work_precision.cpp). The figure is docs/theory/work_precision.md.
 ///
 ///   s_c       stretch of cable c [m]: x_c - x_c-1, downward, from where all cables are just taut
 ///   r_c       its rate [m/s]
-///   theta     share of the end of the step in a mean of start and end: 1 implicit Euler,
+///   theta     weight of the end of the step in a mean of start and end: 1 implicit Euler,
 ///             1/2 implicit midpoint
 #pragma once
 
@@ -29,8 +29,8 @@ struct HangingState {
   std::vector<double> x_m, v_m_per_s, tension_n;
 };
 
-/// One scheme: steps a state by h and counts its work, in visits to a cable: an evaluation of its
-/// force, the making of its row, or one relaxation of its row in a sweep.
+/// One scheme: steps a state by h and counts its work in visits to a cable: an evaluation of its
+/// force, the assembly of its row, or one relaxation of its row in a sweep.
 class CableScheme {
  public:
   CableScheme(std::string name, double theta, int substeps, int max_sweeps)
@@ -70,9 +70,9 @@ class CableScheme {
     }
   }
 
-  /// Tensions as compliant rows of a solver, swept like contacts until nothing changes:
-  ///   T = k s + (theta h k + b) (theta r' + (1 - theta) r) >= 0,  x' = x + h (theta v' + (1 -
-  ///   theta) v)
+  /// Tensions as compliant rows of a solver, with Gauss-Seidel sweeps until they converge:
+  ///   T = k s + (theta h k + b) (theta r' + (1 - theta) r) >= 0,
+  ///   x' = x + h (theta v' + (1 - theta) v)
   void Implicit(const Hanging& robot, HangingState& s, double h) {
     const std::size_t n = s.x_m.size();
     const std::vector<double> before = s.v_m_per_s;

@@ -1,5 +1,6 @@
-/// Prints work and precision of ways to step cables, as CSV: script/work_precision makes the figure
-/// of docs/theory/work_precision.md from it. Nothing in it depends on a clock.
+/// Prints work and precision of integration schemes of cables as CSV, from which
+/// script/work_precision makes the figure of docs/theory/work_precision.md. The output is
+/// independent of clocks.
 
 #include <cstdio>
 

@@ -1,5 +1,5 @@
-/// Work and precision of a scheme on two problems: a soft cable that swings, a stiff one that
-/// carries a load.
+/// Work and precision of a scheme on two problems: a soft cable that oscillates, and a stiff cable
+/// that carries a load.
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,13 @@
 
 namespace taut::test {
 
-/// A run: places of the lowest mass after each step, tensions at the end, work.
+/// A run: positions of the lowest mass after each step, tensions at the end, work.
 struct SchemeRun {
   std::vector<double> x_m;
   HangingState end;
   double visits_per_s = 0;
-  double energy_j = 0;  ///< At the end, from where all cables are just taut and all masses still.
+  double energy_j = 0;  ///< At the end, relative to the pose at rest in which all cables are just
+                        ///< taut.
 };
 
 inline double EnergyOf(const Hanging& robot, const HangingState& s) {
@@ -47,7 +48,8 @@ inline SchemeRun RunScheme(CableScheme scheme, const Hanging& robot, HangingStat
   return run;
 }
 
-/// The same in taut's own core, which picks its scheme by h^2 k / m. A sweep visits every cable.
+/// Runs the same problem in taut's core, which selects its scheme by h^2 k / m. A sweep visits
+/// every cable.
 inline SchemeRun RunTaut(const Hanging& robot, const HangingState& start, double h, int steps) {
   ModelDef def;
   AttachmentDef above{kWorld, {}};
@@ -71,7 +73,7 @@ inline SchemeRun RunTaut(const Hanging& robot, const HangingState& start, double
   }
   def.gravity_m_per_s2 = {0, 0, -kGravity};
   Batch world = MakeBatch(def);
-  // A world does not know at its start which cables have been taut before: one step tells it.
+  // A new world has no data about cables that were taut before: one step provides them.
   world.Step(h);
   for (int i = 0; i < robot.masses; ++i) {
     const BodyDef& body = def.bodies[static_cast<std::size_t>(i)];
@@ -94,8 +96,8 @@ inline SchemeRun RunTaut(const Hanging& robot, const HangingState& start, double
   return run;
 }
 
-/// A linear scheme's free swing is x_n = A r^n cos(n theta + phase) about its middle, so that
-/// x_n+1 = p x_n - q x_n-1 with q = r^2, p = 2 r cos(theta): fitted by least squares.
+/// The free oscillation of a linear scheme is x_n = A r^n cos(n theta + phase) about its center, so
+/// that x_n+1 = p x_n - q x_n-1 with q = r^2, p = 2 r cos(theta): fitted by least squares.
 struct Swing {
   double angle_rad = 0;  ///< theta.
   double ratio = 0;      ///< r.
@@ -114,8 +116,7 @@ inline std::optional<Swing> SwingOf(const std::vector<double>& x, double middle)
   return Swing{std::acos(p / (2 * std::sqrt(q))), std::sqrt(q)};
 }
 
-/// What the figure shows of one scheme at one step. An error of 1 or more, or not a number, is a
-/// failure.
+/// A point of the figure: one scheme at one step. An error of 1 or more, or NaN, is a failure.
 struct WorkPoint {
   std::string problem, scheme;
   double step_s = 0, visits_per_s = 0, error = 0;
@@ -145,7 +146,7 @@ inline std::vector<WorkPoint> MeasureSoft() {
   std::vector<WorkPoint> out;
   for (double angle = 1.28; angle > 0.003; angle /= 2) {
     const double h = angle / w;
-    // The fit needs no more than a few periods, and these before an amplitude is lost in rounding.
+    // The fit needs a few periods only, before a decayed amplitude is lost in rounding.
     const int steps = static_cast<int>(20 * kPiHere / angle);
     for (const CableScheme& scheme : CableSchemes()) {
       AddSoft(scheme.name(), RunScheme(scheme, robot, start, h, steps), robot, h, out);
@@ -155,10 +156,10 @@ inline std::vector<WorkPoint> MeasureSoft() {
   return out;
 }
 
-/// Stiff: two masses of 0.1 kg on cables of 1e6 N/m. With a tenth of critical damping, let go where
-/// the cables are just taut: error of the tensions after 0.5 s, when all has settled. Without
-/// damping, let go at one and a half times the sag, so that no cable goes slack: the energy that is
-/// missing (or too much) after 0.5 s, over that of the swing.
+/// Stiff: two masses of 0.1 kg on cables of 1e6 N/m. With a tenth of critical damping, released
+/// where the cables are just taut: error of the tensions after 0.5 s, when all motion has settled.
+/// Without damping, released at one and a half times the sag, so that no cable goes slack: error of
+/// the energy after 0.5 s, relative to the energy of the oscillation.
 inline std::vector<WorkPoint> MeasureStiff() {
   std::vector<WorkPoint> out;
   for (const bool damped : {true, false}) {

@@ -1,4 +1,4 @@
-/// What docs/theory/work_precision.md concludes.
+/// Conclusions of docs/theory/work_precision.md as tests.
 
 #include "tests/theory/work_precision.h"
 
@@ -25,7 +25,7 @@ TEST(WorkPrecision, OnSoftCablesTautIsOnTheLowestCurveAndLosesNothing) {
   auto period = CurvesOf(points, "soft, period"), amplitude = CurvesOf(points, "soft, amplitude");
   const Curve &taut = period["taut"], &midpoint = period["implicit midpoint rows"];
   ASSERT_EQ(taut.size(), 9u);
-  for (std::size_t i = 3; i < taut.size(); ++i) {  // from w h = 0.16 on it is explicit
+  for (std::size_t i = 3; i < taut.size(); ++i) {  // explicit from w h = 0.16 on
     const double angle = taut[i].step_s * std::sqrt(400 / 0.1);
     EXPECT_DOUBLE_EQ(taut[i].visits_per_s * taut[i].step_s, 1) << angle;
     EXPECT_NEAR(taut[i].error / (angle * angle / 24), 1, 0.1) << angle;
@@ -45,7 +45,7 @@ TEST(WorkPrecision, OnStiffCablesTautIsStableRightAndKeepsTheEnergyAtEveryStep) 
     if (point.step_s > 1.5e-3) continue;
     EXPECT_LT(point.error, 1e-6) << point.step_s;
   }
-  // The others fail in one way or another: unstable at a millisecond, or without energy.
+  // The other schemes fail: they are unstable at a millisecond, or lose the energy.
   const auto at_1ms = [](const Curve& curve) { return curve[3]; };
   ASSERT_DOUBLE_EQ(at_1ms(energy["taut"]).step_s, 1e-3);
   EXPECT_FALSE(at_1ms(energy["symplectic Euler"]).error < 1);

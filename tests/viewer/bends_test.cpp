@@ -1,4 +1,4 @@
-// Cables that lie against what they come to: frames of traces have the bends that the rows have.
+// Cables in contact with obstacles: frames of traces contain the recorded bends.
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +24,7 @@ class Bends : public ReplayFolder {
     Record((folder_ / name / "trace.h5").string(), experiment);
     return (folder_ / name / "trace.h5").string();
   }
-  /// As it was recorded before there were such channels.
+  /// Records a run without bend channels, as in old traces.
   std::string RecordStraight() const {
     ExperimentSpec without = experiment_;
     without.robot.def.cables[0].touches = CableTouches::kNone;
@@ -33,7 +33,7 @@ class Bends : public ReplayFolder {
   }
 };
 
-/// The rows' own, as often as `bends` says.
+/// Returns the bends of a row, as many as its channel `bends` counts.
 std::vector<double> InRow(const Trace& file, std::size_t row, int cable) {
   std::vector<double> numbers;
   const auto value = [&](const std::string& name) {
@@ -83,7 +83,7 @@ TEST_F(Bends, AreThoseOfTheRowsAndOfTheGhostsRows) {
     return std::find(names.begin(), names.end(), channel) != names.end();
   };
   EXPECT_TRUE(plotted("cable/rope/bends"));
-  EXPECT_FALSE(plotted("cable/rope/bend_1_x_m"));  // its frames have it
+  EXPECT_FALSE(plotted("cable/rope/bend_1_x_m"));  // shown by the frames, not as a curve
 }
 
 TEST_F(Bends, ATraceWithoutThemIsDrawnStraightAndSaysNothing) {

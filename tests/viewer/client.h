@@ -1,5 +1,5 @@
-/// A browser's side of the viewer, without the browser: plain HTTP and a WebSocket over a real
-/// socket. No wait ends by itself: what never comes is ended by ctest.
+/// A client of the viewer without a browser: HTTP and a WebSocket over a real socket. Waits have no
+/// time limit; ctest ends a test whose answer never comes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ namespace http = beast::http;
 using asio::ip::tcp;
 using Json = nlohmann::json;
 
-/// Those of every server that tests start.
+/// Tokens of every server in the tests
 inline const std::string kDriveToken = "drive-drive-drive", kWatchToken = "watch-watch-watch";
 inline const std::string kToDrive = "/ws?token=" + kDriveToken,
                          kToWatch = "/ws?token=" + kWatchToken;
@@ -38,7 +38,7 @@ struct HttpAnswer {
   http::fields fields;
 };
 
-/// With the cookie of one who may drive, unless `fields` has another.
+/// Requests a page, with the cookie of a client that may drive unless `fields` contains another.
 inline HttpAnswer Get(std::uint16_t port, const std::string& target,
                       const std::vector<std::pair<std::string, std::string>>& fields = {},
                       http::verb method = http::verb::get) {
@@ -58,7 +58,7 @@ inline HttpAnswer Get(std::uint16_t port, const std::string& target,
   return {response.result_int(), response.body(), response.base()};
 }
 
-/// A frame, taken apart by the header that is made of messages.json.
+/// A received frame, with access by the header generated from messages.json
 struct ReceivedFrame {
   std::vector<double> numbers;
   double operator[](viewer::FrameHeader i) const { return numbers.at(i); }
@@ -119,7 +119,7 @@ class Client {
     }
     return nullptr;
   }
-  /// Reads until a frame fits; an empty one if the connection ends before.
+  /// Reads until a frame fulfills `wanted`; an empty frame if the connection ends before.
   ReceivedFrame AwaitFrame(const std::function<bool(const ReceivedFrame&)>& wanted =
                                [](const auto&) { return true; }) {
     while (Read()) {
@@ -127,7 +127,7 @@ class Client {
     }
     return {};
   }
-  /// Reads until the connection ends; how it was closed.
+  /// Reads until the connection ends. Returns the reason of closing.
   beast::websocket::close_reason AwaitClose() {
     while (Read()) {
     }

@@ -1,4 +1,4 @@
-// Several runs beside each other, and contact forces, in replays and reports.
+// Comparison of several runs, and contact forces, in replays and reports
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 class ComparedRuns : public ReplayFolder {
  protected:
-  /// Records the experiment, changed, in a folder of its own.
+  /// Records the changed experiment in a separate folder.
   std::string RecordIn(const std::string& name, const ExperimentSpec& experiment,
                        bool inputs = true) const {
     fs::create_directories(folder_ / name);
@@ -22,7 +22,7 @@ class ComparedRuns : public ReplayFolder {
     return (folder_ / name / "trace.h5").string();
   }
 
-  /// A run of half the length at half the rate, without control.
+  /// Returns an experiment of half the duration at half the rate, without control.
   ExperimentSpec Other() const {
     ExperimentSpec other = experiment_;
     other.duration_s = 0.25;
@@ -32,7 +32,7 @@ class ComparedRuns : public ReplayFolder {
   }
 };
 
-/// The last row at or before a time, which may differ by a rounding from a row's.
+/// Returns the last row at or before a time, up to rounding.
 std::size_t RowUntil(const Trace& file, double time_s) {
   const auto after = std::upper_bound(file.time_s.begin(), file.time_s.end(), time_s + 1e-9);
   return static_cast<std::size_t>(after - file.time_s.begin()) - 1;
@@ -55,7 +55,7 @@ TEST_F(ComparedRuns, GhostsHaveThePosesOfTheirOwnRows) {
   ExperimentSpec hang = *LoadExperiment(kHang, {}, found);
   hang.duration_s = 1;
   hang.record.channels.clear();
-  const std::string b = RecordIn("b", hang);  // another robot, another clock
+  const std::string b = RecordIn("b", hang);  // another robot, another sample rate
   const auto recorded = Load(trace(), {a, b});
   const Trace file_a = *ReadTrace(a, found), file_b = *ReadTrace(b, found);
   const viewer::Json scene = recorded->scene();
@@ -74,7 +74,7 @@ TEST_F(ComparedRuns, GhostsHaveThePosesOfTheirOwnRows) {
     ExpectPose(frame.ghosts[3], file_b, hang.robot.def.bodies[0].name,
                RowUntil(file_b, frame.time_s));
   }
-  const viewer::Frame late = recorded->FrameOf(28);  // 0.28 s: run a has ended at 0.25 s
+  const viewer::Frame late = recorded->FrameOf(28);  // 0.28 s: run a ended at 0.25 s
   EXPECT_TRUE(std::isnan(late.ghosts[0].position_m.x) && std::isnan(late.ghosts[2].orientation.w));
   EXPECT_FALSE(std::isnan(late.ghosts[3].position_m.x));
 }
@@ -100,13 +100,13 @@ TEST_F(ComparedRuns, ARunWithoutPosesHasNoGhostAndThatIsSaid) {
   const auto recorded = Load(trace(), {(folder_ / "measured.csv").string()});
   const viewer::Json run = recorded->scene()["compared"][0];
   EXPECT_EQ(run["bodies"].size(), 0u);
-  EXPECT_EQ(run["notice"], "no ghost: there are no poses of bodies in this trace");
+  EXPECT_EQ(run["notice"], "no ghost: the trace contains no poses of bodies");
   EXPECT_TRUE(recorded->FrameOf(3).ghosts.empty());
-  // without inputs bodies are balls, of ghosts, too
+  // without inputs, bodies are drawn as balls; also of ghosts
   const auto balls = Load(trace(), {RecordIn("c", Other(), false)});
   EXPECT_EQ(balls->scene()["compared"][0]["bodies"][0]["shapes"][0]["kind"], "sphere");
   EXPECT_EQ(balls->scene()["compared"][0]["notice"],
-            "no inputs.yaml beside the trace: bodies are shown as balls");
+            "there is no inputs.yaml in the trace's folder: bodies are shown as spheres");
 }
 
 TEST_F(ComparedRuns, NamesAreAsLongAsTellsThemApart) {
@@ -129,13 +129,13 @@ TEST_F(ComparedRuns, EveryTraceThatCannotBeReadIsNamedAtOnce) {
   Diagnostics found;
   EXPECT_FALSE(viewer::Recorded::Load(trace(), {"absent.h5", empty, "nowhere.h5"}, found));
   const std::string said = found.Format();
-  for (const char* why : {"absent.h5: error: cannot be opened", "nowhere.h5: error: cannot be",
-                          "empty.csv: error: has no rows"}) {
+  for (const char* why : {"absent.h5: error: cannot open", "nowhere.h5: error: cannot open",
+                          "empty.csv: error: the trace has no rows"}) {
     EXPECT_NE(said.find(why), std::string::npos) << said;
   }
   Diagnostics many;
   EXPECT_FALSE(viewer::Recorded::Load(trace(), std::vector<std::string>(8, trace()), many));
-  EXPECT_NE(many.Format().find("is compared with 8 runs, the most are 7"), std::string::npos);
+  EXPECT_NE(many.Format().find("is compared with 8 runs, expected at most 7"), std::string::npos);
   EXPECT_EQ(Load(trace(), std::vector<std::string>(7, trace()))->compared().size(), 7u);
 }
 
@@ -151,7 +151,7 @@ TEST_F(ComparedRuns, AReportHasTheRowsAndTheComparisonOfEachRun) {
   EXPECT_EQ(report["comparisons"][1]["channels"][0]["rmse"], 0);
   EXPECT_EQ(report["facts"]["robot"], "tetraspine3: 3 bodies, 12 cables, 2.349 kg");
   EXPECT_EQ(report["facts"]["time"], "0.5 s in steps of 0.001 s");
-  // two runs share what one has for itself
+  // two runs share the space of one
   const std::size_t channels = report["rows"][0]["channels"].size();
   EXPECT_EQ(viewer::ReportOf(*recorded, 3 * 51 * (1 + channels))["rows"][0]["level"], 1);
   EXPECT_GT(viewer::ReportOf(*recorded, 2 * 51 * (1 + channels))["rows"][0]["level"], 1);
@@ -186,7 +186,8 @@ TEST_F(ComparedRuns, ContactForcesOfATraceAreThoseThatWereRecorded) {
     most = std::max(most, filled);
   }
   EXPECT_GT(most, 0u);
-  // in a report all frames have room for the most, and contacts are no curves
+  // in a report all frames have room for the largest number of contacts, and contacts are not
+  // curves
   const viewer::Json report = viewer::ReportOf(*recorded);
   EXPECT_EQ(report["frame_count"], 16);
   for (const viewer::Json& name : report["rows"][0]["channels"]) {

@@ -1,5 +1,5 @@
-// What runs in a browser (apps/browser), here: a live run without a thread, that its caller drives
-// turn by turn.
+// The demo of the browser build (apps/browser): a live run without a thread, advanced by its caller
+// turn by turn
 #include "apps/browser/demo.h"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ Json State(const Demo& demo) { return Json::parse(demo.State()); }
 
 void Say(Demo& demo, const Json& message) { EXPECT_EQ(demo.Post(message.dump()), ""); }
 
-/// Lets it run as fast as it can until it has come to so many marks.
+/// Runs at full speed until `marks` marks are reached, then pauses.
 void GoOn(Demo& demo, std::size_t marks) {
   Say(demo, {{"type", "speed"}, {"factor", 0}});
   Say(demo, {{"type", "resume"}});
@@ -44,7 +44,7 @@ void GoOn(Demo& demo, std::size_t marks) {
   demo.Turn();
 }
 
-/// What a run of the command gives.
+/// Returns the mark of the same run by the command.
 Json MarkOfRun(const std::string& path, double duration_s, const Overrides& overrides = {}) {
   Diagnostics out;
   auto experiment = LoadExperiment(path, overrides, out);
@@ -67,7 +67,7 @@ TEST(Demo, MarksTheStateThatARunOfTheCommandHas) {
   GoOn(demo, 2);
   EXPECT_EQ(State(demo)["marks"], Json({MarkOfRun(kDrop, 0.5), MarkOfRun(kDrop, 1.2)}));
   EXPECT_EQ(State(demo)["touched"], false);
-  // the present, which has gone on a bit
+  // the present, some steps later
   const double now_s = State(demo)["time_s"];
   EXPECT_EQ(State(demo)["hash"], MarkOfRun(kDrop, now_s)["hash"]);
 }
@@ -102,12 +102,12 @@ TEST(Demo, WhoeverTouchesItIsNoLongerComparedUntilAReset) {
            {{"type", "push"}, {"node", node}, {"force_n", {0, 0, 5}}, {"duration_s", 0.1}},
            {{"type", "set_parameter"}, {"name", "friction_scale"}, {"value", 0.5}},
            {{"type", "set_setpoint"}, {"cable", cable}, {"value", 30}}}) {
-    Opened(demo, kPush, {0.2});  // it stands at its start
+    Opened(demo, kPush, {0.2});  // paused at its start
     Say(demo, touch);
     demo.Turn();
     EXPECT_EQ(State(demo)["touched"], true) << touch;
     GoOn(demo, 1);
-    if (touch["type"] != "set_parameter") {  // it stands still, as yet
+    if (touch["type"] != "set_parameter") {  // a changed friction has no effect at rest
       EXPECT_NE(State(demo)["marks"][0], mark) << touch;
     }
     Say(demo, {{"type", "reset"}});
@@ -126,7 +126,7 @@ TEST(Demo, GreetsWithHelloAndTheSceneAndSendsEachFrameOnce) {
   Demo demo;
   EXPECT_EQ(demo.TakeMessages(), "[]");
   EXPECT_EQ(demo.TakeFrame(), nullptr);
-  for (const std::string& path : {kPush, kDrop}) {  // as often as it opens something
+  for (const std::string& path : {kPush, kDrop}) {  // once for each opened experiment
     Opened(demo, path, {});
     demo.Turn();
     const Json messages = Json::parse(demo.TakeMessages());
@@ -192,7 +192,7 @@ TEST(Demo, AMistakeIsSaidWithItsPlaceAndLeavesWhatRuns) {
 
 TEST(Demo, WhatIsNoMessageIsRefused) {
   Demo demo;
-  EXPECT_EQ(demo.Post(R"({"type": "pause"})"), "nothing runs");
+  EXPECT_EQ(demo.Post(R"({"type": "pause"})"), "there is no running simulation");
   EXPECT_EQ(demo.Turn(), 1000.0);
   Opened(demo, kDrop, {});
   for (const char* text : {"", "x", "{}", R"({"type": "drag"})", R"({"type": "seek"})"}) {

@@ -1,4 +1,4 @@
-"""A live run outlives whoever speaks no proper WebSocket to it.
+"""A live run survives clients that violate the WebSocket protocol.
 
 Usage: frames_test.py TAUT
 """
@@ -21,7 +21,7 @@ PAUSE = b'{"type":"pause"}'
 
 
 def frame(opcode, data=b"", *, last=True, reserved=0, masked=True, claims=None):
-    """`claims`: the length that it says, where that is not its own."""
+    """Returns a WebSocket frame. `claims`: length in the header, if not the true length."""
     length = len(data) if claims is None else claims
     head = bytes([last << 7 | reserved << 4 | opcode])
     mask = masked << 7

@@ -1,4 +1,4 @@
-// What a live run keeps of its past.
+// Recorded history of a live run
 #include "apps/viewer/history.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ History HistoryOfOneOfEach(std::size_t max_bytes = 128u << 20) {
   return {OneOfEach(), {true}, 0.01, {}, max_bytes};
 }
 
-/// A frame whose numbers all follow from its place; some have pushes, contacts, bends.
+/// Returns a frame whose numbers all follow from its index; some have pushes, contacts and bends.
 Frame Moment(int i) {
   Frame frame;
   frame.time_s = 0.01 * i;
@@ -86,7 +86,7 @@ TEST(History, SeriesHaveTheLeastAndGreatestOfTheirBlocks) {
   EXPECT_EQ(few["min"][3], 17);
   EXPECT_EQ(few["max"][3], 20);
   EXPECT_EQ(few["first"][3], 17);
-  // A narrow span has the rows themselves, whatever is drawn.
+  // A narrow span contains the rows themselves, regardless of the requested points.
   const Json row = history.SeriesOf("cable/string/tension_n", 0.4249, 0.4249, 4);
   EXPECT_EQ(row["level"], 1);
   EXPECT_EQ(row["first"], Json({47, 48}));
@@ -97,7 +97,7 @@ TEST(History, SeriesHaveTheLeastAndGreatestOfTheirBlocks) {
 }
 
 TEST(History, KeepsTheWholeRunMoreCoarselyTheLongerItLasts) {
-  constexpr std::size_t kBytes = 40000;  // some 100 rows
+  constexpr std::size_t kBytes = 40000;  // about 100 rows
   History history = HistoryOfOneOfEach(kBytes);
   int taken = 0;
   for (int i = 0; i < 10000; ++i) {
@@ -143,7 +143,7 @@ TEST(History, KeepsWhatIsRecordedBesideFrames) {
   EXPECT_EQ(history.SeriesOf("cable/string/tension_n", 0, 0, 4)["first"][0], 5) << "the frame's";
 }
 
-// Half a turn about x + z takes (x, y, z) to (z, -y, x).
+// Half a turn about x + z maps (x, y, z) to (z, -y, x).
 TEST(History, NodesAreWhereTheirBodiesTakeThem) {
   ModelDef def = OneOfEach();
   def.bodies[0].com_m = {1, 2, 3};

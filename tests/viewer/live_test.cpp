@@ -1,5 +1,4 @@
-// A live run: left alone it is the run, and what a person does to it has its effect and is
-// recorded.
+// Live runs: without user actions they equal the run; user actions take effect and are recorded.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +54,8 @@ TEST(LiveRun, LeftAloneItGivesTheBitsOfARun) {
     while (run->time_s() < experiment.duration_s) ASSERT_TRUE(run->Step());
     EXPECT_EQ(run->time_s(), experiment.duration_s);
     EXPECT_EQ(run->world()->Hash(0), summary->state_hash) << path;
-    for (int i = 0; i < 100; ++i) ASSERT_TRUE(run->Step());  // the end is no limit
+    for (int i = 0; i < 100; ++i)
+      ASSERT_TRUE(run->Step());  // the run continues beyond the experiment's end
     EXPECT_GT(run->time_s(), experiment.duration_s + 0.05);
   }
 }
@@ -66,7 +66,7 @@ TEST(LiveRun, AHandHoldsANodeUpAgainstItsWeight) {
   const int mass = Node(experiment, "mass");
   const double weight_n = 0.5 * 9.81;
   const Vec3 start = run->world()->NodePosition(0, mass);
-  // Above the point where the cable goes slack: the hand carries all of the weight.
+  // Above the point where the cable goes slack: the hand carries the whole weight.
   run->SetHand(HandSpec{mass, {start.x, start.y, start.z + 0.2}});
   while (run->time_s() < 10) ASSERT_TRUE(run->Step());
   EXPECT_EQ(run->Observe().Cable(0).tension_n, 0);
@@ -88,7 +88,7 @@ TEST(LiveRun, APushGivesItsImpulse) {
     ASSERT_TRUE(pushed->Step());
     ASSERT_TRUE(alone->Step());
   }
-  // 2 N for 50 ms; the cable's pull to the side grows with the way of at most 5 mm.
+  // 2 N for 50 ms; the cable's lateral force increases with the displacement of at most 5 mm.
   const auto momentum_x = [](const LiveRun& run) {
     return run.world()->BodyMass(0, 0) * run.world()->Body(0, 0).velocity_m_per_s.x;
   };
@@ -113,15 +113,15 @@ TEST(LiveRun, SetPointsAndGainsTakeEffect) {
   EXPECT_TRUE(run->SetControl(controls[2]));
   ASSERT_TRUE(run->Step());
   ASSERT_TRUE(alone->Step());
-  // Both controllers saw the same state.
+  // Both controllers have the same observations.
   EXPECT_NEAR(run->commands().set_point_n[cable], alone->commands().set_point_n[cable] + 4, 1e-12);
   controls[2].impedance->position_gain_n_per_m = 0;
   controls[2].impedance->velocity_gain_n_s_per_m = 0;
   EXPECT_TRUE(run->SetControl(controls[2]));
   ASSERT_TRUE(run->Step());
-  EXPECT_EQ(run->commands().set_point_n[cable], 19);  // T0 alone
+  EXPECT_EQ(run->commands().set_point_n[cable], 19);  // T0 only
   controls[2].impedance.reset();
-  EXPECT_FALSE(run->SetControl(controls[2]));  // a controller drives it
+  EXPECT_FALSE(run->SetControl(controls[2]));  // controlled by a controller
   controls[2].cable = 99;
   EXPECT_FALSE(run->SetControl(controls[2]));
 }
@@ -174,7 +174,7 @@ TEST_F(LiveFolder, DragsAndPushesAreInTheTrace) {
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_EQ(Json::parse(lines[0])["text"], "drag mass");
   EXPECT_NEAR(Json::parse(lines[0])["time_s"].get<double>(), 0.1, 1e-9);
-  EXPECT_EQ(Json::parse(lines[1])["text"], "let go");
+  EXPECT_EQ(Json::parse(lines[1])["text"], "released");
   EXPECT_EQ(Json::parse(lines[2])["text"], "push mass with (0, 3, 0) N for 0.05 s");
 }
 
@@ -216,7 +216,8 @@ TEST(LiveView, AParameterOfTheFilesStartsAnew) {
   EXPECT_EQ(frame[FrameHeader::kFrameTimeS], 0);
 }
 
-/// Its numbers; what is not known, such as a set point that nobody sets, is a number of its own.
+/// Returns the frame's numbers, with NaN (such as an undefined set point) replaced by a comparable
+/// number.
 std::vector<double> Comparable(ReceivedFrame frame) {
   std::replace_if(
       frame.numbers.begin(), frame.numbers.end(), [](double x) { return std::isnan(x); }, -1e300);
@@ -238,7 +239,7 @@ TEST(LiveView, ItsPastIsLookedAtAndPlotted) {
   const auto then = until(0.04);
   client.Send({{"type", "step"}, {"count", 205}});
   const auto now = until(0.245);
-  // Back: what is shown is the past, where the run is does not change.
+  // Seek: the shown frame is from the past, the run's time does not change.
   client.Send({{"type", "seek"}, {"time_s", 0.0412}});
   const auto seen = until(0.04);
   EXPECT_EQ(seen[FrameHeader::kFrameNowS], now[FrameHeader::kFrameTimeS]);

@@ -1,4 +1,4 @@
-// A page of a program, and a browser that looks at it.
+// A page of a program, and a browser client
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace taut::test {
 
-/// A prism above a plane.
+/// Returns a prism above a plane.
 inline ModelDef Prism() {
   Diagnostics found;
   auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, found);
@@ -39,7 +39,7 @@ class PageTest : public testing::Test {
     const std::size_t colon = page.url().rfind(':');
     return static_cast<std::uint16_t>(std::stoi(page.url().substr(colon + 1)));
   }
-  /// A browser at an address.
+  /// Connects a browser client to an address.
   static Client Browser(const Page& page, const std::string& url) {
     return Client(Port(page), "/ws?token=" + url.substr(url.rfind('=') + 1));
   }

@@ -1,4 +1,4 @@
-// What robots consist of, on pages that a program of a user's own shows (taut/page.h).
+// Joints, bodies and shapes of robots on pages of user programs (taut/page.h)
 #include "tests/viewer/page_fixture.h"
 
 namespace taut::test {

@@ -1,4 +1,4 @@
-// Pages that a program of a user's own shows (taut/page.h), seen from a browser's side.
+// Pages of user programs (taut/page.h), from the client's side
 #include "taut/page.h"
 
 #include <atomic>
@@ -121,7 +121,7 @@ TEST_F(PageTest, ARobotThatNobodySimulatesHasWhatIsKnown) {
   EXPECT_EQ(std::vector<double>(frame.numbers.end() - 8, frame.numbers.end()), bends);
 }
 
-/// Shows moments of a robot until it is told to end: at 0, 0.1, 0.2 ... s, with 10 times that
+/// Shows poses of a robot until it is destroyed: at 0, 0.1, 0.2 ... s, with 10 times the time
 /// plotted.
 class Program {
  public:
@@ -145,7 +145,7 @@ class Program {
 };
 
 TEST_F(PageTest, PausesStepsAndGoesOnAsTheBrowserSays) {
-  options_.speed = 100;  // so that all that was shown is still there to look back to
+  options_.speed = 100;  // so that all frames are still available for seeking
   const auto page = Open();
   Client browser = Browser(*page, page->url());
   const auto paused_at = [&](double time_s) {
@@ -158,7 +158,7 @@ TEST_F(PageTest, PausesStepsAndGoesOnAsTheBrowserSays) {
     browser.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0; });
     browser.Send({{"type", "pause"}});
     paused_at(0);
-    // One more may have been on its way. From here on it goes where it is told to.
+    // One more frame may have been sent before. From here on the position follows commands.
     const double at_s = paused_at(0)[FrameHeader::kFrameTimeS];
     const int at = static_cast<int>(std::lround(10 * at_s));
     browser.Send({{"type", "step"}, {"count", 3}});
@@ -193,7 +193,7 @@ TEST_F(PageTest, WhatDoesNotGoWithAProgramIsSaid) {
   page->Show(0);
   Client browser = Browser(*page, page->url());
   browser.Send({{"type", "reset"}});
-  EXPECT_EQ(browser.Await("error")["text"], "reset does not go with what a program shows");
+  EXPECT_EQ(browser.Await("error")["text"], "reset is not possible in the page of a program");
   browser.Send({{"type", "want_series"},
                 {"id", 1},
                 {"channel", "none"},
@@ -223,8 +223,7 @@ TEST_F(PageTest, ATimeThatGoesBackIsAnotherRun) {
   EXPECT_EQ(browser.Await("series")["series"]["time_s"], Json({0.5}));
 }
 
-/// The next run waits for the page to resume: there is nothing to look back to, and no time to
-/// catch up.
+/// The next run waits for the page to resume: it has no past to seek, and no time to catch up.
 TEST_F(PageTest, ARunThatWaitsHasNoPast) {
   options_.speed = 1;
   const auto page = Open();
@@ -257,7 +256,9 @@ TEST_F(PageTest, AllThatIsWrongWithOptionsIsNamedAtOnce) {
   options_.web_folder = folder_ + "/nothing";
   Diagnostics out;
   EXPECT_EQ(Page::Open(options_, out), nullptr);
-  for (const char* word : {"speed -1", "history_period_s 0", "\"home\"", "pages are missing"}) {
+  for (const char* word :
+       {"PageOptions.speed must not be negative, got -1",
+        "history_period_s must be positive, got 0", "\"home\"", "pages are missing"}) {
     EXPECT_NE(out.Format().find(word), std::string::npos) << word << " in " << out.Format();
   }
 }
@@ -277,9 +278,9 @@ TEST_F(PageDeathTest, MistakesOfTheProgramEndItAndSayWhat) {
   const int robot = page->Add(Prism());
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   RobotMoment moment;
-  EXPECT_DEATH(page->Set(robot + 1, moment), "taut::Page: there is no robot 1, there are 1");
+  EXPECT_DEATH(page->Set(robot + 1, moment), "taut::Page: there is no robot 1 .the page has 1.");
   moment.tension_n = {1.0};
-  EXPECT_DEATH(page->Set(robot, moment), "tension_n of robot 0 has 1 entries, the robot 9");
+  EXPECT_DEATH(page->Set(robot, moment), "tension_n of robot 0 has 1 entries, expected 9");
 }
 
 TEST(Pace, TimeIsDueWhereItIsWanted) {
@@ -288,7 +289,7 @@ TEST(Pace, TimeIsDueWhereItIsWanted) {
   const auto due = pace.DueAt(10.0);
   EXPECT_NEAR(pace.WantedAt(due), 10.0, 1e-6);
   EXPECT_NEAR(pace.WantedAt(due + std::chrono::seconds(2)), 11.0, 1e-6);
-  EXPECT_EQ(pace.DueAt(2.0), pace.DueAt(3.0));  // what is past is due
+  EXPECT_EQ(pace.DueAt(2.0), pace.DueAt(3.0));  // past times are due immediately
   pace.SetSpeed(0, 10.0);
   EXPECT_EQ(pace.WantedAt(due), std::numeric_limits<double>::infinity());
   EXPECT_LE(pace.DueAt(1e300), Pace::Clock::now());
@@ -298,7 +299,7 @@ TEST(Pace, WhoIsFarBehindGoesOnFromWhereHeIs) {
   Pace pace(2.0, false);
   pace.Anchor(0.0);
   const auto one_second_on = pace.DueAt(2.0);
-  pace.At(1.95, one_second_on);  // a little behind: catches up
+  pace.At(1.95, one_second_on);  // slightly late: catches up
   EXPECT_NEAR(pace.WantedAt(one_second_on), 2.0, 1e-6);
   EXPECT_NEAR(pace.real_time_factor(), 1.95, 1e-6);
   pace.At(1.0, one_second_on);

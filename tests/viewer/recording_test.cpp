@@ -1,5 +1,5 @@
-// What a live session leaves behind: whole files, a limited number of them, and a word where there
-// is none.
+// Recordings of live sessions: complete files, limited in number, and a notice if recording is
+// impossible
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using viewer::FrameHeader;
 using viewer::Recording;
 
-/// While it lives no file can become larger than this: writes fail as they do on a full disk.
+/// Limits the size of all files during its lifetime: writes fail as on a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) {
@@ -61,7 +61,7 @@ class RecordingFolder : public testing::Test {
     run_ = LiveRun::Start(experiment_, found);
     recording.Restart(*run_, experiment_);
   }
-  /// Ten steps: three rows at 200 Hz and 1 ms, the start included.
+  /// Makes ten steps: three rows at 200 Hz and 1 ms, including the start.
   void Step(Recording& recording) {
     for (int i = 0; i < 10; ++i) {
       ASSERT_TRUE(run_->Step());
@@ -73,7 +73,7 @@ class RecordingFolder : public testing::Test {
     const auto trace = ReadTrace((folder_ / name).string(), found);
     return trace ? trace->time_s.size() : 0;
   }
-  /// But for that of the lock.
+  /// Returns the number of files, without the lock.
   std::size_t FileCount() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {})) - 1;
   }
@@ -109,9 +109,10 @@ TEST_F(RecordingFolder, HundredsOfRestartsLeaveNoMorePartsThanTheLimit) {
             "{\"time_s\":0.0,\"text\":\"event 39\"}\n")
       << "the newest run is the last part";
   ASSERT_EQ(said_.size(), 1u) << "what is not kept is said, once";
-  EXPECT_EQ(said_[0], fmt::format("{}/{} is the last part that is recorded: every restart replaces "
-                                  "it from now on",
-                                  folder_.string(), last));
+  EXPECT_EQ(
+      said_[0],
+      fmt::format("{}/{} is the last part of the recording: every further restart replaces it",
+                  folder_.string(), last));
   EXPECT_EQ(recording->failure(), "");
 }
 
@@ -149,9 +150,8 @@ TEST_F(RecordingFolder, AFileThatIsTakenAwayIsMissed) {
   ASSERT_EQ(said_.size(), 1u);
   EXPECT_EQ(said_[0], recording->failure());
   EXPECT_EQ(said_[0],
-            fmt::format("nothing is recorded any more, since t = 0.01 s of part 1: "
-                        "{}/trace.h5: is no longer there; once that is mended, a reset goes "
-                        "on recording",
+            fmt::format("recording stopped at t = 0.01 s of part 1: {}/trace.h5: the file was "
+                        "deleted or replaced; solve this problem, then reset to resume recording",
                         folder_.string()));
   Step(*recording);
   EXPECT_FALSE(recording->Finish());
@@ -167,9 +167,8 @@ TEST_F(RecordingFolder, GoesOnWithTheFirstResetForWhichThereIsRoom) {
     recording->FlushOld();
     ASSERT_EQ(said_.size(), 1u);
     EXPECT_EQ(said_[0],
-              fmt::format("nothing is recorded any more, since t = 0.01 s of part 1: {}/trace.h5: "
-                          "cannot be written: File too large; once that is mended, a reset goes on "
-                          "recording",
+              fmt::format("recording stopped at t = 0.01 s of part 1: {}/trace.h5: cannot write: "
+                          "File too large; solve this problem, then reset to resume recording",
                           folder_.string()));
     for (int i = 0; i < 20; ++i) {
       Restart(*recording);
@@ -182,9 +181,9 @@ TEST_F(RecordingFolder, GoesOnWithTheFirstResetForWhichThereIsRoom) {
   EXPECT_EQ(FileCount(), 3u) << "nothing half made stays";
   Restart(*recording);
   ASSERT_EQ(said_.size(), 2u);
-  EXPECT_EQ(said_[1],
-            "recorded again, from the start of part 2 on; after t = 0.01 s of part 1 something is "
-            "missing");
+  EXPECT_EQ(
+      said_[1],
+      "recording resumed at the start of part 2; data after t = 0.01 s of part 1 are missing");
   EXPECT_EQ(recording->failure(), "");
   EXPECT_EQ(recording->notice(), said_[1]);
   Step(*recording);
@@ -228,7 +227,7 @@ TEST_F(RecordingFolder, APartThatCannotBeginLeavesTheOneThatWasThere) {
     const FullDisk full(16 << 10);  // enough for the inputs, not for a trace
     EXPECT_FALSE(Start());
   }
-  EXPECT_NE(complaints_.find("trace.h5: cannot be written: File too large"), std::string::npos)
+  EXPECT_NE(complaints_.find("trace.h5: cannot write: File too large"), std::string::npos)
       << complaints_;
   EXPECT_EQ(Rows("trace.h5"), 3u);
   EXPECT_EQ(Read("inputs.yaml"), inputs);
@@ -275,8 +274,8 @@ TEST_F(RecordingFolder, EveryClientHearsWhatIsNotRecordedAndWhatIsAgainLateOnesT
       return message["type"] == "scene" && !message["scene"].contains("notice");
     });
   }
-  EXPECT_NE(notice.find("trace.h5: is no longer there"), std::string::npos) << notice;
-  EXPECT_NE(again.find("recorded again, from the start of part "), std::string::npos) << again;
+  EXPECT_NE(notice.find("trace.h5: the file was deleted or replaced"), std::string::npos) << notice;
+  EXPECT_NE(again.find("recording resumed at the start of part "), std::string::npos) << again;
   EXPECT_EQ(told, (std::vector<std::string>{notice, again}));
 }
 

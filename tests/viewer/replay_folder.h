@@ -1,5 +1,4 @@
-/// A folder with a recorded run of half a second of the push test, for tests of what is made of
-/// traces.
+/// Fixture with a recorded run of 0.5 s of the push test, for tests of replays and reports
 #pragma once
 
 #include <filesystem>

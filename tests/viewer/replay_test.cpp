@@ -1,4 +1,4 @@
-// Replays: poses as in the file, scrubbing, plots at every resolution, traces with something amiss.
+// Replays: poses as in the file, seeking, plots at every resolution, damaged traces
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -76,7 +76,7 @@ TEST_F(Replay, PlaysStepsAndStopsAtTheEnd) {
   client.Send({{"type", "resume"}});
   EXPECT_TRUE(at(0.5, 1));  // played to its end
   client.Send({{"type", "drag"}, {"node", "a"}, {"target_m", {0, 0, 0}}});
-  EXPECT_EQ(client.Await("error")["text"], "drag does not go with a replay");
+  EXPECT_EQ(client.Await("error")["text"], "drag is not possible in a replay");
 }
 
 TEST_F(Replay, AnyoneMayAskForSeries) {
@@ -112,7 +112,7 @@ TEST_F(Replay, AnyoneMayAskForSeries) {
   EXPECT_EQ(client.Await("error")["text"], "there is no channel \"cable/nobody/tension_n\"");
 }
 
-// The same run with its nodes recorded is the oracle.
+// Oracle: the same run with recorded nodes
 TEST_F(Replay, NodesThatWereNotRecordedFollowFromBodies) {
   Diagnostics found;
   ExperimentSpec all = experiment_;
@@ -140,7 +140,7 @@ TEST_F(Replay, NodesThatWereNotRecordedFollowFromBodies) {
   EXPECT_FALSE(recorded->SeriesOf("node/nobody/position_x_m", 0, 0, 1, 9));
 }
 
-/// The numbers of a report's Rows: count times, then those of its channels.
+/// Decodes the numbers of a report's rows: the times, then the values of each channel.
 std::vector<double> NumbersOf(const Json& rows) {
   std::vector<double> numbers;
   std::string bytes;
@@ -248,7 +248,8 @@ TEST_F(Replay, ARunWithoutAControllerHasNoSetPoint) {
 TEST_F(Replay, WithoutInputsBodiesAreBallsAndThatIsSaid) {
   fs::remove(folder_ / "inputs.yaml");
   auto recorded = Load(trace());
-  EXPECT_EQ(recorded->notice(), "no inputs.yaml beside the trace: bodies are shown as balls");
+  EXPECT_EQ(recorded->notice(),
+            "there is no inputs.yaml in the trace's folder: bodies are shown as spheres");
   Json scene = Json::parse(viewer::Dump(recorded->scene()));
   EXPECT_EQ(scene["notice"], recorded->notice());
   ASSERT_EQ(scene["bodies"].size(), 3u);
@@ -257,10 +258,12 @@ TEST_F(Replay, WithoutInputsBodiesAreBallsAndThatIsSaid) {
   EXPECT_EQ(recorded->FrameOf(3).bodies.size(), 3u);
 
   Write("inputs.yaml", "taut: 2");
-  EXPECT_EQ(Load(trace())->notice(), "inputs.yaml is not of this trace: bodies are shown as balls");
+  EXPECT_EQ(Load(trace())->notice(),
+            "inputs.yaml belongs to another trace: bodies are shown as spheres");
   Diagnostics found;
   Write("inputs.yaml", ResolvedYaml(*LoadExperiment(kHang, {}, found)));
-  EXPECT_EQ(Load(trace())->notice(), "inputs.yaml is not of this trace: bodies are shown as balls");
+  EXPECT_EQ(Load(trace())->notice(),
+            "inputs.yaml belongs to another trace: bodies are shown as spheres");
 }
 
 TEST_F(Replay, ATraceThatEndsEarlyShowsWhatIsThere) {
@@ -279,7 +282,7 @@ TEST_F(Replay, ABrokenTraceCannotBeLoaded) {
   Write("empty.csv", "time_s,a\n");
   Diagnostics empty;
   EXPECT_FALSE(viewer::Recorded::Load((folder_ / "empty.csv").string(), {}, empty));
-  EXPECT_NE(empty.Format().find("has no rows: there is nothing to show"), std::string::npos);
+  EXPECT_NE(empty.Format().find("the trace has no rows"), std::string::npos);
 }
 
 TEST_F(Replay, PushesHaveTheirArrows) {

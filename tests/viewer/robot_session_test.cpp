@@ -1,4 +1,4 @@
-// The page of a robot, seen from a browser's side and from that of the thread that drives.
+// The page of a robot, from the side of a client and of the driver thread
 #include "apps/viewer/robot_session.h"
 
 #include <sys/socket.h>
@@ -38,7 +38,7 @@ RobotSessionOptions OptionsOf(const RobotSpec& robot) {
   return options;
 }
 
-/// All boards hold, motor m at 10 + m N.
+/// Returns a state in which all boards hold, motor m at 10 + m N.
 State Holding(double time_s) {
   State state;
   state.time_s = time_s;
@@ -61,7 +61,7 @@ State Holding(double time_s) {
   return state;
 }
 
-/// A robot that a thread of its own drives, with a server in front of it.
+/// A robot session driven by a separate thread, with a server
 class RobotPage {
  public:
   explicit RobotPage(RobotSessionOptions options) {
@@ -96,7 +96,7 @@ class RobotPage {
     const std::lock_guard lock(mutex_);
     state_ = state;
   }
-  /// Waits for the next of a kind.
+  /// Waits for the next command of a kind.
   RobotCommand Await(Kind kind) {
     for (;;) {
       {
@@ -190,7 +190,7 @@ TEST(RobotSession, OneDrivesAndEverybodyWithTheTokenMayStop) {
 
   other.Send({{"type", "stop"}});
   EXPECT_EQ(page.Await(Kind::kStop).client, stops);
-  // Who stopped does not drive by that.
+  // Sending a stop does not transfer control.
   driver.Send({{"type", "robot_mode"}, {"mode", "impedance"}});
   EXPECT_EQ(page.Await(Kind::kImpedance).client, drives);
 }
@@ -227,7 +227,7 @@ TEST(RobotSession, WhatIsWrongIsSaidInWords) {
   says(state, "stall");
   state = Holding(0);
   state.boards[5].status.timeout = true;
-  says(state, "board 5 heard no broadcast in time");
+  says(state, "board 5 timed out without a broadcast");
   state = Holding(0);
   state.link.connected = false;
   says(state, "the adapter at /dev/robot is gone");
@@ -271,7 +271,7 @@ TEST(RobotSession, AGainGoesToItsMotorAndTheAnswerToAll) {
 
   driver.Send(
       {{"type", "robot_gain"}, {"cable", "none"}, {"gain", "length_offset_m"}, {"value", 1}});
-  EXPECT_NE(driver.Await("error")["text"].get<std::string>().find("no motor drives"),
+  EXPECT_NE(driver.Await("error")["text"].get<std::string>().find("there is no actuated cable"),
             std::string::npos);
   page.session().Refuse(1, "because");
   EXPECT_EQ(driver.Await("error")["text"], "because");
@@ -285,7 +285,7 @@ TEST(RobotSession, EventsAreThereForThoseWhoComeLate) {
   EXPECT_EQ(status["events"][0]["text"], "board 1: off -> hold");
 }
 
-/// Remembers what it was given.
+/// Counts the recorded rows and ends.
 class Notes final : public viewer::RobotRecorder {
  public:
   struct Kept {
@@ -340,7 +340,7 @@ TEST(RobotSession, TheTruePoseComesFromTheSocketAndStaysDescribedWithout) {
   const int caller = accept(listener, nullptr, nullptr);
   Json bodies = Json::array();
   for (std::size_t b = 0; b < robot.def.bodies.size(); ++b) bodies.push_back({7, 8, 9, 1, 0, 0, 0});
-  // In two pieces, after a line that names the numbers.
+  // In two pieces, after a line that contains the names of the numbers.
   const std::string text = "{\"format\":\"taut_truth\",\"bodies\":[]}\n" +
                            Json{{"time_s", 0.02}, {"bodies", bodies}}.dump() + "\n";
   ASSERT_GT(send(caller, text.data(), 60, 0), 0);

@@ -1,4 +1,4 @@
-// The viewer's server through real sockets: who is let in, who drives, what is refused.
+// The viewer's server through real sockets: access, control, rejected requests
 #include <random>
 
 #include "tests/viewer/serving.h"
@@ -55,7 +55,7 @@ TEST(ViewServer, OnlyThoseWhoHaveATokenComeIn) {
   EXPECT_FALSE(Client(serving.port(), "/ws").open());
   EXPECT_FALSE(Client(serving.port(), "/ws?token=" + wrong).open());
   EXPECT_FALSE(Client(serving.port(), "/ws?token=").open());
-  // Another server of this machine has cookies of its own.
+  // Another server on this machine uses other cookies.
   EXPECT_EQ(Get(serving.port(), "/", {{"Cookie", "taut_token_1=" + kDriveToken}}).status, 403u);
   for (const std::string& token : {kDriveToken, kWatchToken}) {
     const HttpAnswer page = without_cookie("/?token=" + token);
@@ -75,9 +75,9 @@ TEST(ViewServer, ALinkToWatchMayNotDrive) {
   for (const char* type : {"step", "take_control", "reset", "pause"}) {
     watcher.Send({{"type", type}});
     EXPECT_EQ(watcher.Await("error")["text"],
-              "this link is for watching only; taut printed another to drive");
+              "this address is for watching only; taut printed another address to drive");
   }
-  driver.Send({{"type", "step"}});  // nobody drove before
+  driver.Send({{"type", "step"}});  // no driver before
   EXPECT_EQ(watcher.AwaitFrame([](const auto& f) {
     return f[FrameHeader::kFrameTimeS] > 0;
   })[FrameHeader::kFrameTimeS],
@@ -101,14 +101,15 @@ TEST(ViewServer, KnowsWhatAnAddressIsAndWhoReachesIt) {
   EXPECT_FALSE(viewer::IsAddress("here"));
 }
 
-/// A request that has begun and does not go on.
+/// A request that is begun and not completed
 class HalfOpen {
  public:
   explicit HalfOpen(std::uint16_t port) : port_(port), stream_(io_) {
     stream_.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
     asio::write(stream_, asio::buffer(std::string("GET /?token=" + kDriveToken + " HTTP/1.1\r\n")));
   }
-  /// The answer to the rest of the request; 0: the server has closed the connection.
+  /// Returns the status of the answer after sending the rest of the request; 0: the server has
+  /// closed the connection.
   unsigned End() {
     const std::string rest = "Host: localhost:" + std::to_string(port_) + "\r\n\r\n";
     beast::error_code failed;
@@ -162,7 +163,7 @@ TEST(ViewServer, AUsedPortIsNamedAndTheNextOffered) {
   ASSERT_FALSE(second.Listen(error));
   const std::string in_use = "port " + std::to_string(first.port()) + " is in use";
   EXPECT_EQ(error.find(in_use), 0u) << error;
-  // The one that it offers can be had.
+  // The suggested port is free.
   const std::size_t at = error.find("--port ");
   ASSERT_NE(at, error.npos) << error;
   options.port = static_cast<std::uint16_t>(std::stoi(error.substr(at + 7)));
@@ -192,7 +193,7 @@ TEST(ViewServer, GreetsWithVersionSceneAndFrame) {
   EXPECT_EQ(frame.Count(FrameHeader::kFrameCableCount), 12u);
   EXPECT_EQ(frame.end(), frame.numbers.size());
   EXPECT_EQ(frame[FrameHeader::kFramePaused], 1);
-  // bodies are where the scene says before the first step
+  // bodies have the scene's poses before the first step
   for (std::size_t b = 0; b < 3; ++b) {
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(frame.numbers[frame.bodies() + 7 * b + i],
@@ -215,7 +216,7 @@ TEST(ViewServer, OneDrivesAtATimeAndEveryoneKnowsWho) {
 
   second.Send({{"type", "reset"}});
   EXPECT_EQ(second.Await("error")["text"],
-            "client " + std::to_string(id_1) + " drives; take control first");
+            "viewer " + std::to_string(id_1) + " drives; take control first");
   second.Send({{"type", "take_control"}});
   EXPECT_EQ(second.Await("driver")["id"], id_2);
   EXPECT_EQ(first.Await("driver")["id"], id_2);
@@ -233,15 +234,16 @@ TEST(ViewServer, MessagesThatAreNoneCloseTheirConnectionOnly) {
   Client good(serving.port());
   good.Await("hello");
   const std::vector<std::pair<std::string, std::string>> cases = {
-      {"", "a message is a JSON object with a text \"type\""},
-      {"nonsense", "a message is a JSON object with a text \"type\""},
-      {"[]", "a message is a JSON object with a text \"type\""},
-      {R"({"type": 3})", "a message is a JSON object with a text \"type\""},
+      {"", "a message must be a JSON object with a string \"type\""},
+      {"nonsense", "a message must be a JSON object with a string \"type\""},
+      {"[]", "a message must be a JSON object with a string \"type\""},
+      {R"({"type": 3})", "a message must be a JSON object with a string \"type\""},
       {R"({"type": "fly"})", "there is no message \"fly\""},
       {R"({"type": "seek"})", "seek needs \"time_s\""},
       {R"({"type": "seek", "time_s": "1"})", "seek: \"time_s\" has the wrong type"},
-      {R"({"type": "seek", "time_s": 1e999})", "a message is a JSON object with a text \"type\""},
-      {R"({"type": "pause", "now": true})", "pause has a field that it may not have"},
+      {R"({"type": "seek", "time_s": 1e999})",
+       "a message must be a JSON object with a string \"type\""},
+      {R"({"type": "pause", "now": true})", "pause has an unknown field"},
       {R"({"type": "drag", "node": "mass", "target_m": [1, 2]})",
        "drag: \"target_m\" has the wrong type"},
       {R"({"type": "set_gain", "cable": "c", "gain": "g", "value": 1})",
@@ -260,7 +262,7 @@ TEST(ViewServer, MessagesThatAreNoneCloseTheirConnectionOnly) {
   }
   Client binary(serving.port());
   binary.SendBinary("{\"type\": \"pause\"}");
-  EXPECT_EQ(std::string(binary.AwaitClose().reason.c_str()), "messages are texts");
+  EXPECT_EQ(std::string(binary.AwaitClose().reason.c_str()), "messages must be texts");
   Client large(serving.port());
   large.SendText(R"({"type": "pause", "x": ")" + std::string(65 * 1024, 'x') + "\"}");
   EXPECT_EQ(large.AwaitClose().code, beast::websocket::close_code::too_big);
@@ -268,7 +270,7 @@ TEST(ViewServer, MessagesThatAreNoneCloseTheirConnectionOnly) {
   deep.SendText(std::string(60000, '['));
   EXPECT_EQ(deep.AwaitClose().code, beast::websocket::close_code::policy_error);
 
-  good.Send({{"type", "step"}});  // nothing else was harmed
+  good.Send({{"type", "step"}});  // other clients are not affected
   EXPECT_GT(
       good.AwaitFrame([](const auto& f) { return f[FrameHeader::kFrameTimeS] > 0; }).numbers.size(),
       0u);
@@ -285,7 +287,7 @@ TEST(ViewServer, UnknownNamesAreAnsweredNotObeyed) {
       {{{"type", "set_parameter"}, {"name", "friction_scale"}, {"value", -1}},
        "friction_scale must be within 0 to 4"},
       {{{"type", "set_setpoint"}, {"cable", "cable"}, {"value", 1}},
-       "no motor drives a cable \"cable\""},
+       "there is no actuated cable \"cable\""},
       {{{"type", "want_series"},
         {"id", 1},
         {"channel", "luck"},
@@ -300,7 +302,7 @@ TEST(ViewServer, UnknownNamesAreAnsweredNotObeyed) {
   }
 }
 
-/// Seeded: what is sent is the same every time.
+/// Seeded: the same messages in every run.
 TEST(ViewServer, RandomMessagesHarmNothing) {
   const Serving serving(PausedLive(kHang));
   std::mt19937 random(4);
@@ -335,7 +337,7 @@ TEST(ViewServer, RandomMessagesHarmNothing) {
       pick(10) == 0 ? client.SendRaw(text) : client.SendText(text);
     }
   }
-  // Whatever of it was a command has been done; the server still does what it is told.
+  // Messages that were valid commands have been executed; the server still responds to commands.
   Client client(serving.port());
   client.Send({{"type", "take_control"}});
   client.Send({{"type", "pause"}});
@@ -361,7 +363,7 @@ TEST(ViewServer, AClientComesBackAfterARestart) {
   EXPECT_EQ(after.Await("hello")["title"], "hang");
 }
 
-/// Frames too large for the buffers of sockets, one after the other, numbered by their time.
+/// Frames that exceed the sockets' buffers, in sequence, numbered by their time
 class Flood final : public viewer::Session {
  public:
   Flood() : Session("live", "flood") {}
@@ -383,11 +385,11 @@ TEST(ViewServer, ASlowClientIsOneFrameBehindAndHoldsNobodyUp) {
   const Serving serving(std::make_unique<Flood>());
   Client slow(serving.port()), quick(serving.port());
   slow.Await("hello");
-  // `slow` reads nothing while `quick` sees many frames go by.
+  // `slow` reads nothing while `quick` receives many frames.
   double seen = 0;
   for (int i = 0; i < 6; ++i) seen = quick.AwaitFrame()[FrameHeader::kFrameTimeS];
   EXPECT_GE(seen, 6);
-  // The one that was under way, and then the newest.
+  // The frame that was being sent, and then the newest.
   EXPECT_LT(slow.AwaitFrame()[FrameHeader::kFrameTimeS], seen);
   EXPECT_GE(slow.AwaitFrame()[FrameHeader::kFrameTimeS], seen);
 }

@@ -1,4 +1,4 @@
-/// A server on a thread of its own, for the length of a test.
+/// A server on a separate thread, for the duration of a test
 #pragma once
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ class Serving {
   std::thread thread_;
 };
 
-/// A live run of a shipped experiment.
+/// Returns a live run of a shipped experiment.
 inline std::unique_ptr<viewer::Session> Live(const std::string& path,
                                              viewer::LiveOptions options = {}) {
   Diagnostics found;

@@ -1,5 +1,5 @@
-// What a session does with many commands: it can be stopped between any two of them, shows what is
-// going on, and makes one restart of many. Nothing here depends on how fast the machine is.
+// A session under many commands: it can be stopped between any two, shows frames in between, and
+// merges restarts. No test depends on the speed of the machine.
 #include <fmt/format.h>
 
 #include <atomic>
@@ -23,7 +23,7 @@ void Post(viewer::Session& session, const std::string& type, const std::string& 
   ASSERT_TRUE(session.Post(client, command));
 }
 
-/// Does nothing with commands but count them, in a way that the test says.
+/// Session that only counts commands, and calls a function of the test for each
 class Counting final : public viewer::Session {
  public:
   explicit Counting(std::function<void(const Counting&)> handle)
@@ -60,7 +60,7 @@ TEST(ViewSession, ShowsPicturesWhileManyCommandsWait) {
   std::atomic<int> shown_before_the_last{0};
   Counting session([&](const Counting& self) {
     shown_before_the_last = self.shown.load();
-    std::this_thread::sleep_for(std::chrono::milliseconds(11));  // longer than a slice
+    std::this_thread::sleep_for(std::chrono::milliseconds(11));  // longer than a time slice
   });
   for (int i = 0; i < 5; ++i) Post(session, "step");
   session.Start([] {});
@@ -76,8 +76,8 @@ double ValueOf(const Json& scene, const std::string& name) {
   return std::nan("");
 }
 
-/// The scene and frame of a client, once the run has this number and this time. Its server was
-/// started with these commands waiting.
+/// Scene and frame of a client once the run has this number and time. The commands were posted
+/// before the server started.
 struct Outcome {
   Json scene;
   ReceivedFrame frame;
@@ -115,7 +115,7 @@ TEST(ViewSession, ResetsAndChangesInARowAreOneRestart) {
   EXPECT_EQ(ValueOf(outcome.scene, "rest_length_m"), 1.5);
 }
 
-/// What comes in between is about the run that the changes before it lead to.
+/// Commands between restarts refer to the run after the preceding changes.
 TEST(ViewSession, OtherCommandsKeepTheirPlaceAmongRestarts) {
   auto session = PausedLive(kHang);
   Post(*session, "set_parameter", "mass_kg", 0.7);
@@ -138,7 +138,7 @@ TEST(ViewSession, OfManyChangesThoseThatCannotBeAreAnsweredAndTheRestAreMade) {
   Post(*session, "set_parameter", "luck", 1, 1);
   Post(*session, "set_parameter", "mass_kg", 0.75, 2);
   Post(*session, "set_parameter", "mass_kg", 0, 3);   // the model does not allow it
-  Post(*session, "set_parameter", "mass_kg", 99, 4);  // no slider goes there
+  Post(*session, "set_parameter", "mass_kg", 99, 4);  // beyond the slider's range
   Post(*session, "set_parameter", "rest_length_m", 1.25, 5);
   session->Start([] {});
   std::map<int, std::string> errors;

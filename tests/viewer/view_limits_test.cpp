@@ -1,4 +1,4 @@
-// Limits of the viewer for browsers and traces: excess is refused, closed or drawn more coarsely.
+// Limits of the viewer for clients and traces: excess is rejected, closed or drawn more coarsely.
 #include <utility>
 
 #include "apps/viewer/report.h"
@@ -89,7 +89,7 @@ TEST(ViewLimits, OfARobotsCommandsAThousandWaitAndTheStopAlways) {
 using ReportLimits = ReplayFolder;
 
 TEST_F(ReportLimits, AReportHas4000PicturesAtMost) {
-  // 150 s would be 4501 pictures, 30 a second.
+  // 150 s would be 4501 pictures at 30 per second.
   Diagnostics found;
   const std::vector<ChannelInfo> channels{{"body/segment_0/position_x_m", "m"}};
   const auto writer = CreateHdf5Trace((folder_ / "long.h5").string(), channels, {}, found);
@@ -113,7 +113,7 @@ TEST(ViewLimits, OfAHeightField250000CornersAreDrawnAtMost) {
     const viewer::Json scene = viewer::SceneOf(experiment);
     return scene["terrain"][0]["corners_m"].size() / 3;
   };
-  EXPECT_EQ(corners(), 251u * 251u);  // every second one
+  EXPECT_EQ(corners(), 251u * 251u);  // every second corner
 }
 
 }  // namespace

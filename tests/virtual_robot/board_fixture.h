@@ -1,4 +1,4 @@
-/// For tests of one board with the probe's program.
+/// Helpers for tests of one board with the probe's program
 #pragma once
 
 #include <algorithm>
@@ -9,16 +9,16 @@
 
 namespace taut::virtual_robot {
 
-inline constexpr Time kBoot = 5 * kMillisecond;  // the probe is up by then
+inline constexpr Time kBoot = 5 * kMillisecond;  // the probe is running by then
 
-/// In steps as the robot takes them.
+/// Runs the board in the same steps as the robot.
 inline void RunTo(Board& board, Time until) {
   for (Time now = board.now(); now < until; now += 20 * kMicrosecond) {
     board.RunUntil(std::min(now + 20 * kMicrosecond, until));
   }
 }
 
-/// Edges of `count` states from state 0, evenly spread over [from, to].
+/// Returns edges of `count` states from state 0, evenly spread over [from, to].
 inline std::vector<EncoderEdge> Edges(int count, Time from, Time to) {
   std::vector<EncoderEdge> edges;
   for (int i = 1; i <= std::abs(count); ++i) {

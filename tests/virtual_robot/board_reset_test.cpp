@@ -1,4 +1,4 @@
-// What ends a board's program, and how it begins anew.
+// Resets of a board: causes, and restart of the program
 #include <gtest/gtest.h>
 
 #include <string>
@@ -28,7 +28,7 @@ TEST(Board, ALineThatFallsBeforeTheProgramAsksForEdgesIsNoStorm) {
 TEST(Board, EdgesAfterAResetCountOnceEach) {
   Board board(ProbeProgram(), {});
   RunTo(board, kBoot);
-  // Stop with both lines low, which in simavr after a reset is a storm of interrupts.
+  // Stop with both lines low, a state that causes a storm of interrupts in simavr after a reset.
   board.SetEncoderEdges(0, Edges(4, board.now(), board.now() + kMillisecond));
   RunTo(board, board.now() + 2 * kMillisecond);
   ASSERT_EQ(Count(board, 0), 2);
@@ -42,7 +42,7 @@ TEST(Board, EdgesAfterAResetCountOnceEach) {
   board.SetEncoderEdges(0, Edges(6, board.now(), board.now() + kMillisecond));
   RunTo(board, board.now() + 2 * kMillisecond);
   EXPECT_EQ(Count(board, 0), 5);
-  // The level that the pins have at a reset is still there after it.
+  // Pins keep their level through a reset.
   board.SetMemory(kBoxOrder, kOrderHang);
   RunTo(board, board.now() + 80 * kMillisecond);
   board.SetEncoderEdges(0, {{board.now(), false, true}});
@@ -83,7 +83,8 @@ TEST(Board, AProgramClearsCausesOfResetsAndSetsNone) {
   EXPECT_EQ(board.Memory(kBoxCause), 8) << "and the next reset has its own cause only";
 }
 
-// Else simavr would look at its timers after every instruction or so: the same, ten times slower.
+// Otherwise simavr would check its timers after about every instruction: the same result, ten times
+// slower.
 TEST(Board, ACoreRunsOnForAsLongAfterAReset) {
   AvrCore core(*ProbeProgram());
   core.Reset(1, true);
@@ -102,7 +103,7 @@ TEST(Board, AProgramThatIsLostIsCaughtByTheWatchdog) {
     board.SetMemory(kBoxOrder, static_cast<std::uint8_t>(order));
     RunTo(board, board.now() + 100 * kMillisecond);
     EXPECT_EQ(board.crashes(), 1U) << order;
-    EXPECT_NE(trouble.find("the program is lost"), std::string::npos);
+    EXPECT_NE(trouble.find("the program has crashed"), std::string::npos);
     EXPECT_EQ(board.Memory(kBoxCause), 8) << order;
     EXPECT_EQ(board.Memory(kBoxBoots), 2) << order;
   }

@@ -1,7 +1,7 @@
-"""A client of the robot's USB-ISS, and of its boards, that shares no line with taut's own.
+"""An independent client of the robot's USB-ISS adapter and of its boards, which shares no code with taut's
 
-Frames of the adapter are by Devantech's text alone: "USB-ISS Technical documentation" of 16/09/22 and the pages
-usb_iss_tech and usb_iss_i2c_tech. Messages of the boards are by docs/hardware/protocol.md.
+Frames of the adapter follow Devantech's documents only: "USB-ISS Technical documentation" of 16/09/22 and the pages
+usb_iss_tech and usb_iss_i2c_tech. Messages of the boards follow docs/hardware/protocol.md.
 """
 
 import os
@@ -14,8 +14,8 @@ import termios
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PATIENCE_S = 60  # for what comes at once on a machine with nothing else to do
-GAP_S = 0.005  # after which the adapter takes what comes for another frame
+PATIENCE_S = 60  # limit for events that are immediate on an idle machine
+GAP_S = 0.005  # after this gap the adapter treats bytes as another frame
 BOARDS, MOTORS = 6, 2
 OFF, HOLD, POSITION, IMPEDANCE, DUTY, REPLY, STOPPED = 0, 1, 2, 3, 4, 5, 7
 EMERGENCY_STOP = bytes.fromhex("ce 53 54 39")
@@ -23,7 +23,7 @@ INFO, FAULTS, COUNTERS = 0xF0, 0xF1, 0xF2
 
 
 def crc(data, width, polynomial, start):
-    """Highest bit first, nothing turned round, nothing added at the end."""
+    """Returns the CRC: highest bit first, no reflection, no final XOR."""
     top, mask, value = 1 << (width - 1), (1 << width) - 1, start
     for byte in data:
         value ^= byte << (width - 8)
@@ -70,7 +70,7 @@ def read_address(board):
 
 
 def good_frame(board, frame):
-    """Whether 16 bytes are a frame of this board."""
+    """Returns whether 16 bytes are a frame of this board."""
     return len(frame) == 16 and crc8(bytes([board]) + frame[:15], start=0xFF) == frame[15:]
 
 
@@ -93,10 +93,11 @@ class Status:
 
 
 class Robot:
-    """The program, and the terminal that stands for its adapter.
+    """The virtual robot's process, and the terminal of its adapter
 
-    The gears lock themselves: else a robot whose motors are off sinks, and its boards take motors that are turned by
-    their cables for hot ones. How long it is off depends on how fast the machine is.
+    The gears are self-locking: otherwise a robot with its motors off would sink, and its boards would compute
+    overheated windings for motors that are turned by their cables. The time with motors off depends on the speed of the
+    machine.
     """
 
     def __init__(self, program, folder):
@@ -105,16 +106,16 @@ class Robot:
         self.process = subprocess.Popen(
             [program, "--model", ROOT / "share/models/tetraspine3_motors.yaml", "--link", self.link, "--log", self.log,
              "--frames", "--set", "gear_efficiency=0.45"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.said = self.process.stdout.readline()  # it has a terminal now, or has ended
+        self.said = self.process.stdout.readline()  # its terminal is open now, or it has ended
         if not self.said:
             raise AssertionError(f"{program} ended with status {self.process.wait()}")
         self.open()
 
     def open(self):
-        """As for a serial port; a speed means nothing to it."""
+        """Opens the terminal like a serial port; the speed has no meaning."""
         self.terminal = os.open(self.link, os.O_RDWR | os.O_NOCTTY)
         settings = termios.tcgetattr(self.terminal)
-        settings[0] = settings[1] = settings[3] = 0  # bytes as they are
+        settings[0] = settings[1] = settings[3] = 0  # raw bytes
         settings[2] = termios.CS8 | termios.CREAD | termios.CLOCAL
         settings[6][termios.VMIN], settings[6][termios.VTIME] = 1, 0
         termios.tcsetattr(self.terminal, termios.TCSANOW, settings)
@@ -124,7 +125,7 @@ class Robot:
         self.terminal = None
 
     def end(self):
-        """Its exit status after Ctrl-C."""
+        """Ends the process with Ctrl-C. Returns its exit status."""
         if self.terminal is not None:
             self.close()
         self.process.send_signal(signal.SIGINT)
@@ -135,7 +136,7 @@ class Robot:
         return bool(select.select([self.terminal], [], [], seconds)[0])
 
     def send(self, frame):
-        """In one piece: the adapter takes no others."""
+        """Sends a frame in one piece, as the adapter requires."""
         if os.write(self.terminal, frame) != len(frame):
             raise AssertionError("a frame was torn")
 
@@ -154,12 +155,13 @@ class Robot:
         return self.receive(count)
 
     def taken(self):
-        """What the adapter took so far: one hexadecimal text a burst."""
+        """Returns the frames taken by the adapter so far, one hexadecimal text per burst."""
         lines = self.log.read_text().splitlines()
         return [line.split("usb: > ")[1] for line in lines if "usb: > " in line]
 
     def send_and_see(self, frame):
-        """Returns when the adapter has taken it, and a gap has passed: what is sent next is another frame."""
+        """Sends a frame and waits until the adapter has taken it and a gap has passed, so that the next bytes are
+        another frame."""
         before, until = len(self.taken()), time.monotonic() + PATIENCE_S
         self.send(frame)
         while len(self.taken()) == before:
@@ -170,7 +172,7 @@ class Robot:
             raise AssertionError(f"{frame.hex(' ')} was taken as {self.taken()[before:]}")
         time.sleep(GAP_S)
 
-    # --- what the adapter does ---
+    # --- adapter ---
 
     def version(self):
         return self.ask(bytes.fromhex("5a 01"), 3)
@@ -182,30 +184,30 @@ class Robot:
         return self.ask(bytes([0x58, address]), 1) != b"\0"
 
     def write(self, address, data):
-        """I2C_AD0; whether it was acknowledged."""
+        """Writes by I2C_AD0. Returns whether the data were acknowledged."""
         return self.ask(bytes([0x54, address, len(data)]) + data, 1) != b"\0"
 
     def read(self, address, count):
         return self.ask(bytes([0x54, address | 1, count]), count)
 
     def direct(self, *parts):
-        """The bytes that were read, or the number of an error."""
+        """Executes I2C_DIRECT. Returns the bytes that were read, or an error number."""
         status, number = self.ask(bytes([0x57, *parts]), 2)
         if status == 0:
             return number
         return self.receive(number)
 
-    # --- what the boards do ---
+    # --- boards ---
 
     def broadcast(self, *arguments, **options):
         return self.write(0x00, cyclic(*arguments, **options))
 
     def statuses(self):
-        """Of all boards, in two DIRECTs of three boards each."""
+        """Returns the statuses of all boards, by two DIRECTs of three boards each."""
         frames = b""
         for first in (0, 3):
             parts = []
-            for board in range(first, first + 3):  # 16 bytes, the last of which is not acknowledged
+            for board in range(first, first + 3):  # 16 bytes, the last without acknowledgement
                 parts += [0x01, 0x30, read_address(board), 0x2E, 0x04, 0x20, 0x03]
             got = self.direct(*parts)
             if got == 1:
@@ -224,14 +226,15 @@ class Robot:
         return Status(frame)
 
     def until(self, board, wanted):
-        """The status that is as wanted; it is as old as the last broadcast, which may still be under way."""
+        """Waits for a status that fulfills `wanted`. A status may lag behind the last broadcast."""
         return self.repeat(lambda: self.status(board), wanted)
 
     def request(self, board, message):
-        """The result and the payload of the reply."""
+        """Sends a request. Returns the result and the payload of the reply."""
         if not self.write(write_address(board), message):
             raise AssertionError("a request was not acknowledged")
-        # Until the board has read it, which takes longer after a load of the EEPROM, it says what it said before.
+        # Until the board has read the request, which takes longer after a load from the EEPROM, it sends its previous
+        # reply.
         frame = self.repeat(lambda: self.read(read_address(board), 16),
                             lambda frame: good_frame(board, frame) and frame[1] == REPLY
                             and (frame[0], frame[2]) == (message[1], message[2]))

@@ -1,6 +1,7 @@
-"""The virtual robot as an independent client sees it (client.py), through its pseudo-terminal.
+"""The virtual robot tested by an independent client (client.py) through its pseudo-terminal
 
-Usage: client_test.py PROGRAM TEST. One test of this file, by its name. Nothing depends on how fast the machine is.
+Usage: client_test.py PROGRAM TEST. TEST is the name of a test of this file. No test depends on the speed of the
+machine.
 """
 
 import os
@@ -30,22 +31,22 @@ class Client(unittest.TestCase):
         self.addCleanup(self.robot.end)
         if self._testMethodName != "SaysWhatItIs":
             self.assertEqual(self.robot.set_mode(*HARDWARE_400_KHZ), DONE)
-            # A board begins 15 ms or more after power, and has a status of its own after a broadcast.
+            # A board starts 15 ms or more after power on, and has a current status after a broadcast.
             self.robot.repeat(self.look, bool)
 
     def look(self):
-        """Whether board 5 is there; to a board that is an empty message, which it counts as a wrong one."""
+        """Returns whether board 5 is there. The board receives an empty message, which it counts as bad."""
         there = self.robot.is_there(write_address(5))
         self.looks = int(there)
         return there
 
     def ignored(self, *frames):
-        """Nothing answers these, and what comes then is answered as ever."""
+        """Checks that these frames get no answer, and that the next request is answered as usual."""
         for frame in frames:
             self.robot.send_and_see(frame)
             self.assertEqual(self.robot.version()[::2], b"\x07\x70", frame.hex(" "))
 
-    # --- the adapter ---
+    # --- adapter ---
 
     def SaysWhatItIs(self):
         module, version, mode = self.robot.version()
@@ -66,7 +67,7 @@ class Client(unittest.TestCase):
             self.assertEqual(self.robot.set_mode(mode, 0x04), UNKNOWN_COMMAND)
             self.assertEqual(self.robot.version()[2], 0x70, "as before")
         self.assertEqual(self.robot.ask(bytes.fromhex("5a 09"), 2), UNKNOWN_COMMAND)
-        self.assertEqual(self.robot.set_mode(0x10, 0x04), DONE)  # IO_CHANGE, which leaves I2C as it is
+        self.assertEqual(self.robot.set_mode(0x10, 0x04), DONE)  # IO_CHANGE, which does not affect I2C
         self.assertTrue(self.robot.is_there(write_address(0)))
 
     def FindsSixBoards(self):
@@ -84,14 +85,14 @@ class Client(unittest.TestCase):
         for frame in (bytes([0x53, address, 1]), bytes([0x54, address, 2, 1, 2]), bytes([0x55, address, 0, 1, 5]),
                       bytes([0x56, address, 0, 0, 1, 5])):
             self.assertEqual(self.robot.ask(frame, 1), b"\0", frame.hex(" "))
-        # A read cannot say so; since version 3 it gives ones.
+        # A read has no error code; since version 3 it returns ones.
         self.assertEqual(self.robot.ask(bytes([0x53, address | 1]), 1), b"\xff")
         self.assertEqual(self.robot.read(address, 16), 16 * b"\xff")
         self.assertEqual(self.robot.ask(bytes([0x55, address | 1, 0, 16]), 16), 16 * b"\xff")
         self.assertEqual(self.robot.ask(bytes([0x56, address | 1, 0, 0, 16]), 16), 16 * b"\xff")
         self.assertEqual(self.robot.direct(0x01, 0x31, address, 1, 0x03), 1)
         self.assertEqual(self.robot.direct(0x01, 0x30, address | 1, 0x2F, 0x03), 1)
-        # One of three that is not there spoils the frame of all.
+        # One missing board of three makes the whole frame fail.
         self.assertEqual(self.robot.direct(*[part for board in (0, NOBODY - 0x10, 1)
                                              for part in (0x01, 0x30, read_address(board), 0x2F, 0x03)]), 1)
         self.assertTrue(self.robot.broadcast(1))
@@ -106,7 +107,7 @@ class Client(unittest.TestCase):
         self.assertEqual(self.robot.direct(0x01, 0x30, address, 0x03), b"", "nothing was to be read")
 
     def TakesWhatFitsIntoItsBufferAndNoMore(self):
-        # 60 data bytes of AD1, 59 of AD2 make a frame of 64, the size of its buffer.
+        # 60 data bytes of AD1 or 59 of AD2 make a frame of 64, the size of the buffer.
         address, bad = write_address(0), self.counters(0)["bad"]
         self.robot.ask(bytes([0x55, address, 0, 60, *60 * [0]]), 1)
         self.robot.ask(bytes([0x56, address, 0, 0, 59, *59 * [0]]), 1)
@@ -146,7 +147,8 @@ class Client(unittest.TestCase):
         self.assertEqual(self.robot.version()[2], 0x90)
 
     def AReplyNeedNotBeWaitedFor(self):
-        """It comes; what was sent before it came is answered after it, or never; and nothing else is different then."""
+        """Sends requests without waiting for replies: the reply comes; a request sent before that is answered
+        afterwards or never; later requests are not affected."""
         first, second = bytes.fromhex("5a 03"), bytes([0x54, read_address(1), 16])
         for _ in range(5):
             self.robot.send(first)
@@ -155,7 +157,7 @@ class Client(unittest.TestCase):
             self.robot.repeat(self.robot.taken, lambda bursts: "".join(bursts).replace(" ", "").endswith(second.hex()))
             self.robot.send_and_see(bytes.fromhex("5a 01"))
             got = b""
-            while got[-3:][::2] != b"\x07\x70" or len(got) not in (3, 19):  # the answer to this or, if that was lost, again
+            while got[-3:][::2] != b"\x07\x70" or len(got) not in (3, 19):  # repeated if the answer was lost
                 if not self.robot.waiting(0.5):
                     self.robot.send_and_see(bytes.fromhex("5a 01"))
                 got += os.read(self.robot.terminal, 256)
@@ -172,10 +174,10 @@ class Client(unittest.TestCase):
         self.assertFalse(os.path.lexists(self.robot.link))
         self.robot.end = lambda: None
 
-    # --- the boards ---
+    # --- boards ---
 
     def caught_up(self, sequence):
-        """The statuses of all boards when they have taken this broadcast."""
+        """Waits until all boards have taken this broadcast. Returns their statuses."""
         return self.robot.repeat(self.robot.statuses, lambda all: {status.sequence for status in all} == {sequence})
 
     def counters(self, board):
@@ -192,7 +194,7 @@ class Client(unittest.TestCase):
         return struct.unpack("<H", self.robot.request(board, question(INFO))[1][8:10])[0]
 
     def MessagesAreThoseOfThePage(self):
-        """The page's examples, and the sums that its checksums are known by."""
+        """Checks the page's examples, and the check values of its checksums."""
         self.assertEqual(crc16(b"123456789").hex(), "29b1")
         self.assertEqual(crc8(b"123456789").hex(), "f4")
         page = (ROOT / "docs/hardware/protocol.md").read_text()
@@ -205,7 +207,7 @@ class Client(unittest.TestCase):
         self.assertTrue(good_frame(2, frame) and not good_frame(1, frame))
 
     def ABroadcastReachesAll(self):
-        """With every command that can write; the general call is a write to address 0."""
+        """Broadcasts with every writing command; the general call is a write to address 0."""
         self.assertTrue(self.robot.broadcast(1))
         self.caught_up(1)
         message = cyclic(2)
@@ -232,7 +234,7 @@ class Client(unittest.TestCase):
             whole = self.robot.read(address, 16)
             self.assertEqual(whole[0], 7)
             self.assertEqual(self.robot.ask(bytes([0x53, address]), 1), whole[:1])
-            # Registers are bytes that are written before: here a message that is none.
+            # Registers are bytes written before the read: here an invalid message.
             self.assertEqual(self.robot.ask(bytes([0x55, address, 0, 16]), 16), whole)
             self.assertEqual(self.robot.ask(bytes([0x56, address, 0, 0, 16]), 16), whole)
             self.assertEqual(self.robot.direct(0x01, 0x30, address, 0x2F, 0x03), whole, "without a NACK: as good")
@@ -250,7 +252,7 @@ class Client(unittest.TestCase):
             faults = self.faults(board)
             self.assertEqual(faults[:3], b"\0\0\0", "well")
             self.assertEqual(faults[3], 1, "power came")
-            # Windings are as warm as the air, 25 degrees, once that is computed.
+            # Computed winding temperatures equal the air's 25 degrees, once they are computed.
             self.robot.repeat(lambda: self.faults(board)[5:7], lambda temperatures: temperatures == b"\x19\x19")
             self.assertEqual(self.counters(board)["bad"], 0 if board < 5 else self.looks)
 
@@ -322,7 +324,7 @@ class Client(unittest.TestCase):
         self.assertEqual(self.robot.value(5, 18, 0), 50.0)
 
     def power(self):
-        """Two steps of arming; the motors hold then."""
+        """Arms in two steps; the motors hold then."""
         self.assertTrue(self.robot.broadcast(1, OFF, arm=1, clear=True))
         self.caught_up(1)
         self.assertTrue(self.robot.broadcast(2, HOLD, arm=2))
@@ -339,7 +341,7 @@ class Client(unittest.TestCase):
         for status in self.caught_up(3):
             self.assertEqual((status.mode, status.wrong), (HOLD, False))
         self.assertEqual(self.faults(0)[4] & 0b100, 0b100, "armed")
-        for sequence in range(4, 200, 2):  # until no silence of 100 ms comes between, after which it only holds
+        for sequence in range(4, 200, 2):  # until no silence of 100 ms occurs in between, after which boards only hold
             self.assertTrue(self.robot.broadcast(sequence, HOLD, arm=2, clear=True))
             self.assertTrue(self.robot.broadcast(sequence + 1, POSITION, arm=2))
             self.caught_up(sequence + 1)

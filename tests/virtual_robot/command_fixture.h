@@ -1,5 +1,4 @@
-/// The command taut_virtual_robot in a folder of its own, with a robot.yaml: Tetraspine3 with
-/// motors.
+/// Fixture for the command taut_virtual_robot, with a robot.yaml: Tetraspine3 with motors
 #pragma once
 
 #include <gtest/gtest.h>

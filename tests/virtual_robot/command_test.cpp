@@ -1,4 +1,4 @@
-// The command taut_virtual_robot: what it says, and its exit status.
+// The command taut_virtual_robot: output and exit status
 #include "tests/virtual_robot/command_fixture.h"
 
 namespace taut::virtual_robot {
@@ -32,12 +32,12 @@ TEST_F(VirtualRobot, AllMistakesOfAllFilesAreSaidAtOnce) {
   const Done done =
       Ask("--model robot.yaml --firmware robot.yaml --faults faults.yaml --measure 1");
   EXPECT_EQ(done.status, 3);
-  EXPECT_TRUE(Says(done, "robot.yaml: error: is not an ELF file")) << done.said;
+  EXPECT_TRUE(Says(done, "robot.yaml: error: the firmware is not an ELF file")) << done.said;
   EXPECT_TRUE(Says(done, "faults.yaml:5:")) << done.said;
   EXPECT_TRUE(Says(done, "faults.yaml:6:")) << done.said;
   const Done model = Ask("--model " TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml --measure 1");
   EXPECT_EQ(model.status, 3);
-  EXPECT_TRUE(Says(model, "is no motor")) << model.said;
+  EXPECT_TRUE(Says(model, "is not a motor")) << model.said;
 }
 
 TEST_F(VirtualRobot, ACalibrationIsReadAndWhatWasHeardIsText) {

@@ -1,4 +1,4 @@
-/// A slave of a few lines: it does what it is told at once, or holds the clock for a given time.
+/// Minimal I2C slave: reacts immediately, or holds the clock for a given time
 #pragma once
 
 #include <cstdint>
@@ -46,9 +46,9 @@ class FakeSlave : public I2cSlave {
   }
 
   bool general_call = false;
-  const Time* now = nullptr;     ///< How far slaves have run.
-  bool late = false;             ///< Something came that had happened before then.
-  std::size_t takes = SIZE_MAX;  ///< Bytes that it acknowledges.
+  const Time* now = nullptr;     ///< Time that slaves have reached.
+  bool late = false;             ///< True if an event came with a time before that.
+  std::size_t takes = SIZE_MAX;  ///< Number of bytes to acknowledge.
   Time hold = 0;
   std::uint8_t send_from = 0x40;
   std::vector<std::uint8_t> received;

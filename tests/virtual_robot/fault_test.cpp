@@ -1,4 +1,4 @@
-// Each kind of fault: what the boards, the bus and the host see of it, and that it passes.
+// Each kind of fault: its effects on boards, bus and host, and recovery
 #include <gtest/gtest.h>
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// A robot with one fault script, whose host sends the same duties every 10 ms.
+/// A robot with a fault script, whose host sends the same duties every 10 ms
 class FaultyRobot {
  public:
   explicit FaultyRobot(std::vector<FaultSpec> faults, double duty = 0.1) : duty_(duty) {
@@ -24,7 +24,7 @@ class FaultyRobot {
     host = std::make_unique<ProbeHost>(*robot);
     host->Configure();
   }
-  /// Cycles of 10 ms up to `until`.
+  /// Runs cycles of 10 ms up to `until`.
   void RunTo(Time until) {
     while (robot->now() < until) {
       const Time next = (robot->now() / (10 * kMillisecond) + 1) * 10 * kMillisecond;
@@ -238,7 +238,7 @@ TEST(Fault, UsbLostWithinAMessageLeavesBoardsThatRecover) {
 }
 
 TEST(Fault, AMessageThatUsbLeftInTheMiddleIsNotTaken) {
-  // Within the bytes of a message: 0.25 ms on USB, then 23 us a byte.
+  // Within the bytes of a message: 0.25 ms on USB, then 23 us per byte.
   FaultyRobot faulty({{.kind = FaultKind::kUsbLoss, .at_s = 0.10035, .for_s = 0.01}});
   faulty.RunTo(100 * kMillisecond);
   faulty.robot->HostWrites(Bytes{0x54, 0x00, 0x07, 0xC1, 1, 2, 3, 4, 5, 6});

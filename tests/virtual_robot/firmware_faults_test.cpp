@@ -1,6 +1,6 @@
-// What can go wrong with the electronics, one fault after the other, with the firmware in all
-// boards and a PC that goes on talking: no tension above its limit, motors held or released, all of
-// it said, and a way back.
+// Electronic faults, one after the other, with the firmware on all boards and a PC that keeps
+// sending: no tension above its limit, motors held or released, every fault reported, and recovery
+// possible.
 #include "tests/virtual_robot/firmware_fixture.h"
 
 namespace taut::virtual_robot {
@@ -28,7 +28,7 @@ FaultSpec CableFault(FaultKind kind, int cable, double at_s) {
   return fault;
 }
 
-/// Twelve motors under impedance control since 0.3 s or so, unless told otherwise.
+/// Twelve motors under impedance control from about 0.3 s on, unless `mode` is different
 class Session {
  public:
   explicit Session(std::vector<FaultSpec> faults, Mode mode = Mode::kImpedance) {
@@ -117,7 +117,7 @@ TEST(FirmwareFaults, ABoardThatIsGoneIsNoticedAndTheOthersGoOn) {
   session.RunTo(0.7);
   EXPECT_GT(session.master->bad_frames, 10);
   for (int b : {0, 1, 3, 4, 5}) EXPECT_EQ(session.master->status[b].mode, Mode::kImpedance) << b;
-  session.RunTo(1.0);  // it is back, without having been told anything
+  session.RunTo(1.0);  // it is back, without any command
   EXPECT_EQ(session.master->status[2].mode, Mode::kOff);
   EXPECT_TRUE(session.master->status[2].was_reset);
   EXPECT_FALSE(session.robot->Drive(4).enabled);
@@ -179,7 +179,7 @@ TEST(FirmwareFaults, ALineThatIsStuckEndsInATimeout) {
     stuck.line = line;
     Session session({stuck});
     session.RunTo(1.1);
-    session.ExpectAll(Mode::kImpedance, true);  // which holds, with V0 = 0
+    session.ExpectAll(Mode::kImpedance, true);  // boards hold, with V0 = 0
     session.ExpectAWayBack();
   }
 }
@@ -226,7 +226,7 @@ TEST(FirmwareFaults, ADriverThatSaysFaultIsOffUntilItIsArmedAnew) {
   session.ExpectAWayBack();
 }
 
-// The drivers say so: their supply is too low.
+// The drivers signal a too low supply voltage.
 TEST(FirmwareFaults, WithoutSupplyMotorsAreOffUntilTheyAreArmedAnew) {
   Session session({Fault(FaultKind::kMotorSupplyLoss, 0.5, 0.4)}, Mode::kPosition);
   for (auto& value : session.master->say.values) value = 2500;

@@ -1,5 +1,5 @@
-/// What tests of the firmware in emulated boards share: twelve motors on a bench, and a PC in
-/// virtual time that talks through the adapter.
+/// Fixture for the firmware on emulated boards: twelve motors on a bench, and a PC in virtual time
+/// that communicates through the adapter
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/virtual_robot/robot.h"
+#include "apps/virtual_robot/emulated_robot.h"
 #include "board/bench_motor.h"
 
 namespace taut::virtual_robot {
@@ -32,7 +32,7 @@ struct Symbol {
   int size = 0;
 };
 
-/// A variable of the firmware.
+/// Returns a variable of the firmware.
 inline Symbol SymbolOf(const std::string& name) {
   std::ifstream in(TAUT_FIRMWARE_SYMBOLS);
   std::string line;
@@ -48,7 +48,7 @@ inline Symbol SymbolOf(const std::string& name) {
   return {};
 }
 
-/// Motors and springs in closed form (board/bench_motor.h).
+/// Motors and springs in closed form (board/bench_motor.h)
 class BenchPlant : public Plant {
  public:
   BenchPlant() : motors(board::kCables) {}
@@ -71,13 +71,13 @@ class BenchPlant : public Plant {
   double most_n = 0;
 };
 
-/// A PC: a broadcast and two reads of three boards every 10 ms, three frames over USB.
+/// A PC: one broadcast and two reads of three boards each every 10 ms, as three frames over USB
 class Master {
  public:
   explicit Master(Robot& robot) : robot_(robot) {}
-  /// To be called first.
+  /// Starts the boards and configures the adapter. Must be called first.
   void Begin() {
-    robot_.AdvanceTo(100 * kMillisecond);  // boards begin
+    robot_.AdvanceTo(100 * kMillisecond);  // boards start
     const std::uint8_t mode[] = {0x5a, 0x02, 0x70, 0x04};
     robot_.Transfer(mode);
     start_ = robot_.now();
@@ -91,7 +91,7 @@ class Master {
     say.clear_faults = false;
     sent.push_back({frame, frame + sizeof frame});
   }
-  /// Unanswered frames leave a board's status as it was.
+  /// Reads all statuses. Unanswered frames leave a board's status unchanged.
   void ReadAll() {
     for (std::uint8_t first = 0; first < board::kBoards;
          first = static_cast<std::uint8_t>(first + 3)) {
@@ -122,7 +122,7 @@ class Master {
     ReadAll();
     longest = std::max(longest, robot_.now() - (start_ + (cycles_ - 1) * 10 * kMillisecond));
     if (robot_.now() >
-        start_ + cycles_ * 10 * kMillisecond) {  // late: the next ones are not hurried
+        start_ + cycles_ * 10 * kMillisecond) {  // late: the next cycles are not shortened
       start_ = robot_.now() - cycles_ * 10 * kMillisecond;
     }
     robot_.AdvanceTo(start_ + cycles_ * 10 * kMillisecond);
@@ -146,9 +146,9 @@ class Master {
     Run(0.03);
     say.capture = false;
   }
-  /// As `ArmInto`, after something went wrong.
+  /// As `ArmInto`, after a fault.
   void Recover(board::Mode mode) {
-    const std::uint8_t adapter[] = {0x5a, 0x02, 0x70, 0x04};  // it may have forgotten
+    const std::uint8_t adapter[] = {0x5a, 0x02, 0x70, 0x04};  // it may have been reset
     robot_.Transfer(adapter, kPatience);
     ArmInto(mode);
   }
@@ -166,7 +166,7 @@ class Master {
     if (!board::IsFrame(got, sizeof got, board) || !board::IsReply(got)) return std::nullopt;
     return board::DecodeReply(got);
   }
-  /// The encoders are at 0.
+  /// Sets the reference of all motors at encoder count 0.
   void Reference() {
     for (std::uint8_t b = 0; b < board::kBoards; ++b) {
       const auto info = Ask(b, {board::Request::kAsk, 0xf0, board::kMotors, 0, 0});

@@ -1,5 +1,5 @@
-// The firmware as avr-gcc compiles it, in six emulated boards: what it costs, and that it is the
-// text that runs natively.
+// The firmware compiled by avr-gcc on six emulated boards: its cost, and equality with the same
+// code run natively
 #include <cstring>
 
 #include "tests/virtual_robot/firmware_fixture.h"
@@ -9,7 +9,7 @@ namespace {
 
 using board::Mode;
 
-/// How long the ticks of a board take, by the mode in which they end.
+/// Durations of a board's ticks, by the mode in which they end
 class Stopwatch {
  public:
   explicit Stopwatch(Board& board) {
@@ -106,7 +106,7 @@ TEST(Firmware, KeepsItsTimesAndItsMemory) {
               plant.most_n);
 }
 
-/// A motor's loop as an AVR keeps it: no gaps.
+/// Returns a motor's loop as in an AVR's memory, without padding.
 std::vector<std::uint8_t> Packed(const board::MotorLoop& loop) {
   std::vector<std::uint8_t> bytes;
   const auto put = [&bytes](const auto& value) {
@@ -121,8 +121,8 @@ std::vector<std::uint8_t> Packed(const board::MotorLoop& loop) {
   return bytes;
 }
 
-// Every broadcast and every reading that a board saw goes into the same headers compiled for this
-// processor: each word of both motors' loops has the same bits after every tick.
+// Each broadcast and each reading of a board is also given to the same headers compiled for this
+// processor: after every tick each word of both motors' loops has the same bits.
 TEST(Firmware, HasTheBitsOfItsNativeTwin) {
   BenchPlant plant;
   Robot robot(plant, {.program = Firmware()});
@@ -139,8 +139,8 @@ TEST(Firmware, HasTheBitsOfItsNativeTwin) {
   emulated.on_marker = [&](std::uint64_t, std::uint8_t mark) {
     if (mark == 0x40) {
       ASSERT_LT(taken, master.sent.size() + 1);
-      // the one under way is in the list only when it has arrived everywhere: the master encodes it
-      // again
+      // the current broadcast is appended to the list only after it has arrived everywhere; until
+      // then the master's encoding is repeated
       std::uint8_t frame[board::kCyclicSize];
       if (taken < master.sent.size()) {
         std::copy(master.sent[taken].begin(), master.sent[taken].end(), frame);

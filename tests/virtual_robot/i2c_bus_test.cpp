@@ -1,4 +1,4 @@
-// The bus alone, with slaves of a few lines.
+// The I2C bus alone, with minimal slaves
 #include "apps/virtual_robot/i2c_bus.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::vector<BusStep> Read(std::uint8_t address, int count) {
   return steps;
 }
 
-/// Lets time pass as far as the bus allows, at most 20 us at a time.
+/// Advances time as far as the bus allows, at most 20 us at a time.
 void Finish(I2cBus& bus, Time& now, Time limit = kSecond) {
   const Time end = now + limit;
   while (bus.Busy() && now < end) {
@@ -141,7 +141,7 @@ TEST(I2cBus, NoiseTurnsOverItsShareOfBitsTheSameEveryTime) {
   };
   Bytes first, again, other, none;
   const std::uint64_t flips = run(1, 0.01, first);
-  // A refused byte ends a message early: of at most 9 bytes and 9 bits each, these are the draws.
+  // A refused byte ends a message early: draws are 9 bits per byte for at most 9 bytes.
   EXPECT_GT(flips, 2000 * 9 * 3 * 0.01);
   EXPECT_LT(flips, 2000 * 9 * 10 * 0.01 * 1.1);
   EXPECT_EQ(run(1, 0.01, again), flips);
@@ -160,7 +160,7 @@ TEST(I2cBus, BitsFlipIndependently) {
   Time now = 0;
   std::uint64_t sent = 0, wrong = 0, ones[8] = {};
   for (int i = 0; i < 3000; ++i) {
-    bus.Begin(now, {{Kind::kWrite, 0x00}}, {});  // nobody needs to listen to count flips
+    bus.Begin(now, {{Kind::kWrite, 0x00}}, {});  // counting flips needs no slave
     Finish(bus, now);
     ++sent;
     const std::uint8_t byte = slave.events.back().byte;

@@ -1,4 +1,4 @@
-// taut's motors as the plant, and the whole robot with the firmware's own protocol.
+// taut's motors as the plant, and the whole robot with the firmware's protocol
 #include "apps/virtual_robot/motor_plant.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// Tetraspine3 whose cables are wound by motors, in the air.
+/// Returns Tetraspine3 with motor-driven cables, in the air.
 RobotSpec MotorSpine() {
   Diagnostics found;
   auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", {}, found);
@@ -60,7 +60,7 @@ TEST(MotorPlant, AMotorWithoutLoadRunsAsItsDataSheetSays) {
     Turn(*plant, 0.3, drives);
     const double before = plant->RotorAngle(3);
     Turn(*plant, 0.1, drives);
-    // U = k w + R i at the current that friction takes; the spool's spring is cut.
+    // U = k w + R i at the current needed for friction; the spool's spring is cut.
     const DcMotorDef motor;
     const double k = motor.torque_constant_n_m_per_a;
     const double lost =
@@ -99,7 +99,7 @@ TEST(MotorPlant, RefusesWhatBoardsCannotDrive) {
   robot.def.cables[4].actuator.dc_motor.reset();
   robot.def.cables[7].actuator = robot.def.cables[4].actuator;
   const std::string two = complaints(robot);
-  EXPECT_NE(two.find("the actuator of cable " + robot.def.cables[4].name + " is no motor"),
+  EXPECT_NE(two.find("the actuator of cable " + robot.def.cables[4].name + " is not a motor"),
             std::string::npos);
   EXPECT_NE(two.find("cable " + robot.def.cables[7].name), std::string::npos) << "all at once";
   for (CableDef& cable : robot.def.cables) cable.actuator = {};

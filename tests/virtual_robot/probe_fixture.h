@@ -1,4 +1,4 @@
-/// What tests of the virtual robot share: boards that run the probe, and a plant in closed form.
+/// Fixture of the virtual robot: boards that run the probe, and a plant in closed form
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "apps/virtual_robot/board.h"
-#include "apps/virtual_robot/plant.h"
-#include "apps/virtual_robot/robot.h"
+#include "apps/virtual_robot/emulated_board.h"
+#include "apps/virtual_robot/emulated_plant.h"
+#include "apps/virtual_robot/emulated_robot.h"
 #include "tests/virtual_robot/probes/mailbox.h"
 
 namespace taut::virtual_robot {
@@ -42,11 +42,11 @@ inline std::vector<std::uint8_t> Bytes8(const Board& board, std::uint16_t addres
   return bytes;
 }
 
-/// Motors that do not know of each other, each with a spring at its cable: a duty makes a speed at
-/// once, and the spring feels what was wound. Whatever the board does can be told from a formula.
+/// Independent motors, each with a spring at its cable: a duty sets the speed immediately, and the
+/// spring force follows the wound angle, so that the effect of any board output has a closed form.
 class SpringPlant : public Plant {
  public:
-  static constexpr double kSpeed = 1000.0;  ///< Of the shaft at full duty [rad/s].
+  static constexpr double kSpeed = 1000.0;  ///< Shaft speed at full duty [rad/s].
   static constexpr double kNewtonsPerRadian = 0.05;
   explicit SpringPlant(int motors = 12)
       : angles_(static_cast<std::size_t>(motors)), cut_(static_cast<std::size_t>(motors)) {}

@@ -1,4 +1,4 @@
-/// A program on the computer that speaks with boards that run the probe.
+/// A host program that communicates with boards that run the probe
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class ProbeHost {
   explicit ProbeHost(Robot& robot) : robot_(robot) {}
 
   bool Configure() { return Ask({0x5A, 0x02, 0x70, 0x04}) == Bytes{0xFF, 0x00}; }
-  /// Duties -1..1 a motor. Whether somebody took it.
+  /// Sends the duties of all motors, -1..1. Returns whether a board acknowledged them.
   bool Send(const std::vector<double>& duties, bool enable) {
     Bytes message(13, 0);
     message[0] = 0xC1;
@@ -26,11 +26,12 @@ class ProbeHost {
     frame.insert(frame.end(), message.begin(), message.end());
     return Ask(frame) == Bytes{0xFF};
   }
-  /// Sixteen bytes of a board; empty without a reply. A read cannot tell that nobody was there.
+  /// Reads sixteen bytes of a board; empty without a reply. This command cannot detect a missing
+  /// board.
   Bytes Read(int board) {
     return Ask({0x54, static_cast<std::uint8_t>((0x10 + board) << 1 | 1), 16});
   }
-  /// The same by I2C_DIRECT, which can: {0, error}.
+  /// The same by I2C_DIRECT, which returns {0, error} for a missing board.
   Bytes ReadDirect(int board) {
     return Ask({0x57, 0x01, 0x30, static_cast<std::uint8_t>((0x10 + board) << 1 | 1), 0x2E, 0x04,
                 0x20, 0x03});

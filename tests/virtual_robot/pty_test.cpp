@@ -1,5 +1,5 @@
-// The pseudo-terminal, from the side of a program that takes it for a serial port. Nothing here is
-// about time: machines that test are slow and busy.
+// The pseudo-terminal, from the side of a program that uses it as a serial port. No test depends on
+// time, because test machines are slow and busy.
 #include "apps/virtual_robot/pty.h"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int kPatience_ms = 20'000;
 
-/// A port as a client has it.
+/// Client side of a port
 class Client {
  public:
   explicit Client(const std::string& path) : port_(open(path.c_str(), O_RDWR | O_NOCTTY)) {}
@@ -40,7 +40,7 @@ class Client {
     EXPECT_TRUE(written == static_cast<ssize_t>(bytes.size()) || (written < 0 && errno == EIO))
         << "a port that is gone may refuse";
   }
-  /// So many bytes; fewer where the port is gone or patience ends.
+  /// Reads `count` bytes; fewer if the port is gone or the time limit is reached.
   Bytes Read(std::size_t count) const {
     Bytes bytes;
     pollfd wanted{port_, POLLIN, 0};
@@ -70,7 +70,7 @@ class Folder {
   fs::path path;
 };
 
-/// A robot in real time on a thread of its own.
+/// A robot in real time on a separate thread
 class Running {
  public:
   Running(Plant& plant, const RobotOptions& options, const std::string& link)
@@ -95,7 +95,7 @@ class Running {
   std::thread thread_;
 };
 
-/// Waits for something that another thread does.
+/// Waits for an effect of another thread.
 template <class F>
 bool Comes(F&& that) {
   for (int ms = 0; ms < kPatience_ms; ++ms) {
@@ -141,13 +141,13 @@ TEST(Pty, NothingButALinkIsReplaced) {
   std::ofstream(place) << "data";
   Diagnostics found;
   EXPECT_FALSE(Pty::Open(place, found));
-  EXPECT_NE(found.Format().find("is there already and no symbolic link"), std::string::npos);
+  EXPECT_NE(found.Format().find("the path exists and is not a symbolic link"), std::string::npos);
   EXPECT_EQ(fs::file_size(place), 4U);
   EXPECT_FALSE(Pty::Open(folder.path / "no" / "such" / "folder", found));
 }
 
-// What a client and the adapter say before the adapter is pulled out at `loss_s` and after. False
-// if it was pulled out too soon for a client on a machine as busy as this one.
+// Exchanges frames before and after the adapter is disconnected at `loss_s`. Returns false if the
+// disconnection came too early for a client on a busy machine.
 bool TalksUntil(double loss_s) {
   const Folder folder;
   const std::string link = folder.path / "robot";

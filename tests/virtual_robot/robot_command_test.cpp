@@ -1,5 +1,5 @@
-// `taut robot` against the virtual robot, as a user has it. What gives motors power runs in real
-// time, and a machine that is too busy may be late for a board: these tests are long ones.
+// `taut robot` against the virtual robot. Commands that power motors run in real time, and a busy
+// machine may miss a board's deadline: these tests have the label LONG.
 #include <sys/prctl.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "taut/calibration.h"
 #include "taut/trace.h"
-#include "tests/system/command.h"
+#include "tests/system/taut_command.h"
 
 namespace taut::test {
 namespace {
@@ -24,7 +24,7 @@ class RobotCommand : public CommandTest {
     }
   }
 
-  /// `taut robot ...`, at a virtual robot of this test alone.
+  /// Runs `taut robot ...` with a virtual robot of this test only.
   CommandResult Robot(std::vector<std::string> words, const std::string& typed = "") {
     return End(StartCommand(std::move(words), typed));
   }
@@ -39,7 +39,7 @@ class RobotCommand : public CommandTest {
       dup2(in, STDIN_FILENO);
     });
   }
-  /// One that stays through several commands, as it is when it has just got power.
+  /// Starts a virtual robot, just powered on, that runs through several commands.
   std::string StartRobot() {
     const std::string link = Path("robot"), out = Path("robot.txt");
     robot_ = fork();
@@ -57,7 +57,7 @@ class RobotCommand : public CommandTest {
     }
     return link;
   }
-  /// Waits until a command says something.
+  /// Waits until a command prints this text.
   void WaitFor(const std::string& text) const {
     for (int i = 0; i < 3000 && Read(Path("out.txt")).find(text) == std::string::npos; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -95,11 +95,11 @@ TEST_F(RobotCommand, AnEmergencyStopLastsUntilSomebodyTakesItBack) {
   const std::string port = StartRobot();
   const CommandResult before = Robot({"status", "--port", port});
   EXPECT_EQ(before.status, 0) << before.output;
-  EXPECT_NE(before.output.find("began anew (power_on)"), std::string::npos) << before.output;
+  EXPECT_NE(before.output.find("restarted (power_on)"), std::string::npos) << before.output;
   ASSERT_EQ(Robot({"estop", "--port", port}).status, 0);
   const CommandResult refused = Robot({"hold", "--port", port, "--duration_s", "0"});
   EXPECT_EQ(refused.status, 1);
-  EXPECT_NE(refused.errors.find("board 0 is not well: stopped"), std::string::npos)
+  EXPECT_NE(refused.errors.find("board 0 is not ready: stopped"), std::string::npos)
       << refused.errors;
   EXPECT_NE(refused.errors.find("--clear_faults"), std::string::npos) << refused.errors;
 }
@@ -109,7 +109,7 @@ TEST_F(RobotCommand, WhatIsSetIsReadAndKept) {
   CommandResult done =
       Robot({"set", "tension_limit_n=40", "--cable", "outer_top_1", "--port", port, "--store"});
   ASSERT_EQ(done.status, 0) << done.errors;
-  EXPECT_EQ(done.output, "1 values set and kept in the boards' memories.\n");
+  EXPECT_EQ(done.output, "1 values set and stored in the boards' memories.\n");
   done = Robot({"set", "--port", port, "--json"});
   ASSERT_EQ(done.status, 0) << done.errors;
   const Json said = Json::parse(done.output);
@@ -130,7 +130,8 @@ TEST_F(RobotCommand, ReferencesAreWhatStatusShows) {
 }
 
 TEST_F(RobotCommand, ALoadCellIsCalibratedByWhatHangsOnIt) {
-  // The stand's 7 N, whatever is asked for: readings that do not differ are no line.
+  // The stand applies 7 N to each cable, whatever the requested force: equal readings do not define
+  // a line.
   const CommandResult done =
       Robot({"calibrate", "load_cell", "outer_left_1", "--force_n", "0", "10", "--port", "virtual"},
             "\n\n");
@@ -173,7 +174,7 @@ TEST_F(RobotCommand, AnEmergencyStopReachesBoardsThatNobodyDrives) {
   EXPECT_EQ(said["boards"][0]["mode"], "stopped");
   const CommandResult none = Robot({"estop", "--port", "virtual"});
   EXPECT_EQ(none.status, 1);
-  EXPECT_NE(none.errors.find("no virtual robot runs"), std::string::npos);
+  EXPECT_NE(none.errors.find("no virtual robot is running"), std::string::npos);
 }
 
 TEST_F(RobotCommand, WrongInputsAreSaid) {
@@ -184,15 +185,15 @@ TEST_F(RobotCommand, WrongInputsAreSaid) {
   };
   const std::string push = TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml";
   for (const Wrong& one : std::vector<Wrong>{
-           {{"scan", "--port", "/dev/nothing"}, 1, "cannot be opened"},
+           {{"scan", "--port", "/dev/nothing"}, 1, "cannot open"},
            {{"set", "duty_limt=0.5", "--port", "virtual"}, 3, "did you mean \"duty_limit\"?"},
            {{"set", "duty_limit=2", "--port", "virtual"}, 3, "not within 0 .. 1"},
-           {{"reference", "--port", "virtual"}, 3, "nothing to reference"},
+           {{"reference", "--port", "virtual"}, 3, "the rest lengths are missing"},
            {{"reference", "outer_top_1=x", "--port", "virtual"}, 3, "CABLE=REST_LENGTH_M"},
            {{"reference", "outer_tp_1=0.2", "--port", "virtual"}, 3, "did you mean"},
            {{"hold", "--on_fault", "pray"}, 2, "pray"},
            {{"flash", "--board", "6"}, 2, "6"},
-           {{"flash", "--board", "1", "--hex", "none.hex"}, 3, "there is no such firmware"},
+           {{"flash", "--board", "1", "--hex", "none.hex"}, 3, "the firmware file is missing"},
            {{"run", TAUT_SOURCE_DIR "/share/experiments/hang.yaml"}, 3, "no cable has an actuator"},
            {{"run", "none.yaml"}, 3, "none.yaml"},
            {{"run", push, "--calibration", "none.yaml", "--port", "virtual"}, 3, "none.yaml"},
@@ -265,7 +266,7 @@ TEST_F(RobotCommandInRealTime, RunsAnExperiment) {
   const auto host = ReadTrace(Path("run/host.h5"), found);
   ASSERT_TRUE(trace && host) << found.Format();
   EXPECT_NEAR(trace->time_s.back(), 2.0, 0.01);
-  // The spine stands on its own then: more than its 20 N of before hang on this cable.
+  // The spine is off the stand then: this cable carries more than its 20 N of before.
   const std::vector<double>& top = host->values[*host->Find("cable/inner_top_1/tension_n")];
   EXPECT_GT(*std::max_element(top.begin(), top.end()), 25.0);
   EXPECT_NE(Read(Path("run/events.jsonl")).find("hold -> impedance"), std::string::npos);

@@ -1,6 +1,6 @@
-// Whatever breaks, once each, with the driver and the firmware of all boards: no tension above the
-// limit, motors held or let go as they should be, and something told or counted. A fault that stays
-// silent is a failure. docs/validation/robot_faults.md has twenty times each.
+// Each kind of fault once, with the driver and the firmware of all boards: no tension above the
+// limit, motors held or off as specified, and the fault reported or counted. A silent fault fails
+// the test. docs/validation/robot_faults.md has twenty trials of each.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,14 +28,14 @@ ExperimentSpec Push() {
   return *experiment;
 }
 
-/// An experiment on boards with what was told after its fault.
+/// An experiment on boards, with the events reported after its fault
 class Broken {
  public:
   explicit Broken(FaultSpec fault, BoardsOptions options = {}) : experiment_(Push()) {
     Diagnostics found;
     options.robot.program = ReadAvrProgram(TAUT_FIRMWARE_ELF, found);
     motors = MotorPlant::Make(experiment_.robot, found);
-    // When everything is set up, which takes the same time in every run.
+    // Time at which the setup is complete; the same in every run.
     static const double started_s = [&] {
       const auto other = MotorPlant::Make(experiment_.robot, found);
       BoardsPlant good(experiment_, *other, options);
@@ -66,7 +66,7 @@ class Broken {
   }
 
   bool Told(const std::string& text) const { return told.find(text) != std::string::npos; }
-  /// Boards that hold or let go, as the PC heard last.
+  /// Returns the number of boards in a mode, by the statuses that the PC received last.
   int In(Mode mode) const {
     int count = 0;
     for (const link::BoardView& board : plant->heard().boards) {
@@ -74,7 +74,7 @@ class Broken {
     }
     return count;
   }
-  /// What a fault without an event leaves behind.
+  /// Returns the counts caused by a fault that has no event.
   std::int64_t Counted() const { return Count() - counted_before_; }
 
   std::string told;
@@ -101,8 +101,8 @@ struct Case {
   const char* name;
   FaultKind kind;
   double for_s;
-  const char* told;                   ///< Null: it is counted only.
-  int impedance, hold, off, stopped;  ///< Boards.
+  const char* told;                   ///< Null: counted only.
+  int impedance, hold, off, stopped;  ///< Numbers of boards.
   double force_n = std::numeric_limits<double>::quiet_NaN();
   BusLine line = BusLine::kData;
 };
@@ -117,17 +117,17 @@ const Case kCases[] = {
     {"PcKilled", FaultKind::kHostKilled, kForGood, kLost, 0, 0, 0, 0},
     {"UsbPulledOut", FaultKind::kUsbLoss, 0.2, "the adapter is gone", 6, 0, 0, 0},
     {"BoardGone", FaultKind::kBoardLoss, kForGood, kLost, 0, 0, 0, 5},
-    {"BrownOut", FaultKind::kBrownOut, 0.02, "board 2 began anew: brown_out", 0, 5, 1, 0},
-    {"FirmwareHangs", FaultKind::kFirmwareHang, kForGood, "board 2 began anew: watchdog", 0, 5, 1,
+    {"BrownOut", FaultKind::kBrownOut, 0.02, "board 2: reset cause brown_out", 0, 5, 1, 0},
+    {"FirmwareHangs", FaultKind::kFirmwareHang, kForGood, "board 2: reset cause watchdog", 0, 5, 1,
      0},
     {"BusNoise", FaultKind::kBusNoise, 0.3, nullptr, 6, 0, 0, 0},
     {"IllegalStart", FaultKind::kBusError, kForGood, nullptr, 6, 0, 0, 0},
-    {"DataLow", FaultKind::kBusStuck, 0.3, "heard no broadcast in time", 6, 0, 0, 0},
-    {"ClockLow", FaultKind::kBusStuck, 0.3, "heard no broadcast in time", 6, 0, 0, 0,
+    {"DataLow", FaultKind::kBusStuck, 0.3, "received no broadcast in time", 6, 0, 0, 0},
+    {"ClockLow", FaultKind::kBusStuck, 0.3, "received no broadcast in time", 6, 0, 0, 0,
      std::numeric_limits<double>::quiet_NaN(), BusLine::kClock},
     {"CableCut", FaultKind::kCutCable, kForGood, "inner_top_1 is slack", 6, 0, 0, 0},
     {"LoadCellStands", FaultKind::kStuckLoadCell, kForGood,
-     "inner_top_1: its load cell stands still", 6, 0, 0, 0},
+     "inner_top_1: its load cell reading does not change", 6, 0, 0, 0},
     {"LoadCellShowsNothing", FaultKind::kStuckLoadCell, kForGood, "inner_top_1: sensor", 0, 6, 0, 0,
      -5},
     {"LoadCellShowsTooMuch", FaultKind::kStuckLoadCell, kForGood, "inner_top_1: over_tension", 0, 6,
@@ -184,7 +184,7 @@ TEST(ARobot, RecoversFromAFault) {
   EXPECT_LE(broken.plant->most_n(), kLimit_n);
 }
 
-// And with no fault nothing is told.
+// Without a fault nothing is reported.
 TEST(ARobot, IsNotSaidToBeBrokenIfItIsNot) {
   FaultSpec fault;
   fault.kind = FaultKind::kClockDrift;

@@ -1,5 +1,5 @@
-// The whole robot, with the probe on its boards and springs at its motors.
-#include "apps/virtual_robot/robot.h"
+// The whole robot, with the probe on its boards and springs on its motors
+#include "apps/virtual_robot/emulated_robot.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// What a run of 0.3 s leaves behind: all that was logged, and all memory.
+/// Returns the log and all memory of a run of 0.3 s.
 std::string Story(std::uint64_t seed, double noise, Time slice = kSecond) {
   std::string story;
   SpringPlant plant;
@@ -100,7 +100,7 @@ TEST(Robot, BoardsCountAndFeelWhatMoves) {
   robot.AdvanceTo(robot.now() + 5 * kMillisecond);
   for (int motor = 0; motor < 12; ++motor) {
     Board& board = robot.board(motor / 2);
-    // Two counts a line: 32 a turn.
+    // Two counts per line: 32 per turn.
     const double counts = plant.RotorAngle(motor) * 32 / 6.283185307179586;
     EXPECT_NEAR(Count(board, motor % 2), counts, 1.0);
     EXPECT_GT(counts, 500.0);
@@ -150,7 +150,7 @@ TEST(Robot, AReplyTakesTheTimeOfTheBusAndOfUsb) {
   robot.AdvanceTo(20 * kMillisecond);
   const Time begun = robot.now();
   ASSERT_EQ(host.Read(2).size(), 16U);
-  const double bus = 17 * 22.5e-6 + 2 * 2.5e-6;  // nine bits a byte at 400 kHz, start and stop
+  const double bus = 17 * 22.5e-6 + 2 * 2.5e-6;  // nine bits per byte at 400 kHz, start and stop
   const double took = ToSeconds(robot.now() - begun);
   EXPECT_GT(took, 0.5e-3 + bus);
   EXPECT_LT(took, 0.5e-3 + bus + 17 * 10e-6) << "the interrupts of the probe";

@@ -1,4 +1,4 @@
-// An experiment on the emulated boards, as `taut_virtual_robot --run` has it.
+// Experiments on emulated boards: `taut_virtual_robot --run`
 #include "apps/virtual_robot/run_experiment.h"
 
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST(RunOnBoards, WhatThePcBelievesOfACellIsWhatItHears) {
   // A count is 0.16 N, its noise 0.11 N before the filter.
   EXPECT_NEAR(heard_n(5), 0.9 * done.tensions_n[5], 0.4) << "inner_top_1";
   EXPECT_NEAR(heard_n(4), done.tensions_n[4], 0.4) << "inner_left_1 is believed to be what it is";
-  // Parameters of --board come last.
+  // Parameters of --board are applied last.
   options.settings.push_back({true, board::kNewtonsPerCount, 0.1567f * 0.8f});
   const Done all = RunPush(0.3, options);
   EXPECT_NEAR(all.heard.motors[5].tension_n, 0.8 * all.tensions_n[5], 0.4);

@@ -1,4 +1,4 @@
-// The stand that the robot is on until its boards hold it.
+// The stand that carries the robot until its boards hold it
 #include "apps/virtual_robot/stand.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Stand, HoldsTheRobotUntilItsBoardsDoAndNeverAgain) {
   options.faults = {{.kind = FaultKind::kMotorSupplyLoss, .at_s = 1.0}};
   std::vector<Time> let_go;
   options.log = [&](Time at, std::string_view who, std::string_view what) {
-    if (who == "stand" && what.starts_with("let go")) let_go.push_back(at);
+    if (who == "stand" && what.starts_with("released")) let_go.push_back(at);
   };
   Robot robot(*plant, options);
   Stand stand(*plant, robot, options.log);

@@ -1,5 +1,5 @@
-// What the robot truly does, at a socket; and the command as the child of a program that wants it.
-// Nothing here is about time: machines that test are slow and busy.
+// True states of the virtual robot on a socket, and the command as a child process of a program
+// that reads them. No test depends on time, because test machines are slow and busy.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -27,7 +27,7 @@ const char* const kHeader = R"({"format":"taut_truth","version":1,"name":"tetras
                             R"("outer_right_2","outer_left_2","outer_top_2",)"
                             R"("inner_right_2","inner_left_2","inner_top_2"]})";
 
-/// One who watches.
+/// A client of the socket
 class Watcher {
  public:
   explicit Watcher(const std::string& path) : socket_(socket(AF_UNIX, SOCK_STREAM, 0)) {
@@ -47,7 +47,7 @@ class Watcher {
     std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
     return address;
   }
-  /// The next line; nothing if the stream ends or patience does.
+  /// Returns the next line, or nothing if the stream ends or the time limit is reached.
   std::string Line() {
     std::size_t end = 0;
     while ((end = come_.find('\n')) == std::string::npos) {
@@ -67,7 +67,7 @@ class Watcher {
   std::string come_;
 };
 
-/// A socket file at which nobody listens any more.
+/// Creates a socket file without a listener.
 void LeaveASocket(const std::string& path) {
   const int left = socket(AF_UNIX, SOCK_STREAM, 0);
   const sockaddr_un address = Watcher::Address(path);
@@ -76,7 +76,7 @@ void LeaveASocket(const std::string& path) {
   EXPECT_TRUE(fs::is_socket(path));
 }
 
-/// The value of a key, as it stands there.
+/// Returns the text of a key's value.
 std::string Of(const std::string& frame, const std::string& key) {
   const std::string wanted = "\"" + key + "\":";
   const std::size_t at = frame.find(wanted);
@@ -173,7 +173,7 @@ TEST_F(Truth, OnlyASocketThatNobodyListensAtIsReplaced) {
   }
 }
 
-/// The command as a child: its process, and what it printed first.
+/// The command as a child process: its id, and its first output
 class Child {
  public:
   Child(const fs::path& folder, const std::string& arguments)
@@ -238,7 +238,7 @@ TEST_F(Truth, AFileInItsWayIsLeftAlone) {
   std::ofstream(path()) << "data";
   const Done done = Ask("--model robot.yaml --truth truth");
   EXPECT_EQ(done.status, 1);
-  EXPECT_TRUE(Says(done, "is there already and no socket")) << done.said;
+  EXPECT_TRUE(Says(done, "the path exists and is not a socket")) << done.said;
   EXPECT_FALSE(Says(done, "/dev/pts")) << done.said;
   EXPECT_EQ(Text(path()), "data");
 }

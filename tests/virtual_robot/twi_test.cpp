@@ -1,6 +1,6 @@
-// The two-wire interface of the boards, by the status codes that the probe saw and by times in
-// closed form. Codes: data sheet of the ATmega328P, tables "Status Codes for Slave Receiver Mode"
-// and "... Slave Transmitter Mode".
+// Two-wire interface (I2C) of the boards: status codes recorded by the probe, and times in closed
+// form. Codes: data sheet of the ATmega328P, tables "Status Codes for Slave Receiver Mode" and "...
+// Slave Transmitter Mode".
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr Time kBit = 2'500 * kNanosecond;
 constexpr Time kByte = 9 * kBit;
 
-/// Boards and a bus, without motors.
+/// Boards and a bus, without motors
 class Wires {
  public:
   explicit Wires(int boards) : bus(3) {
@@ -47,11 +47,11 @@ class Wires {
     while (bus.Busy() && now < end) Advance(end);
     EXPECT_FALSE(bus.Busy());
     const BusResult result = bus.result();
-    RunTo(now + 500 * kMicrosecond);  // what the stop sets off
+    RunTo(now + 500 * kMicrosecond);  // interrupts caused by the stop
     return result;
   }
   Board& board(int i) { return *all[static_cast<std::size_t>(i)]; }
-  /// The codes since the last call.
+  /// Returns the codes since the last call.
   std::string Codes(int i) {
     Board& one = board(i);
     std::string text;
@@ -116,7 +116,7 @@ TEST(Twi, SixteenBytesAreReadAtOnce) {
   EXPECT_EQ(result.read, expected);
   EXPECT_EQ(wires.Codes(1), "a8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 c0");
   EXPECT_EQ(wires.Codes(0), "");
-  // Again, at once: nothing is left over.
+  // Immediately again: no state is left over.
   EXPECT_EQ(wires.Transfer(Read(From(1), 16)).read, expected);
 }
 
@@ -126,7 +126,7 @@ TEST(Twi, NobodyAnswersForABoardThatIsNotThere) {
   EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
   EXPECT_EQ(result.written, 0);
   EXPECT_TRUE(result.read.empty());
-  // Start, address, stop; nobody holds the clock.
+  // Start, address, stop; no slave holds the clock.
   EXPECT_EQ(result.ended - wires.began, kBit + kByte + kBit);
   EXPECT_EQ(wires.Codes(0) + wires.Codes(1), "");
 }
@@ -191,8 +191,8 @@ TEST(Twi, ARepeatedStartEndsAMessageAndBeginsTheNext) {
 }
 
 TEST(Twi, TheClockIsHeldForAsLongAsTheInterruptTakes) {
-  // What a byte costs is 9 bits and, behind each, the wait for the slowest interrupt. The
-  // difference between two lengths of the interrupt is known to the cycle: a loop of the probe.
+  // The time of a byte is 9 bits plus the wait for the slowest interrupt. The difference between
+  // two lengths of the interrupt is exact to the cycle: a loop of the probe.
   constexpr int kBytes = 6;
   Time took[3] = {};
   for (const int extra : {0, 1, 4}) {
@@ -203,7 +203,7 @@ TEST(Twi, TheClockIsHeldForAsLongAsTheInterruptTakes) {
     EXPECT_EQ(wires.Codes(0), "60 80 80 80 80 80 80 a0");
     const StretchStats& stretch = wires.bus.stretch();
     EXPECT_EQ(stretch.bytes, kBytes + 1U);
-    // All but the last wait, for the stop, is in the statistics.
+    // The statistics contain all waits except the last, for the stop.
     const Time waits = took[extra == 4 ? 2 : extra] - 2 * kBit - (kBytes + 1) * kByte;
     EXPECT_NEAR(ToSeconds(stretch.sum), ToSeconds(waits) * kBytes / (kBytes + 1), 4e-6);
   }
@@ -237,7 +237,7 @@ TEST(Twi, AHungBoardHoldsTheClockUntilTheMasterGivesUp) {
   const BusResult result = wires.Transfer(Write(0, {0xC3, 1}));
   EXPECT_EQ(result.outcome, BusOutcome::kStuck);
   EXPECT_NEAR(ToSeconds(result.ended - wires.began), 25e-3, 0.1e-3);
-  // The watchdog takes it off the bus, and all is well again.
+  // The watchdog resets the board, which leaves the bus; then transfers work again.
   wires.RunTo(wires.now + 100 * kMillisecond);
   wires.Codes(0), wires.Codes(1);
   EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1})).outcome, BusOutcome::kDone);
@@ -263,7 +263,7 @@ TEST(Twi, AnIllegalStartIsSeenAsABusErrorAndRecoveredFrom) {
 }
 
 TEST(Twi, WhatIsDueInTheCycleThatACoreHasEndedHappensAtOnce) {
-  // The core has reached that time and does not run again before the bus asks it.
+  // The core has reached that time and does not run again before the bus queries it.
   for (int extra = 0; extra < 40; ++extra) {
     Board board(ProbeProgram(), {});
     const Time time = 5 * kMillisecond + extra * 31 * kNanosecond;
@@ -279,7 +279,7 @@ TEST(Twi, WhatIsDueWhileACoreEntersAnInterruptHappensBeforeTheBusLooks) {
   Board board(ProbeProgram(), {});
   board.RunUntil(5 * kMillisecond);
   I2cSlave& slave = board.bus_side();
-  // The tick comes every 16000 cycles; from a little before it to a little behind.
+  // The tick comes every 16000 cycles; events from just before it to just after.
   for (int cycles = 0; cycles < 16'000; cycles += 3) {
     const Time from = board.now() + (cycles % 60) * 63 * kNanosecond;
     const Time due = from + (cycles % 13) * 63 * kNanosecond;

@@ -1,6 +1,6 @@
-// The adapter's frames, byte by byte, by its documents: usb_iss_tech and usb_iss_i2c_tech of
-// Devantech.
-#include "apps/virtual_robot/usb_iss.h"
+// Frames of the USB-ISS adapter, byte by byte, after Devantech's documents usb_iss_tech and
+// usb_iss_i2c_tech
+#include "apps/virtual_robot/emulated_usb_iss.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-/// An adapter with a slave at address 0x10.
+/// An adapter with a slave at address 0x10
 class Desk {
  public:
   explicit Desk(UsbIssOptions options = {})
@@ -20,7 +20,7 @@ class Desk {
     bus.Attach(slave);
     slave.general_call = true;
   }
-  /// The reply within a second; empty: none.
+  /// Sends a frame. Returns the reply within a second, or nothing.
   Bytes Ask(const Bytes& frame) {
     asked = now;
     adapter.Receive(now, frame);
@@ -38,7 +38,7 @@ class Desk {
     }
     return {};
   }
-  /// Address bytes that were on the wires since the last call.
+  /// Returns the address and data bytes on the bus since the last call.
   Bytes Wires() {
     Bytes bytes;
     for (const BusEvent& event : slave.events) {
@@ -94,7 +94,7 @@ TEST(UsbIss, SpeedFollowsTheMode) {
     Desk desk;
     desk.Ask({0x5A, 0x02, static_cast<std::uint8_t>(mode), 0x04});
     ASSERT_EQ(desk.Ask({0x53, 0x20, 0x01}), Bytes{0xFF});
-    // Two bytes of nine bits, a start, a stop; and a quarter of a millisecond each way.
+    // Two bytes of nine bits, a start, a stop, and a quarter of a millisecond in each direction.
     EXPECT_NEAR(ToSeconds(desk.now - desk.asked), 0.5e-3 + 20 / hertz, 1e-9);
   }
 }
@@ -148,7 +148,7 @@ TEST(UsbIss, DirectDoesWhatItIsTold) {
   desk.Ask(Fast());
   EXPECT_EQ(desk.Ask({0x57, 0x01, 0x32, 0x20, 4, 5, 0x03}), (Bytes{0xFF, 0}));
   EXPECT_EQ(desk.Wires(), (Bytes{0x20, 4, 5}));
-  // Write a register, start again, read two bytes, the last without an acknowledgement.
+  // Writes a register, repeats the start, reads two bytes, the last without acknowledgement.
   EXPECT_EQ(desk.Ask({0x57, 0x01, 0x31, 0x20, 9, 0x02, 0x30, 0x21, 0x20, 0x04, 0x20, 0x03}),
             (Bytes{0xFF, 2, 0x40, 0x41}));
   std::vector<bool> acked;
@@ -197,7 +197,7 @@ TEST(UsbIss, AFrameThatIsNotCompleteIsIgnored) {
     EXPECT_EQ(desk.Ask(frame), Bytes{});
     EXPECT_EQ(desk.adapter.ignored(), before + 1);
   }
-  // What comes after a gap is a frame of its own.
+  // Bytes after a gap are a new frame.
   desk.adapter.Receive(desk.now, Bytes{0x54, 0x20, 0x02, 1});
   EXPECT_EQ(desk.Wait(), Bytes{});
   EXPECT_EQ(desk.Ask({2}), Bytes{});

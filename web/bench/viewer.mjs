@@ -1,5 +1,5 @@
-// How fast the viewer is: frames a second in a browser, what a client costs the simulation, how soon
-// a long trace is open and how fast it is scrubbed. script/bench_viewer runs it. Numbers, no verdicts.
+// Measurements of the viewer: frames per second in a browser, cost of a client for the simulation, time to
+// open a long trace and to scrub it. Run by script/bench_viewer. Prints numbers, without pass or fail.
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from "node:fs";
 import { cpus, tmpdir } from "node:os";
@@ -61,7 +61,7 @@ class Client {
   }
 }
 
-/** CPU seconds of the busiest thread, which is the simulation's. */
+/** Returns the CPU time of the busiest thread [s], which is the simulation's. */
 function threadSeconds(pid) {
   return Math.max(...readdirSync(`/proc/${pid}/task`).map((task) => {
     const fields = readFileSync(`/proc/${pid}/task/${task}/stat`, "utf8").replace(/^.*\) /, "").split(" ");
@@ -69,7 +69,7 @@ function threadSeconds(pid) {
   }));
 }
 
-/** Simulated seconds a CPU second of the simulation's thread, over a while, with so many clients. */
+/** Measures simulated seconds per CPU second of the simulation's thread with so many clients. */
 async function rate(address, pid, clients) {
   const now = async () => {
     const client = await Client.open(address);
@@ -89,7 +89,7 @@ async function rate(address, pid, clients) {
 async function slowing(words, title) {
   const { address, server, stop } = await view(...words, "--max");
   const first = await Client.open(address);
-  await first.untilFrame((frame) => frame[PAUSED] === 1); // the experiment's end
+  await first.untilFrame((frame) => frame[PAUSED] === 1); // the end of the experiment
   first.send({ type: "resume" });
   await first.untilFrame((frame) => frame[PAUSED] === 0);
   await first.close();

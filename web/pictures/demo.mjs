@@ -1,6 +1,6 @@
-// The picture of the browser demo in docs/images/: script/pictures runs this where script/wasm has built it.
+// Picture of the browser demo for docs/images/; run by script/pictures if script/wasm has built the demo.
 //
-//   node web/pictures/demo.mjs FOLDER     into FOLDER
+//   node web/pictures/demo.mjs FOLDER     writes to FOLDER
 import { join } from "node:path";
 import { closeBrowser, drawn, openPage } from "../test/browser.mjs";
 import { WASM } from "../test/core.mjs";

@@ -1,7 +1,7 @@
-// The pictures of docs/images/ that show the viewer: script/pictures runs this.
+// Pictures of the viewer for docs/images/; run by script/pictures.
 //
-//   node web/pictures/pages.mjs RUNS FOLDER     of the traces in RUNS; into FOLDER
-// Environment: TAUT_COMMAND, and what test/browser.mjs says.
+//   node web/pictures/pages.mjs RUNS FOLDER     uses the traces in RUNS; writes to FOLDER
+// Environment: TAUT_COMMAND, and the variables of test/browser.mjs.
 import { join } from "node:path";
 import { closeBrowser, drawn, openPage, untilTime } from "../test/browser.mjs";
 import { stop, view } from "../test/real_server.mjs";
@@ -11,7 +11,7 @@ const trace = (name) => join(runs, name, "trace.h5");
 const size = { width: 1440, height: 810 };
 const send = (page, ...messages) => page.evaluate((list) => list.forEach((each) => window.taut.app.send(each)), messages);
 
-/** Opens what `taut view` shows, and does something with its page. */
+/** Opens the page of `taut view` with these arguments and calls `act` with it. */
 async function shown(words, options, act) {
   const address = await view("--port", "0", ...words);
   const page = await openPage(address, { ...size, ...options });
@@ -26,7 +26,7 @@ async function take(page, name) {
   await page.screenshot({ path: join(folder, name) });
 }
 
-/** The page's own GIF, of the 3-D view alone. */
+/** Exports the page's GIF, of the 3D view alone. */
 async function film(page, name, { speed, from_s, to_s }) {
   await page.addStyleTag({ content: `
     header, .plots, .timeline, .below-view, .view > :not(canvas) { display: none !important; }
@@ -66,7 +66,7 @@ async function live() {
   });
 }
 
-/** Pulls a node sideways and up, holds it, lets go: by commands, so that every run is the same. */
+/** Pulls a node sideways and up, holds it and releases it, by commands, so that every run is the same. */
 async function drag() {
   const record = join(runs, "drag");
   await shown(["experiments/stand_still.yaml", "--paused", "--out", record], {}, async (page) => {
@@ -91,7 +91,7 @@ async function drag() {
   await shown([join(record, "trace.h5")], {}, (page) => film(page, "drag.gif", { speed: 1, from_s: 0.4, to_s: 5.4 }));
 }
 
-/** The virtual robot, which needs a processor for itself: what is late on a busy one stands in red. */
+/** Starts the virtual robot, which needs an idle processor: on a busy one delays appear as red alarms. */
 async function dashboard() {
   await shown(["--robot", "virtual"], {}, async (page) => {
     const state = (wanted) => page.waitForFunction((text) => document.querySelector(".robotbar .state").textContent === text, wanted);
@@ -100,7 +100,7 @@ async function dashboard() {
     await send(page, { type: "robot_mode", mode: "impedance" });
     await state("impedance");
     await page.waitForFunction(() => window.taut.app.frame.value.time_s > 12);
-    await page.screenshot({ path: join(folder, "dashboard.png") }); // its numbers never stand still
+    await page.screenshot({ path: join(folder, "dashboard.png") }); // its numbers change continuously
   });
 }
 

@@ -1,4 +1,4 @@
-// What the page knows, in one place; the parts of the page watch it and never each other.
+// Central state of the page, as signals. Parts of the page watch it and never each other.
 import { frameOfScene, type Frame } from "./frame";
 import type { ClientMessage, EventMessage, GainAnswerMessage, HelloMessage, Report, RobotStatus, Scene, SeriesMessage, ServerMessage } from "./protocol";
 import { PROTOCOL_VERSION } from "./protocol";
@@ -11,25 +11,25 @@ export type Theme = "dark" | "light";
 export class App {
   readonly hello = new Signal<HelloMessage | null>(null);
   readonly scene = new Signal<Scene | null>(null);
-  /** The latest scene, for what may be changed in it: parameters and controls. */
+  /** The latest scene, for values that may change within it: parameters and controls. */
   readonly tuning = new Signal<Scene | null>(null);
   readonly frame = new Signal<Frame | null>(null);
   readonly link = new Signal<Connection>("connecting");
   readonly driver = new Signal<number>(0);
   readonly selection = new Signal<Selection | null>(null);
   readonly hover = new Signal<Selection | null>(null);
-  /** The time under the mouse in a plot or the timeline [s]. */
+  /** The time under the cursor in a plot or the timeline [s]. */
   readonly cursor_s = new Signal<number | null>(null);
-  /** The span of time that the plots show; null: all, or what is recent. */
+  /** The time span of the plots; null: all, or the recent past. */
   readonly range_s = new Signal<readonly [number, number] | null>(null);
   readonly theme = new Signal<Theme>(startTheme());
-  /** Why there is nothing to show. */
+  /** Reason why there is nothing to display. */
   readonly failure = new Signal<string | null>(null);
   readonly notice = new Signal<string | null>(null);
   readonly events = new Signal<readonly EventMessage[]>([]);
   readonly seriesAnswer = new Signal<SeriesMessage | null>(null);
 
-  /** How a robot is that motor boards move. */
+  /** Status of a robot with motor boards. */
   readonly robot = new Signal<RobotStatus | null>(null);
   readonly gainAnswer = new Signal<GainAnswerMessage | null>(null);
 
@@ -52,21 +52,21 @@ export class App {
 
   send(message: ClientMessage): boolean {
     const sent = this.source.send(message);
-    if (!sent && message.type !== "want_series") this.notice.value = "not connected: that was not sent";
+    if (!sent && message.type !== "want_series") this.notice.value = "not connected: the command was not sent";
     return sent;
   }
 
-  /** What goes on now: an experiment or a model by itself that is simulated, what somebody's own program shows, a robot. */
+  /** A session with a present: a live run of an experiment or a model, a user's program, a robot. */
   get live(): boolean {
     return this.movable || this.isRobot || this.hello.value?.mode === "program";
   }
 
-  /** Motor boards are driven: nothing pauses, and space stops them. */
+  /** Motor boards are driven: there is no pause, and space stops them. */
   get isRobot(): boolean {
     return this.hello.value?.mode === "robot";
   }
 
-  /** Robots that hands, sliders and a reset act on. */
+  /** Users can drag, tune and reset the robots. */
   get movable(): boolean {
     return ["live", "model"].includes(this.hello.value?.mode ?? "");
   }
@@ -75,23 +75,23 @@ export class App {
     return this.hello.value?.mode === "replay";
   }
 
-  /** Can another time than the present be looked at? */
+  /** The time can be changed. */
   get seekable(): boolean {
     return this.replay || (this.live && !this.isRobot);
   }
 
-  /** A live run is looked at as it was earlier. */
+  /** A past moment of a live run is displayed. */
   get looksBack(): boolean {
     const frame = this.frame.value;
     return this.live && frame !== null && frame.time_s < frame.now_s;
   }
 
-  /** Back to the present of a live run. */
+  /** Returns to the present of a live run. */
   goToNow(): void {
     this.seek(Number.MAX_VALUE);
   }
 
-  /** Our link may not drive. */
+  /** The page's link permits watching only. */
   get watches(): boolean {
     return this.hello.value?.watch_only === true;
   }
@@ -108,7 +108,7 @@ export class App {
     if (this.seekable) this.send({ type: "seek", time_s });
   }
 
-  /** Back to the start. What a program shows cannot be run again, only looked at. */
+  /** Returns to the start. A program's data can be displayed again, but not recomputed. */
   goToStart(): void {
     if (this.hello.value?.mode === "program") this.seek(-Number.MAX_VALUE);
     else this.send({ type: "reset" });
@@ -123,7 +123,7 @@ export class App {
     switch (message.type) {
       case "hello":
         if (message.version !== PROTOCOL_VERSION) {
-          this.failure.value = `This page speaks version ${PROTOCOL_VERSION} of the protocol, the server version ${message.version}. Reload the page; if that does not help, the server is of another version of taut.`;
+          this.failure.value = `This page uses version ${PROTOCOL_VERSION} of the protocol, the server version ${message.version}. Reload the page; if the problem persists, the server belongs to another version of taut.`;
           return;
         }
         this.failure.value = null;
@@ -154,7 +154,7 @@ export class App {
     }
   }
 
-  /** A scene comes anew when a parameter changes; what looks the same is not built again. */
+  /** A changed parameter causes a new scene; if it looks the same, the 3D view is not rebuilt. */
   private receiveScene(scene: Scene): void {
     const before = this.scene.value;
     if (before === null || looks(before) !== looks(scene)) {
@@ -167,10 +167,10 @@ export class App {
     }
     this.tuning.value = scene;
     if (scene.notice !== undefined) this.notice.value = scene.notice;
-    else if (before?.notice !== undefined && this.notice.value === before.notice) this.notice.value = null; // mended
+    else if (before?.notice !== undefined && this.notice.value === before.notice) this.notice.value = null; // the defect has been fixed
   }
 
-  /** A frame of the scene before it may still be on its way when the scene has changed. */
+  /** A frame of the previous scene may still arrive after the scene has changed. */
   private fits(frame: Frame): boolean {
     const scene = this.scene.value;
     if (scene === null) return false;
@@ -180,7 +180,7 @@ export class App {
   }
 }
 
-/** What is called so; empty: there is no such thing. */
+/** Returns the name of a selection; empty: it does not exist. */
 export function nameOf(scene: Scene, { kind, index }: Selection): string {
   const list = { cable: scene.cables, body: scene.bodies, node: scene.nodes, joint: scene.joints }[kind];
   return list[index]?.name ?? "";

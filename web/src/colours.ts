@@ -1,5 +1,5 @@
-// Colours that people who see colours differently tell apart (Okabe and Ito), for both themes; and
-// the scale of tension, whose lightness rises or falls all the way, so that it reads in grey, too.
+// Colors distinguishable with color vision deficiency (Okabe and Ito), for both themes, and the color scale
+// of tension, whose lightness is monotonic, so that it is readable in gray, too.
 import type { Theme } from "./app";
 
 export interface Palette {
@@ -22,7 +22,7 @@ export interface Palette {
   /** plots: set point, the run */
   setpoint: string;
   own: string;
-  /** the runs that it is compared with, also as ghosts */
+  /** compared runs, also as ghosts */
   runs: readonly string[];
   grid: string;
   further: readonly string[];
@@ -52,13 +52,13 @@ export function palette(theme: Theme): Palette {
 
 type Rgb = readonly [number, number, number];
 
-// On light ground strong means dark, on dark ground bright.
+// On a light background high values are dark, on a dark background bright.
 const SCALES: Record<Theme, readonly Rgb[]> = {
   light: [[86, 180, 233], [56, 130, 205], [90, 70, 190], [140, 30, 140], [150, 0, 60]],
   dark: [[70, 110, 210], [150, 95, 215], [225, 100, 170], [250, 150, 95], [253, 231, 110]],
 };
 
-/** The colour of a tension, as a share of the scale's end; 0..1 each. */
+/** Returns the color of a tension, given relative to the end of the scale; components from 0 to 1. */
 export function tensionColour(share: number, theme: Theme): Rgb {
   const scale = SCALES[theme];
   const place = Math.min(Math.max(share, 0), 1) * (scale.length - 1);

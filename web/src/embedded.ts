@@ -1,4 +1,4 @@
-// A report as a source: answers like a server that replays, out of the data inside the page.
+// Report as a message source: answers like a replay server, from the data embedded in the page.
 import { decodeFrame, type Frame } from "./frame";
 import { type Points, rowsOf, thinned } from "./points";
 import type { ClientMessage, Report, Rows, WantSeriesMessage } from "./protocol";
@@ -18,7 +18,7 @@ export class ReportSource implements Source {
   constructor(private readonly report: Report) {
     this.values = decodeFloats(report.frames_base64);
     if (this.values.length !== report.frame_count * report.frame_values) {
-      throw new Error(`the report holds ${this.values.length} numbers of frames, not ${report.frame_count} times ${report.frame_values}`);
+      throw new Error(`the report contains ${this.values.length} values of frames, expected ${report.frame_count} times ${report.frame_values}`);
     }
     this.tables = report.rows.map((rows) => new Table(rows));
     this.times_s = Float64Array.from({ length: report.frame_count }, (_, i) => this.values[i * report.frame_values]!);
@@ -110,7 +110,7 @@ export class ReportSource implements Source {
   private answer({ id, channel, source = 0, t0, t1, points: most }: WantSeriesMessage): void {
     const all = this.tables.find(({ rows, places }) => rows.source === source && places.has(channel))?.points(channel);
     if (!all) {
-      queueMicrotask(() => this.listener?.message({ type: "error", text: `the report has no ${channel}` }));
+      queueMicrotask(() => this.listener?.message({ type: "error", text: `the report has no channel ${channel}` }));
       return;
     }
     const { t, first, min, max, rows: level } = thinned(all, t0, t1, most);
@@ -118,7 +118,7 @@ export class ReportSource implements Source {
   }
 }
 
-/** The channels of one trace; each is taken out of the numbers when somebody asks for it. */
+/** The channels of one trace; each is extracted from the numbers on demand. */
 class Table {
   readonly places: Map<string, number>;
   private readonly values: Float64Array;
@@ -128,7 +128,7 @@ class Table {
   constructor(readonly rows: Rows) {
     this.values = decodeFloats(rows.base64);
     const wanted = rows.count * (1 + rows.channels.length * (rows.level === 1 ? 1 : 3));
-    if (this.values.length !== wanted) throw new Error(`the report holds ${this.values.length} numbers of rows, not ${wanted}`);
+    if (this.values.length !== wanted) throw new Error(`the report contains ${this.values.length} values of rows, expected ${wanted}`);
     this.places = new Map(rows.channels.map((name, place) => [name, place]));
     this.t = Array.from(this.values.subarray(0, rows.count));
   }

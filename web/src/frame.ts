@@ -1,5 +1,4 @@
-// A frame: the state of the world at one time, as the server or a report gives it. The layout is
-// FRAME of layout.ts.
+// Frame: state of the world at one time, from the server or a report. The layout is FRAME of layout.ts.
 import { FRAME, VALUES } from "./layout";
 import type { Scene } from "./protocol";
 
@@ -8,7 +7,7 @@ type Section = (typeof FRAME.sections)[number]["name"];
 
 export type Frame = Record<Header, number> & Record<Section, Float64Array>;
 
-/** Reads the frame that the numbers hold; throws where they are too few or too many. */
+/** Decodes a frame; throws if there are too few or too many numbers. */
 export function decodeFrame(values: Float64Array): Frame {
   const frame = {} as Frame;
   FRAME.header.forEach((name, place) => (frame[name] = values[place] ?? NaN));
@@ -25,13 +24,13 @@ export function decodeFrame(values: Float64Array): Frame {
   return frame;
 }
 
-/** The scene as it stands before the first frame arrives. */
+/** Returns the scene's initial state, displayed until the first frame arrives. */
 export function frameOfScene(scene: Scene): Frame {
   const frame = {} as Frame;
   for (const name of FRAME.header) frame[name] = 0;
   frame.time_s = frame.now_s = scene.first_s;
   frame.paused = 1;
-  frame.run = -1; // of no run
+  frame.run = -1; // belongs to no run
   frame.kinetic_j = frame.gravity_j = frame.elastic_j = NaN;
   frame.body_count = scene.bodies.length;
   frame.cable_count = scene.cables.length;
@@ -65,7 +64,7 @@ export function cableState(frame: Frame, cable: number): CableState {
   return { tension_n, length_m, rest_length_m, setpoint_n };
 }
 
-/** A cable carries nothing where it is slack; what is not known is not slack. */
+/** A slack cable carries no tension; an unknown tension is not slack. */
 export function isSlack(state: CableState): boolean {
   return state.tension_n <= 0;
 }

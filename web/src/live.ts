@@ -1,4 +1,4 @@
-// The server as a source: one WebSocket, opened anew whenever it is lost.
+// Server as a message source: one WebSocket, reopened whenever the connection is lost.
 import { decodeFrame } from "./frame";
 import type { ClientMessage, ServerMessage } from "./protocol";
 import type { Listener, Source } from "./source";
@@ -23,7 +23,7 @@ export class ServerSource implements Source {
   }
 
   private open(): void {
-    // The token, if the server wants one, is in the page's own address.
+    // The token, if the server requires one, is in the page's address.
     const address = new URL(`ws${location.search}`, location.href);
     address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
     address.hash = "";
@@ -38,7 +38,7 @@ export class ServerSource implements Source {
     };
     socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.receive(event.data);
     socket.onclose = async () => {
-      // Why a WebSocket does not open, browsers do not say; a plain request gets an answer.
+      // Browsers do not report why a WebSocket fails to open; a plain request gets an answer.
       const state = !opened && (await refused()) ? "refused" : "lost";
       this.listener?.connection(state);
       setTimeout(() => this.open(), this.retry_ms);
@@ -52,7 +52,7 @@ export class ServerSource implements Source {
   }
 }
 
-/** Does the server not know our token? A new server has new ones. */
+/** Returns whether the server rejects the token. A restarted server has new tokens. */
 async function refused(): Promise<boolean> {
   try {
     return (await fetch(location.href, { method: "HEAD", cache: "no-store" })).status === 403;

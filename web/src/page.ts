@@ -1,4 +1,4 @@
-// A page: the view, plots beside it, the line of time below, and what lies over them.
+// Layout of a page: 3D view, plots at its side, timeline below, and overlays.
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import "./robot/robot.css";
@@ -25,13 +25,13 @@ import { recorder } from "./ui/record";
 import { timeline } from "./ui/timeline";
 import { button, el } from "./util";
 
-/** What a page has that others have not. */
+/** Additional parts of some pages. */
 export interface More {
-  /** Left of the view. */
+  /** To the left of the view. */
   beside?: HTMLElement;
-  /** At the top, before the others. */
+  /** At the top, before the common buttons. */
   buttons?: HTMLElement[];
-  /** What to do where there is nothing to show. */
+  /** Advice if there is nothing to display. */
   advice?: string;
 }
 
@@ -68,7 +68,7 @@ export function buildPage(root: HTMLElement, app: App, more: More = {}): void {
   app.start();
 }
 
-/** In place of a page that could not be built. */
+/** Replaces a page that could not be built by the reason. */
 export function sayWhyNot(root: HTMLElement, error: unknown): void {
   const reason = error instanceof Error ? error.message : String(error);
   root.replaceChildren(el("main.failure", { role: "alert" }, el("h1", {}, "This page cannot be shown"), el("pre", {}, reason)));

@@ -1,23 +1,23 @@
-// Points of a channel over time: rows as they were recorded, or blocks of rows with what they hold.
+// Points of a channel over time: recorded rows, or blocks of rows with first value, minimum and maximum.
 import type { SeriesData } from "./protocol";
 import { lastAtMost } from "./util";
 
 type Values = (number | null)[]; // null: not a number
 
-/** A point stands for a block of rows; of one row, first, min and max are the value. */
+/** Each point represents a block of rows; for a single row, first, min and max are the value. */
 export interface Points {
-  /** Of each block's first row. */
+  /** For the first row of each block. */
   t: number[];
   first: Values;
   min: Values;
   max: Values;
-  /** The most rows that one of the points stands for; 1: every row is here. */
+  /** Largest number of rows of a point; 1: all rows are present. */
   rows: number;
 }
 
 export const NOTHING: Points = { t: [], first: [], min: [], max: [], rows: 1 };
 
-/** Points of single rows. */
+/** Returns points of single rows. */
 export function rowsOf(t: number[], values: Values): Points {
   return { t, first: values, min: values, max: values, rows: 1 };
 }
@@ -30,14 +30,17 @@ function slice(all: Points, from: number, to: number): Points {
   return { t: all.t.slice(from, to), first: all.first.slice(from, to), min: all.min.slice(from, to), max: all.max.slice(from, to), rows: all.rows };
 }
 
-/** At most about so many points between two times, and one beyond either end, so that lines reach the border. */
+/**
+ * Returns at most about `points` points between two times, and one beyond either end, so that lines reach the
+ * border.
+ */
 export function thinned(all: Points, t0: number, t1: number, points: number): Points {
   const from = Math.max(0, lastAtMost(all.t, t0));
   const to = Math.min(all.t.length, lastAtMost(all.t, t1) + 2);
   const block = Math.max(1, Math.ceil((to - from) / points));
   if (block === 1) return slice(all, from, to);
   const thin: Points = { t: [], first: [], min: [], max: [], rows: all.rows * block };
-  // blocks begin at multiples of their size, so that a picture that moves does not flicker
+  // blocks begin at multiples of their size, so that a moving picture does not flicker
   for (let start = from - (from % block); start < to; start += block) {
     let [least, greatest] = [Infinity, -Infinity];
     for (let i = start; i < Math.min(start + block, all.t.length); ++i) {
@@ -52,14 +55,14 @@ export function thinned(all: Points, t0: number, t1: number, points: number): Po
   return thin;
 }
 
-/** What lies between two times, and the last point before. */
+/** Returns the points between two times, and the last point before. */
 export function between(all: Points, t0: number, t1: number): Points {
   const to = lastAtMost(all.t, t1) + 1;
-  // a point at t1 itself is left to what begins there
+  // a point at t1 itself belongs to the next range
   return slice(all, Math.max(0, lastAtMost(all.t, t0)), to > 0 && all.t[to - 1]! >= t1 ? to - 1 : to);
 }
 
-/** Of the second what lies after the first. */
+/** Appends the points of the second that follow the first. */
 export function joined(first: Points, second: Points): Points {
   if (first.t.length === 0) return second;
   const then = slice(second, lastAtMost(second.t, first.t[first.t.length - 1]!) + 1, second.t.length);

@@ -1,5 +1,5 @@
-// Single rows of channels, exactly as they were recorded, for the numbers beside plots: what plots draw
-// may be coarser. A few rows around the one that is looked at are fetched at a time.
+// Single rows of channels, exactly as recorded, for the values beside plots, whose points may be coarser.
+// Some rows around the displayed one are fetched at a time.
 import type { Points } from "./points";
 import { lastAtMost, Signal } from "./util";
 
@@ -9,11 +9,11 @@ export interface Row {
   /** NaN: there is none. */
   time_s: number;
   value: number;
-  /** 1, or that only every so many-th row is to be had. */
+  /** 1: every row is available; n: only every n-th. */
   every: number;
 }
 
-/** Rows around one that was looked at. */
+/** Rows around a displayed one. */
 interface Near {
   t0: number;
   t1: number;
@@ -23,7 +23,7 @@ interface Near {
 type Ask = (channel: string, source: number, t0: number, t1: number, points: number, receive: (points: Points) => void) => void;
 
 export class RowReader {
-  /** Rises when rows have come that `at` did not have. */
+  /** Increases when rows arrive that `at` did not have. */
   readonly came = new Signal(0);
   private readonly near = new Map<string, Near>();
   private readonly asked = new Set<string>();
@@ -31,7 +31,10 @@ export class RowReader {
 
   constructor(private readonly ask: Ask) {}
 
-  /** The row at a time, or the last before it; null: it is on its way. `drawn`: what a plot has of the channel. */
+  /**
+   * Returns the row at a time, or the last before it; null: requested. `drawn`: the plot's points of the
+   * channel.
+   */
   at(channel: string, source: number, time_s: number, drawn: Points): Row | null {
     if (drawn.rows === 1 && drawn.t[0]! <= time_s && time_s < drawn.t[drawn.t.length - 1]!) return rowAt(drawn, time_s);
     const key = `${source}:${channel}`;
@@ -41,7 +44,8 @@ export class RowReader {
     if (inside && (near.points.rows === 1 || alone)) return rowAt(near.points, time_s);
     if (this.asked.has(key)) return null;
     this.asked.add(key);
-    // where rows lie closer than the plot says, so many are not to be had at once: then one alone
+    // if rows are denser than the plot's points suggest, their number exceeds the limit: then requests one
+    // alone
     const around_s = inside ? 0 : AROUND * distanceOfRows(drawn, time_s);
     const [t0, t1] = [time_s - around_s, time_s + around_s];
     this.ask(channel, source, t0, t1, 4 * AROUND, (points) => {
@@ -52,13 +56,13 @@ export class RowReader {
     return null;
   }
 
-  /** What comes from now on belongs to something else. */
+  /** Discards all rows; later answers to earlier requests are ignored. */
   forget(): void {
     this.near.clear();
     this.asked.clear();
   }
 
-  /** Many come at once; that is told once a picture. */
+  /** Merges the notifications of many rows into one per picture. */
   private tell(): void {
     if (this.telling) return;
     this.telling = true;
@@ -69,13 +73,13 @@ export class RowReader {
   }
 }
 
-/** The last row at or before a time. */
+/** Returns the last row at or before a time. */
 export function rowAt(points: Points, time_s: number): Row {
   const at = lastAtMost(points.t, time_s);
   return { time_s: points.t[at] ?? NaN, value: points.first[at] ?? NaN, every: points.rows };
 }
 
-/** As far as points of blocks tell; 0 where they do not. */
+/** Estimates the distance of rows from points of blocks; 0 if unknown. */
 function distanceOfRows({ t, rows }: Points, time_s: number): number {
   const at = Math.min(Math.max(lastAtMost(t, time_s), 0), t.length - 2);
   return at < 0 ? 0 : (t[at + 1]! - t[at]!) / rows;

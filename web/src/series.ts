@@ -1,4 +1,4 @@
-// The channels over time: what frames have shown so far, when live; what the trace holds, when not.
+// Channels over time: from the displayed frames of a live run, or from the trace.
 import type { App } from "./app";
 import { cableState, type Frame, frameOfScene } from "./frame";
 import { VALUES } from "./layout";
@@ -7,13 +7,13 @@ import type { Scene } from "./protocol";
 import { type Row, rowAt, RowReader } from "./rows";
 import type { Signal } from "./util";
 
-const LIVE_CAPACITY = 36_000; // ten minutes of 60 frames a second
-const ASK_AT_ONCE = 8; // questions on their way at the same time
-const GAP_S = 0.05; // between the frames of a live run: what lies between them is asked for
-const LATE = 0.02; // of what is shown: by how much an answer about a live run may be older
-const ROUNDING_S = 1e-9; // by which times of one row differ between runs
+const LIVE_CAPACITY = 36_000; // ten minutes at 60 frames per second
+const ASK_AT_ONCE = 8; // maximum number of pending requests
+const GAP_S = 0.05; // a larger gap between frames of a live run is filled by a request
+const LATE = 0.02; // permitted lag of an answer about a live run, relative to the displayed span
+const ROUNDING_S = 1e-9; // tolerance for times of the same row in different runs
 const NO_ROW: Row = { time_s: NaN, value: NaN, every: 1 };
-const RANGES = 6; // of a channel: its plots, each with a range of its own, and those that they had before
+const RANGES = 6; // cached ranges of a channel: one per plot, and previous ones
 
 type Receiver = (points: Points) => void;
 
@@ -26,11 +26,11 @@ interface Question {
   receive: Receiver;
 }
 
-/** An answer about what this page was not shown: the time before it came, or between its frames. */
+/** An answer about a time without frames: before the page was opened, or between its frames. */
 interface Past {
   t0: number;
   t1: number;
-  /** As many as were asked for. */
+  /** Number of requested points. */
   asked: number;
   coarse: boolean;
   points: Points;
@@ -38,14 +38,14 @@ interface Past {
 
 export class SeriesStore {
   private readonly history = new Map<string, Points>();
-  /** By channel, the one that was used last first. */
+  /** By channel, most recently used first. */
   private readonly past = new Map<string, Past[]>();
   private readonly rows = new RowReader((...question) => this.ask(...question));
   private present: { frame: Frame; values: Map<string, number> } | null = null;
   private framesHave: { scene: Scene; names: ReadonlySet<string> } | null = null;
   private run = -1;
   private last_s = -Infinity;
-  /** Since then frames have come without gaps. */
+  /** Start of the present sequence of frames without gaps. */
   private dense_s = Infinity;
   private readonly waiting: Question[] = [];
   private readonly asked = new Map<number, Question>();
@@ -60,12 +60,15 @@ export class SeriesStore {
       question?.receive(pointsOf(answer.series));
       this.sendWaiting();
     });
-    // A live scene comes anew whenever a slider moves; which run it is, frames say.
+    // A live scene is sent again whenever a slider moves; frames identify the run.
     app.scene.watch(() => app.live || this.forget());
     app.link.watch((link) => link === "lost" && this.forget());
   }
 
-  /** The unit of a channel of the run (source 0) or of the k-th that it is compared with; undefined: there is no such channel. */
+  /**
+   * Returns the unit of a channel of the run (source 0) or of compared run k; undefined: there is no such
+   * channel.
+   */
   unit(channel: string, source: number): string | undefined {
     const scene = this.app.scene.value;
     const channels = source > 0 ? scene?.compared[source - 1]?.channels : scene?.channels;
@@ -77,31 +80,35 @@ export class SeriesStore {
   }
 
   /**
-   * The row at a time, or the last before it; null: it has been asked for, and `rowsCame` says when it is
-   * there; NaN: a compared run has ended before. `drawn`: what a plot has of the channel around that time.
+   * Returns the row at a time, or the last before it; null: requested, and `rowsCame` increases when it is
+   * available; NaN: a compared run has ended before. `drawn`: the plot's points of the channel around this
+   * time.
    */
   row(channel: string, source: number, time_s: number, drawn: Points): Row | null {
     const now = source === 0 ? this.inFrame(channel, time_s) : undefined;
     if (now !== undefined) return { time_s, value: now, every: 1 };
     const compared = this.app.scene.value?.compared[source - 1];
-    if (compared && time_s > compared.last_s + ROUNDING_S) return NO_ROW; // its last row is not of now
+    if (compared && time_s > compared.last_s + ROUNDING_S) return NO_ROW; // its last row is out of date
     if (!this.app.live || source !== 0) return this.rows.at(channel, source, time_s, drawn);
     if (!this.isInFrames(channel)) return this.keptRow(channel, time_s, drawn);
-    // of what the page was shown and what the server keeps, the later
+    // the later of the rows in frames and on the server
     const own = rowAt(this.history.get(channel) ?? NOTHING, time_s);
     if (time_s >= this.last_s) return own;
     const kept = this.rows.at(channel, source, time_s, NOTHING);
     return kept === null || kept.time_s > own.time_s || Number.isNaN(own.time_s) ? kept : own;
   }
 
-  /** Of what frames of a live run do not have. While it runs, the plot's last row is new enough. */
+  /**
+   * Returns a row of a channel that frames do not contain. While the run advances, the plot's last row is
+   * recent enough.
+   */
   private keptRow(channel: string, time_s: number, drawn: Points): Row | null {
     const frame = this.app.frame.value;
     const runs = frame !== null && frame.paused === 0 && frame.time_s === time_s;
     return runs && drawn.rows === 1 ? rowAt(drawn, time_s) : this.rows.at(channel, 0, time_s, NOTHING);
   }
 
-  /** Do frames of a live run have the channel? What they do not have, the server keeps. */
+  /** Returns whether frames of a live run contain the channel. The server stores all others. */
   private isInFrames(channel: string): boolean {
     const { value: scene } = this.app.scene;
     if (!scene) return false;
@@ -109,19 +116,19 @@ export class SeriesStore {
     return this.framesHave.names.has(channel);
   }
 
-  /** The time of the run's row at a time, or of the last before it; NaN where that is not known. */
+  /** Returns the time of the run's row at a time, or of the last before it; NaN if unknown. */
   rowTime(time_s: number): Promise<number> {
     const channel = this.app.scene.value?.channels[0]?.name;
     if (channel === undefined) return Promise.resolve(NaN);
     return new Promise((resolve) => this.ask(channel, 0, time_s, time_s, 10, (points) => resolve(rowAt(points, time_s).time_s)));
   }
 
-  /** Rises when rows have come that `row` did not have. */
+  /** Increases when rows arrive that `row` did not have. */
   get rowsCame(): Signal<number> {
     return this.rows.came;
   }
 
-  /** The value in the frame that is shown, if that is of this time. */
+  /** Returns the value in the displayed frame, if it has this time. */
   private inFrame(channel: string, time_s: number): number | undefined {
     const { value: frame } = this.app.frame;
     const { value: scene } = this.app.scene;
@@ -133,7 +140,7 @@ export class SeriesStore {
   want(channel: string, source: number, t0: number, t1: number, points: number, receive: Receiver): void {
     if (this.app.live && source === 0 && !this.isInFrames(channel)) {
       const frame = this.app.frame.value;
-      const until_s = Math.min(t1, frame?.now_s ?? t1); // what is still to come is not there to be asked for
+      const until_s = Math.min(t1, frame?.now_s ?? t1); // the future cannot be requested
       const late_s = frame?.paused === 0 ? LATE * (t1 - t0) : 0;
       receive(thinned(this.kept(channel, t0, until_s, points, late_s), t0, t1, Infinity));
       return;
@@ -153,7 +160,10 @@ export class SeriesStore {
     this.sendWaiting();
   }
 
-  /** What the server has kept of a live run around a span, as far as it has answered. `late_s`: how much of its end may be missing. */
+  /**
+   * Returns the server's data of a live run around a span, as far as received. `late_s`: permitted gap at its
+   * end.
+   */
   private kept(channel: string, t0: number, t1: number, points: number, late_s: number): Points {
     const ranges = this.past.get(channel) ?? [];
     const span_s = t1 - t0;
@@ -162,7 +172,8 @@ export class SeriesStore {
       !(past.coarse && (past.t1 - past.t0 > 3 * span_s || past.asked < points));
     const overlap_s = (past: Past) => Math.min(past.t1, t1) - Math.max(past.t0, t0);
     const past = ranges.find(fits) ??
-      // what is known is shown until the answer is there, so that the plot does not blink; not asked for twice
+      // known data are displayed until the answer arrives, so that the plot does not flicker; requested only
+      // once
       this.askPast(channel, t0, t1, points, [...ranges].sort((a, b) => overlap_s(b) - overlap_s(a))[0]?.points ?? NOTHING);
     this.past.set(channel, [past, ...ranges.filter((other) => other !== past)].slice(0, RANGES));
     return past.points;
@@ -201,13 +212,13 @@ export class SeriesStore {
 
   private record(frame: Frame): void {
     const scene = this.app.scene.value;
-    // a look back is no news, and what the scene says is not yet the run
+    // ignores frames of looking back, and initial states of scenes
     if (!scene || frame.time_s < frame.now_s || frame.run < 0) return;
     if (frame.run !== this.run || frame.time_s < this.last_s) {
       this.run = frame.run;
       this.forget();
     }
-    // while paused, and at the start, the latest word about a time is the right one
+    // while paused, and at the start, the last frame of a time is valid
     const again = frame.time_s === this.last_s;
     if (frame.time_s - this.last_s > GAP_S) this.dense_s = frame.time_s;
     this.last_s = frame.time_s;
@@ -229,7 +240,7 @@ export class SeriesStore {
   }
 }
 
-/** What a frame says, by channel. */
+/** Returns the values of a frame by channel. */
 export function* frameValues(scene: Scene, frame: Frame): Generator<[string, number]> {
   for (let i = 0; i < scene.cables.length; ++i) {
     const name = scene.cables[i]!.name;

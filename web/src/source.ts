@@ -1,4 +1,4 @@
-// Where what is seen comes from: a server, or the data inside a report. Both speak the protocol.
+// Interface of message sources: a server, or the data inside a report, with the same protocol.
 import type { Frame } from "./frame";
 import type { ClientMessage, ServerMessage } from "./protocol";
 
@@ -12,6 +12,6 @@ export interface Listener {
 
 export interface Source {
   start(listener: Listener): void;
-  /** False if the message could not be sent, for instance while the connection is lost. */
+  /** Returns false if the message could not be sent, for example while the connection is lost. */
   send(message: ClientMessage): boolean;
 }

@@ -1,5 +1,4 @@
-// Small helpers that everything uses: a value that can be watched, elements of the page, numbers as
-// text.
+// Common helpers: observable values, elements of the page, number formats.
 
 export class Signal<T> {
   private readonly watchers = new Set<(value: T) => void>();
@@ -15,7 +14,7 @@ export class Signal<T> {
     for (const watcher of [...this.watchers]) watcher(next);
   }
 
-  /** Calls now and at every change; what it returns ends that. */
+  /** Calls `watcher` now and at every change; the returned function ends that. */
   watch(watcher: (value: T) => void): () => void {
     this.watchers.add(watcher);
     watcher(this.current);
@@ -43,7 +42,7 @@ export function el<T extends HTMLElement = HTMLElement>(
   return element as T;
 }
 
-/** A button that says what it does to eyes, ears and those who wait with the mouse over it. */
+/** Returns a button with an accessible label and a tooltip. */
 export function button(label: string | Node, title: string, onclick: () => void, spec = "button"): HTMLButtonElement {
   return el<HTMLButtonElement>(spec, { type: "button", title, "aria-label": title, onclick }, label);
 }
@@ -57,7 +56,7 @@ export function number(value: number, digits = 3): string {
   return value.toFixed(Math.min(decimals, 6)).replace("-", "−");
 }
 
-/** A unit as on paper: "m/s^2" -> "m/s²"; nothing for "1". */
+/** Formats a unit: "m/s^2" -> "m/s²"; empty for "1". */
 export function unitText(unit: string): string {
   return unit === "1" ? "" : unit.replace(/\^2/g, "²").replace(/\^3/g, "³");
 }
@@ -69,7 +68,10 @@ function unitOfWord(word: string): string {
   return UNITS[written] === undefined ? "" : UNITS[written] + { "": "", 2: "²", 3: "³" }[power as "" | "2" | "3"];
 }
 
-/** "max_speed_m_per_s" -> ["max speed", "m/s"]; a unit is all the words at the end that are of one, as in UnitOfName (taut/trace.h). */
+/**
+ * "max_speed_m_per_s" -> ["max speed", "m/s"]; a unit consists of all words at the end that belong to units,
+ * as in UnitOfName (taut/trace.h).
+ */
 export function nameAndUnit(name: string): [string, string] {
   const words = name.split("_");
   let from = words.length;
@@ -80,7 +82,7 @@ export function nameAndUnit(name: string): [string, string] {
   return [words.slice(0, from).join(" "), over!.join(" ") + below];
 }
 
-/** 12.345 s -> "0:12.35"; long times get hours. */
+/** Formats 12.345 s as "0:12.35"; long times include hours. */
 export function clock(time_s: number, decimals = 2): string {
   if (!Number.isFinite(time_s)) return "–";
   const scale = 10 ** decimals;
@@ -94,7 +96,7 @@ export function clock(time_s: number, decimals = 2): string {
     : `${sign}${minutes}:${seconds}`;
 }
 
-/** As a tick of an axis: no zeros at the end, and short enough for it. */
+/** Formats a tick of an axis: short, without zeros at the end. */
 export function tickText(value: number): string {
   const rounded = +value.toPrecision(6);
   const size = Math.abs(rounded);
@@ -104,14 +106,14 @@ export function tickText(value: number): string {
 
 const NICE = [1, 1.5, 2, 3, 4, 5, 6, 8, 10];
 
-/** The smallest of 1, 1.5, 2, 3, ... times a power of ten that is no less than the value. */
+/** Returns the smallest of 1, 1.5, 2, 3, ... times a power of ten that is not less than the value. */
 export function niceAbove(value: number): number {
   if (!(value > 0) || !Number.isFinite(value)) return 1;
   const power = 10 ** Math.floor(Math.log10(value));
   return (NICE.find((factor) => factor * power >= value * (1 - 1e-9)) ?? 10) * power;
 }
 
-/** Place of the last element <= value in an ascending list; -1 if there is none. */
+/** Returns the index of the last element <= value in an ascending list; -1 if there is none. */
 export function lastAtMost(list: ArrayLike<number>, value: number): number {
   let low = 0;
   let high = list.length;
@@ -131,7 +133,7 @@ export function download(name: string, content: Blob): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** What the browser keeps between visits; a page opened from disk may not be allowed to. */
+/** Browser storage between visits, which a page opened from disk may not be allowed to use. */
 export const memory = {
   get(key: string): string | null {
     try {
@@ -144,7 +146,7 @@ export const memory = {
     try {
       localStorage.setItem(`taut.${key}`, value);
     } catch {
-      // then it is forgotten
+      // then it is not stored
     }
   },
 };

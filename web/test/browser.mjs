@@ -1,7 +1,6 @@
-// A real browser without a screen: Debian's Chromium, driven by playwright-core, with graphics in
-// software. Nothing here gives up after some seconds: how long a machine takes says nothing about the
-// page. What never comes is ended by ctest. Environment: TAUT_PAGE: the built page; TAUT_CHROMIUM; TAUT_PICTURES: where to put
-// pictures of what the tests see.
+// Headless browser for tests: Debian's Chromium, driven by playwright-core, with software rendering. No
+// function has a timeout, because slowness of a machine is no error of the page; ctest ends tests that hang.
+// Environment: TAUT_PAGE: the built page; TAUT_CHROMIUM; TAUT_PICTURES: folder for screenshots of the tests.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -32,7 +31,7 @@ export async function closeBrowser() {
   browsers.clear();
 }
 
-/** A page that notes its complaints and every address that it asks for. */
+/** Opens a page that records its errors and all requested addresses. */
 export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1, webgl = true, touch = false } = {}) {
   const context = await (await openBrowser(webgl ? GRAPHICS : NO_GRAPHICS)).newContext({
     viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale, hasTouch: touch,
@@ -62,7 +61,7 @@ export async function untilTime(page, time_s, within_s = 1e-4) {
   await drawn(page);
 }
 
-/** Waits until what has changed so far is on the screen. */
+/** Waits until all changes so far are on the screen. */
 export async function drawn(page) {
   await page.evaluate(() => new Promise((resolve) => {
     window.taut.view.invalidate();
@@ -70,7 +69,7 @@ export async function drawn(page) {
   }));
 }
 
-/** Waits until something that the page cannot see is so; `what` is said where that takes long. */
+/** Waits for a condition outside the page; prints `what` if that takes long. */
 export async function until(condition, what) {
   for (let round = 1; !(await condition()); ++round) {
     if (round % 600 === 0) console.log(`still waiting: ${what}`);
@@ -78,7 +77,10 @@ export async function until(condition, what) {
   }
 }
 
-/** From now on all that the page says at its bottom, also what has gone away since: said(pattern) waits for it. */
+/**
+ * Records all messages at the bottom of the page from now on, including those that disappear: said(pattern)
+ * waits for one.
+ */
 export async function listenToNotices(page) {
   await page.evaluate(() => {
     window.notices = [];
@@ -87,7 +89,7 @@ export async function listenToNotices(page) {
   return (pattern) => page.waitForFunction(({ source }) => window.notices.some((text) => new RegExp(source).test(text)), { source: pattern.source });
 }
 
-/** What stands beside plots that are in sight, by figure, once all of it is there: text and numbers. */
+/** Returns texts and numbers beside the visible plots, by figure, once all of them are present. */
 export async function numbersBeside(page, figures) {
   const texts = await page.waitForFunction((ids) => {
     const found = ids.map((id) => document.querySelector(`[data-figure="${id}"] .values`));
@@ -98,7 +100,7 @@ export async function numbersBeside(page, figures) {
   return (await texts.jsonValue()).map((each) => ({ text: each.text, numbers: numbers(each.numbers) }));
 }
 
-/** Puts the cursor of all plots to a time. */
+/** Sets the cursor of all plots to a time. */
 export async function cursorTo(page, time_s) {
   await page.evaluate((wanted) => (window.taut.app.cursor_s.value = wanted), time_s);
 }
@@ -108,7 +110,7 @@ export async function picture(page, name, options = {}) {
   return page.screenshot({ path: join(PICTURES, `${name}.png`), ...options });
 }
 
-/** Writes the page as a report with these data; answers its address on disk. */
+/** Writes the page as a report with these data; returns its address on disk. */
 export function writeReport(data, folder) {
   const text = JSON.stringify(data).replace(/</g, "\\u003c");
   const html = readFileSync(PAGE, "utf8").replace(/(id="taut-report">)(<\/script>)/, (_, before, after) => before + text + after);
@@ -117,7 +119,7 @@ export function writeReport(data, folder) {
   return `file://${path}`;
 }
 
-/** The picture of the 3-D view: colour(x, y) in pixels of the page, from the view's top left. */
+/** Returns the picture of the 3D view: colour(x, y) in pixels of the page, from the view's top left. */
 export async function viewPixels(page) {
   const box = await page.locator(".view").boundingBox();
   const { width, channels, bytes } = decodePng(await page.screenshot({ clip: box }));
@@ -130,7 +132,7 @@ export async function viewPixels(page) {
   };
 }
 
-/** A PNG of 8 bits a channel, not interlaced, as Chromium writes them. */
+/** Decodes a PNG of 8 bits per channel, not interlaced, as written by Chromium. */
 export function decodePng(file) {
   const width = file.readUInt32BE(16);
   const height = file.readUInt32BE(20);
@@ -160,7 +162,7 @@ export function decodePng(file) {
   return { width, height, channels, bytes };
 }
 
-/** A projection of our own, from where the page says that its camera is: p_W to pixels. */
+/** Returns a projection from p_W to pixels, computed independently from the page's camera. */
 export async function projection(page) {
   const { eye, target, fov, width, height } = await page.evaluate(() => {
     const { view } = window.taut;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Whether the files that the browser's build lists (TAUT_BROWSER) are enough to link: continuous
-integration does not compile them for WebAssembly, and a file that moves what others call would be missed.
+"""Checks that the files in the list of the browser's build (TAUT_BROWSER) are enough to link. Continuous
+integration does not compile them for WebAssembly, so a moved function would go unnoticed.
 
   browser_sources.py BUILD     BUILD: a build of all of taut, for its objects and its compiler
 
-What the browser's build alone has is compiled for this machine; of all else the objects are there."""
+Sources that only the browser's build has are compiled for this machine; all other objects exist."""
 import json
 import os
 import re
@@ -18,7 +18,7 @@ OURS = re.compile(r"_ZT?[A-Z]*(NK?|K)?4taut")
 
 
 def output_of(*command):
-    """What a command prints; what it complains of, if it fails, on the way out."""
+    """Returns the command's output; exits with its error output if it fails."""
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         sys.exit(f"{shlex.join(command)}: {done.stdout}{done.stderr}")
@@ -26,13 +26,13 @@ def output_of(*command):
 
 
 def commands_of(build):
-    """From a source's path to the entry of compile_commands.json."""
+    """Returns a dict from source paths to entries of compile_commands.json."""
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         return {os.path.realpath(entry["file"]): entry for entry in json.load(file)}
 
 
 def browser_commands(of_all, folder):
-    """Those of the browser's build, configured for this machine."""
+    """Returns the commands of the browser's build, configured for this machine."""
     yaml = os.path.join(folder, "yaml-cpp")
     os.makedirs(os.path.join(yaml, "src"))
     os.makedirs(os.path.join(yaml, "include"))
@@ -42,7 +42,7 @@ def browser_commands(of_all, folder):
     with open(os.path.join(of_all, "CMakeCache.txt"), encoding="utf-8") as file:
         kernels = re.search(r"^TAUT_INSTRUCTION_SETS:\w+=(.*)$", file.read(), re.M).group(1)
     output_of("cmake", "-S", ROOT, "-B", build, "-DTAUT_BROWSER=ON", f"-DTAUT_YAML_SOURCE={yaml}",
-              f"-DTAUT_INSTRUCTION_SETS={kernels}",  # those that the objects choose from
+              f"-DTAUT_INSTRUCTION_SETS={kernels}",  # same instruction sets as in the objects
               "-DTAUT_UNITY_BUILD=OFF", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON")
     commands = commands_of(build)
     return {path: entry for path, entry in commands.items() if path.startswith(ROOT + os.sep)
@@ -57,7 +57,7 @@ def object_in(entry):
 
 def objects_made(here, wanted):
     """Returns the object in the build for each source path. A file of a unity build with other sources
-    than the wanted ones is left out, because their symbols would count as well."""
+    than the wanted ones is omitted, because their symbols would count as well."""
     objects = {}
     for path, entry in here.items():
         sources = [path]
@@ -84,7 +84,7 @@ def objects_of(build, folder):
 
 
 def symbols_of(made):
-    """What an object has, and what it wants, of taut."""
+    """Returns the taut symbols that an object defines, and the symbols that it needs."""
     has, wants = set(), set()
     for line in output_of("nm", "--no-demangle", made).splitlines():
         kind, name = line.split()[-2:]
@@ -101,7 +101,7 @@ def main():
     for name, (has, _) in symbols.items():
         for symbol in has:
             who_has.setdefault(symbol, name)
-    # As a linker goes through archives: from what is started, to what that wants.
+    # Same as a linker with archives: from the entry points to the symbols that they need.
     reached = [name for name in symbols if name.startswith("apps/browser/")]
     if len(reached) < 2:
         sys.exit("the browser's build has no apps/browser")

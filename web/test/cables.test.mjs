@@ -1,5 +1,6 @@
-// Cables that go round wheels are drawn where the physics has them; how often round, their length says. Those
-// that lie against what they come to are drawn over the bends that their channels have, each span in the colour of its tension.
+// Tests that cables around wheels are drawn where the physics has them, with the number of turns from their
+// length, and that wrapped cables are drawn over the bends in their channels, each span in the color of its
+// tension.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -19,7 +20,7 @@ const place = (x, z) => [CENTER[0] + x, CENTER[1], CENTER[2] + z];
 const wheel = (angle_rad) => ({ axis: [0, 1, 0], radius_m: R, angle_rad });
 const fixed = (position_m, more = {}) => ({ body: -1, position_m, ...more });
 const over = (angle_rad) => [fixed(place(-R, -0.1)), fixed(CENTER, { wheel: wheel(angle_rad) }), fixed(place(R, -0.1))];
-// Cable 1, 0.31 m, goes straight past a wheel.
+// Cable 1, 0.31 m, passes a wheel without contact.
 const past = [fixed([0, 0.3, 0.6]), fixed([0.1, 0.3, 0.66], { wheel: wheel(0.1 - Math.PI) }), fixed([0.31, 0.3, 0.6])];
 const with_wheels = cables.map((cable, i) => ({ ...cable, attachments: [over(once), past][i] ?? cable.attachments }));
 let server;
@@ -71,14 +72,14 @@ test("WhatItDoesNotTouchItPassesStraight", async (t) => {
 const OVER_WALL = "docs/tutorial_cables/over_wall.yaml";
 const AXES = ["x", "y", "z"];
 
-/** The rope over the wall: its first ball, its bends, its last ball; as the row at a time has them. */
+/** Returns the rope over the wall at a time: its first ball, its bends, its last ball. */
 function rope(run, time_s) {
   const place = (name) => AXES.map((axis) => run.value(`${name}${axis}_m`, time_s + 1e-9));
   const bends = Array.from({ length: run.value("cable/rope/bends", time_s + 1e-9) }, (_, i) => place(`cable/rope/bend_${i + 1}_`));
   return [place("body/left/position_"), ...bends, place("body/right/position_")];
 }
 
-/** The corners of the lines that are drawn: of the rope, and of those of ghosts. */
+/** Returns the vertices of the drawn lines: of the rope, and of the ghosts' ropes. */
 const corners = (page) => page.evaluate(() => {
   const { cables: own, ghosts } = window.taut.view.world;
   const { geometry } = own.lines[0];
@@ -91,7 +92,7 @@ const corners = (page) => page.evaluate(() => {
   };
 });
 
-/** Each part of a line from corner to corner. */
+/** Checks each segment of a line between vertices. */
 function along(parts, places, what) {
   assert.equal(parts.length, 2 * (places.length - 1), what);
   parts.forEach((corner, k) => near(corner, places[(k + 1) >> 1]));
@@ -112,7 +113,7 @@ test("ARopeIsDrawnOverTheEdgesThatItLiesOn", options, async (t) => {
     const bends = [];
     for (const time_s of [2 / 30, 4 / 30, 0.9]) {
       await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
-      await untilTime(page, time_s, 0.02); // a report has a frame each 33 ms
+      await untilTime(page, time_s, 0.02); // a report has one frame per 33 ms
       const seen = await corners(page);
       along(seen.rope, rope(run, seen.time_s), `at ${seen.time_s} s`);
       along(seen.ghosts[0], rope(other, seen.time_s), `ghost at ${seen.time_s} s`);

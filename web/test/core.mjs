@@ -1,5 +1,5 @@
-// The core in WebAssembly as the demo's worker has it, in node: web/src/demo/core.ts, compiled on the way.
-// TAUT_WASM: the folder that script/wasm builds into.
+// WebAssembly core in node, as in the demo's worker: web/src/demo/core.ts, compiled on the fly. TAUT_WASM:
+// the build folder of script/wasm.
 import { existsSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { extname, join } from "node:path";
@@ -11,7 +11,7 @@ export const WASM = process.env.TAUT_WASM ?? join(ROOT, "build/wasm");
 export const CORE = join(WASM, "core/apps/browser");
 export const options = { skip: existsSync(join(CORE, "taut_core.wasm")) ? false : "this machine has no demo: script/wasm builds it" };
 
-/** Models, experiments and gaits as they are shipped, by path. */
+/** Shipped models, experiments and gaits, by path. */
 export const shipped = Object.fromEntries(["models", "experiments", "gaits"].flatMap((folder) =>
   readdirSync(join(ROOT, "share", folder)).filter((name) => [".yaml", ".obj"].includes(extname(name))).sort()
     .map((name) => [`${folder}/${name}`, readFileSync(join(ROOT, "share", folder, name), "utf8")])));
@@ -26,7 +26,7 @@ export async function loadCore() {
   return core;
 }
 
-/** Opens a file and lets it run as fast as it can, until it has come to all marks. */
+/** Opens a file and runs it at full speed until it has reached all marks. */
 export function runTo(core, path, mark_at_s, edits = {}) {
   const opened = core.open(path, edits, mark_at_s, true);
   if (!opened.good) throw new Error(JSON.stringify(opened.found));

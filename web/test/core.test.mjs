@@ -1,5 +1,5 @@
-// The core in WebAssembly beside the command taut: the same bits, the same complaints. TAUT_COMMAND names the
-// command, TAUT_WASM what script/wasm has built.
+// Tests that the WebAssembly core and the taut command yield the same bits and the same diagnostics.
+// TAUT_COMMAND: the command; TAUT_WASM: the build folder of script/wasm.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -27,7 +27,7 @@ function put(files) {
   }
 }
 
-/** What the command finds of a file in `folder`. */
+/** Returns the command's result for a file in `folder`. */
 function native(path, duration_s, ...more) {
   const words = ["run", path, "--duration_s", String(duration_s), "--json", "--quiet", "--out", join(folder, "runs/run"), ...more];
   const { simulated_s, state_hash } = JSON.parse(execFileSync(TAUT, words, { cwd: folder, maxBuffer: 1 << 26 }));
@@ -44,7 +44,7 @@ test("EveryModelHasTheHashOfTheCommand", options, () => {
   const models = Object.keys(shipped).filter((path) => /^models\/.*yaml$/.test(path));
   assert.ok(models.length > 15);
   for (const model of models) {
-    // in the place of a shipped one: a page has no other files
+    // in place of a shipped file: a page has no other files
     const text = `taut: 1\nkind: experiment\nname: it_falls\nmodel: ../${model}\nduration_s: 5\n`;
     const path = "experiments/hang.yaml";
     put({ [path]: text });
@@ -68,7 +68,7 @@ test("AParameterThatIsSetIsThatOfTheCommand", options, () => {
   runTo(core, path, [AT_S]);
   core.post('{"type": "set_parameter", "name": "push_n", "value": 31.5}');
   core.turn();
-  while (core.state().time_s !== 0) core.turn(); // it begins anew
+  while (core.state().time_s !== 0) core.turn(); // it restarts
   goOn(core, 1);
   const state = core.state();
   assert.deepEqual(state.set, { push_n: "31.5" });
@@ -106,7 +106,7 @@ test("WhoTouchesARunIsTold", options, () => {
   }
 });
 
-/** Files with mistakes, and in which of them. */
+/** Errors by the file that contains them. */
 const mistakes = {
   "an unknown key": ["models/prism3.yaml", (text) => `${text}\nradius: 3\n`],
   "no YAML": ["models/prism3.yaml", (text) => text.replace("nodes:", "nodes: [")],
@@ -142,7 +142,7 @@ for (const [what, [path, spoil]] of Object.entries(mistakes)) {
 test("WhatABrowserHasNotIsRefusedWithAWayOut", options, () => {
   const path = "experiments/hills.yaml";
   const refused = {
-    'file: "hills.png", height_range_m: [0, 1]': /^images of the ground cannot be read in a browser$/,
+    'file: "hills.png", height_range_m: [0, 1]': /^images of heights cannot be read in a browser$/,
     'file: "hills.h5:/z"': /^tables in HDF5 cannot be read in a browser$/,
   };
   for (const [from, what] of Object.entries(refused)) {
@@ -162,7 +162,7 @@ test("AWrongFileLeavesWhatRunsAndALookDisturbsNothing", options, () => {
   assert.equal(core.open(path, wrong, [], true).good, false);
   core.turn();
   assert.deepEqual(core.state(), before);
-  // what was wrong is not left behind
+  // no error remains after a correction
   assert.equal(core.check(path, {}).good, true);
   assert.deepEqual(runTo(core, path, [0.5]).marks, [native(path, 0.5)]);
 });
@@ -190,7 +190,7 @@ test("WhatIsNoMessageIsRefused", options, () => {
   assert.ok(core.messages().some(({ type, text }) => type === "error" && /no node "nobody"/.test(text)));
 });
 
-// 450 kB was the aim, and is not reached (docs/browser.md); this keeps it from growing.
+// The goal of 450 kB is not reached (docs/browser.md); this test prevents growth.
 test("ItIsNoLargerThanItWas", options, () => {
   const packed = ["taut_core.wasm", "taut_core.mjs"].map((name) => gzipSync(readFileSync(join(CORE, name)), { level: 9 }).length);
   assert.ok(packed[0] + packed[1] <= 640_000, `${packed} bytes, compressed`);

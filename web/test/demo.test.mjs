@@ -1,4 +1,5 @@
-// The demo as script/wasm builds it, in Chromium, from a server of files. TAUT_WASM: that build's folder.
+// Tests of the demo built by script/wasm, in Chromium, from a static file server. TAUT_WASM: the build
+// folder.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -21,13 +22,13 @@ const state = (page) => page.evaluate(() => window.demo.source.state.value);
 const text = (page) => page.locator(".demo textarea");
 const hashes = () => JSON.parse(readFileSync(join(SITE, "files.json"), "utf8")).hashes;
 
-/** Lets it run at full speed to the end, which pauses. */
+/** Runs at full speed to the end, where the run pauses. */
 async function toTheEnd(page) {
   await page.selectOption(".timeline select", "0");
   await page.waitForFunction(() => window.taut.app.frame.value.time_s >= window.taut.app.scene.value.duration_s && window.taut.app.frame.value.paused);
 }
 
-/** Types something in place of a line of the text. */
+/** Replaces a line of the text by typing. */
 async function rewrite(page, line, by) {
   const written = await text(page).inputValue();
   const changed = written.replace(line, by);
@@ -77,8 +78,8 @@ test("MistakesAreShownWhileOneTypesAndWhatRunsGoesOn", options, async () => {
   await picture(page, "demo-mistake");
   await place.click();
   assert.equal(await text(page).evaluate((area) => area.value.slice(0, area.selectionStart).split("\n").length), line);
-  // a mistake in the model is shown, too, and in its own text
-  await page.getByRole("button", { name: "the texts as they are shipped" }).click();
+  // an error in the model is also displayed, in its text
+  await page.getByRole("button", { name: "restore the shipped texts" }).click();
   await page.locator(".tab", { hasText: "tetraspine3.yaml" }).click();
   await rewrite(page, /^segments: .*|^ {2}segments: .*/m, "  segments: many");
   await page.waitForFunction(() => /models\/tetraspine3\.yaml:\d+:\d+/.test(document.querySelector(".problems")?.textContent ?? ""));
@@ -92,10 +93,10 @@ test("AChangedModelRunsAndALinkHoldsIt", options, async () => {
   await rewrite(page, /duration_s: .*/, "duration_s: 0.25");
   await page.keyboard.press("Control+Enter");
   await page.waitForFunction(() => window.taut.app.scene.value?.duration_s === 0.25);
-  await page.waitForFunction(() => window.demo.source.state.value?.time_s >= 0.25); // hashes come less often than frames
+  await page.waitForFunction(() => window.demo.source.state.value?.time_s >= 0.25); // hashes arrive less often than frames
   assert.equal(await page.locator(".bits .same, .bits .other").count(), 0, "another run than the command's of the shipped file");
   const said = await listenToNotices(page);
-  await page.getByRole("button", { name: "copy a link to just this, with your changes" }).click();
+  await page.getByRole("button", { name: "copy a link to this text with your changes" }).click();
   await said(/link/);
   const link = page.url();
   assert.ok(link.length < 4000, `${link.length} characters`);
@@ -141,7 +142,7 @@ test("AHandPullsANodeAndASliderTunes", options, async () => {
   await page.mouse.move(box.x + x + 40, box.y + y - 60, { steps: 8 });
   await page.waitForFunction(() => window.demo.source.state.value?.touched === true);
   await page.mouse.up();
-  await page.waitForFunction(() => /pulled, pushed or tuned|no command/.test(document.querySelector(".bits .why").textContent));
+  await page.waitForFunction(() => /pulled, pushed or changed|No command/.test(document.querySelector(".bits .why").textContent));
   await page.evaluate(() => window.taut.app.send({ type: "reset" }));
   await page.waitForFunction(() => window.demo.source.state.value?.touched === false);
   await page.keyboard.press("c");

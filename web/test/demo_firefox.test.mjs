@@ -1,4 +1,4 @@
-// The demo in Firefox (firefox.mjs), from a server of files.
+// Tests of the demo in Firefox (firefox.mjs), from a static file server.
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";

@@ -1,6 +1,5 @@
-// Firefox, driven through WebDriver BiDi, which Firefox speaks by itself. It draws 3-D only where there is a
-// screen, so it gets one in memory (Debian's packages firefox-esr and xvfb; without them there is nothing to
-// test here).
+// Firefox for tests, driven through WebDriver BiDi, which is built in. It renders 3D only with a screen, so
+// it gets a virtual one (Debian's packages firefox-esr and xvfb; without them the tests are skipped).
 import { spawn } from "node:child_process";
 import { existsSync, mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -18,7 +17,7 @@ export class Firefox {
   next = 1;
 
   async start(profile) {
-    // What a fresh profile fetches from its maker would be noise.
+    // Prevents downloads of a new profile.
     writeFileSync(join(profile, "user.js"), 'user_pref("remote.active-protocols", 1);\nuser_pref("webgl.force-enabled", true);\n');
     this.screen = spawn(XVFB, ["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"], { stdio: ["ignore", "pipe", "ignore"] });
     const display = await new Promise((resolve) => this.screen.stdout.once("data", (data) => resolve(`:${String(data).trim()}`)));
@@ -53,7 +52,7 @@ export class Firefox {
     return this.ask("browsingContext.navigate", { context: this.context, url, wait: "complete" });
   }
 
-  /** The value of an expression in the page, which may be a promise. */
+  /** Returns the value of an expression in the page, which may be a promise. */
   async run(expression) {
     const { result, exceptionDetails } = await this.ask("script.evaluate", {
       expression: `Promise.resolve(${expression}).then(JSON.stringify)`, target: { context: this.context }, awaitPromise: true,

@@ -1,4 +1,4 @@
-// The page in Firefox (firefox.mjs).
+// Tests of the page in Firefox (firefox.mjs).
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -25,7 +25,7 @@ after(async () => {
 const DRAWN = 'Number(document.querySelector(".view")?.dataset.drawn ?? 0) > 0 && window.taut.view.world !== null';
 const position = (body) => firefox.run(`window.taut.view.world.bodies.object.children[${body}].position.toArray()`);
 
-/** Something of the robot is where the canvas is: dark rods on a light ground. */
+/** Checks that the canvas shows the robot: dark rods on a light ground. */
 async function showsRods(name) {
   const box = await firefox.run('(({ x, y, width, height }) => ({ x, y, width, height }))(document.querySelector(".view canvas").getBoundingClientRect())');
   const { width, channels, bytes } = decodePng(await firefox.picture(name));
@@ -70,7 +70,7 @@ test("FirefoxDrivesALiveRun", options, async () => {
 });
 
 test("FirefoxOpensAReportFromDisk", options, async () => {
-  await firefox.open("about:blank");  // the page before, whose server is gone, tries to reach it
+  await firefox.open("about:blank");  // the previous page tries to reconnect to its closed server
   firefox.complaints.length = 0;
   await firefox.open(writeReport(report(), folder));
   await firefox.untilSo(DRAWN);

@@ -1,5 +1,5 @@
-// A robot whose motion is a formula: a prism of three rods and nine cables that turns about the
-// vertical and moves along x. So a test knows where everything must be at any time.
+// Robot with analytic motion: a prism of three rods and nine cables that turns about the vertical and moves
+// along x. Tests know all positions at any time.
 import { readFileSync } from "node:fs";
 
 export const DURATION_S = 10;
@@ -10,7 +10,7 @@ const LIFT_M = 0.02;
 export const TURN_RAD_PER_S = 0.3;
 export const SPEED_M_PER_S = 0.05;
 export const CABLE_COUNT = 9;
-export const SLACK = 8; // this cable carries nothing
+export const SLACK = 8; // this cable is slack
 
 const corner = (i, z) => {
   const angle = (2 * Math.PI * i) / 3;
@@ -41,13 +41,13 @@ export const cables = [
 export const tension_n = (i, time_s) => (i === SLACK ? 0 : 4 * (i + 1) * (1 + 0.2 * Math.sin(time_s)));
 export const setpoint_n = (i) => (i === SLACK ? 0 : 4 * (i + 1));
 
-/** The time of the row at a time, or of the last before it. */
+/** Returns the time of the row at a time, or of the last before it. */
 export function rowTime(time_s) {
   const near = Math.round(time_s * RATE_HZ);
   return (near / RATE_HZ <= time_s ? near : near - 1) / RATE_HZ;
 }
 
-/** Another in every row: a mean of rows is none of them. */
+/** Differs from row to row, so that a mean of rows equals none of them. */
 export const contactCount = (time_s) => 3 + (Math.round(time_s * RATE_HZ) % 4);
 
 const ends = { tension_n: "N", setpoint_n: "N", length_m: "m", rest_length_m: "m" };
@@ -92,7 +92,7 @@ export const liveScene = {
   })),
 };
 
-/** p_WB and q_WB of a body. */
+/** Returns p_WB and q_WB of a body. */
 export function pose(body, time_s) {
   const angle = TURN_RAD_PER_S * time_s;
   const [x, y, z] = centres[body];
@@ -102,7 +102,7 @@ export function pose(body, time_s) {
   };
 }
 
-/** p_W of a point of a body; only turns about the vertical occur. */
+/** Returns p_W of a point of a body; all rotations are about the vertical. */
 export function worldPoint(body, [x, y, z], time_s) {
   const { position_m: [px, py, pz] } = pose(body, time_s);
   const angle = TURN_RAD_PER_S * time_s;
@@ -112,7 +112,7 @@ export function worldPoint(body, [x, y, z], time_s) {
 const protocol = JSON.parse(readFileSync(new URL("../protocol/messages.json", import.meta.url), "utf8"));
 export const VERSION = protocol.version;
 
-/** A frame as a list of numbers; `more`: header values, contacts, pushes and changed tensions. */
+/** Returns a frame as a list of numbers; `more`: header values, contacts, pushes and changed tensions. */
 export function frameValues(time_s, more = {}) {
   const contacts = more.contacts ?? [];
   const pushes = more.pushes ?? [];
@@ -131,7 +131,7 @@ export function frameValues(time_s, more = {}) {
   ];
 }
 
-/** The weight on the three lower ends. */
+/** Returns contacts with the weight on the three lower ends. */
 export function contactsAt(time_s) {
   return [0, 1, 2].map((i) => [...worldPoint(i, nodes[2 * i].position_m, time_s), 0, 0, 4.905]);
 }
@@ -151,14 +151,14 @@ function channelValue(name, time_s) {
   return { "system/kinetic_j": 0.1 * time_s, "system/gravity_j": 2, "system/elastic_j": 3, "system/contact_count": contactCount(time_s) }[name] ?? null;
 }
 
-/** As the server answers want_series: blocks of 1, 2, 4 ... rows. */
+/** Answers want_series as the server does: blocks of 1, 2, 4 ... rows. */
 export function seriesOf(channel, source, t0, t1, points) {
   const first = Math.max(0, Math.floor(t0 * RATE_HZ) - 1);
   const last = Math.min(DURATION_S * RATE_HZ, Math.ceil(t1 * RATE_HZ) + 1);
   let level = 1;
   while ((last - first + 1) / level > points) level *= 2;
   const series = { channel, source, level, time_s: [], first: [], min: [], max: [] };
-  const offset = 1.5 * source; // what this run is compared with lies above
+  const offset = 1.5 * source; // values of compared runs are larger
   for (let row = first; row <= last; row += level) {
     const values = [];
     for (let k = row; k < Math.min(row + level, last + 1); ++k) values.push(channelValue(channel, k / RATE_HZ) + offset);
@@ -175,10 +175,13 @@ const tensions = channels.filter(({ name }) => name.endsWith("/tension_n"));
 /** A run without poses. */
 export const reference = {
   name: "another prism (runs/trace.h5)", measured: false, channels: tensions,
-  first_s: 0, last_s: DURATION_S, bodies: [], cables: [], notice: "no ghost: there are no poses of bodies in this trace",
+  first_s: 0, last_s: DURATION_S, bodies: [], cables: [], notice: "no ghost: the trace contains no poses of bodies",
 };
 
-/** A prism beside this run's, by so much for each source; the third ends early, the fourth is one rod alone. */
+/**
+ * Offset of each compared run's prism from this run's, by source; the third ends early, the fourth is a
+ * single rod.
+ */
 export const GHOST_OFFSET_M = [0, 0.05, 0.02];
 export const EARLY_END_S = 4;
 const ghost = (name, more = {}) => ({ ...reference, name, bodies: scene.bodies, cables, notice: undefined, ...more });
@@ -186,10 +189,10 @@ export const comparedRuns = [
   ghost("prism (a/trace.h5)"),
   reference,
   ghost("prism (b/trace.h5)", { last_s: EARLY_END_S }),
-  ghost("a rod (c/trace.h5)", { bodies: [scene.bodies[0]], cables: [], notice: "the trace is not finished: its run goes on, or was killed" }),
+  ghost("a rod (c/trace.h5)", { bodies: [scene.bodies[0]], cables: [], notice: "the trace is unfinished: its run continues, or was killed" }),
 ];
 
-/** Poses of the ghosts of compared runs; `runs`: as in a scene. */
+/** Returns the poses of the ghosts of compared runs; `runs`: as in a scene. */
 export function ghostsAt(runs, time_s) {
   return runs.flatMap(({ bodies, last_s }, k) => bodies.map((_, body) => {
     const { position_m, orientation } = pose(body, time_s);
@@ -200,7 +203,7 @@ export function ghostsAt(runs, time_s) {
 
 const base64 = (numbers) => Buffer.from(new Float64Array(numbers).buffer).toString("base64");
 
-/** Channels as a report holds them: every row, or blocks of `level` rows. */
+/** Returns channels in the form of a report: every row, or blocks of `level` rows. */
 export function rowsOf(channels, source, level, value = seriesOf) {
   const count = Math.ceil((DURATION_S * RATE_HZ + 1) / level);
   const all = channels.map((name) => value(name, source, 0, DURATION_S, count));
@@ -208,7 +211,7 @@ export function rowsOf(channels, source, level, value = seriesOf) {
   return { source, level, count, channels, base64: base64([...all[0].time_s, ...numbers]) };
 }
 
-/** What a report holds; every eighth row has its frame. `level`: rows a block. */
+/** Returns the content of a report; every eighth row has a frame. `level`: rows per block. */
 export function report(changes = {}, level = 1) {
   const frames = [];
   const compared = changes.scene?.compared ?? [];

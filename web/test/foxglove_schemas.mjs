@@ -1,4 +1,4 @@
-// Schemas that Foxglove publishes, by their names, as JSON.
+// Prints schemas published by Foxglove, by name, as JSON.
 //
 //   node foxglove_schemas.mjs NAME...
 import { createRequire } from "node:module";

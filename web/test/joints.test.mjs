@@ -1,4 +1,4 @@
-// Joints are marked where the bodies hold each other, by kind, and have names like all else.
+// Tests of the marks of joints: position, shape by kind, and names.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { closeBrowser, drawn, openPage, PAGE, picture, projection, untilTime, viewPixels } from "./browser.mjs";
@@ -6,7 +6,7 @@ import { nodes, pose, TURN_RAD_PER_S, worldPoint } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
 
 const AT_S = 4;
-const IN_THE_MIDDLE = ["ball", "hinge", "weld"]; // of these there is something at the point itself
+const IN_THE_MIDDLE = ["ball", "hinge", "weld"]; // kinds whose mark includes the point itself
 const KINDS = ["ball", "hinge", "weld", "prismatic", "cylindrical", "planar", "line", "plane", "distance"];
 const minus = (a, b) => a.map((value, k) => value - b[k]);
 const length = (a) => Math.hypot(...a);
@@ -14,19 +14,22 @@ const unit = (a) => a.map((value) => value / length(a));
 const AXIS = unit([0.6, -0.48, 0.64]);
 const SLIDE_M = 0.03;
 
-/** A point of W at the start in a body's frame; all bodies are as described then. */
+/**
+ * Converts a point in W at the start to a body's frame; at the start all bodies have their described pose.
+ */
 const inBody = (body, point) => (body < 0 ? point : minus(point, pose(body, 0).position_m));
 const joint = (name, kind, body_a, body_b, at, to = at) => ({
   name, kind, body_a, body_b, from_m: inBody(body_a, at), to_m: inBody(body_b, to), axis: AXIS,
 });
 const along = (point, way_m) => point.map((value, k) => value + way_m * AXIS[k]);
 
-// Each kind between two rods at a place of its own in the air, and once more as a support. What slides has slid.
+// One joint of each kind between two rods in the air, at separate places, and once more as a support. Sliding
+// joints have slid.
 const places = KINDS.map((_, i) => [0.24, -0.1 + 0.06 * i, 0.42 + 0.06 * (i % 2)]);
 const slides = { prismatic: SLIDE_M, cylindrical: SLIDE_M, line: SLIDE_M, distance: SLIDE_M };
 const joints = [
   ...KINDS.map((kind, i) => joint(kind, kind, 0, 1, places[i], along(places[i], slides[kind] ?? 0))),
-  // at the low end of a rod, where all is a ball of 2 cm
+  // at the low end of a rod, inside a ball of 2 cm
   joint("in_a_ball", "ball", 0, 1, worldPoint(0, nodes[0].position_m, 0)),
   ...KINDS.filter((kind) => kind !== "distance").map((kind, i) => joint(`${kind}_support`, kind, -1, 2, [-0.3, -0.3 + 0.1 * i, i % 2 ? 0.15 : 0.35])),
 ];
@@ -48,7 +51,7 @@ async function pageAt(t, time_s, options = {}) {
   return page;
 }
 
-/** Where each part of each mark is, in W, with its y axis, and how large; of distances their line. */
+/** Returns position, y axis and size of each part of each mark in W; for distance joints the line. */
 const marksOf = (page) => page.evaluate(() => {
   const { joints } = window.taut.view.world;
   joints.object.updateMatrixWorld(true);
@@ -66,7 +69,7 @@ const marksOf = (page) => page.evaluate(() => {
 });
 const near = (a, b, what, within = 1e-6) => assert.ok(length(minus(a, b)) < within, `${what}: ${a}, not ${b}`);
 
-/** A direction of the robot's, turned as its bodies are: about the vertical. */
+/** Rotates a direction of the robot as its bodies: about the vertical. */
 const turned = ([x, y, z], time_s) => {
   const angle = TURN_RAD_PER_S * time_s;
   return [x * Math.cos(angle) - y * Math.sin(angle), x * Math.sin(angle) + y * Math.cos(angle), z];
@@ -114,10 +117,10 @@ test("EachKindHasAMarkOfItsOwn", async (t) => {
   const looks = KINDS.map((_, i) => [marks[i].rail?.geometry ?? "", marks[i].bead?.geometry ?? ""].join("+"));
   assert.deepEqual(looks, ["+SphereGeometry", "CylinderGeometry+", "+BoxGeometry", "BoxGeometry+BoxGeometry", "CylinderGeometry+CylinderGeometry",
     "BoxGeometry+BoxGeometry", "CylinderGeometry+SphereGeometry", "CylinderGeometry+SphereGeometry", "+"]);
-  // a bar is long where a plate is flat
+  // a bar is elongated, a plate flat
   const ratio = ({ rail }) => length(rail.y) / length(rail.x);
   assert.ok(ratio(marks[KINDS.indexOf("prismatic")]) > 5 && Math.abs(ratio(marks[KINDS.indexOf("planar")]) - 1) < 1e-6);
-  // and a mark in a ball of 2 cm looks out of it
+  // a mark in a ball of 2 cm protrudes from it
   assert.ok(length(marks[KINDS.length].bead.x) > 0.02 && length(marks[0].bead.x) < 0.02);
 });
 

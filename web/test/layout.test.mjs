@@ -1,5 +1,5 @@
-// The page on small and on magnified screens: nothing is cut off, nothing lies over something else,
-// and all that can be used is reached by the tab key.
+// Tests of the page on small and magnified screens: nothing is cut off, nothing overlaps, and all controls
+// are reached by the tab key.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -27,7 +27,7 @@ after(async () => {
 const address = (use) =>
   use === "report" ? writeReport(report({ scene: { ...scene, compared: [reference] } }), folder) : servers[use].url;
 
-/** What is wrong with the layout, in sentences. */
+/** Returns layout errors as sentences. */
 function faults() {
   const found = [];
   const name = (element) => element.getAttribute("aria-label") || element.textContent.trim() || element.className;
@@ -55,8 +55,8 @@ function faults() {
   return found;
 }
 
-// A window of 1280 x 720 at 125 % is one of 1024 x 576 whose pixels are larger; the last is a
-// projector of 800 x 600.
+// A window of 1280 x 720 at 125 % equals one of 1024 x 576 with larger pixels; the last is a projector of 800
+// x 600.
 for (const use of ["live", "replay", "report"]) {
   for (const [what, size] of Object.entries({
     At125Percent: { width: 1024, height: 576, scale: 1.25 },
@@ -81,7 +81,7 @@ for (const use of ["live", "replay", "report"]) {
 const PHONE = { width: 390, height: 844, touch: true };
 const TABLET = { width: 820, height: 1180, touch: true };
 
-/** Where corners of the robot are that something lies over, with what that is. */
+/** Returns the positions of covered corners of the robot, with the covering elements. */
 function covered() {
   const { view } = window.taut;
   const frame = view.canvas.getBoundingClientRect();
@@ -90,7 +90,7 @@ function covered() {
     const group = view.world.bodies.object.children[node.body];
     const at = view.toScreen(view.target.clone().fromArray(node.position_m).applyQuaternion(group.quaternion).add(group.position));
     const [x, y] = [frame.left + at.x, frame.top + at.y];
-    // clicks go through a legend, and it covers all the same
+    // a legend lets clicks pass, but covers the robot nevertheless
     for (const part of document.querySelectorAll(".legend, .inspector, .notice, header.top, footer.timeline, .plots, .below")) {
       const box = part.getBoundingClientRect();
       if (part.checkVisibility() && x >= box.left && x <= box.right && y >= box.top && y <= box.bottom) found.push(`${part.className} over ${node.name}`);
@@ -108,7 +108,7 @@ for (const use of ["live", "replay", "report"]) {
       assert.deepEqual(await page.evaluate(faults), []);
       assert.deepEqual(await page.evaluate(covered), []);
       assert.equal(await page.locator(".top h1").evaluate((title) => title.scrollWidth <= title.clientWidth && title.textContent), "turning prism");
-      // a finger on the line of time goes where it points, also while it moves
+      // a touch on the timeline seeks to its position, also while it moves
       await page.evaluate(() => document.querySelector(".view").scrollIntoView()); // in a report there is more above it
       const track = await page.locator(".track input").boundingBox();
       assert.ok(track.width > 0.9 * (size.width - (use === "report" ? 44 : 24)) || what === "Tablet", `the line of time is ${track.width} px wide`);
@@ -130,7 +130,7 @@ for (const use of ["live", "replay", "report"]) {
       await touch("touchMove", 0.62);
       await until(0.62);
       await touch("touchEnd");
-      // what is selected has its numbers beside the robot, not over it
+      // the values of the selection are beside the robot, not above it
       await page.evaluate(() => (window.taut.app.selection.value = { kind: "cable", index: 1 }));
       await drawn(page);
       assert.deepEqual(await page.evaluate(covered), []);
@@ -143,7 +143,7 @@ for (const use of ["live", "replay", "report"]) {
   }
 }
 
-// What a screen reader says is what the browser tells it: its tree of roles and names.
+// Screen readers use the browser's accessibility tree of roles and names.
 for (const use of ["live", "replay", "report"]) {
   test(`EveryControlOf_${use}_HasANameAndItsOwn`, async () => {
     const page = await openPage(address(use), { width: 1440, height: 900 });
@@ -161,10 +161,10 @@ for (const use of ["live", "replay", "report"]) {
     const said = controls.map(({ role, name }) => `${role.value} ${name?.value ?? ""}`.trim());
     assert.ok(controls.length > 60, `${controls.length} controls`);
     assert.deepEqual(said.filter((text) => !text.includes(" ")), [], "without a name");
-    // two that are called the same do the same
+    // elements of the same name must have the same function
     const twice = [...new Set(said.filter((text, i) => said.indexOf(text) !== i))];
     assert.deepEqual(twice, []);
-    // a sign is no name
+    // a symbol is not a name
     assert.deepEqual(said.filter((text) => !/ .*[a-z]{2}/i.test(text)), []);
     await page.context().close();
   });
@@ -196,7 +196,7 @@ test("TheTabKeyReachesEverythingAndTheFocusIsSeen", async () => {
   await page.context().close();
 });
 
-/** The contrast of two colours as WCAG 2 defines it. */
+/** Returns the contrast of two colors as defined by WCAG 2. */
 function contrast(a, b) {
   const light = ([r, g, blue]) => {
     const part = (value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4);

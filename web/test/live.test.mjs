@@ -1,4 +1,4 @@
-// Live: dragging, pushing, sliders, several viewers, a server that goes and comes back, refusals.
+// Tests of live runs: dragging, pushing, sliders, several clients, reconnection, refusals.
 import assert from "node:assert/strict";
 import { after, afterEach, beforeEach, test } from "node:test";
 import { closeBrowser, drawn, listenToNotices, openPage, PAGE, picture, projection, ready, until } from "./browser.mjs";
@@ -25,7 +25,7 @@ after(closeBrowser);
 
 const camera = (page) => page.evaluate(() => window.taut.view.camera.position.toArray());
 
-/** Where a node is on the page. */
+/** Returns the position of a node on the page. */
 async function nodeOnPage(page, index) {
   const project = await projection(page);
   const box = await page.locator(".view").boundingBox();
@@ -52,7 +52,7 @@ test("DraggingANodePullsItAndTheTensionAnswers", async () => {
   assert.ok(Math.abs(from.project(target.target_m).depth - from.depth) < 1e-3, "the target stays as far away as the node");
   await page.waitForFunction(() => window.taut.view.world.forces.pushes.object.children[0].count === 1);
   await page.waitForFunction(() => window.taut.app.frame.value.cables[0] > 6);
-  // how hard, in newtons, beside the mouse: the force of the frame that is shown
+  // the label shows the force in the displayed frame [N]
   const at = worldPoint(nodes[1].body, nodes[1].position_m, server.time_s);
   const force_n = 200 * Math.hypot(...server.of("drag").at(-1).target_m.map((value, k) => value - at[k]));
   await page.waitForFunction((wanted) => Math.abs(parseFloat(document.querySelector(".grip").textContent) - wanted) < 0.01 * wanted, force_n);
@@ -116,10 +116,10 @@ test("WhatIsAmissStandsThereUntilItIsMended", async () => {
   const shows = (text) => page.waitForFunction((wanted) => window.taut.app.scene.value.notice === wanted, text);
   tell({ notice: "nothing is recorded any more" });
   await shows("nothing is recorded any more");
-  assert.match((await notice()).join(), /nothing is recorded any more/);
+  assert.match((await notice()).join(), /recording stopped/);
   tell({ notice: "recorded again" });
   await shows("recorded again");
-  assert.match((await notice()).join(), /recorded again/);
+  assert.match((await notice()).join(), /recording resumed/);
   tell({});
   await shows(undefined);
   assert.deepEqual(await notice(), []);
@@ -143,7 +143,8 @@ test("APageThatComesLateShowsWhatWentBefore", async () => {
   server.time_s = 8;
   const page = await open({ width: 1280, height: 760 });
   const shown = (...range) => page.evaluate((asked) => new Promise((resolve) => window.taut.store.want("cable/top_1/tension_n", 0, ...asked, (points) => resolve(points))), range);
-  // Two who look at the same channel, beside the page's own plots: of all, and of a part of it more finely.
+  // Two requests for the same channel besides the page's plots: one of the whole span, one of a part at finer
+  // resolution.
   const ranges = [[0, 8, 777], [2, 3, 333]];
   for (const range of ranges) {
     await until(async () => (await shown(...range)).t.length > 100, "the time before");
@@ -178,9 +179,9 @@ test("ALiveRunIsLookedBackAt", async () => {
   await picture(page, "look-back");
   const before = await page.evaluate(() => window.taut.store.history.get("cable/top_1/tension_n").t.at(-1));
   assert.equal(before, 8, "what was is no news");
-  await page.getByRole("button", { name: "back to where the run is" }).click();
+  await page.getByRole("button", { name: "back to the present" }).click();
   await page.waitForFunction(() => document.querySelector(".timeline").dataset.time === "8");
-  assert.equal(await page.getByRole("button", { name: "back to where the run is" }).isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: "back to the present" }).isVisible(), false);
   await page.keyboard.press("Home");
   await page.waitForFunction(() => document.querySelector(".timeline").dataset.time === "0");
   await page.keyboard.press("End");
@@ -266,14 +267,14 @@ test("APageOutlivesItsServer", async () => {
 
 test("OneDrivesOthersWatchUntilTheyTakeOver", async () => {
   const first = await open();
-  await first.keyboard.press("ArrowRight"); // a step: two pages that draw all the time take all of a machine
+  await first.keyboard.press("ArrowRight"); // one step only: two pages that draw continuously would occupy the machine
   await first.waitForFunction(() => document.querySelector(".driver").textContent === "you drive");
   const second = await open();
   await second.waitForFunction(() => document.querySelector(".driver").textContent === "viewer 1 drives, you watch");
   const said = await listenToNotices(second);
   await second.keyboard.press("ArrowRight");
   await said(/^viewer 1 drives$/);
-  await second.getByRole("button", { name: /drive from now on/ }).click();
+  await second.getByRole("button", { name: /take control; all others/ }).click();
   await first.waitForFunction(() => document.querySelector(".driver").textContent === "viewer 2 drives, you watch");
   await second.waitForFunction(() => document.querySelector(".driver").textContent === "you drive");
 });
@@ -283,11 +284,11 @@ test("ALinkToWatchOffersNothingToDriveWith", async () => {
   server = await new MockServer(PAGE, { mode: "live", hello: { watch_only: true } }).start();
   const page = await open();
   await page.waitForFunction(() => document.querySelector(".driver").textContent === "you watch");
-  assert.equal(await page.getByRole("button", { name: /drive from now on/ }).isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: /take control; all others/ }).isVisible(), false);
   assert.equal(await page.getByRole("button", { name: /live controls/ }).isVisible(), false);
   server.tell({ type: "driver", id: 7 });
   await page.waitForFunction(() => document.querySelector(".driver").textContent === "viewer 7 drives, you watch");
-  assert.equal(await page.getByRole("button", { name: /drive from now on/ }).isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: /take control; all others/ }).isVisible(), false);
 });
 
 test("AServerOfAnotherVersionIsRefused", async () => {

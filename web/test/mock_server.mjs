@@ -1,5 +1,5 @@
-// A server that speaks the protocol and moves the robot of fixture.mjs. It remembers what it was
-// told, so that tests can see what the page sends.
+// Mock server with the viewer's protocol, which moves the robot of fixture.mjs. It records received messages
+// for tests.
 import { readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { WebSocketServer } from "ws";
@@ -13,7 +13,7 @@ export class MockServer {
   time_s = 0;
   paused = true;
   speed = 1;
-  past_s = null; // the earlier time that is looked at
+  past_s = null; // displayed past time
   driver = 0;
   run = 0;
   dragged = null;
@@ -22,7 +22,7 @@ export class MockServer {
   clients = new Map();
   next = 1;
 
-  /** mode: live, replay; page: the file to serve at "/"; compared, more: of the scene of a replay. */
+  /** mode: live, replay; page: the file to serve at "/"; compared, more: entries of a replay's scene. */
   constructor(page, { mode = "replay", compared = [], more = {}, hello = {} } = {}) {
     this.page = page;
     this.mode = mode;
@@ -54,17 +54,17 @@ export class MockServer {
     await new Promise((resolve) => this.http.close(resolve));
   }
 
-  /** The scene with the parameters as they are now. */
+  /** Returns the scene with the present parameters. */
   liveScene() {
     return { ...liveScene, parameters: liveScene.parameters.map((each) => ({ ...each, value: this.parameters[each.name] ?? each.value })) };
   }
 
-  /** The time that is shown: of a replay that of a row. */
+  /** The displayed time; in a replay the time of a row. */
   get shown_s() {
     return this.mode === "live" ? (this.past_s ?? this.time_s) : rowTime(this.time_s);
   }
 
-  /** The messages of one type, in their order. */
+  /** Returns the messages of a type, in order. */
   of(type) {
     return this.received.filter((message) => message.type === type);
   }
@@ -142,7 +142,7 @@ export class MockServer {
   tick() {
     if (!this.paused) this.time_s += (FRAME_MS / 1000) * (this.speed || 10);
     if (this.mode === "replay" && this.time_s >= DURATION_S) [this.time_s, this.paused] = [DURATION_S, true];
-    // like the real server, which says rarely that nothing changes
+    // as the real server, which sends few frames while nothing changes
     this.idle = this.paused ? (this.idle ?? 0) + 1 : 0;
     if (this.idle % IDLE_TICKS <= 1) this.frame();
   }

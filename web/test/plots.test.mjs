@@ -1,5 +1,4 @@
-// What is plotted: all channels are found, put into plots by mouse and by keys, and kept as layouts; the
-// numbers beside each plot are those of the channels in it.
+// Tests of plots: search of channels, adding them by mouse and keys, layouts, and the values beside plots.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -25,7 +24,7 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 beforeEach(async () => {
-  // no test here looks at the 3-D view, whose drawing takes most of a page's time without a graphics card
+  // these tests do not use the 3D view, whose drawing is slow without a graphics card
   page = await openPage(server.url, { width: 1280, height: 900, webgl: false });
   await page.waitForSelector("figure.chart .uplot");
   await page.evaluate((time_s) => window.taut.app.seek(time_s), TIME_S);
@@ -39,8 +38,8 @@ afterEach(async () => {
 const editor = () => page.locator(".editor");
 const press = (name) => editor().getByRole("button", { name, exact: true }).click();
 const NEW_PLOT = "put the chosen channels into a new plot";
-const EACH = "put each of the chosen channels into a plot of its own";
-const ADD_TO = "add the chosen channels to the plot that is named beside this button";
+const EACH = "put each chosen channel into a separate plot";
+const ADD_TO = "add the chosen channels to the plot named next to this button";
 
 async function search(words) {
   if (await editor().isHidden()) await page.keyboard.press("b");
@@ -56,7 +55,7 @@ const standard = [...cables.map(({ name }) => `tension:${name}`), "energy", "con
 const shown = (values) => values.map((value) => Number(value.toPrecision(4)));
 const position = (body, time_s = TIME_S) => pose(body, time_s).position_m;
 
-/** Puts channels into a new plot, in this order. */
+/** Adds channels to a new plot, in this order. */
 async function plot(...channels) {
   for (const channel of channels) {
     await search(channel);
@@ -128,7 +127,7 @@ test("AChannelIsDraggedIntoAPlotOfItsUnitOnly", async () => {
   const drag = async (channel, target) => {
     await page.evaluate(() => (document.querySelector(".plots").scrollTop = 0));
     await page.locator(`[data-channel="${channel}"]`).dragTo(page.locator(target));
-    await page.mouse.move(5, 5); // in no plot, whose numbers would be those under the mouse
+    await page.mouse.move(5, 5); // away from plots, which would show the values under the mouse
     await page.waitForFunction(() => window.taut.app.cursor_s.value === null);
   };
   await search("top_0 tension");
@@ -141,7 +140,7 @@ test("AChannelIsDraggedIntoAPlotOfItsUnitOnly", async () => {
   await drag("system/elastic_j", '[data-figure="tension:bottom_1"]');
   await said(/^not added: system\/elastic_j is in J, bottom_1 in N$/);
   assert.equal(await page.locator('[data-figure="tension:bottom_1"] .values span').count(), 3);
-  // of several that are chosen one takes all along; on the free place they make a new plot
+  // dragging one of several selected channels drags all; on free space they form a new plot
   await search("rod_0 position");
   await choose("body/rod_0/position_z_m");
   await choose("body/rod_0/position_x_m");
@@ -154,14 +153,14 @@ test("AChannelIsDraggedIntoAPlotOfItsUnitOnly", async () => {
 test("ChannelsAreAddedToTheNamedPlotAndEachToOneOfItsOwn", async () => {
   await plot("body/rod_0/position_x_m");
   await search("rod_1 position");
-  await press("choose all channels that are found");
+  await press("choose all found channels");
   await editor().getByLabel("plot to add to").selectOption("rod_0 position x");
   await press(ADD_TO);
   const target = page.locator('[data-figure="rod_0-position-x"]');
   await target.scrollIntoViewIfNeeded();
   assert.deepEqual((await numbersBeside(page, ["rod_0-position-x"]))[0].numbers, shown([position(0)[0], ...position(1)]));
   await search("rod_2 position");
-  await press("choose all channels that are found");
+  await press("choose all found channels");
   await press(EACH);
   await untilFigures([...standard, "rod_0-position-x", ...["x", "y", "z"].map((axis) => `rod_2-position-${axis}`)]);
 });
@@ -183,7 +182,7 @@ test("APlotIsRenamedMovedAndTakenApartByButtons", async () => {
   await dialog.getByLabel("title").fill("first rod");
   await dialog.getByLabel("title").press("Enter");
   await untilFigures([...standard, "first-rod"]);
-  await dialog.getByRole("button", { name: "move the plot before the one before it" }).click();
+  await dialog.getByRole("button", { name: "move the plot one place forward" }).click();
   await untilFigures([...standard.slice(0, -1), "first-rod", "contacts"]);
   await dialog.getByRole("button", { name: "remove body/rod_0/position_x_m from the plot" }).click();
   await page.waitForFunction(() => document.querySelectorAll('[data-figure="first-rod"] .values span').length === 1);
@@ -203,10 +202,10 @@ test("ALayoutIsKeptForItsExperiment", async () => {
   await search("");
   assert.equal(await editor().getByLabel("layout", { exact: true }).inputValue(), "my layout");
   await editor().getByLabel("name of the layout").fill("no side");
-  await press("save these plots in this browser under the name beside this button");
+  await press("save these plots in this browser under the name next to this button");
   await page.getByRole("button", { name: "remove the plot energy", exact: true }).click();
   await untilFigures(without.filter((id) => id !== "energy"));
-  // each layout has its plots, and the default what it had
+  // each layout keeps its plots, the default is unchanged
   const layout = editor().getByLabel("layout", { exact: true });
   assert.deepEqual(await layout.locator("option").allInnerTexts(), ["default", "my layout", "no side"]);
   await layout.selectOption("my layout");
@@ -216,7 +215,7 @@ test("ALayoutIsKeptForItsExperiment", async () => {
   await layout.selectOption("no side");
   await page.reload();
   await untilFigures(without.filter((id) => id !== "energy"));
-  // another experiment knows nothing of it
+  // layouts belong to one experiment
   await page.evaluate(() => {
     const { app } = window.taut;
     app.hello.value = { ...app.hello.value, title: "another prism" };
@@ -228,7 +227,7 @@ test("ALayoutIsKeptForItsExperiment", async () => {
   });
   await untilFigures(without.filter((id) => id !== "energy"));
   await search("");
-  await press("delete the layout that is shown");
+  await press("delete the displayed layout");
   await untilFigures(standard);
   assert.deepEqual(await editor().getByLabel("layout", { exact: true }).locator("option").allInnerTexts(), ["default", "my layout"]);
 });
@@ -246,17 +245,17 @@ test("AFileOfALayoutComesBackAsItWas", async () => {
   assert.equal(written.version, 1);
   assert.deepEqual(written.plots.at(-1), { title: "position x", channels: ["body/rod_0/position_x_m", "body/rod_1/position_x_m"] });
   assert.equal(written.plots.length, CABLE_COUNT + 3);
-  await press("delete the layout that is shown");
+  await press("delete the displayed layout");
   await untilFigures(standard);
   await page.setInputFiles('input[type="file"]', path);
   await untilFigures([...standard, "position-x"]);
   await page.locator('[data-figure="position-x"]').scrollIntoViewIfNeeded();
   assert.deepEqual((await numbersBeside(page, ["position-x"]))[0].numbers, shown([position(0)[0], position(1)[0]]));
-  // what is no layout changes nothing, and says why
+  // an invalid file changes nothing and is reported
   for (const [text, reason] of [
-    ["{", /^that is not JSON: /],
-    ["[]", /^that is no layout: its "format" is not "taut layout"$/],
-    [JSON.stringify({ ...written, version: 2 }), /^the layout is of version 2, this page reads version 1$/],
+    ["{", /^the file is not JSON: /],
+    ["[]", /^the file is not a layout: its "format" is not "taut layout"$/],
+    [JSON.stringify({ ...written, version: 2 }), /^the layout has version 2, this page reads version 1$/],
     [JSON.stringify({ ...written, name: " " }), /^the layout has no "name"$/],
     [JSON.stringify({ ...written, plots: {} }), /^"plots" of the layout is not a list of at most 500$/],
     [JSON.stringify({ ...written, plots: [written.plots[0], { title: "a", channels: [] }] }), /^plot 2 of the layout is not /],
@@ -266,7 +265,7 @@ test("AFileOfALayoutComesBackAsItWas", async () => {
     await said(reason);
   }
   await untilFigures([...standard, "position-x"]);
-  // a channel that this run does not have is named, and its plot waits for a run that has it
+  // a channel that this run lacks is named, and its plot is kept for other runs
   writeFileSync(path, JSON.stringify({ ...written, plots: [...written.plots, { title: "far", channels: ["body/moon/position_x_m"] }] }));
   await page.setInputFiles('input[type="file"]', path);
   await page.waitForFunction(() => document.querySelector(".remark").textContent === "not in this run: body/moon/position_x_m");
@@ -281,12 +280,12 @@ test("AZoomAwayFromTheTimeStillGivesItsNumbers", async () => {
     await page.waitForFunction(() => document.querySelector('[data-figure="tension:top_1"] .values').textContent.endsWith("N at 4 s"));
     assert.deepEqual((await beside()).numbers, at(TIME_S), `${range}`);
   }
-  // time goes on outside of the window, too
+  // the time also advances outside of the window
   await page.evaluate(() => window.taut.app.seek(2.345));
   await untilTime(page, 2.345);
   await page.waitForFunction(() => document.querySelector('[data-figure="tension:top_1"] .values').textContent.endsWith("N at 2.345 s"));
   assert.deepEqual((await beside()).numbers, at(2.345));
-  // inside of it nothing has to be said
+  // no label is needed inside
   await page.evaluate(() => window.taut.app.seek(7));
   await untilTime(page, 7);
   await page.waitForFunction(() => document.querySelector('[data-figure="tension:top_1"] .values').textContent.endsWith(" N"));

@@ -1,4 +1,5 @@
-// What the Khronos Group's validator and three.js make of a .glb file, as JSON.
+// Validates a .glb file with the Khronos Group's validator, loads it with three.js, and prints the results as
+// JSON.
 //
 //   node read_glb.mjs FILE
 import { readFileSync } from "node:fs";
@@ -14,7 +15,7 @@ globalThis.self ??= globalThis;
 const { scene } = await new GLTFLoader().parseAsync(bytes.buffer, "");
 scene.updateMatrixWorld(true);
 
-/** The volume that closed triangles enclose. */
+/** Returns the volume enclosed by closed triangles. */
 function volumeOf(mesh) {
   const { position } = mesh.geometry.attributes;
   const index = mesh.geometry.index.array;

@@ -1,5 +1,5 @@
-// What @mcap/core reads out of an .mcap file, as JSON: with its index, and from its beginning to its
-// end with all sums checked.
+// Reads an .mcap file with @mcap/core and prints it as JSON: by its index, and sequentially with all
+// checksums verified.
 //
 //   node read_mcap.mjs FILE [FROM_NS TO_NS]
 import { open } from "node:fs/promises";

@@ -1,4 +1,4 @@
-// `taut view` as a user starts it, one at a time. TAUT_COMMAND names the command.
+// `taut view` as a child process, one at a time. TAUT_COMMAND: the command.
 import { execFileSync, spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
@@ -11,10 +11,10 @@ export const options = { skip: TAUT ? false : "TAUT_COMMAND is not set" };
 const env = () => ({ ...process.env, TAUT_WEB: dirname(PAGE) });
 let server = null;
 
-/** Runs another command of it to its end. */
+/** Runs another taut command to its end. */
 export const taut = (...words) => execFileSync(TAUT, words, { cwd: ROOT, env: env() });
 
-/** Starts `taut view` with random tokens; answers its address. */
+/** Starts `taut view` with random tokens; returns its address. */
 export const view = (...words) => viewWithToken("", ...words);
 
 export async function viewWithToken(token, ...words) {
@@ -44,20 +44,20 @@ export async function stop() {
   server = null;
 }
 
-/** When the server has ended. */
+/** Waits until the server has ended. */
 export function endOf() {
   return new Promise((resolve) => server.on("exit", resolve));
 }
 
-/** Processes that it has started. */
+/** Returns the server's child processes. */
 export const childrenOf = () => readFileSync(`/proc/${server.pid}/task/${server.pid}/children`, "utf8").trim().split(" ").filter((pid) => pid !== "").map(Number);
 
-/** As by a power cut. */
+/** Kills the server, as by a power cut. */
 export function kill() {
   server.kill("SIGKILL");
 }
 
-/** The rows of a run's trace.csv: value(name, time_s) at a time or the last before it. */
+/** Reads the rows of a run's trace.csv: value(name, time_s) at a time or the last before it. */
 export function csvOf(run) {
   const [head, ...lines] = readFileSync(join(run, "trace.csv"), "utf8").trim().split("\n").map((line) => line.split(","));
   const rows = lines.map((line) => line.map(Number));

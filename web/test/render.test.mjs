@@ -1,13 +1,13 @@
-// What is drawn is where the model says: pixels of rods and cables against a projection of our own.
+// Tests of the rendering: pixels of rods and cables against an independent projection.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { closeBrowser, drawn, openPage, PAGE, picture, projection, untilTime, viewPixels } from "./browser.mjs";
 import { CABLE_COUNT, cables, nodes, SLACK, tension_n, worldPoint } from "./fixture.mjs";
 import { MockServer } from "./mock_server.mjs";
 
-const CLEAR_PX = 12; // rods and cables are less wide
+const CLEAR_PX = 12; // rods and cables are narrower
 const SCALE_N = 40; // the largest tension of the fixture is 38.4 N
-const GROUND = { light: 210, dark: 50 }; // how bright it is, of 255
+const GROUND = { light: 210, dark: 50 }; // brightness, of 255
 let server;
 
 before(async () => {
@@ -22,7 +22,10 @@ const difference = (a, b) => Math.max(...a.map((value, k) => Math.abs(value - b[
 const between = (a, b, part) => a.map((value, k) => value + part * (b[k] - value));
 const brightness = (colour) => (colour[0] + colour[1] + colour[2]) / 3;
 
-/** Of the points along a line that nothing else comes near, the share whose pixel, or one beside it, passes. */
+/**
+ * Returns the share of points along a line, without points near other objects, whose pixel or a neighbor
+ * passes.
+ */
 function along(project, image, line, others, passes) {
   let [hits, seen] = [0, 0];
   for (let part = 0.08; part < 0.93; part += 0.02) {
@@ -42,7 +45,7 @@ function awayFrom(x, y, a, b) {
   return Math.hypot(x - a.x - part * dx, y - a.y - part * dy);
 }
 
-/** All rods and cables but one. */
+/** Returns all rods and cables but one. */
 function othersThan(kind, index, time_s) {
   const rods = [0, 1, 2].filter((i) => kind !== "rod" || i !== index).map((i) => rodEnds(i, time_s));
   const lines = cables.map((_, i) => i).filter((i) => kind !== "cable" || i !== index).map((i) => cableEnds(i, time_s));
@@ -60,12 +63,12 @@ function cableEnds(i, time_s) {
 async function sceneAt(t, theme, time_s) {
   const page = await openPage(server.url, { theme });
   t.after(() => page.context().close());
-  await page.keyboard.press("a"); // no arrows over what is measured
+  await page.keyboard.press("a"); // hides the arrows, which would cover the measured pixels
   await page.evaluate((wanted) => window.taut.app.seek(wanted), time_s);
   await untilTime(page, time_s);
   await page.waitForFunction((scale) => window.taut.view.world.cables.scale_n === scale, SCALE_N);
   await page.evaluate(() => {
-    // from where little hides little
+    // a view with little occlusion
     const { camera, target } = window.taut.view;
     camera.position.copy(target).add(camera.position.clone().set(1.03, 0.28, 0.43));
     document.querySelector(".legend").hidden = true;
@@ -84,11 +87,11 @@ for (const theme of ["light", "dark"]) {
         const share = along(project, image, rodEnds(i, time_s), othersThan("rod", i, time_s), isRod);
         assert.ok(share > 0.9, `rod ${i} at ${time_s} s: ${share} of its axis is drawn`);
       }
-      // and where there is nothing, there is ground
+      // the ground is visible elsewhere
       const { x, y } = project([0.05 * time_s - 0.25, 0.4, 0]);
       const free = image.colour(x, y);
       assert.ok(Math.abs(brightness(free) - GROUND[theme]) < 40 && !isRod(free), `ground is ${free}`);
-      await page.context().close(); // who drives must leave before the next can
+      await page.context().close(); // the driver must leave before the next client can drive
     }
   });
 
@@ -178,7 +181,7 @@ test("WhereATraceHasNoContactForcesTheLegendSaysHowToRecordThem", async (t) => {
   t.after(() => without.stop());
   const other = await openPage(without.url);
   assert.equal(await other.locator(".legend .unrecorded").isVisible(), true);
-  assert.match(await other.locator(".legend .unrecorded").innerText(), /this trace has none.*record: \{contacts: 20\}/);
+  assert.match(await other.locator(".legend .unrecorded").innerText(), /no contact forces in this trace.*record: \{contacts: 20\}/);
   assert.doesNotMatch(await other.locator(".legend").innerText(), /➔\s*contact/);
   await other.context().close();
 });

@@ -1,4 +1,4 @@
-// A replay: plays, scrubs, steps, and shows the poses that the trace holds; plots share its time.
+// Tests of replays: playing, scrubbing, stepping, the poses of the trace; plots with the same time.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, beforeEach, test } from "node:test";
@@ -96,14 +96,14 @@ test("TheNumbersBesideAPlotAreThoseOfTheRow", async (t) => {
   await tension(3);
   const titles = await page.locator('[data-figure="tension:top_1"] .values span').evaluateAll((spans) => spans.map(({ title }) => title));
   ["set point", reference.name, "this run"].forEach((label, k) => assert.ok(titles[k].startsWith(`${label}: `) && titles[k].endsWith(" N in the row at 3 s"), titles[k]));
-  // what is drawn is coarser, and says so
+  // drawn points are coarser, with a label
   assert.match(await page.locator('[data-figure="tension:top_1"] .coarse').innerText(), /^min to max of 4 rows$/);
   const times_s = [0.0049, 1.2345, 7.777, 10];
   for (const time_s of times_s) {
     await cursorTo(page, time_s);
     await tension(rowTime(time_s));
   }
-  // a cursor that moves does not ask for every row by itself
+  // a moving cursor does not request every row separately
   const asked = server.of("want_series").length;
   for (let i = 0; i < 20; ++i) {
     await cursorTo(page, 5 + i / RATE_HZ);
@@ -172,12 +172,12 @@ test("NothingIsAskedOfAnyOtherHost", async () => {
 
 test("TheViewIsRecordedAsAVideo", async () => {
   await page.getByRole("button", { name: /as a video/ }).click();
-  await page.keyboard.press("Escape"); // away from the button, on which space would act
+  await page.keyboard.press("Escape"); // removes the focus from the button, which space would press
   await page.evaluate(() => window.taut.app.togglePlay());
   await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 1);
   const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /as a video/ }).click()]);
   assert.equal(file.suggestedFilename(), "taut-turning prism.webm");
-  // the file is a video that a browser plays, and in which something moves
+  // the file is a video that the browser plays, with motion
   const video = readFileSync(await file.path()).toString("base64");
   const seen = await page.evaluate(async (base64) => {
     const element = document.createElement("video");
@@ -218,7 +218,7 @@ test("AReplayIsSavedAsAGif", async () => {
   const delays = [];
   for (let at = gif.indexOf("21f904", "hex"); at >= 0; at = gif.indexOf("21f904", at + 8, "hex")) delays.push(gif.readUInt16LE(at + 4));
   assert.deepEqual(delays, new Array(26).fill(8), "two seconds in steps of 80 ms");
-  // its last picture is what is seen at the end of that time
+  // its last picture equals the display at the end of the span
   const far = await page.evaluate(async (base64) => {
     const decoder = new ImageDecoder({ type: "image/gif", data: Uint8Array.from(atob(base64), (c) => c.charCodeAt(0)) });
     const canvas = document.createElement("canvas");

@@ -1,4 +1,4 @@
-// The report: one file that opens from disk, asks nobody for anything, and holds what it should.
+// Tests of reports: one file that opens from disk, makes no requests, and has the expected content.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -44,20 +44,20 @@ test("ItsLegendFollowsAScaleThatChangesWithoutANewFrame", async () => {
 test("ItSaysWhatWasRunAndWhatCameOut", async () => {
   const text = await page.locator("main.report").innerText();
   for (const part of ["1.2.3", "42", "a machine", "turning prism", "38.4", "bottom_0", "a book"]) assert.ok(text.includes(part), part);
-  const beside = page.locator("section", { hasText: "Beside the references" });
+  const beside = page.locator("section", { hasText: "Comparison with references" });
   const cells = async (row) => beside.locator("tbody tr").nth(row).locator("th, td").allInnerTexts();
   assert.match(await beside.innerText(), /max tension, whole run \[N\]\s+mean elastic, before \[N\]/);
   assert.deepEqual(await cells(0), ["bottom_0", "5", "4.800", "−4.0 %", "–", "–", "–"]);
   assert.deepEqual(await cells(1), ["top_1", "20", "–", "–", "2", "4", "+100.0 %"]);
-  await page.getByText("Inputs as resolved").click();
+  await page.getByText("Resolved inputs").click();
   assert.match(await page.locator(".inputs").innerText(), /<b>prism<\/b>/, "inputs are text, never markup");
 });
 
 test("ItBeginsWithWhatWasRunAndEndsWithWhatIsForTheRecord", async () => {
   const titles = await page.locator("main.report h2").allInnerTexts();
-  assert.deepEqual(titles, ["What was run", "Replay", "What came out", "Beside the references", "Plots", "For the record"]);
+  assert.deepEqual(titles, ["Experiment", "Replay", "Results", "Comparison with references", "Plots", "Reproducibility"]);
   const first = await page.locator("main.report section").first().innerText();
-  for (const part of ["A prism turns about the vertical.", "prism: 3 bodies, 9 cables, 1.5 kg", "It ran to its end, 10 s, and nothing went wrong."]) assert.ok(first.includes(part), first);
+  for (const part of ["A prism turns about the vertical.", "prism: 3 bodies, 9 cables, 1.5 kg", "The run is complete, 10 s, without problems."]) assert.ok(first.includes(part), first);
   assert.ok(!/1\.2\.3|a machine/.test(first), "versions and machines come last");
   assert.ok((await page.locator("main.report section").last().innerText()).includes("a machine"));
   assert.ok(!/format.version|status.bits/.test(await page.locator("main.report").innerText()));
@@ -67,7 +67,7 @@ test("ARunThatWentWrongSaysSoAtOnce", async () => {
   const bad = { ...report().summary, status: "not finite: rod_1 at 3 s", interrupted: true, simulated_s: 3.5, contacts_left_out: 12 };
   const other = await openPage(writeReport(report({ summary: bad }), folder));
   const first = await other.locator("main.report section").first().innerText();
-  assert.match(first, /It was simulated for 3\.5000 s and then interrupted: not finite: rod_1 at 3 s\. 12 contacts had no room in the trace\./);
+  assert.match(first, /The run was simulated for 3\.5000 s and then interrupted: not finite: rod_1 at 3 s\. 12 contacts did not fit into the trace\./);
   await other.context().close();
 });
 
@@ -83,7 +83,7 @@ test("OtherRunsAreTablesOfWhatTheyDifferBy", async () => {
     of([]),
   ];
   const other = await openPage(writeReport(report({ scene: { ...scene, run_name: "prism (this/trace.h5)", compared: comparedRuns.slice(0, 2) }, comparisons }), folder));
-  const beside = other.locator("section", { hasText: "Beside other runs" });
+  const beside = other.locator("section", { hasText: "Comparison with other runs" });
   const cells = (table, row) => beside.locator("table").nth(table).locator("tbody tr").nth(row).locator("th, td").allInnerTexts();
   assert.deepEqual(await beside.locator("h3").allInnerTexts(), ["Largest tension, whole run", "Mean tension, before (1–3 s)"], "a phase without numbers has no table");
   assert.deepEqual(await cells(0, 0), ["prism (a/trace.h5)", "0–10 s, 2001 rows", "+4 N, top_0, at 2 s", "0.5000 N", "−0.01250 m, rod_1 z, at 7 s"]);
@@ -110,7 +110,7 @@ test("WithoutWebGlAllIsThereButThePicture", async () => {
     const charts = [...document.querySelectorAll("figure.chart")];
     return charts.length === 11 && charts.every((chart) => !chart.querySelector(".values").textContent.startsWith("–"));
   });
-  assert.match(await flat.locator(".view").innerText(), /There is no 3-D picture: this browser has no WebGL/);
+  assert.match(await flat.locator(".view").innerText(), /No 3-D view: this browser has no WebGL/);
   assert.ok((await flat.locator("main.report").innerText()).includes("a book"), "tables are there");
   assert.deepEqual(await flat.locator("button.film:visible").allInnerTexts(), [], "there is nothing to film");
   assert.equal(await flat.locator(".failure:visible").count(), 0);
@@ -237,7 +237,7 @@ test("AxesFitWhatTheyShow", async () => {
     const [file] = await Promise.all([far.waitForEvent("download"), save.evaluate((element) => element.click())]);
     return [...readFileSync(await file.path(), "utf8").matchAll(/text-anchor="end">([-−.\de]+)</g)].map(([, tick]) => tick);
   };
-  // a set point far away does not flatten the plots
+  // a far set point does not flatten the plots
   const tensions = (await ticksOf("all tensions")).map(Number);
   assert.ok(tensions.length > 20 && Math.max(...tensions) >= 40 && Math.max(...tensions) < 100, tensions.join());
   assert.deepEqual(await ticksOf("energy"), ["0", "5e−6", "1e−5"]);
@@ -247,8 +247,8 @@ test("AxesFitWhatTheyShow", async () => {
 
 for (const [what, data, says] of [
   ["OfAnotherVersion", { ...report(), version: VERSION + 1 }, new RegExp(`version ${VERSION + 1}, this page reads version ${VERSION}`)],
-  ["CutOff", { ...report(), frame_count: 3 }, /holds \d+ numbers of frames, not 3 times/],
-  ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /holds \d+ numbers of rows, not \d+/],
+  ["CutOff", { ...report(), frame_count: 3 }, /contains \d+ values of frames, expected 3 times/],
+  ["WithTooFewRows", { ...report(), rows: [{ ...report().rows[0], count: 3 }] }, /contains \d+ values of rows, expected \d+/],
 ]) {
   test(`AReport${what}SaysSo`, async () => {
     const broken = await openPage(writeReport(data, folder), { wait: false });

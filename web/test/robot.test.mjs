@@ -1,5 +1,6 @@
-// The dashboard of the virtual robot, with the real server: armed, held, stopped, tuned, from browsers.
-// TAUT_COMMAND names the command; without it, or without the virtual robot, there is nothing to test here.
+// Tests of the robot's control page with the virtual robot and the real server: arming, holding, stopping,
+// tuning from browsers. TAUT_COMMAND: the command; without it, or without the virtual robot, the tests are
+// skipped.
 import assert from "node:assert/strict";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -18,8 +19,8 @@ const OFF = "motors off";
 const press = (page, name) => page.locator(".robotbar").getByText(name, { exact: true }).click();
 
 /**
- * Brings the robot to a state, step by step, as a person would who goes on when something comes between: six emulated boards
- * and a browser are much for a busy machine, and boards that hear nothing in time say so.
+ * Brings the robot into a state, step by step, and retries after interruptions: six emulated boards and a
+ * browser load a busy machine, and boards that receive no command in time report a timeout.
  */
 async function bring(page, wanted) {
   await until(async () => {
@@ -32,7 +33,7 @@ async function bring(page, wanted) {
   }, `to ${wanted}`);
 }
 
-/** The address, once six emulated boards have kept up with the clock while they were asked who they are. */
+/** Returns the address, once six emulated boards have kept up with the clock during their identification. */
 async function served(words) {
   for (let tries = 1; ; ++tries) {
     try {
@@ -56,7 +57,7 @@ async function dashboard(t, ...words) {
 
 before(() => {
   folder = mkdtempSync(join(tmpdir(), "taut-robot-"));
-  process.env.XDG_RUNTIME_DIR = folder; // no other test's robot
+  process.env.XDG_RUNTIME_DIR = folder; // separate from other tests' robots
 });
 afterEach(stop);
 after(async () => {
@@ -69,7 +70,7 @@ test("PowerComesInTwoStepsAndSpaceStopsFromAnyBrowser", options, async (t) => {
   const page = await open({ width: 1440, height: 900 });
   await state(page, OFF);
   assert.equal(await page.locator(".timeline").isVisible(), false, "a robot has no time to go back to");
-  await page.waitForFunction(() => document.querySelector(".posenote").textContent === "true pose, told by the virtual robot");
+  await page.waitForFunction(() => document.querySelector(".posenote").textContent === "true pose of the virtual robot");
   assert.equal(await page.locator(".robotbar").getByText("2 hold").isDisabled(), true);
   const other = await open({ width: 1000, height: 700 });
   await state(other, OFF);
@@ -84,7 +85,7 @@ test("PowerComesInTwoStepsAndSpaceStopsFromAnyBrowser", options, async (t) => {
   await drawn(page);
   await picture(page, "robot-desktop");
 
-  // the button that was pressed last has the focus: space must stop, not press it again
+  // the last pressed button has the focus: space must stop the robot, not press the button again
   await other.keyboard.press("Space");
   await state(page, "stopped");
   await state(other, "stopped");
@@ -127,7 +128,7 @@ test("AGainGoesToTheBoardAndItsAnswerStandsThere", options, async (t) => {
   const field = gains.locator('input[aria-label="position gain [N/m]"]');
   await field.fill("123.5");
   await field.press("Enter");
-  await page.waitForFunction(() => document.querySelector(".gains .answer").textContent.includes("taken by the board"));
+  await page.waitForFunction(() => document.querySelector(".gains .answer").textContent.includes("accepted by the board"));
   await page.waitForFunction(() => window.taut.app.robot.value.motors[0].gains[2] === 123.5);
   await gains.locator("select").selectOption("all cables");
   await field.fill("99");

@@ -1,4 +1,4 @@
-// Several runs beside each other: their names and colours, a ghost for each that has poses, differences.
+// Tests of compared runs: names and colors, a ghost for each run with poses, differences.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -9,7 +9,7 @@ import { comparedRuns, EARLY_END_S, GHOST_OFFSET_M, nodes, pose, report, scene, 
 import { MockServer } from "./mock_server.mjs";
 
 const NAMES = comparedRuns.map(({ name }) => name);
-const GHOSTS = [0, 2, 3]; // of the compared runs, those with poses
+const GHOSTS = [0, 2, 3]; // compared runs with poses
 let folder;
 let server;
 let page;
@@ -30,7 +30,7 @@ async function goTo(time_s) {
   await untilTime(page, time_s);
 }
 
-/** Of each compared run: is its ghost drawn, and where are its bodies? */
+/** Returns for each compared run whether its ghost is drawn, and the positions of its bodies. */
 const ghosts = (of = page) => of.evaluate(() => window.taut.view.world.ghosts.ghosts.map(({ object, groups }) => ({
   drawn: object.visible, bodies: groups.map(({ position, quaternion: { x, y, z, w } }) => [...position.toArray(), w, x, y, z]),
 })));
@@ -80,7 +80,7 @@ test("AGhostIsSeenInItsColour", async () => {
   await drawn(page);
   const without = await viewPixels(page);
   await ghost.evaluate((box) => box.click());
-  // the rod of the fourth run, where this one's robot is not
+  // the rod of the fourth run, away from this run's robot
   const ends = [0, 1].map((node) => worldPoint(0, nodes[node].position_m, 2).map((value, axis) => value + 4 * GHOST_OFFSET_M[axis]));
   let greener = 0;
   for (let part = 0.1; part < 0.9; part += 0.05) {
@@ -96,7 +96,7 @@ test("EveryGhostHasASwitchAndARunWithoutPosesSaysWhyItHasNone", async () => {
   await goTo(1);
   const switches = page.locator(".runs input");
   assert.deepEqual(await switches.evaluateAll((all) => all.map(({ checked, disabled }) => [checked, disabled])), [[true, false], [false, true], [true, false], [true, false]]);
-  assert.match(await page.locator(".runs li").nth(2).innerText(), /no ghost: there are no poses of bodies/);
+  assert.match(await page.locator(".runs li").nth(2).innerText(), /no ghost: the trace contains no poses of bodies/);
   await switches.nth(0).uncheck();
   assert.deepEqual((await ghosts()).map((each) => each.drawn), [false, false, true, true]);
   await goTo(1.5);
@@ -126,7 +126,7 @@ test("DifferencesAreEachRunLessThisRunAtTheCursor", async (t) => {
     await cursorTo(page, time_s);
     const [{ numbers }] = await numbersBeside(page, ["tension:top_1"]);
     const own_n = tension_n(4, time_s);
-    const ended = (source) => comparedRuns[source - 1].last_s < time_s; // then its last row is not of now
+    const ended = (source) => comparedRuns[source - 1].last_s < time_s; // then its last row is out of date
     const four = (value) => Number(value.toPrecision(4));
     assert.deepEqual(numbers, [setpoint_n(4), ...[1, 2, 3, 4].map((source) => (ended(source) ? NaN : own_n + 1.5 * source)), own_n].map(four));
     await page.waitForFunction(() => !document.querySelector('[data-figure="tension:top_1"] .differences').textContent.includes("…"));

@@ -1,4 +1,4 @@
-// The real server with its pages: who may see one, who drives, and what becomes of them when it goes.
+// Tests of the real server with its pages: access rights, driving, and behavior after its end.
 import assert from "node:assert/strict";
 import { after, afterEach, test } from "node:test";
 import { closeBrowser, listenToNotices, openPage, ready } from "./browser.mjs";
@@ -43,7 +43,7 @@ test("ThePrintedAddressIsAllThatABrowserNeeds", options, async (t) => {
   await page.reload();
   await ready(page);
   await steps(0.002);
-  // the cookie by itself, as when somebody types the address without its token
+  // the cookie alone, as when a user enters the address without its token
   const bare = new URL("/", address).href;
   await page.goto(bare);
   await ready(page);
@@ -64,7 +64,7 @@ test("TwoPagesOfTheRealServerDriveOneAtATime", options, async (t) => {
   await second.keyboard.press("ArrowRight");
   await said(/drives; take control first/);
   assert.equal(await first.evaluate(() => window.taut.app.frame.value.time_s), 0.001);
-  await second.getByRole("button", { name: /drive from now on/ }).click();
+  await second.getByRole("button", { name: /take control; all others/ }).click();
   await driver(first, "viewer 2 drives, you watch");
   await second.locator(".view canvas").first().focus();
   await second.keyboard.press("ArrowRight");

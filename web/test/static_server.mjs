@@ -1,5 +1,4 @@
-// A server of files and nothing else, as any that the demo may lie on: below a folder, without headers of its own
-// but the kinds of files.
+// Static file server, as for hosting the demo: below a folder, without headers other than the content type.
 import { createServer } from "node:http";
 import { readFile } from "node:fs/promises";
 import { extname, join, normalize } from "node:path";
@@ -7,7 +6,7 @@ import { extname, join, normalize } from "node:path";
 const KINDS = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".json": "application/json", ".wasm": "application/wasm" };
 export const BELOW = "/some/where/";
 
-/** Serves a folder; answers {url, close}. */
+/** Serves a folder; returns {url, close}. */
 export async function serve(folder) {
   const server = createServer(async (request, response) => {
     const path = decodeURIComponent(new URL(request.url, "http://x").pathname);

@@ -1,5 +1,5 @@
-// The page with the real server: what is seen is what taut simulates and what its traces hold.
-// TAUT_COMMAND names the command; without it there is nothing to test here.
+// Tests of the page with the real server: displayed values equal taut's simulation and its traces.
+// TAUT_COMMAND: the command; without it the tests are skipped.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -10,7 +10,10 @@ import { csvOf, options, ROOT, stop, TAUT, taut, view } from "./real_server.mjs"
 
 let folder;
 
-/** Every number that stands beside a plot of tensions, and the contacts', at a time against the rows; how many. */
+/**
+ * Compares all values beside the plots of tensions, and of contacts, at a time with the rows; returns their
+ * number.
+ */
 async function compareNumbers(page, runs, time_s) {
   const shown = await page.evaluate(() => [...document.querySelectorAll('[data-figure^="tension:"]')].map(({ dataset }) => dataset.figure));
   const figures = [...shown, "contacts"];
@@ -27,7 +30,7 @@ async function compareNumbers(page, runs, time_s) {
   return compared;
 }
 
-/** To the four digits of a number beside a plot. */
+/** Rounds to the four digits of a value beside a plot. */
 const asShown = (value) => Number(Math.abs(value) < 1e-3 || Math.abs(value) >= 1e5 ? value.toExponential(3) : value.toFixed(Math.min(Math.max(3 - Math.floor(Math.log10(Math.abs(value))), 0), 6)));
 
 before(() => {
@@ -41,8 +44,8 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-// A run whose tensions ring at the start, where a mean of rows is far from each of them; its HDF5 is what is
-// shown, its CSV what it is compared with.
+// A run whose tensions oscillate at the start, so that a mean of rows differs from each of them; its HDF5
+// file is displayed, its CSV file is the reference.
 test("TheNumbersOfReplayAndReportAreTheRowsOfTheFile", options, async (t) => {
   const run = csvOf(folder);
   const other = join(folder, "other");
@@ -70,7 +73,7 @@ test("TheNumbersOfReplayAndReportAreTheRowsOfTheFile", options, async (t) => {
 test("TheNumbersOfALiveRunAreThoseOfTheRun", options, async (t) => {
   const hang = join(folder, "hang");
   taut("run", "experiments/hang.yaml", "--csv", "--quiet", "--out", hang);
-  const run = csvOf(hang); // 200 rows a second
+  const run = csvOf(hang); // 200 rows per second
   const address = await view("experiments/hang.yaml", "--paused", "--port", "0");
   const page = await openPage(address, { width: 1280, height: 900 });
   t.after(() => page.context().close());
@@ -85,7 +88,8 @@ test("TheNumbersOfALiveRunAreThoseOfTheRun", options, async (t) => {
     await compareNumbers(page, [run], time_s);
   }
   await step(1000, 1.03);
-  // what the page was not shown, in between or before it came, the server has, a row each 10 ms
+  // the server has the times without frames, before the page was opened or between frames, with a row per 10
+  // ms
   const drawn = () => page.evaluate(() => new Promise((resolve) => window.taut.store.want("cable/cable/tension_n", 0, 0, 1.03, 200, ({ t }) => resolve(t))));
   while ((await drawn()).length < 100) await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(resolve)));
   const times_s = await drawn();
@@ -104,7 +108,7 @@ test("TheNumbersOfALiveRunAreThoseOfTheRun", options, async (t) => {
   assert.equal(await late.evaluate(() => window.taut.store.has("cable/cable/setpoint_n", 0)), false);
 });
 
-/** The same run with all that can be recorded, places of nodes, too: a second of it. */
+/** The same run with all channels, including positions of nodes: one second of it. */
 function runWithEverything() {
   const out = join(folder, "everything");
   const text = readFileSync(join(ROOT, "share/experiments/push_20n.yaml"), "utf8")
@@ -115,7 +119,7 @@ function runWithEverything() {
   return csvOf(out);
 }
 
-/** Puts a channel into a plot of its own; answers that figure. */
+/** Adds a channel to a new plot; returns its figure. */
 async function plotOf(page, channel) {
   if (await page.locator(".editor").isHidden()) await page.keyboard.press("b");
   await page.getByRole("searchbox").fill(channel);
@@ -140,7 +144,7 @@ test("NodesAndAnyOtherChannelOfAReplayArePlotted", options, async (t) => {
     assert.ok(run.has(channel), channel);
     assert.deepEqual(await numberBeside(page, await plotOf(page, channel)), [asShown(run.value(channel, time_s))], channel);
   }
-  // a node that is selected is plotted like a cable or a body
+  // a selected node is plotted like a cable or a body
   const node = await page.evaluate(() => {
     const { app } = window.taut;
     app.selection.value = { kind: "node", index: 4 };
@@ -175,7 +179,7 @@ test("AnyChannelOfALiveRunIsPlottedFromItsStart", options, async (t) => {
   await cursorTo(page, 0.123);
   await compare(0.12);
   await cursorTo(page, null);
-  // what is drawn is every row of the run
+  // the drawn points are all rows of the run
   const drawn = await page.evaluate(([channel]) => new Promise((resolve) => {
     const ask = () => window.taut.store.want(channel, 0, 0, 0.7, 500, ({ t, first }) => (t.length >= 71 ? resolve({ t, first }) : requestAnimationFrame(ask)));
     ask();
@@ -197,7 +201,7 @@ test("OfManyCablesThoseWithTheLargestTensionsArePlotted", options, async (t) => 
   const wanted = names.filter((name) => largest.includes(name)).map((name) => `tension:${name}`);
   await page.waitForFunction(() => document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 12);
   assert.deepEqual(await page.locator('[data-figure^="tension:"]').evaluateAll((charts) => charts.map(({ dataset }) => dataset.figure)), wanted);
-  assert.equal(await page.locator(".remark").innerText(), '12 of 66 cables, those with the largest tensions of the run; "edit plots" has all channels');
+  assert.equal(await page.locator(".remark").innerText(), '12 of 66 cables, those with the largest tensions of the run; for other channels use "edit plots"');
   await cursorTo(page, 1.234);
   await compareNumbers(page, [run], 1.234);
   await picture(page, "many-cables");
@@ -228,7 +232,7 @@ test("ATraceIsReplayedToThePosesOfTheFile", options, async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
-// Four runs, of which one is another robot, one ends early at another rate, and one was measured: no poses.
+// Four runs: one of another robot, one that ends early with another rate, and a measured one without poses.
 test("GhostsAndContactForcesAreTheRowsOfTheirFiles", options, async (t) => {
   const experiment = (name, more) => {
     const file = join(folder, `${name}.yaml`);
@@ -282,7 +286,7 @@ test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
   t.after(() => page.context().close());
   const mode = await page.evaluate(() => window.taut.app.hello.value.mode);
   assert.equal(mode, "model");
-  // alone and paused it stands still; once resumed it follows the hand
+  // alone and paused it stands still; once resumed it follows the drag
   const tip = await page.evaluate(() => window.taut.app.scene.value.nodes.at(-1).name);
   await page.evaluate((node) => window.taut.app.send({ type: "drag", node, target_m: [1, 1, 1] }), tip);
   await page.getByRole("button", { name: "play or pause" }).click();
@@ -290,7 +294,7 @@ test("ANodeIsDraggedAndTheTensionAnswers", options, async (t) => {
   await page.waitForFunction((from) => window.taut.app.frame.value.bodies.some((value, k) => k % 7 < 3 && Math.abs(value - from[k]) > 0.1), moved);
   await page.context().close();
   await stop();
-  // paused until the hand holds it: the experiment has an end, and a slow page may come after it
+  // paused until the drag holds it: the experiment ends, and a slow page may load after its end
   const live = await openPage(await view("experiments/stand_still.yaml", "--paused", "--port", "0"));
   t.after(() => live.context().close());
   const node = await live.evaluate(() => {
@@ -327,13 +331,13 @@ test("AReportOpensFromDiskAndAsksNobody", options, async (t) => {
   await untilTime(page, 37, 0.05);
   assert.equal(await page.evaluate(() => window.taut.view.world.forces.pushes.object.children[0].count), 3, "the three pushes act");
   const text = await page.locator("main.report").innerText();
-  for (const part of ["push_20n", "inner_top_1", "It ran to its end, 60 s, and nothing went wrong."]) assert.ok(text.includes(part), part);
+  for (const part of ["push_20n", "inner_top_1", "The run is complete, 60 s, without problems."]) assert.ok(text.includes(part), part);
   assert.deepEqual(page.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
   await drawn(page);
   await picture(page, "push-report", { fullPage: true });
 });
 
-// Of a robot whose bodies are points, too, all is in the picture, and a mode is seen to swing.
+// For a robot whose bodies are points, too, the picture shows all of it, and a mode's oscillation is visible.
 test("ShapesOfAnAnalysisFillTheViewAndMove", options, async (t) => {
   const shapes = join(folder, "shapes");
   taut("analyze", "models/t3_prism.yaml", "--modes", "1", "--out", shapes);

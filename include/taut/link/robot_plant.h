@@ -54,7 +54,7 @@ class RobotPlant final : public Plant {
   void Advance(const double* step_s, const double* to_s) override;
   void Restart(int lane) override;
   /// Returns false once motors have been stopped or turned off.
-  bool Goes(int lane) const override;
+  bool IsRunning(int lane) const override;
 
   /// Called once, in the first `Advance`: use it to give power with `Hold` and `Begin` only then,
   /// since boards time out while an experiment is prepared.

@@ -52,19 +52,19 @@ std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, D
     const auto count = static_cast<double>(1 + std::count(line.begin(), line.end(), ','));
     if (static_cast<double>(table.height_m.size()) + count > most) {
       out.Error("heights.too_many", place,
-                "more than " + base::Brief(most) + " heights up to this line",
+                "the file has more than " + base::Brief(most) + " heights up to this line",
                 "use fewer, larger cells");
       break;
     }
     row.clear();
     if (const auto wrong = AddRow(line, row)) {
       out.Error("heights.not_a_number", place,
-                "number " + std::to_string(*wrong) + " of this line is none",
-                "finite numbers in m, with commas between them");
+                "value " + std::to_string(*wrong) + " of this line is not a number",
+                "expected finite numbers in m, separated by commas");
     } else if (table.columns > 0 && row.size() != static_cast<std::size_t>(table.columns)) {
       out.Error("heights.ragged_row", place,
-                "this line has " + std::to_string(row.size()) + " heights, those before have " +
-                    std::to_string(table.columns));
+                "this line has " + std::to_string(row.size()) +
+                    " heights, but the lines before have " + std::to_string(table.columns));
     } else {
       table.columns = static_cast<int>(row.size());
       ++table.rows;

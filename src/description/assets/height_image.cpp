@@ -32,7 +32,7 @@ struct Source {
 void Ignore(png_structp, png_const_charp) {}
 void Take(png_structp png, png_bytep to, std::size_t count) {
   Source& source = *static_cast<Source*>(png_get_io_ptr(png));
-  if (count > source.bytes.size() - source.at) Fail(png, "it ends too early");
+  if (count > source.bytes.size() - source.at) Fail(png, "the data end too early");
   std::memcpy(to, source.bytes.data() + source.at, count);
   source.at += count;
 }
@@ -94,23 +94,24 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
   Reader reader(*bytes);
   PngHeader head;
   if (!reader.ReadHead(head)) {
-    return refuse(std::string("is no PNG or is damaged: ") + reader.why(),
-                  "heights are a gray PNG, best with 16 bits");
+    return refuse(std::string("the image is not a PNG or is damaged: ") + reader.why(),
+                  "expected a grayscale PNG, preferably with 16 bits");
   }
   if ((head.colour & PNG_COLOR_MASK_COLOR) != 0) {
-    return refuse("has colours, and heights are shades of gray", "save it as gray with 16 bits");
+    return refuse("the image has colors, but heights must be shades of gray",
+                  "save it as grayscale with 16 bits");
   }
   const double samples = static_cast<double>(head.columns) * head.rows;
   if (samples > most) {
-    return refuse("has " + std::to_string(head.columns) + " x " + std::to_string(head.rows) +
-                      " samples, more than " + base::Brief(most),
-                  "fewer, larger cells");
+    return refuse("the image has " + std::to_string(head.columns) + " x " +
+                      std::to_string(head.rows) + " samples, more than " + base::Brief(most),
+                  "use fewer, larger cells");
   }
   const double unpacked = sizeof(double) * samples;
   if (unpacked > trace::MostUnpackedBytes(static_cast<double>(bytes->size()))) {
-    return refuse("has too high a compression ratio: " + std::to_string(head.columns) + " x " +
-                      std::to_string(head.rows) + " samples from " + std::to_string(bytes->size()) +
-                      " bytes unpack to " + trace::kUnpackLimit,
+    return refuse("the image has too high a compression ratio: " + std::to_string(head.columns) +
+                      " x " + std::to_string(head.rows) + " samples from " +
+                      std::to_string(bytes->size()) + " bytes unpack to " + trace::kUnpackLimit,
                   "use fewer, larger cells, or save it without compression");
   }
   const std::size_t width = head.bits == 16 ? 2 : 1, columns = head.columns, rows = head.rows;
@@ -120,7 +121,7 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
     row_starts.push_back(samples_of.data() + width * columns * j);
   }
   if (!reader.ReadRows(row_starts.data())) {
-    return refuse(std::string("is damaged: ") + reader.why());
+    return refuse(std::string("the image is damaged: ") + reader.why());
   }
   HeightImage image{static_cast<int>(columns), static_cast<int>(rows), head.bits, {}};
   image.shares.reserve(columns * rows);

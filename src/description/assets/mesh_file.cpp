@@ -84,7 +84,7 @@ class ObjReader {
         const auto point = ReadPoint(line);
         if (!point)
           out_.Error("mesh.bad_corner", at_, "a corner needs three finite numbers",
-                     "x, y and z, with blanks between them");
+                     "expected x, y and z, separated by spaces");
         points_.push_back(corners_.Add(point.value_or(Vec3{})));
       } else if (kind == "f") {
         Face(line);
@@ -106,12 +106,12 @@ class ObjReader {
       const long from_start = index < 0 ? count + index : index - 1;
       if (!read || from_start < 0 || from_start >= count) {
         out_.Error("mesh.unknown_corner", at_, "there is no corner \"" + std::string(corner) + "\"",
-                   "corners count from 1, or back from -1, and stand before their faces");
+                   "corners are numbered from 1, or backward from -1, and come before their faces");
         return;
       }
       face.push_back(points_[static_cast<std::size_t>(from_start)]);
     }
-    if (face.size() < 3) out_.Error("mesh.few_corners", at_, "a face needs three corners or more");
+    if (face.size() < 3) out_.Error("mesh.few_corners", at_, "a face needs at least three corners");
     for (std::size_t k = 2; k < face.size(); ++k) {
       mesh_.triangles.push_back({face[0], face[k - 1], face[k]});
       mesh_.lines.push_back(at_.line);
@@ -138,13 +138,13 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
       const auto point = ReadPoint(line);
       if (!point)
         out.Error("mesh.bad_corner", at, "a corner needs three finite numbers",
-                  "x, y and z, with blanks between them");
+                  "expected x, y and z, separated by spaces");
       if (count < 3) triangle[count] = corners.Add(point.value_or(Vec3{}));
       ++count;
     } else if (kind == "endfacet") {
       if (count != 3)
         out.Error("mesh.facet_corners", at,
-                  "a facet has three corners, this one " + std::to_string(count));
+                  "a facet must have three corners, got " + std::to_string(count));
       mesh.triangles.push_back(triangle);
       mesh.lines.push_back(number);
       count = 0;
@@ -231,19 +231,20 @@ bool ReportFaults(const MeshFile& mesh, bool closed, const std::string& path,
     if (fault.kind == Kind::kOpen) {
       out.Error("mesh.not_closed", at,
                 words.what + " is not closed: " + edge + " has one triangle only",
-                "close it" + words.or_else);
+                "close the mesh" + words.or_else);
     } else if (fault.kind == Kind::kCrowded) {
       out.Error("mesh.edge_shared", at,
                 edge + " has two triangles on one side, or more than two in all",
-                "all must run counter-clockwise seen from outside" + words.or_else);
+                "list the corners of all triangles counter-clockwise as seen from outside" +
+                    words.or_else);
     } else if (fault.kind == Kind::kInsideOut) {
       out.Error("mesh.inside_out", at, words.what + " is inside out",
-                "corners must run counter-clockwise seen from outside");
+                "list the corners of all triangles counter-clockwise as seen from outside");
     } else {
       const std::string which =
           has_line ? "this triangle" : "triangle " + std::to_string(fault.triangle);
       out.Error("mesh.no_area", at, which + " has no area",
-                "its corners are on one line: leave it out");
+                "leave it out: its corners are on one line");
     }
   }
   return faults.empty();
@@ -261,8 +262,8 @@ bool EndsIn(const std::string& path, std::string_view end) {
 std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) {
   const bool obj = EndsIn(path, ".obj");
   if (!obj && !EndsIn(path, ".stl")) {
-    out.Error("mesh.unknown_format", {path, 0, 0}, "is neither .obj nor .stl",
-              "a mesh is a Wavefront OBJ or an STL");
+    out.Error("mesh.unknown_format", {path, 0, 0}, "unknown mesh format",
+              "expected a Wavefront OBJ file (.obj) or an STL file (.stl)");
     return std::nullopt;
   }
   const auto text = base::ReadInputFile(path, kMostMeshBytes, "use fewer triangles", out);
@@ -281,8 +282,8 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
     ReadStlText(path, *text, mesh, out);
   }
   if (out.items().size() == errors_before && mesh.triangles.empty()) {
-    out.Error("mesh.no_triangles", {path, 0, 0}, "there is no triangle in it",
-              obj ? "faces are lines that begin with f" : "neither text nor binary STL");
+    out.Error("mesh.no_triangles", {path, 0, 0}, "the mesh has no triangles",
+              obj ? "faces are lines that begin with f" : "expected text or binary STL");
   }
   if (out.items().size() != errors_before) return std::nullopt;
   if (mesh.parts.back().first_triangle == mesh.triangles.size()) mesh.parts.pop_back();

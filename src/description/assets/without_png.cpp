@@ -5,8 +5,8 @@ namespace taut::description {
 
 std::optional<HeightImage> ReadHeightImage(const std::string& path, double /*most*/,
                                            Diagnostics& out) {
-  out.Error("browser.no_images", {path, 0, 0}, "images of the ground cannot be read in a browser",
-            "the command taut reads them; `height_m` takes a formula, `file` a .csv");
+  out.Error("browser.no_images", {path, 0, 0}, "images of heights cannot be read in a browser",
+            "use a formula in `height_m`, a .csv in `file`, or the command-line program taut");
   return std::nullopt;
 }
 

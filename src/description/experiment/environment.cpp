@@ -43,9 +43,9 @@ std::string Obstacle(const EnvironmentAction& action, const CableDef& cable, con
   if (by_length) {
     return driver.controller ? "controller " + driver.controller->name + " drives it" : "";
   }
-  if (!driver.controller || !driver.by_impedance) return "no controller's impedance drives it";
+  if (!driver.controller || !driver.by_impedance) return "no controller drives it by impedance";
   if (!driver.controller->velocity_input) return {};
-  return "a gait is the velocity_input of controller " + driver.controller->name;
+  return "a gait already is the velocity_input of controller " + driver.controller->name;
 }
 
 class Actions {
@@ -85,14 +85,14 @@ class Actions {
       action.cable = cable;
       std::string why = drivers_known_ ? Obstacle(action, def, drivers_[index]) : "";
       const auto [first, fresh] = given_.emplace(cable, selector.at.line);
-      if (!fresh) why = "it has an action already, in line " + std::to_string(first->second);
+      if (!fresh) why = "it already has an action, in line " + std::to_string(first->second);
       if (why.empty()) continue;
       std::string& names = refused[why];
       names += (names.empty() ? "" : ", ") + def.name;
     }
     for (const auto& [why, names] : refused) {
       scope_.out.Error("environment.action_moves_nothing", selector.at,
-                       "environment.actions: no action can move " + names, why);
+                       "environment.actions: no action can change " + names, why);
     }
   }
 
@@ -107,12 +107,12 @@ class Actions {
       const auto [first, fresh] = taken_.emplace(tunable.name, patterns.at.line);
       if (!fresh) {
         scope_.out.Error("environment.action_overlap", patterns.at,
-                         "environment.actions: two actions move " + tunable.name,
+                         "environment.actions: two actions change " + tunable.name,
                          "the first is in line " + std::to_string(first->second));
       } else if (tunable.at_start) {
         scope_.out.Error("environment.action_moves_nothing", patterns.at,
-                         "environment.actions: no action can move " + tunable.name,
-                         "a gait looks at it when it begins, and not again");
+                         "environment.actions: no action can change " + tunable.name,
+                         "a gait reads it only at its start");
       }
       action.numbers.push_back(tunable.name);
       if (text.all.value) continue;
@@ -175,7 +175,8 @@ void Check(const MapReader& map, EnvironmentActionText& action) {
   action.name_at = map.KeyAt("name");
   const auto only = [&](const char* key, const char* with) {
     if (map.Has(key))
-      map.Error("environment.key_needs_key", key, map.Path(key) + " goes with " + with + " only");
+      map.Error("environment.key_needs_key", key,
+                map.Path(key) + " is allowed with " + with + " only");
   };
   if (action.cables.value) {
     only("by", "`each` or `all`");
@@ -200,8 +201,7 @@ void Check(const MapReader& map, EnvironmentText& environment) {
   for (const char* const key : {"actions", "observations"}) {
     const Value* const list = map.Find(key);
     if (!list || list->kind != Value::Kind::kSequence || !list->items.empty()) continue;
-    map.Error("environment.empty_list", key, map.Path(key) + " is empty",
-              "a learner needs one at least");
+    map.Error("environment.empty_list", key, map.Path(key) + " is empty", "add at least one entry");
   }
 }
 
@@ -223,13 +223,13 @@ EnvironmentSpec ToEnvironment(const EnvironmentText& text, const Value& block,
   const EnvironmentReward& reward = out.reward;
   if (reward.from_s >= experiment.duration_s) {
     scope.out.Error("environment.reward_after_end", PlaceOf(block, "reward", "from_s"),
-                    "environment.reward.from_s is not before the experiment's end",
-                    "that is at " + Shown(experiment.duration_s) + " s");
+                    "environment.reward.from_s must be before the end of the experiment",
+                    "the end is at " + Shown(experiment.duration_s) + " s");
   }
   if (reward.measure == Measure::kNearer && !experiment.goal) {
     scope.out.Error("environment.reward_needs_goal", PlaceOf(block, "reward", "measure"),
                     "environment.reward.measure: nearer needs a goal",
-                    "the experiment has no `goal`");
+                    "add a `goal` to the experiment");
   }
   const EnvironmentVariation& varied = out.randomise;
   if (varied.start.goal_rad > 0 && !experiment.goal) {

@@ -5,14 +5,14 @@
 #include "base/fixed.h"
 #include "description/experiment/experiment_keys.h"
 #include "description/experiment/experiment_parts.h"
-#include "description/experiment/look_at.h"
+#include "description/experiment/partial_load.h"
 #include "description/experiment/resolved.h"
 #include "description/model/model.h"
-#include "description/model/plausible.h"
-#include "description/yaml/hash.h"
+#include "description/model/sanity_checks.h"
 #include "description/yaml/kinds.h"
 #include "description/yaml/merged_file.h"
 #include "description/yaml/read_keys.h"
+#include "description/yaml/yaml_hash.h"
 
 namespace taut {
 namespace description {
@@ -51,10 +51,11 @@ LoadedModel LoadItsModel(const ExperimentText& text, const OverrideSet& of_user,
 void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const Scope& scope) {
   for (const JointDef& joint : def.joints) {
     if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) continue;
-    scope.out.Error("start_noise.joint_holds_robot", noise->at,
-                    "start_noise." + std::string(key) + ": the joint \"" + joint.name +
-                        "\" holds the robot in the world",
-                    "start_noise.position_m moves what is not tied to the world");
+    scope.out.Error(
+        "start_noise.joint_holds_robot", noise->at,
+        "start_noise." + std::string(key) + " cannot move the robot: the joint \"" + joint.name +
+            "\" connects it to the world",
+        "use start_noise.position_m, which moves the bodies that are not connected to the world");
     return;
   }
 }
@@ -87,7 +88,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   CheckGoalIsSensed(text, scope.out);
   if (text.start_noise.goal_rad > 0 && !text.goal_text) {
     scope.out.Error("start_noise.no_goal", root.Find("start_noise")->at,
-                    "start_noise.goal_rad: there is no `goal`");
+                    "start_noise.goal_rad: the experiment has no `goal`");
   }
   const StartNoise& noise = text.start_noise;
   if (noise.place_m > 0) CheckTurns(def, "place_m", root.Find("start_noise"), scope);
@@ -126,10 +127,10 @@ void Check(const MapReader&, RecordText& record) {
 
 std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Overrides& overrides,
                                              Diagnostics& out) {
-  return description::LoadOrLook(path, overrides, out, {});
+  return description::LoadPartial(path, overrides, out, {});
 }
 
-std::optional<ExperimentSpec> description::LoadOrLook(
+std::optional<ExperimentSpec> description::LoadPartial(
     const std::string& path, const Overrides& overrides, Diagnostics& out,
     const std::function<void(const ExperimentSpec&)>& look) {
   const std::size_t errors_before = out.items().size();

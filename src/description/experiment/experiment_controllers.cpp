@@ -47,7 +47,7 @@ class PerCable {
     }
     if (twice.empty()) return;
     scope_.out.Error("controller.duplicate_cable", selector->at,
-                     "two " + what_ + " for " + CableNames(*robot_, twice),
+                     "there are two " + what_ + " for " + CableNames(*robot_, twice),
                      "the first are in line " + std::to_string(first.line));
   }
 
@@ -68,8 +68,9 @@ class PerCable {
       cables.push_back(cable);
     }
     for (const auto& [place, lacking] : missing) {
-      scope_.out.Error("controller.cable_without", lacking.first,
-                       "no " + other.what() + " for " + CableNames(*robot_, lacking.second), hint);
+      scope_.out.Error(
+          "controller.cable_without", lacking.first,
+          "there are no " + other.what() + " for " + CableNames(*robot_, lacking.second), hint);
     }
   }
 
@@ -127,9 +128,9 @@ PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& cour
     length_m += def.rest_length_m;
     if (!(length_m <= 0.0) || !reported.insert({course.at.line, course.at.column}).second) continue;
     scope.out.Error("program.no_rest_length", course.at,
-                    "programs.change_m: a change of " + Shown(change_m) +
-                        " m at t = " + Shown(time_s) + " s leaves " + def.name + " no rest length",
-                    "it is " + Shown(def.rest_length_m) + " m as described");
+                    "programs.change_m: a change of " + Shown(change_m) + " m at t = " +
+                        Shown(time_s) + " s leaves " + def.name + " without a positive rest length",
+                    "its initial rest length is " + Shown(def.rest_length_m) + " m");
   }
   return program;
 }
@@ -160,15 +161,15 @@ void CheckDriven(const std::vector<ControllerSpec>& controllers,
     }
     if (!no_actuator.empty() && actuators_known) {
       scope.out.Error("controller.cable_without_actuator", places[i],
-                      "controller " + controllers[i].name + " drives " +
-                          CableNames(robot, no_actuator) + ", which has no actuator",
+                      "controller " + controllers[i].name +
+                          " drives cables without an actuator: " + CableNames(robot, no_actuator),
                       "give the cable's builder in the model an `actuator:`");
     }
     for (const auto& [other, cables] : taken) {
       scope.out.Error("controller.cable_driven_twice", places[i],
                       "controller " + controllers[i].name + " drives " + CableNames(robot, cables) +
-                          ", which controller " + controllers[other].name + " drives already",
-                      "a cable obeys one controller");
+                          ", which controller " + controllers[other].name + " already drives",
+                      "a cable can have only one controller");
     }
   }
 }
@@ -218,11 +219,11 @@ std::vector<int> SelectCables(const Value& value, std::string_view what, const R
 void Check(const MapReader& map, ImpedanceText& impedance) {
   if (impedance.conversion == TensionConversion::kStiffness && map.Has("pid")) {
     map.Error("controller.pid_without_effect", "pid", "impedance.pid has no effect",
-              "write `conversion: pid`, too");
+              "add `conversion: pid`");
   }
   if (impedance.conversion == TensionConversion::kPid && !map.Has("pid")) {
     map.Error("controller.pid_missing", "conversion",
-              "conversion: pid needs the key \"pid\" beside it",
+              "conversion: pid needs the key \"pid\" as well",
               "write `pid: {proportional_m_per_s_n: 0.01}`");
   }
   if (impedance.pid_text) impedance.pid = *impedance.pid_text;
@@ -242,7 +243,7 @@ void Check(const MapReader& map, ControllerText& controller) {
       if (!map.Has(key)) continue;
       map.Error("controller.velocity_input_without_effect", "velocity_input",
                 std::string("velocity_input has no effect with ") + key,
-                "it is the V0 of `impedance`");
+                "it sets V0 of `impedance`");
       break;
     }
   }
@@ -324,7 +325,7 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
       const auto [first, fresh] = names.emplace(controller.name, text.name_at);
       if (!fresh) {
         scope.out.Error("controller.duplicate_name", text.name_at,
-                        "there are two controllers " + controller.name,
+                        "two controllers are called " + controller.name,
                         "the first is in line " + std::to_string(first->second.line));
       }
     }

@@ -67,7 +67,7 @@ void CheckQuantity(const GaitSpec& gait, const GaitInputKind& kind, const Source
   out.Error("gait.wrong_output", at,
             std::string(kind.key) + ": gait " + gait.name + " drives " +
                 (lengths ? "rest lengths" : "velocities"),
-            std::string("it is for `") + right.key + "`");
+            std::string("use it as `") + right.key + "`");
 }
 
 }  // namespace
@@ -78,8 +78,8 @@ void Check(const MapReader& map, GaitInputText& input) {
     const double before_s = input.change_texts[i - 1].at_s;
     if (!(change.at_s <= before_s)) continue;
     map.scope().out.Error("gait.times_not_increasing", change.at,
-                          "changes: times must rise, but " + Shown(change.at_s) + " s follows " +
-                              Shown(before_s) + " s");
+                          "changes: times must increase, but " + Shown(change.at_s) +
+                              " s follows " + Shown(before_s) + " s");
   }
 }
 
@@ -118,7 +118,7 @@ std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kin
       if (GaitOf(input, j).name != gait.name) continue;
       out.Error("gait.duplicate_name", places[i],
                 std::string(kind.key) + ": two gaits are called " + gait.name,
-                "give one of them another name: their numbers are called after it");
+                "give one of them another name: the names of its parameters begin with it");
       break;
     }
     const auto resolved = robot ? ResolveGait(gait, *robot, out) : std::nullopt;
@@ -134,9 +134,9 @@ std::vector<int> CheckGaits(const GaitInputSpec& input, const GaitInputKind& kin
       const std::string &who = is_less ? gait.name : input.gait.name,
                         &than = is_less ? input.gait.name : gait.name;
       out.Error("gait.different_cables", places[i],
-                std::string(kind.key) + ": gait " + who + " does not move " +
-                    NamesOf(is_less ? lacks : more, *robot) + ", which gait " + than + " moves",
-                "gaits that follow each other move the same cables");
+                std::string(kind.key) + ": gait " + who + " does not drive " +
+                    NamesOf(is_less ? lacks : more, *robot) + ", which gait " + than + " drives",
+                "all gaits of an input must drive the same cables");
     }
   }
   return first;
@@ -150,9 +150,9 @@ void CheckGaitDrives(const ControllerSpec& controller, const std::vector<int>& c
   const std::vector<int> idle = Without(cables, driven);
   if (idle.empty()) return;
   out.Error("gait.cable_not_driven", at,
-            "gait " + controller.velocity_input->gait.name + " moves " + NamesOf(idle, robot) +
+            "gait " + controller.velocity_input->gait.name + " drives " + NamesOf(idle, robot) +
                 ", which controller " + controller.name + " does not drive",
-            "give them `gains` and `set_points`");
+            "add `gains` and `set_points` for them");
 }
 
 }  // namespace taut::description

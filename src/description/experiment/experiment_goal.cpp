@@ -24,7 +24,7 @@ std::optional<GoalSpec> ToGoal(const GoalText& text, const RobotSpec* robot, con
 namespace {
 
 constexpr const char* kSayWhere =
-    "say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: ...}";
+    "add its position and the tracked body: `goal: {at_m: [3.5, 0, 0], body: ...}`";
 
 /// Reports a missing goal of the experiment. A network accepts it in any frame; the rolling gait
 /// combines its direction with the vertical and the struts' directions and needs it in frame W.
@@ -37,12 +37,12 @@ void CheckGoalIsSensed(const ExperimentSpec& experiment, const GaitSpec& gait, D
   if (!gait.toward_goal) return;
   if (!experiment.goal) {
     out.Error("gait.toward_goal_without_goal", gait.toward_goal->at,
-              "gait " + gait.name + " goes toward a goal, but the experiment has no `goal`",
+              "gait " + gait.name + " moves toward a goal, but the experiment has no `goal`",
               kSayWhere);
   } else if (experiment.goal->frame != GoalFrame::kOfWorld) {
     out.Error("gait.goal_in_other_frame", gait.toward_goal->at,
-              "gait " + gait.name + " needs the way to the goal in the frame of the world",
-              "goal: {frame: world, ...}: a body that rolls has no ahead");
+              "gait " + gait.name + " needs the direction to the goal in the world frame",
+              "write `goal: {frame: world, ...}`: a rolling body has no forward direction");
   }
 }
 

@@ -64,9 +64,8 @@ class CaseReader {
       const Member m = MemberAt(member);
       if (m.rest_m + gain.by_m <= 0) {
         scope_.out.Error("load_case.no_rest_length", gain.at,
-                         "the load case \"" + out.name +
-                             "\" leaves nothing of the rest length of \"" + m.name + "\", " +
-                             Shown(m.rest_m) + " m");
+                         "the load case \"" + out.name + "\" leaves no positive rest length of \"" +
+                             m.name + "\", which has " + Shown(m.rest_m) + " m without it");
       }
       (member.is_bar ? out.bars : out.cables).push_back({member.index, gain.by_m});
     }
@@ -118,8 +117,8 @@ class CaseReader {
     });
     if (unknown.empty()) return;
     scope_.out.Error("load_case.unknown_expansion", selector.at,
-                     "temperatures.members: it is not known how warmth lengthens " + unknown,
-                     "give the builder in the model `expansion_per_k`: steel has 12e-6");
+                     "temperatures.members: the thermal expansion is not known for " + unknown,
+                     "add `expansion_per_k` to the builder in the model: steel has 12e-6");
   }
 
   std::vector<Key> Select(const Value& selector, const char* what) {
@@ -159,7 +158,7 @@ std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
     const auto [first, fresh] = names.emplace(text.name.text, text.name.at);
     if (!fresh && !text.name.text.empty()) {
       scope.out.Error("load_case.duplicate_name", text.name.at,
-                      "there are two load cases " + text.name.text,
+                      "two load cases are called " + text.name.text,
                       "the first is in line " + std::to_string(first->second.line));
     }
     if (robot) cases.push_back(CaseReader(*robot, scope).Run(text));

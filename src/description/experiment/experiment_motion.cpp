@@ -6,7 +6,7 @@
 #include "base/fixed.h"
 #include "description/experiment/experiment_keys.h"
 #include "description/experiment/experiment_parts.h"
-#include "description/model/plausible.h"
+#include "description/model/sanity_checks.h"
 #include "math/elementary.h"
 
 namespace taut::description {
@@ -41,11 +41,11 @@ std::size_t Find(const List& list, const std::string& name) {
 
 void CheckLaw(const MapReader& map, const char* speed, const char* amplitude) {
   if (map.Has(amplitude) && !map.Has("frequency_hz")) {
-    map.Error("motion.frequency_missing", amplitude, map.Path(amplitude) + " needs a frequency_hz");
+    map.Error("motion.frequency_missing", amplitude, map.Path(amplitude) + " needs frequency_hz");
   }
   if (!map.Has(amplitude) && !map.Has(speed)) {
     map.scope().out.Error("motion.no_motion", map.at(),
-                          map.what() + " says no speed and no amplitude");
+                          map.what() + " has neither a speed nor an amplitude");
   }
 }
 
@@ -54,9 +54,10 @@ void CheckJoints(const ModelDef& def, int body, const SourceRef& at, const Scope
   for (const JointDef& joint : def.joints) {
     if (joint.body_a != body && joint.body_b != body) continue;
     if (!base::IsFixed(def, joint.body_a) || !base::IsFixed(def, joint.body_b)) continue;
-    scope.out.Error("motion.joint_to_kinematic_body", at,
-                    "motion.of: the joint \"" + joint.name + "\" ties it to what no force moves",
-                    "leave the joint out of the model");
+    scope.out.Error(
+        "motion.joint_to_kinematic_body", at,
+        "motion.of: the joint \"" + joint.name + "\" connects the body to another fixed body",
+        "leave the joint out of the model");
   }
 }
 
@@ -67,7 +68,7 @@ void Check(const MapReader& map, TurnText&) { CheckLaw(map, "speed_rad_per_s", "
 void Check(const MapReader& map, MotionText&) {
   if (map.Has("slide") || map.Has("turn")) return;
   map.scope().out.Error("motion.slide_or_turn_missing", map.at(),
-                        map.what() + " needs a slide or a turn");
+                        map.what() + " needs `slide` or `turn`");
 }
 
 void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Scope& scope,
@@ -76,13 +77,12 @@ void AddMotions(const std::vector<MotionText>& texts, bool robot_known, const Sc
   std::set<std::string> names, moved;
   for (const MotionText& text : texts) {
     if (!names.insert(text.name).second) {
-      scope.out.Error("motion.duplicate_name", text.at,
-                      "there are two motions called " + text.name);
+      scope.out.Error("motion.duplicate_name", text.at, "two motions are called " + text.name);
       continue;
     }
     if (!moved.insert(text.of.text).second) {
       scope.out.Error("motion.body_moved_twice", text.of.at,
-                      "motion.of: \"" + text.of.text + "\" has another motion");
+                      "motion.of: \"" + text.of.text + "\" already has a motion");
       continue;
     }
     MotionDef motion;
@@ -129,9 +129,9 @@ void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& ex
     if (law.amplitude == 0 || law.frequency_hz * experiment.step_s <= 0.5) return;
     scope.out.Warning("motion.frequency_too_high", text.at,
                       "the motion \"" + text.name + "\" has " + base::Brief(law.frequency_hz) +
-                          " Hz, and a step of " + base::Brief(experiment.step_s) +
-                          " s sees less than two steps of a period",
-                      "a smaller step_s");
+                          " Hz, so a step of " + base::Brief(experiment.step_s) +
+                          " s gives less than two steps per period",
+                      "use a smaller step_s");
   };
   const std::string in_time = " in " + base::Brief(duration_s) + " s";
   for (const MotionText& text : texts) {
@@ -140,14 +140,14 @@ void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& ex
     if (IsTooFar(experiment.robot, way_m)) {
       scope.out.Error(
           "motion.too_far", text.at,
-          "the motion \"" + text.name + "\" may go " + base::Brief(way_m) + " m far" + in_time,
-          "positions so far away are too coarse for the robot");
+          "the motion \"" + text.name + "\" may move by " + base::Brief(way_m) + " m" + in_time,
+          "use a shorter way: positions that far away are rounded too coarsely for this robot");
     }
     if (!(angle_rad <= math::kMaxAngle)) {
       scope.out.Error("motion.turns_too_far", text.at,
-                      "the motion \"" + text.name + "\" may turn by " + base::Brief(angle_rad) +
+                      "the motion \"" + text.name + "\" may rotate by " + base::Brief(angle_rad) +
                           " rad" + in_time,
-                      "at most 1e9 rad: angles beyond are too coarse");
+                      "at most 1e9 rad: larger angles are rounded too coarsely");
     }
     if (text.slide) check(text, text.slide->law);
     if (text.turn) check(text, text.turn->law);

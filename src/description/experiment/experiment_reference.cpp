@@ -23,13 +23,13 @@ std::optional<int> FindNamed(const Items& items, const std::string& name, const 
 void Check(const MapReader& map, ReferenceText& reference) {
   if (!map.Has("phase") && reference.statistic != ReferenceSpec::Statistic::kMax) {
     map.Error("reference.statistic_only_max", "statistic",
-              "reference.statistic: over the whole run there is only max",
-              "name a phase of the timeline: phase: before");
+              "reference.statistic must be max for the whole run",
+              "for another statistic name a phase of the timeline, such as `phase: before`");
   }
   const Value* cables = map.Find("cables_n");
   if (cables && cables->kind == Value::Kind::kMap && cables->entries.empty()) {
     map.scope().out.Error("reference.no_values", cables->at, "reference.cables_n has no values",
-                          "inner_top_1: 34.4");
+                          "such as `inner_top_1: 34.4`");
   }
 }
 

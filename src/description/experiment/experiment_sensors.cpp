@@ -34,7 +34,7 @@ void Check(const MapReader& map, LoadCellText& cell) {
       if (!map.Has(other)) continue;
       map.Error("sensor.counts_given_twice", other,
                 map.what() + " has both counts and " + std::string(other),
-                "the counts have a range and bits of their own");
+                "`counts` already defines the range and the bits");
     }
     return;
   }
@@ -44,17 +44,16 @@ void Check(const MapReader& map, LoadCellText& cell) {
     map.scope().out.Error(
         "sensor.empty_range", map.Find("range_n")->at,
         map.Path("range_n") + ": " + Shown(cell.min_n) + " is not below " + Shown(cell.max_n),
-        "write [least, greatest]");
+        "expected [least, greatest]");
   }
   if (!map.Has("bits")) return;
   if (map.Has("quantum_n")) {
-    map.Error("sensor.bits_and_quantum", "bits", map.what() + " has bits and quantum_n",
-              "one follows from the other");
+    map.Error("sensor.bits_and_quantum", "bits", map.what() + " has both bits and quantum_n",
+              "give only one of them: it determines the other");
   }
   if (!map.Has("range_n")) {
     map.Error("sensor.bits_need_range", "bits",
-              map.Path("bits") + " needs the key \"range_n\" beside it",
-              "write `range_n: [0, 100]`");
+              map.Path("bits") + " needs the key \"range_n\" as well", "write `range_n: [0, 100]`");
   }
   if (cell.bits) cell.quantum_n = (cell.max_n - cell.min_n) / (std::ldexp(1.0, *cell.bits) - 1.0);
 }
@@ -63,20 +62,20 @@ void Check(const MapReader& map, EncoderText& encoder) {
   constexpr double kTwoPi = 6.28318530717958647692;
   for (const char* key : {"decoding", "gear_ratio", "index"}) {
     if (!map.Has(key) || map.Has("lines")) continue;
-    map.Error("sensor.key_needs_lines", key, map.Path(key) + " needs the key \"lines\" beside it",
-              "it is about an encoder on the motor's shaft");
+    map.Error("sensor.key_needs_lines", key, map.Path(key) + " needs the key \"lines\" as well",
+              "it describes an encoder on the motor's shaft");
   }
   if (encoder.decoding == 3) {
     map.Error("sensor.bad_decoding", "decoding", map.Path("decoding") + " must be 1, 2 or 4, got 3",
-              "edges of one channel, of both ways of one, of both");
+              "1: one edge per line, 2: both edges of one channel, 4: both edges of both channels");
   }
   const char* const by = map.Has("lines") ? "lines" : "counts_per_turn";
   if (!map.Has(by) && !map.Has("spool_radius_m")) return;
   for (const char* other : {"quantum_m", "counts_per_turn"}) {
     if (!map.Has(other) || std::string(other) == by) continue;
     map.Error("sensor.resolution_given_twice", other,
-              map.what() + " has " + std::string(other) + " and " + by,
-              "one follows from the other");
+              map.what() + " has both " + std::string(other) + " and " + by,
+              "give only one of them: it determines the other");
   }
   if (!map.Require(by) || !map.Require("spool_radius_m")) return;
   if (!encoder.lines) {

@@ -78,7 +78,7 @@ void Check(const MapReader& map, PlaneText& plane) {
     plane.point_m = {0, 0, *plane.height_m};
     if (map.Has("point_m")) {
       map.Error("terrain.plane_given_twice", "point_m", "plane has both height_m and point_m",
-                "only one of them may be there");
+                "give only one of them");
     }
   }
   if (map.Has("slope_direction") && !map.Has("slope_rad")) {
@@ -145,7 +145,7 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       const auto [first, fresh] = names.emplace(name, text.name_at);
       if (!fresh) {
         scope.out.Error("terrain.duplicate_name", text.name_key_at,
-                        "there are two parts of the terrain called " + name,
+                        "two terrain elements are called " + name,
                         "the first is in line " + std::to_string(first->second.line));
       }
       return fresh;
@@ -155,8 +155,8 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
     if (const std::size_t all = def.terrain_boxes.size() + static_cast<std::size_t>(made);
         all > static_cast<std::size_t>(kMostBoxes)) {
       scope.out.Error("terrain.too_many_boxes", text.at,
-                      "the terrain has " + std::to_string(all) + " boxes up to here, more than " +
-                          std::to_string(kMostBoxes),
+                      "the terrain has " + std::to_string(all) +
+                          " boxes up to this element, more than " + std::to_string(kMostBoxes),
                       "use a height field or a mesh");
       return;  // before the boxes are made: thousands of entries would exhaust memory
     }
@@ -167,9 +167,9 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       boxes[i].name = text.name + '_' + std::to_string(i);
       if (boxes[i].name.size() > kMaxNameLength) {
         scope.out.Error("terrain.name_too_long", text.name_at,
-                        "terrain.name: with the number of a box it has more than " +
+                        "terrain.name has, with the number of a box, more than " +
                             std::to_string(kMaxNameLength) + " characters",
-                        "a shorter name");
+                        "use a shorter name");
         break;
       }
       if (!claim(boxes[i].name)) break;

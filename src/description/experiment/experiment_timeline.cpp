@@ -94,7 +94,7 @@ void AddTimeline(const TimelineText& text, const RobotSpec* robot, const Scope& 
     if (name.empty()) continue;
     const auto [first, fresh] = names.emplace(name, event.name_at);
     if (!fresh) {
-      scope.out.Error("event.duplicate_name", event.name_at, "there are two events " + name,
+      scope.out.Error("event.duplicate_name", event.name_at, "two events are called " + name,
                       "the first is in line " + std::to_string(first->second.line));
     }
   }

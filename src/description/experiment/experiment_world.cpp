@@ -46,11 +46,12 @@ void Check(const MapReader& map, ScaleText& scale) {
   }
   if (key.empty()) return;
   if (map.Has("bodies") && key != "mass") {
-    map.Error("scale.no_bodies", "bodies", "scale: " + key + " has no bodies", "only mass has");
+    map.Error("scale.no_bodies", "bodies", "scale: " + key + " cannot be limited to `bodies`",
+              "only mass can");
   }
   if (map.Has("cables") && key != "stiffness" && key != "damping") {
-    map.Error("scale.no_cables", "cables", "scale: " + key + " has no cables",
-              "stiffness and damping have");
+    map.Error("scale.no_cables", "cables", "scale: " + key + " cannot be limited to `cables`",
+              "only stiffness and damping can");
   }
 }
 

@@ -90,10 +90,10 @@ bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope
   const double steps = std::exp2(image->bits) - 1;
   if (image->bits < 16) {
     scope.out.Warning("heights.coarse_image", {path, 0, 0},
-                      "has " + std::to_string(image->bits) +
-                          " bits a sample: heights in steps of " +
+                      "the image has " + std::to_string(image->bits) +
+                          " bits per sample, so heights have steps of " +
                           base::Brief(std::fabs(high - low) / steps) + " m",
-                      "16 bits make slopes smooth");
+                      "use 16 bits for smooth slopes");
   }
   field.columns = image->columns;
   field.rows = image->rows;
@@ -119,8 +119,8 @@ bool ReadHdf5(const std::string& path, const std::string& set, const Scope& scop
     const std::size_t columns = static_cast<std::size_t>(table->columns);
     scope.out.Error("heights.not_finite", {path, 0, 0},
                     set + ": row " + std::to_string(i / columns) + ", column " +
-                        std::to_string(i % columns) + " is no finite number",
-                    "heights in m");
+                        std::to_string(i % columns) + " is not a finite number",
+                    "expected heights in m");
     return false;
   }
   field.columns = table->columns;
@@ -140,7 +140,7 @@ bool ReadHeights(const HeightFieldText& text, const Scope& scope, HeightFieldDef
                                      : ReadCsv(path, scope, field);
   if (!good || (field.columns >= 2 && field.rows >= 2)) return good;
   scope.out.Error("heights.too_small", {path, 0, 0},
-                  "a height field needs two rows or more of two heights or more");
+                  "the file must have at least two rows of at least two heights");
   return false;
 }
 
@@ -155,17 +155,18 @@ void Check(const MapReader& map, HeightFieldText& field) {
   } else if (map.Has("height_range_m")) {
     map.Error("heights.range_without_effect", "height_range_m",
               map.Path("height_range_m") + " has no effect here",
-              "it says what black and white are in an image, .png");
+              "it sets the heights of black and white in a .png image");
   }
   if ((EndsIn(file, ".h5") || EndsIn(file, ".hdf5"))) {
-    map.Error("heights.data_set_missing", "file", map.Path("file") + " does not say which data set",
-              "behind a colon: " + file + ":/z");
+    map.Error("heights.data_set_missing", "file",
+              map.Path("file") + " needs the name of a data set",
+              "add it after a colon: " + file + ":/z");
   }
   for (const char* key : {"columns", "rows"}) {
     if (map.Has("height_m")) map.Require(key);
     if (map.Has("file") && map.Has(key)) {
       map.Error("heights.key_without_effect", key, map.Path(key) + " has no effect here",
-                "the file says how many there are");
+                "the file defines the number");
     }
   }
 }
@@ -193,8 +194,9 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
     const bool known = text.formula.value != nullptr && field.columns >= 2 && field.rows >= 2 &&
                        std::isfinite(field.cell_m);
     if (known && static_cast<double>(field.columns) * field.rows > kMostByFormula) {
-      scope.out.Error("heights.too_many", text.at, "a formula may have 4 000 000 corners at most",
-                      "fewer, larger cells, or a file");
+      scope.out.Error("heights.too_many", text.at,
+                      "a height field by formula can have at most 4 000 000 corners",
+                      "use fewer, larger cells, or a file");
       return std::nullopt;
     }
     if (!known || !FillByFormula(text, scope, field)) return std::nullopt;

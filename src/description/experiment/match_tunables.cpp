@@ -30,7 +30,7 @@ std::vector<std::size_t> MatchTunables(const Value& value, const std::string& wh
     std::string hint = NameHint(text, names);
     if (hint.size() > 200) hint = "`taut learn --parameters EXPERIMENT` lists them all";
     scope.out.Error("tunable.unknown_name", pattern->at,
-                    what + ": nothing is called \"" + text + "\"", hint);
+                    what + ": there is no parameter \"" + text + "\"", hint);
   }
   return {found.begin(), found.end()};
 }

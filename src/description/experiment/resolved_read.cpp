@@ -8,9 +8,9 @@
 #include "description/experiment/experiment_parts.h"
 #include "description/experiment/resolved.h"
 #include "description/experiment/resolved_keys.h"
-#include "description/model/plausible.h"
+#include "description/model/sanity_checks.h"
+#include "description/yaml/file_parameters.h"
 #include "description/yaml/kinds.h"
-#include "description/yaml/parameters.h"
 #include "description/yaml/read_keys.h"
 #include "taut/study.h"
 
@@ -69,7 +69,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, Packe
   }
   if (!good)
     scope.out.Error("resolved.not_numbers", value.at,
-                    what + " must be numbers with a space between them");
+                    what + " must be numbers separated by spaces");
 }
 template <class T>
 void Read(const Value& value, const std::string& what, const Scope& scope, T& out);  // for structs
@@ -113,7 +113,7 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     for (const char* name : spellings.names) {
       if (name != right && map_.Has(name)) {
         map_.Know(name);
-        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is of another quantity");
+        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is for another quantity");
       }
     }
     of_name(right);
@@ -149,7 +149,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, T& ou
 void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
   if (CountKinds(gait) != 1) {
     out.Error("gait.kind_missing", at,
-              "a gait is one of sine, cpg, table, feedback_cpg and toward_goal");
+              "a gait must be exactly one of sine, cpg, table, feedback_cpg and toward_goal");
     return;
   }
   ForEachGaitKind([&](const auto& kind, auto) {
@@ -168,9 +168,9 @@ std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kin
   check(input.blend_s >= 0.0, ".blend_s must not be negative");
   double before_s = -1.0;
   for (const GaitChange& change : input.changes) {
-    check(change.at_s >= 0.0 && change.at_s > before_s, ".changes: times must rise");
+    check(change.at_s >= 0.0 && change.at_s > before_s, ".changes: times must increase");
     check(change.gait >= 0 && static_cast<std::size_t>(change.gait) <= input.others.size(),
-          ".changes: there is no such gait");
+          ".changes refers to a gait that does not exist");
     before_s = change.at_s;
   }
   CheckGait(input.gait, at, out);
@@ -183,7 +183,8 @@ std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kin
 void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
   const auto check = [&](const std::string& name, bool good) {
     if (!good)
-      out.Error("name.bad", at, "\"" + name + "\" cannot be a name", "letters, digits, _ and -");
+      out.Error("name.bad", at, "\"" + name + "\" cannot be a name",
+                "use letters, digits, _ and -");
   };
   const auto check_all = [&](const auto& list) {
     for (const auto& item : list) check(item.name, IsFullName(item.name));
@@ -214,13 +215,13 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     if (controller.rest_length_input) {
       if (controller.impedance)
         out.Error("resolved.rest_length_input_with_impedance", at,
-                  "rest_length_input does not go with impedance");
+                  "rest_length_input cannot be combined with impedance");
       CheckInput(*controller.rest_length_input, kRestLengthInput, robot, at, out);
     }
     if (!controller.impedance) {
       if (controller.velocity_input)
         out.Error("resolved.velocity_input_without_impedance", at,
-                  "velocity_input goes with impedance");
+                  "velocity_input needs impedance");
       continue;
     }
     if (controller.velocity_input) {
@@ -259,10 +260,10 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
     for (const EnvironmentAction& action : experiment.environment->actions) {
       if (!action.by) check(action.cable, robot.def.cables.size(), "cable");
       if (action.by && action.numbers.empty())
-        out.Error("resolved.empty_action", at, "an action that moves no number");
+        out.Error("resolved.empty_action", at, "an action changes no parameter");
       for (const std::string& name : action.numbers) {
         if (known.count(name) == 0)
-          out.Error("resolved.unknown_number", at, "there is no number called \"" + name + '"');
+          out.Error("resolved.unknown_number", at, "there is no parameter \"" + name + '"');
       }
     }
   }
@@ -310,7 +311,7 @@ std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overri
   robot.mesh_sources.resize(robot.def.terrain_meshes.size(), at);
   CheckPositions(robot, out);
   if (out.items().size() != errors_before) return std::nullopt;
-  WarnOfOddNumbers(robot, out);
+  WarnImplausible(robot, out);
   experiment.files = {path};
   return experiment;
 }

@@ -6,7 +6,8 @@ namespace taut::description {
 std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& /*overrides*/,
                                            Diagnostics& out) {
   out.Error("browser.no_resolved_experiments", {path, 0, 0},
-            "resolved experiments cannot be read in a browser", "the command taut reads them");
+            "resolved experiments cannot be read in a browser",
+            "use the command-line program taut");
   return std::nullopt;
 }
 

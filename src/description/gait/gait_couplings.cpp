@@ -26,7 +26,8 @@ bool HasActuator(const RobotSpec& robot, int cable) {
 std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::string>& order,
                              const SourceRef& at, Diagnostics& out) {
   std::vector<int> cables;
-  const std::string too_many = "more than " + std::to_string(kMaxOscillators) + " oscillators";
+  const std::string too_many =
+      "the gait has more than " + std::to_string(kMaxOscillators) + " oscillators";
   if (order.size() > kMaxOscillators) {
     out.Error("gait.too_many_oscillators", at, too_many);
     return cables;
@@ -48,7 +49,7 @@ std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::stri
     }
     cables.push_back(static_cast<int>(found - names.begin()));
     if (!seen.insert(name).second)
-      out.Error("gait.duplicate_cable", at, "cpg.order has " + name + " twice");
+      out.Error("gait.duplicate_cable", at, "cpg.order contains " + name + " twice");
     if (!HasActuator(robot, cables.back())) {
       out.Error("cable.no_actuator", at, "cpg.order: " + name + " has no actuator",
                 "give the cable's builder in the model an `actuator:`");
@@ -90,9 +91,9 @@ std::optional<Chain> FindChain(const RobotSpec& robot, const std::vector<int>& c
     const auto place = PlaceInChain(CableName(robot, cable));
     if (!place) {
       out.Error("gait.cable_without_number", at,
-                "cable " + CableName(robot, cable) + " has no number at its end",
-                "symmetric couplings tell cables apart by names such as outer_top_2; write "
-                "`symmetry: none`");
+                "the name of cable " + CableName(robot, cable) + " does not end in a number",
+                "use names such as outer_top_2, by which symmetric couplings distinguish cables, "
+                "or write `symmetry: none`");
       return std::nullopt;
     }
     const auto found = std::find(chain.roles.begin(), chain.roles.end(), place->role);
@@ -151,11 +152,11 @@ bool GroupByIndex(const RobotSpec& robot, const Chain& chain, CouplingGraph& gra
     const int relation = (link.to - link.from) / count + 1;  // integer division rounds toward zero
     if (relation < 0 || relation > 2) {
       out.Error("gait.index_too_far", at,
-                "symmetry: index knows oscillators up to " + std::to_string(2 * count - 1) +
+                "symmetry: index couples oscillators up to " + std::to_string(2 * count - 1) +
                     " places apart, but " + CableName(robot, graph.cables[std::size_t(link.to)]) +
                     " and " + CableName(robot, graph.cables[std::size_t(link.from)]) + " are " +
                     std::to_string(std::abs(link.to - link.from)) + " apart",
-                "put the cables of neighbouring segments together in cpg.order");
+                "list the cables of neighboring segments together in cpg.order");
       return false;
     }
     link.group = index[static_cast<std::size_t>(relation)][PairIndex(

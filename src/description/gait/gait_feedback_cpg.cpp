@@ -40,7 +40,7 @@ void CheckNetwork(const NetworkSpec& network, const std::string& what, std::size
   const SourceRef& where = network.at.line > 0 ? network.at : at;
   if (hidden < 1 || hidden > NetworkSpec::kMostHidden) {
     out.Error("network.bad_size", where,
-              what + ".hidden must have 1 to 32 neurons, not " + std::to_string(hidden));
+              what + ".hidden must have 1 to 32 neurons, got " + std::to_string(hidden));
     return;
   }
   const std::string inputs = what == "cable_network" ? "inputs: stretch, tension"
@@ -54,13 +54,13 @@ void CheckNetwork(const NetworkSpec& network, const std::string& what, std::size
     out.Error("network.wrong_number_of_weights", neuron.at.line > 0 ? neuron.at : at,
               what + ": neuron " + neuron.name + " has " + std::to_string(count) +
                   " weights, but " + network.hidden[0].name + " has " + std::to_string(first),
-              "all hidden neurons have the same inputs");
+              "all hidden neurons must have the same inputs");
   }
   CheckWeights(network.outputs, hidden, hidden, "hidden neurons", at, out);
   for (const Neuron& neuron : network.outputs) {
     if (std::find(outputs.begin(), outputs.end(), neuron.name) != outputs.end()) continue;
     out.Error("network.unknown_output", neuron.at.line > 0 ? neuron.at : at,
-              what + ".outputs: there is nothing called " + neuron.name,
+              what + ".outputs: there is no output called " + neuron.name,
               NameHint(neuron.name, outputs));
   }
 }
@@ -83,9 +83,9 @@ std::map<int, int> RolesOf(const FeedbackCpgGait& cpg, const RobotSpec& robot, D
       out.Error("gait.two_oscillators", one.at,
                 "oscillators " + one.name + ": " +
                     robot.def.cables[static_cast<std::size_t>(cable)].name +
-                    " has an oscillator already, of " +
+                    " already has an oscillator, of " +
                     cpg.oscillators[static_cast<std::size_t>(other->second)].name,
-                "a cable has one oscillator");
+                "a cable can have only one oscillator");
       break;
     }
   }
@@ -129,8 +129,8 @@ void Check(const MapReader& map, NetworkSpec& network) {
   for (const Neuron& neuron : network.outputs) {
     if (neuron.name.empty() || hidden.count(neuron.name) == 0) continue;
     map.scope().out.Error("network.duplicate_neuron", neuron.at,
-                          "there is a hidden neuron " + neuron.name + ", too",
-                          "numbers are called after the neurons: give each its own name");
+                          "a hidden neuron and an output are both called " + neuron.name,
+                          "give each neuron a different name: parameters are named after neurons");
   }
 }
 
@@ -139,7 +139,7 @@ void Check(const MapReader& map, FeedbackCpgGait& cpg) {
   CheckTwice(cpg.oscillators, "oscillators", map.scope());
   if (map.Has("oscillators") && cpg.oscillators.empty() && map.scope().out.ok()) {
     map.Error("gait.no_oscillators", "oscillators",
-              "feedback_cpg.oscillators must have one or more");
+              "feedback_cpg.oscillators needs at least one entry");
   }
   if (map.scope().out.ok()) CheckNetworks(cpg, cpg.at, map.scope().out);
 }
@@ -193,8 +193,8 @@ void Resolve(const FeedbackCpgGait& cpg, const RobotSpec& robot, ResolvedGait& r
     if (!cpg.cable_network || (std::isfinite(most_n) && most_n > 0.0)) continue;
     out.Error("cable.no_max_force", cpg.cable_network->at.line > 0 ? cpg.cable_network->at : cpg.at,
               "cable_network: the actuator of " + robot.def.cables[cable].name +
-                  " has no max_force_n to set its tension beside",
-              "give it one, or leave out `cable_network`");
+                  " has no max_force_n, to which the network's input is relative",
+              "add max_force_n, or leave out `cable_network`");
     return;
   }
   resolved.cables = graph.cables;

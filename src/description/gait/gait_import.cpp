@@ -56,7 +56,7 @@ std::pair<double, double> ReadNnw(const fs::path& path, Diagnostics& out) {
   std::string more;
   if (!good || words >> more) {
     out.Error("ntrt.bad_parameters", {path.string(), 1, 1},
-              "is not two numbers within 0..1, such as 0.5036,0.9295");
+              "the file must contain two numbers within 0..1, such as 0.5036,0.9295");
   }
   return {numbers[0], numbers[1]};
 }
@@ -73,8 +73,10 @@ std::optional<std::string> FindSet(const std::string& folder, Diagnostics& out) 
   }
   if (sets.size() == 1) return sets[0];
   out.Error("ntrt.parameter_files", {folder, 0, 0},
-            sets.empty() ? "has no file ..._node-0.nnw" : "has several sets of learned parameters",
-            "a folder with bestParameters-9_node-0.nnw and bestParameters-9_edge-0.nnw to -56.nnw");
+            sets.empty() ? "the folder has no file ..._node-0.nnw"
+                         : "the folder has several sets of learned parameters",
+            "expected a folder with bestParameters-9_node-0.nnw and bestParameters-9_edge-0.nnw to "
+            "-56.nnw");
   return std::nullopt;
 }
 

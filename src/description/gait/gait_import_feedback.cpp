@@ -40,7 +40,7 @@ std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, 
       for (const double x : *numbers) {
         if (!(x >= 0.0 && x <= 1.0)) {
           scope.out.Error("ntrt.parameter_out_of_range", row->at,
-                          std::string(key) + ": parameters lie within 0..1");
+                          std::string(key) + ": parameters must be within 0..1");
           return {};
         }
       }
@@ -51,7 +51,7 @@ std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, 
   if (scope.out.items().size() == errors_before) {
     scope.out.Error("ntrt.wrong_number_of_rows", of ? of->at : root.at,
                     std::string(key) + ".params must have " + std::to_string(rows) +
-                        " rows, as NTRT's " + "controllers of spines with eight cables a joint");
+                        " rows, as in NTRT's controllers of spines with eight cables per joint");
   }
   return {};
 }
@@ -77,10 +77,10 @@ std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const
   if (!file || inputs == 0 || hidden == 0 || said == 0) return std::nullopt;
   if (inputs != 2 || said != static_cast<int>(outputs.size())) {
     scope.out.Error("ntrt.wrong_network", params->at,
-                    std::string(key) + ": a network of " + std::to_string(inputs) + " inputs and " +
-                        std::to_string(said) + " outputs is not of this kind",
-                    "2 and " + std::to_string(outputs.size()) +
-                        " are; networks that set tensions have no gait here");
+                    std::string(key) + ": a network with " + std::to_string(inputs) +
+                        " inputs and " + std::to_string(said) + " outputs cannot be imported",
+                    "expected 2 inputs and " + std::to_string(outputs.size()) +
+                        " outputs; gaits have no networks that set tensions");
     return std::nullopt;
   }
   const std::string path = (folder / ReadText(*file, map.Path("neuralFilename"), scope)).string();
@@ -95,9 +95,9 @@ std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const
   const std::size_t count = (in + 1) * mid + (mid + 1) * outputs.size();
   if (!good || weights.size() != count) {
     scope.out.Error("ntrt.wrong_number_of_weights", {path, 1, 1},
-                    "is not " + std::to_string(count) + " numbers, as a network of " +
-                        std::to_string(inputs) + ", " + std::to_string(hidden) + " and " +
-                        std::to_string(said) + " neurons has");
+                    "the file must contain " + std::to_string(count) +
+                        " numbers, for a network with " + std::to_string(inputs) + ", " +
+                        std::to_string(hidden) + " and " + std::to_string(said) + " neurons");
     return std::nullopt;
   }
   NetworkSpec network;
@@ -150,7 +150,7 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   cpg.integrator_step_s = kFeedbackStepS;
   cpg.symmetry = CpgSymmetry::kIndex;
   if (!(square > 0.0)) {
-    out.Error("ntrt.no_amplitude", root.at, "nodeVals: an amplitude of 0 moves nothing");
+    out.Error("ntrt.no_amplitude", root.at, "nodeVals: the amplitude must not be 0");
     return std::nullopt;
   }
   for (const std::string& name : kOscillators) {

@@ -50,7 +50,7 @@ void CheckTwice(const std::vector<Part>& parts, const std::string& what, const S
     if (part.name.empty()) continue;
     const auto [first, fresh] = seen.emplace(part.name, part.at);
     if (fresh) continue;
-    scope.out.Error("gait.duplicate_part", part.at, "there are two " + what + " " + part.name,
+    scope.out.Error("gait.duplicate_part", part.at, "two " + what + " are called " + part.name,
                     "the first is in line " + std::to_string(first->second.line));
   }
 }

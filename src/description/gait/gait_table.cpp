@@ -49,11 +49,12 @@ bool ReadHeader(const std::vector<std::string>& cells, GaitDrives drives, const 
     const bool velocity = drives == GaitDrives::kVelocity;
     const std::string of_other =
         CableOf(cell, velocity ? GaitDrives::kRestLength : GaitDrives::kVelocity);
-    out.Error(
-        "gait_table.bad_column", at, "column " + std::to_string(i + 1) + " is \"" + cell + "\"",
-        of_other.empty()
-            ? std::string("a cable's name with its unit, such as outer_top_1") + UnitOfName(drives)
-            : WhoDrives(drives) + (" has " + of_other) + UnitOfName(drives));
+    out.Error("gait_table.bad_column", at,
+              "column " + std::to_string(i + 1) + " has the unknown heading \"" + cell + "\"",
+              of_other.empty()
+                  ? std::string("expected a cable's name with its unit, such as outer_top_1") +
+                        UnitOfName(drives)
+                  : WhoDrives(drives) + (" needs " + of_other) + UnitOfName(drives));
     good = false;
   }
   return good;
@@ -64,7 +65,7 @@ bool ReadRow(const std::vector<std::string>& cells, const SourceRef& at, TableGa
              Diagnostics& out) {
   if (cells.size() != table.cables.size() + 1) {
     out.Error("gait_table.ragged_row", at,
-              "a row of " + std::to_string(cells.size()) + " cells under a header of " +
+              "the row has " + std::to_string(cells.size()) + " cells, but the header has " +
                   std::to_string(table.cables.size() + 1));
     return false;
   }
@@ -83,17 +84,17 @@ bool ReadRow(const std::vector<std::string>& cells, const SourceRef& at, TableGa
 /// Checks a table of any source.
 void CheckTable(const TableGait& table, const SourceRef& at, Diagnostics& out) {
   if (table.cables.empty() || table.rows.empty()) {
-    out.Error("gait_table.empty", at, "a table needs a column for a cable and a row");
+    out.Error("gait_table.empty", at, "a table needs at least one column for a cable and one row");
     return;
   }
   if (table.time_s.front() != 0.0) {
     out.Error("gait_table.bad_start", at,
-              "a table's first row is at 0 s, not at " + Shown(table.time_s.front()) + " s");
+              "the first row of a table must be at 0 s, got " + Shown(table.time_s.front()) + " s");
   }
   for (std::size_t i = 1; i < table.time_s.size(); ++i) {
     if (table.time_s[i] > table.time_s[i - 1]) continue;
     out.Error("gait_table.times_not_increasing", at,
-              "a table's times must rise, but " + Shown(table.time_s[i]) + " s follows " +
+              "the times of a table must increase, but " + Shown(table.time_s[i]) + " s follows " +
                   Shown(table.time_s[i - 1]) + " s");
     break;
   }
@@ -127,7 +128,7 @@ std::optional<TableGait> ReadGaitTable(const std::string& path, GaitDrives drive
     }
   }
   if (!header) {
-    out.Error("gait_table.no_header", {path, 1, 1}, "has no header line",
+    out.Error("gait_table.no_header", {path, 1, 1}, "the table has no header line",
               std::string("such as time_s,outer_top_1") + UnitOfName(drives));
   }
   if (out.items().size() != errors_before) return std::nullopt;
@@ -154,7 +155,7 @@ void Check(const MapReader& map, TableText& table) {
   if (key == "file") {
     if (map.Has("cables")) {
       map.Error("gait_table.cables_without_effect", "cables", "table.cables has no effect",
-                "the file's columns name the cables");
+                "the headings of the file name the cables");
     }
     const auto path = FindFile(table.file.value, "table.file", map.scope());
     if (auto read = path ? ReadGaitTable(*path, drives, map.scope().out) : std::nullopt) {
@@ -196,7 +197,7 @@ void Resolve(const TableGait& table, const RobotSpec& robot, ResolvedGait& resol
       out.Error("cable.unknown", table.at, robot.def.name + " has no cable \"" + name + "\"",
                 NameHint(name, names));
     } else if (std::count(resolved.cables.begin(), resolved.cables.end(), cable) > 0) {
-      out.Error("gait_table.duplicate_cable", table.at, "the table has " + name + " twice");
+      out.Error("gait_table.duplicate_cable", table.at, "the table contains " + name + " twice");
     } else {
       resolved.cables.push_back(cable);
     }

@@ -57,8 +57,8 @@ void Resolve(const TowardGoalGait& gait, const RobotSpec& robot, ResolvedGait& r
   if (struts.size() < 3 || !(Spread(struts) > kLeastSpread)) {
     out.Error("gait.strut_directions", gait.at,
               "toward_goal: the " + std::to_string(struts.size()) + " struts of " + def.name +
-                  " do not go in three directions",
-              "the turn of the robot is found from bodies that are a single rod");
+                  " do not have three independent directions",
+              "the rotation of the robot is computed from bodies that are a single rod");
     return;
   }
   std::vector<Vec3> middles;
@@ -75,8 +75,8 @@ void Resolve(const TowardGoalGait& gait, const RobotSpec& robot, ResolvedGait& r
   const double radius_m = std::sqrt(square_m2 / count);
   if (!(radius_m > 0)) {
     out.Error("gait.cables_in_one_place", gait.at,
-              "toward_goal: the middles of all its cables are in one place",
-              "it needs cables on all sides of the robot");
+              "toward_goal: the midpoints of all its cables are at the same position",
+              "select cables on all sides of the robot");
     return;
   }
   resolved.cables = cables;

@@ -70,12 +70,12 @@ class Assembler {
       nodes += static_cast<long long>(part->nodes.size()) * placement.copies;
       pair_ends += (ends(part->pairs) + ends(placement.connect)) * placement.copies;
       if (nodes <= kMaxModelNodes && pair_ends <= kMaxModelEnds) continue;
-      out_.Error(
-          "model.too_large", placement.at,
-          nodes > kMaxModelNodes
-              ? "the model has more than " + std::to_string(kMaxModelNodes) + " nodes"
-              : "the pairs of the model name more than " + std::to_string(kMaxModelEnds) + " nodes",
-          "with the " + std::to_string(placement.copies) + " copies of this placement");
+      out_.Error("model.too_large", placement.at,
+                 nodes > kMaxModelNodes
+                     ? "the model has more than " + std::to_string(kMaxModelNodes) + " nodes"
+                     : "the pairs of the model have more than " + std::to_string(kMaxModelEnds) +
+                           " nodes in all",
+                 "reduce the " + std::to_string(placement.copies) + " copies of this placement");
       return false;
     }
     return true;
@@ -97,8 +97,8 @@ class Assembler {
       instance.angular_velocity_rad_per_s = placement.angular_velocity_rad_per_s;
       if (!instance.name.empty() && !instances_.emplace(instance.name, placement.at).second) {
         out_.Error("structure.duplicate_name", placement.at,
-                   "duplicate name \"" + instance.name + "\" in the structure",
-                   "give each placement a `name:` of its own");
+                   "two placements in the structure have the name \"" + instance.name + "\"",
+                   "give each placement a different `name:`");
         return;
       }
       assembly_.instances.push_back(std::move(instance));
@@ -244,7 +244,7 @@ class Assembler {
     if (!fresh || same_name) {
       out_.Error("pair.duplicate_name", pair.at, "duplicate pair \"" + pair.name + "\"",
                  "the first is in line " + std::to_string(first->second.line) +
-                     "; if both are meant, give them a `name:`");
+                     "; to keep both, give each a `name:`");
       return;
     }
     assembly_.pairs.push_back(std::move(pair));

@@ -45,7 +45,7 @@ std::string TagHint(const std::vector<std::string>& set, const std::vector<TagsI
     if (tags.count(tag) > 0) continue;
     return "tag " + tag + ": " + NameHint(tag, {tags.begin(), tags.end()});
   }
-  return "no one has all of these tags";
+  return "no single element has all of these tags";
 }
 
 /// Reports selectors that no number of copies could match. A selector that matches nothing at
@@ -62,9 +62,9 @@ void CheckMatches(const BuilderText& builder, const Assembly& assembly, Diagnost
     if (placed) continue;  // a full name such as segment_0.tip
     out.Error("builder.matches_nothing", builder.match_at,
               std::string("no ") + what + " matches " + ShownTags(set),
-              CouldMatch(set, others)
-                  ? "a " + builder.kind + " goes on " + what + "s, but these tags are on " + other
-                  : TagHint(set, mine));
+              CouldMatch(set, others) ? "a " + builder.kind + " is made from " + what +
+                                            "s, but these tags are on " + other
+                                      : TagHint(set, mine));
   }
 }
 
@@ -80,9 +80,9 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
     if (!clashes.insert({first, second}).second) return;
     const BuilderText& a = model.builders[first];
     out.Error("builder.second_builder", model.builders[second].at,
-              "\"" + name + "\" already is a " + a.kind + " by the builder in line " +
+              "\"" + name + "\" is already a " + a.kind + ", made by the builder in line " +
                   std::to_string(a.at.line),
-              "each pair and node is built once: make the tags differ");
+              "change the tags so that only one of the two builders matches");
   };
 
   for (int b = 0; b < static_cast<int>(model.builders.size()); ++b) {

@@ -72,8 +72,8 @@ class BodyBuilder {
       const int b = assignment_.of_pair[pair];
       if (b < 0 || !IsSolid(model_.builders[b]) || placed.nodes.size() == 2) continue;
       out_.Error("builder.two_nodes_needed", placed.at,
-                 "a " + model_.builders[b].kind + " has two nodes, \"" + placed.name + "\" has " +
-                     std::to_string(placed.nodes.size()));
+                 "a " + model_.builders[b].kind + " needs two nodes, but \"" + placed.name +
+                     "\" has " + std::to_string(placed.nodes.size()));
     }
   }
 
@@ -111,8 +111,8 @@ class BodyBuilder {
     if (!def.fixed) CheckMass(weld, solids, def);
     if (!names_.insert(def.name).second) {
       out_.Error("body.duplicate_name", Source(weld),
-                 "two bodies would be called \"" + def.name + "\"",
-                 "give one of its pairs a `name:`");
+                 "two bodies have the name \"" + def.name + "\"",
+                 "give a pair of one of them a `name:`");
     }
     robot_.def.bodies.push_back(std::move(def));
     robot_.body_sources.push_back(Source(weld));
@@ -125,13 +125,13 @@ class BodyBuilder {
     if (!model_.builders_complete || !assembly_.complete) return;
     if (weld.ends_bar) {
       bodiless_("node.no_mass", node.at, "the node \"" + node.name + "\" has no mass",
-                "give a bar or a cable that ends there density_kg_per_m3 and area_m2, or mass_kg; "
-                "or the node a point_mass, or an anchor");
+                "give a bar or a cable at this node density_kg_per_m3 and area_m2, or mass_kg; or "
+                "give the node a point_mass or an anchor");
       return;
     }
     bodiless_("node.no_body", node.at, "node \"" + node.name + "\" belongs to no body",
-              "a rod, box, sphere or point_mass makes a body of it, fixed_to joins it to another "
-              "node's, an anchor fixes it in the world");
+              "give it a rod, box, sphere or point_mass, attach it to the body of another node "
+              "with fixed_to, or fix it in the world with an anchor");
   }
 
   void AddPair(Solids& solids, int pair, int body) {
@@ -145,7 +145,7 @@ class BodyBuilder {
     if (length < kShortest_m) {
       short_("rod.no_length", placed.at,
              "the " + builder.kind + " \"" + placed.name + "\" has no length",
-             "its nodes are in one place");
+             "its nodes are at the same position");
       return;
     }
     if (builder.rod) {
@@ -287,8 +287,8 @@ class BodyBuilder {
     const Vec3 moments = PrincipalMoments(i);
     if (moments.x > 1e-12 * moments.z) return;
     out_.Error("body.no_inertia", Source(weld),
-               "the body \"" + def.name + "\" has no inertia about some axis",
-               "its mass is all on one line: give the point_mass a radius_m");
+               "the body \"" + def.name + "\" has no inertia about a principal axis",
+               "give the point_mass a radius_m: all mass is on one line");
   }
 
   void AddPin(const Pin& pin) {
@@ -364,7 +364,7 @@ class BodyBuilder {
               0.0) {
             out_.Error("body.velocity_of_several_parts", in.at,
                        "the body \"" + def.name +
-                           "\" joins placements, so none of them can have a velocity");
+                           "\" joins several placements, so none of them can have a velocity");
             break;
           }
         }

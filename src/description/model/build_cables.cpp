@@ -32,6 +32,7 @@ class CableMaker {
         assignment_(assignment),
         body_of_node_(body_of_node),
         robot_(robot),
+        out_(out),
         once_(out) {}
 
   void Run() {
@@ -54,9 +55,8 @@ class CableMaker {
     }
     if (cable.touches != CableTouches::kNone && cable.attachments.size() > 2) {
       once_("cable.touches_and_runs_over_nodes", pair.at,
-            "the cable \"" + pair.name +
-                "\" touches what it comes to, and runs over more than two " + "nodes",
-            "cables that touch run from node to node; leave `touches` away or cut it in two");
+            "the cable \"" + pair.name + "\" has `touches`, so it must have exactly two nodes",
+            "leave out `touches`, or split the cable at the nodes between its ends");
     }
     CheckMotor(pair, cable);
     if (CheckPath(pair, builder, cable)) SetRestLength(pair, builder, cable);
@@ -73,8 +73,9 @@ class CableMaker {
       if (element.friction == 0) continue;
       once_("cable.friction_with_motor", element.at,
             "the cable \"" + pair.name +
-                "\" has friction there: a direct-current motor does not wind such a cable",
-            "ideal and limited actuators do");
+                "\" has friction at this element, but a direct-current motor cannot wind a cable "
+                "with friction",
+            "use an ideal or limited actuator");
     }
   }
 
@@ -89,9 +90,9 @@ class CableMaker {
         const double inside_m = rod.radius_m - std::sqrt(Dot(off, off));
         if (!(inside_m > 0)) continue;
         once_("cable.end_inside_rod", pair.at,
-              "the cable \"" + pair.name + "\" touches rods and ends " + Number(1000 * inside_m) +
+              "the cable \"" + pair.name + "\" touches rods, but ends " + Number(1000 * inside_m) +
                   " mm inside the rod \"" + rod.name + "\" of another body",
-              "move one of them");
+              "move the end of the cable, or the rod");
       }
     }
   }
@@ -109,7 +110,7 @@ class CableMaker {
       once_("cable.no_length", pair.at,
             "the cable \"" + pair.name + "\" has no length between \"" + from.name + "\" and \"" +
                 to.name + "\"",
-            "these nodes are in one place");
+            "move one of these nodes: they are at the same position");
       return false;
     }
     if (std::isnan(CableLength(cable))) return false;
@@ -119,11 +120,13 @@ class CableMaker {
     }
     if (one_body && model_.builders_complete && assembly_.complete) {
       const int body = cable.attachments[0].body;
+      if (body == kWorld && !out_.ok()) return true;  // already reported: nodes without a body
       once_(
           "cable.both_ends_on_one_body", pair.at,
-          "the cable \"" + pair.name + "\" ends twice on " +
-              (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\""),
-          "it would do nothing");
+          "both ends of the cable \"" + pair.name + "\" are on " +
+              (body == kWorld ? "the world" : "the body \"" + robot_.def.bodies[body].name + "\"") +
+              ", so it has no effect",
+          "leave it out, or end it on another body");
     }
     return true;
   }
@@ -147,8 +150,8 @@ class CableMaker {
     if (builder.prestress_n && cable.rest_length_m <= 0.0) {
       once_("cable.prestress_too_high", builder.rest_at,
             "cable.prestress_n: " + Number(*builder.prestress_n) + " N would stretch the cable \"" +
-                pair.name + "\" to more than its length of " + Number(length) + " m",
-            "at " + Number(builder.stiffness_n_per_m) + " N/m at most " +
+                pair.name + "\" by its whole length of " + Number(length) + " m or more",
+            "with a stiffness of " + Number(builder.stiffness_n_per_m) + " N/m at most " +
                 Number(builder.stiffness_n_per_m * length) + " N");
     }
     const double wound = WoundLength(pair);
@@ -156,8 +159,8 @@ class CableMaker {
       once_("cable.rest_length_below_wound", builder.rest_at,
             "the cable \"" + pair.name + "\" starts with a rest length of " +
                 Number(cable.rest_length_m) + " m, below the " + Number(wound) +
-                " m that are wound round its pulleys and drums",
-            "with all that is between them it is " + Number(length) + " m long");
+                " m wound around its pulleys and drums",
+            "increase the rest length: the whole cable path is " + Number(length) + " m long");
     }
     if (cable.rest_length_m > 0.0 && cable.rest_length_m < cable.actuator.min_rest_length_m) {
       once_("cable.rest_length_below_min", builder.rest_at,
@@ -172,6 +175,7 @@ class CableMaker {
   const Assignment& assignment_;
   const BodyOfNode& body_of_node_;
   RobotSpec& robot_;
+  Diagnostics& out_;
   OncePerPlace once_;
 };
 
@@ -204,9 +208,9 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
     if (robot_set < 0) robot_set = set;
     if (set == robot_set || !reported.insert(set).second) continue;
     out.Error("body.not_connected", robot.body_sources[body],
-              "no cable or joint joins the body \"" + bodies[body].name + "\" to \"" +
+              "no cable or joint connects the body \"" + bodies[body].name + "\" to \"" +
                   bodies[robot_set].name + "\"",
-              "if that is meant, write `allow_disconnected: true`");
+              "if this is intended, write `allow_disconnected: true`");
   }
 }
 

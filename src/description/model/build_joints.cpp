@@ -77,11 +77,11 @@ class JointMaker {
     if (text.prestress_n && !has_length && length_m > 0 && !std::isnan(elastic.rest_length_m)) {
       once_("bar.prestress_too_high", text.rest_at,
             "bar.prestress_n: " + base::Brief(*text.prestress_n) + " N would " +
-                (*text.prestress_n > 0 ? "stretch" : "press") + " the bar \"" + pair.name +
+                (*text.prestress_n > 0 ? "stretch" : "compress") + " the bar \"" + pair.name +
                 (*text.prestress_n > 0
-                     ? "\" to more than its length of " + base::Brief(length_m) + " m"
-                     : "\" to nothing"),
-            "is its stiffness right?");
+                     ? "\" by its whole length of " + base::Brief(length_m) + " m or more"
+                     : "\" to zero length"),
+            "check its stiffness");
       return;
     }
     JointDef joint;
@@ -100,7 +100,7 @@ class JointMaker {
   void Between(const PlacedPair& pair, const char* kind, JointDef joint) {
     if (pair.nodes.size() != 2) {
       once_("pair.two_nodes_needed", pair.at,
-            std::string("a ") + kind + " has two nodes, \"" + pair.name + "\" has " +
+            std::string("a ") + kind + " needs two nodes, but \"" + pair.name + "\" has " +
                 std::to_string(pair.nodes.size()));
       return;
     }
@@ -126,8 +126,8 @@ class JointMaker {
     joint.from_m = joint.to_m = placed.position_m;
     if (joint.kind == JointKind::kDistance) {
       once_("support.distance_needs_two_points", placed.at,
-            "a support of the kind distance has no second point",
-            "join the node to one in the world: a pair with a joint");
+            "a support cannot be of the kind distance, because it has only one point",
+            "use a joint on a pair with a node of the world");
       return;
     }
     Add(placed.at, "joint", placed.tags, std::move(joint));
@@ -145,42 +145,45 @@ class JointMaker {
     if (kind == "bar" && joint.body_b == kWorld && !out_.ok()) return;  // reported: no mass
     if (known && joint.body_a == joint.body_b) {
       once_("joint.one_body", at,
-            called + " joins the body \"" +
+            called + " connects the body \"" +
                 (joint.body_b == kWorld ? "world" : robot_.def.bodies[joint.body_b].name) +
                 "\" to itself",
-            "each of its nodes belongs to a body of its own; nodes that solids share weld them");
+            "use nodes of two different bodies; solids that share a node are one body");
       return;
     }
     if (known && IsFixed(joint.body_a) && IsFixed(joint.body_b)) {
-      once_("joint.both_ends_fixed", at, called + " joins two things that do not move",
-            "leave it out, or an anchor");
+      once_("joint.both_ends_fixed", at,
+            called + " connects two bodies that are fixed in the world, so it has no effect",
+            "leave it out, or one of the anchors");
       return;
     }
-    const double gap = HeldGap(joint);
+    const double gap = JointError(joint);
     if (gap > JointDef::kClosed_m) {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g m", gap);
       once_("joint.gap", at,
-            "the nodes of " + called + " are " + text + " apart where it holds them together",
-            joint.kind == JointKind::kBall ? "put them in one place" : "see its kind and axis");
+            "the nodes of " + called + " are " + text +
+                " apart in a direction that it does not leave free",
+            joint.kind == JointKind::kBall ? "place them at the same position"
+                                           : "move the nodes, or change its kind or axis");
       return;
     }
     const Vec3 apart = joint.to_m - joint.from_m;
     if (joint.kind == JointKind::kDistance && Dot(apart, apart) == 0) {
-      once_("joint.no_length", at, "the nodes of " + called + " are in one place",
-            kind == "bar" ? "a bar has a length"
-                          : "a distance has a direction; a ball holds two nodes in one place");
+      once_("joint.no_length", at, "the nodes of " + called + " are at the same position",
+            kind == "bar" ? "move one of them: a bar needs a length"
+                          : "move one of them, or use a ball joint");
       return;
     }
     if (math::HeldTurn(joint) > math::kClosedTurn_rad) {
-      once_("joint.turned_wrongly", at, called + " holds its bodies as `turned` does not have them",
-            "a hinge, a cylindrical and a planar joint let them turn about the axis alone, a weld "
-            "and a prismatic joint not at all");
+      once_("joint.turned_wrongly", at, called + " does not leave the rotation in `turned` free",
+            "hinge, cylindrical and planar joints allow rotation about the axis only, weld and "
+            "prismatic joints allow none");
       return;
     }
     if (!names_.insert(joint.name).second) {
-      once_("joint.duplicate_name", at, "two joints would be called \"" + joint.name + "\"",
-            "a pair has the name that its `name:` says, a support that of its node");
+      once_("joint.duplicate_name", at, "two joints have the name \"" + joint.name + "\"",
+            "give one of the pairs another `name:`; a support has the name of its node");
       return;
     }
     sources_.push_back(at);
@@ -221,8 +224,8 @@ class JointMaker {
       if (!(beyond > kPassed)) return;
       once_("joint.outside_stops", at,
             "the joint \"" + j.name + "\" is " + base::Brief(beyond) +
-                (IsAngle(j.kind) ? " rad" : " m") + " beyond its stop as described",
-            "describe it in another pose, or move the stop, which would not push it back");
+                (IsAngle(j.kind) ? " rad" : " m") + " beyond its limit in the described pose",
+            "change the described pose or the limit");
     });
   }
 
@@ -246,8 +249,8 @@ class JointMaker {
     EachJoint([&](const JointDef& j, const SourceRef& at) {
       if (j.kind == JointKind::kWeld || !together(j)) return;
       once_("joint.without_effect", at,
-            "the joint \"" + j.name + "\" can do nothing: welds hold its bodies together",
-            "leave it out, or a weld");
+            "the joint \"" + j.name + "\" has no effect: welds hold its bodies together",
+            "leave it out, or one of the welds");
     });
   }
 
@@ -259,8 +262,8 @@ class JointMaker {
       std::vector<int> found;
       if (list.size() < 2) {
         out_.Error("apart.single_body", model_.apart_at,
-                   "apart: \"" + list[0] + "\" stands alone in its list",
-                   "a list has two bodies or more, that do not touch each other: [[a, b]]");
+                   "apart: \"" + list[0] + "\" is the only body in its list",
+                   "list two or more bodies: [[a, b]]");
       }
       for (const std::string& name : list) {
         const auto at = std::find(names.begin(), names.end(), name);
@@ -271,7 +274,7 @@ class JointMaker {
         }
         if (std::find(found.begin(), found.end(), at - names.begin()) != found.end()) {
           out_.Error("apart.duplicate_body", model_.apart_at,
-                     "apart: \"" + name + "\" stands twice in one list");
+                     "apart: \"" + name + "\" is in one list twice");
           continue;
         }
         for (const int other : found) {

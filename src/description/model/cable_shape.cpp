@@ -91,8 +91,9 @@ class CableShaper {
     const Vec3 left = cable.attachments[last].position_m - cable.attachments[0].position_m;
     if (last == 1 && LengthBetween(nodes[0], nodes[1]) >= kShortestLeg_m && Dot(leg, left) <= 0.0) {
       once_("cable.no_length", pair.at,
-            "the solids at the ends of the cable \"" + pair.name + "\" overlap",
-            "nothing is left for the cable between their surfaces");
+            "the solids at the ends of the cable \"" + pair.name +
+                "\" overlap, so it has no length between their surfaces",
+            "move the nodes apart, or make the solids smaller");
     }
   }
 

@@ -48,7 +48,7 @@ class RouteFollower {
     if (spans > CableDef::kMostSpans) {
       complain_("route.too_much_friction", pair_.at,
                 "the cable \"" + pair_.name + "\" has friction at more than " +
-                    std::to_string(CableDef::kMostSpans - 1) + " places");
+                    std::to_string(CableDef::kMostSpans - 1) + " elements of its route");
     }
     if (!good) return;
     // The last end first, so that the indices of the others stay valid.
@@ -87,13 +87,13 @@ class RouteFollower {
         complain_("route.node_on_axis", element.at,
                   "the node \"" + name + "\" is on the axis of the " + what + " of the cable \"" +
                       pair_.name + "\"",
-                  "an axis across the cable is needed");
+                  "choose an axis across the cable");
       } else {
         complain_("route.node_inside_wheel", element.at,
                   "the node \"" + name + "\" is inside the " + what + " of the cable \"" +
                       pair_.name + "\"",
                   "it is " + Shown(std::round(1e6 * beside) / 1e6) +
-                      " m from the axis; a smaller radius_m is needed");
+                      " m from the axis: choose a smaller radius_m");
       }
       good = false;
     }
@@ -115,10 +115,10 @@ class RouteFollower {
     if (!(across < kSameDirection * Length(to - from))) return true;
     complain_("route.axis_along_cable", element.at,
               "the axis of the pulley of the cable \"" + pair_.name +
-                  "\" is along the way from \"" + assembly_.nodes[pair_.nodes[i - 1]].name +
+                  "\" is parallel to the line from \"" + assembly_.nodes[pair_.nodes[i - 1]].name +
                   "\" to \"" + assembly_.nodes[pair_.nodes[i + 1]].name +
-                  "\", so that the wheel is on neither side",
-              "an axis across the cable is needed, or whole `turns`");
+                  "\", so the wheel is on neither side of the cable",
+              "choose an axis across the cable, or add whole `turns`");
     return false;
   }
 

@@ -42,8 +42,7 @@ bool HasMass(const MemberDef& member, const std::optional<double>& density_kg_pe
 
 void Needs(const MapReader& map, const char* key, const char* other, const char* why) {
   if (!map.Has(key) || map.Has(other)) return;
-  map.Error("key.needs_key", key, map.Path(key) + " needs the key \"" + other + "\" beside it",
-            why);
+  map.Error("key.needs_key", key, map.Path(key) + " needs the key \"" + other + "\" as well", why);
 }
 
 double Length(const Vec3& a, const Vec3& b) { return std::sqrt(Dot(b - a, b - a)); }
@@ -88,10 +87,10 @@ void LumpMembers(const ModelText& model, const Assembly& assembly, Assignment& a
 }
 
 void CheckSection(const MapReader& map, MemberOf of) {
-  Needs(map, "yield_pa", "area_m2", "the force is stress times area");
+  Needs(map, "yield_pa", "area_m2", "the yield force is yield stress times area");
   if (of == MemberOf::kCable) return;
-  Needs(map, "second_moment_m4", "young_pa", "Euler's load is pi^2 E I / l^2");
-  Needs(map, "buckling_length_m", "second_moment_m4", "Euler's load is pi^2 E I / l^2");
+  Needs(map, "second_moment_m4", "young_pa", "Euler's buckling load is pi^2 E I / l^2");
+  Needs(map, "buckling_length_m", "second_moment_m4", "Euler's buckling load is pi^2 E I / l^2");
 }
 
 void CheckOwnMass(const MapReader& map, const MemberDef& member,
@@ -102,17 +101,18 @@ void CheckOwnMass(const MapReader& map, const MemberDef& member,
     Needs(map, "density_kg_per_m3", "area_m2", "the mass is density times area times length");
   }
   if (map.Has("mass") && member.mass_kg == 0 && !density_kg_per_m3) {
-    map.Error("rod.mass_without_effect", "mass", map.Path("mass") + ": it has no mass",
-              "mass_kg or density_kg_per_m3");
+    map.Error("rod.mass_without_effect", "mass",
+              map.Path("mass") + " has no effect: the member has no mass",
+              "give mass_kg or density_kg_per_m3");
   }
 }
 
 void CheckStiffness(const MapReader& map) {
   if (!map.is_map() || map.Has("stiffness_n_per_m")) return;
   if (map.Has("young_pa") && map.Has("area_m2")) return;
-  const std::string hint = "or `young_pa` and `area_m2`: k = E A / L";
+  const std::string hint = "or give `young_pa` and `area_m2`: k = E A / L";
   if (map.Has("young_pa")) {
-    Needs(map, "young_pa", "area_m2", "or stiffness_n_per_m: k = E A / L");
+    Needs(map, "young_pa", "area_m2", "or give stiffness_n_per_m instead: k = E A / L");
   } else {
     map.scope().out.Error("bar.stiffness_missing", map.at(),
                           map.what() + " needs the key \"stiffness_n_per_m\"", hint);

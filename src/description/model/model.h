@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "description/model/model_text.h"
-#include "description/yaml/parameters.h"
+#include "description/yaml/file_parameters.h"
 #include "taut/spec.h"
 
 namespace taut::description {

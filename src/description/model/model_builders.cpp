@@ -15,8 +15,8 @@ void Check(const MapReader& map, RodText& rod) {
   CheckSection(map, MemberOf::kRod);
   if (rod.pins && !rod.class_k) {
     map.Error("rod.pins_without_class_k", "pins",
-              map.Path("pins") + ": only rods of class k turn in their nodes",
-              "class_k: true, or leave out `pins`");
+              map.Path("pins") + " has no effect: this rod is welded at its nodes",
+              "write `class_k: true`, or leave out `pins`");
   }
 }
 
@@ -28,15 +28,16 @@ void Check(const MapReader& map, PointMassText& mass) {
   const std::size_t count = mass.inertia_kg_m2.size();
   if (!map.Has("inertia_kg_m2")) return;
   if (count != 3 && count != 6) {
-    map.Error("point_mass.bad_inertia", "inertia_kg_m2",
-              "point_mass.inertia_kg_m2 has " + std::to_string(count) + " numbers",
-              "three, [xx, yy, zz], or six, [xx, yy, zz, xy, xz, yz]");
+    map.Error(
+        "point_mass.bad_inertia", "inertia_kg_m2",
+        "point_mass.inertia_kg_m2 must have three or six numbers, got " + std::to_string(count),
+        "expected [xx, yy, zz] or [xx, yy, zz, xy, xz, yz]");
     mass.inertia_kg_m2.assign(6, NAN);
   }
   mass.inertia_kg_m2.resize(6, 0.0);
   if (map.Has("radius_m")) {
     map.Error("point_mass.inertia_given_twice", "radius_m",
-              "point_mass has both inertia_kg_m2 and radius_m", "only one of them may be there");
+              "point_mass has both inertia_kg_m2 and radius_m", "give only one of them");
   }
 }
 
@@ -50,11 +51,12 @@ void Check(const MapReader& map, BoxText& box) {
     for (const char* other : {"size_m", "half_extents_m"}) {
       if (!map.Has(other)) continue;
       map.Error("box.width_given_twice", other, "box has both width_m and " + std::string(other),
-                "width_m and height_m along a pair, size_m or half_extents_m at a node");
+                "give width_m and height_m along a pair, size_m or half_extents_m at a node");
     }
     if (map.Has("rotate")) {
-      map.Error("box.rotation_without_effect", "rotate", "a box along a pair lies as its nodes say",
-                "size_m or half_extents_m at a node");
+      map.Error("box.rotation_without_effect", "rotate",
+                "a box along a pair cannot be rotated: its nodes define its orientation",
+                "leave out `rotate`, or give size_m or half_extents_m at a node");
     }
     map.Require("width_m");
     map.Require("height_m");
@@ -64,8 +66,8 @@ void Check(const MapReader& map, BoxText& box) {
   if (key == "size_m")
     box.half_extents_m = {0.5 * box.size_m.x, 0.5 * box.size_m.y, 0.5 * box.size_m.z};
   if (map.Has("mass_kg_per_m")) {
-    map.Error("box.no_length", "mass_kg_per_m", "a box at a node has no length",
-              "mass_kg or density_kg_per_m3");
+    map.Error("box.no_length", "mass_kg_per_m", "a box at a node cannot have a mass per length",
+              "give mass_kg or density_kg_per_m3");
   }
 }
 
@@ -77,7 +79,7 @@ void Check(const MapReader& map, DcMotorDef& motor) {
             map.Path("static_friction_torque_n_m") + " is " +
                 Shown(motor.static_friction_torque_n_m) + ", below friction_torque_n_m of " +
                 Shown(motor.friction_torque_n_m),
-            "friction at rest is not less than that of sliding");
+            "static friction must be at least the friction of a turning rotor");
 }
 
 /// Checks an actuator with a DC motor, which has no other limits than the motor's data.
@@ -88,7 +90,7 @@ void CheckMotor(const MapReader& map, ActuatorText& actuator) {
     if (!map.Has(other)) continue;
     map.Error("actuator.given_twice", other,
               map.what() + " has both dc_motor and " + std::string(other),
-              "beside a dc_motor there is min_rest_length_m only");
+              "with a dc_motor only min_rest_length_m is allowed");
   }
 }
 
@@ -96,12 +98,12 @@ void Check(const MapReader& map, ActuatorText& actuator) {
   const bool limited = map.HasAnyBut("ideal");
   if (actuator.dc_motor) return CheckMotor(map, actuator);
   if (actuator.ideal && limited) {
-    map.Error("actuator.ideal_has_no_limits", "ideal", "an ideal actuator has no limits",
+    map.Error("actuator.ideal_has_no_limits", "ideal", "an ideal actuator cannot have limits",
               "leave out `ideal`, or the limits");
   } else if (!actuator.ideal && !limited && map.is_map()) {
     map.scope().out.Error("actuator.limits_missing", map.at(),
                           map.what() + " needs limits, a `dc_motor`, or `ideal: true`",
-                          "without an actuator the rest length is fixed");
+                          "leave out the actuator for a fixed rest length");
   }
   actuator.kind = actuator.ideal ? ActuatorDef::Kind::kIdeal : ActuatorDef::Kind::kLimited;
 }
@@ -118,23 +120,25 @@ void Check(const MapReader& map, CableText& cable) {
   const bool touches = cable.touches != CableTouches::kNone;
   if (touches && cable.radius_m == 0) {
     map.Error("cable.touches_without_radius", "touches",
-              map.Path("touches") + ": a cable that touches needs a `radius_m` above 0",
+              map.Path("touches") + " needs a `radius_m` above 0",
               "half the cable's thickness, such as 0.001");
   } else if (!touches && map.Has("radius_m")) {
     map.Error("cable.radius_without_touches", "radius_m",
-              map.Path("radius_m") + ": goes with `touches`",
-              "terrain, rods or all; a cable that touches nothing has no thickness");
+              map.Path("radius_m") + " has no effect without `touches`",
+              "write `touches: terrain`, `touches: rods` or `touches: all`");
   }
   if (!touches && map.Has("touch_friction")) {
     map.Error("cable.touch_friction_without_touches", "touch_friction",
-              map.Path("touch_friction") + ": goes with `touches`",
-              "terrain, rods or all; at eyelets and pulleys it is the `friction` of the route");
+              map.Path("touch_friction") + " has no effect without `touches`",
+              "write `touches: terrain`, `touches: rods` or `touches: all`; eyelets and pulleys "
+              "have `friction` in the route");
   }
   if (cable.actuator_text) cable.actuator = *cable.actuator_text;
   if (cable.touch_friction > 0 && cable.actuator.kind == ActuatorDef::Kind::kDcMotor) {
-    map.Error("cable.touch_friction_of_motor", "touch_friction",
-              map.Path("touch_friction") + ": a direct-current motor does not wind such a cable",
-              "ideal and limited actuators do");
+    map.Error(
+        "cable.touch_friction_of_motor", "touch_friction",
+        map.Path("touch_friction") + ": a direct-current motor cannot wind a cable with friction",
+        "use an ideal or limited actuator");
   }
 }
 
@@ -146,22 +150,23 @@ void Check(const MapReader& map, JointText& joint) {
     if (!map.Has(key)) continue;
     if (!HasCoordinate(joint.kind)) {
       map.Error("joint.no_single_coordinate", key,
-                map.Path(key) + ": a joint of this kind leaves nothing free that has one number");
+                map.Path(key) + ": a joint of this kind has no single coordinate");
     } else if (ball && key == std::string_view("least_rad")) {
       map.Error("joint.ball_has_no_lower_stop", key,
-                map.Path(key) + ": a ball joint has no lower stop",
-                "most_rad is how far its axis may turn away");
+                map.Path(key) + ": a ball joint has no lower limit",
+                "use most_rad, the largest angle of its axis from the described direction");
     } else if (ball && key == std::string_view("rest_rad")) {
-      map.Error("joint.ball_spring_offset", key,
-                map.Path(key) + ": the spring of a ball joint is at rest as described",
-                "turn its bodies in the model");
+      map.Error(
+          "joint.ball_spring_offset", key,
+          map.Path(key) + ": the spring of a ball joint is always at rest in the described pose",
+          "rotate its bodies in the model instead");
     }
   }
   const char* const most = IsAngle(joint.kind) ? "most_rad" : "most_m";
   if (ball && joint.most && *joint.most <= 0 && map.Has(most)) {
     map.Error("joint.stop_not_positive", most,
               map.Path(most) + " must be positive, got " + Shown(*joint.most),
-              "it is how far a ball's axis may turn away, to any side");
+              "it is the largest angle of a ball joint's axis from the described direction");
   }
   if (joint.kind == JointKind::kDistance) {
     const bool below = joint.least && *joint.least < 0;
@@ -178,9 +183,9 @@ void Check(const MapReader& map, JointText& joint) {
   if (!joint.least || !joint.most || *joint.least < *joint.most) return;
   if (!map.Has(most)) return;
   map.Error("joint.empty_range", most,
-            map.Path(most) + " is " + Shown(*joint.most) + ", not above the least of " +
+            map.Path(most) + " is " + Shown(*joint.most) + ", not above the lower limit of " +
                 Shown(*joint.least),
-            "limits must rise");
+            "the upper limit must be above the lower limit");
 }
 
 void Check(const MapReader& map, BuilderText& builder) {
@@ -198,8 +203,8 @@ void FinishBuilders(const MapReader& map, ModelText& model) {
   if (list->kind != Value::Kind::kSequence) model.builders_complete = false;
   if (model.builders.size() > static_cast<std::size_t>(kMaxBuilders)) {
     map.scope().out.Error("builder.too_many", list->at,
-                          "more than " + std::to_string(kMaxBuilders) + " builders",
-                          "match by tags that many nodes or pairs share");
+                          "the model has more than " + std::to_string(kMaxBuilders) + " builders",
+                          "match tags that several nodes or pairs share");
     model.builders_complete = false;
     model.builders.clear();
   }

@@ -23,17 +23,18 @@ void WarnOfHull(const SourceRef& at, const std::string& what, const ConvexText::
   if (static_cast<int>(hull.corners.size()) >= HullDef::kMostCorners && hull.left_out_m > 0.0) {
     out.Warning("convex.corners_left_out", at,
                 what + " has " + std::to_string(part.corners_m.size()) +
-                    " corners: of those that " + std::to_string(HullDef::kMostCorners) +
-                    " do not hold, the farthest is " + Brief(hull.left_out_m) + " m outside",
-                "such places touch nothing; simplify it, or make several objects of it");
+                    " corners, but a hull has at most " + std::to_string(HullDef::kMostCorners) +
+                    ": the farthest corner left out is " + Brief(hull.left_out_m) + " m outside",
+                "corners outside the hull do not collide: simplify the mesh, or split it into "
+                "several objects");
   }
   const double own = math::SixVolumes(part.corners_m, part.triangles);
   const double held = math::SixVolumes(hull.corners, math::TrianglesOf(hull));
   if (held > kMuchLarger * own) {
     out.Warning("convex.not_convex", at,
-                what + " is not convex: its hull, which is what touches, has " + Brief(held / own) +
+                what + " is not convex: its hull, which collides, has " + Brief(held / own) +
                     " times its volume",
-                "several convex objects in the file are as many hulls");
+                "split it into several convex objects in the file: each becomes a hull");
   }
 }
 
@@ -42,12 +43,13 @@ math::ConvexHull HullOrComplaint(const SourceRef& at, const std::string& what,
   math::ConvexHull hull = math::HullOf(corners_m, HullDef::kMostCorners);
   if (hull.corners.empty()) {
     out.Error("convex.no_volume", at, what + " has no volume",
-              "corners that are not all in one plane, four at least");
+              "expected at least four corners that are not all in one plane");
   } else if (hull.too_thin) {
-    out.Error("convex.too_thin", at,
-              what + " is so thin that its faces cannot be told apart: of the corners left out, " +
-                  "the farthest is " + Brief(hull.left_out_m) + " m outside",
-              "a thickness of 1e-5 times its width or more");
+    out.Error(
+        "convex.too_thin", at,
+        what + " is too thin for its faces to be distinguished: the farthest corner left out is " +
+            Brief(hull.left_out_m) + " m outside",
+        "expected a thickness of at least 1e-5 times its width");
     hull.corners.clear();
   }
   return hull;
@@ -64,8 +66,7 @@ bool AddObject(const MapReader& map, const std::string& path, const MeshFile& me
   const MeshFile object = PartOf(mesh, number);
   Diagnostics faults;
   const bool closed =
-      ReportFaults(object, true, path,
-                   {what, ": an open mesh has no volume; mass_kg gives its hull a mass"}, faults);
+      ReportFaults(object, true, path, {what, ", or give mass_kg, the mass of its hull"}, faults);
   if (!closed && !convex.mass.mass_kg) {
     for (const Diagnostic& fault : faults.items()) out.AddError(fault);
     return false;
@@ -79,7 +80,7 @@ bool AddObject(const MapReader& map, const std::string& path, const MeshFile& me
   if (!closed) {
     const Diagnostic& first = faults.items().front();
     out.Warning("convex.mass_as_hull", first.at,
-                first.what + ": the mass of " + what + " is distributed as in its hull");
+                first.what + ", so the mass of " + what + " is distributed as in its hull");
     part.corners_m = hull.corners;
     part.triangles = math::TrianglesOf(hull);
   }
@@ -120,14 +121,14 @@ void Check(const MapReader& map, ConvexText& convex) {
   }
   if (map.Has("scale_m")) {
     map.Error("convex.scale_without_effect", "scale_m", map.Path("scale_m") + " has no effect here",
-              "it goes with a file");
+              "leave it out, or give a `file`");
   }
   if (!map.Has("corners_m")) return;
   const SourceRef at = map.Find("corners_m")->at;
   if (convex.corners_m.size() > HullDef::kMostCorners) {
     map.scope().out.Error("convex.too_many_corners", at,
-                          map.Path("corners_m") + " are " +
-                              std::to_string(convex.corners_m.size()) + ", more than " +
+                          map.Path("corners_m") + " has " +
+                              std::to_string(convex.corners_m.size()) + " corners, more than " +
                               std::to_string(HullDef::kMostCorners));
     return;
   }

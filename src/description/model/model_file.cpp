@@ -27,11 +27,10 @@ void CheckSupplies(const ModelText& model, Diagnostics& out) {
     }
     out.Error("motor.supply_differs", builder.at,
               "a dc_motor's supply \"" + motor.supply +
-                  "\" has other figures than in the builder of "
-                  "line " +
-                  std::to_string(other.at.line) + ": " + figures(motor) + ", there " +
-                  figures(there),
-              "give one of them another `supply`");
+                  "\" differs from the one in the builder of line " +
+                  std::to_string(other.at.line) + ": " + figures(motor) + " here, " +
+                  figures(there) + " there",
+              "make them equal, or give one of them another `supply`");
   }
 }
 
@@ -55,10 +54,9 @@ void Check(const MapReader& map, ModelText& model) {
   }
   CheckSupplies(model, map.scope().out);
   if (!map.Has("nodes") && !map.Has("structure")) {
-    map.scope().out.Error("model.empty", map.at(), "the model places nothing",
-                          map.Has("parts")
-                              ? "parts are placed by a `structure:` list"
-                              : "a model needs `nodes:`, or `parts:` and a `structure:`");
+    map.scope().out.Error("model.empty", map.at(), "the model has neither nodes nor a structure",
+                          map.Has("parts") ? "place the parts in a `structure:` list"
+                                           : "add `nodes:`, or `parts:` and a `structure:`");
     model.nodes_complete = false;
   }
 }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "description/model/cable_keys.h"
+#include "description/model/described_rotation.h"
 #include "description/model/joint_keys.h"
 #include "description/model/member_keys.h"
 #include "description/model/model_text.h"
-#include "description/model/rotation.h"
 #include "description/model/surface_keys.h"
 
 namespace taut::description {

@@ -15,7 +15,7 @@ bool IsFinite(const Vec3& v) {
 void CheckTags(const MapReader& map, Tags& tags) {
   if (tags.size() <= static_cast<std::size_t>(kMaxTags)) return;
   map.Error("tags.too_many", "tags",
-            map.Path("tags") + ": more than " + std::to_string(kMaxTags) + " tags");
+            map.Path("tags") + " has more than " + std::to_string(kMaxTags) + " tags");
   tags.clear();
 }
 
@@ -97,14 +97,14 @@ void CheckRoute(const MapReader& map, const PairsText& pairs) {
     const bool end = i == 0 || i + 1 == route.size();
     if (end && route[i].is_pulley()) {
       scope.out.Error("route.ends_at_pulley", route[i].at, what + " ends at a pulley",
-                      "a cable ends at a node or on a drum");
+                      "end the cable at a node or on a drum");
     } else if (end && !route[i].is_drum() && route[i].friction > 0) {
       scope.out.Error("route.friction_at_end", route[i].at,
-                      what + ": friction at an end, where the cable is fixed",
-                      "leave `friction` away there");
+                      what + " has friction at an end, where the cable is fixed",
+                      "leave out `friction` there");
     } else if (!end && route[i].is_drum()) {
-      scope.out.Error("route.drum_inside", route[i].at, what + " has a drum on the way",
-                      "a cable ends on a drum; what it runs over is a `pulley`");
+      scope.out.Error("route.drum_inside", route[i].at, what + " has a drum between its ends",
+                      "use a `pulley` there: a cable can only end on a drum");
     }
   }
 }
@@ -142,13 +142,13 @@ void Check(const MapReader& map, RouteText& element) {
   for (const char* key : {"axis", "radius_m", "side", "turns"}) {
     if (round || !map.Has(key)) continue;
     map.Error("route.key_of_wheels", key,
-              map.Path(key) + " is of pulleys and drums, not of eyelets");
+              map.Path(key) + " is a key of pulleys and drums, not of eyelets");
   }
   const double turns = element.turns;
   if (element.is_pulley() && turns != std::floor(turns) && !std::isnan(turns)) {
     map.Error("route.turns_not_whole", "turns",
               map.Path("turns") + " of a pulley must be a whole number",
-              "what it takes to get round it comes on top");
+              "give whole turns only: the shortest way around is added to them");
   }
 }
 
@@ -202,7 +202,7 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
     for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
       if (pair.nodes[i].text != pair.nodes[i - 1].text) continue;
       scope.out.Error("pair.same_node_twice", pair.nodes[i].at,
-                      "a pair from \"" + pair.nodes[i].text + "\" to itself");
+                      "a pair connects \"" + pair.nodes[i].text + "\" to itself");
     }
   }
   for (const PairText& pair : part.pairs) {
@@ -229,8 +229,8 @@ void Check(const MapReader& map, PlacementText& placement) {
   placement.connect = ToPairs(map, "connect", placement.connect_text, false);
   for (const char* key : {"step_m", "step_rotate", "connect", "ring"}) {
     if (map.Has(key) && !placement.numbered) {
-      map.Error("structure.key_needs_copies", key, map.Path(key) + " needs copies",
-                "write `copies: 2`, or as many as you want");
+      map.Error("structure.key_needs_copies", key, map.Path(key) + " needs `copies`",
+                "write `copies: 2` or more");
     }
   }
   placement.pairs_complete = map.scope().out.items().size() == errors_before &&

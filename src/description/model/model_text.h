@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "description/model/surface_keys.h"
+#include "description/yaml/file_parameters.h"
 #include "description/yaml/head_keys.h"
 #include "description/yaml/keys.h"
 #include "description/yaml/merged_file.h"
-#include "description/yaml/parameters.h"
 #include "description/yaml/reader.h"
 #include "math/triangles.h"
 #include "taut/spec.h"

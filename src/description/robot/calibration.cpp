@@ -35,7 +35,7 @@ Calibration ReadCalibration(const Value& root, const std::vector<std::string>& c
     const std::string& name = one.cable.text;
     if (!name.empty() && !known.insert(name).second) {
       scope.out.Error("calibration.duplicate_cable", one.cable.at,
-                      "cable \"" + name + "\" was there already");
+                      "the cable \"" + name + "\" has two entries");
     }
     if (!name.empty() && !cables.empty()) FindActuatedCable(one.cable, cables, scope);
     one.values.cable = name;
@@ -49,15 +49,14 @@ Calibration ReadCalibration(const Value& root, const std::vector<std::string>& c
 
 void Check(const MapReader& map, CableCalibrationText& cable) {
   if (map.Has("measured") && !IsDay(cable.measured.text)) {
-    map.Error("calibration.bad_day", "measured", "\"" + cable.measured.text + "\" is not a day",
-              "year, month, day, as 2026-11-23");
+    map.Error("calibration.bad_day", "measured", "\"" + cable.measured.text + "\" is not a date",
+              "expected year, month and day, such as 2026-11-23");
   }
   const CableCalibration& values = cable.values;
   if (!values.load_cell_n_per_count && !values.load_cell_counts_at_zero &&
       !values.encoder_m_per_count && !values.rest_length_at_reference_m &&
       !values.stiffness_n_per_m) {
-    map.scope().out.Error("calibration.empty", map.at(),
-                          map.what() + " says nothing that was measured");
+    map.scope().out.Error("calibration.empty", map.at(), map.what() + " has no measured value");
   }
 }
 

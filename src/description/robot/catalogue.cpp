@@ -33,12 +33,12 @@ Catalogue ReadCatalogue(const Value& root, const Scope& scope) {
 void Check(const MapReader& map, CatalogueMotorText& motor) {
   if (motor.values.peak_torque_n_m < motor.values.rated_torque_n_m) {
     map.Error("catalogue.peak_below_rated_torque", "peak_torque_n_m",
-              "the peak torque is less than the rated one");
+              "the peak torque is below the rated torque");
   }
   if (motor.values.rated_power_w && motor.values.peak_power_w &&
       *motor.values.peak_power_w < *motor.values.rated_power_w) {
     map.Error("catalogue.peak_below_rated_power", "peak_power_w",
-              "the peak power is less than the rated one");
+              "the peak power is below the rated power");
   }
 }
 

@@ -66,7 +66,7 @@ FaultScript ReadScript(const Value& root, const std::vector<std::string>& cables
       scope.out.Error("fault.unknown_board", fault.board_at,
                       "there is no board " + std::to_string(*fault.board),
                       "the robot has " + std::to_string(cables.size()) +
-                          " motors, two a board; the first board is 0");
+                          " motors, two per board; the first board is 0");
     }
     fault.spec.board = fault.board.value_or(-1);
     script.faults.push_back(fault.spec);
@@ -88,18 +88,18 @@ void Check(const MapReader& map, FaultText& fault) {
     if (!map.Has(key)) {
       map.scope().out.Error("fault.key_missing", map.at(),
                             map.what() + " needs the key \"" + key + "\"",
-                            std::string("of kind: ") + FaultName(keys->kind));
+                            std::string("required by `kind: ") + FaultName(keys->kind) + "`");
     }
   }
   for (const char* key : {"board", "cable", "drift_ppm", "flips_per_bit", "line", "force_n"}) {
     if (map.Has(key) && !Contains(keys->needed, key) && !Contains(keys->allowed, key)) {
       map.Error("fault.key_without_effect", key, map.Path(key) + " has no effect here",
-                "it belongs to kind: " + KindsWith(key));
+                "it is for kind: " + KindsWith(key));
     }
   }
   if (map.Has("for_s") && !keys->lasts) {
     map.Error("fault.duration_without_effect", "for_s", map.Path("for_s") + " has no effect here",
-              std::string(FaultName(keys->kind)) + " happens once");
+              std::string(FaultName(keys->kind)) + " has no duration");
   }
 }
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "description/yaml/file_parameters.h"
 #include "description/yaml/keys.h"
 #include "description/yaml/merged_file.h"
-#include "description/yaml/parameters.h"
 
 namespace taut::description {
 

@@ -37,15 +37,16 @@ std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
     if (length > 0 && std::isfinite(length)) {
       carried.direction = (1 / length) * text.direction;
     } else {
-      scope.out.Error("carried.no_direction", text.at, "carried.direction has no length");
+      scope.out.Error("carried.no_direction", text.at, "carried.direction must not be zero");
     }
     for (const std::size_t e : NamedExperiments(text.experiments, "carried", experiments, scope)) {
       const FitExperiment& one = experiments[e];
       if (one.forward == FitForward::kDynamic) {
         if (!text.experiments.empty()) {
-          scope.out.Error("carried.experiment_moves", text.at,
-                          "carried: " + one.name + " moves, and so does what it carries",
-                          "forward: static or load_cases");
+          scope.out.Error(
+              "carried.experiment_moves", text.at,
+              "carried: " + one.name + " is dynamic, but carried loads are compared at rest",
+              "write `forward: static` or `forward: load_cases`");
         }
         continue;
       }
@@ -54,7 +55,7 @@ std::vector<FitCarried> ToCarried(const std::vector<FitCarriedText>& texts,
     }
     if (carried.experiments.empty() && text.experiments.empty() && !experiments.empty()) {
       scope.out.Error("carried.no_rest", text.at, "carried: no experiment is at rest",
-                      "forward: static or load_cases");
+                      "write `forward: static` or `forward: load_cases`");
     }
   }
   return out;

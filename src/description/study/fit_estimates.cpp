@@ -36,7 +36,7 @@ void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRa
     scope.out.Error("estimate.bad_value", at, what + text, hint);
   };
   if (!(range.low < range.high) && !std::isnan(range.low) && !std::isnan(range.high)) {
-    wrong(": nothing lies between low " + Shown(range.low) + " and high " + Shown(range.high));
+    wrong(": low " + Shown(range.low) + " is not below high " + Shown(range.high));
     return;
   }
   if (range.mean && (*range.mean < range.low || *range.mean > range.high)) {
@@ -44,10 +44,11 @@ void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRa
   }
   if (range.start < range.low || range.start > range.high) {
     wrong(" starts at " + Shown(range.start) + ", which is not between its bounds",
-          starts ? "" : "that is what the experiment says; give a `start`");
+          starts ? ""
+                 : "it is the value of the experiment: give another `start`, or change the bounds");
   } else if (range.start == range.low || range.start == range.high) {
     wrong(" starts on its bound " + Shown(range.start),
-          "from there it can only go one way: widen the bounds, or give a `start`");
+          "widen the bounds, or give a `start` between them");
   }
   if (range.scale > 0) return;
   if (range.sd) {
@@ -58,7 +59,7 @@ void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRa
     range.scale = 0.05 * std::fabs(range.start);
   }
   if (range.scale == 0) {
-    wrong(": nobody can tell how far it may move", "give bounds, a prior with `sd`, or a `scale`");
+    wrong(": its scale is not known", "give bounds, a prior with `sd`, or a `scale`");
   }
 }
 
@@ -154,7 +155,7 @@ void Check(const MapReader& map, FitEstimateText& e) {
     for (const char* key : keys) {
       if (!fits && map.Has(key)) {
         map.Error("estimate.key_without_effect", key,
-                  std::string("estimate.") + key + " is for " + whose);
+                  std::string("estimate.") + key + " is allowed for " + whose + " only");
       }
     }
   };
@@ -163,11 +164,11 @@ void Check(const MapReader& map, FitEstimateText& e) {
   only(e.has_clock, {"delay_s"}, "a clock");
   if (channel && !parameter && !e.has_clock && !e.offset && !e.gain) {
     map.Error("estimate.channel_without_number", "channel",
-              "estimate: a channel needs an `offset` or a `gain`", "offset: {sd: 0.002}");
+              "estimate: a channel needs an `offset` or a `gain`", "such as `offset: {sd: 0.002}`");
   }
   if (e.has_clock && !parameter && !channel && !e.delay_s) {
     map.Error("estimate.clock_without_delay", "clock", "estimate: a clock needs a `delay_s`",
-              "delay_s: {low: 0, high: 3}");
+              "such as `delay_s: {low: 0, high: 3}`");
   }
 }
 
@@ -181,7 +182,7 @@ std::vector<FitEstimate> ToEstimates(const std::vector<FitEstimateText>& texts,
       const auto [first, fresh] = taken.emplace(std::pair(Identity(estimate), e), estimate.at);
       if (fresh) continue;
       scope.out.Error("estimate.duplicate", estimate.at,
-                      "estimate: " + estimate.name + " is found twice",
+                      "estimate: " + estimate.name + " is estimated twice",
                       "first in line " + std::to_string(first->second.line));
       break;
     }
@@ -217,7 +218,7 @@ std::vector<FitEstimate> ToEstimates(const std::vector<FitEstimateText>& texts,
       if (!text.has_clock || experiments[e].forward != FitForward::kLoadCases) continue;
       scope.out.Error("estimate.no_clock", text.at,
                       "estimate: the load cases of " + experiments[e].name +
-                          " have no clock that could be late");
+                          " have no clock, so they cannot have a delay");
     }
   }
   return out;

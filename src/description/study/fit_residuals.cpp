@@ -18,19 +18,18 @@ void CheckForward(const FitResidual& residual, const FitResidualText& text,
       return !residual.references || r.statistic == *residual.references;
     });
     if (!any) {
-      wrong(
-          one.name + " has no such `references`",
-          "numbers of others in the experiment; `experiments:` says which residuals are of which");
+      wrong(one.name + " has no reference values with this statistic",
+            "add a `reference` to the experiment, or limit the residual with `experiments`");
     }
     return;
   }
   if (one.forward == FitForward::kStatic && !residual.after_setpoint_s) {
-    wrong(one.name + " is static: it is looked at after its set points",
-          "window: {after_setpoint_s: [2, 3]}");
+    wrong(one.name + " is static, so it is compared only after its set points",
+          "write `window: {after_setpoint_s: [2, 3]}`");
   }
   if (one.forward == FitForward::kLoadCases && window) {
-    wrong(one.name + " has load cases, and these no time",
-          "without `window`: row i of the data is that of case i");
+    wrong(one.name + " has load cases, which have no time",
+          "leave out `window`: row i of the data belongs to case i");
   }
   if (!residual.phase) return;
   std::vector<std::string> phases;
@@ -54,12 +53,12 @@ void Check(const MapReader& map, FitWindowText& window) {
   }
   if (map.Has("from_s") != map.Has("to_s")) {
     map.scope().out.Error("residual.window_incomplete", map.at(),
-                          "residuals.window: from_s and to_s go together");
+                          "residuals.window needs both from_s and to_s");
   }
   const auto rises = [&](const char* key, double from, double to) {
     if (to <= from) {
       map.Error("residual.window_empty", key,
-                "residuals.window: its end " + Shown(to) + " s is not after its begin " +
+                "residuals.window: the end " + Shown(to) + " s is not after the start " +
                     Shown(from) + " s");
     }
   };
@@ -74,14 +73,15 @@ void Check(const MapReader& map, FitResidualText& residual) {
   if (residual.has_reference && !map.Has("channel")) {
     for (const char* key : {"window", "statistic"}) {
       if (map.Has(key)) {
-        map.Error("residual.key_of_references", key,
-                  std::string("residuals.") + key + ": references say that themselves");
+        map.Error(
+            "residual.key_of_references", key,
+            std::string("residuals.") + key + " has no effect: the reference values define it");
       }
     }
   }
   if (residual.loss_sd && residual.loss == RobustLoss::kSquares) {
     map.Error("residual.loss_sd_without_loss", "loss_sd",
-              "residuals.loss_sd is for loss: huber or cauchy");
+              "residuals.loss_sd needs `loss: huber` or `loss: cauchy`");
   }
 }
 
@@ -109,8 +109,8 @@ std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
     }
     if (of_design && r.statistic == FitStatistic::kRows) {
       scope.out.Error("residual.design_has_no_rows", text.at,
-                      "design: what is not measured yet has no rows",
-                      "statistic: mean, max or min");
+                      "design: a measurement without data has no rows",
+                      "write `statistic: mean`, `max` or `min`");
     }
     const bool meant = !r.channels.empty() || text.has_reference;
     for (const std::size_t e :

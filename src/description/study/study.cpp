@@ -2,8 +2,8 @@
 #include "taut/study.h"
 
 #include "description/study/study_parts.h"
+#include "description/yaml/file_parameters.h"
 #include "description/yaml/merged_file.h"
-#include "description/yaml/parameters.h"
 #include "description/yaml/read_keys.h"
 
 namespace taut {
@@ -35,12 +35,12 @@ void CheckAgainst(const ExperimentSpec& experiment, const ObjectiveText& objecti
                   Diagnostics& out) {
   if (objective.from_s >= experiment.duration_s) {
     out.Error("objective.starts_after_end", objective.from_at,
-              "objective.from_s is not before the experiment's end",
-              "that is at " + Shown(experiment.duration_s) + " s");
+              "objective.from_s must be before the end of the experiment",
+              "the end is at " + Shown(experiment.duration_s) + " s");
   }
   if (objective.measure == Measure::kNearer && !experiment.goal) {
     out.Error("objective.needs_goal", objective.measure_at,
-              "objective.measure: nearer needs a goal", "the experiment has no `goal`");
+              "objective.measure: nearer needs a goal", "add a `goal` to the experiment");
   }
 }
 

@@ -46,7 +46,7 @@ void Check(const MapReader& map, SearchText& search) {
     if (map.Has(key) && search.method != owner) {
       map.Error("search.key_without_effect", key,
                 "search." + std::string(key) + " has no effect here",
-                "it belongs to method: " + std::string(who));
+                "it is for `method: " + std::string(who) + "`");
     }
   };
   only("adapt", Method::kHillClimbing, "hill_climbing");
@@ -55,12 +55,11 @@ void Check(const MapReader& map, SearchText& search) {
   only("initial_step", Method::kNlopt, "nlopt");
   if (search.method == Method::kMonteCarlo && map.Has("deviation")) {
     map.Error("search.key_without_effect", "deviation", "search.deviation has no effect here",
-              "it belongs to hill_climbing and cma_es");
+              "it is for hill_climbing and cma_es");
   }
   if (search.method == Method::kNlopt && (map.Has("batch") || map.Has("deviation"))) {
     map.Error("search.key_without_effect", map.Has("batch") ? "batch" : "deviation",
-              "search: nlopt has neither batch nor deviation",
-              "it runs `starts` side by side, with steps of `initial_step`");
+              "search: nlopt uses neither batch nor deviation", "use `starts` and `initial_step`");
   }
   if (search.method == Method::kCmaEs && search.batch < 4) {
     map.scope().out.Error(
@@ -84,7 +83,7 @@ std::vector<SearchSpec> ToSearches(const Value* list, const std::vector<SearchTe
     out.push_back(ToSearch(text));
     if (dimensions == 1 && text.method == Method::kNlopt && text.algorithm == "bobyqa") {
       scope.out.Error("search.few_parameters", text.algorithm_at,
-                      "search.algorithm: bobyqa needs two parameters or more", "take nelder_mead");
+                      "search.algorithm: bobyqa needs two parameters or more", "use nelder_mead");
     }
   }
   if (list && list->kind == Value::Kind::kSequence && list->items.empty()) {

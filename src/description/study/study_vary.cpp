@@ -19,9 +19,9 @@ bool HasRoom(const VaryText& vary, const Scope& scope) {
   if (!(vary.low < vary.high)) {
     scope.out.Error("vary.empty_range", vary.low_at,
                     vary.low == vary.high
-                        ? "vary: nothing lies between low and high, both " + Shown(vary.low)
+                        ? "vary: low and high are equal, both " + Shown(vary.low)
                         : "vary: low " + Shown(vary.low) + " is above high " + Shown(vary.high),
-                    "to keep a number fixed, write it in the experiment");
+                    "to keep a parameter fixed, set it in the experiment");
     good = false;
   }
   if (vary.log && !(vary.low > 0)) {
@@ -85,8 +85,8 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
   }
   if (out.size() > kMostParameters) {
     scope.out.Error("vary.too_many", list->at,
-                    "vary: more than " + std::to_string(kMostParameters) + " parameters",
-                    "let groups share one: `all` instead of `each`");
+                    "vary has more than " + std::to_string(kMostParameters) + " parameters",
+                    "use `all` instead of `each`, so that groups share a parameter");
   }
   if (list && list->kind == Value::Kind::kSequence && list->items.empty()) {
     scope.out.Error("vary.empty", list->at, "vary is empty: there is nothing to learn");

@@ -187,7 +187,7 @@ class Writer {
     std::string text;
     for (const int i : on) {
       const std::string& name = items[static_cast<std::size_t>(i)].name;
-      if (!only_these(name)) Refuse("\"" + name + "\" is a name and a tag of something else, too");
+      if (!only_these(name)) Refuse("\"" + name + "\" is both a name and a tag of another element");
       text += (text.empty() ? "[[" : "], [") + Name(name);
     }
     return on.size() == 1 ? Name(items[static_cast<std::size_t>(on[0])].name) : text + "]]";
@@ -298,9 +298,9 @@ std::optional<std::string> ModelYaml(const RobotSpec& robot, const std::string& 
                                      Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
   if (robot.solids && robot.solids->bounding_box_inertia) {
-    description::RefuseModel(out,
-                             "its inertias are those of boxes around the bodies as they were "
-                             "described (`inertia: bounding_box`)");
+    description::RefuseModel(
+        out,
+        "its inertias are from bounding boxes in the described pose (`inertia: bounding_box`)");
   }
   const std::string text = description::TextOf(robot, description::TakeApart(robot, out), out);
   if (out.items().size() != errors_before) return std::nullopt;

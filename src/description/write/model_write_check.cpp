@@ -42,7 +42,7 @@ struct Nearness {
 /// most gap / 1 cm.
 Nearness NearnessFor(const ModelDef& def) {
   double gap_m = 0;
-  for (const JointDef& joint : def.joints) gap_m = std::max(gap_m, HeldGap(joint));
+  for (const JointDef& joint : def.joints) gap_m = std::max(gap_m, JointError(joint));
   return {std::max(kRounding, 100 * gap_m)};
 }
 
@@ -123,7 +123,8 @@ class Comparison {
   void Differs(const char* kind, const std::string& name, const char* what) {
     if (!good_) return;
     good_ = false;
-    RefuseModel(out_, std::string("the ") + kind + " \"" + name + "\" would have another " + what);
+    RefuseModel(out_,
+                std::string("the ") + kind + " \"" + name + "\" would have a different " + what);
   }
 
   template <class Items, class OtherItems>
@@ -154,13 +155,13 @@ class Comparison {
       y.fixed = x.fixed;
       if (!near_(x.mass_kg, y.mass_kg, 0)) Differs("body", x.name, "mass");
       y.mass_kg = x.mass_kg;
-      if (!Settle(x.com_m, y.com_m)) Differs("body", x.name, "centre of mass");
+      if (!Settle(x.com_m, y.com_m)) Differs("body", x.name, "center of mass");
       if (!near_(x.inertia_kg_m2, y.inertia_kg_m2, x)) Differs("body", x.name, "inertia");
       y.inertia_kg_m2 = x.inertia_kg_m2;
       // Model files have no velocities.
       y.velocity_m_per_s = x.velocity_m_per_s;
       y.angular_velocity_rad_per_s = x.angular_velocity_rad_per_s;
-      if (x != y) Differs("body", x.name, "number");
+      if (x != y) Differs("body", x.name, "value");
     }
   }
 
@@ -188,7 +189,7 @@ class Comparison {
       Shape y = b[k];
       if (NameOf(a_, x.body) != NameOf(b_, y.body)) return Differs(kind, x.name, "body");
       y.body = x.body;
-      if (!settle_place(x, y)) return Differs(kind, x.name, "place");
+      if (!settle_place(x, y)) return Differs(kind, x.name, "position");
       if constexpr (requires { x.member; }) {
         if (x.member != y.member) return Differs(kind, x.name, "section or limit");
       }
@@ -196,7 +197,7 @@ class Comparison {
         return Differs(kind, x.name, "surface");
       }
       y.material = x.material;
-      if (x != y) Differs(kind, x.name, "number");
+      if (x != y) Differs(kind, x.name, "value");
     });
   }
 
@@ -206,8 +207,8 @@ class Comparison {
       NodeDef y = b_.nodes[k];
       if (NameOf(a_, x.body) != NameOf(b_, y.body)) Differs("node", x.name, "body");
       y.body = x.body;
-      if (!Settle(x.position_m, y.position_m)) Differs("node", x.name, "place");
-      if (x != y) Differs("node", x.name, "number");
+      if (!Settle(x.position_m, y.position_m)) Differs("node", x.name, "position");
+      if (x != y) Differs("node", x.name, "value");
       if (!Same(robot_.node_tags[i], read_.node_tags[k])) {
         Differs("node", x.name, "list of tags");
       }
@@ -248,7 +249,7 @@ class Comparison {
           NameOf(a_, x.body_b) != NameOf(b_, y.body_b)) {
         Differs("joint", x.name, "pair of bodies");
       } else if (!near_(x.from_m, y.from_m) || !near_(x.to_m, y.to_m)) {
-        Differs("joint", x.name, "place");
+        Differs("joint", x.name, "position");
       } else if (!Same(x, y, near_)) {
         Differs("joint", x.name, "kind, axis or force");
       } else if (x.member != y.member) {
@@ -264,7 +265,7 @@ class Comparison {
     };
     if (good_ && apart(a_) != apart(b_)) {
       good_ = false;
-      RefuseModel(out_, "other bodies would be kept apart");
+      RefuseModel(out_, "the lists in `apart` would be different");
     }
   }
 

@@ -43,7 +43,7 @@ class JointTaker {
     const int from = there < 0 && is_support ? GroundOf(joint) : there;
     if (from < 0 || on < 0) {
       RefuseModel(out_, "the joint \"" + joint.name + "\" is not between nodes",
-                  "give each of its bodies a node where it holds it");
+                  "give both of its bodies a node at the joint");
       return;
     }
     const bool is_bar = IsBar(joint) && joint.collides && !MemberText(joint.member).empty();
@@ -67,8 +67,8 @@ class JointTaker {
     const auto taken = std::find_if(m_.nodes.begin(), m_.nodes.end(),
                                     [&](const WrittenNode& n) { return n.name == name; });
     if (taken != m_.nodes.end()) {
-      RefuseModel(out_, "the support \"" + support.name + "\" has slid, and \"" + name +
-                            "\", which would be the node that it slid from, is another one");
+      RefuseModel(out_, "the support \"" + support.name + "\" has moved, and the name \"" + name +
+                            "\" for the node at its initial position is already used");
       return -1;
     }
     m_.nodes.push_back({name, kWorld, support.from_m, {}, -1});

@@ -42,9 +42,10 @@ std::string SurfaceText(const Material& m, bool collides) {
   return collides ? text : text + ", collides: false";
 }
 
-class Taker {
+class ModelDecomposer {
  public:
-  Taker(const RobotSpec& robot, Diagnostics& out) : robot_(robot), def_(robot.def), out_(out) {}
+  ModelDecomposer(const RobotSpec& robot, Diagnostics& out)
+      : robot_(robot), def_(robot.def), out_(out) {}
 
   WrittenModel Run() {
     for (std::size_t n = 0; n < def_.nodes.size(); ++n) {
@@ -56,11 +57,11 @@ class Taker {
       for (const AttachmentDef& at : cable.attachments) {
         if (!at.wheel && at.friction == 0) continue;
         Refuse("the cable \"" + cable.name + "\" has friction or runs over wheels",
-               "take the model that it was made from");
+               "use the original model file");
         break;
       }
     }
-    if (!def_.hulls.empty()) Refuse("it has convex solids", "take the model that it was made from");
+    if (!def_.hulls.empty()) Refuse("the robot has convex solids", "use the original model file");
     Rods(), Boxes(), Spheres(), PointMasses(), Anchors();
     m_.solid_pairs = m_.pairs.size();
     Cables();
@@ -93,8 +94,8 @@ class Taker {
     };
     count(def_.spheres), count(def_.capsules), count(def_.boxes);
     if (shapes > 1) {
-      Refuse("it is not known what the parts of the body \"" + BodyName(body) + "\" weigh",
-             "inputs.yaml has bodies only as a whole; take the experiment that it was made from");
+      Refuse("the masses of the parts of the body \"" + BodyName(body) + "\" are not known",
+             "use the original experiment: inputs.yaml has only masses of whole bodies");
     }
     return {SolidMass::Per::kWhole,
             def_.bodies[static_cast<std::size_t>(body)].mass_kg - LumpedOn(def_, body)};
@@ -197,9 +198,9 @@ class Taker {
       }
       const std::string placement = PlacementOf(m_.nodes[static_cast<std::size_t>(from)].name);
       if (!Alike(TurnFor(placement, box.orientation), box.orientation)) {
-        Refuse(
-            "the boxes along pairs of one part are turned differently, as \"" + box.name + "\" is",
-            placement.empty() ? "put its nodes into a part" : "");
+        Refuse("the boxes along pairs of one part have different orientations, such as \"" +
+                   box.name + "\"",
+               placement.empty() ? "put its nodes into a part" : "");
       }
       Build(m_.on_pairs,
             "box: {width_m: " + Shown(2 * h.y) + ", height_m: " + Shown(2 * h.z) + ", " + more,
@@ -272,7 +273,7 @@ class Taker {
       const BodyDef& body = def_.bodies[b];
       const int node = NodeAt(static_cast<int>(b), body.com_m);
       if (node < 0) {
-        Refuse("no node is at the centre of the body \"" + body.name + "\", which has no shape");
+        Refuse("no node is at the center of the body \"" + body.name + "\", which has no shape");
         continue;
       }
       const double own_kg = body.mass_kg - LumpedOn(def_, static_cast<int>(b));
@@ -324,8 +325,8 @@ class Taker {
                                                                      : "_" + std::to_string(i));
     if (!placement.empty()) name = placement + "." + name;
     if (NodeCalled(name) >= 0) {
-      Refuse("the cable \"" + cable.name + "\" ends on a surface, and \"" + name +
-             "\", which would be the node there, is another one");
+      Refuse("the cable \"" + cable.name + "\" ends on a surface, and the name \"" + name +
+             "\" for the node there is already used");
       return -1;
     }
     WrittenNode node{name, at.body, at.position_m, {}, static_cast<int>(host - m_.nodes.begin())};
@@ -359,6 +360,8 @@ class Taker {
 
 }  // namespace
 
-WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out) { return Taker(robot, out).Run(); }
+WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out) {
+  return ModelDecomposer(robot, out).Run();
+}
 
 }  // namespace taut::description

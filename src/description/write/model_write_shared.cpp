@@ -6,8 +6,8 @@
 namespace taut::description {
 
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint) {
-  out.Error("write.not_expressible", {}, "a model file cannot say all of this robot: " + what,
-            hint);
+  out.Error("write.not_expressible", {},
+            "a model file cannot describe this robot completely: " + what, hint);
 }
 
 bool IsTerrain(const ModelDef& def, int body) {

@@ -64,7 +64,7 @@ class Parser {
 
   void Run() {
     SkipSpace();
-    if (at_ == text_.size()) throw Failure{"an expression is missing", ""};
+    if (at_ == text_.size()) throw Failure{"the expression is empty", ""};
     Sum();
     if (at_ < text_.size()) Unexpected();
   }
@@ -155,12 +155,12 @@ class Parser {
     const auto [end, status] = base::FromChars(begin, text_.data() + text_.size(), value);
     if (status == std::errc::invalid_argument) Unexpected();
     const std::string digits(begin, end);
-    if (status != std::errc()) throw Failure{"number out of range: " + digits, ""};
+    if (status != std::errc()) throw Failure{"the number " + digits + " is out of range", ""};
     at_ += digits.size();
     if (const std::size_t length = IdentifierLength(text_, at_); length > 0) {
       const std::string word(text_.substr(at_, length));
-      throw Failure{"\"" + word + "\" right after the number " + digits,
-                    "a product needs `*`; units belong to the key, not to the value"};
+      throw Failure{"\"" + word + "\" directly follows the number " + digits,
+                    "write products with `*`, and values without units"};
     }
     SkipSpace();
     return value;
@@ -170,13 +170,14 @@ class Parser {
     const auto found = names_.find(name);
     if (found != names_.end()) return found->second;  // NaN propagates silently
     if (FindFunction(name)) {
-      throw Failure{std::string(name) + " is a function", "write " + std::string(name) + "(...)"};
+      throw Failure{std::string(name) + " is a function and needs arguments",
+                    "write " + std::string(name) + "(...)"};
     }
     throw Failure{"unknown name \"" + std::string(name) + "\"", NameHint(name)};
   }
 
   std::string NameHint(std::string_view name) const {
-    if (names_.empty()) return "there are no parameters";
+    if (names_.empty()) return "no parameters are defined";
     if (names_.size() > 300 || name.size() > 60) return {};  // bounds the time of the search
     std::vector<std::string> known;
     for (const auto& entry : names_) known.push_back(entry.first);
@@ -222,14 +223,14 @@ class Parser {
   }
 
   [[noreturn]] void Unexpected() const {
-    if (at_ >= text_.size()) throw Failure{"the expression ends too early", ""};
+    if (at_ >= text_.size()) throw Failure{"the expression is incomplete", ""};
     // The whole UTF-8 character, not its first byte.
     std::size_t length = 1;
     while (at_ + length < text_.size() && (text_[at_ + length] & 0xC0) == 0x80) ++length;
     const std::string found(text_.substr(at_, length));
     const bool star = found == "*" && at_ > 0 && text_[at_ - 1] == '*';
     throw Failure{"unexpected \"" + found + "\" in \"" + std::string(text_.substr(0, 60)) + "\"",
-                  star ? "powers are written with ^" : ""};
+                  star ? "write powers with ^" : ""};
   }
 
   void SkipSpace() {

@@ -18,7 +18,7 @@ double Checked(double value, std::string_view of) {
 
 double NoiseAt(double seed, double x, double y) {
   if (!(seed >= 0.0 && seed <= 0x1p53 && std::floor(seed) == seed)) {
-    throw ExpressionFailure{"the seed of noise is not a whole number", "0, 1, 2, ..."};
+    throw ExpressionFailure{"the seed of noise is not a whole number", "expected 0, 1, 2, ..."};
   }
   if (!(std::fabs(x) < 1e9 && std::fabs(y) < 1e9)) {
     throw ExpressionFailure{"noise of a coordinate beyond 1e9", ""};
@@ -65,10 +65,10 @@ double Apply(std::string_view name, std::span<const double> arguments) {
 
 double PowerOf(double base, double exponent) {
   if (base == 0.0 && exponent < 0.0)
-    throw ExpressionFailure{"division by zero", "0 ^ a negative number"};
+    throw ExpressionFailure{"division by zero", "0 is raised to a negative power"};
   if (base < 0.0 && exponent != std::floor(exponent)) {
     throw ExpressionFailure{"a negative number to a fractional power",
-                            "write (-x)^y for a whole y"};
+                            "use a positive base, or a whole number as exponent"};
   }
   return Checked(math::Pow(base, exponent), "a power");
 }

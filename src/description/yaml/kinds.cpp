@@ -12,11 +12,11 @@ std::string HintOfKind(std::string_view kind) {
   std::string all;
   for (const auto& known : kKinds) {
     if (known.kind == kind) {
-      return "files of this kind are for `" + std::string(known.reader) + "`";
+      return "use `" + std::string(known.reader) + "` for files of this kind";
     }
     all += (all.empty() ? "" : ", ") + std::string(known.kind);
   }
-  return "there are the kinds " + all;
+  return "the kinds are " + all;
 }
 
 }  // namespace taut::description

@@ -54,13 +54,13 @@ MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagno
     }
     next = PathBeside(next, base->text);
     if (std::find(seen.begin(), seen.end(), Canonical(next)) != seen.end()) {
-      out.Error("base.circle", base->at, "base files name each other in a circle: " + next);
+      out.Error("base.circle", base->at, "base files refer to each other in a circle: " + next);
       return {};
     }
     std::error_code ignored;
     if (!std::filesystem::exists(next, ignored)) {
       out.Unreadable("base.missing", base->at, "base: there is no file " + next,
-                     "as seen from this file's folder");
+                     "paths are relative to the folder of this file");
       return {};
     }
   }

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "description/yaml/parameters.h"
+#include "description/yaml/file_parameters.h"
 #include "description/yaml/yaml_tree.h"
 
 namespace taut::description {

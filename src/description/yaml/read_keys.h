@@ -177,8 +177,8 @@ class FileReader : public KeyVisitor<FileReader, false> {
       if (spelling.index < 0) {
         right = name;
       } else {
-        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is of another quantity",
-                   std::string(spelling.who) + " has " + right);
+        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is for another quantity",
+                   std::string(spelling.who) + " needs " + right);
         wrong = true;
       }
     }

@@ -237,7 +237,7 @@ std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
                      what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
   } else {
     Error("key.both_given", present[1], what + " has both " + Joined(present, " and "),
-          "only one of them may be there");
+          "give only one of them");
   }
   return {};
 }
@@ -268,7 +268,7 @@ std::optional<std::string> FindFile(const Value* value, const std::string& what,
   std::error_code ignored;
   if (!text.empty() && std::filesystem::is_regular_file(path, ignored)) return path;
   scope.out.Unreadable("file.missing", value->at, what + ": there is no file \"" + path + "\"",
-                       "as seen from the folder of the file that names it");
+                       "paths are relative to the folder of the file that contains them");
   return std::nullopt;
 }
 
@@ -296,7 +296,7 @@ bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
   if (root.kind != Value::Kind::kMap) {
     out.Error("file.not_a_map", root.at,
               "the file must be a map, got " + std::string(KindName(root)),
-              "it starts with `taut: 1` and `kind: " + std::string(kind) + "`");
+              "begin the file with `taut: 1` and `kind: " + std::string(kind) + "`");
     return false;
   }
   bool good = true;
@@ -315,7 +315,7 @@ bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out) {
     }
     good = false;
   };
-  check("taut", "1", "the version of the format; this taut reads version 1");
+  check("taut", "1", "it is the version of the file format; this program reads version 1");
   const Value* const found = root.Find("kind");
   check("kind", kind, HintOfKind(found ? found->text : ""));
   return good;

@@ -17,11 +17,11 @@ namespace taut::description {
 namespace {
 
 std::string ControlText(char c) {
-  return "the control character " + std::to_string(static_cast<int>(c)) + " is in no text";
+  return "the control character " + std::to_string(static_cast<int>(c)) + " is not allowed";
 }
 
 constexpr const char* kControlHint =
-    "files are UTF-8, without control characters but tab and line end";
+    "expected UTF-8 without control characters except tabs and line ends";
 
 /// Thrown at the first error after which parsing cannot continue; caught in this file.
 struct StopReading {};
@@ -36,7 +36,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (root_)
-      Stop("yaml.several_documents", mark, "more than one document in the file",
+      Stop("yaml.several_documents", mark, "the file has more than one YAML document",
            "remove the `---` between them");
   }
   void OnDocumentEnd() override {}
@@ -48,7 +48,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end())
-      Stop("yaml.circular_anchor", mark, "an anchor may not contain itself");
+      Stop("yaml.circular_anchor", mark, "a YAML anchor must not contain itself");
     Place(found->second, At(mark));
   }
 
@@ -113,7 +113,7 @@ class TreeBuilder : public YAML::EventHandler {
     CheckTag(mark, tag);
     if (static_cast<int>(open_.size()) >= kMaxYamlDepth) {
       Stop("yaml.too_deep", mark,
-           "nested more than " + std::to_string(kMaxYamlDepth) + " levels deep");
+           "the file is nested more than " + std::to_string(kMaxYamlDepth) + " levels deep");
     }
     open_.push_back({NewValue(mark, kind), anchor, std::nullopt});
   }
@@ -158,8 +158,8 @@ class TreeBuilder : public YAML::EventHandler {
     parent.node_count += more;
     if (parent.node_count <= kMaxYamlNodes) return;
     out_.Error("yaml.too_many_nodes", at,
-               "more than " + std::to_string(kMaxYamlNodes) + " YAML nodes",
-               "an alias counts as often as it is used");
+               "the file has more than " + std::to_string(kMaxYamlNodes) + " YAML nodes",
+               "an alias counts once for each use");
     throw StopReading{};
   }
 
@@ -256,13 +256,13 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
     return nullptr;
   } catch (const YAML::Exception& error) {
     out.Error("yaml.invalid", {file, error.mark.line + 1, error.mark.column + 1},
-              "not valid YAML: " + error.msg);
+              "the file is not valid YAML: " + error.msg);
     return nullptr;
   } catch (const std::bad_alloc&) {
     throw;                                 // not an error of the file
   } catch (const std::exception& error) {  // a fault of yaml-cpp
     out.Error("yaml.unreadable", {file, 0, 0},
-              std::string("cannot be read as YAML: ") + error.what());
+              std::string("the file cannot be read as YAML: ") + error.what());
     return nullptr;
   }
   if (!builder.root()) out.Error("yaml.empty", {file, 1, 1}, "the file is empty");

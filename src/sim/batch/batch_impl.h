@@ -98,7 +98,7 @@ struct Batch::Impl {
     return Struct<sim::MotorOrders<double>>(world, layout.orders, number);
   }
   /// Returns the bends of a cable that touches, in their order along it.
-  std::vector<sim::BendNumbers<double>> Bends(int world, int cable) const;
+  std::vector<sim::WrapPointNumbers<double>> Bends(int world, int cable) const;
   /// Path of a cable with its bends, without bends that it has left.
   struct LaidCable;
   LaidCable Lay(int world, int cable) const;
@@ -138,7 +138,7 @@ struct Batch::Impl {
   void set(int world, int row, const sim::MotorOrders<double>& x) const noexcept {
     SetStruct(world, row, x);
   }
-  void set(int world, int row, const sim::BendNumbers<double>& x) const noexcept {
+  void set(int world, int row, const sim::WrapPointNumbers<double>& x) const noexcept {
     SetStruct(world, row, x);
   }
   Quat quat(int world, int body) const noexcept {
@@ -159,7 +159,7 @@ struct Batch::Impl {
   }
   /// Steps all worlds; first sets the targets of all cables of all worlds, unless null.
   void Step(double step_s, int count, const double* targets_m) noexcept;
-  void StepSome(double step_s, const std::uint8_t* goes);
+  void StepMasked(double step_s, const std::uint8_t* mask);
   void SetTargets(int group_number, const double* targets_m) const noexcept;
   void SetMass(int world, int body, double mass_kg) noexcept;
   void StartWorld(int world) noexcept;

@@ -86,12 +86,12 @@ double Batch::WheelAngle(int world, int cable, int wheel) const noexcept {
   return d.at(world, d.layout.wheel_angle + table.first_wheel + wheel);
 }
 
-std::vector<sim::BendNumbers<double>> Batch::Impl::Bends(int world, int cable) const {
-  std::vector<sim::BendNumbers<double>> bends;
+std::vector<sim::WrapPointNumbers<double>> Batch::Impl::Bends(int world, int cable) const {
+  std::vector<sim::WrapPointNumbers<double>> bends;
   const int touch = view.cables[cable].touch;
   for (int k = 0; touch >= 0 && k < sim::kMostBends; ++k) {
     const int number = view.touches[touch].first_bend + k;
-    bends.push_back(Struct<sim::BendNumbers<double>>(world, layout.bend, number));
+    bends.push_back(Struct<sim::WrapPointNumbers<double>>(world, layout.bend, number));
     if (bends.back().key == sim::kNoKey) return bends.pop_back(), bends;
   }
   return bends;
@@ -125,7 +125,7 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
     if (parts && i == view.slips[slip].at) ++slip;
   }
   std::vector<double> along;
-  for (const sim::BendNumbers<double>& bend : Bends(world, cable)) {
+  for (const sim::WrapPointNumbers<double>& bend : Bends(world, cable)) {
     const int number = static_cast<int>(wheels.size());
     const int first = 1 + 2 * number, body = static_cast<int>(bend.body);
     wheels.push_back({in_W(body, bend.center), turned(body, bend.axis), bend.radius, bend.angle,
@@ -147,7 +147,7 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   const bool begun = table.touch >= 0 && wheel_count > 1;
   if (begun) {
     std::vector<double> half;
-    for (const sim::BendNumbers<double>& bend : Bends(world, cable)) half.push_back(bend.half);
+    for (const sim::WrapPointNumbers<double>& bend : Bends(world, cable)) half.push_back(bend.half);
     const std::vector<double> has(wheels.size(), 1.0);
     BeginOnWheels(points.data(), wheel_count, wheels.data(), half.data(), has.data());
   }

@@ -7,7 +7,7 @@ namespace taut {
 void Batch::Impl::ForgetBends(int world) noexcept {
   for (int i = 0; i < view.touch_rod_count; ++i) at(world, layout.touch_side + i) = 0.0;
   for (int i = 0; i < view.Count(sim::Per::kBend); ++i) {
-    set(world, layout.bend + sim::kWidthBend * i, sim::kNoBend);
+    set(world, layout.bend + sim::kWidthWrapPoint * i, sim::kNoWrapPoint);
   }
   for (int c = 0; c < view.cable_count; ++c) {
     const sim::CableTable& cable = view.cables[c];

@@ -199,7 +199,7 @@ void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W
   for (int b = 0; b < m.body_count; ++b) {
     Q4<W> q = s.quat[b];
     const W square = DriftTurnOf<Half::kSecond>(m, s, b, q, work.bodies[b].R, half_h);
-    // + 0, or NaN if the rotation was lost: Judge checks w.
+    // + 0, or NaN if the rotation was lost: UpdateStatus checks w.
     s.quat[b] = {q.w + zero * square, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];
     s.pos[b] += V3<W>{zero, zero, zero};

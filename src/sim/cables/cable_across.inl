@@ -2,8 +2,8 @@
 /// section 7): the cable has no mass, so a bend slides at once until friction can hold it.
 #pragma once
 
-#include "sim/cables/cable_bends.inl"
 #include "sim/cables/cable_rods.inl"
+#include "sim/cables/cable_wrapping.inl"
 #include "sim/data/rows.h"
 
 namespace taut::sim {

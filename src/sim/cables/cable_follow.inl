@@ -3,11 +3,11 @@
 #pragma once
 
 #include "sim/cables/cable_across.inl"
-#include "sim/cables/cable_bends.inl"
 #include "sim/cables/cable_edges.h"
 #include "sim/cables/cable_rods.inl"
-#include "sim/cables/cable_settled.inl"
+#include "sim/cables/cable_wrapping.inl"
 #include "sim/cables/lane_spans.inl"
+#include "sim/cables/wrap_unchanged.inl"
 #include "sim/data/rows.h"
 
 namespace taut::sim {

@@ -2,9 +2,9 @@
 /// (cable_chains.inl) with the spans of lane_spans.inl.
 #pragma once
 
-#include "sim/cables/cable_bends.inl"
 #include "sim/cables/cable_chains.inl"
 #include "sim/cables/cable_rods.inl"
+#include "sim/cables/cable_wrapping.inl"
 #include "sim/cables/lane_spans.inl"
 #include "sim/data/rows.h"
 
@@ -45,7 +45,7 @@ template <class W>
                                       const Scratch<W>& work, const AttachmentWork<W>* ends,
                                       const W* length, bool keep, W* rest) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
-  const BendNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
+  const WrapPointNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
   for (int k = 1; k <= work.bends_used; ++k) {
     rest[k] = Select(HasSpan(m, s, cable, k), rest[k], one);
   }
@@ -96,7 +96,7 @@ template <class W>
                                 const Scratch<W>& work, const AttachmentWork<W>* ends,
                                 RowLink<W>* links) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
-  const BendNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
+  const WrapPointNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
   const int last = 2 * work.bends_used + 1;
   int count = 0;
   const auto pull = [&](int lane, int row, int body, const V3<W>& u, double side,

@@ -5,7 +5,7 @@
 /// the links stay in registers.
 #pragma once
 
-#include "sim/cables/cable_bends.inl"
+#include "sim/cables/cable_wrapping.inl"
 #include "sim/data/rows.h"
 
 namespace taut::sim {

@@ -18,7 +18,7 @@ template <class W>
 TAUT_INLINE int SpansIn(const View& m, const Rows<W>& s, const CableTable& cable,
                         int lane) noexcept {
   if (cable.touch < 0) return cable.span_count;
-  const BendNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
+  const WrapPointNumbers<W>* const bends = &s.bend[m.touches[cable.touch].first_bend];
   int count = 0;
   while (count < kMostBends && bends[count].key[lane] != kNoKey) ++count;
   return count + 1;

@@ -6,10 +6,10 @@
 ///   T       tension [N]
 #pragma once
 
-#include "sim/cables/cable_bends.inl"
 #include "sim/cables/cable_follow.inl"
 #include "sim/cables/cable_pulls.inl"
 #include "sim/cables/cable_wheels.inl"
+#include "sim/cables/cable_wrapping.inl"
 #include "sim/cables/dc_motor.inl"
 #include "sim/cables/stiff_cables.inl"
 #include "sim/data/rows.h"

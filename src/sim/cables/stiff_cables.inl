@@ -6,8 +6,8 @@
 /// contacts. Soft cables are explicit, except in a step in which they become slack or taut.
 #pragma once
 
-#include "sim/cables/cable_bends.inl"
 #include "sim/cables/cable_wheels.inl"
+#include "sim/cables/cable_wrapping.inl"
 #include "sim/data/rows.h"
 
 namespace taut::sim {

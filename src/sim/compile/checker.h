@@ -29,7 +29,7 @@ class Checker {
   }
   void Body(int body, const ModelDef& def, const std::string& what) {
     Require(body >= kWorld && body < static_cast<int>(def.bodies.size()),
-            what + " refers to a body that is not there");
+            what + " refers to a body that does not exist");
   }
   /// `has_axis`: the shape itself defines a forward direction.
   void Surface(const Material& m, const std::string& what, bool has_axis = false) {
@@ -37,7 +37,7 @@ class Checker {
     NonNegative(m.static_friction, what + ": static friction");
     Require(!(m.static_friction < m.kinetic_friction),
             what + ": static friction must not be below kinetic friction");
-    Require(m.restitution >= 0 && m.restitution <= 1, what + ": restitution must be 0..1");
+    Require(m.restitution >= 0 && m.restitution <= 1, what + ": restitution must be within 0..1");
     if (m.stribeck) {
       Positive(m.stribeck->speed_m_per_s, what + ": Stribeck's speed");
       NonNegative(m.stribeck->viscous_friction_s_per_m, what + ": viscous friction");
@@ -45,13 +45,13 @@ class Checker {
     if (m.directions) Directions(*m.directions, what, has_axis);
   }
   void Directions(const FrictionDirections& d, const std::string& what, bool has_axis) {
-    NonNegative(d.forward, what + ": factor of friction forward");
-    NonNegative(d.backward, what + ": factor of friction backward");
-    NonNegative(d.sideways, what + ": factor of friction sideways");
-    Finite(d.axis, what + ": axis of friction");
+    NonNegative(d.forward, what + ": forward friction factor");
+    NonNegative(d.backward, what + ": backward friction factor");
+    NonNegative(d.sideways, what + ": sideways friction factor");
+    Finite(d.axis, what + ": friction axis");
     Require(has_axis || d.axis.x != 0 || d.axis.y != 0 || d.axis.z != 0,
-            what + ": the axis of friction must not be zero; only rods have one of their own");
-    Require(cone_, what + ": friction by direction needs FrictionLaw::kCone");
+            what + ": the friction axis must not be zero; only rods have a default axis");
+    Require(cone_, what + ": directional friction needs FrictionLaw::kCone");
   }
   void Member(const MemberDef& m, const std::string& what) {
     NonNegative(m.area_m2, what + ": area");
@@ -61,7 +61,7 @@ class Checker {
     NonNegative(m.yield_pa, what + ": yield stress");
     NonNegative(m.strength_n, what + ": strength");
     Require(std::isfinite(m.expansion_per_k), what + ": thermal expansion must be finite");
-    NonNegative(m.mass_kg, what + ": mass of its own");
+    NonNegative(m.mass_kg, what + ": member mass");
   }
 
  private:

@@ -39,29 +39,30 @@ void CheckCoordinate(const JointDef& j, const std::string& name, Checker& check)
   check.NonNegative(j.friction, name + ": friction");
   check.NonNegative(j.stiffness, name + ": stiffness");
   check.NonNegative(j.damping, name + ": damping");
-  check.Require(std::isfinite(j.rest), name + ": where its spring is at rest must be finite");
+  check.Require(std::isfinite(j.rest), name + ": the rest position of its spring must be finite");
   check.Require(j.restitution >= 0 && j.restitution <= 1,
-                name + ": the stops' restitution must be between 0 and 1");
+                name + ": the restitution at its limits must be between 0 and 1");
   for (const auto& stop : {j.least, j.most}) {
     check.Require(!stop || std::isfinite(*stop), name + ": a limit must be finite");
   }
-  check.Require(!j.least || !j.most || *j.least < *j.most, name + ": its limits must rise");
+  check.Require(!j.least || !j.most || *j.least < *j.most,
+                name + ": its lower limit must be below its upper limit");
   if (!HasCoordinate(j.kind)) {
-    check.Require(!acts && !stops,
-                  name +
-                      ": nothing of it is free along or about its axis: no limits, friction, "
-                      "spring or damper");
+    check.Require(!acts && !stops, name +
+                                       ": a joint of this kind has no coordinate, so it cannot "
+                                       "have limits, friction, spring or damper");
   }
   if (j.kind == K::kBall) {
-    check.Require(j.rest == 0, name + ": a ball joint's spring is at rest as described");
+    check.Require(j.rest == 0,
+                  name + ": the spring of a ball joint must be at rest in the described pose");
     check.Require(!j.least && (!j.most || *j.most > 0),
-                  name + ": a ball joint has one limit, above 0, of the angle to its axis");
+                  name + ": a ball joint can only have an upper limit, which must be above 0");
   }
   if (j.kind == K::kDistance) {
     const Vec3 d = j.to_m - j.from_m;
-    check.Require(Dot(d, d) > 0, name + ": its points are in the same place");
+    check.Require(Dot(d, d) > 0, name + ": its points are at the same position");
     check.Require((!j.least || *j.least >= 0) && (!j.most || *j.most > 0),
-                  name + ": a distance is not negative");
+                  name + ": the limits of a distance must not be negative");
   }
 }
 
@@ -84,17 +85,20 @@ void CheckJoints(const ModelDef& def, Checker& check) {
     check.Member(j.member, name);
     if (!known(j.body_a) || !known(j.body_b)) continue;
     check.Require(j.body_b != kWorld, name + ": its second body must not be the world");
-    check.Require(j.body_a != j.body_b, name + ": both of its bodies are the same");
-    check.Require(!fixed(j.body_a) || !fixed(j.body_b), name + ": neither of its bodies can move");
-    const double gap = HeldGap(j);
+    check.Require(j.body_a != j.body_b, name + ": it connects a body to itself");
+    check.Require(!fixed(j.body_a) || !fixed(j.body_b), name + ": both of its bodies are fixed");
+    const double gap = JointError(j);
     check.Require(!(gap > JointDef::kClosed_m),
-                  name + ": its points are " + Metres(gap) + " apart where it holds them together");
-    check.Require(!(math::HeldTurn(j) > math::kClosedTurn_rad),
-                  name + ": its bodies are turned against each other where it holds them");
+                  name + ": its points are " + Metres(gap) +
+                      " apart in a direction that it does not leave free");
+    check.Require(
+        !(math::HeldTurn(j) > math::kClosedTurn_rad),
+        name +
+            ": its bodies are rotated relative to each other in a way that it does not leave free");
   }
   for (const auto& pair : def.apart) {
-    check.Body(pair.body_a, def, "bodies that are kept apart");
-    check.Body(pair.body_b, def, "bodies that are kept apart");
+    check.Body(pair.body_a, def, "a pair of bodies that do not collide");
+    check.Body(pair.body_b, def, "a pair of bodies that do not collide");
   }
 }
 

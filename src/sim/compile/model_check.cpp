@@ -19,7 +19,7 @@ namespace {
 void CheckBodies(const ModelDef& def, Checker& check) {
   for (const BodyDef& b : def.bodies) {
     const std::string name = "body " + b.name;
-    check.Finite(b.com_m, name + ": centre of mass");
+    check.Finite(b.com_m, name + ": center of mass");
     check.Finite(b.velocity_m_per_s, name + ": velocity");
     check.Finite(b.angular_velocity_rad_per_s, name + ": angular velocity");
     if (b.fixed) continue;
@@ -34,7 +34,7 @@ void CheckBodies(const ModelDef& def, Checker& check) {
 void CheckShapes(const ModelDef& def, Checker& check) {
   for (const SphereDef& s : def.spheres) {
     check.Body(s.body, def, "sphere " + s.name);
-    check.Finite(s.center_m, "sphere " + s.name + ": centre");
+    check.Finite(s.center_m, "sphere " + s.name + ": center");
     check.Positive(s.radius_m, "sphere " + s.name + ": radius");
     check.Surface(s.material, "sphere " + s.name);
   }
@@ -49,7 +49,7 @@ void CheckShapes(const ModelDef& def, Checker& check) {
   }
   const auto box = [&](const std::string& name, const Vec3& center, const Quat& q, const Vec3& half,
                        const Material& m) {
-    check.Finite(center, name + ": centre");
+    check.Finite(center, name + ": center");
     check.Require(std::fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-9,
                   name + ": the orientation must be a unit quaternion");
     check.Positive(half.x, name + ": half extent");
@@ -76,7 +76,7 @@ void CheckShapes(const ModelDef& def, Checker& check) {
     box("terrain box " + b.name, b.center_m, b.orientation, b.half_extents_m, b.material);
   }
   check.Require(static_cast<int>(def.planes.size()) <= kMaxPlanes,
-                "at most " + std::to_string(kMaxPlanes) + " planes");
+                "the model has more than " + std::to_string(kMaxPlanes) + " planes");
   for (const PlaneDef& p : def.planes) {
     check.Finite(p.point_m, "plane " + p.name + ": point");
     const Vec3& n = p.normal;
@@ -91,9 +91,9 @@ void CheckMotor(const std::string& name, const DcMotorDef& m, Checker& check) {
   check.Positive(m.torque_constant_n_m_per_a, name + "torque constant");
   check.Positive(m.rotor_inertia_kg_m2, name + "inertia of the rotor");
   check.NonNegative(m.friction_torque_n_m, name + "friction");
-  check.NonNegative(m.static_friction_torque_n_m, name + "friction at rest");
+  check.NonNegative(m.static_friction_torque_n_m, name + "static friction");
   check.Require(!(m.static_friction_torque_n_m < m.friction_torque_n_m),
-                name + "friction at rest must not be below that of sliding");
+                name + "static friction must not be below the friction of a turning rotor");
   check.Positive(m.stribeck_speed_rad_per_s, name + "Stribeck's speed");
   check.NonNegative(m.viscous_friction_n_m_s_per_rad, name + "viscous friction");
   check.Positive(m.gear_ratio, name + "gear ratio");
@@ -126,7 +126,7 @@ void CheckSupplies(const ModelDef& def, Checker& check) {
     check.Require(motor.supply_voltage_v == same.supply_voltage_v &&
                       motor.supply_resistance_ohm == same.supply_resistance_ohm,
                   "cable " + c.name + ": its motor's supply \"" + motor.supply +
-                      "\" has other figures than at cable " + other.name);
+                      "\" differs from the one at cable " + other.name);
   }
 }
 
@@ -153,7 +153,7 @@ void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
       const Vec3 across = Cross(a.wheel->axis, way);
       // A point on the rim may be inside by rounding.
       check.Require(Dot(across, across) > 0.999 * a.wheel->radius_m * a.wheel->radius_m,
-                    wheel + " has the attachment before or behind it inside, or on its axis");
+                    wheel + ": the attachment before or after it is inside it or on its axis");
     }
   }
   check.Require(spans <= kMostSpans, name + " has friction at more than " +
@@ -161,8 +161,8 @@ void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
   const bool slips = spans > 1 || c.touch_friction > 0;
   check.Require(!slips || c.actuator.kind != ActuatorDef::Kind::kDcMotor,
                 name +
-                    " has friction along it and a motor: only ideal and limited actuators wind "
-                    "such a cable");
+                    " has friction and a motor, but only ideal and limited actuators can wind a "
+                    "cable with friction");
 }
 
 void CheckCables(const ModelDef& def, Checker& check) {
@@ -180,17 +180,17 @@ void CheckCables(const ModelDef& def, Checker& check) {
     CheckRoute(c, name, check);
     if (c.touches != CableTouches::kNone) {
       check.Require(c.attachments.size() == 2,
-                    name + " touches the terrain: it must have two attachments and no more");
+                    name + " touches obstacles, so it must have exactly two attachments");
       check.Positive(c.radius_m, name + ": radius");
-      check.NonNegative(c.touch_friction, name + ": friction where it touches");
+      check.NonNegative(c.touch_friction, name + ": friction on obstacles");
     }
     check.Positive(c.stiffness_n_per_m, name + ": stiffness");
     check.NonNegative(c.damping_n_s_per_m, name + ": damping");
     check.Positive(c.rest_length_m, name + ": rest length");
     check.Member(c.member, name);
     if (c.actuator.kind == ActuatorDef::Kind::kDcMotor) {
-      check.NonNegative(c.actuator.min_rest_length_m, name + ": least rest length");
-      check.Require(c.actuator.dc_motor.has_value(), name + ": its motor has no figures");
+      check.NonNegative(c.actuator.min_rest_length_m, name + ": smallest rest length");
+      check.Require(c.actuator.dc_motor.has_value(), name + ": its motor is not defined");
       if (c.actuator.dc_motor) CheckMotor(name + ": dc_motor: ", *c.actuator.dc_motor, check);
     }
     if (c.actuator.kind != ActuatorDef::Kind::kLimited) continue;
@@ -198,8 +198,8 @@ void CheckCables(const ModelDef& def, Checker& check) {
     check.Require(c.actuator.max_acceleration_m_per_s2 > 0,
                   name + ": largest acceleration must be positive");
     check.Require(c.actuator.max_force_n > 0, name + ": largest force must be positive");
-    check.NonNegative(c.actuator.min_rest_length_m, name + ": least rest length");
-    check.NonNegative(c.actuator.min_length_m, name + ": least length");
+    check.NonNegative(c.actuator.min_rest_length_m, name + ": smallest rest length");
+    check.NonNegative(c.actuator.min_length_m, name + ": smallest length");
   }
 }
 
@@ -235,7 +235,7 @@ void CheckSizes(const ModelDef& def, Checker& check) {
   }
   check.Require(0.5 * (all * all - within) + all * fixed <= kMaxShapePairs,
                 "more than " + std::to_string(kMaxShapePairs) +
-                    " pairs of shapes may collide; shapes that cannot meet need not collide");
+                    " pairs of shapes may collide: exclude shapes that cannot meet");
   check.Require(couplings <= kMaxCouplings,
                 "more than " + std::to_string(kMaxCouplings) + " pairs of cables share a body");
 }

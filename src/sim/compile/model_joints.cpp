@@ -19,7 +19,7 @@ using M = JointMeasure;
 
 /// Returns the measures that the rows of a joint kind hold constant.
 std::vector<M> HeldMeasures(JointKind kind) {
-  const HeldMotions held = HeldBy(kind);
+  const HeldMotions held = ConstrainedMotions(kind);
   std::vector<M> rows;
   const auto add = [&](bool has, std::initializer_list<M> measures) {
     for (const M measure : measures) {
@@ -112,7 +112,7 @@ class JointCompiler {
       j.rest = std::sqrt(Dot(d, d));
     }
     j.row_count = static_cast<int>(t_.joint_rows.size()) - j.first_row;
-    j.holds_point = HeldBy(def.kind).along && HeldBy(def.kind).across;
+    j.holds_point = ConstrainedMotions(def.kind).along && ConstrainedMotions(def.kind).across;
     t_.joints.push_back(j);
   }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/data/tables.h"
-#include "sim/geometry/shape_tree.h"
+#include "sim/geometry/bvh.h"
 #include "sim/geometry/surface_sharp.h"
 #include "sim/geometry/touch_list.h"
 

@@ -16,7 +16,7 @@ void CheckLaw(const TimeLaw& law, const std::string& what, Checker& check) {
     last = t;
   }
   check.Require(finite, what + ": times and speeds must be finite");
-  check.Require(!finite || rises, what + ": times must rise, from 0 s or later");
+  check.Require(!finite || rises, what + ": times must increase, from 0 s or later");
   check.Require(std::isfinite(law.amplitude) && std::isfinite(law.phase_rad),
                 what + ": amplitude and phase must be finite");
   check.NonNegative(law.frequency_hz, what + ": frequency");
@@ -33,15 +33,15 @@ void CheckMotions(const ModelDef& def, Checker& check) {
     };
     unit(m.direction, "the direction");
     unit(m.axis, "the axis");
-    check.Finite(m.center_m, name + ": centre");
+    check.Finite(m.center_m, name + ": center");
     CheckLaw(m.slide, name + ": slide", check);
     CheckLaw(m.turn, name + ": turn", check);
     const bool known = m.body >= 0 && m.body < static_cast<int>(def.bodies.size());
-    check.Require(known, name + " refers to a body that is not there");
+    check.Require(known, name + " refers to a body that does not exist");
     if (!known) continue;
     check.Require(def.bodies[static_cast<std::size_t>(m.body)].fixed,
                   name + ": its body must be fixed: forces do not move it");
-    check.Require(moved.insert(m.body).second, name + ": its body has another motion");
+    check.Require(moved.insert(m.body).second, name + ": its body already has a motion");
   }
 }
 

@@ -17,7 +17,7 @@ using V3 = Vec3;
 using Q4 = Quat;
 using Motor = MotorNumbers<double>;
 using Orders = MotorOrders<double>;
-using Bend = BendNumbers<double>;
+using WrapPoint = WrapPointNumbers<double>;
 
 /// Zero for rows of any type.
 struct Nothing {
@@ -132,7 +132,7 @@ inline double TouchSide(const Tables& t, int i) noexcept {
                            CentreOfMass(t, rod.body) + in_W(rod.center_P), in_W(rod.axis_P)),
                 rod.half_m);
 }
-inline Bend NoBend(const Tables&, int) noexcept { return kNoBend; }
+inline WrapPoint NoWrapPoint(const Tables&, int) noexcept { return kNoWrapPoint; }
 inline Orders FollowTarget(const Tables&, int) noexcept { return {0.0, 0.0, 1.0}; }
 inline Vec3 Gravity(const Tables& t, int) noexcept { return t.def().gravity_m_per_s2; }
 

@@ -13,14 +13,14 @@ void CheckField(const HeightFieldDef& field, Checker& check) {
   const std::string name = "height field " + field.name;
   check.Surface(field.material, name);
   check.Finite(field.origin_m, name + ": origin");
-  check.Positive(field.cell_m, name + ": side of a cell");
+  check.Positive(field.cell_m, name + ": edge length of a cell");
   const bool wide = field.columns >= 2 && field.rows >= 2;
-  check.Require(wide, name + " needs two corners or more along x and along y");
+  check.Require(wide, name + " needs at least two corners along x and along y");
   const double corners = static_cast<double>(field.columns) * field.rows;
   check.Require(corners <= kMaxCells, name + " has more than 10^8 cells");
   check.Require(!wide || static_cast<double>(field.height_m.size()) == corners,
                 name + " has " + std::to_string(field.height_m.size()) +
-                    " heights, not a height for each of its corners");
+                    " heights, but needs one for each of its corners");
   for (std::size_t i = 0; i < field.height_m.size(); ++i) {
     if (std::isfinite(field.height_m[i])) continue;
     check.Require(false, name + ": height " + std::to_string(i) + " must be finite");
@@ -36,7 +36,7 @@ std::string Text(const math::MeshFault& fault) {
                            std::to_string(fault.to);
   switch (fault.kind) {
     case Kind::kNoCorner:
-      return triangle + " refers to a corner that is not there";
+      return triangle + " refers to a corner that does not exist";
     case Kind::kNoArea:
       return triangle + " has no area";
     case Kind::kOpen:
@@ -44,7 +44,8 @@ std::string Text(const math::MeshFault& fault) {
     case Kind::kCrowded:
       return ": " + edge + " has two triangles on one side, or more than two in all";
     case Kind::kInsideOut:
-      return " is inside out: corners must run counter-clockwise seen from outside";
+      return " is inside out: the corners of a triangle must be counter-clockwise as seen from "
+             "outside";
   }
   return {};
 }
@@ -52,7 +53,7 @@ std::string Text(const math::MeshFault& fault) {
 void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
   const std::string name = "mesh " + mesh.name;
   check.Surface(mesh.material, name);
-  check.Require(!mesh.triangles.empty(), name + " has no triangle");
+  check.Require(!mesh.triangles.empty(), name + " has no triangles");
   for (std::size_t i = 0; i < mesh.corners_m.size(); ++i) {
     const Vec3& p = mesh.corners_m[i];
     if (!std::isfinite(p.x + p.y + p.z)) {

@@ -3,7 +3,7 @@
 /// without such laws do not pay for it in registers.
 #pragma once
 
-#include "sim/contacts/friction.h"
+#include "sim/contacts/contact_friction.h"
 #include "sim/data/rows.h"
 
 namespace taut::sim {

@@ -18,7 +18,7 @@ TAUT_INLINE MaskOf<W> IsQuiet(const Rows<W>& s, const Scratch<W>& work, int kept
   if (!Any(quiet)) return quiet;
   const M3<W>& R = work.bodies[shape.body].R;
   const V3<W>& x = s.pos[shape.body];
-  const V3<W> from = x + R * simd::Splat3<W>(shape.shape_P.round.from) - s.quiet_from[kept];
+  const V3<W> from = x + R * simd::Splat3<W>(shape.shape_P.round.from) - s.cache_from[kept];
   const V3<W> to = x + R * simd::Splat3<W>(shape.shape_P.round.to) - s.quiet_to[kept];
   return quiet & (Dot(from, from) < slack_m * slack_m) & (Dot(to, to) < slack_m * slack_m);
 }
@@ -28,7 +28,7 @@ void KeepQuiet(const Rows<W>& s, int number, int lane, const NearParts& kept) no
   const auto set = [lane](V3<W>& row, const Vec3& p) {
     row.x.Set(lane, p.x), row.y.Set(lane, p.y), row.z.Set(lane, p.z);
   };
-  set(s.quiet_from[number], kept.from);
+  set(s.cache_from[number], kept.from);
   set(s.quiet_to[number], kept.to);
   s.quiet_limit[number].Set(lane, kept.between.count == 0 ? kept.limit_m : 0.0);
 }

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "sim/data/view.h"
-#include "sim/geometry/passing.h"
+#include "sim/geometry/swept_test.h"
 
 namespace taut::sim {
 

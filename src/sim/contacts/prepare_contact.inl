@@ -4,7 +4,7 @@
 
 #include "math/scalar.h"
 #include "sim/constraint/links.h"
-#include "sim/contacts/friction.h"
+#include "sim/contacts/contact_friction.h"
 #include "sim/contacts/friction.inl"
 #include "sim/data/contacts.h"
 #include "sim/data/rows.h"

@@ -4,7 +4,7 @@
 
 #include "sim/contacts/joined_boxes.h"
 #include "sim/data/rows.h"
-#include "sim/geometry/passing.h"
+#include "sim/geometry/swept_test.h"
 
 namespace taut::sim {
 

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "sim/data/view.h"
-#include "sim/geometry/near_parts.h"
+#include "sim/geometry/contact_cache.h"
 
 namespace taut::sim {
 
@@ -19,7 +19,7 @@ struct LaneStatus {
 
 /// Key of an empty slot or memory. Other keys: see Tables.
 inline constexpr double kNoKey = -1.0;
-inline constexpr BendNumbers<double> kNoBend{kNoKey, 0, 0, 0, 0, 0, {}, {}};
+inline constexpr WrapPointNumbers<double> kNoWrapPoint{kNoKey, 0, 0, 0, 0, 0, {}, {}};
 /// Slip state (1: slid, 0: stuck) of a contact that did not press.
 inline constexpr double kSlipUnknown = -1.0;
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/data/cable_groups.h"
-#include "sim/data/memory.h"
+#include "sim/data/scratch_memory.h"
 #include "sim/data/view.h"
 #include "simd/vec3.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/data/view.h"
-#include "simd/angle.h"
 #include "simd/vec3.h"
+#include "simd/wide_angle.h"
 
 namespace taut::sim {
 

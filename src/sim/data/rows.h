@@ -7,12 +7,12 @@
 #include "sim/data/contacts.h"
 #include "sim/data/group.h"
 #include "sim/data/implicit_memory.h"
-#include "sim/data/memory.h"
 #include "sim/data/motion_at.h"
 #include "sim/data/of_lane.h"
 #include "sim/data/room.h"
-#include "simd/angle.h"
+#include "sim/data/scratch_memory.h"
 #include "simd/vec3.h"
+#include "simd/wide_angle.h"
 
 namespace taut::sim {
 
@@ -29,7 +29,7 @@ struct Rows {
   using Q4 = simd::Q4<W>;
   using Motor = MotorNumbers<W>;
   using Orders = MotorOrders<W>;
-  using Bend = BendNumbers<W>;
+  using WrapPoint = WrapPointNumbers<W>;
 
 #define TAUT_ROW(name, type, ...) Row<type> name;
   TAUT_STATE_ROWS(TAUT_ROW)

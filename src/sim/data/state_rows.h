@@ -63,7 +63,7 @@ struct MotorOrders {
 
 /// Contact of a cable with an edge of the terrain or a rod (cable_bends.inl).
 template <class Num>
-struct BendNumbers {
+struct WrapPointNumbers {
   Num key;    ///< Identifies the edge or rod (cable_edges.h), or kNoKey. Bends in use come first.
   Num body;   ///< Body number, or the number of the world.
   Num angle;  ///< Angle of the cable about it, from point to point [rad].
@@ -75,7 +75,7 @@ struct BendNumbers {
 /// Doubles per element.
 inline constexpr int kWidthNumber = 1, kWidthV3 = 3, kWidthQ4 = 4;
 inline constexpr int kWidthMotor = sizeof(MotorNumbers<double>) / sizeof(double);
-inline constexpr int kWidthBend = sizeof(BendNumbers<double>) / sizeof(double);
+inline constexpr int kWidthWrapPoint = sizeof(WrapPointNumbers<double>) / sizeof(double);
 inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double);
 
 }  // namespace taut::sim
@@ -102,7 +102,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy lost to friction [J] */ \
   ROW(slip_along,     Number, kSlip,     kState,     kGoesBack, NotHeld)          /* middle of a bend's arc, along its axis [m], or kNotHeld */ \
   ROW(touch_side,     Number, kTouchRod, kState,     kZero,     TouchSide)        /* side of the rod on which a part of the cable passes it (cable_rods.inl) */ \
-  ROW(bend,           Bend,   kBend,     kState,     kForgets,  NoBend)           /* see BendNumbers */ \
+  ROW(bend,           WrapPoint,   kBend,     kState,     kForgets,  NoWrapPoint)           /* see WrapPointNumbers */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \
   ROW(orders,         Orders, kMotor,    kState,     kStays,    FollowTarget) \
   ROW(target,         Number, kCable,    kState,     kStays,    RestLength)       /* [m] */ \
@@ -134,7 +134,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(motion_force,   V3,     kMotion,   kDerived,   kZero,     Zero)             /* on its body, in W [N] */ \
   ROW(motion_torque,  V3,     kMotion,   kDerived,   kZero,     Zero)             /* on its body, about its origin [N m] */ \
   ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* lower bound of the distance [m] */ \
-  ROW(quiet_from,     V3,     kKept,     kDerived,   kStays,    Zero)             /* end of a rod at its last query [m] */ \
+  ROW(cache_from,     V3,     kKept,     kDerived,   kStays,    Zero)             /* end of a rod at its last query [m] */ \
   ROW(quiet_to,       V3,     kKept,     kDerived,   kStays,    Zero)             /* other end [m] */ \
   ROW(quiet_limit,    Number, kKept,     kDerived,   kStays,    Zero)             /* distance from its axis without contacts at that query [m]; 0: unknown */ \
   ROW(touch_from,     V3,     kTouch,    kDerived,   kStays,    Zero)             /* start of a free cable at its last query [m] */ \

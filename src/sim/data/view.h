@@ -13,9 +13,9 @@
 #include "sim/data/joint_table.h"
 #include "sim/data/motion_table.h"
 #include "sim/data/state_rows.h"
+#include "sim/geometry/bvh.h"
 #include "sim/geometry/seams.h"
 #include "sim/geometry/shape_contacts.h"
-#include "sim/geometry/shape_tree.h"
 #include "sim/geometry/surface.h"
 #include "taut/batch.h"
 

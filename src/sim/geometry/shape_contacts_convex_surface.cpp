@@ -1,8 +1,8 @@
 // Narrow phase of a box or a hull on ground (docs/theory/ground.md, section 3): its corners against
 // faces, its edges against sharp edges, and its faces against sharp corners of the ground. Between
 // sharp bodies there are no other contacts.
+#include "sim/geometry/contact_reduction.h"
 #include "sim/geometry/convex.h"
-#include "sim/geometry/many_touches.h"
 #include "sim/geometry/surface_near.h"
 
 namespace taut::sim {

@@ -1,8 +1,8 @@
 // Narrow phase of two hulls, or of a box and a hull: separating axis test, then clipping of the
 // best face or crossing of the best edges (docs/theory/contact.md, section 8).
+#include "sim/geometry/contact_reduction.h"
 #include "sim/geometry/convex.h"
 #include "sim/geometry/face_or_edge.h"
-#include "sim/geometry/many_touches.h"
 
 namespace taut::sim {
 namespace {

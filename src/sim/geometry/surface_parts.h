@@ -3,7 +3,7 @@
 /// Part of a step: no standard library.
 #pragma once
 
-#include "sim/geometry/near_parts.h"
+#include "sim/geometry/contact_cache.h"
 #include "sim/geometry/surface_sharp.h"
 
 namespace taut::sim {

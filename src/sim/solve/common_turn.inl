@@ -2,7 +2,7 @@
 /// total angular momentum.
 #pragma once
 
-#include "sim/contacts/fit_biases.inl"
+#include "sim/contacts/consistent_biases.inl"
 #include "simd/vec3.h"
 
 namespace taut::sim {

@@ -9,10 +9,10 @@
 #include "sim/data/elimination.h"
 #include "sim/data/implicit_memory.h"
 #include "sim/data/island.h"
-#include "sim/data/memory.h"
+#include "sim/data/scratch_memory.h"
 #include "sim/solve/body_matrix.inl"
+#include "sim/solve/gauss_seidel.inl"
 #include "sim/solve/plain_newton.inl"
-#include "sim/solve/sweeps.inl"
 #include "simd/wide.h"
 
 namespace taut::sim {

@@ -4,10 +4,10 @@
 
 #include "sim/constraint/links.h"
 #include "sim/data/island.h"
+#include "sim/solve/gauss_seidel.inl"
 #include "sim/solve/impacts.inl"
 #include "sim/solve/plain_newton.inl"
 #include "sim/solve/proximal.inl"
-#include "sim/solve/sweeps.inl"
 
 namespace taut::sim {
 

@@ -6,7 +6,7 @@
 #include "sim/solve/gather_island.inl"
 #include "sim/solve/implicit_island.inl"
 #include "sim/solve/lane_solve.inl"
-#include "sim/solve/push_out.inl"
+#include "sim/solve/position_projection.inl"
 
 namespace taut::sim {
 

@@ -254,4 +254,4 @@ class LaneSolve {
 #include "sim/solve/lane_chains.inl"
 #include "sim/solve/lane_implicit.inl"
 #include "sim/solve/lane_rolling.inl"
-#include "sim/solve/push_out.inl"
+#include "sim/solve/position_projection.inl"

@@ -14,7 +14,7 @@
 #include "sim/data/island.h"
 #include "sim/solve/body_matrix.inl"
 #include "sim/solve/deadlock.inl"
-#include "sim/solve/sweeps.inl"
+#include "sim/solve/gauss_seidel.inl"
 
 namespace taut::sim {
 

@@ -143,8 +143,9 @@ template <class W>
 
 /// Sets the status of all lanes, and halts lanes that are no longer finite.
 template <class W>
-void Judge(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, const SolveResult<W>& solve,
-           const StepSettings& settings, uint32_t overflow, double step_s) noexcept {
+void UpdateStatus(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
+                  const SolveResult<W>& solve, const StepSettings& settings, uint32_t overflow,
+                  double step_s) noexcept {
   const W zero = W::Splat(0.0);
   W sum = zero;  // 0 while all values are finite
   for (int b = 0; b < m.body_count; ++b) {
@@ -276,7 +277,7 @@ void StepOnce(const View& m, const Rows<W>& s, Group& g, const StepSettings& set
   if (m.motion_count > 0) StageMotionEnd(m, s, work, step_s);
   if (m.joint_count > 0) StageJointPlaces(m, s, work, step_s);
   watch.Mark(Stage::kIntegrate);
-  Judge(m, s, g, work, solve, settings, overflow, step_s);
+  UpdateStatus(m, s, g, work, solve, settings, overflow, step_s);
 
   const auto halted = s.halted[0] > zero;
   if (Any(halted)) KeepStart(m, s, work, halted);

@@ -5,10 +5,10 @@
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
-#include "sim/cables/follow_arcs.inl"
 #include "sim/cables/implicit_groups.inl"
+#include "sim/cables/second_order_sticking.inl"
 #include "sim/cables/stiff_cables.inl"
-#include "sim/contacts/fit_biases.inl"
+#include "sim/contacts/consistent_biases.inl"
 #include "sim/contacts/friction.inl"
 #include "sim/contacts/prepare_contact.inl"
 #include "sim/data/rows.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/cables/implicit_groups.inl"
-#include "sim/contacts/fit_biases.inl"
+#include "sim/contacts/consistent_biases.inl"
 #include "sim/contacts/friction.inl"
 #include "sim/contacts/prepare_contact.inl"
 #include "sim/data/rows.h"

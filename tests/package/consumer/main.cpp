@@ -1,5 +1,5 @@
-// Reads a model, steps it, asks for a tension set point, writes and reads a trace: something of
-// every layer, so that a library that an installed taut lacks is noticed.
+// Program that uses every layer of an installed taut, so that a missing library is detected: reads
+// a model, steps it, computes a tension set point, writes and reads a trace.
 #include <cmath>
 #include <cstdio>
 

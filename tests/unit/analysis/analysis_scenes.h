@@ -1,4 +1,4 @@
-/// Small structures for the tests of taut/analysis.h.
+/// Small structures for the tests of taut/analysis.h
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace taut::test {
 
-/// A body without extent, with a node of its name.
+/// Adds a small body with a node of the same name. Returns the body's index.
 inline int AddPoint(ModelDef& def, const std::string& name, const Vec3& at_m, double mass_kg) {
   BodyDef body;
   body.name = name;
@@ -21,7 +21,8 @@ inline int AddPoint(ModelDef& def, const std::string& name, const Vec3& at_m, do
   return index;
 }
 
-/// Between two places; with one tension through all of them, if there are more.
+/// Adds a cable between two attachments; if there are more, it slides through the inner ones with a
+/// single tension.
 inline CableDef& AddCable(ModelDef& def, const std::vector<AttachmentDef>& way, double stiffness,
                           double rest_m) {
   CableDef cable;
@@ -53,7 +54,7 @@ inline JointDef& AddBar(ModelDef& def, int body_a, const Vec3& from_m, int body_
   return bar;
 }
 
-/// A point in the middle of two cables of 1 m, level, along x.
+/// A point in the middle of two horizontal cables of 1 m along x
 inline ModelDef Rope(double mass_kg, double stiffness, double rest_m) {
   ModelDef def;
   AddPoint(def, "middle", {0, 0, 0}, mass_kg);

@@ -1,4 +1,4 @@
-/// Static equilibrium against closed forms and against what settles in a simulation.
+/// Static equilibrium against closed forms and against settled simulations
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 namespace taut::test {
 namespace {
 
-/// Half a rope's equation: a point between two cables of rest length L and stiffness k, each 1 m
-/// across, sags by w under F: F = 2 k (l - L) w / l, l = sqrt(1 + w^2). Solved by bisection.
+/// Equation of half a rope: a point between two cables of rest length L and stiffness k, each with
+/// a span of 1 m, sags by w under F: F = 2 k (l - L) w / l, l = sqrt(1 + w^2). Solved by bisection.
 double Sag(double k, double rest, double force) {
   double low = 0, high = 1;
   for (int i = 0; i < 200; ++i) {
@@ -46,8 +46,9 @@ TEST(Equilibrium, ATightRopeSagsAsItsEquationSaysAtAnyMass) {
   }
 }
 
-// 3 m of aluminium (Feron, Rhode-Barbarigos and Latteur, 2023): 0.75 mm longer struts are its
-// prestress, 2.084 kN on each top node its largest load. Elastic struts and supports as built.
+// Aluminum prism of 3 m (Feron, Rhode-Barbarigos and Latteur, 2023): prestressed by lengthening the
+// struts by 0.75 mm, under its largest load of 2.084 kN on each top node. Elastic struts and
+// supports as built.
 TEST(Equilibrium, TheT3PrismCarriesWhatItsTrussDoes) {
   constexpr double kMm = 1e-3;
   const Vec3 at[6] = {{0, -2.0438, 0},          {0, 0, 0},
@@ -63,7 +64,7 @@ TEST(Equilibrium, TheT3PrismCarriesWhatItsTrussDoes) {
   for (const auto& [a, b] : {std::pair{2, 4}, {1, 3}, {0, 5}}) {
     loads.bars.push_back({static_cast<int>(def.joints.size()), 0.75 * kMm});
     const double length = 2999.8 * kMm;
-    // The strain is by the set length: k = E A / (l + 0.75 mm).
+    // The strain refers to the set length: k = E A / (l + 0.75 mm).
     AddBar(def, a, at[a], b, at[b], 70390e6 * 364.4e-6 / (length + 0.75 * kMm), length);
   }
   const auto cable = [&](int a, int b, double young, double length) {
@@ -80,14 +81,14 @@ TEST(Equilibrium, TheT3PrismCarriesWhatItsTrussDoes) {
   ASSERT_TRUE(e.found) << e.why;
   EXPECT_EQ(e.way, EquilibriumWay::kNewton);
   for (std::size_t j = 2; j < 5; ++j) EXPECT_NEAR(e.bar_force_n[j], -10815.4, 0.5);
-  // What stands on the ground has what was put on it.
+  // The vertical reactions of two of the three supports are below the whole load.
   const double held = e.joint_loads[0].force_n.z + e.joint_loads[1].force_n.z;
   EXPECT_LT(held, 3 * (45.7 + 41.6 + 2084));
   EXPECT_GT(held, 0);
 }
 
 TEST(Equilibrium, ARodOnABallAndACableIsWhatHandStaticsSays) {
-  ModelDef def;  // a level rod of 2 m and 3 kg, held at its end and by a cable straight up
+  ModelDef def;  // a horizontal rod of 2 m and 3 kg, held at its end and by a vertical cable
   scenes::AddRod(def, "rod", 3, 0.01, {0, 0, 0}, {2, 0, 0}, {});
   AddJoint(def, JointKind::kBall, kWorld, {0, 0, 0}, 0, {0, 0, 0});
   const double half = 0.5 * 3 * 9.81;
@@ -113,7 +114,7 @@ TEST(Equilibrium, AHeldRodHangsWhereverItBegins) {
 }
 
 TEST(Equilibrium, SettlementsAndLongerMembersStrainWhatHoldsAgainstThem) {
-  ModelDef def;  // a bar between two held points
+  ModelDef def;  // a bar between two fixed points
   for (const double x : {0.0, 2.0}) {
     const int p = AddPoint(def, "p", {x, 0, 0}, 1);
     AddJoint(def, JointKind::kBall, kWorld, {x, 0, 0}, p, {x, 0, 0});
@@ -148,7 +149,7 @@ TEST(Equilibrium, ARodThatFallsLiesOnThePlaneWithHalfItsWeightAtEachEnd) {
   EXPECT_NEAR(e.pose.bodies[0].position_m.z, 0.01, 1e-10);
 }
 
-// A simulated prism without friction, brought to rest.
+// Compared with a simulated prism without friction, brought to rest
 TEST(Equilibrium, WhatStandsOnAPlaneStandsAsItSettlesInASimulation) {
   Diagnostics out;
   auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out);
@@ -201,27 +202,27 @@ TEST(Equilibrium, WhatNothingHoldsIsSaidWithItsResultant) {
   const Equilibrium floats = FindEquilibrium(def);
   EXPECT_FALSE(floats.found);
   EXPECT_EQ(floats.why,
-            "weight and loads have the resultant (0, 0, -19.62) N, and nothing holds the robot in "
-            "the world");
+            "weight and loads have the resultant (0, 0, -19.62) N, and no support holds the robot "
+            "in the world");
   const Vec3 slope{0.1 / std::sqrt(1.01), 0, 1 / std::sqrt(1.01)};
   def.planes.push_back({"slope", slope, {0, 0, -1}, {}});
-  EXPECT_NE(FindEquilibrium(def).why.find("along the plane nothing holds the robot"),
+  EXPECT_NE(FindEquilibrium(def).why.find("no support holds the robot along the plane"),
             std::string::npos);
   def.gravity_m_per_s2 = 9.81 * slope;
-  EXPECT_NE(FindEquilibrium(def).why.find("the plane can only push the other way"),
+  EXPECT_NE(FindEquilibrium(def).why.find("the plane can push only in the opposite direction"),
             std::string::npos);
   EquilibriumOptions without;
   without.contact = false;
-  EXPECT_NE(FindEquilibrium(def, {}, without).why.find("nothing holds"), std::string::npos);
+  EXPECT_NE(FindEquilibrium(def, {}, without).why.find("no support holds"), std::string::npos);
 }
 
 TEST(Equilibrium, WhatGoesOnForeverIsSaid) {
-  ModelDef def;  // a point on a guide that leads down
+  ModelDef def;  // a point on a vertical guide
   AddPoint(def, "p", {0, 0, 0}, 1);
   AddJoint(def, JointKind::kLine, kWorld, {0, 0, 0}, 0, {0, 0, 0});
   const Equilibrium e = FindEquilibrium(def);
   EXPECT_FALSE(e.found);
-  EXPECT_EQ(e.why, "the robot moves away without end: nothing stops it");
+  EXPECT_EQ(e.why, "the robot moves away without limit: no support or cable stops it");
 }
 
 TEST(Equilibrium, WhatWouldRestOnABoxIsRefused) {
@@ -290,39 +291,39 @@ TEST(Equilibrium, QuestionsWithoutAMeaningAreAnswered) {
   EXPECT_EQ(why([](auto& l, auto&) {
               l.forces.push_back({7, {}});
             }),
-            "a load is on a node that is not there");
+            "the load case has a force on a node that does not exist");
   EXPECT_EQ(why([](auto& l, auto&) {
               l.cables.push_back({-1, 0});
             }),
-            "a cable that gets longer is not there");
+            "the load case lengthens a cable that does not exist");
   EXPECT_EQ(why([](auto& l, auto&) {
               l.bars.push_back({1, 0});
             }),
-            "a bar that gets longer is not there");
+            "the load case lengthens a bar that does not exist");
   EXPECT_EQ(why([](auto& l, auto&) {
               l.bars.push_back({0, 0});
             }),
-            "joint \"joint0\", which gets longer, is no bar");
+            "the load case lengthens joint \"joint0\", which is not a bar");
   EXPECT_EQ(why([](auto& l, auto&) {
               l.settlements.push_back({2, {}});
             }),
-            "a support that settles is not there");
+            "the load case moves a support that does not exist");
   EXPECT_EQ(why([](auto& l, auto&) {
               l.settlements.push_back({0, {}});
             }),
-            "joint \"joint0\", which settles, is no support");
+            "the load case moves joint \"joint0\", which is not a support");
   EXPECT_EQ(why([](auto&, auto& o) { o.from = Pose(); }),
-            "the pose to begin with is that of another model");
+            "the start pose belongs to another model");
 }
 
-// What takes no part is said, by name.
+// Features that the equilibrium ignores are reported by name.
 TEST(Equilibrium, WhatIsLeftOutIsNamed) {
   ModelDef def = Rope(1, 400, 0.9);
   def.cables[0].touches = CableTouches::kTerrain;
   AddJoint(def, JointKind::kHinge, kWorld, {0, 0, 0}, 0, {0, 0, 0}).friction = 0.1;
   const Equilibrium e = FindEquilibrium(def);
   ASSERT_EQ(e.left_out.size(), 2U);
-  EXPECT_EQ(e.left_out[0], "what the path may come to lie against of cable cable0");
+  EXPECT_EQ(e.left_out[0], "obstacles along the path of cable cable0");
   EXPECT_EQ(e.left_out[1], "friction of joint joint0");
 }
 

@@ -1,4 +1,4 @@
-/// Ranks, self-stress and mechanisms against what is known of tensegrity structures in closed form.
+/// Ranks, states of self-stress and mechanisms against closed forms for known tensegrity structures
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 double Distance(const Vec3& a, const Vec3& b) { return std::sqrt(Dot(a - b, a - b)); }
 
-/// Rods between pairs of points, cables as told, all cables with a density [N/m].
+/// Rods between pairs of points, and cables with given stiffness [N/m] and force density [N/m]
 struct Rods {
   ModelDef def;
   std::vector<Vec3> at;
@@ -34,7 +34,7 @@ struct Rods {
   }
 };
 
-/// Six rods of length 4, in parallel pairs 2 apart, and 24 cables of length sqrt(6).
+/// Six rods of length 4, in parallel pairs 2 apart, and 24 cables of length sqrt(6)
 ModelDef SixStruts(double stiffness, double density) {
   Rods robot;
   robot.def.gravity_m_per_s2 = {};
@@ -52,7 +52,7 @@ ModelDef SixStruts(double stiffness, double density) {
   return robot.def;
 }
 
-/// A prism of n struts whose top is turned against its base by pi / 2 - pi / n along a side cable.
+/// A prism of n struts whose top is rotated against its base by pi / 2 - pi / n along a side cable
 ModelDef Prism(int n) {
   Rods robot;
   robot.def.gravity_m_per_s2 = {};
@@ -98,13 +98,13 @@ TEST(ForceAnalysis, SixStrutsCountAsInTheLiterature) {
   EXPECT_EQ(found.classical->self_stresses, 1);
   EXPECT_EQ(found.classical->mechanisms, 1);
   EXPECT_EQ(found.classical->rigid, 6);
-  // Columns have the length sqrt(2), both ends of a member.
+  // Columns have the length sqrt(2), because both ends of a member contribute.
   EXPECT_NEAR(found.classical->rank.smallest_kept / std::sqrt(2.0), 0.28, 0.005);
   EXPECT_LT(found.classical->rank.largest_dropped, 1e-14);
 }
 
-// The mechanism is stiffened by prestress alone: with stiff cables the lowest eigenvalue of all is
-// four times the cables' density, and the mechanism's own is, whatever the cables' stiffness.
+// The mechanism is stiffened by prestress only. With stiff cables the lowest eigenvalue is four
+// times the cables' force density, as is the mechanism's stiffness for any cable stiffness.
 TEST(ForceAnalysis, PrestressGivesSixStrutsFourTimesItsDensity) {
   const ForceAnalysis found = AnalyseForces(SixStruts(1e8, 2.5));
   ASSERT_EQ(found.mechanism_stiffness.size(), 1U);
@@ -139,7 +139,7 @@ TEST(ForceAnalysis, ATurnedPrismHasNoStateOfSelfStress) {
   ModelDef def = Prism(3);
   for (CableDef& cable : def.cables) {
     for (AttachmentDef& at : cable.attachments) {
-      if (at.position_m.z < 1) continue;  // the top, turned by 0.1 rad
+      if (at.position_m.z < 1) continue;  // the top, rotated by 0.1 rad
       const Vec3 p = at.position_m;
       at.position_m = {std::cos(0.1) * p.x - std::sin(0.1) * p.y,
                        std::sin(0.1) * p.x + std::cos(0.1) * p.y, p.z};
@@ -150,7 +150,8 @@ TEST(ForceAnalysis, ATurnedPrismHasNoStateOfSelfStress) {
   EXPECT_TRUE(found.mechanism_stiffness.empty());
 }
 
-// Seven states for a point on ten cables; only some make all of them pull.
+// A point on ten cables has seven states of self-stress; only some combinations put all cables in
+// tension.
 TEST(ForceAnalysis, AFeasibleStateIsFoundAmongMany) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -170,7 +171,7 @@ TEST(ForceAnalysis, AFeasibleStateIsFoundAmongMany) {
   }
 }
 
-// All cables on one side of a plane: pulled there, whatever they do.
+// All cables on one side of a plane: their resultant always points there.
 TEST(ForceAnalysis, NoStateIsFeasibleWhereAllPullOneWay) {
   ModelDef def;
   AddPoint(def, "p", {0, 0, 0}, 1);
@@ -198,7 +199,8 @@ TEST(ForceAnalysis, ARankThatHangsOnRoundingIsNotClear) {
   EXPECT_FALSE(found.rank.clear());
 }
 
-// Friction at an eyelet parts a cable into two members, a joint's rows and a bar are some, too.
+// An eyelet with friction splits a cable into two members; each constraint row of a joint and each
+// bar is also a member.
 TEST(ForceAnalysis, SpansBarsAndHeldDirectionsAreMembers) {
   ModelDef def;
   AddPoint(def, "p", {0, 0, 0}, 1);

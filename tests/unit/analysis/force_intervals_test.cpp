@@ -1,4 +1,4 @@
-// Limits of forces that statics leaves open, against what levers and Coulomb's law give by hand.
+// Intervals of statically indeterminate forces, against lever laws and Coulomb's law
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ void ExpectInterval(const ForceInterval& interval, double low, double high) {
   EXPECT_LT(interval.uncertain_n, 1e-5);
 }
 
-/// 2 kg, 0.3 m above a floor, on feet.
+/// A body of 2 kg with its center of mass above a floor
 ModelDef Table(const Vec3& com_m) {
   ModelDef def;
   def.bodies = {Body("table", 2, com_m)};
@@ -56,14 +56,15 @@ TEST(ForceIntervals, FourFeetOfATableShareInManyWays) {
   ASSERT_TRUE(middle.found) << middle.why;
   EXPECT_EQ(middle.undetermined, 1);
   for (const ForceInterval& foot : middle.touch) ExpectInterval(foot, 0, kWeight / 2);
-  // The centre of mass at (0.5, 0): N = W (3, 1, 1, 3) / 8 + a (1, -1, 1, -1).
+  // The center of mass at (0.5, 0): N = W (3, 1, 1, 3) / 8 + a (1, -1, 1, -1)
   const ForceIntervals aside = Find(Table({0.5, 0, 0.3}), options);
   ASSERT_TRUE(aside.found) << aside.why;
   ExpectInterval(aside.touch[0], kWeight / 4, kWeight / 2);
   ExpectInterval(aside.touch[1], 0, kWeight / 4);
 }
 
-/// Bodies that no unknown force joins are looked at one by one; a cable of known tension is none.
+/// Bodies that are not connected by unknown forces are solved separately; a cable of known tension
+/// does not connect.
 TEST(ForceIntervals, EachPartByItselfIsAsInTheWhole) {
   ModelDef def = Table({0, 0, 0.3});
   def.bodies.push_back(Body("other", 1, {10, 0, 0.3}));
@@ -83,7 +84,7 @@ TEST(ForceIntervals, EachPartByItselfIsAsInTheWhole) {
     ExpectInterval(both.touch[i], 0, kWeight / 2);
     ExpectInterval(both.touch[4 + i], 0, kWeight / 4);
   }
-  // Of one that does not balance it is said, whichever it is.
+  // If any of the separate parts does not balance, it is reported by name.
   options.touches.resize(5);
   const ForceIntervals tips = Find(def, options);
   EXPECT_FALSE(tips.found);
@@ -91,7 +92,7 @@ TEST(ForceIntervals, EachPartByItselfIsAsInTheWhole) {
   EXPECT_TRUE(tips.touch.empty());
 }
 
-/// Bars that a load case lengthens are found in their parts, too.
+/// Bars that a load case lengthens keep their change in the separate parts.
 TEST(ForceIntervals, ABarThatIsLongerIsSoInItsPart) {
   ModelDef def;
   const double stretch_m = 9.81 / 1000;
@@ -113,7 +114,7 @@ TEST(ForceIntervals, ABarThatIsLongerIsSoInItsPart) {
   ExpectInterval(found.joint_z[1], 9.81, 9.81);
 }
 
-/// Two rods of a body that end in one place stand there once.
+/// Two rods of a body with a common end contact the ground there once.
 TEST(ForceIntervals, WhatEndsInOnePlaceTouchesOnce) {
   ModelDef def = Table({0, 0, 0.1});
   def.planes = {test::Plane("ground", {0, 0, 1}, 0.5)};
@@ -127,7 +128,7 @@ TEST(ForceIntervals, WhatEndsInOnePlaceTouchesOnce) {
   EXPECT_EQ(FindTouches(def, 1e-6).size(), 4u);
 }
 
-/// A cable whose tension is not known joins what it ties.
+/// A cable of unknown tension connects its bodies.
 TEST(ForceIntervals, ACableOfUnknownTensionJoinsItsBodies) {
   ModelDef def;
   def.bodies = {Body("upper", 2, {0, 0, 1}), Body("lower", 1, {0, 0, 0})};
@@ -141,7 +142,7 @@ TEST(ForceIntervals, ACableOfUnknownTensionJoinsItsBodies) {
   ExpectInterval(chain.cable[1], 9.81, 9.81);
 }
 
-// Friction does not move what the feet bear: all of it acts in one plane.
+// Friction does not change the normal forces, because it acts in the plane of the feet.
 TEST(ForceIntervals, ThreeFeetAreDeterminateWithFrictionToo) {
   IntervalOptions options;
   options.touches = Feet({{1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}}, 0.7);
@@ -158,11 +159,11 @@ TEST(ForceIntervals, ATableThatTipsIsNotHeld) {
   EXPECT_FALSE(table.found);
   ASSERT_EQ(table.left.size(), 1U);
   EXPECT_EQ(table.left[0].body, 0);
-  EXPECT_NE(table.why.find("balance table by"), std::string::npos) << table.why;
+  EXPECT_NE(table.why.find("out of balance: table by"), std::string::npos) << table.why;
 }
 
-/// A ladder of 2 kg in a vertical plane that is turned about z, so that friction is along no
-/// direction that is there from the beginning.
+/// A ladder of 2 kg in a vertical plane rotated about z, so that friction is not along an initial
+/// friction direction
 struct Ladder {
   ModelDef def;
   IntervalOptions options;
@@ -179,7 +180,7 @@ Ladder LadderAt(double angle_rad, double floor_friction, double wall_friction) {
 }
 
 // With r = cot(angle), friction F up the wall, N2 = r (W / 2 - F) at the wall, N1 = W - F at the
-// floor: |F| <= m2 N2 and N2 <= m1 N1.
+// floor: |F| <= m2 N2 and N2 <= m1 N1
 TEST(ForceIntervals, ALadderAgainstAWall) {
   struct Case {
     double angle_rad, floor, wall;
@@ -197,7 +198,7 @@ TEST(ForceIntervals, ALadderAgainstAWall) {
   }
 }
 
-// Where the wall is smooth it stands if half the cotangent is at most the floor's friction.
+// At a smooth wall the ladder stands if half the cotangent is at most the floor's friction.
 TEST(ForceIntervals, ALadderSlipsJustWhereItShould) {
   for (const double more : {0.001, -0.001}) {
     const Ladder ladder = LadderAt(std::atan(1 / (2 * 0.4)) + more, 0.4, 0);
@@ -206,7 +207,7 @@ TEST(ForceIntervals, ALadderSlipsJustWhereItShould) {
   }
 }
 
-// Between two walls it is held by friction however hard they press, if they press hard enough.
+// Between two walls the block is held by friction at any sufficiently large normal force.
 TEST(ForceIntervals, AJamHasNoUpperLimit) {
   ModelDef def;
   def.bodies = {Body("block", 2, {0, 0, 0})};
@@ -245,7 +246,7 @@ TEST(ForceIntervals, TensionsThatFollowFromRestLengthsAreKnown) {
     ExpectInterval(foot, kWeight / 2 - 6, kWeight / 2 - 6);
 }
 
-// A beam on two fixed balls: each bears half, and along it anything.
+// A beam on two fixed balls: each carries half the weight, with any axial force.
 TEST(ForceIntervals, RedundantSupports) {
   ModelDef def;
   def.bodies = {Body("beam", 2, {0, 0, 0})};

@@ -1,4 +1,5 @@
-// Forms against closed ones: a chain's parabola, prisms' twist and six struts' spacing.
+// Form finding against closed forms: a chain's parabola, the twist of prisms, and the spacing of
+// six struts
 #include "taut/form_finding.h"
 
 #include <gtest/gtest.h>
@@ -44,8 +45,8 @@ TEST(FormFinding, AChainUnderLoadsIsAParabola) {
   }
 }
 
-/// A prism of n struts: nodes below and above, turned by `twist_rad` along each strut, and groups
-/// horizontal 0, vertical 1, struts 2.
+/// A prism of n struts with nodes at the bottom and at the top, rotated by `twist_rad` along each
+/// strut; groups: horizontal 0, vertical 1, struts 2
 struct Prism {
   FormNet net;
   std::vector<int> group;
@@ -66,16 +67,15 @@ Prism PrismOf(int n, double twist_rad, double above_radius_m) {
   }
   for (int i = 0; i < n; ++i) {
     add(i, (i + 1) % n, 0), add(n + i, n + (i + 1) % n, 0);
-    add(n + i, (i + 1) % n, 1);  // a top node's cable goes to the next strut's foot
+    add(n + i, (i + 1) % n, 1);  // the cable of a top node leads to the next strut's bottom node
     add(i, n + i, 2);
   }
   return prism;
 }
 
-// Statics of one node by hand: with radius 1 and strut and cable going over the angles a and
-// a - 2 pi / n, q_cable = -q_strut, cos of both over the circle equal in what they pull across, and
-// along it 2 q_h (1 - cos(2 pi / n)) = q_s (cos a - cos(a - 2 pi / n)): a = pi / 2 + pi / n,
-// q_strut = -2 sin(pi / n) q_h.
+// Equilibrium of one node at radius 1, where the strut and the cable span the angles a and a - 2 pi
+// / n: q_cable = -q_strut; tangential components balance, and radially 2 q_h (1 - cos(2 pi / n)) =
+// q_s (cos a - cos(a - 2 pi / n)). Hence a = pi / 2 + pi / n, q_strut = -2 sin(pi / n) q_h.
 TEST(FormFinding, PrismsTwistByWhatTheirCornersAsk) {
   for (const int n : {3, 4, 5, 7}) {
     const Prism prism = PrismOf(n, std::numbers::pi / 2 + std::numbers::pi / n + 0.1, 1.0);
@@ -133,7 +133,7 @@ std::optional<RobotSpec> Load(const std::string& path) {
   return robot;
 }
 
-// The model is described with its struts 1.5 m apart, far from its form, and each is 1.684 m long.
+// The described pose has struts 1.5 m apart, far from the form; each strut is 1.684 m long.
 TEST(FormFinding, SixStrutsOfAModelRelaxIntoTheirForm) {
   const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
@@ -147,11 +147,11 @@ TEST(FormFinding, SixStrutsOfAModelRelaxIntoTheirForm) {
   for (const CableDef& cable : def.cables) {
     EXPECT_NEAR(CableTension(cable) / CableLength(cable), 100, 1e-6);
   }
-  EXPECT_LE(form.equilibrium.iterations, 3);  // it is where it stays
+  EXPECT_LE(form.equilibrium.iterations, 3);  // the form is already an equilibrium
   for (const BodyLoad& load : StartLoads(def)) EXPECT_LT(Length(load.cable_force_n), 1e-5);
 }
 
-// Equal tensions of the same robot are equal force densities: its cables are equally long.
+// In this robot equal tensions are equal force densities, because all cables have the same length.
 TEST(FormFinding, TensionsInPlaceOfForceDensities) {
   const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
@@ -183,8 +183,8 @@ TEST(FormFinding, AFormIsWrittenAsAModel) {
   }
 }
 
-// A prism has a form where its upright cables have 2 sin(pi / 3) times the force density of the
-// others; with less they do not keep its triangles apart.
+// A prism has a form if the force density of its vertical cables is 2 sin(pi / 3) times the density
+// of the others; with less they cannot keep its triangles apart.
 TEST(FormFinding, APrismWithWeakUprightsCollapses) {
   const auto robot = Load("examples/my_first_robot.yaml");
   FormOptions options;
@@ -192,9 +192,10 @@ TEST(FormFinding, APrismWithWeakUprightsCollapses) {
   Diagnostics out;
   const Form form = FindForm(*robot, options, out);
   EXPECT_FALSE(form.found);
-  EXPECT_EQ(form.why,
-            "the form is flat: cable lower_1 draws its ends together, and others are too weak to "
-            "keep them apart");
+  EXPECT_EQ(
+      form.why,
+      "the form collapses: cable lower_1 pulls its ends into one point, and other members are "
+      "too weak to keep them apart");
   for (std::size_t i = 0; i < robot->def.cables.size(); ++i) {
     const bool upright = robot->def.cables[i].name.rfind("side", 0) == 0;
     options.force_density_n_per_m[i] = upright ? 60 * std::sqrt(3.0) : 60;
@@ -217,18 +218,19 @@ TEST(FormFinding, WrongInputsAreComplainedOf) {
   EXPECT_FALSE(FindNetForm(net, {1}, {}, out));
   EXPECT_FALSE(FindFreeForm(net, {0, 0}, out).found);
   EXPECT_EQ(out.Format(),
-            "error: groups must be numbers from 0 on, each with a member\n"
-            "error: member 0 is not between two nodes of the net\n"
-            "error: member 1 is not between two nodes of the net\n"
+            "error: FindFreeForm does not support nets with fixed nodes (call FindNetForm)\n"
+            "error: groups must be numbered from 0, each with at least one member\n"
+            "error: member 0 does not connect two nodes of the net\n"
+            "error: member 1 does not connect two nodes of the net\n"
             "error: no node of the net is fixed\n"
-            "error: the net does not say of every node whether it is fixed\n"
-            "error: the net has fixed nodes (FindNetForm finds its form)\n"
+            "error: the force densities do not determine the position of every node (connect every "
+            "node to a fixed one; tensions and compressions must not cancel)\n"
+            "error: the net has 2 flags of fixed nodes for 3 nodes\n"
             "error: there are 1 loads for 3 nodes\n"
             "error: there are 2 force densities for 1 members\n"
-            "error: there are 2 groups for 1 members\n"
-            "error: these force densities do not hold every node of the net (some node hangs on "
-            "nothing, or tensions and compressions cancel)\n");
-  EXPECT_EQ(FindFreeForm(net, {0}, out).why, "the nodes are in a plane, or fewer than five");
+            "error: there are 2 groups for 1 members\n");
+  EXPECT_EQ(FindFreeForm(net, {0}, out).why,
+            "the net needs at least five nodes, not all in one plane");
 
   const auto robot = Load("share/models/six_strut.yaml");
   FormOptions options;
@@ -240,13 +242,13 @@ TEST(FormFinding, WrongInputsAreComplainedOf) {
   options.tension_n[3] = -1;
   EXPECT_FALSE(FindForm(*robot, options, wrong).found);
   EXPECT_EQ(wrong.Format(),
-            "error: a form needs force densities or tensions of the cables, one of both\n"
             "error: cable a1-d1 must have a force density or tension above 0\n"
+            "error: form finding needs either force densities or tensions of the cables\n"
             "error: there are 2 numbers for 24 cables\n");
   Diagnostics soft;
   options.tension_n.assign(24, 2000);
-  EXPECT_EQ(FindForm(*robot, options, soft).why, "there are cables that are too soft");
-  EXPECT_NE(soft.Format().find("is too soft: with 2000"), std::string::npos) << soft.Format();
+  EXPECT_EQ(FindForm(*robot, options, soft).why, "some cables are too soft");
+  EXPECT_NE(soft.Format().find("is too soft: 2000"), std::string::npos) << soft.Format();
 }
 
 }  // namespace

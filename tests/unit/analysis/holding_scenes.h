@@ -1,4 +1,4 @@
-/// Small models for the forces that hold them.
+/// Small models for the forces that hold a pose
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ inline BodyDef Body(const std::string& name, double mass_kg, const Vec3& com_m) 
   return body;
 }
 
-/// From `from` of the world to a point of body 0.
+/// Returns a cable from `from` of the world to a point of body 0.
 inline CableDef CableTo(const std::string& name, const Vec3& from, const Vec3& to,
                         double stiffness_n_per_m = 1000) {
   CableDef cable;

@@ -1,5 +1,5 @@
-// Forces that hold a pose: against closed forms, against the statics of a description, which knows
-// nothing of unknowns, and against the commands that a real robot's authors published.
+// Inverse statics: against closed forms, against the statics of a description, which has no
+// unknowns, and against published commands of a real robot
 #include "taut/inverse_statics.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ HoldingForces Hold(const ModelDef& def, const HoldingOptions& options = {},
   return forces;
 }
 
-/// 2 kg on three cables that hang side by side at its centre of mass.
+/// A mass of 2 kg on three vertical cables at its center of mass
 ModelDef ThreeAbove() {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, -9.81};
@@ -53,7 +53,7 @@ TEST(InverseStatics, ParallelCablesShareByWhatIsLeast) {
     }
     EXPECT_LT(forces.residual_n, 1e-12);
   };
-  // Lagrange: T w = const, with the weights w = 1, 1 / (2 k), 1 / l^2.
+  // Lagrange multipliers: T w = const, with the weights w = 1, 1 / (2 k), 1 / l^2
   expect(HoldingCost::kTension, {1, 1, 1});
   expect(HoldingCost::kEnergy, {500, 1000, 2500});
   expect(HoldingCost::kForceDensity, {1, 4, 9});
@@ -69,7 +69,7 @@ TEST(InverseStatics, RestLengthsAndCommandsFollowFromTensions) {
   const double tension = kWeight / 3;
   EXPECT_NEAR(forces.rest_length_m[1], 2 - tension / 1000, 1e-12);
   EXPECT_NEAR(forces.command_m[0], 1 - tension / 500 - 0.9, 1e-12);
-  EXPECT_NEAR(forces.command_m[1], -tension / 1000 - 0.002, 1e-12);  // warmth has lengthened it
+  EXPECT_NEAR(forces.command_m[1], -tension / 1000 - 0.002, 1e-12);  // heat has lengthened it
   EXPECT_NEAR(forces.command_m[2], 3 - tension / 2500 - 3.5, 1e-12);
   EXPECT_NEAR(forces.cost, 3 * tension * tension, 1e-9);
 }
@@ -101,7 +101,9 @@ TEST(InverseStatics, ACableThatWouldHaveToPushIsNamedByWhatIsLeft) {
   ASSERT_EQ(forces.left.size(), 1U);
   EXPECT_EQ(forces.left[0].body, 0);
   EXPECT_NEAR(forces.left[0].force_n.z, -kWeight, 1e-8);
-  EXPECT_EQ(forces.why, "no forces within their bounds balance mass by 19.62 N and 0 N m");
+  EXPECT_EQ(
+      forces.why,
+      "no forces within their bounds balance the loads; out of balance: mass by 19.62 N and 0 N m");
 }
 
 TEST(InverseStatics, BoundsThatAreTooTightLeaveTheRest) {
@@ -126,7 +128,7 @@ TEST(InverseStatics, APushAcrossAllCablesIsLeft) {
   EXPECT_NEAR(forces.left[0].force_n.z, 0, 1e-7);
 }
 
-// A crane: a bar from the wall to the mass, a cable from above. l_bar = 3, l_cable = 5, 4 above.
+// A crane: a bar from the wall to the mass, a cable from above; l_bar = 3, l_cable = 5, 4 above.
 TEST(InverseStatics, BarsCarryWhatTheyMust) {
   ModelDef def;
   def.bodies = {Body("mass", 2, {3, 0, 0})};
@@ -144,7 +146,7 @@ TEST(InverseStatics, BarsCarryWhatTheyMust) {
   EXPECT_NEAR(forces.joint_loads[0].force_n.x, kWeight * 3 / 4, 1e-9);
 }
 
-// A pulley that runs along: both spans bear half.
+// A moving pulley: both spans carry half the weight.
 TEST(InverseStatics, ACableThroughAnEyeletBearsHalf) {
   ModelDef def;
   def.bodies = {Body("block", 2, {0, 0, 0})};
@@ -157,7 +159,7 @@ TEST(InverseStatics, ACableThroughAnEyeletBearsHalf) {
   EXPECT_NEAR(forces.rest_length_m[0], 6 - kWeight / 2 / 1000, 1e-12);
 }
 
-// A plank of 4 m on two feet without friction, a rope at one end pulls up: levers.
+// A plank of 4 m on two feet without friction, pulled up by a rope at one end: lever law.
 TEST(InverseStatics, WhatTouchesPushesAndDoesNotPull) {
   ModelDef def;
   def.bodies = {Body("plank", 2, {0, 0, 0})};
@@ -167,14 +169,14 @@ TEST(InverseStatics, WhatTouchesPushesAndDoesNotPull) {
   options.bounds = {{4.0, 4.0}};
   const HoldingForces held = Hold(def, options);
   ASSERT_TRUE(held.found) << held.why;
-  // About the left foot: 3 N2 + 4 * 4 = 2 W.
+  // Moments about the left foot: 3 N2 + 4 * 4 = 2 W
   EXPECT_NEAR(held.touch_force_n[1].z, (2 * kWeight - 16) / 3, 1e-9);
   EXPECT_NEAR(held.touch_force_n[0].z, kWeight - 4 - (2 * kWeight - 16) / 3, 1e-9);
   options.bounds = {{11.0, 11.0}};  // the right foot would have to pull
   EXPECT_FALSE(Hold(def, options).found);
 }
 
-// What comes out, put into the description, leaves nothing on any body.
+// With the resulting rest lengths the described pose is in equilibrium.
 TEST(InverseStatics, PretensionOfAPrismBalancesTheDescription) {
   Diagnostics out;
   auto robot = LoadRobot(std::string(TAUT_SOURCE_DIR) + "/examples/my_first_robot.yaml", {}, out);
@@ -195,7 +197,7 @@ TEST(InverseStatics, PretensionOfAPrismBalancesTheDescription) {
   }
 }
 
-/// The BEST laboratory's spine in the plane y = 0 of W, z up (tests/data/best_2d_spine/README.md).
+/// The BEST laboratory's spine in the plane y = 0 of W, z up (tests/data/best_2d_spine/README.md)
 ModelDef BestSpine(double x_m, double z_m, double turn_rad) {
   const double c = std::cos(turn_rad), s = std::sin(turn_rad);
   const auto at = [&](double x, double z) {
@@ -240,8 +242,8 @@ TEST(InverseStatics, The120PublishedCommandsOfTheBestSpine) {
     ++commands;
   }
   EXPECT_EQ(commands, 120);
-  EXPECT_EQ(bounded, 120);   // each is decided by the least force density
-  EXPECT_LT(largest, 1e-5);  // commands have five digits, poses, too
+  EXPECT_EQ(bounded, 120);   // each is determined by the lower bound of force density
+  EXPECT_LT(largest, 1e-5);  // commands and poses have five digits
   RecordProperty("largest_m", std::to_string(largest * 1e6) + " um");
 }
 
@@ -258,24 +260,25 @@ TEST(InverseStatics, WrongOptionsAreComplainedOfAllAtOnce) {
   Diagnostics out;
   const HoldingForces none = FindHoldingForces(def, loads, options, out);
   EXPECT_FALSE(none.found);
-  EXPECT_EQ(none.why, "the options are wrong");
+  EXPECT_EQ(none.why, "the options are invalid");
   EXPECT_EQ(out.Format(),
-            "error: load case wind has a force on no node of the model\n"
-            "error: load case wind moves supports, but the pose is given (describe the pose that "
-            "they have then)\n"
-            "error: the friction of touch 0 must be a number of at least 0\n"
-            "error: the normal of touch 0 is no unit vector\n"
-            "error: there are 1 rest lengths of the calibration for 3 cables\n"
-            "error: there are 2 bounds for 3 cables\n"
-            "error: touch 0 is not between two bodies, or a body and the world\n");
+            "error: contact 0 does not connect two bodies, or a body and the world\n"
+            "error: load case wind has a force on a node that does not exist\n"
+            "error: load case wind moves supports, but forces are computed in the described pose "
+            "(describe the pose with the moved supports)\n"
+            "error: the calibration has 1 rest lengths for 3 cables\n"
+            "error: the friction of contact 0 must be a finite number of at least 0\n"
+            "error: the normal of contact 0 is not a unit vector\n"
+            "error: there are 2 bounds for 3 cables\n");
   def.cables.pop_back();
   options.calibration_rest_m.clear();
   options.touches.clear();
   Diagnostics bounds;
   FindHoldingForces(def, {}, options, bounds);
   EXPECT_EQ(bounds.Format(),
-            "error: cable b is to have at least 6.000000 N and at most 4.000000 N\n"
-            "error: the bounds of cable a must be numbers of at least 0\n");
+            "error: the bounds of cable a must be numbers of at least 0\n"
+            "error: the lower bound of cable b, 6.000000 N, is above its upper bound of 4.000000 "
+            "N\n");
 }
 
 }  // namespace

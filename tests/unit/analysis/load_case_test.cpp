@@ -1,4 +1,4 @@
-// Load cases of experiments: what they become, there and back, and what is wrong with them.
+// Load cases of experiments: reading, writing, errors
 #include <gmock/gmock.h>
 
 #include "unit/description/experiment_fixture.h"
@@ -94,18 +94,17 @@ TEST_F(LoadCases, MistakesAreNamed) {
             "16:19: error: rest_lengths.members: no cable or bar matches stray (no cable or bar is "
             "called or tagged \"stray\"; did you mean \"stay\"?)\n");
   EXPECT_EQ(After("by_ratio: 0.01", "by_ratio: -1"),
-            "16:19: error: the load case \"winter\" leaves nothing of the rest length of \"line\", "
-            "1.5 m\n"
-            "18:19: error: the load case \"winter\" leaves nothing of the rest length of \"rope\", "
-            "1.5 m\n");
+            "16:19: error: the load case \"winter\" leaves no positive rest length of \"line\", "
+            "which has 1.5 m without it\n"
+            "18:19: error: the load case \"winter\" leaves no positive rest length of \"rope\", "
+            "which has 1.5 m without it\n");
   EXPECT_EQ(After("by_ratio: 0.01", "by_ratio: 0.01, by_m: 1"),
-            "16:25: error: rest_lengths has both by_m and by_ratio (only one of them may be "
-            "there)\n");
+            "16:25: error: rest_lengths has both by_m and by_ratio (give only one of them)\n");
   EXPECT_EQ(After("[[leg], [rope]]", "bar"),
-            "18:19: error: temperatures.members: it is not known how warmth lengthens deck (give "
-            "the builder in the model `expansion_per_k`: steel has 12e-6)\n");
+            "18:19: error: temperatures.members: the thermal expansion is not known for deck (add "
+            "`expansion_per_k` to the builder in the model: steel has 12e-6)\n");
   EXPECT_EQ(After("name: winter", "name: snow"),
-            "10:11: error: there are two load cases snow (the first is in line 7)\n");
+            "10:11: error: two load cases are called snow (the first is in line 7)\n");
   EXPECT_EQ(After("by_k: -20", "by_c: -20"),
             "18:9: error: temperatures needs the key \"by_k\"\n"
             "18:36: error: unknown key \"by_c\" in temperatures (did you mean \"by_k\"?)\n");
@@ -127,11 +126,11 @@ TEST_F(LoadCases, OfResolvedExperimentsReferToWhatIsThere) {
   EXPECT_THAT(with("{index: 1, by_m", "{index: 9, by_m"),
               testing::HasSubstr("there is no cable 9"));
   const std::string other = with("rest_m: ", "rest_rad: ");
-  EXPECT_THAT(other, testing::HasSubstr("rest_rad is of another quantity"));
-  EXPECT_THAT(other, testing::Not(testing::HasSubstr("unknown key")));  // it has been said
+  EXPECT_THAT(other, testing::HasSubstr("rest_rad is for another quantity"));
+  EXPECT_THAT(other, testing::Not(testing::HasSubstr("unknown key")));  // reported once only
 }
 
-/// Of the model file, and of inputs.yaml, which knows bodies as a whole only.
+/// Robots of model files and of inputs.yaml, which stores bodies as wholes.
 TEST_F(LoadCases, RobotsWithBarsAreWrittenAsModels) {
   ChangeFile("model.yaml", kFrame, "expansion_per_k: 2e-5}",
              "expansion_per_k: 2e-5, mass_kg: 0.2, strength_n: 40}");

@@ -1,4 +1,4 @@
-// The lightest rods and cables: at their limits by beams cut into pieces, and no lighter one does.
+// Lightest rods and cables: they are exactly at their limits, computed from discretized beams.
 #include "taut/member_sizing.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ SizingTask Aluminium(double length_m, const std::vector<double>& force_n) {
   return task;
 }
 
-/// The least N with E I w'' + N w = 0 and w = 0 at both ends, by differences over n pieces, which
-/// make it lower by (pi / n)^2 / 12 of it.
+/// Returns the least N with E I w'' + N w = 0 and w = 0 at both ends, by finite differences over n
+/// pieces, which lower it by the fraction (pi / n)^2 / 12.
 double BucklingLoad(double bending_stiffness, double length_m, int n) {
   const double piece = length_m / n;
   Eigen::MatrixXd curve = Eigen::MatrixXd::Zero(n - 1, n - 1);
@@ -44,7 +44,7 @@ TEST(MemberSizing, ALongRodIsAtTheLoadAtWhichItBuckles) {
     const double load = BucklingLoad(70e9 * rod->member.second_moment_m4, 3, 60);
     EXPECT_NEAR(load / (2.5 * 2000), 1 - std::numbers::pi * std::numbers::pi / (12 * 60 * 60),
                 1e-7);
-    // The section's moment from rings.
+    // Second moment of the section, by summing rings
     double moment = 0, area = 0;
     constexpr int kRings = 20000;
     for (int i = 0; i < kRings; ++i) {
@@ -72,7 +72,7 @@ TEST(MemberSizing, ATubeOfTheSameStrengthIsLighter) {
   Diagnostics out;
   const double solid = LightestRod(task, out)->mass_kg;
   task.inner_radius_share = 0.9;
-  // m ~ sqrt((1 - c^2) / (1 + c^2)) at the same Euler load.
+  // m ~ sqrt((1 - c^2) / (1 + c^2)) at the same Euler load
   EXPECT_NEAR(LightestRod(task, out)->mass_kg / solid, std::sqrt(0.19 / 1.81), 1e-12);
 }
 
@@ -111,10 +111,10 @@ TEST(MemberSizing, WrongTasksAreComplainedOfAllAtOnce) {
   EXPECT_FALSE(LightestRod(task, out));
   EXPECT_EQ(out.Format(),
             "error: a: Young's modulus must be a number above 0\n"
-            "error: a: the buckling length must be a number of at least 0\n"
+            "error: a: the buckling length must be a finite number of at least 0\n"
             "error: a: the density must be a number above 0\n"
-            "error: a: the inner radius must be a share from 0 to below 1 of the outer one\n"
             "error: a: the length must be a number above 0\n"
+            "error: a: the ratio of inner to outer radius must be at least 0 and below 1\n"
             "error: a: the safety factor of buckling must be a number above 0\n"
             "error: a: the safety factor of yielding must be a number above 0\n"
             "error: a: the slenderness must be a number above 0\n"
@@ -123,7 +123,8 @@ TEST(MemberSizing, WrongTasksAreComplainedOfAllAtOnce) {
   task = Aluminium(1, {-1, std::nan("")});
   EXPECT_FALSE(LightestCable(task, cable));
   EXPECT_EQ(cable.Format(),
-            "error: strut: a cable cannot be pressed\nerror: strut: forces must be numbers\n");
+            "error: strut: forces must be finite numbers\n"
+            "error: strut: forces of a cable must not be compressive (negative)\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Frequencies against those of structural programs and of simulated robots.
+/// Natural frequencies against structural programs and simulated robots
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@
 namespace taut::test {
 namespace {
 
-/// Of all modes, ascending; 0 of those as a whole and of mechanisms [Hz].
+/// Returns the frequencies of all modes in ascending order; 0 for rigid motions and mechanisms
+/// [Hz].
 std::vector<double> Frequencies(const ModelDef& def) {
   const Modes modes = FindModes(def);
   EXPECT_EQ(modes.why, "");
@@ -65,8 +66,8 @@ TEST(Modes, AreThoseOfStructuralFiles) {
   }
 }
 
-/// Two rigid bars across each other in the plane of x and y, as tests/physics/clustered_test.cpp
-/// has them; one of the cables runs through an eyelet at the end of a bar.
+/// Two crossing rigid bars in the plane of x and y, as in tests/physics/clustered_test.cpp; one of
+/// the cables runs through an eyelet at the end of a bar.
 struct Cross {
   double half, mass[2], stiffness, rest, cable_mass;  ///< Of a cable of one side.
 };
@@ -82,7 +83,7 @@ ModelDef ModelOf(const Cross& cross, bool cables_have_mass) {
   for (std::size_t b = 0; b < 2; ++b) {
     const Vec3 along = node[b + 2] - node[b];
     MassProperties bar = SolidCylinder(node[b], node[b + 2], 1e-4, cross.mass[b]);
-    // As thin as a line.
+    // Inertia of a thin line
     bar.inertia_kg_m2 = {};
     const double moment = cross.mass[b] * Dot(along, along) / 12;
     (b == 0 ? bar.inertia_kg_m2.yy : bar.inertia_kg_m2.xx) = moment;
@@ -99,7 +100,8 @@ ModelDef ModelOf(const Cross& cross, bool cables_have_mass) {
     const MassProperties all = Combine(parts[b]);
     BodyDef body;
     body.mass_kg = all.mass_kg, body.com_m = all.com_m, body.inertia_kg_m2 = all.inertia_kg_m2;
-    body.inertia_kg_m2.xx += 1e-3, body.inertia_kg_m2.yy += 1e-3;  // never about these axes
+    body.inertia_kg_m2.xx += 1e-3,
+        body.inertia_kg_m2.yy += 1e-3;  // they do not rotate about these axes
     def.bodies.push_back(body);
     const int index = static_cast<int>(b);
     AddJoint(def, JointKind::kPlanar, kWorld, all.com_m, index, all.com_m);
@@ -116,17 +118,17 @@ ModelDef ModelOf(const Cross& cross, bool cables_have_mass) {
   return def;
 }
 
-// CTSFEM itself says 1.4781 Hz for the first of them: it leaves out that the spans share a tension.
-// Without the cables' masses from the energy in 50 digits, by differences; with them, CTSFEM's
-// matrices with the exact tangent (and elastic bars). There a negative eigenvalue was shown as 0:
-// the D-bar's fourth, which runs away. With k a side's stiffness, q the force density of the
-// cables, m a bar's mass, (k + 2 q - m w^2 / 2) (k - 2 q - m w^2 / 6) = k^2 has one root below
-// zero.
+// For the first case CTSFEM itself gives 1.4781 Hz, because it neglects that the spans share a
+// tension. References without cable masses: numerical derivatives of the energy in 50 digits; with
+// cable masses: CTSFEM's matrices with the exact tangent (and elastic bars). There a negative
+// eigenvalue is shown as 0: the fourth of the D-bar, which is unstable. With k the stiffness of a
+// side, q the force density of the cables, m the mass of a bar, (k + 2 q - m w^2 / 2) (k - 2 q - m
+// w^2 / 6) = k^2 has one negative root.
 TEST(Modes, ClusteredCablesVibrateAsTheirExactEquationsSay) {
   struct {
     const Cross* cross;
     bool mass;
-    double hz[3];  ///< Behind three motions in the plane.
+    double hz[3];  ///< After three rigid motions in the plane.
     double relative;
   } const cases[] = {
       {&kTBar, true, {1.1440225986849, 34.52647094067688, 41.249720966315486}, 1e-6},
@@ -167,7 +169,7 @@ TEST(Modes, ARodHangsAsAPendulumAndFallsFromItsHead) {
     scenes::AddRod(def, "rod", 0.7, 1e-5, {0, 0, 0}, {0, 0, side * 0.8}, {});
     AddJoint(def, JointKind::kBall, kWorld, {0, 0, 0}, 0, {0, 0, 0});
     const Modes modes = FindModes(def);
-    ASSERT_EQ(modes.modes.size(), 2U);  // not about its axis
+    ASSERT_EQ(modes.modes.size(), 2U);  // none about its axis
     const double hz = std::sqrt(1.5 * 9.81 / 0.8) / (2 * std::numbers::pi);
     for (const Mode& mode : modes.modes) EXPECT_NEAR(mode.frequency_hz, -side * hz, 1e-8);
     EXPECT_EQ(modes.unstable, side > 0 ? 2 : 0);
@@ -197,9 +199,9 @@ TEST(Modes, OfAFloatingPrismAreThoseOfARingDown) {
     EXPECT_NEAR(modes.modes[6 + i].frequency_hz, known[i], 1e-5 * known[i] + 2e-4) << i;
   }
 
-  // The step's own frequency is higher by (w h)^2 / 24 where cables are explicit
-  // (docs/theory/integrator.md), and lower by (w h)^2 / 12, the midpoint rule's, where they are
-  // implicit (docs/theory/cables.md, section 3).
+  // The integrator's frequency is higher by (w h)^2 / 24 for explicit cables
+  // (docs/theory/integrator.md), and lower by (w h)^2 / 12, as by the midpoint rule, for implicit
+  // ones (docs/theory/cables.md, section 3).
   const Mode& mode = modes.modes[6];
   for (const double step_s : {1e-3, 5e-4}) {
     Diagnostics out;
@@ -213,7 +215,7 @@ TEST(Modes, OfAFloatingPrismAreThoseOfARingDown) {
       state.orientation = Quat{1, half.x, half.y, half.z} * state.orientation;
       world.SetBodyState(0, b, state);
     }
-    const auto share = [&] {  // of the motion, by mass and along the way
+    const auto share = [&] {  // projection of the displacement onto the mode, weighted by mass
       double sum = 0;
       for (int b = 0; b < 3; ++b) {
         const std::size_t i = static_cast<std::size_t>(b);
@@ -248,7 +250,7 @@ TEST(Modes, OfWhatStandsOnAPlaneAreThoseThatStayOnIt) {
   const Equilibrium e = FindEquilibrium(def);
   ASSERT_TRUE(e.found) << e.why;
   const Modes modes = FindModes(ModelAt(def, e.pose));
-  EXPECT_EQ(modes.rigid, 3);  // two ways to slide, one to turn
+  EXPECT_EQ(modes.rigid, 3);  // two translations, one rotation
   EXPECT_EQ(modes.unstable, 0);
   EXPECT_EQ(modes.modes.size(), 12U);
 }

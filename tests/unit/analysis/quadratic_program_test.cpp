@@ -1,6 +1,5 @@
-// Quadratic and linear programs against the conditions of Karush, Kuhn and Tucker, against proofs
-// of infeasibility and unboundedness that need no solver to be checked, and against trying all sets
-// of active constraints.
+// Quadratic and linear programs against the Karush-Kuhn-Tucker conditions, against certificates of
+// infeasibility and unboundedness, and against enumeration of all active sets
 #include "analysis/quadratic_program.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +25,7 @@ double Size(const QuadraticProgram& p, const VectorXd& x) {
   return 1 + x.norm() + p.gradient.norm() + p.hessian.norm() * x.norm();
 }
 
-/// How far x is from obeying everything.
+/// Returns the largest violation of a constraint at x.
 double Violation(const QuadraticProgram& p, const VectorXd& x) {
   double most = 0;
   if (p.equalities.rows() > 0) {
@@ -81,8 +80,8 @@ void ExpectRay(const QuadraticProgram& p, const QuadraticAnswer& a) {
   }
 }
 
-/// The best of all points at which some set of inequalities is active; nothing if none is feasible.
-/// For programs that are strictly convex, or linear with a vertex at the least.
+/// Returns the best feasible point over all active sets, or nothing if none is feasible. For
+/// programs that are strictly convex, or linear with a vertex at the minimum.
 std::optional<VectorXd> ByTryingAll(const QuadraticProgram& p) {
   const Eigen::Index n = p.gradient.size(), m = p.inequalities.rows(), e = p.equalities.rows();
   std::optional<VectorXd> best;
@@ -124,7 +123,8 @@ class Draw {
     for (double& x : m.reshaped()) x = Normal();
     return m;
   }
-  /// Small whole numbers, so that constraints meet in points, repeat and contradict each other.
+  /// Small integers, so that constraints intersect in common points, repeat and contradict each
+  /// other.
   MatrixXd Whole(int rows, int columns) {
     MatrixXd m(rows, columns);
     for (double& x : m.reshaped()) x = Upto(4) - 2;
@@ -184,14 +184,14 @@ TEST(QuadraticProgram, SmallOnesAreWhatTryingAllActiveSetsFinds) {
   }
 }
 
-// A point in which far more constraints meet than it has directions: no cycling, the same answer.
+// Degenerate point with far more constraints than dimensions: no cycling, the same solution.
 TEST(QuadraticProgram, ManyConstraintsThroughOnePoint) {
   Draw draw(3);
   for (int trial = 0; trial < 300; ++trial) {
     const int n = 2 + draw.Upto(6), m = 6 * n;
     QuadraticProgram p = Random(draw, n, 0, m, false);
     const VectorXd apex = draw.Matrix(n, 1);
-    // All hold at the apex, and the last repeat the first.
+    // All constraints are active at the apex, and the last ones repeat the first.
     for (int i = 0; i < m / 3; ++i) p.inequalities.row(m - 1 - i) = 3 * p.inequalities.row(i);
     p.at_least = p.inequalities * apex;
     ExpectLeast(p, Solve(p));
@@ -271,7 +271,7 @@ TEST(QuadraticProgram, WithoutALeastItSaysAlongWhichRay) {
     if (trial % 2 == 0) p.hessian.setZero();
     VectorXd ray = draw.Matrix(n, 1);
     ray.normalize();
-    p.hessian -= p.hessian * ray * ray.transpose();  // flat along it
+    p.hessian -= p.hessian * ray * ray.transpose();  // flat along the ray
     p.hessian = p.hessian.transpose() * p.hessian;
     for (int i = 0; i < 2 * n; ++i) {
       if (p.inequalities.row(i).dot(ray) < 0) p.inequalities.row(i) *= -1;
@@ -283,7 +283,7 @@ TEST(QuadraticProgram, WithoutALeastItSaysAlongWhichRay) {
 }
 
 TEST(QuadraticProgram, FlatDirectionsThatCostNothing) {
-  // x + y = 2 at least x^2: x = 0; z goes anywhere in its bounds.
+  // x + y = 2 with the least x^2: x = 0; z is arbitrary within its bounds.
   QuadraticProgram p;
   p.hessian = Eigen::Vector3d(2, 0, 0).asDiagonal();
   p.gradient = VectorXd::Zero(3);

@@ -1,4 +1,5 @@
-/// Free motions in words, load cases that supports do not hold, and how far nodes move.
+/// Supports: texts of free motions, load cases that supports cannot hold, and largest displacements
+/// of nodes
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace taut::test {
 namespace {
 
-/// A triangle of three points and bars, level, of side 1 m about the z axis.
+/// A horizontal triangle of three points and bars, of side 1 m, centered on the z axis
 ModelDef Triangle(double height_m) {
   ModelDef def;
   const double r = 1 / std::sqrt(3.0);
@@ -65,7 +66,7 @@ TEST(Supports, FreeMotionsAreNamedByTheirAxes) {
 
 TEST(Supports, ATurnAboutTheLineThroughTwoOfThemIsNamed) {
   for (const double height_m : {0.5, -0.5}) {
-    // The third corner is below or above the line between the two held ones.
+    // The tip, which carries the mass, is above or below the line between the two held corners.
     ModelDef def = Triangle(0);
     Hold(def, JointKind::kBall, 1), Hold(def, JointKind::kBall, 2);
     const Vec3 tip{0, 0, height_m};
@@ -91,7 +92,7 @@ TEST(Supports, WhatTheGroundMayBearIsNotRefused) {
   EXPECT_EQ(CheckSupports(def, {}).missing, "");
 }
 
-/// A body on a rail may hang from it: the rail supports it everywhere.
+/// A body may hang from a rail, which supports it everywhere.
 TEST(Supports, ARodThatHangsFromARailIsNotRefused) {
   for (const double side : {-1.0, 1.0}) {
     ModelDef def;
@@ -141,7 +142,7 @@ TEST(Supports, LoadsOfAFloatingRobotHaveToBalance) {
   EXPECT_EQ(CheckSupports(def, squeeze).missing, "");
   squeeze.forces[1].force_n.y = 4;
   EXPECT_NE(CheckSupports(def, squeeze).missing, "");
-  squeeze.forces[1].force_n = {1, 5, 0};  // a moment, too
+  squeeze.forces[1].force_n = {1, 5, 0};  // with a moment
   EXPECT_NE(CheckSupports(def, squeeze).missing, "");
 }
 

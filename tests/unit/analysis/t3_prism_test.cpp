@@ -1,5 +1,5 @@
-// The prism of Feron et al. (2023), whose struts give: forces as the paper's own calculation has
-// them, in statics and where it is stepped.
+// Prism of Feron et al. (2023) with elastic struts: forces as calculated in the paper, in statics
+// and in simulation
 #include <gtest/gtest.h>
 
 #include "taut/analysis.h"
@@ -19,14 +19,14 @@ ExperimentSpec Load() {
 
 TEST(T3Prism, ItsStrutsBearWhatThePaperCalculated) {
   const ExperimentSpec experiment = Load();
-  const Equilibrium alone = FindEquilibrium(experiment.robot.def);  // and its weight
+  const Equilibrium alone = FindEquilibrium(experiment.robot.def);  // under prestress and weight
   ASSERT_TRUE(alone.found) << alone.why;
   const Equilibrium pressed = FindEquilibrium(experiment.robot.def, experiment.load_cases.at(1));
   ASSERT_TRUE(pressed.found) << pressed.why;
   for (std::size_t strut = 0; strut < 3; ++strut) {
-    EXPECT_NEAR(pressed.bar_force_n[strut], -10815.4, 0.05);  // by another program: 10.8154 kN
-    EXPECT_NEAR(pressed.bar_force_n[strut], -10814, 5);       // digitised from the paper's curve
-    EXPECT_NEAR(alone.bar_force_n[strut], -1500, 15);         // where the test began
+    EXPECT_NEAR(pressed.bar_force_n[strut], -10815.4, 0.05);  // another program: 10.8154 kN
+    EXPECT_NEAR(pressed.bar_force_n[strut], -10814, 5);       // digitized from the paper's curve
+    EXPECT_NEAR(alone.bar_force_n[strut], -1500, 15);         // start of the paper's test
   }
 }
 

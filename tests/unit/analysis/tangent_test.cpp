@@ -1,5 +1,5 @@
-/// Forces against the statics of a description and against differences of the energy, the tangent
-/// against differences of the forces.
+/// Forces against the statics of a description and against differences of the energy; tangent
+/// stiffness against differences of the forces
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ Quat Turn(const Vec3& by) {
   return {std::cos(0.5 * angle), share * by.x, share * by.y, share * by.z};
 }
 
-/// Four bodies in any pose with one of everything: cables between points, through eyelets, round a
-/// wheel, a slack one, a bar, springs of a ball, a hinge and a guide, loads, weight.
+/// Four bodies in random poses with one of everything: cables between points, through eyelets and
+/// around a wheel, a slack cable, a bar, springs of a ball, a hinge and a guide, loads, weight
 class Anything {
  public:
   explicit Anything(unsigned seed) : random_(seed) {
@@ -76,7 +76,7 @@ class Anything {
   std::mt19937 random_;
 };
 
-/// Of that structure without what holds: rows do not take part in an energy.
+/// Returns the gradient of the structure's energy, without constraint rows.
 Eigen::VectorXd Slope(const Structure& s, const Placement& at) {
   Eigen::VectorXd gradient;
   s.Energy(at, gradient, nullptr);
@@ -87,7 +87,7 @@ TEST(TangentStiffness, ForcesAreThoseOfTheDescription) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Anything any(seed);
     for (JointDef& joint : any.def_.joints) {
-      if (!IsBar(joint)) joint.stiffness = 0;  // what holds would take part in the statics
+      if (!IsBar(joint)) joint.stiffness = 0;  // the statics would include these forces
     }
     std::erase_if(any.def_.joints, [](const JointDef& joint) { return !IsBar(joint); });
     LoadCaseSpec weight;
@@ -120,8 +120,8 @@ TEST(TangentStiffness, ForcesAreTheSlopeOfTheEnergy) {
   }
 }
 
-// With turns as exp(theta), the change of a body's torque has half of the torque itself in it:
-// d(slope_a) / d(theta_b) = H_ab + slope . (a x b) / 2, by the product of two turns.
+// With rotations as exp(theta), the change of a body's torque contains half the torque itself:
+// d(slope_a) / d(theta_b) = H_ab + slope . (a x b) / 2, from the product of two rotations.
 TEST(TangentStiffness, IsTheDerivativeOfTheForces) {
   constexpr double kStep = 1e-5;
   for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -163,9 +163,9 @@ TEST(TangentStiffness, HeldRowsAreTheWrenchesOfTheirJoint) {
     ModelDef def = any.def_;
     def.joints.clear();
     const Vec3 from = any.Any(1), axis = any.Unit();
-    // Apart along what is free, so that levers differ.
+    // Displaced along free directions, so that lever arms differ.
     Vec3 to = from;
-    if (!HeldBy(kind).along) to = to + 0.3 * axis;
+    if (!ConstrainedMotions(kind).along) to = to + 0.3 * axis;
     if (kind == JointKind::kPlane || kind == JointKind::kPlanar) {
       const Vec3 across = Cross(axis, any.Any(1));
       to = from + across;
@@ -189,7 +189,7 @@ TEST(TangentStiffness, HeldRowsAreTheWrenchesOfTheirJoint) {
   }
 }
 
-// Second derivatives of what is held, by differences of the first ones.
+// Second derivatives of constraint rows, by differences of the first derivatives.
 TEST(TangentStiffness, HeldRowsCurveAsTheirSlopesChange) {
   constexpr double kStep = 1e-5;
   Anything any(3);

@@ -1,4 +1,4 @@
-/// Mistakes of ours end the program, in builds that look for them.
+/// Assertions: a failed assertion ends the program, in builds with TAUT_ASSERTS.
 #include "base/assert.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Files that are there complete or not at all, and folders with one writer.
+// Atomic file writes, and folders with a single writer
 #include "taut/files.h"
 
 #include <fcntl.h>
@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Files : TraceFolder {
-  /// What a write of `text` complains about; nothing else may be left in the folder.
+  /// Returns the errors of writing `text`, and checks that the folder is unchanged.
   std::string Complaint(const std::string& path, const std::string& text) const {
     const std::vector<std::string> before = Names();
     Diagnostics out;
@@ -78,15 +78,15 @@ TEST_F(Files, ThatCannotBeWrittenSayWhyAndStayAsTheyWere) {
   WriteFile("a", "old");
   fs::create_directory(Path("folder"));
   EXPECT_EQ(Complaint(Path("none/a"), "x"),
-            "none/a: error: cannot be written: No such file or directory\n");
-  EXPECT_EQ(Complaint(Path("folder"), "x"), "folder: error: cannot be written: Is a directory\n");
+            "none/a: error: cannot write: No such file or directory\n");
+  EXPECT_EQ(Complaint(Path("folder"), "x"), "folder: error: cannot write: Is a directory\n");
   const pid_t pid = fork();
-  if (pid == 0) {  // to a program, a limit of a file's size is as a disk that fills up
+  if (pid == 0) {  // a limit of the file size acts like a full disk
     const rlimit size{1000, 1000};
     setrlimit(RLIMIT_FSIZE, &size);
     signal(SIGXFSZ, SIG_IGN);
     const std::string full = Complaint(Path("a"), std::string(2000, 'x'));
-    _exit(full == "a: error: cannot be written: File too large\n" && !HasFailure() ? 0 : 1);
+    _exit(full == "a: error: cannot write: File too large\n" && !HasFailure() ? 0 : 1);
   }
   int status = -1;
   waitpid(pid, &status, 0);
@@ -97,7 +97,7 @@ TEST_F(Files, ThatCannotBeWrittenSayWhyAndStayAsTheyWere) {
 TEST_F(Files, DoNotFollowLinks) {
   WriteFile("victim", "untouched");
   fs::create_symlink("victim", Path("a"));
-  // and under the name that the new one has at first
+  // likewise under the name of the temporary file
   fs::create_symlink("victim", Path("a." + std::to_string(getpid()) + ".part"));
   ExpectWritten(Path("a"), "new");
   EXPECT_FALSE(fs::is_symlink(Path("a")));
@@ -118,7 +118,7 @@ TEST_F(Files, WhatIsNoFileIsWrittenTo) {
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
   if (access("/dev/full", W_OK) != 0) return;
   EXPECT_EQ(Complaint("/dev/full", "x"),
-            "/dev/full: error: cannot be written: No space left on device\n");
+            "/dev/full: error: cannot write: No space left on device\n");
 }
 
 TEST_F(Files, AStreamThatIsAFileIsWrittenTo) {
@@ -164,13 +164,13 @@ TEST_F(Files, AFolderThatCannotBeMadeOrWrittenSaysWhy) {
   Diagnostics out;
   EXPECT_FALSE(FolderLock::Take(Path("file/a"), out));
   EXPECT_EQ(WithoutFolder(out.Format()),
-            "file/a: error: cannot make this folder: Not a directory\n");
+            "file/a: error: cannot create the folder: Not a directory\n");
   fs::create_directory(Path("a"));
   fs::create_symlink("../file", Path("a/.lock"));
   Diagnostics link;
   EXPECT_FALSE(FolderLock::Take(Path("a"), link));
   EXPECT_EQ(WithoutFolder(link.Format()),
-            "a: error: cannot be written to: Too many levels of symbolic links\n");
+            "a: error: cannot write to the folder: Too many levels of symbolic links\n");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The text that does without std::from_chars and std::to_chars of doubles, beside those. It is
-// built into this program, so that its functions stand for those of taut::base here.
+// Conversion of numbers and text without std::from_chars and std::to_chars of doubles, compared
+// with them. It is compiled into this program, where its functions replace those in taut::base.
 #include "base/number_text.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(NumberTextByHand, PrintsWhatTheStandardLibraryPrints) {
   for (int i = 0; i < 20000; ++i) {
     const double number = std::bit_cast<double>(random());
     if (!std::isnan(number)) ExpectSameText(number);
-    // as they stand in files
+    // numbers as in files
     ExpectSameText(static_cast<double>(static_cast<std::int64_t>(random() % 2000000) - 1000000) /
                    std::pow(10.0, static_cast<double>(random() % 12)));
   }

@@ -1,4 +1,4 @@
-// Search for shipped files from any folder.
+// Search for shipped files from any folder
 #include "taut/shipped.h"
 
 #include <gtest/gtest.h>

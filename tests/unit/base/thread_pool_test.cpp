@@ -1,4 +1,4 @@
-/// Threads that share out pieces: each piece once, nobody forgotten, no data race (preset tsan).
+/// Thread pool: each piece is done once, by all threads, without data races (preset tsan).
 #include "base/thread_pool.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Far longer than a thread looks for work before it sleeps.
+/// Far longer than a thread spins for work before it sleeps
 constexpr auto kUntilAllSleep = 5ms;
 
-/// Waits until `good()`; what never is, is ended by ctest.
+/// Waits until `good()`; without a time limit, so that ctest ends a test that waits forever.
 template <class Good>
 void Until(const Good& good) {
   while (!good()) std::this_thread::yield();
@@ -29,8 +29,8 @@ void Until(const Good& good) {
 
 int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-// What threads write is no atomic: that it is seen, by the caller and by whoever works next, is the
-// pool's promise.
+// The written data are not atomic: the pool guarantees their visibility to the caller and to later
+// work.
 TEST(ThreadPool, EachPieceIsDoneOnceAndSeenByTheCaller) {
   for (const int threads : {1, 2, 3, 4 * Cores()}) {
     ThreadPool pool(threads);
@@ -54,8 +54,9 @@ TEST(ThreadPool, EachPieceIsDoneOnceAndSeenByTheCaller) {
   }
 }
 
-// The second thread does not finish its first piece before all others are done, and the caller not
-// its own before the second has begun: so somebody else does the rest of the second's share.
+// The second thread finishes its first piece only after all others are done, and the caller
+// finishes its first only after the second has begun: the caller must take the rest of the second
+// thread's share.
 TEST(ThreadPool, WhatAThreadHasNotBegunIsDoneByOthers) {
   ThreadPool pool(2);
   constexpr std::size_t kPieces = 16;
@@ -75,9 +76,8 @@ TEST(ThreadPool, WhatAThreadHasNotBegunIsDoneByOthers) {
   }
 }
 
-// Without pauses the threads are still looking for work, after a pause they sleep; with more
-// threads than cores they sleep at once. The caller stays until all have come, so a thread that is
-// not woken would be missed.
+// Without pauses the threads are still spinning; after a pause they sleep; with more threads than
+// cores they sleep at once. The caller waits for all, so that a missed wake-up would hang the test.
 TEST(ThreadPool, EveryThreadComesWhetherItLooksOrSleeps) {
   for (const int threads : {2, Cores(), 4 * Cores() + 1}) {
     ThreadPool pool(threads);
@@ -97,7 +97,7 @@ TEST(ThreadPool, EveryThreadComesWhetherItLooksOrSleeps) {
   }
 }
 
-// A caller that has to wait longer than it looks sleeps, and is woken.
+// A caller that waits longer than its spin time sleeps, and is woken.
 TEST(ThreadPool, TheCallerWaitsForThoseWhoHaveBegun) {
   ThreadPool pool(3);
   for (int round = 0; round < 20; ++round) {
@@ -129,8 +129,8 @@ TEST(ThreadPool, EndsWhateverItsThreadsDo) {
   }
 }
 
-// The exception of any thread reaches the caller, after all threads have returned; the pool serves
-// the next round.
+// The exception of any thread reaches the caller after all threads have returned; the pool remains
+// usable.
 TEST(ThreadPool, AnExceptionOfAnyThreadReachesTheCaller) {
   ThreadPool pool(3);
   for (int thrower = 0; thrower < 3; ++thrower) {
@@ -152,7 +152,8 @@ TEST(ThreadPool, AnExceptionOfAnyThreadReachesTheCaller) {
   EXPECT_EQ(pieces, 100);
 }
 
-// A limit of the process on its memory, which stacks of threads need; so do the sanitizers.
+// Limits the memory of the process, so that thread stacks cannot be allocated; sanitizers need that
+// memory, too.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 TEST(ThreadPool, ThreadsThatCannotStartAreAnExceptionThatNamesTheNumber) {
   const auto in_child = [] {

@@ -1,4 +1,4 @@
-// Control characters of untrusted text in messages, and paths that are not regular files.
+// Control characters of untrusted text in messages, and paths that are not regular files
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -57,7 +57,7 @@ TEST_F(InputFile, PipesAndDevicesThatAFileNamesAreRefusedWithoutOpeningThem) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("/dev/null")}) {
     EXPECT_EQ(Complaint(path),
-              path + ": error: is a pipe, socket or device (expected a regular file)\n");
+              path + ": error: the path is a pipe, socket or device (expected a regular file)\n");
   }
 }
 
@@ -71,8 +71,8 @@ TEST_F(InputFile, AUserMayNameAPipe) {
 TEST_F(InputFile, TooLargeAFileIsRefusedBeforeItIsRead) {
   const std::string path = folder_ + "/large";
   std::ofstream(path) << "x";
-  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);  // with nothing in it
-  EXPECT_EQ(Complaint(path, 5'000'000), path + ": error: is larger than 5 MB\n");
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);  // sparse
+  EXPECT_EQ(Complaint(path, 5'000'000), path + ": error: the file is larger than 5 MB\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Gaps of recordings and signs of quaternions in comparisons.
+// Gaps of recordings and signs of quaternions in comparisons
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) 
   return a;
 }
 
-/// A turn about z by `angle_rad` of time, with a sign of each row.
+/// Returns a rotation about z by `angle_rad` of time, with a sign of each row.
 Trace Turning(const std::vector<double>& time_s, const OfTime& angle_rad, const OfTime& sign,
               const std::string& stem = "body/m/orientation_") {
   Trace trace;
@@ -77,18 +77,18 @@ TEST(CompareOrientation, SignsAreAlignedBeforeRowsAreInterpolated) {
   const auto turn = [](double t) { return 0.9 * t; };
   const Trace a = Turning(Rows(0, 4, 0.01), turn, Same);
   const Trace b = Turning(Rows(0.005, 3.995, 0.01), turn, FlipsAt2s);
-  // Chords of a turn of 4.5 mrad (half of the angle) a row: at most h^2 / 8.
+  // Chords of a rotation of 4.5 mrad (half of the angle) per row: at most h^2 / 8.
   for (const ChannelComparison& c : Compare(a, b, {}).channels) EXPECT_LE(c.rmse, 2.6e-6) << c.name;
 }
 
 TEST(CompareOrientation, SignsAreOneForAllFourComponents) {
-  // b is turned by 0.4 rad more, so that near 0 single components have other signs.
+  // b is rotated by a further 0.4 rad, so that single components near 0 have opposite signs.
   const Trace a = Turning(
       Rows(0, 4, 0.01), [](double t) { return 0.9 * t - 0.2; }, Same);
   const Trace b = Turning(
       Rows(0, 4, 0.01), [](double t) { return 0.9 * t + 0.2; }, Alternates);
   const auto found = Compare(a, b, {}).channels;
-  // At 0 s: sin(-0.1) - sin(0.1), not |..| differences.
+  // At 0 s: sin(-0.1) - sin(0.1), not differences of absolute values.
   EXPECT_NEAR(found[3].bias, 0.0, 0.2);
   EXPECT_NEAR(std::abs(found[3].error.value), 2 * std::sin(0.1), 1e-12);
   EXPECT_EQ(found[3].error.time_s, 0.0);
@@ -99,7 +99,7 @@ TEST(CompareOrientation, UnitQuaternionsOfOtherNamesAreOrientations) {
   const Trace a = Turning(Rows(0, 4, 0.01), turn, Same, "imu_q");
   const Trace b = Turning(Rows(0, 4, 0.01), turn, Negated, "imu_q");
   for (const ChannelComparison& c : Compare(a, b, {}).channels) EXPECT_EQ(c.rmse, 0.0);
-  // Four numbers that are not of length 1 are no quaternion.
+  // Four numbers without unit length are not a quaternion.
   Trace forces = a, others = b;
   for (Trace* trace : {&forces, &others}) {
     for (auto& values : trace->values) {
@@ -118,7 +118,7 @@ TEST(CompareOrientation, AMissingComponentIsNamed) {
   const Comparison found = Compare(a, b, {});
   EXPECT_EQ(found.unknown_signs.size(), 3u);
   EXPECT_NE(ComparisonTable(found, "a", "b")
-                .find("signs not aligned, a component of the quaternion is missing (3): "
+                .find("signs not aligned (a component of the quaternion is missing) (3): "
                       "body/m/orientation_x\n"),
             std::string::npos)
       << ComparisonTable(found, "a", "b");
@@ -186,8 +186,10 @@ TEST(CompareGaps, MissingValuesAreGapsOfBoth) {
   EXPECT_NEAR(c.phases[0].a.mean, c.phases[0].b.mean, 1e-12);
   EXPECT_NEAR(c.missing_s, 1.9 + 0.1, 1e-9);
   const std::string table = ComparisonTable(found, "a", "b");
-  EXPECT_NE(table.find("channels with missing values (1), of 4 s:\n  cable/a/tension_n: 2 s\n"),
-            std::string::npos)
+  EXPECT_NE(
+      table.find(
+          "channels with missing values (1), seconds missing of 4 s:\n  cable/a/tension_n: 2 s\n"),
+      std::string::npos)
       << table;
 }
 

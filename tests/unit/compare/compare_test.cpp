@@ -1,4 +1,4 @@
-// Differences of traces against closed forms.
+// Differences of traces against closed forms
 #include "taut/compare.h"
 
 #include <gtest/gtest.h>
@@ -51,10 +51,11 @@ TEST(Compare, ATraceEqualsItself) {
 }
 
 TEST(Compare, AShiftedSineHasTheDelayTheRmseAndTheBiasOfTheClosedForm) {
-  // a = 2 sin(w t) + 7, b = 2 sin(w (t - tau)) + 5 over whole periods:
-  // mean of (a - b) is 2, mean of its square 4 + 2^2 (1 - cos(w tau)).
+  // a = 2 sin(w t) + 7, b = 2 sin(w (t - tau)) + 5 over whole periods: the mean of (a - b) is 2,
+  // the mean of its square 4 + 2^2 (1 - cos(w tau)).
   const double w = 2 * std::numbers::pi, tau_s = 0.07, step_s = 0.01;
-  const int periods = 9, rows = 100 * periods;  // no row twice at the periods' end
+  const int periods = 9,
+            rows = 100 * periods;  // without repeating a row at the ends of the periods
   const Trace a = Sampled(step_s, rows, [&](double t) { return 2 * std::sin(w * t) + 7; });
   const Trace b =
       Sampled(step_s, rows, [&](double t) { return 2 * std::sin(w * (t - tau_s)) + 5; });
@@ -64,7 +65,7 @@ TEST(Compare, AShiftedSineHasTheDelayTheRmseAndTheBiasOfTheClosedForm) {
   const ChannelComparison& channel = found.channels.at(0);
   EXPECT_NEAR(channel.bias, 2.0, 1e-12);
   EXPECT_NEAR(channel.rmse, std::sqrt(4 + 4 * (1 - std::cos(w * tau_s))), 1e-12);
-  // 900 rows less 50 at either end are 8 whole periods, so the correlation at lag k is exactly
+  // 900 rows less 50 at either end are 8 whole periods, so that the correlation at lag k is exactly
   // cos(w (k h - tau)), which peaks on a row.
   EXPECT_NEAR(channel.lag_s, tau_s, 1e-10);
   EXPECT_NEAR(channel.correlation, 1.0, 1e-12);
@@ -79,8 +80,8 @@ TEST(Compare, AShiftedSineHasTheDelayTheRmseAndTheBiasOfTheClosedForm) {
 }
 
 TEST(Compare, ADelayBetweenRowsIsWhatTheParabolaGives) {
-  // Through cos(h (k - d)) at k = -1, 0, 1 the parabola peaks at tan(h d) / (2 tan(h / 2)) with
-  // h = w step and d the delay in rows; it is d up to O(h^2 d).
+  // Through cos(h (k - d)) at k = -1, 0, 1 the parabola peaks at tan(h d) / (2 tan(h / 2)), with h
+  // = w step and d the delay in rows; this is d up to O(h^2 d).
   const double w = 2 * std::numbers::pi, step_s = 0.01, h = w * step_s;
   for (const double d : {-0.45, -0.1, 0.2, 0.3}) {
     const auto sine = [&](double t) { return std::sin(w * t); };
@@ -132,7 +133,7 @@ TEST(Compare, MissingNumbersAreLeftOut) {
   EXPECT_TRUE(std::isfinite(channel.rmse));
   EXPECT_NEAR(channel.lag_s, 0.05, 1e-3);
   EXPECT_LE(channel.max_b.value, 2.0);
-  // with nothing left there is nothing to say
+  // without rows there are no results
   for (double& value : a.values[0]) value = kNan;
   const Comparison none = Compare(a, b, {});
   EXPECT_EQ(none.channels.at(0).rows, 0u);
@@ -143,8 +144,8 @@ TEST(Compare, MissingNumbersAreLeftOut) {
 }
 
 TEST(Compare, TheFinerTraceIsInterpolatedAtTheRowsOfTheCoarser) {
-  // Linear interpolation is exact for straight lines, and half a square between rows: at the
-  // middle of a step h, t^2 is overestimated by h^2 / 4.
+  // Linear interpolation is exact for straight lines; at the middle of a step h it overestimates
+  // t^2 by h^2 / 4.
   const double h = 0.1;
   Trace fine = Sampled(h, 101, [](double t) { return 3 * t - 1; });
   AddChannel(fine, "cable/b/tension_n", [](double t) { return t * t; });
@@ -264,7 +265,7 @@ TEST(Compare, ATableHasNoNegativeZeros) {
   const Trace a = Sampled(0.1, 11, [](double) { return -0.0; });
   Trace b = a, c = a;
   for (double& value : b.values[0]) value = 10.0;
-  for (double& value : c.values[0]) value = 10.0 - 1e-5;  // -0.0001 % off
+  for (double& value : c.values[0]) value = 10.0 - 1e-5;  // error of -0.0001 %
   for (const auto& [one, other] : {std::pair(a, a), {a, b}, {c, b}}) {
     const std::string table = ComparisonTable(Compare(one, other, {}), "a", "b");
     for (std::size_t at = 0; (at = table.find("-0", at)) != table.npos; ++at) {
@@ -296,9 +297,9 @@ TEST(Compare, TheSystemMaximumIsTheLargestOfAllMatchingChannels) {
 
   EXPECT_TRUE(ExceededLimits(found, {}).empty());
   EXPECT_TRUE(ExceededLimits(found, {.max_error_percent = 20.0}).empty());
-  EXPECT_EQ(
-      ExceededLimits(found, {.max_error_percent = 19.9}),
-      std::vector<std::string>{"the largest cable/*/tension_n is -20.00 % off, more than 19.9 %"});
+  EXPECT_EQ(ExceededLimits(found, {.max_error_percent = 19.9}),
+            std::vector<std::string>{
+                "the largest cable/*/tension_n differs by -20.00 %, more than 19.9 %"});
   EXPECT_EQ(ExceededLimits(found, {.max_rmse = 30.0}).size(), 0u);
   const auto exceeded = ExceededLimits(found, {.max_rmse = 10.0});
   ASSERT_EQ(exceeded.size(), 1u);
@@ -308,9 +309,9 @@ TEST(Compare, TheSystemMaximumIsTheLargestOfAllMatchingChannels) {
   options.channels = {"body/*"};
   const Comparison bodies = Compare(a, b, options);
   EXPECT_TRUE(bodies.system.empty());
-  EXPECT_EQ(ExceededLimits(bodies, {.max_error_percent = 50.0}),
-            std::vector<std::string>{
-                "no compared channel is one of those whose largest value is limited"});
+  EXPECT_EQ(
+      ExceededLimits(bodies, {.max_error_percent = 50.0}),
+      std::vector<std::string>{"no compared channel is subject to the limit of the largest value"});
 }
 
 TEST(Compare, JsonHoldsTheSameNumbers) {

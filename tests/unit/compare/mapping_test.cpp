@@ -1,4 +1,4 @@
-// Mapping files: names, units and axes of other programs.
+// Mapping files: names, units and axes of other programs
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,7 +47,7 @@ class MappingTest : public TraceFolder {
     return mapped;
   }
 
-  /// A trace of one row.
+  /// Returns a trace of one row.
   static Trace Row(const std::vector<std::pair<std::string, double>>& values) {
     Trace trace;
     trace.time_s = {0.0};
@@ -109,14 +109,14 @@ TEST_F(MappingTest, NtrtPositionsAreTurnedAndStandOnOurFloor) {
 
 TEST_F(MappingTest, NtrtRotationsAreTheSameRotationsInOurAxes) {
   const double half = std::sqrt(0.5);
-  // NTRT: 90 degrees about y, its up. Here: 90 degrees about z; forward turns to the left.
+  // NTRT: 90 degrees about y, its up axis. Here: 90 degrees about z; forward becomes left.
   auto trace = Mapped(kNtrt, Row({{"s_qx", 0}, {"s_qy", half}, {"s_qz", 0}, {"s_qw", half}}));
   ASSERT_TRUE(trace);
   EXPECT_EQ(Orientation(*trace, "s"), (Quaternion{half, 0, 0, half}));
   const Vector left = Turned(Orientation(*trace, "s"), {1, 0, 0});
   EXPECT_NEAR(left[1], 1.0, 1e-15);
 
-  // Any rotation: turning and then changing axes equals changing axes and then turning.
+  // Any rotation: rotating and then changing axes equals changing axes and then rotating.
   const Quaternion q{0.5, -0.1, 0.7, std::sqrt(1 - 0.25 - 0.01 - 0.49)};
   const Vector v{0.3, -1.2, 2.5}, turned = Turned(q, v);
   trace = Mapped(kNtrt, Row({{"s_qw", q[0]}, {"s_qx", q[1]}, {"s_qy", q[2]}, {"s_qz", q[3]}}));
@@ -126,7 +126,7 @@ TEST_F(MappingTest, NtrtRotationsAreTheSameRotationsInOurAxes) {
 }
 
 TEST_F(MappingTest, AxesMayPointTheOtherWay) {
-  // x forward, y right, z down, as aircraft have it, in feet
+  // x forward, y right, z down (aircraft axes), in feet
   const std::string path = WriteFile("m.json", R"({"version": 1,
     "axes": {"x": "x", "y": "-y", "z": "-z"},
     "vectors": [{"from": "p{axis}", "to": "body/s/position_{axis}_m", "scale": 0.3048,
@@ -172,7 +172,7 @@ TEST_F(MappingTest, TwoChannelsMayNotBecomeOne) {
       WriteFile("m.json", R"({"version": 1, "channels": [{"from": "a", "to": "b"}]})"), out = {});
   ASSERT_TRUE(good) << out.Format();
   EXPECT_FALSE(ApplyMapping(*good, Row({{"a", 1}, {"b", 2}}), "t.csv", out));
-  EXPECT_EQ(out.Format(), "t.csv: error: the mapping makes two channels b\n");
+  EXPECT_EQ(out.Format(), "t.csv: error: the mapping creates two channels b\n");
 }
 
 TEST_F(MappingTest, AFileOfMoreThan10MbIsRefused) {
@@ -181,38 +181,38 @@ TEST_F(MappingTest, AFileOfMoreThan10MbIsRefused) {
   std::filesystem::resize_file(path, 10'000'001);
   EXPECT_FALSE(LoadMapping(path, out));
   EXPECT_EQ(WithoutFolder(out.Format()),
-            "m.json: error: is larger than 10 MB (expected a few rules)\n");
+            "m.json: error: the file is larger than 10 MB (expected a mapping)\n");
 }
 
 TEST_F(MappingTest, ComplaintsNameTheKeyAndComeAllAtOnce) {
   EXPECT_EQ(Complaint(R"({"version": 1, "chanels": [], "vectors": {}, "description": 3})"),
-            "chanels is not known here (did you mean \"channels\"?)\n"
-            "description is not a text\n"
-            "vectors is not a list [ ... ]\n");
+            "chanels is not a known key (did you mean \"channels\"?)\n"
+            "description must be a string\n"
+            "vectors must be a list [ ... ]\n");
   EXPECT_EQ(Complaint(R"({"version": 2})"),
-            "version is not 1, the version of mapping files that this taut reads\n");
-  EXPECT_EQ(Complaint("[]"), "is not an object { ... }\n");
+            "version must be 1, the version of mapping files that this taut reads\n");
+  EXPECT_EQ(Complaint("[]"), "the mapping must be an object { ... }\n");
   EXPECT_EQ(Complaint(R"({"version": 1, "channels": [
               {"from": "*a*", "to": "*b", "scale": "2", "ofset": 1}, 3, {"from": ""}]})"),
             "channels[0].from has more than one `*`\n"
-            "channels[0].ofset is not known here (did you mean \"offset\"?)\n"
-            "channels[0].scale is not a number\n"
-            "channels[1] is not an object { ... }\n"
-            "channels[2].from is not a text\n"
+            "channels[0].ofset is not a known key (did you mean \"offset\"?)\n"
+            "channels[0].scale must be a number\n"
+            "channels[1] must be an object { ... }\n"
+            "channels[2].from must be a string\n"
             "channels[2].to is missing\n");
   EXPECT_EQ(Complaint(R"({"version": 1, "version": 1})"),
             "key \"version\" occurs twice in one object\n");
   const std::string syntax = Complaint("{\"version\": 1,\n x}");
-  EXPECT_EQ(syntax.substr(0, 43), "is not JSON: parse error at line 2, column ") << syntax;
+  EXPECT_EQ(syntax.substr(0, 55), "the mapping is not JSON: parse error at line 2, column ")
+      << syntax;
   Diagnostics out;
   EXPECT_FALSE(LoadMapping(Path("none.json"), out));
-  EXPECT_EQ(out.Format(),
-            Path("none.json") + ": error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(out.Format(), Path("none.json") + ": error: cannot open: No such file or directory\n");
   Diagnostics folder;
   EXPECT_FALSE(LoadMapping(TAUT_SOURCE_DIR, folder));
-  EXPECT_EQ(folder.Format(), TAUT_SOURCE_DIR ": error: is a directory, not a file\n");
+  EXPECT_EQ(folder.Format(), TAUT_SOURCE_DIR ": error: the path is a directory, not a file\n");
   EXPECT_EQ(Complaint(R"({"version": 1, "channels": [{"from": "a", "to": "\u001b[2J"}]})"),
-            "channels[0].to has a control character in it\n");
+            "channels[0].to contains a control character\n");
 }
 
 TEST_F(MappingTest, AxesMustBeARotation) {
@@ -220,25 +220,26 @@ TEST_F(MappingTest, AxesMustBeARotation) {
     return Complaint(R"({"version": 1, "axes": {"x": ")" + x + R"(", "y": ")" + y + R"(", "z": ")" +
                      z + R"("}})");
   };
-  EXPECT_EQ(axes("x", "z", "y"), "axes is a mirror image, not a rotation\n");
-  EXPECT_EQ(axes("x", "x", "y"), "axes names an axis twice\n");
-  EXPECT_EQ(axes("x", "u", "y"), "axes.y is none of x, y, z, -x, -y, -z\n");
+  EXPECT_EQ(axes("x", "z", "y"), "axes must be a rotation, not a reflection\n");
+  EXPECT_EQ(axes("x", "x", "y"), "axes uses an axis twice\n");
+  EXPECT_EQ(axes("x", "u", "y"), "axes.y must be one of x, y, z, -x, -y, -z\n");
   EXPECT_EQ(Complaint(R"({"version": 1, "axes": {"x": "y"}})"),
-            "axes.y is missing\naxes.y is none of x, y, z, -x, -y, -z\n");
-  EXPECT_EQ(Complaint(R"({"version": 1, "axes": 3})"), "axes is not an object { ... }\n");
+            "axes.y is missing\naxes.y must be one of x, y, z, -x, -y, -z\n");
+  EXPECT_EQ(Complaint(R"({"version": 1, "axes": 3})"), "axes must be an object { ... }\n");
 }
 
 TEST_F(MappingTest, VectorsNeedAnAxisInEveryName) {
   EXPECT_EQ(Complaint(R"({"version": 1, "vectors": [
               {"from": "p{axis}{axis}", "to": "q", "offset": [1, 2]}],
               "quaternions": [{"from": "*q{axis}", "to": "o{axis}"}]})"),
-            "quaternions[0] one of \"from\" and \"to\" has a `*`, the other not\n"
-            "vectors[0].from does not have one {axis}, where x, y and z go\n"
-            "vectors[0].offset is not a list of three numbers, along taut's x, y and z\n"
-            "vectors[0].to does not have one {axis}, where x, y and z go\n");
+            "quaternions[0] has a `*` in only one of \"from\" and \"to\"\n"
+            "vectors[0].from must contain {axis} once, in the place of x, y and z\n"
+            "vectors[0].offset must be a list of three numbers, along taut's x, y and z\n"
+            "vectors[0].to must contain {axis} once, in the place of x, y and z\n");
 }
 
-/// NTRT's traces lie beside the checkout or where TAUT_REFERENCE says; they are not ours to ship.
+/// Returns NTRT's traces, which are next to the checkout or in TAUT_REFERENCE; taut may not
+/// redistribute them.
 std::vector<std::string> ReferenceTraces() {
   const char* given = std::getenv("TAUT_REFERENCE");
   const std::filesystem::path folder =
@@ -291,7 +292,7 @@ TEST_F(MappingTest, NtrtsPushTestHasTheLargestTensionThatNtrtReported) {
   ASSERT_TRUE(raw) << out.Format();
   const auto trace = Mapped(kNtrt, *raw);
   ASSERT_TRUE(trace);
-  // where the robot stands at the start: front segment at x = 0.793 m, its centre 0.125 m high
+  // the robot's start: front segment at x = 0.793 m, its center 0.125 m high
   EXPECT_NEAR(At(*trace, "body/segment_0/position_x_m"), 0.7932759, 1e-7);
   EXPECT_NEAR(At(*trace, "body/segment_0/position_y_m"), 0.0, 1e-7);
   EXPECT_NEAR(At(*trace, "body/segment_0/position_z_m"), 0.125465, 1e-7);

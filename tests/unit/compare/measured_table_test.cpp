@@ -1,4 +1,4 @@
-// Measurements as they come: tables with other headers, units and clocks, as a mapping says.
+// Measurements as tables with foreign headers, units and clocks, read by a mapping
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -26,7 +26,7 @@ class MeasuredTable : public TraceFolder {
   Trace GoodText(const std::string& text, const std::string& map) {
     return Good(WriteFile("t.csv", text), map);
   }
-  /// What is wrong, without the folder.
+  /// Returns the errors, without the folder's name.
   std::string Wrong(const std::string& text, const std::string& map) {
     Diagnostics out;
     EXPECT_FALSE(Read(WriteFile("t.csv", text), map, out));
@@ -55,7 +55,7 @@ TEST_F(MeasuredTable, PosesOfTheBestSpineAreReadUnchanged) {
          "channels": [{"from": "CoM X (cm)", "to": "body/v/position_x_m", "from_unit": "cm"},
                       {"from": "CoM Y (cm)", "to": "body/v/position_z_m", "from_unit": "cm", "offset": -0.1},
                       {"from": "Rotation (deg)", "to": "body/v/angle_rad", "from_unit": "deg"}])m");
-  // Read once more, by hand.
+  // Reads the table independently.
   std::ifstream file(path);
   std::string line;
   std::getline(file, line), std::getline(file, line);
@@ -138,25 +138,26 @@ TEST_F(MeasuredTable, SeparatorsClocksAndUnits) {
 constexpr const char* kPlain = R"m("table": {"time": {"column": "t"}})m";
 
 TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {
-  EXPECT_EQ(Wrong("t,x\n0,1\n2,2\n1,3\n1,4\n", kPlain),
-            "t.csv:4:1: error: the time 1 s comes before 2 s in line 3 (times must rise)\n"
-            "t.csv:5:1: error: the time 1 s is again that of 1 s in line 4 (times must rise)\n");
-  EXPECT_EQ(Wrong("t,x\n86399.9,1\n0.1,2\n", kPlain),
-            "t.csv:3:1: error: the time 0.1 s comes before 86399.9 s in line 2 (has the clock "
-            "passed midnight?)\n");
   EXPECT_EQ(
-      Wrong("t,x\n0,1\nnan,2\n1,a\n2\n", kPlain),
-      "t.csv:3:1: error: the time is not a number (a row without a time is to be left out)\n"
-      "t.csv:4:3: error: \"a\" is not a number (of lines before the rows: `skip_lines` of the "
-      "mapping; of a column of texts: `ignore`)\n"
-      "t.csv:5: error: 1 values where there are 2 columns\n");
+      Wrong("t,x\n0,1\n2,2\n1,3\n1,4\n", kPlain),
+      "t.csv:4:1: error: the time 1 s is before the time 2 s in line 3 (times must increase)\n"
+      "t.csv:5:1: error: the time 1 s equals the time 1 s in line 4 (times must increase)\n");
+  EXPECT_EQ(Wrong("t,x\n86399.9,1\n0.1,2\n", kPlain),
+            "t.csv:3:1: error: the time 0.1 s is before the time 86399.9 s in line 2 (times must "
+            "increase; the clock may have passed midnight)\n");
+  EXPECT_EQ(Wrong("t,x\n0,1\nnan,2\n1,a\n2\n", kPlain),
+            "t.csv:3:1: error: the time is not a number (leave out rows without a time)\n"
+            "t.csv:4:3: error: \"a\" is not a number (skip lines before the rows with `skip_lines` "
+            "in the mapping, a column of text with `ignore`)\n"
+            "t.csv:5: error: the row has 1 values, but the table has 2 columns\n");
   EXPECT_EQ(Wrong("time,x\n0,1\n", kPlain),
-            "t.csv:1: error: has no column \"t\" (did you mean \"x\"?)\n");
+            "t.csv:1: error: the table has no column \"t\" (did you mean \"x\"?)\n");
   EXPECT_EQ(Wrong("t,x,t\n0,1,2\n", kPlain),
-            "t.csv:1: error: has two columns \"t\" (give them names: `columns` of the mapping)\n");
-  EXPECT_EQ(Wrong("t,x\n", kPlain), "t.csv:1: error: has no rows\n");
+            "t.csv:1: error: the table has two columns \"t\" (rename them with `columns` in the "
+            "mapping)\n");
+  EXPECT_EQ(Wrong("t,x\n", kPlain), "t.csv:1: error: the table has no rows\n");
   EXPECT_EQ(Wrong("t,x\n", R"m("table": {"skip_lines": 3, "time": {"column": "t"}})m"),
-            "t.csv:1: error: ends before the rows begin (the mapping skips 3 lines)\n");
+            "t.csv:1: error: the table ends before its rows begin (the mapping skips 3 lines)\n");
   EXPECT_EQ(
       Wrong("t,x\n0,1\n",
             R"m("table": {"time": {"column": "t"}}, "channels": [{"from": "y", "to": "z"}])m"),
@@ -164,33 +165,31 @@ TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {
 }
 
 TEST_F(MeasuredTable, MistakesInItsLayoutAreNamed) {
-  EXPECT_EQ(
-      Wrong("", R"m("table": {"skip_lines": -1, "header": 1, "separator": "ab", "ignore": "x",
+  EXPECT_EQ(Wrong("", R"m("table": {"skip_lines": -1, "header": 1, "separator": "ab", "ignore": "x",
                            "names": ["a"]})m"),
-      "m.json: error: table has one of \"names\" and \"value\", the other not (they say where "
-      "the channel and its number are, one a row)\n"
-      "m.json: error: table.header is neither true nor false\n"
-      "m.json: error: table.ignore is not a list of texts\n"
-      "m.json: error: table.separator is none of \",\", \";\", \"|\", \"\\t\" and \" \"\n"
-      "m.json: error: table.skip_lines is not a whole number of lines\n"
-      "m.json: error: table.time is missing ({\"column\": \"t\", \"unit\": \"ms\"} or "
-      "{\"row_s\": 1})\n");
+            "m.json: error: table must have both \"names\" and \"value\", or neither (they select "
+            "the columns of channel names and values, for tables with one value per row)\n"
+            "m.json: error: table.header must be true or false\n"
+            "m.json: error: table.ignore must be a list of strings\n"
+            "m.json: error: table.separator must be one of \",\", \";\", \"|\", \"\\t\" and \" \"\n"
+            "m.json: error: table.skip_lines must be a whole number of lines\n"
+            "m.json: error: table.time is missing (expected {\"column\": \"t\", \"unit\": \"ms\"} "
+            "or {\"row_s\": 1})\n");
   EXPECT_EQ(Wrong("", R"m("table": {"header": false,
                            "time": {"column": "t", "unit": "cm", "zero": "last"}})m"),
-            "m.json: error: table.columns is missing (where no header names the columns, the "
-            "mapping does)\n"
-            "m.json: error: table.time.unit is cm, and the result is in s\n"
-            "m.json: error: table.time.zero is neither a number nor \"first\"\n");
+            "m.json: error: table.columns is missing (list the names of the columns, because the "
+            "table has no header)\n"
+            "m.json: error: table.time.unit is cm, but the result is in s\n"
+            "m.json: error: table.time.zero must be a number or \"first\"\n");
   EXPECT_EQ(Wrong("", R"m("table": {"time": {"row_s": 0, "column": "t"}, "colums": []})m"),
-            "m.json: error: table.colums is not known here (did you mean \"columns\"?)\n"
+            "m.json: error: table.colums is not a known key (did you mean \"columns\"?)\n"
             "m.json: error: table.time has both row_s and column\n"
-            "m.json: error: table.time.row_s is not above 0\n");
-  EXPECT_EQ(
-      Wrong("", R"m("channels": [{"from": "a", "to": "b_m", "from_unit": "kN"},
+            "m.json: error: table.time.row_s must be above 0\n");
+  EXPECT_EQ(Wrong("", R"m("channels": [{"from": "a", "to": "b_m", "from_unit": "kN"},
                                        {"from": "c", "to": "d_n", "from_unit": "kNN"}])m"),
-      "m.json: error: channels[0].from_unit is kN, and the result is in m\n"
-      "m.json: error: channels[1].from_unit is \"kNN\", which is no unit that taut knows (did "
-      "you mean \"kN\"?)\n");
+            "m.json: error: channels[0].from_unit is kN, but the result is in m\n"
+            "m.json: error: channels[1].from_unit is the unknown unit \"kNN\" (did "
+            "you mean \"kN\"?)\n");
 }
 
 }  // namespace

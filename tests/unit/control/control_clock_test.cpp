@@ -1,3 +1,4 @@
+// Clocks of controllers: ticks without drift, and ticks in loops
 #include "taut/control/clock.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,7 @@ TEST(ControlClock, TenMillionTicksDoNotDrift) {
     const double exact_s = tick / 1000.0;  // correctly rounded
     ASSERT_NEAR(TickTime(clock, tick), exact_s, 4e-16 * exact_s);
   }
-  EXPECT_GT(std::abs(summed_s - 1e4), 1e-6);  // what the clock avoids
+  EXPECT_GT(std::abs(summed_s - 1e4), 1e-6);  // the drift that the clock avoids
 }
 
 TEST(ControlClock, EveryTickIsAtItself) {
@@ -88,7 +89,7 @@ TEST(ControlClock, StepsThatDivideThePeriodFindEachTickAtTheRightStep) {
   }
 }
 
-/// Acts in a loop that cuts its steps at ticks, as a simulation does; returns when it acted.
+/// Runs a loop whose steps end at ticks, as in a simulation. Returns the times of control actions.
 std::vector<double> TimesOfALoop(const Clock<double>& clock, double step_s, double until_s) {
   std::vector<double> acted_s;
   int64_t tick = TickAtOrAfter(clock, 0.0), step = 0;

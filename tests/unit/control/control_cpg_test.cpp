@@ -1,4 +1,4 @@
-// The oscillators, against closed forms.
+// CPG oscillators against closed forms
 #include "taut/control/cpg.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Network {
   explicit Network(std::size_t count, CpgLaw<Real> law)
       : laws(count, law), states(count, StartCpg<Real>()), work(count) {}
 
-  /// The amplitudes are at R from the start, so that a closed form need not wait for them.
+  /// Starts with the amplitudes at R, so that closed forms hold from the start.
   void StartAtFullAmplitude() {
     for (std::size_t i = 0; i < laws.size(); ++i) {
       states[i].amplitude_m_per_s = laws[i].amplitude_m_per_s;
@@ -42,13 +42,13 @@ struct Network {
     StepCpg(network, feedback.empty() ? nullptr : feedback.data(), step_s,
             static_cast<std::uint16_t>(count), states.data(), work.data());
   }
-  /// theta_j - theta_i, within -1/2..1/2.
+  /// Returns theta_j - theta_i, within -1/2..1/2.
   Real Difference(std::size_t i, std::size_t j) const {
     return WrapTurns(states[j].phase_turns - states[i].phase_turns);
   }
 };
 
-/// r(t) of eq. G.4 from rest at 0.
+/// Returns r(t) of eq. G.4 from rest at 0.
 double CriticallyDamped(double R, double a, double t) {
   return R * (1.0 - (1.0 + a * t / 2.0) * std::exp(-a * t / 2.0));
 }
@@ -60,8 +60,8 @@ TEST(Cpg, TheAmplitudeIsCriticallyDamped) {
   for (int ms = 1; ms <= 2000; ++ms) {
     one.Step(h, 1);
     const double r = one.states[0].amplitude_m_per_s, x = a / 2.0 * ms * h;
-    // The method's error is -t h^4 / 120 times the fifth derivative, at most 4.8e-11 here; the
-    // next order is a h / 2 = 1 % of that.
+    // The method's error is -t h^4 / 120 times the fifth derivative, at most 4.8e-11 here; the next
+    // order is a h / 2 = 1 % of that.
     const double error = R * std::pow(a * h / 2.0, 4) / 120.0 * x * (4.0 - x) * std::exp(-x);
     ASSERT_NEAR(r - CriticallyDamped(R, a, ms * h), error, 1e-12) << ms;
     ASSERT_GE(r, before - 1e-16);
@@ -95,9 +95,9 @@ TEST(Cpg, TwoOscillatorsLockToTheirPhase) {
   EXPECT_NEAR(two.Difference(0, 1), 0.2, 1e-5);
 }
 
-// With unlike frequencies d' = 2 pi (v_2 - v_1) + 2 c sin(phi - d): locked, behind phi by
-// asin(2 pi (v_2 - v_1) / 2 c), as long as there is such an angle; else the beat is
-// sqrt((2 pi dv)^2 - (2 c)^2) / 2 pi (Adler).
+// With different frequencies d' = 2 pi (v_2 - v_1) + 2 c sin(phi - d): locked, behind phi by asin(2
+// pi (v_2 - v_1) / 2 c), if that angle exists; else the beat is sqrt((2 pi dv)^2 - (2 c)^2) / 2 pi
+// (Adler).
 TEST(Cpg, UnlikeOscillatorsLockBesideTheirPhaseOrBeat) {
   const double R = 0.5, w = 6.0, c = w * R, dv = 0.5;
   Network<> two(2, {1.0, R, 20.0});
@@ -124,7 +124,7 @@ TEST(Cpg, UnlikeOscillatorsLockBesideTheirPhaseOrBeat) {
 
 TEST(Cpg, AChainCarriesATravellingWave) {
   constexpr int kCount = 10;
-  constexpr double kPhase = 0.1;  // of a turn, from each to the next
+  constexpr double kPhase = 0.1;  // turns, from each oscillator to the next
   Network<> chain(kCount, {1.0, 0.5, 20.0});
   for (int i = 0; i + 1 < kCount; ++i) {
     chain.Couple(i, i + 1, 8.0, kPhase);
@@ -133,7 +133,7 @@ TEST(Cpg, AChainCarriesATravellingWave) {
   for (int s = 0; s < 60; ++s) chain.Step(0.001, 1000);
   for (std::size_t i = 0; i + 1 < kCount; ++i)
     EXPECT_NEAR(chain.Difference(i, i + 1), kPhase, 1e-9);
-  // it goes on at the common frequency
+  // it continues at the common frequency
   const double before = chain.states[0].phase_turns;
   chain.Step(0.001, 250);
   EXPECT_NEAR(WrapTurns(chain.states[0].phase_turns - before), 0.25, 1e-9);
@@ -165,12 +165,12 @@ TEST(Cpg, HalvingTheStepDividesTheErrorBySixteen) {
   const double exact = After1s(1.0 / 16384);
   const double coarse = std::fabs(After1s(1.0 / 256) - exact);
   const double fine = std::fabs(After1s(1.0 / 512) - exact);
-  EXPECT_GT(coarse, 1e-9);  // else rounding would be measured
+  EXPECT_GT(coarse, 1e-9);  // otherwise rounding would be measured
   EXPECT_GT(std::log2(coarse / fine), 3.7);
   EXPECT_LT(std::log2(coarse / fine), 4.3);
 }
 
-// One short step shows the right-hand side: the sum taken apart (eq. G.6) is the sum of eq. G.3.
+// One short step gives the right-hand side: the rearranged sum (eq. G.6) equals the sum of eq. G.3.
 TEST(Cpg, ThePhaseFollowsThePapersEquation) {
   Network<> tangle = Tangle();
   tangle.Step(1.0 / 1024, 512);
@@ -191,7 +191,7 @@ TEST(Cpg, ThePhaseFollowsThePapersEquation) {
   }
 }
 
-// theta' = omega + s cos theta goes round in 2 pi / sqrt(omega^2 - s^2) while |s| < omega.
+// theta' = omega + s cos theta has the period 2 pi / sqrt(omega^2 - s^2) while |s| < omega.
 TEST(Cpg, FeedbackSlowsAnOscillatorByTheClosedForm) {
   const double omega = kTwoPi * 1.0, s = 4.0;
   Network<> one(1, {1.0, 0.5, 20.0});
@@ -260,7 +260,7 @@ TEST(Cpg, ALaneIsItsNetworkAlone) {
   }
 }
 
-// Same bits with every compiler and on every machine.
+// Equal bits with every compiler and on every machine
 TEST(Cpg, TheBitsAreTheSameEverywhere) {
   EXPECT_EQ(std::bit_cast<std::uint64_t>(CpgVelocity(Ring(4.0).states[2])), 4586283323206561158u);
   EXPECT_EQ(std::bit_cast<std::uint32_t>(CpgVelocity(Ring(4.0f).states[2])), 1026425663u);

@@ -1,4 +1,4 @@
-// Oscillators with feedback, and the networks that say it, against closed forms.
+// Oscillators with feedback, and the networks that compute it, against closed forms
 #include "taut/control/feedback_cpg.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ struct Oscillators {
   }
 };
 
-// G.17 with c = 1 + k_a f_a: rho^2 = c / (1 + (c / rho_0^2 - 1) exp(-2 a c t)).
+// G.17 with c = 1 + k_a f_a: rho^2 = c / (1 + (c / rho_0^2 - 1) exp(-2 a c t))
 TEST(FeedbackCpg, TheAmplitudeFollowsItsFeedback) {
   const double a = 3.0;
   for (const double says : {0.7, -0.4, -1.0}) {
@@ -61,12 +61,12 @@ TEST(FeedbackCpg, TheAmplitudeFollowsItsFeedback) {
 
 TEST(FeedbackCpg, PhaseFeedbackHastensAnOscillator) {
   Oscillators<> one(1, {0.1, 5.0, 0.0, 0.0, 0.4}, 0.5);
-  one.feedback[0].phase = -0.25;  // 0.4 turns a second
+  one.feedback[0].phase = -0.25;  // 0.4 turns per second
   one.Step(0.001, 3000);
   EXPECT_NEAR(one.states[0].phase_turns, 0.2, 1e-12);  // 1.2 turns
 }
 
-// From G.15 and G.16 without coupling, pi v^2 + k_f f_f cos theta stays what it is.
+// From G.15 and G.16 without coupling, pi v^2 + k_f f_f cos theta is invariant.
 TEST(FeedbackCpg, FrequencyFeedbackKeepsAnInvariant) {
   Oscillators<> one(1, {0.1, 5.0, 2.0, 0.0, 0.0}, 0.8);
   one.feedback[0].frequency = 0.5;
@@ -83,13 +83,14 @@ TEST(FeedbackCpg, FrequencyFeedbackKeepsAnInvariant) {
     most = std::max(most, one.states[0].frequency_hz);
     least = std::min(least, one.states[0].frequency_hz);
   }
-  // v^2 is 0.64 at theta = 0, and 2 k_f f_f / pi more at half a turn.
+  // v^2 is 0.64 at theta = 0, and larger by 2 k_f f_f / pi at half a turn.
   EXPECT_NEAR(most, std::sqrt(0.64 + 2.0 / std::numbers::pi), 1e-3);
   EXPECT_NEAR(least, 0.8, 1e-9);
 }
 
-// Two that pull each other: d = theta_2 - theta_1 obeys d' = k (f_2 - f_1) + 2 c sin(phi - d), with
-// c = w r, so that phase feedback holds them at asin(k (f_2 - f_1) / 2 c) beside phi.
+// Two mutually coupled oscillators: d = theta_2 - theta_1 obeys d' = k (f_2 - f_1) + 2 c sin(phi -
+// d), with c = w r, so that phase feedback shifts the locked phase from phi by asin(k (f_2 - f_1) /
+// 2 c).
 TEST(FeedbackCpg, PhaseFeedbackShiftsWhatCouplingsHold) {
   const double w = 6.0, R = 0.5, k_turns = 0.3;
   Oscillators<> two(2, {R, 5.0, 0.0, 0.0, k_turns}, 1.0);
@@ -202,7 +203,8 @@ std::vector<double> Said(const NetworkShape& shape, const std::vector<double>& w
   return out;
 }
 
-// 2 sigma(x) - 1 is tanh(x / 2): the network again, with matrices and the library's functions.
+// 2 sigma(x) - 1 is tanh(x / 2): the network computed independently, with matrices and library
+// functions.
 TEST(Network, ItIsTwoMatricesAndTwoSigmoids) {
   const NetworkShape shape{3, 4, 2};
   ASSERT_EQ(WeightCount(shape), 26);

@@ -1,3 +1,4 @@
+// Low-pass and complementary filters of controllers, against transfer functions
 #include "taut/control/filter.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ TEST(ControlFilter, AStepArrivesAsAPower) {
   }
 }
 
-// A sine through it: amplitude and phase of a / (1 - (1 - a) z^-1).
+// A filtered sine: amplitude and phase of a / (1 - (1 - a) z^-1)
 TEST(ControlFilter, ASineHasTheTransferFunctionsAmplitude) {
   const double share = 0.1, w = 0.3;
   double y = 0, most = 0;
@@ -28,8 +29,8 @@ TEST(ControlFilter, ASineHasTheTransferFunctionsAmplitude) {
   EXPECT_NEAR(most, share / std::sqrt(1 - 2 * b * std::cos(w) + b * b), 1e-4);
 }
 
-// Two sensors of one quantity, one with noise at every tick, one that drifts: the filter has
-// neither.
+// Two sensors of one quantity, one with noise at every tick, one with drift: the filter suppresses
+// both.
 TEST(ControlFilter, AComplementaryFilterTakesTheBestOfBoth) {
   const double share = 0.02;
   double y = 1.0, low = 1.0, before = 1.0, worst = 0, worst_low = 0;
@@ -45,7 +46,7 @@ TEST(ControlFilter, AComplementaryFilterTakesTheBestOfBoth) {
       worst_low = std::max(worst_low, std::fabs(low - truth));
     }
   }
-  // the drift's part is 1e-4 (1 - a) / a, the noise's 0.2 a / (2 - a)
+  // the drift contributes 1e-4 (1 - a) / a, the noise 0.2 a / (2 - a)
   EXPECT_NEAR(worst, 1e-4 * (1 - share) / share + 0.2 * share / (2 - share), 1e-3);
   EXPECT_GT(worst_low, 0.4);
 }

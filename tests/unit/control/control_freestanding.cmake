@@ -1,8 +1,8 @@
 # cmake -DCOMPILER=... -DKIND=host|avr -DSOURCE_DIR=... -DWORK_DIR=... -P control_freestanding.cmake
 #
 # Every header of include/taut/control and include/taut/board compiles alone as C++14 without a standard library, and a
-# program that uses all of it needs nothing but, on an AVR, the compiler's arithmetic in software:
-# no libm, no heap, no exceptions.
+# program that uses all of it needs no library, except the compiler's software arithmetic on an AVR: no libm, no heap,
+# no exceptions.
 if(NOT COMPILER)
   message(STATUS "skipped: no avr-g++ here (Debian: gcc-avr)")
   return()
@@ -39,11 +39,11 @@ execute_process(COMMAND ${COMPILER} -print-prog-name=nm OUTPUT_VARIABLE nm
 execute_process(COMMAND ${nm} -u ${object} RESULT_VARIABLE failed OUTPUT_VARIABLE needed)
 string(REGEX MATCHALL "U [^\n]+" needed "${needed}")
 if(KIND STREQUAL avr)
-  # + - * /, comparisons and conversions in software are the compiler's own: __addsf3, __floatdisf
+  # the compiler's software + - * /, comparisons and conversions: __addsf3, __floatdisf
   list(FILTER needed EXCLUDE REGEX
     "^U __(do_copy_data|tablejump2__|unordsf2|usmulhisi3|(add|sub|mul|div|neg|cmp|fix|float|[gln][et]|eq)[a-z0-9_]*)$")
 else()
-  # g++ takes memcpy and its like for granted even so, and copies structures with it on AArch64
+  # g++ assumes memcpy and similar functions even so, and copies structures with it on AArch64
   list(FILTER needed EXCLUDE REGEX "^U (_GLOBAL_OFFSET_TABLE_|__stack_chk_fail|mem(cpy|move|set|cmp))$")
 endif()
 if(failed OR needed)

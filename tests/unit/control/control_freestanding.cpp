@@ -1,5 +1,5 @@
-// What a microcontroller's program takes from the controllers, compiled without a standard
-// library: this file must link against nothing (see control_freestanding.cmake).
+// Controllers for a microcontroller's program, compiled without a standard library: this file must
+// link without any library (see control_freestanding.cmake).
 #include "taut/board/board.h"
 #include "taut/control/clock.h"
 #include "taut/control/cpg.h"
@@ -28,7 +28,8 @@ extern "C" float RestLengthFromImpedance(float rest_length_m, float tension_n, f
                                                  stiffness_n_per_m, 0.001f);
 }
 
-// A board's whole tick: what its load cell and its encoder say, the law, the PID that winds.
+// A whole tick of a board: readings of load cell and encoder, the control law, the PID controller
+// that winds
 struct BoardSenses {
   float rest_length_m, length_m, rate_m_per_s, tension_n, elastic_n, stiffness_n_per_m;
 };
@@ -61,7 +62,7 @@ extern "C" float SpeedFromSine(float t_s) {
   return control::SineVelocity(wave, control::ClockTurns(0.5f, t_s));
 }
 
-// A motor board's two oscillators, with the load cells on their phases.
+// Two oscillators of a motor board, with load cell feedback on their phases
 extern "C" float SpeedFromOscillators(control::CpgState<float>* states, float tension_n) {
   const control::CpgLaw<float> laws[] = {{1.0f, 0.07f, 20.0f}, {1.0f, 0.07f, 20.0f}};
   const control::CpgCoupling<float> couplings[] = {
@@ -74,7 +75,7 @@ extern "C" float SpeedFromOscillators(control::CpgState<float>* states, float te
   return control::CpgVelocity(states[0]);
 }
 
-// The same with a network between cell and oscillator.
+// The same with a network between load cell and oscillator
 extern "C" float SpeedFromNetwork(control::FeedbackCpgState<float>* state, float tension_n) {
   const float weights[] = {0.5f, -1.0f, 2.0f, 0.25f};
   const float heard = (tension_n - 25.0f) / 50.0f;
@@ -89,7 +90,7 @@ extern "C" float SpeedFromNetwork(control::FeedbackCpgState<float>* state, float
   return control::FeedbackCpgSignal(law, *state);
 }
 
-// A cable of a robot that rolls, from the directions of its struts.
+// A cable of a rolling robot, from the directions of its struts
 extern "C" float LengthTowardGoal(const control::Direction<float>* struts_now,
                                   const control::Direction<float>* goal, float t_s) {
   const control::Direction<float> struts[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -124,7 +125,7 @@ int main() {
   return speed < 0.0f && gait < 1.0f && NextTick(0.5f) > 0 ? 0 : 1;
 }
 
-// All that a board decides in a millisecond, and what it makes of a message.
+// All computations of a board in a millisecond, including a message.
 extern "C" void BoardTick(taut::board::Board* board, const taut::board::Inputs* inputs,
                           const uint8_t* message, uint8_t size,
                           uint8_t (*frame)[taut::board::kFrameSize]) {

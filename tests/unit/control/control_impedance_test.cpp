@@ -1,3 +1,4 @@
+// Impedance control, and conversions of tensions to rest lengths, against closed forms
 #include "taut/control/impedance.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 constexpr double kPeriod = 0.001;
 constexpr double kStiffness = 229.16;
 
-/// Cable 1 of the paper's quasi-static test: inner top, front.
+/// Cable 1 of the paper's quasi-static test: inner top, front
 constexpr Impedance<double> kInnerTop{28.0, 0.19, 500.0, 150.0};
 
 double ElasticTension(double length_m, double rest_length_m) {
@@ -65,7 +66,7 @@ TEST(ControlTensionByStiffness, ATautCableReachesTheSetPointInOneTick) {
     const double next_m =
         TensionToRestLengthByStiffness(rest_length_m, T, set_point_n, kStiffness, 0.001);
     EXPECT_NEAR(ElasticTension(length_m, next_m), set_point_n, 1e-12);
-    // and stays
+    // and remains there
     const double after_m = TensionToRestLengthByStiffness(next_m, ElasticTension(length_m, next_m),
                                                           set_point_n, kStiffness, 0.001);
     EXPECT_NEAR(after_m, next_m, 1e-15);
@@ -98,7 +99,7 @@ TEST(ControlTensionByPid, TooLittleTensionWindsIn) {
   EXPECT_DOUBLE_EQ(TensionByPid(pid, state, 13.0, 10.0, kPeriod), 0.03);
 }
 
-// Proportional control of an ideal cable held at both ends: the error shrinks by (1 - k kp h) a
+// Proportional control of an ideal cable held at both ends: the error decays by (1 - k kp h) per
 // tick.
 TEST(ControlTensionByPid, TheErrorOfAHeldCableDecaysGeometrically) {
   const Pid<double> pid{0.05, 0.0, 0.0};
@@ -145,7 +146,8 @@ TEST(ControlRate, SteadyLengtheningIsItsRate) {
 }
 
 TEST(ControlRate, NtrtsFirstTickSeesTheStretchAsAJump) {
-  DifferenceState<double> state = StartDifferenceAtRestLength(0.193103657);  // outer left, facts
+  DifferenceState<double> state =
+      StartDifferenceAtRestLength(0.193103657);  // outer left in NTRT's facts
   EXPECT_NEAR(StepDifference(state, 0.22365, kPeriod), 30.546343, 1e-9);
   EXPECT_EQ(StepDifference(state, 0.22365, kPeriod), 0.0);
 }

@@ -1,3 +1,4 @@
+// PID controllers: closed forms of responses, output limits and wind-up
 #include "taut/control/pid.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ TEST(ControlPid, StartingFromAnOutputGoesOnFromThere) {
     for (const double output : {-1.0, 0.0, 0.4}) {
       PidState<double> state = StartPidFrom(kPid, error, output, kPeriod);
       EXPECT_NEAR(StepPid(kPid, state, error, kPeriod), output, 1e-12);
-      // and then it integrates
+      // then it integrates
       EXPECT_NEAR(StepPid(kPid, state, error, kPeriod), output + 30.0 * error * kPeriod, 1e-12);
     }
   }
@@ -71,7 +72,7 @@ TEST(ControlPid, WithinTheLimitsTheLimitedOneIsThePlainOne) {
 }
 
 // An integral controller at its limit for n ticks: with wind-up it needs n ticks of the opposite
-// error to come back, without it leaves the limit at the first.
+// error to return; without wind-up it leaves the limit at the first.
 TEST(ControlPid, HeldIntegralLeavesTheLimitAtOnce) {
   const Pid<double> integral_only{0.0, 10.0, 0.0};
   for (const double side : {1.0, -1.0}) {
@@ -82,7 +83,7 @@ TEST(ControlPid, HeldIntegralLeavesTheLimitAtOnce) {
       StepPidLimited(integral_only, held, side, kPeriod, limits, Windup::kHeld);
     }
     EXPECT_NEAR(wound.integral, side * 1.0, 1e-12);            // 1 s of unit error
-    EXPECT_NEAR(held.integral, side * 0.1, 1.0001 * kPeriod);  // where 10 I meets the limit
+    EXPECT_NEAR(held.integral, side * 0.1, 1.0001 * kPeriod);  // where 10 I reaches the limit
 
     const double opposite = -side;
     StepPidLimited(integral_only, wound, opposite, kPeriod, limits, Windup::kAllowed);
@@ -108,7 +109,7 @@ TEST(ControlPid, TheOutputIsFormedWithTheIntegralThatWasKept) {
     ASSERT_NEAR(u, 0.5 * 0.3 + 10.0 * state.integral, 1e-14);
   }
   EXPECT_LE(u, 1.0);
-  EXPECT_GT(u, 1.0 - 10.0 * 0.3 * kPeriod);  // one more tick would pass the limit
+  EXPECT_GT(u, 1.0 - 10.0 * 0.3 * kPeriod);  // one more tick would exceed the limit
 }
 
 TEST(ControlPid, TheOutputNeverLeavesTheLimits) {

@@ -1,3 +1,4 @@
+// Position control of rest lengths: programs in time, and winches
 #include "taut/control/position.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +44,7 @@ TEST(ControlPosition, AtATimeThatIsNoneTheProgramHasNotBegun) {
   EXPECT_EQ(RestLengthAt(ramp, 2, std::numeric_limits<double>::quiet_NaN()), 0.20);
 }
 
-// An integrating winch under proportional control: the error shrinks by (1 - kp h) a tick.
+// An integrating winch under proportional control: the error decays by (1 - kp h) per tick.
 TEST(ControlPosition, APidBringsAWinchToItsSetPoint) {
   const Pid<double> pid{5.0, 0.0, 0.0};
   PidState<double> state = StartPid<double>();

@@ -1,4 +1,4 @@
-// The same controller as float, as double and as lanes.
+// The same controller with float, double and SIMD lanes
 #include "taut/control/real.h"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ TEST(ControlReal, NotANumberComesThroughWhereItIsTheGuardedArgument) {
   EXPECT_TRUE(std::isnan(Clamp(kNan, -1.0, 2.0)));
 }
 
-/// A cable whose length swings, driven by impedance control through both conversions for two
-/// seconds; returns where the rest lengths end.
+/// Drives a cable of oscillating length by impedance control through both conversions for two
+/// seconds. Returns the final rest lengths.
 template <class Real>
 struct Ends {
   Real by_stiffness_m, by_pid_m;
@@ -61,7 +61,7 @@ Ends<Real> Drive(Real tension_offset_n) {
 TEST(ControlReal, FloatAgreesWithDouble) {
   const Ends<double> exact = Drive<double>(11.0);
   const Ends<float> single = Drive<float>(11.0f);
-  EXPECT_GT(std::abs(exact.by_stiffness_m - 0.1875), 0.01);  // it did move
+  EXPECT_GT(std::abs(exact.by_stiffness_m - 0.1875), 0.01);  // it has moved
   EXPECT_GT(std::abs(exact.by_pid_m - 0.1875), 0.01);
   EXPECT_NEAR(static_cast<double>(single.by_stiffness_m), exact.by_stiffness_m, 1e-6);
   EXPECT_NEAR(static_cast<double>(single.by_pid_m), exact.by_pid_m, 1e-5);
@@ -75,7 +75,7 @@ template <int N>
 void ExpectLanesEqualScalars() {
   using W = simd::Wide<N>;
   W offset = W::Splat(0.0);
-  for (int i = 0; i < N; ++i) offset.Set(i, 3.0 + 8.0 * i);  // one lane slack now and then
+  for (int i = 0; i < N; ++i) offset.Set(i, 3.0 + 8.0 * i);  // one lane slack at times
   const Ends<W> lanes = Drive<W>(offset);
   for (int i = 0; i < N; ++i) {
     const Ends<double> alone = Drive<double>(offset[i]);

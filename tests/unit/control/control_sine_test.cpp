@@ -1,4 +1,4 @@
-// Sine and cosine in turns, and the wave made of them.
+// Sine and cosine of turns, and sine waves
 #include "taut/control/sine.h"
 
 #include <gtest/gtest.h>
@@ -72,8 +72,8 @@ TEST(Turns, LanesComputeWhatADoubleDoes) {
   }
 }
 
-// NTRT's hand-tuned gait: A = 6 cm/s, offset -A, phase -3.14159 rad, 0.5 Hz; at 0.02 s its trace
-// says -0.1198816 m/s.
+// NTRT's hand-tuned gait: A = 6 cm/s, offset -A, phase -3.14159 rad, 0.5 Hz; the value at 0.02 s in
+// its trace is -0.1198816 m/s.
 TEST(Sine, TheHandTunedWaveHasNtrtsValue) {
   const Sine<double> wave{0.06, -3.14159 * kTurnsPerRad, -0.06};
   EXPECT_NEAR(SineVelocity(wave, ClockTurns(0.5, 0.02)), -0.1198816, 5e-8);
@@ -81,7 +81,7 @@ TEST(Sine, TheHandTunedWaveHasNtrtsValue) {
 
 TEST(Sine, TheClockDoesNotDrift) {
   const Sine<double> wave{1.0, 0.125, 0.0};
-  // 1e9 periods of 0.5 Hz and an eighth of one
+  // 1e9 periods of 0.5 Hz plus an eighth
   EXPECT_NEAR(SineVelocity(wave, ClockTurns(0.5, 2e9 + 0.25)), 0.0, 1e-15);
   EXPECT_EQ(SineVelocity(wave, ClockTurns(0.5, 2e9)), SineVelocity(wave, 0.0));
 }

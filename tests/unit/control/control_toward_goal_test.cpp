@@ -1,4 +1,4 @@
-// The law that rolls towards a goal, against rotations and sums written the long way.
+// Control law that rolls toward a goal, against rotations and sums written explicitly
 #include "taut/control/toward_goal.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Matrix Transposed(const Matrix& m) {
   return out;
 }
 
-/// By Gauss's elimination, column by column.
+/// Inverts by Gaussian elimination, column by column.
 Matrix Inverse(Matrix m) {
   Matrix out{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (std::size_t p = 0; p < 3; ++p) {
@@ -52,7 +52,7 @@ Matrix Inverse(Matrix m) {
 
 Direction<double> Of(const Vector& v) { return {v[0], v[1], v[2]}; }
 
-/// Five struts that go in no even directions.
+/// Five struts in irregular directions
 struct Struts {
   std::vector<Vector> described{
       {1, 0, 0}, {0.6, 0.8, 0}, {0, -0.28, 0.96}, {0.48, 0.6, 0.64}, {-0.36, 0.48, 0.8}};
@@ -75,8 +75,8 @@ struct Struts {
   }
 };
 
-// R is a turn by 2.1 rad about (1, 2, 2) / 3, by Rodrigues's formula. A direction v of the world is
-// R^T v in the robot.
+// R is a rotation by 2.1 rad about (1, 2, 2) / 3, by Rodrigues' formula. A direction v of the world
+// is R^T v in the robot.
 TEST(TowardGoal, ATurnedRobotSeesTheWorldTurnedBack) {
   const Vector n{1.0 / 3, 2.0 / 3, 2.0 / 3};
   const double c = std::cos(2.1), s = std::sin(2.1);
@@ -96,8 +96,8 @@ TEST(TowardGoal, ATurnedRobotSeesTheWorldTurnedBack) {
   }
 }
 
-// Struts that a linear map F has moved tell F: v' = F^T v, so that v' . r = v . F r is where a
-// place r has come to.
+// Struts moved by a linear map F determine F: v' = F^T v, so that v' . r = v . F r is the new place
+// of r along v.
 TEST(TowardGoal, AWarpedRobotsPlacesAreWhereTheMapPutsThem) {
   const Matrix map{{{1.1, 0.2, 0}, {-0.3, 0.9, 0.1}, {0.05, 0, 1.2}}};
   const Vector v{0.6, 0.8, 0}, place{0.4, -0.9, 0.3};

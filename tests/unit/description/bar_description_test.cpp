@@ -1,4 +1,4 @@
-// Elastic bars, and members with a section, as model files say them; and how a bar then moves.
+// Elastic bars, and members with a section, in model files; and the motion of a bar
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A bar of 2 m from an anchor at the origin to a point.
+/// A bar of 2 m from an anchor at the origin to a point
 std::string OneBar(const std::string& bar, const std::string& more = "") {
   return "nodes: {foot: [0, 0, 0], top: [0, 0, 2]}\n"    // line 4
          "pairs: [{name: strut, nodes: [foot, top]}]\n"  // line 5
@@ -60,10 +60,10 @@ TEST(Bar, OfAGivenStiffnessPushesWhereItIsPressed) {
       Good(OneBar("stiffness_n_per_m: 100, prestress_n: -30, mass_kg: 1, young_pa: 1e9"))
           .def.joints.at(0);
   EXPECT_NEAR(bar.rest, 2.3, 1e-15);
-  EXPECT_EQ(bar.stiffness, 100);  // what is said counts more than what E says
+  EXPECT_EQ(bar.stiffness, 100);  // the given stiffness overrides E
 }
 
-/// A triangle of bars of 1 kg/m on two supports, its tip held by a rope of 2 kg/m.
+/// A triangle of bars of 1 kg/m on two supports, its tip held by a rope of 2 kg/m
 constexpr const char* kTruss =
     "nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0.5, 0, 1], hook: [0.5, 0, 2]}\n"
     "pairs:\n"
@@ -95,7 +95,7 @@ TEST(Bar, MembersAreLumpedHalfAtEachEndByTheirLengthsWithoutStress) {
   const MemberDef& bar = robot.def.joints.at(1).member;
   EXPECT_NEAR(bar.mass_kg, side, 1e-15);
   EXPECT_EQ(bar.mass, MemberMass::kConsistent);
-  EXPECT_NEAR(bar.buckling_length_m, side, 1e-15);  // its own where nothing is said
+  EXPECT_NEAR(bar.buckling_length_m, side, 1e-15);  // default: the bar's length
   EXPECT_EQ(bar.yield_pa, 2e5);
   EXPECT_EQ(bar.expansion_per_k, 12e-6);
 }
@@ -115,7 +115,7 @@ TEST(Bar, WhatEndsOnARodJoinsItsBody) {
   EXPECT_EQ(rod.name, "rod");
   EXPECT_NEAR(rod.mass_kg, 2, 1e-15);
   EXPECT_NEAR(rod.com_m.x, 0.75, 1e-15);
-  // Steiner: a cylinder of 1 kg and a point of 1 kg, each 0.25 m off.
+  // Steiner: a cylinder of 1 kg and a point of 1 kg, each 0.25 m off
   EXPECT_NEAR(rod.inertia_kg_m2.yy, 1.0 / 12 + 0.25 * 0.02 * 0.02 + 2 * 0.0625, 1e-15);
   EXPECT_NEAR(rod.inertia_kg_m2.xx, 0.5 * 0.02 * 0.02, 1e-15);
   const MemberDef& strut = robot.def.capsules.at(0).member;
@@ -127,39 +127,39 @@ TEST(Bar, WhatEndsOnARodJoinsItsBody) {
 
 TEST(Bar, ItsMistakesAreNamed) {
   const auto with = [](const std::string& bar) { return Errors(OneBar(bar)); };
-  EXPECT_EQ(with("stiffness_n_per_m: 500"),
-            "robot.yaml:4:26: error: the node \"top\" has no mass (give a bar or a cable that ends "
-            "there density_kg_per_m3 and area_m2, or mass_kg; or the node a point_mass, or an "
-            "anchor)\n");
+  EXPECT_EQ(
+      with("stiffness_n_per_m: 500"),
+      "robot.yaml:4:26: error: the node \"top\" has no mass (give a bar or a cable at this node "
+      "density_kg_per_m3 and area_m2, or mass_kg; or give the node a point_mass or an anchor)\n");
   EXPECT_EQ(with("mass_kg: 1"),
-            "robot.yaml:8:25: error: bar needs the key \"stiffness_n_per_m\" (or `young_pa` and "
-            "`area_m2`: k = E A / L)\n");
+            "robot.yaml:8:25: error: bar needs the key \"stiffness_n_per_m\" (or give `young_pa` "
+            "and `area_m2`: k = E A / L)\n");
   EXPECT_EQ(with("young_pa: 1e9, mass_kg: 1"),
-            "robot.yaml:8:26: error: bar.young_pa needs the key \"area_m2\" beside it (or "
-            "stiffness_n_per_m: k = E A / L)\n");
-  EXPECT_EQ(with("stiffness_n_per_m: 5, mass_kg: 1, density_kg_per_m3: 2, rest_length_m: 1, "
-                 "prestress_n: 3"),
-            "robot.yaml:8:60: error: bar has both mass_kg and density_kg_per_m3 (only one of them "
-            "may be there)\n"
-            "robot.yaml:8:82: error: bar has both prestress_n and rest_length_m (only one of them "
-            "may be there)\n");
+            "robot.yaml:8:26: error: bar.young_pa needs the key \"area_m2\" as well (or give "
+            "stiffness_n_per_m instead: k = E A / L)\n");
+  EXPECT_EQ(
+      with("stiffness_n_per_m: 5, mass_kg: 1, density_kg_per_m3: 2, rest_length_m: 1, "
+           "prestress_n: 3"),
+      "robot.yaml:8:60: error: bar has both mass_kg and density_kg_per_m3 (give only one of them)\n"
+      "robot.yaml:8:82: error: bar has both prestress_n and rest_length_m (give only one of "
+      "them)\n");
   EXPECT_THAT(with("stiffness_n_per_m: 5, density_kg_per_m3: 2, yield_pa: 1, second_moment_m4: 1"),
               HasSubstr("robot.yaml:8:48: error: bar.density_kg_per_m3 needs the key \"area_m2\" "
-                        "beside it (the mass is density times area times length)\n"
-                        "robot.yaml:8:70: error: bar.yield_pa needs the key \"area_m2\" beside it "
-                        "(the force is stress times area)\n"
+                        "as well (the mass is density times area times length)\n"
+                        "robot.yaml:8:70: error: bar.yield_pa needs the key \"area_m2\" as well "
+                        "(the yield force is yield stress times area)\n"
                         "robot.yaml:8:83: error: bar.second_moment_m4 needs the key \"young_pa\" "
-                        "beside it (Euler's load is pi^2 E I / l^2)\n"));
+                        "as well (Euler's buckling load is pi^2 E I / l^2)\n"));
   EXPECT_EQ(with("stiffness_n_per_m: 5, mass_kg: 1, buckling_length_m: 1"),
-            "robot.yaml:8:60: error: bar.buckling_length_m needs the key \"second_moment_m4\" "
-            "beside it (Euler's load is pi^2 E I / l^2)\n");
+            "robot.yaml:8:60: error: bar.buckling_length_m needs the key \"second_moment_m4\" as "
+            "well (Euler's buckling load is pi^2 E I / l^2)\n");
   EXPECT_EQ(with("stiffness_n_per_m: 5, mass_kg: 1, prestress_n: 11"),
-            "robot.yaml:8:73: error: bar.prestress_n: 11 N would stretch the bar \"strut\" to more "
-            "than its length of 2 m (is its stiffness right?)\n");
+            "robot.yaml:8:73: error: bar.prestress_n: 11 N would stretch the bar \"strut\" by its "
+            "whole length of 2 m or more (check its stiffness)\n");
   for (const char* force : {"-1", "-1.5"}) {
     EXPECT_EQ(with("young_pa: 1, area_m2: 1, mass_kg: 1, prestress_n: " + std::string(force)),
               "robot.yaml:8:76: error: bar.prestress_n: " + std::string(force) +
-                  " N would press the bar \"strut\" to nothing (is its stiffness right?)\n");
+                  " N would compress the bar \"strut\" to zero length (check its stiffness)\n");
   }
   EXPECT_EQ(with("stiffness_n_per_m: -5, mass_kg: -1, area_m2: 0, mass: heavy"),
             "robot.yaml:8:45: error: bar.stiffness_n_per_m must be positive, got -5\n"
@@ -168,14 +168,14 @@ TEST(Bar, ItsMistakesAreNamed) {
             "robot.yaml:8:80: error: bar.mass cannot be \"heavy\" (one of: lumped, "
             "consistent)\n");
   EXPECT_THAT(with("stiffness_n_per_m: 5, mass: consistent"),
-              HasSubstr("robot.yaml:8:48: error: bar.mass: it has no mass (mass_kg or "
-                        "density_kg_per_m3)\n"));
+              HasSubstr("robot.yaml:8:48: error: bar.mass has no effect: the member has no mass "
+                        "(give mass_kg or density_kg_per_m3)\n"));
   EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [0, 0, 0], c: [1, 0, 0]}\n"
                    "pairs: [{nodes: [a, b], tags: [bar]}, {nodes: [a, b, c], tags: [bar]}]\n"
                    "builders: [{match: bar, bar: {stiffness_n_per_m: 5, mass_kg: 1}}]\n"),
-            "robot.yaml:5:9: error: the nodes of the bar \"a-b\" are in one place (a bar has a "
-            "length)\n"
-            "robot.yaml:5:39: error: a bar has two nodes, \"a-b-c\" has 3\n");
+            "robot.yaml:5:9: error: the nodes of the bar \"a-b\" are at the same position (move "
+            "one of them: a bar needs a length)\n"
+            "robot.yaml:5:39: error: a bar needs two nodes, but \"a-b-c\" has 3\n");
 }
 
 TEST(Bar, CablesAndRodsSayWhatTheirSectionsNeed) {
@@ -185,20 +185,19 @@ TEST(Bar, CablesAndRodsSayWhatTheirSectionsNeed) {
     return Errors(text.replace(text.find(given), given.size(), keys));
   };
   EXPECT_EQ(cable("rest_length_m: 0.05, young_pa: 1e9"),
-            "robot.yaml:11:49: error: cable.young_pa needs the key \"area_m2\" beside it (or "
-            "stiffness_n_per_m: k = E A / L)\n");
+            "robot.yaml:11:49: error: cable.young_pa needs the key \"area_m2\" as well (or give "
+            "stiffness_n_per_m instead: k = E A / L)\n");
   EXPECT_EQ(cable("rest_length_m: 0.05"),
-            "robot.yaml:11:27: error: cable needs the key \"stiffness_n_per_m\" (or `young_pa` and "
-            "`area_m2`: k = E A / L)\n");
-  EXPECT_EQ(
-      Errors(OneRod("{radius_m: 0.01, mass_kg: 1, buckling_length_m: 2, yield_pa: 3}")),
-      "robot.yaml:6:59: error: rod.buckling_length_m needs the key \"second_moment_m4\" beside "
-      "it (Euler's load is pi^2 E I / l^2)\n"
-      "robot.yaml:6:81: error: rod.yield_pa needs the key \"area_m2\" beside it (the force is "
-      "stress times area)\n");
+            "robot.yaml:11:27: error: cable needs the key \"stiffness_n_per_m\" (or give "
+            "`young_pa` and `area_m2`: k = E A / L)\n");
+  EXPECT_EQ(Errors(OneRod("{radius_m: 0.01, mass_kg: 1, buckling_length_m: 2, yield_pa: 3}")),
+            "robot.yaml:6:59: error: rod.buckling_length_m needs the key \"second_moment_m4\" as "
+            "well (Euler's buckling load is pi^2 E I / l^2)\n"
+            "robot.yaml:6:81: error: rod.yield_pa needs the key \"area_m2\" as well (the yield "
+            "force is yield stress times area)\n");
 }
 
-// How it moves.
+// Motion
 
 TEST(Bar, PushesAndPullsAsASpringOfItsStiffness) {
   const double k = 500, m = 2, h = 1e-3, w = std::sqrt(k / m), seen = 2 / h * std::atan(w * h / 2);
@@ -216,7 +215,7 @@ TEST(Bar, PushesAndPullsAsASpringOfItsStiffness) {
       ASSERT_NEAR(now, wanted, 1e-9) << n;
       least = std::min(least, now), most = std::max(most, now);
     }
-    EXPECT_NEAR(most, 0.1, 1e-4);    // it pulls it back
+    EXPECT_NEAR(most, 0.1, 1e-4);    // the bar pulls it back
     EXPECT_NEAR(least, -0.1, 1e-4);  // and pushes it back
   }
 }

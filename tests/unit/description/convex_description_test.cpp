@@ -1,4 +1,4 @@
-// Convex solids in model files: by corners, and objects of a mesh file.
+// Convex shapes in model files: from corners, and from objects of a mesh file
 #include <cmath>
 
 #include "math/vec.h"
@@ -10,7 +10,7 @@
 namespace taut::test {
 namespace {
 
-/// A box of 2 x 1 x 1 file units from (x, 0, 0), its corners counted from `first`.
+/// A box of 2 x 1 x 1 file units from (x, 0, 0), with corner indices from `first`
 std::string Box(double x, int first, const std::string& name) {
   std::string obj = "o " + name + "\n";
   for (int i = 0; i < 8; ++i) {
@@ -29,7 +29,7 @@ std::string Box(double x, int first, const std::string& name) {
 
 class ConvexText : public ExperimentFolder {
  protected:
-  /// A model of one node with a convex solid there.
+  /// Loads a model of one node with this convex shape.
   std::optional<RobotSpec> Load(const std::string& convex, Diagnostics& out) {
     Write("rock.yaml",
           "taut: 1\nkind: model\nname: rock\n"
@@ -55,7 +55,7 @@ class ConvexText : public ExperimentFolder {
   std::string warnings_;
 };
 
-/// The box of `Box` without its top.
+/// The box of `Box` without its top
 std::string OpenBox() {
   std::string obj = Box(0, 1, "open");
   obj.erase(obj.find("f 5 6 8 7\n"), std::string("f 5 6 8 7\n").size());
@@ -67,7 +67,7 @@ void ExpectHas(const std::string& text, const std::string& part) {
 }
 
 TEST_F(ConvexText, ByCornersItIsWhatTheySpan) {
-  // A pyramid of 0.2 x 0.2 x 0.3 on its node, and a corner inside that does not count.
+  // A pyramid of 0.2 x 0.2 x 0.3 on its node, with a corner inside that has no effect
   const RobotSpec robot = With(
       "corners_m: [[-0.1, -0.1, 0], [0.1, -0.1, 0], [0.1, 0.1, 0], [-0.1, 0.1, 0], [0, 0, 0.3], "
       "[0, 0, 0.1]], density_kg_per_m3: 500, friction: 0.3");
@@ -77,11 +77,11 @@ TEST_F(ConvexText, ByCornersItIsWhatTheySpan) {
   EXPECT_EQ(hull.material.kinetic_friction, 0.3);
   const BodyDef& body = robot.def.bodies[0];
   EXPECT_NEAR(body.mass_kg, 500 * 0.2 * 0.2 * 0.3 / 3, 1e-12);
-  // The part is turned by 90 degrees: its node is at (0, 0.1, 1).
+  // The part is rotated by 90 degrees: its node is at (0, 0.1, 1).
   EXPECT_NEAR(body.com_m.x, 0, 1e-12);
   EXPECT_NEAR(body.com_m.y, 0.1, 1e-12);
   EXPECT_NEAR(body.com_m.z, 1 + 0.3 / 4, 1e-12);
-  // Of a square pyramid about its centre: m a^2 / 10 about its axis.
+  // Square pyramid about its center of mass: m a^2 / 10 about its axis
   EXPECT_NEAR(body.inertia_kg_m2.zz, body.mass_kg * 0.04 / 10, 1e-12);
   EXPECT_NEAR(body.inertia_kg_m2.xx, body.mass_kg * (0.04 / 20 + 3 * 0.09 / 80), 1e-12);
 }
@@ -95,7 +95,7 @@ TEST_F(ConvexText, EveryObjectOfAFileIsAHullAndWeighs) {
   EXPECT_EQ(robot.def.bodies.size(), 1u);
   const BodyDef& body = robot.def.bodies[0];
   EXPECT_NEAR(body.mass_kg, 3, 1e-12);
-  // 0.2 x 0.05 x 0.05 along the part's x, which is W's y, from the node.
+  // 0.2 x 0.05 x 0.05 along the part's x, which is W's y, from the node
   EXPECT_NEAR(body.com_m.y, 0.1 + 0.1, 1e-12);
   EXPECT_NEAR(body.inertia_kg_m2.xx, 3 * (0.04 + 0.0025) / 12, 1e-12);
   EXPECT_NEAR(body.inertia_kg_m2.yy, 3 * 2 * 0.0025 / 12, 1e-12);
@@ -110,14 +110,14 @@ TEST_F(ConvexText, WithAMassAMeshWithHolesIsItsHull) {
   ASSERT_EQ(robot.def.hulls.size(), 1u);
   const BodyDef& body = robot.def.bodies[0];
   EXPECT_NEAR(body.mass_kg, 3, 1e-12);
-  EXPECT_NEAR(body.inertia_kg_m2.zz, 3 * (0.04 + 0.01) / 12, 1e-9);  // the closed box's
+  EXPECT_NEAR(body.inertia_kg_m2.zz, 3 * (0.04 + 0.01) / 12, 1e-9);  // inertia of the closed box
   ExpectHas(warnings_, "open.obj");
   ExpectHas(warnings_, "is not closed");
   ExpectHas(warnings_, "the mass of the mesh of ");
   ExpectHas(warnings_, " is distributed as in its hull");
-  // A density would need its volume.
+  // A density would require its volume.
   ExpectHas(Said("file: open.obj, scale_m: 0.1, density_kg_per_m3: 600"),
-            "an open mesh has no volume; mass_kg gives its hull a mass");
+            "close the mesh, or give mass_kg, the mass of its hull");
 }
 
 TEST_F(ConvexText, AMeshThatIsInsideOutOrHasLinesForTrianglesIsItsHullToo) {
@@ -157,7 +157,7 @@ TEST_F(ConvexText, SolidsOfAnStlAreItsObjects) {
 }
 
 TEST_F(ConvexText, WhatIsHollowedOutIsSaid) {
-  // An L of one object: two boxes whose common corner is cut out.
+  // An L-shaped object: two boxes whose common corner is cut out.
   std::string obj;
   const double p[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   for (const double z : {0.0, 1.0}) {
@@ -175,8 +175,7 @@ TEST_F(ConvexText, WhatIsHollowedOutIsSaid) {
   Write("l.obj", obj);
   const RobotSpec robot = With("file: l.obj, scale_m: 0.1, density_kg_per_m3: 1000");
   EXPECT_NEAR(robot.def.bodies[0].mass_kg, 3, 1e-12);
-  ExpectHas(warnings_,
-            "is not convex: its hull, which is what touches, has 1.167 times its volume");
+  ExpectHas(warnings_, "is not convex: its hull, which collides, has 1.167 times its volume");
 }
 
 TEST_F(ConvexText, WrongOnesAreNamed) {
@@ -201,11 +200,11 @@ TEST_F(ConvexText, WrongOnesAreNamed) {
     many += "[" + std::to_string(std::cos(a)) + ", " + std::to_string(std::sin(a)) + ", " +
             std::to_string(i % 2) + "], ";
   }
-  ExpectHas(Said(many + "[0, 0, 3]], mass_kg: 1"), "are 66, more than 64");
+  ExpectHas(Said(many + "[0, 0, 3]], mass_kg: 1"), "has 66 corners, more than 64");
 }
 
 TEST_F(ConvexText, OfAFileWithMoreCornersTheHullHas64AndItIsSaid) {
-  // Two cones, base on base: 102 corners, all of which are its hull's.
+  // Two cones with a common base: 102 corners, all of which are corners of the hull.
   std::string top, bottom, text;
   for (int i = 0; i < 100; ++i) {
     const double angle = 0.02 * std::acos(-1.0) * i;
@@ -218,7 +217,8 @@ TEST_F(ConvexText, OfAFileWithMoreCornersTheHullHas64AndItIsSaid) {
   const RobotSpec robot = With("file: cones.obj, scale_m: 1, density_kg_per_m3: 1");
   ASSERT_EQ(robot.def.hulls.size(), 1u);
   EXPECT_EQ(robot.def.hulls[0].corners_m.size(), 64u);
-  ExpectHas(warnings_, "has 102 corners: of those that 64 do not hold, the farthest is ");
+  ExpectHas(warnings_,
+            "has 102 corners, but a hull has at most 64: the farthest corner left out is ");
 }
 
 TEST_F(ConvexText, AFileHas256ObjectsAtMost) {

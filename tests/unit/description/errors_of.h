@@ -1,4 +1,4 @@
-/// For tests of errors whose inputs may be odd.
+/// Formatted errors without warnings, for tests of errors whose inputs may cause warnings
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace taut {
 
-/// As printed, without warnings.
+/// Returns the errors as printed, without warnings.
 inline std::string ErrorsOf(const Diagnostics& found) {
   Diagnostics errors;
   for (const Diagnostic& error : found.items()) errors.AddError(error);

@@ -1,4 +1,4 @@
-// Complaints about controllers, the cables that they drive, and the timeline.
+// Errors of controllers, of their cables, and of the timeline
 #include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
@@ -48,16 +48,16 @@ TEST_F(ExperimentErrors, ARobotWithoutCablesHasNoneToDrive) {
 
 TEST_F(ExperimentErrors, GainsAndSetPointsBelongTogether) {
   Expect("cables: driven,", "cables: left,",
-         "16:20: error: no gains for right (add a selector to `gains`)");
-  Expect(
-      "        - {cables: right, tension_n: 10, length_m: 0.18}\n", "",
-      "13:20: error: no set points for right (add a selector to `set_points`, or narrow this one)");
+         "16:20: error: there are no gains for right (add a selector to `gains`)");
+  Expect("        - {cables: right, tension_n: 10, length_m: 0.18}\n", "",
+         "13:20: error: there are no set points for right (add a selector to `set_points`, or "
+         "narrow this one)");
   Expect("cables: left, tension", "cables: driven, tension",
-         "16:20: error: two set points for right (the first are in line 15)");
+         "16:20: error: there are two set points for right (the first are in line 15)");
   Expect("      set_points",
          "        - {cables: [[left], [right]], position_gain_n_per_m: 1, velocity_gain_n_s_per_m: "
          "1}\n      set_points",
-         "14:20: error: two gains for left, right (the first are in line 13)");
+         "14:20: error: there are two gains for left, right (the first are in line 13)");
   Expect("500", "-500", "13:51: error: gains.position_gain_n_per_m must not be negative, got -500");
   Expect("150}", "-150}",
          "13:81: error: gains.velocity_gain_n_s_per_m must not be negative, got -150");
@@ -79,10 +79,10 @@ TEST_F(ExperimentErrors, ConversionAndRateAreChoices) {
   Expect("gains:\n", "conversion: stiff\n      gains:\n",
          "12:19: error: impedance.conversion cannot be \"stiff\" (one of: stiffness, pid)");
   Expect("gains:\n", "conversion: pid\n      gains:\n",
-         "12:7: error: conversion: pid needs the key \"pid\" beside it (write `pid: "
+         "12:7: error: conversion: pid needs the key \"pid\" as well (write `pid: "
          "{proportional_m_per_s_n: 0.01}`)");
   Expect("gains:\n", "pid: {proportional_m_per_s_n: 1}\n      gains:\n",
-         "12:7: error: impedance.pid has no effect (write `conversion: pid`, too)");
+         "12:7: error: impedance.pid has no effect (add `conversion: pid`)");
   Expect("gains:\n", "conversion: pid\n      pid: {proportional_m_per_s_n: -1}\n      gains:\n",
          "13:37: error: impedance.pid.proportional_m_per_s_n must not be negative, got -1");
   Expect("gains:\n",
@@ -100,12 +100,13 @@ TEST_F(ExperimentErrors, ACableObeysOneController) {
          "11:15: error: controller.period_s must be positive, got 0");
   Expect("name: hold", "name: hold\n    phase_s: -1",
          "11:14: error: controller.phase_s must not be negative, got -1");
-  Expect("name: hold", "name: hold on",
-         "10:11: error: controller.name: \"hold on\" cannot be a name (letters, digits, _ and -)");
+  Expect(
+      "name: hold", "name: hold on",
+      "10:11: error: controller.name: \"hold on\" cannot be a name (use letters, digits, _ and -)");
   Expect("- name: hold\n    impedance", "- impedance",
          "10:5: error: controller needs the key \"name\"");
   Expect("name: hold", "name: hold\n    position: {programs: []}",
-         "11:5: error: controller has both impedance and position (only one of them may be there)");
+         "11:5: error: controller has both impedance and position (give only one of them)");
   Expect(
       "    impedance:", "    cpg:",
       "10:5: error: controller needs one of impedance, position, rest_length_input\n11:5: error: "
@@ -114,13 +115,13 @@ TEST_F(ExperimentErrors, ACableObeysOneController) {
   const std::string second =
       "  - {name: second, position: {programs: [{cables: back, rest_length_m: 0.1}]}}\n";
   Expect("timeline:", second + "timeline:",
-         "17:6: error: controller second drives right, which controller hold drives already (a "
-         "cable obeys one controller)");
+         "17:6: error: controller second drives right, which controller hold already drives (a "
+         "cable can have only one controller)");
   Expect("timeline:",
          "  - {name: hold, position: {programs: [{cables: loose, rest_length_m: 0.1}]}}\ntimeline:",
-         "17:6: error: controller hold drives loose, which has no actuator (give the cable's "
-         "builder in the model an `actuator:`)\n17:6: error: there are two controllers hold (the "
-         "first is in line 10)");
+         "17:6: error: controller hold drives cables without an actuator: loose (give the cable's "
+         "builder in the model an `actuator:`)\n"
+         "17:6: error: two controllers are called hold (the first is in line 10)");
 }
 
 TEST_F(ExperimentErrors, ProgramsKeepRestLengthsPositive) {
@@ -137,7 +138,8 @@ TEST_F(ExperimentErrors, ProgramsKeepRestLengthsPositive) {
   expect("programs: [{cables: driven, rest_length_m: [[0, 0.1], [1, -0.1]]}]",
          "trial.yaml:11:74: error: programs.rest_length_m must be positive, got -0.1\n");
   expect("programs: [{cables: driven, rest_length_m: [[0, 0.1], [0, 0.2]]}]",
-         "trial.yaml:11:71: error: programs.rest_length_m: times must rise, but 0 s follows 0 s\n");
+         "trial.yaml:11:71: error: programs.rest_length_m: times must increase, but 0 s follows 0 "
+         "s\n");
   expect("programs: [{cables: driven, rest_length_m: [[-1, 0.1]]}]",
          "trial.yaml:11:61: error: programs.rest_length_m: time_s must not be negative, got -1\n");
   expect("programs: [{cables: driven, rest_length_m: []}]",
@@ -151,18 +153,18 @@ TEST_F(ExperimentErrors, ProgramsKeepRestLengthsPositive) {
          "trial.yaml:11:59: error: programs.rest_length_m must be a number or a list of [time_s, "
          "value], got a map\n");
   expect("programs: [{cables: driven, change_m: [[0, 0], [2, -0.2]]}]",
-         "trial.yaml:11:54: error: programs.change_m: a change of -0.2 m at t = 2 s leaves left no "
-         "rest length (it is 0.15 m as described)\n");
+         "trial.yaml:11:54: error: programs.change_m: a change of -0.2 m at t = 2 s leaves left "
+         "without a positive rest length (its initial rest length is 0.15 m)\n");
   expect("programs: [{cables: driven, change_m: 0, rest_length_m: 1}]",
-         "trial.yaml:11:44: error: programs has both rest_length_m and change_m (only one of them "
-         "may be there)\n");
+         "trial.yaml:11:44: error: programs has both rest_length_m and change_m (give only one of "
+         "them)\n");
   expect("programs: [{cables: driven}]",
          "trial.yaml:11:27: error: programs needs one of rest_length_m, change_m\n");
   expect("programs: [{cables: driven, change_m: 0}, {cables: left, change_m: 0}]",
-         "trial.yaml:11:67: error: two programs for left (the first are in line 11)\n");
+         "trial.yaml:11:67: error: there are two programs for left (the first are in line 11)\n");
   expect("programs: [{cables: passive, change_m: 0}]",
-         "trial.yaml:10:5: error: controller hold drives loose, which has no actuator (give the "
-         "cable's builder in the model an `actuator:`)\n");
+         "trial.yaml:10:5: error: controller hold drives cables without an actuator: loose (give "
+         "the cable's builder in the model an `actuator:`)\n");
   expect("programs: all",
          "trial.yaml:11:26: error: position.programs must be a list, got a text\n");
   expect("program: []",
@@ -177,9 +179,9 @@ TEST_F(ExperimentErrors, PushesNeedRisingTimes) {
          "20:46: error: push.direction must not be zero (it is a direction)");
   Expect("direction: [0, 0, 2], ", "", "20:13: error: push needs the key \"direction\"");
   Expect("[[3, 0], [4, push_n]]", "[[3, 0], [3, push_n]]",
-         "20:76: error: push.force_n: times must rise, but 3 s follows 3 s");
+         "20:76: error: push.force_n: times must increase, but 3 s follows 3 s");
   Expect("[[3, 0], [4, push_n]]", "[[3, 0], [2, push_n]]",
-         "20:76: error: push.force_n: times must rise, but 2 s follows 3 s");
+         "20:76: error: push.force_n: times must increase, but 2 s follows 3 s");
   Expect("[[3, 0], [4, push_n]]", "[[3, 0]]",
          "20:66: error: push.force_n needs two points or more (the force is zero before the first "
          "and after the last one)");
@@ -197,7 +199,7 @@ TEST_F(ExperimentErrors, PushesNeedRisingTimes) {
   Expect("    - push: {name: tap,",
          "    - push: {name: tap, node: a1, direction: [1, 0, 0], force_n: [[0, 0], [1, 1]]}\n    "
          "- push: {name: tap,",
-         "21:20: error: there are two events tap (the first is in line 20)");
+         "21:20: error: two events are called tap (the first is in line 20)");
 }
 
 TEST_F(ExperimentErrors, DragsMove) {
@@ -247,8 +249,9 @@ TEST_F(ExperimentErrors, PhasesLieWithinTheExperiment) {
          "18:20: error: phase before must be within the experiment, 0..10 s, got -1..2 s");
   Expect("before: [1, 2]", "before: [1, 2, 3]",
          "18:20: error: phase before must have 2 numbers, got 3");
-  Expect("before: [1, 2]", "not yet: [1, 2]",
-         "18:12: error: timeline.phases: \"not yet\" cannot be a name (letters, digits, _ and -)");
+  Expect(
+      "before: [1, 2]", "not yet: [1, 2]",
+      "18:12: error: timeline.phases: \"not yet\" cannot be a name (use letters, digits, _ and -)");
   Expect("phases: {before: [1, 2]}", "phases: [before]",
          "18:11: error: timeline.phases must be a map, got a list");
 }

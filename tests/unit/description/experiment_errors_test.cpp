@@ -1,4 +1,4 @@
-// Every complaint of the experiment reader, with its place and its hint.
+// All errors of the experiment reader, with places and hints
 #include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
@@ -7,12 +7,12 @@ namespace {
 TEST_F(ExperimentErrors, TheFixtureIsRight) { EXPECT_EQ(Complaints(), ""); }
 
 TEST_F(ExperimentErrors, HeaderAndKeysAreStrict) {
+  Expect("taut: 1", "taut: 2",
+         "1:7: error: taut must be 1, got 2 (it is the version of the file format; this program "
+         "reads version 1)");
   Expect(
-      "taut: 1", "taut: 2",
-      "1:7: error: taut must be 1, got 2 (the version of the format; this taut reads version 1)");
-  Expect("kind: experiment", "kind: model",
-         "2:7: error: kind must be experiment, got model (files of this kind are for "
-         "`taut check`)");
+      "kind: experiment", "kind: model",
+      "2:7: error: kind must be experiment, got model (use `taut check` for files of this kind)");
   Expect("record:", "recrod:", "21:1: error: unknown key \"recrod\" (did you mean \"record\"?)");
   Expect("record:", "duration_s: 3\nrecord:",
          "21:1: error: duplicate key \"duration_s\" (first in line 8)");
@@ -24,7 +24,7 @@ TEST_F(ExperimentErrors, HeaderAndKeysAreStrict) {
   Expect("record: {rate_hz: 50}", "record: {channels: all}",
          "21:20: error: record.channels must be a list, got a text");
   Expect("name: trial", "name: trial 1",
-         "3:7: error: name: \"trial 1\" cannot be a name (letters, digits, _ and -)");
+         "3:7: error: name: \"trial 1\" cannot be a name (use letters, digits, _ and -)");
 }
 
 TEST_F(ExperimentErrors, MissingKeysAreNamed) {
@@ -52,22 +52,23 @@ TEST_F(ExperimentErrors, TimesHaveLimits) {
 
 TEST_F(ExperimentErrors, FilesMustBeThere) {
   Expect("model: model.yaml", "model: modle.yaml",
-         "4:8: error: model: there is no file \"modle.yaml\" (as seen from the folder of the file "
-         "that names it)");
+         "4:8: error: model: there is no file \"modle.yaml\" (paths are relative to the folder of "
+         "the file that contains them)");
   Expect("model: model.yaml", "model: [model.yaml]",
          "4:8: error: model must be a text, got a list");
   Expect("record:", "compare_with: run.h5\nrecord:",
-         "21:15: error: compare_with: there is no file \"run.h5\" (as seen from the folder of the "
-         "file that names it)");
+         "21:15: error: compare_with: there is no file \"run.h5\" (paths are relative to the "
+         "folder of the file that contains them)");
   Expect("name: trial", "name: trial\nbase: other.yaml",
-         "4:7: error: base: there is no file other.yaml (as seen from this file's folder)");
+         "4:7: error: base: there is no file other.yaml (paths are relative to the folder of this "
+         "file)");
   Expect("name: trial", "name: trial\nbase: trial.yaml",
-         "4:7: error: base files name each other in a circle: trial.yaml");
+         "4:7: error: base files refer to each other in a circle: trial.yaml");
   Expect("name: trial", "name: trial\nbase: [a]",
          "4:7: error: base must be the name of a file of kind experiment");
   Expect("name: trial", "name: trial\nbase: model.yaml",
-         "model.yaml:2:7: error: kind must be experiment, got model (files of this "
-         "kind are for `taut check`)");
+         "model.yaml:2:7: error: kind must be experiment, got model (use `taut check` for files of "
+         "this kind)");
 }
 
 TEST_F(ExperimentErrors, ReferencesNameWhatThereIs) {
@@ -79,9 +80,10 @@ TEST_F(ExperimentErrors, ReferencesNameWhatThereIs) {
   expect("phase: befor, cables_n: {left: 1}",
          "22:29: error: there is no phase \"befor\" (did you mean \"before\"?)");
   expect("statistic: mean, cables_n: {left: 1}",
-         "22:22: error: reference.statistic: over the whole run there is only max (name a phase of "
-         "the timeline: phase: before)");
-  expect("cables_n: {}", "22:32: error: reference.cables_n has no values (inner_top_1: 34.4)");
+         "22:22: error: reference.statistic must be max for the whole run (for another statistic "
+         "name a phase of the timeline, such as `phase: before`)");
+  expect("cables_n: {}",
+         "22:32: error: reference.cables_n has no values (such as `inner_top_1: 34.4`)");
   expect("cables_n: {left: much}",
          "22:39: error: reference.cables_n.left: unknown name \"much\" (one of: push_n)");
   Expect("record:", "reference:\n  - {quantity: force}\nrecord:",
@@ -92,7 +94,7 @@ TEST_F(ExperimentErrors, ReferencesNameWhatThereIs) {
 
 TEST_F(ExperimentErrors, ParametersMustExist) {
   Expect("push_n: 10", "push_n: 10 *",
-         "5:22: error: parameters.push_n: the expression ends too early");
+         "5:22: error: parameters.push_n: the expression is incomplete");
   Expect("[4, push_n]", "[4, pull_n]",
          "20:79: error: push.force_n: unknown name \"pull_n\" (did you mean \"push_n\"?)");
   Expect("duration_s: 10", "set: {stiffness: 3}\nduration_s: 10",
@@ -139,9 +141,9 @@ TEST_F(ExperimentErrors, PlanesLieInOneWay) {
   const std::string plane = "{height_m: 0, friction: 0.5}";
   Expect(plane, "{friction: 0.5}", "7:27: error: plane needs one of height_m, normal, slope_rad");
   Expect(plane, "{height_m: 0, normal: [0, 0, 1]}",
-         "7:41: error: plane has both height_m and normal (only one of them may be there)");
+         "7:41: error: plane has both height_m and normal (give only one of them)");
   Expect(plane, "{height_m: 0, point_m: [0, 0, 1]}",
-         "7:41: error: plane has both height_m and point_m (only one of them may be there)");
+         "7:41: error: plane has both height_m and point_m (give only one of them)");
   Expect(plane, "{normal: [0, 0, 0]}",
          "7:36: error: plane.normal must not be zero (it is a direction)");
   Expect(plane, "{normal: [0, 0]}", "7:36: error: plane.normal must have 3 numbers, got 2");
@@ -158,8 +160,8 @@ TEST_F(ExperimentErrors, PlanesLieInOneWay) {
   Expect(plane, "{height_m: 0, friction: -0.5}",
          "7:51: error: plane.friction must not be negative, got -0.5");
   Expect(plane, "{height_m: 0, static_friction: 0.1, kinetic_friction: 0.2}",
-         "7:41: error: plane.static_friction is below kinetic_friction (a contact that sticks "
-         "holds at least as much as one that slides)");
+         "7:41: error: plane.static_friction is below kinetic_friction (static friction must be at "
+         "least the kinetic friction)");
   Expect(plane, "{height_m: 0, restitution: 2}",
          "7:54: error: plane.restitution must be within 0..1, got 2");
 }
@@ -176,7 +178,7 @@ TEST_F(ExperimentErrors, TerrainIsPlanesAndBoxes) {
          "terrain (one of: name, plane, box, scatter, stairs, height_field, mesh)");
   Expect(ground, "- {plane: {height_m: 0}}", "7:5: error: terrain needs the key \"name\"");
   Expect(ground, ground + "\n  " + ground,
-         "8:6: error: there are two parts of the terrain called ground (the first is in line 7)");
+         "8:6: error: two terrain elements are called ground (the first is in line 7)");
   Expect(ground, "- {name: step, box: {center_m: [0, 0, 0], size_m: [1, 0, 1]}}",
          "7:53: error: box.size_m must be three positive numbers");
   Expect(ground, "- {name: step, box: {center_m: [0, 0, 0]}}",
@@ -215,7 +217,7 @@ TEST_F(ExperimentErrors, OneCallFindsThemAllInBothFiles) {
   text.replace(text.find("cables: left"), 12, "cables: l");
   text.replace(text.find("friction: 0.5"), 13, "friction: -1");
   Write("trial.yaml", text);
-  // A mass is wrong, but the nodes and cables are known: what refers to them is checked.
+  // A mass is invalid, but the nodes and cables are known: references to them are checked.
   EXPECT_EQ(
       Complaints(),
       "model.yaml:17:49: error: rod.mass_kg must not be negative, got -1\ntrial.yaml:7:51: error: "

@@ -1,4 +1,4 @@
-/// A folder with a small robot and an experiment on it, for tests of the experiment reader.
+/// Folder with a small robot and an experiment, for tests of the experiment reader
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace taut::test {
 
-/// Two rods, joined by two cables with actuators and one without.
+/// Two rods, connected by two cables with actuators and one without
 inline constexpr const char* kModel = R"(taut: 1
 kind: model
 name: pair
@@ -73,7 +73,7 @@ class ExperimentFolder : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
 
-  /// The experiment with one text in place of another.
+  /// Writes the experiment with one text replaced by another.
   void Change(const std::string& old_text, const std::string& new_text) const {
     ChangeFile("trial.yaml", kExperiment, old_text, new_text);
   }
@@ -84,7 +84,7 @@ class ExperimentFolder : public testing::Test {
     Write(name, text.replace(place, old_text.size(), new_text));
   }
 
-  /// The experiment, which must be right.
+  /// Loads the experiment and expects no errors.
   ExperimentSpec Load(const std::string& name = "trial.yaml",
                       const Overrides& overrides = {}) const {
     Diagnostics out;
@@ -93,7 +93,7 @@ class ExperimentFolder : public testing::Test {
     return experiment.value_or(ExperimentSpec{});
   }
 
-  /// What is wrong with the experiment, without the folder.
+  /// Returns the errors of the experiment, without the folder's name.
   std::string Complaints(const std::string& name = "trial.yaml",
                          const Overrides& overrides = {}) const {
     Diagnostics out;
@@ -117,10 +117,10 @@ class ExperimentFolder : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// For complaints about the experiment file alone.
+/// For errors in the experiment file only
 class ExperimentErrors : public ExperimentFolder {
  protected:
-  /// The complaints after a change are exactly `expected`, in lines without the file's name.
+  /// Expects that the errors after a change equal `expected`, in lines without the file's name.
   void Expect(const std::string& old_text, const std::string& new_text,
               const std::string& expected) {
     Change(old_text, new_text);

@@ -1,9 +1,9 @@
-// What makes a run reproducible: the hash of its inputs and the experiment in numbers.
+// Reproducibility of runs: hash of the inputs, and the resolved experiment
 #include <cmath>
 #include <iterator>
 
 #include "base/hash.h"
-#include "description/yaml/hash.h"
+#include "description/yaml/yaml_hash.h"
 #include "taut/run.h"
 #include "unit/description/experiment_fixture.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 class ExperimentRecord : public ExperimentFolder {
  protected:
-  /// The text without the comment at its top, which names the files that it was made from.
+  /// Returns the text without its initial comment, which lists the source files.
   static std::string Body(const std::string& yaml) { return yaml.substr(yaml.find("taut: 1")); }
 
   ExperimentSpec ThereAndBack(const ExperimentSpec& experiment) {
@@ -37,7 +37,7 @@ TEST_F(ExperimentRecord, TheHashIsOfBytesAndNotOfNames) {
 }
 
 TEST_F(ExperimentRecord, TheHashIsFnv1a) {
-  // "3:abc" by another implementation: FNV-1a of the length, a colon and the bytes.
+  // "3:abc", computed independently: FNV-1a of the length, a colon and the bytes
   Write("abc", "abc");
   std::uint64_t expected = 0xcbf29ce484222325;
   for (const unsigned char byte : {'3', ':', 'a', 'b', 'c'}) {
@@ -117,7 +117,7 @@ TEST_F(ExperimentRecord, ItRepeatsTheRunBitForBit) {
   EXPECT_EQ(first->state_hash, again->state_hash);
   const auto other = RunExperiment(Load("trial.yaml", {{"push_n", "10.000001"}}), {}, out);
   ASSERT_TRUE(other) << out.Format();
-  EXPECT_NE(first->state_hash, other->state_hash);  // so the hash does see the push
+  EXPECT_NE(first->state_hash, other->state_hash);  // so that the hash covers the push
 }
 
 TEST_F(ExperimentRecord, ItIsAnExperimentAndHasNoParameters) {

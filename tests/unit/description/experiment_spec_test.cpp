@@ -1,4 +1,4 @@
-// What a good experiment file becomes.
+// Experiment files: values read
 #include <cmath>
 #include <map>
 
@@ -125,8 +125,8 @@ TEST(ShippedExperiments, NtrtsLawsAreOptions) {
     ExpectGains(gains.at(name), same.tension_offset_n, same.length_offset_m,
                 same.position_gain_n_per_m, same.velocity_gain_n_s_per_m);
   }
-  // The inertia that NTRT logs [kg cm^2], its axes (z, x, y) as ours. NTRT rounds the height of
-  // its tetrahedra to 32.90897 cm, a part in seven million.
+  // The inertia that NTRT logs [kg cm^2], its axes (z, x, y) as taut's. NTRT rounds the height of
+  // its tetrahedra to 32.90897 cm, a relative error of 1.4e-7.
   const Inertia& inertia = ntrt.robot.def.bodies.at(0).inertia_kg_m2;
   EXPECT_NEAR(inertia.xx, 156.19757e-4, 3e-9);
   EXPECT_NEAR(inertia.yy, 106.32264e-4, 3e-9);
@@ -193,7 +193,8 @@ TEST_F(ExperimentReading, OverridesGoToTheExperimentFirstAndThenToTheModel) {
   EXPECT_EQ(experiment.parameters.at("height_m"), 0.7);
   EXPECT_EQ(experiment.parameters.at("push_n"), 6.0);
   EXPECT_EQ(experiment.pushes.at(0).force_n.at(1).second, 6.0);
-  EXPECT_EQ(experiment.robot.parameters.at("height_m"), 0.3);  // the experiment's took it
+  EXPECT_EQ(experiment.robot.parameters.at("height_m"),
+            0.3);  // the override set the experiment's parameter
   EXPECT_EQ(experiment.robot.def.cables.at(0).stiffness_n_per_m, 300.0);
 }
 
@@ -217,7 +218,7 @@ TEST_F(ExperimentReading, ABaseGivesWhatTheFileLacks) {
   EXPECT_EQ(softer.duration_s, 10.0);
   EXPECT_EQ(softer.parameters.at("push_n"), 4.0);
   EXPECT_EQ(softer.pushes.at(0).force_n.at(1).second, 4.0);
-  EXPECT_NEAR(softer.robot.parameters.at("height_m"), 0.3, 1e-15);  // `set` is merged by name,
+  EXPECT_NEAR(softer.robot.parameters.at("height_m"), 0.3, 1e-15);  // `set` is merged by name;
   EXPECT_EQ(softer.robot.parameters.at("stiffness_n_per_m"), 50.0);
   EXPECT_TRUE(softer.robot.def.planes.empty());  // a list is replaced
   EXPECT_EQ(softer.files.size(), 4u);
@@ -238,7 +239,7 @@ TEST_F(ExperimentReading, TerrainLiesAsDescribed) {
   EXPECT_EQ(def.planes[0].material.static_friction, 0.6);
   EXPECT_EQ(def.planes[0].material.kinetic_friction, 0.4);
   EXPECT_EQ(def.planes[0].material.restitution, 0.1);
-  ExpectVector(def.planes[1].normal, 0, -0.5, std::sqrt(0.75));  // it rises towards +y
+  ExpectVector(def.planes[1].normal, 0, -0.5, std::sqrt(0.75));  // it rises toward +y
   ExpectVector(def.planes[1].point_m, 1, 2, 3);
   ExpectVector(def.planes[2].normal, -1, 0, 0);
   EXPECT_EQ(def.planes[2].material.kinetic_friction, 0.5);
@@ -276,11 +277,11 @@ TEST_F(ExperimentReading, PlaceTurnsTheRobotAboutItsOriginThenMovesIt) {
 }
 
 TEST_F(ExperimentReading, PlaceTurnsProductsOfInertia) {
-  // A rod along x and one along y, turned by 30 degrees about x and then by 60 about z.
+  // A rod along x and one along y, rotated about x and then about z.
   Change("duration_s: 10",
          "place: {rotate: [{axis: x, angle_rad: 0.5}, {axis: z, angle_rad: 1}]}\nduration_s: 10");
   const BodyDef rod = Load().robot.def.bodies.at(0);
-  const Vec3 u{std::cos(1.0), std::sin(1.0), 0};  // of the rod, which lay along x
+  const Vec3 u{std::cos(1.0), std::sin(1.0), 0};  // of the rod that was along x
   const Inertia& i = rod.inertia_kg_m2;
   const Vec3 along{i.xx * u.x + i.xy * u.y, i.xy * u.x + i.yy * u.y, i.xz * u.x + i.yz * u.y};
   const double spin = 0.5 * 1.0 * 0.01 * 0.01;  // m r^2 / 2: u is a principal axis with this moment

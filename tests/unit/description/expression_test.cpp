@@ -1,10 +1,11 @@
+// Expressions in files, and named parameters
 #include "description/yaml/expression.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "description/yaml/parameters.h"
+#include "description/yaml/file_parameters.h"
 
 namespace taut::description {
 namespace {
@@ -77,31 +78,32 @@ TEST(Expression, FunctionsAreWhatTheyAreCalled) {
 }
 
 TEST(Expression, EveryMistakeHasItsMessage) {
-  EXPECT_EQ(Error(""), "an expression is missing");
-  EXPECT_EQ(Error("  "), "an expression is missing");
-  EXPECT_EQ(Error("1 +"), "the expression ends too early");
+  EXPECT_EQ(Error(""), "the expression is empty");
+  EXPECT_EQ(Error("  "), "the expression is empty");
+  EXPECT_EQ(Error("1 +"), "the expression is incomplete");
   EXPECT_EQ(Error("(1 + 2"), "\")\" is missing");
   EXPECT_EQ(Error("1 + 2)"), "unexpected \")\" in \"1 + 2)\"");
   EXPECT_EQ(Error("1 2"), "unexpected \"2\" in \"1 2\"");
-  EXPECT_EQ(Error("2 ** 3"), "unexpected \"*\" in \"2 ** 3\" (powers are written with ^)");
+  EXPECT_EQ(Error("2 ** 3"), "unexpected \"*\" in \"2 ** 3\" (write powers with ^)");
   EXPECT_EQ(Error("5 % 2"), "unexpected \"%\" in \"5 % 2\"");
   EXPECT_EQ(Error("5 µm"), "unexpected \"µ\" in \"5 µm\"");
   EXPECT_EQ(Error("3 m"), "unexpected \"m\" in \"3 m\"");
-  EXPECT_EQ(Error("3m"),
-            "\"m\" right after the number 3 (a product needs `*`; units belong to the "
-            "key, not to the value)");
-  EXPECT_EQ(Error("1e999"), "number out of range: 1e999");
+  EXPECT_EQ(
+      Error("3m"),
+      "\"m\" directly follows the number 3 (write products with `*`, and values without units)");
+  EXPECT_EQ(Error("1e999"), "the number 1e999 is out of range");
   EXPECT_EQ(Error("edge"), "unknown name \"edge\" (did you mean \"edge_m\"?)");
-  EXPECT_EQ(Error("sqrt"), "sqrt is a function (write sqrt(...))");
+  EXPECT_EQ(Error("sqrt"), "sqrt is a function and needs arguments (write sqrt(...))");
   EXPECT_EQ(Error("sine(1)"), "unknown function \"sine\" (did you mean \"sin\"?)");
   EXPECT_EQ(Error("atan2(1)"), "atan2 takes 2 arguments, got 1");
   EXPECT_EQ(Error("sin(1, 2)"), "sin takes 1 argument, got 2");
   EXPECT_EQ(Error("min(1)"), "min takes 2 or more arguments, got 1");
   EXPECT_EQ(Error("1 / 0"), "division by zero");
   EXPECT_EQ(Error("1 / (n - 3)"), "division by zero");
-  EXPECT_EQ(Error("0 ^ -1"), "division by zero (0 ^ a negative number)");
+  EXPECT_EQ(Error("0 ^ -1"), "division by zero (0 is raised to a negative power)");
   EXPECT_EQ(Error("(-8) ^ (1/3)"),
-            "a negative number to a fractional power (write (-x)^y for a whole y)");
+            "a negative number to a fractional power (use a positive base, or a whole number as "
+            "exponent)");
   EXPECT_EQ(Error("sqrt(-1)"), "sqrt of a negative number");
   EXPECT_EQ(Error("acos(1.1)"), "acos of a number outside -1..1");
   EXPECT_EQ(Error("log(0)"), "log of a number that is not positive");
@@ -116,7 +118,7 @@ TEST(Expression, EveryMistakeHasItsMessage) {
 }
 
 TEST(Expression, AnUnknownNameWithoutParametersSaysSo) {
-  EXPECT_EQ(Evaluate("edge_m", {}).hint, "there are no parameters");
+  EXPECT_EQ(Evaluate("edge_m", {}).hint, "no parameters are defined");
 }
 
 TEST(Expression, WhatUsesAFaultyParameterStaysSilent) {
@@ -205,8 +207,10 @@ TEST(Parameters, EachFaultIsReportedOnceAndItsUsersStaySilent) {
 
 TEST(Parameters, NamesAreIdentifiersAndNotReserved) {
   EXPECT_EQ(ErrorsOf("2x: 1\na-b: 1\npi: 3\nsin: 1\n"),
-            "p.yaml:1:1: error: \"2x\" cannot be the name of a parameter (letters, digits and _)\n"
-            "p.yaml:2:1: error: \"a-b\" cannot be the name of a parameter (letters, digits and _)\n"
+            "p.yaml:1:1: error: \"2x\" cannot be the name of a parameter (use letters, digits and "
+            "_, and no digit first)\n"
+            "p.yaml:2:1: error: \"a-b\" cannot be the name of a parameter (use letters, digits and "
+            "_, and no digit first)\n"
             "p.yaml:3:1: error: \"pi\" is the name of a function or constant\n"
             "p.yaml:4:1: error: \"sin\" is the name of a function or constant\n");
   EXPECT_EQ(ErrorsOf("[1]\n"),

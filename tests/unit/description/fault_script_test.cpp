@@ -1,5 +1,4 @@
-// Fault scripts: what they say, and that what is wrong with one is said all at once, with its
-// place.
+// Fault scripts: values read, and errors, which are reported all at once with their places
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +26,7 @@ class FaultFile : public testing::Test {
     std::filesystem::remove(path);
     return script;
   }
-  /// The messages, without the file's name and line, for one more entry.
+  /// Returns the messages, without the file's name and line, for one more entry.
   std::string Wrong(const std::string& fault) {
     EXPECT_FALSE(Load("  - " + fault + "\n")) << fault;
     std::string messages;
@@ -78,32 +77,31 @@ TEST_F(FaultFile, EveryKindHasAName) {
 
 TEST_F(FaultFile, WhatIsMissingIsNamed) {
   EXPECT_EQ(Wrong("{kind: board_loss, at_s: 1}"),
-            "fault needs the key \"board\" (of kind: board_loss)\n");
+            "fault needs the key \"board\" (required by `kind: board_loss`)\n");
   EXPECT_EQ(Wrong("{kind: clock_drift, at_s: 1}"),
-            "fault needs the key \"board\" (of kind: clock_drift)\n"
-            "fault needs the key \"drift_ppm\" (of kind: clock_drift)\n");
+            "fault needs the key \"board\" (required by `kind: clock_drift`)\n"
+            "fault needs the key \"drift_ppm\" (required by `kind: clock_drift`)\n");
   EXPECT_EQ(Wrong("{kind: cut_cable}"),
             "fault needs the key \"at_s\"\n"
-            "fault needs the key \"cable\" (of kind: cut_cable)\n");
+            "fault needs the key \"cable\" (required by `kind: cut_cable`)\n");
   EXPECT_EQ(Wrong("{at_s: 1, line: data}"), "fault needs the key \"kind\"\n");
 }
 
 TEST_F(FaultFile, WhatHasNoEffectIsRefused) {
-  EXPECT_EQ(
-      Wrong("{kind: usb_loss, at_s: 1, board: 0}"),
-      "fault.board has no effect here (it belongs to kind: clock_drift, board_loss, brown_out, "
-      "firmware_hang, driver_fault)\n");
+  EXPECT_EQ(Wrong("{kind: usb_loss, at_s: 1, board: 0}"),
+            "fault.board has no effect here (it is for kind: clock_drift, board_loss, brown_out, "
+            "firmware_hang, driver_fault)\n");
   EXPECT_EQ(Wrong("{kind: stuck_encoder, at_s: 1, cable: front, force_n: 2}"),
-            "fault.force_n has no effect here (it belongs to kind: stuck_load_cell)\n");
+            "fault.force_n has no effect here (it is for kind: stuck_load_cell)\n");
   EXPECT_EQ(Wrong("{kind: cut_cable, at_s: 1, cable: front, for_s: 2}"),
-            "fault.for_s has no effect here (cut_cable happens once)\n");
+            "fault.for_s has no effect here (cut_cable has no duration)\n");
 }
 
 TEST_F(FaultFile, NamesAndNumbersOfTheRobotAreChecked) {
   EXPECT_EQ(Wrong("{kind: cut_cable, at_s: 1, cable: bakc}"),
             "there is no actuated cable \"bakc\" (did you mean \"back\"?)\n");
   EXPECT_EQ(Wrong("{kind: brown_out, at_s: 1, board: 2}"),
-            "there is no board 2 (the robot has 3 motors, two a board; the first board is 0)\n");
+            "there is no board 2 (the robot has 3 motors, two per board; the first board is 0)\n");
   EXPECT_TRUE(Load("  - {kind: brown_out, at_s: 1, board: 1}\n"));
 }
 

@@ -1,4 +1,4 @@
-// What is wrong with a fit is said, all at once, with its place and a hint.
+// Errors of fit files, reported all at once with their places and hints
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -61,7 +61,7 @@ class FitFile : public testing::Test {
     out_ = {};
     return LoadFit((folder_ / "fit.yaml").string(), overrides, out_);
   }
-  /// The messages, without the file's name, for the good fit with `old` replaced.
+  /// Returns the messages, without the file's name, for the valid fit with `old` replaced.
   std::string Wrong(const std::string& old, const std::string& by) {
     std::string text = kGood;
     const std::size_t at = text.find(old);
@@ -105,7 +105,7 @@ TEST_F(FitFile, OverridesReachItsOwnParametersAndThoseOfTheExperiments) {
   const auto fit = Load(kGood + "parameters: {wide_n_per_m: 7}\n", {{"mass_kg", "0.6"}});
   ASSERT_TRUE(fit) << out_.Format();
   EXPECT_EQ(fit->experiments[0].experiment.robot.parameters.at("mass_kg"), 0.6);
-  EXPECT_EQ(out_.warnings().size(), 1u);  // nothing reads wide_n_per_m
+  EXPECT_EQ(out_.warnings().size(), 1u);  // wide_n_per_m is unused
 }
 
 TEST_F(FitFile, SaysTheSameOfItselfWheneverItIsTheSame) {
@@ -126,16 +126,16 @@ TEST_F(FitFile, UnknownParametersAreSaidWithTheLikelyOne) {
 
 TEST_F(FitFile, WhatIsTrainedOnJudgesNothing) {
   EXPECT_EQ(Wrong("data: b.csv", "data: ./a.csv"),
-            "6: experiments: b has the data of a, and one of them is held out to judge the other "
-            "(hold out what nothing is found from: use: test needs data of its own)\n");
+            "6: experiments: b has the same data as a, but one of them is held out for validation "
+            "(use separate data for `use: test`)\n");
   EXPECT_EQ(Wrong("data: b.csv, use: test", "data: a.csv"),
-            "6: experiments: b has the data of a once more (each measurement counts once)\n");
+            "6: experiments: b has the same data as a (list each measurement once)\n");
 }
 
 TEST_F(FitFile, NeedsSomethingToBeFoundFrom) {
   EXPECT_EQ(Wrong("data: a.csv}", "data: a.csv, use: test}"),
-            "5: experiments: there is none to find numbers from (one with use: train, which is "
-            "what an entry without `use` is)\n");
+            "5: experiments: none is used for the estimation (write `use: train` for at least one, "
+            "or leave out `use`)\n");
 }
 
 TEST_F(FitFile, AStandardDeviationOfZeroIsNone) {
@@ -144,25 +144,25 @@ TEST_F(FitFile, AStandardDeviationOfZeroIsNone) {
 
 TEST_F(FitFile, StartsLieBetweenTheBoundsAndNotOnThem) {
   EXPECT_EQ(Wrong("low: 50,", "low: 100,"),
-            "8: estimate: k_n_per_m starts on its bound 100 (from there it can only go one way: "
-            "widen the bounds, or give a `start`)\n");
+            "8: estimate: k_n_per_m starts on its bound 100 (widen the bounds, or give a `start` "
+            "between them)\n");
   EXPECT_EQ(Wrong("low: 50,", "low: 110,"),
-            "8: estimate: k_n_per_m starts at 100, which is not between its bounds (that is what "
-            "the experiment says; give a `start`)\n"
+            "8: estimate: k_n_per_m starts at 100, which is not between its bounds (it is the "
+            "value of the experiment: give another `start`, or change the bounds)\n"
             "8: estimate: k_n_per_m: the prior's mean 100 is not between its bounds\n");
   EXPECT_EQ(Wrong("low: 50,", "low: 150,"),
-            "8: estimate: k_n_per_m: nothing lies between low 150 and high 150\n");
+            "8: estimate: k_n_per_m: low 150 is not below high 150\n");
 }
 
 TEST_F(FitFile, KeysOfOneKindAreNotForAnother) {
   EXPECT_EQ(Wrong("offset: {sd: 0.002}", "low: 0"),
-            "9: estimate: a channel needs an `offset` or a `gain` (offset: {sd: 0.002})\n"
-            "9: estimate.low is for a parameter\n");
+            "9: estimate: a channel needs an `offset` or a `gain` (such as `offset: {sd: 0.002}`)\n"
+            "9: estimate.low is allowed for a parameter only\n");
 }
 
 TEST_F(FitFile, NumbersAreFoundOnce) {
   EXPECT_EQ(Wrong("  - {clock:", "  - {parameter: k_n_per_m, scale: 1}\n  - {clock:"),
-            "10: estimate: k_n_per_m is found twice (first in line 8)\n");
+            "10: estimate: k_n_per_m is estimated twice (first in line 8)\n");
 }
 
 TEST_F(FitFile, WindowsAreOnesThatTheExperimentHas) {
@@ -170,10 +170,11 @@ TEST_F(FitFile, WindowsAreOnesThatTheExperimentHas) {
             "12: residuals.window: a has no phase \"latte\" (did you mean \"late\"?)\n"
             "12: residuals.window: b has no phase \"latte\" (did you mean \"late\"?)\n");
   EXPECT_EQ(Wrong("phase: late", "from_s: 3, to_s: 2"),
-            "12: residuals.window: its end 2 s is not after its begin 3 s\n");
-  EXPECT_EQ(Wrong("phase: late", "from_s: 3, phase: late"),
-            "12: residuals.window needs one of `phase`, `from_s` with `to_s`, "
-            "`after_setpoint_s`\n12: residuals.window: from_s and to_s go together\n");
+            "12: residuals.window: the end 2 s is not after the start 3 s\n");
+  EXPECT_EQ(
+      Wrong("phase: late", "from_s: 3, phase: late"),
+      "12: residuals.window needs both from_s and to_s\n"
+      "12: residuals.window needs one of `phase`, `from_s` with `to_s`, `after_setpoint_s`\n");
 }
 
 TEST_F(FitFile, EveryMistakeIsSaidAtOnce) {
@@ -190,14 +191,14 @@ TEST_F(FitFile, EveryMistakeIsSaidAtOnce) {
 
 TEST_F(FitFile, LoadCasesNeedSomeAndStaticsNeedSetPoints) {
   EXPECT_EQ(Wrong("data: a.csv}", "data: a.csv, forward: load_cases}"),
-            "5: experiments: a has no load cases (forward: load_cases needs `load_cases` in the "
-            "experiment)\n"
-            "10: estimate: the load cases of a have no clock that could be late\n"
-            "12: residuals: a has load cases, and these no time (without `window`: row i of the "
-            "data is that of case i)\n");
+            "5: experiments: a has no load cases (add `load_cases` to the experiment, or change "
+            "`forward`)\n"
+            "10: estimate: the load cases of a have no clock, so they cannot have a delay\n"
+            "12: residuals: a has load cases, which have no time (leave out `window`: row i of the "
+            "data belongs to case i)\n");
   EXPECT_EQ(Wrong("data: a.csv}", "data: a.csv, forward: static}"),
-            "12: residuals: a is static: it is looked at after its set points (window: "
-            "{after_setpoint_s: [2, 3]})\n");
+            "12: residuals: a is static, so it is compared only after its set points (write "
+            "`window: {after_setpoint_s: [2, 3]}`)\n");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Friction by speed and direction in files: what they say, how it turns with its part, what is said
-// of wrong ones, and the ways through a resolved experiment and a written model.
+// Friction by speed and direction in files: values, rotation with its part, errors, resolved
+// experiments, and written models
 #include <cmath>
 #include <numbers>
 
@@ -55,7 +55,7 @@ TEST(FrictionText, AnAxisTurnsWithItsPart) {
 
 TEST(FrictionText, WhatIsWrongIsNamedWithItsPlace) {
   EXPECT_EQ(Errors(OneRod("friction: 0.5, stribeck: {speed_m_per_s: 0.1}")),
-            "robot.yaml:7:67: error: rod.stribeck has no effect (static_friction above "
+            "robot.yaml:7:67: error: rod.stribeck has no effect (give static_friction above "
             "kinetic_friction, or viscous_friction_s_per_m)\n");
   EXPECT_EQ(Errors(OneRod("stribeck: {viscous_friction_s_per_m: -1}, "
                           "friction_directions: {forward: -1, axis: [0, 0, 0]}")),
@@ -65,13 +65,12 @@ TEST(FrictionText, WhatIsWrongIsNamedWithItsPlace) {
             "robot.yaml:7:125: error: friction_directions.forward must not be negative, got -1\n"
             "robot.yaml:7:135: error: friction_directions.axis must not be zero (it is a "
             "direction)\n");
-  EXPECT_EQ(
-      Errors("nodes: {a: [0, 0, 0]}\n"
-             "builders:\n"
-             "  - {match: a, sphere: {radius_m: 1, mass_kg: 1, friction_directions: "
-             "{forward: 2}}}\n"),
-      "robot.yaml:6:50: error: sphere.friction_directions needs an axis (only rods have one of "
-      "their own: axis: [1, 0, 0])\n");
+  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0]}\n"
+                   "builders:\n"
+                   "  - {match: a, sphere: {radius_m: 1, mass_kg: 1, friction_directions: "
+                   "{forward: 2}}}\n"),
+            "robot.yaml:6:50: error: sphere.friction_directions needs an axis (add one, such as "
+            "`axis: [1, 0, 0]`: only rods have a default)\n");
 }
 
 class FrictionFile : public ExperimentFolder {};

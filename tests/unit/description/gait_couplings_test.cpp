@@ -1,4 +1,4 @@
-// Who is coupled to whom: the paper's counts, NTRT's network, any number of segments.
+// Couplings of CPG networks: the paper's counts, NTRT's network, any number of segments
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST(Couplings, OscillatorsAre65535AtMost) {
   for (const auto& names : {std::vector<std::string>{}, order}) {
     Diagnostics out;
     EXPECT_FALSE(FindCouplings(robot, CpgSymmetry::kNone, names, {}, out));
-    EXPECT_EQ(out.Format(), "error: more than 65535 oscillators\n");
+    EXPECT_EQ(out.Format(), "error: the gait has more than 65535 oscillators\n");
   }
 }
 
@@ -89,7 +89,7 @@ TEST(Couplings, ThreeSegmentsHaveThePapersCounts) {
 }
 
 // N segments have N - 1 joints of 6 cables. A joint's cables share a body with each other and with
-// those of the joints before and behind: 30 couplings within a joint, 2 x 36 between neighbours.
+// the cables of the neighboring joints: 30 couplings within a joint, 2 x 36 between neighbors.
 TEST(Couplings, LongerSpinesReachNoFurtherThanTheNextJoint) {
   for (const int segments : {2, 4, 12}) {
     const RobotSpec robot = Spine(segments);
@@ -114,7 +114,7 @@ TEST(Couplings, LongerSpinesReachNoFurtherThanTheNextJoint) {
   }
 }
 
-// A gait for three segments fits twelve, as its groups are the same.
+// A gait for three segments fits twelve, because its groups are the same.
 TEST(Couplings, AGaitOfThreeSegmentsPlaysOnTwelve) {
   Diagnostics out;
   const auto gait = NewCpgGait(Spine(3), CpgSymmetry::kSegments, out);
@@ -137,7 +137,7 @@ TEST(Couplings, CouplingsComeByOscillatorAndAreNeverToItself) {
   }
 }
 
-// Both directions within a joint share a group; forward and backward ones do not.
+// Both directions within a joint share a group; forward and backward couplings do not.
 TEST(Couplings, TheSymmetryIsWhatItSays) {
   const RobotSpec robot = Spine(3);
   const CouplingGraph graph = Couplings(robot, CpgSymmetry::kSegments);
@@ -165,8 +165,8 @@ TEST(Couplings, IndexSymmetryRefusesAnOrderItCannotNumber) {
   Diagnostics out;
   EXPECT_FALSE(FindCouplings(Spine(4), CpgSymmetry::kIndex, order, {"g.yaml", 5, 3}, out));
   EXPECT_EQ(out.Format(),
-            "g.yaml:5:3: error: symmetry: index knows oscillators up to 11 places apart, but "
-            "outer_top_1 and outer_right_1 are 12 apart (put the cables of neighbouring segments "
+            "g.yaml:5:3: error: symmetry: index couples oscillators up to 11 places apart, but "
+            "outer_top_1 and outer_right_1 are 12 apart (list the cables of neighboring segments "
             "together in cpg.order)\n");
 }
 
@@ -174,7 +174,7 @@ struct Edge {
   double weight_per_m, phase_rad;
 };
 
-// The running NTRT's 132 couplings, one by one.
+// The 132 couplings of a running NTRT
 TEST(Couplings, TheLearnedGaitHasNtrtsNetwork) {
   std::map<std::pair<std::string, std::string>, Edge> expected;
   std::ifstream file(kRoot + "tests/data/ntrt/cpg_couplings.csv");
@@ -211,7 +211,7 @@ TEST(Couplings, TheLearnedGaitHasNtrtsNetwork) {
   EXPECT_NEAR(gait.cpg->amplitude, 0.5154273, 1e-9);
 }
 
-/// Largest difference of the gait's output from NTRT's trace up to a time [m/s].
+/// Returns the largest difference of the gait's output from NTRT's trace up to a time [m/s].
 double WorstAgainstTrace(const std::string& gait_file, const std::string& trace_file,
                          const std::string& column, double until_s) {
   Diagnostics out;
@@ -246,7 +246,8 @@ double WorstAgainstTrace(const std::string& gait_file, const std::string& trace_
   return worst;
 }
 
-// Of 0.515 m/s (docs/validation/gaits.md); NTRT integrates with a tolerance of 1e-6 a step.
+// The amplitude is 0.515 m/s (docs/validation/gaits.md); NTRT integrates with a tolerance of 1e-6
+// per step.
 TEST(Couplings, TheLearnedGaitCommandsWhatNtrtsDid) {
   EXPECT_LT(
       WorstAgainstTrace("gaits/cpg_learned_ntrt.yaml", "cpg_learned_1000hz.csv.gz", "_cpg_m_s", 60),
@@ -265,7 +266,7 @@ std::string ReferenceFolder() {
   return std::string(given ? given : TAUT_SOURCE_DIR "/../shared/reference") + "/ntrt/gait";
 }
 
-// The shipped gaits are what the import makes of NTRT's own files, number by number.
+// The shipped gaits equal the import of NTRT's files, number by number.
 TEST(NtrtGait, TheShippedGaitsAreTheImportedOnes) {
   if (!std::filesystem::is_directory(ReferenceFolder())) {
     GTEST_SKIP() << "no gaits of NTRT: set TAUT_REFERENCE";
@@ -328,18 +329,19 @@ TEST_F(NtrtFolder, WhatIsMissingOrNotANumberIsSaid) {
   EXPECT_EQ(Complaints(folder_.string() + "/none"),
             "/none: error: there is no such file or folder\n");
   EXPECT_EQ(Complaints(folder_.string()),
-            ": error: has no file ..._node-0.nnw (a folder with bestParameters-9_node-0.nnw and "
-            "bestParameters-9_edge-0.nnw to -56.nnw)\n");
+            ": error: the folder has no file ..._node-0.nnw (expected a folder with "
+            "bestParameters-9_node-0.nnw and bestParameters-9_edge-0.nnw to -56.nnw)\n");
   Write("a_node-0.nnw", "0.1,2");
   for (int i = 1; i < 57; ++i) Write("a_edge-" + std::to_string(i) + ".nnw", "0.5,0.5");
   Write("a_edge-7.nnw", "0.5");
-  const std::string wrong = ": error: is not two numbers within 0..1, such as 0.5036,0.9295\n";
+  const std::string wrong =
+      ": error: the file must contain two numbers within 0..1, such as 0.5036,0.9295\n";
   EXPECT_EQ(Complaints(folder_.string()),
-            "/a_edge-0.nnw: error: cannot be opened: No such file or directory\n/a_edge-7.nnw:1:1" +
+            "/a_edge-0.nnw: error: cannot open: No such file or directory\n/a_edge-7.nnw:1:1" +
                 wrong + "/a_node-0.nnw:1:1" + wrong);
   Write("b_node-0.nnw", "0.1,0.1");
   EXPECT_EQ(Complaints(folder_.string()),
-            ": error: has several sets of learned parameters (a folder with "
+            ": error: the folder has several sets of learned parameters (expected a folder with "
             "bestParameters-9_node-0.nnw and bestParameters-9_edge-0.nnw to -56.nnw)\n");
   Write("v.json", "{\"cpg_frequency\": 0.5, \"front_offset\": \"x\"}");
   const std::string text = Complaints((folder_ / "v.json").string());

@@ -1,4 +1,4 @@
-// Gait files: what is read, what is written, what is wrong with them.
+// Gait files: reading, writing, errors
 #include <bit>
 #include <cmath>
 
@@ -34,7 +34,7 @@ class Gait : public ExperimentFolder {
     EXPECT_TRUE(gait) << out.Format();
     return gait.value_or(GaitSpec{});
   }
-  /// The complaints about the experiment with a controller that plays the gait.
+  /// Returns the errors of the experiment with a controller that plays the gait.
   std::string PlayedComplaints(const std::string& text) {
     Write("g.yaml", text);
     Change("  - name: hold\n", "  - name: hold\n    velocity_input: {gait: g.yaml}\n");
@@ -47,8 +47,8 @@ TEST_F(Gait, AParameterThatNothingReadsIsAWarning) {
   Diagnostics out;
   EXPECT_TRUE(LoadGait(Path("g.yaml"), out));
   EXPECT_EQ(Without(Path(""), out.Format()),
-            "g.yaml:4:34: warning: nothing reads the parameter \"idle\" (its value changes "
-            "nothing)\n");
+            "g.yaml:4:34: warning: the parameter \"idle\" is not used (remove it, or use it in an "
+            "expression)\n");
 }
 
 TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
@@ -64,7 +64,7 @@ TEST_F(Gait, ASineIsReadWithItsExpressionsAndDefaults) {
   EXPECT_EQ(gait.sine->waves[1].cables, (CableMatch{{"driven", "back"}}));
 }
 
-/// Every number by its bits, and the texts.
+/// Returns every number by its bits, and the texts.
 std::string Everything(GaitSpec gait) {
   std::string out = gait.name + "|" + gait.description + "|";
   out += gait.drives == GaitDrives::kRestLength ? "lengths|" : "velocities|";
@@ -128,7 +128,7 @@ TEST_F(Gait, WhatIsWrittenReadsBackToTheSameBits) {
 TEST_F(Gait, AFileThatCannotBeWrittenIsSaid) {
   Diagnostics out;
   EXPECT_FALSE(SaveGait(LoadText(kSine), "/nowhere/g.yaml", out));
-  EXPECT_EQ(out.Format(), "/nowhere/g.yaml: error: cannot be written: No such file or directory\n");
+  EXPECT_EQ(out.Format(), "/nowhere/g.yaml: error: cannot write: No such file or directory\n");
 }
 
 TEST_F(Gait, ValuesAreNamedAndPointIntoTheGait) {
@@ -176,21 +176,21 @@ TEST_F(Gait, ValuesHaveTheNamesAndUnitsOfWhatIsDriven) {
 
 TEST_F(Gait, AKeyOfTheOtherQuantityIsAnsweredWithTheRightOne) {
   Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude_m_per_s: -0.08",
-         "9:31: error: waves.amplitude_m_per_s is of another quantity (a gait that drives rest "
-         "lengths has amplitude_m)");
+         "9:31: error: waves.amplitude_m_per_s is for another quantity (a gait that drives rest "
+         "lengths needs amplitude_m)");
   Expect(kSine, "offset_m_per_s: 0.01", "offset_m: 0.01",
-         "8:76: error: waves.offset_m is of another quantity (a gait that drives velocities has "
+         "8:76: error: waves.offset_m is for another quantity (a gait that drives velocities needs "
          "offset_m_per_s)");
   Expect(WithLengths(kCpg), "amplitude_m: 0.1", "amplitude_m_per_s: 0.1\n  amplitude_m: 0.1",
-         "7:3: error: cpg.amplitude_m_per_s is of another quantity (a gait that drives rest "
-         "lengths has amplitude_m)");
+         "7:3: error: cpg.amplitude_m_per_s is for another quantity (a gait that drives rest "
+         "lengths needs amplitude_m)");
   Expect(kCpg, "weight_per_m: 20", "weight_per_m_s: 20",
-         "9:26: error: groups.weight_per_m_s is of another quantity (a gait that drives velocities "
-         "has weight_per_m)");
+         "9:26: error: groups.weight_per_m_s is for another quantity (a gait that drives "
+         "velocities needs weight_per_m)");
   Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude: -0.08",
          "9:7: error: waves needs the key \"amplitude_m\"\n"
          "9:31: error: unknown key \"amplitude\" in waves (did you mean \"amplitude_m\"?)");
-  // where nobody knows what is driven, no name is a wrong one
+  // if the driven quantity is unknown, the names of keys cause no errors
   Expect(WithLengths(kSine), "drives: rest_length", "drives: rest_lenght",
          "3:9: error: drives cannot be \"rest_lenght\" (did you mean \"rest_length\"?)");
 }
@@ -199,7 +199,8 @@ TEST_F(Gait, WrongKeysAndValuesAreErrors) {
   Expect(kSine, "amplitude_m_per_s: -0.08", "amplitude: -0.08",
          "8:7: error: waves needs the key \"amplitude_m_per_s\"\n"
          "8:31: error: unknown key \"amplitude\" in waves (did you mean \"amplitude_m_per_s\"?)");
-  Expect(kSine, "name: b", "name: a", "9:7: error: there are two waves a (the first is in line 8)");
+  Expect(kSine, "name: b", "name: a",
+         "9:7: error: two waves are called a (the first is in line 8)");
   Expect(kSine, "cables: left", "cables: []",
          "8:25: error: waves.cables must not be empty (name the tags to match)");
   Expect(kSine, "frequency_hz: slow_hz", "frequency_hz: -1",
@@ -210,7 +211,7 @@ TEST_F(Gait, WrongKeysAndValuesAreErrors) {
          "6:22: error: cpg.amplitude_m_per_s must not be negative, got -0.1\n"
          "7:22: error: cpg.convergence_per_s must be positive, got 0");
   Expect(kCpg, "right.left,", "left.right,",
-         "10:7: error: there are two groups left.right (the first is in line 9)");
+         "10:7: error: two groups are called left.right (the first is in line 9)");
   Expect(kCpg, "cpg:", "cgp:",
          "1:1: error: the file needs one of sine, cpg, table, feedback_cpg, toward_goal\n"
          "4:1: error: unknown key \"cgp\" (did you mean \"cpg\"?)");
@@ -221,15 +222,16 @@ TEST_F(Gait, ATableMustBeOne) {
   Expect(kTable, rows, "rows: [[0, 0.1], [0.5, 0.2, -0.2]]",
          "6:10: error: table.rows: a row must have 3 numbers, got 2");
   Expect(kTable, rows, "rows: [[1, 0.1, -0.1], [1, 0.2, -0.2]]",
-         "5:3: error: a table's first row is at 0 s, not at 1 s\n"
-         "5:3: error: a table's times must rise, but 1 s follows 1 s");
-  Expect(kTable, rows, "rows: []", "5:3: error: a table needs a column for a cable and a row");
+         "5:3: error: the first row of a table must be at 0 s, got 1 s\n"
+         "5:3: error: the times of a table must increase, but 1 s follows 1 s");
+  Expect(kTable, rows, "rows: []",
+         "5:3: error: a table needs at least one column for a cable and one row");
   Expect(kTable, rows, rows + "\n  repeat_from_s: 0.5",
          "5:3: error: table.repeat_from_s must be before the last row, which is at 0.5 s");
   Expect(kTable, rows, "file: none.csv",
-         "5:3: error: table.cables has no effect (the file's columns name the cables)\n"
-         "6:9: error: table.file: there is no file \"none.csv\" (as seen from the folder of the "
-         "file that names it)");
+         "5:3: error: table.cables has no effect (the headings of the file name the cables)\n"
+         "6:9: error: table.file: there is no file \"none.csv\" (paths are relative to the folder "
+         "of the file that contains them)");
 }
 
 TEST_F(Gait, ATableInPlainTextIsReadOrItsErrorsAreSaid) {
@@ -243,23 +245,24 @@ TEST_F(Gait, ATableInPlainTextIsReadOrItsErrorsAreSaid) {
 
   Write("t.csv", "t,left,right_m_per_s\n");
   EXPECT_EQ(GaitComplaints(gait),
-            "t.csv:1:1: error: column 2 is \"left\" (a cable's name with its unit, such as "
-            "outer_top_1_m_per_s)\n"
+            "t.csv:1:1: error: column 2 has the unknown heading \"left\" (expected a cable's name "
+            "with its unit, such as outer_top_1_m_per_s)\n"
             "t.csv:1:1: error: the first column must be time_s, got \"t\"\n");
   Write("t.csv", "time_s,left_m,_m_per_s\n");
   EXPECT_EQ(GaitComplaints(gait),
-            "t.csv:1:1: error: column 2 is \"left_m\" (a gait that drives velocities has "
-            "left_m_per_s)\n"
-            "t.csv:1:1: error: column 3 is \"_m_per_s\" (a cable's name with its unit, such as "
-            "outer_top_1_m_per_s)\n");
+            "t.csv:1:1: error: column 2 has the unknown heading \"left_m\" (a gait that drives "
+            "velocities needs left_m_per_s)\n"
+            "t.csv:1:1: error: column 3 has the unknown heading \"_m_per_s\" (expected a cable's "
+            "name with its unit, such as outer_top_1_m_per_s)\n");
   Write("t.csv", "time_s,left_m_per_s\n0,0.1,3\n1,nan\n2,\n3,4\n");
   EXPECT_EQ(GaitComplaints(gait),
-            "t.csv:2:1: error: a row of 3 cells under a header of 2\n"
+            "t.csv:2:1: error: the row has 3 cells, but the header has 2\n"
             "t.csv:3:1: error: \"nan\" is not a finite number (column 2)\n"
             "t.csv:4:1: error: \"\" is not a finite number (column 2)\n");
   Write("t.csv", "");
-  EXPECT_EQ(GaitComplaints(gait),
-            "t.csv:1:1: error: has no header line (such as time_s,outer_top_1_m_per_s)\n");
+  EXPECT_EQ(
+      GaitComplaints(gait),
+      "t.csv:1:1: error: the table has no header line (such as time_s,outer_top_1_m_per_s)\n");
 }
 
 TEST_F(Gait, ATableOfRestLengthsHasColumnsInMetres) {
@@ -272,13 +275,13 @@ TEST_F(Gait, ATableOfRestLengthsHasColumnsInMetres) {
   EXPECT_EQ(GaitTableText(*good.table, good.drives), "time_s,left_m,right_m\n0,0.1,-0.25\n");
   Write("t.csv", "time_s,left_m_per_s,right\n0,0.1,-0.25\n");
   EXPECT_EQ(GaitComplaints(gait),
-            "t.csv:1:1: error: column 2 is \"left_m_per_s\" (a gait that drives rest lengths has "
-            "left_m)\n"
-            "t.csv:1:1: error: column 3 is \"right\" (a cable's name with its unit, such as "
-            "outer_top_1_m)\n");
+            "t.csv:1:1: error: column 2 has the unknown heading \"left_m_per_s\" (a gait that "
+            "drives rest lengths needs left_m)\n"
+            "t.csv:1:1: error: column 3 has the unknown heading \"right\" (expected a cable's name "
+            "with its unit, such as outer_top_1_m)\n");
   Write("t.csv", "");
   EXPECT_EQ(GaitComplaints(gait),
-            "t.csv:1:1: error: has no header line (such as time_s,outer_top_1_m)\n");
+            "t.csv:1:1: error: the table has no header line (such as time_s,outer_top_1_m)\n");
 }
 
 TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
@@ -292,18 +295,19 @@ TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
             "tagged \"lefty\"; did you mean \"left\"?)\n");
   text = kSine;
   text.replace(text.find("cables: left"), 12, "cables: driven");
-  EXPECT_EQ(PlayedComplaints(text),
-            "g.yaml:9:7: error: wave b: right has a wave already, a (a cable has one wave)\n");
+  EXPECT_EQ(
+      PlayedComplaints(text),
+      "g.yaml:9:7: error: wave b: right already has the wave a (a cable can have only one wave)\n");
   text = kSine;
   text.replace(text.find("cables: left"), 12, "cables: loose");
   EXPECT_EQ(PlayedComplaints(text),
-            "trial.yaml:11:21: error: gait waves moves loose, which controller hold does not drive "
-            "(give them `gains` and `set_points`)\n");
+            "trial.yaml:11:21: error: gait waves drives loose, which controller hold does not "
+            "drive (add `gains` and `set_points` for them)\n");
   text = kSine;
   text.replace(text.find("offset_m_per_s: 0.01"), 20, "phase_per_segment_rad: 1");
   EXPECT_EQ(PlayedComplaints(text),
-            "g.yaml:8:7: error: wave a: phase_per_segment_rad needs a number at the end of left "
-            "(such as outer_top_2)\n");
+            "g.yaml:8:7: error: wave a: phase_per_segment_rad needs cable names that end in a "
+            "number, got left (such as outer_top_2)\n");
   text = kCpg;
   text.replace(text.find("left.right"), 10, "left.rihgt");
   EXPECT_EQ(PlayedComplaints(text),
@@ -313,18 +317,19 @@ TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
             "\"left.right\"?)\n");
   text = kCpg;
   text.replace(text.find("symmetry: none"), 14, "symmetry: segments");
-  EXPECT_EQ(PlayedComplaints(text),
-            "g.yaml:5:3: error: cable left has no number at its end (symmetric couplings tell "
-            "cables apart by names such as outer_top_2; write `symmetry: none`)\n");
+  EXPECT_EQ(
+      PlayedComplaints(text),
+      "g.yaml:5:3: error: the name of cable left does not end in a number (use names such as "
+      "outer_top_2, by which symmetric couplings distinguish cables, or write `symmetry: none`)\n");
   text = kCpg;
   text.replace(text.find("symmetry: none"), 14,
                "symmetry: none\n  order: [left, loose, left, rihgt]");
-  EXPECT_EQ(PlayedComplaints(text),
-            "g.yaml:5:3: error: cpg.order has left twice\n"
-            "g.yaml:5:3: error: cpg.order: loose has no actuator (give the cable's builder in the "
-            "model an `actuator:`)\n"
-            "g.yaml:5:3: error: cpg.order: there is no cable \"rihgt\" (did you mean "
-            "\"right\"?)\n");
+  EXPECT_EQ(
+      PlayedComplaints(text),
+      "g.yaml:5:3: error: cpg.order contains left twice\n"
+      "g.yaml:5:3: error: cpg.order: loose has no actuator (give the cable's builder in the model "
+      "an `actuator:`)\n"
+      "g.yaml:5:3: error: cpg.order: there is no cable \"rihgt\" (did you mean \"right\"?)\n");
   text = kCpg;
   text.replace(text.find("symmetry: none"), 14, "symmetry: none\n  inverted: lfet");
   EXPECT_EQ(PlayedComplaints(text),
@@ -335,7 +340,7 @@ TEST_F(Gait, AGaitMustFitTheRobotThatPlaysIt) {
   EXPECT_EQ(PlayedComplaints(text),
             "g.yaml:5:3: error: pair has no cable \"rihgt\" (did you mean \"right\"?)\n");
   text.replace(text.find("[left, rihgt]"), 13, "[left, left]");
-  EXPECT_EQ(PlayedComplaints(text), "g.yaml:5:3: error: the table has left twice\n");
+  EXPECT_EQ(PlayedComplaints(text), "g.yaml:5:3: error: the table contains left twice\n");
 }
 
 }  // namespace

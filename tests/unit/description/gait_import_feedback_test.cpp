@@ -1,4 +1,4 @@
-// Controllers with feedback as NTRT stores them: a .json and the networks that it names.
+// Import of NTRT's controllers with feedback: a .json file and the networks that it names
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ class NtrtFeedback : public testing::Test {
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
-  /// Edge i has the weight i / 100; all have the phase 0.75.
+  /// Writes a controller whose edge i has the weight i / 100; all have the phase 0.75.
   void WriteController(const std::string& more, int edges = 100) const {
     std::string text = "{\"edgeVals\": {\"params\": [";
     for (int i = 0; i < edges; ++i) {
@@ -66,10 +66,10 @@ TEST_F(NtrtFeedback, NumbersAreScaledAndPlaced) {
   EXPECT_NEAR(cpg.frequency_gain_hz_per_s, 4.75 / (2 * std::numbers::pi), 1e-12);  // -0.5..10
   EXPECT_NEAR(cpg.amplitude_gain, 200.0 / 75.0, 1e-12);
   EXPECT_NEAR(cpg.phase_gain_rad_per_s, 2.89, 1e-12);  // -0.5..6.28
-  EXPECT_EQ(cpg.groups.front().name, "rp0.0.0");       // of the last edge
+  EXPECT_EQ(cpg.groups.front().name, "rp0.0.0");       // from the last edge
   EXPECT_NEAR(cpg.groups.front().weight, 99.0, 1e-12);
   EXPECT_NEAR(cpg.groups[99].phase_rad, std::numbers::pi / 2, 1e-12);
-  // A bias is a neuron that says -1.
+  // A bias is a neuron with the output -1.
   const NetworkSpec& cable = *cpg.cable_network;
   ASSERT_EQ(cable.hidden.size(), 1u);
   EXPECT_EQ(cable.hidden[0].weights, (std::vector<double>{1, 2}));
@@ -78,7 +78,7 @@ TEST_F(NtrtFeedback, NumbersAreScaledAndPlaced) {
   EXPECT_EQ(cable.outputs[2].name, "phase");
   EXPECT_EQ(cable.outputs[2].weights, (std::vector<double>{6}));
   EXPECT_EQ(cable.outputs[2].bias, -9);
-  // NTRT's x is y here, and its z is x.
+  // NTRT's x is taut's y, its z is taut's x.
   const NetworkSpec& heading = *cpg.goal_network;
   EXPECT_EQ(heading.hidden[0].weights, (std::vector<double>{2, 1}));
   ASSERT_EQ(heading.outputs.size(), 24u);
@@ -89,21 +89,19 @@ TEST_F(NtrtFeedback, NumbersAreScaledAndPlaced) {
 
 TEST_F(NtrtFeedback, WhatIsWrongIsSaidWithItsPlace) {
   WriteController("", 99);
-  EXPECT_EQ(
-      Complaints(),
-      "/c.json:1:14: error: edgeVals.params must have 100 rows, as NTRT's controllers of spines "
-      "with eight cables a joint\n");
+  EXPECT_EQ(Complaints(),
+            "/c.json:1:14: error: edgeVals.params must have 100 rows, as in NTRT's controllers of "
+            "spines with eight cables per joint\n");
   WriteController(Network("feedbackVals", 3));
   Write("logs/feedbackVals.nnw", "1,2,3");
-  EXPECT_EQ(
-      Complaints(),
-      "/logs/feedbackVals.nnw:1:1: error: is not 9 numbers, as a network of 2, 1 and 3 neurons "
-      "has\n");
+  EXPECT_EQ(Complaints(),
+            "/logs/feedbackVals.nnw:1:1: error: the file must contain 9 numbers, for a network "
+            "with 2, 1 and 3 neurons\n");
   WriteController(Network("goalVals", 1));
   EXPECT_EQ(
       Complaints(),
-      "/c.json:3:24: error: goalVals: a network of 2 inputs and 1 outputs is not of this kind (2 "
-      "and 24 are; networks that set tensions have no gait here)\n");
+      "/c.json:3:24: error: goalVals: a network with 2 inputs and 1 outputs cannot be imported "
+      "(expected 2 inputs and 24 outputs; gaits have no networks that set tensions)\n");
 }
 
 }  // namespace

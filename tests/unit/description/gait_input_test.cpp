@@ -1,4 +1,4 @@
-// Gaits as the inputs of controllers: what an experiment says of them.
+// Gaits as inputs of controllers in experiment files
 #include <set>
 
 #include "taut/gait.h"
@@ -15,8 +15,8 @@ TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
   Write("g.yaml", kSine);
   const std::string hold = "  - name: hold\n";
   Expect(hold, hold + "    velocity_input: {gait: h.yaml}\n",
-         "11:28: error: velocity_input.gait: there is no file \"h.yaml\" (as seen from the folder "
-         "of the file that names it)");
+         "11:28: error: velocity_input.gait: there is no file \"h.yaml\" (paths are relative to "
+         "the folder of the file that contains them)");
   Expect(hold, hold + "    velocity_input: {gait: g.yaml, period_s: 0}\n",
          "11:46: error: velocity_input.period_s must be positive, got 0");
   Expect(hold, hold + "    velocity_input: {period: 1}\n",
@@ -24,13 +24,13 @@ TEST_F(VelocityInput, GoesWithImpedanceAndNamesAGait) {
          "11:22: error: unknown key \"period\" in velocity_input (did you mean \"period_s\"?)");
   Change(hold, hold + "    velocity_input: {gait: model.yaml}\n");
   EXPECT_EQ(Complaints(),
-            "model.yaml:2:7: error: kind must be gait, got model (files of this kind are for "
-            "`taut check`)\n");
+            "model.yaml:2:7: error: kind must be gait, got model (use `taut check` for files of "
+            "this kind)\n");
   Change("controllers:\n",
          "controllers:\n  - {name: p, velocity_input: {gait: g.yaml}, position: {programs: []}}\n");
-  EXPECT_EQ(Without("trial.yaml:", Complaints()),
-            "10:15: error: velocity_input has no effect with position (it is the V0 of "
-            "`impedance`)\n");
+  EXPECT_EQ(
+      Without("trial.yaml:", Complaints()),
+      "10:15: error: velocity_input has no effect with position (it sets V0 of `impedance`)\n");
 }
 
 TEST_F(VelocityInput, TheResolvedExperimentHoldsTheGaitItself) {
@@ -61,7 +61,7 @@ TEST_F(VelocityInput, TheGaitIsPartOfTheHash) {
 
 class RestLengthInput : public ExperimentErrors {
  protected:
-  /// The experiment with a controller that has these lines instead of its impedance.
+  /// Writes the experiment with a controller that has these lines instead of its impedance.
   void WriteWith(const std::string& lines) {
     std::string text = kExperiment;
     const std::size_t from = text.find("    impedance:"), to = text.find("timeline:");
@@ -100,12 +100,11 @@ TEST_F(RestLengthInput, DoesNotGoWithImpedance) {
   const std::string hold = "  - name: hold\n", input = "    rest_length_input: {gait: g.yaml}\n";
   Expect(
       hold, hold + input,
-      "11:5: error: controller has both impedance and rest_length_input (only one of them may be "
-      "there)");
+      "11:5: error: controller has both impedance and rest_length_input (give only one of them)");
   ExpectWith(input + "    velocity_input: {gait: g.yaml}\n",
-             "12:5: error: velocity_input has no effect with rest_length_input (it is the V0 of "
+             "12:5: error: velocity_input has no effect with rest_length_input (it sets V0 of "
              "`impedance`)\n"
-             "12:28: error: velocity_input: gait waves drives rest lengths (it is for "
+             "12:28: error: velocity_input: gait waves drives rest lengths (use it as "
              "`rest_length_input`)\n");
   ExpectWith("", "10:5: error: controller needs one of impedance, position, rest_length_input\n");
 }
@@ -113,12 +112,12 @@ TEST_F(RestLengthInput, DoesNotGoWithImpedance) {
 TEST_F(RestLengthInput, TakesGaitsThatDriveRestLengths) {
   Write("g.yaml", kSine);
   ExpectWith("    rest_length_input: {gait: g.yaml}\n",
-             "11:31: error: rest_length_input: gait waves drives velocities (it is for "
+             "11:31: error: rest_length_input: gait waves drives velocities (use it as "
              "`velocity_input`)\n");
   Write("g.yaml", WithLengths(kSine));
   const std::string hold = "  - name: hold\n";
   Expect(hold, hold + "    velocity_input: {gait: g.yaml}\n",
-         "11:28: error: velocity_input: gait waves drives rest lengths (it is for "
+         "11:28: error: velocity_input: gait waves drives rest lengths (use it as "
          "`rest_length_input`)");
 }
 
@@ -128,12 +127,12 @@ TEST_F(RestLengthInput, ItsCablesAreDriven) {
   Write("g.yaml", text);
   const std::string input = "    rest_length_input: {gait: g.yaml}\n";
   ExpectWith(input,
-             "10:5: error: controller hold drives loose, which has no actuator (give the cable's "
-             "builder in the model an `actuator:`)\n");
+             "10:5: error: controller hold drives cables without an actuator: loose (give the "
+             "cable's builder in the model an `actuator:`)\n");
   Write("g.yaml", WithLengths(kSine));
   ExpectWith(input + "  - {name: second, position: {programs: [{cables: back, change_m: 0.1}]}}\n",
-             "12:6: error: controller second drives right, which controller hold drives already (a "
-             "cable obeys one controller)\n");
+             "12:6: error: controller second drives right, which controller hold already drives (a "
+             "cable can have only one controller)\n");
 }
 
 TEST_F(RestLengthInput, TheResolvedExperimentHoldsTheGaitItself) {
@@ -155,7 +154,7 @@ class GaitChanges : public RestLengthInput {
   GaitChanges() {
     for (const char* name : {"a", "b", "c"}) Write(std::string(name) + ".yaml", Called(name));
   }
-  /// A gait of its own name for left and right.
+  /// Returns a gait with this name for left and right.
   static std::string Called(const std::string& name) {
     std::string text = WithLengths(kTable);
     return text.replace(text.find("name: table"), 11, "name: " + name);
@@ -225,15 +224,15 @@ TEST_F(GaitChanges, NumbersOfFurtherGaitsAreCalledAfterThem) {
 
 TEST_F(GaitChanges, MustBeInOrder) {
   ExpectWith(Input("      changes: [{at_s: 2, gait: b.yaml}, {at_s: 2, gait: a.yaml}]\n"),
-             "13:42: error: changes: times must rise, but 2 s follows 2 s\n");
+             "13:42: error: changes: times must increase, but 2 s follows 2 s\n");
   ExpectWith(Input("      changes: [{at_s: -1, gait: b.yaml}, {gait: a.yaml}]\n"),
              "13:24: error: changes.at_s must not be negative, got -1\n"
              "13:43: error: changes needs the key \"at_s\"\n");
   ExpectWith(Input("      changes: [{at_s: 2, gait: d.yaml}]\n      more_gaits: [e.yaml]\n"),
-             "13:33: error: rest_length_input.changes.gait: there is no file \"d.yaml\" (as seen "
-             "from the folder of the file that names it)\n"
-             "14:20: error: rest_length_input.more_gaits: there is no file \"e.yaml\" (as seen "
-             "from the folder of the file that names it)\n");
+             "13:33: error: rest_length_input.changes.gait: there is no file \"d.yaml\" (paths are "
+             "relative to the folder of the file that contains them)\n"
+             "14:20: error: rest_length_input.more_gaits: there is no file \"e.yaml\" (paths are "
+             "relative to the folder of the file that contains them)\n");
   ExpectWith(Input("      blend_s: -1\n      more_gaits: b.yaml\n"),
              "13:16: error: rest_length_input.blend_s must not be negative, got -1\n"
              "14:19: error: rest_length_input.more_gaits must be a list, got a text\n");
@@ -246,23 +245,23 @@ TEST_F(GaitChanges, MoveTheSameCablesInTheSameQuantity) {
   text.replace(text.find("rows:"), text.npos, "rows: [[0, 0.1]]\n");
   Write("b.yaml", text);
   ExpectWith(change,
-             "13:33: error: rest_length_input: gait b does not move right, which gait a moves "
-             "(gaits that follow each other move the same cables)\n");
+             "13:33: error: rest_length_input: gait b does not drive right, which gait a drives "
+             "(all gaits of an input must drive the same cables)\n");
   Write("b.yaml", Called("b"));
   Write("a.yaml", text.replace(text.find("name: b"), 7, "name: a"));
   ExpectWith(change,
-             "13:33: error: rest_length_input: gait a does not move right, which gait b moves "
-             "(gaits that follow each other move the same cables)\n");
+             "13:33: error: rest_length_input: gait a does not drive right, which gait b drives "
+             "(all gaits of an input must drive the same cables)\n");
   Write("a.yaml", Called("a"));
   Write("b.yaml", kSine);
   ExpectWith(change,
-             "13:33: error: rest_length_input: gait waves drives velocities (it is for "
+             "13:33: error: rest_length_input: gait waves drives velocities (use it as "
              "`velocity_input`)\n");
   Write("b.yaml", Called("a"));
   ExpectWith(change,
              "13:33: error: rest_length_input: two gaits are called a (give one of them another "
-             "name: their numbers are called after it)\n");
-  // the order of cables is nobody's business
+             "name: the names of its parameters begin with it)\n");
+  // the order of cables has no effect
   text = Called("b");
   Write("b.yaml", text.replace(text.find("[left, right]"), 13, "[right, left]"));
   ExpectWith(change, "");
@@ -276,12 +275,12 @@ TEST_F(GaitChanges, ResolvedOnesAreChecked) {
     ChangeFile("resolved.yaml", good, old_text, new_text);
     EXPECT_EQ(Without("resolved.yaml:3:1: error: ", Complaints("resolved.yaml")), expected + "\n");
   };
-  expect("at_s: 3", "at_s: 2", "rest_length_input.changes: times must rise");
+  expect("at_s: 3", "at_s: 2", "rest_length_input.changes: times must increase");
   expect("at_s: 2, gait: 1", "at_s: 2, gait: 2",
-         "rest_length_input.changes: there is no such gait");
+         "rest_length_input.changes refers to a gait that does not exist");
   expect("changes: [", "blend_s: -1, changes: [", "rest_length_input.blend_s must not be negative");
   expect("drives: rest_length", "drives: velocity",
-         "rest_length_input: gait a drives velocities (it is for `velocity_input`)");
+         "rest_length_input: gait a drives velocities (use it as `velocity_input`)");
   expect("0.2, -0.2]", "0.2]", "a table's row needs a signal for each cable");
 
   Write("a.yaml", kSine);
@@ -289,8 +288,8 @@ TEST_F(GaitChanges, ResolvedOnesAreChecked) {
   const std::string of_impedance = ResolvedYaml(Load());
   ChangeFile("resolved.yaml", of_impedance, "velocity_input:", "rest_length_input:");
   EXPECT_EQ(Without("resolved.yaml:3:1: error: ", Complaints("resolved.yaml")),
-            "rest_length_input does not go with impedance\n"
-            "rest_length_input: gait waves drives velocities (it is for `velocity_input`)\n");
+            "rest_length_input cannot be combined with impedance\n"
+            "rest_length_input: gait waves drives velocities (use it as `velocity_input`)\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Gaits for the robot of experiment_fixture.h.
+/// Gaits for the robot of experiment_fixture.h
 #pragma once
 
 #include <string>
@@ -37,7 +37,7 @@ table:
   rows: [[0, 0.1, -0.1], [0.5, 0.2, -0.2]]
 )";
 
-/// The gait with the numbers as they are, in the units of one that drives rest lengths.
+/// Returns the gait with the same numbers, in the units of a gait that drives rest lengths.
 inline std::string WithLengths(std::string text) {
   for (const auto& [velocity, length] :
        {std::pair("amplitude_m_per_s", "amplitude_m"), std::pair("offset_m_per_s", "offset_m"),

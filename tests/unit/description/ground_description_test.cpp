@@ -1,5 +1,4 @@
-// Height fields and meshes in experiments: what files say, what is said of wrong ones, and the way
-// through a resolved experiment.
+// Height fields and meshes in experiment files: values, errors, and resolved experiments
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -37,7 +36,8 @@ TEST_F(GroundText, AFormulaIsLookedAtInEveryCorner) {
 }
 
 TEST_F(GroundText, AFormulaIsRefusedWhereAllCornersWouldTakeTooLong) {
-  // 1.7 ms a corner where each parsed it anew: 4,000,000 corners would have taken two hours.
+  // At 1.7 ms per corner, if each corner parsed the formula, 4,000,000 corners would take two
+  // hours.
   std::string longer = "x_m";
   while (longer.size() < 9'990) longer += " + 1";
   const auto field = [&](int rows) {
@@ -66,7 +66,7 @@ TEST_F(GroundText, NoiseIsSmoothAndHasARandomNumberAtWholePlaces) {
       EXPECT_EQ(robot.def.height_fields[0].height_m[4 * j + i], drawn);
     }
   }
-  // No jump in value, slope or curvature where cells meet.
+  // No jump in value, slope or curvature at the borders of cells.
   const auto curve = [](double x) { return math::Noise(9, x, 0.3); };
   for (const double x : {-2.0, 0.0, 3.0}) {
     const double d = 1e-3;
@@ -115,13 +115,13 @@ TEST_F(GroundText, ARunSaysWhoLeftTheGround) {
   const auto summary = RunExperiment(*experiment, {}, out);
   ASSERT_TRUE(summary) << out.Format();
   EXPECT_EQ(summary->status.bits, kStatusFellOff);
-  // In the step in which sqrt(2 * 0.2 / 9.81) = 0.2019 s falls.
+  // Time of the step that contains sqrt(2 * 0.2 / 9.81) = 0.2019 s.
   EXPECT_EQ(summary->status_text,
             "body ball left the height field hills and is below all of the terrain at t = 0.201000 "
             "s");
 }
 
-/// A tetrahedron with its corners at the origin and 1 along each axis.
+/// A tetrahedron with corners at the origin and at 1 along each axis
 constexpr const char* kObj =
     "# a tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nf 1 3 2\nf 1/1 2/1 4/1\n"
     "f -4//1 -1//1 -2//1\nf 2 3 4\n";
@@ -181,7 +181,7 @@ TEST_F(GroundText, MeshesComeFromObjAndStl) {
       middle = middle + (part / 4) * (a + b + c);
     }
     EXPECT_NEAR(volume, 0.125 / 6, 1e-15) << name;
-    // The corner along x now lies along y.
+    // The corner along x is now along y.
     EXPECT_NEAR(middle.x / volume, -0.125, 1e-15) << name;
     EXPECT_NEAR(middle.y / volume, 0.125, 1e-15) << name;
     EXPECT_NEAR(middle.z / volume, 0.125, 1e-15) << name;
@@ -229,7 +229,7 @@ TEST_F(GroundText, WrongFieldsAreNamed) {
   has(field("height_m: x_m, cell_m: 1, columns: 3, rows: 1"),
       "rows must be a whole number within 2..100000");
   has(field("height_m: [1], cell_m: 1, columns: 3, rows: 3"), "must be a formula, got a list");
-  has(field("height_m: 0, cell_m: 1, columns: 100000, rows: 50"), "4 000 000 corners at most");
+  has(field("height_m: 0, cell_m: 1, columns: 100000, rows: 50"), "at most 4 000 000 corners");
   has(field("height_m: x, cell_m: 1, columns: 3, rows: 3"), "unknown name \"x\"");
   has(field("height_m: 1 / i, cell_m: 1, columns: 3, rows: 3"), "at i = 0, j = 0");
   has(field("height_m: \"noise(0.5, i, j)\", cell_m: 1, columns: 3, rows: 3"),
@@ -239,11 +239,12 @@ TEST_F(GroundText, WrongFieldsAreNamed) {
   has(field("file: none.csv, cell_m: 1"), "none.csv");
   Write("field.csv", "1,2\n3\n4,x\n5,nan\n");
   const std::string said = field("file: field.csv, cell_m: 1");
-  has(said, "field.csv:2: error: this line has 1 heights, those before have 2");
-  has(said, "field.csv:3: error: number 2 of this line is none");
-  has(said, "field.csv:4: error: number 2 of this line is none");
+  has(said, "field.csv:2: error: this line has 1 heights, but the lines before have 2");
+  has(said, "field.csv:3: error: value 2 of this line is not a number");
+  has(said, "field.csv:4: error: value 2 of this line is not a number");
   Write("field.csv", "1,2\n");
-  has(field("file: field.csv, cell_m: 1"), "two rows or more of two heights or more");
+  has(field("file: field.csv, cell_m: 1"),
+      "the file must have at least two rows of at least two heights");
   Write("field.csv", "1,2\n3,4\n");
   has(field("file: field.csv, cell_m: 1, rows: 2"), "rows has no effect here");
 }
@@ -257,33 +258,34 @@ TEST_F(GroundText, WrongMeshesAreNamed) {
     EXPECT_NE(said.find(what), std::string::npos) << said;
   };
   has(Said("- {name: rock, mesh: {file: rock.obj}}"), "needs the key \"scale_m\"");
-  has(mesh("rock.ply", ""), "neither .obj nor .stl");
+  has(mesh("rock.ply", ""), "unknown mesh format");
   has(mesh("rock.obj", "v 0 0\nv 0 0 0\nf 1 2 3\nf 1 2\n"),
       "rock.obj:1: error: a corner needs three finite numbers");
   has(mesh("rock.obj", "v 0 0 0\nv 0 1 0\nf 1 2 3\n"),
       "rock.obj:3: error: there is no corner \"3\"");
-  has(mesh("rock.obj", "v 0 0 0\n"), "there is no triangle in it");
+  has(mesh("rock.obj", "v 0 0 0\n"), "the mesh has no triangles");
   has(mesh("rock.stl", "solid\nfacet\nvertex 0 0 0\nendfacet\n"),
-      "rock.stl:4: error: a facet has three corners, this one 1");
+      "rock.stl:4: error: a facet must have three corners, got 1");
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 2 0 0\n";
   has(mesh("rock.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\n"),
       "rock.obj:6: error: the mesh is not closed: the edge from (0, 0, 0) to (0, 1, 0) has one "
-      "triangle only (close it, or write `solid: surface`)");
+      "triangle only (close the mesh, or write `solid: surface`)");
   has(mesh("rock.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 2 4\n"),
       "rock.obj:10: error: the edge from (0, 0, 0) to (1, 0, 0) has two triangles on one side, or "
-      "more than two in all (all must run");
+      "more than two in all (list the corners");
   has(mesh("rock.obj", corners + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n"),
-      "rock.obj: error: the mesh is inside out (corners must run counter-clockwise seen from");
+      "rock.obj: error: the mesh is inside out (list the corners of all triangles "
+      "counter-clockwise");
   has(mesh("rock.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nf 1 2 5\n"),
-      "rock.obj:10: error: this triangle has no area (its corners are on one line: leave it out)");
+      "rock.obj:10: error: this triangle has no area (leave it out: its corners are on one line)");
   has(mesh("rock.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nendfacet\n"),
       "rock.stl:6: error: this triangle has no area");
   std::string cut = StlBinary();
   cut.resize(cut.size() - 1);
-  has(mesh("rock.stl", cut), "there is no triangle in it");
+  has(mesh("rock.stl", cut), "the mesh has no triangles");
 }
 
-/// What a model says of ground that cannot be.
+/// Returns the errors of compiling an invalid ground.
 std::string SaidOf(const ModelDef& def) {
   Diagnostics out;
   EXPECT_FALSE(Model::Compile(def, out));
@@ -311,7 +313,7 @@ TEST(GroundModel, GroundThatCannotBeIsRefused) {
         for (auto& t : m.triangles) std::swap(t[0], t[1]);
       }),
       "inside out");
-  has(with([](auto& m) { m.triangles[2][1] = 7; }), "a corner that is not there");
+  has(with([](auto& m) { m.triangles[2][1] = 7; }), "a corner that does not exist");
   has(with([](auto& m) { m.triangles[2] = {0, 3, 3}; }), "triangle 2 has no area");
   has(with([](auto& m) { m.corners_m[1].x = NAN; }), "corner 1 must be finite");
   has(with([](auto& m) { m.triangles.clear(); }), "has no triangle");
@@ -327,10 +329,10 @@ TEST(GroundModel, GroundThatCannotBeIsRefused) {
     return SaidOf(def);
   };
   has(of([](auto& f) { f.columns = 100'000, f.rows = 1001; }), "has more than 10^8 cells");
-  has(of([](auto& f) { f.height_m.pop_back(); }), "has 5 heights, not a height for each");
+  has(of([](auto& f) { f.height_m.pop_back(); }), "has 5 heights, but needs one for each");
   has(of([](auto& f) { f.height_m[4] = INFINITY; }), "height 4 must be finite");
-  has(of([](auto& f) { f.cell_m = 0; }), "side of a cell must be a positive number");
-  has(of([](auto& f) { f.rows = 1; }), "two corners or more");
+  has(of([](auto& f) { f.cell_m = 0; }), "edge length of a cell must be a positive number");
+  has(of([](auto& f) { f.rows = 1; }), "at least two corners along x");
 
   ModelDef boxed;
   BodyDef body;

@@ -1,4 +1,4 @@
-/// Experiments with a terrain of one's own.
+/// Fixture for experiments with a given terrain
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class GroundText : public ExperimentFolder {
     EXPECT_TRUE(experiment) << out.Format();
     return experiment ? experiment->robot : RobotSpec{};
   }
-  /// What is said of a terrain that is wrong.
+  /// Returns the errors of an invalid terrain.
   std::string Said(const std::string& terrain) {
     Diagnostics out;
     EXPECT_FALSE(Load(terrain, out)) << terrain;

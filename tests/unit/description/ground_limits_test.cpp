@@ -1,4 +1,4 @@
-// Size limits of ground files: larger files are refused before they are parsed.
+// Size limits of ground files: larger files are rejected before they are parsed.
 #include <hdf5.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace {
 
 class GroundLimits : public GroundText {
  protected:
-  /// Writes hills.h5 with a data set /z of this size, but without its numbers.
+  /// Writes hills.h5 with a dataset /z of this size, without its numbers.
   void WriteEmptyTable(hsize_t rows, hsize_t columns) const {
     const hsize_t size[2] = {rows, columns};
     const hid_t file = H5Fcreate(Path("hills.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -27,32 +27,33 @@ class GroundLimits : public GroundText {
   }
 };
 
-/// A 16-bit image without its samples.
+/// Returns a 16-bit PNG image without its samples.
 std::string PngHead(const std::string& columns_and_rows, const std::string& crc) {
   return std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16) + columns_and_rows +
          std::string("\x10\0\0\0\0", 5) + crc + std::string("\0\0\0\1IDAT", 8);
 }
 
 TEST_F(GroundLimits, FilesHaveAGibibyteAtMost) {
-  const std::string larger = ": error: is larger than 1073 MB (use fewer, larger cells)\n";
+  const std::string larger = ": error: the file is larger than 1073 MB (use fewer, larger cells)\n";
   for (const char* const name : {"hills.csv", "hills.png", "hills.h5", "rock.obj", "rock.stl"}) {
     Write(name, "");
-    std::filesystem::resize_file(Path(name), (std::size_t{1} << 30) + 1);  // a hole
+    std::filesystem::resize_file(Path(name), (std::size_t{1} << 30) + 1);  // sparse
   }
   EXPECT_EQ(SaidOfField("file: hills.csv"), "hills.csv" + larger);
   EXPECT_EQ(SaidOfField("file: hills.png, height_range_m: [0, 1]"), "hills.png" + larger);
   EXPECT_EQ(SaidOfField("file: 'hills.h5:/z'"),
-            "hills.h5: error: is larger than 1073 MB (fewer numbers)\n");
+            "hills.h5: error: the file is larger than 1073 MB (use fewer numbers)\n");
   for (const std::string name : {"rock.obj", "rock.stl"}) {
     const std::string said = Said("- {name: rock, mesh: {scale_m: 1, file: " + name + "}}");
-    EXPECT_NE(said.find(name + ": error: is larger than 1073 MB"), said.npos) << said;
+    EXPECT_NE(said.find(name + ": error: the file is larger than 1073 MB"), said.npos) << said;
   }
 }
 
 TEST_F(GroundLimits, HeightsInAFileAre100MillionAtMost) {
   Write("hills.png", PngHead(std::string("\0\0\x27\x11\0\0\x27\x10", 8), "\x20\x77\x8a\x86"));
   EXPECT_EQ(SaidOfField("file: hills.png, height_range_m: [0, 1]"),
-            "hills.png: error: has 10001 x 10000 samples, more than 1e+08 (fewer, larger cells)\n");
+            "hills.png: error: the image has 10001 x 10000 samples, more than 1e+08 (use fewer, "
+            "larger cells)\n");
   WriteEmptyTable(10'001, 10'000);
   EXPECT_EQ(SaidOfField("file: 'hills.h5:/z'"),
             "hills.h5: error: /z has 10001 x 10000 numbers, more than 100000000\n");
@@ -65,13 +66,14 @@ TEST_F(GroundLimits, HeightsInAFileAre100MillionAtMost) {
   EXPECT_EQ(table->rows, 3);
   EXPECT_FALSE(description::ReadHeightCsv(Path("hills.csv"), 5, out));
   EXPECT_EQ(Without(Path(""), out.Format()),
-            "hills.csv:3: error: more than 5 heights up to this line (use fewer, larger cells)\n");
+            "hills.csv:3: error: the file has more than 5 heights up to this line (use fewer, "
+            "larger cells)\n");
 }
 
 TEST_F(GroundLimits, AFormulaHas4MillionCornersAtMost) {
   EXPECT_NE(SaidOfField("height_m: 0, columns: 2001, rows: 2000")
-                .find("error: a formula may have 4 000 000 corners at most (fewer, larger cells, "
-                      "or a file)\n"),
+                .find("error: a height field by formula can have at most 4 000 000 corners (use "
+                      "fewer, larger cells, or a file)\n"),
             std::string::npos);
 }
 

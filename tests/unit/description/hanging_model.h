@@ -1,4 +1,4 @@
-/// A ball that hangs on a cable with an actuator: what fits are tried with.
+/// A ball that hangs on a cable with an actuator: the model of the fit tests
 #pragma once
 
 #include <string>

@@ -1,5 +1,4 @@
-// Height fields from images and from HDF5: which number becomes which height, and what is said of
-// files that are none.
+// Height fields from images and from HDF5: values, and errors of invalid files
 #include <hdf5.h>
 
 #include <cmath>
@@ -27,7 +26,7 @@ std::string Chunk(const std::string& kind_and_data) {
   return BigEndian(static_cast<std::uint32_t>(kind_and_data.size() - 4)) + kind_and_data +
          BigEndian(~crc);
 }
-/// A PNG of these bytes, `rows` rows of them, not compressed. `colour`: 0 gray, 2 red green blue.
+/// Returns an uncompressed PNG of these bytes, `rows` rows of them. `colour`: 0 gray, 2 RGB.
 std::string Png(std::uint32_t columns, std::uint32_t rows, int bits, int colour,
                 const std::string& samples) {
   std::string raw;
@@ -49,7 +48,7 @@ std::string Png(std::uint32_t columns, std::uint32_t rows, int bits, int colour,
 }
 
 TEST_F(GroundText, HeightsComeFromImages) {
-  // 3 x 2 samples of 16 bits: 0, 65535, 32768 above 1, 2, 256.
+  // 3 x 2 samples of 16 bits: 0, 65535, 32768 above 1, 2, 256
   Write("hills.png", Png(3, 2, 16, 0, std::string("\0\0\xff\xff\x80\0\0\1\0\2\1\0", 12)));
   Diagnostics out;
   const auto experiment =
@@ -73,8 +72,8 @@ TEST_F(GroundText, ImagesOfEightBitsMakeStepsAndSaySo) {
       "- {name: hills, height_field: {file: hills.png, cell_m: 0.1, height_range_m: [0, 5.1]}}",
       out);
   ASSERT_TRUE(experiment) << out.Format();
-  EXPECT_NE(out.Format().find("hills.png: warning: has 8 bits a sample: heights in steps of 0.02 m "
-                              "(16 bits make slopes smooth)"),
+  EXPECT_NE(out.Format().find("hills.png: warning: the image has 8 bits per sample, so heights "
+                              "have steps of 0.02 m (use 16 bits for smooth slopes)"),
             std::string::npos)
       << out.Format();
   const std::vector<double>& z = experiment->robot.def.height_fields[0].height_m;
@@ -92,27 +91,27 @@ TEST_F(GroundText, WrongImagesAreNamed) {
     EXPECT_NE(text.find(what), std::string::npos) << text;
   };
   const std::string range = ", height_range_m: [0, 1]";
-  has(said(range), "hills.png: error: cannot be opened");
+  has(said(range), "hills.png: error: cannot open");
   Write("hills.png", "no image at all, but long enough to be one");
-  has(said(range), "hills.png: error: is no PNG or is damaged: ");
+  has(said(range), "hills.png: error: the image is not a PNG or is damaged: ");
   Write("hills.png", Png(2, 2, 8, 2, std::string(12, 'x')));
   has(said(range),
-      "hills.png: error: has colours, and heights are shades of gray (save it as gray with 16 "
-      "bits)");
+      "hills.png: error: the image has colors, but heights must be shades of gray (save it as "
+      "grayscale with 16 bits)");
   Write("hills.png", Png(2, 2, 16, 0, std::string(8, 'x')));
   has(said(""), "height_field needs the key \"height_range_m\"");
   Write("hills.png", Png(2, 2, 16, 0, std::string(8, 'x')).substr(0, 50));
-  has(said(range), "hills.png: error: is damaged: it ends too early");
+  has(said(range), "hills.png: error: the image is damaged: the data end too early");
   std::string spoilt = Png(2, 2, 16, 0, std::string(8, 'x'));
   spoilt[60] = static_cast<char>(spoilt[60] ^ 1);
   Write("hills.png", spoilt);
-  has(said(range), "hills.png: error: is damaged: ");
+  has(said(range), "hills.png: error: the image is damaged: ");
   Write("hills.png", Png(2, 1, 16, 0, std::string(4, 'x')));
-  has(said(range), "hills.png: error: a height field needs two rows or more");
+  has(said(range), "hills.png: error: the file must have at least two rows");
   Write("field.csv", "1,2\n3,4\n");
   has(Said("- {name: hills, height_field: {file: field.csv, cell_m: 1, height_range_m: [0, 1]}}"),
-      "height_field.height_range_m has no effect here (it says what black and white are in an "
-      "image, .png)");
+      "height_field.height_range_m has no effect here (it sets the heights of black and white in a "
+      ".png image)");
 }
 
 // --- HDF5 ---------------------------------------------------------------------------------------
@@ -146,24 +145,23 @@ TEST_F(GroundText, WrongTablesOfHdf5AreNamed) {
   const auto has = [](const std::string& text, const std::string& what) {
     EXPECT_NE(text.find(what), std::string::npos) << text;
   };
-  has(said("hills.h5:/z"), "hills.h5: error: cannot be opened");
+  has(said("hills.h5:/z"), "hills.h5: error: cannot open");
   Write("hills.h5", "not at all");
-  has(said("hills.h5:/z"), "hills.h5: error: is not HDF5 or is damaged: ");
+  has(said("hills.h5:/z"), "hills.h5: error: the file is not HDF5 or is damaged: ");
   WriteHdf5(Path("hills.h5"), H5T_NATIVE_DOUBLE, {2, 3}, std::vector<double>{0, 1, 2, 3, 4, NAN});
   has(said("hills.h5"),
-      "height_field.file does not say which data set (behind a colon: "
-      "hills.h5:/z)");
-  has(said("hills.h5:/y"), "hills.h5: error: has no dataset /y");
-  has(said("hills.h5:/z"), "hills.h5: error: /z: row 1, column 2 is no finite number");
+      "height_field.file needs the name of a data set (add it after a colon: hills.h5:/z)");
+  has(said("hills.h5:/y"), "hills.h5: error: the file has no dataset /y");
+  has(said("hills.h5:/z"), "hills.h5: error: /z: row 1, column 2 is not a finite number");
   WriteHdf5(Path("hills.h5"), H5T_NATIVE_DOUBLE, {6}, std::vector<double>(6));
-  has(said("hills.h5:/z"), "hills.h5: error: /z has 1 dimensions, a table has 2");
+  has(said("hills.h5:/z"), "hills.h5: error: /z has 1 dimensions instead of 2");
   WriteHdf5(Path("hills.h5"), H5T_NATIVE_DOUBLE, {1, 6}, std::vector<double>(6));
-  has(said("hills.h5:/z"), "hills.h5: error: a height field needs two rows or more");
+  has(said("hills.h5:/z"), "hills.h5: error: the file must have at least two rows");
   WriteHdf5(Path("hills.h5"), H5T_C_S1, {2, 2}, std::vector<char>(4));
-  has(said("hills.h5:/z"), "hills.h5: error: /z holds no numbers");
+  has(said("hills.h5:/z"), "hills.h5: error: /z contains no numbers");
 }
 
-/// Writes hills.h5, whose dataset /z refers to another file in one of several ways.
+/// Ways in which dataset /z of hills.h5 refers to another file
 enum class Elsewhere { kExternalFile, kVirtual, kExternalLink, kSoftLink };
 void WriteElsewhere(const std::string& path, const std::string& other, Elsewhere how) {
   const hsize_t size[2] = {2, 4};
@@ -208,7 +206,7 @@ TEST_F(GroundText, HeightsOfOtherFilesAreNotRead) {
 }
 
 TEST_F(GroundText, HeightsThatUnpackToGigabytesAreRefused) {
-  // 8 000 x 8 000 numbers, none of which is in the file.
+  // 8 000 x 8 000 numbers, none of which is stored in the file.
   const hsize_t size[2] = {8000, 8000};
   const hid_t file = H5Fcreate(Path("hills.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   const hid_t space = H5Screate_simple(2, size, nullptr);
@@ -217,7 +215,8 @@ TEST_F(GroundText, HeightsThatUnpackToGigabytesAreRefused) {
   H5Dclose(set), H5Sclose(space), H5Fclose(file);
   const std::string text =
       Said("- {name: hills, height_field: {file: 'hills.h5:/z', cell_m: 0.1}}");
-  EXPECT_NE(text.find("hills.h5: error: has too high a compression ratio"), std::string::npos)
+  EXPECT_NE(text.find("hills.h5: error: the file has too high a compression ratio"),
+            std::string::npos)
       << text;
 }
 

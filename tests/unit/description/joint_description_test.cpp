@@ -1,7 +1,7 @@
-// Joints, supports and rods that turn in their nodes, as model files say them.
+// Joints, supports and rods pinned at their nodes (class k) in model files
 #include <gmock/gmock.h>
 
-#include "plant/start.h"
+#include "plant/find_start.h"
 #include "taut/batch.h"
 #include "taut/run.h"
 #include "taut/start.h"
@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Two rods, end to end at x = 1, with a node each there.
+/// Two rods, end to end at x = 1, with a node each there
 std::string Leg(const std::string& joint, const std::string& more = "",
                 const std::string& lower = "[1, 0, 0]") {
   return "nodes: {hip: [0, 0, 0], a: [1, 0, 0], b: " + lower +
@@ -86,10 +86,10 @@ TEST(JointText, RodsOfClassKArePinnedInTheirNodes) {
       "builders:\n"
       "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1, class_k: true}}\n");
   EXPECT_EQ(robot.def.bodies.size(), 4u);
-  ASSERT_EQ(robot.def.joints.size(), 4u);  // a: two beside the first, b and c: one each
+  ASSERT_EQ(robot.def.joints.size(), 4u);  // a: two for the rods after the first; b and c: one each
   for (const JointDef& j : robot.def.joints) EXPECT_EQ(j.kind, JointKind::kBall);
   EXPECT_EQ(robot.def.joints[0].name, "b-c.b");
-  // Around a every two of its three rods are apart.
+  // At a, each pair of the three rods is apart.
   EXPECT_EQ(KeptApart(robot.def).size(), 5u);
   Diagnostics out;
   EXPECT_NE(Model::Compile(robot.def, out), nullptr) << out.Format();
@@ -115,7 +115,7 @@ TEST(JointText, WhatActsOnTheTurnsOfABallIsSaidAtIt) {
     EXPECT_NE(Model::Compile(robot->def, out), nullptr) << out.Format();
   }
   EXPECT_THAT(Errors(rods + "pins: {friction_n_m: 1}}}\n"),
-              HasSubstr("only rods of class k turn in their nodes"));
+              HasSubstr("pins has no effect: this rod is welded at its nodes"));
   EXPECT_THAT(Errors(rods + "class_k: true, pins: {friction_n_m: -1}}}\n"),
               HasSubstr("friction_n_m"));
   EXPECT_THAT(Errors(rods + "class_k: true, pins: {rest_rad: 1}}}\n"), HasSubstr("rest_rad"));
@@ -145,10 +145,10 @@ TEST(JointText, ASupportMakesNoBody) {
       "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
       "  - {match: lost, support: {kind: ball}}\n");
   EXPECT_THAT(errors, HasSubstr("\"lost\" belongs to no body"));
-  EXPECT_THAT(errors, testing::Not(HasSubstr("to itself")));  // one mistake, one complaint
+  EXPECT_THAT(errors, testing::Not(HasSubstr("to itself")));  // one mistake, one error
 }
 
-/// The upper rod lies turned about z, the lower one is bent at the knee and has slid.
+/// The upper rod is rotated about z, the lower one is bent at the knee and has slid.
 TEST(JointText, AnotherPoseHasTheSameCoordinates) {
   for (const std::string kind : {"hinge", "cylindrical", "weld", "line"}) {
     const RobotSpec robot = Good(Leg("kind: " + kind + ", axis: [0, 0.6, 0.8]"));
@@ -183,9 +183,9 @@ TEST(JointText, WhatIsApartIsNamed) {
   EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper, lowr]]\n")),
               HasSubstr("apart: there is no body \"lowr\""));
   EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper]]\n")),
-              HasSubstr("apart: \"upper\" stands alone in its list (a list has two bodies"));
+              HasSubstr("apart: \"upper\" is the only body in its list (list two or more bodies"));
   EXPECT_THAT(Errors(Leg("kind: ball", "apart: [[upper, lower, upper]]\n")),
-              HasSubstr("apart: \"upper\" stands twice in one list"));
+              HasSubstr("apart: \"upper\" is in one list twice"));
 }
 
 TEST(JointText, MistakesAreNamed) {
@@ -199,7 +199,7 @@ TEST(JointText, MistakesAreNamed) {
   EXPECT_THAT(Errors(Leg("kind: hinge, friction_n_m: -1")), HasSubstr("friction_n_m"));
   EXPECT_THAT(Errors(Leg("kind: hinge, restitution: 2")), HasSubstr("restitution"));
   EXPECT_THAT(Errors(Leg("kind: ball", "  - {match: hip, support: {kind: distance}}\n")),
-              HasSubstr("no second point"));
+              HasSubstr("has only one point"));
   EXPECT_THAT(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\n"
                      "pairs:\n"
                      "  - {nodes: [a, b], tags: [rod]}\n"
@@ -213,37 +213,39 @@ TEST(JointText, MistakesAreNamed) {
 
 TEST(JointText, LimitsThatMakeNoSenseAreNamed) {
   EXPECT_THAT(Errors(Leg("kind: hinge, least_rad: 1, most_rad: 0.5")),
-              HasSubstr("not above the least"));
-  EXPECT_THAT(Errors(Leg("kind: ball, least_rad: -1")), HasSubstr("has no lower stop"));
+              HasSubstr("not above the lower limit"));
+  EXPECT_THAT(Errors(Leg("kind: ball, least_rad: -1")), HasSubstr("has no lower limit"));
   EXPECT_THAT(Errors(Leg("kind: ball, stiffness_n_m_per_rad: 1, rest_rad: 0.1")),
-              HasSubstr("the spring of a ball joint is at rest as described"));
+              HasSubstr("the spring of a ball joint is always at rest in the described pose"));
   EXPECT_THAT(Errors(Leg("kind: ball, friction_n: 1")), HasSubstr("friction_n"));
-  EXPECT_THAT(Errors(Leg("kind: planar, friction_n_m: 1")), HasSubstr("nothing free"));
+  EXPECT_THAT(Errors(Leg("kind: planar, friction_n_m: 1")), HasSubstr("has no single coordinate"));
 }
 
 TEST(JointText, LimitsOfABallAndOfADistanceAreAboveZero) {
   EXPECT_THAT(
       Errors(Leg("kind: ball, axis: [1, 0, 0], most_rad: -0.5")),
-      HasSubstr("11:56: error: builder.joint.most_rad must be positive, got -0.5 (it is how "
-                "far a ball's axis may turn away"));
+      HasSubstr("11:56: error: builder.joint.most_rad must be positive, got -0.5 (it is the "
+                "largest angle of a ball joint's axis"));
   const std::string apart =
       Errors(Leg("kind: distance, least_m: -1, most_m: -0.5", "", "[1.2, 0, 0]"));
   EXPECT_THAT(apart, HasSubstr("least_m must not be negative"));
   EXPECT_THAT(apart, HasSubstr("most_m must be positive, got -0.5 (it is a distance)"));
-  EXPECT_THAT(Errors(Leg("kind: distance")),
-              HasSubstr("the nodes of the joint \"knee\" are in one place (a distance has a"));
+  EXPECT_THAT(
+      Errors(Leg("kind: distance")),
+      HasSubstr(
+          "the nodes of the joint \"knee\" are at the same position (move one of them, or use"));
 }
 
 TEST(JointText, AStopThatIsPassedAsDescribedIsAnError) {
   EXPECT_THAT(Errors(Leg("kind: hinge, axis: [0, 1, 0], least_rad: 0.3, most_rad: 0.5")),
-              HasSubstr("the joint \"knee\" is 0.3 rad beyond its stop as described (describe it "
-                        "in another pose"));
+              HasSubstr("the joint \"knee\" is 0.3 rad beyond its limit in the described pose "
+                        "(change the described pose"));
   EXPECT_THAT(Errors(Leg("kind: prismatic, axis: [1, 0, 0], most_m: 0.1", "", "[1.15, 0, 0]")),
-              HasSubstr("is 0.05 m beyond its stop"));
+              HasSubstr("is 0.05 m beyond its limit"));
   EXPECT_THAT(Errors(Leg("kind: distance, most_m: 0.1", "", "[1.2, 0, 0]")),
-              HasSubstr("is 0.1 m beyond its stop"));
+              HasSubstr("is 0.1 m beyond its limit"));
   EXPECT_THAT(Errors(Leg("kind: ball, most_rad: 0.2, turned: {axis: x, angle_rad: 0.5}")),
-              HasSubstr("is 0.3 rad beyond its stop"));
+              HasSubstr("is 0.3 rad beyond its limit"));
   Good(
       Leg("kind: hinge, axis: [0, 1, 0], least_rad: 0.3, most_rad: 0.5, turned: {axis: y, "
           "angle_rad: 0.4}"));
@@ -267,13 +269,13 @@ TEST(JointText, WhatWeldsHoldNeedsNoOtherJoint) {
               HasSubstr("9:5: error: the weld \"other\" is redundant: other welds hold its bodies "
                         "together (leave it out)"));
   EXPECT_THAT(Errors(twice("hinge", "weld")),
-              HasSubstr("8:5: error: the joint \"one\" can do nothing: welds hold its bodies"));
+              HasSubstr("8:5: error: the joint \"one\" has no effect: welds hold its bodies"));
   Good(twice("ball", "ball"));  // redundant rows are solved
   EXPECT_THAT(Errors(Leg("kind: ball",
                          "  - {match: hip, support: {kind: weld}}\n"
                          "  - {match: a, support: {kind: weld}}\n")),
               HasSubstr("the weld \"a\" is redundant"));
-  // Around a triangle the third one is.
+  // In a triangle of welds the third weld is redundant.
   EXPECT_THAT(Errors("nodes:\n"
                      "  {a: [0, 0, 0], b: [1, 0, 0], c: [1, 0, 0], d: [1, 1, 0], e: [1, 1, 0], "
                      "f: [0, 0, 0]}\n"
@@ -289,8 +291,8 @@ TEST(JointText, WhatWeldsHoldNeedsNoOtherJoint) {
 TEST(JointText, NeitherOfItsBodiesMoves) {
   EXPECT_THAT(
       Errors(Leg("kind: ball", "  - {match: hip, anchor: {}}\n  - {match: foot, anchor: {}}\n")),
-      HasSubstr("8:5: error: the joint \"knee\" joins two things that do not move (leave it "
-                "out, or an anchor)"));
+      HasSubstr("8:5: error: the joint \"knee\" connects two bodies that are fixed in the world, "
+                "so it has no effect (leave it out, or one of the anchors)"));
 }
 
 TEST(JointText, TwoOfOneNameAreAnError) {
@@ -305,7 +307,7 @@ TEST(JointText, TwoOfOneNameAreAnError) {
                      "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
                      "  - {match: joint, joint: {kind: ball}}\n"
                      "  - {match: held, support: {kind: ball}}\n"),
-              HasSubstr("two joints would be called \"knee\""));
+              HasSubstr("two joints have the name \"knee\""));
 }
 
 using JointedStart = test::ExperimentFolder;
@@ -337,11 +339,12 @@ TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
   Write("trial.yaml",
         "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
         "start_noise: {heading_rad: 0.1}\n");
-  EXPECT_THAT(Complaints(), HasSubstr("the joint \"hip\" holds the robot in the world"));
+  EXPECT_THAT(Complaints(), HasSubstr("the joint \"hip\" connects it to the world"));
   Write("trial.yaml",
         "taut: 1\nkind: experiment\nname: trial\nmodel: leg.yaml\nduration_s: 1\n"
         "start_noise: {any_pose: true}\n");
-  EXPECT_THAT(Complaints(), HasSubstr("start_noise.any_pose: the joint \"hip\" holds"));
+  EXPECT_THAT(Complaints(),
+              HasSubstr("start_noise.any_pose cannot move the robot: the joint \"hip\""));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a line of a table of keys is good for, with tables of this file.
+// Functions of one line in a table of keys, with tables of this file
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,7 +66,7 @@ void Keys(Io& io, Like<Stroke> auto& s) {
   io(kReach, s.reach, kNeeded, Bound::kPositive, "How far.");
 }
 
-/// Moves by a spring's pull, or by a crank, a rope or both.
+/// Moves by a spring's pull, or by a crank, a rope or both
 struct Drive {
   bool turns = false;
   double pull_n = 0.0, slack_m = 0.5;
@@ -138,14 +138,14 @@ TEST_F(Tables, WhatIsWrongIsSaidWithItsPlaceAllAtOnce) {
             "f.yaml:6:41: error: spring.dampers.law cannot be \"cubic\" (one of: linear, "
             "square)\n");
   EXPECT_FALSE(spring.good);
-  EXPECT_TRUE(std::isnan(spring.stiffness_n_per_m));  // so that nobody complains about it again
+  EXPECT_TRUE(std::isnan(spring.stiffness_n_per_m));  // so that no further errors follow
 }
 
 TEST_F(Tables, OfSeveralNoneIsLookedAt) {
   const Spring spring = Read("{stiffness_n_per_m: 1, length_m: 200, length_ratio: -1}");
-  EXPECT_EQ(errors_,
-            "f.yaml:1:39: error: spring has both length_m and length_ratio (only one of them may "
-            "be there)\n");
+  EXPECT_EQ(
+      errors_,
+      "f.yaml:1:39: error: spring has both length_m and length_ratio (give only one of them)\n");
   EXPECT_FALSE(spring.length_m);
 }
 
@@ -200,13 +200,12 @@ TEST_F(Tables, AKeyIsSpeltAsAnotherSays) {
   EXPECT_EQ(list.numbers.back().unit, "rad");
 
   Read<Drive>("{moves: turn, pull_n: 1, strokes: [{name: a, reach_m: 2}, {name: b, reach: 1}]}");
-  EXPECT_EQ(errors_,
-            "f.yaml:1:46: error: strokes.reach_m is of another quantity (what turns has "
-            "reach_rad)\n"
-            "f.yaml:1:59: error: strokes needs the key \"reach_rad\"\n"
-            "f.yaml:1:69: error: unknown key \"reach\" in strokes (did you mean "
-            "\"reach_rad\"?)\n");
-  // who does not know what moves has nothing against either
+  EXPECT_EQ(
+      errors_,
+      "f.yaml:1:46: error: strokes.reach_m is for another quantity (what turns needs reach_rad)\n"
+      "f.yaml:1:59: error: strokes needs the key \"reach_rad\"\n"
+      "f.yaml:1:69: error: unknown key \"reach\" in strokes (did you mean \"reach_rad\"?)\n");
+  // if the kind of motion is unknown, both keys are accepted
   Read<Drive>(
       "{moves: trun, pull_n: 1, strokes: [{name: a, reach_m: 2}, {name: b, reach_rad: 1}]}");
   EXPECT_EQ(errors_,
@@ -230,8 +229,7 @@ TEST_F(Tables, OneSideOrTheOther) {
   EXPECT_EQ(both.rope_m, 2.0);
   Read<Drive>("{rope_m: 2, pull_n: 1}");
   EXPECT_EQ(errors_,
-            "f.yaml:1:2: error: drive has both pull_n and rope_m (only one of them may be "
-            "there)\n");
+            "f.yaml:1:2: error: drive has both pull_n and rope_m (give only one of them)\n");
   Read<Drive>("{slack_m: 1}");
   EXPECT_EQ(errors_, "f.yaml:1:1: error: drive needs one of pull_n, crank_m, rope_m\n");
 }

@@ -1,4 +1,4 @@
-// What wrong model files are told: every message with its line and column.
+// Errors of invalid model files: every message with its line and column
 #include <gtest/gtest.h>
 
 #include "unit/description/model_fixture.h"
@@ -46,30 +46,28 @@ TEST(ModelErrors, PartsHaveNamesLikeNodes) {
                "structure: [{part: " +
                quoted + "}]\nbuilders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}]\n"),
         "robot.yaml:4:9: error: parts: " + quoted +
-            " cannot be a name (letters, digits, _ and -)\n");
+            " cannot be a name (use letters, digits, _ and -)\n");
   }
 }
 
 TEST(ModelErrors, MassIsGivenOnce) {
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1, density_kg_per_m3: 1}")),
-            "robot.yaml:6:58: error: rod has both mass_kg and density_kg_per_m3 (only one of them "
-            "may be there)\n");
+            "robot.yaml:6:58: error: rod has both mass_kg and density_kg_per_m3 (give only one of "
+            "them)\n");
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 0}")),
             "robot.yaml:5:9: error: the body \"robot\" has no mass\n");
 }
 
 TEST(ModelErrors, FrictionIsGivenOnce) {
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1, friction: 1, static_friction: 1}")),
-            "robot.yaml:6:71: error: rod.friction already says what static_friction is (friction "
-            "alone, or "
-            "static_friction and kinetic_friction)\n");
+            "robot.yaml:6:71: error: rod.friction already sets static_friction (give friction "
+            "alone, or static_friction and kinetic_friction)\n");
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1, static_friction: 1}")),
             "robot.yaml:6:30: error: rod needs the key \"kinetic_friction\"\n");
   EXPECT_EQ(
       Errors(OneRod("{radius_m: 0.1, mass_kg: 1, static_friction: 0.1, kinetic_friction: 0.2}")),
-      "robot.yaml:6:58: error: rod.static_friction is below kinetic_friction (a contact that "
-      "sticks holds at "
-      "least as much as one that slides)\n");
+      "robot.yaml:6:58: error: rod.static_friction is below kinetic_friction (static friction must "
+      "be at least the kinetic friction)\n");
 }
 
 TEST(ModelErrors, RestLengthIsGivenOnceAndPossible) {
@@ -77,12 +75,11 @@ TEST(ModelErrors, RestLengthIsGivenOnceAndPossible) {
             "robot.yaml:11:27: error: cable needs one of prestress_n, rest_length_m, "
             "rest_length_ratio\n");
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, rest_length_m: 1")),
-            "robot.yaml:11:68: error: cable has both prestress_n and rest_length_m (only one of "
-            "them may be there)\n");
+            "robot.yaml:11:68: error: cable has both prestress_n and rest_length_m (give only one "
+            "of them)\n");
   EXPECT_EQ(Errors(TwoRods("prestress_n: 10")),
-            "robot.yaml:11:65: error: cable.prestress_n: 10 N would stretch the cable \"a-c\" to "
-            "more than its "
-            "length of 0.1 m (at 100 N/m at most 10 N)\n");
+            "robot.yaml:11:65: error: cable.prestress_n: 10 N would stretch the cable \"a-c\" by "
+            "its whole length of 0.1 m or more (with a stiffness of 100 N/m at most 10 N)\n");
   EXPECT_EQ(Errors(TwoRods("rest_length_m: 0")),
             "robot.yaml:11:67: error: cable.rest_length_m must be positive, got 0\n");
   EXPECT_EQ(
@@ -94,15 +91,13 @@ TEST(ModelErrors, RestLengthIsGivenOnceAndPossible) {
 TEST(ModelErrors, ActuatorsSayWhatTheyAre) {
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, actuator: {}")),
             "robot.yaml:11:78: error: cable.actuator needs limits, a `dc_motor`, or `ideal: true` "
-            "(without an actuator the rest "
-            "length is fixed)\n");
+            "(leave out the actuator for a fixed rest length)\n");
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, actuator: {ideal: true, max_force_n: 3}")),
-            "robot.yaml:11:79: error: an ideal actuator has no limits (leave out `ideal`, or the "
-            "limits)\n");
+            "robot.yaml:11:79: error: an ideal actuator cannot have limits (leave out `ideal`, or "
+            "the limits)\n");
   EXPECT_EQ(Errors(TwoRods("prestress_n: 1, actuator: {max_speed: 3}")),
             "robot.yaml:11:78: error: cable.actuator needs limits, a `dc_motor`, or `ideal: true` "
-            "(without an actuator the rest "
-            "length is fixed)\n"
+            "(leave out the actuator for a fixed rest length)\n"
             "robot.yaml:11:79: error: unknown key \"max_speed\" in cable.actuator (did you mean "
             "\"max_speed_m_per_s\"?)\n");
 }
@@ -123,43 +118,43 @@ TEST(ModelErrors, NodesThatDoNotExist) {
 }
 
 TEST(ModelErrors, NodesAndPairsAreWellFormed) {
-  EXPECT_EQ(Errors("nodes: {a: 3, b.c: [0, 0, 0], d: {at: [0, 0, 0]}, e: {at_m: [0, 0, 0], "
-                   "fixed_to: e}}\npairs: [{nodes: [a], tags: [x]}, "
-                   "{nodes: [d, d], tags: [x]}, {nodes: d, tags: [x]}, {name: n, each: [[a, d]]}, "
-                   "{tags: [x]}, 7]\nbuilders: []\n"),
-            "robot.yaml:4:12: error: nodes.a must be [x, y, z] or a map with at_m, got a text\n"
-            "robot.yaml:4:15: error: nodes: \"b.c\" cannot be a name (letters, digits, _ and -)\n"
-            "robot.yaml:4:34: error: nodes.d needs the key \"at_m\"\n"
-            "robot.yaml:4:35: error: unknown key \"at\" in nodes.d (did you mean \"at_m\"?)\n"
-            "robot.yaml:4:82: error: the node \"e\" is fixed to itself\n"
-            "robot.yaml:5:17: error: pairs.nodes must name 2 or more nodes, got 1\n"
-            "robot.yaml:5:34: error: no builder matches the pair \"d-d\" (its tags are [x, d-d])\n"
-            "robot.yaml:5:46: error: a pair from \"d\" to itself\n"
-            "robot.yaml:5:70: error: pairs.nodes must be a list of nodes, got a text\n"
-            "robot.yaml:5:86: error: pairs.each makes several pairs, which cannot share a name\n"
-            "robot.yaml:5:102: error: no builder matches the pair \"n\" (its tags are [n])\n"
-            "robot.yaml:5:112: error: pairs needs one of nodes, each, route\n"
-            "robot.yaml:5:125: error: pairs must be a map, got a text\n");
+  EXPECT_EQ(
+      Errors("nodes: {a: 3, b.c: [0, 0, 0], d: {at: [0, 0, 0]}, e: {at_m: [0, 0, 0], "
+             "fixed_to: e}}\npairs: [{nodes: [a], tags: [x]}, "
+             "{nodes: [d, d], tags: [x]}, {nodes: d, tags: [x]}, {name: n, each: [[a, d]]}, "
+             "{tags: [x]}, 7]\nbuilders: []\n"),
+      "robot.yaml:4:12: error: nodes.a must be [x, y, z] or a map with at_m, got a text\n"
+      "robot.yaml:4:15: error: nodes: \"b.c\" cannot be a name (use letters, digits, _ and -)\n"
+      "robot.yaml:4:34: error: nodes.d needs the key \"at_m\"\n"
+      "robot.yaml:4:35: error: unknown key \"at\" in nodes.d (did you mean \"at_m\"?)\n"
+      "robot.yaml:4:82: error: the node \"e\" is fixed to itself\n"
+      "robot.yaml:5:17: error: pairs.nodes must name 2 or more nodes, got 1\n"
+      "robot.yaml:5:34: error: no builder matches the pair \"d-d\" (its tags are [x, d-d])\n"
+      "robot.yaml:5:46: error: a pair connects \"d\" to itself\n"
+      "robot.yaml:5:70: error: pairs.nodes must be a list of nodes, got a text\n"
+      "robot.yaml:5:86: error: pairs.each makes several pairs, which cannot share a name\n"
+      "robot.yaml:5:102: error: no builder matches the pair \"n\" (its tags are [n])\n"
+      "robot.yaml:5:112: error: pairs needs one of nodes, each, route\n"
+      "robot.yaml:5:125: error: pairs must be a map, got a text\n");
 }
 
 TEST(ModelErrors, PartsAndStructureFitTogether) {
   EXPECT_EQ(Errors("builders: []\n"),
-            "robot.yaml:1:1: error: the model places nothing (a model needs `nodes:`, or "
+            "robot.yaml:1:1: error: the model has neither nodes nor a structure (add `nodes:`, or "
             "`parts:` and a `structure:`)\n");
   EXPECT_EQ(Errors("parts: {bar: {nodes: {a: [0, 0, 0]}}}\nbuilders: []\n"),
-            "robot.yaml:1:1: error: the model places nothing (parts are placed by a `structure:` "
-            "list)\n");
+            "robot.yaml:1:1: error: the model has neither nodes nor a structure (place the parts "
+            "in a `structure:` list)\n");
   EXPECT_EQ(Errors(std::string(kBars) + "structure: [{part: bat}, {name: x}]\n"),
             "robot.yaml:7:20: error: there is no part \"bat\" (did you mean \"bar\"?)\n"
             "robot.yaml:7:26: error: structure needs the key \"part\"\n");
   EXPECT_EQ(Errors(std::string(kBars) +
                    "structure: [{part: bar}, {part: bar}]\nallow_disconnected: true\n"),
-            "robot.yaml:7:26: error: duplicate name \"bar\" in the structure (give each placement "
-            "a `name:` of its "
-            "own)\n");
-  EXPECT_EQ(Errors(std::string(kBars) + "structure: [{part: bar, step_m: [1, 0, 0]}]\n"),
-            "robot.yaml:7:25: error: structure.step_m needs copies (write `copies: 2`, or as many "
-            "as you want)\n");
+            "robot.yaml:7:26: error: two placements in the structure have the name \"bar\" (give "
+            "each placement a different `name:`)\n");
+  EXPECT_EQ(
+      Errors(std::string(kBars) + "structure: [{part: bar, step_m: [1, 0, 0]}]\n"),
+      "robot.yaml:7:25: error: structure.step_m needs `copies` (write `copies: 2` or more)\n");
 }
 
 TEST(ModelErrors, CopiesAreAReasonableNumber) {
@@ -180,10 +175,9 @@ TEST(ModelErrors, CopiesAreAReasonableNumber) {
   std::string many = std::string(kBars) + "allow_disconnected: true\nstructure:\n";
   for (int i = 0; i < 6; ++i)
     many += "  - {part: bar, name: b" + std::to_string(i) + ", copies: 10000, step_m: [0, 1, 0]}\n";
-  EXPECT_EQ(
-      Errors(many),
-      "robot.yaml:14:5: error: the model has more than 100000 nodes (with the 10000 copies of "
-      "this placement)\n");
+  EXPECT_EQ(Errors(many),
+            "robot.yaml:14:5: error: the model has more than 100000 nodes (reduce the 10000 copies "
+            "of this placement)\n");
 }
 
 TEST(ModelErrors, PairsAndTagsAreAReasonableNumber) {
@@ -192,25 +186,24 @@ TEST(ModelErrors, PairsAndTagsAreAReasonableNumber) {
   EXPECT_EQ(Errors("nodes: {a: {at_m: [0, 0, 0], tags: [" + many +
                    "x]}}\n"
                    "builders: [{match: a, sphere: {radius_m: 1, mass_kg: 1}}]\n"),
-            "robot.yaml:4:30: error: nodes.a.tags: more than 32 tags\n");
+            "robot.yaml:4:30: error: nodes.a.tags has more than 32 tags\n");
   std::string links;
   for (int i = 0; i < 25; ++i)
     links += "{name: l" + std::to_string(i) + ", nodes: [a, a], tags: [x]}, ";
-  EXPECT_EQ(
-      Errors(std::string(kBars) +
-             "  - {match: x, cable: {stiffness_n_per_m: 1, rest_length_m: 1}}\n"
-             "structure: [{part: bar, step_m: [0, 1, 0], copies: 10000, connect: [" +
-             links + "]}]\n"),
-      "robot.yaml:8:13: error: the pairs of the model name more than 400000 nodes (with the 10000 "
-      "copies of this placement)\n");
+  EXPECT_EQ(Errors(std::string(kBars) +
+                   "  - {match: x, cable: {stiffness_n_per_m: 1, rest_length_m: 1}}\n"
+                   "structure: [{part: bar, step_m: [0, 1, 0], copies: 10000, connect: [" +
+                   links + "]}]\n"),
+            "robot.yaml:8:13: error: the pairs of the model have more than 400000 nodes in all "
+            "(reduce the 10000 copies of this placement)\n");
 }
 
 TEST(ModelErrors, BuildersAreAReasonableNumber) {
   std::string many = "nodes: {a: [0, 0, 0]}\nbuilders:\n";
   for (int i = 0; i < 1001; ++i) many += "  - {match: a, point_mass: {mass_kg: 1}}\n";
   EXPECT_EQ(Errors(many),
-            "robot.yaml:6:3: error: more than 1000 builders (match by tags that many nodes or "
-            "pairs share)\n");
+            "robot.yaml:6:3: error: the model has more than 1000 builders (match tags that several "
+            "nodes or pairs share)\n");
 }
 
 TEST(ModelErrors, RotationsAreWellFormed) {
@@ -230,12 +223,12 @@ TEST(ModelErrors, RotationsAreWellFormed) {
             "robot.yaml:7:40: error: structure.rotate.axis must not be zero (it is a direction)\n");
   EXPECT_EQ(rotate("{axis: z, angle_rad: 1e10}"),
             "robot.yaml:7:43: error: structure.rotate.angle_rad is too large\n");
-  EXPECT_EQ(
-      rotate("{quaternion: [0, 0, 0, 0]}"),
-      "robot.yaml:7:46: error: structure.rotate.quaternion must not be zero (order w, x, y, z)\n");
+  EXPECT_EQ(rotate("{quaternion: [0, 0, 0, 0]}"),
+            "robot.yaml:7:46: error: structure.rotate.quaternion must not be zero (expected [w, x, "
+            "y, z])\n");
   EXPECT_EQ(rotate("{quaternion: [1, 0, 0, 0], axis: z}"),
             "robot.yaml:7:34: error: structure.rotate has both a quaternion and an axis or angle "
-            "(only one of them may be there)\n");
+            "(give only one of them)\n");
 }
 
 TEST(ModelErrors, TopLevelChoicesAndNames) {
@@ -256,10 +249,10 @@ TEST(ModelErrors, BasesAreModelsThatExist) {
   EXPECT_EQ(Errors("base: [a]\n"),
             "robot.yaml:4:7: error: base must be the name of a file of kind model\n");
   EXPECT_EQ(Errors("base: /no/such/file.yaml\n"),
-            "robot.yaml:4:7: error: base: there is no file /no/such/file.yaml (as seen from this "
-            "file's folder)\n");
+            "robot.yaml:4:7: error: base: there is no file /no/such/file.yaml (paths are relative "
+            "to the folder of this file)\n");
   EXPECT_EQ(Errors("base: ModelErrors.BasesAreModelsThatExist.yaml\n"),
-            "robot.yaml:4:7: error: base files name each other in a circle: robot.yaml\n");
+            "robot.yaml:4:7: error: base files refer to each other in a circle: robot.yaml\n");
   EXPECT_NE(Errors("base: " TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml\n")
                 .find("kind must be model, got experiment"),
             std::string::npos);
@@ -282,7 +275,7 @@ TEST(FileKind, IsWhatTheFileSays) {
   std::ofstream(path) << "taut: 1\nkind: robot\n";
   EXPECT_FALSE(FileKind(path, out));
   std::remove(path.c_str());
-  EXPECT_EQ(out.items()[0].what, "cannot be opened: No such file or directory");
+  EXPECT_EQ(out.items()[0].what, "cannot open: No such file or directory");
   EXPECT_EQ(out.items()[1].what, "kind must be model, experiment or gait, got robot");
   EXPECT_EQ(out.items()[1].at.line, 2);
 }

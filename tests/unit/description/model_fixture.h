@@ -1,4 +1,4 @@
-/// Small models as texts, read the way files are read.
+/// Small models as texts, read like files
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace taut {
 
 struct Read {
   std::optional<RobotSpec> robot;
-  std::string found;   ///< Errors and warnings as printed, the file called robot.yaml.
-  std::string errors;  ///< The errors alone.
+  std::string found;   ///< Errors and warnings as printed, with the file name robot.yaml.
+  std::string errors;  ///< The errors only.
 };
 
 /// Reads a model that starts with these three lines; `yaml` starts in line 4.
@@ -47,7 +47,7 @@ inline RobotSpec Good(const std::string& yaml, const Overrides& overrides = {}) 
 
 inline std::string Errors(const std::string& yaml) { return ReadModel(yaml).errors; }
 
-/// Two rods, ten cm apart, and a cable between them: something small that is right.
+/// A small valid model: two rods, 10 cm apart, and a cable between them
 inline std::string TwoRods(const std::string& cable_keys = "rest_length_m: 0.05",
                            const std::string& more = "") {
   return "nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 0.1, 0], d: [1, 0.1, 0]}\n"  // line 4
@@ -61,7 +61,7 @@ inline std::string TwoRods(const std::string& cable_keys = "rest_length_m: 0.05"
          cable_keys + "}}\n" + more;
 }
 
-/// A model with one rod whose builder says `rod`; it stands in line 6, column 24.
+/// A model with one rod; the text `rod` is in line 6, column 24.
 inline std::string OneRod(const std::string& rod) {
   return "nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
          "builders: [{match: rod, rod: " +
@@ -72,7 +72,7 @@ inline bool Has(const Tags& tags, const char* tag) {
   return std::find(tags.begin(), tags.end(), tag) != tags.end();
 }
 
-/// A part with a rod, and its builder; a structure has to follow.
+/// A part with a rod, and its builder; a structure must follow
 inline const char* const kBars =
     "parts: {bar: {nodes: {a: [0, 0, 0], b: {at_m: [1, 0, 0], tags: [far]}}, pairs: [{nodes: [a, "
     "b], tags: [rod]}]}}\n"

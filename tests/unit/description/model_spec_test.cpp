@@ -1,4 +1,4 @@
-// What model files may say.
+// Model files: values read
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,11 +44,12 @@ TEST(Model, AnchorsFixNodesOrWholeBodies) {
       "mass_kg: 1}}\n"
       "  - {match: cable, cable: {stiffness_n_per_m: 10, rest_length_m: 0.5, ends: surface}}\n");
   EXPECT_EQ(hanging.def.nodes[0].body, kWorld);
-  EXPECT_EQ(hanging.def.cables[0].attachments[0].position_m.z, 1.0);  // a world end has no surface
+  EXPECT_EQ(hanging.def.cables[0].attachments[0].position_m.z,
+            1.0);  // an end in the world has no surface
   EXPECT_DOUBLE_EQ(hanging.def.cables[0].attachments[1].position_m.z, 0.1);
 }
 
-// As NTRT's rods have it: at right angles to the rod with the nearest centre.
+// As in NTRT: perpendicular to the rod with the nearest center.
 TEST(Model, CablesEndOnTheSurfaceOfRods) {
   const std::string more = "  - {match: d, sphere: {radius_m: 0.02, mass_kg: 1}}\n";
   const auto end = [&](const std::string& cable, std::size_t i, const std::string& spheres) {
@@ -75,13 +76,13 @@ TEST(Model, CablesEndOnTheSurfaceOfRods) {
   const Vec3 c = end("[a, c]", 1, "");
   EXPECT_NEAR(c.x, 0.9, 1e-15);
   EXPECT_NEAR(c.z, 0.5, 1e-15);
-  // A sphere comes before rods, and then it goes straight to the next node.
+  // A sphere has priority over rods; the end is then on the straight line to the next node.
   const Vec3 d = end("[d, a]", 0, more);
   EXPECT_NEAR(d.x, 1 - 0.02 / std::sqrt(5.0), 1e-15);
   EXPECT_NEAR(d.z, 2 - 0.04 / std::sqrt(5.0), 1e-15);
 }
 
-// Along a rod there is no side to leave it on.
+// A cable along its rod has no side on which to leave it.
 TEST(Model, ACableAlongItsRodEndsAtTheNode) {
   const RobotSpec robot = Good(
       "nodes: {a: [0, 0, 0], b: [0, 0, 1], c: [0, 0, 2], d: [0, 1, 2]}\n"
@@ -93,7 +94,7 @@ TEST(Model, ACableAlongItsRodEndsAtTheNode) {
   EXPECT_NEAR(robot.def.cables[0].attachments[1].position_m.z, 1.9, 1e-15);
 }
 
-// Bullet takes the box of a compound; what is one cylinder, it knows.
+// Bullet uses the bounding box for a compound, and the exact inertia for a single cylinder.
 TEST(Model, BoundingBoxesAreForBodiesOfSeveralParts) {
   const std::string rod =
       "nodes: {a: [0, 0, 0], b: [1, 1, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
@@ -186,7 +187,7 @@ TEST(Model, CopiesAreNumberedTaggedStepped) {
     EXPECT_TRUE(Has(robot.node_tags[3], tag)) << tag;
   EXPECT_TRUE(Has(robot.node_tags[0], "first"));
   EXPECT_TRUE(Has(robot.node_tags[7], "last"));
-  // Copy after copy; a pair of three nodes spans three copies, so there are two of it.
+  // Ordered by copies; a pair of three nodes spans three copies, so that there are two of it.
   std::vector<std::string> names;
   for (const CableDef& cable : robot.def.cables) names.push_back(cable.name);
   EXPECT_EQ(names, (std::vector<std::string>{"link_1", "long_1", "link_2", "long_2", "link_3"}));
@@ -307,8 +308,8 @@ TEST(Model, TwoPendulumsOnOneCeilingAreConnected) {
       "  - {match: cable, cable: {stiffness_n_per_m: 10, rest_length_m: 0.5}}\n");
 }
 
-// The same on every machine: no libm behind it. The true values, to 80 digits and
-// rounded, end in 466 and 095.
+// Equal on every machine, because libm is not used. The exact values, to 80 digits and rounded, end
+// in 466 and 095.
 TEST(Model, TurnedPlacementsHaveTheseBits) {
   const RobotSpec robot =
       Good(std::string(kBars) +

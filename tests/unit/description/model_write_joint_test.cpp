@@ -1,4 +1,4 @@
-// Robots with joints and supports written as model files, and read back.
+// Robots with joints and supports written as model files, and read back
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 double Distance(const Vec3& a, const Vec3& b) { return std::sqrt(Dot(a - b, a - b)); }
 
-/// A leg in a part that lies askew: a knee with all that a hinge may have, and a hip in the world.
+/// A leg in an oblique part: a knee with all properties of a hinge, and a hip in the world
 constexpr const char* kLeg = R"(
 parts:
   leg:
@@ -38,7 +38,7 @@ builders:
   - {match: muscle, cable: {stiffness_n_per_m: 100, damping_n_s_per_m: 2, rest_length_ratio: 0.9}}
 )";
 
-/// Four rods of class k, three of which meet in a and two in b, and one that is welded to a beam.
+/// Four rods of class k, three of which meet in a and two in b, and one welded to a beam
 constexpr const char* kPinned = R"(
 nodes: {a: [0, 0, 1], b: [1, 0, 1], c: [0, 1, 1.1], d: [0, 0, 2], e: [1, 0.5, 1], m: {at_m: [0, 0.1, 1], fixed_to: a}}
 pairs:
@@ -55,7 +55,8 @@ apart: [[b-c, beam, a-d]]
 
 bool Same(const Vec3& a, const Vec3& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
-/// What a step's bits follow from besides the state: the order of the parts, and bodies.
+/// Compares the order of parts and the bodies, which determine the bits of a step in addition to
+/// the state.
 void ExpectTheSameInTheSameOrder(const ModelDef& a, const ModelDef& b) {
   ASSERT_EQ(a.bodies.size(), b.bodies.size());
   for (std::size_t i = 0; i < a.bodies.size(); ++i) {
@@ -115,7 +116,7 @@ class ModelWriteJoints : public ExperimentFolder {
   }
   static std::uint64_t Hash(const RobotSpec& robot) { return Run(robot, 400)->Hash(0); }
 
-  /// The robot where it is after a while.
+  /// Returns the robot in its pose after some steps.
   static RobotSpec Moved(const RobotSpec& robot, int steps) {
     const auto batch = Run(robot, steps);
     Pose pose;
@@ -139,8 +140,8 @@ TEST_F(ModelWriteJoints, AsDescribedARunOfEitherFileEndsInTheSameState) {
   }
 }
 
-/// Its file has the cables from copy to copy behind all others, so that forces add up in another
-/// order; from then on there is one order.
+/// In the written file the cables between copies follow all others, so that forces are summed in
+/// another order; writing again preserves the order.
 TEST_F(ModelWriteJoints, ThePuppyComesBack) {
   const RobotSpec puppy = Robot(TAUT_SOURCE_DIR "/share/models/puppy.yaml");
   const RobotSpec back = Back(puppy);
@@ -166,7 +167,7 @@ TEST_F(ModelWriteJoints, InAnotherPoseAnglesAndSlidesGoOn) {
       while (back.def.joints[k].name != moved.def.joints[i].name) ++k;
       const int there = static_cast<int>(i), here = static_cast<int>(k);
       const bool is_pin = yaml == kPinned && moved.def.joints[i].name != "d";
-      if (is_pin) continue;  // of these angles begin anew
+      if (is_pin) continue;  // their angles restart at 0
       EXPECT_NEAR(start->Joint(0, here).coordinate, end->Joint(0, there).coordinate, 1e-10);
       EXPECT_NEAR(b->Joint(0, here).coordinate, a->Joint(0, there).coordinate, 1e-8)
           << moved.def.joints[i].name;
@@ -179,14 +180,14 @@ TEST_F(ModelWriteJoints, InAnotherPoseAnglesAndSlidesGoOn) {
       }
       EXPECT_LT(Distance(a->NodePosition(0, n), b->NodePosition(0, k)), 1e-8);
     }
-    // and written once more it is the same robot to the last bit
+    // written once more it is the same robot to the last bit
     const RobotSpec again = Back(back);
     EXPECT_EQ(TextOf(back), TextOf(again));
     EXPECT_EQ(Hash(back), Hash(again));
   }
 }
 
-/// Where a part has a box it is turned as that is, and so are the axes of its joints.
+/// A part with a box has the box's orientation, and so have the axes of its joints.
 TEST_F(ModelWriteJoints, AxesTurnWithAPartThatHasABox) {
   for (const char* hip : {"hinge", "cylindrical"}) {
     const RobotSpec robot =
@@ -249,7 +250,7 @@ TEST_F(ModelWriteJoints, WhatAnExperimentMovesIsTheExperiments) {
   for (std::size_t n = 0; n < back.def.nodes.size(); ++n) {
     EXPECT_LT(Distance(back.def.nodes[n].position_m, moved.def.nodes[n].position_m), 1e-9);
   }
-  // the beam was moved by 5 cm, and is written where it was
+  // the beam was moved by 5 cm, and is written at its new place
   const std::size_t e = 4;
   EXPECT_EQ(back.def.nodes[e].name, "e");
   EXPECT_NEAR(back.def.nodes[e].position_m.y, 0.5 + 0.2 * 0.25, 1e-9);
@@ -262,9 +263,8 @@ TEST_F(ModelWriteJoints, AJointBesideItsNodesIsRefused) {
   }
   Diagnostics out;
   EXPECT_FALSE(ModelYaml(robot, "", out));
-  EXPECT_THAT(out.Format(),
-              HasSubstr("the joint \"leg.knee\" is not between nodes (give each of its "
-                        "bodies a node where it holds it)"));
+  EXPECT_THAT(out.Format(), HasSubstr("the joint \"leg.knee\" is not between nodes (give both of "
+                                      "its bodies a node at the joint)"));
 }
 
 TEST_F(ModelWriteJoints, TurnedIsOfTheKind) {
@@ -289,7 +289,7 @@ builders:
         with("kind: " + std::string(kind) + ", turned: {axis: x, angle_rad: 0.3}");
     EXPECT_FALSE(bad) << kind;
     EXPECT_THAT(why, HasSubstr("robot.yaml:6:"));
-    EXPECT_THAT(why, HasSubstr("holds its bodies as `turned` does not have them (a hinge"));
+    EXPECT_THAT(why, HasSubstr("does not leave the rotation in `turned` free (hinge"));
   }
 }
 

@@ -1,4 +1,4 @@
-// Robots written as model files, and read back.
+// Robots written as model files, and read back
 #include <cmath>
 
 #include "math/vec.h"
@@ -30,7 +30,7 @@ class ModelWrite : public ExperimentFolder {
     return Robot(Path("robot.yaml"));
   }
 
-  /// The robot in some other pose: every body is turned in its own way.
+  /// Returns the robot in another pose with individually rotated bodies.
   static RobotSpec Moved(const RobotSpec& robot) {
     Pose pose;
     for (std::size_t b = 0; b < robot.def.bodies.size(); ++b) {
@@ -47,7 +47,7 @@ class ModelWrite : public ExperimentFolder {
     return RobotAt(robot, pose);
   }
 
-  /// What is read back of the robot's model file.
+  /// Writes the robot's model file and reads it back.
   RobotSpec Back(const RobotSpec& robot) const {
     Diagnostics out;
     const auto text = ModelYaml(robot, "Two lines\nof heading.", out);
@@ -65,7 +65,7 @@ class ModelWrite : public ExperimentFolder {
   }
 };
 
-/// To 1e-12 in what counts; cables and nodes by name.
+/// Compares properties to 1e-12; cables and nodes by name.
 void ExpectSame(const RobotSpec& a, const RobotSpec& b) {
   ASSERT_EQ(a.def.bodies.size(), b.def.bodies.size());
   for (std::size_t i = 0; i < a.def.bodies.size(); ++i) {
@@ -179,10 +179,11 @@ TEST_F(ModelWrite, RobotsOfOneRodABodyComeBackFromAResolvedExperiment) {
 TEST_F(ModelWrite, WhatAModelFileCannotSayIsRefusedByName) {
   RobotSpec robot = Robot(TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml");
   robot.solids.reset();
-  EXPECT_NE(Refused(robot).find("error: a model file cannot say all of this robot: it is not known "
-                                "what the parts of the body \"segment_0\" weigh (inputs.yaml has "
-                                "bodies only as a whole"),
-            std::string::npos)
+  EXPECT_NE(
+      Refused(robot).find("error: a model file cannot describe this robot completely: the masses "
+                          "of the parts of the body \"segment_0\" are not known (use the original "
+                          "experiment: inputs.yaml has only masses of whole bodies"),
+      std::string::npos)
       << Refused(robot);
 
   robot = Robot(Path("prism.yaml"));
@@ -196,8 +197,9 @@ TEST_F(ModelWrite, WhatAModelFileCannotSayIsRefusedByName) {
       << Refused(robot);
 
   robot = Robot(Path("prism.yaml"));
-  robot.def.bodies[1].mass_kg *= 1.001;  // its solids say otherwise
-  EXPECT_NE(Refused(robot).find("the body \"strut_1\" would have another mass"), std::string::npos)
+  robot.def.bodies[1].mass_kg *= 1.001;  // differs from its shapes' mass
+  EXPECT_NE(Refused(robot).find("the body \"strut_1\" would have a different mass"),
+            std::string::npos)
       << Refused(robot);
 
   const RobotSpec box = Described(R"(
@@ -208,7 +210,7 @@ builders:
   - {match: b, sphere: {radius_m: 0.1, mass_kg: 1}}
   - {match: [a-b], cable: {stiffness_n_per_m: 100, prestress_n: 1}}
 )");
-  ExpectSame(Moved(box), Back(Moved(box)));  // a box at a node may be turned
+  ExpectSame(Moved(box), Back(Moved(box)));  // a box at a node may be rotated
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// The models that taut comes with. Reference numbers: NTRT's own robot, dumped from a running
-// TetraSpineStaticModel_hf (reference data of the paper's model); its (x, y, z) is our (y, z, x),
-// its lengths are cm, its floor is 1.5 cm above its origin.
+// Shipped models. Reference numbers: NTRT's robot, dumped from a running TetraSpineStaticModel_hf
+// (reference data of the paper's model); its (x, y, z) is our (y, z, x), its lengths are cm, its
+// floor is 1.5 cm above its origin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ const NodeDef& Node(const RobotSpec& robot, const std::string& name) {
 
 double Size(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 
-/// Largest force and torque with which the cables alone act on any body.
+/// Returns the largest force or torque of the cables alone on any body.
 double WorstLoad(const ModelDef& def) {
   double worst = 0.0;
   for (const BodyLoad& load : StartLoads(def)) {
@@ -67,24 +67,24 @@ TEST(Models, AreAllGood) {
 TEST(Tetraspine3, HasNtrtsMassesAndCentres) {
   const RobotSpec robot = Load("tetraspine3");
   const double mass_kg[] = {0.713080883, 0.9130808711, 0.7230808735};
-  // NTRT [cm]: y up, z forward.
+  // NTRT [cm]: y up, z forward
   const double up_cm[] = {14.0464993, 13.810629, 14.4108747};
   const double forward_cm[] = {79.3275917, 58.0081456, 36.061344};
   ASSERT_EQ(robot.def.bodies.size(), 3u);
   for (int i = 0; i < 3; ++i) {
     const BodyDef& body = robot.def.bodies[i];
     EXPECT_EQ(body.name, "segment_" + std::to_string(i));
-    EXPECT_NEAR(body.mass_kg, mass_kg[i], 3e-8);  // NTRT's mass went through a float
+    EXPECT_NEAR(body.mass_kg, mass_kg[i], 3e-8);  // NTRT's mass is a float
     EXPECT_NEAR(body.com_m.x, forward_cm[i] / 100, 1e-8);
     EXPECT_NEAR(body.com_m.y, 0.0, 1e-15);
-    // NTRT rounds the triangles' height up by 4.7e-8 m; a part of that shows here.
+    // NTRT rounds the triangles' height up by 4.7e-8 m, part of which remains here.
     EXPECT_NEAR(body.com_m.z, (up_cm[i] - 1.5) / 100, 4.7e-8);
     EXPECT_FALSE(body.fixed);
   }
 }
 
-// The paper's Table: 0.73, 0.91, 0.73 kg. The published node masses and rod densities add up to
-// a little less and more.
+// The paper's table: 0.73, 0.91, 0.73 kg. The published node masses and rod densities sum to
+// slightly different values.
 TEST(Tetraspine3, IsWithinThreePercentOfThePapersMasses) {
   const RobotSpec robot = Load("tetraspine3");
   EXPECT_NEAR(robot.def.bodies[0].mass_kg / 0.73, 1 - 0.023, 5e-4);
@@ -94,7 +94,7 @@ TEST(Tetraspine3, IsWithinThreePercentOfThePapersMasses) {
 
 TEST(Tetraspine3, HasTheTrueInertiaOfItsParts) {
   const RobotSpec robot = Load("tetraspine3");
-  // NTRT axes [kg cm^2]: Ixx, Iyy, Izz, Iyz.
+  // NTRT's axes [kg cm^2]: Ixx, Iyy, Izz, Iyz
   const double true_kg_cm2[3][4] = {{148.116, 157.366, 241.188, 1.787},
                                     {216.380, 225.449, 299.138, 3.078},
                                     {155.406, 168.339, 188.770, 5.275}};
@@ -109,7 +109,7 @@ TEST(Tetraspine3, HasTheTrueInertiaOfItsParts) {
   }
 }
 
-// NTRT's robot had the inertia of the solid box around each segment, not its own.
+// NTRT's robot had the inertia of the solid bounding box of each segment.
 TEST(Tetraspine3, HasNtrtsInertiaWithTheBoundingBoxLaw) {
   const std::string path = ::testing::TempDir() + "taut_tetraspine3_box.yaml";
   std::ofstream(path) << "taut: 1\nkind: model\nname: box\ninertia: bounding_box\n"
@@ -135,7 +135,7 @@ TEST(Tetraspine3, IsNotMirrored) {
   EXPECT_GT(Cable(robot, "outer_left_1").attachments[0].position_m.y, 0.18);
   EXPECT_LT(Cable(robot, "outer_right_1").attachments[0].position_m.y, -0.18);
   EXPECT_GT(robot.def.bodies[0].com_m.x, robot.def.bodies[2].com_m.x);  // segment 0 is in front
-  EXPECT_GT(Node(robot, "segment_0.tip").position_m.x, 1.0);            // and its tip points there
+  EXPECT_GT(Node(robot, "segment_0.tip").position_m.x, 1.0);            // its tip points forward
   EXPECT_GT(Node(robot, "segment_0.top").position_m.z, 0.33);
 }
 
@@ -270,7 +270,7 @@ TEST(Prism, HoldsItsShapeByPrestressAloneWhateverItsStruts) {
   for (const char* struts : {"4", "5", "8"}) {
     EXPECT_LT(WorstLoad(Load("prism3", {{"struts", struts}}).def), 1e-12) << struts;
   }
-  // And not at another angle.
+  // No equilibrium at another angle
   EXPECT_GT(WorstLoad(Load("prism3", {{"twist_rad", "2.5"}}).def), 0.1);
 }
 
@@ -295,11 +295,11 @@ TEST(Puppy, IsASpineOfFourVertebraeWithFourLegs) {
   const RobotSpec puppy = Load("puppy");
   EXPECT_EQ(puppy.def.bodies.size(), 4u + 2 * 4u);
   EXPECT_EQ(puppy.def.cables.size(), 3 * 8u + 4 * 6u);
-  EXPECT_EQ(puppy.def.joints.size(), 2 * 4u);  // a hip and a knee a leg
+  EXPECT_EQ(puppy.def.joints.size(), 2 * 4u);  // hip and knee of each leg
   double mass_kg = 0;
   for (const BodyDef& body : puppy.def.bodies) mass_kg += body.mass_kg;
   EXPECT_NEAR(mass_kg, 2.144, 1e-3);
-  // The vertebrae that carry no legs are held by prestress alone.
+  // The vertebrae without legs are held by prestress alone.
   const std::vector<BodyLoad> loads = StartLoads(puppy.def);
   for (const std::size_t i : {1u, 2u}) {
     EXPECT_EQ(puppy.def.bodies[i].name, "vertebra_" + std::to_string(i));

@@ -1,4 +1,4 @@
-// Bodies that a program moves, as experiments say them.
+// Kinematic bodies in experiment files
 #include <gmock/gmock.h>
 
 #include "taut/run.h"
@@ -85,14 +85,14 @@ TEST_F(MotionText, EveryMistakeIsNamedAtOnce) {
   const std::string errors = Complaints();
   EXPECT_THAT(errors, HasSubstr("\"plat\" is neither a body of the robot nor a box"));
   EXPECT_THAT(errors, HasSubstr("plate"));
-  EXPECT_THAT(errors, HasSubstr("motion needs a slide or a turn"));
-  EXPECT_THAT(errors, HasSubstr("says no speed and no amplitude"));
+  EXPECT_THAT(errors, HasSubstr("motion needs `slide` or `turn`"));
+  EXPECT_THAT(errors, HasSubstr("has neither a speed nor an amplitude"));
   EXPECT_THAT(errors, HasSubstr("turn.axis must not be zero"));
   EXPECT_THAT(errors, HasSubstr("time_s must not be negative"));
-  EXPECT_THAT(errors, HasSubstr("times must rise"));
-  EXPECT_THAT(errors, HasSubstr("needs a frequency_hz"));
+  EXPECT_THAT(errors, HasSubstr("times must increase"));
+  EXPECT_THAT(errors, HasSubstr("needs frequency_hz"));
   EXPECT_THAT(errors, HasSubstr("frequency_hz"));
-  EXPECT_THAT(errors, HasSubstr("two motions called c"));
+  EXPECT_THAT(errors, HasSubstr("two motions are called c"));
 }
 
 TEST_F(MotionText, WhatGoesTooFarIsAnErrorAndWhatIsTooFastAWarning) {
@@ -100,16 +100,19 @@ TEST_F(MotionText, WhatGoesTooFarIsAnErrorAndWhatIsTooFastAWarning) {
       "  - {name: b, of: b, turn: {axis: [0, 0, 1], speed_rad_per_s: [[0, 1], [1, -1e9]]}}\n",
       kPlate);
   const std::string errors = Complaints();
-  EXPECT_THAT(errors, HasSubstr("the motion \"a\" may go 1e+301 m far in 10 s (positions so far "
-                                "away are too coarse for the robot)"));
-  EXPECT_THAT(errors, HasSubstr("the motion \"b\" may turn by 1e+10 rad in 10 s (at most 1e9 rad"));
+  EXPECT_THAT(errors,
+              HasSubstr("the motion \"a\" may move by 1e+301 m in 10 s (use a shorter way: "
+                        "positions that far away are rounded too coarsely for this robot)"));
+  EXPECT_THAT(errors,
+              HasSubstr("the motion \"b\" may rotate by 1e+10 rad in 10 s (at most 1e9 rad"));
   Add("  - {name: a, of: plate, slide: {direction: [0, 0, 1], amplitude_m: 0.1, frequency_hz: "
       "600}}\n",
       kPlate);
   Diagnostics out;
   EXPECT_TRUE(LoadExperiment(Path("trial.yaml"), {}, out));
-  EXPECT_THAT(out.Format(), HasSubstr("warning: the motion \"a\" has 600 Hz, and a step of 0.001 s "
-                                      "sees less than two steps of a period (a smaller step_s)"));
+  EXPECT_THAT(out.Format(),
+              HasSubstr("warning: the motion \"a\" has 600 Hz, so a step of 0.001 s gives less "
+                        "than two steps per period (use a smaller step_s)"));
 }
 
 TEST_F(MotionText, WhatASupportHoldsCannotBeMoved) {
@@ -117,7 +120,7 @@ TEST_F(MotionText, WhatASupportHoldsCannotBeMoved) {
   Write("model.yaml", model + "  - {match: a0, support: {kind: ball}}\n");
   Add("  - {name: hand, of: a, slide: {direction: [0, 0, 1], speed_m_per_s: [[0, 1]]}}\n");
   EXPECT_THAT(Complaints(),
-              HasSubstr("trial.yaml:10:22: error: motion.of: the joint \"a0\" ties it"));
+              HasSubstr("trial.yaml:10:22: error: motion.of: the joint \"a0\" connects"));
 }
 
 TEST_F(MotionText, WhileItSettlesNothingMoves) {

@@ -1,4 +1,4 @@
-// Motors in files: what keys say, what is refused, there and back.
+// Motors in files: values of keys, errors, writing and reading back
 #include <cmath>
 
 #include "taut/batch.h"
@@ -27,7 +27,7 @@ TEST(MotorKeys, AreTheDefaultsUnlessSaidOtherwise) {
             other);
 }
 
-// Of a file with a base, and of no cable without an actuator.
+// Also with a base file; cables without an actuator stay without.
 TEST(MotorKeys, OfTheModelReplaceTheActuatorsOfItsBuilders) {
   const std::string motor = "actuator: {min_rest_length_m: 0.02, dc_motor: {gear_ratio: 43}}\n";
   const ActuatorDef limited =
@@ -44,13 +44,13 @@ TEST(MotorKeys, OfTheModelReplaceTheActuatorsOfItsBuilders) {
 TEST(MotorErrors, LimitsAreNotBesideAMotor) {
   EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05, actuator: {dc_motor: {}, max_force_n: 3, "
                            "ideal: true}")),
-            "robot.yaml:11:98: error: cable.actuator has both dc_motor and max_force_n (beside a "
-            "dc_motor there is min_rest_length_m only)\n"
-            "robot.yaml:11:114: error: cable.actuator has both dc_motor and ideal (beside a "
-            "dc_motor there is min_rest_length_m only)\n");
+            "robot.yaml:11:98: error: cable.actuator has both dc_motor and max_force_n (with a "
+            "dc_motor only min_rest_length_m is allowed)\n"
+            "robot.yaml:11:114: error: cable.actuator has both dc_motor and ideal (with a dc_motor "
+            "only min_rest_length_m is allowed)\n");
   EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05, actuator: {}")),
             "robot.yaml:11:83: error: cable.actuator needs limits, a `dc_motor`, or `ideal: true` "
-            "(without an actuator the rest length is fixed)\n");
+            "(leave out the actuator for a fixed rest length)\n");
 }
 
 TEST(MotorErrors, AllFiguresAreLookedAt) {
@@ -65,12 +65,11 @@ TEST(MotorErrors, AllFiguresAreLookedAt) {
       "mean \"backlash_rad\"?)\n"
       "robot.yaml:11:167: error: cable.actuator.dc_motor.spool_radius_m must be positive, got "
       "-1\n");
-  EXPECT_EQ(
-      Errors(TwoRods("rest_length_m: 0.05, actuator: {dc_motor: {friction_torque_n_m: "
-                     "0.001}}")),
-      "robot.yaml:11:95: error: cable.actuator.dc_motor.static_friction_torque_n_m is "
-      "0.00012, below friction_torque_n_m of 0.001 (friction at rest is not less than that of "
-      "sliding)\n");
+  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05, actuator: {dc_motor: {friction_torque_n_m: "
+                           "0.001}}")),
+            "robot.yaml:11:95: error: cable.actuator.dc_motor.static_friction_torque_n_m is "
+            "0.00012, below friction_torque_n_m of 0.001 (static friction must be at least the "
+            "friction of a turning rotor)\n");
 }
 
 TEST(MotorErrors, BuildersOfASupplyAgreeAboutIt) {
@@ -86,12 +85,12 @@ TEST(MotorErrors, BuildersOfASupplyAgreeAboutIt) {
   EXPECT_EQ(Errors(two("", "")), "");
   EXPECT_EQ(Errors(two("supply: a, supply_voltage_v: 6", "supply: b, supply_voltage_v: 9")), "");
   EXPECT_EQ(Errors(two("supply_voltage_v: 6", "supply_resistance_ohm: 1")),
-            "robot.yaml:13:5: error: a dc_motor's supply \"supply\" has other figures than in the "
-            "builder of line 12: 12 V and 1 ohm, there 6 V and 0 ohm (give one of them another "
-            "`supply`)\n");
+            "robot.yaml:13:5: error: a dc_motor's supply \"supply\" differs from the one in the "
+            "builder of line 12: 12 V and 1 ohm here, 6 V and 0 ohm there (make them equal, or "
+            "give one of them another `supply`)\n");
 }
 
-/// What `Model::Compile` says to two motors of a supply.
+/// Returns the errors of `Model::Compile` for two motors on one supply.
 std::string Compiled(const std::function<void(DcMotorDef&)>& change) {
   ModelDef def;
   for (const char* name : {"one", "other"}) {
@@ -114,7 +113,7 @@ std::string Compiled(const std::function<void(DcMotorDef&)>& change) {
 TEST(MotorErrors, MotorsOfASupplyAgreeAboutIt) {
   EXPECT_EQ(Compiled([](DcMotorDef&) {}), "");
   const std::string differ =
-      "cable other: its motor's supply \"supply\" has other figures than at cable one";
+      "cable other: its motor's supply \"supply\" differs from the one at cable one";
   EXPECT_EQ(Compiled([](DcMotorDef& m) { m.supply_voltage_v = 11; }), differ);
   EXPECT_EQ(Compiled([](DcMotorDef& m) { m.supply_resistance_ohm = 1; }), differ);
   EXPECT_EQ(Compiled([](DcMotorDef& m) { m.supply_voltage_v = 11, m.supply = "other"; }), "");
@@ -214,26 +213,26 @@ class SensorErrors : public ExperimentErrors {
 };
 
 TEST_F(SensorErrors, CountsHaveARangeOfTheirOwn) {
-  ExpectOf("load_cell: {counts: {bits: 40}, range_n: [0, 5], quantum_n: 1}",
-           "22:38: error: sensors.load_cell.counts.bits must be a whole number within 1..32, got "
-           "40\n"
-           "22:43: error: sensors.load_cell has both counts and range_n (the counts have a range "
-           "and bits of their own)\n"
-           "22:60: error: sensors.load_cell has both counts and quantum_n (the counts have a range "
-           "and bits of their own)");
+  ExpectOf(
+      "load_cell: {counts: {bits: 40}, range_n: [0, 5], quantum_n: 1}",
+      "22:38: error: sensors.load_cell.counts.bits must be a whole number within 1..32, got 40\n"
+      "22:43: error: sensors.load_cell has both counts and range_n (`counts` already defines the "
+      "range and the bits)\n"
+      "22:60: error: sensors.load_cell has both counts and quantum_n (`counts` already defines the "
+      "range and the bits)");
 }
 
 TEST_F(SensorErrors, EncodersOfShaftsHaveLines) {
-  ExpectOf(
-      "encoder: {decoding: 2, index: true}",
-      "22:21: error: sensors.encoder.decoding needs the key \"lines\" beside it (it is about an "
-      "encoder on the motor's shaft)\n"
-      "22:34: error: sensors.encoder.index needs the key \"lines\" beside it (it is about an "
-      "encoder on the motor's shaft)");
+  ExpectOf("encoder: {decoding: 2, index: true}",
+           "22:21: error: sensors.encoder.decoding needs the key \"lines\" as well (it describes "
+           "an encoder on the motor's shaft)\n"
+           "22:34: error: sensors.encoder.index needs the key \"lines\" as well (it describes an "
+           "encoder on the motor's shaft)");
   ExpectOf("encoder: {lines: 16, decoding: 3, spool_radius_m: 0.005, quantum_m: 1}",
-           "22:32: error: sensors.encoder.decoding must be 1, 2 or 4, got 3 (edges of one channel, "
-           "of both ways of one, of both)\n"
-           "22:68: error: sensors.encoder has quantum_m and lines (one follows from the other)");
+           "22:32: error: sensors.encoder.decoding must be 1, 2 or 4, got 3 (1: one edge per line, "
+           "2: both edges of one channel, 4: both edges of both channels)\n"
+           "22:68: error: sensors.encoder has both quantum_m and lines (give only one of them: it "
+           "determines the other)");
   ExpectOf("encoder: {lines: 16}",
            "22:20: error: sensors.encoder needs the key \"spool_radius_m\"");
 }

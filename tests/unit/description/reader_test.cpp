@@ -1,3 +1,4 @@
+// YAML reader: tree, values and maps, with places of errors
 #include "description/yaml/reader.h"
 
 #include <gtest/gtest.h>
@@ -64,40 +65,42 @@ TEST(YamlTree, MergingSomethingElseIsAnError) {
 
 TEST(YamlTree, WhatIsNotYamlSaysWhere) {
   EXPECT_EQ(ParseErrors("a: [1, 2\nb: 3\n"),
-            "f.yaml:2:2: error: not valid YAML: end of sequence flow not found\n");
-  EXPECT_EQ(ParseErrors("a: *nowhere\n"),
-            "f.yaml:1:4: error: not valid YAML: the referenced anchor is not defined\n");
+            "f.yaml:2:2: error: the file is not valid YAML: end of sequence flow not found\n");
+  EXPECT_EQ(
+      ParseErrors("a: *nowhere\n"),
+      "f.yaml:1:4: error: the file is not valid YAML: the referenced anchor is not defined\n");
 }
 
 TEST(YamlTree, OneDocumentWithoutTagsAndWithTextKeys) {
   EXPECT_EQ(ParseErrors(""), "f.yaml:1:1: error: the file is empty\n");
-  EXPECT_EQ(
-      ParseErrors("a: 1\n---\nb: 1\n"),
-      "f.yaml:2:1: error: more than one document in the file (remove the `---` between them)\n");
+  EXPECT_EQ(ParseErrors("a: 1\n---\nb: 1\n"),
+            "f.yaml:2:1: error: the file has more than one YAML document (remove the `---` between "
+            "them)\n");
   EXPECT_EQ(ParseErrors("a: !!str 3\n"),
             "f.yaml:1:4: error: YAML tag \"tag:yaml.org,2002:str\" is not allowed\n");
   EXPECT_EQ(ParseErrors("? [a]\n: 1\n"), "f.yaml:1:3: error: a key must be a text, not a list\n");
-  EXPECT_EQ(ParseErrors("a: &a [*a]\n"), "f.yaml:1:8: error: an anchor may not contain itself\n");
+  EXPECT_EQ(ParseErrors("a: &a [*a]\n"),
+            "f.yaml:1:8: error: a YAML anchor must not contain itself\n");
 }
 
 TEST(YamlTree, NoTextHasControlCharacters) {
   const std::string hint =
-      " is in no text (files are UTF-8, without control characters but tab and line end)\n";
-  // A NUL would cut the path where the system reads it.
+      " is not allowed (expected UTF-8 without control characters except tabs and line ends)\n";
+  // A NUL would truncate the path in system calls.
   EXPECT_EQ(ParseErrors("model: \"a.yaml\\0.txt\"\n"),
             "f.yaml:1:8: error: the control character 0" + hint);
   EXPECT_EQ(ParseErrors("a: {\"\\e[2J\": 1}\n"),
             "f.yaml:1:5: error: the control character 27" + hint);
   EXPECT_EQ(ParseErrors(std::string("a: 1\nb: x\0y\n", 12)),
             "f.yaml:2:5: error: the control character 0" + hint);
-  // yaml-cpp would take it for the end of the file, and `b` for absent.
+  // yaml-cpp would treat it as the end of the file, and `b` as absent.
   EXPECT_EQ(ParseErrors("a: 1\n\x04\nb: 2\n"), "f.yaml:2:1: error: the control character 4" + hint);
   EXPECT_EQ(ParseErrors("a: \"b\\tc\\n\"\r\n"), "");
 }
 
 TEST(YamlTree, NestingIsLimited) {
   EXPECT_EQ(ParseErrors(std::string(65, '[') + std::string(65, ']')),
-            "f.yaml:1:65: error: nested more than 64 levels deep\n");
+            "f.yaml:1:65: error: the file is nested more than 64 levels deep\n");
   EXPECT_EQ(ParseErrors(std::string(64, '[') + std::string(64, ']')), "");
   EXPECT_NE(ParseErrors(std::string(100'000, '[')), "");
 }
@@ -106,8 +109,8 @@ TEST(YamlTree, NodesAreLimitedAndAliasesCountFully) {
   std::string large = "a: [";
   for (int i = 0; i < 200'000; ++i) large += "1, ";
   EXPECT_EQ(ParseErrors(large + "1]").substr(0, 60),
-            "f.yaml:1:600002: error: more than 200000 YAML nodes (an alia");
-  // Each line is ten times the one before: a billion nodes in ten lines.
+            "f.yaml:1:600002: error: the file has more than 200000 YAML n");
+  // Each line multiplies by ten: a billion nodes in ten lines.
   std::string laughs = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 10; ++i) {
     const std::string before = "*a" + std::to_string(i - 1);
@@ -121,16 +124,15 @@ TEST(YamlTree, NodesAreLimitedAndAliasesCountFully) {
 TEST(YamlTree, FilesThatCannotBeReadSayWhy) {
   Diagnostics out;
   EXPECT_EQ(ReadYaml("/no/such/file.yaml", out), nullptr);
-  EXPECT_EQ(out.Format(),
-            "/no/such/file.yaml: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(out.Format(), "/no/such/file.yaml: error: cannot open: No such file or directory\n");
   Diagnostics directory;
   EXPECT_EQ(ReadYaml(TAUT_SOURCE_DIR, directory), nullptr);
-  EXPECT_EQ(directory.items()[0].what, "is a directory, not a file");
+  EXPECT_EQ(directory.items()[0].what, "the path is a directory, not a file");
   const std::string path = ::testing::TempDir() + "taut_large.yaml";
   std::ofstream(path) << "a: " << std::string(kMaxFileBytes, '#');
   Diagnostics large;
   EXPECT_EQ(ReadYaml(path, large), nullptr);
-  EXPECT_EQ(large.items()[0].what, "is larger than 10 MB");
+  EXPECT_EQ(large.items()[0].what, "the file is larger than 10 MB");
   std::remove(path.c_str());
 }
 
@@ -138,12 +140,12 @@ TEST(YamlTree, FilesThatCannotBeReadSayWhy) {
 
 class Reading : public ::testing::Test {
  protected:
-  /// The value of `v` in a file that is just `v: <text>`; it starts at line 1, column 4.
+  /// Returns the value of `v` in the file `v: <text>`; it starts at line 1, column 4.
   const Value& V(const std::string& text) {
     kept_.push_back(Parse("v: " + text));
     return *kept_.back()->Find("v");
   }
-  /// All errors so far, then forgotten.
+  /// Returns all errors so far and clears them.
   std::string Errors() {
     std::string text = out_.Format();
     out_ = Diagnostics();
@@ -235,7 +237,7 @@ TEST_F(Reading, NamesAreLettersDigitsUnderscoresAndHyphens) {
   EXPECT_EQ(Errors(), "");
   ReadName(V("a.b"), "name", scope_);
   EXPECT_EQ(Errors(),
-            "f.yaml:1:4: error: name: \"a.b\" cannot be a name (letters, digits, _ and -)\n");
+            "f.yaml:1:4: error: name: \"a.b\" cannot be a name (use letters, digits, _ and -)\n");
   ReadName(V("[a]"), "name", scope_);
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: name must be a name, got a list\n");
   ReadNames(V("{a: b}"), "tags", scope_);
@@ -282,7 +284,7 @@ TEST_F(Reading, ChoicesHintAtTheLikelyOne) {
 
 class ReadingMaps : public Reading {
  protected:
-  /// A reader of a rod that has those keys.
+  /// Reads a rod with these known keys.
   MapReader Rod(const Value& value, const std::vector<std::string>& keys) {
     MapReader map(value, "rod", scope_);
     for (const std::string& key : keys) map.Know(key);
@@ -330,9 +332,9 @@ TEST_F(ReadingMaps, ExactlyOneOfSeveralKeys) {
   EXPECT_EQ(Rod(V("{}"), keys).ExactlyOne(keys), "");
   EXPECT_EQ(Errors(), "f.yaml:1:4: error: rod needs one of mass_kg, density_kg_per_m3\n");
   EXPECT_EQ(Rod(V("{mass_kg: 1, density_kg_per_m3: 2}"), keys).ExactlyOne(keys), "");
-  EXPECT_EQ(Errors(),
-            "f.yaml:1:17: error: rod has both mass_kg and density_kg_per_m3 (only one of them may "
-            "be there)\n");
+  EXPECT_EQ(
+      Errors(),
+      "f.yaml:1:17: error: rod has both mass_kg and density_kg_per_m3 (give only one of them)\n");
 }
 
 TEST(Hints, NameTwelveOrAllOfFourteen) {
@@ -356,23 +358,23 @@ TEST(Header, TautAndKindMustBeRight) {
   };
   EXPECT_EQ(errors("taut: 1\nkind: model\n"), "");
   EXPECT_EQ(errors("taut: 2\nkind: model\n"),
-            "f.yaml:1:7: error: taut must be 1, got 2 (the version of the format; this taut reads "
-            "version 1)\n");
+            "f.yaml:1:7: error: taut must be 1, got 2 (it is the version of the file format; this "
+            "program reads version 1)\n");
   EXPECT_EQ(errors("taut: 1\nkind: experiment\n"),
-            "f.yaml:2:7: error: kind must be model, got experiment (files of this "
-            "kind are for `taut run`)\n");
+            "f.yaml:2:7: error: kind must be model, got experiment (use `taut run` for files of "
+            "this kind)\n");
   EXPECT_EQ(errors("taut: 1\nkind: study\n"),
-            "f.yaml:2:7: error: kind must be model, got study (files of this kind are for "
-            "`taut learn`)\n");
+            "f.yaml:2:7: error: kind must be model, got study (use `taut learn` for files of this "
+            "kind)\n");
   EXPECT_EQ(errors("taut: 1\nkind: robot\n"),
-            "f.yaml:2:7: error: kind must be model, got robot (there are the kinds model, "
-            "experiment, gait, study, fit, catalogue, calibration, faults)\n");
+            "f.yaml:2:7: error: kind must be model, got robot (the kinds are model, experiment, "
+            "gait, study, fit, catalogue, calibration, faults)\n");
   EXPECT_EQ(errors("name: x\n"),
             "f.yaml:1:1: error: the file needs the key \"kind\" (write `kind: model`)\n"
             "f.yaml:1:1: error: the file needs the key \"taut\" (write `taut: 1`)\n");
   EXPECT_EQ(errors("[1]\n"),
-            "f.yaml:1:1: error: the file must be a map, got a list (it starts with "
-            "`taut: 1` and `kind: model`)\n");
+            "f.yaml:1:1: error: the file must be a map, got a list (begin the file with `taut: 1` "
+            "and `kind: model`)\n");
 }
 
 TEST(Paths, AreSeenFromTheFilesFolder) {

@@ -1,5 +1,4 @@
-/// Cables over wheels and through eyelets with friction, as models say them
-/// (docs/formats/model.md).
+/// Cables over wheels and through eyelets with friction in model files (docs/formats/model.md)
 
 #include <gtest/gtest.h>
 
@@ -57,17 +56,16 @@ TEST(Route, APulleyIsOnTheSideThatItSays) {
 }
 
 TEST(Route, WhatIsWoundUpIsNotShorterThanItsRestLength) {
-  // 0.5 m to b, 0.4 m to the drum, and two and a half turns of 0.2 pi.
-  EXPECT_EQ(
-      Errors(Posts("[a, b, " + Drum("side: left, turns: 2.5") + "]", "rest_length_m: 1.57")),
-      "robot.yaml:11:66: error: the cable \"rope\" starts with a rest length of 1.57 m, below the "
-      "1.5708 m that are wound round its pulleys and drums (with all that is between them it "
-      "is 2.4708 m long)\n");
+  // 0.5 m to b, 0.4 m to the drum, and two and a half turns of 0.2 pi
+  EXPECT_EQ(Errors(Posts("[a, b, " + Drum("side: left, turns: 2.5") + "]", "rest_length_m: 1.57")),
+            "robot.yaml:11:66: error: the cable \"rope\" starts with a rest length of 1.57 m, "
+            "below the 1.5708 m wound around its pulleys and drums (increase the rest length: the "
+            "whole cable path is 2.4708 m long)\n");
   Good(Posts("[a, b, " + Drum("side: left, turns: 2.5") + "]", "rest_length_m: 1.58"));
 }
 
 TEST(Route, ADrumHasWhatIsWoundUpAtEitherEnd) {
-  // Left or right is as one goes along the cable.
+  // Left and right are relative to the direction along the cable.
   const double straight = std::sqrt(0.5 * 0.5), wound = 2 * std::numbers::pi * 2.25 * 0.1;
   for (const std::string& route : {"[a, " + Drum("side: left, turns: 2.25") + "]",
                                    "[" + Drum("side: right, turns: 2.25") + ", a]"}) {
@@ -98,33 +96,32 @@ TEST(Route, TheAxisIsInThePartsFrame) {
 
 TEST(Route, WhatCannotBeIsSaidWithItsLine) {
   const auto error = [](const std::string& route) { return Errors(Posts(route)); };
-  EXPECT_EQ(
-      error("[a, {eyelet: w, friction: 0.1, radius_m: 0.1}, b]"),
-      "robot.yaml:7:56: error: pairs.route.radius_m is of pulleys and drums, not of eyelets\n");
-  EXPECT_EQ(
-      error("[{eyelet: a, friction: 0.1}, w, b]"),
-      "robot.yaml:7:26: error: pairs.route: friction at an end, where the cable is fixed (leave "
-      "`friction` away there)\n");
+  EXPECT_EQ(error("[a, {eyelet: w, friction: 0.1, radius_m: 0.1}, b]"),
+            "robot.yaml:7:56: error: pairs.route.radius_m is a key of pulleys and drums, not of "
+            "eyelets\n");
+  EXPECT_EQ(error("[{eyelet: a, friction: 0.1}, w, b]"),
+            "robot.yaml:7:26: error: pairs.route has friction at an end, where the cable is fixed "
+            "(leave out `friction` there)\n");
   EXPECT_EQ(
       error("[a, {pulley: w}, b]"),
       "robot.yaml:7:29: error: a pulley needs pairs.route.axis\nrobot.yaml:7:29: error: a pulley "
       "needs pairs.route.radius_m\nrobot.yaml:7:29: error: a pulley needs pairs.route.side\n");
   EXPECT_EQ(error("[" + Pulley("side: left") + ", b]"),
-            "robot.yaml:7:26: error: pairs.route ends at a pulley (a cable ends at a node or on a "
+            "robot.yaml:7:26: error: pairs.route ends at a pulley (end the cable at a node or on a "
             "drum)\n");
   EXPECT_EQ(error("[a, " + Drum("side: left") + ", b]"),
-            "robot.yaml:7:29: error: pairs.route has a drum on the way (a cable ends on a drum; "
-            "what it runs over is a `pulley`)\n");
+            "robot.yaml:7:29: error: pairs.route has a drum between its ends (use a `pulley` "
+            "there: a cable can only end on a drum)\n");
   EXPECT_EQ(error("[a, " + Pulley("side: left, turns: 0.5") + ", b]"),
-            "robot.yaml:7:85: error: pairs.route.turns of a pulley must be a whole number (what it "
-            "takes to get round it comes on top)\n");
+            "robot.yaml:7:85: error: pairs.route.turns of a pulley must be a whole number (give "
+            "whole turns only: the shortest way around is added to them)\n");
   EXPECT_EQ(error("[a, " + Drum("side: left, turns: -1") + "]"),
             "robot.yaml:7:90: error: pairs.route.turns must not be negative, got -1\n");
   EXPECT_EQ(error("[a, " + Pulley("side: up") + ", b]"),
             "robot.yaml:7:79: error: pairs.route.side cannot be \"up\" (one of: left, right)\n");
-  EXPECT_EQ(error("[a, {pulley: w, drum: w}, b]"),
-            "robot.yaml:7:41: error: pairs.route has both pulley and drum (only one of them may be "
-            "there)\n");
+  EXPECT_EQ(
+      error("[a, {pulley: w, drum: w}, b]"),
+      "robot.yaml:7:41: error: pairs.route has both pulley and drum (give only one of them)\n");
   EXPECT_EQ(error("[a, {friction: 0.1}, b]"),
             "robot.yaml:7:29: error: pairs.route needs one of eyelet, pulley, drum\n");
   EXPECT_EQ(error("[a, nobody, b]"),
@@ -133,33 +130,30 @@ TEST(Route, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(error("[a, 3, b]"),
             "robot.yaml:7:29: error: there is no node \"3\" (did you mean \"a\"?)\n");
   EXPECT_EQ(error("a"), "robot.yaml:7:25: error: pairs.route must be a list, got a text\n");
-  EXPECT_EQ(
-      error("[a, {pulley: w, axis: [0, 1, 0], radius_m: 0.45, side: left}, b]"),
-      "robot.yaml:7:29: error: the node \"b\" is inside the pulley of the cable \"rope\" (it is "
-      "0.412311 m from the axis; a smaller radius_m is needed)\n");
+  EXPECT_EQ(error("[a, {pulley: w, axis: [0, 1, 0], radius_m: 0.45, side: left}, b]"),
+            "robot.yaml:7:29: error: the node \"b\" is inside the pulley of the cable \"rope\" (it "
+            "is 0.412311 m from the axis: choose a smaller radius_m)\n");
   EXPECT_EQ(error("[a, {pulley: w, axis: [5, 0, 1], radius_m: 0.1, side: left}, b]"),
             "robot.yaml:7:29: error: the node \"a\" is on the axis of the pulley of the cable "
-            "\"rope\" (an axis across the cable is needed)\n");
+            "\"rope\" (choose an axis across the cable)\n");
   EXPECT_EQ(error("[a, {pulley: w, axis: [0, 0, 0], radius_m: 0, side: left}, b]"),
             "robot.yaml:7:47: error: pairs.route.axis must not be zero (it is a "
             "direction)\nrobot.yaml:7:68: error: pairs.route.radius_m must be positive, got 0\n");
   EXPECT_EQ(error("[a, {eyelet: w, friction: -0.1}, b]"),
             "robot.yaml:7:51: error: pairs.route.friction must not be negative, got -0.1\n");
   EXPECT_EQ(error("[a, w, b], nodes: [a, b]"),
-            "robot.yaml:7:18: error: pairs has both nodes and route (only one of them may be "
-            "there)\n");
+            "robot.yaml:7:18: error: pairs has both nodes and route (give only one of them)\n");
 }
 
-/// From a to b is (0.4, 0, -0.3).
+/// The vector from a to b is (0.4, 0, -0.3).
 TEST(Route, AnAxisAlongTheWayHasNoSide) {
   const auto pulley = [](const std::string& axis, const std::string& more = "") {
     return Posts("[a, {pulley: w, axis: " + axis + ", radius_m: 0.1, side: left" + more + "}, b]");
   };
-  EXPECT_EQ(
-      Errors(pulley("[-4, 0, 3]")),
-      "robot.yaml:7:29: error: the axis of the pulley of the cable \"rope\" is along the way "
-      "from \"a\" to \"b\", so that the wheel is on neither side (an axis across the cable is "
-      "needed, or whole `turns`)\n");
+  EXPECT_EQ(Errors(pulley("[-4, 0, 3]")),
+            "robot.yaml:7:29: error: the axis of the pulley of the cable \"rope\" is parallel to "
+            "the line from \"a\" to \"b\", so the wheel is on neither side of the cable (choose an "
+            "axis across the cable, or add whole `turns`)\n");
   Good(pulley("[-4, 0.001, 3]"));
   const CableDef wound = Good(pulley("[-4, 0, 3]", ", turns: 1")).def.cables[0];
   // Both ends are 0.38 m from the axis, and 0.5 m apart along it.
@@ -178,7 +172,8 @@ TEST(Route, FrictionIsAt15PlacesOfACableAtMost) {
   };
   EXPECT_EQ(Good(route(15)).def.cables[0].attachments.size(), 17u);
   EXPECT_EQ(Errors(route(16)),
-            "robot.yaml:7:5: error: the cable \"rope\" has friction at more than 15 places\n");
+            "robot.yaml:7:5: error: the cable \"rope\" has friction at more than 15 elements of "
+            "its route\n");
 }
 
 TEST(Route, WithFrictionADirectCurrentMotorDoesNotWindIt) {
@@ -186,8 +181,9 @@ TEST(Route, WithFrictionADirectCurrentMotorDoesNotWindIt) {
   for (const std::string& element :
        {Pulley("side: left, friction: 0.3"), std::string("{eyelet: w, friction: 0.3}")}) {
     EXPECT_EQ(Errors(Posts("[a, " + element + ", b]", motor)),
-              "robot.yaml:7:29: error: the cable \"rope\" has friction there: a direct-current "
-              "motor does not wind such a cable (ideal and limited actuators do)\n");
+              "robot.yaml:7:29: error: the cable \"rope\" has friction at this element, but a "
+              "direct-current motor cannot wind a cable with friction (use an ideal or limited "
+              "actuator)\n");
   }
   Good(Posts("[a, w, b]", motor));
 }

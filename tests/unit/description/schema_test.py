@@ -1,6 +1,6 @@
-"""The schemas in share/schema/, the files that are shipped, the reader and the format reference agree.
+"""Checks that the schemas in share/schema/, the shipped files, the reader and the format reference agree.
 
-Usage: schema_test.py SPEC_PROBE [TEST]. Prints what is wrong; exit status 1 if anything is.
+Usage: schema_test.py SPEC_PROBE [TEST]. Prints the errors; exit status 1 if there are any.
 """
 
 import importlib.machinery
@@ -45,7 +45,7 @@ def probe(path, *options):
     return run.stdout + run.stderr
 
 
-# --- what every schema must have -------------------------------------------------------------
+# --- requirements on every schema ------------------------------------------------------------
 
 
 UNIT_OF_SUFFIX = {
@@ -82,7 +82,7 @@ def test_EveryKeyHasADescriptionAndItsUnit():
                 suffix = next((s for s in UNIT_OF_SUFFIX if key.endswith(s)), None)
                 full = docs.resolve(schema, value)
                 full = full.get("additionalProperties") or full
-                # a map is named for what the numbers in it are in
+                # the suffix of a map is the unit of its numbers
                 if suffix and "properties" not in full and full.get("unit") != UNIT_OF_SUFFIX[suffix]:
                     yield f"{kind}: {node['title']}.{key} is not in {UNIT_OF_SUFFIX[suffix]}"
 
@@ -125,7 +125,7 @@ def test_ShippedFilesLoad():
 
 
 def test_SchemasRefuseWhatTheReaderRefuses():
-    """A misspelt, a missing and a superfluous key, a wrong type: both refuse the same files."""
+    """Checks that schema and reader reject the same files: a misspelled, missing or superfluous key, a wrong type."""
     push = (ROOT / "share/experiments" / "push_20n.yaml").read_text()
     push = push.replace("../models/", str(ROOT / "share/models") + "/")
     spine = (ROOT / "share/models" / "tetraspine3.yaml").read_text()
@@ -190,11 +190,11 @@ def test_SchemasRefuseWhatTheReaderRefuses():
                 yield f"the reader accepts `{new}` for `{old}`"
 
 
-# --- the reader and the schema know the same keys ----------------------------------------------
+# --- the reader and the schema have the same keys ----------------------------------------------
 
 
 def sample(schema, node, folder):
-    """Some value that fits a node."""
+    """Returns a value that fits a node."""
     node = docs.resolve(schema, node)
     if "const" in node:
         return node["const"]
@@ -227,11 +227,11 @@ def sample_key(schema, node, key, folder):
 
 
 def least_map(schema, node, folder, with_key=None):
-    """A map with the keys it needs, and `with_key`."""
+    """Returns a map with the required keys, and `with_key`."""
     needed = list(node.get("required", []))
     rules = [node, *node.get("allOf", [])]
     for whole in (a for a in node.get("anyOf", []) if "name" in a["required"]):
-        needed += whole["required"]  # a file that has no base
+        needed += whole["required"]  # for a file without a base
         rules.append(whole)
     for rule in rules:
         for choice in ("oneOf", "anyOf"):
@@ -250,7 +250,7 @@ def least_map(schema, node, folder, with_key=None):
 
 
 def places(schema, node, folder, wrap=lambda inner: inner, seen=()):
-    """Every map with known keys, with a function that puts such a map into a whole file."""
+    """Yields every map with known keys, with a function that puts such a map into a whole file."""
     yield node, wrap
     for key, value in node["properties"].items():
         for inner, lift in lifted(schema, value):
@@ -264,7 +264,7 @@ def places(schema, node, folder, wrap=lambda inner: inner, seen=()):
 
 
 def lifted(schema, node, lift=lambda inner: inner):
-    """The maps that a value may hold, each with a function that makes the value of the map."""
+    """Yields the maps that a value may hold, each with a function that makes the value from the map."""
     node = docs.resolve(schema, node)
     if docs.is_map(node):
         yield node, lift
@@ -277,7 +277,7 @@ def lifted(schema, node, lift=lambda inner: inner):
 
 
 def vocabulary():
-    """Every word that a reader could know as a key is a text somewhere in its source."""
+    """Returns all words of string literals in the reader's source: every key is among them."""
     words = set()
     for path in (ROOT / "src" / "description").iterdir():
         if path.suffix in (".h", ".cpp"):

@@ -1,6 +1,6 @@
-// Loads model, experiment, gait, study, fit and fault files and prints what is wrong with them, for
-// tests in other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE...
-// Exit status 1 if anything is wrong.
+// Loads model, experiment, gait, study, fit and fault files and prints their errors, for tests in
+// other languages: spec_probe [--set name=value]... [--resolved] [--schema FORMAT] FILE... Exit
+// status 1 if there are errors.
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -26,7 +26,7 @@ bool IsOfKind(const std::string& kind, const std::string& path) {
   return false;
 }
 
-/// Of which shipped scripts speak, and one that the schema's tests make up.
+/// Returns the cables named in shipped scripts, and one used by the schema's tests.
 std::vector<std::string> CablesOfTetraspine3() {
   std::vector<std::string> names{"a"};
   for (const char* joint : {"1", "2"}) {

@@ -1,5 +1,5 @@
-/// Pin-jointed structures of TsgFEM and CTSFEM (MPL-2.0): read beside the checkout or where
-/// TAUT_REFERENCE says; they are not ours to ship.
+/// Pin-jointed structures of TsgFEM and CTSFEM (MPL-2.0), read from a folder next to the checkout
+/// or from TAUT_REFERENCE; taut may not redistribute them.
 #pragma once
 
 #include <zlib.h>
@@ -36,7 +36,7 @@ inline std::optional<nlohmann::json> StructuralFile(const std::string& name) {
   return nlohmann::json::parse(text);
 }
 
-/// A column or a row of numbers, or a plain list.
+/// Reads a column or a row of numbers, or a plain list.
 inline std::vector<double> Numbers(const nlohmann::json& list) {
   std::vector<double> out;
   for (const auto& item : list) {
@@ -49,8 +49,9 @@ inline std::vector<double> Numbers(const nlohmann::json& list) {
   return out;
 }
 
-/// The structure's nodes as points, its members as cables (under tension) and bars; half a member's
-/// mass at each end. Nodes' directions that are not free are held by guides in the world.
+/// Returns the structure with its nodes as points, its members as cables (under tension) and bars;
+/// half of a member's mass is at each end. Guides in the world constrain directions of nodes that
+/// are not free.
 inline ModelDef TrussOf(const nlohmann::json& file, MemberMass mass) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -107,7 +108,7 @@ inline ModelDef TrussOf(const nlohmann::json& file, MemberMass mass) {
   for (std::size_t m = 0; m < members.size(); ++m) {
     const auto [a, b] = members[m];
     const double stiffness = young[m] * area[m] / rest[m];
-    // Areas are rounded to five digits there, forces are not.
+    // In these files areas are rounded to five digits, forces are not.
     const Vec3 way = place(b) - place(a);
     const double slack_m = std::sqrt(Dot(way, way)) - force[m] / stiffness;
     MemberDef& member =

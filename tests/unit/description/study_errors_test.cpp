@@ -1,4 +1,4 @@
-// What is wrong with a study is said, all at once, with its place and a hint.
+// Errors of study files, reported all at once with their places and hints
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -35,7 +35,7 @@ class StudyFile : public testing::Test {
     std::filesystem::remove(path);
     return study;
   }
-  /// The messages, without the file's name, for the good study with `old` replaced.
+  /// Returns the messages, without the file's name, for the valid study with `old` replaced.
   std::string Wrong(const std::string& old, const std::string& by) {
     std::string text = kGood;
     const std::size_t at = text.find(old);
@@ -70,7 +70,7 @@ TEST_F(StudyFile, AParameterThatNothingReadsIsAWarning) {
   text += "parameters: {least_n: 1, idle: least_n}\n";
   ASSERT_TRUE(Load(text)) << out_.Format();
   ASSERT_EQ(out_.warnings().size(), 1u) << out_.Format();
-  EXPECT_EQ(out_.warnings()[0].what, "nothing reads the parameter \"idle\"");
+  EXPECT_EQ(out_.warnings()[0].what, "the parameter \"idle\" is not used");
   EXPECT_EQ(out_.warnings()[0].at.line, 14);
 }
 
@@ -83,8 +83,8 @@ TEST_F(StudyFile, ParametersAreAThousandAtMost) {
       "\n  - {each: impedance.outer_*_1.tension_offset_n, low: 1, "
       "high: 20}",
       many);
-  EXPECT_NE(wrong.find("7: vary: more than 1000 parameters (let groups share one: `all` instead of "
-                       "`each`)\n"),
+  EXPECT_NE(wrong.find("7: vary has more than 1000 parameters (use `all` instead of `each`, so "
+                       "that groups share a parameter)\n"),
             wrong.npos)
       << wrong;
   // Entries after the limit are not read, so they add no errors.
@@ -94,20 +94,20 @@ TEST_F(StudyFile, ParametersAreAThousandAtMost) {
 TEST_F(StudyFile, UnknownNamesAreSaidWithTheLikelyOne) {
   EXPECT_EQ(
       Wrong("all: model.friction", "all: model.fricton"),
-      "8: vary.all: nothing is called \"model.fricton\" (did you mean \"model.friction\"?)\n");
+      "8: vary.all: there is no parameter \"model.fricton\" (did you mean \"model.friction\"?)\n");
   const std::string far = Wrong("impedance.outer_*_1.tension_offset_n", "nothing.like.it");
   EXPECT_EQ(far,
-            "7: vary.each: nothing is called \"nothing.like.it\" (`taut learn --parameters "
+            "7: vary.each: there is no parameter \"nothing.like.it\" (`taut learn --parameters "
             "EXPERIMENT` lists them all)\n");
 }
 
 TEST_F(StudyFile, BoundsMustLeaveRoom) {
-  EXPECT_EQ(Wrong("low: 1, high: 20", "low: 20, high: 1"),
-            "7: vary: low 20 is above high 1 (to keep a number fixed, write it in the "
-            "experiment)\n");
+  EXPECT_EQ(
+      Wrong("low: 1, high: 20", "low: 20, high: 1"),
+      "7: vary: low 20 is above high 1 (to keep a parameter fixed, set it in the experiment)\n");
   EXPECT_EQ(Wrong("low: 1, high: 20", "low: 3, high: 3"),
-            "7: vary: nothing lies between low and high, both 3 (to keep a number fixed, write it "
-            "in the experiment)\n");
+            "7: vary: low and high are equal, both 3 (to keep a parameter fixed, set it in the "
+            "experiment)\n");
   EXPECT_EQ(Wrong("low: 1, high: 20", "low: .nan, high: 20").substr(0, 12), "7: vary.low ");
   EXPECT_EQ(Wrong("low: 0.5, high: 2", "low: 0, high: 2"),
             "8: vary: scale: log needs bounds above 0, got 0\n");
@@ -136,8 +136,7 @@ TEST_F(StudyFile, AllErrorsAreSaidAtOnce) {
        {"unknown key \"nam\"", "needs the key \"name\"", "unknown key \"hig\"",
         "worlds.friction must be below 1, got 1.5 (0.2 means factors from 0.8 to 1.2)",
         "search.evaluations",
-        "objective.from_s is not before the experiment's end (that is at 60 "
-        "s)"}) {
+        "objective.from_s must be before the end of the experiment (the end is at 60 s)"}) {
     EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
   }
 }
@@ -157,9 +156,9 @@ TEST_F(StudyFile, AnObjectiveAloneIsReadAsThatOfAStudy) {
       ReadObjective("{measure: nearer, from_s: 500, form: 1}", "text", study->experiment, out));
   EXPECT_EQ(
       out.Format(),
-      "text:1:2: error: objective.measure: nearer needs a goal (the experiment has no `goal`)\n"
-      "text:1:19: error: objective.from_s is not before the experiment's end (that is at 60 "
-      "s)\n"
+      "text:1:2: error: objective.measure: nearer needs a goal (add a `goal` to the experiment)\n"
+      "text:1:19: error: objective.from_s must be before the end of the experiment (the end is at "
+      "60 s)\n"
       "text:1:32: error: unknown key \"form\" in objective (one of: measure, direction, from_s, "
       "tension_limit, fall, max_speed_m_per_s)\n");
   Diagnostics others;
@@ -172,13 +171,12 @@ TEST_F(StudyFile, AnObjectiveAloneIsReadAsThatOfAStudy) {
 
 TEST_F(StudyFile, KeysOfOtherMethodsAreSaid) {
   EXPECT_EQ(Wrong("method: monte_carlo,", "method: monte_carlo, deviation: 0.1,"),
-            "12: search.deviation has no effect here (it belongs to hill_climbing and cma_es)\n");
+            "12: search.deviation has no effect here (it is for hill_climbing and cma_es)\n");
   EXPECT_EQ(Wrong("method: monte_carlo,", "method: monte_carlo, starts: 3,"),
-            "12: search.starts has no effect here (it belongs to method: nlopt)\n");
+            "12: search.starts has no effect here (it is for `method: nlopt`)\n");
   EXPECT_EQ(
       Wrong("algorithm: bobyqa,", "algorithm: bobyqa, batch: 3,"),
-      "13: search: nlopt has neither batch nor deviation (it runs `starts` side by side, with "
-      "steps of `initial_step`)\n");
+      "13: search: nlopt uses neither batch nor deviation (use `starts` and `initial_step`)\n");
   EXPECT_EQ(Wrong("algorithm: bobyqa", "algorithm: praxis"),
             "13: search.algorithm cannot be \"praxis\" (one of: nelder_mead, subplex, bobyqa, "
             "cobyla)\n");

@@ -1,4 +1,4 @@
-// Terrain that is many boxes: where they lie, and what is said of wrong ones.
+// Terrain of many boxes: placement and errors
 #include <cmath>
 #include <numbers>
 
@@ -22,7 +22,7 @@ class TerrainBoxes : public ExperimentFolder {
   }
 };
 
-/// Number `which` of block i: 53 bits of Philox, by the definition in docs/formats/experiment.md.
+/// Returns number `which` of block i: 53 bits of Philox, as defined in docs/formats/experiment.md.
 double Drawn(std::uint32_t seed, std::uint32_t i, std::uint32_t which) {
   const auto r = math::Philox({i, 0, 100, which / 2}, {seed, 0});
   const std::size_t first = 2 * (which % 2);
@@ -44,7 +44,7 @@ TEST_F(TerrainBoxes, ScatteredBlocksLieWhereTheirNumbersSay) {
     EXPECT_EQ(box.center_m.x, -1 + Drawn(7, i, 0) * 4);
     EXPECT_EQ(box.center_m.y, 2 + Drawn(7, i, 1) * 0.5);
     EXPECT_EQ(box.center_m.z, 0.5);
-    // Upright, and turned by its heading.
+    // Upright, rotated by its heading.
     const double heading = std::numbers::pi * (2 * Drawn(7, i, 3) - 1);
     const Vec3 along = Rotate(box.orientation, {1, 0, 0});
     EXPECT_NEAR(along.x, std::cos(heading), 1e-14);
@@ -95,7 +95,7 @@ TEST_F(TerrainBoxes, MoreBlocksMoveNoneAndAnotherSeedMovesAll) {
 }
 
 TEST_F(TerrainBoxes, StairsRiseFromTheirFoot) {
-  // Turned by 90 degrees about z, they rise along y; x is -side.
+  // Rotated by 90 degrees about z they rise along y; x is -side.
   const RobotSpec robot = With(
       "- {name: up, stairs: {steps: 10, width_m: 2, tread_m: 0.3, rise_m: 0.2, at_m: [5, 1, 0.5], "
       "rotate: {axis: z, angle_rad: pi / 2}, friction: 0.9}}");
@@ -104,7 +104,8 @@ TEST_F(TerrainBoxes, StairsRiseFromTheirFoot) {
   for (std::size_t i = 0; i < 10; ++i) {
     const TerrainBoxDef& step = steps[i];
     EXPECT_EQ(step.name, "up_" + std::to_string(i));
-    // From the foot to the tread, beside the one before; the box's own x is the world's y.
+    // From the foot to the tread, adjacent to the previous step; the box's local x is the world's
+    // y.
     const double n = static_cast<double>(i);
     EXPECT_NEAR(step.center_m.z - step.half_extents_m.z, 0.5, 1e-15);
     EXPECT_NEAR(step.center_m.z + step.half_extents_m.z, 0.5 + 0.2 * (n + 1), 1e-14);
@@ -157,8 +158,8 @@ TEST_F(TerrainBoxErrors, OfScatteredBlocks) {
          "7:42: error: scatter.box_m must be three positive numbers\n7:64: error: scatter.within_m "
          "must have 3 numbers, got 2\n7:94: error: scatter.friction must not be negative, got -1");
   expect("count: 3, static_friction: 0.1, kinetic_friction: 0.2, " + within + ", " + box,
-         "7:35: error: scatter.static_friction is below kinetic_friction (a contact that sticks "
-         "holds at least as much as one that slides)");
+         "7:35: error: scatter.static_friction is below kinetic_friction (static friction must be "
+         "at least the kinetic friction)");
 }
 
 TEST_F(TerrainBoxErrors, OfStairs) {
@@ -186,8 +187,8 @@ TEST_F(TerrainBoxErrors, OfStairs) {
          "rise_m, at_m, rotate, friction, static_friction, kinetic_friction, restitution, "
          "stribeck, friction_directions)");
   expect("steps: 3, static_friction: 0.1, kinetic_friction: 0.2, " + sizes,
-         "7:34: error: stairs.static_friction is below kinetic_friction (a contact that sticks "
-         "holds at least as much as one that slides)");
+         "7:34: error: stairs.static_friction is below kinetic_friction (static friction must be "
+         "at least the kinetic friction)");
 }
 
 TEST_F(TerrainBoxErrors, OfNamesAndNumbers) {
@@ -196,32 +197,32 @@ TEST_F(TerrainBoxErrors, OfNamesAndNumbers) {
     return "- {name: " + name + ", stairs: {steps: " + std::to_string(steps) + sizes;
   };
   Expect(kGround, stairs("a", 3) + "\n  " + stairs("a", 3),
-         "8:6: error: there are two parts of the terrain called a (the first is in line 7)");
+         "8:6: error: two terrain elements are called a (the first is in line 7)");
   Expect(kGround, stairs("a", 3) + "\n  - {name: a_2, plane: {}}",
-         "8:6: error: there are two parts of the terrain called a_2 (the first is in line "
-         "7)\n8:24: error: plane needs one of height_m, normal, slope_rad");
+         "8:6: error: two terrain elements are called a_2 (the first is in line 7)\n"
+         "8:24: error: plane needs one of height_m, normal, slope_rad");
   Expect(kGround, "- {name: a_2, plane: {height_m: 0}}\n  " + stairs("a", 5),
-         "8:6: error: there are two parts of the terrain called a_2 (the first is in line 7)");
+         "8:6: error: two terrain elements are called a_2 (the first is in line 7)");
   ExpectGood(stairs("a", 3000) + "\n  " + stairs("b", 2000));
   Expect(kGround, stairs("a", 3000) + "\n  " + stairs("b", 2001),
-         "8:5: error: the terrain has 5001 boxes up to here, more than 5000 (use a height field or "
-         "a mesh)");
+         "8:5: error: the terrain has 5001 boxes up to this element, more than 5000 (use a height "
+         "field or a mesh)");
   Expect(kGround, stairs(std::string(199, 'n'), 3),
-         "7:12: error: terrain.name: with the number of a box it has more than 200 characters (a "
+         "7:12: error: terrain.name has, with the number of a box, more than 200 characters (use a "
          "shorter name)");
   ExpectGood(stairs(std::string(198, 'n'), 3));
 }
 
 TEST_F(TerrainBoxErrors, ThousandsOfEntriesAreRefusedBeforeTheyAreMade) {
-  // 10 million boxes: 2 GB, if each entry were made and then complained about.
+  // 10 million boxes would need 2 GB if each entry were built before the error.
   std::string many;
   for (int i = 0; i < 2'000; ++i) {
     many += (i == 0 ? "" : "\n  ") + ("- {name: a" + std::to_string(i)) +
             ", stairs: {steps: 5000, width_m: 1, tread_m: 1, rise_m: 1}}";
   }
   Expect(kGround, many,
-         "8:5: error: the terrain has 10000 boxes up to here, more than 5000 (use a height field "
-         "or a mesh)");
+         "8:5: error: the terrain has 10000 boxes up to this element, more than 5000 (use a height "
+         "field or a mesh)");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Cables that touch what they come to, as models say them (docs/formats/model.md).
+/// Cables that contact obstacles, in model files (docs/formats/model.md)
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace taut {
 namespace {
 
-/// A rope from a post to a ball beside a rod; the pair is in line 6.
+/// A rope from a post to a ball next to a rod; the pair is in line 6.
 std::string Rope(const std::string& cable, const std::string& nodes = "a, b") {
   return "nodes: {a: [0, 0, 1], b: [1, 0, 1], c: [0.5, -1, 1.2], d: [0.5, 1, 1.2]}\n"  // line 4
          "pairs:\n"
@@ -41,39 +41,37 @@ TEST(TouchingCable, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(Errors(Rope(", touches: ground")),
             "robot.yaml:12:76: error: cable.touches cannot be \"ground\" (one of: none, terrain, "
             "rods, all)\n");
-  EXPECT_EQ(
-      Errors(Rope(", touches: all")),
-      "robot.yaml:12:67: error: cable.touches: a cable that touches needs a `radius_m` above 0 "
-      "(half the cable's thickness, such as 0.001)\n");
+  EXPECT_EQ(Errors(Rope(", touches: all")),
+            "robot.yaml:12:67: error: cable.touches needs a `radius_m` above 0 (half the cable's "
+            "thickness, such as 0.001)\n");
   EXPECT_EQ(Errors(Rope(", radius_m: 0.001")),
-            "robot.yaml:12:67: error: cable.radius_m: goes with `touches` (terrain, rods or all; a "
-            "cable that touches nothing has no thickness)\n");
+            "robot.yaml:12:67: error: cable.radius_m has no effect without `touches` (write "
+            "`touches: terrain`, `touches: rods` or `touches: all`)\n");
   EXPECT_EQ(Errors(Rope(", touch_friction: 0.3")),
-            "robot.yaml:12:67: error: cable.touch_friction: goes with `touches` (terrain, rods or "
-            "all; at eyelets and pulleys it is the `friction` of the route)\n");
+            "robot.yaml:12:67: error: cable.touch_friction has no effect without `touches` (write "
+            "`touches: terrain`, `touches: rods` or `touches: all`; eyelets and pulleys have "
+            "`friction` in the route)\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: -1")),
             "robot.yaml:12:118: error: cable.touch_friction must not be negative, got -1\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: 0.1, "
                         "actuator: {dc_motor: {}}")),
-            "robot.yaml:12:102: error: cable.touch_friction: a direct-current motor does not wind "
-            "such a cable (ideal and limited actuators do)\n");
+            "robot.yaml:12:102: error: cable.touch_friction: a direct-current motor cannot wind a "
+            "cable with friction (use an ideal or limited actuator)\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: -1")),
             "robot.yaml:12:95: error: cable.radius_m must not be negative, got -1\n");
-  EXPECT_EQ(
-      Errors(Rope(", touches: terrain, radius_m: 0.001", "a, c, b")),
-      "robot.yaml:6:5: error: the cable \"rope\" touches what it comes to, and runs over more "
-      "than two nodes (cables that touch run from node to node; leave `touches` away or cut it "
-      "in two)\n");
+  EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001", "a, c, b")),
+            "robot.yaml:6:5: error: the cable \"rope\" has `touches`, so it must have exactly two "
+            "nodes (leave out `touches`, or split the cable at the nodes between its ends)\n");
   std::string anchored = Rope(", touches: rods, radius_m: 0.001");
   anchored.replace(anchored.find("a: [0, 0, 1]"), 12, "a: [0.5, 0, 1.195]");
   EXPECT_EQ(Errors(anchored),
-            "robot.yaml:6:5: error: the cable \"rope\" touches rods and ends 5 mm inside the rod "
-            "\"rod\" of another body (move one of them)\n");
+            "robot.yaml:6:5: error: the cable \"rope\" touches rods, but ends 5 mm inside the rod "
+            "\"rod\" of another body (move the end of the cable, or the rod)\n");
   std::string inside = Rope(", touches: rods, radius_m: 0.001");
   inside.replace(inside.find("b: [1, 0, 1]"), 12, "b: [0.5, 0, 1.195]");
   EXPECT_EQ(Errors(inside),
-            "robot.yaml:6:5: error: the cable \"rope\" touches rods and ends 5 mm inside the rod "
-            "\"rod\" of another body (move one of them)\n");
+            "robot.yaml:6:5: error: the cable \"rope\" touches rods, but ends 5 mm inside the rod "
+            "\"rod\" of another body (move the end of the cable, or the rod)\n");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What is allowed but hardly meant, and what is so far away that numbers do not reach.
+// Warnings: inputs that are allowed but probably unintended, and distances beyond the precision of
+// numbers
 #include <gtest/gtest.h>
 
 #include "unit/description/experiment_fixture.h"
@@ -7,7 +8,7 @@
 namespace taut {
 namespace {
 
-/// Errors and warnings of a model.
+/// Returns the errors and warnings of a model.
 std::string Found(const std::string& yaml, const Overrides& overrides = {}) {
   return ReadModel(yaml, overrides).found;
 }
@@ -32,37 +33,39 @@ TEST(ModelWarnings, AParameterThatNothingReads) {
   const std::string rod = OneRod("{radius_m: r_m, mass_kg: 1}");
   EXPECT_EQ(Found(rod + "parameters: {r_m: d_m / 2, d_m: 0.02}\n"), "");
   const std::string odd = rod + "parameters: {r_m: 0.01, b: c, c: 2}\n";
-  EXPECT_EQ(
-      Found(odd),
-      "robot.yaml:7:28: warning: nothing reads the parameter \"b\" (its value changes nothing)\n"
-      "robot.yaml:7:34: warning: nothing reads the parameter \"c\" (its value changes nothing)\n");
+  EXPECT_EQ(Found(odd),
+            "robot.yaml:7:28: warning: the parameter \"b\" is not used (remove it, or use it in an "
+            "expression)\n"
+            "robot.yaml:7:34: warning: the parameter \"c\" is not used (remove it, or use it in an "
+            "expression)\n");
   EXPECT_EQ(Found(rod + "parameters: {r_m: 0.01, b: 1}\n", {{"b", "3"}}),
-            "--set b=3: warning: nothing reads the parameter \"b\" (its value changes nothing)\n");
-  // A text that looks like it reads nothing.
+            "--set b=3: warning: the parameter \"b\" is not used (remove it, or use it in an "
+            "expression)\n");
+  // Parameter names in a description do not count as uses.
   EXPECT_NE(Found(rod + "parameters: {r_m: 0.01, b: 1}\ndescription: r_m and b\n"), "");
 }
 
 TEST(ModelWarnings, ARodThickerThanItIsLong) {
-  EXPECT_EQ(
-      Found(OneRod("{radius_m: 1.5, density_kg_per_m3: 1000}")),
-      "robot.yaml:5:9: warning: the rod \"a-b\" has a radius of 1.5 m and a length of 1 m (its "
-      "ends are round: a disc is a box or a short sphere)\n");
+  EXPECT_EQ(Found(OneRod("{radius_m: 1.5, density_kg_per_m3: 1000}")),
+            "robot.yaml:5:9: warning: the rod \"a-b\" has a radius of 1.5 m and a length of 1 m "
+            "(use a box or a sphere for a disc: a rod has round ends)\n");
   EXPECT_EQ(Found(OneRod("{radius_m: 1, density_kg_per_m3: 1000}")), "");
 }
 
 TEST(ModelWarnings, ADensityThatNothingHas) {
   // pi r^2 l = 3.142e-4 m^3
   EXPECT_EQ(Found(OneRod("{radius_m: 0.01, mass_kg: 3e-5}")),
-            "robot.yaml:5:9: warning: the body \"robot\" has 3e-05 kg in 0.0003142 m^3: 0.09549 "
-            "kg/m^3 (air has 1.2: are the units right?)\n");
-  EXPECT_EQ(Found(OneRod("{radius_m: 0.01, mass_kg: 315}")),
-            "robot.yaml:5:9: warning: the body \"robot\" has 315 kg in 0.0003142 m^3: 1.003e+06 "
-            "kg/m^3 (osmium has 22600: are the units right?)\n");
+            "robot.yaml:5:9: warning: the body \"robot\" has a mass of 3e-05 kg in a volume of "
+            "0.0003142 m^3: its density is 0.09549 kg/m^3 (check the units: air has 1.2 kg/m^3)\n");
+  EXPECT_EQ(
+      Found(OneRod("{radius_m: 0.01, mass_kg: 315}")),
+      "robot.yaml:5:9: warning: the body \"robot\" has a mass of 315 kg in a volume of 0.0003142 "
+      "m^3: its density is 1.003e+06 kg/m^3 (check the units: osmium has 22600 kg/m^3)\n");
   EXPECT_EQ(Found(OneRod("{radius_m: 0.01, mass_kg: 314}")), "");
   EXPECT_EQ(Found(OneRod("{radius_m: 0.01, mass_kg: 3.2e-5}")), "");
 }
 
-/// Three loose rods, their builders as given.
+/// Three unconnected rods with the given builders
 std::string ThreeRods(const std::string& a, const std::string& b) {
   return "nodes: {a: [0, 0, 0], b: [9, 0, 0], c: [0, 1, 0], d: [9, 1, 0]}\n"
          "pairs:\n"
@@ -79,12 +82,11 @@ TEST(ModelWarnings, SizesMassesAndStiffnessesFarApart) {
   EXPECT_EQ(Found(ThreeRods("radius_m: 0.001" + right, "radius_m: 1" + right)), "");
   EXPECT_EQ(
       Found(ThreeRods("radius_m: 0.001" + right, "radius_m: 1.1, mass_kg: 100")),
-      "robot.yaml:7:5: warning: the half thickness of the rod \"y\", 1.1 m, is 1100 times that "
-      "of the rod \"x\", 0.001 m (more than 1000 times: are the units right?)\n");
-  EXPECT_EQ(
-      Found(ThreeRods("radius_m: 0.1, mass_kg: 0.1", "radius_m: 0.1, mass_kg: 100001")),
-      "robot.yaml:7:5: warning: the mass of the body \"y\", 1e+05 kg, is 1e+06 times that of the "
-      "body \"x\", 0.1 kg (more than 1e+06 times: are the units right?)\n");
+      "robot.yaml:7:5: warning: the half thickness of the rod \"y\" (1.1 m) is 1100 times the half "
+      "thickness of the rod \"x\" (0.001 m) (check the units: the ratio is above 1000)\n");
+  EXPECT_EQ(Found(ThreeRods("radius_m: 0.1, mass_kg: 0.1", "radius_m: 0.1, mass_kg: 100001")),
+            "robot.yaml:7:5: warning: the mass of the body \"y\" (1e+05 kg) is 1e+06 times the "
+            "mass of the body \"x\" (0.1 kg) (check the units: the ratio is above 1e+06)\n");
   const std::string cables =
       TwoRods("rest_length_m: 0.05",
               "  - {match: far, cable: {stiffness_n_per_m: 2e8, rest_length_m: "
@@ -93,8 +95,8 @@ TEST(ModelWarnings, SizesMassesAndStiffnessesFarApart) {
   far.replace(far.find("builders:"), 9, "  - {nodes: [b, d], tags: [far]}\nbuilders:");
   EXPECT_EQ(
       Found(far),
-      "robot.yaml:9:5: warning: the stiffness of the cable \"b-d\", 2e+08 N/m, is 2e+06 times "
-      "that of the cable \"a-c\", 100 N/m (more than 1e+06 times: are the units right?)\n");
+      "robot.yaml:9:5: warning: the stiffness of the cable \"b-d\" (2e+08 N/m) is 2e+06 times the "
+      "stiffness of the cable \"a-c\" (100 N/m) (check the units: the ratio is above 1e+06)\n");
 }
 
 TEST(ModelWarnings, CopiesOfOneMistakeAreOneWarning) {
@@ -112,20 +114,21 @@ TEST(FarAway, PositionsThatAreRoundedCoarserThanAMillionthOfTheRadius) {
            " + 1, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
            "builders: [{match: rod, rod: {radius_m: 0.01, mass_kg: 1}}]\n";
   };
-  // From 2^26 m on the next number is 1.5e-8 m away, below half of that.
+  // From 2^26 m on the next number is 1.5e-8 m away; below, half of that.
   EXPECT_EQ(Found(rod_at("6.7e7")), "");
   EXPECT_NE(Found(rod_at("6.8e7")), "");
   EXPECT_EQ(Found(rod_at("1e10")),
             "robot.yaml:4:9: error: the node \"a\" is 1e+10 m from the origin, where positions are "
-            "rounded to 1.907e-06 m (at most a millionth of the smallest size, 0.01 m of the rod "
-            "\"a-b\")\n");
+            "rounded to 1.907e-06 m (the rounding may be at most a millionth of the smallest size, "
+            "0.01 m of the rod \"a-b\")\n");
   EXPECT_NE(Found(rod_at("-1e12")), "");
 }
 
 using FarAwayExperiment = test::ExperimentErrors;
 
 TEST_F(FarAwayExperiment, PlaceAndTerrain) {
-  const std::string end = " (at most a millionth of the smallest size, 0.01 m of the rod \"a\")";
+  const std::string end =
+      " (the rounding may be at most a millionth of the smallest size, 0.01 m of the rod \"a\")";
   const std::string record = "record: {rate_hz: 50}";
   Expect(record, "place: {at_m: [0, 0, 1e300]}",
          "21:8: error: the node \"a0\" is 1e+300 m from the origin, where positions are rounded to "
@@ -140,7 +143,7 @@ TEST_F(FarAwayExperiment, PlaceAndTerrain) {
       "7:5: error: the plane \"ground\" is 1e+10 m from the origin, where positions are rounded to "
       "1.907e-06 m" +
           end);
-  // Along the surface it may be anywhere.
+  // A displacement along the surface has no effect.
   Change("height_m: 0,", "normal: [0, 0, 1], point_m: [1e10, 0, 0],");
   EXPECT_EQ(Complaints(), "");
   Expect(
@@ -155,8 +158,8 @@ TEST_F(FarAwayExperiment, ParametersOfAnExperimentAreReadToo) {
   Diagnostics out;
   EXPECT_TRUE(LoadExperiment(Path("trial.yaml"), {}, out));
   EXPECT_EQ(Without(Path(""), out.Format()),
-            "trial.yaml:5:32: warning: nothing reads the parameter \"idle\" (its value changes "
-            "nothing)\n");
+            "trial.yaml:5:32: warning: the parameter \"idle\" is not used (remove it, or use it in "
+            "an expression)\n");
 }
 
 }  // namespace

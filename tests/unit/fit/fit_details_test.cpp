@@ -1,5 +1,5 @@
-/// What each part of a fit does, by itself and in closed form: starts, slopes at bounds, priors
-/// beside scales, folds, groups, parts of chi-square.
+/// Parts of a fit, separately and in closed form: starts, slopes at bounds, priors and scales,
+/// folds, groups, parts of chi-square
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ FitVerdict Judged(const FitProblem& problem, const FitProblem* test = nullptr) {
   return JudgeFit(problem, Fit(problem, {}), {}, test);
 }
 
-/// Data of one number, each a group, sd 1.
+/// Data of one number, each datum a group, sd 1
 FitProblem MeanOf(const std::vector<double>& y, double start = 0) {
   FitProblem problem =
       MakeProblem({Parameter("m", start)}, y.size(), [y](const std::vector<double>& v) {
@@ -46,8 +46,8 @@ TEST(FitDetails, StartsAreDrawnFromThePriorCutOffAtItsBounds) {
     mean += (x - 5) / 0.5 / draws;
     square += (x - 5) / 0.5 * ((x - 5) / 0.5) / draws;
   }
-  // Of a normal distribution above -1/2: mean phi / Phi = 0.35207 / 0.69146, mean square
-  // 1 - 1/2 of that.
+  // Of a normal distribution truncated at -1/2: mean phi / Phi = 0.35207 / 0.69146, mean square 1 -
+  // 1/2 of that.
   EXPECT_NEAR(mean, 0.50916, 4 * 0.7 / std::sqrt(draws));
   EXPECT_NEAR(square, 1 - 0.5 * 0.50916, 4 * 1.1 / std::sqrt(draws));
 }
@@ -70,16 +70,17 @@ TEST(FitDetails, TheGivenStartIsNotDrawnAgain) {
 TEST(FitDetails, NearABoundADifferenceIsShorterOnBothSides) {
   FitParameter p = Parameter("x", 1);
   p.step = 0.5;
-  p.low = 0.8;  // nearer than the step, further than a quarter of it
+  p.low = 0.8;  // nearer than the step, farther than a quarter of it
   const FitProblem problem = MakeProblem({p}, 1, [](const std::vector<double>& v) {
     return Residuals{{v[0] * v[0] * v[0]}, {}};
   });
   const FitDerivatives d = Differentiate(problem, {1});
-  EXPECT_NEAR(d.columns[0].slope[0], 3, 1e-10);  // exact for a cubic, if both sides are alike
+  EXPECT_NEAR(d.columns[0].slope[0], 3,
+              1e-10);  // exact for a cubic, if both sides have the same step
 }
 
 TEST(FitDetails, APriorCountsBesideTheScaleAndTheOthers) {
-  // Two data, 2 x and 2 x + y; the scale is ten times the prior's sd, and means nothing then.
+  // Two data, 2 x and 2 x + y; the scale is ten times the prior's sd, and is unused then.
   FitParameter x = Parameter("x", 1, 10), y = Parameter("y", 0, 10);
   x.prior_sd = 1;
   x.prior_mean = 3;
@@ -88,7 +89,7 @@ TEST(FitDetails, APriorCountsBesideTheScaleAndTheOthers) {
   const FitVerdict verdict = Judged(problem);
   const ParameterVerdict& of = verdict.identifiability.parameters[0];
   EXPECT_NEAR(of.se_alone, 1 / std::sqrt(2 * 0.16 + 1), 1e-9);
-  // (J^T J + P)^-1 by hand
+  // (J^T J + P)^-1, explicitly
   const double a = 0.32 + 1, b = 0.4, c = 1 + 0.25, det = a * c - b * b;
   EXPECT_NEAR(of.se, std::sqrt(c / det), 1e-9);
   EXPECT_NEAR(of.sd_ratio, std::sqrt(c / det), 1e-9);
@@ -112,7 +113,8 @@ TEST(FitDetails, WithoutAGroupAStepGoesWhereASearchGoes) {
 }
 
 TEST(FitDetails, WhatOneGroupSeesAHundredTimesBetterIsItsOwn) {
-  // Of b, group 0 has 1 and each of the others 0.05: 0.0075 of the square remains without it.
+  // Sensitivity to b: group 0 has 1 and each of the others 0.05, so that 0.0075 of the square
+  // remains without group 0.
   for (const auto& [other, own] : {std::pair(0.05, true), {0.07, false}}) {
     Linear linear;
     for (int i = 0; i < 4; ++i) {
@@ -136,7 +138,7 @@ TEST(FitDetails, FoldsAreThoseTheySayAndHaveTheirOwnErrors) {
   ASSERT_EQ(result.folds.size(), 2u);
   EXPECT_EQ(result.folds[0].groups, (std::vector<int>{0, 2, 4}));
   EXPECT_EQ(result.folds[1].groups, (std::vector<int>{1, 3}));
-  const double means[] = {4, 11.0 / 3};  // of what each leaves: 1, 7 and 0, 2, 9
+  const double means[] = {4, 11.0 / 3};  // of the data outside of the fold: 1, 7 and 0, 2, 9
   double fitted = 0, untuned = 0;
   for (std::size_t f = 0; f < 2; ++f) {
     EXPECT_NEAR(result.folds[f].values[0], means[f], 1e-7);
@@ -156,8 +158,8 @@ TEST(FitDetails, FoldsAreThoseTheySayAndHaveTheirOwnErrors) {
 }
 
 TEST(FitDetails, DataThatContradictThemselvesAreRejectedWhereTheWholeIsNot) {
-  // Ten numbers, each measured, the first twice, 4.9 apart; priors that say nothing. Of the whole
-  // 11 degrees of freedom remain, of the data one.
+  // Ten numbers, each measured once, the first twice with a difference of 4.9; weak priors. All
+  // residuals have 11 degrees of freedom, the data one.
   std::vector<FitParameter> p;
   Linear linear;
   for (std::size_t j = 0; j < 10; ++j) {
@@ -209,14 +211,14 @@ TEST(FitDetails, CauchysLossHasItsWidth) {
   double expected = 0, slope = 0;
   for (const double y : {0.0, 0.5, -0.5, 0.2, 9.0}) {
     expected += 4 * std::log(1 + (y - m) * (y - m) / 4);
-    slope += 2 * (m - y) / (1 + (y - m) * (y - m) / 4);  // of which the minimum is a root
+    slope += 2 * (m - y) / (1 + (y - m) * (y - m) / 4);  // zero at the minimum
   }
   EXPECT_NEAR(verdict.data.value, expected, 1e-9);
   EXPECT_NEAR(slope, 0, 1e-5);
 }
 
 TEST(FitDetails, AtEitherBoundAParameterIsHeldOnlyIfTheDataWantItBeyond) {
-  // Data at 3 of a number between 0 and 1, and mirrored.
+  // Data at 3 for a number between 0 and 1, and mirrored.
   for (const double sign : {1.0, -1.0}) {
     FitProblem problem = MeanOf({3 * sign, 3.2 * sign, 2.8 * sign, 3 * sign});
     FitParameter& p = problem.parameters[0];
@@ -225,7 +227,7 @@ TEST(FitDetails, AtEitherBoundAParameterIsHeldOnlyIfTheDataWantItBeyond) {
     EXPECT_EQ(verdict.values[0], sign);
     EXPECT_EQ(verdict.identifiability.parameters[0].kind, Determined::kAtBound);
     EXPECT_EQ(verdict.total.freedom, 4);
-    // The other bound, where the data want it inside: it is free there.
+    // At the other bound the data pull inward: the parameter is free there.
     const std::vector<double> inside{0};
     EXPECT_NE(Identify(problem, inside, Differentiate(problem, inside)).parameters[0].kind,
               Determined::kAtBound);
@@ -233,7 +235,8 @@ TEST(FitDetails, AtEitherBoundAParameterIsHeldOnlyIfTheDataWantItBeyond) {
 }
 
 TEST(FitDetails, AFoldTakesTheLowerOfItsTwoSearches) {
-  // Two minima: from the start at -2 the upper one of (x^2 - 4)^2 + x, from the fit the lower.
+  // Two minima: the search from the start at -2 finds the upper one of (x^2 - 4)^2 + x, the search
+  // from the fit the lower.
   const auto well = [](const std::vector<double>& v) {
     const double x = v[0];
     return Residuals{{x * x - 4, 0.3 * (x + 4), x * x - 4, 0.3 * (x + 4)}, {}};
@@ -248,7 +251,7 @@ TEST(FitDetails, AFoldTakesTheLowerOfItsTwoSearches) {
 }
 
 TEST(FitDetails, ACombinationThatNothingHoldsTakesNoDegreeOfFreedom) {
-  // Two numbers of which five data see the sum: one is fitted, four degrees remain.
+  // Five data of the sum of two numbers: one combination is fitted, four degrees of freedom remain.
   const FitProblem problem =
       MakeProblem({Parameter("a", 0), Parameter("b", 0)}, 5,
                   Linear{{{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}}, {0.5, -1, 2, 0, 1}});
@@ -259,8 +262,8 @@ TEST(FitDetails, ACombinationThatNothingHoldsTakesNoDegreeOfFreedom) {
 }
 
 TEST(FitDetails, OneStepSolvesALinearProblemInABox) {
-  // Scales unlike 1. b begins at its lower bound and leaves it at once; a ends at its own, and b
-  // where it is best given that: of (4 + b + 9)^2 + (1 + 2 b - 4)^2 + (3 b - 5)^2, at 8 / 14.
+  // Different scales. b starts at its lower bound and leaves it at once; a ends at its bound, and b
+  // at the minimum for this a: of (4 + b + 9)^2 + (1 + 2 b - 4)^2 + (3 b - 5)^2, at 8 / 14.
   FitParameter a = Parameter("a", 1.5, 10), b = Parameter("b", 0, 0.1);
   a.low = 1, b.low = 0;
   const FitProblem problem = MakeProblem({a, b}, 3, Linear{{{4, 1}, {1, 2}, {0, 3}}, {-9, 4, 5}});
@@ -281,7 +284,7 @@ TEST(FitDetails, ASearchNeverGoesUp) {
   double before = 1e300;
   FitOptions options;
   options.dampings = 1;
-  options.first_damping = 1e-6;  // so that steps go astray
+  options.first_damping = 1e-6;  // so that steps overshoot
   options.progress = [&](const FitState& state) {
     EXPECT_LE(state.tracks[0].cost, before);
     before = state.tracks[0].cost;
@@ -303,8 +306,8 @@ TEST(FitDetails, AScaleIsThePriorsElseAQuarterOfTheBoundsElseATenthOfTheStart) {
 }
 
 TEST(FitDetails, AProportionIsTheWeightedLineThroughZero) {
-  // Two sds, each point a group: the line by hand, and each of the three errors where it is the
-  // largest.
+  // Two sds, each point a group: the closed-form line, and each of the three errors in a case in
+  // which it is the largest.
   const auto check = [](double off, int groups) {
     std::vector<ProportionPoint> points;
     for (int i = 1; i <= 6; ++i) {
@@ -320,7 +323,7 @@ TEST(FitDetails, AProportionIsTheWeightedLineThroughZero) {
   }
   const ProportionCheck exact = check(0, 1), scattered = check(3, 1), grouped = check(3, 6);
   EXPECT_NEAR(exact.slope, 0.8, 1e-12);
-  EXPECT_NEAR(exact.se, 1 / std::sqrt(xx), 1e-12);  // by the sds
+  EXPECT_NEAR(exact.se, 1 / std::sqrt(xx), 1e-12);  // from the sds
   EXPECT_NEAR(exact.z, -0.2 * std::sqrt(xx), 1e-9);
   EXPECT_NEAR(scattered.slope, xy / xx, 1e-12);
   double chi2 = 0;
@@ -332,7 +335,7 @@ TEST(FitDetails, AProportionIsTheWeightedLineThroughZero) {
   EXPECT_NEAR(scattered.p, ChiSquareTail(chi2, 5), 1e-12);
   EXPECT_NEAR(scattered.se, std::sqrt(chi2 / 5 / xx), 1e-12);
   EXPECT_GE(grouped.se, scattered.se);
-  // It carries all, but not proportionally.
+  // The slope is consistent with the whole load, but the forces are not proportional.
   EXPECT_LT(std::fabs(scattered.z), 3);
   EXPECT_LT(scattered.p, 0.001);
   EXPECT_FALSE(scattered.consistent);
@@ -340,7 +343,8 @@ TEST(FitDetails, AProportionIsTheWeightedLineThroughZero) {
 }
 
 TEST(FitDetails, ErrorsByGroupsThatAreALittleLargerAreNotTold) {
-  // 40 groups whose means scatter 1.6 times as much as their sds say: no chance, but not several.
+  // 40 groups whose means scatter 1.6 times as much as their sds: significant, but too little to
+  // report.
   std::vector<double> y;
   for (int i = 0; i < 40; ++i) y.push_back((i % 2 == 0 ? 1 : -1) * 1.6 * std::sqrt(39.0 / 40));
   FitProblem problem = MeanOf(y);

@@ -1,4 +1,4 @@
-/// Derivatives by differences of two sizes, and what their check says.
+/// Derivatives by differences of two step sizes, and their checks
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ TEST(FitDifferences, ASlopeIsOfFourthOrder) {
     EXPECT_FALSE(of.columns[0].kink);
     return std::fabs(of.columns[0].slope[0] - std::cos(0.4));
   };
-  // h^4 / 480 of the fifth derivative, from the series of both central differences.
+  // h^4 / 480 of the fifth derivative, from the series of both central differences
   EXPECT_NEAR(error(0.2), 0.2 * 0.2 * 0.2 * 0.2 / 480 * std::cos(0.4), 2e-8);
   EXPECT_NEAR(error(0.2) / error(0.1), 16, 0.2);
 }
@@ -45,7 +45,7 @@ TEST(FitDifferences, NextToABoundOneSideServes) {
   p.low = 0;
   p.high = 10;
   const auto cubic = [](double x) { return x * x * x + x * x - 2 * x; };
-  // One-sided of second order, extrapolated: a cubic's slope is exact.
+  // One-sided of second order, extrapolated: exact for the slope of a cubic.
   EXPECT_NEAR(Of(p, 0, cubic).columns[0].slope[0], -2, 1e-10);
   EXPECT_NEAR(Of(p, 10, cubic).columns[0].slope[0], 318, 1e-9);
   EXPECT_FALSE(Of(p, 10, cubic).columns[0].kink);
@@ -56,11 +56,13 @@ TEST(FitDifferences, NextToABoundOneSideServes) {
 
 TEST(FitDifferences, AKinkIsSeenWhereverItLiesInTheStep) {
   const auto kinked = [](double x) { return 20 * std::fabs(x) + 3 * x; };
-  EXPECT_TRUE(Of(Parameter("x", 0), 0, kinked).columns[0].kink);  // symmetric: by the bends
+  EXPECT_TRUE(Of(Parameter("x", 0), 0, kinked)
+                  .columns[0]
+                  .kink);  // symmetric: detected by second differences
   EXPECT_TRUE(Of(Parameter("x", 0), 0.02, kinked).columns[0].kink);
   EXPECT_TRUE(Of(Parameter("x", 0), 0.08, kinked).columns[0].kink);
   EXPECT_FALSE(Of(Parameter("x", 0), 0.2, kinked).columns[0].kink);  // beyond the step
-  // A jump: another contact slips.
+  // A jump, as if another contact slipped.
   EXPECT_TRUE(
       Of(Parameter("x", 0), 0.03, [](double x) { return x > 0 ? 1 + x : x; }).columns[0].kink);
 }
@@ -91,13 +93,14 @@ TEST(FitDifferences, AFailedPointIsNamedAndItsOtherSideServes) {
 }
 
 TEST(FitDifferences, AStepThatIsTooLongIsShortened) {
-  // A swing of 20 periods whose frequency is x: over a step of 0.1 its phase turns by 2 pi.
+  // An oscillation of 20 periods whose frequency is x: over a step of 0.1 its phase changes by 2
+  // pi.
   const auto swing = [](double x) { return 1e4 * std::sin(62.8 * x); };
   const FitColumn column = Of(Parameter("x", 0), 0.4, swing).columns[0];
   EXPECT_FALSE(column.kink);
   EXPECT_LT(column.step_share, 1);
   EXPECT_NEAR(column.slope[0], 1e4 * 62.8 * std::cos(62.8 * 0.4), 1e4 * 62.8 * 1e-3);
-  // Where the data say so little that errors reach beyond that step, it stays a warning.
+  // If the data determine so little that the standard error exceeds that step, the warning remains.
   const auto faint = [](double x) { return std::sin(62.8 * x); };
   EXPECT_TRUE(Of(Parameter("x", 0), 0.4, faint).columns[0].kink);
 }

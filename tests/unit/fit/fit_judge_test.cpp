@@ -1,4 +1,4 @@
-/// The judgement of whole fits, and twins: data made from known parameters.
+/// Judgment of whole fits, and synthetic data from known parameters
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 using test::MakeProblem;
 using test::Parameter;
 
-/// A damped oscillation read at 60 times, in six groups.
+/// A damped oscillation sampled at 60 times, in six groups
 double Swing(double t, const std::vector<double>& v) {
   return v[0] * std::exp(-v[1] * t) * std::cos(v[2] * t) + v[3];
 }
@@ -70,7 +70,7 @@ TEST(FitTwin, TwentySeedsAreFoundWithinTwoStandardErrors) {
 
 TEST(FitTwin, AnAddedAliasIsNamed) {
   Twin twin = MakeTwin(1);
-  twin.problem.parameters.push_back(Parameter("gain", 0));  // beside the amplitude
+  twin.problem.parameters.push_back(Parameter("gain", 0));  // added to the amplitude
   twin.problem.parameters[0].prior_sd = std::numeric_limits<double>::infinity();
   twin.problem.parameters[0].scale = 0.3;
   twin.problem.forward = [inner =
@@ -93,7 +93,7 @@ TEST(FitTwin, AnAddedAliasIsNamed) {
   ASSERT_EQ(of.trade.size(), 2u);
   EXPECT_EQ(of.trade[1].first, 4u);
   EXPECT_FALSE(of.se_jackknife);
-  // As nuisances they may be undetermined.
+  // Nuisance parameters may be undetermined.
   twin.problem.parameters[0].nuisance = twin.problem.parameters[4].nuisance = true;
   EXPECT_EQ(JudgeFit(twin.problem, Fit(twin.problem, {}), {}).judgement, FitJudgement::kGood);
 }
@@ -102,7 +102,7 @@ TEST(FitTwin, ResidualsThreeTimesTooLargeAreRejectedAndATenthIsSuspicious) {
   const Twin large = MakeTwin(2, 3.0);
   const FitVerdict rejected = JudgeFit(large.problem, Fit(large.problem, {}), {});
   EXPECT_EQ(rejected.judgement, FitJudgement::kRejected);
-  EXPECT_EQ(rejected.sentences[0].substr(0, 34), "Rejected: the whole has chi-square");
+  EXPECT_EQ(rejected.sentences[0].substr(0, 26), "Rejected: total chi-square");
   const Twin small = MakeTwin(2, 0.1);
   const FitVerdict suspicious = JudgeFit(small.problem, Fit(small.problem, {}), {});
   EXPECT_EQ(suspicious.judgement, FitJudgement::kGood);
@@ -111,7 +111,7 @@ TEST(FitTwin, ResidualsThreeTimesTooLargeAreRejectedAndATenthIsSuspicious) {
 }
 
 TEST(FitJudge, OfALinearModelChiSquareHasItsDistribution) {
-  // The whole's p is even between 0 and 1: its mean over seeds is 1/2, sd 1 / sqrt(12).
+  // p of all residuals is uniform between 0 and 1: its mean over seeds is 1/2, sd 1 / sqrt(12).
   double whole = 0, data = 0, prior = 0, data_freedom = 0, prior_freedom = 0;
   double data_value = 0, prior_value = 0;
   const int runs = 300;
@@ -150,9 +150,8 @@ TEST(FitJudge, OfALinearModelChiSquareHasItsDistribution) {
 }
 
 TEST(FitJudge, OfOneDirectionThePartsAreExact) {
-  // x ~ N(0, 1), y = x + N(0, 1) = b: x^ = b / 2; the datum's and the prior's pull are b / 2, each
-  // of variance 1 / 2, so both have p = P(|b / 2| and more) = erfc(b / 2); the whole has erfc(b /
-  // 2), too.
+  // x ~ N(0, 1), y = x + N(0, 1) = b: x^ = b / 2. The residuals of the datum and of the prior are b
+  // / 2 with variance 1 / 2, so that both have p = erfc(b / 2), as have all residuals together.
   FitParameter x = Parameter("x", 0, 0);
   x.prior_sd = 1;
   for (const double b : {0.3, 1.0, 4.0}) {
@@ -178,7 +177,7 @@ TEST(FitJudge, APriorThatTheDataContradictIsNamed) {
   const FitVerdict verdict = JudgeFit(problem, Fit(problem, {}), {});
   EXPECT_EQ(verdict.judgement, FitJudgement::kRejected);
   EXPECT_NE(
-      verdict.sentences[0].find("push is 6.486 prior standard deviations from what was known"),
+      verdict.sentences[0].find("push is 6.486 prior standard deviations from its prior mean"),
       std::string::npos)
       << verdict.sentences[0];
 }
@@ -217,7 +216,7 @@ TEST(FitJudge, SixDataOfNineteenParametersFixSixCombinationsAtMost) {
 
 TEST(FitJudge, WorseOnTheHoldOutIsSaid) {
   const Twin twin = MakeTwin(3);
-  FitProblem test = twin.problem;  // another robot: the untuned values fit it
+  FitProblem test = twin.problem;  // another robot, which the untuned values fit
   test.forward = [](std::span<const std::vector<double>> points) {
     std::vector<Residuals> answers;
     for (const auto& v : points) {
@@ -227,7 +226,7 @@ TEST(FitJudge, WorseOnTheHoldOutIsSaid) {
   };
   const FitVerdict verdict = JudgeFit(twin.problem, Fit(twin.problem, {}), {}, &test);
   EXPECT_EQ(verdict.judgement, FitJudgement::kWorse);
-  EXPECT_EQ(verdict.sentences[0], "Worse than untuned on data that it has not seen.");
+  EXPECT_EQ(verdict.sentences[0], "Worse than untuned on held-out data.");
 }
 
 TEST(FitJudge, WithoutAFitThereIsNoVerdict) {
@@ -252,7 +251,7 @@ TEST(FitJudge, TheWholeStoryIsTold) {
   ASSERT_EQ(verdict.sentences.size(), 8u);
   EXPECT_NE(verdict.sentences[1].find("leaving out groups"), std::string::npos);
   EXPECT_NE(verdict.sentences[6].find("on groups left out in turn"), std::string::npos);
-  EXPECT_NE(verdict.sentences[7].find("of 4 starts came to this minimum"), std::string::npos);
+  EXPECT_NE(verdict.sentences[7].find("of 4 starts converged to this minimum"), std::string::npos);
 }
 
 }  // namespace

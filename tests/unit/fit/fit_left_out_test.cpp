@@ -1,4 +1,4 @@
-/// Groups left out, profiles, data beside themselves, and what to measure next.
+/// Fits without groups, profiles, consistency of data, and design of further measurements
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 using test::MakeProblem;
 using test::Parameter;
 
-/// y of group g, datum i is m + (an error that group g shares) + (one of its own), sd 1 each as
-/// told.
+/// Datum i of group g is m + (error shared by group g) + (individual error), with the stated sd of
+/// 1.
 FitProblem SharedErrors(std::uint64_t seed, std::size_t groups, std::size_t each, double shared) {
   math::Random random(seed, 7, 0);
   std::vector<double> y;
@@ -33,7 +33,7 @@ FitProblem SharedErrors(std::uint64_t seed, std::size_t groups, std::size_t each
 }
 
 TEST(FitLeftOut, TheJackknifeOfAMeanIsItsTextbookError) {
-  // Of equal groups: the standard error of the mean of the groups' means.
+  // For equal groups: the standard error of the mean of the groups' means
   const FitProblem problem = SharedErrors(5, 6, 10, 0.5);
   const std::vector<double> fitted = Fit(problem, {}).values;
   const auto residual = problem.forward(std::vector<std::vector<double>>{{0.0}})[0].value;
@@ -52,8 +52,9 @@ TEST(FitLeftOut, TheJackknifeOfAMeanIsItsTextbookError) {
   }
 }
 
-/// Where residuals of a group hang together, J^T J's errors are several times too small, and the
-/// jackknife's are right in the mean: here the truth is sqrt((shared^2 + 1 / each) / groups).
+/// If residuals of a group are correlated, the errors of J^T J are several times too small, and the
+/// errors of the jackknife are unbiased: here the true value is sqrt((shared^2 + 1 / each) /
+/// groups).
 TEST(FitLeftOut, TheJackknifeKnowsResidualsThatHangTogether) {
   const std::size_t groups = 8, each = 20;
   double by_jacobian = 0, by_groups = 0, scatter = 0;
@@ -71,7 +72,7 @@ TEST(FitLeftOut, TheJackknifeKnowsResidualsThatHangTogether) {
   const double truth = (1.0 + 1.0 / each) / groups;
   EXPECT_NEAR(by_jacobian, 1.0 / (groups * each), 1e-9);
   EXPECT_NEAR(std::sqrt(truth / by_jacobian), std::sqrt(21.0), 1e-9);  // 4.6 times too small
-  // Of 200 runs with 7 degrees of freedom each, a variance is known to sqrt(2 / 1400): 3.8 %.
+  // From 200 runs with 7 degrees of freedom each, a variance is known to sqrt(2 / 1400): 3.8 %.
   EXPECT_NEAR(by_groups / truth, 1, 3 * 0.038);
   EXPECT_NEAR(scatter / truth, 1, 3 * 0.1);
 }
@@ -100,7 +101,7 @@ TEST(FitLeftOut, TwoGroupsHaveNoJackknife) {
   EXPECT_EQ(result.why, "there are fewer than three groups to leave out");
 }
 
-/// Polynomials of a straight line with noise: data at 0, 0.1, ... 1.1, a group each.
+/// Polynomials for a straight line with noise: data at 0, 0.1, ... 1.1, a group each
 FitProblem Polynomial(int degree) {
   math::Random random(11, 7, 0);
   std::vector<double> y;
@@ -121,7 +122,7 @@ FitProblem Polynomial(int degree) {
 }
 
 TEST(FitLeftOut, LeavingOneOutOfALineIsTheClosedForm) {
-  // Residual of a datum left out = residual / (1 - leverage).
+  // Residual of a datum left out = residual / (1 - leverage)
   const FitProblem problem = Polynomial(1);
   const std::vector<double> fitted = Fit(problem, {}).values;
   const auto residual = problem.forward(std::vector<std::vector<double>>{fitted})[0].value;
@@ -158,7 +159,7 @@ TEST(FitLeftOut, AHoldOutThatCannotBeComputedSaysWhy) {
   EXPECT_TRUE(HoldOut(test, {1}).worse());
 }
 
-// Profiles.
+// Profiles
 
 TEST(FitProfile, OfALinearProblemItIsAParabolaAndTheIntervalIts196Errors) {
   const test::Linear linear = test::RandomLinear(20, 3, 4);
@@ -180,7 +181,8 @@ TEST(FitProfile, OfALinearProblemItIsAParabolaAndTheIntervalIts196Errors) {
 }
 
 TEST(FitProfile, ItSeesWhatTheEllipseDoesNot) {
-  // exp(a) = y: the interval is that of y, carried over: not symmetric. exp(a) = 1 +- 0.4.
+  // exp(a) = y: the interval is the interval of y, transformed and not symmetric. exp(a) = 1 +-
+  // 0.4.
   const auto problem = MakeProblem({Parameter("a", 0)}, 1, [](const std::vector<double>& v) {
     return Residuals{{(std::exp(v[0]) - 1) / 0.4}, ""};
   });
@@ -204,8 +206,8 @@ TEST(FitProfile, AnAliasIsOpenOnBothSides) {
 }
 
 TEST(FitProfile, AnotherMinimumIsHandedOnFromWhereItIsFound) {
-  // Two ways for z, near -1 and near +1; from x = 0, z = -1 the other one is found only far out,
-  // where the first ends, and is the lower one already for x > 0.
+  // Two branches for z, near -1 and near +1. From x = 0, z = -1 the other branch is found only far
+  // away, where the first ends, and is the lower one already for x > 0.
   const auto problem =
       MakeProblem({Parameter("x", 0), Parameter("z", -1)}, 3, [](const std::vector<double>& v) {
         return Residuals{{2 * (v[1] * v[1] - 1), v[1] - v[0], v[0]}, ""};
@@ -218,7 +220,7 @@ TEST(FitProfile, AnotherMinimumIsHandedOnFromWhereItIsFound) {
   const FitProfile profile = ProfileParameter(problem, fitted, 0, 1, options);
   int checked = 0;
   for (const ProfilePoint& point : profile.points) {
-    // The lower of both ways: the same equation mirrored, so z has the sign of x.
+    // The lower of both branches: by symmetry z has the sign of x.
     if (std::fabs(point.value) < 0.3) continue;
     EXPECT_GT(point.values[1] * point.value, 0) << point.value;
     ++checked;
@@ -239,10 +241,10 @@ TEST(FitProfile, ABoundEndsItAndALowerMinimumIsTold) {
   EXPECT_NEAR((*profile.better)[0], 1, 0.3);
 }
 
-// Data beside themselves.
+// Consistency of data
 
 TEST(FitProportion, MissingLoadIsFound) {
-  // 0.93 of the load arrives, in six tests whose gains differ by a hundredth.
+  // 0.93 of the load is measured, in six tests whose gains differ by 0.01.
   math::Random random(2, 7, 0);
   std::vector<ProportionPoint> points, whole;
   double slopes = 0;
@@ -256,7 +258,7 @@ TEST(FitProportion, MissingLoadIsFound) {
   }
   const ProportionCheck check = CheckProportion(points, "the measured forces carry");
   EXPECT_NEAR(check.slope, slopes, 1e-12);
-  EXPECT_GT(check.se, 2.0 / std::sqrt(6 * 3.85e6));  // more than the sds alone say
+  EXPECT_GT(check.se, 2.0 / std::sqrt(6 * 3.85e6));  // more than from the sds alone
   EXPECT_NEAR(check.se, 0.01 / std::sqrt(6), 0.003);
   EXPECT_FALSE(check.consistent);
   const ProportionCheck good = CheckProportion(whole, "the measured forces carry");
@@ -273,15 +275,15 @@ TEST(FitProportion, OnePassIsTheTextbook) {
   EXPECT_NEAR(check.p, std::exp(-check.chi2 / 2), 1e-12);
 }
 
-// What to measure next.
+// Design of further measurements
 
 TEST(FitDesign, CombinationsAreCountedAndTheGreedyOrderIsByInformation) {
   std::vector<FitParameter> p = {Parameter("a", 0), Parameter("b", 0), Parameter("c", 0)};
   p[0].scale = 0;
-  p[0].prior_sd = 2;  // others by their scale of 1
+  p[0].prior_sd = 2;  // the others from their scale of 1
   const DesignCandidate base{"now", {}, {}};
   const double nan = std::nan("");
-  // sum: a + b once; pair: a and c; again: a alone, a hair better than nothing after pair.
+  // sum: a + b once; pair: a and c; again: only a, almost useless after pair.
   const std::vector<DesignCandidate> candidates = {
       {"sum", {1, 1, 0}, {0.1}},
       {"again", {1, 0, 0, nan, 0, 0}, {1.0, 1.0}},
@@ -315,7 +317,7 @@ TEST(FitDesign, MistakesAreNamedAtOnce) {
   const DesignRanking ranking =
       RankDesigns({Parameter("a", 0)}, {"now", {1, 2}, {1.0}}, {{"x", {1}, {0.0}}});
   ASSERT_EQ(ranking.wrong.size(), 2u);
-  EXPECT_EQ(ranking.wrong[0], "now: its Jacobian has not one row a standard deviation");
+  EXPECT_EQ(ranking.wrong[0], "now: its Jacobian must have one row per standard deviation");
   EXPECT_EQ(ranking.wrong[1], "x: a standard deviation is not above 0");
 }
 

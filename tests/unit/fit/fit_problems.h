@@ -1,4 +1,4 @@
-/// Small problems for the tests of fitting.
+/// Small problems for the tests of fitting
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ namespace taut::test {
 
 using Model = std::function<Residuals(const std::vector<double>&)>;
 
-/// One point after the other.
+/// Evaluates points one after the other.
 inline Forward Each(Model model) {
   return [model = std::move(model)](std::span<const std::vector<double>> points) {
     std::vector<Residuals> answers;
@@ -38,7 +38,7 @@ inline FitProblem MakeProblem(std::vector<FitParameter> parameters, std::size_t 
   return problem;
 }
 
-/// r = A x - b.
+/// r = A x - b
 struct Linear {
   std::vector<std::vector<double>> A;
   std::vector<double> b;
@@ -53,7 +53,7 @@ struct Linear {
   }
 };
 
-/// Entries and right-hand side from a normal distribution.
+/// Returns matrix and right-hand side with normally distributed entries.
 inline Linear RandomLinear(std::size_t rows, std::size_t columns, std::uint64_t seed) {
   math::Random random(seed, 7, 0);
   Linear linear;

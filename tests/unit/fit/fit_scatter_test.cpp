@@ -1,4 +1,4 @@
-/// Errors by groups beside those by J^T J, in the verdict.
+/// Verdicts by errors from groups compared with errors from J^T J
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 using test::MakeProblem;
 using test::Parameter;
 
-/// A mean of `each` data of sd 1 in each of `groups`, which share errors of this sd.
+/// A mean of `each` data of sd 1 in each of `groups`, with shared errors of sd `shared`
 FitProblem Mean(std::uint64_t seed, std::size_t groups, std::size_t each, double shared,
                 double scale) {
   math::Random random(seed, 7, 3);
@@ -34,7 +34,7 @@ FitProblem Mean(std::uint64_t seed, std::size_t groups, std::size_t each, double
 FitVerdict Judged(const FitProblem& problem) { return JudgeFit(problem, Fit(problem, {}), {}); }
 
 TEST(FitScatter, ANumberThatGroupsDisagreeAboutIsNotEstimated) {
-  // J^T J: 1 / sqrt(400) = 0.05. By groups about 0.5 / sqrt(8) = 0.18, of a scale of 0.2.
+  // J^T J: 1 / sqrt(400) = 0.05. From groups about 0.5 / sqrt(8) = 0.18, with a scale of 0.2.
   const FitVerdict verdict = Judged(Mean(1, 8, 50, 0.5, 0.2));
   const ParameterVerdict& m = verdict.identifiability.parameters[0];
   EXPECT_NEAR(m.se, 0.05, 1e-9);
@@ -43,9 +43,9 @@ TEST(FitScatter, ANumberThatGroupsDisagreeAboutIsNotEstimated) {
   EXPECT_TRUE(m.groups_apart);
   EXPECT_EQ(m.kind, Determined::kScattered);
   EXPECT_TRUE(verdict.unidentifiable);
-  EXPECT_NE(m.sentence.find("without one group or another it is another number"),
+  EXPECT_NE(m.sentence.find("its estimates without one group or another differ"),
             std::string::npos);
-  // Of a sensor's offset nobody asks that it be determined.
+  // A nuisance parameter, such as a sensor's offset, need not be determined.
   FitProblem nuisance = Mean(1, 8, 50, 0.5, 0.2);
   nuisance.parameters[0].nuisance = true;
   EXPECT_FALSE(Judged(nuisance).unidentifiable);
@@ -59,13 +59,14 @@ TEST(FitScatter, WhereTheErrorByGroupsIsSmallEnoughItIsOnlySaid) {
   EXPECT_FALSE(verdict.unidentifiable);
   bool said = false;
   for (const std::string& sentence : verdict.sentences) {
-    said |= sentence.find("times J^T J's: residuals of a group hang together") != sentence.npos;
+    said |= sentence.find("times the error by J^T J: residuals within a group are correlated") !=
+            sentence.npos;
   }
   EXPECT_TRUE(said);
 }
 
-/// With independent residuals that is said once in a thousand times: of 400, 0.4 are expected, and
-/// four or more happen once in a thousand times.
+/// With independent residuals the false alarm rate is 1e-3: of 400 fits 0.4 are expected, and four
+/// or more have a probability of 1e-3.
 TEST(FitScatter, ChanceAloneSetsNoGroupsApart) {
   for (const std::size_t groups : {3u, 6u}) {
     int apart = 0;
@@ -76,10 +77,11 @@ TEST(FitScatter, ChanceAloneSetsNoGroupsApart) {
   }
 }
 
-/// Three groups know their scatter badly: 2.5 times as much happens by chance, 2.7 times does not.
+/// Three groups determine their scatter badly: a ratio of 2.5 occurs by chance, 2.7 does not.
 TEST(FitScatter, FewGroupsNeedALargerDifference) {
   for (const auto& [ratio, apart] : {std::pair(2.5, false), {2.7, true}}) {
-    // Means of groups at -d, 0, d have a standard error of d / sqrt(3); J^T J says 1 / sqrt(6).
+    // Means of groups at -d, 0, d have a standard error of d / sqrt(3); from J^T J it is 1 /
+    // sqrt(6).
     const double d = ratio / std::sqrt(6.0) * std::sqrt(3.0);
     const std::vector<double> y{-d - 0.1, -d + 0.1, -0.1, 0.1, d - 0.1, d + 0.1};
     FitProblem problem =

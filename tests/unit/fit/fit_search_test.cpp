@@ -1,4 +1,4 @@
-/// Levenberg's and Marquardt's method against closed forms.
+/// Levenberg-Marquardt method against closed forms
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -14,7 +14,7 @@ namespace {
 using test::MakeProblem;
 using test::Parameter;
 
-/// (A^T A + P)^-1 (A^T b + P m), P = diag(1 / sd^2): the normal equations.
+/// (A^T A + P)^-1 (A^T b + P m), P = diag(1 / sd^2): the normal equations
 Eigen::VectorXd NormalEquations(const test::Linear& linear, const std::vector<FitParameter>& p) {
   const auto rows = static_cast<Eigen::Index>(linear.A.size());
   const auto n = static_cast<Eigen::Index>(p.size());
@@ -59,7 +59,7 @@ TEST(FitSearch, FindsTheEndOfRosenbrocksValley) {
   EXPECT_LT(fit.state.tracks[0].iterations, 40);
 }
 
-/// Kowalik and Osborne's data with the certified values of NIST's Statistical Reference Datasets,
+/// Data of Kowalik and Osborne with the certified values of NIST's Statistical Reference Datasets,
 /// MGH09 (higher difficulty), from both of its starts.
 TEST(FitSearch, FindsTheCertifiedMinimumOfKowalikAndOsborne) {
   const std::vector<double> y = {0.1957, 0.1947, 0.1735, 0.1600, 0.0844, 0.0627,
@@ -88,7 +88,7 @@ TEST(FitSearch, FindsTheCertifiedMinimumOfKowalikAndOsborne) {
   }
 }
 
-/// The convex problem's only minimum: its conditions of Karush, Kuhn and Tucker hold.
+/// The only minimum of the convex problem fulfills the Karush-Kuhn-Tucker conditions.
 TEST(FitSearch, ActiveBoundsFulfilTheConditionsOfKarushKuhnAndTucker) {
   int active = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -132,7 +132,7 @@ TEST(FitSearch, AStartOnABoundIsNoTrap) {
 }
 
 TEST(FitSearch, AZeroGradientAtTheStartIsNoTrap) {
-  // The bow of a strut: its amplitude acts by its square.
+  // The bow of a strut, whose amplitude acts by its square
   std::vector<FitParameter> p = {Parameter("bow", 0), Parameter("offset", 0)};
   const FitResult fit = Fit(MakeProblem(p, 3,
                                         [](const std::vector<double>& v) -> Residuals {
@@ -145,7 +145,7 @@ TEST(FitSearch, AZeroGradientAtTheStartIsNoTrap) {
 }
 
 TEST(FitSearch, SeveralStartsFindTheLowerMinimum) {
-  // Minima at -1 and, lower, near 1.06: the first start falls into the wrong one.
+  // Minima at -1 and, lower, near 1.06: the first start leads to the higher one.
   auto p = Parameter("x", -1.5, 1);
   p.low = -2;
   p.high = 2;
@@ -181,7 +181,7 @@ TEST(FitSearch, RobustLossesForgiveOutliers) {
     return Fit(problem, {}).values;
   };
   EXPECT_GT(std::fabs(fit_with(FitLoss::kSquare)[0] - 1), 1.0);
-  // Two standard errors of the 35 good ones: 0.1 * sqrt(4 / 35) and a third of that.
+  // Two standard errors of the 35 good data: 0.1 * sqrt(4 / 35), plus a third.
   EXPECT_NEAR(fit_with(FitLoss::kCauchy)[0], 1, 0.07);
   EXPECT_NEAR(fit_with(FitLoss::kCauchy)[1], 2, 0.03);
   // Huber bounds an outlier's influence to 1.345 sds: 5 * 1.345 * 0.1 / 40 on the mean.
@@ -203,7 +203,8 @@ TEST(FitSearch, HubersMinimumHasHubersDerivative) {
 }
 
 TEST(FitSearch, FailuresInHalfOfTheSpaceAreToldAndAvoided) {
-  // Minimum beyond a border where nothing can be computed: it ends before that, and says why.
+  // The minimum is in a region in which the model fails: the search ends before it and reports the
+  // reason.
   auto p = Parameter("x", 0.2);
   p.low = -3;
   p.high = 3;
@@ -220,7 +221,7 @@ TEST(FitSearch, FailuresInHalfOfTheSpaceAreToldAndAvoided) {
   EXPECT_LE(fit.values[0], 1);
   EXPECT_GT(fit.state.tracks[0].failed, 0);
   EXPECT_EQ(fit.state.tracks[0].reasons.begin()->first, "the robot falls over");
-  for (const FitTrack& track : fit.state.tracks) {  // drawn again until it can be computed
+  for (const FitTrack& track : fit.state.tracks) {  // drawn again until the model can be evaluated
     EXPECT_NE(track.end, FitEnd::kFailed);
     EXPECT_LE(track.start[0], 1);
     EXPECT_TRUE(std::isfinite(track.cost));
@@ -237,7 +238,8 @@ TEST(FitSearch, AnAnswerThatIsNoNumberIsAFailure) {
   const auto few = MakeProblem({Parameter("x", 0)}, 2, [](const std::vector<double>&) -> Residuals {
     return {{1}, ""};
   });
-  EXPECT_EQ(Fit(few, {}).why, "the start could not be computed: gave 1 residuals instead of 2");
+  EXPECT_EQ(Fit(few, {}).why,
+            "the start could not be computed: the forward model returned 1 residuals instead of 2");
 }
 
 TEST(FitSearch, WhatIsNoProblemIsRefusedWithAllItsMistakes) {
@@ -248,14 +250,13 @@ TEST(FitSearch, WhatIsNoProblemIsRefusedWithAllItsMistakes) {
   problem.parameters[2].step = 0;
   const FitResult fit = Fit(problem, {});
   EXPECT_EQ(fit.end, FitEnd::kRefused);
-  EXPECT_EQ(
-      fit.why,
-      "there is nothing that computes residuals; there is no datum; a: its start is not within "
-      "its bounds; b: its prior's standard deviation is not above 0; b: its step is not above "
-      "0; b: there are two of this name");
+  EXPECT_EQ(fit.why,
+            "there is no forward model; there are no data; a: its start is not within its "
+            "bounds; b: its prior's standard deviation is not above 0; b: its step is not above "
+            "0; b: the name is used twice");
 }
 
-/// Something with several iterations, rejections and a failure.
+/// A problem with several iterations, rejected steps and a failure
 FitProblem Winding() {
   std::vector<FitParameter> p = {Parameter("x", -1.2, 0.5), Parameter("y", 1, 0.5)};
   for (FitParameter& one : p) {
@@ -295,7 +296,7 @@ TEST(FitSearch, StoppedAfterAnyIterationItGoesOnToTheSameBits) {
   int sessions = 0;
   for (bool going = true; going; ++sessions) {
     FitOptions one = options;
-    one.progress = [](const FitState&) { return false; };  // one iteration a session
+    one.progress = [](const FitState&) { return false; };  // one iteration per session
     const FitResult part = Fit(Winding(), one, state);
     state = part.state;
     going = part.end == FitEnd::kInterrupted;
@@ -355,7 +356,7 @@ TEST(FitSearch, AllPointsOfAnIterationAreAskedForAtOnceAndLieWithinTheBounds) {
 }
 
 TEST(FitSearch, JobsHoldParametersAndLeaveGroupsOut) {
-  // Two groups see x at 1 and at 3; y is seen at 5.
+  // Two groups measure x at 1 and at 3; y is measured at 5.
   FitProblem problem = MakeProblem({Parameter("x", 0), Parameter("y", 0)}, 3,
                                    [](const std::vector<double>& v) -> Residuals {
                                      return {{v[0] - 1, v[0] - 3, v[1] - 5}, ""};

@@ -1,4 +1,4 @@
-/// One damped step within a box: the conditions of Karush, Kuhn and Tucker.
+/// One damped step within a box: Karush-Kuhn-Tucker conditions
 #include <gtest/gtest.h>
 
 #include "fit/damped_step.h"
@@ -7,7 +7,7 @@
 namespace taut::fit {
 namespace {
 
-/// Columns that are far from orthogonal, so that what is put onto a bound moves the others.
+/// Columns far from orthogonal, so that a variable at its bound changes the others
 Quadratic Coupled(std::uint64_t seed, Eigen::Index n) {
   math::Random random(seed, 7, 4);
   Quadratic quadratic{Matrix(n + 2, n), Vector(n + 2)};
@@ -18,7 +18,7 @@ Quadratic Coupled(std::uint64_t seed, Eigen::Index n) {
   return quadratic;
 }
 
-/// Gradient of |R d + q|^2 / 2 + damping |D d|^2 / 2.
+/// Gradient of |R d + q|^2 / 2 + damping |D d|^2 / 2
 Vector Gradient(const Quadratic& quadratic, const Vector& weight, double damping, const Vector& d) {
   return quadratic.R.transpose() * (quadratic.R * d + quadratic.q) +
          damping * weight.cwiseProduct(weight).cwiseProduct(d);
@@ -41,7 +41,7 @@ TEST(FitStep, OnABoundTheOthersAreAtTheirMinimumThere) {
       if (!on_bound) {
         EXPECT_NEAR(gradient[j], 0, 1e-10) << seed;
       }
-      if (d[j] == box.low[j]) {  // it would go on outwards
+      if (d[j] == box.low[j]) {  // descent points outward
         EXPECT_GE(gradient[j], 0) << seed;
       }
       if (d[j] == box.high[j]) {

@@ -1,4 +1,4 @@
-/// What a fit says of its parameters, against closed forms.
+/// Verdicts on parameters of a fit, against closed forms
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ Identifiability At(const FitProblem& problem, const std::vector<double>& values)
   return Identify(problem, values, Differentiate(problem, values));
 }
 
-/// y_i = f(x_i; v), x = 1 .. rows, with this sd.
+/// y_i = f(x_i; v), x = 1 .. rows, with this sd
 FitProblem Curve(std::vector<FitParameter> parameters, std::size_t rows, double sd,
                  const std::function<double(double, const std::vector<double>&)>& f) {
   return MakeProblem(std::move(parameters), rows, [=](const std::vector<double>& v) {
@@ -27,7 +27,7 @@ FitProblem Curve(std::vector<FitParameter> parameters, std::size_t rows, double 
 }
 
 TEST(FitVerdict, StandardErrorsOfALineAreTheTextbooks) {
-  // y = a + b x at x = 1 .. 9, sd 0.1: var b = sd^2 / Sxx, var a = sd^2 (1 / n + mean^2 / Sxx).
+  // y = a + b x at x = 1 .. 9, sd 0.1: var b = sd^2 / Sxx, var a = sd^2 (1 / n + mean^2 / Sxx)
   const auto problem = Curve({Parameter("a", 0), Parameter("b", 0, 0.1)}, 9, 0.1,
                              [](double x, const auto& v) { return v[0] + v[1] * x; });
   const Identifiability of = At(problem, {0, 0});
@@ -42,7 +42,7 @@ TEST(FitVerdict, StandardErrorsOfALineAreTheTextbooks) {
   EXPECT_EQ(of.fixed, 2);
 }
 
-/// NIST's Statistical Reference Datasets, MGH09: certified standard deviations of the parameters.
+/// NIST's Statistical Reference Datasets, MGH09: certified standard deviations of the parameters
 TEST(FitVerdict, StandardErrorsAreNistsCertifiedOnes) {
   const std::vector<double> u = {4, 2, 1, 0.5, 0.25, 0.167, 0.125, 0.1, 0.0833, 0.0714, 0.0625};
   const std::vector<double> b = {1.9280693458e-1, 1.9128232873e-1, 1.2305650693e-1,
@@ -67,7 +67,7 @@ TEST(FitVerdict, StandardErrorsAreNistsCertifiedOnes) {
 }
 
 TEST(FitVerdict, AnAliasIsNamedAndHasNoFiniteError) {
-  // y = (a + b) x + c: a pseudo-inverse would give a and b an error of half of their sum's.
+  // y = (a + b) x + c: a pseudo-inverse would give a and b half of their sum's error.
   std::vector<FitParameter> p = {Parameter("a", 1), Parameter("b", 2, 0.5), Parameter("c", 0)};
   p[0].unit = p[1].unit = "N";
   const auto problem =
@@ -99,7 +99,7 @@ TEST(FitVerdict, AnAliasOfAProductIsSeenThroughTheErrorsOfDifferences) {
   const Identifiability of = At(problem, {1, 2});
   EXPECT_TRUE(std::isinf(of.parameters[0].se));
   EXPECT_EQ(of.parameters[0].kind, Determined::kTraded);
-  // Along a b = const: da = -a / b db.
+  // Along a b = const: da = -a / b db
   EXPECT_NEAR(of.parameters[0].trade[1].second / of.parameters[0].trade[0].second, -2, 1e-3);
 }
 
@@ -122,7 +122,7 @@ TEST(FitVerdict, WhatAPriorHoldsIsSaid) {
   p.prior_sd = 0.1;
   const auto problem = Curve({p}, 4, 1, [](double, const auto& v) { return 3 * v[0]; });
   const Identifiability of = At(problem, {1});
-  // 1 / se^2 = 4 * 9 + 100.
+  // 1 / se^2 = 4 * 9 + 100
   EXPECT_NEAR(of.parameters[0].se, 1 / std::sqrt(136.0), 1e-9);
   EXPECT_EQ(of.parameters[0].kind, Determined::kPrior);
   EXPECT_EQ(of.parameters[0].sentence,
@@ -141,7 +141,8 @@ TEST(FitVerdict, WhatNothingReadsIsDead) {
   EXPECT_EQ(of.parameters[1].sentence, "unused: dead; no residual depends on it");
   const auto bow =
       Curve({Parameter("bow", 0)}, 4, 0.1, [](double x, const auto& v) { return v[0] * v[0] * x; });
-  EXPECT_EQ(At(bow, {0}).parameters[0].sentence, "bow: dead here; it acts by its square only");
+  EXPECT_EQ(At(bow, {0}).parameters[0].sentence,
+            "bow: dead here; residuals depend on it only to second order");
 }
 
 TEST(FitVerdict, WhatIsTooWeakWithoutAPriorIsSaid) {
@@ -155,15 +156,14 @@ TEST(FitVerdict, WhatIsTooWeakWithoutAPriorIsSaid) {
 TEST(FitVerdict, AParameterAtItsBoundIsSaidAndOthersAreKnownGivenIt) {
   std::vector<FitParameter> p = {Parameter("a", 1), Parameter("b", 0)};
   p[0].high = 1;
-  // The data want a = 2.
+  // The minimum of the data is at a = 2.
   const auto problem =
       Curve(p, 9, 0.1, [](double x, const auto& v) { return v[0] + v[1] * x - 2; });
   const FitResult fit = Fit(problem, {});
   EXPECT_EQ(fit.values[0], 1);
   const Identifiability of = At(problem, fit.values);
   EXPECT_EQ(of.parameters[0].kind, Determined::kAtBound);
-  EXPECT_EQ(of.parameters[0].sentence,
-            "a = 1: at its upper bound, and the data would have it beyond");
+  EXPECT_EQ(of.parameters[0].sentence, "a = 1: at its upper bound; the optimum lies beyond it");
   EXPECT_NEAR(of.parameters[1].se, 0.1 / std::sqrt(285.0), 1e-9);
   EXPECT_EQ(of.directions.size(), 1u);
 }
@@ -182,12 +182,12 @@ TEST(FitVerdict, EstimatesThatGoTogetherSaySo) {
   const auto problem = Curve({Parameter("a", 0), Parameter("b", 0)}, 9, 1e-3,
                              [](double x, const auto& v) { return v[0] + v[1] * (x + 50); });
   const std::string sentence = At(problem, {0, 0}).parameters[0].sentence;
-  EXPECT_NE(sentence.find("it goes with b (correlation -0.99"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("it is correlated with b (-0.99"), std::string::npos) << sentence;
 }
 
-// Chi-square.
+// Chi-square
 
-/// Abramowitz and Stegun, table 26.8, and closed forms.
+/// Abramowitz and Stegun, table 26.8, and closed forms
 TEST(FitVerdict, ChiSquareTailsAreTheTables) {
   EXPECT_NEAR(ChiSquareQuantile(0.05, 1), 3.84146, 5e-6);
   EXPECT_NEAR(ChiSquareQuantile(0.001, 1), 10.828, 5e-4);
@@ -200,13 +200,13 @@ TEST(FitVerdict, ChiSquareTailsAreTheTables) {
     EXPECT_NEAR(ChiSquareTail(x, 1) / std::erfc(std::sqrt(x / 2)), 1, 1e-12);
     const double h = x / 2;
     EXPECT_NEAR(ChiSquareTail(x, 6) / (std::exp(-h) * (1 + h + h * h / 2)), 1, 1e-12);
-    // Q(a + 1, x) = Q(a, x) + x^a e^-x / Gamma(a + 1), at a = 1.35.
+    // Q(a + 1, x) = Q(a, x) + x^a e^-x / Gamma(a + 1), at a = 1.35
     EXPECT_NEAR(ChiSquareTail(x, 4.7),
                 ChiSquareTail(x, 2.7) + std::pow(h, 1.35) * std::exp(-h) / std::tgamma(2.35),
                 1e-13);
   }
   EXPECT_EQ(ChiSquareTail(0, 3), 1);
-  // Wilson and Hilferty, three digits at many degrees of freedom.
+  // Wilson and Hilferty, three digits at many degrees of freedom
   const double z = (std::cbrt(10300.0 / 10000) - (1 - 2.0 / 90000)) / std::sqrt(2.0 / 90000);
   EXPECT_NEAR(ChiSquareTail(10300, 10000) / (0.5 * std::erfc(z / std::sqrt(2.0))), 1, 1e-3);
 }

@@ -1,4 +1,4 @@
-// Whether measured forces carry the load: two cables and a bar about a ball, in closed form.
+// Check of whether measured forces carry the load: two cables and a bar at a ball, in closed form
 #include <cmath>
 
 #include "tests/unit/identify/identify_fixture.h"
@@ -8,8 +8,8 @@ namespace {
 
 using test::IdentifyTest;
 
-/// Stiff, so that the ball stays where it is described and directions are those of the drawing:
-/// both cables at 45 degrees above, the bar straight below. A third cable is no part of the cut.
+/// Stiff, so that the ball and the directions stay as described: both cables at 45 degrees upward,
+/// the bar straight downward. A third cable is not part of the cut.
 const std::string kModel = R"(taut: 1
 kind: model
 name: held
@@ -72,11 +72,11 @@ TEST_F(Carried, SharesAreThoseOfTheDrawing) {
   const CarriedLoad& of = all[0];
   ASSERT_EQ(of.check.why, "");
   ASSERT_EQ(of.rows.size(), 3u);
-  // Weight 5 N but in the third; a bar that is pushed carries, too.
+  // The weight is 5 N except in the third case; a compressed bar carries, too.
   const double half = std::sqrt(0.5);
   const double applied[] = {15, 30, 40};
   const double carried[] = {17 * half + 1, 31 * half + 4, 45 * half + 6};
-  // Each cable has 0.3 N or a tenth, the bar 0.2 N.
+  // sd of a cable: a tenth of its force, at least 0.3 N; of the bar: 0.2 N.
   const double sd[] = {std::sqrt(0.5 * (0.8 * 0.8 + 0.9 * 0.9) + 0.04),
                        std::sqrt(0.5 * (1.4 * 1.4 + 1.7 * 1.7) + 0.04),
                        std::sqrt(0.5 * (2.2 * 2.2 + 2.3 * 2.3) + 0.04)};
@@ -101,7 +101,7 @@ TEST_F(Carried, ALoadToTheSideIsLookedAtInItsDirection) {
   ASSERT_EQ(of.check.why, "");
   EXPECT_NEAR(of.rows[0].applied_n, 0, 1e-9);
   EXPECT_NEAR(of.rows[1].applied_n, 2, 1e-9);
-  // The right cable pulls the ball to the right, against what a load to the right asks for.
+  // The right cable pulls the ball to the right, the same direction as the load: a negative share.
   EXPECT_NEAR(of.rows[1].carried_n, (14 - 17) * std::sqrt(0.5), 1e-4);
 }
 
@@ -121,10 +121,10 @@ TEST_F(Carried, AllMembersHaveToBeCompared) {
   EXPECT_EQ(
       Wrong(Replaced(Replaced(kFit, "cable/*/tension_n", "cable/r/tension_n"),
                      "  - {channel: joint/*/axial_n, sd: 0.2}\n", "")),
-      "carried: ball of a: nothing compares cable/l/tension_n (all members between the bodies "
-      "and the rest have to be measured)\n"
-      "carried: ball of a: nothing compares joint/b/axial_n (all members between the bodies "
-      "and the rest have to be measured)\n");
+      "carried: ball of a: cable/l/tension_n is not compared (add all members between the "
+      "bodies and the rest to `residuals`)\n"
+      "carried: ball of a: joint/b/axial_n is not compared (add all members between the bodies "
+      "and the rest to `residuals`)\n");
 }
 
 TEST_F(Carried, WhatElseHoldsTheBodiesIsSaid) {
@@ -135,7 +135,7 @@ TEST_F(Carried, WhatElseHoldsTheBodiesIsSaid) {
   const auto fit = Make(kFit);
   ASSERT_TRUE(fit) << out_.Format();
   const CarriedLoad of = fit->Carried()[0];
-  EXPECT_EQ(of.check.why.find("something else than members holds the bodies, the ground perhaps: "),
+  EXPECT_EQ(of.check.why.find("other supports than members, such as the ground, hold the bodies: "),
             0u)
       << "[" << of.check.why << "]";
 }
@@ -144,10 +144,12 @@ TEST_F(Carried, MistakesOfTheFileAreSaidAtOnce) {
   EXPECT_EQ(
       Wrong(Replaced(Replaced(kFit, "forward: load_cases", "forward: dynamic"), "bodies: [ball]",
                      "bodies: [ball], experiments: [a], direction: [0, 0, 0]")),
-      "carried.direction has no length\n"
-      "carried: a moves, and so does what it carries (forward: static or load_cases)\n");
-  EXPECT_EQ(Wrong(Replaced(kFit, "forward: load_cases", "forward: dynamic")),
-            "carried: no experiment is at rest (forward: static or load_cases)\n");
+      "carried.direction must not be zero\n"
+      "carried: a is dynamic, but carried loads are compared at rest (write `forward: static` or "
+      "`forward: load_cases`)\n");
+  EXPECT_EQ(
+      Wrong(Replaced(kFit, "forward: load_cases", "forward: dynamic")),
+      "carried: no experiment is at rest (write `forward: static` or `forward: load_cases`)\n");
 }
 
 TEST_F(Carried, WorkThatIsSharedOutHasTheSameBits) {
@@ -173,10 +175,10 @@ TEST_F(Carried, WorkThatIsSharedOutHasTheSameBits) {
     EXPECT_EQ(shared[i].failed, alone[i].failed);
   }
   EXPECT_NE(shared[2].failed, "");
-  // Who was stopped answers less, and that is no answer at all.
+  // A stopped process returns fewer results, which count as no results.
   fit->SpreadBy([](std::span<const std::string>) { return std::vector<std::string>{}; }, 2);
   EXPECT_EQ(fit->train().forward(std::vector<std::vector<double>>{{5e7}}).size(), 0u);
-  // What is compared otherwise must not be shared.
+  // Fits with different residuals must not share results.
   const auto less =
       Make(Replaced(kFit, "cable/*/tension_n, sd: 0.3", "cable/*/tension_n, sd: 0.31"));
   EXPECT_NE(fit->Agreed(), less->Agreed());

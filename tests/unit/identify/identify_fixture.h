@@ -1,4 +1,4 @@
-/// A fit of a mass that hangs on a cable, with files of its own.
+/// Fixture with a fit of a mass that hangs on a cable, and its files
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ estimate: [{parameter: k_n_per_m, prior: {sd: 5}}, {channel: node/*/position_z_m
 residuals: [{channel: node/ball/position_z_m, sd: 0.001, window: {after_setpoint_s: [1, 2]}}]
 )";
 
-/// Where the mass hangs at rest: 1 - (L + m g / k).
+/// Returns the height of the mass at rest: 1 - (L + m g / k).
 inline double Height(double rest_length_m, double k_n_per_m) {
   return 1 - (rest_length_m + 0.5 * 10 / k_n_per_m);
 }
@@ -54,7 +54,8 @@ class IdentifyTest : public testing::Test {
   void Write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
   }
-  /// At rest for any k, with a clock that is late: rest lengths 0.8 from 1.1 s on, 0.7 from 3.6 s.
+  /// Writes data at rest for this k, with a delayed clock: rest lengths 0.8 from 1.1 s on, 0.7 from
+  /// 3.6 s.
   void WriteData(const std::string& channel, double k_n_per_m, double late_s) {
     std::ofstream file(folder_ / "a.csv");
     file.precision(17);

@@ -1,5 +1,5 @@
-// Fits to data with gaps, uneven rows, quaternions of any sign and tables of other programs:
-// a free box whose true velocity and turn are known.
+// Fits to data with gaps, uneven rows, quaternions of either sign and tables of other programs: a
+// free box of known velocity and rotation
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -44,7 +44,7 @@ class GapsTest : public IdentifyTest {
       file << t << "," << cells(t) << "\n";
     }
   }
-  /// Residuals at the true number.
+  /// Returns the residuals at the true value.
   std::vector<double> Residual(const std::string& parameter, const std::string& channel,
                                const std::string& statistic, const std::string& more = {}) {
     const auto fit = Make(

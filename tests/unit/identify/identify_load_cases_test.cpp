@@ -1,4 +1,4 @@
-// Load cases beside what was measured: a mass on a cable, pulled at, in closed form.
+// Load cases compared with measurements: a mass on a cable under forces, in closed form
 #include <array>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 using test::IdentifyTest;
 
-/// Pulls to the side, down, up past its weight, and without any weight.
+/// Forces sideways, downward, in both directions, and without weight
 struct Case {
   const char* name;
   double x_n, z_n;
@@ -28,7 +28,8 @@ groups: window
 )";
 
 double Pull(const Case& c) { return std::hypot(c.x_n, (c.weight ? -5 : 0) + c.z_n); }
-/// The mass hangs in the direction of what pulls at it, at L + T / k from (0, 0, 1).
+/// Returns the place of the mass, which hangs in the direction of the total force, at L + T / k
+/// from (0, 0, 1).
 double Place(const Case& c, double k_n_per_m, bool z) {
   const double along_n = z ? (c.weight ? -5 : 0) + c.z_n : c.x_n;
   return (z ? 1 : 0) + (0.9 + Pull(c) / k_n_per_m) * along_n / Pull(c);
@@ -85,7 +86,7 @@ TEST_F(LoadCases, AStiffnessIsFoundFromDeflections) {
   const ParameterVerdict& k = outcome.verdict.identifiability.parameters[0];
   EXPECT_NEAR(k.value, 110, 1e-4);
   EXPECT_EQ(k.kind, Determined::kEstimated);
-  // A case moves by T / k^2 along its direction a unit of k.
+  // Displacement of a case per unit of k: T / k^2 along its direction.
   double squares = 0;
   for (const Case& c : kCases) squares += std::pow(Pull(c) / (110 * 110) / 0.001, 2);
   EXPECT_NEAR(k.se, 1 / std::sqrt(squares), 1e-3 / std::sqrt(squares));
@@ -112,8 +113,8 @@ TEST_F(LoadCases, AGapInTheDataIsThatCasesOnly) {
 TEST_F(LoadCases, RowsMoreOrLessThanCasesAreAMistake) {
   Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n1,0\n");
   EXPECT_EQ(Wrong(kFit),
-            "experiments: a has 4 load cases, its data 2 rows (row i of the data is that of load "
-            "case i)\n");
+            "experiments: a has 4 load cases, but its data have 2 rows (row i of the data must "
+            "belong to load case i)\n");
 }
 
 }  // namespace

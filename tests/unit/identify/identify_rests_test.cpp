@@ -1,4 +1,4 @@
-// What an experiment at rest gives: signs, places, and nothing of the case before.
+// Results of an experiment at rest: signs, places, and independence of the preceding case
 #include <cmath>
 
 #include "identify/computed.h"
@@ -41,7 +41,7 @@ TEST_F(Rests, ACaseHasNothingOfTheOneBefore) {
 }
 
 TEST_F(Rests, NodesOfARodAreWhereItHangs) {
-  // A rod of 1 m below the cable, which its end is fixed to.
+  // A rod of 1 m below the cable, whose end is fixed to it.
   std::string model = Replaced(kModel, "ball: [0, 0, 0]}", "ball: [0, 0, 0], end: [0, 0, -1]}");
   model = Replaced(model, "tags: [cable]}]",
                    "tags: [cable]}, {name: r, nodes: [ball, end], tags: [rod]}]");
@@ -93,7 +93,7 @@ TEST_F(Rests, APushActsNoLongerThanItLasts) {
 }
 
 TEST_F(Rests, MomentsOfAllItsMeasurementsAreLookedAtInOrder) {
-  // Two measurements of one experiment: the second looked at an earlier set point than the first.
+  // Two measurements of one experiment: the second uses an earlier set point than the first.
   Write("a.csv", "time_s,node/ball/position_z_m\n3.6,0\n");
   Write("b.csv", "time_s,node/ball/position_z_m\n1.1,0\n");
   Write("a_when.csv", "time_s,experiment_s\n3.6,3.6\n");
@@ -111,7 +111,7 @@ TEST_F(Rests, MomentsOfAllItsMeasurementsAreLookedAtInOrder) {
   EXPECT_NEAR(answers[0].value[0] * 0.001, Height(0.7, 100), 1e-7);
   EXPECT_NEAR(answers[0].value[1] * 0.001, Height(0.8, 100), 1e-7);
   EXPECT_NEAR(answers[1].value[1] * 0.001, Height(0.8, 100) + 0.5, 1e-7);
-  EXPECT_EQ(fit->counts().computed, 1);  // offsets alone compute nothing anew
+  EXPECT_EQ(fit->counts().computed, 1);  // offsets alone cause no new computation
 }
 
 TEST_F(Rests, WhatActsByItsSquareIsNoMistake) {
@@ -124,7 +124,7 @@ TEST_F(Rests, WhatActsByItsSquareIsNoMistake) {
   const auto fit = Make(text);
   ASSERT_TRUE(fit) << out_.Format();
   EXPECT_TRUE(CheckDependence(*fit, out_)) << out_.Format();
-  // The force across the channel to the other side: nothing of it is seen at all.
+  // The force is perpendicular to the measured direction: the channel does not depend on it.
   Write("a.csv", "time_s,node/ball/position_y_m\n0,0\n");
   const auto blind = Make(text);
   ASSERT_TRUE(blind) << out_.Format();
@@ -145,10 +145,10 @@ TEST_F(Rests, AFittedExperimentSaysWhatActsOnItAndWhereItBelongs) {
   ASSERT_TRUE(fit) << out_.Format();
   const std::vector<double> values{112.5, 0.25, 0.5};
   EXPECT_EQ(FittedExperimentYaml(*fit, 0, values, folder_.string()),
-            "# a with what the fit f found\ntaut: 1\nkind: experiment\nname: f_a\n"
+            "# a with the values found by the fit f\ntaut: 1\nkind: experiment\nname: f_a\n"
             "base: experiment.yaml\nset:\n  k_n_per_m: 112.5\n");
   EXPECT_EQ(FittedExperimentYaml(*fit, 1, values, folder_.string()),
-            "# b with what the fit f found\ntaut: 1\nkind: experiment\nname: f_b\n"
+            "# b with the values found by the fit f\ntaut: 1\nkind: experiment\nname: f_b\n"
             "base: experiment.yaml\nparameters:\n  up_m: 0.25\nset:\n  k_n_per_m: 112.5\n  "
             "mass_kg: 0.75\n");
 }
@@ -161,7 +161,7 @@ TEST_F(Rests, ARunThatBlowsUpSaysItself) {
   ASSERT_TRUE(fit) << out_.Format();
   const Residuals at = At(*fit, {1e308});
   EXPECT_NE(at.failed, "");
-  EXPECT_EQ(at.failed.find("no number"), std::string::npos) << at.failed;
+  EXPECT_EQ(at.failed.find("no value"), std::string::npos) << at.failed;
 }
 
 TEST(Computed, AsBytesKeepsItsBits) {
@@ -179,7 +179,7 @@ TEST(Computed, AsBytesKeepsItsBits) {
   EXPECT_TRUE(std::isnan(two.values[0][1]));
   EXPECT_EQ(two.values[2], one.values[2]);
   EXPECT_EQ(two.references, one.references);
-  // What was cut off is no more than it has.
+  // Truncated bytes yield at most the contained values.
   const std::string bytes = identify::Pack(one);
   EXPECT_LE(identify::UnpackComputed(bytes.substr(0, bytes.size() / 2)).values.size(), 3u);
 }

@@ -1,4 +1,4 @@
-// What experiments give beside what was measured: against the closed form of a hanging mass.
+// Model results compared with measurements: against the closed form of a hanging mass
 #include <cmath>
 
 #include "identify/computed.h"
@@ -32,7 +32,7 @@ TEST_F(IdentifyTest, RunsComeToTheSameRest) {
   ASSERT_TRUE(fit) << out_.Format();
   const Residuals at = At(*fit, {125, 0});
   ASSERT_EQ(at.failed, "");
-  // the swing decays by exp(-8 t): after a second it is 0.3 mm at most, in the mean far less
+  // the oscillation decays by exp(-8 t): after a second it is at most 0.3 mm, in the mean far less
   EXPECT_NEAR(at.value[1], (Height(0.7, 125) - Height(0.7, 110)) / 0.001, 0.05);
 }
 
@@ -49,7 +49,7 @@ TEST_F(IdentifyTest, AClockThatIsLateMovesTheWindowsOfTheRun) {
   EXPECT_NEAR(fit->train_points()[0].measured, Height(0.8, 100), 1e-12);
   // the search starts in the middle, where the clock is 2 s late: window 2..3 s of the run
   EXPECT_NEAR(At(*fit, {2, 0}).value[0], 0, 0.1);
-  // half a second less, and the window is 2.5..3.5 s: still at rest; 1.5 s less: the next set point
+  // with 0.5 s less the window is 2.5..3.5 s, still at rest; with 1.5 s less the next set point
   EXPECT_NEAR(At(*fit, {1.5, 0}).value[0], 0, 0.1);
   EXPECT_GT(At(*fit, {0.5, 0}).value[0], 50);
 }
@@ -78,7 +78,8 @@ TEST_F(IdentifyTest, WhatWasComputedIsRememberedToTheBit) {
   Write("fit.yaml", kFit);
   Write("experiment.yaml", Replaced(kExperiment, "up_m: 0.1", "up_m: 0.11"));
   EXPECT_FALSE(Make(kFit, "fit.sqlite"));
-  EXPECT_NE(out_.Format().find("holds another fit: it differs in experiments"), std::string::npos)
+  EXPECT_NE(out_.Format().find("belongs to another fit, which differs in experiments"),
+            std::string::npos)
       << out_.Format();
 }
 
@@ -86,38 +87,38 @@ TEST_F(IdentifyTest, DataThatNoWindowMeetsAreAMistake) {
   WriteData("node/ball/position_z_m", 110, 62000);
   EXPECT_EQ(
       Wrong(kFit),
-      "residuals: no window of \"node/ball/position_z_m\" meets data of a (the data of a is of "
-      "62000..62006 s, the experiment of 0..6 s: another clock? `clock`, `setpoints` and "
-      "`window` say how they go together)\n");
+      "residuals: no window of \"node/ball/position_z_m\" contains data of a (the data of a cover "
+      "62000..62006 s, the experiment 0..6 s; if their clocks differ, relate them by `clock`, "
+      "`setpoints` or `window`)\n");
 }
 
 TEST_F(IdentifyTest, ChannelsThatOneSideLacksAreMistakes) {
   EXPECT_EQ(
       Wrong(Replaced(kFit, "channel: node/ball/position_z_m", "channel: node/bull/position_z_m")),
-      "residuals: the data of a has no channel \"node/bull/position_z_m\" (did you mean "
-      "\"node/ball/position_z_m\"?; `map` translates names)\n");
+      "residuals: the data of a have no channel \"node/bull/position_z_m\" (did you mean "
+      "\"node/ball/position_z_m\"?; `map` can translate names)\n");
   WriteData("node/bull/position_z_m", 110, 0);
   EXPECT_EQ(Wrong(Replaced(kFit, "channel: node/ball/", "channel: node/*/")),
-            "residuals: nothing computes \"node/bull/position_z_m\" of a (did you mean "
+            "residuals: there is no computed channel \"node/bull/position_z_m\" of a (did you mean "
             "\"node/ball/position_z_m\"?)\n");
   WriteData("node/ball/position_z_cm", 110, 0);
   EXPECT_EQ(
       Wrong(Replaced(kFit, "channel: node/ball/position_z_m", "channel: node/ball/position_z_*")),
-      "residuals: nothing computes \"node/ball/position_z_cm\" of a (did you mean "
+      "residuals: there is no computed channel \"node/ball/position_z_cm\" of a (did you mean "
       "\"node/ball/position_z_m\"?)\n");
 }
 
 TEST_F(IdentifyTest, OffsetsOfNothingAreMistakes) {
   EXPECT_EQ(Wrong(Replaced(kFit, "{channel: node/*/position_z_m", "{channel: node/*/position_x_m")),
-            "estimate: nothing that is compared has anything of offset node/*/position_x_m (did "
-            "you mean \"node/ball/position_z_m\"?)\n");
+            "estimate: no compared channel is affected by offset node/*/position_x_m (did you "
+            "mean \"node/ball/position_z_m\"?)\n");
 }
 
 TEST_F(IdentifyTest, FewerDataThanNumbersAreAMistake) {
   EXPECT_EQ(Wrong(Replaced(Replaced(kFit, "prior: {sd: 5}", "scale: 5"), "offset: {sd: 0.01}}",
                            "offset: {scale: 1}, gain: {scale: 1}}")),
-            "3 numbers are to be found from 2 data and priors together (priors with `sd`, more "
-            "data, or fewer numbers)\n");
+            "3 numbers cannot be estimated from 2 data and priors together (add priors with `sd` "
+            "or data, or estimate fewer numbers)\n");
 }
 
 TEST(TurnOf, IsTheAngleAboutTheAxis) {

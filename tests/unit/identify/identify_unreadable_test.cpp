@@ -1,4 +1,4 @@
-// Files of a fit that can no longer be read: they end the fit, and no trial counts as failed.
+// Files of a fit that become unreadable: they end the fit, and no trial counts as failed.
 #include "tests/unit/identify/identify_fixture.h"
 
 namespace taut {

@@ -1,8 +1,7 @@
-// Which numbers of a run are set beside which of the data: windows, statistics, clocks, references,
-// and what is done to them on the way.
+// Pairing of run values with data: windows, statistics, clocks, references, and transformations
 #include <cmath>
 
-#include "identify/rows.h"
+#include "identify/residual_rows.h"
 #include "learn/sqlite.h"
 #include "tests/unit/identify/identify_fixture.h"
 
@@ -15,7 +14,7 @@ using test::Height;
 using test::IdentifyTest;
 using test::kFit;
 
-/// 0 until 1 s, then 2, from 3 s on up to 6 at 4 s: straight in between.
+/// Returns values 0, 2, 2, 6 at 0, 1, 3, 4 s, linear in between.
 Computed Course() {
   Computed out;
   out.time_s = {0, 1, 3, 4};
@@ -37,7 +36,7 @@ TEST(RowsOfARun, AreStatisticsOfStraightLines) {
   EXPECT_NEAR(Of(Row::How::kMax, 0.5, 3.5), 4, 1e-12);
   EXPECT_NEAR(Of(Row::How::kMin, 0.5, 3.5), 1, 1e-12);
   EXPECT_NEAR(Of(Row::How::kMean, 2.5, 3.5, 2), 0.75 + 1, 1e-12);  // of 0.5 to 1.5 s
-  EXPECT_NEAR(Of(Row::How::kMax, 3, 9), 6, 1e-12);                 // no further than the run
+  EXPECT_NEAR(Of(Row::How::kMax, 3, 9), 6, 1e-12);                 // up to the end of the run
   Row row;
   row.how = Row::How::kRest;
   row.from_s = 3;
@@ -80,7 +79,7 @@ TEST_F(Windows, AWindowHasAllOfItsRowsAndNoOthers) {
 }
 
 TEST_F(Windows, SetPointsOnTheDatasClockMeetThoseOfTheRun) {
-  // Commanded at 101.1 s and 203.6 s of the data's clock, which are 1.1 s and 3.6 s of the run.
+  // Set points at 101.1 s and 203.6 s of the data's clock, which are 1.1 s and 3.6 s of the run.
   std::string rows;
   for (const double from_s : {100.0, 202.5}) {
     for (int i = 0; i <= 20; ++i) {
@@ -102,11 +101,11 @@ TEST_F(Windows, SetPointsOnTheDatasClockMeetThoseOfTheRun) {
     EXPECT_EQ(each, statistic[0] == 'm' ? 1u : 3u);
     EXPECT_NEAR(fit->train_points()[0].measured, Height(0.8, 100), 1e-6);
     EXPECT_NEAR(fit->train_points()[each].measured, Height(0.7, 100), 1e-6);
-    // The swing after a set point decays by exp(-8 t).
+    // The oscillation after a set point decays by exp(-8 t).
     for (const double r : At(*fit, {100}).value) EXPECT_LT(std::fabs(r), 1);
   }
-  // A file may say which moments of the run its rows are: here the other way round, and at once
-  // what is 0.8 m of rest length beside what is 0.7 m.
+  // A file may give the run times of its rows: here in reverse, so that data of 0.8 m rest length
+  // are compared with 0.7 m.
   Write("when.csv", "time_s,experiment_s\n101.1,3.6\n");
   const auto fit = Make(Replaced(text, "STAT", "mean"));
   ASSERT_TRUE(fit) << out_.Format();
@@ -123,7 +122,7 @@ TEST_F(Windows, WhatTheRunDoesNotReachIsLeftOutAndSaid) {
   EXPECT_NE(out_.Format().find("1 of 2 windows"), std::string::npos) << out_.Format();
 }
 
-/// Two masses on two cables, and references of three kinds.
+/// Two masses on two cables, and references of three kinds
 const std::string kTwo = R"(taut: 1
 kind: model
 name: two
@@ -162,7 +161,7 @@ TEST_F(Windows, ReferencesAreTheRunsNumbersOfEachCable) {
   ASSERT_EQ(fit->train_points().size(), 4u);
   const auto at = At(*fit, {100});
   ASSERT_EQ(at.failed, "");
-  EXPECT_NEAR(at.value[0], (10 - 1) / 0.5, 1e-3);  // as described it is stretched by 0.1 m
+  EXPECT_NEAR(at.value[0], (10 - 1) / 0.5, 1e-3);  // in the described pose it is stretched by 0.1 m
   EXPECT_NEAR(at.value[1], (5 - 4) / 0.5, 1e-3);
   EXPECT_NEAR(at.value[2], (15 - 20) / 1.0, 1e-3);
   EXPECT_NEAR(at.value[3], (15 - 14) / 0.7, 1e-3);
@@ -206,7 +205,7 @@ TEST_F(Windows, WhatIsKnownBeforeIsTheProblems) {
 }
 
 TEST_F(Windows, WhatActsOnTheHoldOutAloneStaysAndTakesNoPlace) {
-  // The first number is the hold-out's own offset: it is none of the problem's.
+  // The first parameter is the offset of the hold-out, which is not part of the problem.
   fs::copy_file(folder_ / "a.csv", folder_ / "b.csv", fs::copy_options::overwrite_existing);
   const std::string text =
       "taut: 1\nkind: fit\nname: f\nexperiments:\n"
@@ -228,7 +227,7 @@ TEST_F(Windows, WhatActsOnTheHoldOutAloneStaysAndTakesNoPlace) {
   EXPECT_NEAR(At(*fit, {125}).value[0], off, 1e-4);
   const std::vector<std::vector<double>> points{{125}};
   EXPECT_NEAR(fit->test()->forward(points)[0].value[0], off + 2, 1e-4);
-  // Both are one experiment with one set of values: computed once.
+  // Both are one experiment with the same values: computed once.
   EXPECT_EQ(fit->counts().computed, 1);
 }
 
@@ -264,7 +263,7 @@ TEST_F(Windows, PushesActAlongTheirDirectionWhileTheyLast) {
         "taut: 1\nkind: experiment\nname: p\nmodel: model.yaml\ngravity_m_per_s2: [0, 0, -10]\n"
         "duration_s: 6\ntimeline:\n  events:\n    - push: {name: p, node: ball, scale: 2, "
         "direction: [3, 0, 0], force_n: [[0, 0], [1, 1], [2, 1], [3, 2], [4, 2]]}\n");
-  // Set points: 1 s (2 N), 3 s (4 N). At rest the cable points to where the force does.
+  // Set points: 1 s (2 N), 3 s (4 N). At rest the cable is aligned with the force.
   std::string rows = "time_s,node/ball/position_x_m\n";
   for (const double t : {1.0, 3.0}) rows += std::to_string(t) + ",0\n";
   Write("a.csv", rows);
@@ -296,8 +295,8 @@ TEST_F(Windows, ErrorsByChannelAreRootMeanSquaresInItsUnit) {
 }
 
 TEST_F(Windows, DesignSeesWhatAChannelTells) {
-  // Now: nothing but its prior and a datum of 100 sds. A millimetre tells k to
-  // 1e-3 k^2 / (m g): of a prior of 5 N/m, 2 / sqrt(2^2 + 5^2) remain.
+  // Without new measurements: the prior and a datum of 100 sds. An accuracy of 1 mm determines k to
+  // 1e-3 k^2 / (m g): of a prior of 5 N/m, 2 / sqrt(2^2 + 5^2) remains.
   const auto fit =
       Make(Replaced(Replaced(kFit, ", {channel: node/*/position_z_m, offset: {sd: 0.01}}", ""),
                     "sd: 0.001", "sd: 10") +
@@ -310,7 +309,7 @@ TEST_F(Windows, DesignSeesWhatAChannelTells) {
   ASSERT_TRUE(outcome.design);
   ASSERT_EQ(outcome.design->wrong.size(), 0u);
   EXPECT_NEAR(outcome.design->now.sd_ratio[0], 1, 1e-6);
-  const double se = 1e-3 * 100 * 100 / 5 / std::sqrt(2);  // of two set points
+  const double se = 1e-3 * 100 * 100 / 5 / std::sqrt(2);  // from two set points
   EXPECT_NEAR(outcome.design->alone[0].sd_ratio[0], se / std::hypot(se, 5), 1e-3);
 }
 
@@ -318,7 +317,7 @@ TEST_F(Windows, OtherDataAreAnotherFit) {
   ASSERT_TRUE(Make(kFit, "fit.sqlite")) << out_.Format();
   WriteData("node/ball/position_z_m", 111, 0);
   EXPECT_FALSE(Make(kFit, "fit.sqlite"));
-  EXPECT_NE(out_.Format().find("it differs in data"), std::string::npos) << out_.Format();
+  EXPECT_NE(out_.Format().find("which differs in data"), std::string::npos) << out_.Format();
 }
 
 TEST_F(Windows, ARecordThatIsDamagedIsComputedAgain) {
@@ -348,10 +347,11 @@ TEST_F(Windows, PointsWithoutTheFactsOfTheirFitAreRefused) {
   learn::Database database(path, learn::Database::Open::kOrMake);
   ASSERT_TRUE(database.Execute("INSERT INTO fact VALUES ('weather', 'rain')"));
   EXPECT_FALSE(Make(kFit, "fit.sqlite"));
-  EXPECT_NE(out_.Format().find("it differs in weather"), std::string::npos) << out_.Format();
+  EXPECT_NE(out_.Format().find("which differs in weather"), std::string::npos) << out_.Format();
   ASSERT_TRUE(database.Execute("DELETE FROM fact"));
   EXPECT_FALSE(Make(kFit, "fit.sqlite"));
-  EXPECT_NE(out_.Format().find("holds points, but not the facts of their fit"), std::string::npos)
+  EXPECT_NE(out_.Format().find("it contains points, but not the inputs of their fit"),
+            std::string::npos)
       << out_.Format();
 }
 

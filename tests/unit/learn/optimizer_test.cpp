@@ -1,4 +1,4 @@
-// Optimisers on functions whose optimum is known, beside published numbers of evaluations.
+// Optimizers on functions with known optima, compared with published numbers of evaluations
 #include "taut/optimizer.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Function = std::function<double(const std::vector<double>&)>;
 
-/// x = low + u (high - low) for all dimensions.
+/// x = low + u (high - low) for all dimensions
 struct Box {
   double low = -20, high = 20;
   std::vector<double> Of(const UnitPoint& u) const {
@@ -64,7 +64,7 @@ struct Outcome {
   double value = INFINITY;
 };
 
-/// Minimises until `target` or a budget is reached.
+/// Minimizes until `target` or a budget is reached.
 Outcome Minimize(const SearchSpec& search, const Function& f, std::size_t n, double start,
                  double target, int budget, std::uint64_t seed, const Box& box = {}) {
   OptimizerStart from;
@@ -90,7 +90,7 @@ Outcome Minimize(const SearchSpec& search, const Function& f, std::size_t n, dou
   return run;
 }
 
-/// Of eleven seeds.
+/// Returns the median over eleven seeds.
 int MedianEvaluations(const SearchSpec& search, const Function& f, std::size_t n, double start,
                       double target, int budget) {
   std::vector<int> counts;
@@ -109,7 +109,7 @@ SearchSpec CmaEs(double sigma, int lambda) {
 }
 
 // Hansen's cma.py 0.9, documentation of fmin: elli, 3*[1], sigma 1, lambda 7: after 1400
-// evaluations 5.69e-12. A single run there, a median here: within a third.
+// evaluations 5.69e-12. That is a single run, this a median: within a third.
 TEST(CmaEs, NeedsThePublishedEvaluationsOnTheEllipsoid) {
   const int median = MedianEvaluations(CmaEs(1, 7), Ellipsoid, 3, 1, 5.69e-12, 5000);
   RecordProperty("evaluations", median);
@@ -118,7 +118,7 @@ TEST(CmaEs, NeedsThePublishedEvaluationsOnTheEllipsoid) {
 }
 
 // The same documentation: rosen, 4*[-1], sigma 1, lambda 8, to 1e-6: 1472 evaluations of a run that
-// found the local optimum. From 1 upwards that does not happen; pairs in six dimensions, from 0,
+// found the local optimum. From 1 upward that does not happen; pairs in six dimensions, from 0,
 // sigma 1, lambda 9: CMAEvolutionStrategy.jl (README) shows 2394 evaluations to 5.6e-12, with
 // negative weights, which save some.
 TEST(CmaEs, NeedsThePublishedEvaluationsOnRosenbrocksFunction) {
@@ -136,8 +136,8 @@ TEST(CmaEs, SolvesRosenbrockInTenDimensionsWithinThePublishedBudget) {
   EXPECT_LT(median, 8000);
 }
 
-// The step length follows the distance: log f falls evenly, and no slower than for the adaptive
-// hill climbing below, a (1+1) strategy with the best step length, times three.
+// The step length follows the distance: log f decreases linearly, and no slower than for the
+// adaptive hill climbing below, a (1+1) strategy with the best step length, times three.
 TEST(CmaEs, ConvergesLinearlyOnTheSphere) {
   const int five = MedianEvaluations(CmaEs(1, 10), Sphere, 10, 1, 1e-5, 20000);
   const int ten = MedianEvaluations(CmaEs(1, 10), Sphere, 10, 1, 1e-10, 20000);
@@ -146,7 +146,7 @@ TEST(CmaEs, ConvergesLinearlyOnTheSphere) {
   EXPECT_LT(ten, 3 * std::log(10 / 1e-10) / 0.0404);
 }
 
-// What turns the ellipsoid does not change the way there: invariance under rotation.
+// Invariance under rotation: a rotated ellipsoid gives the same convergence.
 TEST(CmaEs, DoesNotDependOnTheAxes) {
   const double s = std::sqrt(0.5);
   const Function turned = [&](const std::vector<double>& x) {
@@ -183,8 +183,9 @@ SearchSpec HillClimbing(double deviation, bool adapt, int batch) {
   return search;
 }
 
-// A (1+1) strategy with a step length that fits gains a factor exp(-0.4 / n) an evaluation at best
-// (Rechenberg; 0.202 / n in the distance, twice that in f); ours must come within three times that.
+// A (1+1) strategy with an optimal step length gains at most a factor exp(-0.4 / n) per evaluation
+// (Rechenberg; 0.202 / n in the distance, twice that in f); this one must come within three times
+// that.
 TEST(HillClimbing, AdaptsItsStepOnTheSphere) {
   const int n = 10;
   const int evaluations =
@@ -195,7 +196,7 @@ TEST(HillClimbing, AdaptsItsStepOnTheSphere) {
   EXPECT_LT(evaluations, 3 * best);
 }
 
-// With a fixed step of standard deviation s it cannot get closer than about s: NTRT's way.
+// With a fixed step of standard deviation s, as in NTRT, it cannot get closer than about s.
 TEST(HillClimbing, WithAFixedStepStallsAtItsLength) {
   const Outcome run = Minimize(HillClimbing(1.0 / 40, false, 1), Sphere, 10, 3, 1e-10, 4000, 1);
   EXPECT_GT(run.value, 1e-3);
@@ -248,7 +249,8 @@ TEST(Nlopt, EveryAlgorithmSolvesTheSphere) {
   }
 }
 
-// From one start Nelder-Mead ends in the local optimum that is next; many starts find the global.
+// From a single start Nelder-Mead ends in the nearest local optimum; many starts find the global
+// one.
 TEST(Nlopt, ManyStartsFindWhatOneDoesNot) {
   const Function f = [](const std::vector<double>& x) {  // optima at -10 (value 1) and 10 (value 0)
     return std::min(Sphere({x[0] + 10, x[1]}) + 1, Sphere({x[0] - 10, x[1]}));
@@ -257,7 +259,7 @@ TEST(Nlopt, ManyStartsFindWhatOneDoesNot) {
   EXPECT_LT(Minimize(Nlopt("nelder_mead", 8), f, 2, -9, 1e-3, 2000, 1).value, 1e-3);
 }
 
-// --- what all have in common ----------------------------------------------------------------
+// --- common properties ----------------------------------------------------------------------
 
 std::map<std::string, SearchSpec> All() {
   SearchSpec monte_carlo;
@@ -268,7 +270,7 @@ std::map<std::string, SearchSpec> All() {
           {"subplex", Nlopt("subplex", 3)}};
 }
 
-/// Half of the space fails.
+/// Fails in half of the space.
 double Holes(const UnitPoint& u) { return u[0] < 0.5 ? NAN : -Sphere({u[0] - 0.7, u[1] - 0.2}); }
 
 TEST(Optimizer, AsksTheSameAgainWhenToldTheSame) {
@@ -312,7 +314,7 @@ TEST(Optimizer, FailuresAreNeverBetterThanAnything) {
 
 TEST(Optimizer, StartsWhereItIsTold) {
   for (const auto& [name, search] : All()) {
-    if (name == "cma_es") continue;  // draws around it
+    if (name == "cma_es") continue;  // its draws are distributed around the start
     EXPECT_EQ(MakeOptimizer(search, {{0.6, 0.5}, std::nullopt, 7, 0})->Ask()[0],
               (UnitPoint{0.6, 0.5}))
         << name;

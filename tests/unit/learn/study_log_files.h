@@ -1,4 +1,5 @@
-/// Logs of studies for tests: whole ones, of this version and the one before, as bytes of a file.
+/// Logs of studies for tests: complete logs of this version and of the previous one, as bytes of a
+/// file
 #pragma once
 
 #include <cmath>
@@ -10,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "learn/log.h"
 #include "learn/log_rows.h"
+#include "learn/study_log.h"
 
 namespace taut::test {
 
 inline constexpr std::int64_t kLogged = 60;
 
-/// An evaluation with numbers that are hard to keep: every tenth failed, zeros with a sign.
+/// Returns an evaluation with difficult numbers: every tenth failed, zeros with a sign.
 inline Evaluation LoggedEvaluation(std::int64_t id) {
   Evaluation e;
   const auto x = static_cast<double>(id);
@@ -58,7 +59,7 @@ inline learn::LogContents NewLog() {
   return log;
 }
 
-/// Writes a log as a search does, one evaluation after the other. What went wrong, or nothing.
+/// Writes a log as a search does, one evaluation after the other. Returns the errors.
 inline std::string WriteLog(const std::string& path) {
   Diagnostics out;
   const auto log = learn::Log::Open(path, out);
@@ -67,7 +68,7 @@ inline std::string WriteLog(const std::string& path) {
   return out.Format();
 }
 
-/// The same log as version 1 had it.
+/// Writes the same log in the format of version 1.
 inline std::string WriteOldLog(const std::string& path) {
   const std::string now = path + ".now";
   if (std::string wrong = WriteLog(now); !wrong.empty()) return wrong;
@@ -88,7 +89,7 @@ inline std::string FileBytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Reads a log's file from its bytes. Nothing: it was refused.
+/// Reads a log's file from its bytes. Returns nothing if it is rejected.
 inline std::optional<learn::LogContents> ReadLog(const std::string& path, const std::string& bytes,
                                                  Diagnostics& out) {
   for (const char* beside : {"-wal", "-shm", "-journal"}) {
@@ -99,8 +100,8 @@ inline std::optional<learn::LogContents> ReadLog(const std::string& path, const 
   return log ? log->Read(out) : std::nullopt;
 }
 
-/// What is claimed to be good: each evaluation is one that was written, and without a word about
-/// damage it is all of them.
+/// Returns whether the contents are correct: each evaluation equals a written one, and if no damage
+/// is reported, all of them are present.
 inline bool IsTrue(const learn::LogContents& read) {
   if (read.damage.empty() && read.evaluations.size() != kLogged) return false;
   const learn::LogContents written = NewLog();

@@ -1,5 +1,4 @@
-// A study's log, when it is whole and when it is damaged: nothing is lost or changed without a
-// word.
+// A study's log, complete and damaged: no loss and no change without a message
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -17,7 +16,7 @@ using learn::Database;
 using learn::Log;
 using learn::LogContents;
 
-/// Spoils bits behind the first `from` bytes.
+/// Flips bits after the first `from` bytes.
 void FlipBits(std::string& bytes, int count, std::size_t from, std::mt19937& random) {
   for (; count > 0; --count) {
     char& byte = bytes[from + random() % (bytes.size() - from)];
@@ -46,7 +45,7 @@ class StudyLog : public testing::Test {
     EXPECT_EQ(WriteOldLog((folder_ / "old").string()), "");
     return FileBytes((folder_ / "old").string());
   }
-  /// The log after a change by SQL.
+  /// Returns the log after a change by SQL.
   std::optional<LogContents> After(const std::string& sql, Diagnostics& out) {
     std::ofstream(path_, std::ios::binary) << Whole();
     {
@@ -92,7 +91,7 @@ TEST_F(StudyLog, GivesBackEveryBit) {
   EXPECT_EQ(log->parameters[1].targets, (std::vector<std::string>{"hold.b", "hold.c"}));
 }
 
-// As on a read-only medium. Root may write everywhere, so that a child gives up being it.
+// As on a read-only medium. Root may write everywhere, so that a child process drops its rights.
 TEST_F(StudyLog, OpensWhereItsFolderCannotBeWritten) {
   const std::string odd = (folder_ / "50% #1? study.sqlite").string();
   std::ofstream(odd, std::ios::binary) << Whole();
@@ -136,10 +135,10 @@ TEST_F(StudyLog, OfVersionOneIsReadAndBecomesOneOfThisVersion) {
 }
 
 TEST_F(StudyLog, EveryChangeIsNamed) {
-  const std::string changed = "evaluation 3: its checksum says that it was changed";
+  const std::string changed = "evaluation 3: its checksum does not match its content";
   for (const auto& [sql, damage] : std::vector<std::pair<std::string, std::string>>{
            {"UPDATE evaluation SET parameter_values = '[]' WHERE id = 3",
-            "evaluation 3: 0 values where the study has 2 parameters"},
+            "evaluation 3: it has 0 values, but the study has 2 parameters"},
            {"UPDATE evaluation SET parameter_values = '[1, null]' WHERE id = 3",
             "evaluation 3: parameter_values is not a list of numbers"},
            {"UPDATE evaluation SET parameter_values = '[1, 1e999]' WHERE id = 3",
@@ -148,9 +147,9 @@ TEST_F(StudyLog, EveryChangeIsNamed) {
             "evaluation 3: the value of a is beyond its bounds"},
            {"UPDATE evaluation SET score = score + 1e-12 WHERE id = 3", changed},
            {"UPDATE evaluation SET score = NULL WHERE id = 3",
-            "evaluation 3: its score does not fit its failure"},
+            "evaluation 3: its score and failure are inconsistent"},
            {"UPDATE evaluation SET score = 9e999 WHERE id = 3",
-            "evaluation 3: its score does not fit its failure"},
+            "evaluation 3: its score and failure are inconsistent"},
            {"UPDATE evaluation SET score = x'00' WHERE id = 3",
             "evaluation 3: score is not a number"},
            {"UPDATE evaluation SET failed = x'00' WHERE id = 3",
@@ -158,7 +157,7 @@ TEST_F(StudyLog, EveryChangeIsNamed) {
            {"UPDATE evaluation SET search = 1 << 40 WHERE id = 3",
             "evaluation 3: search is too large"},
            {"UPDATE evaluation SET search = -1 WHERE id = 3",
-            "evaluation 3: a negative id or search"},
+            "evaluation 3: its id or search is negative"},
            {"UPDATE evaluation SET elapsed_s = 9e999 WHERE id = 3",
             "evaluation 3: elapsed_s is not a time"},
            {"UPDATE world SET seed = '12x' WHERE evaluation = 3 AND world = 1",
@@ -176,7 +175,7 @@ TEST_F(StudyLog, EveryChangeIsNamed) {
     ASSERT_TRUE(log) << out.Format();
     ASSERT_EQ(log->damage.size(), 2u) << sql;
     EXPECT_EQ(log->damage[0], damage) << sql;
-    EXPECT_EQ(log->damage[1], "60 evaluations were written, 59 of them are good");
+    EXPECT_EQ(log->damage[1], "60 evaluations were written, 59 of them are intact");
     EXPECT_EQ(log->evaluations.size(), 59u);
     EXPECT_TRUE(IsTrue(*log)) << sql;
   }
@@ -184,13 +183,14 @@ TEST_F(StudyLog, EveryChangeIsNamed) {
   const auto log = After("DELETE FROM evaluation WHERE id = 59", out);
   ASSERT_TRUE(log) << out.Format();
   EXPECT_EQ(log->damage,
-            std::vector<std::string>{"60 evaluations were written, 59 of them are good"});
+            std::vector<std::string>{"60 evaluations were written, 59 of them are intact"});
 }
 
 TEST_F(StudyLog, WithOtherFactsParametersOrTablesIsRefused) {
   const std::string useless =
-      " (without that no evaluation means anything; give `--out` another folder)\n";
-  const std::string changed = "is damaged: facts or parameters were changed" + useless;
+      " (its evaluations are unusable; choose another folder with `--out`)\n";
+  const std::string changed =
+      "the log is damaged: its metadata or parameters were changed" + useless;
   for (const auto& [sql, complaint] : std::vector<std::pair<std::string, std::string>>{
            {"UPDATE fact SET value = 'x' WHERE name = 'study'", changed},
            {"DELETE FROM fact WHERE name = 'study'", changed},
@@ -200,21 +200,22 @@ TEST_F(StudyLog, WithOtherFactsParametersOrTablesIsRefused) {
            {"DELETE FROM parameter", changed},
            {"PRAGMA application_id = 1", changed},
            {"UPDATE fact SET value = x'00' WHERE name = 'study'",
-            "is damaged: a fact's value is not text" + useless},
+            "the log is damaged: a fact's value is not text" + useless},
            {"UPDATE parameter SET high = 9e999 WHERE position = 1",
-            "is damaged: parameter 1: low and high are no bounds" + useless},
+            "the log is damaged: parameter 1: low and high are not valid bounds" + useless},
            {"UPDATE parameter SET targets = '[1]' WHERE position = 1",
-            "is damaged: parameter 1: targets is not a list of texts" + useless},
+            "the log is damaged: parameter 1: targets is not a list of strings" + useless},
            {"UPDATE parameter SET position = 9 WHERE position = 0",
-            "is damaged: parameter 1: position has a gap" + useless},
-           {"CREATE TABLE other (x)", "is not the log of a study: holds other tables\n"},
+            "the log is damaged: parameter 1: position has a gap" + useless},
+           {"CREATE TABLE other (x)",
+            "the file is not the log of a study: it contains other tables\n"},
            {"CREATE TRIGGER t AFTER INSERT ON fact BEGIN DELETE FROM world; END",
-            "is not the log of a study: holds other tables\n"},
+            "the file is not the log of a study: it contains other tables\n"},
            {"DROP TABLE world; CREATE VIEW world AS SELECT * FROM evaluation",
-            "is not the log of a study: holds other tables\n"},
+            "the file is not the log of a study: it contains other tables\n"},
            {"ALTER TABLE world ADD COLUMN x; UPDATE fact SET value = '7' WHERE name = "
             "'log_version'",
-            "has version 7; this taut reads versions 1 to 2\n"}}) {
+            "the log has version 7; this taut reads versions 1 to 2\n"}}) {
     Diagnostics out;
     EXPECT_FALSE(After(sql, out)) << sql;
     EXPECT_EQ(WithoutFolder(out.Format()), "study.sqlite: error: " + complaint) << sql;
@@ -253,7 +254,7 @@ TEST_F(StudyLog, DamageIsNeverSilent) {
       continue;
     }
     ++(log->damage.empty() ? good : damaged);
-    if (i % 6 == 5) continue;  // version 1 has nothing to tell a changed number by
+    if (i % 6 == 5) continue;  // version 1 cannot detect a changed number
     EXPECT_TRUE(IsTrue(*log)) << i;
     if (!log->damage.empty()) saved += log->evaluations.size();
   }
@@ -302,9 +303,10 @@ TEST_F(StudyLog, SaysWhenItIsGone) {
   const std::string moved = folder_.string() + "_moved";
   fs::rename(folder_, moved);
   EXPECT_FALSE(log->Add(LoggedEvaluation(1), out));
-  EXPECT_EQ(WithoutFolder(out.Format()),
-            "study.sqlite: error: is gone: it or its folder was deleted or moved during the search "
-            "(if it was moved, `--out` with its new place goes on)\n");
+  EXPECT_EQ(
+      WithoutFolder(out.Format()),
+      "study.sqlite: error: the log or its folder was deleted or moved during the search (if it "
+      "was moved, resume with `--out` and its new path)\n");
   EXPECT_FALSE(log->IsThere(out));
   fs::rename(moved, folder_);
   EXPECT_TRUE(log->IsThere(out)) << "back again";

@@ -1,4 +1,4 @@
-// The path of a cable against cases by hand, and against differences of its length.
+// Path of a cable against cases in closed form, and against differences of its length
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using Path = std::vector<Point>;
 
 int Count(const Path& path) { return static_cast<int>(path.size()); }
 PathLength<Vec3> Measure(Path& path) { return MeasurePath(Count(path), path.data()); }
-/// Not inline: g++ 12 would warn falsely of points behind the last.
+/// Not inline, because g++ 12 would falsely warn of points beyond the last.
 [[gnu::noinline]] Vec3 Pull(const Path& path, int i) { return PullAt(Count(path), path.data(), i); }
 
 void ExpectVec(const Vec3& found, const Vec3& expected, double tolerance = 1e-15) {
@@ -26,7 +26,7 @@ void ExpectVec(const Vec3& found, const Vec3& expected, double tolerance = 1e-15
   EXPECT_NEAR(found.z, expected.z, tolerance);
 }
 
-/// A body in motion, and what a path does to it.
+/// A moving body, with the force and torque of a path
 struct Body {
   Vec3 origin, v, w;
   Vec3 force, torque;
@@ -59,7 +59,7 @@ TEST(CablePath, SpanBetweenPointsInOnePlacePullsWithNothing) {
   path[1].v = {5, 6, 7};
   const PathLength<Vec3> measured = Measure(path);
   EXPECT_EQ(measured.l, 3);
-  EXPECT_EQ(measured.dl, 7);  // the first span's; the second has no direction to change along
+  EXPECT_EQ(measured.dl, 7);  // of the first span; the second has no direction
   ExpectVec(path[2].u, {0, 0, 0});
   ExpectVec(Pull(path, 1), {0, 0, -1});
   ExpectVec(Pull(path, 2), {0, 1, 0});
@@ -79,7 +79,7 @@ TEST(CablePath, LengthIsTheSameWithoutDirections) {
 }
 
 TEST(CablePath, LeversAreThoseOfTheForcesOnTheBody) {
-  // A bar along x, pulled up at one end from 1 m above it, down at the other from 2 m below.
+  // A bar along x, pulled up at one end from 1 m above, down at the other end from 2 m below
   Body world, bar;
   const Vec3 right{0.5, 0, 0}, left{-0.5, 0, 0};
   Body* const bodies[4] = {&world, &bar, &bar, &world};
@@ -91,7 +91,7 @@ TEST(CablePath, LeversAreThoseOfTheForcesOnTheBody) {
   ExpectVec(world.force, {0, 0, 0});
 }
 
-/// Random paths over three bodies that move.
+/// Random paths over three moving bodies
 class RandomPath : public ::testing::Test {
  protected:
   Vec3 Draw(double size) {
@@ -110,7 +110,7 @@ class RandomPath : public ::testing::Test {
     for (int i = 0; i < 5; ++i) path.push_back(On(BodyOf(i), arms_[static_cast<std::size_t>(i)]));
     return path;
   }
-  /// The length a time `t` later; arms turn about w.
+  /// Returns the length after a time `t`; arms rotate about w.
   double LengthAt(double t) {
     return MeasureThrough<Vec3>(5,
                                 [&](int i) {

@@ -1,5 +1,5 @@
-// The oracle is the C library's long double functions (64 bits of mantissa or more), which are
-// good to about 0.001 units in the last place of a double.
+// Elementary functions against an oracle: the C library's long double functions (64 bits of
+// mantissa or more), which are accurate to about 0.001 units in the last place of a double.
 #include "math/elementary.h"
 #include "tests/constants.h"
 
@@ -20,9 +20,9 @@ static_assert(std::numeric_limits<long double>::digits >= 64,
               "the oracle needs a wide long double");
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kBoundUlp = 0.502;  // 0.5001 ours, the rest the oracle's
+constexpr double kBoundUlp = 0.502;  // 0.5001 of the functions, the rest of the oracle
 
-/// Distance of `got` from the true value, in units of the true value's last place.
+/// Returns the distance of `got` from the exact value, in units of its last place.
 double UlpsOff(double got, long double wanted) {
   const double rounded = std::fabs(static_cast<double>(wanted));
   const double ulp = std::max(std::nextafter(rounded, kInf) - rounded, 0x1p-1074);
@@ -32,7 +32,8 @@ double UlpsOff(double got, long double wanted) {
 using Ours = double (*)(double);
 using Theirs = long double (*)(long double);
 
-/// The worst of 20 000 arguments of either sign, their sizes spread evenly over the exponents.
+/// Returns the largest error over 20 000 arguments, with either sign and sizes spread evenly over
+/// the exponents.
 double WorstUlps(Ours ours, Theirs theirs, double smallest, double largest, bool negative = true) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> log_size(std::log2(smallest), std::log2(largest));
@@ -54,7 +55,7 @@ TEST(Elementary, SinCosAndTanAreCorrectlyRoundedUpTo1e9) {
   EXPECT_LE(WorstUlps(Tan, tanl, 0.1, 10), kBoundUlp);
 }
 
-// There the result is all cancellation: sin(fl(k pi / 2)) needs every bit of the reduction.
+// Cancellation: sin(fl(k pi / 2)) needs every bit of the argument reduction.
 TEST(Elementary, SinAndCosKeepTheirDigitsNextToMultiplesOfHalfPi) {
   for (int k = 1; k < 5000; ++k) {
     const double x = k * (std::numbers::pi / 2);
@@ -88,7 +89,7 @@ TEST(Elementary, Atan2IsCorrectlyRoundedInEveryQuadrantAndScale) {
                  other = i % 3 == 0 ? exponent(random) : base + close(random);
     const double y = (i & 1 ? -1 : 1) * std::pow(10.0, base),
                  x = (i & 2 ? -1 : 1) * std::pow(10.0, other);
-    if (std::fabs(y / x) < 0x1p-1000) continue;  // subnormal results have a bound of their own
+    if (std::fabs(y / x) < 0x1p-1000) continue;  // subnormal results have a separate bound
     EXPECT_LE(UlpsOff(Atan2(y, x), atan2l(y, x)), kBoundUlp) << y << " " << x;
   }
 }
@@ -113,7 +114,7 @@ TEST(Elementary, PowIsCorrectlyRounded) {
   std::uniform_real_distribution<double> log2_base(-60, 60), exponent(-11, 11);
   for (int i = 0; i < 20'000; ++i) {
     const double base = std::exp2(log2_base(random)), power = exponent(random);
-    // The oracle's own error grows with the size of the logarithm of the result.
+    // The oracle's error grows with the logarithm of the result.
     EXPECT_LE(UlpsOff(Pow(base, power), powl(base, power)), 0.51) << base << " ^ " << power;
   }
 }
@@ -159,7 +160,7 @@ TEST(Elementary, SpecialCasesFollowC) {
 }
 
 // The values are mpmath's, rounded to double. A compiler that contracts or reorders breaks the
-// double-double arithmetic; these bits are what every machine has to give.
+// double-double arithmetic; every machine must give these bits.
 TEST(Elementary, TheBitsAreThese) {
   EXPECT_EQ(Sin(1.0), 0x1.aed548f090ceep-1);
   EXPECT_EQ(Cos(1e6), 0x1.df9df9906d32cp-1);

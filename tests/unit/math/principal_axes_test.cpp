@@ -1,4 +1,4 @@
-// Eigenvectors and eigenvalues of symmetric 3x3 matrices.
+// Eigenvectors and eigenvalues of symmetric 3x3 matrices
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Vec3 Times(const Inertia& m, const Vec3& a) {
           m.xz * a.x + m.yz * a.y + m.zz * a.z};
 }
 
-/// A dozen rotations of a matrix of size 1 to 3 round to this, at most.
+/// Bound of rounding after a dozen rotations of a matrix of size 1 to 3
 constexpr double kRounding = 1e-14;
 
 void ExpectAxesOf(const Inertia& inertia, double tolerance) {

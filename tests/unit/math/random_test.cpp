@@ -1,4 +1,5 @@
-// Expectations come from the generator's authors and from closed forms of the distributions.
+// Random numbers, with expectations from the generator's authors and from closed forms of the
+// distributions
 #include "math/random.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@
 namespace taut::math {
 namespace {
 
-// kat_vectors of Random123 1.14.0, the reference implementation of the paper.
+// kat_vectors of Random123 1.14.0, the reference implementation of the paper
 TEST(Random, PhiloxGivesItsAuthorsKnownAnswers) {
   using Counter = std::array<std::uint32_t, 4>;
   EXPECT_EQ(Philox({0, 0, 0, 0}, {0, 0}),
@@ -92,7 +93,7 @@ TEST(Random, NormalNumbersFollowTheNormalDistributionUpToTheTail) {
   EXPECT_NEAR(count / n, beyond, 5 * std::sqrt(beyond / n));
 }
 
-// Fixed for all compilers, instruction sets and C libraries.
+// Equal for all compilers, instruction sets and C libraries
 TEST(Random, BitsAreTheSameEverywhere) {
   Random random(42, 1, 9);
   std::uint64_t hash = 0;

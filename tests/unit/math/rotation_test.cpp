@@ -1,4 +1,4 @@
-// Rotations as matrices and quaternions.
+// Rotations as matrices and quaternions
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace taut {
 namespace {
 
-/// Columns are what Rotate makes of the axes.
+/// Expects that the columns are the axes rotated by Rotate.
 void ExpectMatrix(const double r[9], const Quat& q, double tolerance) {
   const Vec3 axes[3] = {Rotate(q, {1, 0, 0}), Rotate(q, {0, 1, 0}), Rotate(q, {0, 0, 1})};
   for (int i = 0; i < 3; ++i) {

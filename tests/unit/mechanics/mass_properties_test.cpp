@@ -1,3 +1,4 @@
+// Mass properties of solids, and loads at the start, against closed forms and point clouds
 #include "mechanics/mass_properties.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ void ExpectNear(const Inertia& got, const Inertia& wanted, double tolerance) {
   EXPECT_NEAR(got.yz, wanted.yz, tolerance);
 }
 
-/// An independent oracle: the inertia of many equal points, as the definition has it.
+/// Independent oracle: the inertia of many equal points, by definition.
 Inertia PointCloud(const std::vector<Vec3>& points, double mass) {
   Vec3 com;
   for (const Vec3& p : points) com = com + (1.0 / static_cast<double>(points.size())) * p;
@@ -52,7 +53,7 @@ TEST(MassProperties, ACylinderAlongAnAxisHasTheTextbookMoments) {
 }
 
 TEST(MassProperties, ASlantedCylinderIsTheSumOfItsPoints) {
-  // Points of a cylinder about z, turned by a rotation that the cylinder's ends get, too.
+  // Points of a cylinder about z, rotated like the cylinder's ends.
   const double half = 0.25 * std::numbers::pi, s = std::sin(half) / std::sqrt(14.0);
   const Quat q{std::cos(half), s, 2 * s, 3 * s};
   const double r = 0.3, l = 2.0;
@@ -70,7 +71,7 @@ TEST(MassProperties, ASlantedCylinderIsTheSumOfItsPoints) {
   const MassProperties c =
       SolidCylinder(Rotate(q, {0, 0, -l / 2}), Rotate(q, {0, 0, l / 2}), r, 5.0);
   ExpectNear(c.inertia_kg_m2, PointCloud(points, 5.0),
-             1e-3);  // the grid's own error is 5 l^2 / 12 n^2
+             1e-3);  // discretization error of the grid: 5 l^2 / 12 n^2
 }
 
 TEST(MassProperties, ATurnedBoxIsTheSumOfItsPoints) {
@@ -91,7 +92,7 @@ TEST(MassProperties, ATurnedBoxIsTheSumOfItsPoints) {
 }
 
 TEST(MassProperties, CombiningFollowsParallelAxes) {
-  // A dumbbell: two spheres of 2 kg, 1 m apart, and a massless third.
+  // A dumbbell: two spheres of 2 kg, 1 m apart, and a massless third sphere
   const MassProperties whole =
       Combine({SolidSphere({0, 0, 0}, 0.1, 2), SolidSphere({1, 0, 0}, 0.1, 2),
                SolidSphere({5, 5, 5}, 0.1, 0)});

@@ -1,5 +1,5 @@
-// What rods carry along them and what holds anchored bodies (taut/statics.h), against closed forms
-// (docs/theory/loads.md).
+// Axial forces of rods and reactions of anchored bodies (taut/statics.h), against closed forms
+// (docs/theory/loads.md)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ AxialForce Only(const ModelDef& def, const std::vector<BodyForce>& forces) {
   return struts.empty() ? AxialForce{} : struts[0].axial;
 }
 
-/// A rod with balls at its ends, 0.4 m and 0.3 kg.
+/// A rod of 0.4 m and 0.3 kg with balls at its ends
 ModelDef Rod(const Vec3& middle_m, const Vec3& along, double start_kg, double end_kg) {
   ModelDef def;
   scenes::Parts parts;
@@ -33,7 +33,7 @@ ModelDef Rod(const Vec3& middle_m, const Vec3& along, double start_kg, double en
   return def;
 }
 
-/// N(s) is the weight of what hangs below s.
+/// N(s) is the weight of the part below s.
 TEST(StrutForces, AHangingRodBearsNothingAtItsLowerEndAndAllAtItsUpper) {
   for (const auto& [low_kg, high_kg] : {std::pair(0.0, 0.0), {0.1, 0.0}, {0.1, 0.25}}) {
     const ModelDef def = Rod({0, 0, 1}, {0, 0, 1}, low_kg, high_kg);
@@ -45,7 +45,7 @@ TEST(StrutForces, AHangingRodBearsNothingAtItsLowerEndAndAllAtItsUpper) {
   }
 }
 
-/// Held at a third of its length from above, it hangs below and stands above.
+/// Held at a third of its length from above: the part below hangs, the part above stands.
 TEST(StrutForces, ARodThatIsHeldBetweenItsEndsBearsBothWays) {
   const ModelDef def = Rod({0, 0, 1}, {0, 0, 1}, 0, 0);
   const AxialForce n = Only(def, {{0, {0, 0, 1.2 - 0.4 / 3}, {0, 0, 0.3 * kG}}});
@@ -54,7 +54,8 @@ TEST(StrutForces, ARodThatIsHeldBetweenItsEndsBearsBothWays) {
 }
 
 TEST(StrutForces, ALeaningLadderIsPressedByItsFootAndItsWeight) {
-  // Smooth wall at x = 0.5, rough ground: the wall pushes with m g / 2 tan(a), a from the ground.
+  // Smooth wall at x = 0.5, rough ground: the wall's force is m g / 2 / tan(a), with a from the
+  // ground.
   const double c = 0.5, s = std::sqrt(0.75), m = 2;
   ModelDef def;
   scenes::AddRod(def, "ladder", m, 0.01, {0, 0, 0}, {c, 0, s}, {});
@@ -66,7 +67,7 @@ TEST(StrutForces, ALeaningLadderIsPressedByItsFootAndItsWeight) {
   EXPECT_NEAR(n.middle_n, -(wall * c + m * kG * s / 2), 1e-12);
 }
 
-/// m w^2 / 2 l (l^2 / 4 - x^2), greatest in its middle, where no force acts.
+/// m w^2 / 2 l (l^2 / 4 - x^2), largest in its middle, where no force acts
 TEST(StrutForces, ASpinningRodIsPulledMostInItsMiddle) {
   ModelDef def = Rod({}, {1, 0, 0}, 0, 0);
   def.gravity_m_per_s2 = {};
@@ -77,7 +78,7 @@ TEST(StrutForces, ASpinningRodIsPulledMostInItsMiddle) {
   EXPECT_NEAR(n.least_n, 0, 1e-12);
 }
 
-/// Swung about its end by a pin: m w^2 l / 2 there, nothing at the other end.
+/// Swung about its end by a pin: m w^2 l / 2 at the pin, zero at the other end
 TEST(StrutForces, ASlungRodIsPulledMostAtItsPin) {
   ModelDef def = Rod({0.2, 0, 0}, {1, 0, 0}, 0, 0);
   def.gravity_m_per_s2 = {};
@@ -88,12 +89,12 @@ TEST(StrutForces, ASlungRodIsPulledMostAtItsPin) {
   EXPECT_NEAR(n.least_n, 0, 1e-12);
 }
 
-/// Between two forces the crest of m w^2 / 2 l (l^2 / 4 - x^2) + a x / l is at x = a / m w^2.
+/// Between two forces the maximum of m w^2 / 2 l (l^2 / 4 - x^2) + a x / l is at x = a / m w^2.
 TEST(StrutForces, TheGreatestForceMayBeBetweenForces) {
   ModelDef def = Rod({}, {1, 0, 0}, 0, 0);
   def.gravity_m_per_s2 = {};
   def.bodies[0].angular_velocity_rad_per_s = {0, 0, 10};
-  const double spin = 0.3 * 100, pull = 0.1 * spin;  // crest 0.1 m from the middle
+  const double spin = 0.3 * 100, pull = 0.1 * spin;  // maximum 0.1 m from the middle
   const AxialForce n = Only(def, {{0, {0.2, 0, 0}, {pull, 0, 0}}});
   const auto closed = [&](double x) {
     return pull * (0.5 + x / 0.4) + spin / 0.8 * (0.04 - x * x);
@@ -116,7 +117,8 @@ TEST(StrutForces, APrismsStrutIsPressedByTheCablesAtItsEnd) {
     return Vec3{0.1 * std::cos(a), 0.1 * std::sin(a), 0.2};
   };
   for (int i = 0; i < 3; ++i) scenes::AddRod(def, "strut", 0.03, 0.005, low(i), high(i), {});
-  // Per length: the sides as the struts, the triangles a root of 3 of it (Connelly and Terrell).
+  // Force per length: equal in side cables and struts, smaller by sqrt(3) in the triangles
+  // (Connelly and Terrell).
   const double per_length = 100;
   const auto cable = [&](int a, const Vec3& from, int b, const Vec3& to, double n_per_m) {
     const Vec3 d = to - from;
@@ -139,7 +141,7 @@ TEST(StrutForces, APrismsStrutIsPressedByTheCablesAtItsEnd) {
   }
 }
 
-/// Two bars from the world hold a rod's lower end, a cable its upper one.
+/// A ball joint in the world holds a mast's lower end, two cables hold its upper end.
 TEST(StrutForces, JointsActOnRods) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
@@ -153,7 +155,7 @@ TEST(StrutForces, JointsActOnRods) {
   }
   const auto loads = StartJointLoads(def);
   const AxialForce n = Only(def, StartForces(def, loads));
-  EXPECT_NEAR(n.least_n, -2 * 10 * 0.8, 1e-9);  // 10 N each, up by 4 in 5
+  EXPECT_NEAR(n.least_n, -2 * 10 * 0.8, 1e-9);  // 10 N each, with a vertical share of 4/5
   EXPECT_NEAR(n.greatest_n, n.least_n, 1e-9);
 }
 
@@ -175,7 +177,8 @@ TEST(AnchorReactions, AnAnchorHoldsWeightsCablesAndJoints) {
   EXPECT_NEAR(force.x, 0, 1e-9);
   EXPECT_NEAR(force.y, -10, 1e-9);
   EXPECT_NEAR(force.z, 5 * kG, 1e-9);
-  // The rod hangs 0.5 m ahead: its weight turns +x down, which is about +y, and is held back.
+  // The rod hangs 0.5 m ahead in +x: its weight exerts a torque about +y, which the reaction
+  // balances.
   EXPECT_NEAR(torque.x, 0, 1e-9);
   EXPECT_NEAR(torque.y, -0.5 * 3 * kG, 1e-9);
   EXPECT_NEAR(torque.z, 0, 1e-9);

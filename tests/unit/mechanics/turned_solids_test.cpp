@@ -1,5 +1,4 @@
-// Masses with an inertia of their own, and boxes that are turned in their part: read, moved,
-// written.
+// Masses with given inertia, and boxes rotated in their part: read, moved, written
 #include <cmath>
 
 #include "math/vec.h"
@@ -27,7 +26,7 @@ class TurnedSolids : public ExperimentFolder {
     EXPECT_FALSE(Read(yaml, out));
     return out.Format();
   }
-  /// Writes it and reads it back; ModelYaml compares the two.
+  /// Writes the robot and reads it back; ModelYaml compares the two.
   std::string Written(const RobotSpec& robot) const {
     Diagnostics out;
     const auto text = ModelYaml(robot, "", out);
@@ -54,7 +53,7 @@ parts:
 structure: [{part: foot, rotate: {axis: x, angle_rad: pi / 2}}]
 )";
 
-/// A quarter turn about x makes y of z: yy and zz change places, xy becomes xz, xz minus xy.
+/// A quarter turn about x maps z to y: yy and zz are exchanged, xy becomes xz, xz minus xy.
 TEST_F(TurnedSolids, AnInertiaIsInItsPartsAxes) {
   const RobotSpec robot =
       Good(std::string(kPart) +
@@ -102,7 +101,8 @@ TEST_F(TurnedSolids, MistakesAreNamed) {
     return Bad("nodes: {a: [0, 0, 1]}\nbuilders: [{match: a, point_mass: {mass_kg: 1, " + keys +
                "}}]\n");
   };
-  EXPECT_NE(with("inertia_kg_m2: [1, 2]").find("point_mass.inertia_kg_m2 has 2 numbers (three"),
+  EXPECT_NE(with("inertia_kg_m2: [1, 2]")
+                .find("point_mass.inertia_kg_m2 must have three or six numbers, got 2"),
             std::string::npos);
   EXPECT_NE(with("inertia_kg_m2: [1, 1, 1], radius_m: 0.1")
                 .find("point_mass has both inertia_kg_m2 and radius_m"),
@@ -110,7 +110,7 @@ TEST_F(TurnedSolids, MistakesAreNamed) {
   EXPECT_NE(Bad("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{name: p, nodes: [a, b]}]\nbuilders: "
                 "[{match: p, box: {width_m: 0.1, height_m: 0.1, mass_kg: 1, rotate: {axis: x, "
                 "angle_rad: 1}}}]\n")
-                .find("a box along a pair lies as its nodes say"),
+                .find("a box along a pair cannot be rotated"),
             std::string::npos);
 }
 

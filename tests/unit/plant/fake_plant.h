@@ -1,4 +1,4 @@
-/// A plant that is none: what it observes is set by hand. One lane.
+/// Plant without a robot, of one lane, whose observations are set by the test
 #pragma once
 
 #include "plant/command_rows.h"
@@ -17,7 +17,7 @@ class FakePlant final : public Plant {
     seen_.time_s = &time_s;
     seen_.cables = {row(0), row(1), row(2), row(3), row(4), row(5)};
   }
-  /// Every cable reads this from now on.
+  /// Sets the readings of every cable.
   void Show(const CableState& state) {
     const double values[] = {state.rest_length_m, state.length_m,  state.rate_m_per_s,
                              state.tension_n,     state.elastic_n, state.stiffness_n_per_m};
@@ -30,7 +30,7 @@ class FakePlant final : public Plant {
   Commands& commands() override { return commands_; }
   void Advance(const double*, const double* to_s) override { time_s = *to_s; }
   void Restart(int) override { time_s = 0; }
-  bool Goes(int) const override { return true; }
+  bool IsRunning(int) const override { return true; }
 
   double time_s = 0;
 

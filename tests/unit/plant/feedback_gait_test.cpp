@@ -1,8 +1,7 @@
-// Gaits whose oscillators hear cables and a goal: files, what is wrong with them, and how they
-// play.
+// Gaits whose oscillators have feedback from cables and a goal: files, errors, and signals
 #include <cmath>
 
-#include "plant/gait_kinds.h"
+#include "plant/player_kinds.h"
 #include "tests/constants.h"
 #include "unit/description/experiment_fixture.h"
 
@@ -47,7 +46,7 @@ class FeedbackGait : public ExperimentFolder {
     EXPECT_TRUE(gait) << out.Format();
     return gait.value_or(GaitSpec{});
   }
-  /// The complaints about the experiment with a controller that plays the gait, and more keys.
+  /// Returns the errors of the experiment with a controller that plays the gait, and more keys.
   std::string PlayedComplaints(const std::string& gait, const std::string& keys) {
     Write("g.yaml", gait);
     std::string text = kExperiment;
@@ -99,21 +98,21 @@ TEST_F(FeedbackGait, WrongNetworksAreAnswered) {
          "if 3, place");
   Expect("[0, 3, 0]", "[0, 3]",
          "18:9: error: goal_network: neuron h2 has 2 weights, but h1 has 3 (all hidden neurons "
-         "have the same inputs)");
+         "must have the same inputs)");
   Expect("[1, -2]", "[1]",
          "20:9: error: neuron one_phase has 1 weights, but there are 2 hidden neurons");
   Expect("name: one_phase", "name: one_phas",
-         "20:9: error: goal_network.outputs: there is nothing called one_phas (did you mean "
+         "20:9: error: goal_network.outputs: there is no output called one_phas (did you mean "
          "\"one_phase\"?)");
   Expect("name: h2", "name: h1",
-         "18:9: error: there are two hidden neurons h1 (the first is in line 17)");
+         "18:9: error: two hidden neurons are called h1 (the first is in line 17)");
   Expect("name: h1", "name: one_phase",
-         "20:9: error: there is a hidden neuron one_phase, too (numbers are called after the "
-         "neurons: give each its own name)");
+         "20:9: error: a hidden neuron and an output are both called one_phase (give each neuron a "
+         "different name: parameters are named after neurons)");
   Expect("weights: [1, -2]", "weights: [1, x]",
-         "20:40: error: neuron.weights: unknown name \"x\" (there are no parameters)");
+         "20:40: error: neuron.weights: unknown name \"x\" (no parameters are defined)");
   Expect("name: two", "name: one",
-         "11:7: error: there are two oscillators one (the first is in line 10)");
+         "11:7: error: two oscillators are called one (the first is in line 10)");
 }
 
 TEST_F(FeedbackGait, HiddenNeuronsAre32AtMost) {
@@ -124,7 +123,7 @@ TEST_F(FeedbackGait, HiddenNeuronsAre32AtMost) {
   ChangeFile("g.yaml", kGait, "      - {name: h2, weights: [0, 3, 0], bias: 0.25}\n", more);
   Diagnostics out;
   EXPECT_FALSE(LoadGait(Path("g.yaml"), out));
-  EXPECT_NE(out.Format().find("error: goal_network.hidden must have 1 to 32 neurons, not 33\n"),
+  EXPECT_NE(out.Format().find("error: goal_network.hidden must have 1 to 32 neurons, got 33\n"),
             std::string::npos)
       << out.Format();
 }
@@ -135,18 +134,17 @@ TEST_F(FeedbackGait, WhatDoesNotFitTheRobotIsAnswered) {
     return text.replace(text.find(from), from.size(), to);
   };
   EXPECT_EQ(PlayedComplaints(changed("cables: right", "cables: driven"), kGoal),
-            "g.yaml:11:7: error: oscillators two: left has an oscillator already, of one (a cable "
-            "has one oscillator)\n");
+            "g.yaml:11:7: error: oscillators two: left already has an oscillator, of one (a cable "
+            "can have only one oscillator)\n");
   EXPECT_EQ(PlayedComplaints(changed("left.right", "left.top"), kGoal),
             "g.yaml:14:7: error: feedback_cpg.groups: pair has no group left.top (one of: "
             "left.right, right.left)\n");
   EXPECT_EQ(PlayedComplaints(kGait, ""),
             "g.yaml:16:5: error: gait hearing has a goal_network, but the experiment has no `goal` "
-            "(say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: "
-            "...})\n");
+            "(add its position and the tracked body: `goal: {at_m: [3.5, 0, 0], body: ...}`)\n");
 }
 
-/// A gait alone in some lanes, with what it hears set by hand.
+/// A gait alone in some lanes, with its feedback set by the test
 struct Playing {
   Playing(const std::vector<const GaitSpec*>& gaits, const RobotSpec& robot) {
     plant::GaitSetup setup;
@@ -178,8 +176,8 @@ struct Playing {
   std::vector<double> time_s, goal, cables;
 };
 
-// Without couplings the phase is 2 pi v t + k_p f_p t from the second tick on, for what is heard at
-// a tick acts from then on; f_p is the network's, here with the library's functions.
+// Without couplings the phase is 2 pi v t + k_p f_p t from the second tick on, because feedback at
+// a tick acts from that tick on; f_p is the network's output, computed here with library functions.
 TEST_F(FeedbackGait, TheGoalHastensItsOscillator) {
   Write("g.yaml", kGait);
   PlayedComplaints(kGait, kGoal);
@@ -224,7 +222,7 @@ TEST_F(FeedbackGait, ALaneHearsItsOwnGoalAndHasItsOwnWeights) {
     EXPECT_EQ(together.player->signal()[4 + j], alone.player->signal()[1]) << j;
     EXPECT_NE(together.player->signal()[j], together.player->signal()[(j + 1) % 4]) << j;
   }
-  // A lane that begins anew, alone, does as it did; the others do not notice.
+  // A restarted lane repeats its signal; the other lanes are not affected.
   const std::vector<double> before = together.player->signal();
   together.player->Restart(2, gaits[2]);
   together.number[2] = 0;
@@ -232,7 +230,7 @@ TEST_F(FeedbackGait, ALaneHearsItsOwnGoalAndHasItsOwnWeights) {
   EXPECT_EQ(together.player->signal()[2], before[2]);
 }
 
-// The amplitude's feedback is what a cable's network says of its stretch and its tension.
+// The feedback of the amplitude is the output of a cable's network for its stretch and its tension.
 TEST_F(FeedbackGait, CablesAreHeard) {
   std::string text = kGait;
   const std::size_t from = text.find("  goal_network");
@@ -249,7 +247,7 @@ TEST_F(FeedbackGait, CablesAreHeard) {
   const GaitSpec& gait = experiment.controllers[0].rest_length_input->gait;
   Playing playing({&gait}, experiment.robot);
   playing.Tick(1);
-  playing.cables = {0.25, 0.25, 0.25};  // lengths, and in this test tensions, too
+  playing.cables = {0.25, 0.25, 0.25};  // lengths, and in this test also tensions
   playing.Tick(3000);
   const auto sigma = [](double x) { return 1.0 / (1.0 + std::exp(-x)); };
   const double says = 2.0 * sigma(3.0 * sigma(10.0 * 0.25 + 4.0 * (0.25 - 1.0) / 2.0) - 1.0) - 1.0;
@@ -267,8 +265,8 @@ TEST_F(FeedbackGait, ACableWithoutALimitOfForceHasNothingToSetItsTensionBeside) 
   text.replace(from, text.size() - from,
                "  cable_network: {hidden: [{name: h, weights: [1, 1]}], outputs: []}\n");
   EXPECT_EQ(PlayedComplaints(text, ""),
-            "g.yaml:15:18: error: cable_network: the actuator of left has no max_force_n to set "
-            "its tension beside (give it one, or leave out `cable_network`)\n");
+            "g.yaml:15:18: error: cable_network: the actuator of left has no max_force_n, to which "
+            "the network's input is relative (add max_force_n, or leave out `cable_network`)\n");
 }
 
 }  // namespace

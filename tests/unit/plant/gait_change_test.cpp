@@ -1,4 +1,4 @@
-// Gaits that follow each other, and gaits that drive rest lengths.
+// Transitions between gaits, and gaits that drive rest lengths
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ RobotSpec Spine() {
   return robot.value_or(RobotSpec{});
 }
 
-/// An oscillator a cable of the spine, uncoupled.
+/// An oscillator per cable of the spine, uncoupled
 GaitSpec Cpg(double frequency_hz, double amplitude) {
   Diagnostics out;
   GaitSpec gait = NewCpgGait(Spine(), CpgSymmetry::kSegments, out).value_or(GaitSpec{});
@@ -43,9 +43,10 @@ GaitSpec Sine(double frequency_hz, double amplitude) {
   return gait;
 }
 
-/// What an impedance controller of every cable gets as V0 from an input, at its ticks.
+/// V0 that an impedance controller of a cable gets from an input, at its ticks
 struct Played {
-  explicit Played(const GaitInputSpec& input, double duration_s, const Brought& brought = {}) {
+  explicit Played(const GaitInputSpec& input, double duration_s,
+                  const Extensions& extensions = {}) {
     ExperimentSpec experiment;
     experiment.robot = Spine();
     experiment.step_s = input.clock.period_s;
@@ -61,7 +62,7 @@ struct Played {
     experiment.controllers = {controller};
     FakePlant plant(experiment.robot.def.cables.size());
     plant.Show({0.15, 0.2, 0.0, 10.0, 10.0, 229.16});
-    plant::Loop loop(experiment, plant, brought);
+    plant::Loop loop(experiment, plant, extensions);
     while (loop.time_s() < duration_s - 1e-9) {
       time_s.push_back(loop.time_s());
       loop.Step();
@@ -69,8 +70,8 @@ struct Played {
     }
   }
 
-  /// The largest second difference by the square of the period: the jerk of the cable's motion,
-  /// since what is said is its velocity.
+  /// Returns the largest second difference divided by the squared period: the jerk of the cable's
+  /// motion, because the signal is its velocity.
   double Jerk(double from_s, double to_s) const {
     double most = 0;
     for (std::size_t i = 1; i + 1 < said.size(); ++i) {
@@ -94,17 +95,17 @@ GaitInputSpec Input(const GaitSpec& first, const GaitSpec& second, double at_s, 
   return input;
 }
 
-// The paper's reason for oscillators. Under a change of R by dR the amplitude's acceleration jumps
-// by a^2 dR / 4, and with v all of theta' does: V0'' = r'' - r theta'^2 in size.
+// The paper's reason for oscillators: after a change of R by dR the amplitude's acceleration jumps
+// by a^2 dR / 4, and after a change of v theta' jumps: V0'' = r'' - r theta'^2 in size.
 TEST(GaitChange, OscillatorsPassSmoothlyFromOneGaitToTheNext) {
   const double a = 20.0, amplitude = 0.1, hz = 1.5;
   double before = 0;
   for (const double period_s : {0.004, 0.002, 0.001}) {
     const Played played(Input(Cpg(1.0, 0.05), Cpg(hz, amplitude), 2.013, period_s), 5.0);
-    // r'' <= a^2 dR / 4 at first; the waves themselves r (2 pi f)^2; both cross terms below that.
+    // r'' <= a^2 dR / 4 at first; the waves themselves r (2 pi f)^2; both cross terms are smaller.
     const double bound = 1.5 * (a * a * 0.05 / 4 + amplitude * std::pow(kTwoPi * hz, 2));
     EXPECT_LT(played.Jerk(1.0, 5.0), bound);
-    // At the end the new gait is there.
+    // At the end the new gait is reached.
     double most = 0;
     for (std::size_t i = played.said.size() - 1; played.time_s[i] > 4.0; --i) {
       most = std::max(most, played.said[i]);
@@ -126,7 +127,7 @@ TEST(GaitChange, WithoutABlendAWaveJumpsAndWithOneItDoesNot) {
     const double jump = Played(input, 4.0).Jerk(1.9, 2.7);
     input.blend_s = 0.5;
     const Played blended(input, 4.0);
-    // Shares change by at most 1.875 / blend and 5.77 / blend^2; both waves together by 0.15.
+    // Weights change by at most 1.875 / blend and 5.77 / blend^2; both waves together by 0.15.
     const double w = kTwoPi * 1.5;
     EXPECT_LT(blended.Jerk(1.0, 4.0), 0.15 * (w * w + 2 * w * 1.875 / 0.5 + 5.78 / 0.25));
     EXPECT_GT(jump, 5 * blended.Jerk(1.9, 2.7));
@@ -134,7 +135,7 @@ TEST(GaitChange, WithoutABlendAWaveJumpsAndWithOneItDoesNot) {
       EXPECT_GT(jump, 1.5 * before);
     }
     before = jump;
-    // Of the run's time, so that its phase is what it would have been all along.
+    // The phase follows the run's time, as if the gait had always been active.
     const std::size_t last = blended.said.size() - 1;
     EXPECT_NEAR(blended.said[last], 0.1 * std::cos(kTwoPi * 1.5 * blended.time_s[last]), 1e-9);
   }
@@ -142,13 +143,13 @@ TEST(GaitChange, WithoutABlendAWaveJumpsAndWithOneItDoesNot) {
 
 TEST(GaitChange, GoesBackToTheFirstAndWaitsForABlendToEnd) {
   GaitInputSpec input = Input(Sine(1.0, 0.05), Sine(1.0, 0.1), 1.0, 0.01);
-  input.changes = {{1.0, 1}, {1.2, 0}};  // in the midst of the blend of half a second
+  input.changes = {{1.0, 1}, {1.2, 0}};  // during the blend of half a second
   const Played played(input, 4.0);
   const auto at = [&](double time_s) {
     return played.said[static_cast<std::size_t>(time_s / 0.01 + 0.5)];
   };
   EXPECT_NEAR(at(0.9), 0.05 * std::cos(kTwoPi * 0.9), 1e-12);
-  EXPECT_NEAR(at(1.5), 0.1 * std::cos(kTwoPi * 1.5), 1e-12);  // all of it, for a moment
+  EXPECT_NEAR(at(1.5), 0.1 * std::cos(kTwoPi * 1.5), 1e-12);  // complete for a moment
   EXPECT_NEAR(at(3.0), 0.05 * std::cos(kTwoPi * 3.0), 1e-12);
 }
 
@@ -180,9 +181,9 @@ TEST(GaitChange, AControllerChooses) {
     }
   };
   GaitInputSpec input = Input(Cpg(1.0, 0.05), Cpg(1.0, 0.1), 1e9, 0.01);
-  Brought brought;
-  brought.controllers = {[](const ControlSetup&) { return std::make_unique<Chooser>(); }};
-  const Played chosen(input, 4.0, brought), left(input, 4.0);
+  Extensions extensions;
+  extensions.controllers = {[](const ControlSetup&) { return std::make_unique<Chooser>(); }};
+  const Played chosen(input, 4.0, extensions), left(input, 4.0);
   EXPECT_NEAR(left.said[300], 0.05, 1e-6);
   EXPECT_NEAR(chosen.said[300], 0.1, 1e-6);
 }

@@ -1,4 +1,4 @@
-// How finely the learned network has to be integrated: the errors of docs/theory/gaits.md.
+// Step size for integrating the learned network: the errors of docs/theory/gaits.md
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ GaitSpec Load(const std::string& name) {
   return *gait;
 }
 
-/// What the network commands when it is integrated in steps of `step_s`.
+/// Returns the network's commands when it is integrated in steps of `step_s`.
 std::vector<std::vector<double>> Play(double step_s, double played_s = kPlayedS) {
   Diagnostics out;
   const auto robot = LoadRobot(kRoot + "share/models/tetraspine3.yaml", {}, out);
@@ -30,7 +30,7 @@ std::vector<std::vector<double>> Play(double step_s, double played_s = kPlayedS)
   return table->rows;
 }
 
-/// Largest difference of any cable's velocity up to a time [m/s].
+/// Returns the largest difference of any cable's velocity up to a time [m/s].
 double Worst(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
              double until_s) {
   double worst = 0.0;
@@ -44,12 +44,12 @@ double Worst(const std::vector<std::vector<double>>& a, const std::vector<std::v
 
 class GaitIntegrator : public testing::Test {
  protected:
-  /// In steps of 1/16 ms, whose own error is 1/256 of that of 1/4 ms.
+  /// In steps of 1/16 ms, whose error is 1/256 of the error at 1/4 ms.
   const std::vector<std::vector<double>> exact_ = Play(0.0000625);
   double Error(double step_s) const { return Worst(Play(step_s), exact_, kPlayedS); }
 };
 
-// Halving the step leaves a sixteenth. The next order is 4 % of it at 2 ms, and less below.
+// Halving the step divides the error by 16. The next order contributes 4 % at 2 ms, and less below.
 TEST_F(GaitIntegrator, TheErrorIsOfFourthOrder) {
   double coarser = Error(0.002);
   for (const double step_s : {0.001, 0.0005, 0.00025}) {
@@ -59,15 +59,16 @@ TEST_F(GaitIntegrator, TheErrorIsOfFourthOrder) {
   }
 }
 
-// The phases drift: three times the time, three times the error, and nothing that grows by itself.
-// Which tick falls on the steepest place of a wave is chance, hence a tenth. The finer one is exact
+// The phases drift: the error grows linearly with time, by a factor of three. Which tick falls on
+// the steepest place of a wave is random, hence a tolerance of a tenth. The finer one is exact
 // here: its error is 1/4096.
 TEST(GaitIntegratorInTime, TheErrorGrowsWithTimeAndNoFaster) {
   const auto played = Play(0.002, 30.0), exact = Play(0.00025, 30.0);
   EXPECT_NEAR(Worst(played, exact, 30.0) / Worst(played, exact, 10.0), 3.0, 0.3);
 }
 
-// Of 0.515 m/s, at the step of the gait as it is shipped; as fine as NTRT's it is 4000 times less.
+// Relative to the amplitude of 0.515 m/s, at the step of the shipped gait; at NTRT's step it is
+// 4000 times smaller.
 TEST_F(GaitIntegrator, AtTheShippedStepItIsATenthOfAPercent) {
   const double amplitude = Load("cpg_learned").cpg->amplitude;
   EXPECT_LT(Error(Load("cpg_learned").cpg->integrator_step_s), 0.00125 * amplitude);
@@ -75,7 +76,7 @@ TEST_F(GaitIntegrator, AtTheShippedStepItIsATenthOfAPercent) {
   EXPECT_GT(Error(0.005), 0.04 * amplitude) << "so far the step can be too long";
 }
 
-// The fine gait is the shipped one in all else.
+// Apart from the step the fine gait equals the shipped one.
 TEST_F(GaitIntegrator, OnlyTheStepIsNtrts) {
   GaitSpec fine = Load("cpg_learned_ntrt");
   const GaitSpec shipped = Load("cpg_learned");

@@ -1,13 +1,13 @@
-// Gaits at work: clocks, tables, feedback, and the commands that reach a cable.
+// Gaits in operation: clocks, tables, feedback, and the commands of a cable
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
-#include "plant/gait_kinds.h"
 #include "plant/lane_clock.h"
 #include "plant/loop.h"
+#include "plant/player_kinds.h"
 #include "taut/play.h"
 #include "taut/run.h"
 #include "tests/constants.h"
@@ -25,7 +25,7 @@ RobotSpec Spine() {
   return robot.value_or(RobotSpec{});
 }
 
-/// A gait alone, on a clock, in one lane.
+/// A gait alone, on a clock, in one lane
 struct Player {
   Player(const GaitSpec& gait, const ClockSpec& on) : spec(on), clock(on, 1) {
     Diagnostics out;
@@ -38,7 +38,7 @@ struct Player {
   const std::vector<double>& signal() const { return player->signal(); }
   double next_tick_s() const { return clock.NextS(0); }
 
-  /// If a tick is due. `tension_n`: of every cable of the robot; may be empty.
+  /// Acts if a tick is due. `tension_n`: of every cable of the robot; may be empty.
   void Act(double time_s, const std::vector<double>& tension_n = {}) {
     const Tick tick = clock.Due(&time_s, AllLanes(1));
     if (tick.due == 0) return;
@@ -88,7 +88,7 @@ TEST(GaitPlayer, AWaveTravelsAndHoldsBetweenTicks) {
   EXPECT_EQ(player.signal()[0], 0.0);
   player.Act(0.5);
   EXPECT_NEAR(player.signal()[0], 0.02, 1e-15);        // cos 90 degrees
-  EXPECT_NEAR(player.signal()[1], 0.02 - 0.1, 1e-15);  // a quarter further on
+  EXPECT_NEAR(player.signal()[1], 0.02 - 0.1, 1e-15);  // a quarter turn later
   EXPECT_EQ(player.next_tick_s(), 0.75);
   player.Act(0.6);
   EXPECT_NEAR(player.signal()[0], 0.02, 1e-15);
@@ -111,7 +111,7 @@ TEST(GaitPlayer, ATableHoldsOrGoesStraight) {
 
 TEST(GaitPlayer, ATableRepeats) {
   GaitSpec gait = OneTable(false);
-  gait.table->repeat_from_s = 0.5;  // then the row at 1 s never shows
+  gait.table->repeat_from_s = 0.5;  // then the row at 1 s is never used
   Player player(gait, {0.25, 0.0});
   const double expected[] = {0.1, 0.1, 0.2, 0.2, 0.2, 0.2, 0.2};
   for (int tick = 0; tick < 7; ++tick) {
@@ -150,8 +150,8 @@ TEST(GaitPlayer, OscillatorsStartAtTheFirstTickAndSomeAreInverted) {
   }
 }
 
-// At ticks that both have, a gait at 100 Hz is the one at 1 kHz, since it integrates by the same
-// steps; periods divided by 40 and by 4 may be a rounding apart.
+// At common ticks, a gait at 100 Hz equals the gait at 1 kHz, because it integrates with the same
+// steps; periods divided by 40 and by 4 may differ by rounding.
 TEST(GaitPlayer, TheRateOfTheGaitDoesNotChangeItsOscillators) {
   Diagnostics out;
   const auto gait = LoadGait(kRoot + "share/gaits/cpg_learned_ntrt.yaml", out);
@@ -167,8 +167,8 @@ TEST(GaitPlayer, TheRateOfTheGaitDoesNotChangeItsOscillators) {
   }
 }
 
-// theta' = omega + g (T - T_ref) cos theta: an even pull of 12 N against 10 N at g = 5 stops an
-// oscillator of 1 Hz where the cosine is -omega / 10.
+// theta' = omega + g (T - T_ref) cos theta: a constant tension of 12 N against 10 N at g = 5 stops
+// an oscillator of 1 Hz where the cosine is -omega / 10.
 TEST(GaitPlayer, TensionActsOnTheOscillatorOfItsCable) {
   GaitSpec gait = BlankCpg();
   gait.cpg->inverted.clear();
@@ -206,7 +206,7 @@ TEST(GaitPlayer, ATableOfAGaitPlaysAsTheGaitItself) {
   }
 }
 
-/// An impedance controller of one cable at 1 kHz under a gait at 4 Hz.
+/// An impedance controller of one cable at 1 kHz with a gait at 4 Hz
 TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   const RobotSpec robot = Spine();
   int cable = 0;
@@ -224,7 +224,7 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   plant.Show({0.15, 0.2, 0.0, 10.0, 10.0, 229.16});
   plant::Loop loop(experiment, plant);
   loop.Step();
-  // the cable's own offset and the gait's, in the first tick already: T0 + B (0 - V0)
+  // the offsets of the cable and of the gait, already in the first tick: T0 + B (0 - V0)
   EXPECT_EQ(plant.commands().velocity_input_m_per_s[cable], 0.01 + 0.1);
   EXPECT_NEAR(plant.commands().set_point_n[cable], 0.0, 0.0);  // 10 - 11: a cable cannot push
   EXPECT_EQ(loop.time_s(), 0.001);
@@ -232,7 +232,8 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
   EXPECT_EQ(plant.commands().velocity_input_m_per_s[cable], 0.01 + 0.2);
 }
 
-// A law that is slower than its gait takes the gait's latest value, and steps land on both clocks.
+// A controller slower than its gait uses the gait's latest value, and steps end at ticks of both
+// clocks.
 TEST(GaitPlayer, StepsLandOnTheTicksOfTheGait) {
   Diagnostics out;
   auto experiment = LoadExperiment(kRoot + "share/experiments/sine_hand_tuned.yaml", {}, out);

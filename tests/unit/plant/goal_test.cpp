@@ -1,4 +1,4 @@
-// A goal: where it is, what is sensed of it, and how near a robot came.
+// A goal: its place, its sensor, and the robot's least distance from it
 #include "plant/goal.h"
 
 #include <array>
@@ -24,7 +24,7 @@ class Goal : public ExperimentErrors {
   }
 };
 
-/// Bodies where a test puts them.
+/// Bodies with poses set by the test
 struct Standing final : Bodies {
   BodyState Body(int lane, int body) const override { return states.at({lane, body}); }
   Vec3 NodePosition(int, int) const override { return {}; }
@@ -50,7 +50,7 @@ TEST_F(Goal, TheSensorSaysTheWayInTheBodysHorizontalFrame) {
   const std::array lanes{&world, &world, &world};
   plant::GoalSensor sensor({experiment, lanes});
   Standing bodies;
-  // Looks along x; turned left by a quarter; then rolled about its own axis, too, and nose up.
+  // Heading along x; rotated left by a quarter turn; also rolled about its axis, and pitched up.
   bodies.states[{0, 1}].position_m = {0, 0, 5};
   bodies.states[{1, 1}] = At({3, 1, 0}, About({0, 0, 1}, std::numbers::pi / 2));
   bodies.states[{2, 1}] = At({3, 1, 0}, About({0, 0, 1}, std::numbers::pi / 2) *
@@ -68,7 +68,7 @@ TEST_F(Goal, TheSensorSaysTheWayInTheBodysHorizontalFrame) {
     EXPECT_NEAR(goal[lane], 1.0, 1e-15) << lane;
     EXPECT_NEAR(goal[3 + lane], 0.0, 1e-15) << lane;
   }
-  // A lane that is not due keeps what it has; one at the goal has no direction.
+  // A lane that is not due keeps its value; a body at the goal has no direction.
   bodies.states[{0, 1}].position_m = {3, 4, 1};
   bodies.states[{1, 1}].position_m = {8, 4, 0};
   sensor.Sample({Lanes{1}, number.data()}, exact);
@@ -104,7 +104,7 @@ TEST_F(Goal, WhatAPlantSaysItselfIsShown) {
   const double beacon[] = {0.28, -0.96};
   Observation exact;
   sensor.Sample({1, &number}, exact);
-  EXPECT_EQ(sensor.seen().goal[0], 0.0);  // nobody knows
+  EXPECT_EQ(sensor.seen().goal[0], 0.0);  // unknown
   exact.goal = beacon;
   sensor.Sample({1, &number}, exact);
   EXPECT_EQ(sensor.seen().goal, beacon);
@@ -125,7 +125,7 @@ TEST_F(Goal, NoiseTurnsItAboutTheOrigin) {
   EXPECT_EQ(plant::GoalOf(goal, {}, 7).x, 3.0);
 }
 
-// Bodies that fall freely sideways: at v for t they are v t nearer to a goal that lies ahead.
+// Bodies in free lateral motion: at speed v for t they come v t nearer to a goal ahead.
 TEST_F(Goal, NearerIsTheDistanceBeforeLessTheDistanceAfter) {
   const ExperimentSpec experiment =
       With("goal: {at_m: [3.5, 0, 0], body: b}\n",
@@ -156,7 +156,7 @@ TEST_F(Goal, WrongGoalsAreAnswered) {
   Expect("duration_s: 10\n", "duration_s: 10\ngoal: {at_m: [3, 0, 0]}\n",
          "9:7: error: goal needs the key \"body\"");
   Expect("duration_s: 10\n", "duration_s: 10\nstart_noise: {goal_rad: 1}\n",
-         "9:14: error: start_noise.goal_rad: there is no `goal`");
+         "9:14: error: start_noise.goal_rad: the experiment has no `goal`");
   Write("trial.yaml", kExperiment);
   Write("study.yaml", R"(taut: 1
 kind: study
@@ -171,8 +171,8 @@ search: [{method: monte_carlo, evaluations: 1}]
   EXPECT_FALSE(LoadStudy(Path("study.yaml"), {}, out));
   EXPECT_EQ(
       Without(Path(""), out.Format()),
-      "study.yaml:6:13: error: objective.measure: nearer needs a goal (the experiment has no "
-      "`goal`)\nstudy.yaml:7:9: error: worlds.start.goal_rad: the experiment has no `goal`\n");
+      "study.yaml:6:13: error: objective.measure: nearer needs a goal (add a `goal` to the "
+      "experiment)\nstudy.yaml:7:9: error: worlds.start.goal_rad: the experiment has no `goal`\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The longest step of a run, against the steps that runs take.
+// Longest step of a run, against the steps of actual runs
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-/// The longest step between rows of a run that records every step.
+/// Measures the longest step between rows of a run that records every step.
 class LongestRow final : public test::RowWatch {
  public:
   bool Append(double time_s, const double*) override {

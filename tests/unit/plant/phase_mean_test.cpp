@@ -1,4 +1,4 @@
-// Time-weighted means of the phases of a run, for steps of any length.
+// Time-weighted means of the phases of a run, for steps of any length
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace taut {
 namespace {
 
-/// Means of one column between two times, over time and over rows, if a run records each step.
+/// Means of one column between two times, weighted by time and by rows, if a run records each step
 class ColumnMeans final : public test::RowWatch {
  public:
   ColumnMeans(std::size_t column, double from_s, double to_s)

@@ -1,10 +1,11 @@
-// The wall: lanes with clocks of their own, what programs bring, logs as plants.
+// Interface between controllers and the plant: lanes with separate clocks, user-defined controllers
+// and sensors, recordings as plants
 #include "taut/plant.h"
 
 #include <gtest/gtest.h>
 
+#include "plant/find_start.h"
 #include "plant/loop.h"
-#include "plant/start.h"
 #include "taut/live.h"
 #include "taut/rollout.h"
 #include "taut/run.h"
@@ -21,7 +22,7 @@ ExperimentSpec Load(const std::string& name) {
   return experiment.value_or(ExperimentSpec{});
 }
 
-/// A variant a lane, all different.
+/// A different variant for each lane
 std::vector<RolloutWorld> Variants(const ExperimentSpec& experiment, int count) {
   std::vector<RolloutWorld> worlds(static_cast<std::size_t>(count), WorldOf(experiment));
   for (std::size_t j = 0; j < worlds.size(); ++j) {
@@ -36,7 +37,7 @@ std::vector<RolloutWorld> Variants(const ExperimentSpec& experiment, int count) 
   return worlds;
 }
 
-/// Lanes of a batch under an experiment, each brought to the start of its variant.
+/// Lanes of a batch under an experiment, each at the start of its variant
 class Company {
  public:
   Company(const ExperimentSpec& experiment, std::vector<RolloutWorld> worlds, Simd simd)
@@ -50,7 +51,7 @@ class Company {
       lanes.push_back(&worlds_[j]);
       BringToStart(static_cast<int>(j));
     }
-    loop_.emplace(experiment_, lanes, *plant_, Brought{});
+    loop_.emplace(experiment_, lanes, *plant_, Extensions{});
   }
 
   void BringToStart(int lane) {
@@ -59,7 +60,7 @@ class Company {
     EXPECT_TRUE(plant::PrepareStart(ExperimentOf(experiment_, world), alone, out_));
     EXPECT_TRUE(batch_.Restore(lane, alone.Save(0)));
   }
-  /// As another variant than before.
+  /// Restarts a lane as another variant.
   void Restart(int lane) {
     RolloutWorld& world = worlds_[static_cast<std::size_t>(lane)];
     world.seed += 1000;
@@ -92,7 +93,7 @@ std::uint64_t HashAlone(const ExperimentSpec& experiment, const RolloutWorld& wo
   return summary ? summary->state_hash : 0;
 }
 
-/// Some lanes begin anew, in the midst of things; every lane has the bits of a run of its own.
+/// Restarts some lanes during the run; every lane must equal a separate run bit for bit.
 void ExpectOwnBits(ExperimentSpec experiment, double duration_s) {
   experiment.duration_s = duration_s;
   const int lanes = static_cast<int>(BestSimd());
@@ -147,7 +148,7 @@ TEST(Lanes, BeginAnewWithSensorsAndUnevenClocks) {
 
 TEST(Lanes, BeginAnewWhileTheyFallAndTouch) { ExpectOwnBits(Load("drop_six_strut"), 0.9); }
 
-/// A law that lets every cable out and in, by its number in the world.
+/// A controller that lets every cable out and in, by its number in the world
 class Breathe final : public Controller {
  public:
   explicit Breathe(const ControlSetup& setup) {
@@ -172,26 +173,26 @@ class Breathe final : public Controller {
   std::vector<double> depth_m_, rest_m_;
 };
 
-TEST(Brought, AControllerActsInARunALiveRunAndLanesToTheSameBits) {
+TEST(Extensions, AControllerActsInARunALiveRunAndLanesToTheSameBits) {
   ExperimentSpec experiment = Load("stand_still");
   experiment.duration_s = 0.5;
-  Brought brought;
-  brought.controllers.push_back(
+  Extensions extensions;
+  extensions.controllers.push_back(
       [](const ControlSetup& setup) { return std::make_unique<Breathe>(setup); });
   Diagnostics out;
   RunOptions options;
-  options.brought = brought;
+  options.extensions = extensions;
   const auto alone = RunExperiment(experiment, options, out);
   ASSERT_TRUE(alone) << out.Format();
   EXPECT_NE(alone->state_hash, HashAlone(experiment, WorldOf(experiment)));
 
-  const auto live = LiveRun::Start(experiment, out, {}, brought);
+  const auto live = LiveRun::Start(experiment, out, {}, extensions);
   ASSERT_TRUE(live) << out.Format();
   while (live->time_s() < experiment.duration_s) ASSERT_TRUE(live->Step());
   EXPECT_EQ(live->world()->Hash(0), alone->state_hash);
 
   RolloutOptions side_by_side;
-  side_by_side.brought = brought;
+  side_by_side.extensions = extensions;
   const auto rollouts = Rollouts::Create(experiment, {}, side_by_side, out);
   std::vector<RolloutWorld> worlds(5, WorldOf(experiment));
   worlds[1].numbers = {0.004};
@@ -201,7 +202,7 @@ TEST(Brought, AControllerActsInARunALiveRunAndLanesToTheSameBits) {
   EXPECT_EQ(results[4].state_hash, alone->state_hash);
 }
 
-/// Sensors that show every tension double.
+/// Sensors that double every tension
 class Double final : public SensorModel {
  public:
   ClockSpec clock() const override { return {0.001, 0.0}; }
@@ -221,7 +222,7 @@ class Double final : public SensorModel {
   Observation shown_;
 };
 
-TEST(Brought, SensorsStandBetweenThePlantAndTheControllers) {
+TEST(Extensions, SensorsStandBetweenThePlantAndTheControllers) {
   ExperimentSpec experiment = Load("stand_still");
   experiment.duration_s = 0.1;
   struct Sees final : Controller {
@@ -234,19 +235,19 @@ TEST(Brought, SensorsStandBetweenThePlantAndTheControllers) {
   };
   double exact_n = 0, seen_n = 0;
   RunOptions options;
-  options.brought.controllers = {
+  options.extensions.controllers = {
       [&](const ControlSetup&) { return std::make_unique<Sees>(exact_n); }};
   Diagnostics out;
   ASSERT_TRUE(RunExperiment(experiment, options, out)) << out.Format();
-  options.brought.controllers = {
+  options.extensions.controllers = {
       [&](const ControlSetup&) { return std::make_unique<Sees>(seen_n); }};
-  options.brought.sensors = [](const ControlSetup& s) { return std::make_unique<Double>(s); };
+  options.extensions.sensors = [](const ControlSetup& s) { return std::make_unique<Double>(s); };
   ASSERT_TRUE(RunExperiment(experiment, options, out)) << out.Format();
   EXPECT_GT(exact_n, 1.0);
   EXPECT_EQ(seen_n, 2 * exact_n);
 }
 
-TEST(Brought, AScoreTakesThePlaceOfTheMeasure) {
+TEST(Extensions, AScoreTakesThePlaceOfTheMeasure) {
   ExperimentSpec experiment = Load("stand_still");
   experiment.duration_s = 0.25;
   struct Steps final : Score {
@@ -284,15 +285,15 @@ TEST(Commands, AnActuatorHoldsWhereItIs) {
       commands.mode[1] = CommandMode::kOff;
     }
   };
-  Brought brought;
-  brought.controllers = {[](const ControlSetup&) { return std::make_unique<Freeze>(); }};
+  Extensions extensions;
+  extensions.controllers = {[](const ControlSetup&) { return std::make_unique<Freeze>(); }};
   experiment.pushes[0].force_n = {{0.2, 0.0}, {0.25, 20.0}, {0.4, 20.0}};
   Diagnostics out;
-  const auto run = LiveRun::Start(experiment, out, {}, brought);
+  const auto run = LiveRun::Start(experiment, out, {}, extensions);
   ASSERT_TRUE(run) << out.Format();
   const auto rest_m = [&](int cable) { return run->Observe().Cable(cable).rest_length_m; };
   while (run->time_s() < 0.2 + 1e-9) ASSERT_TRUE(run->Step());
-  // A motor that was winding has to slow down first.
+  // A motor that was winding needs time to slow down.
   while (run->time_s() < 0.25) ASSERT_TRUE(run->Step());
   const double held_m = rest_m(0), off_m = rest_m(1), driven_m = rest_m(2);
   while (run->time_s() < 0.4) ASSERT_TRUE(run->Step());
@@ -312,7 +313,7 @@ TEST(Replay, ControllersSayToALogWhatTheySaidToTheRobot) {
   ASSERT_TRUE(plant) << out.Format();
   EXPECT_EQ(plant->world(), nullptr);
   EXPECT_NE(plant->Observe().bodies, nullptr);
-  experiment.duration_s = 10.0;  // the log ends before
+  experiment.duration_s = 10.0;  // the recording ends before
   const Trace said = Recording(experiment, plant.get()).trace;
   EXPECT_EQ(said.time_s, log.time_s);
   std::size_t compared = 0;
@@ -343,10 +344,10 @@ TEST(Replay, WhatALogLacksIsAFault) {
     return plant->Observe().Cable(1).tension_n;
   };
   EXPECT_EQ(to(0.05), 10.0);
-  EXPECT_EQ(to(0.1), 10.0);  // the row says nothing: the last one stands
-  EXPECT_TRUE(plant->Goes(0));
+  EXPECT_EQ(to(0.1), 10.0);  // the row has no value: the last one is kept
+  EXPECT_TRUE(plant->IsRunning(0));
   EXPECT_EQ(to(0.2), 12.0);
-  EXPECT_FALSE(plant->Goes(0));
+  EXPECT_FALSE(plant->IsRunning(0));
   EXPECT_EQ(plant->Observe().faults[0], kFaultNoReading);
   log.channels[0].name = "cable/nobody/tension_n";
   EXPECT_EQ(ReplayOf(log, experiment.robot, out), nullptr);

@@ -1,4 +1,4 @@
-// What anchored bodies are held with: weights, tensions, contacts, and the momentum that they give.
+// Recorded reactions of anchored bodies: weights, tensions, contacts, and momentum balance
 #include <cmath>
 
 #include "tests/constants.h"
@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-/// A fixed box of 2 kg about `center_m`, with a node in its middle.
+/// Adds a fixed box of 2 kg about `center_m`, with a node at its center.
 void AddFixedBox(ModelDef& def, const std::string& name, const Vec3& center_m, const Vec3& half_m,
                  const Material& material = {}) {
   const int index = static_cast<int>(def.bodies.size());
@@ -23,7 +23,7 @@ void AddFixedBox(ModelDef& def, const std::string& name, const Vec3& center_m, c
   def.nodes.push_back({name, index, center_m});
 }
 
-/// A ball of 0.5 kg on a cable from the end of a fixed beam.
+/// A ball of 0.5 kg on a cable from the end of a fixed beam
 ModelDef Hanging(const Vec3& ball_m) {
   ModelDef def;
   def.name = "hanging";
@@ -35,11 +35,11 @@ ModelDef Hanging(const Vec3& ball_m) {
 
 TEST(RecordedAnchor, CarriesWhatHangsFromIt) {
   ModelDef def = Hanging({0.5, 0, 1.05 - 0.5 * kG / 400});
-  const Recording run(ExperimentWith(def, 0.1, {"anchor/*"}));
+  const Recording run(MinimalExperiment(def, 0.1, {"anchor/*"}));
   ASSERT_EQ(run.trace.channels.size(), 6u);
   for (const std::size_t row : {std::size_t{0}, run.rows() - 1}) {
     ExpectNear(run.VectorAt("anchor/beam/force_", "_n", row), {0, 0, 2.5 * kG}, 1e-9, "force");
-    // The support keeps the beam's end up: it turns +x towards +z, which is about -y.
+    // The support holds the beam's end up: a torque from +x toward +z is about -y.
     ExpectNear(run.VectorAt("anchor/beam/torque_", "_n_m", row), {0, -0.5 * 0.5 * kG, 0}, 1e-9,
                "torque");
   }
@@ -47,7 +47,7 @@ TEST(RecordedAnchor, CarriesWhatHangsFromIt) {
 
 TEST(RecordedAnchor, InMotionItHoldsAgainstTheTension) {
   const ModelDef def = Hanging({1.0, 0.3, 1.2});
-  const Recording run(ExperimentWith(def, 0.5, {"*"}));
+  const Recording run(MinimalExperiment(def, 0.5, {"*"}));
   double furthest_n = 0;
   for (std::size_t row = 0; row < run.rows(); ++row) {
     const Vec3 from{0.5, 0, 1.95};
@@ -63,7 +63,7 @@ TEST(RecordedAnchor, InMotionItHoldsAgainstTheTension) {
   EXPECT_GT(furthest_n, 1);
 }
 
-/// Over a fixed eyelet a cable comes level and leaves downwards: it pulls there along both.
+/// At a fixed eyelet a cable arrives horizontally and leaves downward: it pulls in both directions.
 TEST(RecordedAnchor, ACablePullsAtAnEyeletBothWays) {
   ModelDef def;
   def.name = "eyelet";
@@ -71,7 +71,7 @@ TEST(RecordedAnchor, ACablePullsAtAnEyeletBothWays) {
   scenes::AddBall(def, "ball", 0.5, 0.05, {0, 0, 1}, {});
   def.cables.push_back(
       SoftCable("cable", {{kWorld, {-1, 0, 2}}, {0, {0, 0, 2}}, {1, {0, 0, 1}}}, 100, 1.5));
-  const Recording run(ExperimentWith(def, 0, {"anchor/*", "cable/*"}));
+  const Recording run(MinimalExperiment(def, 0, {"anchor/*", "cable/*"}));
   EXPECT_NEAR(run.At("cable/cable/tension_n", 0), 50, 1e-12);
   ExpectNear(run.VectorAt("anchor/eyelet/force_", "_n", 0), {50, 0, 50 + 2 * kG}, 1e-12, "");
 }
@@ -81,7 +81,7 @@ TEST(RecordedAnchor, AForceOnItsNodeIsHeld) {
   def.name = "pushed";
   AddFixedBox(def, "box", {0, 0, 2}, {0.05, 0.05, 0.05});
   def.nodes.push_back({"corner", 0, {0.05, 0, 2.05}});
-  ExperimentSpec experiment = ExperimentWith(def, 0.2, {"anchor/*"});
+  ExperimentSpec experiment = MinimalExperiment(def, 0.2, {"anchor/*"});
   experiment.pushes.push_back({"push", 1, {0, 1, 0}, 1, {{0, 3}, {1, 3}}});
   const Recording run(experiment);
   ExpectNear(run.VectorAt("anchor/box/force_", "_n", run.rows() - 1), {0, -3, 2 * kG}, 1e-12, "");
@@ -89,7 +89,7 @@ TEST(RecordedAnchor, AForceOnItsNodeIsHeld) {
              -3.0 * Cross({0.05, 0, 0.05}, {0, 1, 0}), 1e-12, "");
 }
 
-/// A box of 1 kg on a fixed one, off its middle.
+/// A box of 1 kg on a fixed box, off center
 ModelDef BoxOnTable(double gap_m, const Vec3& velocity_m_per_s) {
   ModelDef def;
   def.name = "table";
@@ -107,7 +107,7 @@ ModelDef BoxOnTable(double gap_m, const Vec3& velocity_m_per_s) {
 }
 
 TEST(RecordedAnchor, ATableCarriesWhatLiesOnIt) {
-  const Recording run(ExperimentWith(BoxOnTable(0, {}), 0.5, {"anchor/*", "system/*"}));
+  const Recording run(MinimalExperiment(BoxOnTable(0, {}), 0.5, {"anchor/*", "system/*"}));
   const std::size_t last = run.rows() - 1;
   EXPECT_GE(run.At("system/contact_count", last), 3);
   ExpectNear(run.VectorAt("anchor/table/force_", "_n", last), {0, 0, 3 * kG}, 1e-6, "force");
@@ -115,9 +115,9 @@ TEST(RecordedAnchor, ATableCarriesWhatLiesOnIt) {
              "torque");
 }
 
-/// All momentum that the rest of the world gets over a step comes from gravity and the support.
+/// The change of the world's momentum over a step equals the impulse of gravity and the support.
 TEST(RecordedAnchor, ActionIsReactionThroughImpactAndFriction) {
-  const Recording run(ExperimentWith(BoxOnTable(0.05, {2, -1, 0}), 0.4, {"*"}));
+  const Recording run(MinimalExperiment(BoxOnTable(0.05, {2, -1, 0}), 0.4, {"*"}));
   double hardest_n = 0, friction_n = 0;
   for (std::size_t row = 1; row < run.rows(); ++row) {
     const double step_s = run.trace.time_s[row] - run.trace.time_s[row - 1];
@@ -132,12 +132,12 @@ TEST(RecordedAnchor, ActionIsReactionThroughImpactAndFriction) {
   EXPECT_GT(friction_n, 3);
 }
 
-/// Of cables the row holds the tension of its moment: over a step the mean of two rows is right to
-/// second order, so half the step leaves a quarter.
+/// Rows hold the tension at their time: over a step the mean of two rows is accurate to second
+/// order, so that half the step gives a quarter of the error.
 TEST(RecordedAnchor, ActionIsReactionOfACableToSecondOrder) {
   double error_n[2] = {0, 0};
   for (int half = 0; half < 2; ++half) {
-    ExperimentSpec experiment = ExperimentWith(Hanging({0.9, 0.3, 1.2}), 0.4, {"*"});
+    ExperimentSpec experiment = MinimalExperiment(Hanging({0.9, 0.3, 1.2}), 0.4, {"*"});
     experiment.step_s = half == 0 ? 0.002 : 0.001;
     const Recording run(experiment);
     for (std::size_t row = 1; row < run.rows(); ++row) {
@@ -146,7 +146,7 @@ TEST(RecordedAnchor, ActionIsReactionOfACableToSecondOrder) {
                           run.VectorAt("body/ball/velocity_", "_m_per_s", row - 1);
       if (run.At("cable/cable/elastic_n", row) == 0 ||
           run.At("cable/cable/elastic_n", row - 1) == 0)
-        continue;  // a kink has no order
+        continue;  // at a kink the order is lost
       const Vec3 support = 0.5 * (run.VectorAt("anchor/beam/force_", "_n", row) +
                                   run.VectorAt("anchor/beam/force_", "_n", row - 1));
       const Vec3 off = (0.5 / step_s) * change - support - Vec3{0, 0, -2.5 * kG};
@@ -158,7 +158,7 @@ TEST(RecordedAnchor, ActionIsReactionOfACableToSecondOrder) {
 }
 
 TEST(RecordedAnchor, OnlyFixedBodiesHaveTheChannels) {
-  const Recording run(ExperimentWith(Hanging({0.5, 0, 1}), 0, {"*"}));
+  const Recording run(MinimalExperiment(Hanging({0.5, 0, 1}), 0, {"*"}));
   EXPECT_TRUE(run.Has("anchor/beam/torque_z_n_m"));
   EXPECT_FALSE(run.Has("anchor/ball/force_x_n"));
   EXPECT_EQ(run.trace.channels[*run.trace.Find("anchor/beam/torque_z_n_m")].unit, "N m");

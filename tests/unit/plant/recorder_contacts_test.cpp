@@ -1,4 +1,4 @@
-// Contacts in slots, nodes, and which channels a run has.
+// Recorded contacts in slots, nodes, and channels of a run
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -14,7 +14,7 @@
 namespace taut::test {
 namespace {
 
-/// Balls of 1, 2, 3 ... kg in a row on the ground.
+/// Balls of 1, 2, 3 ... kg in a row on the ground
 ModelDef Balls(int count) {
   ModelDef def;
   def.name = "balls";
@@ -30,7 +30,7 @@ const std::set<std::string> kOfAContact = {"body_a",    "body_b",    "point_x_m"
                                            "force_y_n", "force_z_n", "gap_m"};
 
 TEST(RecordedContacts, StandInSlotsAndEmptyOnesAreNaN) {
-  const Recording run(ExperimentWith(Balls(2), 0.1, {"contact/*", "system/contact_count"}, 3));
+  const Recording run(MinimalExperiment(Balls(2), 0.1, {"contact/*", "system/contact_count"}, 3));
   ASSERT_EQ(run.trace.channels.size(), 1u + 3 * kOfAContact.size());
   EXPECT_EQ(run.Last("system/contact_count"), 2);
   for (int k = 0; k < 2; ++k) {
@@ -49,7 +49,7 @@ TEST(RecordedContacts, StandInSlotsAndEmptyOnesAreNaN) {
 }
 
 TEST(RecordedContacts, WhereSlotsAreFewTheLargestForcesStayAndTheSummarySaysSo) {
-  const Recording run(ExperimentWith(Balls(4), 0.01, {"contact/*", "system/contact_count"}, 3));
+  const Recording run(MinimalExperiment(Balls(4), 0.01, {"contact/*", "system/contact_count"}, 3));
   const std::size_t last = run.rows() - 1;
   EXPECT_EQ(run.At("system/contact_count", last), 4);
   for (int k = 0; k < 3; ++k) {  // the lightest is left out, the others keep their order
@@ -62,7 +62,7 @@ TEST(RecordedContacts, WhereSlotsAreFewTheLargestForcesStayAndTheSummarySaysSo) 
   EXPECT_EQ(left.contacts, left.rows);
   EXPECT_EQ(left.most_touching, 4);
   EXPECT_EQ(report::LeftOutText(run.summary),
-            "10 contacts in 10 rows had no channels; record.contacts: 4 has room for all");
+            "10 contacts in 10 rows were not recorded; set record.contacts: 4 to record all");
   EXPECT_NE(SummaryTable(run.summary).find("WARNING: 10 contacts in 10 rows"), std::string::npos);
   EXPECT_NE(SummaryJson(run.summary).find("\"contacts_left_out\": 10,"), std::string::npos);
 }
@@ -71,7 +71,7 @@ TEST(RecordedContacts, AreAllThereUnlessChannelsNamesSome) {
   const ModelDef def = Balls(1);
   const auto count = [&](const std::vector<std::string>& channels) {
     std::size_t contacts = 0;
-    for (const ChannelInfo& channel : RunChannels(ExperimentWith(def, 0, channels, 2))) {
+    for (const ChannelInfo& channel : RunChannels(MinimalExperiment(def, 0, channels, 2))) {
       contacts += channel.name.starts_with("contact/");
     }
     return contacts;
@@ -83,7 +83,7 @@ TEST(RecordedContacts, AreAllThereUnlessChannelsNamesSome) {
 }
 
 TEST(RecordedContacts, EmptySlotsSurviveFiles) {
-  const ExperimentSpec experiment = ExperimentWith(Balls(1), 0.01, {"contact/*"}, 2);
+  const ExperimentSpec experiment = MinimalExperiment(Balls(1), 0.01, {"contact/*"}, 2);
   const std::filesystem::path folder(testing::TempDir());
   for (const char* const name : {"taut_contacts.h5", "taut_contacts.csv"}) {
     const std::string path = (folder / name).string();
@@ -113,7 +113,7 @@ TEST(RecordedNodes, MoveWithTheirBody) {
   def.nodes.push_back({"wall", kWorld, {5, 6, 7}});
   def.bodies[0].velocity_m_per_s = {0.5, 0, 0};
   def.bodies[0].angular_velocity_rad_per_s = {0, 2, 0};
-  const Recording run(ExperimentWith(def, 0.1, {"node/*"}));
+  const Recording run(MinimalExperiment(def, 0.1, {"node/*"}));
   ASSERT_EQ(run.trace.channels.size(), 18u);
   const std::size_t last = run.rows() - 1;
   const double turned = 2 * 0.1;
@@ -177,8 +177,7 @@ TEST_F(RecordedChannels, HintsKnowThoseOnRequest) {
   EXPECT_NE(complaint("node/*/positon_x_m").find("(did you mean \"node/*/position_x_m\"?)"),
             std::string::npos);
   EXPECT_NE(complaint("contact/0/gap_m")
-                .find("record.contacts says how many contacts have "
-                      "channels, and is 0"),
+                .find("set record.contacts, the number of contacts with channels, which is 0"),
             std::string::npos);
   EXPECT_NE(complaint("contact/1/gap_m", 1).find("did you mean"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-/// Runs of small models whose rows stay in memory, for tests of what is recorded.
+/// Runs of small models with rows in memory, for tests of recorders
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,9 +15,9 @@
 
 namespace taut::test {
 
-/// An experiment that records every step.
-inline ExperimentSpec ExperimentWith(const ModelDef& def, double duration_s,
-                                     std::vector<std::string> channels, int contacts = 0) {
+/// An experiment that records every step
+inline ExperimentSpec MinimalExperiment(const ModelDef& def, double duration_s,
+                                        std::vector<std::string> channels, int contacts = 0) {
   ExperimentSpec experiment;
   experiment.name = "recorded";
   experiment.robot.def = def;
@@ -28,10 +28,10 @@ inline ExperimentSpec ExperimentWith(const ModelDef& def, double duration_s,
   return experiment;
 }
 
-/// What a run records.
+/// Runs an experiment and keeps its trace and summary
 class Recording final : public test::RowWatch {
  public:
-  /// `plant`: in place of a simulation.
+  /// `plant`: replaces the simulation.
   explicit Recording(const ExperimentSpec& experiment, Plant* plant = nullptr) {
     trace.channels = RunChannels(experiment, plant);
     trace.values.resize(trace.channels.size());
@@ -58,7 +58,7 @@ class Recording final : public test::RowWatch {
     return found ? trace.values[*found].at(row) : std::numeric_limits<double>::quiet_NaN();
   }
   double Last(const std::string& channel) const { return At(channel, rows() - 1); }
-  /// `prefix` with x, y, z and `suffix` behind it.
+  /// Returns the channels `prefix` + x, y, z + `suffix` as a vector.
   Vec3 VectorAt(const std::string& prefix, const std::string& suffix, std::size_t row) const {
     return {At(prefix + "x" + suffix, row), At(prefix + "y" + suffix, row),
             At(prefix + "z" + suffix, row)};

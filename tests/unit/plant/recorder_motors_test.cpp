@@ -1,4 +1,4 @@
-// What is recorded and summed up of motors, and what commands do to them.
+// Recording and summary of motors, and effects of commands on them
 #include <cmath>
 
 #include "unit/plant/recorder_fixture.h"
@@ -6,7 +6,7 @@
 namespace taut::test {
 namespace {
 
-/// A weight of 2 kg on a motor, 1 m below the world's origin.
+/// A weight of 2 kg on a motor, 1 m below the world's origin
 ModelDef Crane() {
   ModelDef def;
   BodyDef body;
@@ -25,8 +25,8 @@ ModelDef Crane() {
 }
 
 TEST(RecordedMotor, ShowsWhatItDraws) {
-  const Recording run(ExperimentWith(Crane(), 0.5, {}));
-  // It is driven back until the servo's duty holds the weight.
+  const Recording run(MinimalExperiment(Crane(), 0.5, {}));
+  // The weight drives it back until the servo's duty holds the weight.
   EXPECT_GT(run.Last("cable/rope/duty"), 0.01);
   EXPECT_GT(run.Last("cable/rope/current_a"), 0);
   EXPECT_EQ(run.Last("cable/rope/supply_voltage_v"), 12);
@@ -51,13 +51,13 @@ TEST(RecordedMotor, ShowsWhatItDraws) {
 TEST(RecordedMotor, IsThereForMotorsOnly) {
   ModelDef def = Crane();
   def.cables[0].actuator = {};
-  const Recording run(ExperimentWith(def, 0.01, {}));
+  const Recording run(MinimalExperiment(def, 0.01, {}));
   EXPECT_FALSE(run.Has("cable/rope/duty"));
   EXPECT_FALSE(run.summary.cables[0].motor);
 }
 
 TEST(RecordedMotor, SensorsOfCountsShowThem) {
-  ExperimentSpec experiment = ExperimentWith(Crane(), 0.1, {"sensor/*", "cable/rope/*"});
+  ExperimentSpec experiment = MinimalExperiment(Crane(), 0.1, {"sensor/*", "cable/rope/*"});
   experiment.sensors.emplace();
   experiment.sensors->load_cell.emplace().counts.emplace();
   experiment.sensors->encoder = EncoderSpec{1e-5};
@@ -71,7 +71,7 @@ TEST(RecordedMotor, SensorsOfCountsShowThem) {
   EXPECT_NE(run.At("cable/rope/tension_n", row), seen);
 }
 
-/// Commands one mode from some time on.
+/// Commands a mode from given times on.
 class Switch final : public Controller {
  public:
   explicit Switch(std::vector<std::pair<double, CommandMode>> when) : when_(std::move(when)) {}
@@ -88,13 +88,13 @@ class Switch final : public Controller {
 
 TEST(CommandedMotor, GoesOffAndOn) {
   Diagnostics out;
-  ExperimentSpec experiment = ExperimentWith(Crane(), 1, {});
+  ExperimentSpec experiment = MinimalExperiment(Crane(), 1, {});
   experiment.step_s = 1e-3;
   Batch batch(Model::Compile(experiment.robot.def, out), {});
   const auto plant = PlantOf(batch);
   RunOptions options;
   options.plant = plant.get();
-  options.brought.controllers.push_back([](const ControlSetup&) {
+  options.extensions.controllers.push_back([](const ControlSetup&) {
     return std::make_unique<Switch>(std::vector<std::pair<double, CommandMode>>{
         {0.0, CommandMode::kOff}, {0.3, CommandMode::kRestLength}});
   });
@@ -103,7 +103,7 @@ TEST(CommandedMotor, GoesOffAndOn) {
   EXPECT_EQ(batch.Motor(0, 0).mode, MotorMode::kOff);
   EXPECT_EQ(batch.Motor(0, 0).current_a, 0);
   const double sunk_m = batch.Cable(0, 0).rest_length_m;
-  EXPECT_GT(sunk_m, 1.0);  // the weight is too much for friction
+  EXPECT_GT(sunk_m, 1.0);  // friction cannot hold the weight
   double time_s = 0.3;
   plant->commands().mode[0] = CommandMode::kRestLength;
   for (int i = 0; i < 2000; ++i) {
@@ -112,7 +112,7 @@ TEST(CommandedMotor, GoesOffAndOn) {
     plant->Advance(&step_s, &time_s);
   }
   EXPECT_EQ(batch.Motor(0, 0).mode, MotorMode::kServo);
-  // Its target went along with it, so nothing jerks: it is caught where it was.
+  // The target followed the motor, so that there is no jerk: the weight is held where it was.
   EXPECT_NEAR(batch.Cable(0, 0).rest_length_m, sunk_m, 3e-3);
 }
 

@@ -1,5 +1,5 @@
-// The axial force in struts, against closed forms and against Newton's law of the other half
-// (docs/theory/loads.md).
+// Axial force in struts, against closed forms and against Newton's law for the other half
+// (docs/theory/loads.md)
 #include <cmath>
 
 #include "taut/statics.h"
@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-/// A rod of 0.3 kg and 0.4 m with balls at its ends, through `middle_m` along `along`.
+/// A rod of 0.3 kg and 0.4 m with balls at its ends, through `middle_m` along `along`
 ModelDef Rod(const Vec3& middle_m, const Vec3& along, double start_kg = 0, double end_kg = 0) {
   ModelDef def;
   def.name = "rod";
@@ -28,7 +28,7 @@ ModelDef Rod(const Vec3& middle_m, const Vec3& along, double start_kg = 0, doubl
 }
 
 Recording Record(const ModelDef& def, double duration_s = 0) {
-  return Recording(ExperimentWith(def, duration_s, {"*"}, 8));
+  return Recording(MinimalExperiment(def, duration_s, {"*"}, 8));
 }
 
 TEST(RecordedStrut, AHangingRodIsPulledByTheWeightOfItsLowerHalf) {
@@ -65,13 +65,13 @@ TEST(RecordedStrut, ARodBetweenTwoCablesCarriesTheirTension) {
   EXPECT_NEAR(run.At("strut/rod/axial_n", 0), 15, 1e-12);
 }
 
-/// One half's mass times w^2 times the distance of its centre from that of the whole.
+/// Mass of one half times w^2 times the distance of its center of mass from the common one.
 TEST(RecordedStrut, ASpinningRodIsPulledByItsHalves) {
   for (const auto& [start_kg, end_kg] :
        {std::pair(0.0, 0.0), {0.1, 0.1}, {0.05, 0.2}, {0.1, 0.0}}) {
     ModelDef def = Rod({0.3, 0.2, 0.1}, {0, 0.6, 0.8}, start_kg, end_kg);
     def.gravity_m_per_s2 = {};
-    // 7 rad/s across the rod; what it spins about itself pulls at nothing.
+    // 7 rad/s perpendicular to the rod; spin about its axis causes no axial force.
     def.bodies[0].angular_velocity_rad_per_s = {7, 3 * 0.6, 3 * 0.8};
     const double mass_kg = 0.3 + start_kg + end_kg;
     const double center_m = 0.2 * (end_kg - start_kg) / mass_kg;
@@ -90,12 +90,13 @@ TEST(RecordedStrut, AFactorOnItsMassCounts) {
   ModelDef def = Rod({}, {1, 0, 0});
   def.gravity_m_per_s2 = {};
   def.bodies[0].angular_velocity_rad_per_s = {0, 0, 7};
-  ExperimentSpec experiment = ExperimentWith(def, 0, {"strut/*"});
+  ExperimentSpec experiment = MinimalExperiment(def, 0, {"strut/*"});
   experiment.scales.push_back({ScaleSpec::Quantity::kMass, {}, 2.0});
   EXPECT_NEAR(Recording(experiment).At("strut/rod/axial_n", 0), 2 * 0.3 * 49 * 0.4 / 8, 1e-12);
 }
 
-/// What holds it there pulls one half down and the other up: the mean of both sides of the node.
+/// The support pulls one half down and the other up: the recorded force is the mean of both sides
+/// of the node.
 TEST(RecordedStrut, AForceInTheMiddleBelongsToBothHalves) {
   ModelDef def = Rod({0, 0, 1}, {0, 0, 1});
   def.nodes.push_back({"middle", 0, {0, 0, 1}});
@@ -104,13 +105,13 @@ TEST(RecordedStrut, AForceInTheMiddleBelongsToBothHalves) {
   EXPECT_NEAR(Record(def).At("strut/rod/axial_n", 0), 0, 1e-12);
 }
 
-/// In self-stress the force per length of a strut is minus that of a side cable, and what statics
-/// says of the cables balances at each end.
+/// In self-stress the force per length of a strut is minus the value of a side cable, and the cable
+/// forces from statics balance at each end.
 TEST(RecordedStrut, ThePrismsSelfStressIsThatOfStatics) {
   Diagnostics out;
   const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out);
   ASSERT_TRUE(robot) << out.Format();
-  ExperimentSpec experiment = ExperimentWith(robot->def, 0, {"strut/*"});
+  ExperimentSpec experiment = MinimalExperiment(robot->def, 0, {"strut/*"});
   experiment.robot = *robot;
   experiment.robot.def.gravity_m_per_s2 = {};
   const ModelDef& def = experiment.robot.def;
@@ -127,14 +128,14 @@ TEST(RecordedStrut, ThePrismsSelfStressIsThatOfStatics) {
     const Vec3 d = def.capsules[b].to_m - def.capsules[b].from_m;
     const double pressed_n = per_length * std::sqrt(Dot(d, d));
     EXPECT_NEAR(run.trace.values[3 * b][0], -pressed_n, 1e-9);      // in the middle
-    EXPECT_NEAR(run.trace.values[3 * b + 1][0], -pressed_n, 1e-9);  // where it is least,
+    EXPECT_NEAR(run.trace.values[3 * b + 1][0], -pressed_n, 1e-9);  // least,
     EXPECT_NEAR(run.trace.values[3 * b + 2][0], -pressed_n, 1e-9);  // and greatest
     EXPECT_NEAR(Dot(StartLoads(def)[b].cable_force_n, d), 0, 1e-9);
   }
 }
 
-/// Newton's law for the half of the rod that the channel does not look at alone, of what the other
-/// channels of the row say: its acceleration from the forces on the whole and from the spin.
+/// Newton's law for the half of the rod that the channel does not use, from the other channels of
+/// the row: its acceleration follows from the forces on the whole rod and from its rotation.
 class OtherHalf {
  public:
   OtherHalf(const Recording& run, std::size_t row, double start_kg, double end_kg) {
@@ -165,10 +166,10 @@ class OtherHalf {
     const double lower_m = -(0.15 * 0.1 + start_kg * 0.2) / lower_kg;
     const Vec3 arm = middle_ + lower_m * along_ - center;
     const Vec3 w = run.VectorAt("body/rod/angular_velocity_", "_rad_per_s", row);
-    // What the moments add to this is across the rod.
+    // Contributions of torques to this are perpendicular to the rod.
     const Vec3 of_lower = acceleration + Cross(w, Cross(w, arm));
     const Vec3 rest = on_lower_ + lower_kg * weight - lower_kg * of_lower;
-    axial_n = -Dot(rest, along_);  // on the lower half the upper one pulls with + axial
+    axial_n = -Dot(rest, along_);  // the upper half pulls on the lower half with + axial
   }
   double axial_n = 0;
   bool touches = false;
@@ -188,7 +189,7 @@ TEST(RecordedStrut, InMotionBothHalvesSayTheSame) {
   def.cables.push_back(SoftCable("side", {{kWorld, {-1, 0, 0.3}}, {0, from}}, 8, 0.7));
   def.bodies[0].angular_velocity_rad_per_s = {3, -4, 5};
   def.bodies[0].velocity_m_per_s = {0.5, 0.2, -1};
-  ExperimentSpec experiment = ExperimentWith(def, 1, {"*"}, 8);
+  ExperimentSpec experiment = MinimalExperiment(def, 1, {"*"}, 8);
   experiment.pushes.push_back({"tap", 1, {1, 0, 0}, 1, {{0.1, 0}, {0.2, 4}, {0.6, 0}}});
   const Recording run(experiment);
   int touching = 0;
@@ -205,14 +206,13 @@ TEST(RecordedStrut, InMotionBothHalvesSayTheSame) {
   EXPECT_GT(largest_n, 50) << "it should have fallen onto its end";
 }
 
-/// The acceleration that the force is made with is the one that the step came to, in the step of an
-/// impact, too.
+/// The force is computed with the acceleration of the step, also in the step of an impact.
 TEST(RecordedStrut, TheAccelerationIsThatOfTheStep) {
   ModelDef def = Rod({0, 0, 0.4}, {0, 0.6, 0.8});
   scenes::AddGround(def, {0.6, 0.6, 0.3});
   def.cables.push_back(SoftCable("up", {{0, {0, 0.12, 0.56}}, {kWorld, {0.3, 0, 1.5}}}, 1, 100));
   def.cables.push_back(SoftCable("side", {{kWorld, {-1, 0, 0.3}}, {0, {0, 0, 0}}}, 1, 100));
-  ExperimentSpec experiment = ExperimentWith(def, 0.5, {"*"}, 8);
+  ExperimentSpec experiment = MinimalExperiment(def, 0.5, {"*"}, 8);
   experiment.pushes.push_back({"tap", 1, {1, 0, 0}, 1, {{0.1, 0}, {0.2, 4}, {0.6, 0}}});
   const Recording run(experiment);
   double largest = 0;
@@ -227,7 +227,7 @@ TEST(RecordedStrut, TheAccelerationIsThatOfTheStep) {
   EXPECT_GT(largest, 500) << "an impact";
 }
 
-/// A rod that swings on a ball joint from the beam: the joint pulls at its end, and the beam.
+/// A rod that hangs on a ball joint from the beam: the joint pulls at its end, and at the beam.
 TEST(RecordedStrut, AJointPullsAtIt) {
   ModelDef def = Rod({0, 0, 0.8}, {0, 0, -1});  // its start is up
   def.bodies.push_back(BodyDef{});
@@ -237,14 +237,14 @@ TEST(RecordedStrut, AJointPullsAtIt) {
   pin.name = "pin", pin.kind = JointKind::kBall, pin.body_a = 1, pin.body_b = 0;
   pin.from_m = pin.to_m = {0, 0, 1};
   def.joints.push_back(pin);
-  const Recording run(ExperimentWith(def, 0.05, {"*"}));
+  const Recording run(MinimalExperiment(def, 0.05, {"*"}));
   EXPECT_NEAR(run.Last("strut/rod/axial_n"), 0.15 * kG, 1e-6);
   EXPECT_NEAR(run.Last("strut/rod/axial_greatest_n"), 0.3 * kG, 1e-6);
   EXPECT_NEAR(run.Last("strut/rod/axial_least_n"), 0, 1e-9);
   EXPECT_NEAR(run.Last("anchor/beam/force_z_n"), 2.3 * kG, 1e-6);
 }
 
-/// The summary has the extremes of all rows of a run that records every step.
+/// The summary contains the extremes of all rows of a run that records every step.
 TEST(RecordedStrut, TheSummaryHasTheExtremesOfTheRun) {
   ModelDef def = Rod({0, 0, 0.4}, {0, 0.6, 0.8}, 0.05, 0.12);
   scenes::AddGround(def, {0.6, 0.6, 0.3});
@@ -253,7 +253,7 @@ TEST(RecordedStrut, TheSummaryHasTheExtremesOfTheRun) {
   beam.name = "beam", beam.mass_kg = 2, beam.com_m = {0, 0, 1.5}, beam.fixed = true;
   def.bodies.push_back(beam);
   def.cables.push_back(SoftCable("up", {{0, def.capsules[0].to_m}, {1, {0, 0, 1.5}}}, 5, 0.4));
-  const Recording run(ExperimentWith(def, 0.5, {"*"}));
+  const Recording run(MinimalExperiment(def, 0.5, {"*"}));
   double least = 0, greatest = 0, held = 0;
   for (std::size_t row = 0; row < run.rows(); ++row) {
     least = std::min(least, run.At("strut/rod/axial_least_n", row));
@@ -275,7 +275,7 @@ TEST(RecordedStrut, TheSummaryHasTheExtremesOfTheRun) {
 
 TEST(RecordedStrut, OnlyBodiesThatAreOneRodHaveTheChannel) {
   const auto has = [](const ModelDef& def) {
-    return Recording(ExperimentWith(def, 0, {"*"})).Has("strut/rod/axial_n");
+    return Recording(MinimalExperiment(def, 0, {"*"})).Has("strut/rod/axial_n");
   };
   const ModelDef rod = Rod({}, {0, 0.6, 0.8}, 0.1, 0.2);
   ModelDef changed = rod;
@@ -292,10 +292,10 @@ TEST(RecordedStrut, OnlyBodiesThatAreOneRodHaveTheChannel) {
   changed = rod;
   changed.boxes.push_back({"box", 0, {0, 0, 0}, {}, {0.01, 0.01, 0.01}, {}});
   EXPECT_FALSE(has(changed));
-  changed = rod;  // another node: its mass may be anywhere
+  changed = rod;  // another node, whose mass may be anywhere
   changed.nodes.push_back({"middle", 0, {0, 0, 0}});
   EXPECT_FALSE(has(changed));
-  changed = rod;  // moments of something else
+  changed = rod;  // inertia of another shape
   changed.bodies[0].inertia_kg_m2.xx *= 1.01;
   EXPECT_FALSE(has(changed));
   changed = Rod({}, {0, 0.6, 0.8});

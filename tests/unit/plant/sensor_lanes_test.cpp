@@ -1,5 +1,5 @@
-// Sensors of several cables in several worlds at once: whose noise and whose errors they are, and
-// what of them begins anew.
+// Sensors of several cables in several worlds: assignment of noise and errors to worlds, and
+// restarts
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kCables = 2, kLanes = 3;
 using Row = std::array<double, kCables * kLanes>;  // cable c of lane j at c kLanes + j
 
-/// All cables alike, and what is seen of them.
+/// Equal cables, and their sensor readings
 class Company {
  public:
   explicit Company(const SensorSpec& spec) : sensors_(spec, kCables, {11, 12, 13}) {
@@ -108,7 +108,7 @@ TEST(SensorLanes, AWorldThatIsNotDueKeepsWhatItHas) {
   }
 }
 
-// A world that begins anew has the errors of its new seed, and its encoders have seen no mark.
+// A restarted world has the errors of its new seed, and its encoders have not passed an index mark.
 TEST(SensorLanes, AWorldThatBeginsAnewHasOtherErrorsAndKnowsNoMark) {
   SensorSpec spec;
   spec.load_cell.emplace().bias_n = 0.5;
@@ -134,7 +134,7 @@ TEST(SensorLanes, AWorldThatBeginsAnewHasOtherErrorsAndKnowsNoMark) {
   }
 }
 
-// ... and the next mark that it sees counts again.
+// The next mark that a restarted world passes has its effect.
 TEST(SensorLanes, AWorldThatBeganAnewSeesItsMark) {
   SensorSpec spec;
   spec.encoder = EncoderSpec{.zero_error_m = 0.3, .index_m = 0.25};
@@ -180,8 +180,8 @@ TEST(SensorLanes, QuantaBeginAtTheLowerEndOfTheRange) {
   EXPECT_DOUBLE_EQ(company.Tensions()[0], 1.03 + 18 * 0.5);
 }
 
-// Noise of the force and noise of the counts have nothing to do with each other: their variances
-// add up (n = 60000: good to s^2 sqrt(2 / n); times five).
+// Noise of the force and noise of the counts are independent: their variances add (n = 60000:
+// accurate to s^2 sqrt(2 / n); times five).
 TEST(SensorLanes, BothNoisesOfACellAreIndependent) {
   SensorSpec spec = Noisy();
   spec.load_cell->counts.emplace().noise_counts = 3;
@@ -200,7 +200,7 @@ TEST(SensorLanes, BothNoisesOfACellAreIndependent) {
   EXPECT_NEAR(square - mean * mean, variance, 5 * variance * std::sqrt(2.0 / n));
 }
 
-// Bias and gain are drawn apart: a cell with both is off by the bias where it carries nothing.
+// Bias and gain are drawn independently: with both, a cell without load is off by the bias.
 TEST(SensorLanes, ACellsGainLeavesItsBiasAlone) {
   SensorSpec bias, both;
   bias.load_cell.emplace().min_n = -10;
@@ -216,7 +216,8 @@ TEST(SensorLanes, ACellsGainLeavesItsBiasAlone) {
   EXPECT_NE(one.Tensions()[0], 0);
 }
 
-// The zero's error is one of place: the encoder's gain, which is of the way, leaves it alone.
+// The zero error is an absolute offset: the encoder's gain, which scales displacements, does not
+// change it.
 TEST(SensorLanes, AnEncodersGainLeavesItsZeroAlone) {
   SensorSpec zero, both;
   zero.encoder = EncoderSpec{.zero_error_m = 0.3};

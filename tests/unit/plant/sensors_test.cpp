@@ -1,4 +1,4 @@
-// Sensors between the robot and its controllers, against closed forms.
+// Sensors between the robot and its controllers, against closed forms
 #include "plant/sensors.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace taut::plant {
 namespace {
 
-/// Rows for one cable in one world.
+/// Rows for one cable in one world
 struct One {
   CableState cable{.rest_length_m = 1.0,
                    .length_m = 1.1,
@@ -30,7 +30,7 @@ SensorSpec WithCell(const LoadCellSpec& cell) {
   return spec;
 }
 
-/// Sensors of one cable in one world, on their clock.
+/// Sensors of one cable in one world, on their clock
 struct Sampler {
   explicit Sampler(const SensorSpec& spec, std::uint64_t seed = 1)
       : sensors(spec, 1, {seed}), clock(sensors.clock(), 1) {}
@@ -49,7 +49,7 @@ struct Sampler {
   LaneClock clock;
 };
 
-/// Tensions that a cell says of a constant one.
+/// Returns a cell's readings of a constant tension.
 std::vector<double> Samples(const LoadCellSpec& cell, double tension_n, int count,
                             std::uint64_t seed = 1) {
   Sampler sensors(WithCell(cell), seed);
@@ -86,7 +86,8 @@ TEST(Sensors, WithoutAnythingAreExact) {
   EXPECT_EQ(seen.stiffness_n_per_m, exact.cable.stiffness_n_per_m);
 }
 
-// n = 100000 samples: the mean is good to s / sqrt(n), the variance to s^2 sqrt(2 / n); times five.
+// n = 100000 samples: the mean is accurate to s / sqrt(n), the variance to s^2 sqrt(2 / n); times
+// five.
 TEST(Sensors, NoiseHasTheVarianceThatWasAskedFor) {
   LoadCellSpec cell;
   cell.noise_n = 0.3;
@@ -112,8 +113,8 @@ TEST(Sensors, ABiasStaysForARunAndDiffersBetweenRuns) {
   EXPECT_NEAR(m.variance, 0.25, 5 * 0.25 * std::sqrt(2.0 / 20'000));
 }
 
-// A rounded number is off by up to half a quantum, evenly: variance q^2 / 12. The number runs
-// through n = 1000 places of each quantum, whose own variance is q^2 / 12 (1 - 1 / n^2).
+// A rounded number is off by up to half a quantum, uniformly: variance q^2 / 12. The number passes
+// n = 1000 places of each quantum, whose variance is q^2 / 12 (1 - 1 / n^2).
 TEST(Sensors, QuantaAreThoseOfTheConverter) {
   LoadCellSpec cell;
   cell.max_n = 100.0;
@@ -141,7 +142,7 @@ TEST(Sensors, ACellSaturatesAtTheEndsOfItsRange) {
   EXPECT_EQ(Samples(cell, 20.0, 1)[0], 20.0);
 }
 
-// A ramp seen d samples late is lower by d times its rise; before that, the first sample holds.
+// A ramp seen d samples late is lower by d times its rise; before that, the first sample is kept.
 TEST(Sensors, ADelayIsWholeSamples) {
   LoadCellSpec cell;
   cell.delay_s = 0.003;
@@ -154,7 +155,8 @@ TEST(Sensors, ADelayIsWholeSamples) {
     exact.cable.rest_length_m = 1.0 - 0.25 * i;
     sensors.SampleNext(exact);
     EXPECT_EQ(sensors.seen().tension_n, 10.0 + std::max(0, i - 3));
-    EXPECT_EQ(sensors.seen().elastic_n, sensors.seen().tension_n);  // all that a cell can tell
+    EXPECT_EQ(sensors.seen().elastic_n,
+              sensors.seen().tension_n);  // a cell measures the whole tension only
     EXPECT_EQ(sensors.seen().rest_length_m, 1.0 - 0.25 * std::max(0, i - 1));
   }
 }
@@ -171,7 +173,7 @@ TEST(Sensors, AnEncoderCounts) {
   }
 }
 
-// L + T / k, and its rate from one sample to the next.
+// L + T / k, and its rate from one sample to the next
 TEST(Sensors, LengthFollowsFromTensionAndRestLength) {
   SensorSpec spec;
   spec.length_from_tension = true;
@@ -197,7 +199,7 @@ TEST(Sensors, SampleOnTheirOwnClock) {
   }
 }
 
-// The paper's eq. 7, turned round and rounded down: count = floor((T + 4.9363) / 0.1567).
+// The paper's eq. 7, inverted and rounded down: count = floor((T + 4.9363) / 0.1567)
 TEST(Sensors, CountsAreThoseOfThePaper) {
   LoadCellSpec cell;
   cell.counts.emplace();
@@ -206,7 +208,7 @@ TEST(Sensors, CountsAreThoseOfThePaper) {
     EXPECT_EQ(std::floor((tension_n + 4.9363) / 0.1567), tension_n == -6.0 ? -7 : count);
     EXPECT_EQ(Samples(cell, tension_n, 1)[0], 0.1567 * count - 4.9363) << tension_n;
   }
-  // 25 lb, 111.21 N, is where the amplifier ends; a converter of 9 bits ends before.
+  // The amplifier saturates at 25 lb, 111.21 N; a converter of 9 bits saturates before.
   EXPECT_NEAR(Samples(cell, 150.0, 1)[0], 111.21, 0.1567);
   cell.counts->bits = 9;
   EXPECT_EQ(Samples(cell, 150.0, 1)[0], 0.1567 * 511 - 4.9363);
@@ -224,7 +226,7 @@ TEST(Sensors, NoiseInCountsSmoothesTheRounding) {
   EXPECT_NEAR(m.variance, variance, 5 * variance * std::sqrt(2.0 / n));
 }
 
-// Each cell has its own gain and its own drift, for a whole run.
+// Each cell has a separate gain and drift, constant during a run.
 TEST(Sensors, GainsAndDriftsAreDrawnOnceARun) {
   LoadCellSpec cell;
   cell.gain_error = 0.02;
@@ -241,7 +243,7 @@ TEST(Sensors, GainsAndDriftsAreDrawnOnceARun) {
   EXPECT_NEAR(MomentsOf(drifts).variance, 0.01, 5 * 0.01 * std::sqrt(2.0 / 20'000));
 }
 
-// A zero that is off stays off until a mark comes by; then it is off by whole turns.
+// A zero error persists until an index mark passes; then the error is a whole number of turns.
 TEST(Sensors, AnIndexLeavesWholeTurnsOfAWrongZero) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     SensorSpec spec;
@@ -264,7 +266,7 @@ TEST(Sensors, AnIndexLeavesWholeTurnsOfAWrongZero) {
   }
 }
 
-// Counts that are taken for too much way: the way from the start is wrong, the start is not.
+// Gain error: the displacement from the start is wrong, the start is not.
 TEST(Sensors, AnEncodersGainIsOfTheWayFromTheStart) {
   std::vector<double> gains;
   for (std::uint64_t seed = 0; seed < 20'000; ++seed) {
@@ -281,7 +283,7 @@ TEST(Sensors, AnEncodersGainIsOfTheWayFromTheStart) {
   EXPECT_NEAR(MomentsOf(gains).variance, 0.0025, 5 * 0.0025 * std::sqrt(2.0 / 20'000));
 }
 
-// Where a gear has backlash, an encoder tells the shaft's way and not the cable's.
+// If a gear has backlash, an encoder measures the shaft's motion, not the cable's.
 TEST(Sensors, AnEncoderIsOnTheMotorsShaft) {
   SensorSpec spec;
   spec.encoder = EncoderSpec{0.25, 0.0};
@@ -297,7 +299,7 @@ TEST(Sensors, AnEncoderIsOnTheMotorsShaft) {
   EXPECT_EQ(sensors.seen().rest_length_m, 1.5);
 }
 
-// The same noise whatever the step: samples are numbered, not steps.
+// The noise does not depend on the step, because it is drawn per sample, not per step.
 TEST(Sensors, NoiseDoesNotDependOnTheStep) {
   Diagnostics out;
   auto experiment =

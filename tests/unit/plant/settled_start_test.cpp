@@ -1,9 +1,9 @@
-// What settling makes of a robot, and what is said about it.
+// Settled starts: poses and messages
 #include <cmath>
 
 #include "math/align.h"
 #include "math/vec.h"
-#include "plant/start.h"
+#include "plant/find_start.h"
 #include "taut/run.h"
 #include "taut/summary.h"
 #include "unit/description/experiment_fixture.h"
@@ -17,7 +17,7 @@ double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 TEST(Align, FindsTheMotionThatPointsHaveMadeTogether) {
   const std::vector<Vec3> from{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0.3, 0.1, -0.7}};
   const double s = std::sqrt(0.5);
-  const Quat turn{s, 0, 0, s};  // a quarter about z: x to y, y to -x
+  const Quat turn{s, 0, 0, s};  // a quarter turn about z: x to y, y to -x
   std::vector<Vec3> to;
   for (const Vec3& p : from) to.push_back(Rotate(turn, p) + Vec3{5, -3, 2});
   const RigidMotion motion = Align(from, to);
@@ -56,10 +56,10 @@ TEST_F(SettledStartTest, ARobotThatHoldsItsShapeIsNotWarnedOf) {
   EXPECT_EQ(out.Format(), "");
   EXPECT_EQ(settled->change.taut_cables, 9);
   EXPECT_TRUE(settled->change.slack_cables.empty());
-  // Its weight, 1 N, is little beside 20 N: the cables give less than 1 N / (1000 N/m).
+  // Its weight, 1 N, is small compared with 20 N: the cables yield less than 1 N / (1000 N/m).
   EXPECT_LT(settled->change.largest_displacement_m, 1e-3);
   EXPECT_GT(settled->change.largest_displacement_m, 0);
-  // The farthest node is a strut's end: radius 0.1 m, half the height 0.1 m from the centre.
+  // The farthest node is a strut's end: at a radius of 0.1 m and 0.1 m above the center.
   EXPECT_NEAR(settled->change.size_m, 2 * std::sqrt(0.02), 1e-12);
   EXPECT_NEAR(settled->change.described_max_tension_n, 20, 1e-9);
 }
@@ -136,15 +136,15 @@ TEST(StartWarnings, SayWhatIsFarAndWhatTouches) {
   change.new_contacts = {{"a", "b"}};
   Diagnostics out;
   WarnOfStart(change, out);
-  const std::string hint =
-      " (`taut check --settled` shows what is left, `taut view` how it looks)\n";
-  EXPECT_EQ(out.Format(),
-            "warning: bodies that were apart as described press on each other after settling: a on "
-            "b" +
-                hint +
-                "warning: the robot settles to another shape: the node \"tip\" ends 0.3 m from its "
-                "place in the shape described, 30 % of the robot's size of 1 m" +
-                hint);
+  const std::string hint = " (see the settled robot with `taut check --settled` or `taut view`)\n";
+  EXPECT_EQ(
+      out.Format(),
+      "warning: bodies that are apart as described touch after settling: a on "
+      "b" +
+          hint +
+          "warning: the robot settles to another shape: the node \"tip\" moves 0.3 m from its "
+          "described position, 30 % of the robot's size of 1 m" +
+          hint);
   change = {};
   change.taut_cables = 20;
   change.slack_cables = {"a", "b", "c", "d", "e", "f", "g"};

@@ -1,4 +1,4 @@
-// Robots that start inside the ground or in themselves.
+// Robots that penetrate the ground or themselves at the start
 #include "taut/run.h"
 #include "unit/description/experiment_fixture.h"
 
@@ -7,8 +7,8 @@ namespace {
 
 class StartOverlap : public ExperimentFolder {
  protected:
-  /// What `CheckStart` says of the experiment with a ground at this height [m]; the lower rod's
-  /// underside is at 0.09 m.
+  /// Returns the messages of `CheckStart` for the experiment with a ground at this height [m]; the
+  /// lower rod's underside is at 0.09 m.
   std::string Found(const std::string& ground_m, const std::string& more = "") {
     std::string text = kExperiment;
     const std::string ground = "height_m: 0,";
@@ -20,7 +20,7 @@ class StartOverlap : public ExperimentFolder {
     EXPECT_EQ(good, out.ok());
     return Without(Path(""), out.Format());
   }
-  /// What a run says that does not ask before.
+  /// Returns the messages of a run without a previous check.
   std::string RunFound() {
     ExperimentSpec experiment = Load();
     experiment.duration_s = 0.001;
@@ -40,9 +40,9 @@ TEST_F(StartOverlap, LessThanTheRadiusIsAWarningWithPairAndDepth) {
   EXPECT_EQ(
       Found("0.096"),
       "trial.yaml:7:5: warning: the rod \"a\" is 0.006 m deep in the terrain \"ground\" at the "
-      "start (it is pushed out, without speed)\n");
+      "start (the contact solver separates them without adding velocity)\n");
   EXPECT_EQ(RunFound(), "");
-  // Where it settles first, it does not start so.
+  // If it settles first, the described pose is not its start.
   EXPECT_EQ(Found("0.096", "start: settled\n"), "");
 }
 
@@ -50,7 +50,7 @@ TEST_F(StartOverlap, MoreThanTheRadiusIsAnErrorWithPairAndDepth) {
   const std::string error =
       "trial.yaml:7:5: error: the rod \"a\" is 0.011 m deep in the terrain \"ground\" at the "
       "start, "
-      "more than half the thickness of the thinner one, 0.01 m (`place` moves the robot)\n";
+      "more than half the thickness of the thinner one, 0.01 m (move the robot with `place`)\n";
   EXPECT_EQ(Found("0.101"), error);
   EXPECT_EQ(RunFound(), error);
   EXPECT_EQ(Found("0.101", "start: settled\n"), error);
@@ -65,11 +65,10 @@ TEST_F(StartOverlap, BodiesInEachOtherAreNamedBoth) {
   ChangeFile("model.yaml", kModel, "height_m: 0.3", "height_m: 0.119");
   EXPECT_EQ(Found("0").substr(0, 26), "model.yaml:11:5: warning: ");
   ChangeFile("model.yaml", kModel, "height_m: 0.3", "height_m: 0.109");
-  EXPECT_EQ(
-      Found("0"),
-      "model.yaml:11:5: error: the rod \"a\" and the rod \"b\" are 0.011 m deep in each other at "
-      "the start, more than half the thickness of the thinner one, 0.01 m (move one of them, "
-      "write `collides: false`, or list both bodies in `apart` of the model)\n");
+  EXPECT_EQ(Found("0"),
+            "model.yaml:11:5: error: the rod \"a\" and the rod \"b\" overlap by 0.011 m at "
+            "the start, more than half the thickness of the thinner one, 0.01 m (move one of them, "
+            "write `collides: false`, or list both bodies in `apart` of the model)\n");
 }
 
 TEST_F(StartOverlap, BoxesOfTerrainAreTerrain) {

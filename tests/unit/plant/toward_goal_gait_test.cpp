@@ -1,21 +1,20 @@
-// Gaits that roll towards a goal: files, what is wrong with them, how they play; starts in any
-// pose.
+// Gaits that roll toward a goal: files, errors, signals; starts in random poses
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "math/vec.h"
-#include "plant/gait_kinds.h"
-#include "plant/start.h"
+#include "plant/find_start.h"
+#include "plant/player_kinds.h"
 #include "taut/batch.h"
 #include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
 namespace {
 
-/// Three rods, each along an axis, and two cables: the middle of `one` is at (0, 1.25, 0), that of
-/// `two` at (0, -1.25, 0), when the robot is placed as described.
+/// Three rods along the three axes, and two cables: in the described placement the middle of `one`
+/// is at (0, 1.25, 0), and the middle of `two` at (0, -1.25, 0).
 constexpr const char* kJack = R"(taut: 1
 kind: model
 name: jack
@@ -115,25 +114,25 @@ TEST_F(TowardGoalGaits, AResolvedExperimentHasItAndItsStart) {
   EXPECT_TRUE(again.start_noise.any_pose);
   EXPECT_EQ(GaitYaml(again.controllers[0].rest_length_input->gait),
             GaitYaml(experiment.controllers[0].rest_length_input->gait));
-  // Who does not ask for it has a file that earlier versions read.
+  // Files without this feature stay readable by earlier versions.
   EXPECT_EQ(PlayedComplaints(kGait, std::string(kGoal) + "start_noise: {position_m: 0.1}\n"), "");
   EXPECT_EQ(ResolvedYaml(Load()).find("any_pose"), std::string::npos);
 }
 
 TEST_F(TowardGoalGaits, WhatIsWrongIsAnswered) {
   EXPECT_EQ(PlayedComplaints(kGait, ""),
-            "g.yaml:6:3: error: gait rolling goes toward a goal, but the experiment has no `goal` "
-            "(say where it is and whose way there is sensed: goal: {at_m: [3.5, 0, 0], body: "
-            "...})\n");
+            "g.yaml:6:3: error: gait rolling moves toward a goal, but the experiment has no `goal` "
+            "(add its position and the tracked body: `goal: {at_m: [3.5, 0, 0], body: ...}`)\n");
   EXPECT_EQ(PlayedComplaints(kGait, "goal: {at_m: [3, 0, 0], body: a}\n"),
-            "g.yaml:6:3: error: gait rolling needs the way to the goal in the frame of the world "
-            "(goal: {frame: world, ...}: a body that rolls has no ahead)\n");
-  EXPECT_EQ(PlayedComplaints(kGait, kGoal, "model.yaml"),
-            "g.yaml:6:3: error: toward_goal: the 2 struts of pair do not go in three directions "
-            "(the turn of the robot is found from bodies that are a single rod)\n");
+            "g.yaml:6:3: error: gait rolling needs the direction to the goal in the world frame "
+            "(write `goal: {frame: world, ...}`: a rolling body has no forward direction)\n");
+  EXPECT_EQ(
+      PlayedComplaints(kGait, kGoal, "model.yaml"),
+      "g.yaml:6:3: error: toward_goal: the 2 struts of pair do not have three independent "
+      "directions (the rotation of the robot is computed from bodies that are a single rod)\n");
   EXPECT_EQ(PlayedComplaints(Changed("cables: driven", "cables: one"), kGoal),
-            "g.yaml:6:3: error: toward_goal: the middles of all its cables are in one place (it "
-            "needs cables on all sides of the robot)\n");
+            "g.yaml:6:3: error: toward_goal: the midpoints of all its cables are at the same "
+            "position (select cables on all sides of the robot)\n");
   EXPECT_EQ(PlayedComplaints(Changed("beat_hz: 0.5", "beat_hz: -1"), kGoal),
             "g.yaml:18:12: error: toward_goal.beat_hz must not be negative, got -1\n");
   EXPECT_EQ(PlayedComplaints(Changed("up3_m: 0.08", "up4_m: 0.08"), kGoal)
@@ -141,7 +140,7 @@ TEST_F(TowardGoalGaits, WhatIsWrongIsAnswered) {
             0u);
 }
 
-/// Bodies turned as a test says.
+/// Bodies with orientations set by the test
 struct Turned final : Bodies {
   BodyState Body(int lane, int) const override {
     BodyState state;
@@ -194,8 +193,8 @@ double Polynomial(double a, double z, double strength) {
                      0.07 * a * a * a + 0.04 * a * a * z - 0.06 * a * z * z + 0.08 * z * z * z);
 }
 
-// The middles of the cables are 1.25 m from their mean, which is the radius: in radii a turned
-// robot's are where the turn puts (0, 1, 0) and (0, -1, 0).
+// The middles of the cables are 1.25 m from their mean, which is the radius: in radii, a rotated
+// robot's middles are (0, 1, 0) and (0, -1, 0) after the rotation.
 TEST_F(TowardGoalGaits, ACablesPlaceIsThatOfTheTurnedRobot) {
   ASSERT_EQ(PlayedComplaints(kGait, kGoal), "");
   const ExperimentSpec experiment = Load();
@@ -215,7 +214,7 @@ TEST_F(TowardGoalGaits, ACablesPlaceIsThatOfTheTurnedRobot) {
   }
 }
 
-// Nobody knows how it lies: the constant part. Nobody knows the goal: what is up still counts.
+// Unknown orientation: only the constant part. Unknown goal: the vertical direction still acts.
 TEST_F(TowardGoalGaits, WhatIsNotSensedIsNothing) {
   ASSERT_EQ(PlayedComplaints(kGait, kGoal), "");
   const ExperimentSpec experiment = Load();
@@ -251,9 +250,9 @@ TEST_F(TowardGoalGaits, ALaneHasItsOwnNumbersAndBodies) {
   EXPECT_EQ(together.At(0.4)[1], all[1]);
 }
 
-// Turns that are drawn evenly have no direction that they prefer: the mean of a rotated axis is 0
-// and of its square 1/3 along each axis of the world, here of 600 starts to three deviations. The
-// centre of mass stays, and so do distances from it.
+// Uniformly distributed rotations have no preferred direction: the mean of a rotated axis is 0, and
+// of its square 1/3 along each axis of the world, here for 600 starts to three deviations. The
+// center of mass is unchanged, and so are distances from it.
 TEST_F(TowardGoalGaits, AStartInAnyPoseIsATurnAboutTheCentreOfMass) {
   ASSERT_EQ(PlayedComplaints(kGait, std::string(kGoal) + "start_noise: {any_pose: true}\n"), "");
   ExperimentSpec experiment = Load();

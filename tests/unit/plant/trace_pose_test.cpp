@@ -1,3 +1,4 @@
+// Poses read from traces
 #include "taut/trace_pose.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,8 @@ class TracePose : public testing::Test {
     trace_.values.push_back({first, second});
   }
 
-  /// Every body turned by a right angle about z, and carried along: by hand.
+  /// Writes poses with every body rotated by a right angle about z and translated, computed
+  /// explicitly.
   void PutAll() {
     const double half = std::sqrt(0.5);
     for (const BodyDef& body : robot_.def.bodies) {
@@ -84,7 +86,7 @@ TEST_F(TracePose, AllThatIsWrongIsNamed) {
   EXPECT_FALSE(At(1));
   const std::string said = out_.Format();
   for (const std::string& part :
-       {"seen.csv: error: has no channel " + first + "position_y_m",
+       {"seen.csv: error: the trace has no channel " + first + "position_y_m",
         first + "position_z_m is nan at 0.5 s",
         "the orientation of body " + robot_.def.bodies[1].name + " has the length 1.145",
         "cable/" + robot_.def.cables[0].name + "/rest_length_m is -1"}) {
@@ -99,8 +101,8 @@ TEST_F(TracePose, ARowThatIsNotThereIsAnError) {
   EXPECT_FALSE(out_.ok());
 }
 
-/// Turns count from the pose that the file has: of a robot that was placed otherwise, cables are of
-/// other lengths than recorded.
+/// Rotations are relative to the described pose: if the robot was placed differently, cable lengths
+/// differ from the recorded ones.
 TEST_F(TracePose, ARecordingOfAnotherPlacementIsAWarning) {
   PutAll();
   const CableDef& cable = robot_.def.cables[0];
@@ -113,7 +115,7 @@ TEST_F(TracePose, ARecordingOfAnotherPlacementIsAWarning) {
   EXPECT_NE(out_.Format().find("cable " + cable.name + " is "), std::string::npos);
 }
 
-/// What is anchored need not be recorded.
+/// Anchored bodies need not be recorded.
 TEST_F(TracePose, WhatStandsStillMayBeLeftOut) {
   robot_.def.bodies[0].fixed = true;
   PutAll();

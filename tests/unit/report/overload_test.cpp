@@ -1,4 +1,4 @@
-// Overloaded members of a run: name, force, time, and the outputs that report them.
+// Overloaded members of a run: name, force, time, and the outputs that report them
 #include <cmath>
 #include <numbers>
 
@@ -13,14 +13,14 @@
 namespace taut::test {
 namespace {
 
-/// Rows at the start and the end only: the peak in between is not recorded.
+/// Records rows at the start and the end only: the peak in between is not recorded.
 RunSummary SummaryOf(const ModelDef& def, double duration_s) {
-  ExperimentSpec experiment = ExperimentWith(def, duration_s, {"*"});
+  ExperimentSpec experiment = MinimalExperiment(def, duration_s, {"*"});
   experiment.record.rate_hz = 1 / duration_s;
   return Recording(experiment).summary;
 }
 
-/// A mass let go at the rest length: T = m g (1 - cos(w t)).
+/// A mass released at the rest length: T = m g (1 - cos(w t))
 ModelDef LetGo(double strength_n) {
   ModelDef def = scenes::HangingMass().Def();
   def.cables[0].member.strength_n = strength_n;
@@ -59,7 +59,8 @@ TEST(Overload, WhatHoldsIsNotMentioned) {
 }
 
 TEST(Overload, OfACableWithFrictionTheTightestSpanCounts) {
-  // Over an edge of a quarter turn: the weight's side has more than the side of the cable's start.
+  // Over an edge with a wrap angle of a quarter turn: the span at the weight has a higher tension
+  // than the first span.
   ModelDef def;
   BodyDef mass;
   mass.name = "mass";
@@ -77,7 +78,7 @@ TEST(Overload, OfACableWithFrictionTheTightestSpanCounts) {
   EXPECT_GT(run.overloads[0].carried_n, 1.2 * run.cables[0].tension.max_n);
 }
 
-/// 1 kg upright on a bar that its weight has shortened.
+/// 1 kg upright on a bar that its weight has shortened
 ModelDef OnABar(const MemberDef& member) {
   ModelDef def;
   BodyDef mass;
@@ -103,7 +104,7 @@ TEST(Overload, ABarThatBucklesAndYieldsIsSaidTwice) {
       0.5 * kG / (std::numbers::pi * std::numbers::pi * 1e9);  // buckles at half the weight
   member.area_m2 = 1e-6;
   member.yield_pa = 0.75 * kG / 1e-6;
-  member.strength_n = 1;  // which is of tension
+  member.strength_n = 1;  // applies to tension only
   const RunSummary run = SummaryOf(OnABar(member), 0.02);
   ASSERT_EQ(run.overloads.size(), 2u);
   EXPECT_EQ(run.overloads[0].limit, MemberLimit::kYield);
@@ -122,8 +123,8 @@ TEST(Overload, ABarThatBucklesAndYieldsIsSaidTwice) {
   EXPECT_TRUE(SummaryOf(OnABar(member), 0.02).overloads.empty());
 }
 
-/// A rod of 0.3 kg that falls on its end from 1 cm and stands: between two rows it lands with
-/// m v = m sqrt(2 g 0.01 m) in one step.
+/// A rod of 0.3 kg that falls on its end from 1 cm and stands: between two rows it lands with m v =
+/// m sqrt(2 g 0.01 m) in one step.
 TEST(Overload, ARodIsLookedAtBetweenRows) {
   ModelDef def;
   scenes::AddRod(def, "rod", 0.3, 0.01, {0, 0, 0.02}, {0, 0, 0.42}, {});
@@ -148,7 +149,7 @@ TEST(Overload, ARodIsLookedAtBetweenRows) {
 }
 
 TEST(Overload, ALiveRunFindsTheSame) {
-  ExperimentSpec experiment = ExperimentWith(LetGo(0.5), 0.1, {"*"});
+  ExperimentSpec experiment = MinimalExperiment(LetGo(0.5), 0.1, {"*"});
   const RunSummary run = Recording(experiment).summary;
   Diagnostics out;
   const auto live = LiveRun::Start(experiment, out);
@@ -170,7 +171,7 @@ TEST(StiffCable, RowsAndLargestTensionOfALightMassAreItsWeight) {
   ModelDef def = scene.Def();
   const double weight_n = scene.mass_kg * kG;
   def.cables[0].member.strength_n = 1.03 * weight_n;
-  const Recording run(ExperimentWith(def, 0.3, {"*"}));
+  const Recording run(MinimalExperiment(def, 0.3, {"*"}));
   for (std::size_t row = 1; row < run.rows(); ++row) {
     ASSERT_NEAR(run.At("cable/cable/tension_n", row), weight_n, 0.02 * weight_n) << row;
   }

@@ -1,5 +1,5 @@
-// What a run asks of motors and springs (taut/sizing.h), against closed forms; and what is wrong
-// with catalogues.
+// Demands of a run on motors and springs (taut/sizing.h), against closed forms; and errors of
+// catalogs
 #include "taut/sizing.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace taut::test {
 namespace {
 
-/// One cable under T0 + B cos(w t), wound in by A sin(w t), for `cycles` of a second.
+/// One cable under T0 + B cos(w t), wound in by A sin(w t), for `cycles` periods of a second
 struct Sine {
   double base_n = 20, swing_n = 8, wound_m = 0.05, w = 2 * std::numbers::pi;
   int cycles = 3, rows = 30001;
@@ -52,14 +52,14 @@ TEST(Sizing, ASineHasTheDemandsOfItsClosedForm) {
   ASSERT_TRUE(run) << out.Format();
   const CableDemand& d = run->cables.at(0);
   const double a = sine.wound_m, t0 = sine.base_n, b = sine.swing_n, w = sine.w;
-  // Rows are straight between each other: off by (w h)^2 or so.
+  // Linear interpolation between rows: relative error of about (w h)^2.
   const double off = 1e-6;
   EXPECT_NEAR(d.peak_force_n, t0 + b, 1e-12);
   EXPECT_NEAR(d.rms_force_n, std::sqrt(t0 * t0 + b * b / 2), t0 * off);
   EXPECT_NEAR(d.peak_speed_m_per_s, a * w, a * w * off);
   EXPECT_NEAR(d.rms_speed_m_per_s, a * w / std::sqrt(2), a * w * off);
   EXPECT_NEAR(d.peak_power_w, (t0 + b) * a * w, 20 * off);
-  // Mean of (T0 + B cos)^2 cos^2 over a turn.
+  // Mean of (T0 + B cos)^2 cos^2 over a period
   EXPECT_NEAR(d.rms_power_w, a * w * std::sqrt(t0 * t0 / 2 + 3 * b * b / 8), 20 * off);
   EXPECT_NEAR(d.gross_energy_j, sine.cycles * a * (2 * t0 + b * std::numbers::pi / 2), 1e-4);
   EXPECT_NEAR(d.net_energy_j, sine.cycles * std::numbers::pi * a * b, 1e-5);
@@ -69,7 +69,7 @@ TEST(Sizing, ASineHasTheDemandsOfItsClosedForm) {
   EXPECT_FALSE(run->every_step);
 }
 
-/// Rows far apart: between them force and rest length go straight, and a mean is that of the lines.
+/// Distant rows: force and rest length are linear in between, and means are means of the lines.
 TEST(Sizing, BetweenRowsAllGoesStraight) {
   Trace trace = Sine{}.Rows();
   trace.time_s = {0, 2};
@@ -154,8 +154,8 @@ TEST(Catalogue, EveryMistakeIsNamed) {
                      "    peak_torque_n_m: 1\n    max_speed_rad_per_s: 3\n    rated_power_w: 5\n"
                      "    peak_power_w: 4\nsprings:\n  s: {stiffness_n_per_m: -1, "
                      "largest_force_n: 2, colour: 3}\n"),
-            "7: the peak torque is less than the rated one\n"
-            "10: the peak power is less than the rated one\n"
+            "7: the peak torque is below the rated torque\n"
+            "10: the peak power is below the rated power\n"
             "12: spring needs the key \"largest_travel_m\"\n"
             "12: spring.stiffness_n_per_m must be positive, got -1\n"
             "12: unknown key \"colour\" in spring\n");

@@ -1,4 +1,4 @@
-// The summary of a run, as JSON and as tables.
+// Summary of a run, as JSON and as tables
 #include "taut/summary.h"
 
 #include <gtest/gtest.h>
@@ -98,7 +98,7 @@ TEST(SummaryJson, HoldsEverythingUnderItsName) {
       << "outside of a folder";
 }
 
-/// The robot's maxima, and a book's means of the second phase.
+/// Returns reference maxima of a robot, and reference means of the second phase from a book.
 std::vector<ReferenceSpec> References() {
   ReferenceSpec robot, book;
   robot.source = "a robot";
@@ -132,15 +132,15 @@ TEST(SummaryTable, SaysHowFarOffTheReferencesAre) {
   summary.references = References();
   const std::string whole = SummaryTable(summary);
   EXPECT_TRUE(
-      whole.ends_with("beside a robot: max tension of 2 cables, whole run\n"
-                      "  at most 30.00 % off: outer_top_2 13.000 N, there 10.000 N\n"
-                      "beside a book: mean elastic of 1 cables, during\n"
-                      "  at most 3.33 % off: outer_top_2 3.100 N, there 3.000 N\n"))
+      whole.ends_with("compared with a robot: max tension of 2 cables, whole run\n"
+                      "  largest difference 30.00 %: outer_top_2 13.000 N, reference 10.000 N\n"
+                      "compared with a book: mean elastic of 1 cables, during\n"
+                      "  largest difference 3.33 %: outer_top_2 3.100 N, reference 3.000 N\n"))
       << whole;
   summary.simulated_s = 37;
   EXPECT_TRUE(
-      SummaryTable(summary).ends_with("beside a book: mean elastic of 1 cables, during\n"
-                                      "  not reached\n"));
+      SummaryTable(summary).ends_with("compared with a book: mean elastic of 1 cables, during\n"
+                                      "  the run did not reach this phase\n"));
 }
 
 TEST(SummaryJson, WhatWasNotReachedIsNull) {
@@ -172,15 +172,15 @@ tension [N]     mean     min     max     mean     min     max     mean     min  
 inner_top_1    32.25   31.75   32.75    32.35   31.85   32.85    32.45   31.95   32.95     41.25
 outer_top_2     4.00    3.50    4.50     4.10    3.60    4.60     4.20    3.70    4.70     13.00
 
-largest system tension: 41.250 N in inner_top_1
-elastic part alone: 39.250 N; from 5 s on: 38.250 N
+largest tension: 41.250 N in inner_top_1
+largest elastic part: 39.250 N; from 5 s on: 38.250 N
 
 drag [N]       mean     min     max
 scale         1.500   1.250   1.750
 
-actuator     max force N   max speed m/s   max power W    energy J       net J
-inner_top_1        31.25          0.0700         2.188       0.500       0.375
-outer_top_2        31.25          0.0700         2.188       0.500       0.375
+actuator     max force [N]  max speed [m/s]  max power [W]  energy [J]     net [J]
+inner_top_1          31.25           0.0700          2.188       0.500       0.375
+outer_top_2          31.25           0.0700          2.188       0.500       0.375
 )");
 }
 
@@ -201,9 +201,9 @@ TEST(SummaryTable, HasALineForEveryLimitThatAMemberExceeded) {
             std::string::npos)
       << table;
   EXPECT_NE(table.find(R"(
-overloaded  member  limit       capacity N max force N  first at s
-inner_top_1 cable   strength           0.5       17.14        0.25
-strut_0     rod     buckling          1234        2346       12.35
+overloaded  member  limit       capacity [N]  max force [N]  first at [s]
+inner_top_1 cable   strength             0.5          17.14          0.25
+strut_0     rod     buckling            1234           2346         12.35
 )"),
             std::string::npos)
       << table;

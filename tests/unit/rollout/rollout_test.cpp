@@ -1,4 +1,4 @@
-// Variants of an experiment side by side: each goes through the bits of a run of its own.
+// Variants of an experiment side by side: each equals a separate run bit for bit.
 #include "taut/rollout.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ ExperimentSpec Load(const std::string& name, double duration_s) {
   return *experiment;
 }
 
-/// Worlds with other gains, masses, friction, starts.
+/// Worlds with different gains, masses, friction, starts
 std::vector<RolloutWorld> Varied(const ExperimentSpec& experiment, int count) {
   std::vector<RolloutWorld> worlds;
   for (int i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ void EveryWorldEqualsItsRun(const ExperimentSpec& experiment) {
         EXPECT_EQ(results[i].state_hash, alone[i].state_hash) << i << ", " << name;
         double energy_j = 0;
         for (const CableSummary& cable : alone[i].cables) energy_j += cable.energy_j;
-        // the sums go over cables and steps in another order
+        // the sums over cables and steps have another order
         EXPECT_NEAR(results[i].energy_j, energy_j, 1e-9 * energy_j);
         EXPECT_NE(results[i].state_hash, results[(i + 1) % worlds.size()].state_hash);
       }
@@ -114,14 +114,14 @@ TEST(Rollout, SoItDoesWithOscillatorsThatFeel) {
 TEST(Rollout, SoItDoesFromASettledStart) {
   ExperimentSpec experiment = Load("push_20n", 0.02);
   experiment.start = StartKind::kSettledFloating;
-  experiment.robot.def.planes[0].point_m.z = -0.02;  // its ends go down while it settles
+  experiment.robot.def.planes[0].point_m.z = -0.02;  // its ends move down while it settles
   EveryWorldEqualsItsRun(experiment);
 }
 
 TEST(Rollout, AWorldThatCannotStartFailsAlone) {
   ExperimentSpec experiment = Load("push_20n", 0.1);
   experiment.start = StartKind::kSettled;
-  // a body without mass: its first step is not finite
+  // a body of almost no mass: its first step is not finite
   auto worlds = Varied(experiment, 3);
   worlds[1].scales.push_back({ScaleSpec::Quantity::kMass, {0}, 1e-310});
   const auto results = RunAll(experiment, worlds, 1, BestSimd());

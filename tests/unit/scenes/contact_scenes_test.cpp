@@ -1,4 +1,4 @@
-/// The contact-rich scenes are what they claim to be, and start as they should.
+/// Contact-rich scenes: properties and starts
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ Batch World(const ModelDef& def) {
   return {model, {}};
 }
 
-/// Where everything is after some steps.
+/// Returns the hash of the state after some steps.
 std::uint64_t HashAfter(const ModelDef& def, int steps) {
   Batch world = World(def);
   world.Step(0.001, steps);

@@ -1,11 +1,11 @@
-/// Small robots that settle: one that stays what it is, and one that becomes a heap.
+/// Small robots that settle: a prism that keeps its shape, and a model that collapses
 #pragma once
 
 namespace taut::test {
 
-/// A prism of three struts, turned to where prestress alone holds it: 150 degrees. `turn_rad` takes
-/// it away from there; then it turns back, and its side cables, shortest at 150 degrees, are too
-/// long.
+/// A prism of three struts at the twist at which prestress alone holds it: 150 degrees. `turn_rad`
+/// is a deviation from it; then the prism rotates back, and its side cables, shortest at 150
+/// degrees, are too long.
 inline constexpr const char* kPrism = R"(taut: 1
 kind: model
 name: prism

@@ -1,4 +1,4 @@
-/// The scenes that tests and benchmarks share are what they claim to be.
+/// Scenes shared by tests and benchmarks: properties
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ TEST(Scenes, TheirTetraspineIsThatOfTheModelFile) {
   const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", {}, complaints);
   ASSERT_TRUE(robot) << complaints.Format();
   const ModelDef &file = robot->def, scene = scenes::Tetraspine().Def();
-  // Two ways to write the same sums: they differ by their rounding, of numbers of about 1.
+  // The same sums in two forms differ by the rounding of numbers of about 1.
   const double rounding = 64 * std::numeric_limits<double>::epsilon();
   ASSERT_EQ(file.bodies.size(), scene.bodies.size());
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {

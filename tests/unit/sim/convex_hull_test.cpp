@@ -1,4 +1,4 @@
-// Convex hulls and what meshes weigh.
+// Convex hulls, and mass properties of meshes
 #include "math/convex_hull.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,8 @@ std::vector<Vec3> Ball(unsigned seed, int count) {
   return points;
 }
 
-/// Every edge once each way, Euler's formula, no point outside.
+/// Checks that every edge occurs once in each direction, Euler's formula, and that no point is
+/// outside.
 void ExpectHullOf(const std::vector<Vec3>& points, const ConvexHull& hull, double out_m) {
   std::set<std::pair<int, int>> edges;
   std::size_t sides = 0;
@@ -68,7 +69,7 @@ TEST(ConvexHull, OfACubeItHasItsCornersOnly) {
     std::vector<Vec3> turned;
     for (const Vec3& p : points) {
       const Vec3 at = Rotate(q, p);
-      // As an STL has them.
+      // In single precision, as in STL files.
       turned.push_back(
           {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)});
     }
@@ -91,13 +92,13 @@ TEST(ConvexHull, HoldsAllPointsOrSaysByHowMuchNot) {
     const ConvexHull some = HullOf(many, 64);
     EXPECT_EQ(some.corners.size(), 64u);
     EXPECT_GT(some.left_out_m, 0.01);
-    EXPECT_LT(some.left_out_m, 0.15);  // a regular one of so many faces: 0.04
+    EXPECT_LT(some.left_out_m, 0.15);  // a regular one with as many faces: 0.04
     ExpectHullOf(many, some, some.left_out_m + 1e-6);
   }
 }
 
 TEST(ConvexHull, AThinDiscEndsAndSaysWhatItLeavesOut) {
-  // As thin as the tolerance: corners that are added are dropped again, without end before.
+  // As thin as the tolerance: added corners are dropped again, which must not loop.
   for (const double thickness : {3e-7, 7e-7, 1e-6, 2e-6}) {
     std::vector<Vec3> disc;
     for (int i = 0; i < 32; ++i) {
@@ -148,7 +149,7 @@ TEST(SolidMesh, OfABoxWeighsAsTheBoxDoesAnywhere) {
 }
 
 TEST(SolidMesh, OfATetrahedronHasTheMomentsOfTheBooks) {
-  // A corner of a cube: mass rho a^3 / 6, centre at a quarter of each edge; about the corner
+  // Corner of a cube: mass rho a^3 / 6, center of mass at a quarter of each edge; about the corner
   // Ixx = m a^2 / 5, and x y has the mean a^2 / 20.
   const double a = 0.4, m = 3;
   const std::vector<Vec3> corners{{0, 0, 0}, {a, 0, 0}, {0, a, 0}, {0, 0, a}};

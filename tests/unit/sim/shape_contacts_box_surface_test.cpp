@@ -1,5 +1,5 @@
-// Where boxes touch ground, against what is known and against all pairs of parts
-// (docs/theory/ground.md, section 3).
+// Contacts of boxes with ground, against known cases and against all pairs of features
+// (docs/theory/ground.md, section 3)
 #include <gtest/gtest.h>
 
 #include "unit/sim/surface_helpers.h"
@@ -7,7 +7,7 @@
 namespace taut::sim {
 namespace {
 
-/// Of a box's 8 corners and 12 edges.
+/// Returns one of a box's 8 corners.
 Vec3 CornerOf(const BoxShape& box, int corner) {
   Vec3 p = AsVec(box.center);
   for (int axis = 0; axis < 3; ++axis) {
@@ -25,7 +25,7 @@ void EachEdge(const BoxShape& box, const Use& use) {
   }
 }
 
-/// The least of |a + s u - b - t v|^2 over the unit square: inside of it, or on its sides.
+/// The least of |a + s u - b - t v|^2 over the unit square: in its interior, or on its sides.
 double SegmentDistance(const Vec3& a, const Vec3& a_end, const Vec3& b, const Vec3& b_end) {
   const Vec3 u = a_end - a, v = b_end - b, w = a - b;
   const double uu = Dot(u, u), vv = Dot(v, v), uv = Dot(u, v), det = uu * vv - uv * uv;
@@ -66,7 +66,7 @@ double DistanceToBox(const BoxShape& box, const Vec3& p) {
   return Length(away);
 }
 
-/// By a way up along no special direction.
+/// Returns whether p is inside, by counting crossings of a ray upward in a general direction.
 bool IsIn(const Known& ground, const Vec3& p) {
   if (!ground.table().solid) return false;
   int crossings = 0;
@@ -76,7 +76,7 @@ bool IsIn(const Known& ground, const Vec3& p) {
   return crossings % 2 == 1;
 }
 
-/// From all pairs of corners, edges and faces; below 0 if they are in each other.
+/// Returns the distance by all pairs of corners, edges and faces; below 0 if they overlap.
 double DistanceOfAll(const Known& ground, const BoxShape& box) {
   double least = kInf;
   bool meet = false;
@@ -107,7 +107,7 @@ Points TouchesOf(const BoxShape& box, const SurfaceTable& table, double margin_m
   return points;
 }
 
-/// Boxes of all shapes above and beside a surface, let down until they are near to it.
+/// Lowers boxes of all shapes, from above and next to a surface, until they are near to it.
 template <class Def>
 void ExpectLeastGaps(const Def& def, unsigned seed, int boxes) {
   const Known ground(def);
@@ -146,8 +146,8 @@ void ExpectLeastGaps(const Def& def, unsigned seed, int boxes) {
     EXPECT_LE(clear, distance) << seed << " " << i;
     EXPECT_EQ(DistanceUpTo(box, SurfaceShape{&ground.table()}, 0.0), 0.0);
     ++near;
-    // On as far again and a little into each other: the way out is the same, unless what was
-    // nearest was a corner beside an edge.
+    // Moved by the same distance again and slightly into each other: the direction out is the same,
+    // unless the nearest feature was a corner next to an edge.
     const TouchPoint& last = *std::min_element(
         points.begin(), points.end(),
         [](const TouchPoint& a, const TouchPoint& b) { return a.gap_m < b.gap_m; });
@@ -178,7 +178,7 @@ TEST(BoxOnSurface, TheLeastGapIsTheDistance) {
   }
 }
 
-/// What touches, of a box 0.2 x 0.2 x 0.1 whose bottom is in z = 0.
+/// Returns the contact points of a box 0.2 x 0.2 x 0.1 whose bottom is at z = 0.
 Points Touches(const TerrainMeshDef& mesh, double turn_rad = 0) {
   const Surface surface(mesh);
   return TouchesOf(Box({0.1, 0.1, 0.05}, Turn({0, 0, 1}, turn_rad, {0, 0, 0.05})), surface.table(),
@@ -228,7 +228,7 @@ TEST(BoxOnSurface, APeakTouchesTheFaceAboveIt) {
 }
 
 TEST(BoxOnSurface, OfAPeakItsFlankDoesNotTouch) {
-  // A corner on the flank, level with the face; the top is 3 mm within it.
+  // A corner on the flank, level with the face; the peak is 3 mm inside it.
   TerrainMeshDef mesh;
   mesh.solid = false;
   mesh.corners_m = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {0, 0, 3e-3}, {0.03, 0, 0}};
@@ -239,7 +239,7 @@ TEST(BoxOnSurface, OfAPeakItsFlankDoesNotTouch) {
 }
 
 TEST(BoxOnSurface, ACornerInAGrooveHasBothItsSides) {
-  // A cube on its corner, in a groove along y, free of its sides or within them by a hair.
+  // A cube on its corner, in a groove along y, just free of its sides or just penetrating them.
   TerrainMeshDef groove;
   groove.corners_m = {{-1, -1, 0.5}, {0, -1, 0}, {1, -1, 0.5}, {0, -1, -1},
                       {-1, 1, 0.5},  {0, 1, 0},  {1, 1, 0.5},  {0, 1, -1}};
@@ -265,7 +265,7 @@ TEST(BoxOnSurface, ACornerInAGrooveHasBothItsSides) {
 }
 
 TEST(BoxOnSurface, OnAPlateauOnlyItsCornersCount) {
-  // 3 x 3 corners at z = 0 under the box, level all around: four of them hold it.
+  // 3 x 3 corners at z = 0 under the box, surrounded by lower ground: four of them carry it.
   HeightFieldDef field = scenes::Field(9, 9, 0.05, {}, [](double x, double y) {
     return std::max(std::abs(x), std::abs(y)) < 0.06 ? 0.0 : -0.1;
   });
@@ -278,7 +278,7 @@ TEST(BoxOnSurface, OnAPlateauOnlyItsCornersCount) {
   }
 }
 
-TerrainMeshDef Square(double size_m) {  // level, in x < 0
+TerrainMeshDef Square(double size_m) {  // horizontal, at x < 0
   TerrainMeshDef mesh;
   mesh.solid = false;
   mesh.corners_m = {{-size_m, -size_m, 0}, {0, -size_m, 0}, {0, size_m, 0}, {-size_m, size_m, 0}};
@@ -302,7 +302,7 @@ TEST(BoxOnSurface, ASheetHoldsABoxOnTheSideWhereItIs) {
 }
 
 TEST(BoxOnSurface, CornersPastTheBorderOfASheetAreFree) {
-  // The bottom is 0.1 mm over the border, and beyond it lower than the sheet.
+  // The bottom is 0.1 mm above the border, and beyond it lower than the sheet.
   const Surface sheet(Square(1));
   for (const double angle : {0.02, 0.1, 0.4}) {
     const Motion turned = Turn({0, 1, 0}, angle);
@@ -321,8 +321,8 @@ TEST(BoxOnSurface, CornersPastTheBorderOfASheetAreFree) {
 }
 
 TEST(BoxOnSurface, WhatHangsOverASteepSlopeIsNotThroughIt) {
-  // A long box on the edge of a roof's ridge, level: its end is a little above the plane that its
-  // middle is below of.
+  // A long horizontal box on a ridge: its end is slightly above the plane of a side, while its
+  // center is below that plane.
   for (const double end_m : {0.001, 0.01, 0.05}) {
     const Points points = [&] {
       const Surface roof(Roof(0));
@@ -335,9 +335,9 @@ TEST(BoxOnSurface, WhatHangsOverASteepSlopeIsNotThroughIt) {
 }
 
 TEST(BoxOnSurface, WhatLeansOverARidgeIsNotHeldByItsFarSide) {
-  // A ridge, 60 degrees steep on the right, and a floor beside it; a box leans over it, its lowest
-  // edge 4 mm above where the floor begins. Its middle is below the plane of the ridge's right
-  // side.
+  // A ridge, 60 degrees steep on the right, with a floor next to it; a box leans over it, its
+  // lowest edge 4 mm above the start of the floor. Its center is below the plane of the ridge's
+  // right side.
   TerrainMeshDef mesh;
   mesh.solid = false;
   for (const double y : {-1.0, 1.0}) {

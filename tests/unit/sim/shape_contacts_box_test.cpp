@@ -1,4 +1,4 @@
-// Boxes against boxes.
+// Contacts between boxes
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@ namespace taut::sim {
 namespace {
 
 constexpr double kTiny = 1e-12;
-/// How much nearer an edge must be than a face to be preferred, for random boxes.
+/// Distance by which an edge must be nearer than a face to be preferred, for random boxes
 constexpr double kPreferenceM = 1e-4 * 0.2;
 
-/// Whether there is exactly one point at each of `places`.
+/// Expects exactly one point at each of `places`.
 void ExpectPlaces(const Points& points, const std::vector<Vec3>& places, double tolerance_m) {
   EXPECT_EQ(points.size(), places.size());
   for (const Vec3& place : places) {
@@ -116,7 +116,7 @@ TEST(TouchBoxBox, BoxOnItsEdgeTouchesInTwoPoints) {
 
 TEST(TouchBoxBox, BoxOnItsCornerTouchesInOnePoint) {
   const BoxShape floor = Box({1, 1, 0.1}, Shift({0, 0, -0.1}));
-  // The turn that stands a cube on its corner.
+  // Rotation that stands a cube on its corner.
   const double reach = 0.1 * std::sqrt(3.0);
   const Motion stand = Turn({1, -1, 0}, std::acos(1.0 / std::sqrt(3.0)), {0, 0, reach + 0.001});
   const Points points = Touch(Cube(0.1, stand), floor, 0.01);
@@ -125,7 +125,7 @@ TEST(TouchBoxBox, BoxOnItsCornerTouchesInOnePoint) {
 }
 
 TEST(TouchBoxBox, CrossedEdgesTouchInOnePoint) {
-  // Two roofs: an edge along x looks up, an edge along y looks down.
+  // Two roofs: an edge along x points up, an edge along y points down.
   const double reach = 0.1 * std::sqrt(2.0);
   const BoxShape low = Box({0.3, 0.1, 0.1}, Turn({1, 0, 0}, std::numbers::pi / 4));
   for (const double gap : {-0.002, 0.0, 0.003}) {
@@ -185,9 +185,10 @@ TEST(TouchBoxBox, PointsOfATippingBoxStayContinuous) {
   const BoxShape floor = Box({1, 1, 0.1}, Shift({0, 0, -0.1}));
   const double diagonal = std::sqrt(0.05);
   Points before;
-  // About the edge at x = 0.2, from flat over its balance to flat on the next side.
+  // About the edge at x = 0.2, from flat through the balance to flat on the next side.
   for (double angle = 0; angle < std::numbers::pi / 2; angle += 1e-5) {
-    const double to_center = std::atan2(0.1, 0.2) + angle;  // above the edge, seen from it
+    const double to_center =
+        std::atan2(0.1, 0.2) + angle;  // elevation of the center as seen from the edge
     const Motion motion =
         Turn({0, 1, 0}, angle,
              {0.2 - diagonal * std::cos(to_center), 0, diagonal * std::sin(to_center) - 1e-5});
@@ -216,7 +217,7 @@ TEST(TouchBoxBox, OverlappingBoxesHavePointsThatLeadApart) {
     const Vec3 way = -deepest.gap_m * AsVec(deepest.normal);
     const Points left = Touch(Moved(a, Shift(way)), b);
     if (!left.empty()) {
-      EXPECT_GT(Deepest(left).gap_m, -1e-5 * 0.2) << i;  // the slack of a cut face
+      EXPECT_GT(Deepest(left).gap_m, -1e-5 * 0.2) << i;  // tolerance of a clipped face
     }
     for (const TouchPoint& p : points) {
       EXPECT_LT(Length(AsVec(p.normal) - AsVec(deepest.normal)), kTiny);
@@ -254,7 +255,7 @@ TEST(TouchBoxBox, SwappingTheBoxesFlipsTheNormals) {
     if (points.empty()) continue;
     ++touching;
     TouchPoint p = Deepest(points), q = Deepest(swapped);
-    // Of two axes that are as good, the faces of the first box are preferred.
+    // Of two equally good axes, the faces of the first box are preferred.
     EXPECT_NEAR(p.gap_m, q.gap_m, 0.06 * std::max(-p.gap_m, 0.0) + kPreferenceM) << i;
     same += Length(AsVec(p.normal) + AsVec(q.normal)) < 1e-9;
   }

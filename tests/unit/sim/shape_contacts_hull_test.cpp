@@ -1,5 +1,5 @@
-// Hulls against rods, boxes and each other: against boxes, whose code is their own, and against
-// distances walked to and fro.
+// Contacts of convex hulls with rods, boxes and each other: against boxes, which have separate
+// code, and against distances by alternating projection
 #include <gtest/gtest.h>
 
 #include "math/convex_hull.h"
@@ -9,7 +9,7 @@
 
 namespace taut::sim {
 
-/// By all triangles of three corners that have no other above them.
+/// Returns the nearest point by all triangles of three corners without a corner above them.
 inline Vec3 NearestOn(const HullShape& shape, const Vec3& p) {
   const Convex c(shape);
   bool inside = true;
@@ -44,7 +44,7 @@ namespace {
 
 constexpr double kTiny = 1e-12;
 
-/// A hull with its table.
+/// A hull with its table
 struct OwnHull {
   explicit OwnHull(const std::vector<Vec3>& points) : hull(math::HullOf(points, kMaxHullCorners)) {}
   HullShape At(const Motion& at = {}) const {
@@ -146,7 +146,7 @@ TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
     const RoundShape round = random.Round(0.35);
     EXPECT_NEAR(Distance(round, hull.At()), Distance(round, box), 1e-10) << i;
     const double depth = Deepest(Touch(round, box, 1.0)).gap_m;
-    if (depth < -0.9 * round.radius_m) continue;  // so deep inside a hull has fewer ways out
+    if (depth < -0.9 * round.radius_m) continue;  // so deep inside, a hull has fewer directions out
     const Points points = Touch(round, hull.At(), 1e-2), expected = Touch(round, box, 1e-2);
     ExpectFeaturesDiffer(points);
     if (expected.empty()) {
@@ -154,8 +154,8 @@ TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
       continue;
     }
     ++touching;
-    // Boxes have points at the planes of all their faces, hulls where a face begins: what carries
-    // is the same.
+    // Boxes have points at the planes of all their faces, hulls where a face begins: the carrying
+    // points are the same.
     EXPECT_NEAR(Deepest(points).gap_m, Deepest(expected).gap_m, 1e-10) << i;
     for (const TouchPoint& p : points) {
       if (p.gap_m < 0.9e-2) {
@@ -201,7 +201,7 @@ TEST(TouchHull, TwoHullsOfBoxesTouchAsTheBoxes) {
       EXPECT_TRUE(points.empty()) << i;
       continue;
     }
-    // Deeper than its half a box may leave on the other side, hulls by other faces.
+    // If deeper than half its thickness, a box may leave on the other side, hulls by other faces.
     const double thin =
         std::min({a.half_m[0], a.half_m[1], a.half_m[2], b.half_m[0], b.half_m[1], b.half_m[2]});
     if (Deepest(expected).gap_m < -thin) continue;
@@ -245,7 +245,8 @@ TEST(TouchHull, PointsAreBetweenTheSurfaces) {
       if (p.gap_m < -0.01) continue;
       ++seen;
       const Vec3 half = (0.5 * p.gap_m) * AsVec(p.normal);
-      // Half a gap along the normal is the one's surface, half a gap back the other's.
+      // Half a gap along the normal is the surface of one shape, half a gap back the surface of the
+      // other.
       EXPECT_NEAR(NearestTo(Convex(a), AsVec(p.point) + half).distance_m, 0, 1e-5) << i;
       EXPECT_NEAR(NearestTo(Convex(b), AsVec(p.point) - half).distance_m, 0, 1e-5) << i;
     }
@@ -274,7 +275,8 @@ TEST(TouchHull, OfAFaceOfManyCornersTheOutermostAreKept) {
   EXPECT_LT(std::hypot(sum.x, sum.y), 0.1);  // all around
   const Points tilted = Touch(floor, hull.At(Turn({0.3, 1, 0}, 1e-4)), 1e-3);
   EXPECT_NEAR(Deepest(tilted).gap_m, -1e-5, 1e-7);
-  // Steeper, all that are near are there: of 32 corners the 11 up to 60 degrees from the lowest.
+  // At a larger tilt all near corners are present: of 32 corners the 11 up to 60 degrees from the
+  // lowest.
   const Points steep = Touch(floor, hull.At(Turn({0, 1, 0}, 0.02, {0, 0, 3e-3})), 1e-2);
   EXPECT_EQ(steep.size(), static_cast<std::size_t>(kMaxPointsPerPair));
   const double lowest = Deepest(steep).gap_m;
@@ -307,7 +309,7 @@ TEST(TouchHull, PointsOfARodThatRollsOverAHullStayContinuous) {
     Points before;
     for (int k = 0; k < 12000; ++k) {
       const HullShape hull = one.At(Turn(axis, 2e-5 * k, aside));
-      // Down onto it, and a bit into it.
+      // Lowered onto it, and slightly into it.
       double height = 1.0;
       for (int n = 0; n < 60; ++n) {
         const RoundShape at = Moved(rod, Shift({0, 0, height}));

@@ -1,4 +1,4 @@
-// Spheres and capsules against each other and against boxes.
+// Contacts of spheres and capsules with each other and with boxes
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace taut::sim {
 namespace {
 
 constexpr double kTiny = 1e-12;
-/// How far from the least distance a walk may end.
+/// Tolerance of distances by alternating projection
 constexpr double kWalkM = 1e-6;
 
 void ExpectPoint(const TouchPoint& found, const Vec3& point, const Vec3& normal, double gap_m,
@@ -92,8 +92,8 @@ TEST(TouchRoundRound, RodsWithOneCenterLineArePushedAcrossIt) {
   EXPECT_LT(Length(AsVec(points[0].normal) - AsVec(points[1].normal)), kTiny);
 }
 
-// From parallel to 45 degrees in fine steps, with the twisting rod lying on the other: at every
-// step the points before make up for those after, and the other way round.
+// From parallel to 45 degrees in fine steps, with the rotating rod lying on the other: at every
+// step the previous points are equivalent to the next ones, and vice versa.
 TEST(TouchRoundRound, PointsOfATwistingRodStayContinuous) {
   const RoundShape low = Rod({-0.25, 0, 0}, {0.25, 0, 0}, 0.01);
   const RoundShape high = Rod({-0.25, 0, 0.01995}, {0.25, 0, 0.01995}, 0.01);
@@ -155,7 +155,7 @@ TEST(TouchRoundBox, RodHalfOverAStepIsCarriedAtItsEndAndAtTheStepsEdge) {
 }
 
 TEST(TouchRoundBox, RodLeaningOnAStepEdgeIsCarriedAcrossItself) {
-  // The rod goes down at 45 degrees; its center line passes the edge (0, y, 0.1) at 0.019.
+  // The rod leans at 45 degrees; its center line passes the edge (0, y, 0.1) at 0.019.
   const double s = std::sqrt(0.5);
   const Vec3 out{s, 0, s}, down{s, 0, -s}, middle = Vec3{0, 0, 0.1} + 0.019 * out;
   const Points points = Touch(Rod(middle - 0.2 * down, middle + 0.1 * down, 0.02),
@@ -164,7 +164,7 @@ TEST(TouchRoundBox, RodLeaningOnAStepEdgeIsCarriedAcrossItself) {
   ExpectPoint(points[0], Vec3{0, 0, 0.1} - 0.0005 * out, out, -0.001, 2);
 }
 
-// The same rod, so deep that its center line is 0.001 inside: the way out is continuous.
+// The same rod, so deep that its center line is 0.001 inside: the direction out is continuous.
 TEST(TouchRoundBox, RodDeepInAStepEdgeIsPushedAcrossItself) {
   const double s = std::sqrt(0.5);
   const Vec3 out{s, 0, s}, down{s, 0, -s}, middle = Vec3{0, 0, 0.1} - 0.001 * out;
@@ -182,9 +182,9 @@ TEST(TouchRoundBox, RodThatEndsAtAStepEdgeHasNoPointTwice) {
   ExpectPoint(points[1], {0, 0, 0.0995}, {0, 0, 1}, -0.001, 1, 1e-4);
 }
 
-// Whoever makes up for the nearest point must have a gap below the margin.
+// A point equivalent to the nearest one must have a gap below the margin.
 TEST(TouchRoundBox, RodThatIsOnlyJustNearAnEdgeHasAPoint) {
-  // Along the edge (0, y, 0.1), outside at 45 degrees, and twisted so that it bulges by 4e-9.
+  // Along the edge (0, y, 0.1), outside at 45 degrees, and rotated so that it bulges by 4e-9.
   const double s = std::sqrt(0.5);
   const BoxShape step = Box({0.5, 0.5, 0.1}, Shift({-0.5, 0, 0}));
   const RoundShape rod = Moved(Rod({0, -0.25, 0}, {0, 0.25, 0}, 0.01),
@@ -230,7 +230,8 @@ TEST(TouchRoundBox, RodDeepInsideLeavesWithAllItsPointsTheSameWay) {
     for (const TouchPoint& p : points) {
       EXPECT_EQ(Length(AsVec(p.normal) - AsVec(deepest.normal)), 0.0) << i;
     }
-    // That way leads out, but for 5 % of the radius, and no further than needed.
+    // This displacement separates them, except for 5 % of the radius, and is not longer than
+    // needed.
     const Vec3 way = -deepest.gap_m * AsVec(deepest.normal);
     const double left = Deepest(Touch(Moved(rod, Shift(way)), box)).gap_m;
     EXPECT_LT(left, 1e-9) << i;
@@ -240,8 +241,7 @@ TEST(TouchRoundBox, RodDeepInsideLeavesWithAllItsPointsTheSameWay) {
   EXPECT_GT(by_edge, 300);
 }
 
-// Whatever the pair: unit normals, the nearest point among those found, both
-// shapes reached.
+// For any pair: unit normals, the nearest point among the points found, points on both surfaces.
 template <class B, class MakeB>
 void CheckRandomPairs(unsigned seed, MakeB make_b) {
   RandomShapes random(seed);
@@ -265,7 +265,7 @@ void CheckRandomPairs(unsigned seed, MakeB make_b) {
       const Vec3 on_a = AsVec(p.point) + 0.5 * p.gap_m * AsVec(p.normal);
       const Vec3 on_b = AsVec(p.point) - 0.5 * p.gap_m * AsVec(p.normal);
       EXPECT_LT(Length(NearestOn(a, on_a) - on_a), a.radius_m + 1e-9) << i;
-      // A way out of a box may lead past its face, a gap may not.
+      // The way out of a box may lead past its face, a gap may not.
       if (p.gap_m > 0) {
         EXPECT_LT(Length(NearestOn(b, on_b) - on_b), RadiusOf(b) + 1e-9) << i;
       }
@@ -334,7 +334,7 @@ TEST(DistanceRoundRound, IsTheLeastDistance) {
 }
 
 TEST(DistanceRoundRound, IsExactForRodsAtTinyAngles) {
-  // The lines cross at their middles, 0.1 apart; the ends are farther.
+  // The lines cross at their centers, 0.1 apart; the ends are farther.
   for (double angle = 1e-1; angle > 1e-12; angle *= 0.1) {
     const RoundShape low = Rod({-0.5, 0, 0}, {0.5, 0, 0}, 0.01);
     const RoundShape high = Moved(low, Turn({0, 0, 1}, angle, {0, 0, 0.1}));

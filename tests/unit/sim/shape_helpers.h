@@ -1,4 +1,4 @@
-/// Shapes, motions and comparisons for the tests of sim/geometry/shape_contacts.h.
+/// Shapes, motions and comparisons for the tests of sim/geometry/shape_contacts.h
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using Points = std::vector<TouchPoint>;
 inline Vec3 AsVec(const double* p) { return {p[0], p[1], p[2]}; }
 inline double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 
-/// x -> R(q) x + p.
+/// x -> R(q) x + p
 struct Motion {
   Quat q = {1, 0, 0, 0};
   Vec3 p = {0, 0, 0};
@@ -64,7 +64,7 @@ inline BoxShape Moved(const BoxShape& s, const Motion& m) {
   return out;
 }
 
-/// The points of a pair, by rising feature.
+/// Returns the points of a pair, in increasing order of features.
 template <class A, class B>
 Points Touch(const A& a, const B& b, double margin_m = 1e-4) {
   TouchPoint out[kMaxPointsPerPair];
@@ -98,8 +98,8 @@ inline Vec3 NearestOn(const BoxShape& s, const Vec3& p) {
 inline double RadiusOf(const RoundShape& s) { return s.radius_m; }
 inline double RadiusOf(const BoxShape&) { return 0; }
 
-/// How far the distance of two points, one of each shape, can be brought down by walking to and
-/// fro between the shapes: the least distance, from above.
+/// Returns an upper bound of the least distance of two shapes, by alternating projection between
+/// them.
 template <class A, class B>
 double WalkedDistance(const A& a, const B& b, int rounds = 20000) {
   Vec3 on_b = NearestOn(b, {0, 0, 0}), on_a = on_b;
@@ -114,7 +114,7 @@ double WalkedDistance(const A& a, const B& b, int rounds = 20000) {
   return std::max(distance - RadiusOf(a) - RadiusOf(b), 0.0);
 }
 
-/// Random shapes of sizes 0.02 to 0.4 m, placed within `spread_m`.
+/// Random shapes of sizes 0.02 to 0.4 m, placed within `spread_m`
 class RandomShapes {
  public:
   explicit RandomShapes(unsigned seed) : random_(seed) {}
@@ -124,7 +124,7 @@ class RandomShapes {
   }
   Vec3 InCube(double half) { return {In(-half, half), In(-half, half), In(-half, half)}; }
   Motion Anywhere(double spread_m) {
-    // One by one: compilers evaluate arguments in any order.
+    // Separate statements, because compilers evaluate arguments in any order.
     const Vec3 axis = InCube(1);
     const double angle = In(0, 6.28);
     return Turn(axis, angle, InCube(spread_m));
@@ -144,8 +144,8 @@ class RandomShapes {
   std::mt19937_64 random_;
 };
 
-/// How well `point` is made up for by `others`: the least distance of place, gap and (in radii of
-/// `lever_m`) normal from a mixture of two of them.
+/// Returns the distance of `point` from the closest mixture of two of the points `others`: the sum
+/// of the differences of place, gap and (times `lever_m`) normal.
 inline double Uncovered(const TouchPoint& point, const Points& others, double lever_m) {
   double best = 1e300;
   for (const TouchPoint& p : others) {
@@ -166,8 +166,8 @@ inline double Uncovered(const TouchPoint& point, const Points& others, double le
   return best;
 }
 
-/// How much the points of one step differ from those of the next, leaving aside those about to
-/// pass the margin of 1e-4 m.
+/// Returns the difference of the points of one step from the points of the next, without points
+/// that are about to pass the margin of 1e-4 m.
 inline double WorstChange(const Points& before, const Points& now, double lever_m) {
   double worst = 0;
   for (const TouchPoint& p : now) {

@@ -1,4 +1,4 @@
-// Pairs of shapes of any kinds, in either order, each in a frame of its own.
+// Pairs of shapes of all kinds, in either order, each in a local frame
 #include <gtest/gtest.h>
 
 #include "unit/sim/shape_helpers.h"
@@ -24,7 +24,7 @@ ShapePose PoseOf(const Motion& motion) {
   return pose;
 }
 
-// A ball that is 0.05 m deep in the top of a plank, which lies along y by its pose only.
+// A ball that penetrates the top of a plank by 0.05 m; only the pose puts the plank along y.
 const Shape kPlank = Any(Box({1.0, 0.2, 0.1}));
 const Shape kBall = Any(Ball({0, 0, 0.1}, 0.2));
 const ShapePose kPlankPose = PoseOf(Turn({0, 0, 1}, 1.5707963267948966, {0, 0, -0.1}));
@@ -46,7 +46,7 @@ TEST(TouchShapes, NormalPointsFromTheSecondShapeToTheFirstInEitherOrder) {
 
 TEST(TouchShapes, MarginReachesThePair) {
   TouchPoint out[kMaxPointsPerPair];
-  const ShapePose above = PoseOf(Shift({0.1, 0.7, 0.15}));  // 0.05 m over the plank
+  const ShapePose above = PoseOf(Shift({0.1, 0.7, 0.15}));  // 0.05 m above the plank
   EXPECT_EQ(TouchShapes(kBall, above, kPlank, kPlankPose, 0.049, out), 0);
   EXPECT_EQ(TouchShapes(kBall, above, kPlank, kPlankPose, 0.051, out), 1);
 }
@@ -58,7 +58,7 @@ TEST(DistanceOfShapes, IsTheSameInEitherOrder) {
   EXPECT_EQ(DistanceOfShapes(kBall, kBallPose, kPlank, kPlankPose), 0.0);
 }
 
-/// In frames of their own, shapes touch as they do where those frames put them.
+/// Expects that shapes in local frames touch like shapes moved by these frames.
 template <class A, class B>
 int ExpectAsMoved(const A& a, const Motion& at_a, const B& b, const Motion& at_b) {
   TouchPoint out[kMaxPointsPerPair];

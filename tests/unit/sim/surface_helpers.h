@@ -1,4 +1,4 @@
-/// Surfaces for tests, with all of their triangles at hand.
+/// Surfaces for tests, with lists of all their triangles
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace taut::sim {
 
 inline constexpr double kInf = 1e300;
 
-/// A surface and all of its triangles.
+/// A surface and all of its triangles
 struct Known {
   Surface surface;
   std::vector<SurfaceTriangle> triangles;
@@ -28,7 +28,7 @@ struct Known {
   }
   const SurfaceTable& table() const { return surface.table(); }
 
-  /// The place nearest to a point, by trying all triangles: faces, edges, corners.
+  /// Returns the place nearest to a point, by testing all triangles: faces, edges, corners.
   Vec3 NearestTo(const Vec3& p) const {
     Vec3 best;
     double least = kInf;
@@ -61,7 +61,7 @@ inline HeightFieldDef RoughField(unsigned seed, int columns = 9, int rows = 8) {
   return field;
 }
 
-/// A cube with corners at +-0.2, seen from outside.
+/// A cube with corners at +-0.2, seen from outside
 inline TerrainMeshDef CubeMesh() {
   TerrainMeshDef mesh;
   for (int i = 0; i < 8; ++i) {

@@ -1,4 +1,5 @@
-// Which edges and corners of a surface touch the flank of a rod, and how far a rod is from it.
+// Edges and corners of a surface that touch the side of a rod, and the rod's distance from the
+// surface
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +22,7 @@ TEST(NearestAlong, ARodAcrossARidgeTouchesItWhereTheyCross) {
   EXPECT_LT(Length(found[0].place.at - Vec3{0, 0.3, 0}), 1e-12);
   EXPECT_LT(Length(found[0].place.normal - Vec3{0, 0, 1}), 1e-12);
   EXPECT_NEAR(found[0].place.distance_m, 0.05, 1e-12);
-  // A little under it, it is to leave the same way.
+  // Slightly below it, the direction out is the same.
   ASSERT_EQ(NearestAlong(roof.table(),
                          ReachOfLine(roof.table(), {-0.5, 0.3, -0.01}, {0.5, 0.3, -0.01}, 0.06),
                          0.05, found, 4),
@@ -78,7 +79,7 @@ TEST(NearestAlong, WhatIsFoundIsTheDistanceOfTheLineWhereItIsLeast) {
       const double bound = DistanceUpTo(rod, SurfaceShape{&field.table()}, 0.3);
       EXPECT_LE(bound, least);
       EXPECT_EQ(DistanceUpTo(rod, SurfaceShape{&field.table()}, 0.0), 0.0);
-      // Beyond a sixteenth of its size it goes by bounds.
+      // Beyond a sixteenth of its size the distance is a bound only.
       const double near = (Length(b - a) + 1e-3) / 16;
       if (least - 1e-3 < near) {
         EXPECT_GE(bound, least - 1e-3 - 1e-5 - step_m);
@@ -101,7 +102,7 @@ TEST(NearestAlong, AFieldAndItsMeshAreTheSame) {
   int found_along = 0, found_places = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     HeightFieldDef def = RoughField(seed, 30, 25);
-    def.split = HeightFieldDef::Split::kAlternating;  // as that of the mesh
+    def.split = HeightFieldDef::Split::kAlternating;  // as in the mesh
     const Known field(def), mesh(scenes::MeshOf(def));
     const Vec3 middle = def.origin_m;
     Points3 random(seed);
@@ -109,7 +110,7 @@ TEST(NearestAlong, AFieldAndItsMeshAreTheSame) {
       const Vec3 a = middle + random.Within(1.0, 0.0, 0.4),
                  b = middle + random.Within(1.0, 0.0, 0.4);
       const double radius_m = 0.02;
-      // Lines through it are other ones: a mesh that is not closed has no inside.
+      // Lines through the surface differ: an open mesh has no inside.
       bool above = true;
       for (int i = 0; i <= 1000; ++i) {
         const Vec3 p = a + 1e-3 * i * (b - a);
@@ -143,7 +144,8 @@ TEST(NearestAlong, AFieldAndItsMeshAreTheSame) {
 }
 
 TEST(NearestAlong, ARodLyingOnRidgesTouchesEachOfThem) {
-  // Roofs along y, 0.2 m apart, each at its height: what is looked for is known without a search.
+  // Roofs along y, 0.2 m apart, at different heights: the expected contacts are known without a
+  // search.
   const auto height = [](double x) {
     const double at = x / 0.2 - std::floor(x / 0.2);
     return 0.1 * (1 - std::abs(2 * at - 1)) + 0.01 * std::floor(x / 0.2);
@@ -151,7 +153,7 @@ TEST(NearestAlong, ARodLyingOnRidgesTouchesEachOfThem) {
   const Known roofs(
       scenes::Field(41, 21, 0.1, {}, [&](double x, double) { return height(x + 1e-9); }));
   const double radius_m = 0.02;
-  // Along the line that their ridges, at x = 0.1 + 0.2 k, have in common.
+  // Along the line through their ridges, at x = 0.1 + 0.2 k.
   const Vec3 a{-0.85, 0.33, 0.1 - 0.05 + radius_m + 0.0025},
       b{0.85, 0.38, 0.1 + 0.035 + radius_m + 0.0025};
   LinePlace found[16];
@@ -165,7 +167,7 @@ TEST(NearestAlong, ARodLyingOnRidgesTouchesEachOfThem) {
 }
 
 TEST(NearestAlong, OfTwoRidgesInOnePlaceOfARodTheNearerCounts) {
-  // A roof over another, as one mesh, either of them first.
+  // A roof above another, as one mesh, in either order.
   for (const bool upper_first : {false, true}) {
     TerrainMeshDef mesh;
     mesh.solid = false;

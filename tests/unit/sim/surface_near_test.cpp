@@ -1,5 +1,5 @@
-// Where a surface is nearest: beside a look at every triangle, and beside what the words say, tried
-// by sampling the surface around.
+// Nearest places of a surface: against a search of every triangle, and against the definition, by
+// sampling the surface
 #include "unit/sim/surface_helpers.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 namespace taut::sim {
 namespace {
 
-/// Distance of a point from the border walls of a field: the way out if it is inside; else to the
-/// nearest wall point at its height.
+/// Returns the distance of a point from the border walls of a field: the way out if it is inside;
+/// else to the nearest wall point at its height.
 double DistanceToWalls(const SurfaceTable& s, const Vec3& p, bool below) {
   if (below) {
     return std::min({p.x - s.low.x, s.high.x - p.x, p.y - s.low.y, s.high.y - p.y});
@@ -18,7 +18,7 @@ double DistanceToWalls(const SurfaceTable& s, const Vec3& p, bool below) {
 }
 
 TEST(Surface, TrianglesAcrossTheWholeMeshFillFewBuckets) {
-  // 236 kB as an STL. In all buckets of their boxes they would be 4.3e9 entries.
+  // 236 kB as an STL. In all buckets of their bounding boxes they would be 4.3e9 entries.
   TerrainMeshDef mesh;
   const int count = 4720;
   mesh.corners_m = {{0, 0, 0}, {1, 1, 1}};
@@ -29,7 +29,7 @@ TEST(Surface, TrianglesAcrossTheWholeMeshFillFewBuckets) {
   const Surface surface(mesh);
   const SurfaceTable& t = surface.table();
   EXPECT_LE(t.first_in_bucket[t.buckets[0] * t.buckets[1] * t.buckets[2]], 16 * count + 1'000'000);
-  // A mesh of usual triangles has the buckets that it had.
+  // A mesh of ordinary triangles keeps its usual buckets.
   const Known usual(scenes::MeshOf(RoughField(1, 40, 40)));
   EXPECT_LE(usual.table().first_in_bucket[usual.table().buckets[0] * usual.table().buckets[1] *
                                           usual.table().buckets[2]],
@@ -49,7 +49,7 @@ TEST(NearestPlaces, TheFirstIsTheNearestOfAllTrianglesAndWalls) {
       const int count = NearestPlaces(field.table(), p, limit_m, places, 8);
       const bool within = std::abs(p.x - 0.3) <= 0.4 && std::abs(p.y + 0.2) <= 0.35;
       const bool below = within && p.z < HeightAt(field.table(), p.x, p.y);
-      // Out of the inside a wall has to be nearer by a tenth (docs/theory/ground.md, section 1).
+      // From the inside a wall must be nearer by a tenth (docs/theory/ground.md, section 1).
       const double wall = DistanceToWalls(field.table(), p, below), face = Length(p - nearest);
       const bool at_wall = below ? wall < 0.9 * face - 1e-6 : wall < face;
       const double least = at_wall ? wall : face;
@@ -100,7 +100,7 @@ TEST(NearestPlaces, EachIsNearerThanAllAroundItAndNoneIsMissing) {
           EXPECT_GE(Length(p - q), places[i].distance_m - 1e-12);
         }
       }
-      // A sample that is clearly nearer than those around it lies beside a place that was found.
+      // A sample that is clearly nearer than its neighbors is next to a place that was found.
       for (const Vec3& q : samples) {
         const double distance = Length(p - q);
         if (distance > limit_m - 0.01) continue;
@@ -132,7 +132,7 @@ TEST(NearestPlaces, AClosedMeshHasAnInside) {
     double beyond = 0;
     for (const double x : out) beyond += x > 0 ? x * x : 0;
     EXPECT_NEAR(places[0].distance_m, most < 0 ? most : std::sqrt(beyond), 1e-12);
-    // The way out, or away.
+    // The normal points along the way out, or away.
     EXPECT_NEAR(Length(p - places[0].at - places[0].distance_m * places[0].normal), 0, 1e-12);
   }
 }
@@ -159,7 +159,7 @@ TEST(NearestPlaces, AboveAnEdgeOfOnePlaneThereIsOnePlace) {
 }
 
 TEST(NearestPlaces, AboveACornerOfAStraightRidgeThereIsOnePlace) {
-  // Two planes: no corner of their ridge sticks out, and its edges must leave no gap between them.
+  // Two planes: no corner of their ridge protrudes, and its edges must leave no gap between them.
   for (const double rise : {0.0, 0.1, 0.37}) {
     const Known roof(scenes::Field(
         21, 41, 0.1, {}, [&](double x, double y) { return -0.7 * std::abs(x) + rise * y; }));

@@ -1,4 +1,4 @@
-// What is kept of a field's parts near a rod from step to step, beside searches from scratch.
+// Cached parts of a field near a rod, reused from step to step, against searches from scratch
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -10,8 +10,8 @@
 namespace taut::sim {
 namespace {
 
-/// Walks a rod, or a ball, over a field by steps of up to `step_m` and compares all that it finds.
-/// Counts looks that what was kept served for, and points.
+/// Moves a rod, or a ball, over a field by steps of up to `step_m` and compares all contacts.
+/// Counts the steps served by cached parts, and the points.
 struct Walk {
   int served = 0, points = 0, between = 0;
 
@@ -79,7 +79,7 @@ TEST(NearParts, WhatIsKeptChangesNoBit) {
 TEST(NearParts, BesideAFieldAndAboveItsBorderThereIsTheSame) {
   Walk walk;
   for (unsigned seed = 50; seed < 70; ++seed) {
-    HeightFieldDef def = RoughField(seed, 4, 3);  // smaller than the walk's start
+    HeightFieldDef def = RoughField(seed, 4, 3);  // smaller than the range of starts
     walk.Go(Known(def), seed, seed % 3 == 0, 0.03, 3e-4, 0.02);
   }
   EXPECT_GT(walk.served, 500);

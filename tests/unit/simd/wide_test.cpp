@@ -1,6 +1,6 @@
-// What wide numbers do in a lane is what one number does: to the bit, where NaN, zeros with signs
-// and infinities meet as well. Two lanes are the processor's; four, without its wider registers'
-// flags, are the compiler's own vectors, which processors without a file of their own have.
+// SIMD numbers: each lane equals the scalar operation, to the bit, also for NaN, signed zeros and
+// infinities. Two lanes are the processor's registers; four, without flags for wider registers, are
+// the compiler's vectors, as used on processors without a separate source file.
 #include "simd/wide.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ const std::vector<double> kNumbers = {0.0,
 
 std::uint64_t Bits(double x) { return std::bit_cast<std::uint64_t>(x); }
 
-/// f(a, b) for all pairs of numbers, with other pairs in the other lanes.
+/// Compares f(a, b) for all pairs of numbers, with other pairs in the other lanes.
 template <int N, class F>
 void ExpectEachLaneAsAlone(const char* what, F f) {
   using W = simd::Wide<N>;

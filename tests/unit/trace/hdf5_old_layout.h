@@ -1,4 +1,4 @@
-/// Traces that taut would not write and must read all the same.
+/// Traces in a format that taut does not write but must read
 #pragma once
 
 #include <hdf5.h>
@@ -10,7 +10,7 @@
 
 namespace taut::test {
 
-/// A trace as other programs write it: HDF5's old layout, which has no checksums. Every value is
+/// Writes a trace like other programs: in HDF5's old layout, which has no checksums. Every value is
 /// its row's number.
 inline void WriteOldLayout(const std::string& path, std::vector<ChannelInfo> columns,
                            std::size_t rows) {

@@ -1,4 +1,4 @@
-// The folder of a run: begun, finished, and pieces that do not belong together.
+// Folder of a run: begun, finished, and with files of different runs
 #include "taut/run_folder.h"
 
 #include <chrono>
@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Run : TraceFolder {
-  /// The pieces of a run with this id; empty: as earlier versions wrote them.
+  /// Writes the files of a run with this id; empty: as earlier versions wrote them.
   void WriteTrace(const std::string& name, const std::string& id) const {
     Diagnostics out;
     const TraceMetadata metadata = id.empty() ? TraceMetadata{} : TraceMetadata{{kRunIdKey, id}};
@@ -27,7 +27,7 @@ struct Run : TraceFolder {
   void WriteSummary(const std::string& name, const std::string& id) const {
     WriteFile(name, id.empty() ? "{}" : "{\"run\": \"" + id + "\"}");
   }
-  /// What reading complains about; empty if it is read.
+  /// Returns the errors of reading a trace; empty if it is read.
   std::string Read(const std::string& name) const {
     Diagnostics out;
     const auto trace = ReadTraceOfRun(Path(name), out);
@@ -47,20 +47,23 @@ TEST_F(Run, PiecesOfOneRunAreRead) {
 
 TEST_F(Run, PiecesOfDifferentRunsAreRefused) {
   const std::string hint =
-      " (take away the one that does not belong there, or run the experiment again)\n";
+      " (remove the file that does not belong there, or run the experiment again)\n";
   WriteTrace("trace.h5", "a");
   for (const std::string other : {"b", ""}) {
-    const std::string runs = "trace.h5 (run " + (other.empty() ? "none" : other) + ", there a)";
+    const std::string runs = "trace.h5 (run " + (other.empty() ? "none" : other) + ", not a)";
     WriteInputs("inputs.yaml", other);
-    EXPECT_EQ(Read("trace.h5"), "inputs.yaml: error: is not of the run of " + runs + hint);
+    EXPECT_EQ(Read("trace.h5"),
+              "inputs.yaml: error: the file is of another run than " + runs + hint);
     WriteInputs("inputs.yaml", "a");
     WriteSummary("summary.json", other);
-    EXPECT_EQ(Read("trace.h5"), "summary.json: error: is not of the run of " + runs + hint);
+    EXPECT_EQ(Read("trace.h5"),
+              "summary.json: error: the file is of another run than " + runs + hint);
     fs::remove(Path("summary.json"));
   }
   WriteTrace("trace.h5", "");
-  EXPECT_EQ(Read("trace.h5"),
-            "inputs.yaml: error: is not of the run of trace.h5 (run a, there none)" + hint);
+  EXPECT_EQ(
+      Read("trace.h5"),
+      "inputs.yaml: error: the file is of another run than trace.h5 (run a, not none)" + hint);
   WriteFile("inputs.yaml", "taut: 1\n");
   EXPECT_EQ(Read("trace.h5"), "") << "of an earlier version";
 }
@@ -71,8 +74,9 @@ TEST_F(Run, ATextualTraceStandsBesideInputsAndSummaryOfOneRun) {
   WriteSummary("summary.json", "a");
   EXPECT_EQ(Read("trace.csv"), "");
   WriteSummary("summary.json", "b");
-  EXPECT_NE(Read("trace.csv").find("summary.json: error: is not of the run of inputs.yaml"),
-            std::string::npos);
+  EXPECT_NE(
+      Read("trace.csv").find("summary.json: error: the file is of another run than inputs.yaml"),
+      std::string::npos);
 }
 
 TEST_F(Run, AMeasuredTraceInTheFolderIsNoPiece) {
@@ -122,7 +126,7 @@ TEST_F(Run, TheRunBeforeIsThereUntilTheNewOneBegins) {
 }
 
 /// A finished run "old", and a run "new" that was killed while it replaced "old": after its trace
-/// was published, and after `gone` of the old pieces were removed.
+/// was published, and after `gone` of the old files were removed.
 struct KilledRun : Run {
   void Leave(int gone, const std::string& trace_of = "new") const {
     WriteTrace("trace.h5", trace_of);
@@ -164,7 +168,7 @@ TEST_F(KilledRun, LeavesTheOldOneWholeIfItHadNoRow) {
 TEST_F(KilledRun, OfWhichNothingIsLeftToFinishIsRefused) {
   Leave(0);
   fs::remove(Path("inputs.yaml.77.part"));
-  EXPECT_NE(Read("trace.h5").find("inputs.yaml: error: is not of the run of trace.h5"),
+  EXPECT_NE(Read("trace.h5").find("inputs.yaml: error: the file is of another run than trace.h5"),
             std::string::npos);
 }
 
@@ -205,7 +209,7 @@ TEST_F(Run, WhatCannotBeRemovedIsAnErrorOfTheTrace) {
       folder->BeginWith(CreateHdf5Trace(Path("trace.h5"), Channels(1), {}, out), {"trace.h5"});
   EXPECT_FALSE(AppendRow(*trace, 0, 1, 0.0));
   EXPECT_EQ(WithoutFolder(trace->error()),
-            "summary.json: of the run before cannot be removed: Is a directory");
+            "summary.json: cannot remove this file of the previous run: Is a directory");
 }
 
 TEST_F(Run, EveryRunHasAnIdOfItsOwn) {
@@ -222,8 +226,9 @@ TEST_F(Run, AFolderThatWasReplacedGetsNoSummary) {
   fs::remove_all(Path("run"));
   fs::create_directory(Path("run"));
   EXPECT_FALSE(folder->Finish("{}", out));
-  EXPECT_EQ(WithoutFolder(out.Format()),
-            "run: error: was deleted while the run wrote into it: there is no summary\n");
+  EXPECT_EQ(
+      WithoutFolder(out.Format()),
+      "run: error: the folder was deleted while the run wrote into it, so there is no summary\n");
   EXPECT_TRUE(fs::is_empty(Path("run")));
 }
 
@@ -234,7 +239,7 @@ TEST_F(Run, WhatCannotBeRemovedIsNamed) {
   ASSERT_TRUE(folder && folder->Prepare("", out)) << out.Format();
   EXPECT_FALSE(folder->Begin(out));
   EXPECT_EQ(WithoutFolder(out.Format()),
-            "summary.json: error: of the run before cannot be removed: Is a directory\n");
+            "summary.json: error: cannot remove this file of the previous run: Is a directory\n");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// What the tests of traces share: a folder that goes away, and a trace with a pattern to check.
+/// Fixture of the tests of traces: a temporary folder, and a trace with a known pattern
 #pragma once
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class TraceFolder : public testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
 
-  /// Of all that is in the folder.
+  /// Returns the names of all files in the folder.
   std::vector<std::string> Names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
@@ -45,7 +45,7 @@ class TraceFolder : public testing::Test {
     return names;
   }
 
-  /// The diagnostics of reading `path`, which must fail; without the folder's name.
+  /// Returns the diagnostics of reading `path`, which must fail; without the folder's name.
   std::string Complaint(const std::string& path) const {
     Diagnostics out;
     EXPECT_FALSE(ReadTrace(path, out));
@@ -69,7 +69,7 @@ inline std::vector<ChannelInfo> Channels(int count) {
   return channels;
 }
 
-/// What row `row` of channel `channel` holds in every test file.
+/// Returns the value of row `row` of channel `channel` in every test file.
 inline double Value(std::size_t row, std::size_t channel) {
   return 0.1 * static_cast<double>(row) + static_cast<double>(channel) / 3.0;
 }
@@ -81,7 +81,7 @@ inline bool AppendRow(TraceWriter& writer, std::size_t row, std::size_t channel_
   return writer.Append(time_s, values.data());
 }
 
-/// Every value of every complete row is what was written.
+/// Expects that every value of every complete row equals the written one.
 inline void ExpectPattern(const Trace& trace, std::size_t channel_count) {
   ASSERT_EQ(trace.values.size(), channel_count);
   for (std::size_t i = 0; i < channel_count; ++i) {

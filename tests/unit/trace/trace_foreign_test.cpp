@@ -1,4 +1,4 @@
-// HDF5 files that other programs wrote: what taut takes and what it refuses.
+// HDF5 files written by other programs: accepted and rejected ones
 #include <hdf5.h>
 #include <zlib.h>
 
@@ -7,7 +7,7 @@
 namespace taut::test {
 namespace {
 
-/// A file as another program might write it; `change` spoils it.
+/// A file as written by another program; `change` makes it invalid.
 class ForeignHdf5 : public TraceFolder {
  protected:
   std::string Make(const std::string& format, int version) {
@@ -36,7 +36,7 @@ class ForeignHdf5 : public TraceFolder {
     H5Dclose(dataset);
     H5Sclose(space);
   }
-  /// Without numbers.
+  /// Creates a column without numbers.
   hid_t Column(const char* name, hsize_t rows, hid_t layout) {
     hid_t space = H5Screate_simple(1, &rows, nullptr);
     hid_t dataset =
@@ -98,15 +98,16 @@ TEST_F(ForeignHdf5, WhatIsNotATraceOfThisVersionIsSaidToBeSo) {
   std::string path = Make("photo", 1);
   Close();
   EXPECT_EQ(Complaint(path),
-            "f.h5: error: is HDF5 but not a trace: no attribute \"format\" that says \"taut "
+            "f.h5: error: the file is HDF5 but not a trace: it has no attribute \"format\" with "
+            "the value \"taut "
             "trace\"\n");
   path = Make("taut trace", 2);
   Close();
   EXPECT_EQ(Complaint(path),
-            "f.h5: error: has trace format version 2; this taut reads version 1\n");
+            "f.h5: error: the trace has the format version 2; this taut reads version 1\n");
   path = Make("taut trace", 1);
   Close();
-  EXPECT_EQ(Complaint(path), "f.h5: error: is damaged: has no column /time_s\n");
+  EXPECT_EQ(Complaint(path), "f.h5: error: the trace is damaged: it has no column /time_s\n");
   path = Make("taut trace", 1);
   Times();
   Dataset("m", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, std::vector<double>{1, 2, 3}, 2);
@@ -115,7 +116,8 @@ TEST_F(ForeignHdf5, WhatIsNotATraceOfThisVersionIsSaidToBeSo) {
   path = Make("taut trace", 1);
   Times({0, 2, 2, 3});
   Close();
-  EXPECT_EQ(Complaint(path), "f.h5: error: is damaged: time does not rise at row 2\n");
+  EXPECT_EQ(Complaint(path),
+            "f.h5: error: the trace is damaged: time does not increase at row 2\n");
 }
 
 TEST_F(ForeignHdf5, ColumnsOfUnequalLengthAreAnError) {
@@ -123,11 +125,11 @@ TEST_F(ForeignHdf5, ColumnsOfUnequalLengthAreAnError) {
   Times();
   Dataset("a", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, std::vector<double>{1, 2});
   Close();
-  EXPECT_EQ(Complaint(path), "f.h5: error: is damaged: a has 2 rows, time_s has 3\n");
+  EXPECT_EQ(Complaint(path), "f.h5: error: the trace is damaged: a has 2 rows, but time_s has 3\n");
 }
 
 TEST_F(ForeignHdf5, NumbersThatWereNeverWrittenAreAnError) {
-  // HDF5 would make them up: zeros.
+  // HDF5 would substitute zeros.
   const hsize_t rows = 3000, chunk = 1000;
   for (const bool chunked : {true, false}) {
     const std::string path = Make("taut trace", 1);
@@ -136,7 +138,8 @@ TEST_F(ForeignHdf5, NumbersThatWereNeverWrittenAreAnError) {
     Column("time_s", rows, layout);
     H5Pclose(layout);
     Close();
-    EXPECT_EQ(Complaint(path), "f.h5: error: is damaged: time_s claims 3000 rows and holds 0\n");
+    EXPECT_EQ(Complaint(path),
+              "f.h5: error: the trace is damaged: time_s declares 3000 rows, but contains 0\n");
   }
 }
 
@@ -151,7 +154,7 @@ TEST_F(ForeignHdf5, OtherFilesAreNotRead) {
   H5Pclose(layout);
   Close();
   EXPECT_EQ(Complaint(path),
-            "f.h5: error: /a stores its numbers in another file; a trace is one file\n");
+            "f.h5: error: /a stores its numbers in another file; a trace must be a single file\n");
 
   std::filesystem::rename(path, Path("other.h5"));
   path = Make("taut trace", 1);
@@ -163,13 +166,15 @@ TEST_F(ForeignHdf5, OtherFilesAreNotRead) {
   Column("a", rows, layout);
   H5Pclose(layout);
   Close();
-  EXPECT_EQ(Complaint(path), "f.h5: error: /a is a virtual dataset; a trace is one file\n");
+  EXPECT_EQ(Complaint(path),
+            "f.h5: error: /a is a virtual dataset; a trace must be a single file\n");
 
   path = Make("taut trace", 1);
   Times();
   H5Lcreate_external("other.h5", "time_s", file_, "a", H5P_DEFAULT, H5P_DEFAULT);
   Close();
-  EXPECT_EQ(Complaint(path), "f.h5: error: /a is a link to another file; a trace is one file\n");
+  EXPECT_EQ(Complaint(path),
+            "f.h5: error: /a is a link to another file; a trace must be a single file\n");
 
   path = Make("taut trace", 1);
   Times();
@@ -183,20 +188,20 @@ TEST_F(ForeignHdf5, OtherFilesAreNotRead) {
 
 TEST_F(ForeignHdf5, ATraceThatClaimsMoreRowsThanItsSizeAllowsIsDamaged) {
   const std::string path = Make("taut trace", 1);
-  const hsize_t rows = hsize_t{1} << 40, chunk = 1024;  // 8 TB of nothing
+  const hsize_t rows = hsize_t{1} << 40, chunk = 1024;  // 8 TB without data
   hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_chunk(layout, 1, &chunk);
   Column("time_s", rows, layout);
   H5Pclose(layout);
   Close();
   EXPECT_EQ(Complaint(path),
-            "f.h5: error: is damaged or packed too tightly: its numbers take 8388608 MiB, more "
-            "than 256 MiB and than 100 times its size; if it is what it should be, unpack it with "
-            "`h5repack -f NONE` first\n");
+            "f.h5: error: the trace is damaged or compressed too strongly: its numbers take "
+            "8388608 MiB, more than 256 MiB and more than 100 times its size; if this size is "
+            "intended, unpack it with `h5repack -f NONE` first\n");
 }
 
 TEST_F(ForeignHdf5, AFewPackedBytesDoNotBecomeGigabytes) {
-  // 8 MiB of zeros in 8 kB, as often as the limit allows and once more.
+  // 8 MiB of zeros in 8 kB, as often as the limit allows, and once more.
   const hsize_t chunk = 1 << 20;
   const std::vector<double> zeros(chunk);
   uLong packed_bytes = compressBound(chunk * sizeof(double));
@@ -216,19 +221,19 @@ TEST_F(ForeignHdf5, AFewPackedBytesDoNotBecomeGigabytes) {
     }
     H5Pclose(layout);
     Close();
-    // All else is looked at before anything is unpacked, but after this.
+    // All other checks precede unpacking and follow this check.
     EXPECT_EQ(Complaint(path),
-              chunks == 31 ? "f.h5: error: is damaged: a has 32505856 rows, time_s has 3\n"
-                           : "f.h5: error: is damaged or packed too tightly: its numbers "
-                             "take 256 MiB, more than 256 MiB and than 100 times its size; "
-                             "if it is what it should be, unpack it with `h5repack -f NONE` "
-                             "first\n");
+              chunks == 31
+                  ? "f.h5: error: the trace is damaged: a has 32505856 rows, but time_s has 3\n"
+                  : "f.h5: error: the trace is damaged or compressed too strongly: its numbers "
+                    "take 256 MiB, more than 256 MiB and more than 100 times its size; if this "
+                    "size is intended, unpack it with `h5repack -f NONE` first\n");
   }
 }
 
 TEST_F(ForeignHdf5, LargePackedChunksAreReadWhole) {
   const std::string path = Make("taut trace", 1);
-  const hsize_t rows = 150'000, chunk = 100'000;  // larger than what is sent at once
+  const hsize_t rows = 150'000, chunk = 100'000;  // larger than a single transfer
   std::vector<double> times(rows);
   for (hsize_t i = 0; i < rows; ++i) times[i] = 0.5 * static_cast<double>(i);
   hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
@@ -253,9 +258,10 @@ TEST_F(ForeignHdf5, FiltersThatNobodyHasAreNamed) {
   Column("time_s", rows, layout);
   H5Pclose(layout);
   Close();
-  EXPECT_EQ(Complaint(path),
-            "f.h5: error: /time_s is packed with filter 500 \"\", which this HDF5 library does not "
-            "have\n");
+  EXPECT_EQ(
+      Complaint(path),
+      "f.h5: error: /time_s is compressed with filter 500 \"\", which this HDF5 library does not "
+      "have\n");
 }
 
 }  // namespace

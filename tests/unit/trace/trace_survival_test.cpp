@@ -1,4 +1,4 @@
-// Traces and accidents: writers killed, disks full, files damaged.
+// Traces and failures: killed writers, full disks, damaged files
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -23,7 +23,8 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr std::size_t kChannelCount = 5;
-constexpr std::chrono::hours kNoLimit{1};  ///< For what must not depend on how busy a machine is.
+constexpr std::chrono::hours kNoLimit{
+    1};  ///< For tests that must not depend on the load of the machine.
 
 double Now() { return duration<double>(steady_clock::now().time_since_epoch()).count(); }
 
@@ -32,7 +33,7 @@ std::unique_ptr<TraceWriter> Create(const std::string& path, Diagnostics& out) {
                                : CreateCsvTrace(path, Channels(kChannelCount), out);
 }
 
-/// Runs `work` in a child that ends as a program does; returns how it ended.
+/// Runs `work` in a child process that exits normally. Returns its wait status.
 int InChild(const std::function<int()>& work) {
   const pid_t pid = fork();
   if (pid == 0) std::exit(work());
@@ -42,13 +43,14 @@ int InChild(const std::function<int()>& work) {
 }
 
 struct Survival : TraceFolder {
-  /// Writes to `path`, `rows_at_once` each half millisecond, kills the writer after `life`, reads.
+  /// Writes to `path`, `rows_at_once` each half millisecond, kills the writer after `life`, and
+  /// reads.
   void KillAfter(const std::string& path, milliseconds life, std::size_t rows_at_once);
   std::size_t rows_read = 0;
 };
 
 void Survival::KillAfter(const std::string& path, milliseconds life, std::size_t rows_at_once) {
-  // Moments on the one steady clock of all processes: 0 until the first row.
+  // Times on the steady clock that all processes share: 0 until the first row.
   struct Progress {
     volatile double appended, longest;
   };
@@ -85,7 +87,7 @@ void Survival::KillAfter(const std::string& path, milliseconds life, std::size_t
   ASSERT_TRUE(trace) << out.Format();
   ExpectPattern(*trace, kChannelCount);
   ASSERT_FALSE(trace->time_s.empty()) << "the first row is there at once";
-  // Half a second, and what the machine took for a row at most: a flush counts from its end.
+  // Half a second, plus the longest time of a row: the interval starts at the end of a flush.
   EXPECT_GT(trace->time_s.back(), progress->appended - 0.5 - progress->longest)
       << trace->time_s.size() << " rows";
   rows_read += trace->time_s.size();
@@ -100,7 +102,7 @@ TEST_F(Survival, AKilledWriterLeavesAllButTheLastSecond) {
     SCOPED_TRACE(i);
     KillAfter(Path("t.h5"), milliseconds(life_ms(random)), 64);
   }
-  // slowly, so that time and not the amount of text decides when to write
+  // slowly, so that time and not the amount of text triggers writing
   for (int i = 0; i < 4; ++i) KillAfter(Path("t.csv"), milliseconds(1100 + 150 * i), 1);
   EXPECT_GT(rows_read, 0u);
 }
@@ -126,8 +128,7 @@ TEST_F(Survival, ATraceInAFolderThatIsNotThereIsAnErrorAndSilent) {
   for (const std::string name : {"none/t.h5", "none/t.csv"}) {
     Diagnostics out;
     EXPECT_FALSE(Create(Path(name), out));
-    EXPECT_EQ(out.Format(),
-              "error: " + Path(name) + ": cannot be written: No such file or directory\n");
+    EXPECT_EQ(out.Format(), "error: " + Path(name) + ": cannot write: No such file or directory\n");
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
@@ -136,11 +137,11 @@ TEST_F(Survival, AFullDiskIsAnErrorInCsv) {
   if (access("/dev/full", W_OK) != 0) GTEST_SKIP() << "this machine has no /dev/full";
   Diagnostics out;
   EXPECT_FALSE(Create("/dev/full", out));
-  EXPECT_EQ(out.Format(), "error: /dev/full: cannot be written: No space left on device\n");
+  EXPECT_EQ(out.Format(), "error: /dev/full: cannot write: No space left on device\n");
 }
 
 TEST_F(Survival, AFullDiskIsAnErrorAndWhatWasFlushedStaysReadable) {
-  // A file may not grow beyond a limit: to the library the same as a full disk.
+  // A limit of the file size acts like a full disk for the library.
   std::mt19937 random(2);
   std::size_t complaints_at_start = 0;
   for (int i = 0; i < 60; ++i) {
@@ -157,7 +158,7 @@ TEST_F(Survival, AFullDiskIsAnErrorAndWhatWasFlushedStaysReadable) {
       Diagnostics out;
       auto writer = Create(path, out);
       if (!writer) {
-        return out.Format() == "error: " + path + ": cannot be written: File too large\n"
+        return out.Format() == "error: " + path + ": cannot write: File too large\n"
                    ? kRefusedAtStart
                    : 1;
       }
@@ -166,7 +167,7 @@ TEST_F(Survival, AFullDiskIsAnErrorAndWhatWasFlushedStaysReadable) {
         ++row;
       }
       if (row == 100000) return 2;
-      const bool sane = writer->error() == path + ": cannot be written: File too large" &&
+      const bool sane = writer->error() == path + ": cannot write: File too large" &&
                         !AppendRow(*writer, row, kChannelCount, 1e9) && !writer->Finish();
       writer.reset();
       if (row == 0 && sane) return std::filesystem::exists(path) ? 4 : kRefusedAtStart;
@@ -208,7 +209,7 @@ TEST_F(Survival, AWriterThatFailedHoldsNoFile) {
       setrlimit(RLIMIT_FSIZE, &none);
       writer.reset();
       if (open_files() != before) return 1;
-      // Its name, and perhaps its number in the file system, are free for another.
+      // Its name, and possibly its inode number, are free for another file.
       std::filesystem::remove(path);
       const auto next = Create(path, out);
       if (!next || !AppendRow(*next, 0, kChannelCount, 0.0) || !next->Finish()) return 2;
@@ -241,7 +242,7 @@ struct Outcome {
   std::size_t readable = 0, refused = 0, crashed = 0;
 };
 
-/// Spoils `good` in `count` ways. Whatever HDF5 does, the caller gets data or a diagnostic.
+/// Damages `good` in `count` ways. The caller must get data or a diagnostic.
 Outcome ReadDamaged(const std::string& good, std::size_t structure_bytes, int count,
                     const std::string& path) {
   std::mt19937 random(3);
@@ -314,7 +315,7 @@ TEST(ChildProcess, TellsHowItEnded) {
   EXPECT_EQ(end([] { _exit(7); }), "ended with status 7");
   EXPECT_EQ(end([] { std::this_thread::sleep_for(kNoLimit); }, milliseconds(1000)),
             "did not respond for 1 s");
-  // A plain call of operator new: clang leaves out a vector that nobody looks at.
+  // A direct call of operator new, because clang removes an unused vector.
   EXPECT_EQ(end([] { ::operator delete(::operator new (std::size_t{1} << 33)); }),
             "ended with status 1")
       << "memory is limited";
@@ -326,7 +327,7 @@ TEST(ChildProcess, DiesWithAParentThatHasHeardEnough) {
       [](const trace::ChildOutput& to) {
         for (;;) to.Write("x", 1);
       },
-      1 << 20, kNoLimit);  // which a test that waited for the child would reach
+      1 << 20, kNoLimit);  // a test that waited for the child would reach this limit
   char byte = 0;
   EXPECT_TRUE(child.Read(&byte, 1));
 }

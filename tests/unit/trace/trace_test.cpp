@@ -1,4 +1,4 @@
-// Traces survive the way to a file and back, and every complaint about one is clear.
+// Traces written to a file and read back, and the errors of invalid ones
 #include <zlib.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Bitwise, so that NaN equals NaN and 0 differs from -0.
+/// Bitwise, so that NaN equals NaN and 0 differs from -0
 bool SameBits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
@@ -25,7 +25,7 @@ class TraceTest : public TraceFolder {
   std::string CsvComplaint(const std::string& content) const {
     return Complaint(WriteFile("t.csv", content));
   }
-  /// gzip's bytes of a text, by way of a file.
+  /// Returns the gzip bytes of a text, by way of a file.
   static std::string Packed(const std::string& text, const std::string& path) {
     gzFile file = gzopen(path.c_str(), "wb1");
     gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
@@ -34,7 +34,7 @@ class TraceTest : public TraceFolder {
   }
 };
 
-// Names on purpose neither in alphabetic order nor grouped: the order of columns is kept.
+// Names deliberately neither in alphabetic order nor grouped: the order of columns is kept.
 const std::vector<ChannelInfo> kChannels = {{"cable/b/tension_n", "N"},
                                             {"body/s/position_x_m", "m"},
                                             {"cable/a/rate_m_per_s", "m/s"},
@@ -112,7 +112,7 @@ TEST_F(TraceTest, ManyRowsAcrossChunksAndAFileWithoutRowsAreKept) {
       if (rows == 0) {
         ASSERT_TRUE(writer->Finish());
       }
-      writer.reset();  // finishes what has rows, too
+      writer.reset();  // also finishes traces with rows
       const auto trace = ReadTrace(Path(name), out);
       ASSERT_TRUE(trace) << out.Format();
       EXPECT_EQ(trace->time_s.size(), rows);
@@ -159,8 +159,8 @@ TEST_F(TraceTest, ACutOffGzippedCsvIsAnErrorThatSaysWhere) {
     const std::string complaint = Complaint(path);
     const int line = std::atoi(complaint.c_str() + std::strlen("t.csv.gz:"));
     EXPECT_EQ(complaint, "t.csv.gz:" + std::to_string(line) +
-                             ": error: is cut off after this line: its packed data goes on (`zcat` "
-                             "into a .csv keeps what is there)\n");
+                             ": error: the file is truncated after this line: its compressed data "
+                             "is incomplete (save the readable part with `zcat` into a .csv)\n");
     EXPECT_GT(line, last_line);
     last_line = line;
   }
@@ -172,12 +172,13 @@ TEST_F(TraceTest, ACutOffGzippedCsvIsAnErrorThatSaysWhere) {
   std::string damaged = whole;
   damaged[damaged.size() - 6] ^= 0x55;  // in its checksum
   WriteFile("t.csv.gz", damaged);
-  EXPECT_NE(Complaint(path).find(": error: is damaged after this line: incorrect data check ("),
-            std::string::npos);
+  EXPECT_NE(
+      Complaint(path).find(": error: the file is damaged after this line: incorrect data check ("),
+      std::string::npos);
 }
 
 TEST_F(TraceTest, AFewGzippedBytesDoNotBecomeGigabytes) {
-  // Rows of 1 MiB of blanks; gzip's files may be put one behind the other.
+  // Rows of 1 MiB of blanks; gzip files may be concatenated.
   const std::string path = Path("t.csv.gz");
   const std::string blanks = Packed(std::string(1 << 20, ' '), path), end = Packed("1\n", path);
   std::string file = Packed("time_s,a\n", path);
@@ -189,29 +190,32 @@ TEST_F(TraceTest, AFewGzippedBytesDoNotBecomeGigabytes) {
     ASSERT_TRUE(trace) << out.Format();
     EXPECT_EQ(trace->time_s.size(), 251u) << "still within the limit";
   }
-  EXPECT_EQ(Complaint(WriteFile("t.csv.gz", file)),
-            "t.csv.gz: error: unpacks to more than 256 MiB and than 100 times its size (if it is "
-            "what it should be, unpack it with `gunzip` first)\n");
+  EXPECT_EQ(
+      Complaint(WriteFile("t.csv.gz", file)),
+      "t.csv.gz: error: the file unpacks to more than 256 MiB and more than 100 times its size (if "
+      "this size is intended, unpack it with `gunzip` first)\n");
 }
 
 TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
   EXPECT_EQ(CsvComplaint("time_s,a,b\n0,1,2\n1,x,\n2,3\n1,5,6\nnan,5,6\n3,1e999,2\n4,1,2 3\n"),
             "t.csv:3:3: error: \"x\" is not a number\n"
             "t.csv:3:5: error: \"\" is not a number (write nan for a missing value)\n"
-            "t.csv:4: error: 2 values where the header names 3\n"
-            "t.csv:6:1: error: time nan does not come after the row before (times must rise)\n"
+            "t.csv:4: error: the row has 2 values, but the header has 3 columns\n"
+            "t.csv:6:1: error: the time nan is not after the time of the previous row (times must "
+            "increase)\n"
             "t.csv:7:3: error: number \"1e999\" is out of range\n"
             "t.csv:8:5: error: \"2 3\" is not a number\n");
   EXPECT_EQ(CsvComplaint("time_s,a\n1,2\n1,3\n"),
-            "t.csv:3:1: error: time 1 does not come after the row before (times must rise)\n");
-  EXPECT_EQ(CsvComplaint("time_s,a\n0,1\n\n1,2\n"), "t.csv:3: error: an empty line between rows\n");
-  EXPECT_EQ(CsvComplaint(""), "t.csv:1: error: has no header line\n");
-  EXPECT_EQ(
-      CsvComplaint("t,a\n0,1\n"),
-      "t.csv:1:1: error: the first column is \"t\" (the first column of a trace is time_s)\n");
+            "t.csv:3:1: error: the time 1 is not after the time of the previous row (times must "
+            "increase)\n");
+  EXPECT_EQ(CsvComplaint("time_s,a\n0,1\n\n1,2\n"),
+            "t.csv:3: error: there is an empty line between rows\n");
+  EXPECT_EQ(CsvComplaint(""), "t.csv:1: error: the trace has no header line\n");
+  EXPECT_EQ(CsvComplaint("t,a\n0,1\n"),
+            "t.csv:1:1: error: the first column is \"t\" (expected time_s)\n");
   EXPECT_EQ(CsvComplaint("time_s,a,a\n0,1,2\n"), "t.csv: error: channel name \"a\" occurs twice\n");
   EXPECT_EQ(CsvComplaint(std::string(9 << 20, '1')),
-            "t.csv: error: is not a CSV file: no line end in 8 MB\n");
+            "t.csv: error: the file is not CSV: it has no line end within 8 MB\n");
   std::string bad = "time_s,a\n";
   for (int i = 0; i < 100; ++i) bad += "0,x\n";
   const std::string complaint = CsvComplaint(bad);
@@ -219,15 +223,13 @@ TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
 }
 
 TEST_F(TraceTest, AFileThatCannotBeOpenedSaysWhy) {
-  EXPECT_EQ(Complaint(Path("none.h5")),
-            "none.h5: error: cannot be opened: No such file or directory\n");
+  EXPECT_EQ(Complaint(Path("none.h5")), "none.h5: error: cannot open: No such file or directory\n");
   EXPECT_EQ(Complaint(WriteFile("t.txt", "time_s\n")),
-            "t.txt: error: is of no known kind (the name of a trace ends with .h5, .csv or "
-            ".csv.gz)\n");
+            "t.txt: error: unknown trace format (expected .h5, .csv or .csv.gz)\n");
   std::filesystem::create_directory(Path("folder.h5"));
-  EXPECT_EQ(Complaint(Path("folder.h5")), "folder.h5: error: is not a regular file\n");
+  EXPECT_EQ(Complaint(Path("folder.h5")), "folder.h5: error: the trace is not a regular file\n");
   EXPECT_EQ(Complaint(WriteFile("t.h5", "time_s,a\n")),
-            "t.h5: error: is not HDF5 or is damaged: file signature not found\n");
+            "t.h5: error: the file is not HDF5 or is damaged: file signature not found\n");
 }
 
 TEST_F(TraceTest, NamesThatAFileCannotHoldAreErrors) {
@@ -235,13 +237,13 @@ TEST_F(TraceTest, NamesThatAFileCannotHoldAreErrors) {
                                         {"time_s", "s"}, {"b//c", "1"}, {"d,e", "1"},
                                         {"a/b", "1"},    {"./x", "1"},  {"time_s/x", "1"}};
   const std::string expected =
-      "channel name \"\" has an empty part or a lone dot between slashes\n"
-      "channel name \"./x\" has an empty part or a lone dot between slashes\n"
+      "channel name \"\" has an empty part or a single dot between slashes\n"
+      "channel name \"./x\" has an empty part or a single dot between slashes\n"
       "channel name \"a\" occurs twice\n"
       "channel name \"a/b\" continues the name of another channel after a slash\n"
-      "channel name \"b//c\" has an empty part or a lone dot between slashes\n"
-      "channel name \"d,e\" holds a comma, a quote or a control character\n"
-      "channel name \"time_s\" is the trace's own clock\n"
+      "channel name \"b//c\" has an empty part or a single dot between slashes\n"
+      "channel name \"d,e\" contains a comma, a quote or a control character\n"
+      "channel name \"time_s\" is reserved for the clock of the trace\n"
       "channel name \"time_s/x\" continues the name of another channel after a slash\n";
   const auto message = [&](Diagnostics& out) {
     std::string text = WithoutFolder(out.Format());
@@ -351,7 +353,7 @@ TEST_F(TraceTest, WritingAfterTheEndIsAnError) {
   for (TraceWriter* writer : {h5.get(), csv.get()}) {
     ASSERT_TRUE(writer->Finish());
     EXPECT_FALSE(AppendRow(*writer, 0, 1, 0.0));
-    EXPECT_NE(writer->error().find("cannot be written: was finished before this row"),
+    EXPECT_NE(writer->error().find("cannot write: the trace was already finished"),
               std::string::npos);
   }
 }

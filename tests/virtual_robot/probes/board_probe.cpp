@@ -1,5 +1,5 @@
-// A program for a board that uses all that a board has, and tells tests what it saw. Not a
-// firmware: it does as it is told, except that without a message for 100 ms it lets the motors go.
+// Test program for a board that uses all of its peripherals and reports their data to tests. It is
+// not a firmware: it executes orders, and switches the motors off after 100 ms without a message.
 #include <avr/eeprom.h>
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -20,7 +20,7 @@ constexpr uint8_t kLimitMilliseconds = 100;
 
 uint8_t cause __attribute__((section(".noinit")));
 volatile uint8_t position;  // in the message
-volatile uint8_t channel;   // of the conversion under way
+volatile uint8_t channel;   // of the running conversion
 
 void SetMotors(uint16_t a, uint16_t b, uint8_t winds_in, uint8_t enable) {
   OCR1A = a;
@@ -39,7 +39,7 @@ uint16_t Width(int8_t duty) {
   return static_cast<uint16_t>(size * kTop / 127);
 }
 
-/// A broadcast: 0xC1, then a duty a motor of the robot, -127..127, then whether to switch on.
+/// Takes a broadcast: 0xC1, then a duty of -127..127 for each motor of the robot, then enable.
 void TakeMessage() {
   const uint8_t count = Byte(kBoxReceivedCount);
   if (count < 14 || Byte(kBoxReceived) != 0xC1) return;
@@ -82,7 +82,7 @@ void CountEdge(uint8_t motor, bool a, bool b) {
 
 }  // namespace
 
-// Before main: a watchdog that has bitten goes on at its shortest.
+// Before main: after a reset by the watchdog it keeps running with its shortest period.
 extern "C" void KeepCause() __attribute__((naked, used, section(".init3")));
 extern "C" void KeepCause() {
   cause = MCUSR;
@@ -116,7 +116,7 @@ ISR(TIMER2_COMPA_vect) {
     SetMotors(Word(kBoxDuty), Word(kBoxDuty + 2), Byte(kBoxWindsIn), Byte(kBoxEnable));
   }
   ADCSRA |= _BV(ADSC);
-  Word(kBoxEarly) = ADC;  // of the conversion before
+  Word(kBoxEarly) = ADC;  // of the previous conversion
   wdt_reset();
   GPIOR0 = 0;
 }
@@ -186,7 +186,7 @@ int main() {
   ICR1 = kTop;
   SetMotors(0, 0, 0, 0);
   TCCR2A = _BV(WGM21);
-  TCCR2B = _BV(CS22);  // by 64
+  TCCR2B = _BV(CS22);  // prescaler 64
   OCR2A = 249;
   TIMSK2 = _BV(OCIE2A);
   ADMUX = _BV(REFS0);

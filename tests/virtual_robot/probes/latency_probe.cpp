@@ -1,5 +1,5 @@
-// Says how many cycles after an overflow of Timer 0 the first instruction of its interrupt runs:
-// asleep where the byte at 0x131 is 1, else awake.
+// Stores the number of cycles from an overflow of Timer 0 to the first instruction of its
+// interrupt: asleep if the byte at 0x131 is 1, else awake.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -12,7 +12,7 @@ ISR(TIMER0_OVF_vect, ISR_NAKED) {
 }
 
 int main() {
-  TCCR0B = _BV(CS00);  // every cycle
+  TCCR0B = _BV(CS00);  // no prescaler
   TIMSK0 = _BV(TOIE0);
   set_sleep_mode(SLEEP_MODE_IDLE);
   sleep_enable();

@@ -1,10 +1,10 @@
-// The hash of the state, beside that of the command: the same bits, or not.
+// Display of the state hash next to the hash of the taut command: bit-identical or not.
 import { button, el, number } from "../util";
 import type { Mark, RunState } from "./core";
 import type { Project } from "./project";
 import type { WorkerSource } from "./source";
 
-/** What `taut run` finds of a shipped file at some times, in rising order. */
+/** State hashes of `taut run` for a shipped file at some times, ascending. */
 export type Hashes = Record<string, Mark[]>;
 
 export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes): HTMLElement {
@@ -12,7 +12,7 @@ export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes
   const why = el("p.why");
   const command = el("code");
   const copy = button("copy", "copy the command", () => void navigator.clipboard?.writeText(command.textContent ?? ""), "button.small");
-  const element = el("section.bits", { "aria-label": "the same bits" }, el("h2", {}, "The same bits"), table, why, el("p.command", {}, command, " ", copy));
+  const element = el("section.bits", { "aria-label": "bitwise comparison" }, el("h2", {}, "Bitwise comparison with taut run"), table, why, el("p.command", {}, command, " ", copy));
   let said = "";
   const show = (state: RunState | null) => {
     const expected = state && isAsShipped(state, project) ? (hashes[state.path] ?? []) : [];
@@ -27,10 +27,10 @@ export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes
       el("tr", {}, el("th", {}, "time"), el("th", {}, "here"), ...(expected.length > 0 ? [el("th", {}, "taut run"), el("th")] : [])),
       ...found.map(({ mark, ours }) => el("tr", {}, el("td", {}, seconds(mark.time_s)), el("td.hash", {}, ours ?? "…"), el("td.hash", {}, mark.hash), verdict(ours, mark.hash))),
       el("tr", {}, el("td", {}, seconds(state.time_s)), el("td.hash", {}, state.hash), ...(expected.length > 0 ? [el("td"), el("td")] : [])));
-    why.textContent = model ? "A model by itself, which no command runs: it has a hash, and nothing to be set beside."
-      : state.touched ? "You have pulled, pushed or tuned: no command goes the same way. Reset to compare."
-      : project.ran ? "Download the changed files in place of the shipped ones; then this prints the last line's hash:"
-      : "To see the hash of the last line on your machine:";
+    why.textContent = model ? "No command runs a model, so there is no hash to compare with."
+      : state.touched ? "You have pulled, pushed or changed parameters, which no command can repeat. Reset to compare."
+      : project.ran ? "Download the changed files and replace the shipped ones; then this command prints the hash of the last line:"
+      : "This command prints the hash of the last line on your machine:";
     command.textContent = `taut run ${state.path}${Object.entries(state.set).map(([name, value]) => ` --set ${name}=${value}`).join("")} --duration_s ${Number(state.time_s.toFixed(9))} --json | grep state_hash`;
     command.parentElement!.hidden = model || state.touched || state.time_s === 0;
   };
@@ -38,14 +38,14 @@ export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes
   return element;
 }
 
-/** No file was changed since that run began, no parameter set, nothing touched. */
+/** The run began without changed files, and no parameter was set and no robot dragged. */
 function isAsShipped(state: RunState, project: Project): boolean {
   return !state.touched && Object.keys(state.set).length === 0 && !project.ran;
 }
 
 function verdict(ours: string | null, theirs: string): HTMLElement {
   if (ours === null) return el("td", {}, "");
-  return ours === theirs ? el("td.same", {}, "✓ same") : el("td.other", { role: "alert" }, "✗ not the same");
+  return ours === theirs ? el("td.same", {}, "✓ same") : el("td.other", { role: "alert" }, "✗ different");
 }
 
 const seconds = (time_s: number) => `${number(time_s, 5)} s`;

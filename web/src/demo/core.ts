@@ -1,6 +1,6 @@
-// The core in WebAssembly (apps/browser), with its files: what the command taut does, on a disk in memory.
+// Simulation core in WebAssembly (apps/browser) with its files in an in-memory file system.
 
-/** What emscripten makes of apps/browser/exports.cpp. */
+/** Emscripten module of apps/browser/exports.cpp. */
 interface Module {
   ccall(name: string, returns: "string" | "number" | null, types: readonly string[], values: readonly unknown[]): unknown;
   HEAPU8: Uint8Array;
@@ -15,7 +15,7 @@ export interface Complaint {
   file: string;
   line: number;
   column: number;
-  /** Else a warning. */
+  /** False: a warning. */
   error: boolean;
   what: string;
   hint: string;
@@ -24,7 +24,7 @@ export interface Complaint {
 export interface Checked {
   good: boolean;
   kind: "experiment" | "model" | "";
-  /** All that was read, the file itself first; empty where that is not known. */
+  /** All files read, the main file first; empty if unknown. */
   files: string[];
   found: Complaint[];
 }
@@ -35,7 +35,7 @@ export interface Mark {
   hash: string;
 }
 
-/** Where a run stands, as apps/browser/demo.h says it. */
+/** State of a run, see apps/browser/demo.h. */
 export interface RunState extends Mark {
   path: string;
   touched: boolean;
@@ -54,20 +54,23 @@ export class Core {
 
   private constructor(private readonly module: Module) {}
 
-  /** `url`: of taut_core.mjs; the .wasm lies beside it. `more`: what that takes, for where there is no fetch. */
+  /**
+   * Loads the core. `url`: of taut_core.mjs, with the .wasm in the same folder. `more`: options for
+   * emscripten, for environments without fetch.
+   */
   static async load(url: string, more: { wasmBinary?: Uint8Array } = {}): Promise<Core> {
     const { default: create } = (await import(/* @vite-ignore */ url)) as { default: (options: object) => Promise<Module> };
     return new Core(await create(more));
   }
 
-  /** Files as they are shipped. */
+  /** Sets the shipped files. */
   give(files: Files): void {
     this.shipped = files;
     for (const root of [SHOWN, DRAFT]) this.write(root, files);
     this.module.FS.chdir(SHOWN);
   }
 
-  /** Looks at a file, `edits` in place of what is shipped or was given; what runs is not disturbed. */
+  /** Checks a file with `edits` in place of the shipped or given files, without effect on the run. */
   check(path: string, edits: Files): Checked {
     this.edit(DRAFT, edits);
     this.module.FS.chdir(DRAFT);
@@ -76,7 +79,7 @@ export class Core {
     return JSON.parse(checked) as Checked;
   }
 
-  /** Runs a file. Where it is wrong, what ran before goes on. */
+  /** Runs a file. If it has errors, the previous run continues. */
   open(path: string, edits: Files, mark_at_s: readonly number[], paused: boolean): Checked {
     const checked = this.check(path, edits);
     if (!checked.good) return checked;
@@ -85,12 +88,12 @@ export class Core {
     return JSON.parse(answer as string) as Checked;
   }
 
-  /** A message of the viewer's protocol; empty, or why it is none. */
+  /** Sends a message of the viewer's protocol; returns an error message, or an empty string. */
   post(message: string): string {
     return this.ask("taut_post", message);
   }
 
-  /** Goes on for some milliseconds; in how many it wants to be called again. */
+  /** Advances for some milliseconds; returns the time until the next call [ms]. */
   turn(): number {
     return this.module.ccall("taut_turn", "number", [], []) as number;
   }
@@ -99,7 +102,7 @@ export class Core {
     return JSON.parse(this.module.ccall("taut_messages", "string", [], []) as string) as unknown[];
   }
 
-  /** The newest frame; null: none since the last call. */
+  /** Returns the newest frame; null: none since the last call. */
   frame(): ArrayBuffer | null {
     const at = this.module.ccall("taut_frame", "number", [], []) as number;
     if (at === 0) return null;
@@ -115,7 +118,7 @@ export class Core {
     return this.module.ccall(name, "string", ["string"], [text]) as string;
   }
 
-  /** The files as they are shipped, but for these. */
+  /** Writes the shipped files with these edits. */
   private edit(root: string, edits: Files): void {
     const before = Object.keys(this.edited.get(root) ?? {});
     this.write(root, Object.fromEntries(before.map((path) => [path, this.shipped[path] ?? ""])));

@@ -1,4 +1,4 @@
-// The files as text: numbered lines, those with something wrong marked, and the list of what is wrong.
+// Text editor for the files: numbered lines, marks at errors and warnings, and their list.
 import { button, download, el } from "../util";
 import type { Complaint } from "./core";
 import type { Project } from "./project";
@@ -8,7 +8,7 @@ export class Editor {
   private readonly area: HTMLTextAreaElement;
   private readonly lines = el("div.lines", { "aria-hidden": true });
   private readonly tabs = el("div.tabs", { role: "tablist", "aria-label": "files" });
-  private readonly problems = el("ol.problems", { "aria-label": "what is wrong" });
+  private readonly problems = el("ol.problems", { "aria-label": "errors and warnings" });
   private readonly verdict = el("p.verdict", { role: "status" });
   private path = "";
 
@@ -34,7 +34,7 @@ export class Editor {
     project.good.watch(() => this.drawFound(project.found.value));
   }
 
-  /** Puts the cursor where a complaint says. */
+  /** Moves the cursor to the position of a diagnostic. */
   go(file: string, line: number, column: number): void {
     if (this.project.text(file) === "") return;
     this.show(file);
@@ -47,7 +47,7 @@ export class Editor {
     this.area.scrollTop = Math.max(0, (line - 1) * height - this.area.clientHeight / 2);
   }
 
-  /** The file in sight, for those who keep it. */
+  /** Downloads the displayed file. */
   save(): void {
     download(this.path.slice(this.path.lastIndexOf("/") + 1), new Blob([this.area.value], { type: "text/yaml" }));
   }
@@ -93,14 +93,14 @@ export class Editor {
     this.verdict.classList.toggle("wrong", errors > 0);
     this.problems.replaceChildren(...found.map(({ file, line, column, error, what, hint }) => {
       const place = [file, ...[line, column].filter((part) => part > 0)].join(":");
-      const jump = button(place, "go there", () => this.go(file, line, column), "button.place");
+      const jump = button(place, "go to this place", () => this.go(file, line, column), "button.place");
       return el(error ? "li.wrong" : "li", {}, ...(place === "" ? [] : [jump, " "]), `${error ? "error" : "warning"}: ${what}`, ...(hint === "" ? [] : [el("span.hint", {}, ` (${hint})`)]));
     }));
     this.drawTabs();
     this.drawLines();
   }
 
-  /** Tab makes blanks, as YAML wants them; with escape before it, it leaves the text. */
+  /** Tab inserts spaces, as required by YAML; after escape, it leaves the text. */
   private key(event: KeyboardEvent): void {
     if (event.key === "Escape") this.area.dataset["leaves"] = "yes";
     else if (event.key !== "Tab" || this.area.dataset["leaves"]) delete this.area.dataset["leaves"];

@@ -1,4 +1,4 @@
-// The demo: models and experiments in a browser, with nothing installed and no server that computes.
+// Browser demo: models and experiments without installation and without a computing server.
 import "./demo.css";
 import { App } from "../app";
 import { buildPage, sayWhyNot } from "../page";
@@ -10,7 +10,7 @@ import { fragmentOf, Project, sharedBy } from "./project";
 import { WorkerSource } from "./source";
 
 const START = "experiments/push_20n.yaml";
-/** After the last key, before a text is looked at. */
+/** Delay from the last key to the check of a text. */
 const REST_MS = 250;
 
 interface Shipped {
@@ -33,7 +33,7 @@ async function start(root: HTMLElement): Promise<void> {
     const { path, edits } = { path: project.path.value, edits: { ...project.edits } };
     app.events.value = [];
     const checked = await source.open(path, edits, (hashes[path] ?? []).map(({ time_s }) => time_s), paused);
-    if (path !== project.path.value) return checked.good; // somebody has chosen another one since
+    if (path !== project.path.value) return checked.good; // the user has selected another file in the meantime
     project.learn(checked);
     if (checked.good) project.ran = Object.keys(edits).length > 0;
     runButton.classList.toggle("primary", !checked.good);
@@ -43,18 +43,18 @@ async function start(root: HTMLElement): Promise<void> {
     project.choose({ path, edits });
     choice.value = path;
     note.textContent = aboutOf(project.text(path));
-    // what cannot be run is looked at all the same
-    if (!(await run())) app.notice.value = "this cannot be run as it is: see what is wrong below its text";
+    // files that cannot run are displayed nevertheless
+    if (!(await run())) app.notice.value = "this text cannot run: see the errors below it";
   };
 
   const choice = el<HTMLSelectElement>("select", { "aria-label": "model or experiment", onchange: () => void follow(choice.value) },
     ...["experiments", "models"].map((folder) => el("optgroup", { label: folder },
       ...Object.keys(files).filter((path) => path.startsWith(`${folder}/`) && path.endsWith(".yaml")).sort().map((path) => el("option", { value: path }, path.slice(folder.length + 1, -5))))));
   const note = el("p.about");
-  const runButton = button("run", "run this text from its start (Ctrl+Enter)", () => void run());
-  const undo = button("undo", "the texts as they are shipped", () => void choose(project.path.value));
-  const share = button("share", "copy a link to just this, with your changes", () => void copyLink());
-  const save = button("download", "the text in sight as a file", () => editor.save());
+  const runButton = button("run", "run this text from the start (Ctrl+Enter)", () => void run());
+  const undo = button("undo", "restore the shipped texts", () => void choose(project.path.value));
+  const share = button("share", "copy a link to this text with your changes", () => void copyLink());
+  const save = button("download", "save this text as a file", () => editor.save());
   const beside = el("aside.demo", { "aria-label": "model" },
     el("div.bar", {}, choice, runButton, undo, share, save), note, editor.element, bitsPanel(source, project, hashes));
   const toggle = button("text", "show or hide the model's text", () => {
@@ -88,7 +88,7 @@ async function start(root: HTMLElement): Promise<void> {
       runButton.classList.toggle("primary", true);
     }, REST_MS);
   });
-  /** The address says what is looked at: back and forward work. */
+  /** The address contains the displayed file, so that back and forward work. */
   const follow = async (path: string) => {
     history.pushState(null, "", `#${path}`);
     await choose(path);
@@ -97,10 +97,10 @@ async function start(root: HTMLElement): Promise<void> {
     const shared = await sharedBy(location.hash, files);
     await choose(shared?.path ?? START, shared?.edits);
   };
-  /** A link that says nothing: something is shown, and that stands above its text for good. */
+  /** Handles an invalid link: displays a default file with a permanent message above its text. */
   const insteadOf = async (error: unknown) => {
     await choose(START);
-    note.textContent = `The link could not be followed: ${wordsOf(error)}`;
+    note.textContent = `The link could not be opened: ${wordsOf(error)}`;
   };
   addEventListener("popstate", () => void fromAddress().catch(insteadOf));
   document.addEventListener("keydown", (event) => {
@@ -109,14 +109,14 @@ async function start(root: HTMLElement): Promise<void> {
     void run();
   });
 
-  buildPage(root, app, { beside, buttons: [toggle], advice: "Reload the page. Where that does not help: browsers of 2023 and later run it." });
+  buildPage(root, app, { beside, buttons: [toggle], advice: "Reload the page. If this does not help, use a browser of 2023 or later." });
   Object.assign(window, { demo: { project, source, editor } });
   await fromAddress().catch(insteadOf);
 }
 
 const wordsOf = (error: unknown) => (error instanceof Error ? error.message : String(error));
 
-/** What a file says that it is about. */
+/** Returns the description in a file. */
 function aboutOf(text: string): string {
   return /^description:\s*["']?(.*?)["']?\s*$/m.exec(text)?.[1] ?? "";
 }

@@ -1,8 +1,9 @@
-// What is looked at: a file, and what has been changed of it and of those that it reads. A link holds both.
+// State of the demo: the displayed file, and edits of it and of the files that it reads. A link contains
+// both.
 import { Signal } from "../util";
 import type { Checked, Complaint, Files } from "./core";
 
-/** In an address at most so many characters: more than any of the files needs, and no browser cuts it. */
+/** Maximum length of an address: longer than any of the files needs, and within the limits of browsers. */
 const MOST_CHARACTERS = 60_000;
 
 export interface Shared {
@@ -12,14 +13,14 @@ export interface Shared {
 
 export class Project {
   readonly path = new Signal<string>("");
-  /** Files of it, the first one first. */
+  /** Files of the project, the main file first. */
   readonly files = new Signal<readonly string[]>([]);
   readonly found = new Signal<readonly Complaint[]>([]);
   readonly good = new Signal<boolean>(true);
-  /** Rises with every change of a text. */
+  /** Increases with every change of a text. */
   readonly version = new Signal<number>(0);
   edits: Files = {};
-  /** Whether the run that is shown began from changed files. */
+  /** Whether the displayed run began from changed files. */
   ran = false;
 
   constructor(readonly shipped: Files) {}
@@ -42,7 +43,7 @@ export class Project {
     this.version.value += 1;
   }
 
-  /** Another file, or the same one anew. */
+  /** Selects another file, or reloads the same one. */
   choose({ path, edits }: Shared): void {
     this.edits = { ...edits };
     this.files.value = [path];
@@ -54,7 +55,7 @@ export class Project {
   learn(checked: Checked): void {
     this.found.value = checked.found;
     this.good.value = checked.good;
-    // while something is wrong it is not known what is read: what was read before stays in sight
+    // with errors the list of files read is incomplete: the previous files stay visible
     const files = checked.files.filter((file) => this.shipped[file] !== undefined || this.isEdited(file));
     const more = checked.found.map(({ file }) => file).filter((file) => file !== "" && this.text(file) !== "");
     const known = files.length > 0 ? files : this.files.value;
@@ -63,22 +64,25 @@ export class Project {
   }
 }
 
-/** What stands behind # in an address. */
+/** Returns the part of an address after #. */
 export async function fragmentOf({ path, edits }: Shared): Promise<string> {
   if (Object.keys(edits).length === 0) return `#${path}`;
   const text = JSON.stringify({ path, edits });
   const bytes = await through(new CompressionStream("deflate-raw"), new TextEncoder().encode(text));
   const fragment = `#=${btoa(String.fromCharCode(...bytes)).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "")}`;
-  if (fragment.length > MOST_CHARACTERS) throw new Error("this is too long for a link: download the files instead");
+  if (fragment.length > MOST_CHARACTERS) throw new Error("the texts are too long for a link: download the files instead");
   return fragment;
 }
 
-/** What a link says; null: nothing. Throws, with words, where it is damaged or names what there is not. */
+/**
+ * Returns the content of a link; null: none. Throws an error with a message if the link is damaged or refers
+ * to missing files.
+ */
 export async function sharedBy(fragment: string, shipped: Files): Promise<Shared | null> {
   if (fragment === "" || fragment === "#") return null;
   if (!fragment.startsWith("#=")) {
     const path = decodeURIComponent(fragment.slice(1));
-    if (shipped[path] === undefined) throw new Error(`there is no file "${path}" here`);
+    if (shipped[path] === undefined) throw new Error(`there is no file "${path}"`);
     return { path, edits: {} };
   }
   let shared: unknown;
@@ -87,14 +91,14 @@ export async function sharedBy(fragment: string, shipped: Files): Promise<Shared
     const bytes = await through(new DecompressionStream("deflate-raw"), Uint8Array.from(packed, (c) => c.charCodeAt(0)));
     shared = JSON.parse(new TextDecoder().decode(bytes));
   } catch {
-    throw new Error("the link is damaged: part of it is missing, perhaps");
+    throw new Error("the link is damaged: a part may be missing");
   }
   const { path, edits } = shared as Partial<Shared>;
   const texts = typeof edits === "object" && edits !== null ? Object.entries(edits) : [];
   if (typeof path !== "string" || texts.some(([name, text]) => shipped[name] === undefined || typeof text !== "string")) {
-    throw new Error("the link is of another version of this page: it names files that are not here");
+    throw new Error("the link belongs to another version of this page: it names unknown files");
   }
-  if (shipped[path] === undefined) throw new Error(`there is no file "${path}" here`);
+  if (shipped[path] === undefined) throw new Error(`there is no file "${path}"`);
   return { path, edits: edits ?? {} };
 }
 

@@ -1,4 +1,4 @@
-// The core in a worker as a source: it speaks the protocol as the server does.
+// Simulation core in a worker as a message source with the server's protocol.
 import { decodeFrame } from "../frame";
 import type { ClientMessage, ServerMessage } from "../protocol";
 import type { Listener, Source } from "../source";
@@ -7,7 +7,7 @@ import type { Checked, Files, RunState } from "./core";
 import type { FromWorker, ToWorker } from "./worker";
 
 export class WorkerSource implements Source {
-  /** How the run stands that is shown. */
+  /** State of the displayed run. */
   readonly state = new Signal<RunState | null>(null);
   readonly failure = new Signal<string | null>(null);
   readonly ready: Promise<void>;
@@ -40,7 +40,7 @@ export class WorkerSource implements Source {
     return this.ask((id) => ({ kind: "check", id, path, edits }));
   }
 
-  /** Runs a file from its start. Where it is wrong, what ran before goes on. */
+  /** Runs a file from its start. If it has errors, the previous run continues. */
   open(path: string, edits: Files, mark_at_s: number[], paused: boolean): Promise<Checked> {
     return this.ask((id) => ({ kind: "open", id, path, edits, mark_at_s, paused }));
   }
@@ -85,7 +85,8 @@ export class WorkerSource implements Source {
         break;
       case "frame":
         this.listener?.frame(decodeFrame(new Float64Array(message.frame)));
-        // The next one when this one is on the screen; a page that is not seen draws nothing, and goes on slowly.
+        // The next frame follows once this one is displayed; a hidden page draws nothing, and advances
+        // slowly.
         this.afterDrawing(() => this.tell({ kind: "drawn" }));
         break;
       case "state":

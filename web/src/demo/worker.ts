@@ -1,4 +1,4 @@
-// The core on a thread of its own: it goes on by itself, and the page is never made to wait.
+// Simulation core on a worker thread: it advances independently and never blocks the page.
 import { type Checked, Core, type Files, type RunState } from "./core";
 
 export type ToWorker =
@@ -6,7 +6,7 @@ export type ToWorker =
   | { kind: "check"; id: number; path: string; edits: Files }
   | { kind: "open"; id: number; path: string; edits: Files; mark_at_s: number[]; paused: boolean }
   | { kind: "post"; text: string }
-  /** The last frame has been drawn: the next may come. */
+  /** The last frame has been drawn: the next may be sent. */
   | { kind: "drawn" };
 
 export type FromWorker =
@@ -27,7 +27,7 @@ let timer = 0;
 let frame_is_out = false;
 let state_said_ms = -Infinity;
 let state_said = "";
-// A timer waits for 4 ms at least; a message to oneself comes at once, after those that wait.
+// A timer waits for at least 4 ms; a message to the same worker arrives at once, after waiting ones.
 const again = new MessageChannel();
 let comes = false;
 again.port1.onmessage = () => {

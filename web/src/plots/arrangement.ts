@@ -1,4 +1,5 @@
-// Changes of a list of plots: channels come, go and move. Each answers the new list, or in words why not.
+// Changes of a list of plots: adding, removing and moving channels. Each function returns the new list, or
+// the reason of a refusal.
 import type { SeriesStore } from "../series";
 import { unitText } from "../util";
 import { titleOf } from "./channels";
@@ -6,7 +7,7 @@ import type { PlotSpec } from "./layouts";
 
 export type Plots = readonly PlotSpec[];
 
-/** A plot of its own for the channels of each unit. */
+/** Adds a plot for the channels of each unit. */
 export function withNewPlot(plots: Plots, channels: readonly string[], store: SeriesStore): Plots {
   const units = new Map<string, string[]>();
   for (const channel of channels) {
@@ -19,8 +20,8 @@ export function withNewPlot(plots: Plots, channels: readonly string[], store: Se
 
 export function withChannels(plots: Plots, place: number, channels: readonly string[], store: SeriesStore): Plots | string {
   const plot = plots[place];
-  if (!plot) return "that plot is no longer there";
-  // channels that this run does not have are no measure
+  if (!plot) return "the plot no longer exists";
+  // ignores channels that this run does not have
   const first = plot.channels.find((channel) => store.has(channel, 0));
   const unit = first === undefined ? null : unitOf(first, store);
   const other = channels.find((channel) => unit !== null && unitOf(channel, store) !== unit);
@@ -29,7 +30,7 @@ export function withChannels(plots: Plots, place: number, channels: readonly str
   return plots.map((each, i) => (i === place ? { ...each, channels: names } : each));
 }
 
-/** A plot without channels goes, too. */
+/** Removes a channel; an empty plot is removed, too. */
 export function withoutChannel(plots: Plots, place: number, channel: string): Plots {
   return plots
     .map((plot, i) => (i === place ? { ...plot, channels: plot.channels.filter((name) => name !== channel) } : plot))
@@ -44,7 +45,7 @@ export function renamed(plots: Plots, place: number, title: string): Plots {
   return plots.map((plot, i) => (i === place ? { ...plot, title } : plot));
 }
 
-/** To the place of another, which makes room. */
+/** Moves a plot to the place of another, which makes room. */
 export function moved(plots: Plots, from: number, to: number): Plots {
   const rest = [...plots];
   const [plot] = rest.splice(from, 1);

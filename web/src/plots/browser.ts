@@ -1,19 +1,20 @@
-// All channels of the run: grouped, searched, chosen, and from here put into plots, by mouse or by buttons.
+// Channel browser: all channels of the run, grouped and searchable; selected channels are added to plots by
+// drag and drop or buttons.
 import type { App } from "../app";
 import { button, el, unitText } from "../util";
 import { finder, grouped } from "./channels";
 
-const MOST_ROWS = 200; // shown of what a search finds
+const MOST_ROWS = 200; // maximum number of displayed search results
 
-/** What a drag from here carries. */
+/** Data type of a drag of channels. */
 export const DRAGGED = "application/x-taut-channels";
 
-/** What happens with what is chosen. */
+/** Receiver of the selected channels. */
 export interface Destination {
   toNewPlot(channels: readonly string[]): void;
   toPlotsOfTheirOwn(channels: readonly string[]): void;
   toPlot(place: number, channels: readonly string[]): void;
-  /** The plots that there are, by place. */
+  /** The existing plots, by place. */
   plots(): readonly { place: number; title: string }[];
 }
 
@@ -29,7 +30,7 @@ export class ChannelBrowser {
     oninput: () => this.showList(),
   });
   private readonly plotList = el<HTMLSelectElement>("select", { "aria-label": "plot to add to" });
-  private readonly all = button("choose all", "choose all channels that are found", () => this.chooseAll(), "button.small");
+  private readonly all = button("choose all", "choose all found channels", () => this.chooseAll(), "button.small");
   private readonly actions: HTMLButtonElement[];
 
   constructor(
@@ -43,9 +44,9 @@ export class ChannelBrowser {
       });
     this.actions = [
       act("new plot", "put the chosen channels into a new plot", (names) => destination.toNewPlot(names)),
-      act("a plot each", "put each of the chosen channels into a plot of its own", (names) => destination.toPlotsOfTheirOwn(names)),
-      act("add to", "add the chosen channels to the plot that is named beside this button", (names) => destination.toPlot(Number(this.plotList.value), names)),
-      button("clear", "choose no channel", () => this.clear()),
+      act("separate plots", "put each chosen channel into a separate plot", (names) => destination.toPlotsOfTheirOwn(names)),
+      act("add to", "add the chosen channels to the plot named next to this button", (names) => destination.toPlot(Number(this.plotList.value), names)),
+      button("clear", "deselect all channels", () => this.clear()),
     ];
     const [make, each, add, clear] = this.actions as [HTMLButtonElement, HTMLButtonElement, HTMLButtonElement, HTMLButtonElement];
     this.element = el("section.channels", { "aria-label": "channels" },
@@ -63,7 +64,7 @@ export class ChannelBrowser {
     this.showChosen();
   }
 
-  /** The plots have changed. */
+  /** Updates the display after a change of the plots. */
   showPlots(): void {
     const before = this.plotList.value;
     this.plotList.replaceChildren(...this.destination.plots().map(({ place, title }) => el("option", { value: place }, title)));
@@ -96,7 +97,7 @@ export class ChannelBrowser {
     this.all.hidden = !searching || names.length === 0;
     this.found.textContent = searching ? `${names.length} of ${this.channels.length} channels` : `${this.channels.length} channels`;
     const more = names.length - MOST_ROWS;
-    if (searching) this.list.replaceChildren(...names.slice(0, MOST_ROWS).map((name) => this.row(name)), ...(more > 0 ? [el("p", {}, `and ${more} more: search for less`)] : []));
+    if (searching) this.list.replaceChildren(...names.slice(0, MOST_ROWS).map((name) => this.row(name)), ...(more > 0 ? [el("p", {}, `and ${more} more: refine the search`)] : []));
     else this.showGroups(names);
     this.showChosen();
   }
@@ -130,7 +131,7 @@ export class ChannelBrowser {
     } });
     const row = el("label.channel", { draggable: "true", "data-channel": name, title: `${name}: drag it into a plot, or choose it` }, box, el("span", {}, name), el("span.unit", {}, unit));
     row.addEventListener("dragstart", (event) => {
-      // one of several that are chosen takes them all along
+      // dragging one of several selected channels drags all of them
       const names = this.chosen.has(name) ? [...this.chosen] : [name];
       event.dataTransfer?.setData(DRAGGED, JSON.stringify(names));
       event.dataTransfer?.setData("text/plain", names.join("\n"));
@@ -149,7 +150,7 @@ export class ChannelBrowser {
   }
 }
 
-/** The channels that a drag carries over an element; null: it carries something else. */
+/** Registers a drop target for dragged channels; ignores drags of other data. */
 export function dropTarget(element: HTMLElement, drop: (channels: string[]) => void): void {
   element.addEventListener("dragover", (event) => {
     if (!event.dataTransfer?.types.includes(DRAGGED)) return;

@@ -1,9 +1,9 @@
-// The names of channels: kind/thing/quantity. How they are grouped, searched, and called beside a line.
+// Names of channels, kind/thing/quantity: grouping, search, and labels of lines.
 import { nameAndUnit } from "../util";
 
 export interface ChannelName {
   kind: string;
-  /** Empty where there is but one: system/kinetic_j. */
+  /** Empty for names of two parts: system/kinetic_j. */
   thing: string;
   quantity: string;
 }
@@ -14,7 +14,7 @@ export function partsOf(channel: string): ChannelName {
   return { kind: parts[0] ?? "", thing: parts.slice(1).join("/"), quantity };
 }
 
-/** Kinds, in them things, in them channels; all in the order in which they come. */
+/** Returns kinds, their things, and their channels; all in order of appearance. */
 export function grouped(channels: readonly string[]): Map<string, Map<string, string[]>> {
   const kinds = new Map<string, Map<string, string[]>>();
   for (const channel of channels) {
@@ -28,14 +28,14 @@ export function grouped(channels: readonly string[]): Map<string, Map<string, st
   return kinds;
 }
 
-/** Does a channel have every word somewhere in its name? `*` in a word stands for any text. */
+/** Returns a filter for channels whose names contain every word; `*` in a word stands for any text. */
 export function finder(query: string): (channel: string) => boolean {
   const words = query.trim().toLowerCase().split(/\s+/).filter((word) => word !== "");
   const patterns = words.map((word) => new RegExp(word.split("*").map((part) => part.replace(/[.+?^${}()|[\]\\]/g, "\\$&")).join(".*")));
   return (channel) => patterns.every((pattern) => pattern.test(channel.toLowerCase()));
 }
 
-/** As short as it can be beside the others: by what they do not share. */
+/** Returns the shortest distinct labels: the parts that the names do not share. */
 export function labelsOf(channels: readonly string[]): string[] {
   const all = channels.map(partsOf);
   const same = (part: keyof ChannelName) => all.every((each) => each[part] === all[0]![part]);
@@ -47,13 +47,13 @@ export function labelsOf(channels: readonly string[]): string[] {
   });
 }
 
-/** What to call a plot of these. */
+/** Returns the title of a plot of these channels. */
 export function titleOf(channels: readonly string[]): string {
   const all = channels.map(partsOf);
   const { kind, thing, quantity } = all[0]!;
   const where = thing === "" ? kind : thing;
   const what = nameAndUnit(quantity)[0];
-  if (all.length === 1 && kind === "cable" && quantity === "tension_n") return thing; // as its plot has always been called
+  if (all.length === 1 && kind === "cable" && quantity === "tension_n") return thing; // the established title of its plot
   if (all.every((each) => each.kind === kind && each.thing === thing)) return all.length === 1 ? `${where} ${what}`.trim() : where;
   return all.every((each) => each.quantity === quantity) ? what : `${all.length} channels`;
 }

@@ -1,4 +1,4 @@
-// One plot on the screen (uPlot), with its values under the cursor.
+// One plot on the screen (uPlot), with the values under the cursor.
 import uPlot from "uplot";
 import type { App } from "../app";
 import { palette } from "../colours";
@@ -9,14 +9,14 @@ import { Differences } from "./differences";
 import { coarseness, type Figure, type Filled, ink, isDashed, valueRange } from "./figure";
 
 const SYNC = "taut";
-const DIGITS = 4; // of a number beside a plot
-const AWAY = 0.01; // of the window: a row that lies farther from the time that is looked at says its time
+const DIGITS = 4; // significant digits of a value beside a plot
+const AWAY = 0.01; // relative to the window: a row farther from the displayed time is labeled with its time
 
 export class Chart {
   readonly element: HTMLElement;
   filled: Filled;
   private plot: uPlot | null = null;
-  /** Before, its span says nothing. */
+  /** Until then its span is meaningless. */
   private isFilled = false;
   private readonly place: HTMLElement;
   private readonly key = el("div.lines");
@@ -47,7 +47,7 @@ export class Chart {
     return valueRange([this.filled]);
   }
 
-  /** Shows points between two times; `shared`: the range of values, where plots have one together. */
+  /** Displays points between two times; `shared`: common range of values of several plots, if any. */
   show(filled: Filled, span: readonly [number, number], shared: [number, number] | null): void {
     this.isFilled = true;
     this.draw(filled, span, shared);
@@ -65,7 +65,7 @@ export class Chart {
     this.mark();
   }
 
-  /** The line at the present time, and the numbers of the row under the cursor or at that time. */
+  /** Updates the line at the present time, and the values of the row under the cursor or at that time. */
   mark(): void {
     const plot = this.plot;
     const frame = this.app.frame.value;
@@ -76,7 +76,8 @@ export class Chart {
     const time_s = this.app.cursor_s.value ?? frame.time_s;
     const colours = palette(this.app.theme.value);
     const { unit } = this.figure;
-    // a window that does not hold the time, and a row that lies well before it, are told apart from what is drawn there
+    // a time outside the window, or a row well before the time, is labeled, to distinguish it from the drawn
+    // data
     let away_s = inside || !this.isFilled || this.app.cursor_s.value !== null ? NaN : time_s;
     const rows = this.figure.lines.map((line, i) => this.store.row(line.channel, line.source, time_s, this.filled.data[i]!));
     this.differences.show(rows, this.app.theme.value);
@@ -92,7 +93,7 @@ export class Chart {
     this.values.replaceChildren(...texts.flatMap((text) => [text, " "]), unit + where);
   }
 
-  /** Colours have changed. */
+  /** Redraws after a change of colors. */
   repaint(): void {
     this.plot?.destroy();
     this.plot = null;
@@ -101,13 +102,13 @@ export class Chart {
   }
 
   dispose(): void {
-    if (this.plot?.over.matches(":hover")) this.app.cursor_s.value = null; // no mouse leaves what is gone
+    if (this.plot?.over.matches(":hover")) this.app.cursor_s.value = null; // a removed element receives no mouseleave
     this.plot?.destroy();
     this.plot = null;
     this.element.remove();
   }
 
-  /** Which line is what; of tensions the bar above says it for all. */
+  /** Displays the legend; tension plots share one in the bar above. */
   private showKey(): void {
     this.key.replaceChildren(...this.figure.lines.map((line) => {
       const dash = el(isDashed(line.ink) ? "i.dashed" : "i");
@@ -135,7 +136,7 @@ export class Chart {
     for (const line of this.figure.lines) {
       const stroke = ink(colours, line.ink);
       const at = series.length;
-      // least and greatest; where points are single rows, both are the one line
+      // minima and maxima; if points are single rows, both form the same line
       for (let k = 0; k < 2; ++k) series.push({ label: line.label, stroke, width: 1.4, points: { show: false }, ...(isDashed(line.ink) ? { dash: [5, 4] } : {}) });
       bands.push({ series: [at + 1, at], fill: `${stroke}60` });
     }
@@ -164,7 +165,7 @@ export class Chart {
     };
     const plot = new uPlot(options, data, this.place);
     plot.over.append(this.now, this.coarse);
-    plot.ctx.canvas.setAttribute("aria-hidden", "true"); // what is around it has the name
+    plot.ctx.canvas.setAttribute("aria-hidden", "true"); // the surrounding element has the label
     plot.over.addEventListener("click", () => {
       const left = plot.cursor.left ?? -1;
       if (left >= 0 && plot.select.width === 0) this.app.seek(plot.posToVal(left, "x"));
@@ -174,7 +175,7 @@ export class Chart {
   }
 
   private point(plot: uPlot): void {
-    // of the plots that share the cursor only the one under the mouse speaks
+    // of the plots that share the cursor, only the plot under the mouse sets the time
     if (plot.cursor.event === undefined || plot.cursor.event === null) return;
     const left = plot.cursor.left ?? -1;
     this.app.cursor_s.value = left >= 0 ? plot.posToVal(left, "x") : null;
@@ -188,7 +189,7 @@ export class Chart {
   }
 }
 
-/** uPlot wants one list of times for all lines; two recordings have two. */
+/** uPlot requires one list of times for all lines; two recordings have two. */
 function aligned(data: readonly Points[]): uPlot.AlignedData {
   const tables = data
     .filter((points) => points.t.length > 0)

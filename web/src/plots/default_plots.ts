@@ -1,12 +1,12 @@
-// What is plotted until somebody arranges it: the tensions of all cables, or, where those are too many
-// for one look, of the cables with the largest; what a program plots; and what the system as a whole does.
+// Default plots: the tensions of all cables, or, if there are too many, of the cables with the largest; the
+// values of a program; and quantities of the whole system.
 import type { App } from "../app";
 import { cableState } from "../frame";
 import type { Scene } from "../protocol";
 import type { SeriesStore } from "../series";
 import type { PlotSpec } from "./layouts";
 
-/** So many cables are plotted all; of more, the ones with the largest tensions. */
+/** Up to this number all cables are plotted; of more, those with the largest tensions. */
 const FEW_CABLES = 24;
 const LARGEST = 12;
 
@@ -20,12 +20,12 @@ export function tensionPlot(cable: string): PlotSpec {
   return { title: cable, channels: [`cable/${cable}/setpoint_n`, `cable/${cable}/tension_n`] };
 }
 
-/** What a program plots itself. */
+/** Returns a plot of one channel of a program. */
 function alone(channel: string): PlotSpec {
   return { title: channel, channels: [channel] };
 }
 
-/** Six cables a plot: there are as many colours. */
+/** Returns plots of six cables each: the number of colors. */
 function robotPlots(motors: readonly string[]): PlotSpec[] {
   const halves = [motors.slice(0, 6), motors.slice(6)].filter((list) => list.length > 0);
   const plots = (title: string, channel: string) => halves.map((list, i) =>
@@ -33,7 +33,10 @@ function robotPlots(motors: readonly string[]): PlotSpec[] {
   return [...plots("duty", "duty"), ...plots("rest length", "rest_length_m"), { title: "cycle", channels: ["link/cycle_s", "link/lateness_s"] }];
 }
 
-/** `done` comes at once, or when the largest tensions are known; not if another scene was asked about since. */
+/**
+ * Computes the default plots. `done` is called at once, or when the largest tensions are known, unless
+ * another scene was requested since.
+ */
 export class DefaultPlots {
   private wanted = 0;
 
@@ -45,7 +48,7 @@ export class DefaultPlots {
   find(scene: Scene, done: (plots: PlotSpec[]) => void): void {
     const asked = ++this.wanted;
     const all = scene.robot?.motors ?? scene.cables.map(({ name }) => name);
-    // a layout that is made of these shall not name what the run does not have
+    // a layout derived from these must not contain channels that the run does not have
     const known = ({ title, channels }: PlotSpec) => ({ title, channels: channels.filter((name) => this.store.has(name, 0) || this.store.has(name, 1)) });
     const answer = (cables: readonly string[]) => {
       if (asked !== this.wanted) return;
@@ -56,7 +59,7 @@ export class DefaultPlots {
     else this.ofTheWholeTime(scene, answer);
   }
 
-  /** A live run has no whole time yet: the tensions as they are when the page comes. */
+  /** A live run has no complete time span yet: uses the tensions when the page opens. */
   private ofTheMoment(scene: Scene, answer: (cables: readonly string[]) => void): void {
     let stop = () => {};
     let found = false;
@@ -84,10 +87,10 @@ export class DefaultPlots {
   }
 }
 
-/** In the order of the model; of equal ones the first. */
+/** Returns the cables with the largest tensions in the order of the model; of equal ones the first. */
 function largest(scene: Scene, tension_n: (cable: string, i: number) => number): string[] {
   const order = scene.cables.map(({ name }, i) => ({ i, n: tension_n(name, i) }));
-  // what is not known counts as nothing, so that the order is one
+  // unknown values sort last, so that the order is unique
   const known = (n: number) => (Number.isNaN(n) ? -Infinity : n);
   order.sort((a, b) => (known(b.n) > known(a.n) ? 1 : known(b.n) < known(a.n) ? -1 : a.i - b.i));
   return order.slice(0, LARGEST).map(({ i }) => i).sort((a, b) => a - b).map((i) => scene.cables[i]!.name);

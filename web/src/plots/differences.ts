@@ -1,4 +1,4 @@
-// The numbers by which runs differ, below those of a plot: each compared run minus this one, of the same
+// Differences between runs, below the values of a plot: each compared run minus this one, of the same
 // channel, at the time under the cursor.
 import { palette } from "../colours";
 import type { Theme } from "../app";
@@ -18,7 +18,7 @@ export class Differences {
     this.element.hidden = this.pairs().length === 0;
   }
 
-  /** `rows`: of the figure's lines, in their order; null: on its way. */
+  /** `rows`: of the figure's lines, in their order; null: pending. */
   show(rows: readonly (Row | null)[], theme: Theme): void {
     if (this.element.hidden) return;
     const texts = this.pairs().map(([of, own]) => {
@@ -31,7 +31,7 @@ export class Differences {
     this.element.replaceChildren("Δ ", ...texts.flatMap((text) => [text, " "]), this.figure.unit);
   }
 
-  /** Places of a compared run's line and of this run's of the same channel. */
+  /** Pairs of line indices of a compared run and of this run, of the same channel. */
   private pairs(): [number, number][] {
     return this.lines.flatMap(({ source, channel }, of): [number, number][] => {
       const own = this.lines.findIndex((line) => line.source === 0 && line.channel === channel);

@@ -1,4 +1,4 @@
-// Plots as files: SVG drawn here in the colours of paper, PNG made of that, CSV of the data in sight.
+// Export of plots: SVG in print colors, PNG rendered from it, CSV of the displayed data.
 import { palette } from "../colours";
 import type { Points } from "../points";
 import { download, tickText } from "../util";
@@ -28,7 +28,10 @@ export async function exportPng(filled: Filled[], span: readonly [number, number
   canvas.toBlob((blob) => blob && download(`${fileName(name)}.png`, blob), "image/png");
 }
 
-/** The rows at the times of what is drawn; where that is coarser, least and greatest of the rows up to the next, too. */
+/**
+ * Exports the rows at the times of the drawn points; for coarser points also minimum and maximum of the rows
+ * up to the next.
+ */
 export function exportCsv(filled: Filled[], name: string): void {
   download(`${fileName(name)}.csv`, new Blob([csv(filled)], { type: "text/csv" }));
 }
@@ -54,7 +57,7 @@ export function csv(filled: readonly Filled[]): string {
   return [["time_s", ...columns.keys()].join(","), ...rows, ""].join("\n");
 }
 
-/** A header line has no commas and quotes but those between its columns. */
+/** Removes commas and quotes, which a header line may have only between its columns. */
 function columnName(label: string): string {
   return label.replace(/[",\r\n]/g, " ");
 }
@@ -134,7 +137,7 @@ function keyOf(filled: readonly Filled[]): string {
   }).join("");
 }
 
-/** Round values between two, about as many as asked for. */
+/** Returns about `count` round values between two. */
 export function ticks(from: number, to: number, count: number): number[] {
   const raw = (to - from) / count;
   const power = 10 ** Math.floor(Math.log10(raw));

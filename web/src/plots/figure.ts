@@ -1,4 +1,4 @@
-// What a plot shows: lines over time with their channels; the same for the screen and for export.
+// Figure: content of a plot, lines over time with their channels, for the screen and for export.
 import type { Selection } from "../app";
 import type { Palette } from "../colours";
 import { NOTHING, type Points } from "../points";
@@ -9,7 +9,7 @@ import { nameAndUnit, unitText } from "../util";
 import { labelsOf } from "./channels";
 import type { PlotSpec } from "./layouts";
 
-/** `run k`: the colour of a compared run. */
+/** `run k`: the color of a compared run. */
 export type Ink = "own" | "setpoint" | `run ${number}` | number;
 
 export interface Line {
@@ -38,20 +38,20 @@ export function ink(palette: Palette, which: Ink): string {
   return which === "own" || which === "setpoint" ? palette[which] : runColour(palette, Number(which.slice("run ".length)));
 }
 
-/** A channel of every run: the compared ones, then this one, which is drawn over them. */
+/** Returns the lines of a channel in every run: the compared ones, then this one, drawn above them. */
 function linesOfRuns(scene: Scene, channel: string): Line[] {
   const others = scene.compared.map((run, k): Line => ({ label: runName(run), channel, source: k + 1, ink: `run ${k + 1}` }));
   return [...others, { label: THIS_RUN, channel, source: 0, ink: "own" }];
 }
 
-/** Inks come again after so many lines; those lines are dashed. */
+/** Number of colors; they repeat for further lines, which are dashed. */
 const INKS = 6;
 
 export function isDashed(which: Ink): boolean {
   return typeof which === "number" && which >= INKS;
 }
 
-/** The figures of plots of which the run has anything, and the places of those plots. */
+/** Returns the figures of the plots for which the run has data, and the places of these plots. */
 export function figuresOf(plots: readonly PlotSpec[], scene: Scene, store: SeriesStore): { figure: Figure; place: number }[] {
   const taken = new Set<string>();
   return plots.flatMap((plot, place) => {
@@ -64,7 +64,7 @@ export function figuresOf(plots: readonly PlotSpec[], scene: Scene, store: Serie
   });
 }
 
-/** The cable whose tension, or tension and set point, are all that is in the plot. */
+/** Returns the cable if the plot contains only its tension, or tension and set point. */
 function cableOf({ channels }: PlotSpec): string | null {
   const cable = /^cable\/(.*)\/tension_n$/.exec(channels.find((name) => name.endsWith("/tension_n")) ?? "")?.[1];
   const own = [`cable/${cable}/tension_n`, `cable/${cable}/setpoint_n`];
@@ -72,8 +72,8 @@ function cableOf({ channels }: PlotSpec): string | null {
 }
 
 /**
- * Tensions are drawn in the manner of the paper's Figs. 3-5: set point blue, what it is compared with red and on,
- * this run black. Any other channel that is alone in its plot has the runs that it is compared with beside it, too.
+ * Returns the figure of a plot. Tensions are drawn as in the paper's Figs. 3-5: set point blue, compared runs
+ * red and other colors, this run black. Any other single channel includes the compared runs, too.
  */
 function figureOf(plot: PlotSpec, scene: Scene, store: SeriesStore): Figure {
   const cable = cableOf(plot);
@@ -92,7 +92,7 @@ function figureOf(plot: PlotSpec, scene: Scene, store: SeriesStore): Figure {
   return known({ id, title: plot.title, unit, group: "further", lines }, store);
 }
 
-/** What there is to plot of a cable, body or node, a figure for each unit. */
+/** Returns the figures of a cable, body or node, one for each unit. */
 export function ownFigures(scene: Scene, store: SeriesStore, kind: Selection["kind"], name: string): Figure[] {
   const figure = (id: string, unit: string, title: string, keys: string[]): Figure => ({
     id: `own:${kind}:${name}:${id}`, title: `${name} ${title}`, unit, group: "own",
@@ -122,20 +122,20 @@ export function ownFigures(scene: Scene, store: SeriesStore, kind: Selection["ki
   return split.map((each) => known(each, store)).filter((each) => each.lines.length > 0);
 }
 
-/** Where runs are compared, colours tell runs: a figure for each channel. */
+/** When runs are compared, colors distinguish runs: returns one figure per channel. */
 function ofEachChannel(scene: Scene, figure: Figure): Figure[] {
   return figure.lines.map(({ label, channel }) => ({
     ...figure, id: `${figure.id}:${label}`, title: figure.lines.length > 1 ? `${figure.title}: ${label}` : figure.title, lines: linesOfRuns(scene, channel),
   }));
 }
 
-/** Without the lines of channels that are not there, or there in another unit. */
+/** Removes lines of channels that do not exist, or have another unit. */
 function known(figure: Figure, store: SeriesStore): Figure {
   const fits = ({ channel, source }: Line) => store.has(channel, source) && unitText(store.unit(channel, source)!) === figure.unit;
   return { ...figure, lines: figure.lines.filter(fits) };
 }
 
-/** What a plot's points are where they are not the rows; else nothing. */
+/** Describes the points if they are not single rows; else empty. */
 export function coarseness(data: readonly Points[]): string {
   const most = Math.max(...data.map(({ rows }) => rows));
   if (most <= 1) return "";
@@ -155,8 +155,8 @@ export function fill(figure: Figure, store: SeriesStore, t0: number, t1: number,
 }
 
 /**
- * Least and greatest value shown; zero belongs to it where values are close to it. A controller's first
- * word may be a set point far beyond all tensions; it must not flatten them.
+ * Returns the displayed range; it includes zero if the values are close to it. A controller's first set point
+ * may be far beyond all tensions and must not flatten them.
  */
 export function valueRange(filled: readonly Filled[]): [number, number] {
   const forces = extent(filled, (line) => line.ink !== "setpoint");

@@ -1,10 +1,10 @@
-// Which colour is what in the tension plots; a line is named only where there is one.
+// Legend of the tension plots; lists only existing lines.
 import { palette } from "../colours";
 import type { Theme } from "../app";
 import { el } from "../util";
 import { type Figure, ink, type Ink } from "./figure";
 
-/** The lines of figures, each once: what they are called and their ink. */
+/** Returns the labels and inks of all lines of the figures, each once. */
 export function linesOf(figures: readonly Figure[]): Map<string, Ink> {
   return new Map(figures.flatMap(({ lines }) => lines.map((line) => [line.label, line.ink] as const)));
 }

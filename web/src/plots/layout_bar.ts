@@ -1,4 +1,4 @@
-// Which layout is shown; saving under a name, files out and in.
+// Toolbar of the layouts: selection, saving under a name, export and import of files.
 import type { App } from "../app";
 import { button, download, el } from "../util";
 import { DEFAULT_LAYOUT, layoutFile, type Layouts, type PlotSpec } from "./layouts";
@@ -9,7 +9,7 @@ export function layoutBar(app: App, layouts: Layouts, shown: () => readonly Plot
   const save = () => {
     const wanted = name.value.trim();
     if (wanted === "" || wanted === DEFAULT_LAYOUT) {
-      app.notice.value = wanted === "" ? "the layout needs a name" : `"${DEFAULT_LAYOUT}" is the name of what is shown without a layout`;
+      app.notice.value = wanted === "" ? "the layout needs a name" : `"${DEFAULT_LAYOUT}" is reserved for the default layout`;
       name.focus();
       return;
     }
@@ -18,13 +18,13 @@ export function layoutBar(app: App, layouts: Layouts, shown: () => readonly Plot
     app.notice.value = `saved as "${wanted}" in this browser`;
   };
   name.addEventListener("keydown", (event) => event.key === "Enter" && save());
-  const remove = button("delete", "delete the layout that is shown", () => layouts.remove());
+  const remove = button("delete", "delete the displayed layout", () => layouts.remove());
   const file = el<HTMLInputElement>("input", { type: "file", accept: ".json,application/json", hidden: true, "aria-label": "layout file" });
   file.addEventListener("change", async () => {
     const [given] = file.files ?? [];
     if (!given) return;
     app.notice.value = layouts.import(await given.text()) ?? `"${layouts.name.value}" is shown`;
-    file.value = ""; // the same file may be asked for again
+    file.value = ""; // allows selecting the same file again
   });
   const fill = () => {
     choice.replaceChildren(...layouts.names.value.map((each) => el("option", { value: each }, each)));
@@ -40,7 +40,7 @@ export function layoutBar(app: App, layouts: Layouts, shown: () => readonly Plot
   };
   return el("div.row.layouts", {},
     el("label", {}, "layout ", choice), remove,
-    el("span.pair", {}, name, button("save as", "save these plots in this browser under the name beside this button", save)),
+    el("span.pair", {}, name, button("save as", "save these plots in this browser under the name next to this button", save)),
     button("export", "save this layout as a file (JSON)", write),
-    button("import", "show the layout of a file (JSON)", () => file.click()), file);
+    button("import", "open a layout file (JSON)", () => file.click()), file);
 }

@@ -1,14 +1,14 @@
-// What is plotted, as people arrange it: named lists of plots, kept by the browser for each experiment,
-// and files of them. Without an own one there is the default (default_plots.ts).
+// Layouts: named lists of plots arranged by the user, stored by the browser for each experiment, and files of
+// them. Without one, the default applies (default_plots.ts).
 import type { App } from "../app";
 import { memory, Signal } from "../util";
 
 export const LAYOUT_VERSION = 1;
 export const DEFAULT_LAYOUT = "default";
 const FIRST_OWN = "my layout";
-const MOST_PLOTS = 500; // of a file; more are a mistake
+const MOST_PLOTS = 500; // in a file; more are an error
 
-/** A plot by the channels that are in it, whether a run has them or not. */
+/** A plot, defined by its channels, even if a run does not have them. */
 export interface PlotSpec {
   title: string;
   channels: string[];
@@ -21,9 +21,9 @@ interface Kept {
 }
 
 export class Layouts {
-  /** What is to be plotted; null: the default. */
+  /** The plots to display; null: the default. */
   readonly plots = new Signal<readonly PlotSpec[] | null>(null);
-  /** Of the layout that is shown. */
+  /** Name of the displayed layout. */
   readonly name = new Signal<string>(DEFAULT_LAYOUT);
   readonly names = new Signal<readonly string[]>([DEFAULT_LAYOUT]);
   private layouts = new Map<string, PlotSpec[]>();
@@ -40,33 +40,33 @@ export class Layouts {
     });
   }
 
-  /** One that is not there is the default. */
+  /** Displays a layout; an unknown name selects the default. */
   show(name: string): void {
     this.name.value = this.layouts.has(name) ? name : DEFAULT_LAYOUT;
     this.plots.value = this.layouts.get(name) ?? null;
     this.keep();
   }
 
-  /** Other plots in the layout that is shown; the default stays what it is, and they become a layout of their own. */
+  /** Changes the plots of the displayed layout; changing the default creates a new layout. */
   change(plots: readonly PlotSpec[]): void {
     this.put(this.name.value === DEFAULT_LAYOUT ? this.free(FIRST_OWN) : this.name.value, plots);
   }
 
-  /** Under a name, which replaces what had it before. */
+  /** Stores a layout under a name, replacing an existing one. */
   put(name: string, plots: readonly PlotSpec[]): void {
     this.layouts.set(name, plots.map(({ title, channels }) => ({ title, channels: [...channels] })));
     this.names.value = [DEFAULT_LAYOUT, ...this.layouts.keys()];
     this.show(name);
   }
 
-  /** The one that is shown goes, and the default comes. */
+  /** Deletes the displayed layout and displays the default. */
   remove(): void {
     this.layouts.delete(this.name.value);
     this.names.value = [DEFAULT_LAYOUT, ...this.layouts.keys()];
     this.show(DEFAULT_LAYOUT);
   }
 
-  /** Takes what `layoutFile` wrote; answers what is wrong with it, or nothing. */
+  /** Imports the output of `layoutFile`; returns an error message, or nothing. */
   import(text: string): string | null {
     const read = readLayoutFile(text);
     if (typeof read === "string") return read;
@@ -74,7 +74,7 @@ export class Layouts {
     return null;
   }
 
-  /** The name, with a number behind it where it is taken. */
+  /** Returns the name, with a number appended if it is in use. */
   private free(name: string): string {
     let free = name;
     for (let i = 2; this.layouts.has(free); ++i) free = `${name} ${i}`;
@@ -88,7 +88,7 @@ export class Layouts {
   }
 }
 
-/** What this browser has; what another version of the page left there is as if there were nothing. */
+/** Parses the layouts stored by this browser; data of another version of the page are ignored. */
 function keptLayouts(text: string | null): Kept {
   const none: Kept = { version: LAYOUT_VERSION, shown: DEFAULT_LAYOUT, layouts: {} };
   try {
@@ -106,16 +106,16 @@ export function layoutFile(name: string, plots: readonly PlotSpec[]): string {
   return `{\n  "format": "taut layout",\n  "version": ${LAYOUT_VERSION},\n  "name": ${JSON.stringify(name)},\n  "plots": [\n${lines.join(",\n")}\n  ]\n}\n`;
 }
 
-/** The layout of a file, or what is wrong with it. */
+/** Returns the layout in a file, or an error message. */
 export function readLayoutFile(text: string): { name: string; plots: PlotSpec[] } | string {
   let file: { format?: unknown; version?: unknown; name?: unknown; plots?: unknown };
   try {
     file = JSON.parse(text) as typeof file;
   } catch (error) {
-    return `that is not JSON: ${error instanceof Error ? error.message : String(error)}`;
+    return `the file is not JSON: ${error instanceof Error ? error.message : String(error)}`;
   }
-  if (file?.format !== "taut layout") return 'that is no layout: its "format" is not "taut layout"';
-  if (file.version !== LAYOUT_VERSION) return `the layout is of version ${String(file.version)}, this page reads version ${LAYOUT_VERSION}`;
+  if (file?.format !== "taut layout") return 'the file is not a layout: its "format" is not "taut layout"';
+  if (file.version !== LAYOUT_VERSION) return `the layout has version ${String(file.version)}, this page reads version ${LAYOUT_VERSION}`;
   if (typeof file.name !== "string" || file.name.trim() === "") return 'the layout has no "name"';
   if (!Array.isArray(file.plots) || file.plots.length > MOST_PLOTS) return `"plots" of the layout is not a list of at most ${MOST_PLOTS}`;
   const bad = file.plots.findIndex((plot) => !isPlot(plot));

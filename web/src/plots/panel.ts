@@ -1,4 +1,4 @@
-// All plots: what they show, when they are filled anew, which are in sight.
+// Panel of all plots: their content, updates and visibility.
 import { type App, nameOf, type Selection } from "../app";
 import { button, el } from "../util";
 import type { SeriesStore } from "../series";
@@ -16,7 +16,7 @@ import { PlotDialog } from "./plot_dialog";
 
 const LIVE_SPAN_S = 20;
 const LIVE_EVERY_MS = 100;
-const POINTS = 600; // a plot; about two for each pixel of its width
+const POINTS = 600; // of a plot; about two per pixel of its width
 
 export class PlotPanel {
   readonly element = el("section.plots", { "aria-label": "plots" });
@@ -27,13 +27,13 @@ export class PlotPanel {
   private readonly dialog = new PlotDialog(() => this.plots, (plots) => this.layouts.change(plots));
   private readonly editor: HTMLElement;
   private readonly remark = el("p.remark", { role: "note", hidden: true });
-  /** What is plotted, besides what is selected in the view. */
+  /** The plots, without the figures of the selection in the view. */
   private plots: Plots = [];
   private readonly key = new Key();
   private charts: Chart[] = [];
-  /** Of charts in the layout. */
+  /** Places of the charts in the layout. */
   private places = new Map<Chart, number>();
-  private readonly editButton = button("edit plots", "choose what is plotted: channels and layouts (B)", () => this.toggleEditor());
+  private readonly editButton = button("edit plots", "choose channels and layouts of the plots (B)", () => this.toggleEditor());
   private readonly visible = new Set<Chart>();
   private readonly seen: IntersectionObserver;
   private sameScale = true;
@@ -62,7 +62,7 @@ export class PlotPanel {
         if (entry.isIntersecting) this.visible.add(chart);
         else this.visible.delete(chart);
       }
-      this.mark(); // its numbers are those of when it was seen last
+      this.mark(); // its values date from when it was last visible
       this.refresh();
     }, { rootMargin: "1500px 0px" });
     app.scene.watch(() => this.rebuild());
@@ -91,7 +91,7 @@ export class PlotPanel {
     if (!this.app.live) return scene ? [scene.first_s, Math.max(scene.duration_s, scene.first_s + 1e-3)] : [0, 1];
     const now_s = this.app.frame.value?.now_s ?? 0;
     if (this.wholeRun) return [0, Math.max(now_s, LIVE_SPAN_S)];
-    // who looks back sees what was around that time
+    // while looking back, plots include the surrounding time
     const shown_s = this.app.frame.value?.time_s ?? 0;
     const end_s = shown_s < now_s - LIVE_SPAN_S ? shown_s + LIVE_SPAN_S / 2 : now_s;
     return [Math.max(0, end_s - LIVE_SPAN_S), Math.max(end_s, LIVE_SPAN_S)];
@@ -112,7 +112,7 @@ export class PlotPanel {
     this.arrange();
   }
 
-  /** What the layout says, or the default, which may have to ask for the largest tensions first. */
+  /** Displays the layout, or the default, which may first request the largest tensions. */
   private arrange(): void {
     const { value: scene } = this.app.scene;
     if (!scene) return;
@@ -123,7 +123,7 @@ export class PlotPanel {
     });
   }
 
-  /** Plots that are there already stay as they are, so that only what is new is asked for. */
+  /** Existing plots stay, so that only new data are requested. */
   private showPlots(plots: Plots): void {
     const scene = this.app.scene.value!;
     this.plots = plots;
@@ -137,7 +137,7 @@ export class PlotPanel {
     }
     this.drop((chart) => chart.figure.group !== "own" && !places.has(chart));
     this.places = places;
-    // in the order of the layout, which files of all plots have, too
+    // in the order of the layout, also for exports of all plots
     this.charts.sort((a, b) => (places.get(a) ?? Infinity) - (places.get(b) ?? Infinity));
     this.showRemark();
     this.browser.showPlots();
@@ -151,9 +151,9 @@ export class PlotPanel {
     const shown = this.charts.filter(({ figure }) => figure.group === "tension").length;
     const absent = [...new Set(this.plots.flatMap(({ channels }) => channels))].filter((name) => !this.store.has(name, 0) && !this.store.has(name, 1));
     const isDefault = this.layouts.plots.value === null;
-    const when = this.app.live ? "when the page came" : "of the run";
+    const when = this.app.live ? "when the page was opened" : "of the run";
     this.remark.textContent = absent.length > 0 ? `not in this run: ${absent.slice(0, 4).join(", ")}${absent.length > 4 ? ` and ${absent.length - 4} more channels of the layout` : ""}`
-      : isDefault && shown < cables ? `${shown} of ${cables} cables, those with the largest tensions ${when}; "edit plots" has all channels`
+      : isDefault && shown < cables ? `${shown} of ${cables} cables, those with the largest tensions ${when}; for other channels use "edit plots"`
       : "";
     this.remark.hidden = this.remark.textContent === "";
   }
@@ -193,7 +193,7 @@ export class PlotPanel {
     this.charts = this.charts.filter((chart) => !which(chart));
   }
 
-  /** `place`: of the plot in the layout; null: it is in none. */
+  /** `place`: place of the plot in the layout; null: not in the layout. */
   private add(figure: Figure, place: number | null): Chart {
     const save = (name: string, write: (filled: Filled[], name: string) => void) =>
       button(name, `save ${figure.title} as ${name}`, () => write([chart.filled], figure.title), "button.small");
@@ -207,7 +207,7 @@ export class PlotPanel {
     const chart: Chart = new Chart(this.app, this.store, figure, tools);
     this.charts.push(chart);
     this.grids[figure.group].append(chart.element);
-    // a report may be printed, so all of it is there; else what is far away is not asked for
+    // a report may be printed, so all data are loaded; otherwise distant plots are not
     if (this.app.report) this.visible.add(chart);
     else this.seen.observe(chart.element);
     if (place !== null) dropTarget(chart.element, (channels) => this.addTo(this.places.get(chart)!, channels));
@@ -231,7 +231,7 @@ export class PlotPanel {
     }
   }
 
-  /** The tensions have one scale, so that heights compare, unless that is switched off. */
+  /** Returns the common scale of the tensions, for comparable heights, unless it is switched off. */
   private scaleOf(chart: Chart): [number, number] | null {
     if (!this.sameScale || chart.figure.group !== "tension") return null;
     return valueRange(this.charts.filter((each) => each.figure.group === "tension").map((each) => each.filled));
@@ -259,17 +259,17 @@ export class PlotPanel {
     const wholeLabel = el("label", { title: `the whole run, not its last ${LIVE_SPAN_S} s` }, whole, " whole run");
     this.app.hello.watch(() => (wholeLabel.hidden = !this.app.live));
     const all = (which: "tension" | "all") => this.charts.filter((chart) => which === "all" || chart.figure.group === which).map((chart) => chart.filled);
-    const zoomOut = button("zoom out", "show all of the time again (double click in a plot)", () => (this.app.range_s.value = null));
+    const zoomOut = button("zoom out", "show the whole time range (double click in a plot)", () => (this.app.range_s.value = null));
     this.app.range_s.watch((range) => (zoomOut.hidden = range === null));
     return el("div.toolbar", {},
       this.key.element,
-      el("label", { title: "one scale for all tensions, so that heights compare" }, scale, " same scale"),
+      el("label", { title: "the same scale for all tensions" }, scale, " same scale"),
       wholeLabel, zoomOut,
       el("span.spring"),
       this.editButton,
       el("span.save", {}, "save all:",
       button("PNG", "save all tensions as PNG", () => void exportPng(all("tension"), this.span, "tensions"), "button.small"),
       button("SVG", "save all tensions as SVG", () => exportSvg(all("tension"), this.span, "tensions"), "button.small"),
-      button("CSV", "save the data in sight as CSV", () => exportCsv(all("all"), "plots"), "button.small")));
+      button("CSV", "save the displayed data as CSV", () => exportCsv(all("all"), "plots"), "button.small")));
   }
 }

@@ -1,4 +1,4 @@
-// One plot's title, lines and place, changed by buttons.
+// Dialog for the title, lines and place of one plot.
 import { button, el } from "../util";
 import { moved, type Plots, renamed, withoutChannel, withoutPlot } from "./arrangement";
 
@@ -28,8 +28,8 @@ export class PlotDialog {
     };
     const title = el<HTMLInputElement>("input", { type: "text", value: plot.title, maxlength: 80, "aria-label": "title" });
     title.addEventListener("change", () => title.value.trim() !== "" && act(renamed(this.plots(), place, title.value.trim()), place));
-    const earlier = button("earlier", "move the plot before the one before it", () => act(moved(this.plots(), place, place - 1), place - 1));
-    const later = button("later", "move the plot behind the one behind it", () => act(moved(this.plots(), place, place + 1), place + 1));
+    const earlier = button("earlier", "move the plot one place forward", () => act(moved(this.plots(), place, place - 1), place - 1));
+    const later = button("later", "move the plot one place back", () => act(moved(this.plots(), place, place + 1), place + 1));
     earlier.disabled = place === 0;
     later.disabled = place === plots.length - 1;
     const removeAll = () => {

@@ -1,5 +1,5 @@
-// This run beside those that it is compared with: how far each is from it, and the tensions of all. A
-// difference is that run minus this one, as `taut compare RUN THIS` has it.
+// Comparison with other runs in a report: differences of each run, and the tensions of all. A difference is
+// the other run minus this one, as in `taut compare RUN THIS`.
 import type { Report } from "../protocol";
 import { runName, signed, swatch, thisRunName } from "../runs";
 import { el, number } from "../util";
@@ -15,7 +15,7 @@ interface Channel {
   max_b: Extreme;
   phases: Record<string, { a: Statistics; b: Statistics }>;
 }
-/** What `taut compare --json` says of a run (a) and this one (b). */
+/** Result of `taut compare --json` for a run (a) and this one (b). */
 interface Comparison {
   rows: number;
   from_s: number;
@@ -38,15 +38,15 @@ export function otherRunsSection(report: Report): HTMLElement[] {
     ...[...phases.values()].map(({ name, from_s, to_s }) => tensionTable(report, `Mean tension, ${name} (${from_s}–${to_s} s)`,
       ({ phases: of }) => [of[name]?.a.mean ?? null, of[name]?.b.mean ?? null])),
   ];
-  return [section("Beside other runs", el("p", {}, "Each run minus this run."), apartTable(report), ...tables.flat())];
+  return [section("Comparison with other runs", el("p", {}, "Differences: other run minus this run."), apartTable(report), ...tables.flat())];
 }
 
-/** A row a run: how far it is from this one. */
+/** Returns a table with one row per run: its differences from this one. */
 function apartTable(report: Report): HTMLElement {
-  const head = el("tr", {}, ...["run", "compared", "largest difference of a tension", "RMSE of that cable", "largest difference of a position"].map((text) => el("th", { scope: "col" }, text)));
+  const head = el("tr", {}, ...["run", "time range", "largest tension difference", "RMSE of this cable", "largest position difference"].map((text) => el("th", { scope: "col" }, text)));
   const rows = (report.comparisons as Comparison[]).map((comparison, k) => {
     const name = el("th", { scope: "row" }, swatch(k + 1), runName(report.scene.compared[k]!));
-    if (comparison.rows === 0) return el("tr", {}, name, el("td", { colspan: 4 }, "nothing in common: no time, or no channels of one name and unit"));
+    if (comparison.rows === 0) return el("tr", {}, name, el("td", { colspan: 4 }, "no common time range, or no common channels with the same unit"));
     const tension = farthest(comparison, TENSION);
     const position = farthest(comparison, POSITION);
     return el("tr", {}, name, ...[
@@ -57,7 +57,7 @@ function apartTable(report: Report): HTMLElement {
   return el("div.scroll", {}, el("table.numbers.apart", {}, el("thead", {}, head), el("tbody", {}, ...rows)));
 }
 
-/** The channel, of those whose names fit, that differs most. */
+/** Returns the channel with the largest difference among those whose names match. */
 function farthest({ channels }: Comparison, names: RegExp): Channel | undefined {
   const size = ({ max_error }: Channel) => Math.abs(max_error.value ?? 0);
   return channels.filter(({ name, max_error }) => names.test(name) && max_error.value !== null)
@@ -72,7 +72,7 @@ function where(channel: Channel | undefined, names: RegExp, unit: string): strin
   return `${signed(number(value ?? NaN, DIGITS))} ${unit}, ${of}, at ${number(time_s ?? NaN, DIGITS)} s`;
 }
 
-/** A row a cable: this run, then each run and by how much it differs. */
+/** Returns a table with one row per cable: this run, then each other run and its difference. */
 function tensionTable(report: Report, title: string, pick: (channel: Channel) => [number | null, number | null]): HTMLElement[] {
   const comparisons = report.comparisons as Comparison[];
   const cables = [...new Set(comparisons.flatMap(({ channels }) => channels.flatMap(({ name }) => TENSION.exec(name)?.[1] ?? [])))];
@@ -80,7 +80,7 @@ function tensionTable(report: Report, title: string, pick: (channel: Channel) =>
     const found = channels.find(({ name }) => name === `cable/${cable}/tension_n`);
     return [cable, found ? pick(found) : ([null, null] as const)];
   })));
-  // a phase that none of them came to
+  // a phase that no run reached
   if (!picked.some((of) => [...of.values()].some(([a, b]) => a !== null || b !== null))) return [];
   const names = report.scene.compared.map(runName);
   const head = el("thead", {},

@@ -1,5 +1,5 @@
-// The report of a run: what was run, the picture, what came out, what is beside it, the plots; and last
-// what only matters to who runs it again. One page that scrolls.
+// Report of a run, one scrolling page: description, picture, results, comparisons, plots; at the end the
+// details needed to repeat the run.
 import type { PlotPanel } from "../plots/panel";
 import type { Report } from "../protocol";
 import type { View } from "../scene/view";
@@ -33,7 +33,7 @@ export function section(title: string, ...content: HTMLElement[]): HTMLElement {
   return el("section", {}, el("h2", {}, title), ...content);
 }
 
-/** Names and values, in two columns where there is room. */
+/** Formats names and values, in two columns if there is space. */
 export function facts(rows: readonly (readonly [string, string])[]): HTMLElement {
   return el("dl.facts", {}, ...rows.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
 }
@@ -41,16 +41,16 @@ export function facts(rows: readonly (readonly [string, string])[]): HTMLElement
 function whatWasRun(report: Report): HTMLElement {
   const lead = report.description === "" ? [] : [el("p.lead", {}, report.description)];
   const known = Object.entries(report.facts);
-  const what = known.length > 0 ? facts([["experiment", report.title], ...known]) : el("p", {}, "There were no inputs beside the trace: it does not say what was run.");
-  return section("What was run", ...lead, what, ...verdict(report));
+  const what = known.length > 0 ? facts([["experiment", report.title], ...known]) : el("p", {}, "The trace's folder contains no inputs, so the experiment is unknown.");
+  return section("Experiment", ...lead, what, ...verdict(report));
 }
 
 function forTheRecord(report: Report): HTMLElement {
   const metadata = Object.entries(report.metadata).map(([name, value]) => [nameAndUnit(name)[0], `${value} ${nameAndUnit(name)[1]}`] as const);
-  return section("For the record", facts([...metadata, ...remarksOf(report)]), inputs(report.inputs));
+  return section("Reproducibility", facts([...metadata, ...remarksOf(report)]), inputs(report.inputs));
 }
 
 function inputs(text: string): HTMLElement {
-  if (text === "") return el("p", {}, "The trace does not hold the inputs.");
-  return el("details", {}, el("summary", {}, "Inputs as resolved (YAML): run them again with `taut run`"), el("pre.inputs", {}, text));
+  if (text === "") return el("p", {}, "The trace's folder contains no inputs.");
+  return el("details", {}, el("summary", {}, "Resolved inputs (YAML), to run again with `taut run`"), el("pre.inputs", {}, text));
 }

@@ -1,4 +1,4 @@
-// Our numbers beside those of others that the experiment names.
+// Comparison with reference values that the experiment lists.
 import type { Report } from "../protocol";
 import { el, number } from "../util";
 import { section } from "./page";
@@ -11,12 +11,12 @@ interface Reference {
   cables: { name: string; reference_n: number; ours_n: number | null }[];
 }
 
-/** A table for each source: a row a cable, three columns for each thing that the source says. */
+/** Returns a table for each source: one row per cable, three columns for each quantity of the source. */
 export function referenceSection(report: Report): HTMLElement[] {
   const references = (report.summary as { references?: Reference[] } | null)?.references ?? [];
   const sources = [...new Set(references.map(({ source }) => source))];
   if (sources.length === 0) return [];
-  return [section("Beside the references", ...sources.flatMap((source) => [
+  return [section("Comparison with references", ...sources.flatMap((source) => [
     el("h3", {}, `This run and ${source}`),
     el("div.scroll", {}, sourceTable(references.filter((each) => each.source === source))),
   ]))];

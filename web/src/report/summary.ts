@@ -1,4 +1,4 @@
-// summary.json in words and as a table: how the run ended, then the tension of each cable in each phase.
+// summary.json as text and table: end of the run, then the tension of each cable in each phase.
 import type { Report } from "../protocol";
 import { el, nameAndUnit, number } from "../util";
 import { facts, section } from "./page";
@@ -7,7 +7,7 @@ interface Span { mean_n: number; min_n: number; max_n: number }
 interface Force { max_n: number; max_after_start_n?: number; phases?: Record<string, Span> }
 interface CableSummary { name: string; tension?: Force; actuator?: { max_power_w?: number; energy_j?: number; net_energy_j?: number; max_speed_m_per_s?: number } }
 interface Summary extends Record<string, unknown> { cables?: CableSummary[]; phases?: { name: string; from_s: number; to_s: number }[] }
-/** What the sentences and the table say, what the trace's metadata say, and what is for programs. */
+/** Keys shown in the sentences, the table or the trace's metadata, and keys for programs only. */
 const SAID = new Set(["format_version", "status_bits", "status", "interrupted", "simulated_s", "system_max_tension_n",
   "system_max_tension_cable", "contacts_left_out", "taut_version", "experiment", "run"]);
 
@@ -16,17 +16,17 @@ function summaryOf(report: Report): Summary | null {
   return summary && typeof summary === "object" ? summary : null;
 }
 
-/** How it ended, in a sentence; nothing where that is not known. */
+/** Describes the end of the run in a sentence; empty if unknown. */
 export function verdict(report: Report): HTMLElement[] {
   const summary = summaryOf(report);
-  if (!summary) return [el("p.verdict", {}, report.scene.notice ?? "There is no summary beside the trace.")];
+  if (!summary) return [el("p.verdict", {}, report.scene.notice ?? "The trace's folder contains no summary.")];
   const { status, interrupted, simulated_s, contacts_left_out } = summary;
   const bad = status !== "ok" || interrupted === true;
   const time = typeof simulated_s === "number" ? ` ${number(simulated_s, 5)} s` : "";
   const sentences = [bad
-    ? `It was simulated for${time}${interrupted === true ? " and then interrupted" : ""}${status === "ok" ? "" : `: ${String(status)}`}.`
-    : `It ran to its end,${time}, and nothing went wrong.`];
-  if (typeof contacts_left_out === "number" && contacts_left_out > 0) sentences.push(`${number(contacts_left_out)} contacts had no room in the trace.`);
+    ? `The run was simulated for${time}${interrupted === true ? " and then interrupted" : ""}${status === "ok" ? "" : `: ${String(status)}`}.`
+    : `The run is complete,${time}, without problems.`];
+  if (typeof contacts_left_out === "number" && contacts_left_out > 0) sentences.push(`${number(contacts_left_out)} contacts did not fit into the trace.`);
   return [el(bad ? "p.verdict.bad" : "p.verdict", {}, sentences.join(" "))];
 }
 
@@ -35,10 +35,10 @@ export function outcomeSection(report: Report): HTMLElement[] {
   if (!summary) return [];
   const { system_max_tension_n: most_n, system_max_tension_cable: cable } = summary;
   const largest = typeof most_n === "number" ? [facts([["largest tension", `${number(most_n, 5)} N${typeof cable === "string" ? ` in ${cable}` : ""}`]])] : [];
-  return [section("What came out", ...largest, ...cableTable(summary))];
+  return [section("Results", ...largest, ...cableTable(summary))];
 }
 
-/** What else the summary says of the run as a whole. */
+/** Returns the remaining entries of the summary about the whole run. */
 export function remarksOf(report: Report): [string, string][] {
   return Object.entries(summaryOf(report) ?? {})
     .filter(([name, value]) => !SAID.has(name) && ["string", "number", "boolean"].includes(typeof value))
@@ -50,7 +50,7 @@ export function remarksOf(report: Report): [string, string][] {
 
 function cableTable({ cables = [], phases = [] }: Summary): HTMLElement[] {
   if (cables.length === 0) return [];
-  const head = el("tr", {}, ...["cable", "largest", "after the start", ...phases.map(({ name, from_s, to_s }) => `${name} (${from_s}–${to_s} s)`), "largest power", "energy", "net"]
+  const head = el("tr", {}, ...["cable", "max", "max after the start", ...phases.map(({ name, from_s, to_s }) => `${name} (${from_s}–${to_s} s)`), "max power", "energy", "net energy"]
     .map((text) => el("th", { scope: "col" }, text)));
   const units = el("tr.units", {}, ...["", "N", "N", ...phases.map(() => "mean N"), "W", "J", "J"].map((text) => el("td", {}, text)));
   const rows = cables.map(({ name, tension, actuator }) => el("tr", {}, el("th", { scope: "row" }, name),

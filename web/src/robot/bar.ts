@@ -1,5 +1,5 @@
-// What moves a robot, always in sight: the emergency stop, power in two steps, off. In place of the
-// timeline, because a robot has no time to go back to.
+// Power controls of a robot, always visible: emergency stop, power in two steps, off. They replace the
+// timeline, because a robot has no past to return to.
 import type { App } from "../app";
 import type { RobotStatus } from "../protocol";
 import { button, clock, el } from "../util";
@@ -7,7 +7,7 @@ import { button, clock, el } from "../util";
 type Mode = "off" | "arm" | "hold" | "impedance" | "clear_faults";
 
 export function stop(app: App): void {
-  if (app.watches) app.notice.value = "this link is for watching only: it cannot stop the robot";
+  if (app.watches) app.notice.value = "this address is for watching only: it cannot stop the robot";
   else if (!app.send({ type: "stop" })) app.notice.value = "NOT CONNECTED: the stop was not sent. Press Ctrl-C in the terminal, or cut the motors' supply.";
 }
 
@@ -16,11 +16,11 @@ export function robotBar(app: App): HTMLElement {
     button(label, title, () => app.send({ type: "robot_mode", mode: name }), spec);
   const stopButton = button("STOP", "emergency stop: all motors off, until faults are cleared (space)", () => stop(app), "button.stop");
   const off = mode("off", "off", "motors off: they coast");
-  const arm = mode("arm", "1 arm", "first step: boards make ready, nothing moves yet");
-  const hold = mode("hold", "2 hold", "second step: power; motors hold where they are");
-  const impedance = mode("impedance", "2 impedance", "second step: power, hold, then impedance control about the tensions and lengths that are measured");
-  const clear = mode("clear_faults", "clear faults", "take back latched faults, time-outs and emergency stops; motors are turned off unless they hold");
-  const record = button("record cycles", "write every cycle into a folder, or end that", () => app.send({ type: "record", on: app.robot.value?.recording === "" }));
+  const arm = mode("arm", "1 arm", "first step: prepare the boards, nothing moves yet");
+  const hold = mode("hold", "2 hold", "second step: turn the motors on and hold their positions");
+  const impedance = mode("impedance", "2 impedance", "second step: turn the motors on, hold, then impedance control about the measured tensions and lengths");
+  const clear = mode("clear_faults", "clear faults", "clear latched faults, time-outs and emergency stops; motors are turned off unless they hold");
+  const record = button("record cycles", "start or end recording every cycle to a folder", () => app.send({ type: "record", on: app.robot.value?.recording === "" }));
   const state = el("span.state", { role: "status" });
   const time = el("span.time");
   const element = el("footer.robotbar", { "aria-label": "the robot" }, stopButton,
@@ -53,7 +53,7 @@ export function robotBar(app: App): HTMLElement {
   };
   for (const signal of [app.robot, app.hello, app.driver, app.link, app.tuning]) signal.watch(draw);
 
-  // Before anything else that acts on space: a button that was pressed last must not be pressed again by it.
+  // Handles space first: otherwise it would press the last used button again.
   const typed = (event: KeyboardEvent) => {
     const target = event.target as HTMLElement;
     return app.isRobot && event.key === " " && !target.closest("input[type=search], input[type=text], textarea");
@@ -66,7 +66,7 @@ export function robotBar(app: App): HTMLElement {
   }, { capture: true });
   document.addEventListener("keyup", (event) => {
     if (!typed(event)) return;
-    event.preventDefault(); // Firefox presses buttons when the key is let go
+    event.preventDefault(); // Firefox presses buttons on keyup
     event.stopPropagation();
   }, { capture: true });
   return element;
@@ -77,15 +77,15 @@ function stateText({ stage, commanded, stopping }: RobotStatus): string {
   return { unconfigured: "not set up", inactive: "motors off", ready: "armed", active: commanded }[stage];
 }
 
-/** All that is wrong, in red, over everything. */
+/** All alarms, in red, above everything. */
 export function alarms(app: App): HTMLElement {
   const list = el("ul");
   const element = el("div.alarms", { role: "alert", hidden: true }, list);
   let shown = "";
   const draw = () => {
     const status = app.robot.value;
-    const all = app.isRobot && status ? [...(app.link.value === "lost" ? ["no connection to taut: what is shown is old, and nothing can be sent"] : []), ...status.alarms] : [];
-    // times within a text change all the while; who listens shall not hear it each time
+    const all = app.isRobot && status ? [...(app.link.value === "lost" ? ["no connection to taut: the displayed data are old, and commands cannot be sent"] : []), ...status.alarms] : [];
+    // ignores changing times within a text, so that screen readers do not repeat it
     const text = all.join("\n").replace(/[\d.]+ s$/gm, "");
     element.hidden = all.length === 0;
     if (text === shown && list.childElementCount === all.length) return;
@@ -97,14 +97,14 @@ export function alarms(app: App): HTMLElement {
   return element;
 }
 
-/** Where what is drawn comes from. */
+/** Returns a note about the source of the displayed pose. */
 export function poseNote(app: App, view: HTMLElement): HTMLElement {
   const element = el("div.posenote", { role: "note", hidden: true });
   app.tuning.watch((scene) => {
     const robot = scene?.robot;
     element.hidden = robot === undefined;
     view.classList.toggle("described", robot !== undefined && !robot.true_pose);
-    element.textContent = robot?.true_pose ? "true pose, told by the virtual robot" : "as described, not measured: nobody measures the pose";
+    element.textContent = robot?.true_pose ? "true pose of the virtual robot" : "described pose, not measured";
   });
   return element;
 }

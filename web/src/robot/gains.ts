@@ -1,4 +1,4 @@
-// Four gains of a cable, or of all: a number each, sent when somebody says so, and what the board said to it.
+// Four gains of one cable or of all: number fields, sent on request, with the board's replies.
 import type { App } from "../app";
 import type { RobotGainMessage } from "../protocol";
 import { button, el, nameAndUnit, number } from "../util";
@@ -6,7 +6,7 @@ import { button, el, nameAndUnit, number } from "../util";
 const ALL = "all cables";
 
 export function gainEditor(app: App): HTMLElement {
-  const choice = el<HTMLSelectElement>("select", { "aria-label": "cable whose gains" });
+  const choice = el<HTMLSelectElement>("select", { "aria-label": "cable of the gains" });
   const answer = el("div.answer", { role: "status" });
   const rows = el("div.gainrows");
   const element = el("div.gains", {}, choice, rows, answer);
@@ -23,7 +23,7 @@ export function gainEditor(app: App): HTMLElement {
     answer.textContent = waiting > 0 ? "sent …" : "";
     answer.classList.remove("bad");
   };
-  /** What the boards have, where nobody types. */
+  /** Shows the boards' values, except in fields that are being edited. */
   const fill = (anew: boolean) => {
     const { robot } = app.tuning.value ?? {};
     const status = app.robot.value;
@@ -34,7 +34,7 @@ export function gainEditor(app: App): HTMLElement {
       const values = cables().map((cable) => status.motors[robot.motors.indexOf(cable)]?.gains[g] ?? null);
       const same = values.every((value) => value !== null && value === values[0]);
       input.value = same && values.length > 0 ? String(+values[0]!.toPrecision(6)) : "";
-      input.placeholder = same ? "" : values.includes(null) ? "not known" : "they differ";
+      input.placeholder = same ? "" : values.includes(null) ? "unknown" : "different";
     });
   };
 
@@ -69,7 +69,7 @@ export function gainEditor(app: App): HTMLElement {
     if (!said.good) refused.push(`${what}: ${said.text}`);
     if (waiting > 0) --waiting;
     answer.classList.toggle("bad", refused.length > 0);
-    answer.textContent = refused.length > 0 ? refused.join("; ") : waiting > 0 ? `${waiting} boards have not answered yet …` : `${what}: taken by the board`;
+    answer.textContent = refused.length > 0 ? refused.join("; ") : waiting > 0 ? `waiting for ${waiting} boards …` : `${what}: accepted by the board`;
   });
   return element;
 }

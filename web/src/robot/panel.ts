@@ -1,4 +1,4 @@
-// How boards, motors and the way to them are: tables that stay where they are while their numbers change.
+// Status of boards, motors and link: tables whose layout is constant while their numbers change.
 import type { App } from "../app";
 import type { BoardStatus, MotorStatus, RobotStatus } from "../protocol";
 import { clock, el, number } from "../util";
@@ -7,14 +7,14 @@ import { gainEditor } from "./gains";
 type Cell = { text: string; bad?: boolean };
 
 export function robotPanel(app: App): HTMLElement {
-  const boards = table(["board", "mode", "ref.", "CRC", "bad", "missed", "stale", "late", "loop/ms", "wind./°C", "faults"], [
-    "", "what it does", "its encoders know where they are", "messages that came to it with a wrong checksum", "frames from it with a wrong checksum, or not at all",
-    "broadcasts that it missed", "frames that did not know the broadcast before them", "ticks of its loop that came late", "its longest tick of late", "its motors' windings, computed", "",
+  const boards = table(["board", "mode", "ref.", "CRC", "bad", "missed", "stale", "late", "loop [ms]", "winding [°C]", "faults"], [
+    "", "mode of the board", "encoders referenced", "messages received with a wrong checksum", "frames that are missing or have a wrong checksum",
+    "missed broadcasts", "frames older than the last broadcast", "late ticks of the control loop", "longest recent tick", "computed winding temperatures of the motors", "",
   ]);
-  const motors = table(["cable", "T/N", "target/N", "rest length/m", "encoder", "duty", "wind./°C", "faults"]);
+  const motors = table(["cable", "T [N]", "target [N]", "rest length [m]", "encoder", "duty", "winding [°C]", "faults"]);
   const link = el("div.linkhealth");
   const events = el<HTMLOListElement>("ol.eventlist");
-  const element = el("section.robotpanel", { "aria-label": "the robot's health", hidden: true },
+  const element = el("section.robotpanel", { "aria-label": "state of the robot", hidden: true },
     group("Boards", boards.element, true), group("Link", link, true),
     group("Motors", motors.element, false), group("Gains", gainEditor(app), false), group("Events", events, true));
 
@@ -59,7 +59,7 @@ function table(heads: readonly string[], titles: readonly string[] = []) {
 const count = (value: number): Cell => ({ text: String(value), bad: value > 0 });
 
 function boardRow(board: BoardStatus, b: number, motors: readonly MotorStatus[]): Cell[] {
-  const remarks = [board.faults, board.timeout ? "timed out" : "", board.was_reset ? "began anew" : ""].filter((text) => text !== "");
+  const remarks = [board.faults, board.timeout ? "timed out" : "", board.was_reset ? "restarted" : ""].filter((text) => text !== "");
   return [
     { text: String(b), bad: !board.well },
     { text: board.there ? board.mode : "absent", bad: !board.there || board.mode === "stopped" },
@@ -88,13 +88,13 @@ function motorRow(motor: MotorStatus, name: string): Cell[] {
 function linkLines({ link }: RobotStatus): Cell[] {
   const ms = (time_s: number) => number(1000 * time_s, 3);
   return [
-    { text: link.connected ? "adapter: there" : "adapter: gone", bad: !link.connected },
+    { text: link.connected ? "adapter: connected" : "adapter: disconnected", bad: !link.connected },
     { text: `cycle ${ms(link.cycle_s)} ms (mean ${ms(link.mean_cycle_s)}, longest ${ms(link.longest_cycle_s)})` },
-    { text: `begun ${ms(link.lateness_s)} ms late (mean ${ms(link.mean_lateness_s)}, longest ${ms(link.longest_lateness_s)})` },
+    { text: `lateness ${ms(link.lateness_s)} ms (mean ${ms(link.mean_lateness_s)}, longest ${ms(link.longest_lateness_s)})` },
     { text: `${link.cycles} cycles` },
     { text: `${link.late_cycles} late cycles`, bad: link.late_cycles > 0 },
     { text: `${link.silent_transfers} silent transfers`, bad: link.silent_transfers > 0 },
-    { text: `${link.unheard_broadcasts} unheard broadcasts`, bad: link.unheard_broadcasts > 0 },
+    { text: `${link.unheard_broadcasts} unacknowledged broadcasts`, bad: link.unheard_broadcasts > 0 },
     ...(link.reconnections > 0 ? [{ text: `${link.reconnections} reconnections`, bad: true }] : []),
   ];
 }

@@ -1,4 +1,4 @@
-// Forces as arrows to scale: one drawing call for all shafts, one for all heads.
+// Forces as arrows to scale: one draw call for all shafts, one for all heads.
 import {
   ConeGeometry, CylinderGeometry, Group, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Vector3,
 } from "three";
@@ -27,7 +27,7 @@ export class Arrows {
     for (const mesh of [this.shafts, this.heads]) {
       mesh.frustumCulled = false;
       mesh.count = 0;
-      mesh.renderOrder = 1; // over everything: where forces act is often inside a body
+      mesh.renderOrder = 1; // in front of everything: points of application are often inside a body
       this.object.add(mesh);
     }
   }
@@ -36,7 +36,7 @@ export class Arrows {
     this.count = 0;
   }
 
-  /** An arrow from `tail`, or, if `ends` is set, one that ends there. */
+  /** Adds an arrow from `tail`, or, if `ends` is set, one that ends there. */
   add(tail: Vector3, vector_m: Vector3, ends = false): void {
     const length_m = vector_m.length();
     if (!(length_m > 0) || this.count >= CAPACITY) return;

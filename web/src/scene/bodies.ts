@@ -1,4 +1,4 @@
-// Rigid bodies: rods, spheres, boxes and hulls, each body a group that takes the pose of its frame.
+// Rigid bodies: rods, spheres, boxes and hulls; each body is a group with the pose of its frame.
 import {
   AxesHelper, BoxGeometry, type BufferGeometry, CapsuleGeometry, Group, type Material, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3,
 } from "three";
@@ -43,7 +43,7 @@ export class Bodies implements Part {
     });
   }
 
-  /** Shows a body's frame and lights it up; -1: none. */
+  /** Shows a body's axes and highlights it; -1: none. */
   mark(body: number): void {
     this.marked = body;
     this.axes.forEach((axes, i) => (axes.visible = i === body));
@@ -75,7 +75,7 @@ export class Bodies implements Part {
   }
 }
 
-/** A shape in its body's frame. */
+/** Returns the mesh of a shape in its body's frame. */
 export function shapeMesh(shape: Shape, material: Material): Mesh {
   const mesh = new Mesh(geometryOf(shape), material);
   if (shape.kind === "rod") {

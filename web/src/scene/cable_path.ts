@@ -1,16 +1,16 @@
-// Where a cable runs: over the bends that a frame says it has, or round wheels by the shortest path, as
-// docs/theory/cables.md, section 4 has it. How often it goes round is known from its length.
+// Path of a cable: over the bends in a frame, or around wheels by the shortest path (docs/theory/cables.md,
+// section 4). The number of turns around a wheel follows from the cable's length.
 import { Quaternion, Vector3 } from "three";
 import type { Frame } from "../frame";
 import { VALUES } from "../layout";
 import type { Attachment, Cable, Wheel } from "../protocol";
 import { type Poses, worldPoint } from "./poses";
 
-/** Into so many parts an arc is drawn. */
+/** Number of segments of a drawn arc. */
 export const ARC_PARTS = 24;
 const TURN = 2 * Math.PI;
 const MOST_ROUNDS = 200;
-/** A length that agrees with the one that is said, as a share of it. */
+/** Relative tolerance of the length. */
 const SAME = 1e-9;
 
 interface Laid {
@@ -23,19 +23,22 @@ interface Laid {
   leaves: Vector3;
 }
 
-/** How many points a path is drawn with, or at most. */
+/** Returns the number of points of a path, or its maximum. */
 export function pointCount({ attachments, most_bends = 0 }: Cable): number {
   return attachments.reduce((sum, { wheel }) => sum + (wheel ? ARC_PARTS + 1 : 1), most_bends);
 }
 
-/** The path in W into `out`, which has pointCount() places; of a cable that bends as many as it takes. `number`: its own among bends; `length_m`: what is known of it, or NaN. */
+/**
+ * Writes the path in W to `out`, which has pointCount() entries; a cable with bends uses as many as needed.
+ * `number`: the cable's number among bends; `length_m`: its known length, or NaN.
+ */
 export function layCable(frame: Frame, poses: Poses, cable: Cable, number: number, length_m: number, out: Vector3[]): void {
   if (cable.most_bends === undefined) return layOnWheels(poses, cable.attachments, length_m, out);
   const ends = cable.attachments.map((at) => worldPoint(poses, at.body, at.position_m, new Vector3()));
   out.splice(0, out.length, ...ends.slice(0, 1), ...bendsOf(frame, number).slice(0, cable.most_bends), ...ends.slice(1));
 }
 
-/** Where a cable bends that lies against what it comes to, from its first end on. */
+/** Returns the bends of a wrapped cable, from its first end on. */
 function bendsOf({ bends }: Frame, cable: number): Vector3[] {
   const places: Vector3[] = [];
   for (let at = 0; at < bends.length; at += VALUES.bends) {
@@ -44,14 +47,14 @@ function bendsOf({ bends }: Frame, cable: number): Vector3[] {
   return places;
 }
 
-/** The tensions of a cable's spans, from its first end on; none where friction does not part it [N]. */
+/** Returns the tensions of a cable's spans, from its first end on; empty without friction [N]. */
 export function spanTensions({ spans }: Frame, cable: number): number[] {
   const tensions: number[] = [];
   for (let at = 0; at < spans.length; at += VALUES.spans) if (spans[at] === cable) tensions.push(spans[at + 1]!);
   return tensions;
 }
 
-/** Of each straight part of the path that is drawn with so many points, the span that it is of. */
+/** Returns, for each segment of a path with so many points, the index of its span. */
 export function spansOfParts(cable: Cable, points: number): number[] {
   if (cable.most_bends !== undefined) return Array.from({ length: points - 1 }, (_, k) => k);
   const parts: number[] = [];
@@ -84,7 +87,10 @@ function laid(poses: Poses, { body, position_m, wheel }: Attachment, center: Vec
   return { wheel: wheel!, center, axis, angle: wheel!.angle_rad, theta: 0, arrives: new Vector3(), leaves: new Vector3() };
 }
 
-/** Lays all wheels with the angles that they have, or those that differ by whole turns. Returns the length. */
+/**
+ * Computes the path around all wheels with their present angles, or angles that differ by whole turns.
+ * Returns the length.
+ */
 function lay(places: readonly Vector3[], wheels: readonly (Laid | null)[]): number {
   const before = wheels.map((wheel) => wheel?.angle ?? 0);
   for (const wheel of wheels) if (wheel) wheel.theta = 0;
@@ -116,7 +122,7 @@ function lay(places: readonly Vector3[], wheels: readonly (Laid | null)[]): numb
   return length;
 }
 
-/** The place that the cable comes from (-1) or goes to (1): wheels that it does not touch are not there. */
+/** Returns the previous (-1) or next (1) point of the path, skipping wheels that the cable does not touch. */
 function next(places: readonly Vector3[], wheels: readonly (Laid | null)[], i: number, way: -1 | 1): Vector3 {
   for (let k = i + way; ; k += way) {
     const wheel = wheels[k];
@@ -125,7 +131,7 @@ function next(places: readonly Vector3[], wheels: readonly (Laid | null)[], i: n
   }
 }
 
-/** Returns by how much it moved [m]. */
+/** Updates the tangent points at a wheel. Returns the change [m]. */
 function layOn(on: Laid, before: number, p: Vector3, q: Vector3): number {
   const { center, axis } = on;
   const R = on.wheel.radius_m;
@@ -156,7 +162,7 @@ function layOn(on: Laid, before: number, p: Vector3, q: Vector3): number {
   return moved;
 }
 
-/** Turns the wheels on until the path has the length that is said, one wheel at a time. */
+/** Adds turns around the wheels, one wheel at a time, until the path has the given length. */
 function agree(places: readonly Vector3[], wheels: readonly (Laid | null)[], length: number, said: number): number {
   const off = (l: number) => Math.abs(l - said);
   let best = length;

@@ -1,4 +1,4 @@
-// Cables: lines whose thickness and colour show the tension; slack ones are dashed and grey.
+// Cables: lines whose thickness and color show the tension; slack ones are dashed and gray.
 import { Color, Group, type InstancedInterleavedBuffer, Vector2, Vector3 } from "three";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
@@ -87,7 +87,7 @@ export class Cables implements Part {
     const colours = spans.map((tension_n) => (plain ? one : this.tensionColour(this.share(tension_n))));
     const points = this.points[i]!.length;
     paintParts(line, spansOfParts(this.scene.cables[i]!, points).map((span) => colours[span] ?? one));
-    material.color.set("white"); // what the parts' colours are times of
+    material.color.set("white"); // multiplied by the colors of the segments
   }
 
   private share(tension_n: number): number {
@@ -106,13 +106,13 @@ export class Cables implements Part {
     const vertexColors = cable.parted === true;
     const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m, vertexColors });
     const line = new Line2(geometry, material);
-    line.frustumCulled = false; // its bounds are those of the start
+    line.frustumCulled = false; // its bounds are those at the start
     this.object.add(line);
     return line;
   }
 }
 
-/** A colour for each straight part. */
+/** Sets a color for each straight segment. */
 function paintParts(line: Line2, colours: readonly Color[]): void {
   const start = line.geometry.getAttribute("instanceColorStart") as unknown as { data: InstancedInterleavedBuffer };
   colours.forEach((colour, k) => {
@@ -122,7 +122,7 @@ function paintParts(line: Line2, colours: readonly Color[]): void {
   start.data.needsUpdate = true;
 }
 
-/** Writes into the buffer that the line has; setPositions would make a new one each frame. */
+/** Writes into the line's buffer; setPositions would create a new one each frame. */
 function moveLine(line: Line2, points: readonly Vector3[]): void {
   const start = line.geometry.getAttribute("instanceStart") as unknown as { data: InstancedInterleavedBuffer };
   const buffer = start.data;
@@ -131,5 +131,5 @@ function moveLine(line: Line2, points: readonly Vector3[]): void {
     points[k + 1]!.toArray(buffer.array, 6 * k + 3);
   }
   buffer.needsUpdate = true;
-  line.geometry.instanceCount = points.length - 1; // it may have room for more bends
+  line.geometry.instanceCount = points.length - 1; // the buffer may have space for more bends
 }

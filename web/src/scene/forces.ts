@@ -1,4 +1,4 @@
-// Contact forces, and the pushes and drags that act, as arrows to one scale.
+// Contact forces, and active pushes and drags, as arrows at one scale.
 import { Group, Vector3 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
@@ -14,7 +14,7 @@ export class Forces implements Part {
   readonly object = new Group();
   readonly contacts: Arrows;
   readonly pushes: Arrows;
-  /** The force whose arrow is as long as `reference_m`; grows with what is seen. */
+  /** The force whose arrow has the length `reference_m`; grows with the displayed forces. */
   reference_n = 10;
   readonly reference_m: number;
   private readonly point = new Vector3();
@@ -57,7 +57,7 @@ export class Forces implements Part {
     this.pushes.dispose();
   }
 
-  /** An impact must not make all later arrows tiny: the scale follows pushes and steady contacts. */
+  /** Updates the scale from pushes and steady contacts; an impact must not make all later arrows tiny. */
   private fit(frame: Frame): void {
     let largest_n = 0;
     for (let at = 0; at < frame.pushes.length; at += VALUES.pushes) {

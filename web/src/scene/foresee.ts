@@ -1,5 +1,5 @@
-// What a trace knows before it is played: the path of the centre of mass, and the largest tension,
-// so that the scale of tension does not change on the way. Live, both grow by themselves.
+// Data of a trace known before it is played: the path of the center of mass, and the largest tension, so that
+// the tension scale stays constant. In a live run, both grow with time.
 import { Vector3 } from "three";
 import type { App } from "../app";
 import { niceAbove } from "../util";

@@ -1,5 +1,4 @@
-// The robots of the runs that are compared: translucent, each in the colour of its run, where it is in
-// its own run at the time that is shown.
+// Robots of the compared runs: translucent, in the color of their run, with their pose at the displayed time.
 import {
   BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, MeshLambertMaterial, Vector3,
 } from "three";
@@ -18,7 +17,7 @@ const CABLE_OPACITY = 0.7;
 
 export class Ghosts implements Part {
   readonly object = new Group();
-  /** By run, from 0; a run without poses has an empty one. */
+  /** By run, from 0; empty for a run without poses. */
   readonly ghosts: readonly Ghost[];
 
   constructor(scene: Scene) {
@@ -49,20 +48,20 @@ export class Ghosts implements Part {
 export class Ghost {
   readonly object = new Group();
   readonly bodies: readonly Body[];
-  /** Has its run a row at the time that is shown? */
+  /** Whether the run has a row at the displayed time. */
   present = false;
   poses: Poses = { bodies: new Float64Array(0) };
   private wanted = true;
   private readonly groups: readonly Group[];
   private readonly skin = new MeshLambertMaterial({
     transparent: true, opacity: BODY_OPACITY, depthWrite: false,
-    polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4, // where both are one, this run's robot is in front
+    polygonOffset: true, polygonOffsetFactor: 4, polygonOffsetUnits: 4, // where both coincide, this run's robot is in front
   });
   private readonly thread = new LineBasicMaterial({ transparent: true, opacity: CABLE_OPACITY });
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly cables: readonly Cable[];
 
-  /** `from`, `from_cable`: the numbers of its first body and cable in frames. */
+  /** `from`, `from_cable`: the indices of its first body and cable in frames. */
   constructor(run: ComparedRun, private readonly number: number, private readonly from: number, private readonly from_cable: number) {
     this.bodies = run.bodies;
     this.cables = run.cables;
@@ -75,7 +74,7 @@ export class Ghost {
     const parts = run.cables.reduce((sum, cable) => sum + Math.max(pointCount(cable) - 1, 0), 0);
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * parts), 3));
     this.lines = new LineSegments(geometry, this.thread);
-    this.lines.frustumCulled = false; // its bounds are those of the start
+    this.lines.frustumCulled = false; // its bounds are those at the start
     this.object.add(this.lines);
   }
 

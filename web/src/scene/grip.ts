@@ -1,5 +1,5 @@
-// Dragging a node with the mouse: the target moves in the plane through the node that faces the
-// camera; the server pulls the node there with a spring. Beside the mouse stands how hard.
+// Dragging a node with the mouse: the target moves in the plane through the node that faces the camera; the
+// server pulls the node there with a spring. A label at the cursor shows the force.
 import { BufferAttribute, BufferGeometry, Group, Line, LineDashedMaterial, Mesh, MeshBasicMaterial, Plane, Raycaster, SphereGeometry, Vector2, Vector3 } from "three";
 import type { App, Theme } from "../app";
 import { palette } from "../colours";
@@ -8,7 +8,7 @@ import type { Vec3 } from "../protocol";
 import { el, number } from "../util";
 import type { View } from "./view";
 
-const BESIDE_PX = 16; // of the label, from the mouse
+const BESIDE_PX = 16; // offset of the label from the cursor
 
 export class Grip {
   readonly object = new Group();
@@ -56,7 +56,7 @@ export class Grip {
     this.object.visible = true;
     this.draw();
     if (this.waiting) return;
-    // the mouse may report far more often than the screen shows
+    // the mouse may report far more often than the screen is updated
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
@@ -65,7 +65,7 @@ export class Grip {
     });
   }
 
-  /** True if a node was held and had been moved. */
+  /** Releases the node. Returns whether a node was held and had been moved. */
   drop(): boolean {
     if (!this.held) return false;
     const moved = this.object.visible;
@@ -82,11 +82,14 @@ export class Grip {
     if (this.object.visible) this.draw();
   }
 
-  /** How hard the hand pulls in the frame that is shown [N]; NaN while it does not: a paused run has not felt it yet. */
+  /**
+   * Returns the force of the drag in the displayed frame [N]; NaN before it acts: a paused run has not
+   * applied it yet.
+   */
   private force(): number {
     const frame = this.app.frame.value;
     if (!frame) return NaN;
-    // events of the experiment may push the same node; the hand is the last
+    // events of the experiment may push the same node; the drag is the last entry
     const [node, ...force_n] = frame.pushes.slice(-VALUES.pushes);
     return node === this.node ? Math.hypot(...force_n) : NaN;
   }
@@ -95,7 +98,7 @@ export class Grip {
     const force_n = this.force();
     const { paused } = this.app.frame.value ?? { paused: 1 };
     this.label.hidden = false;
-    this.label.textContent = Number.isNaN(force_n) ? (paused ? "pulls once it runs" : "0 N") : `${number(force_n, 3)} N`;
+    this.label.textContent = Number.isNaN(force_n) ? (paused ? "pulls when running" : "0 N") : `${number(force_n, 3)} N`;
     const { x, y } = this.view.toScreen(this.target);
     const { width_px, height_px } = this.view.viewport;
     const left = Math.min(Math.max(x + BESIDE_PX, 4), width_px - this.label.offsetWidth - 4);

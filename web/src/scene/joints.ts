@@ -1,4 +1,4 @@
-// Joints: a small mark for each kind, between the two points that it holds; those with the world have a foot.
+// Joints: a small mark for each kind, between the two connected points; supports have a foot.
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, CylinderGeometry, Group, LatheGeometry, LineBasicMaterial, LineSegments, Mesh,
   MeshStandardMaterial, Quaternion, SphereGeometry, Vector2, Vector3,
@@ -11,18 +11,18 @@ import type { Joint, Scene, Shape, Vec3 } from "../protocol";
 import { type Part, release } from "./part";
 import { worldPoint } from "./poses";
 
-const SHARE = 0.014; // a mark's radius, of the robot's size, unless a rod there is thicker
-const BEYOND = 1.6; // how far a mark looks out of what it is in
-const LARGEST = 0.05; // of a mark in a box, of the robot's size
+const SHARE = 0.014; // radius of a mark, relative to the robot's size, unless a rod there is thicker
+const BEYOND = 1.6; // how far a mark protrudes from its surroundings, as a factor
+const LARGEST = 0.05; // limit for a mark in a box, relative to the robot's size
 const AXIS_Y = new Vector3(0, 1, 0);
 
-/** What a mark is made of. Lengths are in radii of the mark, y is the joint's axis. */
+/** Parts of a mark. Lengths are in radii of the mark, y is the joint's axis. */
 interface Look {
-  /** Goes with a, or lies from a's point to b's. */
+  /** Moves with a, or lies from a's point to b's. */
   rail?: BufferGeometry;
-  /** How much longer the rail is than the slide; absent: as it is. */
+  /** Length of the rail beyond the slide; absent: constant length. */
   over?: number;
-  /** Is at b's point and turns with b; a hinge's and a ball's as well as any. */
+  /** Is at b's point and turns with b; for a hinge or a ball any orientation will do. */
   bead?: BufferGeometry;
 }
 
@@ -38,7 +38,10 @@ const LOOKS: Record<Joint["kind"], () => Look> = {
   distance: () => ({}),
 };
 
-/** A plate, which is seen also where the joint is on the ground, and what widens away from the body: downwards, or up. */
+/**
+ * Returns a plate, visible even if the joint is on the ground, and a part that widens away from the body:
+ * downward or upward.
+ */
 function footGeometry(hangs: boolean): BufferGeometry {
   const profile: [number, number][] = [[0, 0.15], [2.2, 0.15], [2.2, -0.15], [0.8, -0.15], [2, -3], [0, -3]];
   return new LatheGeometry(profile.map(([r, z]) => new Vector2(r, z)).reverse(), 24).rotateX(hangs ? -Math.PI / 2 : Math.PI / 2);
@@ -46,13 +49,13 @@ function footGeometry(hangs: boolean): BufferGeometry {
 
 export class Joints implements Part {
   readonly object = new Group();
-  /** Of each joint, in its order; a distance has none. */
+  /** By joint; a distance joint has none. */
   readonly marks: readonly Mark[];
-  /** What a mouse may hit. */
+  /** Meshes that the mouse can hit. */
   readonly meshes: Mesh[];
   /** The points of each joint in W, as last drawn. */
   readonly points: readonly [Vector3, Vector3][];
-  /** Those that are lines. */
+  /** Indices of the joints drawn as lines. */
   readonly distances: readonly number[];
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   private marked = -1;
@@ -66,7 +69,7 @@ export class Joints implements Part {
     this.distances = scene.joints.flatMap(({ kind }, i) => (kind === "distance" ? [i] : []));
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * this.distances.length), 3));
     this.lines = new LineSegments(geometry, new LineBasicMaterial());
-    this.lines.frustumCulled = false; // its bounds are those of the start
+    this.lines.frustumCulled = false; // its bounds are those at the start
     this.lines.visible = this.distances.length > 0;
     this.object.add(this.lines);
   }
@@ -83,7 +86,7 @@ export class Joints implements Part {
     positions.needsUpdate = true;
   }
 
-  /** Lights a joint up; -1: none. */
+  /** Highlights a joint; -1: none. */
   mark(joint: number): void {
     this.marked = joint;
     this.paint(this.theme);
@@ -112,10 +115,10 @@ export class Mark {
   readonly meshes: Mesh[] = [];
   readonly rail: Mesh | null;
   readonly bead: Mesh | null;
-  /** With the world: where it stands. */
+  /** For a support: its foot. */
   readonly foot: Mesh | null;
   private readonly over: number | undefined;
-  /** From y to the axis, in a's frame. */
+  /** Rotation from y to the axis, in a's frame. */
   private readonly along: Quaternion;
   private readonly axis = new Vector3();
 
@@ -137,7 +140,7 @@ export class Mark {
     this.foot = mesh(joint.body_a < 0 ? footGeometry(hangs) : undefined, this.ground);
   }
 
-  /** The points of the bodies, and how these are turned. */
+  /** Sets the points and rotations of the two bodies. */
   move(a: Vector3, b: Vector3, turn_a: Quaternion, turn_b: Quaternion): void {
     const r = this.radius_m;
     if (this.rail) {
@@ -167,12 +170,12 @@ function turnOf(frame: Frame, body: number): Quaternion {
   return new Quaternion(x, y, z, w);
 }
 
-/** Whether its body is below it at the start. */
+/** Returns whether the body is below the support at the start. */
 function hangs({ body_b, to_m }: Joint, scene: Scene): boolean {
   return worldPoint(frameOfScene(scene), body_b, to_m, new Vector3()).z > (scene.bodies[body_b]?.position_m[2] ?? 0);
 }
 
-/** As large as it must be to look out of what it is in. */
+/** Returns a radius large enough to protrude from the surrounding shapes. */
 function radiusOf(joint: Joint, scene: Scene, size_m: number): number {
   let radius_m = SHARE * size_m;
   for (const [body, point_m] of [[joint.body_a, joint.from_m], [joint.body_b, joint.to_m]] as const) {
@@ -184,7 +187,7 @@ function radiusOf(joint: Joint, scene: Scene, size_m: number): number {
   return radius_m;
 }
 
-/** Half the thickness of a shape that a point of its body is in; 0 outside of it. */
+/** Returns half the thickness of a shape that contains a point of its body; 0 outside of it. */
 function thicknessAround(shape: Shape, point_m: Vec3): number {
   const point = new Vector3(...point_m);
   if (shape.kind === "rod") {

@@ -1,4 +1,4 @@
-// What the colours, widths and arrows of the 3-D view stand for.
+// Legend of the colors, widths and arrows in the 3D view.
 import type { App } from "../app";
 import { css, palette, tensionColour } from "../colours";
 import { el, number } from "../util";
@@ -6,7 +6,7 @@ import { THICKEST_PX, THINNEST_PX } from "./cables";
 import type { View } from "./view";
 
 const WIDTH_PX = 168;
-const UNRECORDED = "no contact forces: this trace has none; “record: {contacts: 20}” in the experiment records them";
+const UNRECORDED = "no contact forces in this trace; to record them: “record: {contacts: 20}” in the experiment";
 
 export function legend(app: App, view: View): HTMLElement {
   const scale = el<HTMLCanvasElement>("canvas", { width: 2 * WIDTH_PX, height: 20, "aria-hidden": "true" });

@@ -1,4 +1,4 @@
-// Something in the 3-D view that follows the frames.
+// Interface of objects in the 3D view that follow the frames.
 import type { Object3D } from "three";
 import type { Theme } from "../app";
 import type { Frame } from "../frame";
@@ -10,7 +10,7 @@ export interface Part {
   dispose(): void;
 }
 
-/** Frees what the graphics card holds for an object and its children. */
+/** Frees the graphics memory of an object and its children. */
 export function release(object: Object3D): void {
   object.traverse((child) => {
     const owner = child as Object3D & { geometry?: { dispose(): void }; material?: unknown };

@@ -1,4 +1,4 @@
-// The path of the centre of mass, and its mark on the ground below.
+// The path of the center of mass, and its mark on the ground below.
 import { BufferAttribute, BufferGeometry, DynamicDrawUsage, Group, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
@@ -31,7 +31,7 @@ export class Path implements Part {
     this.object.add(this.line, this.dot);
   }
 
-  /** The whole path at once, where a trace knows it. */
+  /** Sets the whole path at once, if a trace contains it. */
   set(times_s: readonly number[], places: readonly Vector3[]): void {
     this.times_s.splice(0, Infinity, ...times_s.slice(0, CAPACITY));
     this.places.splice(0, Infinity, ...places.slice(0, CAPACITY));

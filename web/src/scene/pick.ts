@@ -1,4 +1,5 @@
-// What is under the mouse: the mark of a joint, a node or a cable within some pixels, else a body.
+// Picking: the object under the mouse, which is a joint's mark, a node or a cable within some pixels, else a
+// body.
 import { type Camera, Raycaster, Vector2, Vector3 } from "three";
 import type { Selection } from "../app";
 import type { Frame } from "../frame";
@@ -17,7 +18,7 @@ export interface Viewport {
   height_px: number;
 }
 
-/** Where a point of W is on the screen, in pixels from the top left; z > 1: behind the camera. */
+/** Projects a point in W to the screen, in pixels from the top left; z > 1: behind the camera. */
 export function project(point: Vector3, view: Viewport, out: Vector3): Vector3 {
   out.copy(point).project(view.camera);
   return out.set(((out.x + 1) / 2) * view.width_px, ((1 - out.y) / 2) * view.height_px, out.z);
@@ -27,7 +28,7 @@ const a = new Vector3();
 const b = new Vector3();
 const ray = new Raycaster();
 
-/** What is drawn and can be pointed at. */
+/** Drawn objects that can be picked. */
 export interface Targets {
   scene: Scene;
   bodies: Bodies;
@@ -35,7 +36,7 @@ export interface Targets {
   joints: Joints;
 }
 
-/** The nearest node within some pixels; -1: none. */
+/** Returns the nearest node within some pixels; -1: none. */
 export function nodeUnder(x_px: number, y_px: number, view: Viewport, scene: Scene, frame: Frame): number {
   let best = -1;
   let nearest_px = NODE_PX;
@@ -50,7 +51,7 @@ export function nodeUnder(x_px: number, y_px: number, view: Viewport, scene: Sce
   return best;
 }
 
-/** Marks of joints come first: nodes lie inside of them. */
+/** Returns the object at a position. Marks of joints come first: nodes lie inside of them. */
 export function pick(x_px: number, y_px: number, view: Viewport, frame: Frame, { scene, bodies, cables, joints }: Targets): Selection | null {
   ray.setFromCamera(new Vector2((2 * x_px) / view.width_px - 1, 1 - (2 * y_px) / view.height_px), view.camera);
   const [joint, body] = [joints.object.visible ? joints.meshes : [], bodies.meshes].map((meshes) => ray.intersectObjects(meshes, false)[0]);

@@ -1,13 +1,13 @@
-// Where points of bodies are in a frame.
+// Positions of bodies' points in a frame.
 import type { Vector3 } from "three";
 import type { Frame } from "../frame";
 import { VALUES } from "../layout";
 import type { Body, Vec3 } from "../protocol";
 
-/** Of the run's bodies, or of those of a ghost. */
+/** Poses of the run's bodies, or of a ghost's. */
 export type Poses = Pick<Frame, "bodies">;
 
-/** p_WP of a point P that is fixed in a body; the world is body -1. */
+/** Returns p_WP of a point P fixed in a body; the world is body -1. */
 export function worldPoint(frame: Poses, body: number, p: Vec3, out: Vector3): Vector3 {
   if (body < 0) return out.set(p[0], p[1], p[2]);
   const b = frame.bodies;
@@ -24,7 +24,7 @@ export function worldPoint(frame: Poses, body: number, p: Vec3, out: Vector3): V
   );
 }
 
-/** Centre of mass of all bodies whose mass is known and that can move; false if there is none. */
+/** Computes the center of mass of all movable bodies with known mass; returns false if there is none. */
 export function centreOfMass(scene: { bodies: readonly Body[] }, frame: Poses, out: Vector3): boolean {
   let mass_kg = 0;
   out.set(0, 0, 0);

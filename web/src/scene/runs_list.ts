@@ -1,5 +1,5 @@
-// The runs in the 3-D view: name and colour of each, a switch for its ghost, and how far from this run's
-// robot that is.
+// List of the runs in the 3D view: name and color, a switch for the ghost, and its distance from this run's
+// robot.
 import { Vector3 } from "three";
 import type { App } from "../app";
 import type { Frame } from "../frame";
@@ -10,7 +10,7 @@ import type { Ghost } from "./ghosts";
 import { centreOfMass } from "./poses";
 import type { View } from "./view";
 
-const NARROW = "(max-width: 900px)"; // there the list would hide the robot
+const NARROW = "(max-width: 900px)"; // where the list would cover the robot
 
 export function runsList(app: App, view: View): HTMLElement {
   const count = el("summary");
@@ -36,7 +36,7 @@ export function runsList(app: App, view: View): HTMLElement {
   return element;
 }
 
-/** All ghosts on, or, if all are, off. */
+/** Shows all ghosts, or, if all are visible, hides them. */
 export function toggleGhosts(view: View): void {
   const switches = [...view.element.querySelectorAll<HTMLInputElement>(".runs input:not(:disabled)")];
   const on = switches.some(({ checked }) => !checked);
@@ -59,7 +59,7 @@ class RunRow {
         view.invalidate();
       },
     });
-    const label = el("label", { title: has ? "show its ghost, or not" : (run.notice ?? "") }, ghost, swatch(place + 1), el("span.name", {}, runName(run)));
+    const label = el("label", { title: has ? "show or hide its ghost" : (run.notice ?? "") }, ghost, swatch(place + 1), el("span.name", {}, runName(run)));
     this.element = el("li", {}, label, this.away);
     if (run.notice !== undefined) this.element.append(el("span.note", {}, run.notice));
   }
@@ -68,7 +68,7 @@ class RunRow {
     return this.view.world?.ghosts.ghosts[this.place];
   }
 
-  /** How far its centre of mass is from this run's, or why that cannot be told. */
+  /** Displays the distance between the centers of mass, or why it is unknown. */
   show(scene: Scene, frame: Frame): void {
     const { ghost, run } = this;
     if (!ghost || run.bodies.length === 0) return;
@@ -77,7 +77,7 @@ class RunRow {
       this.away.textContent = frame.time_s < run.first_s ? `begins at ${number(run.first_s, 4)} s` : `ended at ${number(run.last_s, 4)} s`;
     } else if (centreOfMass(scene, frame, own) && centreOfMass(ghost, ghost.poses, other)) {
       this.away.textContent = `${number(1000 * own.distanceTo(other), 3)} mm away`;
-      this.away.title = `its centre of mass is ${own.distanceTo(other)} m from this run's`;
+      this.away.title = `distance between the centers of mass: ${own.distanceTo(other)} m`;
     } else {
       this.away.textContent = "";
     }

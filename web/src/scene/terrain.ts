@@ -1,4 +1,4 @@
-// The ground: planes with a grid of metres drawn on them, boxes, triangles, and the axes of the world.
+// Terrain: planes with a grid in meters, boxes, triangles, and the axes of the world.
 import {
   BoxGeometry, BufferAttribute, BufferGeometry, CanvasTexture, Color, DoubleSide, EdgesGeometry, Group, LineBasicMaterial, LineSegments, Mesh,
   MeshStandardMaterial, Plane, PlaneGeometry, Quaternion, Sprite, SpriteMaterial, Vector3,
@@ -9,9 +9,9 @@ import type { Frame } from "../frame";
 import type { Scene } from "../protocol";
 import { type Part, release } from "./part";
 
-const EXTENT_M = 60; // of a plane, each way
-const LABELS = 3; // numbers along either axis, each way
-const SEEN_THROUGH = 0.35; // opacity of a floor that hides the robot: its lines still say where it is
+const EXTENT_M = 60; // half size of a plane
+const LABELS = 3; // number of labels along either axis, in each direction
+const SEEN_THROUGH = 0.35; // opacity of a floor that hides the robot: its lines still show its position
 
 export class Ground implements Part {
   readonly object = new Group();
@@ -34,7 +34,7 @@ export class Ground implements Part {
 
   update(_frame: Frame): void {}
 
-  /** Who looks from below sees the robot through the floor. */
+  /** Makes the floor transparent for a camera below it. */
   seenFrom(eye: Vector3): void {
     for (const { material, surface } of this.planes) {
       const below = surface.distanceToPoint(eye) < 0;
@@ -100,7 +100,7 @@ export class Ground implements Part {
     this.object.add(mesh);
   }
 
-  /** Metres along x and y at the bold lines. */
+  /** Labels the bold lines with meters along x and y. */
   private label(colour: string): void {
     for (const child of [...this.labels.children]) release(child);
     if (this.planes.length === 0) return;
@@ -123,7 +123,7 @@ interface GridUniforms {
   farColour: { value: Color };
 }
 
-/** Lines at multiples of the spacing, as thin as a pixel at any distance, that fade far away. */
+/** Draws lines at multiples of the spacing, one pixel wide at any distance, that fade far away. */
 function drawGrid(material: MeshStandardMaterial, spacing_m: number, reach_m: number): GridUniforms {
   const uniforms: GridUniforms = {
     spacing: { value: spacing_m }, reach: { value: reach_m },

@@ -1,4 +1,4 @@
-// The 3-D view: camera, light, mouse; draws only when something has changed.
+// The 3D view: camera, light, mouse; draws only after changes.
 import {
   AmbientLight, type Box3, Color, DirectionalLight, PCFSoftShadowMap, PerspectiveCamera, Scene as ThreeScene, Vector3,
   WebGLRenderer, HemisphereLight,
@@ -12,14 +12,14 @@ import { nodeUnder, pick, project, type Viewport } from "./pick";
 import { centreOfMass, worldPoint } from "./poses";
 import { World } from "./world";
 
-const FILLED = 0.76; // of half the view that the robot takes up, at most
-const FREE = 0.3; // how far the robot moves before the camera follows, in sizes of the robot
+const FILLED = 0.76; // largest part of half the view that the robot occupies
+const FREE = 0.3; // displacement of the robot before the camera follows, in robot sizes
 const CLICK_PX = 4; // a press that moves less is a click
-const NO_PICTURE = "There is no 3-D picture: this browser has no WebGL, or it is switched off. All else is shown.";
+const NO_PICTURE = "No 3-D view: this browser has no WebGL, or it is switched off.";
 
 export class View {
   readonly element = el("div.view");
-  /** null: this browser cannot draw it. All else is as if it did. */
+  /** null: no WebGL in this browser; everything else works as usual. */
   readonly renderer: WebGLRenderer | null;
   readonly canvas: HTMLCanvasElement;
   readonly camera = new PerspectiveCamera(40, 1, 0.01, 500);
@@ -34,7 +34,7 @@ export class View {
   private readonly tip = el("div.tip", { role: "tooltip" });
   private readonly grip: Grip;
   private dirty = true;
-  /** Centre of mass now; and where the camera believes it to be. */
+  /** Center of mass now, and the position that the camera has followed. */
   private readonly followed = new Vector3();
   private readonly anchor = new Vector3();
   private pressed: { x: number; y: number } | null = null;
@@ -61,7 +61,7 @@ export class View {
     requestAnimationFrame(() => this.loop());
   }
 
-  /** Is there a picture? */
+  /** Whether pictures are drawn. */
   get draws(): boolean {
     return this.renderer !== null;
   }
@@ -70,7 +70,7 @@ export class View {
     return { camera: this.camera, width_px: this.canvas.clientWidth, height_px: this.canvas.clientHeight };
   }
 
-  /** The point that the camera looks at and turns about. */
+  /** The point that the camera looks at and orbits around. */
   get target(): Vector3 {
     return this.controls.target;
   }
@@ -79,7 +79,7 @@ export class View {
     this.dirty = true;
   }
 
-  /** Where a point of W is on the screen, in pixels from the view's top left. */
+  /** Projects a point in W to the screen, in pixels from the view's top left. */
   toScreen(point: Vector3): Vector3 {
     this.camera.updateMatrixWorld();
     return project(point, this.viewport, new Vector3());
@@ -89,7 +89,7 @@ export class View {
     this.controls.enabled = on;
   }
 
-  /** Shows the whole robot where it is now, from the side the camera is on. */
+  /** Shows the whole robot at its present position, from the camera's side. */
   fit(fromFront = false): void {
     const world = this.world;
     if (!world) return;
@@ -106,14 +106,14 @@ export class View {
     this.anchor.copy(centre);
     direction.normalize();
     let distance_m = 2 * world.size_m;
-    // what is nearer looks larger, so the distance is found in a few rounds
+    // nearer parts look larger, so the distance is found by iteration
     for (let round = 0; round < 6; ++round) {
       this.camera.position.copy(centre).addScaledVector(direction, distance_m);
       this.camera.lookAt(centre);
       this.camera.updateMatrixWorld();
       const reach = corners.map((corner) => corner.clone().project(this.camera));
       distance_m *= Math.max(...reach.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)))) / FILLED;
-      distance_m = Math.max(distance_m, world.size_m); // all that moves may be a point
+      distance_m = Math.max(distance_m, world.size_m); // all moving bodies may be points
     }
     this.controls.minDistance = 0.05 * world.size_m;
     this.controls.maxDistance = 60 * world.size_m;
@@ -171,7 +171,7 @@ export class View {
     this.invalidate();
   }
 
-  /** The camera goes along when the robot leaves; small motions stay visible against it. */
+  /** Moves the camera when the robot leaves its range; small motions stay visible. */
   private followCentre(): void {
     const world = this.world;
     const frame = this.app.frame.value;
@@ -193,7 +193,7 @@ export class View {
     if (this.dirty) this.draw();
   }
 
-  /** Draws at once; the canvas can be copied until the caller gives way to the browser. */
+  /** Draws at once; the canvas can be copied until control returns to the browser. */
   draw(): void {
     this.dirty = false;
     if (!this.renderer) return;
@@ -205,7 +205,7 @@ export class View {
     for (const call of this.afterDraw) call();
   }
 
-  /** The shadow's box stays around the robot, so that its edges are fine wherever it goes. */
+  /** Keeps the shadow's box around the robot, so that shadow edges stay sharp everywhere. */
   private aimSun(): void {
     const reach_m = this.world ? 0.9 * this.world.size_m : 1;
     const at = this.sun.target.position.copy(this.followed.lengthSq() > 0 ? this.followed : this.controls.target);
@@ -230,14 +230,14 @@ export class View {
     return pick(x, y, this.viewport, frame, this.world);
   }
 
-  /** The node that is there, inside of a joint's mark, too; -1: none. */
+  /** Returns the node at this position, even inside a joint's mark; -1: none. */
   private nodeUnder(x: number, y: number): number {
     const frame = this.app.frame.value;
     return this.world && frame ? nodeUnder(x, y, this.viewport, this.world.scene, frame) : -1;
   }
 
   private listen(canvas: HTMLCanvasElement): void {
-    // Before the orbit sees it: a press on a node that may be dragged is not an orbit.
+    // Before the orbit controls: a press on a draggable node does not orbit.
     canvas.addEventListener("pointerdown", (event) => {
       const { x, y } = this.at(event);
       this.pressed = { x, y };
@@ -278,7 +278,7 @@ export class View {
     this.tip.style.transform = `translate(${left}px, ${Math.max(y - 28, 4)}px)`;
   }
 
-  /** Where a node is now, in W. */
+  /** Returns the present position of a node in W. */
   nodeAt(index: number): Vector3 | null {
     const node = this.world?.scene.nodes[index];
     const frame = this.app.frame.value;
@@ -286,7 +286,7 @@ export class View {
   }
 }
 
-/** null: there is no WebGL, which three.js tells the console, too. */
+/** Returns null without WebGL; three.js also logs this to the console. */
 function makeRenderer(): WebGLRenderer | null {
   try {
     const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });

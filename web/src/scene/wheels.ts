@@ -1,4 +1,5 @@
-// Wheels that cables go round: flat discs that one can look through, a little smaller than the cable's middle.
+// Wheels that guide cables: transparent flat discs, a little smaller than the radius of the cable's center
+// line.
 import { CylinderGeometry, DoubleSide, Group, Mesh, MeshLambertMaterial, Vector3 } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";
@@ -8,8 +9,8 @@ import { type Part, release } from "./part";
 import { worldPoint } from "./poses";
 
 const SHARE = 0.97;
-const THICKNESS = 0.25; // of the radius
-const Y = new Vector3(0, 1, 0); // along which three has its cylinders
+const THICKNESS = 0.25; // relative to the radius
+const Y = new Vector3(0, 1, 0); // axis of three.js's cylinders
 
 export class Wheels implements Part {
   readonly object = new Group();

@@ -1,4 +1,4 @@
-// Everything of one scene in the 3-D view; a new scene makes a new World.
+// All objects of one scene in the 3D view; a new scene creates a new World.
 import { Box3, Group, Vector3 } from "three";
 import type { Theme } from "../app";
 import { cableState, type Frame, frameOfScene } from "../frame";
@@ -73,7 +73,7 @@ function boundsOf(scene: Scene): Box3 {
   for (const mesh of world.meshes) bounds.expandByObject(mesh);
   world.dispose();
   const start = frameOfScene(scene);
-  for (const node of scene.nodes) { // a body that is a point is where its nodes are
+  for (const node of scene.nodes) { // a body without shapes is located by its nodes
     if (node.body < 0 || scene.bodies[node.body]!.shapes.length > 0) continue;
     bounds.expandByPoint(worldPoint(start, node.body, node.position_m, new Vector3()));
   }

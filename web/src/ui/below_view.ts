@@ -1,9 +1,10 @@
-// Where there is one column, nothing may cover the robot: what lies over the view elsewhere stands below it.
+// Placement of the overlays: on the view, or below it in a one-column layout, so that they do not cover the
+// robot.
 import { el } from "../util";
 
 const ONE_COLUMN = "(max-width: 900px)"; // as in style.css
 
-/** Puts `parts` into the view, or into the element that comes back, which belongs right below it. */
+/** Puts `parts` into the view, or into the returned element, which belongs directly below it. */
 export function belowView(view: HTMLElement, parts: readonly HTMLElement[]): HTMLElement {
   const below = el("div.below");
   const media = matchMedia(ONE_COLUMN);

@@ -1,5 +1,5 @@
-// Live controls: a push, parameters, set points and gains. Each change is a message that the server
-// does not drop; what it refuses comes back as an error and is shown.
+// Live controls: a push, parameters, set points and gains. Each change is sent as a message, which the server
+// does not drop; refusals are displayed as errors.
 import type { App } from "../app";
 import type { Control, Parameter, Vec3 } from "../protocol";
 import { button, el, nameAndUnit, number, unitText } from "../util";
@@ -10,7 +10,7 @@ export function controls(app: App): HTMLElement {
   let offered = "";
   app.tuning.watch((scene) => {
     if (!scene) return;
-    // what one is about to move must not be taken out of the hand
+    // a control in use must not be replaced
     const offers = JSON.stringify([scene.parameters, scene.controls, scene.nodes].map((list) => list.map((each) => ("cable" in each ? each.cable : each.name))));
     if (offers === offered && element.contains(document.activeElement)) return;
     offered = offers;
@@ -38,7 +38,7 @@ function group(title: string, content: HTMLElement[]): HTMLElement {
   return el("details", { open: true }, el("summary", {}, title), ...content);
 }
 
-/** Fields of one cable or body of many; the one that is selected in the view, if one is. */
+/** Returns fields for one of many cables or bodies: the one selected in the view, if any. */
 function chooser(app: App, kind: "cable" | "body", names: string[], parts: (name: string) => HTMLElement[]): HTMLElement {
   const fields = el("div");
   const choice = el<HTMLSelectElement>("select", { "aria-label": kind }, ...names.map((name) => el("option", {}, name)));
@@ -54,7 +54,7 @@ function chooser(app: App, kind: "cable" | "body", names: string[], parts: (name
   return el("div", {}, choice, fields);
 }
 
-/** A slider with its number beside it; both say what has been set. */
+/** Returns a slider with a number field; both show the set value. */
 function slider(label: string, unit: string, value: number, min: number, max: number, set: (value: number) => void): HTMLElement {
   const step = (max - min) / 500 || "any";
   const range = el<HTMLInputElement>("input", { type: "range", min, max, step, value, "aria-label": `${label} [${unit}]` });
@@ -68,7 +68,7 @@ function slider(label: string, unit: string, value: number, min: number, max: nu
     range.value = exact.value;
     set(Number(exact.value));
   });
-  // the text is no name: it would hold both ends, too, and both inputs have names of their own
+  // no label element: it would include both limits, and both inputs have labels
   return el("div.slider", { title: label }, el("span.name", { "aria-hidden": "true" }, label), el("span.end", {}, number(min)), range, el("span.end", {}, number(max)),
     exact, el("span.unit", {}, unit));
 }
@@ -82,9 +82,9 @@ function parameter(app: App, known: Parameter, label: string): HTMLElement {
   const made = slider(label, unitText(unit), known.value, min, max, restarts ? () => {} : set);
   made.title = name;
   if (restarts) {
-    // only when the slider is let go: a new start for each pixel would be no use
+    // only on release: a restart for each pixel would be useless
     made.addEventListener("change", (event) => set(Number((event.target as HTMLInputElement).value)));
-    made.append(el("span.restarts", { title: "a change starts the experiment anew" }, "↻"));
+    made.append(el("span.restarts", { title: "a change restarts the experiment" }, "↻"));
   }
   return made;
 }
@@ -126,7 +126,7 @@ function pushForm(app: App): HTMLElement {
   const node = el<HTMLSelectElement>("select", { "aria-label": "node to push" }, ...nodes.map(({ name }) => el("option", {}, name)));
   const direction = el<HTMLSelectElement>("select", { "aria-label": "direction" }, ...DIRECTIONS.map(([name], i) => el("option", { value: i }, name)));
   const force = el<HTMLInputElement>("input", { type: "number", value: 20, min: 0, max: 100000, step: "any", "aria-label": "force [N]" });
-  const duration = el<HTMLInputElement>("input", { type: "number", value: 0.5, min: 0.001, max: 1000, step: "any", "aria-label": "for [s]" });
+  const duration = el<HTMLInputElement>("input", { type: "number", value: 0.5, min: 0.001, max: 1000, step: "any", "aria-label": "duration [s]" });
   const push = () => {
     if (!force.reportValidity() || !duration.reportValidity()) return;
     const along = DIRECTIONS[Number(direction.value)]![1];

@@ -1,4 +1,4 @@
-// A replay as an animated GIF: of the time that the plots show, at the speed that is set.
+// Export of a replay as an animated GIF: the time span of the plots at the selected speed.
 import { applyPalette, GIFEncoder, type GifPalette, quantize } from "gifenc";
 import type { App } from "../app";
 import type { View } from "../scene/view";
@@ -12,7 +12,7 @@ const COLOURS = 256;
 
 export function gifMaker(app: App, store: SeriesStore, view: View): HTMLElement {
   let running = false;
-  const made = button("GIF", "save what the plots' time shows as an animated picture (GIF)", () => {
+  const made = button("GIF", "save the time range of the plots as an animation (GIF)", () => {
     if (running) running = false;
     else void make();
   }, "button.film");
@@ -32,7 +32,7 @@ export function gifMaker(app: App, store: SeriesStore, view: View): HTMLElement 
     const times_s = Array.from({ length: count }, (_, i) => (count === 1 ? from_s : from_s + ((to_s - from_s) * i) / (count - 1)));
     const film = new Film(view);
     app.send({ type: "pause" });
-    // one set of colours for all, from the ends and the middle, so that nothing flickers
+    // one palette for all pictures, from the ends and the middle, against flicker
     for (const i of [0, count >> 1, count - 1]) {
       if (!(await goTo(app, store, times_s[i]!))) running = false;
       film.learn();
@@ -44,7 +44,7 @@ export function gifMaker(app: App, store: SeriesStore, view: View): HTMLElement 
     }
     if (running) {
       download(`taut-${app.hello.value?.title ?? "view"}.gif`, film.finish());
-      if (wanted > MOST_FRAMES) app.notice.value = `${MOST_FRAMES} pictures are the most; the GIF plays faster than ${speed}×`;
+      if (wanted > MOST_FRAMES) app.notice.value = `limited to ${MOST_FRAMES} pictures: the GIF plays faster than ${speed}×`;
     }
     running = false;
     made.textContent = "GIF";
@@ -102,10 +102,10 @@ function together(parts: readonly Uint8ClampedArray[]): Uint8ClampedArray {
   return all;
 }
 
-/** Shows the row at a time; false if that will not happen: the server is gone, or somebody else drives. */
+/** Displays the row at a time; returns false if this fails: the server is gone, or another client drives. */
 function goTo(app: App, store: SeriesStore, time_s: number): Promise<boolean> {
   app.seek(time_s);
-  if (app.report) return Promise.resolve(true); // a report has shown it already
+  if (app.report) return Promise.resolve(true); // a report updates at once
   return new Promise((resolve) => {
     let row_s: number | null = null;
     const stops: (() => void)[] = [];

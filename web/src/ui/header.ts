@@ -1,4 +1,4 @@
-// Title, what this is, who drives, whether the server is there.
+// Header: title, mode, driver, state of the connection.
 import type { App } from "../app";
 import { icon } from "./icons";
 import { button, el } from "../util";
@@ -10,7 +10,7 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
   const mode = el("span.mode");
   const link = el("span.link", { role: "status" });
   const driver = el("span.driver");
-  const take = button("take control", "drive from now on; others can only watch", () => app.send({ type: "take_control" }));
+  const take = button("take control", "take control; all others can only watch", () => app.send({ type: "take_control" }));
   const theme = button(icon("theme"), "dark or light (T)", () => app.toggleTheme());
   const element = el("header.top", {}, el("span.brand", {}, "taut"), title, mode, link, driver, take,
     el("span.spring"), ...toggles, theme, button("?", "help (?)", help));
@@ -22,7 +22,7 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
     element.dataset["mode"] = mode.textContent;
   });
   app.link.watch((state) => {
-    link.textContent = { connecting: "connecting …", open: "", lost: "connection lost, trying again …", refused: "the server was started anew: open the address that it printed", report: "" }[state];
+    link.textContent = { connecting: "connecting …", open: "", lost: "connection lost, trying again …", refused: "the server was restarted: open the address that it printed", report: "" }[state];
     link.dataset["state"] = state;
   });
   const drives = () => {
@@ -36,7 +36,7 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
   return element;
 }
 
-/** A line at the bottom that goes away by itself. */
+/** Returns a line at the bottom that disappears after a while. */
 export function notices(app: App): HTMLElement {
   const text = el("span");
   const element = el("div.notice", { role: "alert" }, text, button("×", "close", () => (app.notice.value = null), "button.small"));
@@ -51,8 +51,8 @@ export function notices(app: App): HTMLElement {
   return element;
 }
 
-/** In place of everything, where there is nothing to show. */
-export function failurePage(app: App, advice = "The terminal that taut was started in may say more."): HTMLElement {
+/** Returns the page for failures, if there is nothing to display. */
+export function failurePage(app: App, advice = "The terminal of taut may show more messages."): HTMLElement {
   const text = el("pre");
   const element = el("main.failure", { role: "alert" }, el("h1", {}, "There is nothing to show"), text,
     el("p", {}, advice));

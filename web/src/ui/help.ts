@@ -1,14 +1,14 @@
-// What keys and mouse do.
+// Help dialog for keys and mouse.
 import { button, el } from "../util";
 import type { Key } from "./keyboard";
 
 const MOUSE: readonly [string, string][] = [
   ["drag", "turn the view"],
   ["right drag, or shift and drag", "move the view"],
-  ["wheel", "nearer or farther"],
+  ["wheel", "zoom"],
   ["click", "numbers and plots of a cable or body"],
   ["drag a node", "pull it with a spring (live)"],
-  ["drag in a plot", "zoom into that time; double click: all of it"],
+  ["drag in a plot", "zoom into that time range; double click: whole range"],
   ["click in a plot", "go to that time"],
 ];
 

@@ -1,4 +1,4 @@
-// Pictures on buttons, drawn here: fonts differ in which of these signs they have.
+// Icons of buttons as SVG paths, because fonts differ in the signs that they contain.
 const PATHS = {
   play: "M4 2.5v11l9-5.5z",
   pause: "M4 2.5h3v11H4zM9 2.5h3v11H9z",

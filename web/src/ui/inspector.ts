@@ -1,4 +1,4 @@
-// The numbers of the selected cable, body or node.
+// Inspector: values of the selected cable, body or node.
 import { type App, nameOf, type Selection } from "../app";
 import { cableState, type Frame, isSlack } from "../frame";
 import { VALUES } from "../layout";
@@ -57,7 +57,7 @@ function rowsOf(scene: Scene, frame: Frame, { kind, index }: Selection): Row[] {
     const values = frame.bodies.subarray(index * VALUES.bodies, (index + 1) * VALUES.bodies);
     return [
       ["mass", body.mass_kg > 0 ? `${number(body.mass_kg, 4)} kg` : "–"],
-      ["centre of mass", `${vector(values.subarray(0, 3))} m`],
+      ["center of mass", `${vector(values.subarray(0, 3))} m`],
       ["orientation w, x, y, z", vector(values.subarray(3))],
       ["shapes", String(body.shapes.length)],
       ...(body.fixed ? [["fixed", "yes"] as Row] : []),

@@ -1,4 +1,4 @@
-// The keys, in one table that the help shows, too.
+// Keyboard shortcuts, in one table that is also displayed by the help.
 import type { App } from "../app";
 import { toggleGhosts } from "../scene/runs_list";
 import type { View } from "../scene/view";
@@ -8,12 +8,12 @@ export interface Key {
   keys: string[];
   shown: string;
   does: string;
-  /** It is about time, of which a robot has only one. */
+  /** Changes the time, which a robot does not allow. */
   time?: true;
   act(event: KeyboardEvent): void;
 }
 
-/** What keys show and hide. */
+/** Panels that keys show and hide. */
 export interface Toggles {
   help(): void;
   controls(): void;
@@ -38,8 +38,8 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
   const scene = () => app.scene.value;
   return [
     { time: true, keys: [" "], shown: "space", does: "play or pause; a robot: emergency stop", act: () => app.togglePlay() },
-    { time: true, keys: ["ArrowRight"], shown: "→", does: "one step on (with shift: one second)", act: step(1) },
-    { time: true, keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: through what was, nothing is undone", act: step(-1) },
+    { time: true, keys: ["ArrowRight"], shown: "→", does: "one step forward (with shift: one second)", act: step(1) },
+    { time: true, keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: shows the past, undoes nothing", act: step(-1) },
     { time: true, keys: ["Home"], shown: "home", does: "to the start", act: () => app.seek(scene()?.first_s ?? 0) },
     { time: true, keys: ["End"], shown: "end", does: "to the end; live: back to now", act: () => (app.live ? app.goToNow() : app.seek(scene()?.duration_s ?? 0)) },
     { time: true, keys: ["r", "R"], shown: "R", does: "reset: back to the start", act: () => app.goToStart() },
@@ -51,7 +51,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
       app.notice.value = view.follow ? "the view follows the robot" : "the view stays";
     } },
     { keys: ["a", "A"], shown: "A", does: "arrows of forces on or off", act: show("forces") },
-    { keys: ["p", "P"], shown: "P", does: "path of the centre of mass on or off", act: show("path") },
+    { keys: ["p", "P"], shown: "P", does: "path of the center of mass on or off", act: show("path") },
     { keys: ["j", "J"], shown: "J", does: "marks of joints on or off", act: show("joints") },
     { keys: ["g", "G"], shown: "G", does: "ghosts of compared runs on or off", act: () => toggleGhosts(view) },
     { keys: ["n", "N"], shown: "N", does: "next cable (with shift: next body): its numbers and plots", act: (event) => {
@@ -73,11 +73,11 @@ export function listenToKeys(app: App, keys: readonly Key[]): void {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const target = event.target as HTMLElement;
-    // an open dialog closes itself by escape, and has its own buttons
+    // an open dialog handles escape and its buttons
     if (target.closest("dialog[open]") && event.key !== "?") return;
     const writes = target.closest("input:not([type=range]):not([type=checkbox]), textarea, select");
     if (writes && event.key !== "Escape") return;
-    // a button acts on space, a slider on arrows: theirs before ours
+    // space belongs to a focused button and arrows to a focused slider
     if (event.key === " " && target.closest("button, summary, input[type=checkbox]")) return;
     if (event.key.startsWith("Arrow") && target.closest("input[type=range]:not(.timeline input)")) return;
     const key = keys.find((each) => each.keys.includes(event.key));

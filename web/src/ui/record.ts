@@ -1,4 +1,4 @@
-// Records the 3-D view as a video (WebM) while it plays.
+// Recording of the 3D view as a video (WebM) during playback.
 import type { App } from "../app";
 import type { View } from "../scene/view";
 import { button, download } from "../util";

@@ -1,4 +1,4 @@
-// Play, step, speed, and the line of time with its phases; in a replay it is a scrubber.
+// Timeline: play, step, speed, and a time bar with phases, which is a scrubber in a replay.
 import type { App } from "../app";
 import { icon } from "./icons";
 import { button, clock, el, number } from "../util";
@@ -11,10 +11,10 @@ export function timeline(app: App): HTMLElement {
   const stepBack = button(icon("back"), "one step back (left arrow)", () => app.send({ type: "step", count: -1 }));
   const step = button(icon("step"), "one step (right arrow)", () => app.send({ type: "step", count: 1 }));
   const speed = el<HTMLSelectElement>("select", {
-    title: "speed: simulated seconds a second ([ and ])", "aria-label": "speed",
+    title: "speed: simulated seconds per second ([ and ])", "aria-label": "speed",
     onchange: () => app.send({ type: "speed", factor: Number(speed.value) }),
   }, ...SPEEDS.map((factor) => el("option", { value: factor }, speedText(factor))));
-  const now = button("now", "back to where the run is (end)", () => app.goToNow(), "button.now");
+  const now = button("now", "back to the present (end)", () => app.goToNow(), "button.now");
   const time = el("span.time", { "aria-live": "off" });
   const factor = el("span.factor", { title: "real-time factor: simulated over wall-clock time" });
   const phases = el("div.phases");
@@ -24,7 +24,7 @@ export function timeline(app: App): HTMLElement {
     type: "range", step: "any", min: 0, max: 1, value: 0, "aria-label": "time",
     oninput: () => app.seek(Number(slider.value)),
   });
-  const present = el("div.present", { hidden: true, title: "where the run is" });
+  const present = el("div.present", { hidden: true, title: "present time of the run" });
   const track = el("div.track", {}, phases, slider, events, cursor, present);
   const element = el("footer.timeline", {}, back, stepBack, play, step, speed, track, now, time, factor);
 
@@ -93,7 +93,7 @@ function speedText(factor: number): string {
   return factor === 0 ? "max" : `${factor}×`;
 }
 
-/** The next faster or slower of the speeds on offer. */
+/** Returns the next faster or slower of the available speeds. */
 export function nextSpeed(now: number, faster: boolean): number {
   const place = SPEEDS.findIndex((speed) => (now === 0 ? speed === 0 : speed === 0 || speed >= now));
   return SPEEDS[Math.min(Math.max(place + (faster ? 1 : -1), 0), SPEEDS.length - 1)]!;

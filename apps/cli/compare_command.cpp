@@ -1,0 +1,142 @@
+// Command `taut compare`: comparison of two traces.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "output.h"
+#include "overrides.h"
+#include "shipped_inputs.h"
+#include "taut/compare.h"
+#include "taut/run_folder.h"
+
+namespace taut::cli {
+namespace {
+
+struct CompareArguments {
+  std::string path_a, path_b, map_a, map_b;
+  std::vector<std::string> phases;
+  CompareOptions options;
+  CompareLimits limits;
+  bool json = false;
+};
+
+/// Parses "before=25:30"; nothing if the text has another form.
+std::optional<TimeWindow> ParsePhase(const std::string& text) {
+  const std::size_t equals = text.find('='), colon = text.find(':', equals);
+  if (equals == 0 || equals == text.npos || colon == text.npos) return std::nullopt;
+  TimeWindow phase;
+  phase.name = text.substr(0, equals);
+  if (!CLI::detail::lexical_cast(text.substr(equals + 1, colon - equals - 1), phase.from_s) ||
+      !CLI::detail::lexical_cast(text.substr(colon + 1), phase.to_s) ||
+      !(phase.from_s <= phase.to_s)) {
+    return std::nullopt;
+  }
+  return phase;
+}
+
+std::optional<Trace> Load(const std::string& path, const std::string& map, Diagnostics& out) {
+  if (map.empty()) return ReadTraceOfRun(path, out);
+  const auto mapping = LoadMapping(map, out);
+  if (!mapping) return std::nullopt;
+  return ReadMapped(path, *mapping, map, out);
+}
+
+int RunCompare(CompareArguments given) {
+  for (std::string* path : {&given.path_a, &given.path_b}) *path = TraceOfRun(*path);
+  Diagnostics found;
+  const auto a = Load(given.path_a, given.map_a, found);
+  const auto b = Load(given.path_b, given.map_b, found);
+  if (!a || !b) return Fail(found, kBadInput);
+  const Comparison comparison = Compare(*a, *b, given.options);
+  fmt::print("{}", given.json ? ComparisonJson(comparison, given.path_a, given.path_b)
+                              : ComparisonTable(comparison, given.path_a, given.path_b));
+  if (comparison.rows == 0) {
+    fmt::print(stderr, "error: the time ranges of the traces do not overlap\n");
+    return kBadInput;
+  }
+  if (comparison.channels.empty()) {
+    fmt::print(stderr, "error: the traces have no channel in common (--map translates names)\n");
+    return kBadInput;
+  }
+  if (!given.limits.max_error_percent && !given.limits.max_rmse) return kOk;
+  const std::vector<std::string> exceeded = ExceededLimits(comparison, given.limits);
+  std::FILE* to = given.json ? stderr : stdout;  // keeps stdout pure JSON
+  for (const std::string& sentence : exceeded) fmt::print(to, "FAIL: {}\n", sentence);
+  if (exceeded.empty()) fmt::print(to, "PASS: within the limits\n");
+  return exceeded.empty() ? kOk : kFailed;
+}
+
+}  // namespace
+
+void AddCompare(CLI::App& app, int& exit_code) {
+  auto* command = app.add_subcommand("compare", "Compute the differences of two traces.");
+  const auto given = std::make_shared<CompareArguments>();
+  command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz) or folder of a run")
+      ->required();
+  command->add_option("B", given->path_b, "Reference: trace or folder of a run")->required();
+  AddInput(*command, "--map", given->map_b, "Mapping file of B: channel names, units and axes")
+      ->option_text("FILE");
+  AddInput(*command, "--map_a", given->map_a, "Mapping file of A")->option_text("FILE");
+  command
+      ->add_option("--channels", given->options.channels,
+                   "Channels to compare, by patterns such as 'cable/*/tension_n' (default: all)")
+      ->option_text("PATTERN")
+      ->allow_extra_args(false);
+  command->add_option("--from_s", given->options.from_s, "Start of the comparison [s]")
+      ->option_text("S")
+      ->check(NumberWithin(-1e9, 1e9));
+  command->add_option("--to_s", given->options.to_s, "End of the comparison [s]")
+      ->option_text("S")
+      ->check(NumberWithin(-1e9, 1e9));
+  command
+      ->add_option("--phase", given->phases,
+                   "Window for the mean, min and max, such as before=25:30 [s]")
+      ->option_text("NAME=FROM:TO")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        return ParsePhase(text)
+                   ? std::string()
+                   : "\"" + text + "\" is not of the form NAME=FROM:TO, such as before=25:30";
+      });
+  command
+      ->add_option("--system", given->options.system,
+                   "Channels that contain the system's largest value")
+      ->option_text("PATTERN")
+      ->allow_extra_args(false)
+      ->default_str("cable/*/tension_n cable/*/elastic_n");
+  command
+      ->add_option("--max_lag_s", given->options.max_lag_s,
+                   "Largest delay to estimate [s]; 0: none")
+      ->option_text("S")
+      ->check(NumberWithin(0, 1e9))
+      ->capture_default_str();
+  command
+      ->add_option("--max_error_percent", given->limits.max_error_percent,
+                   "Limit of the error of the system's largest value [%]")
+      ->option_text("X")
+      ->check(NumberWithin(0, 1e9));
+  command
+      ->add_option("--max_rmse", given->limits.max_rmse,
+                   "Limit of the RMSE of every compared channel, in its unit")
+      ->option_text("X")
+      ->check(NumberWithin(0, 1e300));
+  command->add_flag("--json", given->json, "JSON instead of tables");
+  command->footer(
+      "Examples:\n"
+      "  taut compare runs/push/trace.h5 measured.csv --max_error_percent 6.1\n"
+      "  taut compare runs/push/trace.h5 push_1000hz.csv.gz --map mappings/ntrt.json \\\n"
+      "    --channels 'cable/*/elastic_n' --from_s 5 --phase before=25:30 --phase during=35:40\n"
+      "Exit status: 0 within the limits (or no limits), 1 limits exceeded, 2 bad usage, 3 bad "
+      "input.");
+  command->callback([given, &exit_code] {
+    for (const std::string& phase : given->phases) {
+      given->options.phases.push_back(*ParsePhase(phase));
+    }
+    exit_code = RunCompare(*given);
+  });
+}
+
+}  // namespace taut::cli

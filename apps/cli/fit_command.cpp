@@ -1,0 +1,274 @@
+// Command `taut fit`: system identification.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "fit_runs.h"
+#include "interrupt.h"
+#include "output.h"
+#include "overrides.h"
+#include "progress_line.h"
+#include "shipped_inputs.h"
+#include "standard_streams.h"
+#include "taut/cluster.h"
+#include "taut/files.h"
+#include "taut/identify.h"
+
+namespace taut::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FitArguments {
+  std::string path, out;
+  std::vector<std::string> set, profiles;
+  int threads = -1;
+  bool check = false, resume = false, design = false, quiet = false, strict = false;
+};
+
+void Show(ProgressLine& line, const IdentifyProgress& p) {
+  if (!line.Due()) return;
+  line.Show(fmt::format("{}: {} iterations  chi2 {:.6g}  {} experiments computed", p.what,
+                        p.iterations, p.chi2, p.computed));
+}
+
+/// Prints the result of `--check` for a fit without errors.
+void PrintCheck(const Identification& fit) {
+  const FitProblem& train = fit.train();
+  fmt::print("{}: {} parameters from {} data points in {} groups", fit.spec().name,
+             train.parameters.size(), train.rows.size(), train.group_names.size());
+  if (fit.test()) fmt::print(", {} held out", fit.test()->rows.size());
+  fmt::print("\n");
+  for (const FitParameter& p : train.parameters) {
+    fmt::print("  {:<40} {:>12.6g} {}\n", p.name, p.start, p.unit);
+  }
+}
+
+std::string MemoryIn(const std::string& folder) {
+  return (fs::path(folder) / "fit.sqlite").string();
+}
+
+/// Prints the commands that show each experiment before and after the fit.
+void PrintLooks(const Identification& fit, const std::string& folder) {
+  fmt::print("Comparison before and after the fit:\n");
+  for (const FitExperiment& one : fit.spec().experiments) {
+    const auto trace = [&](const char* which) {
+      return (fs::path(folder) / (which + one.name) / "trace.h5").string();
+    };
+    fmt::print("  taut view {} --compare {}\n", trace("fitted_"), trace("untuned_"));
+  }
+}
+
+bool CheckProfiles(const Identification& fit, const std::vector<std::string>& asked, bool say) {
+  for (const std::string& name : asked) {
+    bool known = name.find('*') != name.npos;
+    std::string all;
+    for (const FitParameter& p : fit.train().parameters) {
+      known |= p.name == name;
+      all += (all.empty() ? "" : ", ") + p.name;
+    }
+    if (known) continue;
+    if (!say) return false;
+    fmt::print(stderr, "error: --profile: there is no parameter \"{}\" (expected {})\n", name, all);
+    return false;
+  }
+  return true;
+}
+
+/// Writes every experiment with its estimates, runs to view, the report page, and the summary last.
+bool WriteOutcome(const Identification& fit, const FitOutcome& outcome, const fs::path& folder,
+                  Diagnostics& out) {
+  for (std::size_t e = 0; e < fit.spec().experiments.size(); ++e) {
+    const std::string name = "fitted_" + fit.spec().experiments[e].name + ".yaml";
+    if (!WriteWholeFile((folder / name).string(),
+                        FittedExperimentYaml(fit, e, outcome.fit.values, folder.string()), out)) {
+      return false;
+    }
+  }
+  const auto looks = WriteBeforeAndAfter(fit, folder.string(), out);
+  return looks &&
+         WriteWholeFile((folder / "report.html").string(), OutcomePage(fit, outcome, *looks),
+                        out) &&
+         WriteWholeFile((folder / "summary.json").string(), OutcomeJson(fit, outcome), out);
+}
+
+int Judge(const FitVerdict& verdict) {
+  return verdict.judgement == FitJudgement::kGood ? kOk : kFailed;
+}
+
+int FailOfInput(const Identification& fit) {
+  fmt::print(stderr, "error: {}; run the same command again to resume\n", fit.input_error());
+  return kFailed;
+}
+
+/// Runs a fit that is ready: rank 0's part.
+int Search(const FitArguments& args, const Identification& fit, const std::string& folder) {
+  Diagnostics found;
+  const bool depends = CheckDependence(fit, found);
+  if (interrupt_asked) return kInterrupted;
+  if (!fit.input_error().empty()) return FailOfInput(fit);
+  if (!depends) return Fail(found, kBadInput);
+  if (args.check) {
+    if (!args.quiet) PrintCheck(fit);
+    return kOk;
+  }
+  if (fit.counts().damaged > 0) {
+    fmt::print(stderr, "warning: {}: {} damaged records are computed again\n", MemoryIn(folder),
+               fit.counts().damaged);
+  }
+  ProgressLine line(args.quiet, false);
+  OutcomeOptions how;
+  how.profiles = args.profiles;
+  how.design = args.design;
+  how.stop = &interrupt_asked;
+  how.progress = [&](const IdentifyProgress& p) { Show(line, p); };
+  const FitOutcome outcome = RunFit(fit, how);
+  line.Clear();
+  if (!fit.memory_error().empty()) {
+    found.Error("fit.memory_not_writable", {MemoryIn(folder)},
+                "cannot write: " + fit.memory_error());
+    return Fail(found, kFailed);
+  }
+  if (!fit.input_error().empty()) return FailOfInput(fit);
+  if (!outcome.interrupted && !outcome.why.empty()) {
+    fmt::print(stderr, "error: the fit failed: {}\n", outcome.why);
+    return kFailed;
+  }
+  const bool written = !outcome.interrupted && WriteOutcome(fit, outcome, folder, found);
+  if (outcome.interrupted || (!written && interrupt_asked)) {
+    fmt::print(stderr, "interrupted; run the same command again to resume\n");
+    return kInterrupted;
+  }
+  if (!written) return Fail(found, kFailed);
+  if (!args.quiet) {
+    fmt::print("{}\nSummary, report and fitted experiments: {}\n", OutcomeText(fit, outcome),
+               folder);
+    PrintLooks(fit, folder);
+  }
+  return Judge(outcome.verdict);
+}
+
+/// Preparations of rank 0: the folder, its files in memory, and validated options.
+struct Ready {
+  std::unique_ptr<FolderLock> lock;
+  std::unique_ptr<Identification> fit;
+  int exit = kOk;  ///< Exit status if it is not ready.
+};
+
+Ready Begin(const FitArguments& args, const FitSpec& spec, const std::string& folder, int threads,
+            bool first) {
+  Ready ready;
+  Diagnostics found;
+  std::error_code ignored;
+  const auto end = [&](int exit) {
+    if (first) Fail(found, kFailed);
+    ready.exit = exit;
+    ready.fit.reset();
+    return std::move(ready);
+  };
+  if (args.resume && !fs::exists(MemoryIn(folder), ignored)) {
+    found.Error("fit.nothing_to_resume", {MemoryIn(folder)}, "there is no fit to resume",
+                "leave out --resume to start the fit");
+    return end(kBadInput);
+  }
+  if (first && !args.check) {
+    ready.lock = FolderLock::Take(folder, found);
+    if (!ready.lock) return end(kFailed);
+  }
+  IdentifyOptions options;
+  options.threads = threads;
+  options.stop = &interrupt_asked;
+  if (first && !args.check) options.memory_file = MemoryIn(folder);
+  ready.fit = Identification::Make(spec, options, found);
+  if (!ready.fit || !(first ? Pass(found, args.strict) : Passes(found, args.strict))) {
+    return end(kBadInput);
+  }
+  if (!CheckProfiles(*ready.fit, args.profiles, first)) return end(kUsage);
+  return ready;
+}
+
+int Run(const FitArguments& args) {
+  const auto overrides = ParseOverrides(args.set);
+  if (!overrides) return kUsage;
+  OutputIsNews();
+  Diagnostics found;
+  const auto cluster = Cluster::Join(found);
+  if (!cluster) return Fail(found, kFailed);
+  const bool first = cluster->rank() == 0;
+  // Processes of a cluster use one core each unless `--threads` is given.
+  const int threads = args.threads < 0 ? (cluster->size() > 1 ? 1 : 0) : args.threads;
+  const auto spec = LoadFit(args.path, *overrides, found);
+  const bool passed = first ? Pass(found, args.strict) : Passes(found, args.strict);
+  CatchInterrupts();
+  const bool read = spec && passed;
+  const std::string folder =
+      !read || !args.out.empty() ? args.out : (fs::path("runs") / spec->name).string();
+  Ready ready;
+  if (read) ready = Begin(args, *spec, folder, threads, first);
+  const auto local = [&](std::span<const std::string> pieces) { return ready.fit->Do(pieces); };
+  const bool agree = cluster->Agree(ready.fit ? ready.fit->Agreed() : "");
+  if (!read) return first ? Fail(found, kBadInput) : kBadInput;
+  if (!ready.fit) return ready.exit;
+  if (!agree) {
+    if (!first) return kFailed;  // rank 0 prints the reason
+    found.Error("cluster.different_fits", {args.path},
+                "the processes of the cluster have read different fits",
+                "give all machines the same files and the same version of taut");
+    return Fail(found, kFailed);
+  }
+  if (!first) {
+    cluster->Serve(local);
+    return kOk;
+  }
+  if (cluster->size() > 1) {
+    ready.fit->SpreadBy(cluster->Spread(local, &interrupt_asked), cluster->size());
+  }
+  const int exit = Search(args, *ready.fit, folder);
+  ready.fit.reset();  // releases the other processes before the cluster ends
+  return exit;
+}
+
+}  // namespace
+
+void AddFit(CLI::App& app, int& exit_code) {
+  auto args = std::make_shared<FitArguments>();
+  CLI::App* fit =
+      app.add_subcommand("fit", "Estimate parameters of models and experiments from measurements.");
+  AddInput(*fit, "fit", args->path, "Fit file (YAML)")->required();
+  fit->add_option("--set", args->set, "Parameter of the fit, its experiments or models")
+      ->option_text("NAME=VALUE")
+      ->allow_extra_args(false);
+  fit->add_option("--out", args->out, "Output folder (default: runs/<fit>)")->option_text("FOLDER");
+  fit->add_option("--threads", args->threads,
+                  "Number of threads; 0: one per core (default: 0; 1 under mpirun)")
+      ->option_text("N")
+      ->check(WholeNumberWithin(0, 1024));
+  fit->add_option(
+         "--profile", args->profiles,
+         "Parameter for a profile likelihood, with all others fitted again; '*': all parameters")
+      ->option_text("PARAMETER")
+      ->allow_extra_args(false);
+  auto* design = fit->add_flag("--design", args->design,
+                               "Expected information of the fit's planned measurements (`design`)");
+  auto* check = fit->add_flag("--check", args->check, "Check files and data only");
+  fit->add_flag("--resume", args->resume, "Fail if the folder has no fit to resume")
+      ->excludes(check);
+  fit->add_flag("--quiet", args->quiet, "No progress, no table");
+  fit->add_flag("--strict", args->strict, kStrictHelp);
+  design->excludes(check);
+  fit->footer(
+      "Examples:\n"
+      "  taut fit fits/tetraspine3_push.yaml\n"
+      "  taut fit fits/tetraspine3_push.yaml --profile push_n\n"
+      "  mpirun -np 8 taut fit fits/tetraspine3_push.yaml\n"
+      "After an interruption (Ctrl-C, kill) the same command resumes, with the same result.\n"
+      "Exit status: 0 success; 1 rejected, not identifiable, or worse than untuned on held-out "
+      "data;\n"
+      "2 bad usage, 3 bad input.");
+  fit->callback([args, &exit_code] { exit_code = Run(*args); });
+}
+
+}  // namespace taut::cli

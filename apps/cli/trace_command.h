@@ -1,0 +1,10 @@
+/// Subcommands of `taut trace`. Each has a file of this name, and a line in trace_command.cpp.
+#pragma once
+
+#include "commands.h"
+
+namespace taut::cli {
+
+void AddTraceConvert(CLI::App& group, int& exit_code);
+
+}  // namespace taut::cli

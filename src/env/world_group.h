@@ -1,0 +1,99 @@
+/// Worlds of an environment that share a SIMD register, with their episodes, rewards and resets.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "env/actions.h"
+#include "env/episode.h"
+#include "env/lane_bodies.h"
+#include "env/observer.h"
+#include "env/place.h"
+#include "env/rewards.h"
+
+namespace taut::env {
+
+/// Rows of one group in the arrays passed to `Step`.
+template <class T>
+struct GroupRows {
+  const T* actions = nullptr;
+  T* observations = nullptr;
+  T* final_observations = nullptr;  ///< Null: not requested.
+  double* rewards = nullptr;
+  std::uint8_t *terminated = nullptr, *truncated = nullptr;
+  std::uint8_t* stepped = nullptr;  ///< Whether the world took its action.
+  /// Whether `Finish` began an episode, so that the observation is its first.
+  std::uint8_t* begun = nullptr;
+};
+
+class Group {
+ public:
+  /// The first `count` lanes are worlds; surplus lanes repeat the first one.
+  Group(const Plan& plan, const ExperimentSpec& observed, const std::vector<ChannelInfo>& channels,
+        int count);
+
+  int count() const noexcept { return count_; }
+  int width() const noexcept { return width_; }
+
+  /// Resets a world to the start of an episode. If there is no such start, returns false with the
+  /// reason in `failed` and leaves the world unchanged. Call `Settle` after one or several resets.
+  bool Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place, std::string& failed);
+  void Settle();
+
+  /// Performs a period: actions, steps, rewards, termination, observations.
+  template <class T>
+  void Step(const GroupRows<T>& rows, Starts& starts, Place& place);
+  /// Books rewards and ends of episodes, including changes by callbacks, and begins new episodes.
+  /// Returns whether any episode began in this step.
+  template <class T>
+  bool Finish(const GroupRows<T>& rows, Starts& starts, Place& place);
+  template <class T>
+  void Emit(int lane, T* row) const {
+    observer_.Emit(lane, row);
+  }
+
+  /// Serializes a world with its episode.
+  std::vector<std::uint8_t> Save(int lane);
+  /// Restores a world. Returns false, without changes, if the state does not belong to the model.
+  bool Restore(int lane, std::span<const std::uint8_t> saved);
+
+  const EpisodeState& state(int lane) const { return worlds_[Index(lane)].now; }
+  const EpisodeState& last(int lane) const { return worlds_[Index(lane)].last; }
+  const Episode& episode(int lane) const { return worlds_[Index(lane)].episode; }
+  double time_s(int lane) const { return loop_.time_s(lane); }
+  const Batch& batch() const noexcept { return batch_; }
+  Batch& batch() noexcept { return batch_; }
+
+ private:
+  struct Slot {
+    Episode episode;
+    EpisodeState now, last;
+    bool waits = false;       ///< Its episode is over; the next one begins in the next step.
+    bool good_action = true;  ///< Whether all numbers of this step's action were finite.
+    bool begins = false;      ///< `Settle` has to initialize it.
+  };
+
+  /// Serializes everything except the state of the batch.
+  void Serialize(plant::LaneState& state);
+
+  static std::size_t Index(int lane) noexcept { return static_cast<std::size_t>(lane); }
+  void Advance(Place& place);
+  void BeginNext(int lane, Starts& starts, Place& place);
+
+  const Plan& plan_;
+  int count_, width_;
+  Batch batch_;
+  std::unique_ptr<Plant> plant_;
+  plant::Loop loop_;
+  LaneBodies bodies_;
+  Actions actions_;
+  RewardAndTermination reward_and_termination_;
+  Observer observer_;
+  std::vector<Slot> worlds_;
+};
+
+}  // namespace taut::env

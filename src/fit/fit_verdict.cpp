@@ -1,0 +1,233 @@
+// Verdict on a fit: goodness of fit by chi-square, errors by groups, cross-validation
+// (docs/theory/identification.md, section 6).
+#include <algorithm>
+#include <cmath>
+
+#include "fit/format.h"
+#include "fit/problem.h"
+#include "taut/fit_verdict.h"
+
+namespace taut {
+namespace {
+
+using fit::Brief;
+
+/// Least pull, in sds of the prior, that is named when a fit is rejected.
+constexpr double kStrongPull = 3;
+/// Relative difference of costs up to which starts count as converged to the same minimum.
+constexpr double kSameCost = 1e-3;
+/// Errors by groups are reported if they exceed those by J^T J by this factor and chance explains
+/// it with a probability below kByChance.
+constexpr double kSeveral = 2, kByChance = 1e-3;
+
+/// Approximates a sum of squares of normal numbers, given the traces of their covariance and of its
+/// square, by a multiple of a chi-square with the same mean and variance (Satterthwaite; exact if
+/// all eigenvalues are equal or 0).
+ChiSquare MakeChiSquare(double value, double trace, double trace_of_square) {
+  ChiSquare chi{value, trace, 1};
+  if (trace > 1e-6 && trace_of_square > 0) {
+    const double factor = trace_of_square / trace;
+    chi.p = ChiSquareTail(value / factor, trace / factor);
+  }
+  return chi;
+}
+
+/// Uses the traces of I - D C D and of its square, D = diag(1 / prior sd): the covariance of the
+/// pulls (F.15).
+ChiSquare PriorsOf(const FitProblem& problem, const Identifiability& found) {
+  const std::size_t n = problem.parameters.size();
+  double value = 0, trace = 0, square = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const FitParameter& p = problem.parameters[i];
+    if (!fit::HasPrior(p)) continue;
+    value += found.parameters[i].pull * found.parameters[i].pull;
+    for (std::size_t j = 0; j < n; ++j) {
+      const FitParameter& other = problem.parameters[j];
+      if (!fit::HasPrior(other)) continue;
+      const double entry =
+          (i == j ? 1.0 : 0.0) - found.covariance[i * n + j] / (p.prior_sd * other.prior_sd);
+      if (i == j) trace += entry;
+      square += entry * entry;
+    }
+  }
+  return MakeChiSquare(value, trace, square);
+}
+
+/// Chi-squares of the data with their losses, of the priors, and of both. For a linear model with
+/// normal errors the sum is a chi-square.
+void ChiSquares(const FitProblem& problem, FitVerdict& verdict) {
+  double data = 0;
+  for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+    data += fit::Loss(problem.rows[i], verdict.derivatives.residual[i]);
+  }
+  const Identifiability& found = verdict.identifiability;
+  const double rows = static_cast<double>(problem.rows.size());
+  verdict.data = MakeChiSquare(data, rows - found.effective,
+                               rows - 2 * found.effective + found.effective_square);
+  verdict.prior = PriorsOf(problem, found);
+  double freedom = rows + found.endless;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    if (fit::HasPrior(problem.parameters[j])) freedom += 1;
+    if (found.parameters[j].kind != Determined::kAtBound) freedom -= 1;
+  }
+  verdict.total = MakeChiSquare(data + verdict.prior.value, freedom, freedom);
+}
+
+std::string Of(const ChiSquare& chi) {
+  return "chi-square " + Brief(chi.value) + " with " + Brief(chi.freedom) +
+         " degrees of freedom (p = " + Brief(chi.p) + ")";
+}
+
+std::string Errors(const std::string& what, const FitErrors& errors) {
+  return what + ": " + Brief(errors.fitted) + " standard deviations RMS, untuned " +
+         Brief(errors.untuned) + " (" + std::to_string(errors.count) + " data)" +
+         (errors.worse() ? ": worse than untuned" : "");
+}
+
+std::string RejectedSentence(const FitProblem& problem, const FitVerdict& verdict) {
+  std::string text = "Rejected: total " + Of(verdict.total) + ", data " + Of(verdict.data) +
+                     ", priors " + Of(verdict.prior) + ".";
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const double pull = verdict.identifiability.parameters[j].pull;
+    if (std::fabs(pull) < kStrongPull) continue;
+    text += " " + problem.parameters[j].name + " is " + Brief(std::fabs(pull)) +
+            " prior standard deviations from its prior mean.";
+  }
+  return text;
+}
+
+std::string UnidentifiableSentence(const FitProblem& problem, const FitVerdict& verdict) {
+  std::vector<std::string> names;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const bool estimated = verdict.identifiability.parameters[j].kind == Determined::kEstimated;
+    if (!estimated && !problem.parameters[j].nuisance) names.push_back(problem.parameters[j].name);
+  }
+  return "Not identifiable: the data do not determine " + fit::List(names) + "; they fix " +
+         std::to_string(verdict.identifiability.fixed) + " of " +
+         std::to_string(problem.parameters.size()) + " combinations of parameters (condition " +
+         Brief(verdict.identifiability.condition) + ").";
+}
+
+/// Compares errors by groups with those by J^T J. For independent residuals, (G - 1) times the
+/// square of their ratio is a chi-square with G - 1 degrees of freedom. Errors by groups: eq. F.14.
+void CompareErrors(const FitProblem& problem, FitVerdict& verdict) {
+  const double freedom = static_cast<double>(verdict.jackknife.groups.size()) - 1;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    ParameterVerdict& v = verdict.identifiability.parameters[j];
+    if (!std::isfinite(v.se)) continue;
+    v.se_jackknife = verdict.jackknife.se[j];
+    if (!v.se_jackknife) continue;
+    const FitParameter& p = problem.parameters[j];
+    const double ratio = v.se > 0 ? *v.se_jackknife / v.se : 0;
+    v.groups_apart =
+        ratio > kSeveral && ChiSquareTail(freedom * ratio * ratio, freedom) < kByChance;
+    const bool small = v.sd_ratio * ratio <= fit::kEstimatedShare;
+    if (!v.groups_apart || v.kind != Determined::kEstimated || small) {
+      v.sentence += "; leaving out groups: +- " + Brief(*v.se_jackknife, p.unit);
+      if (v.groups_apart) {
+        v.sentence +=
+            ", " + Brief(ratio) +
+            " times the error by J^T J: residuals within a group are correlated, use this error";
+      }
+      continue;
+    }
+    v.kind = Determined::kScattered;
+    v.sentence = p.name + " = " + Brief(v.value, p.unit) +
+                 " is not determined: its estimates without one group or another differ, +- " +
+                 Brief(*v.se_jackknife, p.unit) + " (by J^T J, which ignores groups: +- " +
+                 Brief(v.se, p.unit) + ")";
+  }
+}
+
+void Decide(const FitProblem& problem, const VerdictOptions& options, FitVerdict& verdict) {
+  verdict.rejected = verdict.total.p < options.least_p || verdict.data.p < options.least_p ||
+                     verdict.prior.p < options.least_p;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    const bool estimated = verdict.identifiability.parameters[j].kind == Determined::kEstimated;
+    verdict.unidentifiable |= !estimated && !problem.parameters[j].nuisance;
+  }
+  const FitErrors& unseen = verdict.hold_out ? *verdict.hold_out : verdict.cross_validation.all;
+  verdict.worse = unseen.worse() || !unseen.failed.empty();
+  verdict.judgement = verdict.rejected         ? FitJudgement::kRejected
+                      : verdict.unidentifiable ? FitJudgement::kUnidentifiable
+                      : verdict.worse          ? FitJudgement::kWorse
+                                               : FitJudgement::kGood;
+}
+
+void SayJudgement(const FitProblem& problem, FitVerdict& verdict) {
+  auto& say = verdict.sentences;
+  if (verdict.rejected) say.push_back(RejectedSentence(problem, verdict));
+  if (verdict.unidentifiable) say.push_back(UnidentifiableSentence(problem, verdict));
+  if (verdict.worse) say.emplace_back("Worse than untuned on held-out data.");
+  if (verdict.judgement == FitJudgement::kGood) {
+    say.push_back("Good: all parameters are estimated, " + Of(verdict.total) +
+                  (verdict.hold_out || verdict.cross_validation.all.count > 0
+                       ? ", and better than untuned on held-out data."
+                       : "; it was not tested on held-out data."));
+  }
+  if (verdict.total.p > 1 - 1e-3) {
+    say.emplace_back(
+        "The residuals are smaller than their standard deviations suggest: these are too large, "
+        "or data are correlated.");
+  }
+}
+
+void SayWhy(const FitProblem& problem, const FitResult& fit, FitVerdict& verdict) {
+  auto& say = verdict.sentences;
+  for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
+    say.push_back(verdict.identifiability.parameters[j].sentence);
+  }
+  say.push_back(Errors("on fitted data", verdict.train));
+  if (verdict.hold_out) {
+    say.push_back(verdict.hold_out->failed.empty()
+                      ? Errors("on held-out data", *verdict.hold_out)
+                      : "the held-out data could not be computed: " + verdict.hold_out->failed);
+  }
+  if (verdict.cross_validation.all.count > 0) {
+    say.push_back(Errors("on groups left out in turn", verdict.cross_validation.all));
+  }
+  const auto& tracks = fit.state.tracks;
+  if (tracks.size() < 2) return;
+  std::size_t same = 0, failed = 0;
+  for (const FitTrack& track : tracks) {
+    failed += track.end == FitEnd::kFailed ? 1 : 0;
+    same += track.end != FitEnd::kFailed && track.cost <= fit.cost + kSameCost ? 1 : 0;
+  }
+  say.push_back(std::to_string(same) + " of " + std::to_string(tracks.size()) +
+                " starts converged to this minimum" +
+                (failed > 0 ? ", " + std::to_string(failed) + " could not be computed" : ""));
+}
+
+}  // namespace
+
+FitVerdict JudgeFit(const FitProblem& problem, const FitResult& fit, const VerdictOptions& options,
+                    const FitProblem* test) {
+  FitVerdict verdict;
+  if (!fit.best) {
+    verdict.sentences.push_back("There is no fit: " + fit.why);
+    return verdict;
+  }
+  verdict.values = fit.values;
+  verdict.derivatives = Differentiate(problem, fit.values);
+  if (!verdict.derivatives.done) {
+    verdict.sentences.push_back("There is no verdict: " + verdict.derivatives.why);
+    return verdict;
+  }
+  Identifiability& found = verdict.identifiability;
+  found = Identify(problem, fit.values, verdict.derivatives);
+  verdict.jackknife =
+      JackknifeGroups(problem, fit.values, verdict.derivatives, options.jackknife, options.fit);
+  CompareErrors(problem, verdict);
+  ChiSquares(problem, verdict);
+  verdict.train = HoldOut(problem, fit.values);
+  if (options.folds) {
+    verdict.cross_validation = CrossValidate(problem, fit.values, *options.folds, options.fit);
+  }
+  if (test != nullptr) verdict.hold_out = HoldOut(*test, fit.values);
+  Decide(problem, options, verdict);
+  SayJudgement(problem, verdict);
+  SayWhy(problem, fit, verdict);
+  return verdict;
+}
+
+}  // namespace taut

@@ -1,0 +1,140 @@
+#include "linear/linear_world.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "linear/step_dual.h"
+
+namespace taut::linear {
+namespace {
+
+BatchOptions OptionsOf(int worlds, Simd simd, double tolerance_m_per_s) {
+  BatchOptions options;
+  options.worlds = worlds;
+  options.simd = simd;
+  options.tolerance_m_per_s = tolerance_m_per_s;
+  return options;
+}
+
+/// Copy of all data that a group's step reads and writes.
+struct Kept {
+  std::vector<double> rows;
+  std::vector<int> slots_used;
+  int touches_used;
+
+  Kept(const sim::Group& group, int row_count, std::vector<int> slots)
+      : rows(group.rows, group.rows + 2 * row_count),
+        slots_used(std::move(slots)),
+        touches_used(group.touches_used) {}
+};
+
+}  // namespace
+
+template <>
+World<Plain>::World(std::shared_ptr<const Model> model, const Batch& at, double tolerance)
+    : batch_(std::move(model), OptionsOf(1, Simd::kScalar, tolerance)),
+      inside_(&BatchInside::Of(batch_)),
+      snapshot_(at.Save(0)) {
+  Reset();
+}
+
+// The interleaved rows of two worlds are the rows of one world whose numbers are twice as wide.
+template <>
+World<Dual>::World(std::shared_ptr<const Model> model, const Batch& at, double tolerance)
+    : batch_(std::move(model), OptionsOf(2, Simd::kSse2, tolerance)),
+      inside_(&BatchInside::Of(batch_)),
+      snapshot_(at.Save(0)),
+      good_(batch_.lanes() == 2) {
+  if (!good_) return;
+  inside_->kernel = &kKernelDual;
+  inside_->scratch[0] = AllocateAligned<char>(kKernelDual.scratch_bytes(inside_->view));
+  Reset();
+}
+
+template <class Num>
+void World<Num>::Reset() {
+  batch_.Restore(0, snapshot_);
+  batch_.ClearStatus(0);
+  sim::Group& g = inside_->groups[0];
+  for (int row = 0; g.lanes == 2 && row < layout().rows; ++row) g.rows[2 * row + 1] = 0.0;
+  // Forces may act on any node.
+  for (int node = 0; node < view().node_count; ++node) inside_->ForceNode(0, node);
+}
+
+template <class Num>
+Num World<Num>::Get(int row) const noexcept {
+  Num x;
+  const sim::Group& g = inside_->groups[0];
+  std::memcpy(&x, g.rows + static_cast<std::ptrdiff_t>(g.lanes) * row, sizeof(Num));
+  return x;
+}
+
+template <class Num>
+void World<Num>::Set(int row, Num x) noexcept {
+  const sim::Group& g = inside_->groups[0];
+  std::memcpy(g.rows + static_cast<std::ptrdiff_t>(g.lanes) * row, &x, sizeof(Num));
+}
+
+template <class Num>
+void World<Num>::Add(int row, double amount, double unit) noexcept {
+  double* const x = &inside_->groups[0].rows[static_cast<std::ptrdiff_t>(inside_->lanes()) * row];
+  if constexpr (sizeof(Num) == sizeof(double)) {
+    *x += amount * unit;
+  } else {
+    x[1] += unit;
+  }
+}
+
+template <>
+void World<Plain>::Step(double step_s) {
+  batch_.Step(step_s);
+}
+
+/// The solver stops once the laws hold to its tolerance, regardless of their derivatives. One step
+/// of Newton's method from impulses near the solution makes both exact where laws are linear:
+/// always for cables and joints, and for contacts because bodies are lifted slightly off them
+/// (state_space.cpp). At least one step is taken. The solver's compliances leave an error in the
+/// derivatives; a second step from the impulses of the first removes it (L3).
+template <>
+void World<Dual>::Step(double step_s) {
+  sim::Group& g = inside_->groups[0];
+  const sim::Layout& l = layout();
+  const auto each_impulse = [&](auto&& f) {
+    const int contacts = view().ContactCapacity();
+    for (int i = 0; i < 3 * contacts; ++i) f(l.contact_force + i);
+    for (int i = 0; i < view().joint_row_count; ++i) f(l.joint_load + i);
+    for (int c = 0; c < view().cable_count; ++c) {
+      if (step_s * step_s * g.rows[2 * (l.stiff_k + c)] > kStiffFrom) f(l.tension + c);
+    }
+  };
+  const Kept before(g, l.rows, inside_->slots_used);
+  batch_.Step(step_s);
+  const Kept after(g, l.rows, inside_->slots_used);
+  std::copy(before.rows.begin(), before.rows.end(), g.rows);
+  // Keys, forces and slip state of the contact memory must stay consistent.
+  inside_->slots_used = after.slots_used;
+  g.slots_used = inside_->slots_used.data();
+  g.touches_used = after.touches_used;
+  for (const sim::RowInfo& row : sim::kStateRows) {
+    if (row.role != sim::Role::kMemory) continue;
+    const int first = 2 * (l.*row.first), count = 2 * row.width * view().ContactCapacity();
+    std::copy_n(after.rows.begin() + first, count, g.rows + first);
+  }
+  each_impulse([&](int row) {
+    for (const int part : {0, 1}) {
+      g.rows[2 * row + part] = after.rows[static_cast<std::size_t>(2 * row + part)];
+    }
+  });
+  batch_.Step(step_s);
+}
+
+template <class Num>
+void World<Num>::Sense() {
+  inside_->groups[0].sensed = false;
+  inside_->Sense(0);
+}
+
+template class World<Plain>;
+template class World<Dual>;
+
+}  // namespace taut::linear

@@ -1,0 +1,124 @@
+// Bounds for the bounding volume hierarchy (BVH) of the broad phase.
+#include "sim/geometry/bvh.h"
+
+#include "sim/geometry/convex.h"
+
+namespace taut::sim {
+namespace {
+
+double Magnitude(double x) noexcept { return x < 0 ? -x : x; }
+
+Bounds BoundsOf(const RoundShape& shape) noexcept {
+  Bounds bounds;
+  for (int i = 0; i < 3; ++i) {
+    const bool rises = shape.from[i] < shape.to[i];
+    bounds.low[i] = (rises ? shape.from[i] : shape.to[i]) - shape.radius_m;
+    bounds.high[i] = (rises ? shape.to[i] : shape.from[i]) + shape.radius_m;
+  }
+  return bounds;
+}
+
+Bounds BoundsOf(const BoxShape& shape) noexcept {
+  Bounds bounds;
+  for (int i = 0; i < 3; ++i) {
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      reach += Magnitude(shape.axes[3 * axis + i]) * shape.half_m[axis];
+    }
+    bounds.low[i] = shape.center[i] - reach;
+    bounds.high[i] = shape.center[i] + reach;
+  }
+  return bounds;
+}
+
+Bounds BoundsOf(const HullShape& shape) noexcept {
+  Vec3 low, high;
+  Convex(shape).Bounds(&low, &high);
+  return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
+}
+
+/// Terrain surfaces have their own lookup and are in no tree.
+Bounds BoundsOf(const SurfaceShape&) noexcept { return {}; }
+
+/// Returns the squared distance of a point from a centerline, or from a box.
+double SkeletonDistance2(const RoundShape& shape, const double* p) noexcept {
+  double line[3], to_p[3], length2 = 0, along = 0;
+  for (int i = 0; i < 3; ++i) {
+    line[i] = shape.to[i] - shape.from[i];
+    to_p[i] = p[i] - shape.from[i];
+    length2 += line[i] * line[i];
+    along += line[i] * to_p[i];
+  }
+  const double share = along <= 0 ? 0.0 : along >= length2 ? 1.0 : along / length2;
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double d = to_p[i] - share * line[i];
+    sum += d * d;
+  }
+  return sum;
+}
+
+double SkeletonDistance2(const BoxShape& shape, const double* p) noexcept {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double* const u = shape.axes + 3 * axis;
+    double at = 0;
+    for (int i = 0; i < 3; ++i) at += u[i] * (p[i] - shape.center[i]);
+    const double beyond = Magnitude(at) - shape.half_m[axis];
+    if (beyond > 0) sum += beyond * beyond;
+  }
+  return sum;
+}
+
+/// Returns a lower bound, from the ball around the hull.
+double SkeletonDistance2(const HullShape& shape, const double* p) noexcept {
+  const Vec3 own = shape.table->center;
+  const double center[3] = {own.x, own.y, own.z};
+  double moved[3];
+  Move(shape.at, center, moved);
+  const double beyond = Larger(Norm(Load(p) - Load(moved)) - shape.table->bound_m, 0.0);
+  return beyond * beyond;
+}
+
+double SkeletonDistance2(const SurfaceShape&, const double*) noexcept { return 0.0; }
+
+}  // namespace
+
+Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept {
+  Shape moved;
+  moved.kind = shape.kind;
+  switch (shape.kind) {
+    case ShapeKind::kRound:
+      moved.round = Moved(shape.round, pose);
+      break;
+    case ShapeKind::kBox:
+      moved.box = Moved(shape.box, pose);
+      break;
+    case ShapeKind::kHull:
+      moved.hull = Moved(shape.hull, pose);
+      break;
+    case ShapeKind::kSurface:
+      moved.surface = shape.surface;
+      break;
+  }
+  return moved;
+}
+
+Bounds BoundsOf(const Shape& shape) noexcept {
+  return WithShape(shape, [](const auto& kind) noexcept { return BoundsOf(kind); });
+}
+
+bool MayReach(const Shape& shape, const double* center, double radius_m, double reach_m) noexcept {
+  const double far_m = radius_m + reach_m + RadiusOf(shape);
+  const double distance2 =
+      WithShape(shape, [&](const auto& kind) noexcept { return SkeletonDistance2(kind, center); });
+  return distance2 <= far_m * far_m;
+}
+
+void MarkNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
+              uint64_t* marks) noexcept {
+  EachNear(tree, count, bounds, reach_m,
+           [&](int shape) noexcept { marks[shape / 64] |= uint64_t{1} << (shape % 64); });
+}
+
+}  // namespace taut::sim
