@@ -25,7 +25,7 @@ def ninja(folder, *arguments):
 
 def sources_and_headers(folder):
     """Returns the files of the tree from which the tests are built, as paths from its root."""
-    objects = {line for line in ninja(folder, "-t", "inputs", "bits_tests").splitlines() 
+    objects = {line for line in ninja(folder, "-t", "inputs", "bits_tests").splitlines()
                if line.endswith(".o") and not line.startswith(WITHOUT_ARITHMETIC)}
     found, wanted = set(), False
     for line in ninja(folder, "-t", "deps").splitlines():

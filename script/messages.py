@@ -82,7 +82,7 @@ def read_messages():
 def main():
     lines = ["# Every message identifier with its texts. Written by script/messages.py; {}: a value."]
     for identifier, texts in sorted(read_messages().items()):
-        lines += [identifier, *(f"    {text}" for text in sorted(texts))]
+        lines += [identifier, *(f"    {text}".rstrip() for text in sorted(texts))]
     text = "\n".join(lines) + "\n"
     if sys.argv[1:] == ["--check"]:
         if not LIST.is_file() or LIST.read_text(encoding="utf8") != text:

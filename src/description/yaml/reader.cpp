@@ -183,6 +183,38 @@ void MapReader::Know(std::string_view key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
 }
 
+namespace {
+
+/// Returns the fix for an unknown key: the same quantity in the unit of the files, a synonym, or
+/// the key with the most similar name.
+std::string FixOf(const std::string& key, const std::vector<std::string>& known) {
+  struct Unit {
+    std::string_view theirs, ours, factor;
+  };
+  constexpr Unit kUnits[] = {{"_n_per_mm", "_n_per_m", "1000"},
+                             {"_mm", "_m", "0.001"},
+                             {"_cm", "_m", "0.01"},
+                             {"_g", "_kg", "0.001"},
+                             {"_kn", "_n", "1000"},
+                             {"_ms", "_s", "0.001"},
+                             {"_deg", "_rad", "pi / 180"}};
+  const auto is_known = [&](const std::string& one) {
+    return std::find(known.begin(), known.end(), one) != known.end();
+  };
+  for (const Unit& unit : kUnits) {
+    if (!key.ends_with(unit.theirs)) continue;
+    const std::string other =
+        key.substr(0, key.size() - unit.theirs.size()) + std::string(unit.ours);
+    if (is_known(other)) {
+      return "write \"" + other + "\", and the value times " + std::string(unit.factor);
+    }
+  }
+  if (key == "pretension_n" && is_known("prestress_n")) return "did you mean \"prestress_n\"?";
+  return KeyHint(key, known);
+}
+
+}  // namespace
+
 void MapReader::RefuseOthers() const {
   if (!is_map()) {
     WrongType(value_, what_.empty() ? "the file" : what_, "a map", scope_);
@@ -192,7 +224,7 @@ void MapReader::RefuseOthers() const {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     scope_.out.Error("key.unknown", entry.key_at,
                      "unknown key \"" + entry.key + "\"" + (what_.empty() ? "" : " in " + what_),
-                     KeyHint(entry.key, known_));
+                     FixOf(entry.key, known_));
   }
 }
 

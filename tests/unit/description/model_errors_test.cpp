@@ -21,6 +21,20 @@ TEST(ModelErrors, KeysAreStrict) {
             "robot.yaml:7:1: error: duplicate key \"pairs\" (first in line 5)\n");
 }
 
+TEST(ModelErrors, KeysInOtherUnitsHaveTheFactor) {
+  const std::string rod = Errors(OneRod("{radius_mm: 4, mass_g: 20}"));
+  EXPECT_NE(
+      rod.find("unknown key \"radius_mm\" in rod (write \"radius_m\", and the value times 0.001)"),
+      std::string::npos)
+      << rod;
+  EXPECT_NE(rod.find("(write \"mass_kg\", and the value times 0.001)"), std::string::npos) << rod;
+  const std::string cable = Errors(TwoRods("stiffness_n_per_mm: 0.4, pretension_n: 1"));
+  EXPECT_NE(cable.find("(write \"stiffness_n_per_m\", and the value times 1000)"),
+            std::string::npos)
+      << cable;
+  EXPECT_NE(cable.find("(did you mean \"prestress_n\"?)"), std::string::npos) << cable;
+}
+
 TEST(ModelErrors, NumbersAreInTheirRange) {
   EXPECT_EQ(
       Errors(OneRod("{radius_m: -0.1, mass_kg: .nan, friction: -1, restitution: 2, collides: 1}")),
@@ -217,8 +231,8 @@ TEST(ModelErrors, RotationsAreWellFormed) {
             "robot.yaml:7:33: error: structure.rotate needs the key \"angle_rad\"\n");
   EXPECT_EQ(rotate("{axis: z, angle_deg: 90}"),
             "robot.yaml:7:33: error: structure.rotate needs the key \"angle_rad\"\n"
-            "robot.yaml:7:43: error: unknown key \"angle_deg\" in structure.rotate (did you mean "
-            "\"angle_rad\"?)\n");
+            "robot.yaml:7:43: error: unknown key \"angle_deg\" in structure.rotate (write "
+            "\"angle_rad\", and the value times pi / 180)\n");
   EXPECT_EQ(rotate("{axis: [0, 0, 0], angle_rad: 1}"),
             "robot.yaml:7:40: error: structure.rotate.axis must not be zero (it is a direction)\n");
   EXPECT_EQ(rotate("{axis: z, angle_rad: 1e10}"),
