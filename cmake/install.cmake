@@ -53,7 +53,8 @@ endif()
 
 # What is to be read, with the licence that goes with every copy.
 install(FILES LICENSE NOTICE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  PATTERN "__pycache__" EXCLUDE) # left by programs that were run here
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tautConfig.cmake.in
   ${PROJECT_BINARY_DIR}/tautConfig.cmake INSTALL_DESTINATION ${config_dir}

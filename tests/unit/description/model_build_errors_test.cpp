@@ -7,22 +7,20 @@ namespace taut {
 namespace {
 
 TEST(ModelBuildErrors, BuildersThatMatchNothing) {
-  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05",
-                           "  - {match: cabel, sphere: {radius_m: 1, mass_kg: 1}}\n")),
-            "robot.yaml:12:13: error: no node matches [cabel] (tag cabel: one of: a, b, c, d)\n");
-  EXPECT_EQ(Errors(TwoRods(
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05",
+                                "  - {match: cabel, sphere: {radius_m: 1, mass_kg: 1}}\n")),
+            "robot.yaml:12:13: error: builder.matches_nothing\n");
+  EXPECT_EQ(CodedErrors(TwoRods(
                 "rest_length_m: 0.05",
                 "  - {match: [[rod, x], [rd]], box: {width_m: 1, height_m: 1, mass_kg: 1}}\n")),
-            "robot.yaml:12:13: error: no pair matches [rd] (tag rd: did you mean \"rod\"?)\n"
-            "robot.yaml:12:13: error: no pair matches [rod, x] (tag x: one of: cable, rod)\n");
-  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05",
-                           "  - {match: rod, sphere: {radius_m: 1, mass_kg: 1}}\n")),
-            "robot.yaml:12:13: error: no node matches [rod] (a sphere is made from nodes, but "
-            "these tags are on pairs)\n");
-  EXPECT_EQ(
-      Errors(TwoRods("rest_length_m: 0.05",
-                     "  - {match: [rod, cable], sphere: {radius_m: 1, mass_kg: 1}}\n")),
-      "robot.yaml:12:13: error: no node matches [rod, cable] (tag rod: did you mean \"d\"?)\n");
+            "robot.yaml:12:13: error: builder.matches_nothing\n"
+            "robot.yaml:12:13: error: builder.matches_nothing\n");
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05",
+                                "  - {match: rod, sphere: {radius_m: 1, mass_kg: 1}}\n")),
+            "robot.yaml:12:13: error: builder.matches_nothing\n");
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05",
+                                "  - {match: [rod, cable], sphere: {radius_m: 1, mass_kg: 1}}\n")),
+            "robot.yaml:12:13: error: builder.matches_nothing\n");
 }
 
 // A spine of two segments has no middle segment; its file is valid nevertheless.
@@ -35,57 +33,49 @@ TEST(ModelBuildErrors, ABuilderForCopiesThatAreNotThereIsNone) {
 
 TEST(ModelBuildErrors, BuildersAreWellFormed) {
   EXPECT_EQ(
-      Errors(TwoRods(
+      CodedErrors(TwoRods(
           "rest_length_m: 0.05",
           "  - {rod: {radius_m: 1, mass_kg: 1}}\n  - {match: rod}\n  - {match: rod, rods: {}}\n"
           "  - {match: rod, rod: {radius_m: 1, mass_kg: 1}, cable: {}}\n  - {match: a, anchor: "
           "{at: 1}}\n")),
-      "robot.yaml:12:5: error: builder needs the key \"match\"\n"
-      "robot.yaml:13:5: error: builder needs one of rod, sphere, point_mass, box, convex, cable, "
-      "bar, anchor, joint, support\n"
-      "robot.yaml:14:5: error: builder needs one of rod, sphere, point_mass, box, convex, cable, "
-      "bar, anchor, joint, support\n"
-      "robot.yaml:14:18: error: unknown key \"rods\" in builder (did you mean \"rod\"?)\n"
-      "robot.yaml:15:50: error: builder has both rod and cable (give only one of them)\n"
-      "robot.yaml:16:25: error: unknown key \"at\" in anchor\n");
+      "robot.yaml:12:5: error: key.missing \"match\"\n"
+      "robot.yaml:13:5: error: key.one_of_missing point_mass\n"
+      "robot.yaml:14:5: error: key.one_of_missing point_mass\n"
+      "robot.yaml:14:18: error: key.unknown \"rods\"\n"
+      "robot.yaml:15:50: error: key.both_given\n"
+      "robot.yaml:16:25: error: key.unknown \"at\"\n");
 }
 
 TEST(ModelBuildErrors, BoxesAreAlongPairsOrAtNodes) {
-  EXPECT_EQ(Errors(TwoRods(
+  EXPECT_EQ(CodedErrors(TwoRods(
                 "rest_length_m: 0.05",
                 "  - {match: a, box: {width_m: 1, height_m: 1, size_m: [1, 1, 1], mass_kg: 1}}\n")),
-            "robot.yaml:12:13: error: no pair matches [a] (a box is made from pairs, but these "
-            "tags are on nodes)\n"
-            "robot.yaml:12:47: error: box has both width_m and size_m (give width_m and height_m "
-            "along a pair, size_m or half_extents_m at a node)\n");
-  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05",
-                           "  - {match: a, box: {size_m: [1, -1, 1], mass_kg_per_m: 1}}\n")),
-            "robot.yaml:12:21: error: box needs one of mass_kg, density_kg_per_m3\n"
-            "robot.yaml:12:30: error: box.size_m must be three positive numbers\n"
-            "robot.yaml:12:42: error: a box at a node cannot have a mass per length (give mass_kg "
-            "or density_kg_per_m3)\n");
-  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05", "  - {match: a, box: {mass_kg: 1}}\n")),
-            "robot.yaml:12:21: error: box needs one of size_m, half_extents_m, width_m\n");
+            "robot.yaml:12:13: error: builder.matches_nothing\n"
+            "robot.yaml:12:47: error: box.width_given_twice width_m size_m\n");
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05",
+                                "  - {match: a, box: {size_m: [1, -1, 1], mass_kg_per_m: 1}}\n")),
+            "robot.yaml:12:21: error: key.one_of_missing mass_kg density_kg_per_m3\n"
+            "robot.yaml:12:30: error: value.not_three_positive box.size_m\n"
+            "robot.yaml:12:42: error: box.no_length\n");
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05", "  - {match: a, box: {mass_kg: 1}}\n")),
+            "robot.yaml:12:21: error: key.one_of_missing size_m half_extents_m width_m\n");
 }
 
 TEST(ModelBuildErrors, NothingIsBuiltTwice) {
-  EXPECT_EQ(Errors(TwoRods("rest_length_m: 0.05",
-                           "  - {match: a-b, rod: {radius_m: 0.01, mass_kg: 1}}\n"
-                           "  - {match: a, point_mass: {mass_kg: 1}}\n  - {match: [[a], [b]], "
-                           "point_mass: {mass_kg: 1}}\n")),
-            "robot.yaml:12:5: error: \"a-b\" is already a rod, made by the builder in line 10 "
-            "(change the tags so that only one of the two builders matches)\n"
-            "robot.yaml:14:5: error: \"a\" is already a point_mass, made by the builder in line 13 "
-            "(change the tags so that only one of the two builders matches)\n");
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05",
+                                "  - {match: a-b, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                                "  - {match: a, point_mass: {mass_kg: 1}}\n  - {match: [[a], [b]], "
+                                "point_mass: {mass_kg: 1}}\n")),
+            "robot.yaml:12:5: error: builder.second_builder \"a-b\" 10\n"
+            "robot.yaml:14:5: error: builder.second_builder \"a\" point_mass 13\n");
 }
 
 TEST(ModelBuildErrors, EveryPairHasABuilder) {
   std::string yaml = TwoRods();
   yaml.replace(yaml.find("tags: [cable]"), 13, "tags: [cabel]");
-  EXPECT_EQ(
-      Errors(yaml),
-      "robot.yaml:8:5: error: no builder matches the pair \"a-c\" (its tags are [cabel, a-c])\n"
-      "robot.yaml:11:13: error: no pair matches [cable] (tag cable: did you mean \"cabel\"?)\n");
+  EXPECT_EQ(CodedErrors(yaml),
+            "robot.yaml:8:5: error: pair.no_builder \"a-c\"\n"
+            "robot.yaml:11:13: error: builder.matches_nothing\n");
 }
 
 TEST(ModelBuildErrors, PairsAreThereOnce) {
@@ -93,29 +83,27 @@ TEST(ModelBuildErrors, PairsAreThereOnce) {
   yaml.insert(
       yaml.find("builders"),
       "  - {nodes: [c, a], tags: [cable]}\n  - {name: a-c, nodes: [b, d], tags: [cable]}\n");
-  EXPECT_EQ(Errors(yaml),
-            "robot.yaml:9:5: error: duplicate pair \"c-a\" (the first is in line 8; to keep both, "
-            "give each a `name:`)\n"
-            "robot.yaml:10:5: error: duplicate pair \"a-c\" (the first is in line 8; to keep both, "
-            "give each a `name:`)\n");
+  EXPECT_EQ(CodedErrors(yaml),
+            "robot.yaml:9:5: error: pair.duplicate_name \"c-a\"\n"
+            "robot.yaml:10:5: error: pair.duplicate_name \"a-c\"\n");
 }
 
 TEST(ModelBuildErrors, RodsAndCablesHaveALength) {
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [0, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
-                   "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}, {match: a, "
-                   "point_mass: {mass_kg: 1, radius_m: 0.1}}]\n"),
-            "robot.yaml:5:9: error: the rod \"a-b\" has no length (its nodes are at the same "
-            "position)\n");
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [0, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
-                   "builders: [{match: c, cable: {stiffness_n_per_m: 1, rest_length_m: 1}}, "
-                   "{match: [[a], [b]], point_mass: {mass_kg: 1}}]\n"),
-            "robot.yaml:5:9: error: the cable \"a-b\" has no length between \"a\" and \"b\" (move "
-            "one of these nodes: they are at the same position)\n");
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\npairs: [{nodes: [a, b, c], "
-                   "tags: [rod]}]\n"
-                   "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}, {match: a, "
-                   "point_mass: {mass_kg: 1, radius_m: 0.1}}]\n"),
-            "robot.yaml:5:9: error: a rod needs two nodes, but \"a-b-c\" has 3\n");
+  EXPECT_EQ(
+      CodedErrors("nodes: {a: [0, 0, 0], b: [0, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}]\n"
+                  "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}, {match: a, "
+                  "point_mass: {mass_kg: 1, radius_m: 0.1}}]\n"),
+      "robot.yaml:5:9: error: rod.no_length \"a-b\"\n");
+  EXPECT_EQ(CodedErrors("nodes: {a: [0, 0, 0], b: [0, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
+                        "builders: [{match: c, cable: {stiffness_n_per_m: 1, rest_length_m: 1}}, "
+                        "{match: [[a], [b]], point_mass: {mass_kg: 1}}]\n"),
+            "robot.yaml:5:9: error: cable.no_length \"a-b\" \"a\" \"b\"\n");
+  EXPECT_EQ(
+      CodedErrors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\npairs: [{nodes: [a, b, c], "
+                  "tags: [rod]}]\n"
+                  "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}, {match: a, "
+                  "point_mass: {mass_kg: 1, radius_m: 0.1}}]\n"),
+      "robot.yaml:5:9: error: builder.two_nodes_needed \"a-b-c\" 3\n");
 }
 
 TEST(ModelBuildErrors, ACableOnOneBodyDoesNothing) {
@@ -123,17 +111,17 @@ TEST(ModelBuildErrors, ACableOnOneBodyDoesNothing) {
   yaml.replace(yaml.find("[a, c]"), 6, "[b, a]");
   yaml.replace(yaml.find("[a, b]"), 6, "[c, a]");
   EXPECT_NE(Errors(yaml), "");
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}, "
-                   "{name: string, nodes: [b, a]}]\n"
-                   "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}, {match: string, "
-                   "cable: {stiffness_n_per_m: 1, rest_length_m: 1}}]\n"),
-            "robot.yaml:5:39: error: both ends of the cable \"string\" are on the body \"robot\", "
-            "so it has no effect (leave it out, or end it on another body)\n");
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{name: string, nodes: [b, a]}]\n"
-                   "builders: [{match: [[a], [b]], anchor: {}}, {match: string, cable: "
-                   "{stiffness_n_per_m: 1, rest_length_m: 1}}]\n"),
-            "robot.yaml:5:9: error: both ends of the cable \"string\" are on the world, so it has "
-            "no effect (leave it out, or end it on another body)\n");
+  EXPECT_EQ(
+      CodedErrors("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{nodes: [a, b], tags: [rod]}, "
+                  "{name: string, nodes: [b, a]}]\n"
+                  "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1}}, {match: string, "
+                  "cable: {stiffness_n_per_m: 1, rest_length_m: 1}}]\n"),
+      "robot.yaml:5:39: error: cable.both_ends_on_one_body \"string\" \"robot\"\n");
+  EXPECT_EQ(
+      CodedErrors("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{name: string, nodes: [b, a]}]\n"
+                  "builders: [{match: [[a], [b]], anchor: {}}, {match: string, cable: "
+                  "{stiffness_n_per_m: 1, rest_length_m: 1}}]\n"),
+      "robot.yaml:5:9: error: cable.both_ends_on_one_body \"string\"\n");
 }
 
 TEST(ModelBuildErrors, ACableWhoseNodesHaveNoBodyIsNoSecondError) {
@@ -147,20 +135,17 @@ TEST(ModelBuildErrors, ACableWhoseNodesHaveNoBodyIsNoSecondError) {
 }
 
 TEST(ModelBuildErrors, SurfacesAreThereAndDoNotOverlap) {
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0]}\n"
-                   "pairs: [{nodes: [a, b], tags: [rod]}, {nodes: [a, c], tags: [cable]}]\n"
-                   "builders:\n"
-                   "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
-                   "  - {match: c, point_mass: {mass_kg: 1}}\n"
-                   "  - {match: cable, cable: {stiffness_n_per_m: 1, prestress_n: 0.1, ends: "
-                   "surface}}\n"),
-            "robot.yaml:9:74: error: cable.ends: the node \"c\" of the cable \"a-c\" has no "
-            "sphere, and no rod ends there (give the node a sphere, or write `ends: node`)\n");
-  EXPECT_EQ(
-      Errors(TwoRods("rest_length_m: 0.05, ends: surface",
-                     "  - {match: [[a], [c]], sphere: {radius_m: 0.06, mass_kg: 1}}\n")),
-      "robot.yaml:8:5: error: the solids at the ends of the cable \"a-c\" overlap, so it has no "
-      "length between their surfaces (move the nodes apart, or make the solids smaller)\n");
+  EXPECT_EQ(CodedErrors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [0, 1, 0]}\n"
+                        "pairs: [{nodes: [a, b], tags: [rod]}, {nodes: [a, c], tags: [cable]}]\n"
+                        "builders:\n"
+                        "  - {match: rod, rod: {radius_m: 0.01, mass_kg: 1}}\n"
+                        "  - {match: c, point_mass: {mass_kg: 1}}\n"
+                        "  - {match: cable, cable: {stiffness_n_per_m: 1, prestress_n: 0.1, ends: "
+                        "surface}}\n"),
+            "robot.yaml:9:74: error: cable.end_without_solid cable.ends \"c\" \"a-c\"\n");
+  EXPECT_EQ(CodedErrors(TwoRods("rest_length_m: 0.05, ends: surface",
+                                "  - {match: [[a], [c]], sphere: {radius_m: 0.06, mass_kg: 1}}\n")),
+            "robot.yaml:8:5: error: cable.no_length \"a-c\"\n");
   std::string thick = TwoRods("rest_length_m: 0.05, ends: surface");
   thick.replace(thick.find("radius_m: 0.01"), 14, "radius_m: 0.06");
   EXPECT_NE(Errors(thick).find("the solids at the ends of the cable \"a-c\" overlap"),
@@ -169,48 +154,44 @@ TEST(ModelBuildErrors, SurfacesAreThereAndDoNotOverlap) {
 
 TEST(ModelBuildErrors, BodiesHaveInertia) {
   EXPECT_EQ(
-      Errors("nodes: {a: [0, 0, 0], b: {at_m: [1, 0, 0], fixed_to: a}}\nbuilders: [{match: "
-             "[[a], [b]], point_mass: {mass_kg: 1}}]\n"),
-      "robot.yaml:4:9: error: the body \"robot\" has no inertia about a principal axis (give the "
-      "point_mass a radius_m: all mass is on one line)\n");
+      CodedErrors("nodes: {a: [0, 0, 0], b: {at_m: [1, 0, 0], fixed_to: a}}\nbuilders: [{match: "
+                  "[[a], [b]], point_mass: {mass_kg: 1}}]\n"),
+      "robot.yaml:4:9: error: body.no_inertia \"robot\"\n");
 }
 
 TEST(ModelBuildErrors, NumbersThatOverflow) {
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\n"
-                   "pairs: [{each: [[a, b], [b, c]], tags: [rod]}]\n"
-                   "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1e308}}]\n"),
-            "robot.yaml:5:17: error: the mass or inertia of the body \"robot\" is too large for a "
-            "floating-point number\n");
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1e100, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
-                   "builders: [{match: [[a], [b]], point_mass: {mass_kg: 1}}, {match: c, cable: "
-                   "{stiffness_n_per_m: 1, rest_length_ratio: 1e300}}]\n"),
-            "robot.yaml:5:9: error: the cable \"a-b\" has a rest length that is not finite\n");
+  EXPECT_EQ(CodedErrors("nodes: {a: [0, 0, 0], b: [1, 0, 0], c: [2, 0, 0]}\n"
+                        "pairs: [{each: [[a, b], [b, c]], tags: [rod]}]\n"
+                        "builders: [{match: rod, rod: {radius_m: 0.1, mass_kg: 1e308}}]\n"),
+            "robot.yaml:5:17: error: body.too_large \"robot\"\n");
+  EXPECT_EQ(
+      CodedErrors("nodes: {a: [0, 0, 0], b: [1e100, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
+                  "builders: [{match: [[a], [b]], point_mass: {mass_kg: 1}}, {match: c, cable: "
+                  "{stiffness_n_per_m: 1, rest_length_ratio: 1e300}}]\n"),
+      "robot.yaml:5:9: error: cable.rest_length_not_finite \"a-b\"\n");
 }
 
 TEST(ModelBuildErrors, EveryNodeBelongsToABody) {
-  EXPECT_EQ(Errors("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
-                   "builders: [{match: a, point_mass: {mass_kg: 1}}, {match: c, cable: "
-                   "{stiffness_n_per_m: 1, rest_length_m: 1}}]\n"),
-            "robot.yaml:4:23: error: node \"b\" belongs to no body (give it a rod, box, sphere or "
-            "point_mass, attach it to the body of another node with fixed_to, or fix it in the "
-            "world with an anchor)\n");
+  EXPECT_EQ(CodedErrors("nodes: {a: [0, 0, 0], b: [1, 0, 0]}\npairs: [{nodes: [a, b], tags: [c]}]\n"
+                        "builders: [{match: a, point_mass: {mass_kg: 1}}, {match: c, cable: "
+                        "{stiffness_n_per_m: 1, rest_length_m: 1}}]\n"),
+            "robot.yaml:4:23: error: node.no_body \"b\"\n");
 }
 
 TEST(ModelBuildErrors, BodiesAreConnected) {
-  EXPECT_EQ(Errors(std::string(kBars) + "structure: [{part: bar, copies: 3, step_m: [0, 1, 0]}]\n"),
-            "robot.yaml:7:13: error: no cable or joint connects the body \"bar_1\" to \"bar_0\" "
-            "(if this is intended, write `allow_disconnected: true`)\n"
-            "robot.yaml:7:13: error: no cable or joint connects the body \"bar_2\" to \"bar_0\" "
-            "(if this is intended, write `allow_disconnected: true`)\n");
+  EXPECT_EQ(
+      CodedErrors(std::string(kBars) + "structure: [{part: bar, copies: 3, step_m: [0, 1, 0]}]\n"),
+      "robot.yaml:7:13: error: body.not_connected \"bar_1\" \"bar_0\"\n"
+      "robot.yaml:7:13: error: body.not_connected \"bar_2\" \"bar_0\"\n");
 }
 
 TEST(ModelBuildErrors, VelocitiesOfJoinedPlacements) {
   EXPECT_EQ(
-      Errors(std::string(kBars) +
-             "structure: [{part: bar, copies: 2, step_m: [0, 0, 1], velocity_m_per_s: [1, 0, 0]}]\n"
-             "pairs: [{name: post, nodes: [bar_0.a, bar_1.a], tags: [rod]}]\n"),
-      "robot.yaml:7:13: error: the body \"bar_0.a-b\" joins several placements, so none of them "
-      "can have a velocity\n");
+      CodedErrors(
+          std::string(kBars) +
+          "structure: [{part: bar, copies: 2, step_m: [0, 0, 1], velocity_m_per_s: [1, 0, 0]}]\n"
+          "pairs: [{name: post, nodes: [bar_0.a, bar_1.a], tags: [rod]}]\n"),
+      "robot.yaml:7:13: error: body.velocity_of_several_parts \"bar_0.a-b\"\n");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "coded.h"
 #include "taut/spec.h"
 #include "unit/description/errors_of.h"
 
@@ -17,6 +18,7 @@ namespace taut {
 struct Read {
   std::optional<RobotSpec> robot;
   std::string found;   ///< Errors and warnings as printed, with the file name robot.yaml.
+  std::string coded;   ///< The errors as place, identifier and values (coded.h).
   std::string errors;  ///< The errors only.
 };
 
@@ -36,7 +38,8 @@ inline Read ReadModel(const std::string& yaml, const Overrides& overrides = {}) 
     return text;
   };
   std::remove(path.c_str());
-  return {std::move(robot), shown(out.Format()), shown(ErrorsOf(out))};
+  return {std::move(robot), shown(out.Format()), shown(test::CodedErrors(out)),
+          shown(ErrorsOf(out))};
 }
 
 inline RobotSpec Good(const std::string& yaml, const Overrides& overrides = {}) {
@@ -46,6 +49,10 @@ inline RobotSpec Good(const std::string& yaml, const Overrides& overrides = {}) 
 }
 
 inline std::string Errors(const std::string& yaml) { return ReadModel(yaml).errors; }
+
+/// Returns the errors without their sentences: `robot.yaml:6:41: error: value.out_of_range
+/// rod.radius_m -0.1`.
+inline std::string CodedErrors(const std::string& yaml) { return ReadModel(yaml).coded; }
 
 /// A small valid model: two rods, 10 cm apart, and a cable between them
 inline std::string TwoRods(const std::string& cable_keys = "rest_length_m: 0.05",
