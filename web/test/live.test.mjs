@@ -114,11 +114,11 @@ test("WhatIsAmissStandsThereUntilItIsMended", async () => {
   const notice = () => page.locator(".notice:visible").allInnerTexts();
   const tell = (more) => server.tell({ type: "scene", scene: { ...server.liveScene(), ...more } });
   const shows = (text) => page.waitForFunction((wanted) => window.taut.app.scene.value.notice === wanted, text);
-  tell({ notice: "nothing is recorded any more" });
-  await shows("nothing is recorded any more");
+  tell({ notice: "recording stopped at t = 1 s" });
+  await shows("recording stopped at t = 1 s");
   assert.match((await notice()).join(), /recording stopped/);
-  tell({ notice: "recorded again" });
-  await shows("recorded again");
+  tell({ notice: "recording resumed at t = 2 s" });
+  await shows("recording resumed at t = 2 s");
   assert.match((await notice()).join(), /recording resumed/);
   tell({});
   await shows(undefined);
@@ -207,7 +207,7 @@ test("LiveControlsSendWhatTheyShow", async () => {
   await page.getByLabel("node to push").selectOption("rod_2.high");
   await page.getByLabel("direction").selectOption("up +z");
   await page.getByLabel("force [N]").fill("12");
-  await page.getByLabel("for [s]").fill("3");
+  await page.getByLabel("duration [s]").fill("3");
   await page.getByRole("button", { name: "push the node" }).click();
   await until(() => server.of("push").length === 1, "a push");
   const { node, force_n, duration_s } = server.of("push")[0];
