@@ -68,11 +68,9 @@ build_showing() {
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }
 
-# changed_since_passed: prints the files that differ from the last commit that passed CI, including
-# uncommitted
-# ones; status 1 if this commit is not in this clone (.ci/passed; TAUT_CI_PASSED overrides it).
-changed_since_passed() {
+# passed_commit: prints the last commit that passed CI (.ci/passed; TAUT_CI_PASSED overrides it); status 1
+# if it is not in this clone.
+passed_commit() {
   local passed=${TAUT_CI_PASSED:-$(cat .ci/passed)}
-  git cat-file -e "$passed^{commit}" 2>/dev/null || return 1
-  { git diff --name-only "$passed" && git ls-files --others --exclude-standard; } | sort -u
+  git cat-file -e "$passed^{commit}" 2>/dev/null && echo "$passed"
 }

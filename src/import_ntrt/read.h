@@ -13,6 +13,9 @@ using description::Entry;
 using description::Value;
 using description::ValuePtr;
 
+/// Largest magnitude of numbers and positions, in the files' unit.
+inline constexpr double kFarthest = 1e12;
+
 struct Reading {
   const NtrtOptions& options;
   Model& model;

@@ -118,10 +118,13 @@ std::optional<LogContents> Log::Read(Diagnostics& out) {
   if (!version) {
     const std::string other = OtherVersion(database_);
     const bool newer = !other.empty() && other != "1" && other != std::to_string(kLogVersion);
-    return refuse(newer ? MessageId("study.newer_log") : MessageId("study.not_a_log"),
-                  newer ? "the log has version " + other + "; this taut reads versions 1 to " +
-                              std::to_string(kLogVersion)
-                        : "the file is not the log of a study: it contains other tables");
+    if (newer) {
+      return refuse("study.newer_log", "the log has version " + other +
+                                           "; this taut reads versions 1 to " +
+                                           std::to_string(kLogVersion));
+    }
+    return refuse("study.not_a_log",
+                  "the file is not the log of a study: it contains other tables");
   }
   std::error_code ignored;
   if (*version == 0 && fs::file_size(path_, ignored) > kEmptyBytes) {

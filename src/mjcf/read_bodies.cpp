@@ -5,6 +5,7 @@
 
 #include "math/principal_axes.h"
 #include "math/vec.h"
+#include "mjcf/mjcf_mass.h"
 #include "mjcf/mjcf_scene.h"
 
 namespace taut::mjcf {
@@ -63,8 +64,8 @@ class BodyReader {
     while (own > 0 && geoms_[own - 1].body == body) --own;
     for (std::size_t i = own; i < geoms_.size(); ++i) ReadGeom(geoms_[i], has_mass_);
     geoms_.resize(own);
-    if (!has_mass_) SumOfShapes(body, first_shape);
-    Bound(body);
+    if (!has_mass_) SumMassOfShapes(scene_, body, first_shape);
+    BoundMass(scene_, body);
   }
 
   void ReadBody(const Element& element, int parent, const Pose& frame, const std::string& outer) {
@@ -206,57 +207,6 @@ class BodyReader {
       layers.Error("mjcf.negative_mass", "mass", "the mass must not be negative");
   }
 
-  /// `first`: index of the body's first shape; its shapes are the last ones. A search through all
-  /// shapes for each body would take quadratic time.
-  void SumOfShapes(int body, std::size_t first) {
-    std::vector<MassProperties> parts;
-    Body& its = scene_.bodies[Scene::Index(body)];
-    for (std::size_t i = first; i < scene_.shapes.size(); ++i) {
-      const Shape& s = scene_.shapes[i];
-      if (s.body != body || s.mass == 0) continue;
-      its.own_masses = its.own_masses && s.kind != Shape::Kind::kCapsule;
-      parts.push_back(SolidOf(s));
-    }
-    its.mass = Combine(parts);
-  }
-  static MassProperties SolidOf(const Shape& s) {
-    switch (s.kind) {
-      case Shape::Kind::kSphere:
-        return SolidSphere(s.pose.p, s.radius, s.mass);
-      case Shape::Kind::kCapsule:
-        return SolidCapsule(s.from, s.to, s.radius, s.mass);
-      case Shape::Kind::kCylinder:
-        return SolidCylinder(s.from, s.to, s.radius, s.mass);
-      default:
-        return SolidBox(s.pose.p, s.pose.q, s.half, s.mass);
-    }
-  }
-
-  /// Applies the lower bounds `boundmass` and `boundinertia`.
-  void Bound(int body) {
-    Body& its = scene_.bodies[Scene::Index(body)];
-    if (!scene_.Moves(body)) return;
-    if (its.mass.mass_kg < scene_.settings.boundmass) {
-      its.mass.mass_kg = scene_.settings.boundmass;
-      its.own_masses = false;
-    }
-    double r[9], moments[3];
-    PrincipalAxes(its.mass.inertia_kg_m2, r, moments);
-    const double bound = scene_.settings.boundinertia;
-    if (std::min({moments[0], moments[1], moments[2]}) >= bound) return;
-    its.own_masses = false;
-    Inertia& j = its.mass.inertia_kg_m2;
-    double m[3][3] = {};
-    for (std::size_t a = 0; a < 3; ++a) {
-      for (std::size_t x = 0; x < 3; ++x) {
-        for (std::size_t y = 0; y < 3; ++y) {
-          m[x][y] += r[3 * x + a] * std::max(moments[a], bound) * r[3 * y + a];
-        }
-      }
-    }
-    j = {m[0][0], m[1][1], m[2][2], m[0][1], m[0][2], m[1][2]};
-  }
-
   void ReadGeom(const GeomAt& from, bool body_has_mass);
   void ReadSize(const Layers& layers, const Pose& frame, const std::string& type, Shape& shape);
   void ReadMass(const Layers& layers, Shape& shape);
@@ -363,26 +313,9 @@ void BodyReader::ReadMass(const Layers& layers, Shape& shape) {
   const int group = layers.Whole("group", 0);
   if (layers.Flag("shellinertia", false))
     layers.Error("mjcf.shellinertia", "shellinertia", "shellinertia is not supported");
-  const double r = shape.radius, l = std::sqrt(Dot(shape.to - shape.from, shape.to - shape.from));
-  double volume = 0;
-  switch (shape.kind) {
-    case Shape::Kind::kSphere:
-      volume = 4.0 / 3.0 * std::numbers::pi * r * r * r;
-      break;
-    case Shape::Kind::kCapsule:
-      volume = std::numbers::pi * r * r * l + 4.0 / 3.0 * std::numbers::pi * r * r * r;
-      break;
-    case Shape::Kind::kCylinder:
-      volume = std::numbers::pi * r * r * l;
-      break;
-    case Shape::Kind::kBox:
-      volume = 8 * shape.half.x * shape.half.y * shape.half.z;
-      break;
-    case Shape::Kind::kPlane:
-      return;
-  }
+  if (shape.kind == Shape::Kind::kPlane) return;
   const double density = layers.Number("density", 1000);
-  shape.mass = layers.Has("mass") ? layers.Number("mass", 0) : density * volume;
+  shape.mass = layers.Has("mass") ? layers.Number("mass", 0) : density * VolumeOf(shape);
   if (shape.mass < 0)
     layers.Error("mjcf.negative_mass", layers.Has("mass") ? "mass" : "density",
                  "the mass must not be negative");

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "description/model/beam_axes.h"
+#include "description/model/body_velocities.h"
 #include "description/model/build.h"
 #include "description/model/welds.h"
 #include "description/yaml/once.h"
@@ -51,7 +52,8 @@ class BodyBuilder {
     CountBodies();
     for (const Weld& weld : welds_) BuildWeld(weld);
     for (const Pin& pin : pins_) AddPin(pin);
-    SetVelocities();
+    SetBodyVelocities({assembly_, welds_with_body_, instance_of_body_, bodies_in_instance_},
+                      robot_.def, out_);
     for (std::size_t node = 0; node < assembly_.nodes.size(); ++node) {
       const PlacedNode& placed = assembly_.nodes[node];
       robot_.def.nodes.push_back({placed.name, body_of_node_[node], placed.position_m});
@@ -339,46 +341,6 @@ class BodyBuilder {
     if (instance > 0 && bodies_in_instance_[instance] == 1) return assembly_.instances[instance].at;
     return weld.pairs.empty() ? assembly_.nodes[weld.nodes[0]].at
                               : assembly_.pairs[weld.pairs[0]].at;
-  }
-
-  /// Sets the initial velocities. A copy moves as one rigid body: the given velocity is at its
-  /// center of mass, the angular velocity about it.
-  void SetVelocities() {
-    std::vector<double> mass(assembly_.instances.size(), 0.0);
-    std::vector<Vec3> moment(assembly_.instances.size());
-    for (std::size_t body = 0; body < robot_.def.bodies.size(); ++body) {
-      const int instance = instance_of_body_[body];
-      if (instance < 0) continue;
-      const BodyDef& def = robot_.def.bodies[body];
-      mass[instance] += def.mass_kg;
-      moment[instance] = moment[instance] + def.mass_kg * def.com_m;
-    }
-    for (std::size_t body = 0; body < robot_.def.bodies.size(); ++body) {
-      BodyDef& def = robot_.def.bodies[body];
-      const int instance = instance_of_body_[body];
-      if (instance < 0) {
-        for (const int node : welds_with_body_[body]->nodes) {
-          const Instance& in = assembly_.instances[assembly_.nodes[node].instance];
-          if (Dot(in.velocity_m_per_s, in.velocity_m_per_s) +
-                  Dot(in.angular_velocity_rad_per_s, in.angular_velocity_rad_per_s) >
-              0.0) {
-            out_.Error("body.velocity_of_several_parts", in.at,
-                       "the body \"" + def.name +
-                           "\" joins several placements, so none of them can have a velocity");
-            break;
-          }
-        }
-        continue;
-      }
-      if (def.fixed || mass[instance] == 0.0) continue;
-      const Instance& in = assembly_.instances[instance];
-      const Vec3 arm = def.com_m - (1.0 / mass[instance]) * moment[instance];
-      const bool alone = bodies_in_instance_[instance] == 1;  // then the arm is round-off
-      def.velocity_m_per_s = alone
-                                 ? in.velocity_m_per_s
-                                 : in.velocity_m_per_s + Cross(in.angular_velocity_rad_per_s, arm);
-      def.angular_velocity_rad_per_s = in.angular_velocity_rad_per_s;
-    }
   }
 
   const ModelText& model_;

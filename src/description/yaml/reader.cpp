@@ -191,12 +191,9 @@ std::string FixOf(const std::string& key, const std::vector<std::string>& known)
   struct Unit {
     std::string_view theirs, ours, factor;
   };
-  constexpr Unit kUnits[] = {{"_n_per_mm", "_n_per_m", "1000"},
-                             {"_mm", "_m", "0.001"},
-                             {"_cm", "_m", "0.01"},
-                             {"_g", "_kg", "0.001"},
-                             {"_kn", "_n", "1000"},
-                             {"_ms", "_s", "0.001"},
+  constexpr Unit kUnits[] = {{"_per_mm", "_per_m", "1000"}, {"_mm", "_m", "0.001"},
+                             {"_cm", "_m", "0.01"},         {"_g", "_kg", "0.001"},
+                             {"_kn", "_n", "1000"},         {"_ms", "_s", "0.001"},
                              {"_deg", "_rad", "pi / 180"}};
   const auto is_known = [&](const std::string& one) {
     return std::find(known.begin(), known.end(), one) != known.end();

@@ -80,7 +80,7 @@ struct LaneMemory {
   }
 };
 
-/// Memory for the system of all held joint rows (joint_places.inl).
+/// Memory for the system of all held joint rows (joint_system.inl).
 template <class W>
 struct JointMemory {
   Row<Unknown<W>> bodies;

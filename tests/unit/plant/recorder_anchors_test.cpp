@@ -35,7 +35,7 @@ ModelDef Hanging(const Vec3& ball_m) {
 
 TEST(RecordedAnchor, CarriesWhatHangsFromIt) {
   ModelDef def = Hanging({0.5, 0, 1.05 - 0.5 * kG / 400});
-  const Recording run(MinimalExperiment(def, 0.1, {"anchor/*"}));
+  const Recording run(RecordedExperiment(def, 0.1, {"anchor/*"}));
   ASSERT_EQ(run.trace.channels.size(), 6u);
   for (const std::size_t row : {std::size_t{0}, run.rows() - 1}) {
     ExpectNear(run.VectorAt("anchor/beam/force_", "_n", row), {0, 0, 2.5 * kG}, 1e-9, "force");
@@ -47,7 +47,7 @@ TEST(RecordedAnchor, CarriesWhatHangsFromIt) {
 
 TEST(RecordedAnchor, InMotionItHoldsAgainstTheTension) {
   const ModelDef def = Hanging({1.0, 0.3, 1.2});
-  const Recording run(MinimalExperiment(def, 0.5, {"*"}));
+  const Recording run(RecordedExperiment(def, 0.5, {"*"}));
   double furthest_n = 0;
   for (std::size_t row = 0; row < run.rows(); ++row) {
     const Vec3 from{0.5, 0, 1.95};
@@ -71,7 +71,7 @@ TEST(RecordedAnchor, ACablePullsAtAnEyeletBothWays) {
   scenes::AddBall(def, "ball", 0.5, 0.05, {0, 0, 1}, {});
   def.cables.push_back(
       SoftCable("cable", {{kWorld, {-1, 0, 2}}, {0, {0, 0, 2}}, {1, {0, 0, 1}}}, 100, 1.5));
-  const Recording run(MinimalExperiment(def, 0, {"anchor/*", "cable/*"}));
+  const Recording run(RecordedExperiment(def, 0, {"anchor/*", "cable/*"}));
   EXPECT_NEAR(run.At("cable/cable/tension_n", 0), 50, 1e-12);
   ExpectNear(run.VectorAt("anchor/eyelet/force_", "_n", 0), {50, 0, 50 + 2 * kG}, 1e-12, "");
 }
@@ -81,7 +81,7 @@ TEST(RecordedAnchor, AForceOnItsNodeIsHeld) {
   def.name = "pushed";
   AddFixedBox(def, "box", {0, 0, 2}, {0.05, 0.05, 0.05});
   def.nodes.push_back({"corner", 0, {0.05, 0, 2.05}});
-  ExperimentSpec experiment = MinimalExperiment(def, 0.2, {"anchor/*"});
+  ExperimentSpec experiment = RecordedExperiment(def, 0.2, {"anchor/*"});
   experiment.pushes.push_back({"push", 1, {0, 1, 0}, 1, {{0, 3}, {1, 3}}});
   const Recording run(experiment);
   ExpectNear(run.VectorAt("anchor/box/force_", "_n", run.rows() - 1), {0, -3, 2 * kG}, 1e-12, "");
@@ -107,7 +107,7 @@ ModelDef BoxOnTable(double gap_m, const Vec3& velocity_m_per_s) {
 }
 
 TEST(RecordedAnchor, ATableCarriesWhatLiesOnIt) {
-  const Recording run(MinimalExperiment(BoxOnTable(0, {}), 0.5, {"anchor/*", "system/*"}));
+  const Recording run(RecordedExperiment(BoxOnTable(0, {}), 0.5, {"anchor/*", "system/*"}));
   const std::size_t last = run.rows() - 1;
   EXPECT_GE(run.At("system/contact_count", last), 3);
   ExpectNear(run.VectorAt("anchor/table/force_", "_n", last), {0, 0, 3 * kG}, 1e-6, "force");
@@ -117,7 +117,7 @@ TEST(RecordedAnchor, ATableCarriesWhatLiesOnIt) {
 
 /// The change of the world's momentum over a step equals the impulse of gravity and the support.
 TEST(RecordedAnchor, ActionIsReactionThroughImpactAndFriction) {
-  const Recording run(MinimalExperiment(BoxOnTable(0.05, {2, -1, 0}), 0.4, {"*"}));
+  const Recording run(RecordedExperiment(BoxOnTable(0.05, {2, -1, 0}), 0.4, {"*"}));
   double hardest_n = 0, friction_n = 0;
   for (std::size_t row = 1; row < run.rows(); ++row) {
     const double step_s = run.trace.time_s[row] - run.trace.time_s[row - 1];
@@ -137,7 +137,7 @@ TEST(RecordedAnchor, ActionIsReactionThroughImpactAndFriction) {
 TEST(RecordedAnchor, ActionIsReactionOfACableToSecondOrder) {
   double error_n[2] = {0, 0};
   for (int half = 0; half < 2; ++half) {
-    ExperimentSpec experiment = MinimalExperiment(Hanging({0.9, 0.3, 1.2}), 0.4, {"*"});
+    ExperimentSpec experiment = RecordedExperiment(Hanging({0.9, 0.3, 1.2}), 0.4, {"*"});
     experiment.step_s = half == 0 ? 0.002 : 0.001;
     const Recording run(experiment);
     for (std::size_t row = 1; row < run.rows(); ++row) {
@@ -158,7 +158,7 @@ TEST(RecordedAnchor, ActionIsReactionOfACableToSecondOrder) {
 }
 
 TEST(RecordedAnchor, OnlyFixedBodiesHaveTheChannels) {
-  const Recording run(MinimalExperiment(Hanging({0.5, 0, 1}), 0, {"*"}));
+  const Recording run(RecordedExperiment(Hanging({0.5, 0, 1}), 0, {"*"}));
   EXPECT_TRUE(run.Has("anchor/beam/torque_z_n_m"));
   EXPECT_FALSE(run.Has("anchor/ball/force_x_n"));
   EXPECT_EQ(run.trace.channels[*run.trace.Find("anchor/beam/torque_z_n_m")].unit, "N m");

@@ -30,7 +30,7 @@ const std::set<std::string> kOfAContact = {"body_a",    "body_b",    "point_x_m"
                                            "force_y_n", "force_z_n", "gap_m"};
 
 TEST(RecordedContacts, StandInSlotsAndEmptyOnesAreNaN) {
-  const Recording run(MinimalExperiment(Balls(2), 0.1, {"contact/*", "system/contact_count"}, 3));
+  const Recording run(RecordedExperiment(Balls(2), 0.1, {"contact/*", "system/contact_count"}, 3));
   ASSERT_EQ(run.trace.channels.size(), 1u + 3 * kOfAContact.size());
   EXPECT_EQ(run.Last("system/contact_count"), 2);
   for (int k = 0; k < 2; ++k) {
@@ -49,7 +49,7 @@ TEST(RecordedContacts, StandInSlotsAndEmptyOnesAreNaN) {
 }
 
 TEST(RecordedContacts, WhereSlotsAreFewTheLargestForcesStayAndTheSummarySaysSo) {
-  const Recording run(MinimalExperiment(Balls(4), 0.01, {"contact/*", "system/contact_count"}, 3));
+  const Recording run(RecordedExperiment(Balls(4), 0.01, {"contact/*", "system/contact_count"}, 3));
   const std::size_t last = run.rows() - 1;
   EXPECT_EQ(run.At("system/contact_count", last), 4);
   for (int k = 0; k < 3; ++k) {  // the lightest is left out, the others keep their order
@@ -71,7 +71,7 @@ TEST(RecordedContacts, AreAllThereUnlessChannelsNamesSome) {
   const ModelDef def = Balls(1);
   const auto count = [&](const std::vector<std::string>& channels) {
     std::size_t contacts = 0;
-    for (const ChannelInfo& channel : RunChannels(MinimalExperiment(def, 0, channels, 2))) {
+    for (const ChannelInfo& channel : RunChannels(RecordedExperiment(def, 0, channels, 2))) {
       contacts += channel.name.starts_with("contact/");
     }
     return contacts;
@@ -83,7 +83,7 @@ TEST(RecordedContacts, AreAllThereUnlessChannelsNamesSome) {
 }
 
 TEST(RecordedContacts, EmptySlotsSurviveFiles) {
-  const ExperimentSpec experiment = MinimalExperiment(Balls(1), 0.01, {"contact/*"}, 2);
+  const ExperimentSpec experiment = RecordedExperiment(Balls(1), 0.01, {"contact/*"}, 2);
   const std::filesystem::path folder(testing::TempDir());
   for (const char* const name : {"taut_contacts.h5", "taut_contacts.csv"}) {
     const std::string path = (folder / name).string();
@@ -113,7 +113,7 @@ TEST(RecordedNodes, MoveWithTheirBody) {
   def.nodes.push_back({"wall", kWorld, {5, 6, 7}});
   def.bodies[0].velocity_m_per_s = {0.5, 0, 0};
   def.bodies[0].angular_velocity_rad_per_s = {0, 2, 0};
-  const Recording run(MinimalExperiment(def, 0.1, {"node/*"}));
+  const Recording run(RecordedExperiment(def, 0.1, {"node/*"}));
   ASSERT_EQ(run.trace.channels.size(), 18u);
   const std::size_t last = run.rows() - 1;
   const double turned = 2 * 0.1;

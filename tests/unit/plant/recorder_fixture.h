@@ -16,8 +16,8 @@
 namespace taut::test {
 
 /// An experiment that records every step
-inline ExperimentSpec MinimalExperiment(const ModelDef& def, double duration_s,
-                                        std::vector<std::string> channels, int contacts = 0) {
+inline ExperimentSpec RecordedExperiment(const ModelDef& def, double duration_s,
+                                         std::vector<std::string> channels, int contacts = 0) {
   ExperimentSpec experiment;
   experiment.name = "recorded";
   experiment.robot.def = def;

@@ -25,7 +25,7 @@ ModelDef Crane() {
 }
 
 TEST(RecordedMotor, ShowsWhatItDraws) {
-  const Recording run(MinimalExperiment(Crane(), 0.5, {}));
+  const Recording run(RecordedExperiment(Crane(), 0.5, {}));
   // The weight drives it back until the servo's duty holds the weight.
   EXPECT_GT(run.Last("cable/rope/duty"), 0.01);
   EXPECT_GT(run.Last("cable/rope/current_a"), 0);
@@ -51,13 +51,13 @@ TEST(RecordedMotor, ShowsWhatItDraws) {
 TEST(RecordedMotor, IsThereForMotorsOnly) {
   ModelDef def = Crane();
   def.cables[0].actuator = {};
-  const Recording run(MinimalExperiment(def, 0.01, {}));
+  const Recording run(RecordedExperiment(def, 0.01, {}));
   EXPECT_FALSE(run.Has("cable/rope/duty"));
   EXPECT_FALSE(run.summary.cables[0].motor);
 }
 
 TEST(RecordedMotor, SensorsOfCountsShowThem) {
-  ExperimentSpec experiment = MinimalExperiment(Crane(), 0.1, {"sensor/*", "cable/rope/*"});
+  ExperimentSpec experiment = RecordedExperiment(Crane(), 0.1, {"sensor/*", "cable/rope/*"});
   experiment.sensors.emplace();
   experiment.sensors->load_cell.emplace().counts.emplace();
   experiment.sensors->encoder = EncoderSpec{1e-5};
@@ -88,7 +88,7 @@ class Switch final : public Controller {
 
 TEST(CommandedMotor, GoesOffAndOn) {
   Diagnostics out;
-  ExperimentSpec experiment = MinimalExperiment(Crane(), 1, {});
+  ExperimentSpec experiment = RecordedExperiment(Crane(), 1, {});
   experiment.step_s = 1e-3;
   Batch batch(Model::Compile(experiment.robot.def, out), {});
   const auto plant = PlantOf(batch);

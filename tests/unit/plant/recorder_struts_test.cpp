@@ -28,7 +28,7 @@ ModelDef Rod(const Vec3& middle_m, const Vec3& along, double start_kg = 0, doubl
 }
 
 Recording Record(const ModelDef& def, double duration_s = 0) {
-  return Recording(MinimalExperiment(def, duration_s, {"*"}, 8));
+  return Recording(RecordedExperiment(def, duration_s, {"*"}, 8));
 }
 
 TEST(RecordedStrut, AHangingRodIsPulledByTheWeightOfItsLowerHalf) {
@@ -90,7 +90,7 @@ TEST(RecordedStrut, AFactorOnItsMassCounts) {
   ModelDef def = Rod({}, {1, 0, 0});
   def.gravity_m_per_s2 = {};
   def.bodies[0].angular_velocity_rad_per_s = {0, 0, 7};
-  ExperimentSpec experiment = MinimalExperiment(def, 0, {"strut/*"});
+  ExperimentSpec experiment = RecordedExperiment(def, 0, {"strut/*"});
   experiment.scales.push_back({ScaleSpec::Quantity::kMass, {}, 2.0});
   EXPECT_NEAR(Recording(experiment).At("strut/rod/axial_n", 0), 2 * 0.3 * 49 * 0.4 / 8, 1e-12);
 }
@@ -111,7 +111,7 @@ TEST(RecordedStrut, ThePrismsSelfStressIsThatOfStatics) {
   Diagnostics out;
   const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out);
   ASSERT_TRUE(robot) << out.Format();
-  ExperimentSpec experiment = MinimalExperiment(robot->def, 0, {"strut/*"});
+  ExperimentSpec experiment = RecordedExperiment(robot->def, 0, {"strut/*"});
   experiment.robot = *robot;
   experiment.robot.def.gravity_m_per_s2 = {};
   const ModelDef& def = experiment.robot.def;
@@ -189,7 +189,7 @@ TEST(RecordedStrut, InMotionBothHalvesSayTheSame) {
   def.cables.push_back(SoftCable("side", {{kWorld, {-1, 0, 0.3}}, {0, from}}, 8, 0.7));
   def.bodies[0].angular_velocity_rad_per_s = {3, -4, 5};
   def.bodies[0].velocity_m_per_s = {0.5, 0.2, -1};
-  ExperimentSpec experiment = MinimalExperiment(def, 1, {"*"}, 8);
+  ExperimentSpec experiment = RecordedExperiment(def, 1, {"*"}, 8);
   experiment.pushes.push_back({"tap", 1, {1, 0, 0}, 1, {{0.1, 0}, {0.2, 4}, {0.6, 0}}});
   const Recording run(experiment);
   int touching = 0;
@@ -212,7 +212,7 @@ TEST(RecordedStrut, TheAccelerationIsThatOfTheStep) {
   scenes::AddGround(def, {0.6, 0.6, 0.3});
   def.cables.push_back(SoftCable("up", {{0, {0, 0.12, 0.56}}, {kWorld, {0.3, 0, 1.5}}}, 1, 100));
   def.cables.push_back(SoftCable("side", {{kWorld, {-1, 0, 0.3}}, {0, {0, 0, 0}}}, 1, 100));
-  ExperimentSpec experiment = MinimalExperiment(def, 0.5, {"*"}, 8);
+  ExperimentSpec experiment = RecordedExperiment(def, 0.5, {"*"}, 8);
   experiment.pushes.push_back({"tap", 1, {1, 0, 0}, 1, {{0.1, 0}, {0.2, 4}, {0.6, 0}}});
   const Recording run(experiment);
   double largest = 0;
@@ -237,7 +237,7 @@ TEST(RecordedStrut, AJointPullsAtIt) {
   pin.name = "pin", pin.kind = JointKind::kBall, pin.body_a = 1, pin.body_b = 0;
   pin.from_m = pin.to_m = {0, 0, 1};
   def.joints.push_back(pin);
-  const Recording run(MinimalExperiment(def, 0.05, {"*"}));
+  const Recording run(RecordedExperiment(def, 0.05, {"*"}));
   EXPECT_NEAR(run.Last("strut/rod/axial_n"), 0.15 * kG, 1e-6);
   EXPECT_NEAR(run.Last("strut/rod/axial_greatest_n"), 0.3 * kG, 1e-6);
   EXPECT_NEAR(run.Last("strut/rod/axial_least_n"), 0, 1e-9);
@@ -253,7 +253,7 @@ TEST(RecordedStrut, TheSummaryHasTheExtremesOfTheRun) {
   beam.name = "beam", beam.mass_kg = 2, beam.com_m = {0, 0, 1.5}, beam.fixed = true;
   def.bodies.push_back(beam);
   def.cables.push_back(SoftCable("up", {{0, def.capsules[0].to_m}, {1, {0, 0, 1.5}}}, 5, 0.4));
-  const Recording run(MinimalExperiment(def, 0.5, {"*"}));
+  const Recording run(RecordedExperiment(def, 0.5, {"*"}));
   double least = 0, greatest = 0, held = 0;
   for (std::size_t row = 0; row < run.rows(); ++row) {
     least = std::min(least, run.At("strut/rod/axial_least_n", row));
@@ -275,7 +275,7 @@ TEST(RecordedStrut, TheSummaryHasTheExtremesOfTheRun) {
 
 TEST(RecordedStrut, OnlyBodiesThatAreOneRodHaveTheChannel) {
   const auto has = [](const ModelDef& def) {
-    return Recording(MinimalExperiment(def, 0, {"*"})).Has("strut/rod/axial_n");
+    return Recording(RecordedExperiment(def, 0, {"*"})).Has("strut/rod/axial_n");
   };
   const ModelDef rod = Rod({}, {0, 0.6, 0.8}, 0.1, 0.2);
   ModelDef changed = rod;

@@ -15,7 +15,7 @@ namespace {
 
 /// Records rows at the start and the end only: the peak in between is not recorded.
 RunSummary SummaryOf(const ModelDef& def, double duration_s) {
-  ExperimentSpec experiment = MinimalExperiment(def, duration_s, {"*"});
+  ExperimentSpec experiment = RecordedExperiment(def, duration_s, {"*"});
   experiment.record.rate_hz = 1 / duration_s;
   return Recording(experiment).summary;
 }
@@ -149,7 +149,7 @@ TEST(Overload, ARodIsLookedAtBetweenRows) {
 }
 
 TEST(Overload, ALiveRunFindsTheSame) {
-  ExperimentSpec experiment = MinimalExperiment(LetGo(0.5), 0.1, {"*"});
+  ExperimentSpec experiment = RecordedExperiment(LetGo(0.5), 0.1, {"*"});
   const RunSummary run = Recording(experiment).summary;
   Diagnostics out;
   const auto live = LiveRun::Start(experiment, out);
@@ -171,7 +171,7 @@ TEST(StiffCable, RowsAndLargestTensionOfALightMassAreItsWeight) {
   ModelDef def = scene.Def();
   const double weight_n = scene.mass_kg * kG;
   def.cables[0].member.strength_n = 1.03 * weight_n;
-  const Recording run(MinimalExperiment(def, 0.3, {"*"}));
+  const Recording run(RecordedExperiment(def, 0.3, {"*"}));
   for (std::size_t row = 1; row < run.rows(); ++row) {
     ASSERT_NEAR(run.At("cable/cable/tension_n", row), weight_n, 0.02 * weight_n) << row;
   }
