@@ -340,9 +340,9 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut/trace.h5\n"
       "  taut analyze models/prism3.yaml --linear prism.h5\n"
       "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
-      "All analyses except --linear and --response are static: independent of the step, with "
-      "masses as\n"
-      "weights only.\n"
+      "Equilibria, self-stress, --inverse and --form are static: independent of the step, with "
+      "masses\n"
+      "as weights only. Modes also use the inertia of the bodies.\n"
       "Exit status: 0 success, 1 a load case has no equilibrium, 2 bad usage, 3 the file has "
       "errors or\n"
       "supports are missing.");

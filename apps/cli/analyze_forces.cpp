@@ -15,14 +15,14 @@ namespace {
 constexpr std::size_t kMostStates = 6;  ///< Maximum number of columns of a table of self-stresses.
 
 std::string GapText(const RankGap& rank) {
-  return fmt::format("{} (singular values {:.3g} kept, {:.3g} dropped{})", rank.rank,
-                     rank.smallest_kept, rank.largest_dropped,
+  return fmt::format("{} (smallest singular value kept: {:.3g}, largest dropped: {:.3g}{})",
+                     rank.rank, rank.smallest_kept, rank.largest_dropped,
                      rank.clear() ? "" : "; RATIO BELOW 1000: the rank is uncertain");
 }
 
 std::string Counts(const ForceAnalysis& f) {
   std::string text = fmt::format(
-      "  members: {}, motions: {}, rank: {}\n"
+      "  members: {}, degrees of freedom: {}, rank: {}\n"
       "  states of self-stress: {}, mechanisms: {}, rigid motions: {}",
       f.members.size(), f.unknowns, GapText(f.rank), f.self_stress.size(), f.mechanisms.size(),
       f.rigid);

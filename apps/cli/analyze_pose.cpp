@@ -20,9 +20,9 @@ std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, 
     return std::nullopt;
   }
   if (args.file.ends_with(".yaml")) {
-    out.Error(
-        "trace.not_a_recording", at, "a YAML file contains no recorded pose",
-        "expected a trace (.h5, .csv or .csv.gz); analyze a model in another pose without --pose");
+    out.Error("trace.not_a_recording", at, "a YAML file contains no recorded pose",
+              "expected a trace (.h5, .csv or .csv.gz); to analyze a model file of a pose, give it "
+              "as FILE, without --pose");
     return std::nullopt;
   }
   const std::optional<Trace> trace = ReadTraceOfRun(args.file, out);

@@ -121,7 +121,7 @@ std::string ModeTable(const CaseResult& result, int most) {
   if (!modes.why.empty()) return "  none: " + modes.why + "\n";
   std::string text = fmt::format("  rigid motions: {}, mechanisms: {}, unstable: {}\n", modes.rigid,
                                  modes.mechanisms, modes.unstable);
-  Table table({"mode", "frequency", "kind", "largest displacement"});
+  Table table({"mode", "frequency", "kind", "body with largest displacement"});
   table.Add({"", "Hz", "", ""});
   int number = 0;
   for (const Mode& mode : modes.modes) {

@@ -173,12 +173,13 @@ void AddCheck(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   auto* couplings = check->add_flag(
       "--couplings", args->couplings,
-      "Oscillator network of the experiment's gait, or of a new gait for the robot");
+      "Print only the oscillator network of the experiment's gait, or of a new gait for the robot");
   AddChoice(*check, "--symmetry", args->symmetry, kSymmetries,
             "With --couplings: couplings that share their parameters (default: segments)");
-  check->add_option("--svg", args->svg, "With --couplings: drawing to write")->option_text("FILE");
+  check->add_option("--svg", args->svg, "With --couplings: SVG drawing of the network to write")
+      ->option_text("FILE");
   auto* settled = check->add_flag("--settled", args->settled,
-                                  "Settled pose, at rest, instead of the described pose");
+                                  "Print the settled pose (at rest) instead of the described pose");
   settled->excludes(couplings);
   check->add_option("--out", args->out, "With --settled: model file to write")
       ->option_text("FILE")
@@ -194,7 +195,8 @@ void AddCheck(CLI::App& app, int& exit_code) {
       "  taut check models/tetraspine3.yaml --couplings --svg couplings.svg\n"
       "  taut check experiments/drop_six_strut.yaml --settled --out settled.yaml\n"
       "Errors have the form file:line:column: error: problem (hint).\n"
-      "Exit status: 0 the file is valid, 2 bad usage, 3 the file has errors.");
+      "Exit status: 0 the file is valid, 1 a file cannot be written, 2 bad usage, 3 the file has "
+      "errors.");
   check->callback([args, &exit_code] { exit_code = Check(*args); });
 }
 

@@ -176,7 +176,7 @@ std::string Collisions(const ModelDef& def) {
   }
   const int terrain = static_cast<int>(def.planes.size() + def.terrain_boxes.size() +
                                        def.height_fields.size() + def.terrain_meshes.size());
-  std::string text = fmt::format("Possible collisions: {} of bodies, {} of shapes; with ",
+  std::string text = fmt::format("Possible collisions: {} of bodies, {} of shapes; also with ",
                                  Counted(pairs, "pair"), Counted(shape_pairs, "pair"));
   text +=
       terrain == 0 ? "the terrain of an experiment\n" : Counted(terrain, "terrain surface") + "\n";

@@ -103,7 +103,7 @@ void AddCompare(CLI::App& app, int& exit_code) {
       });
   command
       ->add_option("--system", given->options.system,
-                   "Channels that contain the system's largest value")
+                   "Channels whose largest value is compared as the system's largest value")
       ->option_text("PATTERN")
       ->allow_extra_args(false)
       ->default_str("cable/*/tension_n cable/*/elastic_n");

@@ -46,8 +46,8 @@ void AddExportMjcf(CLI::App& export_, int& exit_code) {
             "Form of the cables: actuators that can only pull, or tendon springs with a dead band, "
             "for MuJoCo 3 only (default: actuator)");
   mjcf->add_flag("--keyframe", args->options.keyframe,
-                 "Controls as rest lengths, with a keyframe `start` for them and the velocities; "
-                 "otherwise controls are changes of rest lengths");
+                 "Use rest lengths as controls, and write a keyframe `start` with controls and "
+                 "velocities; otherwise controls are changes of rest lengths");
   mjcf->add_option("--set", args->set, "Parameter of the model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

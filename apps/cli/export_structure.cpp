@@ -240,8 +240,8 @@ void AddExportStructure(CLI::App& group, int& exit_code) {
           "Output folder for N.csv, C_b.csv, C_s.csv, q.csv, S.csv, ... and structure.json")
       ->option_text("FOLDER");
   command->add_flag("--equilibrium", args->equilibrium,
-                    "Nearby equilibrium, as in `taut analyze`, instead of the start");
-  command->add_flag("--no_weight,--no-weight", args->weightless, "No weight of the robot");
+                    "Use the nearby equilibrium (as in `taut analyze`) instead of the start");
+  command->add_flag("--no_weight,--no-weight", args->weightless, "Leave out the robot's weight");
   command->add_flag("--json", args->json, "JSON instead of the table");
   command->footer(
       "Examples:\n"

@@ -248,11 +248,12 @@ void AddFit(CLI::App& app, int& exit_code) {
       ->check(WholeNumberWithin(0, 1024));
   fit->add_option(
          "--profile", args->profiles,
-         "Parameter for a profile likelihood, with all others fitted again; '*': all parameters")
+         "Also compute the profile likelihood of this parameter, refitting all others; '*': of all")
       ->option_text("PARAMETER")
       ->allow_extra_args(false);
-  auto* design = fit->add_flag("--design", args->design,
-                               "Expected information of the fit's planned measurements (`design`)");
+  auto* design = fit->add_flag(
+      "--design", args->design,
+      "Also compute the expected information of the fit's planned measurements (`design`)");
   auto* check = fit->add_flag("--check", args->check, "Check files and data only");
   fit->add_flag("--resume", args->resume, "Fail if the folder has no fit to resume")
       ->excludes(check);

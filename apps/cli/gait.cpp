@@ -93,7 +93,9 @@ void AddGait(CLI::App& app, int& exit_code) {
       gait->add_subcommand("export", "Write the cable signals of a gait as a table (CSV).");
   AddInput(*export_, "gait", args->input, "Gait file (YAML)")->required();
   AddInput(*export_, "robot", args->robot, "Model or experiment file (YAML)")->required();
-  export_->add_option("--rate_hz", args->rate_hz, "Rate of the rows and of the gait [Hz]")
+  export_
+      ->add_option("--rate_hz", args->rate_hz,
+                   "Rate of the rows, also the update rate of the gait [Hz]")
       ->option_text("X")
       ->check(NumberWithin(1e-3, 1e6))
       ->capture_default_str();
@@ -112,9 +114,10 @@ void AddGait(CLI::App& app, int& exit_code) {
   CLI::App* import_ =
       gait->add_subcommand("import", "Convert a gait of NTRT's spines to a gait file.");
   import_
-      ->add_option("path", args->input,
-                   "Folder with bestParameters-*.nnw, the controlVars.json of hand-tuned waves, or "
-                   "the .json of a controller with feedback")
+      ->add_option(
+          "path", args->input,
+          "Folder with bestParameters-*.nnw; or controlVars.json of hand-tuned waves; or the "
+          ".json file of a controller with feedback")
       ->required();
   AddChoice(*import_, "--order", args->order, kOrders,
             "Cable order of the NTRT version that learned the gait (default: paper2015)");
@@ -128,9 +131,9 @@ void AddGait(CLI::App& app, int& exit_code) {
       "  taut gait import ntrt/hardwareLearning/logs --name sidewinder --out sidewinder.yaml");
   import_->callback([args, &exit_code] { exit_code = Import(*args); });
 
-  CLI::App* create = gait->add_subcommand(
-      "create",
-      "Write a CPG gait with all couplings of a robot, weights and phases 0, to start learning.");
+  CLI::App* create = gait->add_subcommand("create",
+                                          "Write a CPG gait with all couplings of a robot, with "
+                                          "zero weights and phases, for learning.");
   AddInput(*create, "robot", args->robot, "Model or experiment file (YAML)")->required();
   AddChoice(*create, "--symmetry", args->symmetry, kSymmetries,
             "Couplings that share their parameters (default: segments)");

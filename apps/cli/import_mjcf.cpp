@@ -72,10 +72,10 @@ void AddImportMjcf(CLI::App& import, int& exit_code) {
            "Length unit of the file [m] (default: 1)");
   add_unit("--mass_unit_kg", args->options.mass_unit_kg, "Mass unit of the file [kg] (default: 1)");
   AddChoice(*mjcf, "--slack", args->options.slack, kSlack,
-            "Springs shorter than their rest length: without force, as cables, or pushing, as bars "
-            "(default: tension_only)");
+            "Tendons shorter than their rest length: tension_only: no force (cables); as_mujoco: "
+            "push (bars) (default: tension_only)");
   mjcf->add_flag("--without_frictionloss", args->options.without_frictionloss,
-                 "Ignore the dry friction of tendons, otherwise an error");
+                 "Ignore the dry friction of tendons (an error without this flag)");
   mjcf->add_option("--keyframe", args->options.keyframe,
                    "Key of the file with the start pose and controls: name, or index from 0 "
                    "(default: described poses, controls 0)")
@@ -94,8 +94,8 @@ void AddImportMjcf(CLI::App& import, int& exit_code) {
       "Examples:\n"
       "  taut import mjcf prism.xml --out prism.yaml --experiment on_ground.yaml\n"
       "  taut import mjcf spine.xml --length_unit_m 0.1 --keyframe start --out spine.yaml\n"
-      "Unsupported elements are errors with name and line; omissions are notes "
-      "(docs/from_mujoco.md).\n"
+      "Unsupported elements are errors with name and line; omissions are warnings\n"
+      "or notes (docs/from_mujoco.md).\n"
       "Exit status: 0 success, 1 a file cannot be written, 2 bad usage, 3 bad input.");
   mjcf->callback([args, &exit_code] { exit_code = Import(*args); });
 }

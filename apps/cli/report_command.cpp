@@ -55,7 +55,7 @@ void AddReport(CLI::App& app, int& exit_code) {
   report
       ->add_option("--compare", args->compare,
                    "Traces or folders of at most 7 other runs to compare with (default: those that "
-                   "the experiment names)")
+                   "the experiment lists)")
       ->option_text("TRACE");
   report->footer(
       "Examples:\n"

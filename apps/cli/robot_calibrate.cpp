@@ -134,7 +134,7 @@ int LoadCell(const CalibrateArguments& args) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   std::vector<std::pair<double, double>> points;
   for (const double force_n : args.forces_n) {
-    if (!WaitForPerson(fmt::format("Let cable {} pull with {:g} N.", args.cable, force_n))) {
+    if (!WaitForPerson(fmt::format("Load cable {} with {:g} N.", args.cable, force_n))) {
       return desk->stop_asked() || interrupt_asked ? kInterrupted : kFailed;
     }
     Mean counts;

@@ -185,8 +185,8 @@ void AddRobotScan(CLI::App& robot, int& exit_code) {
 
 void AddRobotStatus(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<RobotArguments>();
-  CLI::App* status = robot.add_subcommand(
-      "status", "Show the state of boards and motors; motors that hold keep holding.");
+  CLI::App* status =
+      robot.add_subcommand("status", "Show the state of boards and motors, without changing it.");
   AddPort(*status, *args);
   AddModel(*status, *args);
   AddJson(*status, *args);

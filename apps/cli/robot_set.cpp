@@ -108,8 +108,17 @@ int Set(const SetArguments& args) {
       }
       if (!desk->driver().requests().Set(setting, found)) return Fail(found, kFailed);
       const auto read = desk->driver().requests().Get(setting.place, found);
-      if (!read || *read != setting.value) {
-        found.Error("board.setting_not_kept", {}, "a board does not keep the value that was set");
+      if (!read) return Fail(found, kFailed);
+      if (*read != setting.value) {
+        const auto infos = value.of_motor ? link::MotorParameters() : link::BoardParameters();
+        found.Error("board.setting_not_kept", {},
+                    fmt::format("board {}{} returned {} = {:g} after it was set to {:g}",
+                                setting.place.board,
+                                value.of_motor
+                                    ? fmt::format(" (cable \"{}\")",
+                                                  desk->cables()[static_cast<std::size_t>(motor)])
+                                    : "",
+                                infos[value.parameter].key, *read, setting.value));
         return Fail(found, kFailed);
       }
       ++done;
@@ -199,7 +208,7 @@ void AddRobotSet(CLI::App& robot, int& exit_code) {
       "Examples:\n  taut robot set\n"
       "  taut robot set position_gain_n_per_m=200 --cable inner_top_1 inner_top_2\n"
       "  taut robot set tension_limit_n=40 --store\n"
-      "docs/hardware/parameters.md lists them. Only gains can be set while motors run.");
+      "docs/hardware/parameters.md lists the parameters. Only gains can be set while motors run.");
   set->callback([args, &exit_code] { exit_code = Set(*args); });
 }
 
@@ -221,9 +230,9 @@ void AddRobotReference(CLI::App& robot, int& exit_code) {
       "Examples:\n"
       "  taut robot reference --as_model\n"
       "  taut robot reference outer_top_1=0.243 outer_left_1=0.197\n"
-      "Encoders count from the start of their board: repeat this command after every reset. Motors "
-      "must\n"
-      "be off or holding.");
+      "Encoder counts start at zero at each reset of a board: repeat this command after every "
+      "reset.\n"
+      "Motors must be off or holding.");
   reference->callback([args, as_model, &exit_code] { exit_code = Reference(*args, *as_model); });
 }
 

@@ -99,8 +99,7 @@ void AddTraceConvert(CLI::App& group, int& exit_code) {
                    "Channels to convert, by patterns such as 'cable/*/tension_n' (default: all)")
       ->option_text("PATTERN")
       ->allow_extra_args(false);
-  command
-      ->add_option("--period_s", args->period_s, "Distance of the rows [s] (default: 0, all rows)")
+  command->add_option("--period_s", args->period_s, "Time between rows [s] (default: 0, all rows)")
       ->option_text("NUMBER")
       ->check(NumberWithin(0, 1e9));
   command->add_flag("--quiet", args->quiet, "No progress, no result");
@@ -109,10 +108,10 @@ void AddTraceConvert(CLI::App& group, int& exit_code) {
       "  taut trace convert runs/push_20n --out push_20n.mcap\n"
       "  taut trace convert trace.h5 --out tensions.csv --channels 'cable/*/tension_n' \\\n"
       "    --period_s 0.1\n"
-      "MCAP files contain one topic for each first part of the channel names, the frames of "
-      "bodies\n"
-      "(/tf) and, with inputs.yaml in the trace's folder, the robot (/scene/robot, "
-      "/scene/cables).\n"
+      "MCAP files contain one topic for each prefix of the channel names (before the first /), "
+      "the\n"
+      "frames of bodies (/tf) and, with inputs.yaml in the trace's folder, the robot\n"
+      "(/scene/robot, /scene/cables).\n"
       "An interrupted conversion writes no file.\n"
       "Exit status: 0 success, 1 a file cannot be written, 2 bad usage, 3 bad input, 130 "
       "interrupted.");

@@ -189,12 +189,14 @@ void AddView(CLI::App& app, int& exit_code) {
   view->add_flag("--max", args->max, "Run as fast as possible")->excludes(speed);
   view->add_flag("--paused", args->paused, "Start paused");
   view->add_flag("--settled", args->settled, "Start with the settled robot, at rest");
-  view->add_option("--compare", args->compare,
-                   "Replay: traces or folders of at most 7 other runs to compare with, each with a "
-                   "ghost of its robot")
+  view->add_option(
+          "--compare", args->compare,
+          "With a trace: traces or folders of at most 7 other runs to compare with, each with a "
+          "ghost of its robot")
       ->option_text("TRACE");
-  view->add_option("--out", args->out,
-                   "Live, robot: folder for recordings (trace, inputs, events) (default: none)")
+  view->add_option(
+          "--out", args->out,
+          "Live run or --robot: folder for recordings (trace, inputs, events) (default: none)")
       ->option_text("FOLDER");
   view->add_option("--listen", args->server.address,
                    "Address to listen on (default: 127.0.0.1, this machine only)")
@@ -206,7 +208,8 @@ void AddView(CLI::App& app, int& exit_code) {
             "all)",
             address);
       });
-  view->add_option("--port", args->server.port, "Port (default: 8080; 0: any free port)")
+  view->add_option("--port", args->server.port,
+                   "Port of the web server (default: 8080; 0: any free port)")
       ->option_text("N")
       ->check(WholeNumberWithin(0, 65535));
   view->footer(

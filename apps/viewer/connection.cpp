@@ -33,7 +33,7 @@ void Connection::Read() {
     if (failed || self->closing_) return self->Finished();
     const std::string text = beast::buffers_to_string(self->received_.data());
     self->received_.consume(self->received_.size());
-    std::string reason = "messages must be texts";
+    std::string reason = "messages must be text frames";
     if (!self->stream_.got_text() || !self->handlers_.received(*self, text, reason)) {
       self->Close(reason);
     }

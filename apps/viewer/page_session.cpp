@@ -88,7 +88,8 @@ void PageSession::Handle(int client, const Command& command) {
   if (Drive(command)) {
     goes_on_.notify_all();
   } else {
-    SayError(client, fmt::format("{} is not possible in the page of a program", command.type));
+    SayError(client,
+             fmt::format("{} is not possible in a page that a program has opened", command.type));
   }
 }
 

@@ -96,7 +96,7 @@ std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
     said.Error("fit.memory_not_writable", {options.memory_file}, "cannot write: " + why);
   }
   if (!fitted->outcome.interrupted && !fitted->outcome.why.empty()) {
-    said.Error("fit.failed", {asked.path}, "no fit: " + fitted->outcome.why);
+    said.Error("fit.failed", {asked.path}, "the fit failed: " + fitted->outcome.why);
   }
   return fitted;
 }

@@ -123,8 +123,8 @@ def steps(items):
                      not_solved(one), f"{one['worst_residual_m_per_s']:.1e}",
                      *(number(iterations[key]) for key in ("mean", "p99", "worst")),
                      mean(one), *(number(time[key]) for key in ("median", "p99", "p999", "worst")), *wide])
-    return table(["scene", "contacts", "steps", "not solved", "worst residual, m/s", "iterations", "99 %", "maximum",
-                  "us per step", "median", "99 %", "99.9 %", "worst", f"{scenes.widest} lanes", "not solved"], rows)
+    return table(["scene", "contacts, mean", "steps", "not solved", "worst residual [m/s]", "iterations, mean", "iterations, 99 %", "iterations, maximum",
+                  "step, mean [us]", "step, median [us]", "step, 99 % [us]", "step, 99.9 % [us]", "step, worst [us]", f"{scenes.widest} lanes: step, mean [us]", f"{scenes.widest} lanes: not solved"], rows)
 
 
 def beside(items):
@@ -158,10 +158,10 @@ def ratios(items):
         return f"{100 * item['share_within_16_of_ode']:.2f} %" if item and "share_within_16_of_ode" in item else NOTHING
 
     rod = scenes.of(PAINLEVE)
-    rows = [["a disc on 64 feet, in steps of Tetraspine3", over("feet_64", scenes.of(REFERENCE))],
-            *([f"{what}, in full steps of ODE", over(scene, scenes.of(scene, *ODE))]
+    rows = [["step of a disc on 64 feet, relative to a step of Tetraspine3", over("feet_64", scenes.of(REFERENCE))],
+            *([f"step of {what}, relative to ODE's full step", over(scene, scenes.of(scene, *ODE))]
               for scene, what in {"pile_20": "a heap of 20 rods", "boxes_10": "a stack of 10 boxes"}.items()),
-            *([f"{what}: steps within 16 times ODE's mean", share(scene)]
+            *([f"{what}: share of steps faster than 16 times ODE's mean", share(scene)]
               for scene, what in {"pile_20": "a heap of 20 rods", "boxes_10": "a stack of 10 boxes"}.items()),
             ["Painleve's rod: steps solved", f"{rod['solved']} of {rod['steps']}" if rod else NOTHING]]
     return table(["quantity", "value"], rows)
@@ -175,5 +175,5 @@ def section(items):
     return fill(TEMPLATE.read_text(), {
         "steps": steps(items), "engines": beside(items), "ratios": ratios(items),
         "starts": str(max(item["repetitions"] for item in scenes.items)), "lanes": str(scenes.widest),
-        "wrong": f"Not finite, or without room for their contacts: {', '.join(wrong)}." if wrong
-                 else "All worlds stayed finite and had room for their contacts."}).rstrip()
+        "wrong": f"Scenes with a state that is not finite, or with more contacts than the capacity: {', '.join(wrong)}." if wrong
+                 else "The states of all worlds stayed finite, and no world exceeded its capacity of contacts."}).rstrip()

@@ -13,7 +13,7 @@ TEMPLATE = pathlib.Path(__file__).with_name("hills.md.in")
 TITLE = "### On hills"
 GROUNDS = {"plane": "plane", "hills": "hills", "many": "10^7 cells"}
 BALL = "ball@level"
-COMPANY = "\nOthers worked there at the same time: ratios are more reliable than times; both need a repetition on an idle machine."
+COMPANY = "\nOther programs ran on the machine at the same time: ratios are more reliable than times, and both have to be measured again on an idle machine."
 
 
 def lanes_of(name, lanes):

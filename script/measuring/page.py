@@ -138,7 +138,7 @@ def spread(items):
 def company(machine):
     if not shared(machine):
         return ""
-    return "\nOthers worked there at the same time: rows of several threads are unreliable; of the others, ratios are more reliable."
+    return "\nOther programs ran on the machine at the same time: rows for several threads are unreliable; for one thread, ratios are more reliable than absolute figures."
 
 
 def text(items):

@@ -132,5 +132,5 @@ def summary(items):
         for i, key in enumerate(("points", "right", "said", "killed", "in_hdf5"), 1):
             row[i] += item[key]
         row[6] += len(item["wrong"])
-    return table(["command", "calls that fail", "of", "faults", "result right", "error said", "killed there", "HDF5 crashed", "wrong"],
+    return table(["command", "kind of call", "calls", "faults", "correct result", "error reported", "killed", "HDF5 crashed", "wrong result"],
                  [[name, kind, *map(str, row)] for (name, kind), row in rows.items()])

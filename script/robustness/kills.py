@@ -182,8 +182,8 @@ def run(program, folder, count, seed, show):
 
 
 def summary(items):
-    return table(["command", "killed", "in the first second", "without a row", "largest loss [s]",
-                  "in the first second [s]", "wrong"],
+    return table(["command", "kills", "kills in the first second", "kills before the first row", "largest loss [s]",
+                  "largest loss in the first second [s]", "wrong results"],
                  [[item["command"], str(item["killed"]), str(item["early"]), str(item["without_rows"]),
                    f"{item['largest_loss_s']:.2f}", f"{item['largest_early_loss_s']:.2f}",
                    str(len(item["wrong"]))] for item in items])

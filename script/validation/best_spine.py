@@ -160,15 +160,15 @@ def page(taut):
     return fill(TEMPLATE.read_text(), {
         "version": taut("--version").split()[-1],
         "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
-        "untuned": table(["", "x [mm]", "y [mm]", "turn [degrees]"], [
-            ["way up, five tests, untuned", *errors(pooled(list(untuned_up.values()), "untuned"))],
-            ["all, two tests, untuned", *errors(camera.untuned)],
-            ["all, two tests, fitted to the three others", *errors(camera.fitted)]]),
+        "untuned": table(["poses and model", "error in x [mm]", "error in y [mm]", "error in turn [degrees]"], [
+            ["upward motion, five tests, untuned", *errors(pooled(list(untuned_up.values()), "untuned"))],
+            ["all set points, two held-out tests, untuned", *errors(camera.untuned)],
+            ["all set points, two held-out tests, fitted to the other three", *errors(camera.fitted)]]),
         "spread": " / ".join(errors([repeated.spread(c) for c in UNITS])),
         "floor": " / ".join(errors([repeated.floor(c) for c in UNITS])),
-        "parameters": table(["number", "unit", "assumed", "found", "verdict"], parameters),
+        "parameters": table(["parameter", "unit", "nominal", "estimate", "verdict"], parameters),
         "judgement": "; ".join(one.judgements()) or "good",
-        "halves": table(["fitted to the lower half", "x [mm]", "y [mm]", "turn [degrees]", "fit",
-                         "verdicts"], rows),
+        "halves": table(["parameters fitted to the lower half", "error in x [mm]", "error in y [mm]", "error in turn [degrees]",
+                         "verdict on the fit", "verdicts on the parameters"], rows),
         "mass": f"{mass / 0.655:.2f}", "condition": f"{condition:.0e}" if condition else "infinite",
     })

@@ -107,9 +107,9 @@ def page(taut):
         sliding, (rest, rest_se) = p["ground_sliding"], at_rest(fit)
         naive_sliding, naive_rest = ground.naive()
         verdict = "; ".join(fit.judgements()) or "good"
-        rows.append([ground.name, "sliding", f"{naive_sliding:.3f}", *blind.digits(sliding["value"], blind.error_of(sliding)),
+        rows.append([ground.name, "kinetic", f"{naive_sliding:.3f}", *blind.digits(sliding["value"], blind.error_of(sliding)),
                      verdict, blind.digits(truth["ground_sliding"], blind.error_of(sliding))[0]])
-        rows.append(["", "at rest", f"{naive_rest:.3f}", *blind.digits(rest, rest_se), "",
+        rows.append(["", "static", f"{naive_rest:.3f}", *blind.digits(rest, rest_se), "",
                      blind.digits(truth["ground_sliding"] * (1 + truth["extra"]), rest_se)[0]])
         for drag in ground.drags:
             speed, zero = p[f"velocity_m_per_s {drag}"], p[f"offset {SCALE} {drag}"]
@@ -120,9 +120,9 @@ def page(taut):
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
         "noise": f"{NOISE_N:g}", "rate": str(RATE_HZ), "begin": f"{BEGIN_S:g}",
         "fast": f"{100 * DRAGS['first']:g}", "slow": f"{100 * DRAGS['slow']:g}",
-        "grounds": table(["ground", "friction", "scale over weight", "found", "standard error", "fit", "truth"],
+        "grounds": table(["ground", "coefficient", "scale over weight", "estimate", "standard error", "verdict on the fit", "truth"],
                          rows),
-        "hands": table(["ground", "drag", "speed of the hand [mm/s]", "standard error", "truth", "zero of the scale [N]",
+        "hands": table(["ground", "drag", "speed of the hand [mm/s]", "standard error", "truth", "zero offset of the scale [N]",
                         "standard error", "truth"], hands),
         "within": str(sum(abs(x) <= 2 for x in offs)), "numbers": str(len(offs)),
     })

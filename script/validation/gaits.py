@@ -129,14 +129,14 @@ def cable_rows(gait, ntrt, its, own):
 
 
 def means_table(rows):
-    head = ["cable", "mean: NTRT", "its laws", "own laws", "p-p: NTRT", "its laws", "own laws"]
+    head = ["cable", "mean: NTRT [N]", "its laws [N]", "own laws [N]", "p-p: NTRT [N]", "its laws [N]", "own laws [N]"]
     return table(head, [[plain(cable), *(f"{mean(wave):.3f}" for wave in waves),
                          *(f"{swing(wave):.3f}" for wave in waves)] for cable, waves, _, _ in rows])
 
 
 def lines_table(rows):
-    head = ["cable", "Hz: NTRT", "its laws", "own laws", "amplitude N: NTRT", "its laws", "own laws",
-            "phase against NTRT, degrees: its laws", "own laws"]
+    head = ["cable", "frequency [Hz]: NTRT", "its laws", "own laws", "amplitude [N]: NTRT", "its laws", "own laws",
+            "phase relative to NTRT [degrees]: its laws", "own laws"]
     return table(head, [[plain(cable), *(f"{line[0]:.3f}" for line in lines),
                          *(f"{line[1]:.3f}" for line in lines), *(f"{phase:+.1f}" for phase in phases)]
                         for cable, _, lines, phases in rows])
@@ -145,8 +145,8 @@ def lines_table(rows):
 def shapes_table(rows, fundamental_hz):
     """Formats harmonics of the tension in % of the first, and the remainder after subtraction of a sine or a
     triangle."""
-    head = ["cable", *(f"{n}: {who}" for n in (2, 3, 5) for who in ("NTRT", "own")),
-            "off a sine %: NTRT", "own", "off a triangle %: NTRT", "own"]
+    head = ["cable", *(f"harmonic {n} [%]: {who}" for n in (2, 3, 5) for who in ("NTRT", "own laws")),
+            "deviation from a sine [%]: NTRT", "own laws", "from a triangle [%]: NTRT", "own laws"]
     out = []
     for cable, waves, _, _ in rows:
         spectra = [harmonics(waves[pick], ROW_S, fundamental_hz, 7) for pick in (0, 2)]
@@ -157,7 +157,7 @@ def shapes_table(rows, fundamental_hz):
 
 
 def paths_table(sources):
-    head = ["t s"] + [f"{what}: {who}" for what in ("forward cm", "left cm", "turned degrees")
+    head = ["time [s]"] + [f"{what}: {who}" for what in ("forward [cm]", "left [cm]", "turned [degrees]")
                       for who in ("NTRT", "its laws", "own laws")]
     out = []
     for time_s in TIMES_S:
@@ -180,7 +180,7 @@ def system_table(gait, rows, runs):
         worst, cable = worst_mean(rows, pick, gait.system_max_n)
         out.append([who, f"{run.largest_n:.3f}", percent(100 * (run.largest_n / gait.system_max_n - 1), 2),
                     f"{worst:.2f} %", cable])
-    return table(["", "largest tension N", "against NTRT", "means against NTRT, worst", "where"], out)
+    return table(["run", "largest tension [N]", "difference from NTRT", "largest difference of a mean from NTRT", "cable"], out)
 
 
 def frequency_text(rows):
@@ -193,8 +193,8 @@ def frequency_text(rows):
                 worst = max(worst, off)
             else:
                 others.append(f"{plain(cable)} under {who}: {line[0]:.2f} instead of {lines[0][0]:.2f} Hz")
-    text = f"Where the strongest line is the same one, its frequency is within {100 * worst:.2f} %."
-    return text + (f" It is another one in: {'; '.join(others)}." if others else "")
+    text = f"If taut and NTRT have the same strongest line, the frequencies agree within {100 * worst:.2f} %."
+    return text + (f" Another line is the strongest in: {'; '.join(others)}." if others else "")
 
 
 # --- each law separately --------------------------------------------------------------------------
@@ -214,13 +214,13 @@ def law_variants(gait):
     changes = [
         ("taut's own laws", ""),
         ("gait at 1 kHz instead of 100 Hz", changed_controllers(gait, "period_s: 0.01}", "period_s: 0.001}")),
-        ("impedance law at 100 Hz instead of 1 kHz",
+        ("impedance control at 100 Hz instead of 1 kHz",
          changed_controllers(gait, "    period_s: 0.001\n", "    period_s: 0.01\n")),
         ("controller: difference of lengths",
          changed_controllers(gait, "conversion: stiffness", "conversion: stiffness\n      rate: differenced")),
         ("friction: along the sliding velocity only", laws(OWN_LAWS, friction_law="along_slip")),
         ("inertia: of the bounding box", laws(OWN_LAWS, inertia="bounding_box")),
-        ("damping: clamped", laws(OWN_LAWS, damping_law="clamped")),
+        ("damping: at most the elastic force", laws(OWN_LAWS, damping_law="clamped")),
     ]
     return [(text, Variant(f"{gait.key}_law_{i}" if i else gait.key, gait.key, keys, full_trace=True))
             for i, (text, keys) in enumerate(changes)]
@@ -234,8 +234,8 @@ def laws_table(gait, ntrt, runs):
         out.append([text, f"{run.largest_n:.3f}", percent(100 * (run.largest_n / gait.system_max_n - 1), 2),
                     f"{100 * worst / gait.system_max_n:.2f} %", *(f"{cm:.2f}" for cm in far),
                     f"{run.heading(TO_S) - run.heading(0):+.1f}"])
-    return table(["", "largest tension N", "against NTRT", "means against NTRT, worst", "20 s cm", "60 s cm",
-                  "turned degrees"], out)
+    return table(["run", "largest tension [N]", "difference from NTRT", "largest difference of a mean from NTRT",
+                  "distance in 20 s [cm]", "in 60 s [cm]", "turned [degrees]"], out)
 
 
 def saturation_table(run_of):
@@ -291,7 +291,8 @@ def steps_table(gait, exact, paths):
                     "" if step_s == STEPS_S[0] else percent(100 * (mean(far) / means[STEPS_S[0]] - 1), 2),
                     "" if step_s == STEPS_S[0] else "never" if parted is None else f"{parted:.1f}"])
     largest = max(abs(means[step_s] / means[STEPS_S[0]] - 1) for step_s in STEPS_S)
-    return table(["Hz", "distance cm", f"{STARTS} starts cm", "against 4 kHz", "1 mm from 4 kHz at s"], out), largest
+    return table(["step rate [Hz]", "mean distance [cm]", f"range of {STARTS} starts [cm]", "difference from 4 kHz",
+                  "1 mm from the run at 4 kHz after [s]"], out), largest
 
 
 # --- commands -------------------------------------------------------------------------------------

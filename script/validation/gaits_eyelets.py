@@ -85,8 +85,8 @@ def ways_table(gait, walks):
                      f"{min(far):.2f} to {max(far):.2f}",
                      f"{10 * statistics.mean(100 * run.speed_m_per_s() for run in runs):.2f}",
                      f"{runs[0].work_j:.0f}", f"{runs[0].loss_j:.0f}"])
-    return table(["", "20 s cm", "60 s cm", f"60 s, {STARTS} starts cm", "30 to 60 s mm/s", "motors wind in with J",
-                  "lost in eyelets J"], rows)
+    return table(["eyelets", "distance in 20 s [cm]", "in 60 s [cm]", f"in 60 s, range of {STARTS} starts [cm]",
+                  "speed from 30 to 60 s [mm/s]", "winding work [J]", "lost in eyelets [J]"], rows)
 
 
 def tensions_table(gait, walks):
@@ -98,7 +98,7 @@ def tensions_table(gait, walks):
             cells += [f"{motor.mean_n:.1f}, {cell.mean_n:.1f}", f"{motor.swing_n:.1f}, {cell.swing_n:.1f}",
                       f"{motor.max_n:.1f}, {cell.max_n:.1f}"]
         rows.append(cells)
-    return table(["", *(f"{role}: {what} N" for role in ("outer", "inner") for what in ("mean", "p-p", "largest"))], rows)
+    return table(["eyelets", *(f"{role} cables: {what} [N]" for role in ("outer", "inner") for what in ("mean", "p-p", "largest"))], rows)
 
 
 def ground_table(folder, results):
@@ -109,7 +109,8 @@ def ground_table(folder, results):
             run = GROUND_RUNS[friction, ground]
             cells.append(f"{100 * Walk(folder / run.name, results[run.name]).distance_m(TO_S):.2f}")
         rows.append(cells)
-    return table(["mu of the ground (product)", "60 s cm, eyelets without friction", "60 s cm, eyelets mu 0.2"], rows)
+    return table(["friction of the ground (product of both coefficients)", "distance in 60 s [cm], eyelets without friction",
+                  "in 60 s [cm], eyelets with mu 0.2"], rows)
 
 
 def difference_mm(walks, gait):

@@ -86,7 +86,7 @@ def picture(outcomes):
     curves = {name: [f"{LEFT},{TOP}"] + [f"{x_of(score):.1f},{TOP + HEIGHT * part / len(scores):.1f}"
                                          for k, score in enumerate(scores) for part in (k, k + 1)]
               for name, (scores, *_) in outcomes.items()}
-    return shares.picture("came nearer to the goal by at least [m]", [f"{least + 0.5 * i:.1f}" for i in range(10)],
+    return shares.picture("progress towards the goal of at least [m]", [f"{least + 0.5 * i:.1f}" for i in range(10)],
                           guides, curves, COLOURS, 200)
 
 
@@ -98,8 +98,9 @@ def page(taut):
     return fill(TEMPLATE.read_text(), {
         "made_by": f"This page was made by `script/validate goal` with taut {version}: {303 + 3 * HEADINGS} runs of 60 s took "
                    f"{time.monotonic() - started:.0f} s on {machine()}.",
-        "starts": table(["", "least m", "5 % m", "10 % m", "25 % m", "median m", "most m", "at least 1.5 m",
-                         "at least 2 m", "winding J", "largest tension N"],
+        "starts": table(["terrain", "least [m]", "5 % [m]", "10 % [m]", "25 % [m]", "median [m]", "most [m]",
+                         "starts with at least 1.5 m", "starts with at least 2 m", "winding work [J]",
+                         "largest tension [N]"],
                         [row(name, outcome) for name, outcome in outcomes.items()]),
-        "ntrts_own": table(["", "least m", "median m", "most m"], ntrts_own(taut)),
+        "ntrts_own": table(["terrain", "least [m]", "median [m]", "most [m]"], ntrts_own(taut)),
     })

@@ -114,7 +114,7 @@ class Landing:
             words.append("payload and strut")
         if any(0 not in pair and -1 not in pair for pair in self.pairs):
             words.append("struts")
-        return ", ".join(words) or "nothing"
+        return ", ".join(words) or "none"
 
 
 def g(deceleration):
@@ -127,8 +127,9 @@ def landings_table(runs):
         rows.append([way, str(speed), g(run.most), f"{1000 * run.most_s:.0f}",
                      g(speed**2 / (2 * run.stroke_m)), g(speed**2 / run.stroke_m),
                      f"{100 * run.gap_m:.0f}", f"{100 * run.rebound_m:.0f}"])
-    return table(["lands on", "m/s", "largest deceleration m/s^2", "after ms", "least possible, v^2 / 2s",
-                  "one spring, v^2 / s", "payload's least height cm", "then up to cm"], rows)
+    return table(["lands on", "impact speed [m/s]", "largest deceleration [m/s^2]", "at [ms]",
+                  "least possible, v^2 / (2 s) [m/s^2]", "one spring, v^2 / s [m/s^2]",
+                  "least height of the payload [cm]", "rebound height [cm]"], rows)
 
 
 def gives_table(runs):
@@ -137,8 +138,9 @@ def gives_table(runs):
         rows.append([way, str(speed), f"{run.outer_n:.0f}", f"{run.inner_n:.0f}",
                      f"{run.outer_slack} of 24", f"{run.inner_slack} of 12", f"{run.push_n:.0f}",
                      f"{100 * run.push_n / euler_n():.0f}", run.touches()])
-    return table(["lands on", "m/s", "largest tension N: robot's cables", "payload's", "slack at some time: robot's",
-                  "payload's", "compression of a strut N", "% of Euler's load", "contacts"], rows)
+    return table(["lands on", "impact speed [m/s]", "largest tension, robot's cables [N]", "payload cables [N]",
+                  "slack at some time, robot's cables", "payload cables", "largest compression of a strut [N]",
+                  "% of Euler's load", "contacts besides strut ends and ground"], rows)
 
 
 def picture(runs):
@@ -169,9 +171,9 @@ def picture(runs):
         out.append(f'<path d="M{left + width + 15} {y}h24" stroke="{shade}" stroke-width="2"/>'
                    f'<text x="{left + width + 45}" y="{y + 4}">{speed} m/s</text>')
     out.append(f'<text x="{left + width + 15}" y="{top + 82}">dashed: v^2 / 2s</text>')
-    out.append(f'<text x="{left + width / 2}" y="{top + height + 44}" text-anchor="middle">ms after the first touch</text>')
+    out.append(f'<text x="{left + width / 2}" y="{top + height + 44}" text-anchor="middle">time after first contact [ms]</text>')
     out.append(f'<text x="20" y="{top + height / 2}" text-anchor="middle" '
-               f'transform="rotate(-90 20 {top + height / 2})">deceleration of the payload, m/s^2</text>')
+               f'transform="rotate(-90 20 {top + height / 2})">deceleration of the payload [m/s^2]</text>')
     return "\n".join(out + ["</svg>", ""])
 
 
@@ -204,9 +206,10 @@ def page(taut):
         "landings": landings_table(runs),
         "gives": gives_table(runs),
         "dead": g(dead),
-        "suspensions": table(["N/m", "N s/m", "largest deceleration m/s^2", "payload's least height cm", "contacts"],
+        "suspensions": table(["stiffness [N/m]", "damping [N s/m]", "largest deceleration [m/s^2]",
+                              "least height of the payload [cm]", "contacts besides strut ends and ground"],
                              [[str(k), f"{DAMPING_S * k:.4g}",
-                               "the blow" if "payload" in run.touches() else g(run.most), f"{100 * run.gap_m:.0f}",
+                               "payload hits the ground" if "payload" in run.touches() else g(run.most), f"{100 * run.gap_m:.0f}",
                                run.touches()] for k, run in softer.items()]),
         "stretch": f"{100 * max(run.outer_n for run in runs.values()) / STIFFNESS_N_PER_M:.0f}",
         "euler": f"{euler_n() / 1000:.1f}",

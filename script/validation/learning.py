@@ -24,7 +24,7 @@ METHODS = {
 }
 COLOURS = ("#888888", "#c0392b", "#e59866", "#2471a3", "#7d3c98", "#1e8449")
 AT = (64, 128, 256, 512)
-GAITS = {"sidewinder3": "learned here, 3 segments", "sidewinder12": "learned here, 12 segments",
+GAITS = {"sidewinder3": "learned with taut, 3 segments", "sidewinder12": "learned with taut, 12 segments",
          "cpg_learned": "NTRT's oscillators (paper IV.C)", "sine_hand_tuned": "NTRT's sines (paper IV.B)"}
 CHANGES = [("as described", "", 0.001)]
 CHANGES += [(f"{key} {sign}20 %", f"scale: [{{{key}: {1.2 if sign == '+' else 0.8}}}]\n", 0.001)
@@ -61,7 +61,7 @@ def curves_table(curves):
 
     rows = [[name, *(cell(runs, at) for at in AT), f"{statistics.median(r[-1][1] for r in runs):.0f} s"]
             for name, runs in curves.items()]
-    return table(["method", *(f"after {at}" for at in AT), "wall clock"], rows)
+    return table(["method", *(f"score after {at} evaluations [m]" for at in AT), "wall-clock time"], rows)
 
 
 def panel(curves, left, width, last, x_of, label):
@@ -143,8 +143,8 @@ def speeds(taut):
         held, bare, rollout = (found[f"{key}_steps_per_s"] for key in ("held", "bare", "rollout"))
         rows.append([experiment, f"{held / 1e6:.2f}", f"{bare / 1e6:.2f}", f"{rollout / 1e6:.2f}",
                      f"{100 * rollout / bare:.0f} %", f"{rollout / 60000:.1f}"])
-    return table(["experiment", "held [M/s]", "bare [M/s]", "rollouts [M/s]", "of bare",
-                  "60 s rollouts a second"], rows)
+    return table(["experiment", "held [10^6 steps/s]", "bare [10^6 steps/s]", "rollouts [10^6 steps/s]", "rollouts / bare",
+                  "rollouts of 60 s per second"], rows)
 
 
 def page(taut):

@@ -17,8 +17,8 @@ KINDS = {"short": ("short cables", "spine6", {}),
          "long": ("long outer cables", "spine6_long", {}),
          "long_friction": ("long, eyelets with mu 0.1", "spine6_long", {"eyelet_friction": 0.1}),
          "long_friction_3": ("long, eyelets with mu 0.3", "spine6_long", {"eyelet_friction": 0.3}),
-         "long_fast": ("long, their motors twice as fast, gait learned for that", "spine6_long_fast", {}),
-         "long_slow": ("the same gait, motors as before", "spine6_long_fast", {"outer_speed_m_per_s": 0.07})}
+         "long_fast": ("long, outer motors twice as fast, gait learned for them", "spine6_long_fast", {}),
+         "long_slow": ("the same gait, all motors 0.07 m/s", "spine6_long_fast", {"outer_speed_m_per_s": 0.07})}
 
 
 def variant(kind, number):
@@ -64,9 +64,10 @@ def kinds_table(runs):
                     *("{:.1f}, {:.1f}".format(*first.tension_n[role]) for role in ("outer", "inner")),
                     f"{first.work_j:.0f}", f"{first.net_j:.0f}", f"{first.work_j / first.way_m:.0f}",
                     f"{first.loss_j:.1f}" if first.loss_j else ""])
-    return table(["", "motors", "way in 60 s m", f"of {STARTS} starts: least, median, most", "path m",
-                  "outer cables: mean, largest N", "inner: mean, largest N", "wind in with J", "less returned work J",
-                  "J a metre", "lost in eyelets J"], out)
+    return table(["spine", "motors", "way, first start [m]", f"way, {STARTS} starts: least, median, most [m]", "path [m]",
+                  "tension of outer cables: mean, largest [N]", "of inner cables: mean, largest [N]",
+                  "winding work [J]", "less returned work [J]", "winding work per meter [J/m]",
+                  "lost in eyelets [J]"], out)
 
 
 def page(taut):

@@ -22,5 +22,5 @@ def page(taut):
     if run.returncode not in (0, 1):
         raise Problem(f"{program} ended with status {run.returncode}")
     failed = run.stdout.count("(fails)")
-    verdict = "All values are as expected." if failed == 0 else f"{failed} values are not as expected (in bold)."
+    verdict = "All values are as expected." if failed == 0 else f"{failed} values are not as expected (bold)."
     return fill(TEMPLATE.read_text(), {"tables": run.stdout.strip(), "verdict": verdict})

@@ -140,7 +140,7 @@ def standing(trace, mass_kg):
         "stand_forces": ", ".join(f"{last[leg]:.2f}" for leg in LEGS),
         "stand_sum": f"{sum(last.values()):.3f}", "weight": f"{mass_kg * GRAVITY:.3f}",
         "stand_speed": f"{speed:.0e}", "stand_moved": f"{moved:.0e}", "stand_gap": f"{trace.gap_m():.0e}",
-        "stand_tensions": f"{low:.1f} to {high:.1f}", "stand_others": "nothing else" if not others else "something else",
+        "stand_tensions": f"{low:.1f} to {high:.1f}", "stand_others": "none" if not others else "some",
     }
 
 
@@ -194,8 +194,8 @@ def gait(trace, summary, mass_kg):
     work = work_j(summary)
     low, high = trace.torso_m()
     return {
-        "feet": table(["foot", "carries, share of time", "after the front left one, periods", "lift mm", "mean force N",
-                       "largest N", "slides, m for each m of way"], rows),
+        "feet": table(["foot", "share of time with load", "delay after front left [periods]", "lift [mm]",
+                       "mean force [N]", "largest force [N]", "sliding per distance [m/m]"], rows),
         "feet_down": ", ".join(f"{100 * c / len(walking):.0f} % {n}" for n, c in enumerate(count)),
         "hz": f"{hz:.2f}", "speed": f"{way / (trace.time_s[-1] - trace.time_s[walking[0]]):.2f}",
         "stride": f"{1000 * way / (trace.time_s[-1] - trace.time_s[walking[0]]) / hz:.0f}",
@@ -256,8 +256,9 @@ def page(taut):
             values["duration"] = f"{trace.time_s[-1]:g}"
     values |= standing(Trace(taut.folder / stand.name), mass_kg)
     values |= {
-        "variants": table(["", "ahead m", "to the left m", "1 m after s", "lowest girdle mm", "largest tilt deg",
-                           "both feet of each diagonal alike, % of time", "largest tension N", "touches other things"], rows),
+        "variants": table(["change", "forward [m]", "left [m]", "time to 1 m [s]", "least height of a girdle [mm]",
+                           "largest tilt [degrees]", "both feet of each diagonal alike [% of time]",
+                           "largest tension [N]", "other contacts"], rows),
         "version": taut("--version").split()[-1], "runs": str(len(trots) + 1),
         "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
     }

@@ -113,7 +113,7 @@ PUSHES += [(f"{'all three forces' if holds else 'push'} turned 5 degrees {way}",
            for holds in (False, True) for way, yaw, pitch in WAYS]
 OTHERS = [
     ("inertia of the bounding box", dict(LAWS_ON)["inertia: of the bounding box"]),
-    ("settled at the start", Variant("settled", "push_20n", "start: settled\n")),
+    ("start from equilibrium", Variant("settled", "push_20n", "start: settled\n")),
     ("B = 100 N s/m (Table I)", Variant("table1", "push_20n_table1")),
     ("controller: difference of lengths",
      Variant("differenced", "push_20n", controller("conversion: stiffness\n      rate: differenced"))),
@@ -185,7 +185,7 @@ def system_table(ntrt, results):
         largest = results[name].summary["system_max_elastic_n"]
         rows.append([text, f"{largest:.3f}", percent(100 * (largest / ntrt.system_max_n - 1), 2),
                      f"{worst_mean(results[name], ntrt, ntrt.system_max_n)[0]:.2f} %"])
-    return table(["", "largest `elastic` N", "against NTRT", "means against NTRT, worst"], rows)
+    return table(["run", "largest `elastic` [N]", "difference from NTRT", "largest difference of a mean from NTRT"], rows)
 
 
 def laws_table(ntrt, results, variants):
@@ -198,8 +198,8 @@ def laws_table(ntrt, results, variants):
         rows.append([text, "" if result is base else f"{change:.2f} %", f"{worst:.2f} %",
                      f"{plain(cable)}, {phase}", f"{largest:.3f}",
                      percent(100 * (largest / ntrt.system_max_n - 1), 2)])
-    return table(["run", "changes a mean by up to", "means against NTRT, worst", "where",
-                  "largest tension N", "against NTRT"], rows)
+    return table(["run", "largest change of a mean", "largest difference of a mean from NTRT", "where",
+                  "largest `elastic` [N]", "difference from NTRT"], rows)
 
 
 def moved_table(ntrt, folder):
@@ -218,7 +218,8 @@ def moved_table(ntrt, folder):
         cells = [100 * (last[f"{segment}_{axis}_m"] - first[f"{segment}_{axis}_m"]) for axis in "zx"]
         cells += [100 * moved[f"body/{segment}/position_{axis}_m"] for moved in (its, own) for axis in "xy"]
         rows.append([plain(segment), *(f"{cell:+.1f}" for cell in cells)])
-    return table(["cm", "NTRT forward", "left", "its laws forward", "left", "own laws forward", "left"], rows)
+    return table(["segment", "NTRT: forward", "left", "taut, NTRT's laws: forward", "left", "taut, own laws: forward",
+                  "left"], rows)
 
 
 def maxima_table(robot, ntrt, result, after_start):
@@ -228,8 +229,8 @@ def maxima_table(robot, ntrt, result, after_start):
                  result.max(cable, "tension", after_start), result.max(cable, "elastic", after_start)]
         rows.append([plain(cable), f"{measured:.3f}", *(
             text for cell in cells for text in (f"{cell:.3f}", percent(100 * (cell / measured - 1))))])
-    return table(["cable", "robot N", "NTRT `elastic` N", "off", "taut `tension` N", "off",
-                  "taut `elastic` N", "off"], rows)
+    return table(["cable", "robot [N]", "NTRT `elastic` [N]", "error", "taut `tension` [N]", "error",
+                  "taut `elastic` [N]", "error"], rows)
 
 
 def errors(robot, result, after_start):
@@ -243,7 +244,7 @@ def choices_table(robot, results, after_start):
         off = errors(robot, results[variant.name], after_start)
         rows.append([text, *(f"{value:+.1f}" for value in off.values()),
                      f"{sum(map(abs, off.values())) / len(off):.1f}"])
-    return table(["% off", *map(plain, robot), "mean size"], rows)
+    return table(["error [%]", *map(plain, robot), "mean magnitude"], rows)
 
 
 def stretch_mm(tension_n):
@@ -256,10 +257,10 @@ def outer_left_text(robot, results):
     off = {text: errors(robot, results[variant.name], True)[LEFT] for text, variant in CHOICES}
     near = {text: value for text, value in off.items() if round(abs(value), 1) < 30}
     far = [abs(value) for text, value in off.items() if text not in near]
-    text = (f"From 5 s on, outer left 1 is {min(far):.1f} to {max(far):.1f} % off in "
+    text = (f"From 5 s on, the error of outer left 1 is {min(far):.1f} to {max(far):.1f} % in "
             f"{len(far)} of the {len(off)} runs. ")
     listed = "; ".join(f"{name} ({value:+.1f} %)" for name, value in near.items())
-    return text + (f"Below 30 % in: {listed}." if near else "")
+    return text + (f"It is below 30 % in: {listed}." if near else "")
 
 
 def largest_shift(robot, results, choices):

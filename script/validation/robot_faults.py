@@ -136,7 +136,7 @@ def row(name, goes_on, runs):
     noticed = [run.noticed_s for run in runs if run.noticed_s is not None]
     modes = collections.Counter(" and ".join(sorted(run.modes)) or "no board answers" for run in runs)
     back = sum(run.recovered and run.well for run in runs[:RECOVERIES])
-    return [name, often(runs, lambda run: run.told) or "nothing", often(runs, lambda run: run.counted) or "nothing",
+    return [name, often(runs, lambda run: run.told) or "none", often(runs, lambda run: run.counted) or "none",
             f"{len(noticed)}" + (f", {1e3 * max(noticed):.0f} ms" if noticed else ""),
             "; ".join(f"{mode} ({n})" if n < len(runs) else mode for mode, n in modes.items()),
             f"{100 * min(run.left for run in runs):.0f} to {100 * max(run.left for run in runs):.0f} %",
@@ -172,8 +172,8 @@ def page(taut):
         "times": str(TIMES), "kinds": str(len(FAULTS)), "runs": str(len(jobs)), "limit": str(LIMIT_N),
         "plain": f"{json.loads((plain / 'boards.json').read_text())['largest_tension_n']:.1f}",
         "walk": f"{json.loads((walk / 'boards.json').read_text())['largest_tension_n']:.1f}",
-        "table": table(["fault", "PC events (number of runs, if not all)", "counters", "noticed, longest delay",
-                        "boards' mode", "tension left", "largest tension [N]", "recovers"],
+        "table": table(["fault", "PC events (number of runs, if not all)", "counters that grew", "runs noticed, longest delay",
+                        "mode of the boards", "tension left", "largest tension [N]", "runs recovered"],
                        [row(name, goes_on, runs[name]) for name, _, _, goes_on in FAULTS]),
         "silent": ", ".join(silent) or "none", "worst": f"{worst[0]:.1f} N ({worst[1]})",
         "over": "none" if worst[0] <= LIMIT_N else f"{sum(run.largest_n > LIMIT_N for name in runs for run in runs[name])}"})

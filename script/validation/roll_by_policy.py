@@ -51,13 +51,13 @@ def picture(rows, sine_m_per_s):
     line = " ".join(place(row["processor_s"], max(row["per_s"], 0)) for row in rows)
     out.append(f'<path d="M{place(0, sine_m_per_s)}H{LEFT + WIDTH}" stroke="#4aa3c7" stroke-width="2"/>'
                f'<polyline points="{line}" fill="none" stroke="#b2182b" stroke-width="2"/>')
-    for i, (text, shade) in enumerate((("policy, with the chance that it learns by", "#b2182b"),
+    for i, (text, shade) in enumerate((("policy, with exploration noise", "#b2182b"),
                                        ("the sine, median", "#4aa3c7"))):
         x, y = LEFT + 15, TOP + 20 + 20 * i
         out.append(f'<path d="M{x} {y}h24" stroke="{shade}" stroke-width="2"/><text x="{x + 30}" y="{y + 4}">{text}</text>')
     out.append(f'<text x="{LEFT + WIDTH / 2}" y="{TOP + HEIGHT + 42}" text-anchor="middle">processor time, minutes</text>'
                f'<text x="16" y="{TOP + HEIGHT / 2}" text-anchor="middle" '
-               f'transform="rotate(-90 16 {TOP + HEIGHT / 2})">m/s along x</text>')
+               f'transform="rotate(-90 16 {TOP + HEIGHT / 2})">speed along x [m/s]</text>')
     return "\n".join(out + ["</svg>", ""])
 
 
@@ -87,7 +87,7 @@ def page(taut):
         "table": table(MOVING, [moving_row("policy", runs["policy"], way), moving_row("sine", runs["sine"], way)]),
         "each": table(["start", *map(str, range(STARTS))],
                       [[name, *(f"{run.way_m:.1f}" for run in runs[name])] for name in runs]),
-        "elsewhere": table(["first start, m in 60 s", "policy", "sine"],
+        "elsewhere": table(["change (first start)", "policy: distance in 60 s [m]", "sine: distance in 60 s [m]"],
                            [[name, f"{policy_m:.1f}", f"{sine_m:.1f}"] for name, policy_m, sine_m in elsewhere]),
         "times": f"{median_m['policy'] / median_m['sine']:.1f}",
         "updates": str(UPDATES),

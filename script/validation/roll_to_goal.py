@@ -86,8 +86,9 @@ def row(name, runs):
     return cells
 
 
-HEAD = ["", "arrive within 0.5 m", "after s: first, median, 90 %, last", "within 0.25 m",
-        "after s: first, median, 90 %, last", "nearest m, median", "after 60 s m, median", "most", "warned"]
+HEAD = ["terrain", "arrived within 0.5 m", "time [s]: first, median, 90 %, last", "arrived within 0.25 m",
+        "time [s]: first, median, 90 %, last", "nearest [m], median", "after 60 s [m], median", "after 60 s [m], most",
+        "warned"]
 
 
 def far_row(name, runs):
@@ -103,7 +104,8 @@ def far_row(name, runs):
             middle(lambda run: run.power_w, 0)]
 
 
-FAR_HEAD = ["", "way m", "path m", "turns", "path a turn m", "ends slide, % of path", "largest tension N", "winding W"]
+FAR_HEAD = ["model", "distance [m]", "path [m]", "turns", "path per turn [m]", "sliding of ends [% of path]",
+            "largest tension [N]", "winding power [W]"]
 
 
 def picture(outcomes):
@@ -117,7 +119,7 @@ def picture(outcomes):
                 points.append(f"{LEFT + WIDTH * at / LIMIT_S:.1f},{TOP + HEIGHT * (1 - count / len(runs)):.1f}")
         points.append(f"{LEFT + WIDTH},{TOP + HEIGHT * (1 - count / len(runs)):.1f}")
         curves[name] = points
-    return shares.picture("half a metre from the goal or less, after [s]", [f"{10 * i}" for i in range(7)],
+    return shares.picture("time to half a meter from the goal [s]", [f"{10 * i}" for i in range(7)],
                           [f'<path d="M{LEFT} {TOP + 0.1 * HEIGHT}h{WIDTH}" stroke="#ddd"/>'], curves,
                           COLOURS, 160)
 

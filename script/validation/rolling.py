@@ -120,9 +120,9 @@ def moving_row(text, runs, way):
             f"{max(r.most_n for r in runs):.0f}", f"{first.power_w:.0f}"]
 
 
-MOVING = ["", "way m", "of all starts: least, median, most", "path m", "turns",
-          "of all starts: least, median, most", "ends set down", "ends slide, % of path", "largest tension N",
-          "winding W"]
+MOVING = ["", "distance, first start [m]", "distance: least, median, most [m]", "path [m]", "turns, first start",
+          "turns: least, median, most", "ends set down", "sliding of ends [% of path]", "largest tension [N]",
+          "winding power [W]"]
 
 
 def out_row(rim_m, motors, runs):
@@ -199,7 +199,7 @@ def page(taut):
         "slope": table(MOVING, [moving_row("its own gait", runs["slope"], forward),
                                 moving_row("the gait for level ground", runs["slope_level_gait"], forward)]),
         "still": f"{1000 * runs['slope_still'][0].length_m:.1f}",
-        "craters": table(["rim m", "motors", "out", "after s", "off the walls' far side", "center of mass up to m"],
+        "craters": table(["rim height [m]", "motors", "out", "time [s]", "off the far side", "largest height of the center of mass [m]"],
                          [out_row(rim_m, "0.3 m/s, 500 N", runs[f"rim_{1000 * rim_m:.0f}"]) for rim_m in RIMS_M]
                          + [out_row(2, "NTRT's: 1000 m/s, 10 kN", runs["rim_ntrt"])]),
         "steps": ", ".join(f"{runs[f'step_{i}'][0].way_m:.1f} m at {1000 * step_s:g} ms"

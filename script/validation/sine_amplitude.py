@@ -209,9 +209,9 @@ def answer(outcomes):
     free = [f for f in FACTORS if all(run.touching == 0 for mu in FRICTIONS for run in outcomes[f, mu])]
     stuck = [f for f in FACTORS if all(run.touching > 0 for mu in FRICTIONS for run in outcomes[f, mu])]
     if stuck:
-        text += f". Segments do slide together, from {min(stuck)} times the amplitude on at every friction"
+        text += f". Segments do touch each other: at every friction from {min(stuck)} times the amplitude on"
     if free:
-        text += f"; up to {max(free)} times, none touches its neighbor in any run"
+        text += f"; up to {max(free)} times the amplitude, no segment touches another in any run"
     own = [run for mu in FRICTIONS for run in outcomes[FACTORS[-1], mu]]
     return textwrap.fill(
         f"{text}. At the robot's own amplitudes they touch for {span([100 * r.touching for r in own], '{:.0f}'.format)} % "
@@ -245,8 +245,8 @@ def page(taut):
         "near": cell_table(coarse, lambda cell: span([100 * run.near_m for run in cell], "{:.1f}".format)),
         "touching": cell_table(coarse, lambda cell: span([100 * run.touching for run in cell], "{:.0f}".format)),
         "forward": cell_table(coarse, lambda cell: span([100 * run.forward_m for run in cell], "{:.0f}".format)),
-        "motors": table(["amplitude", "winding at full speed %", "at the minimum length %", "at 50 N %",
-                         "largest tension N"],
+        "motors": table(["amplitude", "winding at full speed [%]", "at the minimum length [%]", "at 50 N [%]",
+                         "largest tension [N]"],
                         [[f"x {factor}", *(span([form(run) for mu in FRICTIONS for run in coarse[factor, mu]],
                                                 "{:.0f}".format)
                                            for form in (lambda r: 100 * r.at_speed, lambda r: 100 * r.at_length,

@@ -75,7 +75,7 @@ def page(taut):
     strut = [p for p in one.points("train") if p["channel"] == "joint/S1/axial_n"][-1]
     rows = [["untuned", *(f"{forces(one.points(w), 'untuned'):.2f}" for w in ("train", "test")),
              *(f"{heights(one.points(w), 'untuned'):.2f}" for w in ("train", "test")), ""]]
-    for name, fit in (("the share that arrives", one), ("and areas, lengthening of the struts", more)):
+    for name, fit in (("share of the load that arrives", one), ("share, areas, lengthening of the struts", more)):
         rows.append([name, *(f"{forces(fit.points(w), 'fitted'):.2f}" for w in ("train", "test")),
                      *(f"{heights(fit.points(w), 'fitted'):.2f}" for w in ("train", "test")),
                      "; ".join(fit.judgements()) or "good"])

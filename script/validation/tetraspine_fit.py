@@ -80,7 +80,7 @@ def page(taut):
     fast = fits.run(taut, "fast", text(FIRST[:1], "{step: 0.25, iterations: 1}", set_=", set: {rise_s: 0.1}"))
     everything = fits.run(taut, "all", text(PRIORS, "{step: 0.25, iterations: 6}", DESIGN), "--design")
     rows = [["untuned", "-", f"{off(push, 'untuned'):.1f}", "-", "-"]]
-    for name, fit in (("push", push), ("push, yaw, friction", few), ("all of them", everything)):
+    for name, fit in (("push", push), ("push, yaw, friction", few), ("all parameters", everything)):
         p = fit.parameters["push_n"]
         chi2 = fit.summary["chi2"]["total"]
         rows.append([name, f"{p['value']:.1f} ({p['pull']:.1f} sd)", f"{off(fit, 'fitted'):.1f}",
@@ -95,11 +95,11 @@ def page(taut):
         "numbers": str(len(PRIORS)),
         "measured": f"{left[outer]['measured']:.2f}", "slow": f"{slow[outer]['untuned']:.2f}",
         "fast": f"{left[outer]['untuned']:.2f}",
-        "verdicts": table(["number", "assumed", "sd", "found", "verdict"],
+        "verdicts": table(["parameter", "prior mean", "prior standard deviation", "estimate", "verdict"],
                           [[f"`{n}`", f"{p['start']:.4g}", f"{p['prior_sd']:.3g}", f"{p['value']:.4g}", p["verdict"]]
                            for n, p in everything.parameters.items()]),
         "sentences": "\n".join(f"> {s}" for s in everything.summary["sentences"][:3]),
-        "design": table(["measured", "combinations fixed"],
+        "design": table(["measurements", "combinations determined"],
                         [["the six maxima", str(told["now"]["fixed"])],
                          *([f"and {w['name'].replace('_', ' ')}", str(w["fixed"])] for w in told["alone"])]),
     })

@@ -107,7 +107,7 @@ def compared_tables(beside, motors, boards):
     return (table(["experiment", "variant", "largest tension [N]", "against NTRT", "mean tension [N]", "swing [N]",
                    "rms off the simulation [N]", "most [N]"], sizes),
             table(["experiment", "variant", "period [s]", "rms off [N]", "means off [N]", "swing [%]", "late by [ms]",
-                   "left when aligned [N]"], shapes))
+                   "rms without means and delay [N]"], shapes))
 
 
 def causes_table(causes, names, beside, path_of):
@@ -133,7 +133,7 @@ def winding_table(motors, boards, strong):
         rows.append([f"{name}, with motors", *winding_cells(motors[name])])
         rows.append([f"{name}, emulated boards", *winding_cells(boards[name])])
         rows.append([f"{name}, emulated boards, P ten times as strong", *winding_cells(strong[name])])
-    return table(["", "winding in at full voltage [% of the time]", "speed [cm/s]", "tension then [N]",
+    return table(["run", "winding in at full voltage [% of the time]", "speed [cm/s]", "tension then [N]",
                   "paying out [% of the time]", "speed [cm/s]", "tension then [N]"], rows)
 
 
@@ -179,7 +179,7 @@ def times_table(boards):
         rows.append([name, f"{figures['tick_mean_us']:.0f}", f"{figures['tick_longest_us']:.0f}",
                      str(figures["late_ticks"]), f"{figures['cycle_mean_ms']:.2f}",
                      f"{figures['cycle_longest_ms']:.2f}", str(figures["bad_frames"])])
-    return table(["experiment", "tick, mean [us]", "longest [us]", "late ticks", "cycle, mean [ms]", "longest [ms]",
+    return table(["experiment", "board tick, mean [us]", "longest [us]", "late ticks", "bus cycle, mean [ms]", "longest [ms]",
                   "bad frames"], rows)
 
 

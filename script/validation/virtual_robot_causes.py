@@ -79,12 +79,12 @@ ADDED = (
     Cause("load cells in counts", keys="sensors: {load_cell: {counts: {}}}\n"),
     Cause("the same with noise of 0.7 counts", keys="sensors: {load_cell: {counts: {noise_counts: 0.7}}}\n"),
     Cause("encoders in counts", keys="sensors: {encoder: {quantum_m: 1.34e-5}}\n"),
-    Cause("load cells that feel the dampers, too", keys="sensors: {load_cell: {}}\n"),
+    Cause("load cells that measure the damper forces, too", keys="sensors: {load_cell: {}}\n"),
     Cause("length and rate from rest length and tension", keys="sensors: {length: from_tension}\n"),
     Cause("all of these, nothing filtered",
           keys="sensors: {load_cell: {counts: {noise_counts: 0.7}}, encoder: {quantum_m: 1.34e-5}, "
                "length: from_tension}\n"),
-    Cause("winding gets going with 8.3 m/s^2", changes={SPEED: SPEED + ", max_acceleration_m_per_s2: 8.3"}),
+    Cause("winding acceleration limited to 8.3 m/s^2", changes={SPEED: SPEED + ", max_acceleration_m_per_s2: 8.3"}),
     Cause("speed of winding - 10 %", changes={SPEED: "max_speed_m_per_s: 0.063"}),
     Cause("no limit of speed", changes={SPEED + ", ": ""}),
 )
@@ -92,7 +92,7 @@ MOTORS_CHANGED = (
     Cause("unchanged", MOTORS),
     Cause("gears without loss", MOTORS, NO_GEAR_LOSS),
     Cause("motors without friction", MOTORS, NO_FRICTION),
-    Cause("rotors of a hundredth", MOTORS, LIGHT),
+    Cause("rotor inertia / 100", MOTORS, LIGHT),
     Cause("supply without resistance", MOTORS, {"supply_resistance_ohm: 0.3": "supply_resistance_ohm: 0"}),
     Cause("windings whose resistance does not rise with heat", MOTORS,
           {"supply: battery": "supply: battery\n    resistance_rise_per_k: 0"}),
@@ -103,7 +103,7 @@ MOTORS_CHANGED = (
     *(Cause(f"resistances / {part}, rotors x {part}: same time constant", MOTORS, ohms(part, part))
       for part in (2, 4, 10, 100)),
     Cause(STIFF, MOTORS, ohms(100)),
-    Cause("resistances / 100, no friction, no loss in gears", MOTORS, {**ohms(100), **NO_FRICTION, **NO_GEAR_LOSS}),
+    Cause("resistances / 100, no friction, no gear loss", MOTORS, {**ohms(100), **NO_FRICTION, **NO_GEAR_LOSS}),
     Cause(LOSS_ALONE, MOTORS, {**ohms(1, 0.01), **NO_FRICTION, **NO_GEAR_LOSS}),
 )
 

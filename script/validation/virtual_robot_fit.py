@@ -217,9 +217,9 @@ def text(motor, steady, more=()):
             "".join(residuals) + "groups: window\nsearch: {step: 0.2}\n")
 
 
-MORE = {"the weight, not weighed": "{parameter: mass_factor, low: 0.3, high: 3, scale: 0.05}",
-        "friction at rest over that while turning": "{parameter: static_ratio, low: 1, high: 5, scale: 0.2}",
-        "friction that grows with speed": "{parameter: viscous_n_m_s_per_rad, low: 0, high: 1e-6, start: 1e-8, scale: 3e-8}",
+MORE = {"the weight, assumed unknown": "{parameter: mass_factor, low: 0.3, high: 3, scale: 0.05}",
+        "ratio of static to kinetic friction": "{parameter: static_ratio, low: 1, high: 5, scale: 0.2}",
+        "viscous friction": "{parameter: viscous_n_m_s_per_rad, low: 0, high: 1e-6, start: 1e-8, scale: 3e-8}",
         "the torque constant": "{parameter: torque_factor, low: 0.8, high: 1.2, scale: 0.01}"}
 
 
@@ -251,7 +251,7 @@ class Stand:
 
 WHAT = {"stiffness_n_per_m": ("stiffness of cable and spring [N/m]", 1), "friction_n_m": ("friction of the motor [mN m]", 1e3),
         "efficiency": ("efficiency of the gear", 1), "slack_m": ("initial slack of the cable [mm]", 1e3),
-        "gain": ("gain of the load cell", 1), "offset": ("zero of the load cell [N]", 1)}
+        "gain": ("gain of the load cell", 1), "offset": ("zero offset of the load cell [N]", 1)}
 
 
 def kind(name):
@@ -306,10 +306,10 @@ def page(taut):
         "version": taut("--version").split()[-1], "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),
         "motors": str(len(stand.motors)), "duties": ", ".join(f"{d:g}" for d in DUTIES.values()),
         "lift_cm": f"{100 * LIFT_M:g}", "heaviest_kg": f"{weight_kg(MOTORS - 1):g}",
-        "table": table(["number", "error before (rms)", "error after (rms)", "relative",
-                        f"within two standard errors, of {len(stand.motors)}", "largest, in standard errors"], rows),
+        "table": table(["parameter", "rms error before the fit", "rms error after", "rms error after, relative",
+                        f"within two standard errors, of {len(stand.motors)}", "largest error [standard errors]"], rows),
         "within": str(sum(abs(x) <= 2 for x in everything)), "numbers": str(len(everything)),
-        "held": table(["motor", "tension, untuned [N]", "fitted", "duty, untuned", "fitted", "fit"], held),
+        "held": table(["motor", "tension: untuned [N]", "fitted [N]", "duty: untuned", "fitted", "verdict on the fit"], held),
         "more": table(["parameter", "found", "standard error", "verdict", "traded against", "no longer estimated"], more),
         "all": table(["motor", "weight [kg]", *(what for what, _ in WHAT.values())],
                      [motor_row(stand, m, fit) for m, fit in found.items()]),

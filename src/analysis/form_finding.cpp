@@ -32,7 +32,7 @@ bool Check(const RobotSpec& robot, const FormOptions& options, Diagnostics& out)
   const std::vector<double>& given = densities ? options.force_density_n_per_m : options.tension_n;
   if (given.size() != cables.size()) {
     out.Error("form_finding.wrong_number", {},
-              "there are " + std::to_string(given.size()) + " numbers for " +
+              "there are " + std::to_string(given.size()) + " force densities or tensions for " +
                   std::to_string(cables.size()) + " cables");
     return false;
   }

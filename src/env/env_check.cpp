@@ -105,10 +105,11 @@ void CheckNumbers(const ExperimentSpec& experiment, Diagnostics& out) {
     out.Error("environment.bad_action", spec.at, "environment.actions: " + what);
   };
   for (const EnvironmentAction& action : spec.actions) {
-    if (action.by && action.numbers.empty()) error("an action with `by` needs a number");
+    if (action.by && action.numbers.empty())
+      error("an action with `by` needs at least one parameter");
     for (const std::string& name : action.numbers) {
       if (known.count(name) == 0)
-        error("there is no number \"" + name + "\" that an action can change");
+        error("there is no parameter \"" + name + "\" that an action can change");
     }
   }
 }

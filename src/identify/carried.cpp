@@ -151,7 +151,7 @@ void CheckCut(const FitCarried& asked, const FitExperiment& one,
   const Cut cut = CutAbout(one.experiment.robot.def, asked.bodies);
   for (const std::string& what : cut.wrong) {
     out.Error("carried.not_held", asked.at, of + what,
-              "expected bodies that only cables and bars hold");
+              "expected bodies that are held by cables and bars only");
   }
   if (cut.members.empty() && cut.wrong.empty())
     out.Error("carried.not_held", asked.at, of + "no member holds the bodies");
@@ -163,7 +163,7 @@ void CheckCut(const FitCarried& asked, const FitExperiment& one,
   }
   for (const std::string& channel : missing) {
     out.Error("carried.not_compared", asked.at, of + channel + " is not compared",
-              "add all members between the bodies and the rest to `residuals`");
+              "add all members between the bodies and the rest of the robot to `residuals`");
   }
 }
 

@@ -368,10 +368,11 @@ bool Made::Begin(Diagnostics& out) {
   std::size_t known = train_.rows.size();
   for (const std::size_t i : estimates_) known += spec_.estimates[i].range.sd ? 1 : 0;
   if (known < estimates_.size()) {
-    out.Error("fit.few_data", {spec_.files[0]},
-              fmt::format("{} numbers cannot be estimated from {} data and priors together",
-                          estimates_.size(), known),
-              "add priors with `sd` or data, or estimate fewer numbers");
+    out.Error(
+        "fit.few_data", {spec_.files[0]},
+        fmt::format("{} parameters cannot be estimated from {} data points and priors together",
+                    estimates_.size(), known),
+        "add priors with `sd` or data points, or estimate fewer parameters");
   }
   if (out.items().size() != errors_before || !OpenMemory(out)) return false;
   MakeProblem(train_);

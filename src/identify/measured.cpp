@@ -63,7 +63,7 @@ std::optional<Measured> ReadMeasured(const FitExperiment& one, Diagnostics& out)
     }
   } else if (times && times->time_s.size() != measured.setpoint_s.size()) {
     out.Error("data.rows_differ_from_setpoints", one.setpoints_at,
-              fmt::format("experiments: {} has {} set points, but its `setpoints` file {} rows",
+              fmt::format("experiments: {} has {} set points, but its `setpoints` file has {} rows",
                           one.name, measured.setpoint_s.size(), times->time_s.size()),
               std::string("a set point is where a program of rest lengths or a push reaches a new "
                           "value; a column ") +

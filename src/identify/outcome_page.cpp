@@ -257,7 +257,8 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
                     "</style></head><body>\n<h1>" + Escaped(fit.spec().name) + "</h1>\n<p>" +
                     Escaped(fit.spec().description) + "</p>\n";
   out += fmt::format(
-      "<p class=\"note\">{} numbers from {} data in {} groups, {} data held out; taut {}</p>\n",
+      "<p class=\"note\">{} parameters from {} data points in {} groups, {} data points held out; "
+      "taut {}</p>\n",
       problem.parameters.size(), problem.rows.size(), problem.group_names.size(),
       fit.test_points().size(), kVersion);
   out += std::string("<div class=\"verdict ") +

@@ -126,7 +126,7 @@ std::string OutcomeText(const Identification& fit, const FitOutcome& outcome) {
   const FitVerdict& verdict = outcome.verdict;
   const FitProblem& problem = fit.train();
   std::string out =
-      fmt::format("{}: {} numbers from {} data in {} groups", fit.spec().name,
+      fmt::format("{}: {} parameters from {} data points in {} groups", fit.spec().name,
                   problem.parameters.size(), problem.rows.size(), problem.group_names.size());
   if (fit.test()) out += fmt::format(", {} held out", fit.test()->rows.size());
   out += "\n\n" + ParameterTable(fit, outcome);

@@ -159,7 +159,8 @@ class Grouper {
                    "cables of \"" + builder.search[0] + "\" start with a rest length of " +
                        NumberText(shortest_[b]) + ", below min_rest_length, which is " +
                        NumberText(builder.is.min_rest_length) +
-                       ": in NTRT they jump to it at the first command; the import takes the start "
+                       ": in NTRT they jump to it at the first command; the import uses the "
+                       "initial rest length "
                        "as their minimum");
     }
   }

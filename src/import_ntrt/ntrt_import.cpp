@@ -149,7 +149,8 @@ std::optional<NtrtImport> ImportNtrt(const std::string& path, const NtrtOptions&
   if (model->counts.cables_without_rest_length > 0) {
     out.Warning("ntrt.no_rest_length", {path, 0, 0},
                 std::to_string(model->counts.cables_without_rest_length) +
-                    " cables start without a rest length: the model has errors until their "
+                    " cables would start with a rest length of zero or less: the model has errors "
+                    "until their "
                     "prestress is lower",
                 "reduce it with `--set NAME=VALUE`");
   }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 32;        // files in files
+constexpr int kDeepest = 32;  // files in files
 constexpr std::size_t kMostStructures = 2000;
 constexpr std::size_t kMostHinted = 300;  // names from which a hint is chosen
 

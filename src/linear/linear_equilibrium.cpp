@@ -108,7 +108,7 @@ bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest
   int still = 0;
   for (std::int64_t tick = 0; still < kStillTicks; ++tick) {
     if (options.go_on && tick % 64 == 0 && !options.go_on()) {
-      rest.why = "it was interrupted";
+      rest.why = "the computation was interrupted";
       return false;
     }
     for (std::size_t i = 0; i < rest.step_s.size(); ++i) loop.Step();

@@ -275,7 +275,7 @@ bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, 
   std::vector<Column> exact, rough, apart(all.size());
   for (std::size_t j = 0; j < all.size(); ++j) {
     if (options.go_on && !options.go_on()) {
-      out.why = "it was interrupted";
+      out.why = "the computation was interrupted";
       return false;
     }
     rough.push_back(finder.Differences(*all[j], at_rest, apart[j]));

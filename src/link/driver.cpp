@@ -77,7 +77,7 @@ bool Driver::FindBoards(Diagnostics& out) {
   if (info->firmware_version < kGoodAdapter) {
     out.Warning("adapter.old_firmware", {},
                 "the adapter has firmware version " + std::to_string(info->firmware_version) +
-                    ": before 8, a board that does not answer blocks the bus");
+                    "; with versions before 8, a board that does not answer blocks the bus");
   }
   if (!adapter_.SetMode()) {
     out.Error("adapter.no_i2c", {}, "the adapter rejects I2C mode at 400 kHz");

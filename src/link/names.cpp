@@ -65,9 +65,9 @@ std::optional<ParameterValue> ReadParameter(const std::string& text, const std::
       if (board::IsWithin(range, static_cast<float>(value))) {
         return ParameterValue{of_motor, static_cast<std::uint8_t>(i), static_cast<float>(value)};
       }
-      out.Error(
-          "board.out_of_range", {},
-          fmt::format("{} {}: not within {:g} .. {:g}", what, text, range.least, range.greatest));
+      out.Error("board.out_of_range", {},
+                fmt::format("{} {}: the value must be within {:g} .. {:g}", what, text, range.least,
+                            range.greatest));
       return std::nullopt;
     }
   }

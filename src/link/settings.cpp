@@ -72,7 +72,7 @@ std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) 
   std::string names;
   for (const std::string& name : without) names += (names.empty() ? "" : ", ") + name;
   const SourceRef file{experiment.files.empty() ? "experiment" : experiment.files.front()};
-  out.Error("robot.no_impedance_control", file, "no impedance control of cables " + names,
+  out.Error("robot.no_impedance_control", file, "impedance control is missing for cables " + names,
             "use it for all cables with actuators, or for none");
   return std::nullopt;
 }

@@ -242,8 +242,8 @@ class CableBuilder {
     if (ends.size() != 2 || law.actuators > 0 || dead_band) {
       b_.out.Error("mjcf.tendon_pushes", tendon.at,
                    "tendon \"" + tendon.name +
-                       "\" can push, but cannot become a bar, which has two sites, one "
-                       "springlength and no actuator",
+                       "\" can push, but cannot become a bar: a bar needs two sites and "
+                       "one springlength, and has no actuator",
                    "use --slack tension_only to import it as a cable");
       return;
     }

@@ -189,10 +189,11 @@ class ContactBuilder {
       }
     }
     if (other == 0) return;
-    b_.out.Warning("mjcf.friction_differs", at,
-                   "the friction of " + Count(static_cast<std::size_t>(other), "pair") +
-                       " of geoms differs from MuJoCo, such as " + example,
-                   "a model has no priorities and contact pairs; change `friction` in it");
+    b_.out.Warning(
+        "mjcf.friction_differs", at,
+        "the friction of " + Count(static_cast<std::size_t>(other), "pair") +
+            " of geoms differs from that in MuJoCo, such as " + example,
+        "a model has neither priorities nor contact pairs; change `friction` in the model");
   }
 
   Building& b_;

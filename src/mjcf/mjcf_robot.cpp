@@ -61,11 +61,11 @@ void TellWhatIsLeftOut(Building& b) {
   }
   if (!text.empty()) b.Note("left out: " + text);
   if (const auto& twisting = b.scene.twisting; !twisting.empty()) {
-    b.out.Warning(
-        "mjcf.torsional_friction", twisting[0],
-        "torsional and rolling friction (condim above 3) is left out" +
-            (twisting.size() > 1 ? " here and in " + std::to_string(twisting.size() - 1) + " more"
-                                 : std::string()));
+    b.out.Warning("mjcf.torsional_friction", twisting[0],
+                  "torsional and rolling friction (condim above 3) is left out" +
+                      (twisting.size() > 1
+                           ? " here and in " + std::to_string(twisting.size() - 1) + " more places"
+                           : std::string()));
   }
   if (b.scene.pictures > 0) {
     b.Note("left out: " + Count(static_cast<std::size_t>(b.scene.pictures), "visual tendon") +

@@ -136,11 +136,11 @@ class ActuatorReader {
     const ActuatorSettings s = MergedUntil315(layers.all(), out_);
     const ActuatorSettings since = MergedSince316(layers.all());
     if (!s.Equals(since)) {
-      Refuse(
-          "mjcf.defaults_differ", e,
-          "versions of MuJoCo differ in its defaults: " + Text(s) + " until 3.15, " + Text(since) +
-              " since 3.16",
-          "set these parameters in the element, because its classes set other kinds of actuators");
+      Refuse("mjcf.defaults_differ", e,
+             "versions of MuJoCo differ in its defaults: " + Text(s) + " until 3.15, " +
+                 Text(since) + " since 3.16",
+             "set these parameters in the element: its default classes set them for other kinds of "
+             "actuators");
       return;
     }
     ReadLaw(layers, s, actuator);

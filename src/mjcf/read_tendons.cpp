@@ -49,9 +49,9 @@ void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Di
       for (const char* polynomial : {"stiffness", "damping"}) {
         const auto n = layers.Numbers(polynomial, {0, 0, 0}, 1, 3);
         if (n[1] == 0 && n[2] == 0) continue;
-        layers.Error(
-            "mjcf.polynomial", polynomial,
-            std::string(polynomial) + " with higher coefficients other than zero is not supported");
+        layers.Error("mjcf.polynomial", polynomial,
+                     std::string(polynomial) +
+                         " with a nonzero second or third coefficient is not supported");
       }
       ReadSpringLength(layers, tendon, out);
       tendon.friction = scene.has_dry_friction ? layers.Number("frictionloss", 0) : 0;

@@ -111,11 +111,11 @@ void WarnOfStart(const StartChange& change, Diagnostics& out) {
     const std::size_t slack = change.slack_cables.size();
     out.Warning("start.slack_cables", {},
                 std::to_string(slack) + " of the " + std::to_string(change.taut_cables) +
-                    " cables that are taut as described " + (slack == 1 ? "is" : "are") +
+                    " cables that are taut in the described pose " + (slack == 1 ? "is" : "are") +
                     " slack after settling: " +
                     SomeOf(change.slack_cables, [](const std::string& name) { return name; }) +
-                    "; largest tension " + Brief(change.max_tension_n) + " N, as described " +
-                    Brief(change.described_max_tension_n) + " N",
+                    "; largest tension " + Brief(change.max_tension_n) +
+                    " N, in the described pose " + Brief(change.described_max_tension_n) + " N",
                 hint);
   }
   if (change.largest_displacement_m > kFar * change.size_m) {
@@ -129,7 +129,7 @@ void WarnOfStart(const StartChange& change, Diagnostics& out) {
   }
   if (!change.new_contacts.empty()) {
     out.Warning("start.new_contacts", {},
-                "bodies that are apart as described touch after settling: " +
+                "bodies that do not touch in the described pose touch after settling: " +
                     SomeOf(change.new_contacts,
                            [](const auto& pair) { return pair.first + " on " + pair.second; }),
                 hint);

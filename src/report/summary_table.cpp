@@ -192,7 +192,7 @@ std::string StartLine(const StartChange& start) {
   std::string slack;
   for (const std::string& name : start.slack_cables) slack += (slack.empty() ? "" : ", ") + name;
   return fmt::format(
-      "settled at the start: largest displacement {:.4g} m{}{}, of a size of {:.4g} m; slack: {}\n",
+      "settled at the start: largest displacement {:.4g} m{}{}; robot size {:.4g} m; slack: {}\n",
       start.largest_displacement_m, start.displaced_node.empty() ? "" : " of ",
       start.displaced_node, start.size_m, slack.empty() ? "none" : slack);
 }

@@ -331,7 +331,7 @@ std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
   for (const Piece& piece : pieces) {
     if (piece.id == pieces.front().id) continue;
     out.Error("trace.other_run", {piece.path},
-              fmt::format("the file is of another run than {} (run {}, not {})",
+              fmt::format("the file belongs to another run than {} (run {}, not {})",
                           pieces.front().path, shown(piece), shown(pieces.front())),
               "remove the file that does not belong there, or run the experiment again");
     return std::nullopt;

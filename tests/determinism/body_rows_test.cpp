@@ -73,7 +73,7 @@ TEST(BodyRows, OneGroupHasNoNext) {
 
 TEST(BodyRowsDeathTest, AGroupThatIsNotThereIsNamed) {
   Batch batch = MakeBatch(scenes::Prism3().Def(), {});
-  EXPECT_DEATH(RowsOfBodies(batch, 1), "RowsOfBodies: there is no group 1: they are 0 to 0");
+  EXPECT_DEATH(RowsOfBodies(batch, 1), "RowsOfBodies: there is no group 1: valid are 0 to 0");
   EXPECT_DEATH(RowsOfBodies(batch, -1), "RowsOfBodies: there is no group -1");
 }
 

@@ -264,10 +264,11 @@ TEST(TautSimd, AnUnknownNameIsAnErrorThatSaysWhatThereIs) {
     if (BatchOn(simd, scenes::HangingMass().Def(), 3, 1))
       here += std::string(here.empty() ? "" : ", ") + name;
   }
-  EXPECT_EQ(complaint("avx"),
-            "error: the environment variable TAUT_SIMD is \"avx\" (one of: scalar, sse2, neon, "
-            "simd128, avx2, avx512; this taut on this machine runs: " +
-                here + ")\n");
+  EXPECT_EQ(
+      complaint("avx"),
+      "error: the environment variable TAUT_SIMD is \"avx\" (expected one of: scalar, sse2, neon, "
+      "simd128, avx2, avx512; this build of taut on this machine supports: " +
+          here + ")\n");
   EXPECT_NE(complaint("AVX2"), "");
   for (const char* known : {"", "scalar", "sse2", "neon", "simd128", "avx2", "avx512"}) {
     EXPECT_EQ(complaint(known), "") << known;

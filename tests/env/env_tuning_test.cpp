@@ -252,7 +252,8 @@ TEST(EnvTuning, WhatNoActionCanMoveIsSaid) {
         "motion.feedback_cpg.frequency_hz"}) {  // this name refers to the start value
     Diagnostics out;
     EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {Moves({number}, 1)}), out));
-    EXPECT_NE(out.Format().find("there is no number \"" + std::string(number)), std::string::npos)
+    EXPECT_NE(out.Format().find("there is no parameter \"" + std::string(number)),
+              std::string::npos)
         << out.Format();
   }
   Diagnostics out;

@@ -35,7 +35,7 @@ TEST(ReadParameter, IsStrict) {
   }
   for (const char* text :
        {"duty_limit=1.01", "duty_limit=-0.01", "duty_limit=nan", "duty_limit=inf", "supply_v=4"}) {
-    EXPECT_NE(Wrong(text).find("not within"), std::string::npos) << Wrong(text);
+    EXPECT_NE(Wrong(text).find("the value must be within"), std::string::npos) << Wrong(text);
   }
   EXPECT_NE(Wrong("duty_limit=1e999"), "");
   EXPECT_NE(Wrong("duty_limit=1e-999"), "");

@@ -112,7 +112,8 @@ TEST(ModeFor, IsOneForAllMotors) {
   ExperimentSpec mixed = Push();
   mixed.controllers[0].impedance->cables.pop_back();
   EXPECT_FALSE(ModeFor(mixed, out));
-  EXPECT_NE(out.Format().find("no impedance control of "), std::string::npos) << out.Format();
+  EXPECT_NE(out.Format().find("impedance control is missing for "), std::string::npos)
+      << out.Format();
   PlantRig rig(mixed);
   rig.out = {};
   EXPECT_FALSE(rig.plant.Hold(rig.out));

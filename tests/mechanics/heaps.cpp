@@ -73,8 +73,9 @@ class Steps {
     gain_ = std::max(gain_, highest / std::abs(start));
   }
   void AddTo(Report& report) const {
-    report.AtMost("unsolved of " + std::to_string(count_) + " steps", "1", unsolved_, 0);
-    report.AtMost("largest relaxation", "m/s", relaxation_, kMostRelaxationMPerS);
+    report.AtMost("steps not solved, of " + std::to_string(count_), "1", unsolved_, 0);
+    report.AtMost("largest relaxation of inconsistent contacts", "m/s", relaxation_,
+                  kMostRelaxationMPerS);
     report.AtMost("energy above the start's", "1", gain_, 1e-9);
   }
   double worst_of_mean() const { return worst_ * static_cast<double>(count_) / sum_; }
@@ -136,7 +137,7 @@ void Heaps(Report& report, int rods, double friction, const std::vector<std::uin
     steps.Run(world, count);
   }
   steps.AddTo(report);
-  report.AtMost("worst step's linear systems, of the mean", "1", steps.worst_of_mean(),
+  report.AtMost("most linear systems in a step, relative to the mean", "1", steps.worst_of_mean(),
                 kMostOfMean);
 }
 

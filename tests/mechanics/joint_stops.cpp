@@ -55,11 +55,13 @@ void SwingingRope(Report& report) {
       least = std::min(least, energy), most = std::max(most, energy);
     }
     const double scale = h * h / 1e-6;
-    report.AtMost("longest in 60 s, above 0.5 m" + step, "m", longest - 0.5, 1e-9);
-    report.AtMost("shortest while taut, below 0.5 m" + step, "m", 0.5 - shortest, 1e-9);
+    report.AtMost("excess of the largest length in 60 s over 0.5 m" + step, "m", longest - 0.5,
+                  1e-9);
+    report.AtMost("deficit of the least length while taut below 0.5 m" + step, "m", 0.5 - shortest,
+                  1e-9);
     report.AtMost("energy above the start's" + step, "J", gained, 1e-12);
     report.AtMost("swing of the energy while taut" + step, "J", most - least, 3e-5 * scale);
-    report.AtMost("outward force" + step, "N m", pushed, 0);
+    report.AtMost("outward force times distance" + step, "N m", pushed, 0);
     report.Near("status bits" + step, "1", world.Status(0).bits, kStatusOk, 0);
   }
 }
@@ -110,7 +112,7 @@ void SlackRope(Report& report) {
       report.AtMost("energy lost in the snatch, " + At(h, e), "J", off, 30 * h * h);
       report.Near("apex, " + At(h, e), "m", top, flight.apex_m, 20 * h * h);
       report.AtMost("longest, above 0.5 m, " + At(h, e), "m", longest - 0.5, 1e-9);
-      report.AtMost("outward force, " + At(h, e), "N m", pushed, 0);
+      report.AtMost("outward force times distance, " + At(h, e), "N m", pushed, 0);
     }
   }
 }

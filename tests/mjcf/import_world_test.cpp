@@ -119,7 +119,7 @@ TEST_F(MjcfWorld, APairThatGivesNoFrictionHasOne) {
            of_pair + "/></contact></mujoco>");
     return Said();
   };
-  const std::string another = "the friction of 1 pair of geoms differs from MuJoCo";
+  const std::string another = "the friction of 1 pair of geoms differs from that in MuJoCo";
   EXPECT_NE(said("").find(another), std::string::npos) << Said();
   EXPECT_EQ(said("friction=\"0.4 0.4\""), "");
   EXPECT_EQ(said("", "<default><pair friction=\"0.4 0.4\"/></default>"), "");

@@ -198,7 +198,7 @@ TEST_F(MjcfRefusal, SpringsThatAreNoBarsAreNamedWhereTheyAreToPush) {
                    "<spatial name=\"d\" stiffness=\"1\" springlength=\"1\"><site site=\"top\"/>"
                    "<site site=\"s\"/><site site=\"top\"/></spatial>"),
               push)
-          .find("6: error: tendon \"d\" can push, but cannot become a bar"),
+          .find("6: error: tendon \"d\" can push, but cannot become a bar:"),
       std::string::npos)
       << Said();
 }

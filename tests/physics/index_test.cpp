@@ -26,24 +26,24 @@ TEST(IndexDeathTest, ACableThatTheModelLacksIsNamedAndNothingElseIsWritten) {
   ASSERT_EQ(batch.model().def().cables.size(), 1u);
   // In memory, the damping of cable 0 follows the stiffness of cable 0.
   EXPECT_DEATH(batch.SetParameter(0, Parameter::kCableStiffness, 1, 7.0),
-               "taut: Batch::SetParameter: there is no cable 1: they are 0 to 0");
-  EXPECT_DEATH(batch.Cable(0, -1), "taut: Batch::Cable: there is no cable -1: they are 0 to 0");
+               "taut: Batch::SetParameter: there is no cable 1: valid are 0 to 0");
+  EXPECT_DEATH(batch.Cable(0, -1), "taut: Batch::Cable: there is no cable -1: valid are 0 to 0");
 }
 
 TEST(IndexDeathTest, AKindOfWhichTheModelHasNoneIsSaidToBeEmpty) {
   ModelDef def = scenes::HangingMass{}.Def();
   def.cables.clear();
   Batch batch = MakeBatch(def);
-  EXPECT_DEATH(batch.Cable(0, 0), "taut: Batch::Cable: there is no cable 0: there is none at all");
+  EXPECT_DEATH(batch.Cable(0, 0), "taut: Batch::Cable: there is no cable 0: the model has none");
 }
 
 TEST(IndexDeathTest, TargetsForAllCablesOfAllWorldsAreAsMany) {
   Batch batch = TwoWorlds();
   const std::vector<double> targets(3, 1.0);
   EXPECT_DEATH(batch.Step(0.001, 1, {targets.data(), 1}),
-               "taut: Batch::Step: needs one target for each cable of each world, which is 2, and "
+               "taut: Batch::Step: needs one target for each cable of each world: expected 2, "
                "got 1");
-  EXPECT_DEATH(batch.Step(0.001, 1, targets), "which is 2, and got 3");
+  EXPECT_DEATH(batch.Step(0.001, 1, targets), "expected 2, got 3");
 }
 
 TEST(IndexDeathTest, EveryFunctionLooksAtEveryIndex) {

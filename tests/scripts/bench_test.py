@@ -202,7 +202,7 @@ def BothMujocosStandBesideEachOther():
 
 def ThePageSaysThatOthersWorkedThere():
     assert page.company({"load": [1.0], "cores": 2}) == ""
-    assert "Others worked there" in page.company({"load": [1.1], "cores": 2})
+    assert "Other programs ran on the machine" in page.company({"load": [1.1], "cores": 2})
 
 
 def SaysWhatIsWrong():

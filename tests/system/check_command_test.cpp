@@ -45,16 +45,17 @@ TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
   EXPECT_EQ(spine.status, 0);
   EXPECT_EQ(spine.errors, "");
   EXPECT_EQ(spine.output.rfind("share/models/tetraspine3.yaml: good\n", 0), 0u);
-  for (const char* part : {"3 bodies, 12 cables, 18 nodes; moving mass 2.349243 kg",
-                           "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
-                           " 0.0157328  0.0241226  8 rods, 6 spheres\n",
-                           "inner_top_1    0.213953     0.126678   20.000     229.16       20  "
-                           "segment_0 - segment_1  0.07 m/s 50 N\n",
-                           "segment_0        -30.913  0.000  -12.946          0.0000  -2.5616  "
-                           "0.0000     0.000  0.000  -6.995\n",
-                           "Possible collisions: 3 pairs of bodies, 588 pairs of shapes; with the "
-                           "terrain of an experiment\n",
-                           "segment_0 - segment_2              196\n"}) {
+  for (const char* part :
+       {"3 bodies, 12 cables, 18 nodes; moving mass 2.349243 kg",
+        "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
+        " 0.0157328  0.0241226  8 rods, 6 spheres\n",
+        "inner_top_1    0.213953     0.126678   20.000     229.16       20  "
+        "segment_0 - segment_1  0.07 m/s 50 N\n",
+        "segment_0        -30.913  0.000  -12.946          0.0000  -2.5616  "
+        "0.0000     0.000  0.000  -6.995\n",
+        "Possible collisions: 3 pairs of bodies, 588 pairs of shapes; also with the "
+        "terrain of an experiment\n",
+        "segment_0 - segment_2              196\n"}) {
     EXPECT_NE(spine.output.find(part), std::string::npos) << part << "\nis not in\n"
                                                           << spine.output;
   }
@@ -183,11 +184,12 @@ TEST_F(CheckCommand, AnInstructionSetThatNobodyKnowsIsRefused) {
   const Outcome refused = Run("models/rod.yaml");
   unsetenv("TAUT_SIMD");
   EXPECT_EQ(refused.status, 3);
-  EXPECT_EQ(refused.errors.find(
-                "error: the environment variable TAUT_SIMD is \"fastest\" (one of: "
-                "scalar, sse2, neon, simd128, avx2, avx512; this taut on this machine runs: "
-                "scalar"),
-            0u)
+  EXPECT_EQ(
+      refused.errors.find(
+          "error: the environment variable TAUT_SIMD is \"fastest\" (expected one of: "
+          "scalar, sse2, neon, simd128, avx2, avx512; this build of taut on this machine supports: "
+          "scalar"),
+      0u)
       << refused.errors;
 }
 

@@ -118,7 +118,7 @@ TEST_F(RunCommand, PiecesOfDifferentRunsAreBadInput) {
   fs::copy_file(Path("a/summary.json"), Path("b/summary.json"),
                 fs::copy_options::overwrite_existing);
   const std::string said =
-      "b/summary.json: error: the file is of another run than b/trace.h5 (run " +
+      "b/summary.json: error: the file belongs to another run than b/trace.h5 (run " +
       IdOfTrace("a/trace.h5") + ", not " + IdOfTrace("b/trace.h5") +
       ") (remove the file that does not belong there, or run the experiment again)\n";
   for (const auto& words : {std::vector<std::string>{"report", "b/trace.h5"},

@@ -32,7 +32,7 @@ def ALandingIsAsThePageShowsIt(command):
     keep.cleanup()
     shows("landing.md", landing.landings_table({(way, speed): run}).splitlines()[-1])
     shows("landing.md", landing.gives_table({(way, speed): run}).splitlines()[-1])
-    assert run.most < 350 and run.gap_m > 0 and run.touches() == "nothing"
+    assert run.most < 350 and run.gap_m > 0 and run.touches() == "none"
 
 
 def ARollIsAsThePageShowsIt(command):

@@ -193,7 +193,8 @@ TEST_F(PageTest, WhatDoesNotGoWithAProgramIsSaid) {
   page->Show(0);
   Client browser = Browser(*page, page->url());
   browser.Send({{"type", "reset"}});
-  EXPECT_EQ(browser.Await("error")["text"], "reset is not possible in the page of a program");
+  EXPECT_EQ(browser.Await("error")["text"],
+            "reset is not possible in a page that a program has opened");
   browser.Send({{"type", "want_series"},
                 {"id", 1},
                 {"channel", "none"},

@@ -262,7 +262,7 @@ TEST(ViewServer, MessagesThatAreNoneCloseTheirConnectionOnly) {
   }
   Client binary(serving.port());
   binary.SendBinary("{\"type\": \"pause\"}");
-  EXPECT_EQ(std::string(binary.AwaitClose().reason.c_str()), "messages must be texts");
+  EXPECT_EQ(std::string(binary.AwaitClose().reason.c_str()), "messages must be text frames");
   Client large(serving.port());
   large.SendText(R"({"type": "pause", "x": ")" + std::string(65 * 1024, 'x') + "\"}");
   EXPECT_EQ(large.AwaitClose().code, beast::websocket::close_code::too_big);

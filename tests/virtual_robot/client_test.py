@@ -258,7 +258,7 @@ class Client(unittest.TestCase):
 
     def ParametersAreThoseOfThePage(self):
         page = (ROOT / "docs/hardware/parameters.md").read_text()
-        motor, board = page.split("## Of a motor")[1].split("## Of the board")
+        motor, board = page.split("## Motor parameters")[1].split("## Board parameters")
         rows = 0
         for text, indices in ((motor, range(MOTORS)), (board, (2,))):
             for number, name, default in re.findall(r"^\| (\d+) \| `(\w+)` \| (\S+) \|", text, re.M):

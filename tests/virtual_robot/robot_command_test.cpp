@@ -187,7 +187,7 @@ TEST_F(RobotCommand, WrongInputsAreSaid) {
   for (const Wrong& one : std::vector<Wrong>{
            {{"scan", "--port", "/dev/nothing"}, 1, "cannot open"},
            {{"set", "duty_limt=0.5", "--port", "virtual"}, 3, "did you mean \"duty_limit\"?"},
-           {{"set", "duty_limit=2", "--port", "virtual"}, 3, "not within 0 .. 1"},
+           {{"set", "duty_limit=2", "--port", "virtual"}, 3, "the value must be within 0 .. 1"},
            {{"reference", "--port", "virtual"}, 3, "the rest lengths are missing"},
            {{"reference", "outer_top_1=x", "--port", "virtual"}, 3, "CABLE=REST_LENGTH_M"},
            {{"reference", "outer_tp_1=0.2", "--port", "virtual"}, 3, "did you mean"},

@@ -16,11 +16,11 @@ export function decodeFrame(values: Float64Array): Frame {
     const count = frame[section.count];
     if (!Number.isInteger(count) || count < 0) throw new Error(`frame: ${section.count} is ${count}`);
     const end = place + count * section.fields.length;
-    if (end > values.length) throw new Error(`frame: ${section.name} go beyond its end`);
+    if (end > values.length) throw new Error(`frame: the section ${section.name} extends beyond the end of the frame`);
     frame[section.name] = values.subarray(place, end);
     place = end;
   }
-  if (place !== values.length) throw new Error(`frame: ${values.length - place} numbers too many`);
+  if (place !== values.length) throw new Error(`the frame has ${values.length - place} numbers too many`);
   return frame;
 }
 

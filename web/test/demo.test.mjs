@@ -158,7 +158,7 @@ test("EverythingIsInSightOnAPhone", options, async () => {
   const page = await open("#experiments/push_20n.yaml", { width: 390, height: 844, touch: true });
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
   await picture(page, "demo-phone");
-  await page.getByRole("button", { name: "show or hide the model's text" }).click();
+  await page.getByRole("button", { name: "show or hide the text of the file" }).click();
   assert.ok((await page.locator(".demo textarea").boundingBox()).height > 200);
   assert.ok((await page.locator(".view").boundingBox()).height > 200);
   await drawn(page);

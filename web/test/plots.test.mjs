@@ -153,14 +153,14 @@ test("AChannelIsDraggedIntoAPlotOfItsUnitOnly", async () => {
 test("ChannelsAreAddedToTheNamedPlotAndEachToOneOfItsOwn", async () => {
   await plot("body/rod_0/position_x_m");
   await search("rod_1 position");
-  await press("choose all found channels");
+  await press("choose all channels found");
   await editor().getByLabel("plot to add to").selectOption("rod_0 position x");
   await press(ADD_TO);
   const target = page.locator('[data-figure="rod_0-position-x"]');
   await target.scrollIntoViewIfNeeded();
   assert.deepEqual((await numbersBeside(page, ["rod_0-position-x"]))[0].numbers, shown([position(0)[0], ...position(1)]));
   await search("rod_2 position");
-  await press("choose all found channels");
+  await press("choose all channels found");
   await press(EACH);
   await untilFigures([...standard, "rod_0-position-x", ...["x", "y", "z"].map((axis) => `rod_2-position-${axis}`)]);
 });

@@ -67,7 +67,7 @@ test("ARunThatWentWrongSaysSoAtOnce", async () => {
   const bad = { ...report().summary, status: "not finite: rod_1 at 3 s", interrupted: true, simulated_s: 3.5, contacts_left_out: 12 };
   const other = await openPage(writeReport(report({ summary: bad }), folder));
   const first = await other.locator("main.report section").first().innerText();
-  assert.match(first, /The run was simulated for 3\.5000 s and then interrupted: not finite: rod_1 at 3 s\. 12 contacts did not fit into the trace\./);
+  assert.match(first, /The run was interrupted after 3\.5000 s: not finite: rod_1 at 3 s\. 12 contacts did not fit into the trace\./);
   await other.context().close();
 });
 

@@ -14,8 +14,9 @@ inline const Choices<RateSource> kRateSources{
     {"differenced_from_rest_length", RateSource::kDifferencedFromRestLength}};
 inline constexpr const char* kCablesMeaning =
     "Cable selector. `inner_top_1`: the cable with that name. `inner`: all cables with that tag. "
-    "`[inner, top]`: all with both tags. `[[inner, left], [inner, right]]`: all with any of these "
-    "sets. A selector without a match is an error.";
+    "`[inner, top]`: all with both tags. `[[inner, left], [inner, right]]`: all that have all tags "
+    "of at least "
+    "one set. A selector without a match is an error.";
 
 /// Gains that studies may vary.
 template <class Io>
@@ -62,7 +63,8 @@ void Keys(Io& io, Like<PidGains> auto& p) {
 template <class Io, Either<ImpedanceSpec, ImpedanceText> Impedance>
 void Keys(Io& io, Impedance& i) {
   io.Map("impedance", "controller.impedance",
-         "Impedance control of each cable (paper eq. 3), lengthening positive. The tension set "
+         "Impedance control of each cable (eq. 3 of Mirletz et al. 2015), lengthening is positive. "
+         "The tension set "
          "point T = T0 + K (L - L0) + B (V - V0), never negative, becomes a command to the cable's "
          "motor. Every cable with a set point needs gains, and vice versa.");
   io.Rule(R"("if": {"properties": {"conversion": {"const": "pid"}}, "required": ["conversion"]}, )"
@@ -80,7 +82,7 @@ void Keys(Io& io, Impedance& i) {
     io("pid", i.pid_text);
     io("rate", i.rate, kRateSources,
        "Source of V. `exact`: the cable's rate. `differenced`: change of length since the last "
-       "tick divided by the period, as a board measures it; 0 at the first tick. "
+       "tick, divided by the period, as the boards compute it; 0 at the first tick. "
        "`differenced_from_rest_length`: the same, but the first difference starts from the rest "
        "length, as in NTRT.");
     io("gains", i.gains, kNeeded, "Gains K and B.");
@@ -117,7 +119,8 @@ void Keys(Io& io, Change& c) {
   io.Map("changes", "controller.gait_changes", "Switch to another gait at a given time.",
          R"({"at_s": 20, "gait": "../gaits/cpg_learned.yaml"})");
   io("at_s", c.at_s, kNeeded, Bound::kNonNegative,
-     "Time of the switch; it happens at the first tick of the gait's clock from then on.");
+     "Time of the switch. The gait changes at the first tick of the gait's clock at or after this "
+     "time.");
   if constexpr (Io::kResolved) {
     io("gait", c.gait);
   } else {
@@ -140,13 +143,15 @@ void GaitInputKeys(Io& io, Input& v, const char* example = nullptr) {
     io("gait", v.gait_file, kNeeded, "Gait file, relative to this file's folder.",
        Example{example});
     io("changes", v.change_texts,
-       "Later gaits and their times. They drive the same cables and the same quantity.");
+       "Later gaits and their times. They must drive the same cables and the same quantity as "
+       "`gait`.");
     io("more_gaits", v.more_gaits,
        "Additional gait files, for selection at run time by a controller of your program.");
   }
   io("blend_s", v.blend_s, LaterThan{0.5}, Bound::kNonNegative,
      "Duration of a gait change, in which the weight of the new gait rises smoothly from 0 to 1. "
-     "No effect between networks with the same oscillators: phases and amplitudes continue with "
+     "It has no effect on a change between networks with the same oscillators: their phases and "
+     "amplitudes continue with "
      "the new gait's parameters.");
 }
 
@@ -176,8 +181,8 @@ void Check(const MapReader& map, GaitInputText& input);
 template <class Io, Either<ControllerSpec, ControllerText> Controller>
 void Keys(Io& io, Controller& c) {
   io.Map("controller", "controller",
-         "Controller with a clock and either `impedance`, or `position`, `rest_length_input` or "
-         "both.");
+         "Controller with a clock. It has either `impedance`, or at least one of `position` and "
+         "`rest_length_input`.");
   io("name", c.name, kNeeded, kName, "Name of the controller.");
   io("period_s", c.clock.period_s, Bound::kPositive,
      "Time between two ticks, independent of the physics step.");

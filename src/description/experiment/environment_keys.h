@@ -15,7 +15,7 @@ template <class Io, Either<EnvironmentAction, EnvironmentActionText> Action>
 void Keys(Io& io, Action& a) {
   io.Map("", "environment.actions",
          "Action on selected cables, or on parameters of controllers and gaits, with values from "
-         "-1 to 1. 0 leaves the experiment unchanged.");
+         "-1 to 1. The value 0 leaves the experiment unchanged.");
   if constexpr (Io::kResolved) {
     io("cable", a.cable);
   } else {
@@ -25,12 +25,14 @@ void Keys(Io& io, Action& a) {
             R"("then": {"not": {"anyOf": [{"required": ["by"]}, {"required": ["name"]}]}}, )"
             R"("else": {"required": ["by"]})");
     io("cables", a.cables,
-       "Cable selector. Actions on cables come first in the action, in the order of the model's "
+       "Cable selector. Components for cables come first in the action vector, in the order of the "
+       "model's "
        "cables.",
        Example{R"("driven")"});
   }
   io("rest_length_m", a.rest_length_m, Bound::kPositive,
-     "Length that an action of 1 adds to the initially commanded rest length. For cables without a "
+     "Length that an action of 1 adds to the initially commanded rest length. Only for cables "
+     "without a "
      "controller.");
   io("rest_length_rate_m_per_s", a.rest_length_rate_m_per_s, Bound::kPositive,
      "Rate at which an action of 1 lengthens the commanded rest length. For cables without a "
@@ -42,17 +44,20 @@ void Keys(Io& io, Action& a) {
     io("numbers", a.numbers, kLater);
   } else {
     io("each", a.each,
-       "Parameters of controllers and gaits, named as in a study's `vary`, `*` for any letters: "
+       "Parameters of controllers and gaits, named as in a study's `vary`; `*` stands for any "
+       "text: "
        "set points and gains of impedance control, frequencies, amplitudes and phases of a gait. "
-       "One action per matching parameter.",
+       "Each matching parameter has one component of the action.",
        Example{R"("hold.*.tension_offset_n")"});
-    io("all", a.all, "As `each`, with one common action for all matching parameters.",
+    io("all", a.all,
+       "As `each`, but with one common component of the action for all matching parameters.",
        Example{R"("hold.sine.*.amplitude_m_per_s")"});
   }
   io("by", a.by, Bound::kPositive,
-     "Amount that an action of 1 adds to the parameter, in its unit. The sum stays within the "
-     "parameter's valid range: no negative tension. The phase stays continuous if a frequency "
-     "changes.");
+     "Amount that an action of 1 adds to the parameter, in its unit. The sum is limited to the "
+     "parameter's valid range, so a tension, for example, does not become negative. If a frequency "
+     "changes, the phase stays "
+     "continuous.");
   io("name", a.name, kName, kLater,
      "Name of an action on `all`. Default: the name of the first matching parameter.");
 }
@@ -80,7 +85,8 @@ void Check(const MapReader& map, EnvironmentReward& reward);
 template <class Io>
 void Keys(Io& io, Like<EnvironmentVariation> auto& v) {
   io.Map("", "environment.randomise",
-         "Domain randomization: differences between episodes, drawn from the seed of each. Parts "
+         "Domain randomization: differences between episodes, drawn from the seed of each episode. "
+         "Parts "
          "of the experiment that depend on the seed (`start_noise`, the errors of `sensors`) "
          "differ, too.");
   VariationKeys(io, v);
@@ -89,14 +95,17 @@ void Keys(Io& io, Like<EnvironmentVariation> auto& v) {
            .most = 0.5 * 3.14159265358979323846,
            .below_most = true,
            .most_text = "pi / 2"},
-     "Largest rotation of gravity about a random horizontal axis: a slope of the terrain.");
+     "Largest rotation of gravity about a random horizontal axis: equivalent to a slope of the "
+     "terrain.");
   io("action_delay_s", v.action_delay_s, Bound::kNonNegative,
      "Largest delay of actions: whole periods, drawn once per episode.");
   io("observation_delay_s", v.observation_delay_s, Bound::kNonNegative,
      "Largest delay of observations: whole periods, drawn once per episode.");
   io("starts", v.starts, Bound{.least = 0, .most = 100'000},
-     "Number of different episodes: seeds count modulo this number, and each start is prepared "
-     "once and kept. 0: all differ, and each start is prepared separately, which is slow if the "
+     "Number of different episodes: the seed modulo this number selects the episode, and each "
+     "start is prepared "
+     "once and kept. With 0, all episodes differ and each start is prepared separately, which is "
+     "slow if the "
      "robot settles first.");
 }
 
@@ -115,9 +124,10 @@ void Keys(Io& io, Environment& e) {
     io("actions", e.actions);
     io("observations", e.observations);
   } else {
-    io("actions", e.action_texts, kNeeded, "Elements of the action.");
+    io("actions", e.action_texts, kNeeded, "List of the components of the action vector.");
     io("observations", e.observation_texts, kNeeded,
-       "Observations: names of trace channels (docs/formats/trace.md), `*` for any text, in the "
+       "Observations: names of trace channels (docs/formats/trace.md), where `*` stands for any "
+       "text. They are in the "
        "order of a trace.",
        Example{R"(["body/*/position_z_m", "cable/*/tension_n"])"});
   }

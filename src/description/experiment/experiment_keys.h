@@ -82,7 +82,7 @@ template <class Io>
 void Keys(Io& io, Like<TerrainText> auto& t) {
   io.Map("terrain", "terrain",
          "Terrain element: a plane, a box, many boxes, a height field or a mesh. Elements form one "
-         "surface if they meet within 2e-7 of the larger element's extent.",
+         "surface if the gap between them is at most 2e-7 of the larger element's extent.",
          R"({"name": "ground", "plane": {"height_m": 0, "friction": 0.5}})");
   io("name", t.name, kNeeded, kName, "Name of the element.");
   io.OneOf({"plane", "box", "scatter", "stairs", "height_field", "mesh"});
@@ -98,8 +98,9 @@ void Check(const MapReader& map, TerrainText& terrain);
 template <class Io>
 void Keys(Io& io, Like<PlaceText> auto& p) {
   io.Map("place", "place",
-         "Initial position and velocity of the whole robot, rotated about the model's origin by "
-         "`rotate`, then moved by `at_m`, anchors included. The velocities are added to the "
+         "Initial pose and velocity of the whole robot, including anchors: it is first rotated "
+         "about the model's origin by "
+         "`rotate`, then translated by `at_m`. The velocities are added to the "
          "model's velocities; they are not allowed with `start: settled` or `settled_floating`.",
          R"({"at_m": [0, 0, 1], "rotate": {"axis": "y", "angle_rad": "pi / 6"}})");
   io("at_m", p.at_m, "Position of the model's origin.");
@@ -143,7 +144,7 @@ void Keys(Io& io, Drag& d) {
     io("node", d.node_name, kNeeded, "Dragged node.");
   }
   io("velocity_m_per_s", d.velocity_m_per_s, kNeeded,
-     "Velocity of the moving point, in the world frame; not zero.");
+     "Velocity of the point, in the world frame; must not be zero.");
   io("stiffness_n_per_m", d.stiffness_n_per_m, kNeeded, Bound::kPositive,
      "Stiffness of the spring.");
   io("damping_n_s_per_m", d.damping_n_s_per_m, Bound::kNonNegative, "Damping of the spring scale.");
@@ -191,7 +192,7 @@ void Keys(Io& io, Like<ScaleText> auto& s) {
   io("stiffness", s.stiffness, Bound::kPositive, "Factor on the stiffness of cables.");
   io("damping", s.damping, Bound::kPositive, "Factor on the damping of cables.");
   io("bodies", s.bodies,
-     "Bodies to which `mass` applies, by name, `*` for any letters. Default: all.",
+     "Bodies to which `mass` applies, by name; `*` stands for any text. Default: all.",
      Example{R"("segment_0")"});
   io("cables", s.cables, "Cables to which `stiffness` or `damping` applies. Default: all.");
 }
@@ -202,12 +203,15 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
   io.Map("", "start_noise",
          "Random deviations of the start, uniformly distributed and drawn from the seed.");
   io("place_m", n.place_m, LaterThan{0.0}, Bound::kNonNegative,
-     "Largest displacement of the whole robot along x and along y, in both directions. It moves up "
+     "Largest displacement of the whole robot along x and along y, in both directions. The robot "
+     "moves up "
      "or down with the ground, so that its clearance does not decrease; on large terrain each "
-     "start has different ground. With `start: settled` it settles there. A `goal` moves along.");
+     "start has different ground. With `start: settled` the robot settles at the new place. A "
+     "`goal` is displaced by the same vector.");
   io("position_m", n.position_m, Bound::kNonNegative,
      "Largest displacement of each body along x and y in both directions, and upward. Bodies "
-     "connected by joints move together; those connected to the world do not move.");
+     "connected by joints are displaced together; bodies connected to the world are not "
+     "displaced.");
   io("heading_rad", n.heading_rad, Bound::kNonNegative,
      "Largest rotation of the robot about the vertical, in both directions.");
   io("goal_rad", n.goal_rad, LaterThan{0.0}, Bound::kNonNegative,
@@ -215,20 +219,21 @@ void Keys(Io& io, Like<StartNoise> auto& n) {
      "directions.");
   io("any_pose", n.any_pose, kLater,
      "Random orientation about the robot's center of mass, uniform over all orientations. Place "
-     "the robot so high that no orientation reaches into the ground; it falls.");
+     "the robot high enough that it does not touch the ground in any orientation; it then falls.");
 }
 
 template <class Io, Either<GoalSpec, GoalText> Goal>
 void Keys(Io& io, Goal& g) {
   io.Map("goal", "goal",
-         "Goal of the robot and sensing of its direction. Used by gaits with a `goal_network` or "
+         "Goal of the robot and sensor of the goal's direction. Used by gaits with a "
+         "`goal_network` or "
          "`toward_goal`, and by the measure `nearer` of a study's objective.",
          R"({"at_m": [3.5, 0, 0], "body": "segment_2"})");
   io("at_m", g.at_m, kNeeded, "Goal point. Its height is ignored.");
   if constexpr (Io::kResolved) {
     io("body", g.body);
   } else {
-    io("body", g.body_name, kNeeded, "Tracked body, whose center of mass shall approach the goal.");
+    io("body", g.body_name, kNeeded, "Tracked body, whose center of mass is to approach the goal.");
   }
   io("ahead", g.ahead, kDirection, kInherited,
      "Forward direction of the tracked body at the start, in the world frame, after `place`; it "
@@ -267,19 +272,21 @@ void Check(const MapReader& map, ReferenceText& reference);
 template <class Io, Either<RecordSpec, RecordText> Record>
 void Keys(Io& io, Record& r) {
   io.Map("record", "record", "Content of the trace.");
-  io("rate_hz", r.rate_hz, Bound::kNonNegative, "Rows per second; 0 records every step.");
+  io("rate_hz", r.rate_hz, Bound::kNonNegative, "Rows per second; with 0, every step is recorded.");
   if constexpr (Io::kResolved) {
     io("channels", r.channels);
   } else {
     io("channels", r.channel_texts,
-       "Names of the recorded channels, `*` for any text. Each must match a channel of the run. "
+       "Names of the recorded channels; `*` stands for any text. Each must match a channel of the "
+       "run. "
        "Default: all except `node/*`, `strut/*` and `anchor/*`, which are recorded on request only "
        "(docs/formats/trace.md).",
        Example{R"(["cable/*/tension_n", "strut/*", "system/*"])"});
   }
   io("contacts", r.contacts, kLater, Bound{.least = 0, .most = 1000},
-     "Number of contact points per row, channels `contact/*`. If there are more, those with the "
-     "largest forces are recorded, and the summary has the number of the others.");
+     "Number of contact points per row, channels `contact/*`. If there are more contact points, "
+     "those with the "
+     "largest forces are recorded, and the summary contains the number of the omitted ones.");
 }
 void Check(const MapReader& map, RecordText& record);
 
@@ -317,11 +324,14 @@ void Keys(Io& io, Experiment& e) {
      "Longest step of the integrator. Steps also end at ticks of controllers and at corner points "
      "of events.");
   io("duration_s", e.duration_s, kNeeded, Bound::kNonNegative,
-     "Simulated time; 0 records the start alone. Required unless `base` has it.", Example{"60"});
+     "Simulated time; with 0 the trace contains only the start. Required unless `base` has it.",
+     Example{"60"});
   io("start", e.start, kStarts,
-     "State at t = 0. `as_described`: nodes at the model's positions. `settled`: static "
+     "State at t = 0. `as_described`: the described pose, with nodes at the model's positions. "
+     "`settled`: static "
      "equilibrium under cables, gravity and contact. `settled_floating`: static equilibrium of the "
-     "cables alone, without gravity and terrain. Rest lengths are the model's.");
+     "cables alone, without gravity and terrain. Settling does not change the rest lengths of the "
+     "model.");
   io("seed", e.seed, Bound{.least = 0, .most = 2'147'483'647},
      "Seed of all random numbers of the run.");
   if constexpr (Io::kResolved) {
@@ -337,7 +347,8 @@ void Keys(Io& io, Experiment& e) {
   } else {
     io("record", e.record_text);
     io("compare_with", e.compare_file,
-       "Trace (.h5, .csv or .csv.gz) for comparison with the result, relative to this file's "
+       "Trace (.h5, .csv or .csv.gz) with which the result of the run is compared, relative to "
+       "this file's "
        "folder.");
     io("reference", e.reference_texts,
        "Values of a robot or another simulator, for comparison in the summary and the report.");
@@ -362,7 +373,7 @@ void Keys(Io& io, Experiment& e) {
     io("sensors", e.sensor_text);
     io("controllers", e.controller_texts,
        "Controllers of the cables' actuators. Each cable has at most one controller; cables "
-       "without one keep their rest length.");
+       "without a controller keep their rest length.");
   }
 }
 

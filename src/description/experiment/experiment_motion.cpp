@@ -141,7 +141,7 @@ void CheckMotions(const std::vector<MotionText>& texts, const ExperimentSpec& ex
       scope.out.Error(
           "motion.too_far", text.at,
           "the motion \"" + text.name + "\" may move by " + base::Brief(way_m) + " m" + in_time,
-          "use a shorter way: positions that far away are rounded too coarsely for this robot");
+          "use a smaller motion: positions that far away are rounded too coarsely for this robot");
     }
     if (!(angle_rad <= math::kMaxAngle)) {
       scope.out.Error("motion.turns_too_far", text.at,

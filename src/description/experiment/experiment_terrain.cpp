@@ -167,7 +167,7 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       boxes[i].name = text.name + '_' + std::to_string(i);
       if (boxes[i].name.size() > kMaxNameLength) {
         scope.out.Error("terrain.name_too_long", text.name_at,
-                        "terrain.name has, with the number of a box, more than " +
+                        "terrain.name and the appended number of a box have more than " +
                             std::to_string(kMaxNameLength) + " characters",
                         "use a shorter name");
         break;

@@ -44,7 +44,7 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
   if (corners * static_cast<double>(parsed.size()) > kMostSteps) {
     scope.out.Error("heights.formula_too_costly", formula.at,
                     "height_field.height_m has " + std::to_string(parsed.size()) +
-                        " operations and numbers for each of " + base::Brief(corners) +
+                        " operations and values for each of " + base::Brief(corners) +
                         " corners, more than 400 000 000 in all",
                     "use a shorter formula, fewer, larger cells, or a file");
     return false;
@@ -166,7 +166,7 @@ void Check(const MapReader& map, HeightFieldText& field) {
     if (map.Has("height_m")) map.Require(key);
     if (map.Has("file") && map.Has(key)) {
       map.Error("heights.key_without_effect", key, map.Path(key) + " has no effect here",
-                "the file defines the number");
+                "the file defines the numbers of columns and rows");
     }
   }
 }

@@ -58,14 +58,15 @@ void Keys(Io& io, Field& f) {
   } else {
     io.OneOf({"file", "height_m"});
     io("file", f.file,
-       "Heights, relative to the experiment's folder. CSV: in m, one line per row of corners, "
-       "smallest y first, x increasing along the line; lines that begin with # are skipped. PNG: "
+       "Heights, relative to the experiment's folder. CSV: heights in m, one line per row of "
+       "corners, beginning with the "
+       "smallest y, with x increasing along the line; lines that begin with # are skipped. PNG: "
        "gray, preferably 16 bits, with `height_range_m`; x increases to the right and y upward. "
-       "HDF5: `hills.h5:/z`, data set z in m, rows as in CSV.");
+       "HDF5: `hills.h5:/z` is the data set z of hills.h5, in m, with rows as in CSV.");
     io("height_range_m", f.height_range_m, "Heights of black and white in an image.");
     io("columns", f.columns, kCorners, kInherited,
-       "Number of corners along x. With a formula only.");
-    io("rows", f.rows, kCorners, kInherited, "Number of corners along y. With a formula only.");
+       "Number of corners along x. Only with `height_m`.");
+    io("rows", f.rows, kCorners, kInherited, "Number of corners along y. Only with `height_m`.");
   }
   io("cell_m", f.cell_m, kNeeded, Bound::kPositive, "Edge length of a cell.");
   io("origin_m", f.origin_m, "Center of the rectangle; its z is added to all heights.");
@@ -75,10 +76,11 @@ void Keys(Io& io, Field& f) {
     io("height_m", f.formula,
        "Formula of the heights over `x_m` and `y_m` from the center, or over `i` and `j` from 0 at "
        "the corner with the smallest x and y. `noise(seed, x, y)` is smooth, between -1 and 1, "
-       "with a different value at each whole x and y.");
+       "with a separate random value at each pair of whole x and y.");
   }
   io("split", f.split, kSplits,
-     "Diagonal that splits a cell. `alternating`: changes from cell to cell. `same`: from the "
+     "Diagonal that splits a cell. `alternating`: the direction changes from cell to cell. `same`: "
+     "always the diagonal from the "
      "corner with the smallest x and y. `shortest`: the diagonal with the smaller height "
      "difference.");
   if constexpr (Io::kResolved) {

@@ -29,7 +29,8 @@ void Keys(Io& io, Settlement& s) {
        "Name of the support's node, or of a joint with a node of the world.");
   }
   io("by_m", s.by_m, kNeeded,
-     "Displacement of the support's point of the world, in the world frame.");
+     "Displacement of the point of the world to which the support is attached, in the world "
+     "frame.");
 }
 
 template <class Io>
@@ -66,10 +67,10 @@ void Keys(Io& io, Like<TemperatureText> auto& t) {
 
 template <class Io, Either<LoadCaseSpec, LoadCaseText> LoadCase>
 void Keys(Io& io, LoadCase& c) {
-  io.Map(
-      "load_case", "load_case",
-      "Static loads for `taut analyze`, ignored by a run. Changes of one member's length add up.",
-      R"({"name": "wind", "forces": [{"node": "top", "force_n": [50, 0, 0]}]})");
+  io.Map("load_case", "load_case",
+         "Static loads for `taut analyze`, ignored by a run. If several entries change the length "
+         "of the same member, the changes add up.",
+         R"({"name": "wind", "forces": [{"node": "top", "force_n": [50, 0, 0]}]})");
   io("name", c.name, kNeeded, kName, "Name of the load case.");
   io("weight", c.weight, "Whether gravity acts.");
   io("forces", c.forces, "Forces on nodes.");

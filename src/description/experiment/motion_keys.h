@@ -29,11 +29,12 @@ void TimeLawKeys(Io& io, Law& law, const char* speed, const char* amplitude) {
      "Speed over time, points [[time_s, speed], ...], linearly interpolated; the first and last "
      "speed are held. One point is a constant speed.");
   io(amplitude, law.amplitude,
-     "Amplitude of an additional sine: amplitude (sin(2 pi frequency_hz t + phase_rad) - "
+     "Amplitude of a sine that is added to the displacement or angle: amplitude (sin(2 pi "
+     "frequency_hz t + phase_rad) - "
      "sin(phase_rad)).");
   io("frequency_hz", law.frequency_hz, Bound::kNonNegative, "Frequency of the sine.");
   io("phase_rad", law.phase_rad,
-     "Phase of the sine. -pi / 2 starts at rest, from the lowest point.");
+     "Phase of the sine. With -pi / 2, the sine starts at rest, from its lowest point.");
 }
 
 template <class Io>
@@ -71,15 +72,16 @@ void Keys(Io& io, Like<TurnText> auto& t) {
 }
 template <class Io>
 void Keys(Io& io, Like<MotionText> auto& m) {
-  io.Map(
-      "motion", "motion",
-      "Kinematic body with prescribed motion, independent of forces: a turntable, a shaker, a "
-      "platform (docs/theory/motion.md). It starts at t = 0 and is at rest while a robot settles.",
-      R"({"name": "shaker", "of": "plate", "slide": )"
-      R"({"direction": [1, 0, 0], "amplitude_m": 0.01, "frequency_hz": 2}})");
+  io.Map("motion", "motion",
+         "Kinematic body with prescribed motion, independent of forces: a turntable, a shaker, a "
+         "platform (docs/theory/motion.md). The motion starts at t = 0; while a robot settles, the "
+         "body is at rest.",
+         R"({"name": "shaker", "of": "plate", "slide": )"
+         R"({"direction": [1, 0, 0], "amplitude_m": 0.01, "frequency_hz": 2}})");
   io("name", m.name, kNeeded, kName, "Name in the channels `motion/NAME/...`.");
   io("of", m.of, kNeeded,
-     "Moving body: one of the robot, which then no longer responds to forces, or a box of the "
+     "Moving body: either a body of the robot, which then no longer responds to forces, or a box "
+     "of the "
      "terrain.");
   io("slide", m.slide);
   io("turn", m.turn);

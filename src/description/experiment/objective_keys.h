@@ -23,14 +23,15 @@ void Keys(Io& io, Like<TensionLimit> auto& t) {
 template <class Io>
 void Keys(Io& io, Like<FallSpec> auto& f) {
   io.Map("", "fall",
-         "Penalty for falling over. Checked every 0.1 s; in an environment after every period, and "
-         "the episode terminates.");
+         "Penalty for falling over. A study checks for a fall every 0.1 s. An environment checks "
+         "after every period, and a fall terminates "
+         "the episode.");
   io("max_tilt_rad", f.max_tilt_rad,
      Bound{.least = 0.0,
            .most = FallSpec{}.max_tilt_rad + 1e-12,
            .above_least = true,
            .most_text = "pi"},
-     "Largest allowed tilt of any body from its start.");
+     "Largest allowed tilt of any body from its initial orientation.");
   io("min_height_m", f.min_height_m, "Smallest allowed height of the center of mass.");
   io("max_height_m", f.max_height_m, "Largest allowed height of the center of mass.");
   io("penalty", f.penalty, kNeeded, Bound::kNonNegative, "Score lost after a fall.");
@@ -45,7 +46,7 @@ void ObjectiveKeys(Io& io, auto& o) {
   io("tension_limit", o.tension_limit);
   io("fall", o.fall);
   io("max_speed_m_per_s", o.max_speed_m_per_s, Bound::kPositive,
-     "Speed of a body above which a world has blown up and fails.");
+     "Speed of a body above which a world counts as diverged and fails.");
 }
 /// Reports a missing key that the measure of an objective in `map` needs.
 void CheckObjective(const MapReader& map, const ObjectiveSpec& objective);
@@ -56,10 +57,11 @@ template <class Io>
 void VariationKeys(Io& io, auto& w) {
   io("friction", w.friction, kShare,
      "Largest relative change of friction: 0.2 means factors from 0.8 to 1.2.");
-  io("mass", w.mass, kShare, "Largest relative change of all masses together.");
+  io("mass", w.mass, kShare, "Largest relative change of the masses, by one common factor.");
   io("stiffness", w.stiffness, kShare,
-     "Largest relative change of all cable stiffnesses together.");
-  io("damping", w.damping, kShare, "Largest relative change of all cable dampings together.");
+     "Largest relative change of the cable stiffnesses, by one common factor.");
+  io("damping", w.damping, kShare,
+     "Largest relative change of the cable dampings, by one common factor.");
   io("start", w.start);
 }
 

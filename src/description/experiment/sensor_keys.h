@@ -13,24 +13,27 @@ template <class Io>
 void Keys(Io& io, Like<LoadCellCounts> auto& c) {
   io.Map("", "load_cell.counts",
          "Amplifier and converter of the load cell, instead of a range and a quantum: whole counts "
-         "from 0, rounded down, which the board converts to gain * count + offset. `counts: {}` is "
-         "Tetraspine3 (the paper's eq. 7).");
+         "from 0, rounded down, which the board converts to the force gain * count + offset. The "
+         "defaults, `counts: {}`, are the values of "
+         "Tetraspine3 (eq. 7 of Mirletz et al. 2015).");
   io("gain_n_per_count", c.gain_n_per_count, Bound::kPositive, "Force per count [N].");
   io("offset_n", c.offset_n, "Force at count 0.");
   io("bits", c.bits, Bound{.least = 1, .most = 32}, "Converter bits: counts end at 2^bits - 1.");
   io("saturation_count", c.saturation_count, Bound{.least = 1, .most = 2'000'000'000},
      "Count at which the amplifier saturates.");
   io("noise_counts", c.noise_counts, Bound::kNonNegative,
-     "Standard deviation of each sample before rounding.");
+     "Standard deviation of the noise of each sample, in counts, before rounding.");
 }
 
 template <class Io, Either<LoadCellSpec, LoadCellText> Cell>
 void Keys(Io& io, Cell& c) {
-  io.Map("", "load_cell",
-         "Measured tension with bias, noise, range, quantization or counts, and delay. A cell "
-         "measures spring and damper together: controllers that use the elastic part receive the "
-         "sum.");
-  io("noise_n", c.noise_n, Bound::kNonNegative, "Standard deviation of each sample.");
+  io.Map(
+      "", "load_cell",
+      "Load cell: measured tension with bias, noise, range, quantization or counts, and delay. A "
+      "load cell "
+      "measures spring and damper together, so controllers that use the elastic part receive the "
+      "sum of both.");
+  io("noise_n", c.noise_n, Bound::kNonNegative, "Standard deviation of the noise of each sample.");
   io("bias_n", c.bias_n, Bound::kNonNegative,
      "Standard deviation of each cell's constant error, drawn once per run.");
   io("gain_error", c.gain_error, LaterThan{0.0}, Bound::kNonNegative,
@@ -72,7 +75,7 @@ void Keys(Io& io, Encoder& e) {
        "Turns of the shaft per turn of the spool. With `lines`.");
     io("index", e.index,
        "Whether the encoder has an index pulse, once per turn of the shaft. From the first pulse "
-       "on, `zero_error_m` is rounded to whole turns. With `lines`.");
+       "on, the error from `zero_error_m` is rounded to whole turns of the shaft. With `lines`.");
     io.Rule(R"("dependentRequired": {"counts_per_turn": ["spool_radius_m"], )"
             R"("lines": ["spool_radius_m"], "decoding": ["lines"], "gear_ratio": ["lines"], )"
             R"("index": ["lines"]}, "dependentSchemas": {"spool_radius_m": {"anyOf": )"
@@ -85,7 +88,7 @@ void Keys(Io& io, Encoder& e) {
      "Standard deviation over the cables of the initial rest length error, drawn once per run.");
   io("gain_error", e.gain_error, LaterThan{0.0}, Bound::kNonNegative,
      "Standard deviation over the cables of the relative error of the rest length per count, drawn "
-     "once per run: another spool radius.");
+     "once per run, as caused by a deviation of the spool radius.");
   io("delay_s", e.delay_s, Bound::kNonNegative,
      "Delay of readings, a whole number of sensor periods.");
 }
@@ -107,7 +110,8 @@ void Keys(Io& io, Sensors& s) {
     io("encoder", s.encoder_text);
     io("length", s.length_from_tension, kLengthSources,
        "Length of a cable. `exact`: the true length. `from_tension`: computed from rest length and "
-       "tension, L + T / k, with the rate from successive samples, as on a board.");
+       "tension, L + T / k, with the rate from differences of successive samples, as computed by "
+       "the boards.");
   }
 }
 void Check(const MapReader& map, SensorText& sensors);

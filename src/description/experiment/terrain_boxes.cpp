@@ -34,7 +34,7 @@ void Check(const MapReader& map, ScatterText& scatter) {
   const Vec3 &low = scatter.low_m, &high = scatter.high_m;
   if (low.x > high.x || low.y > high.y || low.z > high.z) {
     map.Error("terrain.empty_region", "within_m",
-              path + " has a number that is larger in its first point", hint);
+              path + " has a first point with a larger coordinate than the second", hint);
   }
 }
 

@@ -44,10 +44,12 @@ void Keys(Io& io, Like<ScatterText> auto& s) {
   io("seed", s.seed, Bound{.least = 0, .most = 2'147'483'647},
      "Seed of the positions. Block i has x, y, z and heading, uniformly distributed and drawn in "
      "this order, from Philox4x32-10 (docs/theory/sensors.md, Noise) with this key, stream 100 and "
-     "index i. Positions are the same on all machines; a larger `count` only adds blocks.");
+     "index i. Positions are the same on all machines; with a larger `count`, the first blocks "
+     "stay at the same positions.");
   io("within_m", s.within, kNeeded,
-     "Two corners of the box that contains the blocks' centers, smaller coordinates first. A "
-     "coordinate equal in both is not random.",
+     "Two corners of the box that contains the blocks' centers, the corner with the smaller "
+     "coordinates first. A "
+     "coordinate that is equal in both corners is not random.",
      Example{"[[-1, -1, 0], [1, 1, 0]]"});
   io("box_m", s.box_m, kNeeded, Bound::kPositive,
      "Edge lengths of a block; the third is vertical.");

@@ -15,8 +15,9 @@ void Keys(Io& io, Like<CouplingGroup> auto& g) {
   io.Map("groups", "cpg.groups", "Group of couplings.",
          R"({"name": "same.outer_top.inner_top", "weight_per_m": 20, "phase_rad": "pi"})");
   io("name", g.name, kNeeded,
-     "Name in the list of `taut check --couplings`. behind.outer_top.inner_left couples an "
-     "outer_top to an inner_left of the joint behind, and an inner_left to an outer_top behind.");
+     "Name in the list of `taut check --couplings`. behind.outer_top.inner_left couples each "
+     "outer_top to the inner_left of the joint behind, and each inner_left to the outer_top of the "
+     "joint behind.");
   io(Driven("weight_per_m", "weight_per_m_s"), g.weight, kNeeded,
      "Weight w of the coupling. Multiplied by the neighbor's amplitude, it is a rate in rad/s.");
   io("phase_rad", g.phase_rad, kNeeded,
@@ -34,7 +35,8 @@ void Keys(Io& io, Like<CpgFeedback> auto& f) {
 template <class Io>
 void Keys(Io& io, Like<CpgGait> auto& c) {
   io.Map("cpg", "cpg",
-         "Central pattern generator (paper eq. 4-6): one oscillator per cable, coupled to all "
+         "Central pattern generator (eq. 4-6 of Mirletz et al. 2015): one oscillator per cable, "
+         "coupled to all "
          "oscillators whose cables share a rigid body with this cable. `taut check MODEL "
          "--couplings` lists the network; `taut gait create MODEL` writes a file with all groups.");
   io("frequency_hz", c.frequency_hz, kNeeded, "Frequency of each oscillator without coupling.");
@@ -46,9 +48,12 @@ void Keys(Io& io, Like<CpgGait> auto& c) {
      "Longest step of the network's integrator; the gait's period is divided into equal steps. "
      "Independent of the simulation step.");
   io("symmetry", c.symmetry, kSymmetries,
-     "Couplings with common weight and phase. `segments`: those between the same two roles (the "
-     "cable's name without its number) with the neighbor on the same joint, in front, or behind. "
-     "`index`: NTRT's rule, from positions in `order`. `none`: every coupling has separate "
+     "Rule for groups of couplings with common weight and phase. `segments`: couplings between the "
+     "same two roles (names "
+     "of cables without their number) and with the same position of the neighbor: at the same "
+     "joint, one joint ahead, or one joint behind. "
+     "`index`: NTRT's rule, computed from the positions in `order`. `none`: every coupling has "
+     "separate "
      "values.");
   io("order", c.order,
      "Names of the cables with an oscillator. Default: all cables with an actuator, in the model's "

@@ -11,7 +11,8 @@ template <class Io>
 void Keys(Io& io, Like<Neuron> auto& n) {
   io.Map("neuron", "feedback_cpg.neuron", "Neuron of a network.",
          R"({"name": "h1", "weights": [0.3, -1.2, 0], "bias": 0.1})");
-  io("name", n.name, kNeeded, kName, "Name; of an output, the name of its quantity.");
+  io("name", n.name, kNeeded, kName,
+     "Name of the neuron; for an output, the name of the quantity that it changes.");
   io("weights", n.weights, kNeeded, kVaried,
      "Weights, one per neuron of the previous layer: the inputs, or the hidden neurons.");
   io("bias", n.bias, "Bias.");
@@ -42,10 +43,11 @@ void Keys(Io& io, Like<FeedbackOscillator> auto& o) {
 }
 template <class Io>
 void Keys(Io& io, Like<FeedbackCpgGait> auto& c) {
-  io.Map(
-      "feedback_cpg", "feedback_cpg",
-      "Oscillators with sensory feedback. One network computes feedback from each cable, another "
-      "from the direction of the experiment's goal; they change frequency, amplitude and phase.");
+  io.Map("feedback_cpg", "feedback_cpg",
+         "Oscillators with sensory feedback. One neural network computes feedback from each cable, "
+         "another one "
+         "from the direction of the experiment's goal. The feedback changes the frequency, "
+         "amplitude and phase of each oscillator.");
   io("frequency_hz", c.frequency_hz, kNeeded, kAtStart, "Initial frequency of each oscillator.");
   io("convergence_per_s", c.convergence_per_s, Bound::kPositive,
      "Convergence rate a of the amplitudes.");
@@ -56,7 +58,7 @@ void Keys(Io& io, Like<FeedbackCpgGait> auto& c) {
      "Gain of amplitude feedback: at a feedback of 1 the square of the amplitude converges to (1 + "
      "gain) R^2.");
   io("phase_gain_rad_per_s", c.phase_gain_rad_per_s,
-     "Gain of phase feedback: at a feedback of 1 the phase rate increases by this.");
+     "Gain of phase feedback: at a feedback of 1 the phase rate increases by this value.");
   io("integrator_step_s", c.integrator_step_s, kFixed, Bound::kPositive,
      "Longest step of the oscillators' integrator; the gait's period is divided into equal steps.");
   io("oscillators", c.oscillators, kNeeded, "Oscillators by cable, one per cable.");
@@ -65,9 +67,11 @@ void Keys(Io& io, Like<FeedbackCpgGait> auto& c) {
      "Weight and phase of groups of couplings, as in `cpg`. Groups that are not listed have no "
      "coupling.");
   io("cable_network", c.cable_network,
-     "Network shared by all cables with an oscillator. Inputs: stretch, (l - l0) / l0 with the "
-     "length l0 at the first tick; tension, (T - T_max / 2) / T_max with the actuator's largest "
-     "tension T_max. Outputs: frequency, amplitude, phase.");
+     "Neural network shared by all cables with an oscillator. Inputs: stretch, (l - l0) / l0, "
+     "where l0 is the "
+     "length at the first tick; tension, (T - T_max / 2) / T_max, where T_max is the actuator's "
+     "largest "
+     "tension. Outputs: frequency, amplitude, phase.");
   io("goal_network", c.goal_network,
      "Network shared by all joints; cables whose names end in the same number form one joint. "
      "Inputs: goal_x and goal_y, the sensed unit vector toward the experiment's `goal`; optionally "

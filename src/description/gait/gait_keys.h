@@ -20,11 +20,13 @@ struct GaitText : GaitSpec {
 };
 template <class Io, Either<GaitSpec, GaitText> Gait>
 void Keys(Io& io, Gait& g) {
-  io.Map("", "Gait file",
-         "A gait file defines the signals of a robot's cables, from sine waves, a network of "
-         "oscillators or a table. A signal is a velocity V0 added to impedance control, or a "
-         "length added to a rest length (`drives`). Experiments use a gait as a controller's "
-         "`velocity_input` or `rest_length_input`. Equations: docs/theory/gaits.md.");
+  io.Map(
+      "", "Gait file",
+      "A gait file defines one signal per cable of a robot, computed by sine waves, a network of "
+      "oscillators or a law for rolling, or read from a table. The key `drives` selects whether a "
+      "signal is a velocity added to V0 of impedance control, or a "
+      "length added to the rest length. Experiments use a gait as a controller's "
+      "`velocity_input` or `rest_length_input`. Equations: docs/theory/gaits.md.");
   HeadKeys(io, g,
            {"Name of the gait. Required unless `base` has it.",
             "Purpose and origin of the gait, in a sentence or two.",

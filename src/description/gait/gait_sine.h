@@ -20,8 +20,9 @@ void Keys(Io& io, Like<SineWave> auto& w) {
   io("phase_rad", w.phase_rad, "Phase at t = 0.");
   io(Driven("offset_m_per_s", "offset_m"), w.offset, "Constant offset.");
   io("phase_per_segment_rad", w.phase_per_segment_rad,
-     "Phase added per segment toward the rear: none for cables whose names end in _1, once for _2, "
-     "twice for _3. A traveling wave on a spine of any length.");
+     "Phase added per segment toward the rear: not added for cables whose names end in _1, added "
+     "once for _2, "
+     "twice for _3. This makes a traveling wave on a spine of any length.");
   io("frequency_hz", w.frequency_hz, Bound::kNonNegative,
      "Frequency of this wave. Default: `frequency_hz` of `sine`.");
 }
@@ -31,7 +32,7 @@ void Keys(Io& io, Like<SineGait> auto& s) {
          "Sine waves: signal = offset + amplitude cos(2 pi f t + phase). One of `sine`, `cpg`, "
          "`table`, `feedback_cpg` and `toward_goal` is required.");
   io("frequency_hz", s.frequency_hz, kNeeded, Bound::kNonNegative,
-     "Frequency f of all waves without a frequency.");
+     "Frequency f of all waves without their `frequency_hz`.");
   io("waves", s.waves, kNeeded,
      "Waves, at most one per cable. Cables without a wave have a signal of 0.");
 }

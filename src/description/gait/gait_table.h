@@ -21,7 +21,8 @@ struct TableText : TableGait {
 template <class Io, Either<TableGait, TableText> Table>
 void Keys(Io& io, Table& t) {
   io.Map("table", "table",
-         "Signals from a table, as written by `taut gait export`. Either `file`, or `cables` and "
+         "Signals from a table, such as `taut gait export` writes. Required: either `file`, or "
+         "`cables` and "
          "`rows`.",
          R"({"file": "commands.csv", "repeat_from_s": 0})");
   if constexpr (!Io::kResolved) {
@@ -40,7 +41,7 @@ void Keys(Io& io, Table& t) {
     io("rows", t.rows_text,
        "Time and one signal per cable, in m/s or m; the first time is 0, and times increase.");
     io("interpolation", t.linear, kInterpolations,
-       "Between rows: `hold` keeps the last one, `linear` interpolates.");
+       "Value between rows. `hold`: the value of the last row. `linear`: interpolated.");
   }
   io("repeat_from_s", t.repeat_from_s, kFixed, Bound::kNonNegative,
      "Time to which the table returns after the last row, repeatedly. Default: the last row is "

@@ -9,10 +9,12 @@ namespace taut::description {
 template <class Io>
 void Keys(Io& io, Like<TowardGoalGait> auto& t) {
   io.Map("toward_goal", "toward_goal",
-         "Rolling toward the goal of the experiment, whose `frame` must be `world`. A cable's "
+         "Gait of a robot that rolls toward the `goal` of the experiment; `frame` of the goal must "
+         "be `world`. A cable's "
          "signal is a polynomial in the position of its middle relative to the robot's center: "
-         "`ahead`, toward the goal, and `up`, both in radii of the robot. Rolling changes these "
-         "positions. Inputs are the directions of the robot's struts and of the goal.",
+         "`ahead`, toward the goal, and `up`, both in radii of the robot. These positions change "
+         "while the robot "
+         "rolls; the gait computes them from the directions of the robot's struts and of the goal.",
          R"({"cables": "cable", "offset_m": 0.05, "ahead_m": -0.2, "up_m": 0.1})");
   io("cables", t.cables, kNeeded,
      "Cables: by name, by tag, by a list of tags, or by a list of such lists.");
@@ -29,8 +31,9 @@ void Keys(Io& io, Like<TowardGoalGait> auto& t) {
      "Coefficient of `ahead` times `up` squared.");
   io(Driven("up3_m_per_s", "up3_m"), t.up3, "Coefficient of `up` cubed.");
   io("beat", t.beat,
-     "Modulation of all terms except the constant offset by the factor 1 + `beat` cos(2 pi "
-     "`beat_hz` t), which frees a robot that has come to rest.");
+     "Amplitude of a modulation: all terms except the constant offset are multiplied by 1 + `beat` "
+     "cos(2 pi "
+     "`beat_hz` t). The modulation frees a robot that has come to rest.");
   io("beat_hz", t.beat_hz, Bound::kNonNegative, "Frequency of the modulation.");
 }
 void Check(const MapReader& map, TowardGoalGait& gait);

@@ -165,7 +165,7 @@ class JointMaker {
             "the nodes of " + called + " are " + text +
                 " apart in a direction that it does not leave free",
             joint.kind == JointKind::kBall ? "place them at the same position"
-                                           : "move the nodes, or change its kind or axis");
+                                           : "move the nodes, or change the joint's kind or axis");
       return;
     }
     const Vec3 apart = joint.to_m - joint.from_m;

@@ -11,7 +11,8 @@ namespace taut::description {
 template <class Io, Either<ActuatorDef, ActuatorText> Actuator>
 void Keys(Io& io, Actuator& a) {
   io.Map("", "builder.cable.actuator",
-         "Actuator of the rest length: `ideal`, with at least one limit, or a `dc_motor`. Without "
+         "Actuator of the rest length: an actuator with at least one limit, `ideal: true` without "
+         "limits, or a `dc_motor`. Without "
          "an actuator the rest length is fixed.");
   io("kind", a.kind, kActuatorKinds, kResolvedOnly);
   if constexpr (!Io::kResolved) {
@@ -48,9 +49,11 @@ void Keys(Io& io, Cable& c) {
      "Damping law. Default: the model's `damping_law`. `exact`: b dl/dt, with a tension that is "
      "never negative. `clamped`: b dl/dt limited to the elastic force, as in NTRT.");
   io("touches", c.touches, kCableTouches, kLater,
-     "Cable wrapping: obstacles that the cable lies against instead of passing through. `terrain`: "
-     "its edges. `rods`: rods of moving bodies, except those at the cable's ends. `all`: both. "
-     "Only from node to node.");
+     "Cable wrapping: obstacles around which the cable bends instead of passing through them. "
+     "`terrain`: "
+     "edges of the terrain. `rods`: rods of moving bodies, except those at the cable's ends. "
+     "`all`: both. "
+     "Only for cables with two nodes.");
   io("radius_m", c.radius_m, kLater, Bound::kNonNegative, "Radius of the cable, with `touches`.");
   io("touch_friction", c.touch_friction, LaterThan{0.0}, Bound::kNonNegative,
      "Coefficient mu of capstan friction, with `touches`.");
@@ -64,9 +67,11 @@ void Keys(Io& io, Cable& c) {
     io("rest_length_ratio", c.rest_length_ratio, Bound::kPositive,
        "Rest length divided by the length in the described pose.");
     io("ends", c.ends_on_surface, kCableEnds,
-       "Ends of the cable. `node`: at its nodes. `surface`, as NTRT attaches cables: on the sphere "
-       "at the end node, toward the next node; without a sphere, on the rod that ends there (of "
-       "several the shortest), at right angles to it.");
+       "Ends of the cable. `node`: at its nodes. `surface`, as NTRT attaches cables: on the "
+       "surface of the sphere "
+       "at the end node, toward the next node. Without a sphere: on the surface of the rod that "
+       "ends there (of "
+       "several rods, the shortest), at right angles to it.");
     io("actuator", c.actuator_text);
   }
 }

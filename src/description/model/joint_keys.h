@@ -20,11 +20,13 @@ inline const char* WhoHas(JointKind kind) {
 template <class Io, Either<JointDef, JointText> Joint>
 void Keys(Io& io, Joint& j) {
   io.Map("", "builder.joint",
-         "Joint that constrains the motion of body b relative to body a, with forces on the free "
+         "Joint that constrains the motion of body b relative to body a (a `support`: relative to "
+         "the world), with forces on the free "
          "motion. `joint` is for a pair: between the bodies a and b of its two nodes. `support` is "
-         "for a node: a is the world. One coordinate measures the free motion: the angle of a "
-         "hinge; the displacement of b's node along the axis, of prismatic, cylindrical and line; "
-         "the length of a distance; the angle between the axis in b and in a, of a ball. Friction, "
+         "for a node: a is the world. One coordinate measures the free motion. `hinge`: its angle. "
+         "`prismatic`, `cylindrical` and "
+         "`line`: the displacement of b's node along the axis. `distance`: its "
+         "length. `ball`: the angle between the axis in b and the axis in a. Friction, "
          "spring and damper of a ball act about every axis alike.",
          R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
   io("name", j.name, kResolvedOnly);
@@ -48,18 +50,21 @@ void Keys(Io& io, Joint& j) {
      "if the nodes are in several parts.");
   io(Coordinate("least_rad", "least_m"), j.least,
      "Lower joint limit of the coordinate. Angles are 0 in the described pose, and a hinge counts "
-     "whole turns; a displacement is from a's node to b's. A ball has no lower limit.");
+     "whole turns; displacements are measured from a's node to b's node. A ball has no lower "
+     "limit.");
   io(Coordinate("most_rad", "most_m"), j.most, "Upper joint limit of the coordinate.");
   io("restitution", j.restitution, Bound::kFraction,
      "Coefficient of restitution at the joint limits.");
   io(Coordinate("friction_n_m", "friction_n"), j.friction, Bound::kNonNegative,
      "Dry friction: the joint sticks up to this value and slides against it.");
   io(Coordinate("stiffness_n_m_per_rad", "stiffness_n_per_m"), j.stiffness, Bound::kNonNegative,
-     "Stiffness of a spring. A ball's spring turns b back to the described pose, the shorter way. "
-     "A distance with a spring or a limit does not hold its length.");
+     "Stiffness of a spring. The spring of a ball rotates b back to the described pose, along the "
+     "shorter rotation. "
+     "A `distance` joint with a spring or a limit does not fix the distance.");
   io(Coordinate("damping_n_m_s_per_rad", "damping_n_s_per_m"), j.damping, Bound::kNonNegative,
      "Damping.");
-  io(Coordinate("rest_rad", "rest_m"), j.rest, "Rest position of the spring. A ball has none.");
+  io(Coordinate("rest_rad", "rest_m"), j.rest,
+     "Coordinate at which the spring exerts no force. A ball has no such key.");
   io("collides", j.collides, "Whether the joint's bodies collide with each other.");
   if constexpr (Io::kResolved) MemberKeys(io, j.member, MemberOf::kBar);
 }
@@ -75,7 +80,8 @@ void Keys(Io& io, Like<PinText> auto& p) {
   io("friction_n_m", p.friction, Bound::kNonNegative,
      "Dry friction: the joints stick up to this value and slide against it.");
   io("stiffness_n_m_per_rad", p.stiffness, Bound::kNonNegative,
-     "Stiffness of a spring that turns the rod back to the described pose, the shorter way.");
+     "Stiffness of a spring that rotates the rod back to the described pose, along the shorter "
+     "rotation.");
   io("damping_n_m_s_per_rad", p.damping, Bound::kNonNegative, "Damping.");
 }
 

@@ -24,7 +24,8 @@ void MemberKeys(Io& io, Like<MemberDef> auto& m, MemberOf of) {
        "Least second moment of area of the cross section, for Euler's buckling load. Requires "
        "`young_pa`.");
     io("buckling_length_m", m.buckling_length_m, kInherited, LaterThan{0.0}, Bound::kPositive,
-       "Length between points that are held laterally, for Euler's buckling load. Default: the "
+       "Effective length for Euler's buckling load, between points with lateral support. Default: "
+       "the "
        "member's length.");
   }
   io("yield_pa", m.yield_pa, kInherited, LaterThan{0.0}, Bound::kPositive,
@@ -53,7 +54,8 @@ void Keys(Io& io, Like<BarText> auto& b) {
       "bar", "builder.bar",
       "Elastic bar along a pair: tension or compression k (l - L) + b dl/dt along the line between "
       "its nodes, with the unstressed length L; no contact. A node with bars and cables only is a "
-      "point with half the mass of each. At most one of `prestress_n`, `rest_length_m` and "
+      "point mass with half the mass of each of them. At most one of `prestress_n`, "
+      "`rest_length_m` and "
       "`rest_length_ratio` sets L. Default: unstressed in the described pose.",
       R"({"young_pa": 70e9, "area_m2": 1e-4, "density_kg_per_m3": 2700})");
   io.Rule(kStiffnessRule);

@@ -19,7 +19,8 @@ void ContactKeys(Io& io, Like<ModelDef> auto& m) {
      "Combination of the restitutions of two touching surfaces.");
   io("friction_law", m.friction_law, kFrictionLaws,
      "Directions of friction. `cone`: both tangential directions, the exact Coulomb cone. "
-     "`along_slip`: only along the sliding velocity, as Bullet does by default; lets a robot creep "
+     "`along_slip`: only along the sliding velocity, as in Bullet by default; this law lets a "
+     "robot creep "
      "sideways.");
 }
 template <class Io>
@@ -61,7 +62,8 @@ bool ReadShort(const Value& value, const std::string& path, const Scope& scope, 
 template <class Io>
 void Keys(Io& io, Like<RouteText> auto& r) {
   io.Map("", "pair.route",
-         "Element of a routed cable: end, eyelet, pulley or drum. A node's name alone is an end or "
+         "Element of a routed cable: end, eyelet, pulley or drum. A plain node name is an end of "
+         "the cable, or "
          "an eyelet without friction.",
          R"({"pulley": "wheel", "axis": [0, 1, 0], "radius_m": 0.05, "side": "left"})");
   io.OneOf({"eyelet", "pulley", "drum"});
@@ -71,15 +73,17 @@ void Keys(Io& io, Like<RouteText> auto& r) {
      "pulley, or passes by where it does not touch it.");
   io("drum", r.drum, "Node at the center of a drum, on whose rim the cable ends.");
   io("friction", r.friction, Bound::kNonNegative,
-     "Coefficient mu of capstan friction: before the cable slips, the tensions on both sides may "
-     "differ by the factor exp(mu times the wrap angle). Not at an end.");
+     "Coefficient mu of capstan friction: before the cable slips, the ratio of the tensions on "
+     "both sides is "
+     "at most exp(mu times the wrap angle). Not allowed at an end.");
   io("axis", r.axis, kDirection,
      "Axis of a pulley or drum, in the part's frame, or in the world frame if the pair joins "
      "several parts.");
   io("radius_m", r.radius_m, Bound::kPositive,
      "Radius of a pulley or drum, to the cable's center line.");
   io("side", r.left, kSides,
-     "Side of the cable on which the pulley or drum is, seen along the cable with the axis upward. "
+     "Side of the cable on which the pulley or drum is, when you look along the cable with the "
+     "axis pointing up. "
      "The cable runs counter-clockwise around a wheel on the `left`.");
   io("turns", r.turns, Bound::kNonNegative,
      "Pulley: whole turns in addition to the shortest way around. Drum: all wound turns.");
@@ -130,15 +134,17 @@ void Keys(Io& io, Like<PlacementText> auto& p) {
   io("rotate", p.rotate, "Rotation of the part (copy 0) about its origin.");
   io("step_m", p.step_m, "Translation from one copy's origin to the next, in the world frame.");
   io("step_rotate", p.step_rotate,
-     "Rotation from one copy's orientation to the next, about axes of the world.");
+     "Rotation from one copy's orientation to the next copy's, about axes of the world frame.");
   io("velocity_m_per_s", p.velocity_m_per_s,
      "Initial velocity of each copy's center of mass, in the world frame.");
   io("angular_velocity_rad_per_s", p.angular_velocity_rad_per_s,
      "Initial angular velocity of each whole copy about its center of mass, in the world frame.");
   io("tags", p.tags, "Additional tags of all nodes and pairs of the placement.");
   io("connect", p.connect_text,
-     "Pairs from each copy to the next: first node on copy i, second on copy i + 1 (of a longer "
-     "cable, third on copy i + 2). Named pairs become name_1, name_2 ...; they have their number "
+     "Pairs from each copy to the next: the first node is on copy i, the second on copy i + 1 (for "
+     "a cable with three "
+     "nodes, the third on copy i + 2). Named pairs become name_1, name_2 ...; they have their "
+     "number "
      "and `first`, `middle` or `last` as tags.");
   io("ring", p.ring, "Whether the last copy is also connected to the first.");
   io.Rule(R"("dependentRequired": {"step_m": ["copies"], "step_rotate": ["copies"], )"
@@ -161,7 +167,7 @@ void MassKeys(Io& io, Like<MassText> auto& m, Along along) {
      "Density, instead of `mass_kg`.");
   if (along == Along::kNothing) return;
   io("mass_kg_per_m", m.mass_kg_per_m, Bound::kNonNegative,
-     "Mass per length along a pair, instead of `mass_kg`.");
+     "Mass per length of the element along its pair, instead of `mass_kg`.");
 }
 inline constexpr const char* kCollidesMeaning = "Whether it collides with other objects.";
 
@@ -254,8 +260,8 @@ void Check(const MapReader& map, BoxText& box);
 template <class Io, Either<HullDef, ConvexText> Convex>
 void Keys(Io& io, Convex& c) {
   io.Map("convex", "builder.convex",
-         "Convex solid at a node, along the part's axes: from a file, in which each object "
-         "collides as its convex hull, or the hull of given corners.",
+         "Convex solid at a node, along the part's axes: either from a file, in which each object "
+         "collides as its convex hull, or as the hull of given corners.",
          R"({"file": "foot.obj", "scale_m": 0.001, "density_kg_per_m3": 1200})");
   io("name", c.name, kResolvedOnly);
   io("body", c.body, kResolvedOnly);
@@ -263,10 +269,11 @@ void Keys(Io& io, Convex& c) {
     io.OneOf({"file", "corners_m"});
     io("file", c.file,
        "Wavefront OBJ or STL file, text or binary, relative to the model's folder; its origin is "
-       "at the node. Mass is from the volume that each object encloses, contact from the hull of "
-       "each, with at most its 64 outermost corners.");
+       "at the node. The mass follows from the volume that each object encloses; contacts use the "
+       "hull of "
+       "each object, with at most its 64 outermost corners.");
     io("scale_m", c.scale_m, kInherited, Bound::kPositive,
-       "Length of 1 in the file: 0.001 for mm. With a file only.");
+       "Length of one unit of the file: 0.001 for mm. Only with `file`.");
   }
   io("corners_m", c.corners_m, "Corners relative to the node, at least 4 and at most 64.");
   if constexpr (Io::kResolved) {
@@ -292,7 +299,8 @@ void Keys(Io& io, Like<BuilderText> auto& b) {
          "Solids that share nodes are welded into one rigid body.");
   io("match", b.match, kNeeded,
      "Selector of nodes or pairs. `a`: all with the tag a. `[a, b]`: all with both tags. `[[a, b], "
-     "[c]]`: all with any of these sets. A selector that no number of copies could match is an "
+     "[c]]`: all that have all tags of at least one set, here a and b, or c. A selector that no "
+     "number of copies could match is an "
      "error.");
   io.OneOf({"rod", "sphere", "point_mass", "box", "convex", "cable", "bar", "anchor", "joint",
             "support"});
@@ -337,7 +345,8 @@ void Keys(Io& io, Like<ModelText> auto& m) {
      "Builders of elements from nodes and pairs. Each pair needs exactly one builder; a node may "
      "have none, or several of different kinds.");
   io("apart", m.apart,
-     "Lists of body names. Bodies in the same list do not collide with each other. Neither do "
+     "Lists of names of bodies, one list per group. Bodies in the same list do not collide with "
+     "each other. Neither do "
      "bodies that a joint connects, unless it has `collides: true`.",
      Example{R"([["upper_leg", "foot"]])"});
   io("gravity_m_per_s2", m.def.gravity_m_per_s2, "Gravity in the world frame.");
@@ -345,7 +354,7 @@ void Keys(Io& io, Like<ModelText> auto& m) {
   io("inertia", m.inertia, kInertiaLaws, kInertiaMeaning);
   io("damping_law", m.damping_law, kDampingLaws, kDampingMeaning);
   io("actuator", m.actuator_text,
-     "Replacement for the `actuator` of every cable whose builder has one; for files with a "
+     "Actuator that replaces the `actuator` of every cable whose builder has one; for files with a "
      "`base`.");
   io("allow_disconnected", m.allow_disconnected,
      "Whether bodies without a cable or joint to the others are allowed. Otherwise they are an "

@@ -20,14 +20,16 @@ void MotorFigureKeys(Io& io, Like<DcMotorDef> auto& m) {
   io("static_friction_torque_n_m", m.static_friction_torque_n_m, Bound::kNonNegative,
      "Breakaway torque of a rotor at rest, not below `friction_torque_n_m`. Assumed.");
   io("stribeck_speed_rad_per_s", m.stribeck_speed_rad_per_s, Bound::kPositive,
-     "Rotor speed at which half the excess of static over kinetic friction is gone. Assumed.");
+     "Rotor speed at which friction has fallen halfway from its static to its kinetic value. "
+     "Assumed.");
   io("viscous_friction_n_m_s_per_rad", m.viscous_friction_n_m_s_per_rad, Bound::kNonNegative,
      "Additional friction per speed of the rotor.");
   io("gear_ratio", m.gear_ratio, Bound::kPositive,
      "Turns of the rotor per turn of the spool. Assumed.");
   io("gear_efficiency", m.gear_efficiency, kEfficiency,
      "Share of the motor's power that reaches the cable while winding in. If the cable drives the "
-     "motor, the gear loses as much power: the share is 2 - 1 / efficiency, and at 0.5 and less "
+     "motor, the gear loses as much power as in the other direction: the share is 2 - 1 / "
+     "efficiency, and at efficiencies up to 0.5 "
      "the gear locks. Assumed.");
   io("backlash_rad", m.backlash_rad, Bound::kNonNegative,
      "Free rotation of the spool between two flanks of the gear.");
@@ -40,8 +42,9 @@ void MotorSupplyKeys(Io& io, Like<DcMotorDef> auto& m) {
   io("driver_resistance_ohm", m.driver_resistance_ohm, Bound::kNonNegative,
      "Resistance of the driver's two conducting transistors.");
   io("supply", m.supply, kName,
-     "Name of the power supply. Motors with the same name share it: the current of one lowers the "
-     "voltage of all. They must give it the same voltage and resistance.");
+     "Name of the power supply. Motors with the same name share one supply: the current of each "
+     "motor lowers the "
+     "voltage of all. Their `supply_voltage_v` and `supply_resistance_ohm` must be equal.");
   io("supply_voltage_v", m.supply_voltage_v, Bound::kPositive,
      "Voltage of the supply without load.");
   io("supply_resistance_ohm", m.supply_resistance_ohm, Bound::kNonNegative,
@@ -50,11 +53,12 @@ void MotorSupplyKeys(Io& io, Like<DcMotorDef> auto& m) {
 
 template <class Io>
 void MotorHeatKeys(Io& io, Like<DcMotorDef> auto& m) {
-  io("rated_temperature_c", m.rated_temperature_c, "Temperature for `resistance_ohm`.");
+  io("rated_temperature_c", m.rated_temperature_c,
+     "Winding temperature to which `resistance_ohm` refers.");
   io("ambient_temperature_c", m.ambient_temperature_c,
      "Temperature of the air, and of the motor at the start.");
   io("resistance_rise_per_k", m.resistance_rise_per_k, Bound::kNonNegative,
-     "Relative rise of the winding's resistance; copper.");
+     "Relative rise of the winding's resistance per kelvin. The default is the value of copper.");
   io("winding_thermal_resistance_k_per_w", m.winding_thermal_resistance_k_per_w, Bound::kPositive,
      "Thermal resistance from the winding to the housing.");
   io("housing_thermal_resistance_k_per_w", m.housing_thermal_resistance_k_per_w, Bound::kPositive,

@@ -14,7 +14,7 @@ void Keys(Io& io, Like<StribeckDef> auto& s) {
       "`kinetic_friction` with the sliding speed, plus a viscous part (docs/theory/friction.md).",
       R"({"speed_m_per_s": 0.05})");
   io("speed_m_per_s", s.speed_m_per_s, kNeeded, Bound::kPositive,
-     "Speed at which half the difference of static and kinetic coefficient is gone.");
+     "Sliding speed at which the coefficient has fallen halfway from static to kinetic.");
   io("viscous_friction_s_per_m", s.viscous_friction_s_per_m, Bound::kNonNegative,
      "Viscous increase of the coefficient per speed.");
 }
@@ -29,7 +29,7 @@ void Keys(Io& io, Like<FrictionDirections> auto& d) {
   io("backward", d.backward, Bound::kNonNegative, "Factor for sliding against `axis`.");
   io("sideways", d.sideways, Bound::kNonNegative, "Factor for sliding at right angles to `axis`.");
   io("axis", d.axis, kDirection, kInherited,
-     "Forward direction in the part's frame, for terrain in the world frame. Default for rods: "
+     "Forward direction, in the part's frame; for terrain, in the world frame. Default for rods: "
      "from the first node to the second; required elsewhere.");
 }
 

@@ -19,7 +19,8 @@ struct CableCalibrationText {
 };
 template <class Io>
 void Keys(Io& io, Like<CableCalibrationText> auto& c) {
-  io.Map("cable", "cables", "Measured values of one cable. Missing values are unchanged.");
+  io.Map("cable", "cables",
+         "Measured values of one cable. A missing value leaves the board's parameter unchanged.");
   io("cable", c.cable, kNeeded, "Name of a cable with a motor.");
   io("measured", c.measured, kNeeded, Example{R"("2026-11-23")"}, "Date of the measurement.");
   io("how", c.values.how, "Method of the measurement, in a sentence.");

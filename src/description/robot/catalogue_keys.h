@@ -22,10 +22,11 @@ void Keys(Io& io, Like<CatalogueMotorText> auto& m) {
   io("gear_ratio", m.values.gear_ratio, Bound::kPositive,
      "Turns of the motor per turn of the spool.");
   io("gear_efficiency", m.values.gear_efficiency, Bound{.least = 0.01, .most = 1},
-     "Share of the motor's torque that arrives while winding in.");
+     "Share of the motor's torque that reaches the spool while winding in.");
   io("spool_radius_m", m.values.spool_radius_m, Bound::kPositive,
-     "Radius of the spool, to the cable's center line. `taut size --spool_radius_m` sets it for "
-     "all.");
+     "Radius of the spool, to the cable's center line. `taut size --spool_radius_m` overrides it "
+     "for "
+     "all motors.");
   io("rated_torque_n_m", m.values.rated_torque_n_m, kNeeded, Bound::kPositive,
      "Continuous torque.");
   io("peak_torque_n_m", m.values.peak_torque_n_m, kNeeded, Bound::kPositive, "Peak torque.");
@@ -65,7 +66,7 @@ struct CatalogueFileText {
 template <class Io>
 void Keys(Io& io, Like<CatalogueFileText> auto& s) {
   io.Map("", "Catalogue",
-         "A catalogue lists the motors and springs that a robot may be built with.");
+         "A catalogue lists the motors and springs from which a robot can be built.");
   HeadKeys(
       io, s,
       {"Name of the catalogue. Required unless `base` has it.", "Source of the figures.",
@@ -75,9 +76,10 @@ void Keys(Io& io, Like<CatalogueFileText> auto& s) {
        "Named numbers for expressions in this file. They may refer to each other, in any order.",
        R"({"rpm": "2 * pi / 60"})"});
   io("factor", s.factor, Bound::kPositive,
-     "Safety factor: smallest ratio of available to required value.");
+     "Safety factor: smallest allowed ratio of rating to requirement.");
   io("stiffness_tolerance", s.stiffness_tolerance, Bound{.least = 0, .most = 10},
-     "Largest difference of a spring's stiffness from the cable's, relative to the cable's.");
+     "Largest allowed difference between the stiffness of a spring and of the cable, relative to "
+     "the cable's stiffness.");
   io("motors", s.motors, kName, "Motors by name.");
   io("springs", s.springs, kName, "Springs by name.");
 }

@@ -42,20 +42,22 @@ void Keys(Io& io, Like<FaultText> auto& f) {
      "`clock_drift`: a board's clock is fast by `drift_ppm`. `board_loss`: a board loses power. "
      "`brown_out`: low supply voltage holds a board in reset. `firmware_hang`: a board's firmware "
      "hangs in a loop with interrupts off. `bus_noise`: bits on the bus flip. `bus_error`: an "
-     "illegal start within the next byte on the bus. `bus_stuck`: a line of the bus is held low. "
+     "illegal start condition occurs within the next byte on the bus. `bus_stuck`: a line of the "
+     "bus is held low. "
      "`cut_cable`: a cable is cut, permanently. `stuck_load_cell`: a cable's load cell reads a "
      "constant force. `stuck_encoder`: a motor's encoder stops counting. `driver_fault`: a board's "
      "motor drivers report a fault. `motor_supply_loss`: the motors of all boards lose their "
      "supply, and their drivers report it. `usb_loss`: the adapter is unplugged from the computer "
-     "and loses its mode. `host_killed`: the program on the computer ends.");
+     "and loses its configured mode. `host_killed`: the program on the computer ends.");
   io("at_s", f.spec.at_s, kNeeded, Bound::kNonNegative,
-     "Start time since the robot was switched on.");
+     "Start time of the fault, measured from when the robot was switched on.");
   io("for_s", f.spec.for_s, Bound::kPositive, kLimit,
      "Duration, after which the previous state returns. Default: permanent.");
   io("board", f.board, Bound{.least = 0, .most = 5}, "Number of the board, from 0.");
   io("cable", f.cable, "Name of a cable with a motor.");
   io("drift_ppm", f.spec.drift_ppm, Bound{.least = -100'000, .most = 100'000},
-     "Clock error for `clock_drift` in parts per million; positive: fast, negative: slow.");
+     "Clock error for `clock_drift` in parts per million. Positive: the clock is fast; negative: "
+     "it is slow.");
   io("flips_per_bit", f.spec.flips_per_bit, Bound::kFraction,
      "Probability of a bit flip for `bus_noise`.");
   io("line", f.spec.line, kBusLines, "Bus line for `bus_stuck`.");

@@ -45,7 +45,8 @@ void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRa
   if (range.start < range.low || range.start > range.high) {
     wrong(" starts at " + Shown(range.start) + ", which is not between its bounds",
           starts ? ""
-                 : "it is the value of the experiment: give another `start`, or change the bounds");
+                 : "the default start is the value in the experiment: give a `start`, or change "
+                   "the bounds");
   } else if (range.start == range.low || range.start == range.high) {
     wrong(" starts on its bound " + Shown(range.start),
           "widen the bounds, or give a `start` between them");

@@ -61,15 +61,21 @@ void Keys(Io& io, Like<FitExperimentText> auto& e) {
      "Mapping file with the taut names and units of the data (docs/formats/mapping.md).",
      Example{R"("map.json")"});
   io("setpoints", e.setpoints,
-     "Trace whose times are when the experiment's set points were commanded, on the data's clock. "
-     "Default: the times of the experiment. A column `experiment_s` in it has the corresponding "
-     "times of the experiment. Default: its set points.",
+     "Trace whose times are the times, on the data's clock, at which the experiment's set points "
+     "were commanded. "
+     "Default: the times of the set points in the experiment. Its column `experiment_s` contains "
+     "the corresponding "
+     "times on the experiment's clock. Default of this column: the times of the experiment's set "
+     "points.",
      Example{R"("test0_setpoints.csv")"});
   io("use", e.train, kUses,
-     "`train`: used to estimate the numbers. `test`: held out for validation.");
+     "Use of the measurement. `train`: used to estimate the parameters. `test`: held out for "
+     "validation.");
   io("forward", e.forward, kForwards,
-     "`dynamic`: simulation of the experiment. `static`: equilibrium at each set point of its "
-     "position programs and pushes, each from the previous one. `load_cases`: equilibrium under "
+     "Forward model. `dynamic`: simulation of the experiment. `static`: equilibrium at each set "
+     "point of its "
+     "position programs and pushes, each computed from the previous equilibrium. `load_cases`: "
+     "equilibrium under "
      "each of its `load_cases`; row i of the data belongs to case i.");
   io("set", e.set, "Parameters of the experiment or its model that this measurement overrides.",
      Example{R"({"push_n": 20})"});
@@ -83,7 +89,7 @@ struct FitPriorText {
 };
 template <class Io>
 void Keys(Io& io, Like<FitPriorText> auto& p) {
-  io.Map("", "prior", "Prior of the number: a normal distribution.", R"({"sd": 42})");
+  io.Map("", "prior", "Prior of the parameter: a normal distribution.", R"({"sd": 42})");
   io("mean", p.mean,
      "Mean. Default: the experiment's value; 0 for offsets and delays, 1 for gains.");
   io("sd", p.sd, kNeeded, Bound::kPositive, "Standard deviation.");
@@ -101,7 +107,7 @@ void Keys(Io& io, Like<FitNuisanceText> auto& n) {
   io("low", n.low, "Lower bound.");
   io("high", n.high, "Upper bound.");
   io("start", n.start, "Start value of the search.");
-  io("mean", n.mean, "Mean of the prior. Default: 0, for a gain 1.");
+  io("mean", n.mean, "Mean of the prior. Default: 0; for a gain, 1.");
   io("sd", n.sd, Bound::kPositive, "Standard deviation of the prior. Default: no prior.");
   io("scale", n.scale, Bound::kPositive, "Typical change. Default: `sd`.");
 }
@@ -124,25 +130,28 @@ struct FitEstimateText {
 template <class Io>
 void Keys(Io& io, Like<FitEstimateText> auto& e) {
   io.Map("estimate", "estimate",
-         "Estimated number: a parameter of experiments or models, or of the measurement.",
+         "Estimated parameter, of experiments or models, or of the measurement.",
          R"({"parameter": "k12_n_per_m", "low": 700, "high": 1000, "prior": {"sd": 42}})");
   io.OneOf({"parameter", "channel", "clock"});
-  io("parameter", e.parameter, "Named number of the experiments or of their models.");
-  io("channel", e.channel, "Pattern of channels with an `offset` or a `gain`.",
+  io("parameter", e.parameter, "Named parameter of the experiments or of their models.");
+  io("channel", e.channel, "Pattern of channels for which an `offset` or a `gain` is estimated.",
      Example{R"("body/v/position_z_m")"});
-  io("clock", e.clock, kClocks, "Clock of the data, with a `delay_s`.");
+  io("clock", e.clock, kClocks,
+     "Clock whose delay, `delay_s`, is estimated: the clock of the data.");
   io("low", e.low, "Lower bound of a parameter, in its unit.");
   io("high", e.high, "Upper bound of a parameter.");
   io("start", e.start, "Start value of the search. Default: the experiment's value.");
   io("scale", e.scale, Bound::kPositive,
-     "Typical change of a parameter, the unit of steps. Default: the prior's `sd`, else a quarter "
+     "Typical change of a parameter, used as the unit of search steps. Default: the prior's `sd`, "
+     "else a quarter "
      "of the distance between the bounds, else a twentieth of the start value.");
   io("prior", e.prior);
   io("offset", e.offset, "Offset added to the computed channels.");
   io("gain", e.gain, "Factor on the computed channels, before the offset.");
-  io("delay_s", e.delay_s, "Delay of the data's clock against the run.");
+  io("delay_s", e.delay_s, "Delay of the data's clock relative to the clock of the run.");
   io("each", e.each, kSharing,
-     "`experiment`: each measurement has a separate value. `all`: all share one.");
+     "Sharing of the value. `experiment`: each measurement has a separate value. `all`: all "
+     "measurements share one value.");
   io("experiments", e.experiments, "Names of the measurements it applies to. Default: all.");
 }
 void Check(const MapReader& map, FitEstimateText& estimate);
@@ -158,7 +167,9 @@ void Keys(Io& io, Like<FitWindowText> auto& w) {
   io("phase", w.phase, "Phase of the experiment's timeline.");
   io("from_s", w.from_s, "Start on the experiment's clock, with `to_s`.");
   io("to_s", w.to_s, "End on the experiment's clock.");
-  io("after_setpoint_s", w.after_setpoint_s, "Window after each set point, on the data's clock.");
+  io("after_setpoint_s", w.after_setpoint_s,
+     "Window after each set point: on the data's clock in the data, on the run's clock in the "
+     "run.");
 }
 void Check(const MapReader& map, FitWindowText& window);
 
@@ -189,13 +200,15 @@ void Keys(Io& io, Like<FitResidualText> auto& r) {
      "Standard deviation of the difference between computed and measured value, from errors of "
      "both, in the channel's unit.");
   io("relative_sd", r.relative_sd, Bound::kNonNegative,
-     "Standard deviation relative to the measured value; the larger of the two counts.");
+     "Standard deviation relative to the measured value. The larger one of this and `sd` is used.");
   io("window", r.window, "Time window. Default: all time that experiment and data share.");
   io("statistic", r.statistic, kFitStatistics,
-     "Compared statistic of a window, at the times of its data. `mean`: over time. `rows`: every "
+     "Compared statistic of a window, at the times of its data. `mean`: mean over time. `rows`: "
+     "the value of every "
      "row.");
   io("loss", r.loss, kLosses,
-     "`squares`: least squares. `huber`, `cauchy`: residuals beyond `loss_sd` count less.");
+     "Loss function. `squares`: least squares. `huber`, `cauchy`: residuals beyond `loss_sd` have "
+     "a smaller weight.");
   io("loss_sd", r.loss_sd, Bound::kPositive,
      "Threshold of `huber` (default 1.345) and `cauchy` (default 2.385), in standard deviations.");
   io("experiments", r.experiments, "Names of the measurements it applies to. Default: all.");
@@ -207,11 +220,13 @@ struct FitSearchText {
 };
 template <class Io>
 void Keys(Io& io, Like<FitSearchText> auto& s) {
-  io.Map("search", "search", "Search settings.", R"({"starts": 8, "step": 0.1})");
+  io.Map("search", "search", "Settings of the search for the best fit.",
+         R"({"starts": 8, "step": 0.1})");
   io("starts", s.values.starts, Bound{.least = 1, .most = 1000},
      "Number of starts: the first at the experiments' values, the others drawn from the priors.");
   io("step", s.values.step, Bound{.least = 0.0, .most = 1.0, .above_least = true},
-     "Longest finite difference step, in scales; shortened if halving it changes the derivative.");
+     "Longest finite difference step, in units of `scale`; it is shortened if halving it changes "
+     "the derivative.");
   io("iterations", s.values.iterations, Bound{.least = 1, .most = 10'000},
      "Largest number of iterations per start.");
   io("tolerance", s.values.tolerance, Bound{.least = 0.0, .most = 0.1, .above_least = true},
@@ -247,19 +262,21 @@ struct FitCarriedText {
 template <class Io>
 void Keys(Io& io, Like<FitCarriedText> auto& c) {
   io.Map("carried", "carried",
-         "Check of the data alone: do measured forces carry the applied load? For bodies that only "
-         "cables and bars with compared forces hold.",
+         "Check of the data without the model: whether the measured forces balance the applied "
+         "load. For bodies that are held only by "
+         "cables and bars whose forces are compared.",
          R"({"name": "top", "bodies": ["n3", "n4", "n5"], "direction": [0, 0, -1]})");
   io("name", c.name, kNeeded, kName, "Name in the table.");
   io("bodies", c.bodies, kNeeded,
-     "Patterns of the loaded bodies. All cables and bars between them and the rest must be "
+     "Patterns of the loaded bodies. The forces of all cables and bars between these bodies and "
+     "other bodies must be "
      "compared in `residuals`.",
      Example{R"(["n3", "n4", "n5"])"});
   io("direction", c.direction,
      "Direction of the compared load component, in the world's axes, of any length.");
   io("experiments", c.experiments,
-     "Names of the checked measurements, none of them `dynamic`. Default: all that are not "
-     "`dynamic`.");
+     "Names of the checked measurements, whose `forward` must not be `dynamic`. Default: all such "
+     "measurements.");
 }
 
 struct FitForm {
@@ -278,22 +295,25 @@ struct FitFileText {
 };
 template <class Io>
 void Keys(Io& io, Like<FitFileText> auto& f) {
-  io.Map("", "Fit file",
-         "A fit file defines a system identification: numbers of experiments and models that are "
-         "estimated from measurements, with their identifiability.");
+  io.Map(
+      "", "Fit file",
+      "A fit file defines a system identification: parameters of experiments and models that are "
+      "estimated from measurements, and their identifiability.");
   HeadKeys(
       io, f,
       {"Name of the fit, and of its folder under runs/. Required unless `base` has it.",
-       "Estimated numbers and data, in a sentence or two.",
+       "Description of the estimated parameters and the data, in a sentence or two.",
        "Another fit file to inherit from, relative to this file's folder. Each key of this file "
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("camera.yaml")",
        "Named numbers for expressions in this file. They may refer to each other, in any order; "
        "`--set name=value` on the command line overrides them, or parameters of the experiments.",
        R"({"pose_sd_m": "0.0008"})"});
-  io("experiments", f.experiments, kNeeded, "Measurements, with one vector of numbers for all.");
-  io("estimate", f.estimate, kNeeded, "Estimated numbers.");
-  io("residuals", f.residuals, kNeeded, "Compared values.");
+  io("experiments", f.experiments, kNeeded,
+     "Measurements, all explained by one vector of estimated parameters.");
+  io("estimate", f.estimate, kNeeded, "Estimated parameters.");
+  io("residuals", f.residuals, kNeeded,
+     "Residuals: compared values of simulation and measurement.");
   io("groups", f.groups, kGroupings,
      "Groups of correlated errors, left out together for standard errors and cross-validation.");
   io("search", f.search);

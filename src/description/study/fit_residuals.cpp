@@ -48,7 +48,7 @@ void Check(const MapReader& map, FitWindowText& window) {
                     int{map.Has("after_setpoint_s")};
   if (kinds != 1 && map.is_map()) {
     map.scope().out.Error("residual.window_incomplete", map.at(),
-                          "residuals.window needs one of `phase`, `from_s` with `to_s`, "
+                          "residuals.window needs exactly one of `phase`, `from_s` with `to_s`, "
                           "`after_setpoint_s`");
   }
   if (map.Has("from_s") != map.Has("to_s")) {

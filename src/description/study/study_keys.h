@@ -30,9 +30,10 @@ struct VaryText {
 };
 template <class Io>
 void Keys(Io& io, Like<VaryText> auto& v) {
-  io.Map("vary", "vary", "Parameters of the experiment, by name, `*` for any letters.");
+  io.Map("vary", "vary", "Varied parameters of the experiment, by name; `*` stands for any text.");
   io("name", v.name, kName,
-     "Name of the parameter in tables and the log; with `each`, a prefix. Default: the parameter's "
+     "Name of the parameter in tables and the log; with `each`, the prefix of the names. Default: "
+     "the parameter's "
      "name in the experiment.");
   io.OneOf({"each", "all"});
   io("each", v.each, "Pattern: one parameter per match.",
@@ -40,10 +41,11 @@ void Keys(Io& io, Like<VaryText> auto& v) {
   io("all", v.all, "Pattern: one common parameter for all matches, a symmetric group.",
      Example{R"(["impedance.outer_left*.tension_offset_n", )"
              R"("impedance.outer_right*.tension_offset_n"])"});
-  io("low", v.low, kNeeded, "Lower bound, in the number's unit.");
-  io("high", v.high, kNeeded, "Upper bound, in the number's unit.");
+  io("low", v.low, kNeeded, "Lower bound, in the parameter's unit.");
+  io("high", v.high, kNeeded, "Upper bound, in the parameter's unit.");
   io("scale", v.log, kScales,
-     "`linear`: equal steps are equal differences. `log`: equal steps are equal ratios.");
+     "Scale of the search steps. `linear`: equal steps are equal differences. `log`: equal steps "
+     "are equal ratios.");
 }
 void Check(const MapReader& map, VaryText& vary);
 
@@ -53,7 +55,8 @@ struct ObjectiveText : ObjectiveSpec {
 template <class Io>
 void Keys(Io& io, Like<ObjectiveText> auto& o) {
   io.Map("objective", "objective",
-         "Score of a world; more is better. Computed during the run, without a trace.");
+         "Score of a world; a higher score is better. It is computed during the run, without a "
+         "trace.");
   io("measure", o.measure, kMeasures, kNeeded,
      "`distance`: horizontal displacement of the center of mass [m]. `heading`: its component "
      "along `direction`. `distance_per_energy`: distance divided by the motors' work, tension "
@@ -66,9 +69,10 @@ void Check(const MapReader& map, ObjectiveText& objective);
 
 template <class Io>
 void Keys(Io& io, Like<PerturbationSpec> auto& w) {
-  io.Map("worlds", "worlds",
-         "Domain randomization: worlds that score each candidate. The first is the unmodified "
-         "experiment; the others have uniformly distributed factors and starts.");
+  io.Map(
+      "worlds", "worlds",
+      "Domain randomization: worlds that score each candidate. The first world is the unmodified "
+      "experiment; the others have uniformly distributed factors and starts.");
   io("count", w.worlds, kNeeded, Bound{.least = 1, .most = 1000}, "Number of worlds.");
   VariationKeys(io, w);
   io("redraw", w.redraw, "Whether each candidate has new worlds. Otherwise all have the same.");
@@ -95,14 +99,14 @@ void Keys(Io& io, Like<SearchText> auto& s) {
      "best candidate. `nlopt`: a local method of the library NLopt, from many starts in parallel. "
      "`cma_es`: Gaussian steps whose directions and lengths adapt.");
   io("evaluations", s.evaluations, kNeeded, Bound{.least = 1, .most = 1'000'000'000},
-     "Number of candidates. You can increase it later for the last search.");
+     "Number of candidates. You can later increase the number of the last search.");
   io("batch", s.batch, Bound{.least = 1, .most = 100'000},
      "Number of candidates evaluated in parallel before the search uses their scores; for `cma_es` "
      "the population, at least 4. Results depend on it.");
   io("deviation", s.deviation,
      Bound{.least = 0.0, .most = 10.0, .above_least = true, .hint = "in widths of the bounds"},
      "Standard deviation of the first steps for `hill_climbing` (default 0.1) and `cma_es` "
-     "(default 0.3), in widths of the bounds.");
+     "(default 0.3), as a fraction of the distance between the bounds.");
   io("adapt", s.adapt,
      "For `hill_climbing`: whether steps grow after success and shrink after failure. Otherwise "
      "the deviation is constant, as in NTRT.");
@@ -112,7 +116,7 @@ void Keys(Io& io, Like<SearchText> auto& s) {
      "random points; a converged run restarts elsewhere.");
   io("initial_step", s.initial_step,
      Bound{.least = 0.0, .most = 0.5, .above_least = true, .hint = "half the bounds"},
-     "First step for `nlopt`, in widths of the bounds.");
+     "First step for `nlopt`, as a fraction of the distance between the bounds.");
 }
 void Check(const MapReader& map, SearchText& search);
 
@@ -134,6 +138,7 @@ template <class Io>
 void Keys(Io& io, Like<StudyFileText> auto& s) {
   io.Map("", "Study file",
          "A study file defines a search: the parameters to vary, the objective, the worlds and the "
+         "search "
          "methods.");
   HeadKeys(
       io, s,

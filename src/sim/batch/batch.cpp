@@ -119,7 +119,7 @@ bool sim::CheckEnvironment(Diagnostics& out) {
   }
   out.Error("simd.unknown", {},
             "the environment variable TAUT_SIMD is \"" + std::string(SimdWish()) + "\"",
-            "one of: " + known + "; this taut on this machine runs: " + here);
+            "expected one of: " + known + "; this build of taut on this machine supports: " + here);
   return false;
 }
 

@@ -8,10 +8,10 @@ namespace taut::sim {
 
 void WrongIndex(const char* function, const char* what, int index, int count) noexcept {
   if (count == 0) {
-    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: there is none at all\n", function,
-                 what, index);
+    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: the model has none\n", function, what,
+                 index);
   } else {
-    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: they are 0 to %d\n", function, what,
+    std::fprintf(stderr, "taut: Batch::%s: there is no %s %d: valid are 0 to %d\n", function, what,
                  index, count - 1);
   }
   std::abort();
@@ -24,7 +24,7 @@ void NoMotor(const char* function, int cable) noexcept {
 
 void WrongCount(const char* function, const char* what, std::size_t given,
                 std::size_t needed) noexcept {
-  std::fprintf(stderr, "taut: Batch::%s: needs one %s, which is %zu, and got %zu\n", function, what,
+  std::fprintf(stderr, "taut: Batch::%s: needs one %s: expected %zu, got %zu\n", function, what,
                needed, given);
   std::abort();
 }

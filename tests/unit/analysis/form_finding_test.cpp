@@ -244,7 +244,7 @@ TEST(FormFinding, WrongInputsAreComplainedOf) {
   EXPECT_EQ(wrong.Format(),
             "error: cable a1-d1 must have a force density or tension above 0\n"
             "error: form finding needs either force densities or tensions of the cables\n"
-            "error: there are 2 numbers for 24 cables\n");
+            "error: there are 2 force densities or tensions for 24 cables\n");
   Diagnostics soft;
   options.tension_n.assign(24, 2000);
   EXPECT_EQ(FindForm(*robot, options, soft).why, "some cables are too soft");

@@ -147,8 +147,8 @@ TEST_F(FitFile, StartsLieBetweenTheBoundsAndNotOnThem) {
             "8: estimate: k_n_per_m starts on its bound 100 (widen the bounds, or give a `start` "
             "between them)\n");
   EXPECT_EQ(Wrong("low: 50,", "low: 110,"),
-            "8: estimate: k_n_per_m starts at 100, which is not between its bounds (it is the "
-            "value of the experiment: give another `start`, or change the bounds)\n"
+            "8: estimate: k_n_per_m starts at 100, which is not between its bounds (the default "
+            "start is the value in the experiment: give a `start`, or change the bounds)\n"
             "8: estimate: k_n_per_m: the prior's mean 100 is not between its bounds\n");
   EXPECT_EQ(Wrong("low: 50,", "low: 150,"),
             "8: estimate: k_n_per_m: low 150 is not below high 150\n");
@@ -171,10 +171,10 @@ TEST_F(FitFile, WindowsAreOnesThatTheExperimentHas) {
             "12: residuals.window: b has no phase \"latte\" (did you mean \"late\"?)\n");
   EXPECT_EQ(Wrong("phase: late", "from_s: 3, to_s: 2"),
             "12: residuals.window: the end 2 s is not after the start 3 s\n");
-  EXPECT_EQ(
-      Wrong("phase: late", "from_s: 3, phase: late"),
-      "12: residuals.window needs both from_s and to_s\n"
-      "12: residuals.window needs one of `phase`, `from_s` with `to_s`, `after_setpoint_s`\n");
+  EXPECT_EQ(Wrong("phase: late", "from_s: 3, phase: late"),
+            "12: residuals.window needs both from_s and to_s\n"
+            "12: residuals.window needs exactly one of `phase`, `from_s` with `to_s`, "
+            "`after_setpoint_s`\n");
 }
 
 TEST_F(FitFile, EveryMistakeIsSaidAtOnce) {

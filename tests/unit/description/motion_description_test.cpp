@@ -101,7 +101,7 @@ TEST_F(MotionText, WhatGoesTooFarIsAnErrorAndWhatIsTooFastAWarning) {
       kPlate);
   const std::string errors = Complaints();
   EXPECT_THAT(errors,
-              HasSubstr("the motion \"a\" may move by 1e+301 m in 10 s (use a shorter way: "
+              HasSubstr("the motion \"a\" may move by 1e+301 m in 10 s (use a smaller motion: "
                         "positions that far away are rounded too coarsely for this robot)"));
   EXPECT_THAT(errors,
               HasSubstr("the motion \"b\" may rotate by 1e+10 rad in 10 s (at most 1e9 rad"));

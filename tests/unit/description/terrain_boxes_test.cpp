@@ -152,7 +152,8 @@ TEST_F(TerrainBoxErrors, OfScatteredBlocks) {
          "7:35: error: scatter.within_m must be two points, got 1 ([[x, y, z], [x, y, z]], the "
          "lower numbers first)");
   expect("count: 3, within_m: [[0, 0, 0.1], [1, 1, 0]], " + box,
-         "7:35: error: scatter.within_m has a number that is larger in its first point ([[x, y, "
+         "7:35: error: scatter.within_m has a first point with a larger coordinate than the second "
+         "([[x, y, "
          "z], [x, y, z]], the lower numbers first)");
   expect("count: 3, box_m: [1, 0, 1], within_m: [[0, 0], [1, 1, 0]], friction: -1",
          "7:42: error: scatter.box_m must be three positive numbers\n7:64: error: scatter.within_m "
@@ -208,7 +209,8 @@ TEST_F(TerrainBoxErrors, OfNamesAndNumbers) {
          "8:5: error: the terrain has 5001 boxes up to this element, more than 5000 (use a height "
          "field or a mesh)");
   Expect(kGround, stairs(std::string(199, 'n'), 3),
-         "7:12: error: terrain.name has, with the number of a box, more than 200 characters (use a "
+         "7:12: error: terrain.name and the appended number of a box have more than 200 characters "
+         "(use a "
          "shorter name)");
   ExpectGood(stairs(std::string(198, 'n'), 3));
 }

@@ -122,9 +122,9 @@ TEST_F(Carried, AllMembersHaveToBeCompared) {
       Wrong(Replaced(Replaced(kFit, "cable/*/tension_n", "cable/r/tension_n"),
                      "  - {channel: joint/*/axial_n, sd: 0.2}\n", "")),
       "carried: ball of a: cable/l/tension_n is not compared (add all members between the "
-      "bodies and the rest to `residuals`)\n"
+      "bodies and the rest of the robot to `residuals`)\n"
       "carried: ball of a: joint/b/axial_n is not compared (add all members between the bodies "
-      "and the rest to `residuals`)\n");
+      "and the rest of the robot to `residuals`)\n");
 }
 
 TEST_F(Carried, WhatElseHoldsTheBodiesIsSaid) {

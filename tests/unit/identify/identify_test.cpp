@@ -117,8 +117,8 @@ TEST_F(IdentifyTest, OffsetsOfNothingAreMistakes) {
 TEST_F(IdentifyTest, FewerDataThanNumbersAreAMistake) {
   EXPECT_EQ(Wrong(Replaced(Replaced(kFit, "prior: {sd: 5}", "scale: 5"), "offset: {sd: 0.01}}",
                            "offset: {scale: 1}, gain: {scale: 1}}")),
-            "3 numbers cannot be estimated from 2 data and priors together (add priors with `sd` "
-            "or data, or estimate fewer numbers)\n");
+            "3 parameters cannot be estimated from 2 data points and priors together (add priors "
+            "with `sd` or data points, or estimate fewer parameters)\n");
 }
 
 TEST(TurnOf, IsTheAngleAboutTheAxis) {

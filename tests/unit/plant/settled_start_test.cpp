@@ -89,11 +89,12 @@ TEST_F(SettledStartTest, AHeapIsWarnedOfWithNamesAndNumbers) {
   const StartChange& change = settled->change;
   EXPECT_FALSE(change.slack_cables.empty());
   const std::string text = out.Format();
-  EXPECT_NE(text.find(" of the 9 cables that are taut as described are slack after settling: " +
-                      change.slack_cables[0] + ", "),
-            std::string::npos)
+  EXPECT_NE(
+      text.find(" of the 9 cables that are taut in the described pose are slack after settling: " +
+                change.slack_cables[0] + ", "),
+      std::string::npos)
       << text;
-  EXPECT_NE(text.find("N, as described 2 N ("), std::string::npos) << text;
+  EXPECT_NE(text.find("N, in the described pose 2 N ("), std::string::npos) << text;
   EXPECT_LT(change.max_tension_n, change.described_max_tension_n);
   out.WarningsToErrors();
   EXPECT_FALSE(out.ok());
@@ -139,7 +140,7 @@ TEST(StartWarnings, SayWhatIsFarAndWhatTouches) {
   const std::string hint = " (see the settled robot with `taut check --settled` or `taut view`)\n";
   EXPECT_EQ(
       out.Format(),
-      "warning: bodies that are apart as described touch after settling: a on "
+      "warning: bodies that do not touch in the described pose touch after settling: a on "
       "b" +
           hint +
           "warning: the robot settles to another shape: the node \"tip\" moves 0.3 m from its "
@@ -153,8 +154,9 @@ TEST(StartWarnings, SayWhatIsFarAndWhatTouches) {
   Diagnostics slack;
   WarnOfStart(change, slack);
   EXPECT_EQ(slack.Format(),
-            "warning: 7 of the 20 cables that are taut as described are slack after settling: a, "
-            "b, c and 4 more; largest tension 0.55 N, as described 25.7 N" +
+            "warning: 7 of the 20 cables that are taut in the described pose are slack after "
+            "settling: a, "
+            "b, c and 4 more; largest tension 0.55 N, in the described pose 25.7 N" +
                 hint);
 }
 

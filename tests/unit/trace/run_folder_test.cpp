@@ -53,17 +53,17 @@ TEST_F(Run, PiecesOfDifferentRunsAreRefused) {
     const std::string runs = "trace.h5 (run " + (other.empty() ? "none" : other) + ", not a)";
     WriteInputs("inputs.yaml", other);
     EXPECT_EQ(Read("trace.h5"),
-              "inputs.yaml: error: the file is of another run than " + runs + hint);
+              "inputs.yaml: error: the file belongs to another run than " + runs + hint);
     WriteInputs("inputs.yaml", "a");
     WriteSummary("summary.json", other);
     EXPECT_EQ(Read("trace.h5"),
-              "summary.json: error: the file is of another run than " + runs + hint);
+              "summary.json: error: the file belongs to another run than " + runs + hint);
     fs::remove(Path("summary.json"));
   }
   WriteTrace("trace.h5", "");
   EXPECT_EQ(
       Read("trace.h5"),
-      "inputs.yaml: error: the file is of another run than trace.h5 (run a, not none)" + hint);
+      "inputs.yaml: error: the file belongs to another run than trace.h5 (run a, not none)" + hint);
   WriteFile("inputs.yaml", "taut: 1\n");
   EXPECT_EQ(Read("trace.h5"), "") << "of an earlier version";
 }
@@ -74,9 +74,9 @@ TEST_F(Run, ATextualTraceStandsBesideInputsAndSummaryOfOneRun) {
   WriteSummary("summary.json", "a");
   EXPECT_EQ(Read("trace.csv"), "");
   WriteSummary("summary.json", "b");
-  EXPECT_NE(
-      Read("trace.csv").find("summary.json: error: the file is of another run than inputs.yaml"),
-      std::string::npos);
+  EXPECT_NE(Read("trace.csv")
+                .find("summary.json: error: the file belongs to another run than inputs.yaml"),
+            std::string::npos);
 }
 
 TEST_F(Run, AMeasuredTraceInTheFolderIsNoPiece) {
@@ -168,8 +168,9 @@ TEST_F(KilledRun, LeavesTheOldOneWholeIfItHadNoRow) {
 TEST_F(KilledRun, OfWhichNothingIsLeftToFinishIsRefused) {
   Leave(0);
   fs::remove(Path("inputs.yaml.77.part"));
-  EXPECT_NE(Read("trace.h5").find("inputs.yaml: error: the file is of another run than trace.h5"),
-            std::string::npos);
+  EXPECT_NE(
+      Read("trace.h5").find("inputs.yaml: error: the file belongs to another run than trace.h5"),
+      std::string::npos);
 }
 
 TEST_F(KilledRun, IsWaitedForIfItIsAlive) {

@@ -24,13 +24,13 @@ export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes
     element.hidden = state === null;
     if (!state) return;
     table.replaceChildren(
-      el("tr", {}, el("th", {}, "time"), el("th", {}, "here"), ...(expected.length > 0 ? [el("th", {}, "taut run"), el("th")] : [])),
+      el("tr", {}, el("th", {}, "time"), el("th", {}, "this page"), ...(expected.length > 0 ? [el("th", {}, "taut run"), el("th")] : [])),
       ...found.map(({ mark, ours }) => el("tr", {}, el("td", {}, seconds(mark.time_s)), el("td.hash", {}, ours ?? "…"), el("td.hash", {}, mark.hash), verdict(ours, mark.hash))),
       el("tr", {}, el("td", {}, seconds(state.time_s)), el("td.hash", {}, state.hash), ...(expected.length > 0 ? [el("td"), el("td")] : [])));
     why.textContent = model ? "No command runs a model, so there is no hash to compare with."
-      : state.touched ? "You have pulled, pushed or changed parameters, which no command can repeat. Reset to compare."
-      : project.ran ? "Download the changed files and replace the shipped ones; then this command prints the hash of the last line:"
-      : "This command prints the hash of the last line on your machine:";
+      : state.touched ? "You have pulled or pushed the robot or changed parameters; no command can repeat this. Reset to compare."
+      : project.ran ? "Download the changed files and replace the shipped ones; then this command prints the hash in the last row of the table:"
+      : "This command prints, on your machine, the hash in the last row of the table:";
     command.textContent = `taut run ${state.path}${Object.entries(state.set).map(([name, value]) => ` --set ${name}=${value}`).join("")} --duration_s ${Number(state.time_s.toFixed(9))} --json | grep state_hash`;
     command.parentElement!.hidden = model || state.touched || state.time_s === 0;
   };

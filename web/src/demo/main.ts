@@ -57,7 +57,7 @@ async function start(root: HTMLElement): Promise<void> {
   const save = button("download", "save this text as a file", () => editor.save());
   const beside = el("aside.demo", { "aria-label": "model" },
     el("div.bar", {}, choice, runButton, undo, share, save), note, editor.element, bitsPanel(source, project, hashes));
-  const toggle = button("text", "show or hide the model's text", () => {
+  const toggle = button("text", "show or hide the text of the file", () => {
     beside.hidden = !beside.hidden;
     dispatchEvent(new Event("resize"));
   });

@@ -96,7 +96,7 @@ export async function sharedBy(fragment: string, shipped: Files): Promise<Shared
   const { path, edits } = shared as Partial<Shared>;
   const texts = typeof edits === "object" && edits !== null ? Object.entries(edits) : [];
   if (typeof path !== "string" || texts.some(([name, text]) => shipped[name] === undefined || typeof text !== "string")) {
-    throw new Error("the link belongs to another version of this page: it names unknown files");
+    throw new Error("the link belongs to another version of this page: it refers to unknown files");
   }
   if (shipped[path] === undefined) throw new Error(`there is no file "${path}"`);
   return { path, edits: edits ?? {} };

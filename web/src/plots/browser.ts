@@ -30,7 +30,7 @@ export class ChannelBrowser {
     oninput: () => this.showList(),
   });
   private readonly plotList = el<HTMLSelectElement>("select", { "aria-label": "plot to add to" });
-  private readonly all = button("choose all", "choose all found channels", () => this.chooseAll(), "button.small");
+  private readonly all = button("choose all", "choose all channels found", () => this.chooseAll(), "button.small");
   private readonly actions: HTMLButtonElement[];
 
   constructor(

@@ -43,7 +43,7 @@ export function otherRunsSection(report: Report): HTMLElement[] {
 
 /** Returns a table with one row per run: its differences from this one. */
 function apartTable(report: Report): HTMLElement {
-  const head = el("tr", {}, ...["run", "time range", "largest tension difference", "RMSE of this cable", "largest position difference"].map((text) => el("th", { scope: "col" }, text)));
+  const head = el("tr", {}, ...["run", "time range", "largest tension difference", "RMSE of that cable", "largest position difference"].map((text) => el("th", { scope: "col" }, text)));
   const rows = (report.comparisons as Comparison[]).map((comparison, k) => {
     const name = el("th", { scope: "row" }, swatch(k + 1), runName(report.scene.compared[k]!));
     if (comparison.rows === 0) return el("tr", {}, name, el("td", { colspan: 4 }, "no common time range, or no common channels with the same unit"));

@@ -24,8 +24,8 @@ export function verdict(report: Report): HTMLElement[] {
   const bad = status !== "ok" || interrupted === true;
   const time = typeof simulated_s === "number" ? ` ${number(simulated_s, 5)} s` : "";
   const sentences = [bad
-    ? `The run was simulated for${time}${interrupted === true ? " and then interrupted" : ""}${status === "ok" ? "" : `: ${String(status)}`}.`
-    : `The run is complete,${time}, without problems.`];
+    ? `The run ${interrupted === true ? "was interrupted" : "ended"}${time && ` after${time}`}${status === "ok" ? "" : `: ${String(status)}`}.`
+    : `The run is complete${time && `,${time}`}, without problems.`];
   if (typeof contacts_left_out === "number" && contacts_left_out > 0) sentences.push(`${number(contacts_left_out)} contacts did not fit into the trace.`);
   return [el(bad ? "p.verdict.bad" : "p.verdict", {}, sentences.join(" "))];
 }
@@ -56,5 +56,5 @@ function cableTable({ cables = [], phases = [] }: Summary): HTMLElement[] {
   const rows = cables.map(({ name, tension, actuator }) => el("tr", {}, el("th", { scope: "row" }, name),
     ...[tension?.max_n, tension?.max_after_start_n, ...phases.map((phase) => tension?.phases?.[phase.name]?.mean_n), actuator?.max_power_w, actuator?.energy_j, actuator?.net_energy_j]
       .map((value) => el("td", {}, number(value ?? NaN, 4)))));
-  return [el("h3", {}, "Tensions"), el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head, units), el("tbody", {}, ...rows)))];
+  return [el("h3", {}, "Tensions and motors"), el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head, units), el("tbody", {}, ...rows)))];
 }

@@ -37,7 +37,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
   };
   const scene = () => app.scene.value;
   return [
-    { time: true, keys: [" "], shown: "space", does: "play or pause; a robot: emergency stop", act: () => app.togglePlay() },
+    { time: true, keys: [" "], shown: "space", does: "play or pause; with a robot: emergency stop", act: () => app.togglePlay() },
     { time: true, keys: ["ArrowRight"], shown: "→", does: "one step forward (with shift: one second)", act: step(1) },
     { time: true, keys: ["ArrowLeft"], shown: "←", does: "one step back (with shift: one second); live: shows the past, undoes nothing", act: step(-1) },
     { time: true, keys: ["Home"], shown: "home", does: "to the start", act: () => app.seek(scene()?.first_s ?? 0) },
@@ -61,7 +61,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
       const now = app.selection.value;
       app.selection.value = { kind, index: now?.kind === kind ? (now.index + 1) % list.length : 0 };
     } },
-    { keys: ["Escape"], shown: "esc", does: "nothing selected; closes this help", act: () => (app.selection.value = null) },
+    { keys: ["Escape"], shown: "esc", does: "clear the selection; close this help", act: () => (app.selection.value = null) },
     { keys: ["c", "C"], shown: "C", does: "live controls", act: () => toggles.controls() },
     { keys: ["b", "B"], shown: "B", does: "edit plots: all channels, layouts", act: () => toggles.editor() },
     { keys: ["t", "T"], shown: "T", does: "dark or light", act: () => app.toggleTheme() },
