@@ -139,7 +139,7 @@ void JudgeJoints(benchmark::State& state, const Runner& runner) {
 void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
   what.engine = "taut";
   what.setting = "default";
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = what.worlds;
   options.threads = what.threads;
   options.simd = static_cast<Simd>(what.lanes);
@@ -162,7 +162,7 @@ Judge HowDeep(const std::string& robot) {
 
 /// Registers height fields; fields of ten million cells are created only when measured.
 void RegisterHills(const std::string& robot, const std::string& ground, int corners, int lanes) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = lanes;
   options.simd = static_cast<Simd>(lanes);
   const Make make = [robot, corners, options] {
@@ -235,7 +235,7 @@ void RegisterPeersOnHills(std::vector<Elsewhere>& elsewhere) {
   }
   const ModelDef ball = BallOnTriangles();
   RegisterBall("taut", "default",
-               [ball] { return std::make_unique<TautRunner>(ball, BatchOptions{}); });
+               [ball] { return std::make_unique<TautRunner>(ball, WorldBatchOptions{}); });
   for (const peers::Setting& setting : peers::kSettings) {
     if (!setting.main || !peers::Available(setting.engine)) continue;
     RegisterBall(peers::Name(setting.engine), setting.name, [ball, setting] {
@@ -330,9 +330,9 @@ int main(int argc, char** argv) {
   }
   benchmark::AddCustomContext("step_s", std::to_string(taut::bench::kStepS));
   benchmark::AddCustomContext("max_linear_solves",
-                              std::to_string(taut::BatchOptions().max_linear_solves));
+                              std::to_string(taut::WorldBatchOptions().max_linear_solves));
   char tolerance[32];
-  std::snprintf(tolerance, sizeof tolerance, "%g", taut::BatchOptions().tolerance_m_per_s);
+  std::snprintf(tolerance, sizeof tolerance, "%g", taut::WorldBatchOptions().tolerance_m_per_s);
   benchmark::AddCustomContext("tolerance_m_per_s", tolerance);
   const auto elsewhere = taut::bench::RegisterAll();
   if (argc == 3 && std::string(argv[1]) == "--mjcf") {

@@ -90,7 +90,7 @@ struct Record {
   double worst_residual = 0;
   std::uint32_t bits = 0;  ///< All bits except `kStatusNotConverged`.
 
-  void Look(Batch& batch) {
+  void Look(WorldBatch& batch) {
     for (int w = 0; w < batch.worlds(); ++w) {
       const WorldStatus status = batch.Status(w);
       ++world_steps;
@@ -131,7 +131,7 @@ std::vector<double> Timed(const Wanted& wanted, int steps, int worlds, Step step
 }
 
 /// Gives the worlds of a batch small different velocities, so that their contacts soon differ.
-void Disturb(Batch& batch, std::uint64_t seed) {
+void Disturb(WorldBatch& batch, std::uint64_t seed) {
   for (int w = 1; w < batch.worlds(); ++w) {
     scenes::Chance chance(1000 * seed + static_cast<std::uint64_t>(w));
     for (int b = 0; b < static_cast<int>(batch.model().def().bodies.size()); ++b) {
@@ -144,10 +144,10 @@ void Disturb(Batch& batch, std::uint64_t seed) {
 
 Record RunTaut(const Wanted& wanted, const ContactScene& scene, const ModelDef& def, int worlds,
                std::uint64_t seed) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = worlds;
   options.simd = static_cast<Simd>(worlds);
-  Batch batch(Compiled(def), options);
+  WorldBatch batch(Compiled(def), options);
   Disturb(batch, seed);
   const Motion motion(def);
   Record record;
@@ -250,7 +250,7 @@ void MeasurePainleve(Json& runs) {
   Record record;
   const Wanted all;
   for (const ModelDef& def : PainleveGrid()) {
-    Batch batch(Compiled(def), {});
+    WorldBatch batch(Compiled(def), {});
     const auto times_us = Timed(
         all, 1, 1, [&](int) { batch.Step(kStepS); }, [&](int) { record.Look(batch); });
     record.step_us.push_back(times_us[0]);
@@ -276,9 +276,9 @@ Json Context() {
     context[peers::Name(engine)] = peers::Version(engine);
   }
   char tolerance[32];
-  std::snprintf(tolerance, sizeof tolerance, "%g", BatchOptions().tolerance_m_per_s);
+  std::snprintf(tolerance, sizeof tolerance, "%g", WorldBatchOptions().tolerance_m_per_s);
   context["step_s"] = std::to_string(kStepS);
-  context["max_linear_solves"] = std::to_string(BatchOptions().max_linear_solves);
+  context["max_linear_solves"] = std::to_string(WorldBatchOptions().max_linear_solves);
   context["tolerance_m_per_s"] = tolerance;
   return context;
 }

@@ -57,7 +57,7 @@ def main():
     experiment = taut.load(str(pathlib.Path(__file__).with_suffix(".yaml")), period_s=1e-3 * steps)
     many, two = worlds_of(experiment, worlds), worlds_of(experiment, worlds, threads=2)
     singles = [taut.gym.Env(experiment, randomise=False) for _ in range(64)]
-    few, bare = worlds_of(experiment, 64), taut.Batch(experiment, worlds=worlds)
+    few, bare = worlds_of(experiment, 64), taut.Batch(experiment.robot, worlds=worlds)
     for each in (many, two, few, *singles):
         each.reset(seed=0)
     random = np.random.default_rng(1)

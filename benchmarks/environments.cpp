@@ -1,6 +1,6 @@
 // Overhead of environments: env_speed EXPERIMENT [WORLDS] [STEPS A PERIOD] [ROUNDS]. Prints JSON.
 //
-// "bare" is a batch that receives the same rest lengths and only runs Batch::Step; the program
+// "bare" is a batch that receives the same rest lengths and only runs WorldBatch::Step; the program
 // checks that its worlds have the same bits. "singles": as many environments of one world each, one
 // after the other. All variants take turns of a few milliseconds, so that other load on the machine
 // affects all of them. Each round yields ratios of processor time; results are their medians. Two
@@ -168,7 +168,7 @@ int Main(int argc, char** argv) {
   Envs costly(measured, 1, worlds, 1);
   const int single_count = std::min(worlds, 64);
   Envs few(*experiment, 1, single_count, 1), singles(*experiment, single_count, 1, 1);
-  Batch bare(model, {.worlds = worlds, .threads = 1, .simd = BestSimd()});
+  WorldBatch bare(model, {.worlds = worlds, .threads = 1, .simd = BestSimd()});
   const auto calls = [&](int of) {
     const double guess_s = 2e-6 * of * steps;
     return std::max(1, static_cast<int>(kRoundS / guess_s));

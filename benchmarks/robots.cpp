@@ -87,7 +87,7 @@ ModelDef BallOnTriangles() {
   return def;
 }
 
-void SpreadOut(Batch& batch) {
+void SpreadOut(WorldBatch& batch) {
   for (int world = 0; world < batch.worlds(); ++world) {
     for (int body = 0; body < static_cast<int>(batch.model().def().bodies.size()); ++body) {
       BodyState state = batch.Body(world, body);
@@ -130,7 +130,7 @@ double Motion::RestLength(int world, int cable, int tick) const {
   return rest_m_[static_cast<std::size_t>(cable)] * factor_[static_cast<std::size_t>(at)];
 }
 
-TautRunner::TautRunner(const ModelDef& def, const BatchOptions& options, int control_steps)
+TautRunner::TautRunner(const ModelDef& def, const WorldBatchOptions& options, int control_steps)
     : motion_(def), batch_(Compiled(def), options), control_steps_(control_steps) {}
 
 void TautRunner::Run(int control_periods) {
@@ -155,7 +155,7 @@ void TautRunner::Run(int control_periods) {
 }
 
 double Deepest(const ModelDef& def, const Runner& runner) {
-  Batch geometry(Compiled(def), {});
+  WorldBatch geometry(Compiled(def), {});
   for (int body = 0; body < static_cast<int>(def.bodies.size()); ++body) {
     geometry.SetBodyState(0, body, runner.Body(body));
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "benchmarks/peers/peer.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::bench {
 
@@ -22,7 +22,7 @@ ModelDef OnHills(const std::string& robot, int corners);
 /// Returns a ball that rolls at 1 m/s, ideally without end, over level triangles.
 ModelDef BallOnTriangles();
 /// Shifts the worlds along, so that each stands on other hills.
-void SpreadOut(Batch& batch);
+void SpreadOut(WorldBatch& batch);
 
 /// Returns Tetraspine3 with another number of segments, on the ground.
 ModelDef Spine(int segments);
@@ -67,20 +67,21 @@ class Runner {
 /// Runner for taut. Throws an exception if a world is not finite or has too many contacts.
 class TautRunner final : public Runner {
  public:
-  TautRunner(const ModelDef& def, const BatchOptions& options, int control_steps = kControlSteps);
+  TautRunner(const ModelDef& def, const WorldBatchOptions& options,
+             int control_steps = kControlSteps);
   void Run(int control_periods) override;
   int worlds() const override { return batch_.worlds(); }
   double contacts() override { return static_cast<double>(batch_.Contacts(0).size()); }
   BodyState Body(int body) const override { return batch_.Body(0, body); }
   bool converged() const override { return converged_; }
-  Batch& batch() { return batch_; }
+  WorldBatch& batch() { return batch_; }
   int joints() const { return static_cast<int>(batch_.model().def().joints.size()); }
   /// Mean over the first world's steps, sampled at the last step of each period.
   double linear_solves() const { return linear_solves_ / tick_; }
 
  private:
   Motion motion_;
-  Batch batch_;
+  WorldBatch batch_;
   std::vector<double> targets_m_;  ///< Of all cables of all worlds.
   int control_steps_;
   bool converged_ = true;

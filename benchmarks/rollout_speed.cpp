@@ -2,7 +2,7 @@
 //
 // A moving robot has more contacts and costs more per step than a standing one, so "bare" repeats
 // the same motion: a batch that receives, step by step, the rest lengths that the controllers
-// commanded in a previous run, and only runs Batch::Step. "held" is a batch whose motors hold
+// commanded in a previous run, and only runs WorldBatch::Step. "held" is a batch whose motors hold
 // still.
 #include <algorithm>
 #include <chrono>
@@ -46,9 +46,9 @@ std::vector<std::vector<double>> CommandsOf(const ExperimentSpec& experiment, in
 /// Steps all worlds, with commands if there are any. Returns the time [s].
 double StepAll(const std::shared_ptr<const Model>& model, double step_s, int steps,
                const std::vector<std::vector<double>>& commands) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = static_cast<int>(BestSimd());
-  Batch batch(model, options);
+  WorldBatch batch(model, options);
   const CableRows rows = batch.Cables(0);
   const auto start = Clock::now();
   if (commands.empty()) batch.Step(step_s, steps);

@@ -6,7 +6,7 @@ namespace sim {
 std::uint64_t g_stage_ticks[kStages] = {};
 }
 
-void BatchInside::Watch(Batch& batch) {
+void BatchInside::Watch(WorldBatch& batch) {
   switch (batch.lanes()) {
 #ifdef TAUT_HAS_AVX512
     case 8:

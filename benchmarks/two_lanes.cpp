@@ -7,8 +7,8 @@
 #include <limits>
 #include <memory>
 
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace {
 
@@ -23,10 +23,10 @@ bool Measure(const char* path) {
     std::fputs(out.Format().c_str(), stderr);
     return false;
   }
-  taut::BatchOptions options;
+  taut::WorldBatchOptions options;
   options.worlds = 2;
   options.simd = taut::Simd::kSse2;  // two lanes on every platform
-  taut::Batch batch(model, options);
+  taut::WorldBatch batch(model, options);
   batch.Step(experiment->step_s, kSteps);  // falls onto the ground, and warms up
   double least_s = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {

@@ -7,7 +7,7 @@ import taut
 WORLDS, STEP_S = 64, 1e-3
 random = np.random.default_rng(1)
 experiment = taut.load("experiments/push_20n.yaml")
-robot, batch = experiment.robot, taut.Batch(experiment, worlds=WORLDS, threads=0)
+robot, batch = experiment.robot, taut.Batch(experiment.robot, worlds=WORLDS, threads=0)
 
 friction = random.uniform(0.6, 1.4, WORLDS)  # factors of the ground's friction
 batch.set_parameter("friction_scale", friction)

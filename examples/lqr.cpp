@@ -110,7 +110,7 @@ struct Plan {
 /// regulator that weights a position error of a centimeter like 5 mm of rest length.
 Plan Regulator(const taut::ExperimentSpec& experiment) {
   taut::Diagnostics out;
-  taut::Batch batch(taut::Model::Compile(experiment.robot.def, out), {});
+  taut::WorldBatch batch(taut::Model::Compile(experiment.robot.def, out), {});
   taut::Settle(batch, 0, kStepS);
   const std::vector<std::uint8_t> rest = batch.Save(0);
   Plan found;

@@ -6,17 +6,23 @@ import numpy as np
 
 import taut
 
-MASS_KG, STIFFNESS_N_PER_M, STEP_S = 0.5, 400.0, 1e-3
+MASS_KG, STIFFNESS_N_PER_M = 0.5, 400.0
 DAMPING_N_S_PER_M = 4.0  # simulated by the winch: winds in proportion to the shortening
 
-batch = taut.Batch(taut.load("examples/winch.yaml"), worlds=2)  # world 0 without the controller, world 1 with it
-rest_m = batch.rest_length_m()
+
+class Damper:
+    period_s = 0.001
+
+    def act(self, seen, commands):
+        gain = np.where(seen.world == 1, DAMPING_N_S_PER_M / STIFFNESS_N_PER_M, 0)[:, None]  # in world 1 only
+        commands.rest_length_m[:] = 1 - gain * seen.cable_rate_m_per_s
+
+
+sim = taut.Simulation("examples/winch.yaml", worlds=2, controllers=[Damper()])
 height_m = []
 for step in range(1500):
-    target_m = rest_m.copy()
-    target_m[1] -= DAMPING_N_S_PER_M / STIFFNESS_N_PER_M * batch.cable_rate_m_per_s()[1]
-    batch.step(STEP_S, 1, target_m)
-    height_m.append(batch.node_position_m()[:, 1, 2])
+    sim.step()
+    height_m.append(sim.node_position_m("mass")[:, 2])
 
 hangs_m = 2 - 1 - MASS_KG * 9.81 / STIFFNESS_N_PER_M
 swing_mm = 1e3 * np.abs(np.array(height_m) - hangs_m)

@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "taut/batch.h"
 #include "taut/friction.h"
+#include "taut/world_batch.h"
 
 namespace {
 
@@ -53,11 +53,11 @@ double Way(std::shared_ptr<const taut::ContactFriction> law, int worlds, std::ui
     std::fputs(complaints.Format().c_str(), stderr);
     return std::nan("");
   }
-  taut::BatchOptions options;
+  taut::WorldBatchOptions options;
   options.worlds = worlds;
   options.threads = worlds > 1 ? 2 : 1;
   options.friction = std::move(law);
-  taut::Batch batch(model, options);
+  taut::WorldBatch batch(model, options);
   batch.Step(1e-3, 2000);
   hash = batch.Hash(worlds - 1);
   return batch.Body(worlds - 1, 0).position_m.x;

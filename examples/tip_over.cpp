@@ -15,8 +15,8 @@
 #include <optional>
 #include <string>
 
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace {
 
@@ -48,10 +48,10 @@ double TippingForce(const taut::ModelDef& def, taut::Diagnostics& diagnostics) {
   const std::shared_ptr<const taut::Model> model = taut::Model::Compile(def, diagnostics);
   const int corner = NodeCalled(def, "upper.a");
   if (!model || corner < 0) return -1.0;
-  taut::BatchOptions options;
+  taut::WorldBatchOptions options;
   options.worlds = kWorlds;
   options.threads = 0;  // one per core; the result does not depend on it
-  taut::Batch batch(model, options);
+  taut::WorldBatch batch(model, options);
 
   constexpr double kStepS = 0.001;
   constexpr int kRampSteps = 2000, kHoldSteps = 3000, kStepsABurst = 10;

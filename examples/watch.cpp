@@ -17,7 +17,7 @@ namespace {
 constexpr int kRough = 0, kIce = 1;
 constexpr double kStepS = 0.001, kDurationS = 3.0;
 
-double WayM(const taut::Batch& batch, int world) { return batch.Body(world, 0).position_m.x; }
+double WayM(const taut::WorldBatch& batch, int world) { return batch.Body(world, 0).position_m.x; }
 
 }  // namespace
 
@@ -42,9 +42,9 @@ int main(int argc, char** argv) {
   std::printf("Open %s\n", page->url().c_str());
   std::fflush(stdout);
 
-  taut::BatchOptions two;
+  taut::WorldBatchOptions two;
   two.worlds = 2;
-  taut::Batch batch(model, two);
+  taut::WorldBatch batch(model, two);
   batch.SetParameter(kIce, taut::Parameter::kFrictionScale, 0, 0.1);
   const int rough = page->Add(model->def(), "rough");
   const int ice = page->Add(model->def(), "ice", {0.0, 0.5, 0.0});

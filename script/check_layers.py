@@ -114,6 +114,8 @@ def check(root):
             errors.append(f"layers.txt:1: error: no header include/taut/{name}")
     for path in sources(public):
         name = str(path.relative_to(public))
+        if name == "taut.h":  # includes all of them; script/check_headers compares the list
+            continue
         layer = rules.layer_of_header.get(name)
         if layer is None:
             errors.append(f"include/taut/{name}:1: error: in no layer of layers.txt")

@@ -4,7 +4,7 @@
 
 #include <ostream>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::test {
 

@@ -16,7 +16,6 @@
 #include "overrides.h"
 #include "shipped_inputs.h"
 #include "standard_streams.h"
-#include "taut/batch.h"
 #include "taut/compare.h"
 #include "taut/files.h"
 #include "taut/plant.h"
@@ -26,6 +25,7 @@
 #include "taut/summary.h"
 #include "taut/trace.h"
 #include "taut/version.h"
+#include "taut/world_batch.h"
 
 namespace taut::cli {
 namespace {

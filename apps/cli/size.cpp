@@ -30,7 +30,7 @@ struct SizeArguments {
 /// Suitability of the catalogue's components for a cable, in the order of the catalogue.
 struct Choice {
   const CableDemand* cable;
-  std::vector<Fit> motors, springs;
+  std::vector<SizingMargins> motors, springs;
 };
 
 std::vector<Choice> Choices(const RunDemand& run, const Catalogue& catalogue,
@@ -41,11 +41,11 @@ std::vector<Choice> Choices(const RunDemand& run, const Catalogue& catalogue,
     for (const CatalogueMotor& motor : catalogue.motors) {
       if (!cable.actuated) break;
       const double radius_m = spool_radius_m ? *spool_radius_m : *motor.spool_radius_m;
-      choice.motors.push_back(FitOf(motor, radius_m, catalogue.factor, cable));
+      choice.motors.push_back(SizingMarginsOf(motor, radius_m, catalogue.factor, cable));
     }
     for (const CatalogueSpring& spring : catalogue.springs) {
       choice.springs.push_back(
-          FitOf(spring, catalogue.factor, catalogue.stiffness_tolerance, cable));
+          SizingMarginsOf(spring, catalogue.factor, catalogue.stiffness_tolerance, cable));
     }
     choices.push_back(std::move(choice));
   }
@@ -77,17 +77,17 @@ std::string DemandTable(const RunDemand& run) {
 }
 
 /// Formats one column per component: the smallest safety factor and its quantity.
-std::string FitTable(const std::vector<Choice>& choices, std::vector<Fit> Choice::*fits) {
+std::string FitTable(const std::vector<Choice>& choices, std::vector<SizingMargins> Choice::*fits) {
   std::vector<std::string> head{"cable"};
   for (const Choice& choice : choices) {
     if (head.size() > 1) break;
-    for (const Fit& fit : choice.*fits) head.push_back(fit.name);
+    for (const SizingMargins& fit : choice.*fits) head.push_back(fit.name);
   }
   Table table(head);
   for (const Choice& choice : choices) {
     if ((choice.*fits).empty()) continue;
     std::vector<std::string> row{choice.cable->cable};
-    for (const Fit& fit : choice.*fits) {
+    for (const SizingMargins& fit : choice.*fits) {
       std::string text = FactorText(fit.least.factor) + " " + fit.least.of;
       if (fits == &Choice::springs) text += fmt::format(" {:+.0f} %", 100 * fit.stiffness_off);
       row.push_back((fit.fits ? "" : "no: ") + text);
@@ -98,8 +98,8 @@ std::string FitTable(const std::vector<Choice>& choices, std::vector<Fit> Choice
 }
 
 /// Returns the names of components that suit every cable that needs one.
-std::vector<std::string> FitAll(const std::vector<Choice>& choices, std::vector<Fit> Choice::*fits,
-                                std::size_t count) {
+std::vector<std::string> FitAll(const std::vector<Choice>& choices,
+                                std::vector<SizingMargins> Choice::*fits, std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < count; ++i) {
     std::string name;
@@ -116,11 +116,12 @@ std::vector<std::string> FitAll(const std::vector<Choice>& choices, std::vector<
 
 /// Returns the cables that need a component and for which the catalogue has none.
 std::vector<std::string> Without(const std::vector<Choice>& choices,
-                                 std::vector<Fit> Choice::*fits) {
+                                 std::vector<SizingMargins> Choice::*fits) {
   std::vector<std::string> names;
   for (const Choice& choice : choices) {
     const auto& all = choice.*fits;
-    if (all.empty() || std::any_of(all.begin(), all.end(), [](const Fit& f) { return f.fits; })) {
+    if (all.empty() ||
+        std::any_of(all.begin(), all.end(), [](const SizingMargins& f) { return f.fits; })) {
       continue;
     }
     names.push_back(choice.cable->cable);
@@ -134,9 +135,9 @@ std::string Joined(const std::vector<std::string>& names) {
 
 Json FactorJson(double factor) { return std::isfinite(factor) ? Json(factor) : Json(); }
 
-Json FitsJson(const std::vector<Fit>& fits, bool springs) {
+Json FitsJson(const std::vector<SizingMargins>& fits, bool springs) {
   Json list = Json::array();
-  for (const Fit& fit : fits) {
+  for (const SizingMargins& fit : fits) {
     Json factors = Json::object();
     for (const Margin& margin : fit.margins) factors[margin.of] = FactorJson(margin.factor);
     Json one{{"name", fit.name}, {"fits", fit.fits}, {"factors", factors}};

@@ -52,7 +52,7 @@ std::vector<double> FrameNumbers(const Frame& frame) {
     put(contact.point_m);
     put(contact.force_n);
   }
-  for (const OutsideForce& push : frame.pushes) {
+  for (const ExternalForce& push : frame.pushes) {
     out.push_back(push.node);
     put(push.force_n);
   }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/live.h"
+#include "taut/world_batch.h"
 
 namespace taut::viewer {
 
@@ -47,7 +47,7 @@ struct Frame {
   std::vector<Body> bodies;
   std::vector<Cable> cables;
   std::vector<Contact> contacts;
-  std::vector<OutsideForce> pushes;
+  std::vector<ExternalForce> pushes;
   std::vector<double> values;  ///< Channels of a user's program (taut/page.h).
   std::vector<Body> ghosts;    ///< Bodies of compared runs; NaN while a run has no row.
   std::vector<Bend> bends;     ///< Bends of wrapped cables, in order along each cable.

@@ -76,7 +76,7 @@ class History {
   std::vector<std::size_t> recorded_, columns_of_row_;
   NodeChannels nodes_;
   Lists<Frame::Contact> contacts_;
-  Lists<OutsideForce> pushes_;
+  Lists<ExternalForce> pushes_;
   Lists<Frame::Bend> bends_;
   Lists<Frame::Span> spans_;
 };

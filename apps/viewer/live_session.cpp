@@ -350,7 +350,7 @@ void LiveSession::Fill(Frame& frame) const {
     }
   }
   frame.contact_count = static_cast<double>(frame.contacts.size());
-  frame.pushes = run_->OutsideForces();
+  frame.pushes = run_->ExternalForces();
 }
 
 void LiveSession::Show() {

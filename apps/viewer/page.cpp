@@ -14,7 +14,7 @@
 
 namespace taut {
 
-RobotMoment MomentOf(const Batch& batch, int world) {
+RobotMoment MomentOf(const WorldBatch& batch, int world) {
   const ModelDef& def = batch.model().def();
   RobotMoment moment;
   for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
@@ -105,7 +105,9 @@ int Page::Add(const ModelDef& robot, const std::string& name, const Vec3& at_m) 
   return impl_->robots.Add(robot, name, at_m);
 }
 
-void Page::Set(int robot, const Batch& batch, int world) { Set(robot, MomentOf(batch, world)); }
+void Page::Set(int robot, const WorldBatch& batch, int world) {
+  Set(robot, MomentOf(batch, world));
+}
 
 void Page::Set(int robot, const RobotMoment& moment) { impl_->robots.Set(robot, moment); }
 

@@ -47,7 +47,7 @@ std::unique_ptr<MotorPlant> MotorPlant::Make(const RobotSpec& robot, Diagnostics
 
 MotorPlant::MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cables,
                        std::vector<std::string> names)
-    : batch_(std::move(model), BatchOptions{}),
+    : batch_(std::move(model), WorldBatchOptions{}),
       cables_(std::move(cables)),
       names_(std::move(names)),
       cut_(cables_.size(), false) {}

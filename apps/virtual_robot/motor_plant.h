@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/virtual_robot/emulated_plant.h"
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace taut::virtual_robot {
 
@@ -28,8 +28,8 @@ class MotorPlant : public Plant {
 
   /// Returns the cables with motors, in the model's order.
   const std::vector<std::string>& cable_names() const { return names_; }
-  const Batch& batch() const { return batch_; }
-  Batch& batch() { return batch_; }
+  const WorldBatch& batch() const { return batch_; }
+  WorldBatch& batch() { return batch_; }
   /// Holds the robot on a stand: nothing moves, and load cells measure the forces at the start.
   void SetHeld(bool held) { held_ = held; }
   bool held() const { return held_; }
@@ -39,7 +39,7 @@ class MotorPlant : public Plant {
   MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cables,
              std::vector<std::string> names);
 
-  Batch batch_;  ///< With one world.
+  WorldBatch batch_;  ///< With one world.
   std::vector<int> cables_;
   std::vector<std::string> names_;
   std::vector<bool> cut_;

@@ -61,7 +61,7 @@ std::string TruthHeader(const MotorPlant& plant) {
 }
 
 std::string TruthFrame(const MotorPlant& plant, Time now) {
-  const Batch& batch = plant.batch();
+  const WorldBatch& batch = plant.batch();
   const ModelDef& def = batch.model().def();
   std::vector<BodyState> bodies;
   for (std::size_t i = 0; i < def.bodies.size(); ++i) {

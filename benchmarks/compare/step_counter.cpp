@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 int main(int argc, char** argv) {
   if (argc != 4) {
@@ -28,10 +28,10 @@ int main(int argc, char** argv) {
     std::fputs(complaints.Format().c_str(), stderr);
     return 3;
   }
-  taut::BatchOptions options;
+  taut::WorldBatchOptions options;
   options.worlds = std::atoi(argv[2]);
   options.simd = static_cast<taut::Simd>(options.worlds);
-  taut::Batch batch(model, options);
+  taut::WorldBatch batch(model, options);
   if (batch.lanes() != options.worlds) {
     std::fprintf(stderr, "this machine has no %d lanes\n", options.worlds);
     return 4;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::peers {
 

@@ -15,12 +15,12 @@
 #include <utility>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/matrix.h"
 #include "taut/model_def.h"
 #include "taut/spec.h"
 #include "taut/start.h"
 #include "taut/statics.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 

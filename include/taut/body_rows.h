@@ -1,5 +1,5 @@
 /// Direct access to the body positions and velocities of a batch, without a copy: the counterpart
-/// of `Batch::Cables` for bodies.
+/// of `WorldBatch::Cables` for bodies.
 ///
 /// Threads: these functions count as non-const functions of the batch; reading through the returned
 /// pointers counts as a const one.
@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -20,13 +20,13 @@ struct BodyRows {
   const double* velocity_m_per_s = nullptr;  ///< Velocities of the centers of mass, in W.
 };
 
-/// Returns the rows of all bodies of group `group`, 0 <= group < `Batch::groups`. An index out of
-/// range ends the program, as in `Batch`.
-BodyRows RowsOfBodies(Batch& batch, int group) noexcept;
+/// Returns the rows of all bodies of group `group`, 0 <= group < `WorldBatch::groups`. An index out
+/// of range ends the program, as in `WorldBatch`.
+BodyRows RowsOfBodies(WorldBatch& batch, int group) noexcept;
 
 /// Returns the distance, in doubles, between the same row of successive groups: a pointer from
-/// `Batch::Cables` or `RowsOfBodies` for group g is g times this behind the pointer for group 0.
-/// 0 if there is one group. Constant for the life of the batch.
-std::ptrdiff_t GroupStride(Batch& batch) noexcept;
+/// `WorldBatch::Cables` or `RowsOfBodies` for group g is g times this behind the pointer for group
+/// 0. 0 if there is one group. Constant for the life of the batch.
+std::ptrdiff_t GroupStride(WorldBatch& batch) noexcept;
 
 }  // namespace taut

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 

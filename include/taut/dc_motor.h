@@ -53,7 +53,7 @@ struct DcMotorDef {
 /// Control mode of a motor.
 enum class MotorMode : unsigned char {
   kServo,  ///< The duty follows from the rest length and its target.
-  kDuty,   ///< The duty is set by `Batch::SetDuty`. 0 shorts the winding: a brake.
+  kDuty,   ///< The duty is set by `WorldBatch::SetDuty`. 0 shorts the winding: a brake.
   kOff,    ///< The driver is off: no current.
 };
 

@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/diagnostics.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -89,7 +89,7 @@ struct EnvOptions {
 };
 
 /// Output arrays of a step. A span of the wrong size is a programming error and ends the program,
-/// like a wrong index in `Batch`. All values are finite.
+/// like a wrong index in `WorldBatch`. All values are finite.
 template <class T>
 struct EnvStep {
   std::span<T> observations;           ///< (worlds, observations)

@@ -2,7 +2,7 @@
 /// contact, once per step.
 #pragma once
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -24,7 +24,7 @@ struct FrictionContact {
   double kinetic_friction = 0;
 };
 
-/// Base class of custom friction laws. Pass an instance as `BatchOptions::friction` or
+/// Base class of custom friction laws. Pass an instance as `WorldBatchOptions::friction` or
 /// `RunOptions::friction`. A step evaluates it once per contact, before the solve
 /// (docs/theory/friction.md, section 4), so the coefficient is constant during the solve; a law
 /// that changes much within a step needs a shorter step.

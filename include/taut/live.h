@@ -14,12 +14,6 @@
 
 namespace taut {
 
-/// External force on a node, in W.
-struct OutsideForce {
-  int node = 0;
-  Vec3 force_n;
-};
-
 /// Adjustable command of a cable.
 struct LiveControl {
   int cable = 0;
@@ -62,7 +56,7 @@ class LiveRun {
   virtual std::vector<Overload> Overloads() const = 0;
   /// Returns forces of the last step by the experiment's pushes and drags and by interaction,
   /// without zeros.
-  virtual std::vector<OutsideForce> OutsideForces() const = 0;
+  virtual std::vector<ExternalForce> ExternalForces() const = 0;
 
   // --- interaction -------------------------------------------------------------------------------
   /// Sets or, with nothing, releases the interactive drag. Its spring has the stiffness
@@ -73,7 +67,7 @@ class LiveRun {
   /// step.
   virtual double DragStiffness() const = 0;
   /// Applies a constant force for `duration_s` from the present time on.
-  virtual void Push(const OutsideForce& push, double duration_s) = 0;
+  virtual void Push(const ExternalForce& push, double duration_s) = 0;
   virtual void SetParameter(Parameter parameter, int index, double value) = 0;
   virtual double GetParameter(Parameter parameter, int index) const = 0;
   /// Returns the commands of all cables with an actuator.

@@ -18,9 +18,8 @@ bool IsHeld(const ModelDef& def);
 /// load ("unloaded").
 LoadCaseSpec OwnWeight(const ModelDef& def);
 
-/// Returns an experiment with this robot, its name and its files, and nothing else; it starts
-/// settled.
-ExperimentSpec MinimalExperiment(RobotSpec robot);
+/// Returns an experiment with this robot, its name and its files, and nothing else.
+ExperimentSpec MinimalExperiment(RobotSpec robot, StartKind start = StartKind::kSettled);
 
 [[deprecated("MinimalExperiment")]] inline ExperimentSpec ExperimentWith(RobotSpec robot) {
   return MinimalExperiment(std::move(robot));

@@ -272,6 +272,10 @@ struct ModelDef {
   CombineRule friction_combine = CombineRule::kGeometricMean;
   CombineRule restitution_combine = CombineRule::kMaximum;
   FrictionLaw friction_law = FrictionLaw::kCone;
+
+  /// Parts of the experiment file from which this model was read ("controllers, pushes"); empty for
+  /// a model file. A `WorldBatch` leaves them out, and `Model::Compile` warns of that.
+  std::string experiment_parts;
 };
 
 /// Returns pairs of bodies without contacts between them, lower index first: pairs of `apart` and

@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/diagnostics.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -63,7 +63,7 @@ struct RobotMoment {
 };
 
 /// Returns the present state of a world of a batch, without set points.
-RobotMoment MomentOf(const Batch& batch, int world);
+RobotMoment MomentOf(const WorldBatch& batch, int world);
 
 /// Web server with the viewer's page for one or more robots.
 class Page {
@@ -90,7 +90,7 @@ class Page {
   /// described. The first `Show` after an `Add` determines which cables have set points. An unknown
   /// robot, an unknown world of the batch, or lists of wrong length print a line on stderr and
   /// abort the program with abort().
-  void Set(int robot, const Batch& batch, int world = 0);
+  void Set(int robot, const WorldBatch& batch, int world = 0);
   void Set(int robot, const RobotMoment& moment);
 
   /// Sets the value of a custom channel for the next `Show`, such as "reward" or "error/roll_rad".

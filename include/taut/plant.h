@@ -17,10 +17,10 @@
 #include <span>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/cable_readings.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -109,17 +109,23 @@ struct Commands {
 
 // --- plants --------------------------------------------------------------------------------------
 
-/// Additional quantities and functions of a simulated plant; units and frames as in `Batch`.
+/// External force on a node, in W.
+struct ExternalForce {
+  int node = 0;
+  Vec3 force_n;
+};
+
+/// Additional quantities and functions of a simulated plant; units and frames as in `WorldBatch`.
 class World : public Bodies {
  public:
-  /// As `Batch::SetNodeForce`.
+  /// As `WorldBatch::SetNodeForce`.
   virtual void SetNodeForce(int lane, int node, const Vec3& force_n) = 0;
   virtual Vec3 NodeForce(int lane, int node) const = 0;
   virtual double BodyMass(int lane, int body) const = 0;  ///< In kg.
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
-  virtual double CableFrictionLoss(int lane, int cable) const = 0;  ///< These as in `Batch`:
+  virtual double CableFrictionLoss(int lane, int cable) const = 0;  ///< These as in `WorldBatch`:
   virtual std::vector<double> CableSpanTensions(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
   virtual std::vector<CablePoint> CablePath(int lane, int cable) const = 0;
@@ -164,7 +170,7 @@ class Plant {
 
 /// Returns a simulated plant: the lanes of a batch with one group. All clocks start at 0. The batch
 /// must outlive it.
-std::unique_ptr<Plant> PlantOf(Batch& batch);
+std::unique_ptr<Plant> PlantOf(WorldBatch& batch);
 
 /// Returns a plant of one lane that replays a recording: its observations are the recorded readings
 /// of the robot's cables (`cable/NAME/...`) and, if all bodies were recorded, bodies; commands have
@@ -189,6 +195,9 @@ struct Tick {
 struct ControlSetup {
   const ExperimentSpec& experiment;
   std::span<const RolloutWorld* const> lanes;  ///< Variant of the experiment, one per lane.
+  int first_world = 0;  ///< Number of the first lane's world in a `Simulation`.
+  /// Number of lanes with results; the others repeat the first one. -1: all.
+  int worlds = -1;
 };
 
 /// Controller: computes commands from observations at the ticks of a clock that does not depend on
@@ -212,15 +221,19 @@ class Controller {
   /// Controllers of taut implement it.
   virtual void Serialize(plant::LaneState& state) { (void)state; }
 
-  // --- interactive changes in lane 0; controllers without such quantities keep these defaults ----
+  // --- interactive changes in a lane; controllers without such quantities keep these defaults ----
   /// Returns the gains of a cable, if it has any.
-  virtual std::optional<ImpedanceGains> Gains(int cable) const { return (void)cable, std::nullopt; }
+  virtual std::optional<ImpedanceGains> Gains(int lane, int cable) const {
+    return (void)lane, (void)cable, std::nullopt;
+  }
   /// Sets the gains of a cable. Returns false if it has none.
-  virtual bool SetGains(const ImpedanceGains& gains) { return (void)gains, false; }
+  virtual bool SetGains(int lane, const ImpedanceGains& gains) {
+    return (void)lane, (void)gains, false;
+  }
   /// Holds a cable at a rest length [m] from the next tick on, instead of its program. Returns
   /// false if not supported.
-  virtual bool Hold(int cable, double rest_length_m) {
-    return (void)cable, (void)rest_length_m, false;
+  virtual bool Hold(int lane, int cable, double rest_length_m) {
+    return (void)lane, (void)cable, (void)rest_length_m, false;
   }
 };
 
@@ -244,6 +257,12 @@ struct Extensions {
   std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> controllers;
   std::function<std::unique_ptr<SensorModel>(const ControlSetup&)> sensors;
 };
+
+/// Returns the library's controllers of a specification, as an experiment file describes them, for
+/// `Extensions::controllers`: a gait and the law that it feeds, or one of them. They have the same
+/// numbers in all variants.
+std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> ControllersOf(
+    const ControllerSpec& spec);
 
 using Brought [[deprecated("Extensions")]] = Extensions;
 

@@ -58,7 +58,7 @@ struct Margin {
   double factor = 0;
 };
 /// Suitability of a motor or spring for a cable.
-struct Fit {
+struct SizingMargins {
   std::string name;  ///< Of the motor or the spring.
   bool fits = false;
   std::vector<Margin> margins;
@@ -69,11 +69,11 @@ struct Fit {
 
 /// Evaluates a motor with a spool of this radius [m]. It fits if all margins over the cable's
 /// demand are at least `factor`.
-Fit FitOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
-          const CableDemand& cable);
+SizingMargins SizingMarginsOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
+                              const CableDemand& cable);
 /// Evaluates a spring in series with an inextensible cable. It fits if all margins are at least
 /// `factor` and its stiffness is within `stiffness_tolerance` (relative) of the cable's.
-Fit FitOf(const CatalogueSpring& spring, double factor, double stiffness_tolerance,
-          const CableDemand& cable);
+SizingMargins SizingMarginsOf(const CatalogueSpring& spring, double factor,
+                              double stiffness_tolerance, const CableDemand& cable);
 
 }  // namespace taut

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -25,7 +25,7 @@ bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out);
 /// velocities to 0 at each peak of the kinetic energy, until no node gains more than 1e-9 m/s in a
 /// step. Time does not advance. Returns false after `max_steps`, or if `go_on`, which is called
 /// before every step, returns false.
-bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>& go_on = {},
+bool Settle(WorldBatch& batch, int world, double step_s, const std::function<bool()>& go_on = {},
             int max_steps = 200000);
 
 /// Pose of a robot, without velocities.

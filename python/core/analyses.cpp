@@ -128,7 +128,12 @@ void AddEquilibrium(Type& type) {
       "left_out", [](const Analysis& a) { return a.at.left_out; },
       "Parts of the model that the analysis ignores, in words.");
   type.def_property_readonly(
-      "robot", [](const Analysis& a) { return std::make_shared<RobotSpec>(a.there); },
+      "robot",
+      [](const Analysis& a) {
+        auto robot = std::make_shared<RobotSpec>(a.there);
+        robot->def.experiment_parts.clear();
+        return robot;
+      },
       "The `Robot` in its equilibrium pose.");
   type.def_property_readonly(
       "body_position_m",
@@ -177,7 +182,8 @@ void AddEquilibrium(Type& type) {
       "m].");
   type.def_property_readonly(
       "contacts", [](const Analysis& a) { return ContactsOf(a.at.contacts); },
-      "Contacts that carry load, as a dict in the form of `Batch.contacts`; normal forces only.");
+      "Contacts that carry load, as a dict in the form of `WorldBatch.contacts`; normal forces "
+      "only.");
   type.def_property_readonly(
       "residual_n", [](const Analysis& a) { return a.at.residual_n; },
       "Largest residual force on a body [N].");

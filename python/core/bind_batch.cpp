@@ -1,6 +1,6 @@
 // `taut.Batch`: many worlds of one model. Long calls release the GIL; a lock per batch serializes
 // calls from several Python threads.
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 #include <fmt/format.h>
 
@@ -52,7 +52,7 @@ void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
     a = Finite(targets, {worlds.worlds(), worlds.cables()}, "rest_length_target_m");
     rows = {a.data(), static_cast<std::size_t>(a.size())};
   }
-  const bool done = worlds.With([&](Batch& batch) {
+  const bool done = worlds.With([&](WorldBatch& batch) {
     Signals signals;
     if (count == 0 && !rows.empty()) batch.Step(step_s, 0, rows);
     return StepUntilSignal(batch, step_s, count, rows, signals);
@@ -66,8 +66,9 @@ void AddStates(BatchType& type) {
     type.def(
         name,
         [=](Worlds& worlds, const py::object& out) {
-          return worlds.Read(out, worlds.bodies(), width,
-                             [=](Batch& b, int w, int i, double* to) { put(b.Body(w, i), to); });
+          return worlds.Read(
+              out, worlds.bodies(), width,
+              [=](WorldBatch& b, int w, int i, double* to) { put(b.Body(w, i), to); });
         },
         py::arg("out") = py::none(), words);
   };
@@ -96,7 +97,7 @@ void AddStates(BatchType& type) {
     type.def(
         name,
         [=](Worlds& worlds, const py::object& out) {
-          return worlds.Read(out, worlds.cables(), 1, [=](Batch& b, int w, int i, double* to) {
+          return worlds.Read(out, worlds.cables(), 1, [=](WorldBatch& b, int w, int i, double* to) {
             *to = b.Cable(w, i).*field;
           });
         },
@@ -116,31 +117,33 @@ void AddStates(BatchType& type) {
   type.def(
       "rest_length_target_m",
       [](Worlds& worlds, const py::object& out) {
-        return worlds.Read(out, worlds.cables(), 1, [](Batch& b, int w, int i, double* to) {
+        return worlds.Read(out, worlds.cables(), 1, [](WorldBatch& b, int w, int i, double* to) {
           *to = b.RestLengthTarget(w, i);
         });
       },
       py::arg("out") = py::none(),
       "(worlds, cables) float64: rest-length targets of the actuators [m].");
-  const auto nodes = [&](const char* name, Vec3 (Batch::*read)(int, int) const, const char* words) {
+  const auto nodes = [&](const char* name, Vec3 (WorldBatch::*read)(int, int) const,
+                         const char* words) {
     type.def(
         name,
         [=](Worlds& worlds, const py::object& out) {
-          return worlds.Read(out, worlds.nodes(), 3,
-                             [=](Batch& b, int w, int i, double* to) { Put((b.*read)(w, i), to); });
+          return worlds.Read(out, worlds.nodes(), 3, [=](WorldBatch& b, int w, int i, double* to) {
+            Put((b.*read)(w, i), to);
+          });
         },
         py::arg("out") = py::none(), words);
   };
-  nodes("node_position_m", &Batch::NodePosition,
+  nodes("node_position_m", &WorldBatch::NodePosition,
         "(worlds, nodes, 3) float64: positions of the nodes, in W [m].");
-  nodes("node_velocity_m_per_s", &Batch::NodeVelocity,
+  nodes("node_velocity_m_per_s", &WorldBatch::NodeVelocity,
         "(worlds, nodes, 3) float64: velocities of the nodes, in W [m/s].");
   type.def(
       "time_s",
       [](Worlds& worlds) {
         py::array_t<double> a(worlds.worlds());
         double* to = a.mutable_data();
-        worlds.Look([&](Batch& b) {
+        worlds.Look([&](WorldBatch& b) {
           for (int w = 0; w < b.worlds(); ++w) to[w] = b.Time(w);
         });
         return a;
@@ -158,7 +161,7 @@ void AddCommands(BatchType& type) {
         const int first = world ? worlds.World(*world) : 0,
                   last = world ? first + 1 : worlds.worlds();
         const double* from = a.data();
-        worlds.With([&](Batch& b) {
+        worlds.With([&](WorldBatch& b) {
           for (int w = first; w < last; ++w) {
             for (int c = 0; c < static_cast<int>(worlds.cables()); ++c) {
               b.SetRestLengthTarget(w, c, *from++);
@@ -176,7 +179,7 @@ void AddCommands(BatchType& type) {
                   n = Index(node, static_cast<int>(worlds.nodes()), "node");
         const Array f = Finite(force_n, {3}, "force_n");
         const Vec3 force{f.at(0), f.at(1), f.at(2)};
-        worlds.With([&](Batch& b) { b.SetNodeForce(w, n, force); });
+        worlds.With([&](WorldBatch& b) { b.SetNodeForce(w, n, force); });
       },
       py::arg("world"), py::arg("node"), py::arg("force_n"),
       "Sets an external force on a node, until changed: (3,), in W [N].");
@@ -186,7 +189,7 @@ void AddCommands(BatchType& type) {
         const auto [parameter, i] = ParameterOf(worlds, name, index);
         const Array a = Shaped(values, {worlds.worlds()}, "values");
         const double* from = a.data();
-        const std::string wrong = worlds.With([&, p = parameter, at = i](Batch& b) {
+        const std::string wrong = worlds.With([&, p = parameter, at = i](WorldBatch& b) {
           std::string first;
           for (int w = 0; w < b.worlds() && first.empty(); ++w) {
             first = b.ParameterError(p, at, from[w]);
@@ -208,7 +211,7 @@ void AddCommands(BatchType& type) {
         const auto [parameter, i] = ParameterOf(worlds, name, index);
         py::array_t<double> a(worlds.worlds());
         double* to = a.mutable_data();
-        worlds.Look([&, p = parameter, at = i](Batch& b) {
+        worlds.Look([&, p = parameter, at = i](WorldBatch& b) {
           for (int w = 0; w < b.worlds(); ++w) to[w] = b.GetParameter(w, p, at);
         });
         return a;
@@ -227,7 +230,7 @@ void AddSnapshots(BatchType& type) {
       "save",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        const auto bytes = worlds.Look([&](Batch& b) { return b.Save(w); });
+        const auto bytes = worlds.Look([&](WorldBatch& b) { return b.Save(w); });
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
       py::arg("world") = 0, "Returns the complete state of a world as bytes.");
@@ -238,7 +241,7 @@ void AddSnapshots(BatchType& type) {
                   last = world ? first + 1 : worlds.worlds();
         const std::string_view text = snapshot;
         const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-        const bool all = worlds.With([&](Batch& b) {
+        const bool all = worlds.With([&](WorldBatch& b) {
           for (int w = first; w < last; ++w) {
             if (!b.Restore(w, bytes)) return false;
           }
@@ -253,7 +256,7 @@ void AddSnapshots(BatchType& type) {
       "hash",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        return worlds.Look([&](Batch& b) { return b.Hash(w); });
+        return worlds.Look([&](WorldBatch& b) { return b.Hash(w); });
       },
       py::arg("world") = 0, "Returns a hash of a world's state; equal for bit-identical states.");
   type.def(
@@ -261,7 +264,7 @@ void AddSnapshots(BatchType& type) {
       [](Worlds& worlds) {
         py::array_t<std::uint32_t> a(worlds.worlds());
         std::uint32_t* to = a.mutable_data();
-        worlds.Look([&](Batch& b) {
+        worlds.Look([&](WorldBatch& b) {
           for (int w = 0; w < b.worlds(); ++w) to[w] = b.Status(w).bits;
         });
         return a;
@@ -271,7 +274,7 @@ void AddSnapshots(BatchType& type) {
       "contacts",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        const auto touching = worlds.Look([&](Batch& b) { return b.Contacts(w); });
+        const auto touching = worlds.Look([&](WorldBatch& b) { return b.Contacts(w); });
         return ContactsOf(touching);
       },
       py::arg("world") = 0,

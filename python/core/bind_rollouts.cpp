@@ -17,13 +17,10 @@
 #include "taut/start.h"
 #include "taut/study.h"
 #include "text.h"
+#include "variants.h"
 
 namespace taut::python {
 namespace {
-
-/// A world as given in Python: values by name, and its seed.
-using World = std::vector<std::pair<std::string, double>>;
-using Given = std::pair<std::optional<std::uint64_t>, World>;
 
 /// Returns the rows of `taut.tunables`: name, unit, value, least, greatest.
 py::list TunablesOf(const ExperimentSpec& experiment) {
@@ -34,46 +31,6 @@ py::list TunablesOf(const ExperimentSpec& experiment) {
     all.append(py::make_tuple(t.name, t.unit, *t.value, t.min, t.max));
   }
   return all;
-}
-
-/// Applies the values of all worlds to the experiment; reports all errors in `said`.
-std::vector<RolloutWorld> WorldsOf(const ExperimentSpec& experiment,
-                                   const std::vector<Given>& given, Diagnostics& said) {
-  std::vector<ControllerSpec> controllers = experiment.controllers;
-  std::vector<ScaleSpec> scales = TunableScales(experiment.robot);
-  const std::vector<Tunable> tunables = FindTunables(controllers, scales, experiment.robot);
-  const std::vector<std::string> names = NamesOf(tunables);
-  StudySpec study;
-  study.experiment = experiment;
-  std::vector<RolloutWorld> worlds;
-  for (std::size_t w = 0; w < given.size(); ++w) {
-    const auto& [seed, numbers] = given[w];
-    const std::string where = "worlds[" + std::to_string(w) + "]: ";
-    std::vector<double> values;
-    study.parameters.clear();
-    for (const auto& [name, value] : numbers) {
-      const auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end()) {
-        const std::string_view close = ClosestMatch(name, names);
-        said.Error("tunable.unknown_name", {}, where + "there is no parameter \"" + name + "\"",
-                   close.empty() ? "taut.tunables(experiment) lists all names"
-                                 : "did you mean \"" + std::string(close) + "\"?");
-        continue;
-      }
-      const Tunable& tunable = tunables[static_cast<std::size_t>(found - names.begin())];
-      if (!std::isfinite(value) || value < tunable.min || value > tunable.max) {
-        said.Error("tunable.out_of_range", {},
-                   fmt::format("{}{} must be a number within {}..{} {}, got {}", where, name,
-                               tunable.min, tunable.max, tunable.unit, value));
-        continue;
-      }
-      study.parameters.push_back({name, tunable.unit, {name}, tunable.min, tunable.max, false});
-      values.push_back(value);
-    }
-    worlds.push_back(NominalWorld(study, values));
-    if (seed) worlds.back().seed = *seed;
-  }
-  return worlds;
 }
 
 /// Returns the columns by name, from which taut/_results.py makes one structured array.
@@ -100,7 +57,7 @@ py::dict Columns(const std::vector<RolloutResult>& results) {
 }
 
 py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_text,
-                 const std::vector<Given>& given, int threads,
+                 const std::vector<GivenVariant>& given, int threads,
                  const std::optional<std::string>& simd, const py::object& progress) {
   Threads(threads);
   RolloutOptions options;
@@ -110,7 +67,7 @@ py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_
   const auto objective = ReadObjective(objective_text, "", experiment, of_objective);
   // Omits the position, which refers to a text generated from the dict.
   for (const Diagnostic& d : of_objective.items()) said.AddError({{}, d.what, d.hint, d.id});
-  const std::vector<RolloutWorld> worlds = WorldsOf(experiment, given, said);
+  const std::vector<RolloutWorld> worlds = VariantsOf(experiment, given, "worlds", said);
   CheckStart(experiment.robot, experiment.start, said);
   Tell(said);
   std::vector<RolloutResult> results;
@@ -135,6 +92,46 @@ py::dict Rollout(const ExperimentSpec& experiment, const std::string& objective_
 }
 
 }  // namespace
+
+std::vector<RolloutWorld> VariantsOf(const ExperimentSpec& experiment,
+                                     const std::vector<GivenVariant>& given,
+                                     const std::string& what, Diagnostics& said) {
+  std::vector<ControllerSpec> controllers = experiment.controllers;
+  std::vector<ScaleSpec> scales = TunableScales(experiment.robot);
+  const std::vector<Tunable> tunables = FindTunables(controllers, scales, experiment.robot);
+  const std::vector<std::string> names = NamesOf(tunables);
+  StudySpec study;
+  study.experiment = experiment;
+  std::vector<RolloutWorld> worlds;
+  for (std::size_t w = 0; w < given.size(); ++w) {
+    const auto& [seed, numbers] = given[w];
+    const std::string where = what + "[" + std::to_string(w) + "]: ";
+    std::vector<double> values;
+    study.parameters.clear();
+    for (const auto& [name, value] : numbers) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) {
+        const std::string_view close = ClosestMatch(name, names);
+        said.Error("tunable.unknown_name", {}, where + "there is no parameter \"" + name + "\"",
+                   close.empty() ? "taut.tunables(experiment) lists all names"
+                                 : "did you mean \"" + std::string(close) + "\"?");
+        continue;
+      }
+      const Tunable& tunable = tunables[static_cast<std::size_t>(found - names.begin())];
+      if (!std::isfinite(value) || value < tunable.min || value > tunable.max) {
+        said.Error("tunable.out_of_range", {},
+                   fmt::format("{}{} must be a number within {}..{} {}, got {}", where, name,
+                               tunable.min, tunable.max, tunable.unit, value));
+        continue;
+      }
+      study.parameters.push_back({name, tunable.unit, {name}, tunable.min, tunable.max, false});
+      values.push_back(value);
+    }
+    worlds.push_back(NominalWorld(study, values));
+    if (seed) worlds.back().seed = *seed;
+  }
+  return worlds;
+}
 
 void AddRollouts(py::module_& module) {
   module.def("tunables", &TunablesOf, py::arg("experiment"));

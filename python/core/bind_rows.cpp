@@ -15,7 +15,7 @@ struct RowsView {
   /// the batch alive.
   py::array View(const double* first, py::ssize_t count, bool written) const {
     const auto number = static_cast<py::ssize_t>(sizeof(double));
-    const auto [groups, lanes, stride] = worlds->Look([](Batch& b) {
+    const auto [groups, lanes, stride] = worlds->Look([](WorldBatch& b) {
       return std::array<py::ssize_t, 3>{b.groups(), b.lanes(), GroupStride(b)};
     });
     py::array_t<double> a({groups, count, lanes}, {stride * number, lanes * number, number}, first,
@@ -24,14 +24,15 @@ struct RowsView {
     return a;
   }
   py::array Cables(const double* ReadingRows::*field) const {
-    const double* const first = worlds->Look([&](Batch& b) {
+    const double* const first = worlds->Look([&](WorldBatch& b) {
       for (int g = b.groups(); g-- > 1;) b.Sense(g);
       return b.Cables(0).*field;
     });
     return View(first, worlds->cables(), false);
   }
   py::array Bodies(const double* BodyRows::*field) const {
-    const double* const first = worlds->Look([&](Batch& b) { return RowsOfBodies(b, 0).*field; });
+    const double* const first =
+        worlds->Look([&](WorldBatch& b) { return RowsOfBodies(b, 0).*field; });
     return View(first, 3 * worlds->bodies(), false);
   }
 };
@@ -77,7 +78,7 @@ void AddRows(py::module_& module, BatchType& batch) {
       "rest_length_target_m",
       [](const RowsView& rows) {
         const double* const first =
-            rows.worlds->Look([](Batch& b) { return b.Cables(0).rest_length_target_m; });
+            rows.worlds->Look([](WorldBatch& b) { return b.Cables(0).rest_length_target_m; });
         return rows.View(first, rows.worlds->cables(), true);
       },
       "(groups, cables, lanes) float64: rest-length targets of the actuators [m]. Writable; values "

@@ -72,7 +72,12 @@ void AddDescriptions(py::module_& module) {
       .def_readonly("name", &Experiment::name)
       .def_readonly("description", &Experiment::description)
       .def_property_readonly(
-          "robot", [](const Experiment& e) { return std::make_shared<Robot>(e.robot); },
+          "robot",
+          [](const Experiment& e) {
+            auto robot = std::make_shared<Robot>(e.robot);
+            robot->def.experiment_parts.clear();
+            return robot;
+          },
           "The robot in its place, with the experiment's terrain: a copy.")
       .def_readonly("step_s", &Experiment::step_s, "Time step [s].")
       .def_property(
@@ -95,6 +100,24 @@ void AddDescriptions(py::module_& module) {
       .def_property_readonly(
           "input_hash", [](const Experiment& e) { return e.input_hash; },
           "Hash of the bytes of all files and of the overrides.")
+      .def_property_readonly(
+          "controllers",
+          [](const Experiment& e) {
+            std::vector<std::shared_ptr<ControllerSpec>> all;
+            for (const ControllerSpec& one : e.controllers) {
+              all.push_back(std::make_shared<ControllerSpec>(one));
+            }
+            return all;
+          },
+          "List of the experiment's controllers: copies.")
+      .def(
+          "without_controllers",
+          [](const Experiment& e) {
+            auto bare = std::make_shared<Experiment>(e);
+            bare->controllers.clear();
+            return bare;
+          },
+          "Returns the experiment without its controllers, for others in their place.")
       .def(
           "to_yaml", [](const Experiment& e) { return ResolvedYaml(e); },
           "Returns the experiment and its robot as one YAML text with all numbers resolved, which "

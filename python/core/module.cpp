@@ -31,6 +31,8 @@ PYBIND11_MODULE(_core, module) {
   module.attr("version") = taut::kVersion;
   taut::python::AddDescriptions(module);
   taut::python::AddBatch(module);
+  taut::python::AddControllers(module);
+  taut::python::AddSimulation(module);
   taut::python::AddRuns(module);
   taut::python::AddEnvironments(module);
   taut::python::AddRollouts(module);
@@ -38,6 +40,9 @@ PYBIND11_MODULE(_core, module) {
   taut::python::AddFits(module);
   taut::python::AddAnalyses(module);
   taut::python::AddLinear(module);
+#ifdef TAUT_WITH_COMMAND
+  taut::python::AddCommand(module);
+#endif
   RefuseWhatIsNotInitialized(module);
   taut::python::EndOfProgram::Register();
 }

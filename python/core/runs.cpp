@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "python_control.h"
 #include "taut/run_folder.h"
 #include "taut/trace.h"
 #include "text.h"
@@ -40,8 +41,38 @@ struct Ran {
   RunSummary summary;
 };
 
-Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progress) {
+/// Recording as a plant.
+class Recorded {
+ public:
+  explicit Recorded(SharedTrace trace) : trace_(std::move(trace)) {}
+
+  /// Returns a plant of the experiment's robot; raises InputError if the trace has none of its
+  /// cables. The recording and the experiment must outlive it.
+  std::unique_ptr<Plant> PlantFor(const ExperimentSpec& experiment) const {
+    Diagnostics said;
+    auto plant = ReplayOf(*trace_, experiment.robot, said);
+    if (!plant) Refuse(said);
+    Tell(said);
+    return plant;
+  }
+
+ private:
+  SharedTrace trace_;
+};
+
+Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progress,
+        const py::object& controllers, const py::object& plant) {
   Threads(threads);
+  const auto callbacks = std::make_shared<Callbacks>();
+  bool in_python = false;
+  const Extensions extensions = ExtensionsOf(controllers, callbacks, in_python);
+  std::unique_ptr<Plant> own;
+  if (py::isinstance<Recorded>(plant)) {
+    own = plant.cast<Recorded&>().PlantFor(experiment);
+  } else if (!plant.is_none()) {
+    own = PythonPlant::Of(plant, experiment.robot, callbacks);
+    callbacks->Rethrow();
+  }
   Diagnostics said;
   Ran ran{std::make_shared<Trace>(), {}};
   std::optional<RunSummary> summary;
@@ -49,13 +80,16 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   WarnOfStep(experiment, said);
   if (CheckRecord(experiment, said)) {
     const Released others;
-    ran.trace->channels = RunChannels(experiment);
+    ran.trace->channels = RunChannels(experiment, own.get());
     ran.trace->metadata = RunMetadata(experiment);
     InMemory writer(*ran.trace);
     RunOptions options;
     options.threads = threads;
     options.traces = {&writer};
+    options.extensions = extensions;
+    options.plant = own.get();
     options.progress = [&](const RunProgress& now) {
+      if (callbacks->failed()) return false;
       const Acquired mine;
       if (SignalRaised()) return !(stopped = true);
       if (progress.is_none()) return true;
@@ -70,6 +104,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
     summary = RunExperiment(experiment, options, said);
   }
   if (stopped) throw py::error_already_set();
+  callbacks->Rethrow();
   if (!summary) Refuse(said);
   Tell(said);
   ran.summary = std::move(*summary);
@@ -142,6 +177,12 @@ void AddRuns(py::module_& module) {
            [](const Trace& t, const std::string& name) { return t.Find(name).has_value(); })
       .def("__len__", [](const Trace& t) { return t.time_s.size(); });
 
+  py::class_<Recorded>(module, "Replay",
+                       "Plant that replays a recording: `taut.run(experiment, plant=taut.Replay("
+                       "trace))` computes the commands that the experiment's controllers would "
+                       "have issued.")
+      .def(py::init<SharedTrace>(), py::arg("trace"));
+
   py::class_<Ran>(module, "Run", "Result of `taut.run`.")
       .def_readonly("trace", &Ran::trace)
       .def_property_readonly(
@@ -179,8 +220,13 @@ void AddRuns(py::module_& module) {
 
   module.def(
       "run", &Run, py::arg("experiment"), py::arg("threads") = 1, py::arg("progress") = py::none(),
+      py::arg("controllers") = py::none(), py::arg("plant") = py::none(),
       "Runs an experiment from start to end, bit-identically to `taut run`. `threads`: number of "
-      "threads. `progress(time_s, duration_s)` is called a few times per second. Returns a "
+      "threads. `progress(time_s, duration_s)` is called a few times per second. `controllers`: "
+      "list "
+      "of additional controllers, as for `taut.Simulation`. `plant`: object with `observe()` and "
+      "`advance(step_s, time_s, commands)`, or a `taut.Replay`, on which the controllers act "
+      "instead of a simulation. Returns a "
       "`taut.Run`. Ctrl-C ends the call. Raises `taut.InputError` if the experiment cannot start.");
   module.def("read_trace", &ReadRun, py::arg("path"),
              "Reads a recorded trace: .h5, .csv or .csv.gz, or the folder of a run. Returns a "

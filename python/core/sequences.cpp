@@ -1,4 +1,4 @@
-// `Batch.rollout`: sequences of rest-length targets in parallel worlds, for model predictive
+// `WorldBatch.rollout`: sequences of rest-length targets in parallel worlds, for model predictive
 // control.
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 namespace taut::python {
 namespace {
 
-void PutPositions(const Batch& batch, double* to, py::ssize_t world_stride) {
+void PutPositions(const WorldBatch& batch, double* to, py::ssize_t world_stride) {
   const int bodies = static_cast<int>(batch.model().def().bodies.size());
   for (int w = 0; w < batch.worlds(); ++w) {
     double* at = to + w * world_stride;
@@ -36,7 +36,7 @@ Rows<double> Rollout(Worlds& worlds, const py::object& targets_m, double step_s,
   const double* const from = targets.data();
   double* const to = positions.mutable_data();
   bool of_this_model = true, raised = false;
-  worlds.With([&](Batch& batch) {
+  worlds.With([&](WorldBatch& batch) {
     for (int w = 0; start && of_this_model && w < batch.worlds(); ++w) {
       of_this_model = batch.Restore(w, snapshot);
     }
@@ -67,7 +67,7 @@ bool Signals::Raised() {
   return SignalRaised();
 }
 
-bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const double> targets_m,
+bool StepUntilSignal(WorldBatch& batch, double step_s, int count, std::span<const double> targets_m,
                      Signals& signals) {
   constexpr std::chrono::milliseconds kShort{25}, kLong{100};
   constexpr int kFirst = 4096;  // steps of one world, which take some tens of milliseconds

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "gil.h"
-#include "taut/batch.h"
 #include "taut/diagnostics.h"
 #include "taut/matrix.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace taut::python {
 
@@ -26,6 +26,8 @@ namespace py = pybind11;
 /// Each function adds one file's part to `module`.
 void AddDescriptions(py::module_& module);
 void AddBatch(py::module_& module);
+void AddSimulation(py::module_& module);
+void AddControllers(py::module_& module);
 void AddRuns(py::module_& module);
 void AddEnvironments(py::module_& module);
 void AddRollouts(py::module_& module);
@@ -33,6 +35,7 @@ void AddStudies(py::module_& module);
 void AddFits(py::module_& module);
 void AddAnalyses(py::module_& module);
 void AddLinear(py::module_& module);
+void AddCommand(py::module_& module);  ///< In wheels.
 
 /// Returns the folder of the files that come with taut, if it exists.
 std::optional<std::string> DataFolder();
@@ -125,7 +128,7 @@ inline Rows<double> ArrayOf(const Matrix& m) {
   return Rows<double>({m.rows, m.columns}, m.values.data());
 }
 
-/// Returns a dict of arrays in the form of `Batch.contacts`.
+/// Returns a dict of arrays in the form of `WorldBatch.contacts`.
 py::dict ContactsOf(const std::vector<ContactState>& touching);
 
 /// Returns the names of the elements, in order.

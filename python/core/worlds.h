@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "owner.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "text.h"
 
 namespace taut::python {
@@ -30,29 +30,29 @@ class Worlds {
  public:
   Worlds(const ModelDef& def, int worlds, int threads, const std::optional<std::string>& simd) {
     CheckWorlds(worlds);
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = worlds;
     options.threads = Threads(threads);
     options.simd = SimdOf(simd);
     Diagnostics said;
-    std::unique_ptr<Batch> batch;
+    std::unique_ptr<WorldBatch> batch;
     {
       const Released others;
       if (auto model = Model::Compile(def, said)) {
-        batch = std::make_unique<Batch>(std::move(model), options);
+        batch = std::make_unique<WorldBatch>(std::move(model), options);
       }
     }
     if (!batch) Refuse(said);
     Tell(said);
-    owned_ = std::make_unique<Owner<Batch>>(std::move(batch), "this batch was");
+    owned_ = std::make_unique<Owner<WorldBatch>>(std::move(batch), "this batch was");
   }
 
-  /// Calls f(Batch&), which may change the batch; see `Owner`.
+  /// Calls f(WorldBatch&), which may change the batch; see `Owner`.
   template <class F>
   auto With(F f) {
     return owned_->With(f);
   }
-  /// Calls f(Batch&), which only reads.
+  /// Calls f(WorldBatch&), which only reads.
   template <class F>
   auto Look(F f) {
     return owned_->Look(f);
@@ -74,7 +74,7 @@ class Worlds {
     if (width > 1) shape.push_back(width);
     py::array_t<double> a = Output(out, shape);
     double* to = a.mutable_data();
-    Look([&](Batch& batch) {
+    Look([&](WorldBatch& batch) {
       for (int w = 0; w < batch.worlds(); ++w) {
         for (int i = 0; i < static_cast<int>(count); ++i, to += width) put(batch, w, i, to);
       }
@@ -83,7 +83,7 @@ class Worlds {
   }
 
  private:
-  std::unique_ptr<Owner<Batch>> owned_;
+  std::unique_ptr<Owner<WorldBatch>> owned_;
 };
 
 /// Runs Python's signal handlers, at most ten times per second.
@@ -97,11 +97,11 @@ class Signals {
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kBetween;
 };
 
-/// Steps the batch in pieces of a fraction of a second, bit-identically to `Batch::Step`, under
-/// `targets_m` (worlds, cables), or under the present targets if it is empty. Returns false if a
-/// signal handler raised between two pieces: the worlds are then some steps short of `count`. The
-/// GIL must not be held.
-bool StepUntilSignal(Batch& batch, double step_s, int count, std::span<const double> targets_m,
+/// Steps the batch in pieces of a fraction of a second, bit-identically to `WorldBatch::Step`,
+/// under `targets_m` (worlds, cables), or under the present targets if it is empty. Returns false
+/// if a signal handler raised between two pieces: the worlds are then some steps short of `count`.
+/// The GIL must not be held.
+bool StepUntilSignal(WorldBatch& batch, double step_s, int count, std::span<const double> targets_m,
                      Signals& signals);
 
 using BatchType = py::class_<Worlds, std::shared_ptr<Worlds>>;

@@ -13,27 +13,37 @@ import enum as _enum
 try:
     from taut import _core
 except ImportError as error:
-    raise ImportError(f"{error}\nIf taut is not built yet: script/build release taut_python") from None
-from taut import _results, _tables
-from taut._core import (Analysis, Batch, Experiment, Fitted, LinearSystem, Robot, Rows, Run, Study, Trace, analyze, fit,
-                        learn, linear_system, load, read_study, read_trace, run)
+    import pathlib as _pathlib
+    import sys as _sys
+
+    _built = sorted(file.name for file in _pathlib.Path(__file__).parent.glob("_core.*"))
+    _this = f"this is Python {_sys.version_info.major}.{_sys.version_info.minor} ({_sys.implementation.cache_tag})"
+    if _built and not any(f".{_sys.implementation.cache_tag}-" in name for name in _built):
+        raise ImportError(f"taut is built for another Python: {', '.join(_built)}; {_this}") from None
+    raise ImportError(f"{error}; {_this}\nIf taut is not built yet: script/build release taut_python") from None
+from taut import _results, _tables, control
+from taut._core import (Analysis, Batch, ControllerSpec, Experiment, Fitted, LinearSystem, Replay, Robot, Rows, Run, Study,
+                        Trace, analyze, fit, learn, linear_system, load, read_study, read_trace, run)
 from taut._data import data_path
 from taut._errors import Complaint, InputError, InputWarning
 from taut._results import rollout, tunables
+from taut._simulation import Simulation
 
 Status = _enum.IntFlag("Status", _core.status_bits)  # type: ignore[misc]
 Status.__doc__ = "Condition bits of a world; 0: no error."
 
 __version__ = _core.version
 __all__ = ["Analysis", "Batch", "Complaint", "Experiment", "Fitted", "InputError", "InputWarning", "LinearSystem",
-           "Robot", "Rows", "Run", "Status", "Study", "Trace", "analyze", "data_path", "fit", "learn", "linear_system",
-           "load", "read_study", "read_trace", "rollout", "run", "tunables"]
+           "ControllerSpec", "Replay", "Robot", "Rows", "Run", "Simulation", "Status", "Study", "Trace", "analyze",
+           "control", "data_path", "fit", "learn", "linear_system", "load", "read_study", "read_trace", "rollout", "run",
+           "tunables"]
 
 Trace.to_pandas = _tables.to_pandas
 Trace.to_xarray = _tables.to_xarray
 Study.to_pandas = _results.study_to_pandas
 Fitted.data = property(_results.fit_data)  # type: ignore[assignment]
 Fitted.to_pandas = _results.fit_to_pandas
-for _public in (Analysis, Batch, Experiment, Fitted, LinearSystem, Robot, Rows, Run, Study, Trace):
+for _public in (Analysis, Batch, ControllerSpec, Experiment, Fitted, LinearSystem, Replay, Robot, Rows, Run, Simulation,
+                Study, Trace):
     _public.__module__ = "taut"
 del _public

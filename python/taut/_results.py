@@ -1,11 +1,15 @@
 """Results of the C++ module as tables, dicts and structured arrays."""
 
+from __future__ import annotations
+
 import json
 import numbers
-from typing import Any, Callable, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
 
 import numpy as np
-import numpy.typing as npt
+
+if TYPE_CHECKING:  # numpy.typing is younger than numpy 1.19
+    import numpy.typing as npt
 
 from taut import _core
 from taut._core import Experiment, Fitted, Study
@@ -21,16 +25,16 @@ def _plain(thing):
     raise TypeError(f"objective: {thing!r}; expected a number, text, list or dict")
 
 
-def _world(number: int, world: World):
+def _world(number: int, world: World, what: str = "worlds"):
     if not isinstance(world, Mapping):
-        raise ValueError(f"worlds[{number}]: {world!r}; expected a dict of numbers by name, {{\"seed\": 3}}")
+        raise ValueError(f"{what}[{number}]: {world!r}; expected a dict of numbers by name, {{\"seed\": 3}}")
     seed, values = None, []
     for name, value in world.items():
         if not isinstance(value, numbers.Real) or isinstance(value, bool):
-            raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; expected a number")
+            raise ValueError(f"{what}[{number}][{name!r}]: {value!r}; expected a number")
         if name == "seed":
             if not isinstance(value, numbers.Integral) or not 0 <= int(value) < 2**64:
-                raise ValueError(f"worlds[{number}][{name!r}]: {value!r}; expected a whole number, 0 to 2**64 - 1")
+                raise ValueError(f"{what}[{number}][{name!r}]: {value!r}; expected a whole number, 0 to 2**64 - 1")
             seed = int(value)
         else:
             values.append((name, float(value)))

@@ -222,8 +222,8 @@ class Finder {
     constexpr double kDeeper_m = 1e-6;
     const auto overlaps = [](const ModelDef& def) {
       Diagnostics out;
-      const auto model = Model::Compile(def, out);
-      return model == nullptr ? std::vector<Overlap>() : Batch(model, {}).Overlaps(0);
+      const auto model = Model::CompileForExperiment(def, out);
+      return model == nullptr ? std::vector<Overlap>() : WorldBatch(model, {}).Overlaps(0);
     };
     const std::vector<Overlap> before = overlaps(def_);
     for (const Overlap& now : overlaps(ModelAt(def_, pose))) {

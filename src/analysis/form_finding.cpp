@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "math/cable_law.h"
 #include "math/vec.h"
 #include "taut/statics.h"
 
@@ -126,7 +127,7 @@ class FormSearch {
     for (std::size_t i = 0; i < there.cables.size(); ++i) {
       const CableDef& cable = there.cables[i];
       const double length = CableLength(cable), tension = density[i] * length;
-      pose.rest_lengths_m[i] = length - tension / cable.stiffness_n_per_m;
+      pose.rest_lengths_m[i] = length - math::CableLaw{cable.stiffness_n_per_m}.Stretch(tension);
       if (pose.rest_lengths_m[i] > 0) continue;
       out.Error("form_finding.cable_too_soft",
                 i < robot_.cable_sources.size() ? robot_.cable_sources[i] : SourceRef{},

@@ -7,6 +7,7 @@
 
 #include "analysis/force_balance.h"
 #include "analysis/quadratic_program.h"
+#include "math/cable_law.h"
 
 namespace taut {
 namespace {
@@ -127,7 +128,7 @@ class Holding {
       const CableDef& cable = def_.cables[i];
       const double tension = std::fmax(0.0, x[static_cast<Index>(i)]);
       const double length = balance_.cable_length_m[i];
-      const double rest = length - tension / cable.stiffness_n_per_m;
+      const double rest = length - math::CableLaw{cable.stiffness_n_per_m}.Stretch(tension);
       const double from = options_.calibration_rest_m.empty() ? cable.rest_length_m
                                                               : options_.calibration_rest_m[i];
       out.cable_tension_n.push_back(tension);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/assert.h"
+#include "math/cable_law.h"
 #include "math/vec.h"
 
 namespace taut::analysis {
@@ -183,7 +184,7 @@ Coordinate Structure::GapAt(std::size_t touch, const Placement& at) const {
 }
 
 double Structure::Tension(const Cable& cable, double length_m) const {
-  return std::fmax(0.0, cable.stiffness * (length_m - cable.rest_m));
+  return std::fmax(0.0, math::CableLaw{cable.stiffness}.Force(length_m - cable.rest_m));
 }
 
 double Structure::Energy(const Placement& at, Eigen::VectorXd& gradient,
@@ -195,8 +196,10 @@ double Structure::Energy(const Placement& at, Eigen::VectorXd& gradient,
     const Coordinate length = cable.path.At(at, hessian != nullptr);
     const double tension = Tension(cable, length.value);
     if (tension == 0) continue;
-    energy += 0.5 * tension * (length.value - cable.rest_m);
-    Add(length, tension, cable.stiffness, gradient, hessian);
+    const math::CableLaw law{cable.stiffness};
+    const double stretch = length.value - cable.rest_m;
+    energy += law.Energy(stretch);
+    Add(length, tension, law.Slope(stretch), gradient, hessian);
   }
   for (const PlacedJoint& joint : joints) {
     if (joint.def.stiffness == 0) continue;

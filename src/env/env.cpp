@@ -8,10 +8,11 @@
 #include <string>
 #include <utility>
 
+#include "base/hash.h"
 #include "base/thread_pool.h"
-#include "env/snapshot.h"
 #include "env/world_group.h"
 #include "plant/recorder.h"
+#include "plant/sealed.h"
 #include "sim/batch/check_index.h"
 #include "taut/study.h"
 
@@ -103,11 +104,11 @@ class LaneEnv final : public Env {
   }
 
   std::vector<std::uint8_t> Save(int world) override {
-    return env::Sealed(Kind(), GroupOf(__func__, world).Save(LaneOf(world)));
+    return Seal().Seal(GroupOf(__func__, world).Save(LaneOf(world)));
   }
   bool Restore(int world, std::span<const std::uint8_t> snapshot, Diagnostics& out) override {
     Group& group = GroupOf(__func__, world);
-    const auto saved = env::Unsealed(Kind(), snapshot, out);
+    const auto saved = Seal().Open(snapshot, out);
     if (!saved) return false;
     if (group.Restore(LaneOf(world), *saved)) return true;
     out.Error("snapshot.other_model", {},
@@ -154,10 +155,16 @@ class LaneEnv final : public Env {
     sim::CheckIndex(function, "world", world, worlds());
     return *groups_[static_cast<std::size_t>(world / plan_->lanes)];
   }
-  /// Returns a hash of the properties that compatible snapshots share.
-  std::uint64_t Kind() {
-    if (kind_ == 0) kind_ = env::KindOf(*plan_);
-    return kind_;
+  /// Returns the seal of snapshots, which are compatible if these properties are equal.
+  plant::Sealing Seal() {
+    if (kind_ == 0) {
+      base::Fnv1a kind;
+      kind.AddText(ResolvedYaml(plan_->experiment));
+      kind.AddText(plan_->options.randomise ? "randomised" : "as described");
+      kind.AddText(std::to_string(static_cast<int>(plan_->options.autoreset)));
+      kind_ = kind.value();
+    }
+    return {"environment", kind_, "experiment, randomization and autoreset must be the same"};
   }
   int LaneOf(int world) const noexcept { return world % plan_->lanes; }
   std::size_t width() const noexcept { return observation_channels_.size(); }
@@ -332,7 +339,7 @@ std::unique_ptr<Plan> PlanOf(const ExperimentSpec& experiment, const EnvOptions&
   plan->options.worlds = std::max(options.worlds, 1);
   plan->model = std::move(model);
   plan->simd = options.simd.value_or(plan->options.worlds == 1 ? Simd::kScalar : BestSimd());
-  plan->lanes = Batch(plan->model, {.worlds = 1, .simd = plan->simd}).lanes();
+  plan->lanes = WorldBatch(plan->model, {.worlds = 1, .simd = plan->simd}).lanes();
   plan->steps_per_period = env::Times(plan->spec.period_s, experiment.step_s);
   plan->episode_steps = env::Times(experiment.duration_s, plan->spec.period_s);
   const EnvironmentVariation& varied = plan->varied;
@@ -357,7 +364,7 @@ std::vector<ChannelInfo> ObservedChannels(const ExperimentSpec& experiment) {
 std::unique_ptr<Env> Env::Create(const ExperimentSpec& experiment, const EnvOptions& options,
                                  Diagnostics& out) {
   if (!CheckEnvironment(experiment, out)) return nullptr;
-  auto model = Model::Compile(experiment.robot.def, out);
+  auto model = Model::CompileForExperiment(experiment.robot.def, out);
   if (!model) return nullptr;
   const int threads = options.threads;
   auto made = std::make_unique<LaneEnv>(PlanOf(experiment, options, std::move(model)), threads);

@@ -13,7 +13,7 @@ namespace taut::env {
 class LaneBodies {
  public:
   /// `batch` must have one group and outlive this object.
-  explicit LaneBodies(Batch& batch)
+  explicit LaneBodies(WorldBatch& batch)
       : batch_(batch),
         kernel_(plant::LaneKernelOf(batch.lanes())),
         lanes_(static_cast<std::size_t>(batch.lanes())),
@@ -68,7 +68,7 @@ class LaneBodies {
     }
   }
 
-  Batch& batch_;
+  WorldBatch& batch_;
   const plant::LaneKernel& kernel_;
   std::size_t lanes_, count_;
   std::vector<double> rows_;

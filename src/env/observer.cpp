@@ -5,22 +5,18 @@
 #include <map>
 
 #include "plant/body_channels.h"
+#include "plant/cable_channels.h"
 
 namespace taut::env {
 namespace {
 
 /// Returns the rows of the cable quantities that traces contain for every cable.
 std::map<std::string, const double*> CableRowsOf(const plant::Loop& loop) {
-  const ReadingRows& now = loop.exact().cables;
-  const Commands& commands = loop.commands();
-  return {{"tension_n", now.tension_n},
-          {"elastic_n", now.elastic_n},
-          {"length_m", now.length_m},
-          {"rate_m_per_s", now.rate_m_per_s},
-          {"rest_length_m", now.rest_length_m},
-          {"target_rest_length_m", commands.rest_length_m},
-          {"setpoint_n", commands.set_point_n},
-          {"velocity_input_m_per_s", commands.velocity_input_m_per_s}};
+  std::map<std::string, const double*> rows;
+  for (const plant::CableChannel& channel : plant::kCableChannels) {
+    rows[channel.name] = channel.Row(loop.exact().cables, loop.commands());
+  }
+  return rows;
 }
 
 template <class Items>

@@ -15,7 +15,7 @@ struct Place {
   Aligned<char> scratch;              ///< For a step of any group's batch.
 };
 
-inline Aligned<char> ScratchFor(Batch& batch) {
+inline Aligned<char> ScratchFor(WorldBatch& batch) {
   const BatchInside::Impl& of = BatchInside::Of(batch);
   return AllocateAligned<char>(of.kernel->scratch_bytes(of.view));
 }
@@ -24,7 +24,8 @@ inline Aligned<char> ScratchFor(Batch& batch) {
 /// group's batch for its lifetime. The batch's memory remains for readers.
 class BorrowedScratch {
  public:
-  BorrowedScratch(Place& place, Batch& batch) : own_(BatchInside::Of(batch)), lent_(place.scratch) {
+  BorrowedScratch(Place& place, WorldBatch& batch)
+      : own_(BatchInside::Of(batch)), lent_(place.scratch) {
     TAUT_ASSERT(lent_ != nullptr);
     std::swap(own_.scratch[0], lent_);
   }

@@ -1,26 +1,19 @@
 #include "env/starts.h"
 
-#include "plant/find_start.h"
-
 namespace taut::env {
 
-Workplace::Workplace(const Plan& plan)
-    : alone_(plan.model, {}), fresh_(alone_.Save(plant::kTheWorld)), experiment_(plan.experiment) {}
+Workplace::Workplace(const Plan& plan) : finder_(plan.model), experiment_(plan.experiment) {}
 
 std::shared_ptr<const std::vector<std::uint8_t>> Workplace::Prepare(const Episode& episode,
                                                                     std::string& failed) {
   SetEpisode(episode, experiment_);
-  alone_.Restore(plant::kTheWorld, fresh_);
-  const Vec3& gravity = episode.gravity_m_per_s2;
-  alone_.SetParameter(plant::kTheWorld, Parameter::kGravityX, 0, gravity.x);
-  alone_.SetParameter(plant::kTheWorld, Parameter::kGravityY, 0, gravity.y);
-  alone_.SetParameter(plant::kTheWorld, Parameter::kGravityZ, 0, gravity.z);
-  Diagnostics complaints;
-  if (!plant::PrepareStart(experiment_, alone_, complaints)) {
-    failed = complaints.items().empty() ? "unknown reason" : complaints.items()[0].what;
+  Diagnostics found;
+  auto start = finder_.Find(experiment_, found, &episode.gravity_m_per_s2);
+  if (!start) {
+    failed = plant::ReasonOf(found);
     return nullptr;
   }
-  return std::make_shared<const std::vector<std::uint8_t>>(alone_.Save(plant::kTheWorld));
+  return std::make_shared<const std::vector<std::uint8_t>>(std::move(*start));
 }
 
 std::shared_ptr<const std::vector<std::uint8_t>> Starts::Of(const Episode& episode,

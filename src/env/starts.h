@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "env/episode.h"
+#include "plant/start_finder.h"
 
 namespace taut::env {
 
@@ -21,8 +22,7 @@ class Workplace {
                                                            std::string& failed);
 
  private:
-  Batch alone_;
-  std::vector<std::uint8_t> fresh_;
+  plant::StartFinder finder_;
   ExperimentSpec experiment_;
 };
 

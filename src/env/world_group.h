@@ -65,8 +65,8 @@ class Group {
   const EpisodeState& last(int lane) const { return worlds_[Index(lane)].last; }
   const Episode& episode(int lane) const { return worlds_[Index(lane)].episode; }
   double time_s(int lane) const { return loop_.time_s(lane); }
-  const Batch& batch() const noexcept { return batch_; }
-  Batch& batch() noexcept { return batch_; }
+  const WorldBatch& batch() const noexcept { return batch_; }
+  WorldBatch& batch() noexcept { return batch_; }
 
  private:
   struct Slot {
@@ -86,7 +86,7 @@ class Group {
 
   const Plan& plan_;
   int count_, width_;
-  Batch batch_;
+  WorldBatch batch_;
   std::unique_ptr<Plant> plant_;
   plant::Loop loop_;
   LaneBodies bodies_;

@@ -75,7 +75,7 @@ bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
   return true;
 }
 
-double GreatestSpeed(const Batch& batch) {
+double GreatestSpeed(const WorldBatch& batch) {
   double greatest = 0;
   const auto note = [&greatest](const Vec3& v) {
     greatest = std::max(greatest, std::sqrt(Dot(v, v)));
@@ -133,7 +133,7 @@ bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest
 }
 
 /// Sets rest lengths to the end values of their programs.
-void WindToTheEnd(const ExperimentSpec& e, Batch& batch) {
+void WindToTheEnd(const ExperimentSpec& e, WorldBatch& batch) {
   for (const ControllerSpec& c : e.controllers) {
     for (const PositionProgram& p : c.position) {
       if (p.rest_length_m.empty()) continue;
@@ -143,7 +143,7 @@ void WindToTheEnd(const ExperimentSpec& e, Batch& batch) {
   }
 }
 
-void Place(const Pose& pose, Batch& batch) {
+void Place(const Pose& pose, WorldBatch& batch) {
   for (std::size_t b = 0; b < pose.bodies.size(); ++b) {
     BodyState state = pose.bodies[b];
     state.velocity_m_per_s = state.angular_velocity_rad_per_s = {};
@@ -223,9 +223,9 @@ Rest FindRest(const ExperimentSpec& experiment, const LinearOptions& options, Di
     return rest;
   }
   if (!DescribeTick(e, rest)) return rest;
-  rest.model = Model::Compile(e.robot.def, out);
+  rest.model = Model::CompileForExperiment(e.robot.def, out);
   if (!rest.model) return rest;
-  rest.batch = std::make_unique<Batch>(rest.model, BatchOptions{});
+  rest.batch = std::make_unique<WorldBatch>(rest.model, WorldBatchOptions{});
   bool found = false;
   if (options.at) {
     plant::ApplyScales(e.scales, *rest.batch, 0);

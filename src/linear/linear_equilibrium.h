@@ -13,7 +13,7 @@ namespace taut::linear {
 /// Robot at rest at a tick of its controllers.
 struct Rest {
   std::shared_ptr<const Model> model;
-  std::unique_ptr<Batch> batch;  ///< Of one world; null if it does not come to rest.
+  std::unique_ptr<WorldBatch> batch;  ///< Of one world; null if it does not come to rest.
   std::vector<DrivenCable> driven;
   std::vector<double> step_s;  ///< Steps of a tick.
   std::string why, hint;

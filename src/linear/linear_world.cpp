@@ -8,8 +8,8 @@
 namespace taut::linear {
 namespace {
 
-BatchOptions OptionsOf(int worlds, Simd simd, double tolerance_m_per_s) {
-  BatchOptions options;
+WorldBatchOptions OptionsOf(int worlds, Simd simd, double tolerance_m_per_s) {
+  WorldBatchOptions options;
   options.worlds = worlds;
   options.simd = simd;
   options.tolerance_m_per_s = tolerance_m_per_s;
@@ -31,7 +31,7 @@ struct Kept {
 }  // namespace
 
 template <>
-World<Plain>::World(std::shared_ptr<const Model> model, const Batch& at, double tolerance)
+World<Plain>::World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance)
     : batch_(std::move(model), OptionsOf(1, Simd::kScalar, tolerance)),
       inside_(&BatchInside::Of(batch_)),
       snapshot_(at.Save(0)) {
@@ -40,7 +40,7 @@ World<Plain>::World(std::shared_ptr<const Model> model, const Batch& at, double 
 
 // The interleaved rows of two worlds are the rows of one world whose numbers are twice as wide.
 template <>
-World<Dual>::World(std::shared_ptr<const Model> model, const Batch& at, double tolerance)
+World<Dual>::World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance)
     : batch_(std::move(model), OptionsOf(2, Simd::kSse2, tolerance)),
       inside_(&BatchInside::Of(batch_)),
       snapshot_(at.Save(0)),

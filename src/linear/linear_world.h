@@ -19,7 +19,7 @@ template <class Num>
 class World {
  public:
   /// `at`: its world 0 is the start; a batch of the same model.
-  World(std::shared_ptr<const Model> model, const Batch& at, double tolerance_m_per_s = 1e-10);
+  World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance_m_per_s = 1e-10);
 
   /// Returns to the start, with zero derivatives.
   void Reset();
@@ -45,16 +45,16 @@ class World {
   std::uint32_t status_bits() const { return batch_.Status(0).bits; }
 
  private:
-  Batch batch_;
+  WorldBatch batch_;
   BatchInside::Impl* inside_;
   std::vector<std::uint8_t> snapshot_;
   bool good_ = true;
 };
 
 template <>
-World<Plain>::World(std::shared_ptr<const Model> model, const Batch& at, double tolerance);
+World<Plain>::World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance);
 template <>
-World<Dual>::World(std::shared_ptr<const Model> model, const Batch& at, double tolerance);
+World<Dual>::World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance);
 template <>
 void World<Plain>::Step(double step_s);
 template <>

@@ -67,7 +67,7 @@ std::vector<ChannelInfo> Channels(const ModelDef& def) {
   return channels;
 }
 
-std::vector<double> RowAt(Batch& batch, const Pose& pose, const Shape& shape) {
+std::vector<double> RowAt(WorldBatch& batch, const Pose& pose, const Shape& shape) {
   std::vector<double> row;
   for (std::size_t b = 0; b < pose.bodies.size(); ++b) {
     const BodyState& s = pose.bodies[b];
@@ -98,9 +98,9 @@ void Note(const std::vector<double>& row, std::size_t cables, RunSummary& summar
 bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
           const ShapeLook& look, RunSummary& summary, Diagnostics& out) {
   const ModelDef& def = e.robot.def;
-  const auto model = Model::Compile(def, out);
+  const auto model = Model::CompileForExperiment(def, out);
   if (!model) return false;
-  Batch batch(model, {});
+  WorldBatch batch(model, {});
   TraceMetadata metadata = RunMetadata(e);
   metadata.emplace_back(kRunIdKey, folder.id());
   metadata.emplace_back("shape", shape.name);

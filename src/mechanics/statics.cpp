@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "math/cable_law.h"
 #include "math/described_path.h"
 
 namespace taut {
@@ -10,7 +11,8 @@ double WheelStartAngle(const CableDef& cable, std::size_t i) { return math::Star
 double CableLength(const CableDef& cable) { return math::DescribedPath(cable).length_m(); }
 
 double CableTension(const CableDef& cable) {
-  return std::fmax(0.0, cable.stiffness_n_per_m * (CableLength(cable) - cable.rest_length_m));
+  return std::fmax(
+      0.0, math::CableLaw{cable.stiffness_n_per_m}.Force(CableLength(cable) - cable.rest_length_m));
 }
 
 std::vector<BodyLoad> StartLoads(const ModelDef& def) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plant/lane_state.h"
+#include "taut/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {

@@ -2,8 +2,8 @@
 
 #include "plant/controller_kinds.h"
 #include "plant/lane_kernel.h"
-#include "plant/lane_state.h"
 #include "plant/other_lanes.h"
+#include "taut/lane_state.h"
 
 namespace taut::plant {
 namespace {
@@ -50,8 +50,10 @@ class ImpedanceController final : public Controller {
   }
 
   void Serialize(LaneState& state) override {
-    for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
-      state.Row(*memory);
+    for (std::vector<double>* row :
+         {&error_before_, &integral_, &length_before_m_, &tension_offset_n_, &length_offset_m_,
+          &position_gain_, &velocity_gain_, &velocity_offset_}) {
+      state.Row(*row);
     }
   }
 
@@ -63,10 +65,10 @@ class ImpedanceController final : public Controller {
     if (tick.due != first) Act(tick.due & ~first, false, seen, commands);
   }
 
-  std::optional<ImpedanceGains> Gains(int cable) const override {
+  std::optional<ImpedanceGains> Gains(int lane, int cable) const override {
     const std::size_t i = PlaceOf(cable);
     if (i == cables_.size()) return std::nullopt;
-    const std::size_t at = i * static_cast<std::size_t>(lanes_);
+    const std::size_t at = At(i, lane);
     return ImpedanceGains{cable,
                           tension_offset_n_[at],
                           length_offset_m_[at],
@@ -74,10 +76,10 @@ class ImpedanceController final : public Controller {
                           velocity_gain_[at],
                           velocity_offset_[at]};
   }
-  bool SetGains(const ImpedanceGains& gains) override {
+  bool SetGains(int lane, const ImpedanceGains& gains) override {
     const std::size_t i = PlaceOf(gains.cable);
     if (i == cables_.size()) return false;
-    Set(i, 0, gains);
+    Set(i, lane, gains);
     return true;
   }
 
@@ -87,8 +89,12 @@ class ImpedanceController final : public Controller {
                                     cables_.begin());
   }
 
+  std::size_t At(std::size_t i, int lane) const {
+    return i * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
+  }
+
   void Set(std::size_t i, int lane, const ImpedanceGains& gains) {
-    const std::size_t at = i * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
+    const std::size_t at = At(i, lane);
     tension_offset_n_[at] = gains.tension_offset_n;
     length_offset_m_[at] = gains.length_offset_m;
     position_gain_[at] = gains.position_gain_n_per_m;

@@ -1,8 +1,9 @@
 #include <algorithm>
+#include <cstdint>
 
 #include "plant/controller_kinds.h"
-#include "plant/lane_state.h"
 #include "taut/control/position.h"
+#include "taut/lane_state.h"
 
 namespace taut::plant {
 namespace {
@@ -33,6 +34,8 @@ class PositionController final : public Controller {
     Lane& own = lanes_[static_cast<std::size_t>(lane)];
     own.programs.clear();
     own.start_m.assign(cables_.size(), 0.0);
+    own.held_m.assign(cables_.size(), 0.0);
+    own.is_held.assign(cables_.size(), 0);
     for (const PositionProgram& program : world.controllers[index_].position) {
       std::vector<control::ProgramPoint<double>> points;
       for (const auto& [time_s, length_m] : program.rest_length_m) {
@@ -48,27 +51,30 @@ class PositionController final : public Controller {
     }
   }
 
-  /// Serializes the lengths that cables without a program had at their first tick. A program that
-  /// `Hold` has replaced stays replaced.
   void Serialize(LaneState& state) override {
-    for (double& length_m : lanes_[static_cast<std::size_t>(state.lane())].start_m) {
-      state.Value(length_m);
+    Lane& own = lanes_[static_cast<std::size_t>(state.lane())];
+    for (std::vector<double>* row : {&own.start_m, &own.held_m}) {
+      for (double& length_m : *row) state.Value(length_m);
     }
+    for (std::uint8_t& held : own.is_held) state.Value(held);
   }
 
-  bool Hold(int cable, double rest_length_m) override {
-    Lane& own = lanes_[0];
+  bool Hold(int lane, int cable, double rest_length_m) override {
+    Lane& own = lanes_[static_cast<std::size_t>(lane)];
     const auto found = std::find(cables_.begin(), cables_.end(), cable);
+    if (found == cables_.end()) return false;
     const auto i = static_cast<std::size_t>(found - cables_.begin());
-    if (i < own.programs.size()) own.programs[i] = {{0.0, rest_length_m}};
-    if (i >= own.programs.size() && i < cables_.size()) own.start_m[i] = rest_length_m;
-    return i < cables_.size();
+    own.held_m[i] = rest_length_m;
+    own.is_held[i] = 1;
+    return true;
   }
 
  private:
   struct Lane {
     std::vector<std::vector<control::ProgramPoint<double>>> programs;  ///< Of the first cables.
-    std::vector<double> start_m;                                       ///< Of the others.
+    std::vector<double> start_m;  ///< Of the others: rest length at their first tick.
+    std::vector<double> held_m;   ///< Set by `Hold`; replaces either.
+    std::vector<std::uint8_t> is_held;
   };
 
   void ActIn(std::size_t j, bool first, const Observation& seen, Commands& commands) {
@@ -82,6 +88,7 @@ class PositionController final : public Controller {
       } else if (first) {
         length_m = own.start_m[i] = commands.rest_length_m[at];
       }
+      if (own.is_held[i] != 0) length_m = own.held_m[i];
       if (moved_) length_m = control::Max(length_m + commands.signal[at], 0.0);
       commands.rest_length_m[at] = length_m;
     }

@@ -16,11 +16,11 @@
 namespace taut::plant {
 namespace {
 
-bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
+bool FindStart(const ExperimentSpec& experiment, WorldBatch& batch, Diagnostics& out,
                const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
   if (experiment.start == StartKind::kAsDescribed) return true;
   const std::string hint = "a mechanism or a slope may have no equilibrium; try as_described";
-  const auto settle = [&](Batch& which) {
+  const auto settle = [&](WorldBatch& which) {
     Unsettled before;
     if (settled) before = NoteUnsettled(which, experiment.step_s);
     if (!Settle(which, kTheWorld, experiment.step_s, go_on)) return false;
@@ -39,9 +39,9 @@ bool FindStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
   floating.terrain_boxes.clear();
   floating.height_fields.clear();
   floating.terrain_meshes.clear();
-  const auto model = Model::Compile(floating, out);
+  const auto model = Model::CompileForExperiment(floating, out);
   if (!model) return false;
-  Batch alone(model, {});
+  WorldBatch alone(model, {});
   ApplyScales(experiment.scales, alone, kTheWorld);
   if (!settle(alone)) {
     out.Error("start.not_settled", {}, "the robot does not settle to an equilibrium of its cables",
@@ -141,7 +141,7 @@ std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& mode
 }
 
 /// Moves all bodies that are not fixed.
-void MoveBy(const Vec3& by, const ModelDef& def, Batch& batch) {
+void MoveBy(const Vec3& by, const ModelDef& def, WorldBatch& batch) {
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     if (def.bodies[b].fixed) continue;
     BodyState state = batch.Body(kTheWorld, static_cast<int>(b));
@@ -151,7 +151,7 @@ void MoveBy(const Vec3& by, const ModelDef& def, Batch& batch) {
 }
 
 /// Displaces bodies at random, upwards rather than into the ground; then rotates the whole robot.
-void Disturb(const ExperimentSpec& experiment, Batch& batch) {
+void Disturb(const ExperimentSpec& experiment, WorldBatch& batch) {
   const StartNoise& noise = experiment.start_noise;
   const ModelDef& def = experiment.robot.def;
   const std::vector<int> together = JointedTo(def);
@@ -188,7 +188,7 @@ void Disturb(const ExperimentSpec& experiment, Batch& batch) {
 
 }  // namespace
 
-void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world) {
+void ApplyScales(const std::vector<ScaleSpec>& scales, WorldBatch& batch, int world) {
   const ModelDef& def = batch.model().def();
   const auto apply = [&](Parameter parameter, const std::vector<int>& chosen, std::size_t count,
                          double factor) {
@@ -218,7 +218,7 @@ void ApplyScales(const std::vector<ScaleSpec>& scales, Batch& batch, int world) 
   }
 }
 
-bool PrepareStart(const ExperimentSpec& experiment, Batch& batch, Diagnostics& out,
+bool PrepareStart(const ExperimentSpec& experiment, WorldBatch& batch, Diagnostics& out,
                   const std::function<bool()>& go_on, std::optional<SettledStart>* settled) {
   ApplyScales(experiment.scales, batch, kTheWorld);
   const RobotSpec& robot = experiment.robot;
@@ -245,9 +245,9 @@ namespace taut {
 
 std::optional<SettledStart> FindSettledStart(const ExperimentSpec& experiment, Diagnostics& out,
                                              const std::function<bool()>& go_on) {
-  const auto model = Model::Compile(experiment.robot.def, out);
+  const auto model = Model::CompileForExperiment(experiment.robot.def, out);
   if (!model) return std::nullopt;
-  Batch batch(model, {});
+  WorldBatch batch(model, {});
   std::optional<SettledStart> settled;
   if (!plant::PrepareStart(experiment, batch, out, go_on, &settled)) return std::nullopt;
   if (settled) WarnOfStart(settled->change, out);

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "plant/lane_state.h"
 #include "taut/control/clock.h"
+#include "taut/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {

@@ -35,7 +35,7 @@ TAUT_INLINE simd::Q4<W> Back(const simd::Q4<W>& q) noexcept {
 }
 
 /// Writes 13 rows per body (position, orientation, velocity, angular velocity), bit-identical to
-/// `Batch::Body` for bodies without motions.
+/// `WorldBatch::Body` for bodies without motions.
 template <class W>
 void SeeBodies(const BodyRows& rows, double* out) {
   for (int b = 0; b < rows.count; ++b) {

@@ -10,7 +10,7 @@
 namespace taut::plant {
 
 Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes,
-           Plant& plant, const Extensions& extensions)
+           Plant& plant, const Extensions& extensions, int first_world)
     : experiment_(experiment),
       plant_(plant),
       many_(dynamic_cast<ManySteps*>(&plant)),
@@ -22,8 +22,9 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   TAUT_ASSERT(0 < count_ && count_ <= plant_lanes_);
   std::vector<const RolloutWorld*> all(lanes.begin(), lanes.end());
   all.resize(step_s_.size(), lanes[0]);
-  const ControlSetup setup{experiment, all};
+  const ControlSetup setup{experiment, all, first_world, count_};
   for (int j = 0; j < count_; ++j) timelines_.emplace_back(experiment);
+  has_forces_ = !timelines_[0].idle();
   const auto add = [&](std::unique_ptr<SensorModel> model) {
     const LaneClock clock(model->clock(), plant_lanes_);
     sensors_.push_back({std::move(model), clock});
@@ -51,9 +52,9 @@ Lanes Loop::AtBoundary() const {
   return at_boundary;
 }
 
-void Loop::Sense() {
+void Loop::Sense(Lanes among) {
   if (sensors_.empty()) return;
-  const Lanes at_boundary = AtBoundary();
+  const Lanes at_boundary = AtBoundary() & among;
   if (at_boundary == 0) return;
   const Observation* seen = &plant_.Observe();
   const double* const time_s = seen->time_s;
@@ -67,10 +68,10 @@ void Loop::Sense() {
   }
 }
 
-void Loop::Prepare() {
-  const Lanes at_boundary = AtBoundary();
+void Loop::Prepare(Lanes among) {
+  const Lanes at_boundary = AtBoundary() & among;
   if (at_boundary == 0) return;
-  Sense();
+  Sense(among);
   const double* const time_s = plant_.Observe().time_s;
   for (Law& law : laws_) {
     const Tick tick = law.clock.Due(time_s, at_boundary);
@@ -83,6 +84,10 @@ void Loop::Prepare() {
       schedules_[j].Aim(NextBoundary(static_cast<int>(j)));
     }
   }
+}
+
+void Loop::SplitSchedules() {
+  if (plant_lanes_ > 1) schedules_.resize(step_s_.size(), schedules_[0]);
 }
 
 void Loop::AdvanceSchedules(int count) {
@@ -100,17 +105,27 @@ void Loop::AdvanceSchedules(int count) {
   }
 }
 
-void Loop::Step() {
-  Prepare();
-  if (!timelines_[0].idle())
-    Push();  // all lanes have the same events; hand forces act in lane 0 only
-  AdvanceSchedules(1);
+void Loop::Step(Lanes active) {
+  const bool some_wait = active != AllLanes(plant_lanes_);
+  if (some_wait) SplitSchedules();
+  Prepare(active);
+  if (has_forces_) Push(active);
+  if (some_wait) {
+    for (int j = 0; j < plant_lanes_; ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      if (Has(active, j)) schedules_[i].Advance();
+      step_s_[i] = Has(active, j) ? schedules_[i].step_s() : 0;
+      to_s_[i] = schedules_[i].time_s();
+    }
+  } else {
+    AdvanceSchedules(1);
+  }
   plant_.Advance(step_s_.data(), to_s_.data());
 }
 
 int Loop::Steps(int most) {
   Prepare();
-  std::int64_t count = many_ != nullptr && timelines_[0].idle() ? most : 1;
+  std::int64_t count = many_ != nullptr && !has_forces_ ? most : 1;
   for (const Schedule& schedule : schedules_) {
     const bool alike = schedule.step_s() == schedules_[0].step_s();
     count = alike ? std::min(count, schedule.left()) : 1;
@@ -124,9 +139,10 @@ int Loop::Steps(int most) {
   return static_cast<int>(count);
 }
 
-void Loop::Push() {
+void Loop::Push(Lanes active) {
   World* const world = plant_.world();
   for (int j = 0; world != nullptr && j < count_; ++j) {
+    if (!Has(active, j)) continue;
     const Schedule& schedule = ScheduleOf(j);
     timelines_[static_cast<std::size_t>(j)].Apply(*world, j, schedule.time_s(), schedule.step_s());
   }
@@ -134,8 +150,8 @@ void Loop::Push() {
 
 void Loop::Restart(int lane, const RolloutWorld& world) {
   const auto j = static_cast<std::size_t>(lane);
-  if (plant_lanes_ > 1) schedules_.resize(step_s_.size(), schedules_[0]);
-  schedules_[schedules_.size() == 1 ? 0 : j] = Schedule(experiment_.step_s, experiment_.duration_s);
+  SplitSchedules();
+  schedules_[j] = Schedule(experiment_.step_s, experiment_.duration_s);
   timelines_[j].Restart();
   for (Sensor& sensor : sensors_) {
     sensor.model->Restart(lane, world);
@@ -176,24 +192,29 @@ double Loop::NextBoundary(int lane) const {
   return next;
 }
 
-std::optional<ImpedanceGains> Loop::Gains(int cable) const {
+std::optional<ImpedanceGains> Loop::Gains(int lane, int cable) const {
   for (const Law& law : laws_) {
-    if (auto gains = law.controller->Gains(cable)) return gains;
+    if (auto gains = law.controller->Gains(lane, cable)) return gains;
   }
   return std::nullopt;
 }
 
-bool Loop::SetGains(const ImpedanceGains& gains) {
+bool Loop::SetGains(int lane, const ImpedanceGains& gains) {
   return std::any_of(laws_.begin(), laws_.end(),
-                     [&](Law& law) { return law.controller->SetGains(gains); });
+                     [&](Law& law) { return law.controller->SetGains(lane, gains); });
 }
 
-void Loop::SetRestLength(int cable, double rest_length_m) {
+void Loop::SetRestLength(int lane, int cable, double rest_length_m) {
   for (Law& law : laws_) {
-    if (law.controller->Hold(cable, rest_length_m)) return;
+    if (law.controller->Hold(lane, cable, rest_length_m)) return;
   }
-  plant_.commands().rest_length_m[static_cast<std::ptrdiff_t>(cable) * plant_lanes_] =
+  plant_.commands().rest_length_m[static_cast<std::ptrdiff_t>(cable) * plant_lanes_ + lane] =
       rest_length_m;
+}
+
+void Loop::SetHandForces(int lane, std::vector<ExternalForce> forces) {
+  has_forces_ = has_forces_ || !forces.empty();
+  timelines_[static_cast<std::size_t>(lane)].SetHandForces(std::move(forces));
 }
 
 }  // namespace taut::plant

@@ -20,23 +20,26 @@ class Loop {
   /// `lanes`: one variant of the experiment per lane. Further lanes of the plant run as the first
   /// does; their results are not used. The plant must be at the experiment's start. Experiment and
   /// plant must outlive the loop.
+  /// `first_world`: number of the first lane's world, for custom controllers.
   Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const> lanes, Plant& plant,
-       const Extensions& extensions);
+       const Extensions& extensions, int first_world = 0);
   /// Creates the loop of one lane under the unchanged experiment.
   Loop(const ExperimentSpec& experiment, Plant& plant, const Extensions& extensions = {})
       : Loop(experiment, plant, extensions, WorldOf(experiment)) {}
 
   /// Samples the sensors that are due, before their controllers act, so that observations are
   /// current.
-  void Sense();
+  void Sense() { Sense(AllLanes(plant_lanes_)); }
 
   /// Runs the sensors and controllers that are due. `Step` calls it too; call it before recording a
   /// row at the start, which contains their first commands.
-  void Prepare();
+  void Prepare() { Prepare(AllLanes(plant_lanes_)); }
 
   /// Steps each lane once. Steps end at the ticks of sensors and controllers, at the corners of the
   /// timeline and at the experiment's end; stepping continues after the end.
-  void Step();
+  void Step() { Step(AllLanes(plant_lanes_)); }
+  /// Steps the lanes in `active`; the others wait.
+  void Step(Lanes active);
 
   /// Takes one step, or up to `most` steps where no tick and no event lies between them. Returns
   /// their number.
@@ -66,16 +69,17 @@ class Loop {
     return sensors_.empty() ? exact() : sensors_.back().model->seen();
   }
   const Commands& commands() const { return plant_.commands(); }
-  Timeline& timeline(int lane = 0) { return timelines_[static_cast<std::size_t>(lane)]; }
   const Timeline& timeline(int lane = 0) const {
     return timelines_[static_cast<std::size_t>(lane)];
   }
 
-  // --- for a person, in lane 0 -------------------------------------------------------------------
-  std::optional<ImpedanceGains> Gains(int cable) const;
-  bool SetGains(const ImpedanceGains& gains);
+  // --- interactive changes -----------------------------------------------------------------------
+  std::optional<ImpedanceGains> Gains(int lane, int cable) const;
+  bool SetGains(int lane, const ImpedanceGains& gains);
   /// Commands a cable's rest length; it holds until a controller that drives the cable changes it.
-  void SetRestLength(int cable, double rest_length_m);
+  void SetRestLength(int lane, int cable, double rest_length_m);
+  /// Sets forces by a person's hand or a program, in addition to the experiment's events.
+  void SetHandForces(int lane, std::vector<ExternalForce> forces);
 
  private:
   Loop(const ExperimentSpec& experiment, Plant& plant, const Extensions& extensions,
@@ -95,8 +99,12 @@ class Loop {
     return schedules_[schedules_.size() == 1 ? 0 : static_cast<std::size_t>(lane)];
   }
   Lanes AtBoundary() const;
+  void Sense(Lanes among);
+  void Prepare(Lanes among);
+  /// Gives each lane a schedule of its own.
+  void SplitSchedules();
   void AdvanceSchedules(int count);
-  void Push();
+  void Push(Lanes active);
   double NextBoundary(int lane) const;
 
   const ExperimentSpec& experiment_;
@@ -104,6 +112,7 @@ class Loop {
   ManySteps* many_;  ///< The plant; null if it takes one step at a time.
   int count_;        ///< Lanes with results.
   int plant_lanes_;
+  bool has_forces_ = false;  ///< Whether any lane has, or had, a push, a drag or a hand force.
   std::vector<Schedule> schedules_;  ///< One for all lanes; one per lane after the first restart.
   std::vector<Timeline> timelines_;
   std::vector<Sensor> sensors_;  ///< Each receives the output of the previous one.

@@ -58,7 +58,7 @@ SourceRef PlaceOf(const RobotSpec& robot, const Overlap& overlap) {
 
 }  // namespace
 
-bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, bool warn,
+bool CheckOverlaps(const RobotSpec& robot, const WorldBatch& batch, bool terrain, bool warn,
                    Diagnostics& out) {
   bool good = true;
   for (const Overlap& overlap : batch.Overlaps(kTheWorld)) {
@@ -90,9 +90,9 @@ bool CheckOverlaps(const RobotSpec& robot, const Batch& batch, bool terrain, boo
 }  // namespace plant
 
 bool CheckStart(const RobotSpec& robot, StartKind start, Diagnostics& out) {
-  const auto model = Model::Compile(robot.def, out);
+  const auto model = Model::CompileForExperiment(robot.def, out);
   if (!model) return false;
-  return plant::CheckOverlaps(robot, Batch(model, {}), start != StartKind::kSettledFloating,
+  return plant::CheckOverlaps(robot, WorldBatch(model, {}), start != StartKind::kSettledFloating,
                               start == StartKind::kAsDescribed, out);
 }
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/assert.h"
-#include "plant/lane_state.h"
 #include "taut/gait.h"
+#include "taut/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {

@@ -71,7 +71,7 @@ RobotSpec RobotAt(const RobotSpec& robot, const Pose& pose) {
 
 namespace plant {
 
-Pose PoseOf(const Batch& batch) {
+Pose PoseOf(const WorldBatch& batch) {
   const ModelDef& def = batch.model().def();
   Pose pose;
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {

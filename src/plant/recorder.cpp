@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/pattern.h"
 #include "math/vec.h"
 #include "plant/body_channels.h"
+#include "plant/cable_channels.h"
 #include "plant/center_of_mass.h"
 #include "plant/channels.h"
 #include "plant/set_points.h"
@@ -31,27 +33,20 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
   const bool is_world = plant == nullptr || plant->world() != nullptr;
   const std::vector<int> with_set_point = CablesWithSetPoints(experiment.controllers);
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    std::vector<ChannelInfo> names = {{"tension_n", "N"},     {"elastic_n", "N"},
-                                      {"length_m", "m"},      {"rate_m_per_s", "m/s"},
-                                      {"rest_length_m", "m"}, {"target_rest_length_m", "m"}};
-    if (std::binary_search(with_set_point.begin(), with_set_point.end(), static_cast<int>(c))) {
-      names.push_back({"setpoint_n", "N"});
-      names.push_back({"velocity_input_m_per_s", "m/s"});
+    const bool has_set_point =
+        std::binary_search(with_set_point.begin(), with_set_point.end(), static_cast<int>(c));
+    std::vector<ChannelInfo> names;
+    std::vector<const CableChannel*> recorded;
+    for (const CableChannel& channel : kCableChannels) {
+      if (channel.with_set_point && !has_set_point) continue;
+      names.push_back({channel.name, channel.unit});
+      recorded.push_back(&channel);
     }
     Add("cable/" + def.cables[c].name + "/", names,
-        [c, count = names.size()](const RecordSource& s, double* out) {
-          const CableState r = s.exact->Cable(static_cast<int>(c), s.lane);
-          const std::size_t at =
-              c * static_cast<std::size_t>(s.commands->lanes) + static_cast<std::size_t>(s.lane);
-          const double values[] = {r.tension_n,
-                                   r.elastic_n,
-                                   r.length_m,
-                                   r.rate_m_per_s,
-                                   r.rest_length_m,
-                                   s.commands->rest_length_m[at],
-                                   s.commands->set_point_n[at],
-                                   s.commands->velocity_input_m_per_s[at]};
-          std::copy_n(values, count, out);
+        [c, recorded = std::move(recorded)](const RecordSource& s, double* out) {
+          for (const CableChannel* channel : recorded) {
+            *out++ = channel->Value(s.exact->cables, *s.commands, c, s.lane);
+          }
         });
   }
   for (std::size_t c = 0; is_world && c < def.cables.size(); ++c) {
@@ -87,13 +82,16 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
 }
 
 void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, int cable) {
-  Add(prefix,
-      {{"tension_n", "N"}, {"length_m", "m"}, {"rate_m_per_s", "m/s"}, {"rest_length_m", "m"}},
-      [cable](const RecordSource& s, double* out) {
-        const CableState r = s.seen->Cable(cable, s.lane);
-        const double values[] = {r.tension_n, r.length_m, r.rate_m_per_s, r.rest_length_m};
-        std::copy(std::begin(values), std::end(values), out);
-      });
+  std::vector<ChannelInfo> sensed;
+  for (const CableChannel& channel : kCableChannels) {
+    if (channel.sensed) sensed.push_back({channel.name, channel.unit});
+  }
+  Add(prefix, sensed, [cable](const RecordSource& s, double* out) {
+    for (const CableChannel& channel : kCableChannels) {
+      if (!channel.sensed) continue;
+      *out++ = channel.Value(s.seen->cables, *s.commands, static_cast<std::size_t>(cable), s.lane);
+    }
+  });
   // Record integer counts where the values are quantized.
   if (sensors.load_cell && sensors.load_cell->counts) {
     const LoadCellCounts& counts = *sensors.load_cell->counts;

@@ -4,6 +4,7 @@
 
 #include "math/vec.h"
 #include "plant/body_channels.h"
+#include "plant/cable_channels.h"
 #include "plant/command_rows.h"
 #include "plant/schedule.h"
 #include "taut/plant.h"
@@ -15,6 +16,15 @@ using plant::kTimeToleranceS;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
+/// Channels that are readings; the commanded rest length is a row behind the stiffness.
+constexpr std::size_t kReadings = [] {
+  std::size_t count = 0;
+  for (const plant::CableChannel& channel : plant::kCableChannels) {
+    count += channel.reading != nullptr ? 1 : 0;
+  }
+  return count;
+}();
+
 constexpr std::size_t kBodyNumbers = std::tuple_size_v<plant::BodyNumbers>;
 
 /// Plant that replays a recorded trace: readings come from the trace, commands have no effect.
@@ -24,22 +34,26 @@ class ReplayPlant final : public Plant, public Bodies {
       : trace_(trace),
         robot_(robot),
         cables_(robot.def.cables.size()),
-        rows_(7 * cables_),
-        columns_(5 * cables_, kNone),
+        rows_((kReadings + 2) * cables_),
+        columns_(kReadings * cables_, kNone),
         faults_(cables_),
         command_rows_(cables_, 1),
-        commands_(command_rows_.With(Row(6))) {
+        commands_(command_rows_.With(Row(kReadings + 1))) {
     seen_.time_s = &time_s_;
-    seen_.cables = {Row(0), Row(1), Row(2), Row(3), Row(4), Row(5)};
     seen_.faults = faults_.data();
-    for (std::size_t c = 0; c < cables_; ++c) {
-      const CableDef& cable = robot.def.cables[c];
-      Row(5)[c] = cable.stiffness_n_per_m;
-      std::size_t i = 0;
-      for (const char* name :
-           {"rest_length_m", "length_m", "rate_m_per_s", "tension_n", "elastic_n"}) {
-        columns_[c * 5 + i++] = ColumnOf("cable/" + cable.name + "/" + name);
+    seen_.cables.stiffness_n_per_m = Row(kReadings);
+    std::size_t i = 0;
+    for (const plant::CableChannel& channel : plant::kCableChannels) {
+      if (channel.reading == nullptr) continue;
+      seen_.cables.*channel.reading = Row(i);
+      for (std::size_t c = 0; c < cables_; ++c) {
+        columns_[c * kReadings + i] =
+            ColumnOf("cable/" + robot.def.cables[c].name + "/" + channel.name);
       }
+      ++i;
+    }
+    for (std::size_t c = 0; c < cables_; ++c) {
+      Row(kReadings)[c] = robot.def.cables[c].stiffness_n_per_m;
     }
     bool known = !robot.def.bodies.empty();
     for (const BodyDef& body : robot.def.bodies) {
@@ -70,7 +84,9 @@ class ReplayPlant final : public Plant, public Bodies {
     time_s_ = 0;
     row_ = 0;
     command_rows_.Restart(0);
-    for (std::size_t c = 0; c < cables_; ++c) Row(6)[c] = robot_.def.cables[c].rest_length_m;
+    for (std::size_t c = 0; c < cables_; ++c) {
+      Row(kReadings + 1)[c] = robot_.def.cables[c].rest_length_m;
+    }
     Read();
   }
 
@@ -113,8 +129,8 @@ class ReplayPlant final : public Plant, public Bodies {
   void Read() {
     std::fill(faults_.begin(), faults_.end(), kFaultNone);
     for (std::size_t c = 0; c < cables_; ++c) {
-      for (std::size_t i = 0; i < 5; ++i) {
-        const std::size_t column = columns_[c * 5 + i];
+      for (std::size_t i = 0; i < kReadings; ++i) {
+        const std::size_t column = columns_[c * kReadings + i];
         const double x = column == kNone ? std::numeric_limits<double>::quiet_NaN()
                                          : trace_.values[column][row_];
         if (std::isfinite(x)) {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "plant/lane_state.h"
+#include "taut/lane_state.h"
 
 namespace taut::plant {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "plant/lane_state.h"
+#include "taut/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {

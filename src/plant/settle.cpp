@@ -6,7 +6,7 @@
 namespace taut {
 namespace {
 
-void Stop(Batch& batch, int world) {
+void Stop(WorldBatch& batch, int world) {
   for (std::size_t b = 0; b < batch.model().def().bodies.size(); ++b) {
     BodyState state = batch.Body(world, static_cast<int>(b));
     state.velocity_m_per_s = state.angular_velocity_rad_per_s = {};
@@ -15,7 +15,7 @@ void Stop(Batch& batch, int world) {
 }
 
 /// Returns the greatest speed of any node or center of mass.
-double GreatestSpeed(const Batch& batch, int world) {
+double GreatestSpeed(const WorldBatch& batch, int world) {
   double greatest = 0;
   for (std::size_t n = 0; n < batch.model().def().nodes.size(); ++n) {
     const Vec3 v = batch.NodeVelocity(world, static_cast<int>(n));
@@ -30,7 +30,7 @@ double GreatestSpeed(const Batch& batch, int world) {
 
 }  // namespace
 
-bool Settle(Batch& batch, int world, double step_s, const std::function<bool()>& go_on,
+bool Settle(WorldBatch& batch, int world, double step_s, const std::function<bool()>& go_on,
             int max_steps) {
   constexpr double kAtRestMPerS = 1e-9;
   const double time_s = batch.Time(world);

@@ -11,7 +11,7 @@ namespace {
 
 class SimulatedPlant final : public Plant, public World, public plant::ManySteps {
  public:
-  explicit SimulatedPlant(Batch& batch)
+  explicit SimulatedPlant(WorldBatch& batch)
       : batch_(batch),
         lanes_(static_cast<std::size_t>(batch.lanes())),
         time_s_(lanes_),
@@ -161,7 +161,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     }
   }
 
-  Batch& batch_;
+  WorldBatch& batch_;
   std::size_t lanes_;
   std::vector<double> time_s_;
   std::vector<std::uint8_t> goes_;
@@ -175,6 +175,8 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
 
 }  // namespace
 
-std::unique_ptr<Plant> PlantOf(Batch& batch) { return std::make_unique<SimulatedPlant>(batch); }
+std::unique_ptr<Plant> PlantOf(WorldBatch& batch) {
+  return std::make_unique<SimulatedPlant>(batch);
+}
 
 }  // namespace taut

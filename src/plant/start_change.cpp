@@ -25,7 +25,7 @@ std::pair<int, int> PairOf(const ContactState& contact) {
 
 }  // namespace
 
-Unsettled NoteUnsettled(Batch& batch, double step_s) {
+Unsettled NoteUnsettled(WorldBatch& batch, double step_s) {
   Unsettled before;
   for (std::size_t c = 0; c < batch.model().def().cables.size(); ++c) {
     before.elastic_n.push_back(batch.Cable(kTheWorld, static_cast<int>(c)).elastic_n);
@@ -39,7 +39,7 @@ Unsettled NoteUnsettled(Batch& batch, double step_s) {
   return before;
 }
 
-StartChange ChangeOf(const Unsettled& before, const Batch& batch) {
+StartChange ChangeOf(const Unsettled& before, const WorldBatch& batch) {
   const ModelDef& def = batch.model().def();
   StartChange change;
   for (const double n : before.elastic_n) {

@@ -81,7 +81,7 @@ void Timeline::Apply(World& world, int lane, double time_s, double step_s) {
       if (experiment_.drags[i].node != node) continue;
       force = force + DragForce(world, lane, i, time_s);
     }
-    for (const NodeForce& hand : hand_) {
+    for (const ExternalForce& hand : hand_) {
       if (hand.node == node) force = force + hand.force_n;
     }
     Vec3& set = set_n_[n];
@@ -106,9 +106,26 @@ void Timeline::Serialize(LaneState& state) {
   all(set_n_), all(push_n_), all(drag_n_), all(drag_start_m_), all(dragging_);
 }
 
-void Timeline::SetHandForces(std::vector<NodeForce> forces) {
+std::vector<ExternalForce> Timeline::EventForces() const {
+  std::vector<ExternalForce> forces;
+  const auto add = [&](int node, const Vec3& force) {
+    if (Dot(force, force) > 0) forces.push_back({node, force});
+  };
+  for (std::size_t i = 0; i < experiment_.pushes.size(); ++i) {
+    const PushSpec& push = experiment_.pushes[i];
+    add(push.node, push_n_[i] * push.direction);
+  }
+  for (std::size_t i = 0; i < experiment_.drags.size(); ++i) {
+    const DragSpec& drag = experiment_.drags[i];
+    const double speed = std::sqrt(Dot(drag.velocity_m_per_s, drag.velocity_m_per_s));
+    if (speed > 0) add(drag.node, (drag_n_[i] / speed) * drag.velocity_m_per_s);
+  }
+  return forces;
+}
+
+void Timeline::SetHandForces(std::vector<ExternalForce> forces) {
   hand_ = std::move(forces);
-  for (const NodeForce& hand : hand_) {
+  for (const ExternalForce& hand : hand_) {
     const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), hand.node);
     // A node stays here after its release, so that its force is set to zero.
     if (at != nodes_.end() && *at == hand.node) continue;

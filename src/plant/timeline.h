@@ -4,19 +4,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "plant/lane_state.h"
+#include "taut/lane_state.h"
 #include "taut/plant.h"
 
 namespace taut::plant {
 
 /// Returns the value of a piecewise linear profile, zero outside its points.
 double ProfileAt(const std::vector<std::pair<double, double>>& points, double time_s);
-
-/// A force on a node, in W.
-struct NodeForce {
-  int node = 0;
-  Vec3 force_n;
-};
 
 /// The external forces of an experiment.
 class Timeline {
@@ -41,7 +35,10 @@ class Timeline {
 
   /// Sets forces by a person's hand, outside the experiment, until the next call. They add to its
   /// pushes and drags.
-  void SetHandForces(std::vector<NodeForce> forces);
+  void SetHandForces(std::vector<ExternalForce> forces);
+
+  /// Returns the forces of the last Apply by pushes and drags, without zeros.
+  std::vector<ExternalForce> EventForces() const;
 
   /// Forces of the last Apply [N]: along the push's direction, and along the drag's.
   const std::vector<double>& push_n() const noexcept { return push_n_; }
@@ -55,7 +52,7 @@ class Timeline {
   std::vector<int> nodes_;   ///< All nodes that are ever pushed or dragged, in ascending order.
   std::vector<Vec3> set_n_;  ///< Forces last set in the world; NaN: none set yet.
   std::vector<double> push_n_, drag_n_;
-  std::vector<NodeForce> hand_;
+  std::vector<ExternalForce> hand_;
   std::vector<Vec3> drag_start_m_;
   std::vector<std::uint8_t> dragging_;
 };

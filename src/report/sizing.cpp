@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "math/cable_law.h"
 #include "taut/run_folder.h"
 #include "taut/spec.h"
 
@@ -91,7 +92,7 @@ double Over(double available, double needed) {
   return needed > 0 ? available / needed : std::numeric_limits<double>::infinity();
 }
 
-void TakeLeast(Fit& fit) {
+void TakeLeast(SizingMargins& fit) {
   fit.least =
       *std::min_element(fit.margins.begin(), fit.margins.end(),
                         [](const Margin& a, const Margin& b) { return a.factor < b.factor; });
@@ -122,7 +123,7 @@ std::optional<RunDemand> DemandOf(const Trace& trace, const ExperimentSpec& expe
     d.actuated = cable.actuator.kind != ActuatorDef::Kind::kNone;
     d.stiffness_n_per_m = cable.stiffness_n_per_m;
     d.peak_elastic_n = *std::max_element(elastic->begin(), elastic->end());
-    d.stretch_m = d.peak_elastic_n / d.stiffness_n_per_m;
+    d.stretch_m = math::CableLaw{d.stiffness_n_per_m}.Stretch(d.peak_elastic_n);
     demand.cables.push_back(d);
   }
   if (out.items().size() != errors_before) return std::nullopt;
@@ -141,17 +142,19 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
   const nlohmann::json json =
       summary ? nlohmann::json::parse(summary, nullptr, false) : nlohmann::json();
   demand->every_step = json.is_object() && TakeSummary(json, demand->cables);
-  for (CableDemand& d : demand->cables) d.stretch_m = d.peak_elastic_n / d.stiffness_n_per_m;
+  for (CableDemand& d : demand->cables) {
+    d.stretch_m = math::CableLaw{d.stiffness_n_per_m}.Stretch(d.peak_elastic_n);
+  }
   return demand;
 }
 
-Fit FitOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
-          const CableDemand& cable) {
+SizingMargins SizingMarginsOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
+                              const CableDemand& cable) {
   // Conversion to the motor's shaft: torque per newton of tension, speed per meter per second of
   // the cable.
   const double arm_m = spool_radius_m / (motor.gear_ratio * motor.gear_efficiency);
   const double turn_per_m = motor.gear_ratio / spool_radius_m;
-  Fit fit;
+  SizingMargins fit;
   fit.name = motor.name;
   fit.margins = {{"peak torque", Over(motor.peak_torque_n_m, cable.peak_force_n * arm_m)},
                  {"rated torque", Over(motor.rated_torque_n_m, cable.rms_force_n * arm_m)},
@@ -167,9 +170,9 @@ Fit FitOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
   return fit;
 }
 
-Fit FitOf(const CatalogueSpring& spring, double factor, double stiffness_tolerance,
-          const CableDemand& cable) {
-  Fit fit;
+SizingMargins SizingMarginsOf(const CatalogueSpring& spring, double factor,
+                              double stiffness_tolerance, const CableDemand& cable) {
+  SizingMargins fit;
   fit.name = spring.name;
   fit.margins = {
       {"force", Over(spring.largest_force_n, cable.peak_elastic_n)},

@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "base/thread_pool.h"
-#include "plant/find_start.h"
 #include "plant/loop.h"
+#include "plant/start_finder.h"
 #include "rollout/scorer.h"
 
 namespace taut {
@@ -23,10 +23,10 @@ class LaneRollouts final : public Rollouts {
         model_(std::move(model)),
         pool_(options.threads) {
     // A single world uses scalar code, with identical results.
-    BatchOptions probe;
+    WorldBatchOptions probe;
     probe.simd = options.simd ? *options.simd : BestSimd();
     simd_ = *probe.simd;
-    lanes_ = Batch(model_, probe).lanes();
+    lanes_ = WorldBatch(model_, probe).lanes();
     places_.resize(static_cast<std::size_t>(pool_.threads()));
   }
 
@@ -65,28 +65,25 @@ class LaneRollouts final : public Rollouts {
   /// worlds for seconds.
   struct Workplace {
     Workplace(const std::shared_ptr<const Model>& model, Simd simd, int lanes)
-        : alone(model, {}), group(model, {.worlds = lanes, .simd = simd}) {
-      fresh = alone.Save(plant::kTheWorld);
-    }
-    Batch alone;  ///< One world, which prepares each lane's start.
-    std::vector<std::uint8_t> fresh;
-    Batch group;
+        : starts(model), group(model, {.worlds = lanes, .simd = simd}) {}
+    plant::StartFinder starts;
+    WorldBatch group;
   };
 
   /// Restores a lane to its start. Returns false, with the reason, if there is no start.
   bool Prepare(const RolloutWorld& world, Workplace& place, int lane, std::string& failed) const {
-    place.alone.Restore(plant::kTheWorld, place.fresh);
-    Diagnostics complaints;
-    if (!plant::PrepareStart(ExperimentOf(experiment_, world), place.alone, complaints)) {
-      failed = complaints.items().empty() ? "the start failed" : complaints.items()[0].what;
+    Diagnostics found;
+    const auto start = place.starts.Find(ExperimentOf(experiment_, world), found);
+    if (!start) {
+      failed = plant::ReasonOf(found);
       return false;
     }
-    return place.group.Restore(lane, place.alone.Save(plant::kTheWorld));
+    return place.group.Restore(lane, *start);
   }
 
   void RunGroup(std::span<const RolloutWorld> worlds, Workplace& place,
                 RolloutResult* results) const {
-    Batch& batch = place.group;
+    WorldBatch& batch = place.group;
     const int count = static_cast<int>(worlds.size());
     std::vector<std::string> no_start(worlds.size());
     std::vector<const RolloutWorld*> lanes;  // surplus lanes repeat the first world
@@ -137,7 +134,7 @@ class LaneRollouts final : public Rollouts {
 std::unique_ptr<Rollouts> Rollouts::Create(const ExperimentSpec& experiment,
                                            const ObjectiveSpec& objective,
                                            const RolloutOptions& options, Diagnostics& out) {
-  auto model = Model::Compile(experiment.robot.def, out);
+  auto model = Model::CompileForExperiment(experiment.robot.def, out);
   if (!model) return nullptr;
   return std::make_unique<LaneRollouts>(experiment, objective, options, std::move(model));
 }

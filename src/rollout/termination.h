@@ -7,8 +7,8 @@
 #include <span>
 
 #include "math/vec.h"
-#include "taut/batch.h"
 #include "taut/objective.h"
+#include "taut/world_batch.h"
 
 namespace taut::rollout {
 

@@ -27,10 +27,10 @@ TEST_F(Allocation, IsCounted) {
 TEST_F(Allocation, AStepMakesNoneWhateverHappens) {
   for (const ModelDef& def : VariedModels()) {
     for (const int threads : {1, 2}) {
-      BatchOptions options;
+      WorldBatchOptions options;
       options.worlds = 11;
       options.threads = threads;
-      Batch batch = MakeBatch(def, options);
+      WorldBatch batch = MakeBatch(def, options);
       for (int i = 0; i < 11; ++i) Scatter(batch, i, i);
       const long before = allocations;
       for (int stretch = 0; stretch < kStretches; ++stretch) {
@@ -52,10 +52,10 @@ TEST_F(Allocation, AStepMakesNoneWhateverHappens) {
 }
 
 TEST_F(Allocation, RestoringMakesNone) {
-  Batch batch = MakeBatch(scenes::Jumble().Def());
+  WorldBatch batch = MakeBatch(scenes::Jumble().Def());
   batch.Step(1e-3, 300);
   const std::vector<std::uint8_t> snapshot = batch.Save(0);
-  Batch other = MakeBatch(scenes::Jumble().Def());
+  WorldBatch other = MakeBatch(scenes::Jumble().Def());
   const long before = allocations;
   EXPECT_TRUE(other.Restore(0, snapshot));
   EXPECT_EQ(allocations, before);

@@ -1,5 +1,5 @@
-// Rows of bodies, and the memory layout of groups: the values of `Batch::Body` and `Batch::Cable`
-// at the documented places.
+// Rows of bodies, and the memory layout of groups: the values of `WorldBatch::Body` and
+// `WorldBatch::Cable` at the documented places.
 #include "taut/body_rows.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace taut::test {
 namespace {
 
-void ExpectTheSame(Batch& batch) {
+void ExpectTheSame(WorldBatch& batch) {
   const int bodies = static_cast<int>(batch.model().def().bodies.size());
   const int cables = static_cast<int>(batch.model().def().cables.size());
   const BodyRows first = RowsOfBodies(batch, 0);
@@ -48,10 +48,10 @@ void ExpectTheSame(Batch& batch) {
 
 TEST(BodyRows, AreWhatTheBatchSays) {
   for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = 2 * static_cast<int>(simd) + 1;
     options.simd = simd;
-    Batch batch = MakeBatch(scenes::Prism3().Def(), options);
+    WorldBatch batch = MakeBatch(scenes::Prism3().Def(), options);
     for (int w = 0; w < batch.worlds(); ++w) {
       BodyState state = batch.Body(w, 1);
       state.velocity_m_per_s = {0.1 * w, 0.2, -0.3};
@@ -66,13 +66,13 @@ TEST(BodyRows, AreWhatTheBatchSays) {
 }
 
 TEST(BodyRows, OneGroupHasNoNext) {
-  Batch batch = MakeBatch(scenes::Prism3().Def(), {});
+  WorldBatch batch = MakeBatch(scenes::Prism3().Def(), {});
   EXPECT_EQ(GroupStride(batch), 0);
   ExpectTheSame(batch);
 }
 
 TEST(BodyRowsDeathTest, AGroupThatIsNotThereIsNamed) {
-  Batch batch = MakeBatch(scenes::Prism3().Def(), {});
+  WorldBatch batch = MakeBatch(scenes::Prism3().Def(), {});
   EXPECT_DEATH(RowsOfBodies(batch, 1), "RowsOfBodies: there is no group 1: valid are 0 to 0");
   EXPECT_DEATH(RowsOfBodies(batch, -1), "RowsOfBodies: there is no group -1");
 }

@@ -18,7 +18,7 @@ constexpr int kWorlds = 8;
 constexpr double kStepS = 1e-3;
 
 /// Adds a different velocity to every body, up to 0.1 m/s in each direction.
-void Jolt(Batch& batch, int world, int number) {
+void Jolt(WorldBatch& batch, int world, int number) {
   std::uint64_t state = static_cast<std::uint64_t>(number) + 1;
   const auto chance = [&state] {
     state = state * 6364136223846793005u + 1442695040888963407u;
@@ -34,12 +34,12 @@ void Jolt(Batch& batch, int world, int number) {
 }
 
 void ExpectTheSameInAnyCompany(const ModelDef& def, int steps) {
-  BatchOptions wide;
+  WorldBatchOptions wide;
   wide.worlds = kWorlds;
-  Batch together = MakeBatch(def, wide);
+  WorldBatch together = MakeBatch(def, wide);
   wide.simd = Simd::kAvx2;  // falls back to an available instruction set
   wide.threads = 2;
-  Batch reversed = MakeBatch(def, wide);
+  WorldBatch reversed = MakeBatch(def, wide);
   for (int i = 0; i < kWorlds; ++i) {
     Jolt(together, i, i);
     Jolt(reversed, i, kWorlds - 1 - i);
@@ -47,7 +47,7 @@ void ExpectTheSameInAnyCompany(const ModelDef& def, int steps) {
   together.Step(kStepS, steps);
   reversed.Step(kStepS, steps);
   for (int i = 0; i < kWorlds; ++i) {
-    Batch alone = MakeBatch(def, {});
+    WorldBatch alone = MakeBatch(def, {});
     Jolt(alone, 0, i);
     alone.Step(kStepS, steps);
     EXPECT_EQ(together.Hash(i), alone.Hash(0)) << i;
@@ -91,7 +91,7 @@ TEST(Company, RodsOnDifferentPartsOfAFieldOfManyBoxes) {
                                  {chance.Within(0.05, 0.3), 0.2, 0.05},
                                  {0.5, 0.5, 0}});
   }
-  const auto start = [](Batch& batch, int world, int number) {
+  const auto start = [](WorldBatch& batch, int world, int number) {
     for (int b = 0; b < static_cast<int>(batch.model().def().bodies.size()); ++b) {
       BodyState at = batch.Body(world, b);
       at.position_m.x += number - 3.0;
@@ -100,13 +100,13 @@ TEST(Company, RodsOnDifferentPartsOfAFieldOfManyBoxes) {
     }
     Jolt(batch, world, number);
   };
-  BatchOptions wide;
+  WorldBatchOptions wide;
   wide.worlds = kWorlds;
-  Batch together = MakeBatch(def, wide);
+  WorldBatch together = MakeBatch(def, wide);
   for (int i = 0; i < kWorlds; ++i) start(together, i, i);
   together.Step(kStepS, 800);
   for (int i = 0; i < kWorlds; ++i) {
-    Batch alone = MakeBatch(def, {});
+    WorldBatch alone = MakeBatch(def, {});
     start(alone, 0, i);
     alone.Step(kStepS, 800);
     EXPECT_EQ(together.Hash(i), alone.Hash(0)) << i;

@@ -26,11 +26,11 @@ struct Golden {
   ModelDef def;
   double step_s;
   int steps;
-  std::function<void(Batch&, int when)> command;  ///< Called before every tenth of the run.
+  std::function<void(WorldBatch&, int when)> command;  ///< Called before every tenth of the run.
 };
 
 std::vector<Golden> Goldens() {
-  const auto nothing = [](Batch&, int) {};
+  const auto nothing = [](WorldBatch&, int) {};
   scenes::HangingMass swing;
   swing.damping_n_s_per_m = 0.3;
   swing.length_m = 1.05;
@@ -58,7 +58,7 @@ std::vector<Golden> Goldens() {
   ModelDef ntrt = scenes::Tetraspine().Def();
   ntrt.friction_law = FrictionLaw::kAlongSlip;
   for (CableDef& cable : ntrt.cables) cable.damping_law = DampingLaw::kClamped;
-  const auto wind = [](Batch& batch, int when) { Disturb(batch, 0, 2, when); };
+  const auto wind = [](WorldBatch& batch, int when) { Disturb(batch, 0, 2, when); };
   return {
       {"pendulum", pendulum, 1e-3, 5000, nothing},
       {"thrown_ball", thrown, 1e-3, 3000, nothing},
@@ -75,8 +75,8 @@ std::vector<Golden> Goldens() {
   };
 }
 
-std::string HashOf(const Golden& golden, const BatchOptions& options) {
-  Batch batch = MakeBatch(golden.def, options);
+std::string HashOf(const Golden& golden, const WorldBatchOptions& options) {
+  WorldBatch batch = MakeBatch(golden.def, options);
   for (int when = 0; when < 10; ++when) {
     golden.command(batch, when);
     batch.Step(golden.step_s, golden.steps / 10);
@@ -127,7 +127,7 @@ TEST(Golden, HashesAreTheSameOnEveryInstructionSet) {
     const std::string scalar = HashOf(golden, {});
     for (const auto& [name, simd] : kInstructionSets) {
       if (simd == Simd::kScalar) continue;
-      BatchOptions options;
+      WorldBatchOptions options;
       options.simd = simd;
       EXPECT_EQ(HashOf(golden, options), scalar) << golden.name << ", " << name;
     }

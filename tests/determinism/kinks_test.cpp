@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "instruction_sets.h"
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 namespace {
@@ -39,7 +39,7 @@ TEST(Kinks, WorldsThatGoSlackAtDifferentTimesAreLikeWorldsAlone) {
     wave.offset_m = -0.05 + 0.07 * uniform();
     wave.along_rad = -1.5 + 3 * uniform();
   }
-  const auto steer = [&](Batch& batch, int world, const Wave& wave, int step) {
+  const auto steer = [&](WorldBatch& batch, int world, const Wave& wave, int step) {
     for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
       const double phase = 6.28 * wave.hz * step * 1e-3 + wave.along_rad * (c / 8) + 1.57 * (c % 8);
       const double rest = def.cables[static_cast<std::size_t>(c)].rest_length_m + wave.offset_m +
@@ -49,9 +49,9 @@ TEST(Kinks, WorldsThatGoSlackAtDifferentTimesAreLikeWorldsAlone) {
   };
   std::vector<std::uint64_t> alone;
   for (const Wave& wave : waves) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.simd = Simd::kScalar;
-    Batch batch(model, options);
+    WorldBatch batch(model, options);
     for (int step = 0; step < kSteps; step += 10) {
       steer(batch, 0, wave, step);
       batch.Step(1e-3, 10);
@@ -59,10 +59,10 @@ TEST(Kinks, WorldsThatGoSlackAtDifferentTimesAreLikeWorldsAlone) {
     }
   }
   for (const test::InstructionSet& set : test::kInstructionSets) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = kWorlds;
     options.simd = set.simd;
-    Batch batch(model, options);
+    WorldBatch batch(model, options);
     for (int step = 0; step < kSteps; step += 10) {
       for (int w = 0; w < kWorlds; ++w) steer(batch, w, waves[w], step);
       batch.Step(1e-3, 10);

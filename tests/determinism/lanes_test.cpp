@@ -14,12 +14,12 @@ namespace taut::test {
 namespace {
 
 /// Returns a batch of `worlds` on this instruction set; nothing if the machine lacks it.
-std::optional<Batch> BatchOn(Simd simd, const ModelDef& def, int worlds, int threads) {
-  BatchOptions options;
+std::optional<WorldBatch> BatchOn(Simd simd, const ModelDef& def, int worlds, int threads) {
+  WorldBatchOptions options;
   options.worlds = worlds;
   options.threads = threads;
   options.simd = simd;
-  Batch batch = MakeBatch(def, options);
+  WorldBatch batch = MakeBatch(def, options);
   if (batch.lanes() != static_cast<int>(simd)) return std::nullopt;
   return batch;
 }
@@ -36,7 +36,7 @@ TEST_P(LanesOf, EqualTheirWorldsAloneOnAnyNumberOfThreads) {
   std::vector<Outcome> expected;  // in scalar code
   for (int i = 0; i < kWorlds; ++i) expected.push_back(Alone(def, i));
   for (const int threads : {1, 2, 3}) {
-    Batch batch = *BatchOn(simd, def, kWorlds, threads);
+    WorldBatch batch = *BatchOn(simd, def, kWorlds, threads);
     for (int i = 0; i < kWorlds; ++i) Scatter(batch, i, i);
     for (std::size_t stretch = 0; stretch < kStretches; ++stretch) {
       for (int i = 0; i < kWorlds; ++i) Disturb(batch, i, i, static_cast<int>(stretch));
@@ -64,8 +64,8 @@ TEST_P(LanesOf, TakeTargetsAllAtOnceAsOneByOne) {
   if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << set.name;
   const int cables = static_cast<int>(def.cables.size());
   for (const int threads : {1, 3}) {
-    Batch one_by_one = *BatchOn(simd, def, kWorlds, 1),
-          at_once = *BatchOn(simd, def, kWorlds, threads);
+    WorldBatch one_by_one = *BatchOn(simd, def, kWorlds, 1),
+               at_once = *BatchOn(simd, def, kWorlds, threads);
     Dice dice(7);
     for (int period = 0; period < 5; ++period) {
       std::vector<double> targets;
@@ -89,7 +89,7 @@ TEST_P(LanesOf, SayOfAllCablesAtOnceWhatTheySayOfEach) {
   const ModelDef def = VariedModels()[model];
   constexpr int kWorlds = 11;
   if (!BatchOn(simd, def, 1, 1)) GTEST_SKIP() << "this machine has no " << set.name;
-  Batch batch = *BatchOn(simd, def, kWorlds, 1);
+  WorldBatch batch = *BatchOn(simd, def, kWorlds, 1);
   for (int i = 0; i < kWorlds; ++i) Scatter(batch, i, i);
   batch.Step(kVarietyStepS, kStepsAStretch);
   ASSERT_EQ(batch.groups(), (kWorlds + batch.lanes() - 1) / batch.lanes());
@@ -127,9 +127,9 @@ class Lanes : public testing::TestWithParam<InstructionSet> {};
 
 TEST_P(Lanes, ObservingAWorldChangesNothing) {
   const auto [name, simd] = GetParam();
-  std::optional<Batch> seen = BatchOn(simd, scenes::Jumble().Def(), 9, 1);
+  std::optional<WorldBatch> seen = BatchOn(simd, scenes::Jumble().Def(), 9, 1);
   if (!seen) GTEST_SKIP() << "this machine has no " << name;
-  Batch unseen = *BatchOn(simd, scenes::Jumble().Def(), 9, 1);
+  WorldBatch unseen = *BatchOn(simd, scenes::Jumble().Def(), 9, 1);
   for (int i = 0; i < 9; ++i) {
     Scatter(*seen, i, i);
     Scatter(unseen, i, i);
@@ -152,12 +152,12 @@ TEST_P(Lanes, ObservingAWorldChangesNothing) {
 TEST_P(Lanes, AnObservedLaneIsThatOfItsWorldAlone) {
   const auto [name, simd] = GetParam();
   const ModelDef def = scenes::Jumble().Def();
-  std::optional<Batch> batch = BatchOn(simd, def, 9, 1);
+  std::optional<WorldBatch> batch = BatchOn(simd, def, 9, 1);
   if (!batch) GTEST_SKIP() << "this machine has no " << name;
   for (int i = 0; i < 9; ++i) Scatter(*batch, i, i);
   batch->Step(1e-3, 150);
   for (int i = 0; i < 9; ++i) {
-    Batch alone = MakeBatch(def);
+    WorldBatch alone = MakeBatch(def);
     Scatter(alone, 0, i);
     alone.Step(1e-3, 150);
     for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
@@ -187,11 +187,11 @@ INSTANTIATE_TEST_SUITE_P(All, Lanes, testing::ValuesIn(kInstructionSets),
                          [](const auto& each) { return std::string(each.param.name); });
 
 TEST(Threads, ZeroMeansOneACoreAndGivesTheSameBits) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 5;
   options.threads = 0;
   const ModelDef def = scenes::Jumble().Def();
-  Batch batch = MakeBatch(def, options);
+  WorldBatch batch = MakeBatch(def, options);
   for (int i = 0; i < 5; ++i) Scatter(batch, i, i);
   for (int stretch = 0; stretch < kStretches; ++stretch) {
     for (int i = 0; i < 5; ++i) Disturb(batch, i, i, stretch);
@@ -221,7 +221,7 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
   const ModelDef def = scenes::HangingMass().Def();
   const auto lanes_of = [&](const char* wish, int worlds) {
     const WithEnvironment environment("TAUT_SIMD", wish);
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = worlds;
     return MakeBatch(def, options).lanes();
   };
@@ -245,7 +245,7 @@ TEST(TautSimd, ChoosesTheInstructionSetOfABatchThatDoesNotSay) {
   EXPECT_EQ(lanes_of("sse2", 1), 1);
   const WithEnvironment environment("TAUT_SIMD", "scalar");
   EXPECT_EQ(BestSimd(), Simd::kScalar);
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 3;
   options.simd = Simd::kSse2;
   EXPECT_EQ(MakeBatch(def, options).lanes(), widest_up_to(Simd::kSse2));

@@ -12,7 +12,7 @@ namespace taut::test {
 namespace {
 
 /// Returns a sample of a world's readings; cables are evaluated at the first call.
-std::vector<double> ReadingsOf(const Batch& batch, int world) {
+std::vector<double> ReadingsOf(const WorldBatch& batch, int world) {
   std::vector<double> out;
   for (int c = 0; c < static_cast<int>(batch.model().def().cables.size()); ++c) {
     EachReading([&out](double x) { out.push_back(x); }, batch.Cable(world, c));
@@ -26,11 +26,11 @@ std::vector<double> ReadingsOf(const Batch& batch, int world) {
 
 TEST(Reading, FromSeveralThreadsAtOnceSeesWhatOneThreadSees) {
   constexpr int kThreads = 4, kWorlds = 32, kRounds = 60;
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = kWorlds;
   options.simd = Simd::kSse2;  // many groups
   const ModelDef def = scenes::Tetraspine().Def();
-  Batch read_by_all = MakeBatch(def, options), read_by_one = MakeBatch(def, options);
+  WorldBatch read_by_all = MakeBatch(def, options), read_by_one = MakeBatch(def, options);
   for (int world = 0; world < kWorlds; ++world) {
     Scatter(read_by_all, world, world);
     Scatter(read_by_one, world, world);
@@ -45,7 +45,7 @@ TEST(Reading, FromSeveralThreadsAtOnceSeesWhatOneThreadSees) {
       mine.resize(kWorlds);
       threads.emplace_back([&] {
         const int first = static_cast<int>(&mine - seen) * kWorlds / kThreads;
-        const Batch& batch = read_by_all;
+        const WorldBatch& batch = read_by_all;
         ready.arrive_and_wait();
         for (int i = 0; i < kWorlds; ++i) {
           const int world = (first + i) % kWorlds;

@@ -9,8 +9,8 @@
 namespace taut::test {
 namespace {
 
-BatchOptions Of(int worlds, Simd simd) {
-  BatchOptions options;
+WorldBatchOptions Of(int worlds, Simd simd) {
+  WorldBatchOptions options;
   options.worlds = worlds;
   options.simd = simd;
   return options;
@@ -19,7 +19,7 @@ BatchOptions Of(int worlds, Simd simd) {
 TEST(Snapshot, ARestoredWorldGoesOnAsItWouldHave) {
   for (const ModelDef& def : VariedModels()) {
     for (int seed = 0; seed < 6; ++seed) {
-      Batch original = MakeBatch(def);
+      WorldBatch original = MakeBatch(def);
       Scatter(original, 0, seed);
       Disturb(original, 0, seed, 0);
       original.Step(1e-3, 130);
@@ -35,7 +35,7 @@ TEST(Snapshot, ARestoredWorldGoesOnAsItWouldHave) {
       original.Step(1e-3, 70);
       EXPECT_EQ(original.Hash(0), later) << def.name << seed;
 
-      Batch fresh = MakeBatch(def);
+      WorldBatch fresh = MakeBatch(def);
       ASSERT_TRUE(fresh.Restore(0, snapshot));
       EXPECT_EQ(fresh.Hash(0), hash) << def.name << seed;
       EXPECT_NEAR(fresh.Time(0), 0.13, RoundOff(130, 0.13));
@@ -48,7 +48,7 @@ TEST(Snapshot, ARestoredWorldGoesOnAsItWouldHave) {
 TEST(Snapshot, AWorldGoesOnAlikeInAnotherLaneAndItsNewNeighboursDoNotNotice) {
   for (const auto& [name, simd] : kInstructionSets) {
     for (const ModelDef& def : VariedModels()) {
-      Batch batch = MakeBatch(def, Of(11, simd)), without = MakeBatch(def, Of(11, simd));
+      WorldBatch batch = MakeBatch(def, Of(11, simd)), without = MakeBatch(def, Of(11, simd));
       for (int i = 0; i < 11; ++i) {
         Scatter(batch, i, i);
         Scatter(without, i, i);
@@ -56,7 +56,7 @@ TEST(Snapshot, AWorldGoesOnAlikeInAnotherLaneAndItsNewNeighboursDoNotNotice) {
       batch.Step(1e-3, 90);
       without.Step(1e-3, 90);
       // World 1 lies on the ground by now. World 10 gets its state, world 3 the state of a guest.
-      Batch guest = MakeBatch(def);
+      WorldBatch guest = MakeBatch(def);
       Scatter(guest, 0, 40);
       guest.Step(1e-3, 150);
       ASSERT_TRUE(batch.Restore(10, batch.Save(1)));
@@ -80,11 +80,12 @@ TEST(Snapshot, AWorldGoesOnAlikeWhateverStepsItsNewGroupMadeBefore) {
   const ModelDef def = scenes::Tetraspine().Def();
   for (const double before : {1e-3, 4e-3}) {
     const double elsewhere = before > 2e-3 ? 1e-3 : 4e-3;
-    Batch original = MakeBatch(def);
+    WorldBatch original = MakeBatch(def);
     Scatter(original, 0, 1);
     original.Step(before, 40);
     const std::vector<std::uint8_t> snapshot = original.Save(0);
-    Batch group = MakeBatch(def, Of(2, Simd::kSse2)), without = MakeBatch(def, Of(2, Simd::kSse2));
+    WorldBatch group = MakeBatch(def, Of(2, Simd::kSse2)),
+               without = MakeBatch(def, Of(2, Simd::kSse2));
     for (int i = 0; i < 2; ++i) {
       Scatter(group, i, 5 + i);
       Scatter(without, i, 5 + i);
@@ -103,12 +104,12 @@ TEST(Snapshot, AWorldGoesOnAlikeWhateverStepsItsNewGroupMadeBefore) {
 
 TEST(Snapshot, TheStatusComesAlong) {
   ModelDef def = scenes::Jumble().Def();
-  BatchOptions options;
+  WorldBatchOptions options;
   options.tolerance_m_per_s = 1e-30;  // not reachable with a contact
-  Batch world = MakeBatch(def, options);
+  WorldBatch world = MakeBatch(def, options);
   world.Step(1e-3, 300);
   ASSERT_NE(world.Status(0).bits & kStatusNotConverged, 0u);
-  Batch other = MakeBatch(def, options);
+  WorldBatch other = MakeBatch(def, options);
   ASSERT_EQ(other.Status(0).bits, kStatusOk);
   ASSERT_TRUE(other.Restore(0, world.Save(0)));
   EXPECT_EQ(other.Status(0).bits, world.Status(0).bits);
@@ -116,7 +117,7 @@ TEST(Snapshot, TheStatusComesAlong) {
 }
 
 TEST(Snapshot, WhatIsNotASnapshotOfThisModelIsRefusedAndChangesNothing) {
-  Batch world = MakeBatch(scenes::Tetraspine().Def());
+  WorldBatch world = MakeBatch(scenes::Tetraspine().Def());
   Scatter(world, 0, 1);
   world.Step(1e-3, 50);
   const std::uint64_t hash = world.Hash(0);
@@ -134,7 +135,7 @@ TEST(Snapshot, WhatIsNotASnapshotOfThisModelIsRefusedAndChangesNothing) {
   bad = good;
   bad[0] ^= 1;
   EXPECT_FALSE(world.Restore(0, bad)) << "something else";
-  Batch prism = MakeBatch(scenes::Prism3().Def());
+  WorldBatch prism = MakeBatch(scenes::Prism3().Def());
   EXPECT_FALSE(world.Restore(0, prism.Save(0))) << "of another model";
   EXPECT_EQ(world.Hash(0), hash);
   EXPECT_TRUE(world.Restore(0, good));
@@ -143,21 +144,21 @@ TEST(Snapshot, WhatIsNotASnapshotOfThisModelIsRefusedAndChangesNothing) {
 
 TEST(Snapshot, TheHashSeesEveryPartOfAWorld) {
   const ModelDef def = scenes::Tetraspine().Def();
-  Batch reference = MakeBatch(def);
+  WorldBatch reference = MakeBatch(def);
   const auto differs = [&](const auto& change) {
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     EXPECT_EQ(world.Hash(0), reference.Hash(0));
     change(world);
     return world.Hash(0) != reference.Hash(0) && world.Save(0) != reference.Save(0);
   };
-  EXPECT_TRUE(differs([](Batch& w) { w.SetTime(0, 1e-9); }));
-  EXPECT_TRUE(differs([](Batch& w) { w.SetRestLength(0, 11, 0.2); }));
-  EXPECT_TRUE(differs([](Batch& w) { w.SetRestLengthTarget(0, 11, 0.2); }));
-  EXPECT_TRUE(differs([](Batch& w) { w.SetNodeForce(0, 17, {0, 0, 1e-9}); }));
-  EXPECT_TRUE(differs([](Batch& w) { w.SetParameter(0, Parameter::kCableDamping, 11, 1); }));
-  EXPECT_TRUE(differs([](Batch& w) { w.SetParameter(0, Parameter::kFrictionScale, 0, 0.9); }));
-  EXPECT_TRUE(differs([](Batch& w) { w.SetParameter(0, Parameter::kGravityY, 0, 1e-9); }));
-  EXPECT_TRUE(differs([](Batch& w) {
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetTime(0, 1e-9); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetRestLength(0, 11, 0.2); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetRestLengthTarget(0, 11, 0.2); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetNodeForce(0, 17, {0, 0, 1e-9}); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetParameter(0, Parameter::kCableDamping, 11, 1); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetParameter(0, Parameter::kFrictionScale, 0, 0.9); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) { w.SetParameter(0, Parameter::kGravityY, 0, 1e-9); }));
+  EXPECT_TRUE(differs([](WorldBatch& w) {
     BodyState state = w.Body(0, 2);
     state.angular_velocity_rad_per_s.z = 1e-9;
     w.SetBodyState(0, 2, state);
@@ -165,7 +166,7 @@ TEST(Snapshot, TheHashSeesEveryPartOfAWorld) {
 }
 
 TEST(Snapshot, WhatARestoredWorldReportsIsNotOfTheOneBefore) {
-  Batch batch = MakeBatch(scenes::Jumble().Def());
+  WorldBatch batch = MakeBatch(scenes::Jumble().Def());
   const std::vector<std::uint8_t> fresh = batch.Save(0);
   batch.Step(1e-3, 700);
   ASSERT_GT(batch.Contacts(0).size(), 0u);

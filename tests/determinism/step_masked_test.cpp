@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "tests/determinism/variety.h"
 #include "tests/scenes/heap.h"
 #include "tests/scenes/jumble.h"
@@ -19,8 +19,8 @@ void ExpectWorldsOfTheirOwn(const ModelDef& def, int steps) {
   const auto model = Model::Compile(def, out);
   ASSERT_TRUE(model) << out.Format();
   constexpr int kWorlds = 11;  // a full group and part of another
-  Batch together(model, {.worlds = kWorlds, .threads = 2, .simd = BestSimd()});
-  const auto start = [&](Batch& batch, int world, int as) {
+  WorldBatch together(model, {.worlds = kWorlds, .threads = 2, .simd = BestSimd()});
+  const auto start = [&](WorldBatch& batch, int world, int as) {
     BodyState body = batch.Body(world, 0);
     body.velocity_m_per_s.x += 0.05 * as;
     batch.SetBodyState(world, 0, body);
@@ -46,7 +46,7 @@ void ExpectWorldsOfTheirOwn(const ModelDef& def, int steps) {
   }
   std::size_t touching = 0;
   for (int world = 0; world < kWorlds; ++world) {
-    Batch alone(model, {});
+    WorldBatch alone(model, {});
     start(alone, 0, world);
     alone.Step(1e-3, done[static_cast<std::size_t>(world)]);
     EXPECT_EQ(together.Hash(world), alone.Hash(0)) << "world " << world;
@@ -67,9 +67,9 @@ TEST(StepMasked, WorldsWithMotorsComeAndGo) { ExpectWorldsOfTheirOwn(MotorizedSp
 TEST(StepMasked, NeitherNobodyNorEverybodyIsSpecial) {
   Diagnostics out;
   const auto model = Model::Compile(scenes::Jumble().Def(), out);
-  BatchOptions three;
+  WorldBatchOptions three;
   three.worlds = 3;
-  Batch some(model, three), all(model, three);
+  WorldBatch some(model, three), all(model, three);
   const std::vector<std::uint8_t> nobody(3, 0), everybody(3, 1);
   for (int i = 0; i < 100; ++i) {
     some.StepMasked(1e-3, everybody);
@@ -82,9 +82,9 @@ TEST(StepMasked, NeitherNobodyNorEverybodyIsSpecial) {
 TEST(StepMasked, AWorldThatWouldFailDoesNotFailWhileItStands) {
   Diagnostics out;
   const auto model = Model::Compile(scenes::Jumble().Def(), out);
-  BatchOptions three;
+  WorldBatchOptions three;
   three.worlds = 3;
-  Batch batch(model, three);
+  WorldBatch batch(model, three);
   BodyState body = batch.Body(1, 0);
   body.velocity_m_per_s.x = 1e308;
   body.position_m.x = 1.7e308;

@@ -76,7 +76,7 @@ inline std::vector<ModelDef> VariedModels() {
 }
 
 /// Sets the start of world `world` as determined by `seed`: places, velocities, parameters.
-inline void Scatter(Batch& batch, int world, int seed) {
+inline void Scatter(WorldBatch& batch, int world, int seed) {
   const ModelDef& def = batch.model().def();
   Dice dice(seed);
   const int bodies = static_cast<int>(def.bodies.size());
@@ -118,7 +118,7 @@ inline void Scatter(Batch& batch, int world, int seed) {
 }
 
 /// Sets new commands and forces, as during a run; not all worlds get some every time.
-inline void Disturb(Batch& batch, int world, int seed, int when) {
+inline void Disturb(WorldBatch& batch, int world, int seed, int when) {
   const ModelDef& def = batch.model().def();
   Dice dice(1000 * seed + when);
   if ((seed + when) % 2 == 0) {
@@ -147,8 +147,8 @@ struct Outcome {
   std::vector<std::uint8_t> snapshot;
 };
 
-inline Outcome Alone(const ModelDef& def, int seed, const BatchOptions& options = {}) {
-  Batch batch = MakeBatch(def, options);
+inline Outcome Alone(const ModelDef& def, int seed, const WorldBatchOptions& options = {}) {
+  WorldBatch batch = MakeBatch(def, options);
   Scatter(batch, 0, seed);
   Outcome outcome;
   for (int i = 0; i < kStretches; ++i) {

@@ -74,7 +74,7 @@ CONSTANTS = {
     "frames of the animation": ("apps/viewer/report_page.cpp", "kMaxFrames"),
     "corners drawn": ("apps/viewer/scene.cpp", "kMostCorners"),
     "names in": ("src/base/diagnostics.cpp", "kMostNamed"),
-    "linear systems": ("include/taut/batch.h", "max_linear_solves"),
+    "linear systems": ("include/taut/world_batch.h", "max_linear_solves"),
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
 }
 # Rows without a constant: ranges of keys, and the limit of a library

@@ -286,7 +286,7 @@ def AnUnfinishedTraceIsConverted(taut, folder):
     """A trace whose writer was killed is converted, with a warning that it is unfinished."""
     experiment = ROOT / "share/experiments" / "drop_six_strut.yaml"
     going = subprocess.Popen([taut, "run", experiment, "--duration_s", "1e6", "--quiet", "--out", "run"], cwd=folder)
-    while rows_of(folder / "run" / "trace.h5") < 50:
+    while rows_of(folder / "run" / "trace.h5") < 200:
         assert going.poll() is None
         time.sleep(0.05)
     going.kill()

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::fuzz {
 
@@ -13,7 +13,7 @@ inline bool Finite(const Vec3& v) {
 }
 
 /// Returns the name of a non-finite observable value; empty if all are finite.
-inline std::string NotFinite(const Batch& batch, int world) {
+inline std::string NotFinite(const WorldBatch& batch, int world) {
   const ModelDef& def = batch.model().def();
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     const BodyState s = batch.Body(world, static_cast<int>(b));

@@ -226,7 +226,7 @@ Mix RandomMix(Draw& draw) {
   return mix;
 }
 
-void MoveApart(Batch& batch, const ModelDef& def, const Vec3& by) {
+void MoveApart(WorldBatch& batch, const ModelDef& def, const Vec3& by) {
   for (int world = 0; world < batch.worlds(); ++world) {
     for (std::size_t b = 0; b < def.bodies.size(); ++b) {
       if (def.bodies[b].fixed) continue;
@@ -238,7 +238,7 @@ void MoveApart(Batch& batch, const ModelDef& def, const Vec3& by) {
   }
 }
 
-double EnergyOf(const Batch& batch, int world) {
+double EnergyOf(const WorldBatch& batch, int world) {
   const Energy e = batch.TotalEnergy(world);
   return e.kinetic_j + e.gravity_j + e.elastic_j;
 }
@@ -252,14 +252,14 @@ void Run(const std::uint8_t* data, std::size_t size) {
   const auto model = Model::Compile(mix.def, refused);
   Must((model != nullptr) == refused.ok(), "compiled or refused");
   if (!model) return;
-  std::vector<Batch> sets;
+  std::vector<WorldBatch> sets;
   for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = kWorlds;
     options.simd = simd;
     options.max_linear_solves = kMaxLinearSolves;
-    Batch batch(model, options);
-    const bool known = std::any_of(sets.begin(), sets.end(), [&](const Batch& other) {
+    WorldBatch batch(model, options);
+    const bool known = std::any_of(sets.begin(), sets.end(), [&](const WorldBatch& other) {
       return other.lanes() == batch.lanes();
     });
     if (known) continue;  // this machine or build lacks the set
@@ -275,7 +275,7 @@ void Run(const std::uint8_t* data, std::size_t size) {
     for (const CableDef& cable : mix.def.cables) {
       targets.push_back(draw.Between(0.7, 1.1) * cable.rest_length_m);
     }
-    for (Batch& batch : sets) {
+    for (WorldBatch& batch : sets) {
       for (int world = 0; world < kWorlds; ++world) {
         for (std::size_t c = 0; c < targets.size(); ++c) {
           if (mix.def.cables[c].actuator.kind == ActuatorDef::Kind::kNone) continue;
@@ -285,10 +285,10 @@ void Run(const std::uint8_t* data, std::size_t size) {
       batch.Step(step_s, kStepsPerStretch);
     }
     for (int world = 0; world < kWorlds; ++world) {
-      const Batch& one = sets[0];
+      const WorldBatch& one = sets[0];
       const WorldStatus status = one.Status(world);
       work += static_cast<long>(kStepsPerStretch) * status.linear_solves;
-      for (const Batch& other : sets) {
+      for (const WorldBatch& other : sets) {
         Must(other.Hash(world) == one.Hash(world),
              "other bits with " + std::to_string(other.lanes()) + " lanes in world " +
                  std::to_string(world) + so_far());

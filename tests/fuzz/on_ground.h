@@ -24,7 +24,7 @@ inline void DropARod(ModelDef def, int steps) {
   const auto model = Model::Compile(def, refused);
   Must((model != nullptr) == refused.ok(), "compiled or refused");
   if (!model) return;
-  Batch world(model, {});
+  WorldBatch world(model, {});
   world.Step(1e-3, steps);
   const Vec3 p = world.Body(0, index).position_m;
   Must(std::isfinite(p.x + p.y + p.z), "a finite position");

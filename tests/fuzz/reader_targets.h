@@ -6,8 +6,8 @@
 #include <string>
 
 #include "fuzz/fuzz_folder.h"
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace taut::fuzz {
 

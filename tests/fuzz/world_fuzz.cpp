@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kSteps = 1000, kStepsPerStretch = 50;
 
-/// Limit of linear systems per step and island (BatchOptions::max_linear_solves).
+/// Limit of linear systems per step and island (WorldBatchOptions::max_linear_solves).
 constexpr int kMaxLinearSolves = 50;
 /// Additional limit per body for solvers in lanes: at most 10 iterations, and 4 rounds of impacts.
 constexpr int kMaxInLanes = 10 * 5;
@@ -153,7 +153,7 @@ double Command(Draw& draw) {
   }
 }
 
-void Disturb(Batch& batch, int world, Draw& draw) {
+void Disturb(WorldBatch& batch, int world, Draw& draw) {
   const ModelDef& def = batch.model().def();
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
     if (draw.Coin()) batch.SetRestLengthTarget(world, static_cast<int>(c), Command(draw));
@@ -171,7 +171,7 @@ void Disturb(Batch& batch, int world, Draw& draw) {
 void Run(const std::uint8_t* data, std::size_t size) {
   Draw draw(Extended(data, size));
   const double step_s = draw.Coin() ? 1e-3 : draw.Scale(1e-9, 1);
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = draw.Int(1, 3);
   options.simd = static_cast<Simd>(1 << draw.Int(0, 3));
   options.max_linear_solves = kMaxLinearSolves;
@@ -180,7 +180,7 @@ void Run(const std::uint8_t* data, std::size_t size) {
   Must((model != nullptr) == refused.ok(), "compiled or refused");
   if (!model) return;
   const int most = static_cast<int>(model->def().bodies.size()) * kMaxOfABody;
-  Batch batch(model, options);
+  WorldBatch batch(model, options);
   long work = 0;
   for (int step = 0; step < kSteps && work < kEnough; ++step) {
     for (int world = 0; world < options.worlds && step % kStepsPerStretch == 0; ++world) {

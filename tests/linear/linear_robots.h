@@ -34,7 +34,7 @@ inline ExperimentSpec UnderImpedance(ExperimentSpec e, double position_gain, dou
   Diagnostics out;
   const auto rest = FindSettledStart(e, out);
   const auto model = Model::Compile(e.robot.def, out);
-  Batch batch(model, {});
+  WorldBatch batch(model, {});
   for (std::size_t b = 0; b < rest->pose.bodies.size(); ++b) {
     batch.SetBodyState(0, static_cast<int>(b), rest->pose.bodies[b]);
   }

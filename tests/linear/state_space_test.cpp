@@ -36,17 +36,17 @@ class Worlds {
     batch_.Step(kStep, 1000);
     for (int w = 1; w < count; ++w) batch_.Restore(w, batch_.Save(0));
   }
-  Batch& batch() { return batch_; }
+  WorldBatch& batch() { return batch_; }
 
  private:
-  static BatchOptions Options(int count) {
-    BatchOptions options;
+  static WorldBatchOptions Options(int count) {
+    WorldBatchOptions options;
     options.worlds = count;
     options.tolerance_m_per_s = 1e-12;
     return options;
   }
   Diagnostics out_;
-  Batch batch_;
+  WorldBatch batch_;
 };
 
 /// Returns position, small rotation since `from`, velocity and angular velocity of a body, in this
@@ -71,7 +71,7 @@ void ComparesWithSteps(const ExperimentSpec& e, int steps, double lift_m) {
   EXPECT_EQ(system.derivatives, Derivatives::kExact);
   const int bodies = static_cast<int>(e.robot.def.bodies.size()), motions = 12 * bodies;
   Worlds worlds(e, system, 4 * motions);
-  Batch& batch = worlds.batch();
+  WorldBatch& batch = worlds.batch();
   std::vector<BodyState> from;
   for (int b = 0; b < bodies; ++b) from.push_back(batch.Body(0, b));
   const double small[] = {1e-8, 4e-8, 1e-5, 1e-4};

@@ -76,7 +76,7 @@ Vec3 ReferencePlace(const BodyOnBall& top, double time_s) {
 }
 
 double PlaceError(const BodyOnBall& top, double step_s, double time_s) {
-  Batch world = MakeBatch(ModelOf(top));
+  WorldBatch world = MakeBatch(ModelOf(top));
   world.Step(step_s, StepsIn(time_s, step_s));
   return Distance(world.Body(0, 0).position_m, ReferencePlace(top, time_s));
 }
@@ -89,7 +89,7 @@ void SpinningTop(Report& report) {
   const double time_s = report.IsFull() ? 20 : 4;
   for (const double spin : {50.0, 200.0, 1000.0}) {
     const std::string name = std::to_string(static_cast<int>(spin)) + " rad/s, 1 ms";
-    Batch world = MakeBatch(ModelOf(Top(spin)));
+    WorldBatch world = MakeBatch(ModelOf(Top(spin)));
     const EnergyRange seen = Run(world, 1e-3, time_s);
     report.AtMost("energy off, " + name, "J", seen.Off(), 4e-3);
     report.AtMost("steps with a status bit, " + name, "1", seen.flagged, 0);
@@ -102,7 +102,7 @@ void SpinningTop(Report& report) {
 
 void SphericalPendulum(Report& report) {
   const BodyOnBall pendulum{{0.02, 0.02, 0.001}, -0.5, 0, {3, 1, 5}};
-  Batch world = MakeBatch(ModelOf(pendulum));
+  WorldBatch world = MakeBatch(ModelOf(pendulum));
   const EnergyRange seen = Run(world, 1e-3, report.IsFull() ? 600 : 120);
   report.AtMost("energy off, 1 ms", "J", seen.Off(), 3e-5);
   report.AtMost("gap of the joint", "m", seen.gap_m, 1e-11);

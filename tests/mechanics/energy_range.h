@@ -16,7 +16,7 @@ struct EnergyRange {
   double Off() const { return std::max(gain_j, loss_j); }
 };
 
-inline EnergyRange Run(Batch& world, double step_s, double time_s) {
+inline EnergyRange Run(WorldBatch& world, double step_s, double time_s) {
   EnergyRange seen;
   const double start = test::EnergyOf(world);
   const int joints = static_cast<int>(world.model().def().joints.size());

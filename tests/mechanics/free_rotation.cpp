@@ -44,7 +44,7 @@ double Error(double step_s, double time_s) {
   body.inertia_kg_m2.zz = kMoments.z;
   body.angular_velocity_rad_per_s = kSpin;
   def.bodies.push_back(body);
-  Batch world = test::MakeBatch(def);
+  WorldBatch world = test::MakeBatch(def);
   world.Step(step_s, test::StepsIn(time_s, step_s));
   return AngleBetween(world.Body(0, 0).orientation, ReferenceOrientation(time_s));
 }

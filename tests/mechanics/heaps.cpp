@@ -56,7 +56,7 @@ struct Slab {
 /// Collects solver statistics over several runs.
 class Steps {
  public:
-  void Run(Batch& world, int count) {
+  void Run(WorldBatch& world, int count) {
     double highest = 0;
     const double start = test::EnergyOf(world);
     for (int i = 0; i < count; ++i) {
@@ -86,7 +86,7 @@ class Steps {
   double sum_ = 0, relaxation_ = 0, gain_ = -1;
 };
 
-double ForceOfTheGround(const Batch& world) {
+double ForceOfTheGround(const WorldBatch& world) {
   double sum = 0;
   for (const ContactState& contact : world.Contacts(0)) {
     if (contact.body_b == kWorld) sum += contact.force_n.z;
@@ -99,7 +99,7 @@ void Settle(Report& report, const Slab& slab) {
   Steps steps;
   double weight = 0, speed = 0;
   for (std::uint64_t seed = 1; seed <= (report.IsFull() ? 6 : 2); ++seed) {
-    Batch world = test::MakeBatch(slab.Def(seed));
+    WorldBatch world = test::MakeBatch(slab.Def(seed));
     steps.Run(world, report.IsFull() ? 3000 : 500);
     weight = std::max(weight, std::abs(ForceOfTheGround(world) / slab.WeightN() - 1));
     speed = std::max(speed, test::Norm(world.Body(0, 6).velocity_m_per_s));
@@ -118,7 +118,7 @@ void Rollers(Report& report) {
   Steps steps;
   for (const double ratio : {1e4, 1e6}) {
     for (std::uint64_t seed = 1; seed <= (report.IsFull() ? 6 : 2); ++seed) {
-      Batch world = test::MakeBatch(Slab{ratio, 1e-3, {0.05, 0, 0}, {}}.Def(seed));
+      WorldBatch world = test::MakeBatch(Slab{ratio, 1e-3, {0.05, 0, 0}, {}}.Def(seed));
       steps.Run(world, report.IsFull() ? 3000 : 200);
     }
   }
@@ -133,7 +133,7 @@ void Heaps(Report& report, int rods, double friction, const std::vector<std::uin
     heap.rods = rods;
     heap.friction = friction;
     heap.seed = seed;
-    Batch world = test::MakeBatch(heap.Def());
+    WorldBatch world = test::MakeBatch(heap.Def());
     steps.Run(world, count);
   }
   steps.AddTo(report);

@@ -38,7 +38,7 @@ struct Outcome {
   std::uint32_t bits = 0, early_bits = 0;  ///< At the end; after 20 ms.
 };
 Outcome Follow(const ModelDef& def, int b) {
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   Outcome out;
   for (int n = 0; n < 1000; ++n) {
     world.Step(kStep);
@@ -171,7 +171,7 @@ void Kapitza(Report& report) {
     motion.slide.frequency_hz = share * std::sqrt(2 * kG * kArm) / kSwing / (2 * std::numbers::pi);
     def.motions.push_back(motion);
     def.joints.push_back(Pin(JointKind::kHinge, 0, 1, {}, {}));
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double lowest = 1;
     for (int n = 0; n < 5000; ++n) {
       world.Step(kStep);

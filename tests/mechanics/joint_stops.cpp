@@ -39,7 +39,7 @@ ModelDef Rope(const Vec3& at, const Vec3& velocity, double restitution = 0) {
 void SwingingRope(Report& report) {
   for (const double h : {1e-3, 4e-3}) {
     const std::string step = h > 2e-3 ? ", 4 ms" : ", 1 ms";
-    Batch world = MakeBatch(Rope({0.1, 0, 0}, {1, 2, 0.5}));
+    WorldBatch world = MakeBatch(Rope({0.1, 0, 0}, {1, 2, 0.5}));
     const double start = EnergyOf(world), never = 1e300;
     double longest = 0, shortest = never, pushed = 0, gained = 0;
     double least = never, most = -never;
@@ -92,7 +92,7 @@ void SlackRope(Report& report) {
   const Flight flight;
   for (const double e : {0.0, 0.5, 1.0}) {
     for (const double h : {1e-3, 2.5e-4}) {
-      Batch world = MakeBatch(Rope({0, 0, -0.5}, {flight.speed, 0, 0}, e));
+      WorldBatch world = MakeBatch(Rope({0, 0, -0.5}, {flight.speed, 0, 0}, e));
       const double start = EnergyOf(world);
       double top = 0, pushed = 0, longest = 0;
       bool slack = false, again = false;
@@ -132,7 +132,7 @@ void SpinningBodyOnRope(Report& report) {
     JointDef rope = JointAt(JointKind::kDistance, {}, {0, 0, 1});
     rope.to_m = -0.5 * up, rope.most = 0.5;
     def.joints.push_back(rope);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world);
     double longest = 0;
     for (int n = StepsIn(report.IsFull() ? 60 : 5, h); n > 0; --n) {
@@ -159,7 +159,7 @@ void CircleInCone(Report& report) {
     cone.turned = {std::cos(start / 2), 0, -std::sin(start / 2), 0};
     cone.most = limit;
     def.joints.push_back(cone);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double widest = 0, narrowest = 1, settled = 0, swing = 0;
     const double time_s = report.IsFull() || h > 5e-4 ? 20 : 5;
     for (int n = 1; n <= StepsIn(time_s, h); ++n) {
@@ -209,7 +209,7 @@ void PressedElbow(Report& report) {
   double off[2] = {};
   for (int k = 0; k < 2; ++k) {
     const double h = k == 0 ? 2e-3 : 1e-3;
-    Batch world = MakeBatch(Elbow(true));
+    WorldBatch world = MakeBatch(Elbow(true));
     double moved = 0;
     for (int n = 0; n < StepsIn(3, h); ++n) {
       world.Step(h);
@@ -230,7 +230,7 @@ void FreeElbow(Report& report) {
     body.angular_velocity_rad_per_s = {2, 3, -1};
     body.velocity_m_per_s = Cross(body.angular_velocity_rad_per_s, body.com_m);
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p = world.Momentum(0), l = world.AngularMomentum(0);
   const double start = EnergyOf(world);
   double moved = 0, change = 0;
@@ -276,7 +276,7 @@ void BouncingSlider(Report& report) {
     JointDef slide = JointAt(JointKind::kPrismatic, {0, 0, height}, {0, 0, 1});
     slide.least = -height, slide.restitution = e;
     def.joints.push_back(slide);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(h, StepsIn(falls_s * (1 + e), h));  // up again: the apex is halfway to that time
     const BodyState now = world.Body(0, 0);
     const double v = now.velocity_m_per_s.z, top = now.position_m.z + v * v / (2 * kG);
@@ -285,7 +285,7 @@ void BouncingSlider(Report& report) {
 }
 
 /// Steps until the joint's rate is no longer positive.
-void StepPastRebound(Batch& world, double step_s) {
+void StepPastRebound(WorldBatch& world, double step_s) {
   double last = 0;
   while (world.Time(0) < 10 && !(last > 0 && world.Joint(0, 0).rate <= 0)) {
     last = world.Joint(0, 0).rate;
@@ -302,7 +302,7 @@ void HingeStop(Report& report) {
     JointDef hinge = JointAt(JointKind::kHinge, {}, {0, 1, 0});
     hinge.most = stop, hinge.restitution = e;
     def.joints.push_back(hinge);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world), fall = kG / 2 * std::sin(stop);
     StepPastRebound(world, h);
     return std::abs((EnergyOf(world) - start + fall) / (e * e * fall) - 1);
@@ -319,7 +319,7 @@ void ConeStop(Report& report) {
     JointDef ball = JointAt(JointKind::kBall, {}, {0, 0, -1});
     ball.most = stop, ball.restitution = e;
     def.joints.push_back(ball);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world), climb = kG / 2 * (1 - std::cos(stop));
     StepPastRebound(world, h);
     const double left = EnergyOf(world) - start + kinetic - climb;

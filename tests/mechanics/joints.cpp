@@ -79,7 +79,7 @@ ModelDef Reversed(ModelDef def) {
 }
 
 /// Returns the largest distance between a body of one world and the same body of the other.
-double WorstDistance(const Batch& one, const Batch& reversed) {
+double WorstDistance(const WorldBatch& one, const WorldBatch& reversed) {
   const int count = static_cast<int>(one.model().def().bodies.size());
   double worst = 0;
   for (int b = 0; b < count; ++b) {
@@ -101,7 +101,7 @@ void Tumble(ModelDef& def) {
 void ReportFrame(Report& report, const std::string& name, RodNet net, double bound) {
   net.JoinAll();
   Tumble(net.def);
-  Batch world = MakeBatch(net.def), reversed = MakeBatch(Reversed(net.def));
+  WorldBatch world = MakeBatch(net.def), reversed = MakeBatch(Reversed(net.def));
   const double energy = EnergyOf(world);
   const Vec3 momentum = world.AngularMomentum(0);
   const double time_s = report.IsFull() ? 5 : 2;
@@ -146,7 +146,7 @@ struct NetBounds {
 
 void ReportNet(Report& report, const std::string& name, const ModelDef& def, double step_s,
                double time_s, const NetBounds& bounds) {
-  Batch world = MakeBatch(def), reversed = MakeBatch(Reversed(def));
+  WorldBatch world = MakeBatch(def), reversed = MakeBatch(Reversed(def));
   const EnergyRange seen = Run(world, step_s, time_s);
   reversed.Step(step_s, StepsIn(time_s, step_s));
   report.AtMost(name + ": steps without a solution", "1", seen.unsolved, 0);
@@ -209,7 +209,7 @@ void Nets(Report& report) {
             {1e-5, 1e-8, 1e-5, false});
   // Rods straightened by tight stiff cables exceed the limit of a step of 1 ms; the status reports
   // it.
-  Batch tight = MakeBatch(Net(2, 1e6));
+  WorldBatch tight = MakeBatch(Net(2, 1e6));
   const EnergyRange seen = Run(tight, 1e-3, 0.3);
   report.AtMost("2 by 2 squares, cables of 1e6 N/m: steps without a solution", "1", seen.unsolved,
                 0);
@@ -250,7 +250,7 @@ ModelDef CardanJoint(double angle_rad, double spin_rad_per_s) {
 
 void CardanJoints(Report& report) {
   const double angle_rad = 1;
-  Batch world = MakeBatch(CardanJoint(angle_rad, 10));
+  WorldBatch world = MakeBatch(CardanJoint(angle_rad, 10));
   world.Step(1e-3);  // projects the velocities onto the joints
   const double start = EnergyOf(world);
   double gain = 0, off = 0, ratio_off = 0, force_n = 0, flagged = 0;
@@ -287,7 +287,7 @@ ModelDef StraightChain(int rods) {
 void StraightChains(Report& report) {
   for (const int rods : {2, 3, 5}) {
     const std::string name = std::to_string(rods) + " rods";
-    Batch coarse = MakeBatch(StraightChain(rods));
+    WorldBatch coarse = MakeBatch(StraightChain(rods));
     report.AtMost(name + ", 1 ms: steps without a solution", "1", Run(coarse, 1e-3, 1).unsolved, 0);
     ReportNet(report, name + ", 0.25 ms", StraightChain(rods), 2.5e-4, 1,
               {1e-6, 1e-8, 1e-6, false});

@@ -24,7 +24,7 @@ struct Worst {
   int not_good = 0;
 
   /// Compares with a reference world.
-  void Run(Batch world, Batch right, int steps) {
+  void Run(WorldBatch world, WorldBatch right, int steps) {
     const double start_j = test::EnergyOf(world);
     for (int i = 0; i < steps; ++i) {
       world.Step(kStepS, 1);
@@ -58,7 +58,7 @@ void FlushPieces(Report& report) {
         AddPiece(def, a, {-0.5, 0.5, -0.5, 0.5}, kNoFriction);
         AddPiece(def, b, {0.5, 1.5, -0.5, 0.5}, kNoFriction);
         if (a != Piece::kPlane) AddPiece(def, a, {1.5, 2.5, -0.5, 0.5}, kNoFriction);
-        Batch world = test::MakeBatch(def);
+        WorldBatch world = test::MakeBatch(def);
         const double start_j = test::EnergyOf(world);
         for (int i = 1; i <= kSteps; ++i) {
           world.Step(kStepS, 1);
@@ -210,7 +210,7 @@ void TippingOverABorder(Report& report) {
                  {turns ? v : v + 2 * friction, chance.Within(-0.1, 0.1), 0}, material);
         def.bodies[0].angular_velocity_rad_per_s.z = chance.Within(-1, 1);
         AddPiece(def, piece, {-0.5, 0.5, -0.5, 0.5, 4, 4, level_m}, material);
-        Batch world = test::MakeBatch(def);
+        WorldBatch world = test::MakeBatch(def);
         double before_j = test::EnergyOf(world), sum_j = 0;
         for (int i = 0; i < 1200 && world.Body(0, 0).position_m.z > level_m - 1; ++i) {
           world.Step(kStepS, 1);
@@ -238,7 +238,7 @@ void WallBesideAFloor(Report& report) {
         AddPiece(def, floor, {-0.5, 0.5, -0.5, 0.5}, kNoFriction);
         AddPiece(def, wall, {0.5, 1.5, -0.5, 0.5, 4, 4, 0.5}, kNoFriction);
         def.gravity_m_per_s2 = {3, 0, -kG};
-        Batch world = test::MakeBatch(def);
+        WorldBatch world = test::MakeBatch(def);
         const double reach = guest == Guest::kRodAcross  ? kRadiusM
                              : guest == Guest::kRodAlong ? kHalfM + kRadiusM
                                                          : kHalfM;

@@ -24,7 +24,7 @@ ModelDef Rotor(double rate_rad_per_s, double beside_m = 0) {
 
 void SpinningHinge(Report& report) {
   for (const double rate : {200.0, 490.0, 3000.0, 3200.0, -7000.0, 50000.0}) {
-    Batch world = MakeBatch(Rotor(rate));
+    WorldBatch world = MakeBatch(Rotor(rate));
     world.Step(1e-3, 1000);
     const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 ms";
     // Angles t < 0.25 rad per half step have a relative error of t^4 / 120, others are exact.
@@ -39,7 +39,7 @@ void SpinningHinge(Report& report) {
 void RotorBesideItsHinge(Report& report) {
   // Half a radian per step is resolved; three are not, and the status reports it.
   for (const double rate : {500.0, 3000.0}) {
-    Batch world = MakeBatch(Rotor(rate, 1e-3));
+    WorldBatch world = MakeBatch(Rotor(rate, 1e-3));
     world.Step(1e-3, 1000);
     const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 mm beside, 1 ms";
     const double wanted = rate < 1000 ? kStatusOk : kStatusStepTooLong;
@@ -54,7 +54,7 @@ void BrakedRotor(Report& report) {
   // A damper stops a rotor: I w' = -d w, so it rotates by I w0 / d in total.
   ModelDef def = Rotor(5000);
   def.joints[0].damping = 0.05;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 8000);
   // The first half step has the full rate; afterwards all means are of second order.
   report.Near("angle until it stands, from 5000 rad/s, 1 ms", "rad", world.Joint(0, 0).coordinate,

@@ -78,7 +78,7 @@ Fall Run(const Drop& drop) {
     body.velocity_m_per_s = speed + Cross(spin, body.com_m - robot.center_m);
     body.angular_velocity_rad_per_s = spin;
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   Fall fall;
   for (int n = StepsIn(drop.time_s, drop.step_s); n > 0; --n) {
@@ -149,7 +149,7 @@ void KeepsEnergy(Report& report, double k, double h, bool kicked, double time_s)
     body.velocity_m_per_s = {chance(), chance(), chance()};
     body.angular_velocity_rad_per_s = {4 * chance(), 4 * chance(), 4 * chance()};
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world) - least;
   const Vec3 momentum = world.AngularMomentum(0);
   double off = 0;
@@ -196,7 +196,7 @@ int StepsUntilRight(double wh, double zeta) {
   cable.rest_length_m = 0.2;
   def.cables.push_back(cable);
   def.gravity_m_per_s2 = {0, 0, -g};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   int last = 0;
   for (int n = 1; n <= 400; ++n) {
     world.Step(h);
@@ -254,7 +254,7 @@ ModelDef Eyelets(double stiffness_n_per_m, double damping_n_s_per_m) {
 void ThroughEyelets(Report& report) {
   for (const double h : {1e-3, 4e-3}) {
     for (const double b : {0.0, 10.0}) {
-      Batch world = MakeBatch(Eyelets(1e6, b));
+      WorldBatch world = MakeBatch(Eyelets(1e6, b));
       const double start = EnergyOf(world);
       const Vec3 spin = world.AngularMomentum(0), momentum = world.Momentum(0);
       double most = 0, off = 0;
@@ -292,7 +292,7 @@ void Rebound(Report& report) {
   ground.material = robot.material;
   def.planes.push_back(ground);
   for (BodyDef& body : def.bodies) body.angular_velocity_rad_per_s = {0, 0, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   double gained = 0;
   for (int n = StepsIn(report.IsFull() ? 3 : 1, 1e-3); n > 0; --n) {

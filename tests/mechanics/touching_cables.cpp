@@ -44,7 +44,7 @@ ModelDef Scene(int rods, double stiffness, double friction, unsigned seed) {
 }
 
 Gain Fly(const ModelDef& def, double step_s) {
-  Batch world = test::MakeBatch(def);
+  WorldBatch world = test::MakeBatch(def);
   const double start = test::EnergyOf(world);
   const Vec3 momentum = world.Momentum(0);
   Gain gain;

@@ -51,7 +51,7 @@ ModelDef Turntable(double spin, const Vec3& axis, TurnedBy by) {
 /// classical problem, e.g. Weltner, Am. J. Phys. 47 (1979) 984.
 void RollInACircle(Report& report, double spin, double h, const Vec3& axis, TurnedBy by) {
   const ModelDef def = Turntable(spin, axis, by);
-  Batch world = test::MakeBatch(def);
+  WorldBatch world = test::MakeBatch(def);
   const Vec3 start = world.Body(0, 1).position_m, v = world.Body(0, 1).velocity_m_per_s;
   const Vec3 center = start + (3.5 / spin) * Cross({0, 0, 1}, v);
   const double radius = Distance(start, center);
@@ -105,7 +105,7 @@ void PlankOnDrums(Report& report) {
   const Vec3 half{1, 0.1, 0.01};
   const int plank = scenes::AddBox(def, "plank", 1, half, {-0.3, 0, radius + half.z}, {}, rough);
   def.bodies[plank].velocity_m_per_s = {spin * radius, 0, 0};
-  Batch world = test::MakeBatch(def);
+  WorldBatch world = test::MakeBatch(def);
   world.Step(1e-3, 4000);
   const BodyState end = world.Body(0, plank);
   report.Near("way in 4 s", "m", end.position_m.x + 0.3, 4 * spin * radius, 1e-7);

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "mjcf/shipped_robots.h"
-#include "taut/batch.h"
 #include "taut/statics.h"
+#include "taut/world_batch.h"
 
 namespace taut::test {
 namespace {
@@ -42,7 +42,7 @@ nlohmann::json CaseOf(const std::string& name) {
   for (CableDef& cable : def.cables) cable.rest_length_m *= 0.98;
   one["free"] = Exported(def);
   Diagnostics out;
-  Batch batch(Model::Compile(def, out), {});
+  WorldBatch batch(Model::Compile(def, out), {});
   batch.Step(kStep_s, kSteps);
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     const Vec3 p = batch.Body(0, static_cast<int>(b)).position_m;

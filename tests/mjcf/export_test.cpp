@@ -5,8 +5,8 @@
 #include "mjcf/mujoco_model.h"
 #include "mjcf/shipped_robots.h"
 #include "sim/contacts/combine.h"
-#include "taut/batch.h"
 #include "taut/statics.h"
+#include "taut/world_batch.h"
 
 namespace taut::test {
 namespace {
@@ -62,7 +62,7 @@ TEST_P(Shipment, MovesFreelyAsItDoesInMujoco) {
   ASSERT_TRUE(theirs);
   theirs.Step(step_s, steps);
   Diagnostics out;
-  Batch ours(Model::Compile(def, out), {});
+  WorldBatch ours(Model::Compile(def, out), {});
   ours.Step(step_s, steps);
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     SCOPED_TRACE(def.bodies[b].name);

@@ -36,7 +36,7 @@ class Ours final : public World {
     if (model == nullptr) throw std::runtime_error(complaints.Format());
     return model;
   }
-  Batch batch_;
+  WorldBatch batch_;
 };
 
 /// Runs the same for every engine and setting, by name.

@@ -92,12 +92,12 @@ INSTANTIATE_TEST_SUITE_P(Peers, ContactOf, testing::ValuesIn(kSettings), CaseNam
 TEST(PeersContact, OursDoesNeither) {
   Diagnostics complaints;
   for (const double heading_rad : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
-    Batch world(Model::Compile(test::Sled(1, heading_rad), complaints), {});
+    WorldBatch world(Model::Compile(test::Sled(1, heading_rad), complaints), {});
     world.Step(kStepS, 2000);
     const Vec3 p = world.Body(0, 0).position_m;
     EXPECT_NEAR(std::hypot(p.x, p.y), 1 / (2 * 0.5 * 9.81), 1e-6) << heading_rad;
   }
-  Batch world(Model::Compile(test::Turned(test::Sled()), complaints), {});
+  WorldBatch world(Model::Compile(test::Turned(test::Sled()), complaints), {});
   world.Step(kStepS, 1000);
   EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, 0, 1e-9);
 }

@@ -49,7 +49,7 @@ TEST_P(Description, MassCentreAndInertiaAreThose) {
 
 TEST_P(Description, CableLengthsAndTensionsAtRestAreOurs) {
   Diagnostics complaints;
-  const Batch ours(Model::Compile(def_, complaints), {});
+  const WorldBatch ours(Model::Compile(def_, complaints), {});
   ASSERT_FALSE(def_.cables.empty());
   for (std::size_t c = 0; c < def_.cables.size(); ++c) {
     const CableDef& cable = def_.cables[c];

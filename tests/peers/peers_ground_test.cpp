@@ -134,7 +134,7 @@ TEST_P(GroundOf, ARodLiesOnASlopeOrSlidesDown) {
 }
 
 /// Returns the depth of the robot in the ground, by taut's geometry.
-double Deepest(Batch& ours, const World& world) {
+double Deepest(WorldBatch& ours, const World& world) {
   for (int b = 0; b < static_cast<int>(ours.model().def().bodies.size()); ++b) {
     ours.SetBodyState(0, b, world.Body(b));
   }
@@ -152,7 +152,7 @@ TEST_P(GroundOf, ARobotStandsOnHills) {
   def.height_fields = {SplitTheSame(scenes::Hills(120, 120, {0.5, 0.5, 0}))};
   def.height_fields[0].origin_m.z = -0.03;
   Diagnostics complaints;
-  Batch ours(Model::Compile(def, complaints), {});
+  WorldBatch ours(Model::Compile(def, complaints), {});
   const auto world = Make(def);
   world->Step(1e-3, 600);
   if (Is(Engine::kOde)) {

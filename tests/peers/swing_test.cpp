@@ -47,7 +47,7 @@ Trajectory Theirs(Engine engine, const ModelDef& def, int steps) {
 
 Trajectory Ours(const ModelDef& def, int steps) {
   Diagnostics complaints;
-  Batch world(Model::Compile(def, complaints), {});
+  WorldBatch world(Model::Compile(def, complaints), {});
   world.Step(kTimeS / steps, steps);
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
   return Look(
@@ -81,7 +81,7 @@ class Swing : public testing::TestWithParam<std::tuple<Engine, std::string, bool
 TEST_P(Swing, KeepsAllCablesTautAndTouchesNothing) {
   // Excludes contact and MuJoCo's different law for slack cables.
   Diagnostics complaints;
-  Batch world(Model::Compile(def_, complaints), {});
+  WorldBatch world(Model::Compile(def_, complaints), {});
   for (int i = 0; i < 1000; ++i) {
     world.Step(kTimeS / 1000);
     ASSERT_TRUE(world.Contacts(0).empty()) << world.Time(0);

@@ -36,7 +36,7 @@ ActuatorDef Limited(double speed, double acceleration = kNone, double force = kN
   return actuator;
 }
 
-double Rest(const Batch& world) { return world.Cable(0, 0).rest_length_m; }
+double Rest(const WorldBatch& world) { return world.Cable(0, 0).rest_length_m; }
 
 /// A body too heavy to move hangs on a motor that winds in 0.1 mm at 0.1 m/s: its impulse within 4
 /// ms must not depend on the number of steps.
@@ -58,7 +58,7 @@ TEST(Actuator, TheImpulseOfAMotorThatArrivesDoesNotDependOnTheStep) {
     const double stretch_time =
         kStretch * kTime + kWay * arrives / 2 + kWay * (kTime - arrives);  // [m s]
     for (const int steps : {1, 4, 64}) {
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.SetRestLengthTarget(0, 0, 1 - kStretch - kWay);
       world.Step(kTime / steps, steps);
       EXPECT_EQ(Rest(world), 1 - kStretch - kWay);
@@ -71,7 +71,7 @@ TEST(Actuator, TheImpulseOfAMotorThatArrivesDoesNotDependOnTheStep) {
 }
 
 TEST(Actuator, WithoutOneCommandsAreIgnored) {
-  Batch world = MakeBatch(Winch({}));
+  WorldBatch world = MakeBatch(Winch({}));
   world.SetRestLengthTarget(0, 0, 0.2);
   EXPECT_EQ(world.RestLengthTarget(0, 0), 0.2);
   world.Step(1e-3, 100);
@@ -82,7 +82,7 @@ TEST(Actuator, AnIdealOneIsAtItsTargetAfterOneStep) {
   ActuatorDef ideal;
   ideal.kind = ActuatorDef::Kind::kIdeal;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(Winch(ideal));
+    WorldBatch world = MakeBatch(Winch(ideal));
     EXPECT_EQ(world.RestLengthTarget(0, 0), 1.5);  // present rest length until the first command
     world.Step(h);
     EXPECT_EQ(Rest(world), 1.5);
@@ -101,7 +101,7 @@ TEST(Actuator, WindsAtItsSpeedAndStopsExactlyAtTheTarget) {
   const double speed = 0.07;
   for (const double h : kThreeStepsS) {
     for (const double target : {1.2345, 1.7654}) {
-      Batch world = MakeBatch(Winch(Limited(speed)));
+      WorldBatch world = MakeBatch(Winch(Limited(speed)));
       world.SetRestLengthTarget(0, 0, target);
       const double direction = target < 1.5 ? -1 : 1, way = std::fabs(target - 1.5);
       const int arrives = static_cast<int>(std::ceil(way / (speed * h)));
@@ -127,7 +127,7 @@ TEST(Actuator, AnAccelerationLimitGivesATrapezoidWithoutOvershoot) {
     const double time = reached ? way / speed + speed / a : 2 * std::sqrt(way / a);
     for (const double h : kThreeStepsS) {
       for (const double direction : {-1.0, 1.0}) {
-        Batch world = MakeBatch(Winch(Limited(speed, a)));
+        WorldBatch world = MakeBatch(Winch(Limited(speed, a)));
         const double target = 1.5 + direction * way;
         world.SetRestLengthTarget(0, 0, target);
         double before = 0, rate = 0;
@@ -158,7 +158,7 @@ TEST(Actuator, AnAccelerationLimitGivesATrapezoidWithoutOvershoot) {
 TEST(Actuator, AnAccelerationLimitBrakesBeforeItTurnsBack) {
   const double speed = 0.2, a = 0.8;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(Winch(Limited(speed, a)));
+    WorldBatch world = MakeBatch(Winch(Limited(speed, a)));
     world.SetRestLengthTarget(0, 0, 1.0);
     world.Step(h, StepsIn(0.5, h));  // at full speed
     const double turn = Rest(world);
@@ -183,7 +183,7 @@ TEST(Actuator, NeverWindsPastItsForce) {
   const double force = 50;
   for (const double h : kThreeStepsS) {
     for (const double acceleration : {kNone, 0.8}) {
-      Batch world = MakeBatch(Winch(Limited(0.2, acceleration, force), 0.1));
+      WorldBatch world = MakeBatch(Winch(Limited(0.2, acceleration, force), 0.1));
       world.SetRestLengthTarget(0, 0, 0.1);
       for (int n = 0; n < StepsIn(4, h); ++n) {
         world.Step(h);
@@ -200,7 +200,7 @@ TEST(Actuator, NeverWindsBelowItsLeastRestLength) {
   for (const double h : kThreeStepsS) {
     ActuatorDef actuator = Limited(0.5);
     actuator.min_rest_length_m = 0.8;
-    Batch world = MakeBatch(Winch(actuator));
+    WorldBatch world = MakeBatch(Winch(actuator));
     world.SetRestLengthTarget(0, 0, 0.1);
     for (int n = 0; n < StepsIn(2, h); ++n) {
       world.Step(h);
@@ -214,7 +214,7 @@ TEST(Actuator, DoesNotWindInWhileTheCableIsShorterThanItsLeastLength) {
   for (const double h : kThreeStepsS) {
     ActuatorDef actuator = Limited(0.5);
     actuator.min_length_m = 1.01;  // the cable is 1 m long
-    Batch world = MakeBatch(Winch(actuator));
+    WorldBatch world = MakeBatch(Winch(actuator));
     world.SetRestLengthTarget(0, 0, 0.5);
     world.Step(h, 100);
     EXPECT_EQ(Rest(world), 1.5) << h;
@@ -224,7 +224,7 @@ TEST(Actuator, DoesNotWindInWhileTheCableIsShorterThanItsLeastLength) {
   }
   ActuatorDef actuator = Limited(0.5);
   actuator.min_length_m = 0.99;
-  Batch world = MakeBatch(Winch(actuator));
+  WorldBatch world = MakeBatch(Winch(actuator));
   world.SetRestLengthTarget(0, 0, 0.5);
   world.Step(1e-3, 3000);
   EXPECT_EQ(Rest(world), 0.5);
@@ -239,7 +239,7 @@ TEST(Actuator, LiftsAWeightByAsMuchAsItWinds) {
     scene.length_m = scene.rest_length_m + scene.sag_m();
     ModelDef def = scene.Def();
     def.cables[0].actuator = Limited(0.05, 0.5);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.SetRestLengthTarget(0, 0, 0.8);
     world.Step(h, StepsIn(10, h));
     EXPECT_EQ(Rest(world), 0.8);
@@ -249,7 +249,7 @@ TEST(Actuator, LiftsAWeightByAsMuchAsItWinds) {
 }
 
 TEST(Actuator, ARestLengthSetByHandIsAtRestAndItsOwnTarget) {
-  Batch world = MakeBatch(Winch(Limited(0.2, 0.8)));
+  WorldBatch world = MakeBatch(Winch(Limited(0.2, 0.8)));
   world.SetRestLengthTarget(0, 0, 1.0);
   world.Step(1e-3, 200);
   world.SetRestLength(0, 0, 1.25);

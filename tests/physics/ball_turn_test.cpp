@@ -27,7 +27,7 @@ ModelDef BallOnBall(const Vec3& spin_rad_per_s) {
   def.joints.push_back(joint);
   return def;
 }
-Vec3 Spin(const Batch& world, int body = 0) {
+Vec3 Spin(const WorldBatch& world, int body = 0) {
   return world.Body(0, body).angular_velocity_rad_per_s;
 }
 
@@ -35,7 +35,7 @@ TEST(BallTurn, ADamperSlowsASpinAboutAnyAxisLikeAnExponential) {
   for (const Vec3& axis : {Vec3{1, 0, 0}, kSkew}) {
     ModelDef def = BallOnBall(5.0 * axis);
     def.joints[0].damping = 0.02;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double h = 1e-3, a = h * 0.02 / (2 * kInertia);
     world.Step(h, 500);
     const double mean_of_ends = 5 * std::pow((1 - a) / (1 + a), 500);
@@ -50,7 +50,7 @@ TEST(BallTurn, ASpringSwingsWithTheFrequencyOfItsStiffness) {
     ModelDef def = BallOnBall(8.0 * axis);
     def.joints[0].stiffness = 2;
     const double w = std::sqrt(2 / kInertia), h = 1e-3, seen = 2 / h * std::atan(w * h / 2);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world);
     for (int n = 1; n <= 2000; ++n) {
       world.Step(h);
@@ -68,7 +68,7 @@ TEST(BallTurn, ASpringTurnsBackByTheTurnVector) {
   const double half = 0.5 * 2.5;
   def.joints[0].turned = {std::cos(half), std::sin(half) * kSkew.x, std::sin(half) * kSkew.y,
                           std::sin(half) * kSkew.z};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   EXPECT_NEAR(world.Joint(0, 0).turned_rad, 2.5, 1e-14);
   EXPECT_NEAR(EnergyOf(world), 0.5 * 2 * 2.5 * 2.5, 1e-13);
   world.Step(1e-5);
@@ -86,13 +86,13 @@ TEST(BallTurn, ASpringsTorqueFollowsFromItsEnergyAtAnyTurn) {
     ModelDef def = BallOnBall({});
     def.joints[0].stiffness = 2;
     const auto start = [&](double more_rad, const Vec3& about) {
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       BodyState body = world.Body(0, 0);
       body.orientation = turned(more_rad, about) * turned(angle, kSkew);
       world.SetBodyState(0, 0, body);
       return world;
     };
-    Batch there = start(0, kSkew);
+    WorldBatch there = start(0, kSkew);
     EXPECT_NEAR(there.Joint(0, 0).turned_rad, angle, 1e-13);
     there.Step(1e-6);
     const Vec3 torque = there.Joint(0, 0).torque_n_m;
@@ -115,7 +115,7 @@ TEST(BallTurn, ASpringThatSwingsAboutChangingAxesKeepsItsEnergy) {
     ModelDef def = BallOnBall(15.0 * kSkew + 30.0 * kAcross);
     def.bodies[0].inertia_kg_m2 = {0.004, 0.01, 0.012, 0, 0, 0};
     def.joints[0].stiffness = 2;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world);
     double furthest = 0;
     for (int n = 0; n < StepsIn(10, h); ++n) {
@@ -132,7 +132,7 @@ TEST(BallTurn, ASpringThatSwingsAboutChangingAxesKeepsItsEnergy) {
 TEST(BallTurn, AHeavilyDampedStiffSpringIsStable) {
   ModelDef def = Pendulum(1.0);
   def.joints[0].stiffness = 1e7, def.joints[0].damping = 1e3;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 5000; ++n) {
     world.Step(4e-3);
     ASSERT_LT(world.Joint(0, 0).turned_rad, 1e-2) << n;
@@ -145,7 +145,7 @@ TEST(BallTurn, FrictionStopsASpinAboutAnyAxisAndThenHoldsIt) {
   for (const Vec3& axis : {Vec3{1, 0, 0}, kSkew, kAcross}) {
     ModelDef def = BallOnBall(10.0 * axis);
     def.joints[0].friction = 0.1;  // stops after I w / tau = 1 s
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 1; n <= 1100; ++n) {
       world.Step(1e-3);
       const double wanted = std::max(0.0, 10 - 0.1 / kInertia * n * 1e-3);
@@ -169,7 +169,7 @@ TEST(BallTurn, FrictionsLimitIsTheSameAboutEveryAxis) {
       JointDef pin;
       pin.name = "pin", pin.friction = share * torque, pin.axis = {0.6, 0, 0.8};
       def.joints.push_back(pin);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.Step(1e-3, 1000);
       const double turns = Norm(Spin(world));
       if (share > 1) {
@@ -195,7 +195,7 @@ TEST(BallTurn, WhatFrictionTakesIsItsTorqueTimesTheTurn) {
     def.bodies[0].angular_velocity_rad_per_s =
         Cross(Vec3{-std::sin(2.0), 0, std::cos(2.0)}, Vec3{0, -2, 0});
     def.joints[0].friction = 0.3;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double taken = 0;
     const double start = EnergyOf(world);
     for (int n = 0; n < StepsIn(3, h); ++n) {
@@ -224,7 +224,7 @@ TEST(BallTurn, AChainWithFrictionSpringsAndDampersFreezesOrSwingsAndStaysTogethe
       def.joints[i].friction = (holds ? 1.01 : 0.3) * load;
       def.joints[i].stiffness = holds ? 0 : 5, def.joints[i].damping = holds ? 0 : 0.01;
     }
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 0; n < 2000; ++n) {
       world.Step(1e-3);
       ASSERT_LT(WorstGap(world, def), 1e-9);
@@ -243,7 +243,7 @@ TEST(BallTurn, AFreePairKeepsItsMomenta) {
   def.joints[0].friction = 0.05, def.joints[0].stiffness = 1, def.joints[0].damping = 0.001;
   def.bodies[0].angular_velocity_rad_per_s = {1, 2, 3};
   def.bodies[1].angular_velocity_rad_per_s = {-10, 3, 8};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p = world.Momentum(0), l = world.AngularMomentum(0);
   world.Step(1e-3, 3000);
   EXPECT_LT(Distance(world.Momentum(0), p), 1e-12);

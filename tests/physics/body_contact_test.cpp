@@ -17,7 +17,7 @@ ModelDef Weightless() {
 }
 
 /// Steps until after the collision and checks that linear and angular momentum are kept.
-void Collide(Batch& world, double h, double time_s) {
+void Collide(WorldBatch& world, double h, double time_s) {
   const double momentum = 1;  // above all momenta in these tests [kg m/s]
   const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
   bool touched = false;
@@ -42,7 +42,7 @@ TEST(BodyContact, BallsInLineExchangeMomentumByNewtonsLaw) {
       scenes::AddBall(def, "two", m2, 0.15, {0.5, 0, 0}, material);
       def.bodies[0].velocity_m_per_s = {v1, 0, 0};
       def.bodies[1].velocity_m_per_s = {v2, 0, 0};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const Vec3 p0 = world.Momentum(0);
       world.Step(h, StepsIn(0.4, h));
       const double change = (1 + e) * (v1 - v2) / (m1 + m2);
@@ -63,7 +63,7 @@ TEST(BodyContact, BallsThatMeetAskewKeepLinearAndAngularMomentum) {
     def.bodies[0].velocity_m_per_s = {1.5, 0, 0};
     def.bodies[0].angular_velocity_rad_per_s = {3, -7, 11};
     def.bodies[1].velocity_m_per_s = {-0.4, 0.1, 0};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     Collide(world, h, 0.6);
     EXPECT_TRUE(world.Contacts(0).empty());
     EXPECT_GT(Norm(world.Body(0, 1).angular_velocity_rad_per_s), 0.1);  // friction has rotated it
@@ -78,7 +78,7 @@ TEST(BodyContact, CrossingRodsKeepLinearAndAngularMomentum) {
       scenes::AddRod(def, "one", 0.1, 0.02, {-0.5, 0, 0}, {0.5, 0, 0}, material);
       scenes::AddRod(def, "two", 0.3, 0.02, {0.1, -0.5, 0.2}, {0.3, 0.5, 0.2}, material);
       def.bodies[1].velocity_m_per_s = {-0.05, 0.3, -1};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       Collide(world, h, 0.5);
       EXPECT_GT(Norm(world.Body(0, 0).angular_velocity_rad_per_s), 1);
     }
@@ -94,7 +94,7 @@ TEST(BodyContact, RodsThatCrossInTheirMiddlesReboundByNewtonsLaw) {
       scenes::AddRod(def, "one", 0.1, 0.02, {-0.5, 0, 0}, {0.5, 0, 0}, material);
       scenes::AddRod(def, "two", 0.3, 0.02, {0, -0.5, 0.2}, {0, 0.5, 0.2}, material);
       def.bodies[1].velocity_m_per_s = {0, 0, -1};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.Step(h, StepsIn(0.4, h));
       EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, -(1 + e) * 0.75, SolverError(2)) << e;
       EXPECT_NEAR(world.Body(0, 1).velocity_m_per_s.z, -1 + (1 + e) * 0.25, SolverError(2)) << e;
@@ -113,7 +113,7 @@ TEST(BodyContact, ARodHitNearItsEndTurnsAsNewtonsLawSays) {
     scenes::AddRod(def, "rod", mass, 0.02, {-0.5, 0, 0}, {0.5, 0, 0}, material);
     def.bodies[0].velocity_m_per_s = {0, 0, -v};
     const double moment = def.bodies[1].inertia_kg_m2.yy;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     int steps = 0;
     for (; world.Body(0, 1).velocity_m_per_s.z > -1e-6; ++steps) {
       ASSERT_LT(steps, 250);
@@ -144,7 +144,7 @@ TEST(BodyContact, OneRodSlidesAlongAnotherWithKineticFriction) {
   // prevents. The remaining acceleration at its underside is mu m g r^2 / J = 1e-9 m/s^2.
   def.bodies[2].inertia_kg_m2 = {1e-3, 1e6, 1e-3, 0, 0, 0};
   def.bodies[2].velocity_m_per_s = {1, 0, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double h = 1e-3;
   for (int n = 1; n <= 300; ++n) {
     world.Step(h);
@@ -160,7 +160,7 @@ TEST(BodyContact, ShapesOfOneBodyAndShapesThatDoNotCollidePassThroughEachOther) 
   def.spheres.push_back({"inside", 0, {0.05, 0, 0}, 0.1, {}});  // overlaps the first
   def.spheres[1].collides = false;
   def.bodies[0].velocity_m_per_s = {1, 0, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 1000; ++n) {
     world.Step(1e-3);
     ASSERT_TRUE(world.Contacts(0).empty());
@@ -177,7 +177,7 @@ TEST(BodyContact, AFastBallDoesNotPassThroughAnother) {
   scenes::AddBall(def, "one", 0.2, 0.02, {-1.03, 0, 0}, material);
   scenes::AddBall(def, "two", 0.2, 0.02, {0, 0, 0}, material);
   def.bodies[0].velocity_m_per_s = {100, 0, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(4e-3, 20);
   EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.x, 0, SolverError(1) + RoundOff(1, 100));
   EXPECT_NEAR(world.Body(0, 1).velocity_m_per_s.x, 100, SolverError(1) + RoundOff(1, 100));
@@ -195,7 +195,7 @@ TEST(BodyContact, ATowerOfEverHeavierBallsStands) {
     weight += mass * 9.81;
     mass *= 10;
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 1000);
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
   for (int i = 0; i < 4; ++i) {

@@ -14,7 +14,7 @@ namespace {
 
 /// Steps until the ball has bounced `bounces` times and is in flight again. Returns the apex of its
 /// flight above the ground [m], which is exact: the scheme keeps parabolas.
-double HeightAfter(Batch& world, int bounces, double radius_m, double h) {
+double HeightAfter(WorldBatch& world, int bounces, double radius_m, double h) {
   int seen = 0, flying = 0;
   double before = world.Body(0, 0).velocity_m_per_s.z;
   for (int n = 0; n < StepsIn(10, h); ++n) {
@@ -41,7 +41,7 @@ TEST(Bounce, ABallRisesToESquaredTimesItsHeightAtAnyStepSize) {
         scenes::Ball scene;
         scene.drop_m = drop;
         scene.material.restitution = e;
-        Batch world = MakeBatch(scene.Def());
+        WorldBatch world = MakeBatch(scene.Def());
         const double rise = HeightAfter(world, 1, scene.radius_m, h);
         EXPECT_NEAR(rise / drop, e * e, 0.001 * e * e) << "e " << e << ", " << h << " s, " << drop;
       }
@@ -55,7 +55,7 @@ TEST(Bounce, EveryFurtherBounceLosesTheSameShare) {
     scene.drop_m = 1;
     scene.material.restitution = 0.9;
     for (int bounces = 2; bounces <= 5; ++bounces) {
-      Batch world = MakeBatch(scene.Def());
+      WorldBatch world = MakeBatch(scene.Def());
       const double share = std::pow(0.81, bounces);
       EXPECT_NEAR(HeightAfter(world, bounces, scene.radius_m, h), share, 0.001 * bounces * share)
           << bounces << " bounces at " << h << " s";
@@ -73,7 +73,7 @@ TEST(Bounce, ABallWithoutWeightReboundsWithETimesItsSpeed) {
       ModelDef def = scene.Def();
       def.gravity_m_per_s2 = {0, 0, 0};
       def.bodies[0].velocity_m_per_s = {0, 0, -1.7};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.Step(h, StepsIn(0.5, h));
       EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, 1.7 * e, SolverError(2)) << e << " " << h;
     }
@@ -84,7 +84,7 @@ TEST(Bounce, AnImpactWithoutRestitutionStopsAtTheSurface) {
   for (const double h : kThreeStepsS) {
     scenes::Ball scene;
     scene.drop_m = 1;
-    Batch world = MakeBatch(scene.Def());
+    WorldBatch world = MakeBatch(scene.Def());
     double lowest = 1;
     for (int n = 0; n < StepsIn(1, h); ++n) {
       world.Step(h);
@@ -108,7 +108,7 @@ TEST(Bounce, AtRestNothingSinksOrJitters) {
       scenes::BlockOnSlope block;
       block.material.restitution = block.slope.material.restitution = e;
       for (const ModelDef& def : {ball.Def(), block.Def()}) {
-        Batch world = MakeBatch(def);
+        WorldBatch world = MakeBatch(def);
         const double z = world.Body(0, 0).position_m.z;
         for (int n = 0; n < StepsIn(10, h); ++n) {
           world.Step(h);
@@ -124,7 +124,7 @@ TEST(Bounce, AtRestNothingSinksOrJitters) {
 
 TEST(Bounce, ARestingBallCarriesItsWeight) {
   scenes::Ball scene;
-  Batch world = MakeBatch(scene.Def());
+  WorldBatch world = MakeBatch(scene.Def());
   world.Step(1e-3, 10);
   const auto contacts = world.Contacts(0);
   ASSERT_EQ(contacts.size(), 1u);
@@ -153,7 +153,7 @@ TEST(Bounce, RestitutionsOfTwoMaterialsCombineAsTheModelSays) {
     def.spheres[0].material.restitution = 0.9;
     def.planes[0].material.restitution = 0.4;
     def.bodies[0].velocity_m_per_s = {0, 0, -1};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 500);
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, c.e, SolverError(2));
   }

@@ -44,7 +44,7 @@ TEST(BoxOnGround, OnAFlatFieldABoxMovesAsOnAPlane) {
     }
     AddFlat(ground, form, material);
     plane.planes.push_back({"plane", {0, 0, 1}, {}, material});
-    Batch a = MakeBatch(ground), b = MakeBatch(plane);
+    WorldBatch a = MakeBatch(ground), b = MakeBatch(plane);
     for (int i = 0; i < 10; ++i) {
       a.Step(1e-3, 60);
       b.Step(1e-3, 60);
@@ -78,7 +78,7 @@ TEST(BoxOnGround, ThreePeaksCarryTheirSharesOfABox) {
   }
   def.terrain_meshes.push_back(mesh);
   scenes::AddBox(def, "box", 2, {0.12, 0.12, 0.03}, {0.02, 0.01, 0.03}, {}, {0.5, 0.5, 0});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 500);
   EXPECT_LE(Norm(world.Body(0, 0).velocity_m_per_s), 1e-9);
   EXPECT_NEAR(world.Body(0, 0).position_m.z, 0.03, 1e-8);
@@ -194,7 +194,7 @@ TEST_P(BoxesOnHills, EnergyNeverRisesAndNothingSinksIn) {
   const sim::Surface hills(scenes::Hills(80, 80, {}));
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const ModelDef def = BoxesOverHills(seed, GetParam());
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double least_j = EnergyOf(world);
     for (int i = 0; i < 2000; ++i) {
       world.Step(1e-3, 1);
@@ -228,7 +228,7 @@ TEST(BoxOnGround, LanesHaveTheBitsOfAWorldAlone) {
 
 TEST(BoxOnGround, WhenItIsLookedAtChangesNothing) {
   const ModelDef def = BoxesOverHills(3);
-  Batch goes_on = MakeBatch(def), looks = MakeBatch(def);
+  WorldBatch goes_on = MakeBatch(def), looks = MakeBatch(def);
   for (int i = 0; i < 900; ++i) {
     goes_on.Step(1e-3, 1);
     ASSERT_TRUE(looks.Restore(0, looks.Save(0)));

@@ -13,8 +13,8 @@
 namespace taut::test {
 namespace {
 
-double Height(const Batch& world) { return world.Body(0, 0).position_m.z; }
-double Rise(const Batch& world) { return world.Body(0, 0).velocity_m_per_s.z; }
+double Height(const WorldBatch& world) { return world.Body(0, 0).position_m.z; }
+double Rise(const WorldBatch& world) { return world.Body(0, 0).velocity_m_per_s.z; }
 
 TEST(Cable, AnUndampedSpringFollowsTheLeapfrogsClosedFormForAHundredPeriods) {
   // x_n = A cos(n theta), v_n = -A w^2 h sin(n theta) / sin(theta), cos(theta) = 1 - (w h)^2 / 2,
@@ -24,7 +24,7 @@ TEST(Cable, AnUndampedSpringFollowsTheLeapfrogsClosedFormForAHundredPeriods) {
   const double middle = scene.rest_length_m + scene.sag_m();
   scene.length_m = middle + amplitude;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(scene.Def());
+    WorldBatch world = MakeBatch(scene.Def());
     const double theta = 2 * std::asin(w * h / 2);
     const int steps = StepsIn(100 * 6.2831853 / w, h);
     for (int n = 1; n <= steps; ++n) {
@@ -64,7 +64,7 @@ TEST(Cable, ADampedSpringFollowsTheSchemesRecurrence) {
   const double middle = scene.rest_length_m + scene.sag_m();
   scene.length_m = middle + 0.006;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(scene.Def());
+    WorldBatch world = MakeBatch(scene.Def());
     DampedSpring spring{scene.stiffness_n_per_m, scene.damping_n_s_per_m, scene.mass_kg, 0.006, 0};
     for (int n = 1; n <= StepsIn(2, h); ++n) {
       world.Step(h);
@@ -88,7 +88,7 @@ TEST(Cable, ADamperThatHoldsTheTensionAtZeroDoesSoWhileTheCableIsStretched) {
       ASSERT_GT(damping * speed, scene.stiffness_n_per_m * stretch);
       ModelDef def = scene.Def();
       def.bodies[0].velocity_m_per_s = {0, 0, speed};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.Step(h);  // starts with the tension of a cable at rest
       const double coasting = Rise(world);
       for (int n = 2; n <= StepsIn(0.3, h); ++n) {
@@ -109,7 +109,7 @@ TEST(Cable, ADampedSpringDecaysAsTheDifferentialEquationSaysToSecondOrder) {
   std::array<double, 2> errors{};
   for (std::size_t i = 0; i < 2; ++i) {
     const double h = i == 0 ? 1e-3 : 5e-4;
-    Batch world = MakeBatch(scene.Def());
+    WorldBatch world = MakeBatch(scene.Def());
     for (int n = 1; n <= StepsIn(0.5, h); ++n) {
       world.Step(h);
       const double t = n * h;
@@ -149,7 +149,7 @@ TEST(Cable, ASlackCableIsAbsentAndItsDamperToo) {
   for (const double stiffness : {1e3, 1e7}) {  // explicit force, and solved implicitly
     for (const double closing : {0.4, -0.4}) {
       const double start = closing > 0 ? 0.99 : 0.55;
-      Batch world = MakeBatch(Couple(stiffness, 50, start, closing));
+      WorldBatch world = MakeBatch(Couple(stiffness, 50, start, closing));
       for (int n = 1; n <= 1000; ++n) {
         world.Step(1e-3);
         ASSERT_EQ(world.Body(0, 0).velocity_m_per_s.x, closing / 2);
@@ -166,7 +166,7 @@ TEST(Cable, ASlackCableIsAbsentAndItsDamperToo) {
 }
 
 TEST(Cable, ATautCableConservesMomentumAndPullsItsEndsTogether) {
-  Batch world = MakeBatch(Couple(1e3, 5, 0.98, -0.4));
+  WorldBatch world = MakeBatch(Couple(1e3, 5, 0.98, -0.4));
   const Vec3 before = world.Momentum(0);
   world.Step(1e-3, 300);
   EXPECT_LT(world.Body(0, 1).velocity_m_per_s.x - world.Body(0, 0).velocity_m_per_s.x, 0);
@@ -179,7 +179,7 @@ TEST(Cable, ATautCableConservesMomentumAndPullsItsEndsTogether) {
 std::array<double, 2> TensionAt(DampingLaw law, double stretch, double rate) {
   ModelDef def = Couple(1e3, 50, 1 + stretch, -rate);
   def.cables[0].damping_law = law;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double reported = world.Cable(0, 0).tension_n;
   // A short step: the stretch changes by a share of 1e-7 at most.
   const double h = 1e-9;
@@ -223,7 +223,7 @@ TEST(Cable, AStiffCableFollowsTheMidpointRulesClosedFormAndKeepsItsEnergy) {
     const double h = 1e-3, w = std::sqrt(stiffness / scene.mass_kg), sag = scene.sag_m();
     const double middle = scene.rest_length_m + sag, theta = 2 * std::atan(w * h / 2);
     scene.length_m = middle;
-    Batch world = MakeBatch(scene.Def());
+    WorldBatch world = MakeBatch(scene.Def());
     const double amplitude = 0.7 * sag;  // the cable stays taut
     world.SetBodyState(0, 0, {{0, 0, -middle - amplitude}, {}, {}, {}});
     const double x0 = -Height(world) - middle;
@@ -247,7 +247,7 @@ TEST(Cable, AStiffCableHoldsAWeightWithTheRightTension) {
       scene.mass_kg = 0.1;
       scene.stiffness_n_per_m = stiffness;
       scene.damping_n_s_per_m = std::sqrt(0.1 * stiffness);  // half of the critical damping
-      Batch world = MakeBatch(scene.Def());
+      WorldBatch world = MakeBatch(scene.Def());
       world.Step(h, StepsIn(20, h));
       const CableState cable = world.Cable(0, 0);
       const double weight = 0.1 * 9.81;
@@ -269,7 +269,7 @@ TEST(Cable, AStiffCableThatCatchesAFallDoesNotAddEnergy) {
       scene.stiffness_n_per_m = stiffness;
       scene.length_m = 0.9;
       if (h * h * stiffness / scene.mass_kg <= 4) continue;  // not stiff at this step
-      Batch world = MakeBatch(scene.Def());
+      WorldBatch world = MakeBatch(scene.Def());
       const auto energy = [&] {
         const Energy e = world.TotalEnergy(0);
         return e.kinetic_j + e.gravity_j + e.elastic_j;

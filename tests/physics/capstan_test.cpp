@@ -61,7 +61,7 @@ TEST(Capstan, AtwoodsMachineSlipsAsEytelweinSays) {
   for (const double m2 : {0.4, 0.5, 0.53}) {
     ModelDef def = Atwood(1, m2, 0.2);
     def.cables[0].damping_n_s_per_m = 20;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double a = (1 - c * m2) / (1 + c * m2) * kG;
     EXPECT_NEAR(-AccelerationOf(world, 0, 0.6), a, 1e-3) << m2;
     EXPECT_NEAR(world.CableSpan(0, 0, 0).tension_n / world.CableSpan(0, 0, 1).tension_n, c, 1e-9);
@@ -72,7 +72,7 @@ TEST(Capstan, WithinTheRatioItDoesNotCreep) {
   for (const double m2 : {0.54, 0.7, 0.9}) {
     ModelDef def = Atwood(1, m2, 0.2);
     def.cables[0].damping_n_s_per_m = 200;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 4000);
     const double z = world.Body(0, 0).position_m.z;
     world.Step(1e-3, 4000);
@@ -85,7 +85,7 @@ TEST(Capstan, WithinTheRatioItDoesNotCreep) {
 
 TEST(Capstan, WhatFrictionTakesIsWhatIsMissing) {
   ModelDef def = Atwood(1, 0.4, 0.2);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double before = EnergyOf(world);
   world.Step(1e-3, 900);
   const double loss = world.CableFrictionLoss(0, 0);
@@ -97,7 +97,7 @@ TEST(Capstan, OverManyRodsTheRatioIsThatOfTheWholeAngle) {
   for (const int wheels : {1, 2, 3, 5, 9}) {
     ModelDef def = Atwood(1, 0.4, 0.2, wheels);
     def.cables[0].damping_n_s_per_m = 20;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 500);
     const double first = world.CableSpan(0, 0, 0).tension_n;
     const double last = world.CableSpan(0, 0, world.CableSpans(0) - 1).tension_n;
@@ -121,7 +121,7 @@ TEST(Capstan, AFreePulleyTurnsWithTheCable) {
   axle.body_b = 2;
   axle.axis = {0, 1, 0};
   def.joints.push_back(axle);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double a = (1 - 0.7) * kG / (1 + 0.7 + inertia / (radius * radius));
   EXPECT_NEAR(-AccelerationOf(world, 0, 1.0), 1.1772, 1e-3);
   EXPECT_NEAR(a, 1.1772, 1e-4);
@@ -138,7 +138,7 @@ TEST(Capstan, OverThreeQuartersOfATurn) {
   EXPECT_NEAR(math::DescribedPath(def.cables[0]).length_m(), 1.371238898, 5e-10);
   def.cables[0].actuator.kind = ActuatorDef::Kind::kIdeal;
   def.cables[0].damping_n_s_per_m = 100;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   // Wind out at the first end until friction alone holds the ball, while the cable slides.
   world.Step(1e-3, 2000);
   const double rest = world.Cable(0, 0).rest_length_m;
@@ -259,7 +259,7 @@ TEST(Capstan, MomentaAreKeptAndEnergyOnlyFalls) {
   for (int b = 0; b < 4; ++b)
     def.bodies[static_cast<std::size_t>(b)].velocity_m_per_s = {0.3 * b, 0.2 - 0.1 * b,
                                                                 0.5 * (b % 2)};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p = world.Momentum(0), l = world.AngularMomentum(0);
   const double energy = EnergyOf(world);
   for (int i = 0; i < 4000; ++i) {
@@ -285,7 +285,7 @@ TEST(Capstan, HardlyAnyFrictionIsNone) {
     motor.kind = ActuatorDef::Kind::kLimited;
     motor.max_speed_m_per_s = 0.07, motor.max_force_n = 1e3;
     motor.max_acceleration_m_per_s2 = std::numeric_limits<double>::infinity();
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.SetRestLengthTarget(0, 0, 0.5);
     world.Step(1e-3, 500);
     tension[friction > 0] = world.Cable(0, 0).tension_n;

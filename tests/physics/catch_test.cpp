@@ -47,22 +47,22 @@ BodyState StartOf(int phase) {
 }
 /// Returns a ball thrown up to one side of the point that 0.5 m of cable tie it to: it falls into
 /// the cable, bounces and swings in three dimensions. Eight worlds with different throws.
-Batch Thrown(double stiffness, double damping = 0, DampingLaw law = DampingLaw::kExact,
-             int worlds = kPhases) {
+WorldBatch Thrown(double stiffness, double damping = 0, DampingLaw law = DampingLaw::kExact,
+                  int worlds = kPhases) {
   ModelDef def;
   const BodyState first = StartOf(0);
   AddBall(def, kMass, first.position_m, first.velocity_m_per_s);
   AddCable(def, {kWorld, {0, 0, 0}}, {0, first.position_m}, stiffness, 0.5);
   def.cables[0].damping_n_s_per_m = damping;
   def.cables[0].damping_law = law;
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = worlds;
-  Batch batch = MakeBatch(def, options);
+  WorldBatch batch = MakeBatch(def, options);
   for (int i = 0; i < worlds; ++i) batch.SetBodyState(i, 0, StartOf(i));
   return batch;
 }
 /// Returns the energy above the rest position on a rigid cable [J].
-double EnergyAbove(const Batch& batch, int world) {
+double EnergyAbove(const WorldBatch& batch, int world) {
   const Energy e = batch.TotalEnergy(world);
   return e.kinetic_j + e.gravity_j + e.elastic_j + kMass * 9.81 * 0.5;
 }
@@ -72,7 +72,7 @@ struct Range {
 };
 /// Returns the range of the worlds' energies over time, each as a share of its initial value.
 template <class F>
-Range Follow(Batch& batch, double time_s, const F& energy) {
+Range Follow(WorldBatch& batch, double time_s, const F& energy) {
   Range range;
   std::vector<double> start, now;
   for (int i = 0; i < batch.worlds(); ++i) start.push_back(energy(batch, i));
@@ -93,7 +93,7 @@ Range Follow(Batch& batch, double time_s, const F& energy) {
 
 TEST(Catch, ImplicitTensionsKeepTheEnergyOfAMinuteOfCatches) {
   for (const double wh : kStiff) {
-    Batch batch = Thrown(StiffnessFor(wh));
+    WorldBatch batch = Thrown(StiffnessFor(wh));
     const Range energy = Follow(batch, 60, EnergyAbove);
     // The cable's direction is taken at the middle of the step: an error of third order per step.
     EXPECT_LT(energy.most, 1 + 1e-4) << "w h = " << wh;
@@ -104,7 +104,7 @@ TEST(Catch, ImplicitTensionsKeepTheEnergyOfAMinuteOfCatches) {
 
 TEST(Catch, ExplicitTensionsKeepTheEnergyOfAMinuteOfCatches) {
   for (const double wh : kSoft) {
-    Batch batch = Thrown(StiffnessFor(wh));
+    WorldBatch batch = Thrown(StiffnessFor(wh));
     const Range energy = Follow(batch, 60, EnergyAbove);
     EXPECT_LT(energy.most, 1.002) << "w h = " << wh;
     // While taut, leapfrog keeps v^2 + w^2 x^2 / (1 - w^2 h^2 / 4): the energy oscillates below its
@@ -118,7 +118,7 @@ TEST(Catch, ADampedCatchNeverGainsByEitherLaw) {
     for (const double wh : {0.1, 0.31, 0.5, 2.0, 10.0}) {
       for (const double ratio : {0.02, 0.5, 5.0}) {
         const double k = StiffnessFor(wh);
-        Batch batch = Thrown(k, 2 * ratio * std::sqrt(k * kMass), law);
+        WorldBatch batch = Thrown(k, 2 * ratio * std::sqrt(k * kMass), law);
         const Range energy = Follow(batch, 5, EnergyAbove);
         EXPECT_LT(energy.most, 1.002) << wh << ' ' << ratio;
         EXPECT_LT(energy.end, 0.98) << wh << ' ' << ratio;
@@ -130,13 +130,13 @@ TEST(Catch, ADampedCatchNeverGainsByEitherLaw) {
 
 TEST(Catch, AWorldIsCaughtAloneAsAmongOthersWithDampers) {
   for (const double wh : {0.2, 0.5, 5.0}) {
-    Batch batch = Thrown(StiffnessFor(wh));
+    WorldBatch batch = Thrown(StiffnessFor(wh));
     for (int i = 0; i < kPhases; i += 2) {
       batch.SetParameter(i, Parameter::kCableDamping, 0, 0.1 * i);
     }
     batch.Step(kStep, 3000);
     for (const int i : {1, 4, 7}) {
-      Batch alone = Thrown(StiffnessFor(wh), i % 2 == 0 ? 0.1 * i : 0, DampingLaw::kExact, 1);
+      WorldBatch alone = Thrown(StiffnessFor(wh), i % 2 == 0 ? 0.1 * i : 0, DampingLaw::kExact, 1);
       alone.SetBodyState(0, 0, StartOf(i));
       alone.Step(kStep, 3000);
       const Vec3 a = alone.Body(0, 0).position_m, b = batch.Body(i, 0).position_m;
@@ -146,13 +146,13 @@ TEST(Catch, AWorldIsCaughtAloneAsAmongOthersWithDampers) {
   }
 }
 
-double Total(const Batch& batch, int world) {
+double Total(const WorldBatch& batch, int world) {
   const Energy e = batch.TotalEnergy(world);
   return e.kinetic_j + e.gravity_j + e.elastic_j;
 }
 
 /// Returns two balls in a row of three cables, thrown across the row.
-Batch Chain(double stiffness, double across) {
+WorldBatch Chain(double stiffness, double across) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   AddBall(def, kMass, {0, 0, 0}, {0, 0, 0.2});
@@ -172,7 +172,7 @@ TEST(Catch, SeveralStiffCablesKeepTheEnergyToWhatIsMeasured) {
   };
   for (const Case& c : {Case{0.5, 0.8, 1.01}, Case{1, 0.2, 1.03}, Case{2, 0.02, 1.2}}) {
     for (int i = 0; i < 4; ++i) {
-      Batch batch = Chain(StiffnessFor(c.wh), 0.3 * i);
+      WorldBatch batch = Chain(StiffnessFor(c.wh), 0.3 * i);
       const Range energy = Follow(batch, 20, Total);
       EXPECT_GT(energy.least, c.least) << "w h = " << c.wh;
       EXPECT_LT(energy.most, c.most) << "w h = " << c.wh;
@@ -202,7 +202,7 @@ TEST(Catch, ARodAmongSixStiffCablesKeepsTheEnergyToWhatIsMeasured) {
       const Vec3 tip = tips[i % 2], anchor = 0.5 * anchors[i];
       AddCable(def, {kWorld, anchor}, {0, tip}, c.stiffness, 0.95 * Distance(anchor, tip));
     }
-    Batch batch = MakeBatch(def);
+    WorldBatch batch = MakeBatch(def);
     const Range energy = Follow(batch, 20, Total);
     EXPECT_GT(energy.least, c.least) << c.stiffness;
     EXPECT_LT(energy.most, c.most) << c.stiffness;

@@ -57,7 +57,7 @@ ModelDef Model(const Bars& cross) {
 double FrequencyOf(const Bars& cross, const Shape& shape, int cycles) {
   constexpr double kStep = 1e-4, kAmplitude = 1e-5;
   const ModelDef def = Model(cross);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int b = 0; b < 2; ++b) {
     BodyState state = world.Body(0, b);
     const double* q = &shape[static_cast<std::size_t>(3 * b)];

@@ -21,7 +21,7 @@ ModelDef Closed(ModelDef def) {
   return def;
 }
 
-double Total(const Batch& world) {
+double Total(const WorldBatch& world) {
   const Energy e = world.TotalEnergy(0);
   return e.kinetic_j + e.elastic_j;
 }
@@ -29,7 +29,7 @@ double Total(const Batch& world) {
 /// Runs for 60 s at 1 kHz and checks that momenta are kept and that the energy changes by less than
 /// `share` of its initial value.
 void KeepsEverything(const ModelDef& def, double share) {
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
   const double start = Total(world), kinetic = world.TotalEnergy(0).kinetic_j;
   ASSERT_GT(kinetic, 0);
@@ -47,7 +47,7 @@ void KeepsEverything(const ModelDef& def, double share) {
 TEST(Conservation, APrismIsInEquilibriumWithItsSelfStress) {
   // The scene's shape and force densities equal the closed form: nothing moves, and there is no
   // other equilibrium nearby to which it could move.
-  Batch world = MakeBatch(Closed(scenes::Prism3().Def()));
+  WorldBatch world = MakeBatch(Closed(scenes::Prism3().Def()));
   for (int c = 0; c < 9; ++c) {
     const CableState cable = world.Cable(0, c);
     const double density = c < 6 ? 100 / std::sqrt(3.0) : 100;
@@ -101,7 +101,7 @@ TEST(Conservation, ACableThroughEyeletsOnFreeBodiesKeepsMomentum) {
   cable.damping_n_s_per_m = 10;
   cable.rest_length_m = 1.09;
   def.cables.push_back(cable);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
   bool turned = false;
   for (int n = 1; n <= 5000; ++n) {

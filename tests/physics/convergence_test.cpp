@@ -10,7 +10,7 @@ namespace {
 
 /// Returns true for a heap driven apart by a jump of the rest length of a cable that is 10^4 times
 /// too stiff. Bodies at such speeds cross a whole scene in one step.
-bool ShotApart(const Batch& batch) {
+bool ShotApart(const WorldBatch& batch) {
   for (int b = 0; b < static_cast<int>(batch.model().def().bodies.size()); ++b) {
     if (Norm(batch.Body(0, b).velocity_m_per_s) > 300) return true;
   }
@@ -21,7 +21,7 @@ TEST(Convergence, RoughWorldsAreSolvedAtEveryStep) {
   int shot_apart = 0;
   for (const ModelDef& def : VariedModels()) {
     for (int seed = 0; seed < 16; ++seed) {
-      Batch batch = MakeBatch(def);
+      WorldBatch batch = MakeBatch(def);
       Scatter(batch, 0, seed);
       for (int i = 0; i < kStretches; ++i) {
         Disturb(batch, 0, seed, i);
@@ -32,7 +32,7 @@ TEST(Convergence, RoughWorldsAreSolvedAtEveryStep) {
             i = kStretches;
             break;
           }
-          ASSERT_LE(batch.Status(0).residual_m_per_s, BatchOptions{}.tolerance_m_per_s)
+          ASSERT_LE(batch.Status(0).residual_m_per_s, WorldBatchOptions{}.tolerance_m_per_s)
               << def.name << ", seed " << seed << ", step " << i * kStepsAStretch + k;
         }
       }
@@ -44,7 +44,7 @@ TEST(Convergence, RoughWorldsAreSolvedAtEveryStep) {
 /// The spine of seed 2 falls on its side and wedges its segments into each other; loads shared by
 /// ten contacts took thousands of sweeps when each contact was solved separately.
 TEST(Convergence, WedgedSegmentsTakeFewSweeps) {
-  Batch batch = MakeBatch(scenes::Tetraspine().Def());
+  WorldBatch batch = MakeBatch(scenes::Tetraspine().Def());
   Scatter(batch, 0, 2);
   int most = 0;
   for (int i = 0; i < kStretches; ++i) {
@@ -62,7 +62,7 @@ constexpr double kFriction = 0.4;
 
 TEST(Convergence, FrictionOfAnUnfinishedSolveStaysInItsCone) {
   for (const int most_solves : {1, 2, 16}) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.max_linear_solves = most_solves;
     int unfinished = 0, contacts = 0;
     for (ModelDef def : VariedModels()) {
@@ -74,7 +74,7 @@ TEST(Convergence, FrictionOfAnUnfinishedSolveStaysInItsCone) {
       rough(def.planes), rough(def.terrain_boxes);
       def.friction_combine = CombineRule::kGeometricMean;
       for (int seed = 0; seed < 8; ++seed) {
-        Batch batch = MakeBatch(def, options);
+        WorldBatch batch = MakeBatch(def, options);
         Scatter(batch, 0, seed);
         batch.SetParameter(0, Parameter::kFrictionScale, 0, 1);
         for (int k = 0; k < kStretches * kStepsAStretch; ++k) {

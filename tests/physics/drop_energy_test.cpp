@@ -137,7 +137,7 @@ void NeverGains(std::uint64_t kind, const std::string& name, int count) {
     const ModelDef def = MakeDrop(name, drop);
     double mass = 0;
     for (const BodyDef& body : def.bodies) mass += body.mass_kg;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world);
     const double scale = world.TotalEnergy(0).kinetic_j + mass * 9.81 * 0.3;
     double gain = -1;

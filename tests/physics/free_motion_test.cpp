@@ -21,7 +21,7 @@ TEST(FreeMotion, FlightIsTheExactParabolaAtEveryStep) {
     def.gravity_m_per_s2 = g;
     scenes::AddBall(def, "ball", 0.3, 0.1, x0, {});
     def.bodies[0].velocity_m_per_s = v0;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 1; n <= StepsIn(2, h); ++n) {
       world.Step(h);
       const double t = n * h;
@@ -39,7 +39,7 @@ TEST(FreeMotion, AForceOnABallGivesItsMomentum) {
   ModelDef def;
   def.gravity_m_per_s2 = {0, 0, 0};
   scenes::AddBall(def, "ball", 0.3, 0.1, {0, 0, 0}, {});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 f{0.3, -0.6, 1.2};
   world.SetNodeForce(0, 0, f);
   world.Step(1e-3, 500);
@@ -84,7 +84,7 @@ void TumblesForAMinute(const Vec3& moments, const Vec3& w) {
   body.inertia_kg_m2 = {moments.x, moments.y, moments.z, 0, 0, 0};
   body.angular_velocity_rad_per_s = w;
   def.bodies.push_back(body);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double h = 1e-3;
   const Vec3 l0 = world.AngularMomentum(0);
   const double e0 = world.TotalEnergy(0).kinetic_j;
@@ -149,7 +149,7 @@ TEST(FreeMotion, ABodyFlipsAboutItsMiddleAxisAtTheTimeOfEulersSolution) {
   std::array<double, 2> errors{};
   for (std::size_t i = 0; i < 2; ++i) {
     const double h = i == 0 ? 1e-3 : 5e-4;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double before = w.y, first = 0, last = 0;
     int crossings = 0;
     for (int n = 1; crossings < 9; ++n) {
@@ -178,7 +178,7 @@ TEST(FreeMotion, ASpinAboutAPrincipalAxisTurnsByItsSpeedTimesTime) {
   rod.angular_velocity_rad_per_s = {w, 0, 0};
   ModelDef def = rod.Def();
   def.nodes.push_back({"rim", 0, {0, 0, 0.003}});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double y = h * w / 4, short_by = 2 * 2 * (2.0 / 15) * y * y * y * y * y;
   for (int n = 1; n <= 10000; ++n) {
     world.Step(h);
@@ -211,7 +211,7 @@ TEST(FreeMotion, ASlantedRodPrecessesAboutItsMomentumAtTheClosedFormsRate) {
   std::array<double, 2> errors{};
   for (std::size_t i = 0; i < 2; ++i) {
     const double h = i == 0 ? 1e-3 : 5e-4;
-    Batch world = MakeBatch(rod.Def());
+    WorldBatch world = MakeBatch(rod.Def());
     EXPECT_LE(Distance(world.AngularMomentum(0), l), RoundOff(1, Norm(l)));
     EXPECT_LE(Distance(world.Body(0, 0).angular_velocity_rad_per_s, spin),
               RoundOff(1, 40 * across / own));

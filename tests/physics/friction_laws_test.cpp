@@ -55,7 +55,7 @@ TEST(FrictionLaws, ABlockStopsAfterTheTimeAndTheWayOfStribecksCurve) {
   for (const double h : kThreeStepsS) {
     ModelDef def = Block(0, Stribeck(s, k, w));
     def.bodies[0].velocity_m_per_s = {v0, 0, 0};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     int steps = 0;
     while (world.Body(0, 0).velocity_m_per_s.x > 1e-9 && steps < 100000) world.Step(h), ++steps;
     EXPECT_NEAR(steps * h, time, 1.5 * h) << h;
@@ -71,7 +71,7 @@ TEST(FrictionLaws, ViscousFrictionIsAnExponential) {
   for (const double h : kThreeStepsS) {
     ModelDef def = Block(0, Stribeck(k, k, 0.1, c));
     def.bodies[0].velocity_m_per_s = {0, v0, 0};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(h, StepsIn(time, h));
     const double v = (v0 + k / c) * std::exp(-kG * c * time) - k / c;
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.y, v, 3 * h * h) << h;
@@ -81,7 +81,7 @@ TEST(FrictionLaws, ViscousFrictionIsAnExponential) {
 TEST(FrictionLaws, UnderStribecksCurveABlockHoldsUpToTheStaticCoefficientAndThenRunsAway) {
   const Material material = Stribeck(0.5, 0.2, 0.05);
   for (const double share : {0.99, 1.01}) {
-    Batch world = MakeBatch(Block(std::atan(share * 0.5), material));
+    WorldBatch world = MakeBatch(Block(std::atan(share * 0.5), material));
     const Vec3 start = world.Body(0, 0).position_m;
     world.Step(1e-3, 2000);
     const double way = Distance(world.Body(0, 0).position_m, start);
@@ -105,7 +105,7 @@ TEST(FrictionLaws, ABlockSlidesDownWithTheCoefficientOfItsDirection) {
   for (const Way& way : ways) {
     for (const bool on_box : {false, true}) {
       for (const double h : kThreeStepsS) {
-        Batch world = MakeBatch(Block(angle, Directed(mu, 0.4, 1.5, 1.2, way.axis), on_box));
+        WorldBatch world = MakeBatch(Block(angle, Directed(mu, 0.4, 1.5, 1.2, way.axis), on_box));
         const int steps = StepsIn(0.5, h);
         world.Step(h, steps);
         const double a = kG * (std::sin(angle) - way.factor * mu * std::cos(angle));
@@ -125,7 +125,7 @@ TEST(FrictionLaws, WhatGroundSaysOfDirectionsHoldsForWhatSlidesOverIt) {
   for (const double sign : {1.0, -1.0}) {
     ModelDef def = Block(angle, {1, 1, 0});
     def.planes[0].material = Directed(mu, 0.4, 1.5, 1.2, sign * slope.downhill());
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(h, 500);
     const double a = kG * (std::sin(angle) - (sign > 0 ? 1.5 : 0.4) * mu * std::cos(angle));
     EXPECT_LE(Distance(world.Body(0, 0).velocity_m_per_s, (0.5 * a) * slope.downhill()),
@@ -142,7 +142,7 @@ TEST(FrictionLaws, ARodSlidesByItsOwnAxisWithoutSayingWhich) {
     def.planes.push_back({"ground", {0, 0, 1}, {}, {1, 1, 0}});
     def.friction_combine = CombineRule::kProduct;
     def.bodies[0].velocity_m_per_s = (sign * 1.0) * along;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 300);
     const double v = 1 - kG * 0.2 * (sign > 0 ? 0.5 : 1.5) * 0.3;
     EXPECT_LE(Distance(world.Body(0, 0).velocity_m_per_s, (sign * v) * along), SolverError(300));
@@ -157,7 +157,7 @@ TEST(FrictionLaws, BetweenTwoAnglesABlockGoesForwardOnly) {
   for (const double h : kThreeStepsS) {
     for (const bool forward : {true, false}) {
       const Vec3 axis = (forward ? 1.0 : -1.0) * slope.downhill();
-      Batch world = MakeBatch(Block(angle, Directed(0.3, 0.5, 1.2, 1, axis)));
+      WorldBatch world = MakeBatch(Block(angle, Directed(0.3, 0.5, 1.2, 1, axis)));
       const Vec3 start = world.Body(0, 0).position_m;
       world.Step(h, StepsIn(1, h));
       const double way = Distance(world.Body(0, 0).position_m, start);
@@ -174,7 +174,7 @@ TEST(FrictionLaws, AskewABlockSlidesAsThePrincipleOfMostDissipationSays) {
   const double m1 = 0.1, m2 = 0.4, h = 1e-3;
   ModelDef def = Block(0, Directed(0.2, m1 / 0.2, 9, m2 / 0.2, {2, 0, 0}));
   def.bodies[0].velocity_m_per_s = {1, 0.7, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   double x = 1, y = 0.7;
   for (int n = 0; n < 250; ++n) {
     world.Step(h);
@@ -203,7 +203,7 @@ TEST(FrictionLaws, TwoBodiesRubByDirectionAndKeepTheirMomentum) {
     def.planes.push_back({"ice", {0, 0, 1}, {}, {0, 0, 0}});
     def.friction_combine = CombineRule::kProduct;
     def.bodies[1].velocity_m_per_s = {sign, 0, 0};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 150);
     const double a = kG * 0.3 * (sign > 0 ? 0.5 : 1.5), t = 0.15;
     EXPECT_NEAR(world.Body(0, 1).velocity_m_per_s.x, sign * (1 - a * t), SolverError(150));
@@ -218,8 +218,8 @@ struct OwnLaw final : ContactFriction {
     return base + by_time * c.time_s + by_place * c.point_m.x;
   }
 };
-Batch WithLaw(const ModelDef& def, const OwnLaw& law) {
-  BatchOptions options;
+WorldBatch WithLaw(const ModelDef& def, const OwnLaw& law) {
+  WorldBatchOptions options;
   options.friction = std::make_shared<OwnLaw>(law);
   return MakeBatch(def, options);
 }
@@ -230,7 +230,7 @@ TEST(FrictionLaws, ALawOfOnesOwnDecidesByTime) {
   for (const double h : kThreeStepsS) {
     ModelDef def = Block(0, {0.9, 0.9, 0});
     def.bodies[0].velocity_m_per_s = {1, 0, 0};
-    Batch world = WithLaw(def, law);
+    WorldBatch world = WithLaw(def, law);
     const int n = StepsIn(0.4, h);
     world.Step(h, n);
     // Evaluated at the start of each step: sum of h (base + by_time i h).
@@ -250,7 +250,7 @@ TEST(FrictionLaws, ALawOfOnesOwnDecidesByPlace) {
   for (const double h : kThreeStepsS) {
     ModelDef def = Block(0, {0.9, 0.9, 0});
     def.bodies[0].velocity_m_per_s = {1, 0, 0};
-    Batch world = WithLaw(def, law);
+    WorldBatch world = WithLaw(def, law);
     world.Step(h, StepsIn(time, h));
     EXPECT_NEAR(world.Body(0, 0).position_m.x, x, h * h + 1e-9) << h;
   }
@@ -265,11 +265,11 @@ TEST(FrictionLaws, ALawOfOnesOwnIsToldWhatTouches) {
     }
   };
   const auto witness = std::make_shared<Witness>();
-  BatchOptions options;
+  WorldBatchOptions options;
   options.friction = witness;
   ModelDef def = Block(0, {0.3, 0.2, 0});
   def.bodies[0].velocity_m_per_s = {0.5, 0, 0};
-  Batch world = MakeBatch(def, options);
+  WorldBatch world = MakeBatch(def, options);
   world.Step(1e-3, 2);
   ASSERT_EQ(witness->seen.size(), 8U);
   double pressing = 0;
@@ -297,11 +297,11 @@ TEST(FrictionLaws, BelowZeroIsZeroAndWhatIsNoNumberHaltsTheWorld) {
   law.base = -3;
   ModelDef def = Block(0, {0.9, 0.9, 0});
   def.bodies[0].velocity_m_per_s = {1, 0, 0};
-  Batch slips = WithLaw(def, law);
+  WorldBatch slips = WithLaw(def, law);
   slips.Step(1e-3, 100);
   EXPECT_NEAR(slips.Body(0, 0).velocity_m_per_s.x, 1, SolverError(100));
   law.base = std::numeric_limits<double>::quiet_NaN();
-  Batch stands = WithLaw(def, law);
+  WorldBatch stands = WithLaw(def, law);
   stands.Step(1e-3, 100);
   EXPECT_TRUE(stands.Status(0).bits & kStatusNonFinite);
   EXPECT_TRUE(std::isfinite(stands.Body(0, 0).position_m.x));
@@ -324,9 +324,9 @@ TEST(FrictionLaws, AWorldHasTheSameBitsInCompanyAsAlone) {
   OwnLaw law;
   law.base = 0.2, law.by_place = 0.3;
   for (const bool own : {false, true}) {
-    BatchOptions options;
+    WorldBatchOptions options;
     if (own) options.friction = std::make_shared<OwnLaw>(law);
-    const auto push = [](Batch& world, int at, int number) {
+    const auto push = [](WorldBatch& world, int at, int number) {
       for (int body = 0; body < 3; ++body) {
         BodyState s = world.Body(at, body);
         s.velocity_m_per_s = {0.3 * number - 0.9, 0.1 * body, 0};
@@ -337,14 +337,14 @@ TEST(FrictionLaws, AWorldHasTheSameBitsInCompanyAsAlone) {
     options.worlds = 7;
     for (const Simd simd : {Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
       options.simd = simd;
-      Batch many = MakeBatch(def, options);
+      WorldBatch many = MakeBatch(def, options);
       for (int w = 0; w < 7; ++w) push(many, w, w);
       many.Step(1e-3, 400);
-      BatchOptions alone = options;
+      WorldBatchOptions alone = options;
       alone.worlds = 1;
       alone.simd = Simd::kScalar;
       for (int w = 0; w < 7; ++w) {
-        Batch one = MakeBatch(def, alone);
+        WorldBatch one = MakeBatch(def, alone);
         push(one, 0, w);
         one.Step(1e-3, 400);
         EXPECT_EQ(one.Hash(0), many.Hash(w)) << w << " of " << many.lanes() << " lanes";

@@ -44,7 +44,7 @@ TEST(Friction, NothingCreepsBelowTheFrictionAngle) {
   for (const Slider& slider : kSliders) {
     for (const double share : {0.3, 0.9, 0.999}) {
       for (const double h : kThreeStepsS) {
-        Batch world = MakeBatch(slider.def(std::atan(share * 0.5), 0.5, 0.5));
+        WorldBatch world = MakeBatch(slider.def(std::atan(share * 0.5), 0.5, 0.5));
         world.Step(h, StepsIn(1, h));
         const Vec3 before = world.NodePosition(0, 0);
         world.Step(h, StepsIn(10, h));
@@ -63,7 +63,7 @@ TEST(Friction, ASliderSlidesDownAtGTimesSineMinusMuCosine) {
       const double angle = 0.6, a = kG * (std::sin(angle) - mu * std::cos(angle));
       const scenes::Slope slope = SlopeOf(angle, mu, mu);
       for (const double h : kThreeStepsS) {
-        Batch world = MakeBatch(slider.def(angle, mu, mu));
+        WorldBatch world = MakeBatch(slider.def(angle, mu, mu));
         const Vec3 start = world.NodePosition(0, 0);
         const int steps = StepsIn(1, h);
         world.Step(h, steps);
@@ -83,7 +83,7 @@ TEST(Friction, BetweenTheTwoFrictionAnglesASliderStaysUntilItIsPushedAndThenSlid
   const scenes::Slope slope = SlopeOf(angle, 0.5, 0.3);
   for (const Slider& slider : kSliders) {
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(slider.def(angle, 0.5, 0.3));
+      WorldBatch world = MakeBatch(slider.def(angle, 0.5, 0.3));
       const Vec3 start = world.NodePosition(0, 0);
       world.Step(h, StepsIn(2, h));
       EXPECT_LT(Distance(world.NodePosition(0, 0), start), 2e-9) << slider.name << ", " << h;
@@ -110,11 +110,11 @@ TEST(Friction, ASliderAtRestSticksWithItsStaticFrictionWhicheverWayTheGroundTilt
   for (const Slider& slider : kSliders) {
     for (int direction = 0; direction < 8; ++direction) {
       const double a = direction * std::numbers::pi / 4 + 0.1;
-      const auto tilt = [&](Batch& world, double slope) {
+      const auto tilt = [&](WorldBatch& world, double slope) {
         world.SetParameter(0, Parameter::kGravityX, 0, slope * kG * std::cos(a));
         world.SetParameter(0, Parameter::kGravityY, 0, slope * kG * std::sin(a));
       };
-      Batch world = MakeBatch(slider.def(0, 0.5, 0.3));
+      WorldBatch world = MakeBatch(slider.def(0, 0.5, 0.3));
       world.Step(1e-3, 100);
       tilt(world, 0.49);
       const Vec3 before = world.NodePosition(0, 0);
@@ -130,7 +130,7 @@ TEST(Friction, ASliderAtRestSticksWithItsStaticFrictionWhicheverWayTheGroundTilt
 }
 
 /// Returns the displacement of a body that slides on level ground from `v0` until it stops.
-Vec3 SlideOut(Batch& world, const Vec3& v0, double h, double time_s) {
+Vec3 SlideOut(WorldBatch& world, const Vec3& v0, double h, double time_s) {
   BodyState body = world.Body(0, 0);
   body.velocity_m_per_s = v0;
   world.SetBodyState(0, 0, body);
@@ -154,7 +154,7 @@ TEST(Friction, ASliderStopsAfterVSquaredOverTwoMuG) {
   const double v = 1, mu = 0.4;
   for (const Slider& slider : kSliders) {
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(slider.def(0, mu, mu));
+      WorldBatch world = MakeBatch(slider.def(0, mu, mu));
       const Vec3 way = SlideOut(world, {v, 0, 0}, h, 1);
       const int steps = StepsIn(v / (mu * kG), h) + 1;
       EXPECT_NEAR(way.x, SlidingDistance(v, mu, h), SolverError(steps)) << slider.name << " " << h;
@@ -173,7 +173,7 @@ TEST(Friction, ASledStopsAfterTheSameDistanceInEveryDirection) {
       const double a = direction * std::numbers::pi / 4 + 0.1;
       ModelDef def = Sled(0, mu, mu);
       def.friction_law = law;
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const Vec3 way = SlideOut(world, {v * std::cos(a), v * std::sin(a), 0}, h, 0.5);
       const double straight = way.x * std::cos(a) + way.y * std::sin(a);
       const double aside = way.y * std::cos(a) - way.x * std::sin(a);
@@ -189,7 +189,7 @@ TEST(Friction, ASlidingSledPushedAsideTurnsItsWayAsTheConeSays) {
   // the scheme gives v' = v_free (1 - mu g h / |v_free|). Separate friction along each axis would
   // not.
   const double mu = 0.4, h = 1e-3, push = 2.0;  // [m/s^2]
-  Batch world = MakeBatch(Sled(0, mu, mu));
+  WorldBatch world = MakeBatch(Sled(0, mu, mu));
   world.SetParameter(0, Parameter::kGravityY, 0, push);
   BodyState body = world.Body(0, 0);
   body.velocity_m_per_s = {1, 0, 0};
@@ -237,7 +237,7 @@ TEST(Friction, TheConeHoldsAFootInBothDirectionsAndFrictionAlongSlipInOneOnly) {
 
   for (const FrictionLaw law : {FrictionLaw::kCone, FrictionLaw::kAlongSlip}) {
     def.friction_law = law;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(h);
     const Vec3 expected = law == FrictionLaw::kCone ? Vec3{} : across * c;
     // In the second half of the step the rod rotates by h w / 2, and the velocities of its foot
@@ -255,7 +255,7 @@ TEST(Friction, ASlidingBallRollsInTheEndWithFiveSeventhsOfItsSpeed) {
     for (const double h : kThreeStepsS) {
       scenes::Ball scene;
       scene.material = {mu, mu, 0};
-      Batch world = MakeBatch(scene.Def());
+      WorldBatch world = MakeBatch(scene.Def());
       BodyState ball = world.Body(0, 0);
       ball.velocity_m_per_s = {v * 0.6, v * 0.8, 0};
       world.SetBodyState(0, 0, ball);
@@ -277,7 +277,7 @@ TEST(Friction, ASlidingBallRollsInTheEndWithFiveSeventhsOfItsSpeed) {
 }
 
 TEST(Friction, FrictionScaleIsAFactorOnEveryCoefficient) {
-  Batch world = MakeBatch(Sled(0, 0.4, 0.4));
+  WorldBatch world = MakeBatch(Sled(0, 0.4, 0.4));
   world.SetParameter(0, Parameter::kFrictionScale, 0, 0.5);
   const Vec3 way = SlideOut(world, {1, 0, 0}, 1e-3, 1);
   EXPECT_NEAR(way.x, SlidingDistance(1, 0.2, 1e-3), SolverError(510));
@@ -296,7 +296,7 @@ TEST(Friction, CoefficientsOfTwoMaterialsCombineAsTheModelSays) {
     scene.material = {0.2, 0.2, 0};
     ModelDef def = scene.Def();
     def.friction_combine = c.rule;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const Vec3 way = SlideOut(world, {1, 0, 0}, 1e-3, 1);
     EXPECT_NEAR(way.x, SlidingDistance(1, c.mu, 1e-3), SolverError(640)) << c.mu;
   }

@@ -19,9 +19,9 @@ TEST(GroundEnds, ANodeOfSeveralRodsTouchesAFieldOnceAsItDoesAPlane) {
   on_field.planes.clear();
   on_field.height_fields.push_back(
       scenes::Field(60, 40, 0.04, spine.ground, [](double, double) { return 0.0; }));
-  BatchOptions options;
+  WorldBatchOptions options;
   options.tolerance_m_per_s = 1e-12;
-  Batch plane = MakeBatch(on_plane, options), field = MakeBatch(on_field, options);
+  WorldBatch plane = MakeBatch(on_plane, options), field = MakeBatch(on_field, options);
   std::size_t most = 0;
   for (int i = 0; i < 300; ++i) {
     plane.Step(1e-3, 1);
@@ -44,7 +44,7 @@ TEST(GroundEnds, ARodOverThreeRidgesIsNotPushedIn) {
     const int column = static_cast<int>(std::lround(x / 0.05));
     return column == 0 ? higher : column % 2 == 0 ? 0.0 : -0.02;
   }));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 500);
   int pressing = 0;
   for (int i = 0; i < 20; ++i) {

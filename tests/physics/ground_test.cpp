@@ -46,7 +46,7 @@ TEST(Ground, ABallRollsOverTheTrianglesOfAPlaneAsOnAPlane) {
       def.bodies[0].velocity_m_per_s = 1.0 * down;
       def.bodies[0].angular_velocity_rad_per_s = {0, 1.0 / r, 0};
       ground.AddTo(def, std::tan(angle), material);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const double h = 1e-3;
       const int steps = StepsIn(3, h);
       world.Step(h, steps);
@@ -70,11 +70,11 @@ TEST(Ground, WhoeverFallsOffSaysSo) {
   def.height_fields.push_back(scenes::Field(20, 20, 0.1, {}, [](double, double) { return 1.0; }));
   def.height_fields.push_back(scenes::Field(20, 20, 0.1, {}, [](double, double) { return 0.0; }));
   def.height_fields[1].origin_m = {0, 5.0, 0};
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 3;
   for (const Simd simd : {Simd::kScalar, Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
     options.simd = simd;
-    Batch world = MakeBatch(def, options);
+    WorldBatch world = MakeBatch(def, options);
     for (const int safe : {0, 2}) {
       BodyState s = world.Body(safe, 1);
       s.position_m = {0, 5, 0.05};
@@ -101,7 +101,7 @@ TEST(Ground, WhoeverFallsOffSaysSo) {
     EXPECT_EQ(world.Status(1).bits, kStatusOk);
   }
   const auto bits = [&](const ModelDef& other) {
-    Batch world = MakeBatch(other);
+    WorldBatch world = MakeBatch(other);
     world.Step(h, StepsIn(0.3, h));
     return world.Status(0).bits;
   };
@@ -133,7 +133,7 @@ TEST(Ground, ARodSlidesAsFarAsOnAPlane) {
       // The rod slides along its axis and does not roll.
       def.bodies[0].velocity_m_per_s = 1.0 * along;
       ground.AddTo(def, 0, material);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const double h = 1e-3;
       world.Step(h, StepsIn(1, h));
       const BodyState end = world.Body(0, 0);
@@ -153,7 +153,7 @@ TEST(Ground, ARodRollsWithoutLoss) {
     def.bodies[0].velocity_m_per_s = {0.3, 0, 0};
     def.bodies[0].angular_velocity_rad_per_s = {0, 0.3 / r, 0};
     ground.AddTo(def, 0, material);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double h = 1e-3;
     world.Step(h, StepsIn(2, h));
     const BodyState end = world.Body(0, 0);
@@ -175,9 +175,9 @@ TEST(Ground, AFlatFieldIsThePlane) {
   scenes::AddGround(on_plane, material);
   Ground{"alternating", 1}.AddTo(on_field, 0, material);
   // Both batches solve the same equations in different directions, each to its tolerance.
-  BatchOptions options;
+  WorldBatchOptions options;
   options.tolerance_m_per_s = 1e-12;
-  Batch plane = MakeBatch(on_plane, options), field = MakeBatch(on_field, options);
+  WorldBatch plane = MakeBatch(on_plane, options), field = MakeBatch(on_field, options);
   const double h = 1e-3;
   for (int i = 0; i < 400; ++i) {
     plane.Step(h, 1);
@@ -228,7 +228,7 @@ TEST(Ground, OnHillsEnergyNeverRisesAndNothingSinksIn) {
   double highest_m = 0, deepest_m = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const ModelDef def = ThingsOverHills(seed);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double mass_kg = 0;
     for (const BodyDef& body : def.bodies) mass_kg += body.mass_kg;
     double least_j = EnergyOf(world);
@@ -254,7 +254,7 @@ TEST(Ground, OnHillsEnergyNeverRisesAndNothingSinksIn) {
 
 TEST(Ground, ARobotStandsOnHillsWithoutCreeping) {
   const ModelDef def = OnHills::Def(3, 0.03);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 20000);
   for (std::size_t b = 0; b < def.bodies.size(); ++b) {
     EXPECT_LE(Norm(world.Body(0, static_cast<int>(b)).velocity_m_per_s), 1e-9) << b;
@@ -262,11 +262,11 @@ TEST(Ground, ARobotStandsOnHillsWithoutCreeping) {
 }
 
 TEST(Ground, LanesOnDifferentHillsHaveTheBitsOfAWorldAlone) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 8;
   const ModelDef def = OnHills::Def(1, 0.05);
-  Batch all = MakeBatch(def, options);
-  const auto start = [&](Batch& batch, int world, int which) {
+  WorldBatch all = MakeBatch(def, options);
+  const auto start = [&](WorldBatch& batch, int world, int which) {
     for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
       BodyState state = batch.Body(world, b);
       state.position_m = state.position_m + Vec3{0.07 * which, -0.05 * which, 0};
@@ -276,7 +276,7 @@ TEST(Ground, LanesOnDifferentHillsHaveTheBitsOfAWorldAlone) {
   for (int w = 0; w < 8; ++w) start(all, w, w);
   all.Step(1e-3, 600);
   for (int w = 0; w < 8; ++w) {
-    Batch alone = MakeBatch(def);
+    WorldBatch alone = MakeBatch(def);
     start(alone, 0, w);
     alone.Step(1e-3, 600);
     EXPECT_EQ(alone.Hash(0), all.Hash(w)) << w;
@@ -287,7 +287,7 @@ TEST(Ground, WhenItIsLookedAtChangesNothing) {
   // After Restore all pairs are tested again; a world that continues tests a pair only when it has
   // come near.
   const ModelDef def = OnHills::Def(5, 0.05);
-  Batch goes_on = MakeBatch(def), looks = MakeBatch(def);
+  WorldBatch goes_on = MakeBatch(def), looks = MakeBatch(def);
   for (int i = 0; i < 600; ++i) {
     goes_on.Step(1e-3, 1);
     ASSERT_TRUE(looks.Restore(0, looks.Save(0)));
@@ -316,11 +316,11 @@ ModelDef TiedRodsOverBumps() {
 }
 
 TEST(Ground, WorldsWithManyContactsAndWithFewHaveTheBitsOfAWorldAlone) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 8;
   const ModelDef def = TiedRodsOverBumps();
-  Batch all = MakeBatch(def, options);
-  const auto start = [&](Batch& batch, int world, int which) {
+  WorldBatch all = MakeBatch(def, options);
+  const auto start = [&](WorldBatch& batch, int world, int which) {
     for (int b = 0; b < 2; ++b) {
       BodyState state = batch.Body(world, b);
       state.position_m = state.position_m + Vec3{0.05 * which, -0.05 * which, 0.002 * which};
@@ -329,7 +329,7 @@ TEST(Ground, WorldsWithManyContactsAndWithFewHaveTheBitsOfAWorldAlone) {
     }
   };
   for (int w = 0; w < 8; ++w) start(all, w, w);
-  std::vector<Batch> alone;
+  std::vector<WorldBatch> alone;
   for (int w = 0; w < 8; ++w) {
     alone.push_back(MakeBatch(def));
     start(alone.back(), 0, w);
@@ -339,7 +339,7 @@ TEST(Ground, WorldsWithManyContactsAndWithFewHaveTheBitsOfAWorldAlone) {
   for (int i = 0; i < 50; ++i) {
     all.Step(1e-3, 20);
     for (int w = 0; w < 8; ++w) {
-      Batch& one = alone[static_cast<std::size_t>(w)];
+      WorldBatch& one = alone[static_cast<std::size_t>(w)];
       one.Step(1e-3, 20);
       ASSERT_EQ(one.Hash(0), all.Hash(w)) << w << " " << i;
       EXPECT_EQ(one.Status(0).bits, kStatusOk) << w << " " << i;

@@ -79,7 +79,7 @@ TEST(Hanging, AChainOfMassesStaysInItsClosedForm) {
       Chain chain;
       chain.stiffness_n_per_m = stiffness;
       const ModelDef def = chain.Solve();
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       double away = 0, wrong = 0;
       for (int n = 0; n < StepsIn(5, h); ++n) {
         world.Step(h);
@@ -110,7 +110,7 @@ TEST(Hanging, AChainOfManyMassesHangsAsDeepAsTheCatenary) {
   chain.stiffness_n_per_m = 1e6;
   chain.horizontal_n = 1.5;
   const ModelDef def = chain.Solve();
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 1000);
   const double span = chain.places_m.back().x, depth = -world.Body(0, 31).position_m.z;
   const double a = chain.horizontal_n / (chain.mass_kg * kG / chain.rest_length_m);
@@ -131,7 +131,7 @@ TEST(Hanging, StiffCablesBetweenLightBodiesCarryTheirWeightsAfterAFall) {
         AddCable(def, above, below, stiffness, damping, 0.3);
         above = below;
       }
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       double largest = 0;
       for (int n = 0; n < StepsIn(10, h); ++n) {
         world.Step(h);
@@ -159,7 +159,7 @@ TEST(Hanging, AnUndampedCableAtOmegaH006KeepsPeriodAndAmplitudeForAHundredPeriod
   const Vec3 start{0, 0, -(1 + sag + amplitude)};
   AddPointMass(def, "mass", mass, start);
   AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const auto place = [&] { return world.Body(0, 0).position_m.z + 1 + sag; };
   double before = place(), here = before, crossing = -1, last_crossing = -1, first_top = 0, top = 0;
   int periods = -1;
@@ -200,7 +200,7 @@ TEST(Hanging, AMassThatACableCatchesAgainAndAgainKeepsTheEnergyOfItsFall) {
       const Vec3 start{0, 0, -(1 - fall)};
       AddPointMass(def, "mass", mass, start);
       AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const auto energy = [&] {
         const Energy e = world.TotalEnergy(0);
         return e.kinetic_j + e.gravity_j + e.elastic_j;
@@ -230,7 +230,7 @@ TEST(Hanging, AStiffCableThatIsTautAtTheStartKeepsItsEnergyFromTheFirstStepOn) {
     const Vec3 start{0, 0, -(1 + 1.5 * sag)};
     AddPointMass(def, "mass", mass, start);
     AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const auto energy = [&] {
       const Energy e = world.TotalEnergy(0);
       return e.kinetic_j + e.gravity_j + e.elastic_j;

@@ -112,7 +112,7 @@ TEST(Hull, OfABoxSlidesAndSpinsAsTheBox) {
       def->bodies[0].velocity_m_per_s = {1.2, 0.3, 0};
       def->bodies[0].angular_velocity_rad_per_s = {0, 0, 2};
     }
-    Batch a = MakeBatch(box), b = MakeBatch(hull);
+    WorldBatch a = MakeBatch(box), b = MakeBatch(hull);
     for (int i = 0; i < 10; ++i) {
       a.Step(1e-3, 60);
       b.Step(1e-3, 60);
@@ -135,7 +135,7 @@ TEST(Hull, ATetrahedronTipsOverWhereItsWeightPassesItsEdge) {
       AddHull(def, "a", TetrahedronCorners(0.2), {}, {}, material);
       AddFloor(def, floor, material);
       Slope(def, angle);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const Vec3 start = world.Body(0, 0).position_m;
       world.Step(1e-3, 1500);
       const double moved = Distance(world.Body(0, 0).position_m, start);
@@ -160,7 +160,7 @@ TEST(Hull, APrismRollsFromHalfTheAngleOfASide) {
               {0, 0, radius * std::cos(std::numbers::pi / sides)}, {}, material);
       AddFloor(def, floor, material);
       Slope(def, std::numbers::pi / sides + more);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const Vec3 start = world.Body(0, 0).position_m;
       world.Step(1e-3, 1000);
       const Vec3 now = world.Body(0, 0).position_m;
@@ -191,7 +191,7 @@ TEST(Hull, ALeverCarriesItsLoadsOnTwoPrisms) {
   rod.inertia_kg_m2 = {1e-4, 0.1, 0.1};
   def.bodies.push_back(rod);
   def.capsules.push_back({"rod", 2, {-0.5, 0, 0.01}, {0.5, 0, 0.01}, 0.01, material});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 500);
   EXPECT_LT(Norm(world.Body(0, 2).velocity_m_per_s), 1e-9);
   double left = 0, right = 0;
@@ -216,7 +216,7 @@ TEST(Hull, TwoInFlightKeepMomentumAndLoseNoEnergyIfElastic) {
       const double speed = chance.Within(0, 5);
       def.bodies.back().angular_velocity_rad_per_s = speed * chance.Direction();
     }
-    const auto moments = [&](const Batch& world, Vec3& linear, Vec3& angular) {
+    const auto moments = [&](const WorldBatch& world, Vec3& linear, Vec3& angular) {
       linear = angular = {};
       for (int b = 0; b < 2; ++b) {
         const BodyState s = world.Body(0, b);
@@ -230,7 +230,7 @@ TEST(Hull, TwoInFlightKeepMomentumAndLoseNoEnergyIfElastic) {
                   body.mass_kg * Cross(s.position_m, s.velocity_m_per_s);
       }
     };
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     Vec3 linear, angular, linear_now, angular_now;
     moments(world, linear, angular);
     const double before = EnergyOf(world);
@@ -299,7 +299,7 @@ TEST(Hull, AHeapComesToRestAndNothingIsInEachOther) {
       const ModelDef def = Heap(seed, on_hills);
       double weight_n = 0;
       for (const BodyDef& body : def.bodies) weight_n += body.mass_kg * kG;
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       double most = EnergyOf(world), deepest = 0, last = 0;
       for (int i = 0; i < 400; ++i) {
         world.Step(1e-3, 10);
@@ -344,7 +344,7 @@ TEST(Hull, OnBoxesThatTouchEachOtherItSlidesAsOnAPlane) {
                                      material});
     }
   }
-  Batch a = MakeBatch(flags), b = MakeBatch(plane);
+  WorldBatch a = MakeBatch(flags), b = MakeBatch(plane);
   a.Step(1e-3, 600);
   b.Step(1e-3, 600);
   EXPECT_LE(Distance(a.Body(0, 0).position_m, b.Body(0, 0).position_m), 1e-9);

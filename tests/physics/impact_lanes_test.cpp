@@ -20,7 +20,7 @@ constexpr int kBusy = 3;  ///< Index of the world that is disturbed.
 constexpr double kStepS = 1e-3;
 
 /// Changes the start of body 0 in one world.
-void Throw(Batch& batch, int world, const BodyState& start) {
+void Throw(WorldBatch& batch, int world, const BodyState& start) {
   BodyState at = batch.Body(world, 0);
   at.position_m = at.position_m + start.position_m;
   at.velocity_m_per_s = start.velocity_m_per_s;
@@ -31,16 +31,16 @@ void Throw(Batch& batch, int world, const BodyState& start) {
 /// Checks seven resting worlds and a disturbed one against single worlds, for every instruction
 /// set.
 void OneDisturbsNoOther(const ModelDef& def, const BodyState& start, int steps) {
-  Batch alone = MakeBatch(def), resting = MakeBatch(def);
+  WorldBatch alone = MakeBatch(def), resting = MakeBatch(def);
   Throw(alone, 0, start);
   alone.Step(kStepS, steps);
   resting.Step(kStepS, steps);
   ASSERT_NE(alone.Hash(0), resting.Hash(0));
   for (const Simd simd : {Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
-    BatchOptions wide;
+    WorldBatchOptions wide;
     wide.worlds = kWorlds;
     wide.simd = simd;  // falls back to an available instruction set
-    Batch batch = MakeBatch(def, wide);
+    WorldBatch batch = MakeBatch(def, wide);
     Throw(batch, kBusy, start);
     batch.Step(kStepS, steps);
     for (int world = 0; world < kWorlds; ++world) {
@@ -77,17 +77,17 @@ TEST(ImpactLanes, EightBoxesThatFallOnTheirEdgesAtOnce) {
     const Vec3 v = chance.Jolt(1), w = chance.Jolt(10);
     starts.push_back({{0, 0, high}, {}, v, w});
   }
-  BatchOptions wide;
+  WorldBatchOptions wide;
   wide.worlds = kWorlds;
   for (const Simd simd : {Simd::kSse2, Simd::kAvx2, Simd::kAvx512}) {
     wide.simd = simd;
-    Batch batch = MakeBatch(def, wide);
+    WorldBatch batch = MakeBatch(def, wide);
     for (int world = 0; world < kWorlds; ++world) {
       Throw(batch, world, starts[static_cast<std::size_t>(world)]);
     }
     batch.Step(kStepS, 1000);
     for (int world = 0; world < kWorlds; ++world) {
-      Batch alone = MakeBatch(def);
+      WorldBatch alone = MakeBatch(def);
       Throw(alone, 0, starts[static_cast<std::size_t>(world)]);
       alone.Step(kStepS, 1000);
       EXPECT_EQ(batch.Hash(world), alone.Hash(0)) << world << " " << static_cast<int>(simd);

@@ -27,7 +27,7 @@ TEST(Impact, ABallOnARestingBallBouncesForeverWithItsEnergy) {
       scenes::AddGround(def, material);
       scenes::AddBall(def, "lower", 1, r, {0, 0, r}, material);
       scenes::AddBall(def, "upper", 1, r, {0, 0, 3 * r + drop}, material);
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const double base = kG * 4 * r, fall = kG * drop;
       double low = 1, high = 1, before = 0;
       int bounces = 0;
@@ -58,7 +58,7 @@ std::array<double, 5> Cradle(double gap, double h) {
   for (int i = 0; i < 4; ++i)
     scenes::AddBall(def, "ball", 1, r, {i * (2 * r + gap), 0, 0}, material);
   def.bodies[0].velocity_m_per_s = {1, 0, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(h, StepsIn(0.6, h));
   std::array<double, 5> v{};
   for (std::size_t i = 0; i < 5; ++i) v[i] = world.Body(0, static_cast<int>(i)).velocity_m_per_s.x;
@@ -112,7 +112,7 @@ Shares Gas(std::uint64_t seed, double h) {
     scenes::AddBall(def, "ball", 1, 0.04, at, material);
     def.bodies.back().velocity_m_per_s = chance.Jolt(1);
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   Shares shares;
   for (int n = 0; n < StepsIn(20, h); ++n) {
@@ -156,7 +156,7 @@ TEST(Impact, AnEndThatTheOthersReboundThrowsDownReboundsInTheSameStep) {
     } else {
       scenes::AddGround(def, material);
     }
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double start = EnergyOf(world);
     world.Step(h);
     const BodyState rod = world.Body(0, 0);
@@ -180,7 +180,7 @@ TEST(Impact, ABallRisesToESquaredTimesItsHeightWhereverInTheStepItLands) {
       scene.radius_m = r;
       scene.drop_m = 0.2 + 0.0137 * i;
       scene.material = {0, 0, c.e};
-      Batch world = MakeBatch(scene.Def());
+      WorldBatch world = MakeBatch(scene.Def());
       while (world.Body(0, 0).velocity_m_per_s.z <= 0) {
         world.Step(h);
         ASSERT_LT(world.Time(0), 2);
@@ -201,7 +201,7 @@ TEST(Impact, ABallThatHasBouncedComesToRest) {
         scenes::Ball scene;
         scene.drop_m = 0.2 + 0.137 * i;
         scene.material = {0, 0, e};
-        Batch world = MakeBatch(scene.Def());
+        WorldBatch world = MakeBatch(scene.Def());
         world.Step(h, StepsIn(12, h));
         EXPECT_LE(std::fabs(world.Body(0, 0).velocity_m_per_s.z), 1e-10) << h << " " << e;
         EXPECT_NEAR(world.Body(0, 0).position_m.z, scene.radius_m, 1e-9) << h << " " << e;
@@ -214,7 +214,7 @@ TEST(Impact, ABallWithFullRestitutionBouncesForAMinuteWithItsEnergy) {
   scenes::Ball scene;
   scene.drop_m = 0.5;
   scene.material = {0, 0, 1};
-  Batch world = MakeBatch(scene.Def());
+  WorldBatch world = MakeBatch(scene.Def());
   const double base = scene.mass_kg * kG * scene.radius_m, fall = scene.mass_kg * kG * scene.drop_m;
   for (int n = 0; n < 60000; ++n) {
     world.Step(1e-3);

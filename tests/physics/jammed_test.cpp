@@ -9,14 +9,14 @@ namespace {
 TEST(Jammed, ABallThatWedgesInASledTakesBoundedWorkAndComesFree) {
   // This start shoots a ball between two runners of the sled to which a stiff cable ties it. Then
   // any squeeze force satisfies the contact laws.
-  Batch world = MakeBatch(scenes::Jumble().Def());
+  WorldBatch world = MakeBatch(scenes::Jumble().Def());
   Scatter(world, 0, 8);
   double energy_j = EnergyOf(world);
   for (int i = 0; i < 200; ++i) {
     world.Step(1e-3);
     const WorldStatus status = world.Status(0);
     // Implicit integration, its fallback, and position projection.
-    EXPECT_LE(status.linear_solves, 3 * BatchOptions().max_linear_solves) << i;
+    EXPECT_LE(status.linear_solves, 3 * WorldBatchOptions().max_linear_solves) << i;
     EXPECT_EQ(status.bits & ~kStatusNotConverged, 0u) << i;
     EXPECT_LE(EnergyOf(world), energy_j + 1e-2) << i;
     energy_j = EnergyOf(world);

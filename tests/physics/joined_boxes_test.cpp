@@ -77,9 +77,10 @@ TEST_P(OnTiles, ItMovesAsOnThePlane) {
   many.planes.clear(), few.planes.clear();
   AddTiles(many, 25, 20, 0.09, 0.11);
   AddTiles(few, 1, 2, 2, 1.5);
-  BatchOptions options;
+  WorldBatchOptions options;
   options.tolerance_m_per_s = 1e-12;
-  Batch a = MakeBatch(plane, options), b = MakeBatch(many, options), c = MakeBatch(few, options);
+  WorldBatch a = MakeBatch(plane, options), b = MakeBatch(many, options),
+             c = MakeBatch(few, options);
   for (int i = 0; i < 1500; ++i) {
     a.Step(1e-3), b.Step(1e-3), c.Step(1e-3);
     for (int k = 0; k < static_cast<int>(plane.bodies.size()); ++k) {
@@ -103,7 +104,7 @@ TEST(JoinedBoxes, ABoxHasItsFourCornersOnTiles) {
   ModelDef tiles = plane;
   plane.planes = {{"plane", {0, 0, 1}, {}, kMaterial}};
   AddTiles(tiles, 25, 20, 0.09, 0.11);
-  Batch a = MakeBatch(plane), b = MakeBatch(tiles);
+  WorldBatch a = MakeBatch(plane), b = MakeBatch(tiles);
   for (int i = 0; i < 300; ++i) {
     a.Step(1e-3), b.Step(1e-3);
     EXPECT_LE(Distance(a.Body(0, 0).position_m, b.Body(0, 0).position_m), 2e-4) << i;
@@ -124,7 +125,7 @@ TEST(JoinedBoxes, AStepIsAStep) {
     def.bodies[0].velocity_m_per_s = {1, 0, 0};
     def.terrain_boxes.push_back({"low", {-0.5, 0, -0.1}, {}, {0.5, 1, 0.1}, kMaterial});
     def.terrain_boxes.push_back({"high", {0.5, 0, 0}, {}, {0.5, 1, 0.2}, kMaterial});
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double farthest = -1;
     for (int i = 0; i < 500; ++i) {
       world.Step(1e-3);
@@ -142,7 +143,7 @@ TEST(JoinedBoxes, ARodThatHangsOverIsHeldByTheBorder) {
     ModelDef def;
     AddTiles(def, 4, 2, 0.1, 0.1);
     scenes::AddRod(def, "rod", 0.1, 0.01, {0.1 * side, 0, 0.01}, {0.28 * side, 0, 0.01}, kMaterial);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 300);
     EXPECT_NEAR(world.Body(0, 0).position_m.z, 0.01, 1e-6);
     // Statics: the end at 0.1, the border at 0.2, the center at 0.19.
@@ -162,7 +163,7 @@ TEST(JoinedBoxes, ABoxThatIsALittleInTwoTilesIsPushedUpByBoth) {
   scenes::AddBox(def, "box", 0.3, {0.05, 0.04, 0.03}, {-0.05 + 1e-5, 0.01, 0.03 - 1e-4}, {},
                  kMaterial);
   AddTiles(def, 2, 1, 0.2, 0.2);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int i = 0; i < 100; ++i) {
     world.Step(1e-3);
     for (const ContactState& c : world.Contacts(0)) EXPECT_GT(c.normal.z, 0.999) << i;

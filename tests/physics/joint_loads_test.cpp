@@ -117,7 +117,7 @@ TEST(JointLoads, ThoseOfEveryKindAreThoseOfTheFirstMoment) {
     def.cables.push_back(
         {"pull", {{2, {0.3, 0.6, 0.15}}, {kWorld, {1, 0, 2}}}, 100, 0.0, 1.5, {}, {}});
     const auto loads = StartJointLoads(def);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-6);
     for (int i = 0; i < 3; ++i) {
       const JointState now = world.Joint(0, i);

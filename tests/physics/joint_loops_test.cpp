@@ -32,7 +32,7 @@ TEST(Joint, AClosedLoopWithRedundantRowsMovesAsAParallelogram) {
   // + 1/2 + 1) m g L sin(a). Compared with a fine integration of this equation.
   const ModelDef def = FourBars(JointKind::kHinge);
   const double L = std::sqrt(1.04), k = 2.0 / (5.0 / 3) * kG / L;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   double a = std::atan(0.2), w = 0;
   const double a0 = a;
   for (int n = 1; n <= 2000; ++n) {
@@ -75,7 +75,7 @@ TEST(Joint, HowThickRodsAreIsNothingToAnOpenOrClosedChainOfBalls) {
           cable.stiffness_n_per_m = 100, cable.rest_length_m = i == 0 ? 0.5 : 1.0;
           def.cables.push_back(cable);
         }
-        Batch world = MakeBatch(def);
+        WorldBatch world = MakeBatch(def);
         const double start = EnergyOf(world);
         for (int n = 0; n < StepsIn(2, h); ++n) {
           world.Step(h);
@@ -103,7 +103,7 @@ TEST(Joint, AFrameOfWeldsThatTumblesIsSolvedThoughSixOfItsRowsAreRedundant) {
     j.body_a = (i + 3) % 4, j.body_b = i, j.from_m = j.to_m = corners[i];
     def.joints.push_back(j);
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   int solves = 0;
   for (int n = 0; n < 2000; ++n) {
     world.Step(1e-3);
@@ -121,7 +121,7 @@ TEST(Joint, ABodyThatIsFixedHoldsLikeTheWorld) {
   post.name = "post", post.com_m = {0.3, 0.1, 0.2}, post.fixed = true;
   by_body.bodies.push_back(post);
   by_body.joints[0].body_a = 3;
-  Batch one = MakeBatch(by_world), other = MakeBatch(by_body);
+  WorldBatch one = MakeBatch(by_world), other = MakeBatch(by_body);
   one.Step(1e-3, 1000), other.Step(1e-3, 1000);
   EXPECT_EQ(other.Status(0).bits, kStatusOk);
   EXPECT_LT(Distance(one.Body(0, 2).position_m, other.Body(0, 2).position_m), 1e-9);
@@ -131,7 +131,7 @@ TEST(Joint, ABodyThatIsFixedHoldsLikeTheWorld) {
 TEST(JointLong, AnHourOfSwingsLeavesNoGap) {
   for (const bool loop : {false, true}) {
     const ModelDef def = loop ? FourBars(JointKind::kHinge) : Chain(3, {0.1, 0, 0}, 1);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double gap = 0;
     int unsolved = 0;
     for (int n = 0; n < 3'600'000; ++n) {
@@ -150,23 +150,23 @@ TEST(JointLong, AnHourOfSwingsLeavesNoGap) {
 }
 
 void ExpectLanesLikeAlone(const ModelDef& def) {
-  const auto prepare = [](Batch& batch, int world, int as) {
+  const auto prepare = [](WorldBatch& batch, int world, int as) {
     batch.SetParameter(world, Parameter::kBodyMass, 1, 1 + 0.3 * as);
   };
   constexpr int kWorlds = 11;
   std::vector<std::uint64_t> alone;
   for (int w = 0; w < kWorlds; ++w) {
-    BatchOptions one;
+    WorldBatchOptions one;
     one.simd = Simd::kScalar;
-    Batch world = MakeBatch(def, one);
+    WorldBatch world = MakeBatch(def, one);
     prepare(world, 0, w);
     world.Step(1e-3, 1500);
     alone.push_back(world.Hash(0));
   }
   for (const int lanes : {2, 4, 8}) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = kWorlds, options.simd = static_cast<Simd>(lanes);  // or the widest available
-    Batch together = MakeBatch(def, options);
+    WorldBatch together = MakeBatch(def, options);
     for (int w = 0; w < kWorlds; ++w) prepare(together, w, w);
     together.Step(1e-3, 1500);
     for (int w = 0; w < kWorlds; ++w) {
@@ -214,7 +214,7 @@ TEST(Joint, AParallelogramComesToRestOnTheStopOfOneHinge) {
   for (const double restitution : {0.0, 0.5}) {
     ModelDef def = FourBars(JointKind::kHinge);
     def.joints[0].most = 0.5, def.joints[0].restitution = restitution;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double energy = EnergyOf(world);
     for (int n = 1; n <= 4000; ++n) {
       world.Step(1e-3);
@@ -231,7 +231,7 @@ TEST(Joint, AParallelogramComesToRestOnTheStopOfOneHinge) {
 TEST(Joint, ASnapshotGoesOnWithTheSameBits) {
   ModelDef def = FourBars(JointKind::kBall);
   def.joints[1].friction = 0.2, def.joints[2].stiffness = 1, def.joints[3].damping = 0.1;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 300);
   const auto snapshot = world.Save(0);
   world.Step(1e-3, 300);
@@ -282,7 +282,7 @@ TEST(Joint, WhatItJoinsDoesNotTouchUnlessItSaysSo) {
     for (CapsuleDef& rod : def.capsules) rod.collides = true;
     def.gravity_m_per_s2 = {};
     def.joints[1].collides = collides;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3);
     EXPECT_EQ(world.Contacts(0).empty(), !collides);
   }

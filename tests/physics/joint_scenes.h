@@ -30,7 +30,7 @@ inline ModelDef Pendulum(double angle_rad, JointKind kind = JointKind::kBall) {
 inline ModelDef Chain(int rods, const Vec3& step_m, double last_mass_kg) {
   return scenes::RodChain(rods, step_m, last_mass_kg);
 }
-inline double WorstGap(const Batch& world, const ModelDef& def) {
+inline double WorstGap(const WorldBatch& world, const ModelDef& def) {
   double gap = 0;
   for (int i = 0; i < static_cast<int>(def.joints.size()); ++i) {
     gap = std::max(gap, world.Joint(0, i).gap_m);

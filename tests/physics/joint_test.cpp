@@ -11,7 +11,7 @@ namespace {
 
 /// Returns the time [s] of the n-th passage of the pendulum through the vertical, from rest; linear
 /// between steps.
-double CrossingTime(Batch& world, double step_s, int crossings) {
+double CrossingTime(WorldBatch& world, double step_s, int crossings) {
   double before = world.Body(0, 0).position_m.x;
   for (int n = 1, found = 0; n < 100000; ++n) {
     world.Step(step_s);
@@ -31,8 +31,8 @@ TEST(Joint, APinnedRodSwingsWithThePeriodOfItsLength) {
                wide = 1.180340599016096 * small;
   EXPECT_NEAR(small, 1.63795, 1e-5);
   for (const JointKind kind : {JointKind::kBall, JointKind::kHinge}) {
-    Batch slow = MakeBatch(Pendulum(1e-3, kind)),
-          far = MakeBatch(Pendulum(std::numbers::pi / 2, kind));
+    WorldBatch slow = MakeBatch(Pendulum(1e-3, kind)),
+               far = MakeBatch(Pendulum(std::numbers::pi / 2, kind));
     EXPECT_NEAR(CrossingTime(slow, 1e-3, 5) / 2.25, small, 1e-5 * small);
     EXPECT_NEAR(CrossingTime(far, 1e-3, 5) / 2.25, wide, 1e-5 * wide);
   }
@@ -44,7 +44,7 @@ TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
   double worst[3] = {}, last[3] = {};
   for (int k = 0; k < 3; ++k) {
     const double h = kThreeStepsS[k];
-    Batch world = MakeBatch(Pendulum(2.5));
+    WorldBatch world = MakeBatch(Pendulum(2.5));
     const double start = EnergyOf(world);
     const int steps = StepsIn(60, h);
     for (int n = 1; n <= steps; ++n) {
@@ -66,7 +66,7 @@ TEST(Joint, ASwingingRodKeepsItsEnergyAndItsPin) {
 
 TEST(Joint, AChainWithAThousandfoldMassAtItsEndCarriesItsWeight) {
   const ModelDef def = Chain(64, {0, 0, -0.1}, 1000);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   int solves = 0;
   for (int n = 0; n < 1000; ++n) {
     world.Step(1e-3);
@@ -83,7 +83,7 @@ TEST(Joint, AChainThatSwingsWithAHeavyEndStaysTogether) {
   // Ten times the mass of a rod: a rod of 1 kg under 400 N oscillates across at 200 Hz. A
   // thousandfold mass would make that 1.5 kHz, beyond the resolution of steps of 1 ms.
   const ModelDef def = Chain(64, {0.1, 0, 0}, 10);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   for (int n = 0; n < 3000; ++n) {
     world.Step(1e-3);
@@ -98,7 +98,7 @@ TEST(Joint, AChainThatCarriesTooMuchForTheStepSaysSo) {
   // For rods that carry F at both ends, across: w^2 = 12 F / (m l), so 2 / w is 1.2 ms at 14 kN.
   const auto status = [](double last_kg, const Vec3& along, double step_s) {
     const ModelDef def = Chain(16, along, last_kg);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 0; n < StepsIn(1.5, step_s) && world.Status(0).bits == kStatusOk; ++n) {
       world.Step(step_s);
     }
@@ -118,7 +118,7 @@ TEST(Joint, ALightRodThatCarriesAHeavyEndIsNoFastOscillator) {
   for (const double last_kg : {3450.0, 3550.0, 35000.0}) {
     ModelDef def = Chain(2, {0, 0, -0.1}, last_kg);
     def.bodies[0].velocity_m_per_s.x = 1e-3;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 0; n < 2000; ++n) {
       world.Step(1e-3);
       ASSERT_LT(std::fabs(world.Body(0, 0).position_m.x), 1e-3) << last_kg;
@@ -136,7 +136,7 @@ TEST(Joint, AFreeChainKeepsItsMomenta) {
     body.angular_velocity_rad_per_s = {1.0 + i, 2, 3 - i * 2.0};
     body.velocity_m_per_s = {0.1 * i, 0, 0.3};
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p = world.Momentum(0), l = world.AngularMomentum(0);
   for (int n = 0; n < 10000; ++n) world.Step(1e-3);
   EXPECT_LT(Distance(world.Momentum(0), p), 1e-11);
@@ -175,7 +175,7 @@ TEST(Joint, WhatAKindLeavesFreeIsFreeAndTheRestIsHeld) {
         BodyDef& body = def.bodies[0];
         body.inertia_kg_m2 = {0.01, 0.01, 0.01, 0, 0, 0};
         (turn ? body.angular_velocity_rad_per_s : body.velocity_m_per_s) = axes[i];
-        Batch world = MakeBatch(def);
+        WorldBatch world = MakeBatch(def);
         for (int k = 0; k < 100; ++k) world.Step(1e-3);
         const BodyState now = world.Body(0, 0);
         const Vec3 v = turn ? now.angular_velocity_rad_per_s : now.velocity_m_per_s;
@@ -196,7 +196,7 @@ TEST(Joint, AWeldCarriesForceAndTorqueLikeAClampedBeam) {
   JointDef joint;
   joint.name = "wall", joint.kind = JointKind::kWeld;
   def.joints.push_back(joint);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 10; ++n) world.Step(1e-3);
   const JointState wall = world.Joint(0, 0);
   EXPECT_LT(Distance(wall.force_n, {0, 0, 2 * kG}), 1e-9);
@@ -208,7 +208,7 @@ TEST(Joint, AHingesSpringTurnsWithTheFrequencyOfItsStiffness) {
   ModelDef def = BoxOn(JointKind::kHinge, {0, 1, 0});
   def.joints[0].stiffness = 5, def.joints[0].rest = 0.3;
   const double w = std::sqrt(5 / InertiaAlongY(def)), h = 1e-3;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   // The mean of start and end makes it tan(w h / 2): a slightly lower frequency.
   const double seen = 2 / h * std::atan(w * h / 2);
@@ -223,7 +223,7 @@ TEST(Joint, AHingesSpringTurnsWithTheFrequencyOfItsStiffness) {
 TEST(Joint, AHeavilyDampedStiffSpringIsStable) {
   ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
   def.joints[0].stiffness = 1e9, def.joints[0].damping = 1e5;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 10000; ++n) {
     world.Step(4e-3);
     ASSERT_LT(std::fabs(world.Joint(0, 0).coordinate), 1e-3);
@@ -236,7 +236,7 @@ TEST(Joint, FrictionHoldsUpToItsLimitAndSlowsBeyondIt) {
   for (const double limit : {9.82, 9.80}) {
     ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
     def.joints[0].friction = limit;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 0; n < 1000; ++n) world.Step(1e-3);
     const double wanted = limit > kG ? 0 : limit - kG;
     EXPECT_NEAR(world.Body(0, 0).velocity_m_per_s.z, wanted, 1e-10);
@@ -246,7 +246,7 @@ TEST(Joint, FrictionHoldsUpToItsLimitAndSlowsBeyondIt) {
   def.bodies[0].angular_velocity_rad_per_s = {0, 10, 0};
   def.joints[0].friction = 0.1;
   const double stops_s = 10 * InertiaAlongY(def) / 0.1, angle = 0.5 * 10 * stops_s;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < StepsIn(2 * stops_s, 1e-3); ++n) world.Step(1e-3);
   EXPECT_NEAR(world.Joint(0, 0).coordinate, angle, 1e-2 * angle);
   EXPECT_LT(std::fabs(world.Joint(0, 0).rate), 1e-10);
@@ -255,7 +255,7 @@ TEST(Joint, FrictionHoldsUpToItsLimitAndSlowsBeyondIt) {
 TEST(Joint, AHingeCountsItsTurns) {
   ModelDef def = BoxOn(JointKind::kHinge, {0, 1, 0});
   def.bodies[0].angular_velocity_rad_per_s = {0, -20, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 3000; ++n) world.Step(1e-3);
   // A drift rotates by h w (1 - (h w)^4 / 120).
   EXPECT_NEAR(world.Joint(0, 0).coordinate, -60 * (1 - std::pow(0.01, 4) / 120), 1e-11);
@@ -267,7 +267,7 @@ TEST(Joint, StopsHoldAndSendBack) {
     def.gravity_m_per_s2 = {};
     def.bodies[0].velocity_m_per_s = {1, 0, 0};
     def.joints[0].least = -0.2, def.joints[0].most = 0.1, def.joints[0].restitution = restitution;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double far = 0;
     for (int n = 0; n < 200; ++n)
       world.Step(1e-3), far = std::max(far, world.Joint(0, 0).coordinate);
@@ -279,7 +279,7 @@ TEST(Joint, StopsHoldAndSendBack) {
   // weight.
   ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
   def.joints[0].least = -0.05;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 1000; ++n) world.Step(1e-3);
   EXPECT_NEAR(world.Joint(0, 0).coordinate, -0.05, 1e-12);
   EXPECT_NEAR(world.Joint(0, 0).force_n.z, kG, 1e-9);
@@ -291,7 +291,7 @@ TEST(Joint, AStopThatIsPassedAtTheStartLetsItsBodyReturnSlowly) {
   // weight would move it further, h g / 2.
   ModelDef def = BoxOn(JointKind::kPrismatic, {0, 0, 1});
   def.joints[0].least = 0.01;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   double fastest = 0;
   for (int n = 0; n < 3000; ++n) {
     world.Step(1e-3);
@@ -306,7 +306,7 @@ TEST(Joint, ABallsConeStopsASwing) {
   ModelDef def = Pendulum(0.0);
   def.joints[0].axis = {0, 0, -1}, def.joints[0].most = 0.4;
   def.gravity_m_per_s2 = {3, 2, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 4000; ++n) {
     world.Step(1e-3);
     ASSERT_LT(world.Joint(0, 0).coordinate, 0.4 + 1e-12) << n;
@@ -322,7 +322,7 @@ TEST(Joint, ADistanceHoldsOrPullsOrStops) {
     j.name = "line", j.kind = JointKind::kDistance, j.from_m = {}, j.to_m = {0, 0, -0.5};
     change(j);
     def.joints.push_back(j);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 0; n < 2000; ++n) world.Step(1e-3);
     return world.Joint(0, 0);
   };

@@ -14,7 +14,7 @@ TEST(Loads, AFixedBodyHoldsACableAsTheWorldDoes) {
   scenes::HangingMass scene;
   scene.length_m = 1.02;
   ModelDef def = scene.Def();
-  Batch by_world = MakeBatch(def);
+  WorldBatch by_world = MakeBatch(def);
   BodyDef post;
   post.name = "post";
   post.fixed = true;
@@ -22,7 +22,7 @@ TEST(Loads, AFixedBodyHoldsACableAsTheWorldDoes) {
   post.velocity_m_per_s = {1, 2, 3};  // ignored on a fixed body
   def.bodies.push_back(post);
   def.cables[0].attachments[0].body = 1;
-  Batch by_post = MakeBatch(def);
+  WorldBatch by_post = MakeBatch(def);
   for (int n = 1; n <= 500; ++n) {
     by_world.Step(1e-3);
     by_post.Step(1e-3);
@@ -43,7 +43,7 @@ TEST(Loads, AFixedBodyDoesNotYieldToForcesAndContacts) {
   const int ball = scenes::AddBall(def, "ball", 0.2, 0.1, {0, 0, 0.2}, {0.5, 0.5, 0});
   const int post = scenes::AddBall(def, "post", 1.0, 0.1, {0, 0, 0}, {0.5, 0.5, 0});
   def.bodies[static_cast<std::size_t>(post)].fixed = true;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetNodeForce(0, post, {5, 6, 7});
   world.Step(1e-3, 500);
   EXPECT_EQ(Norm(world.Body(0, post).position_m), 0);
@@ -68,7 +68,7 @@ TEST(Loads, AForceOnANodePushesAndTurnsItsBody) {
   def.nodes.push_back({"end", 0, body.com_m + arm});
   const Vec3 f{3, -1, 2};
   const double h = 1e-3;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetNodeForce(0, 1, f);
   world.Step(h);
   const Vec3 torque = Rotate(Conjugate(askew), Cross(arm, f));
@@ -104,7 +104,7 @@ TEST(Loads, AForceOnARodsEndDoesTheWorkThatTheRodGains) {
   double errors[2];
   for (int i = 0; i < 2; ++i) {
     const double h = i == 0 ? 1e-3 : 5e-4;
-    Batch world = MakeBatch(rod.Def());
+    WorldBatch world = MakeBatch(rod.Def());
     const Vec3 f{0.01, 0, 0.04}, start = world.NodePosition(0, 1);
     world.SetNodeForce(0, 1, f);
     world.Step(h, StepsIn(0.5, h));
@@ -119,9 +119,9 @@ TEST(Loads, ParametersAreThoseOfOneWorld) {
   scenes::HangingMass scene;
   scene.length_m = 1.02;
   ModelDef def = scene.Def();
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 3;
-  Batch worlds = MakeBatch(def, options);
+  WorldBatch worlds = MakeBatch(def, options);
   worlds.SetParameter(1, Parameter::kBodyMass, 0, 2.0);
   worlds.SetParameter(1, Parameter::kCableStiffness, 0, 700);
   worlds.SetParameter(1, Parameter::kCableDamping, 0, 3);
@@ -143,11 +143,11 @@ TEST(Loads, ParametersAreThoseOfOneWorld) {
   scene.damping_n_s_per_m = 3;
   ModelDef other = scene.Def();
   other.gravity_m_per_s2 = {0.5, -0.25, -1.62};
-  Batch alone = MakeBatch(other);
+  WorldBatch alone = MakeBatch(other);
   alone.Step(1e-3, 200);
   EXPECT_EQ(Distance(worlds.Body(1, 0).position_m, alone.Body(0, 0).position_m), 0);
   EXPECT_EQ(Distance(worlds.Body(1, 0).velocity_m_per_s, alone.Body(0, 0).velocity_m_per_s), 0);
-  Batch untouched = MakeBatch(def);
+  WorldBatch untouched = MakeBatch(def);
   untouched.Step(1e-3, 200);
   EXPECT_EQ(worlds.Hash(0), untouched.Hash(0));
   EXPECT_EQ(worlds.Hash(2), untouched.Hash(0));
@@ -162,7 +162,7 @@ TEST(Loads, AnInertiaScalesWithItsMassAndTheSpinStays) {
   const Vec3 along = rod.to_m - rod.from_m;
   const double own = rod.radius_m * rod.radius_m / 2;
   const double across = Dot(along, along) / 12 + own / 2;
-  Batch world = MakeBatch(rod.Def());
+  WorldBatch world = MakeBatch(rod.Def());
   const Vec3 l = world.AngularMomentum(0);
   world.SetParameter(0, Parameter::kBodyMass, 0, 3 * rod.mass_kg);
   EXPECT_LE(Distance(world.AngularMomentum(0), 3.0 * l), RoundOff(2, Norm(l)));

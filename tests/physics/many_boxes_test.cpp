@@ -87,7 +87,7 @@ ModelDef Tumblers(std::uint64_t seed) {
   return def;
 }
 
-void ExpectTheSameBits(const Batch& a, const Batch& b, int body) {
+void ExpectTheSameBits(const WorldBatch& a, const WorldBatch& b, int body) {
   const BodyState p = a.Body(0, body), q = b.Body(0, body);
   EXPECT_EQ(Norm(p.position_m - q.position_m), 0) << body;
   EXPECT_EQ(Norm(p.velocity_m_per_s - q.velocity_m_per_s), 0) << body;
@@ -102,7 +102,7 @@ TEST(ManyBoxes, GiveTheBitsOfAsManyFixedBodies) {
     terrain.terrain_boxes = boxes;
     AddFarBall(kWorld, terrain);
     AddAsBodies(boxes, bodies);
-    Batch looked_up = MakeBatch(terrain), each = MakeBatch(bodies);
+    WorldBatch looked_up = MakeBatch(terrain), each = MakeBatch(bodies);
     std::set<int> touched;
     for (int step = 0; step < 1500; ++step) {
       looked_up.Step(1e-3), each.Step(1e-3);
@@ -163,7 +163,7 @@ TEST(ManyBoxes, GiveTheBitsOfTheFewInReach) {
   add_far(-6), well(many), add_far(6);
   AddFarBall(kWorld, few), AddFarBall(kWorld, many);
   ASSERT_LE(few.terrain_boxes.size() + few.spheres.size(), 8u);
-  Batch looked_up = MakeBatch(many), each = MakeBatch(few);
+  WorldBatch looked_up = MakeBatch(many), each = MakeBatch(few);
   std::size_t most = 0;
   for (int step = 0; step < 2000; ++step) {
     looked_up.Step(1e-3), each.Step(1e-3);
@@ -178,7 +178,7 @@ TEST(ManyBoxes, LetNothingThrough) {
   // Overlaps are computed without the hierarchy.
   ModelDef def = Tumblers(8);
   def.terrain_boxes = Field(400, 8);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int step = 0; step < 1500; ++step) {
     world.Step(1e-3);
     for (const Overlap& overlap : world.Overlaps(0)) {
@@ -199,7 +199,7 @@ TEST(ManyBoxes, ABallThatIsSetDownElsewhereLooksAgain) {
   for (int i = 0; i < 20; ++i) {
     def.terrain_boxes.push_back({"tile", {i - 10.0, 0, -0.5}, {}, {0.5, 4, 0.5}, kMaterial});
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3);
   BodyState at = world.Body(0, 0);
   at.position_m = {3.2, 0, 0.11};

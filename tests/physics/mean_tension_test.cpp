@@ -26,10 +26,10 @@ scenes::HangingMass LightMass(double mass_kg, double stiffness_n_per_m, double d
   return scene;
 }
 
-double LengthOf(const Batch& world) { return Norm(world.Body(0, 0).position_m); }
+double LengthOf(const WorldBatch& world) { return Norm(world.Body(0, 0).position_m); }
 
 /// Returns the instantaneous tension [N] by the law (cables.md, eq. 1).
-double AtOnce(const Batch& world, double rest_length_m) {
+double AtOnce(const WorldBatch& world, double rest_length_m) {
   const CableState cable = world.Cable(0, 0);
   const double stretch = cable.length_m - rest_length_m;
   if (!(stretch > 0)) return 0;
@@ -42,7 +42,7 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
   for (const double mass : {1e-3, 0.1}) {
     for (const double stiffness : {1e6, 1e7, 1e9}) {
       for (const double ratio : {0.0, 0.05, 0.5, 2.0}) {
-        Batch world = MakeBatch(LightMass(mass, stiffness, ratio).Def());
+        WorldBatch world = MakeBatch(LightMass(mass, stiffness, ratio).Def());
         for (int n = 0; n < 200; ++n) {
           const double before = world.Body(0, 0).velocity_m_per_s.z;
           const double stretch_before = LengthOf(world) - 1;
@@ -72,7 +72,7 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
 /// 1 g on 1e7 N/m, half of the critical damping: at rest after 0.06 ms, a sixteenth of a step. The
 /// initial vibration in the means decays within forty steps.
 TEST(MeanTension, OfALightMassOnAStiffCableIsItsWeightFromTheFirstStepOn) {
-  Batch world = MakeBatch(LightMass(1e-3, 1e7, 0.5).Def());
+  WorldBatch world = MakeBatch(LightMass(1e-3, 1e7, 0.5).Def());
   for (int n = 0; n < 300; ++n) {
     world.Step(kStepS);
     ASSERT_NEAR(world.Cable(0, 0).tension_n, 1e-3 * kG, (n < 50 ? 0.02 : 0.01) * 1e-3 * kG) << n;
@@ -83,7 +83,7 @@ TEST(MeanTension, BeforeAStepAndAfterAChangeByHandItIsThatOfTheMoment) {
   scenes::HangingMass scene = LightMass(1e-3, 1e7, 0);  // the tension oscillates from step to step
   scene.length_m = scene.rest_length_m + 5e-10;
   const auto change = [&](const char* what, double rest_length_m, const auto& by_hand) {
-    Batch world = MakeBatch(scene.Def());
+    WorldBatch world = MakeBatch(scene.Def());
     EXPECT_NEAR(world.Cable(0, 0).tension_n, 5e-3, 1e7 * RoundOff(1, 1)) << "before the first step";
     world.Step(kStepS, 7);
     EXPECT_GT(std::fabs(world.Cable(0, 0).tension_n - AtOnce(world, 1)), 1e-3)
@@ -93,16 +93,18 @@ TEST(MeanTension, BeforeAStepAndAfterAChangeByHandItIsThatOfTheMoment) {
     world.Step(kStepS);
     EXPECT_NE(world.Cable(0, 0).tension_n, AtOnce(world, rest_length_m)) << what;
   };
-  change("state", 1, [](Batch& world) { world.SetBodyState(0, 0, world.Body(0, 0)); });
-  change("rest length", 0.99, [](Batch& world) { world.SetRestLength(0, 0, 0.99); });
+  change("state", 1, [](WorldBatch& world) { world.SetBodyState(0, 0, world.Body(0, 0)); });
+  change("rest length", 0.99, [](WorldBatch& world) { world.SetRestLength(0, 0, 0.99); });
   change("stiffness", 1,
-         [](Batch& world) { world.SetParameter(0, Parameter::kCableStiffness, 0, 2e7); });
-  change("damping", 1, [](Batch& world) { world.SetParameter(0, Parameter::kCableDamping, 0, 1); });
-  change("mass", 1, [](Batch& world) { world.SetParameter(0, Parameter::kBodyMass, 0, 2e-3); });
+         [](WorldBatch& world) { world.SetParameter(0, Parameter::kCableStiffness, 0, 2e7); });
+  change("damping", 1,
+         [](WorldBatch& world) { world.SetParameter(0, Parameter::kCableDamping, 0, 1); });
+  change("mass", 1,
+         [](WorldBatch& world) { world.SetParameter(0, Parameter::kBodyMass, 0, 2e-3); });
 }
 
 TEST(MeanTension, IsThatOfTheMomentAfterAStepInWhichTheCableIsSoft) {
-  Batch world = MakeBatch(LightMass(1e-3, 1e4, 0.05).Def());
+  WorldBatch world = MakeBatch(LightMass(1e-3, 1e4, 0.05).Def());
   world.Step(kStepS, 5);
   EXPECT_NE(world.Cable(0, 0).tension_n, AtOnce(world, 1));
   world.Step(1e-5, 3);
@@ -112,10 +114,10 @@ TEST(MeanTension, IsThatOfTheMomentAfterAStepInWhichTheCableIsSoft) {
 TEST(MeanTension, ComesAlongInASnapshot) {
   const ModelDef def = LightMass(1e-3, 1e7, 0.05).Def();
   for (const auto& [name, simd] : kInstructionSets) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = 5;
     options.simd = simd;
-    Batch world = MakeBatch(def), other = MakeBatch(def, options);
+    WorldBatch world = MakeBatch(def), other = MakeBatch(def, options);
     world.Step(kStepS, 7);
     other.Step(kStepS, 3);
     const CableState cable = world.Cable(0, 0), neighbour = other.Cable(1, 0);
@@ -134,7 +136,7 @@ TEST(MeanTension, ComesAlongInASnapshot) {
 
 /// A world that is no longer finite returns the values of its last finite state.
 TEST(MeanTension, OfAWorldThatIsHaltedIsThatOfTheMoment) {
-  Batch world = MakeBatch(LightMass(1e-3, 1e7, 0.05).Def());
+  WorldBatch world = MakeBatch(LightMass(1e-3, 1e7, 0.05).Def());
   world.Step(kStepS, 7);
   world.SetNodeForce(0, 0, {0, 0, HUGE_VAL});
   world.Step(kStepS);

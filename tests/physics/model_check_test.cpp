@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "tests/constants.h"
 #include "tests/scenes/block_on_slope.h"
 #include "tests/scenes/rod.h"

@@ -49,7 +49,7 @@ TEST(Motion, ATurntableThrowsABlockOffAtTheSpeedWhereFrictionEnds) {
   for (const double share : {0.9995, 1.0005}) {
     ModelDef def = Slab(0.5, Turning(Speeds({{0, 0}, {4, share * limit}})));
     const int block = Box(def, "block", 0.3, {0.1, 0, 0.01}, {0.01, 0.01, 0.01}, {1, 1});
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double worst = 0;
     for (int n = 0; n < 12000; ++n) {
       world.Step(1e-3);
@@ -71,7 +71,7 @@ TEST(Motion, ABeltTakesABlockAlong) {
   // of the belt's work into heat and into motion.
   ModelDef def = Slab(0.5, Sliding({1, 0, 0}, Speeds({{0, 1}})));
   const int block = Box(def, "block", 0.3, {0, 0, 0.01}, {0.05, 0.05, 0.01}, {1, 1});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 500; ++n) world.Step(1e-3);
   const BodyState b = world.Body(0, block);
   EXPECT_NEAR(b.velocity_m_per_s.x, 1.0, 1e-9);
@@ -83,7 +83,7 @@ TEST(Motion, ABeltTakesABlockAlong) {
 TEST(Motion, APlatformLiftsAndItsWorkIsThatOfTheWeight) {
   ModelDef def = Slab(0.5, Sliding({0, 0, 1}, Speeds({{0.2, 0}, {0.7, 1}, {1.2, 1}, {1.7, 0}})));
   const int block = Box(def, "block", 0.3, {0, 0, 0.05}, {0.05, 0.05, 0.05}, {1, 1});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 450; ++n) world.Step(1e-3);
   EXPECT_NEAR(world.Motion(0, 0).force_n.z, 0.3 * (kG + 2), 1e-5);  // on its way up, 2 m/s^2
   for (int n = 0; n < 1550; ++n) world.Step(1e-3);
@@ -108,7 +108,7 @@ TEST(Motion, AShakerDrivesASpringLikeTheClosedForm) {
     slide.body_a = 0, slide.body_b = 1, slide.from_m = {0.9, 0, 0}, slide.to_m = {1, 0, 0};
     slide.stiffness = 0.5 * w0 * w0, slide.rest = 0.1;
     def.joints.push_back(slide);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 1; n <= StepsIn(2, h); ++n) {
       world.Step(h);
       const double t = n * h;
@@ -136,7 +136,7 @@ TEST(Motion, CablesThatItPullsHaveTheTensionOfTheAcceleration) {
     cable.stiffness_n_per_m = stiffness, cable.damping_n_s_per_m = stiffness < 1e3 ? 20 : 100;
     cable.rest_length_m = 0.95 - 0.5 * kG / stiffness;
     def.cables.push_back(cable);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int n = 0; n < 3000; ++n) {
       world.Step(1e-3);
       ASSERT_EQ(world.Status(0).bits, kStatusOk);
@@ -159,7 +159,7 @@ TEST(Motion, ARodWeldedToATurntableIsHeldByTheForceOfItsCircle) {
   weld.name = "weld", weld.kind = JointKind::kWeld, weld.body_a = 0, weld.body_b = 1;
   weld.from_m = weld.to_m = {0.2, 0, 0.1};
   def.joints.push_back(weld);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   for (int n = 0; n < 5000; ++n) {
     world.Step(1e-3);
@@ -202,17 +202,17 @@ ModelDef Busy() {
 TEST(Motion, LanesHaveTheBitsOfAWorldAlone) {
   const ModelDef def = Busy();
   for (const int worlds : {2, 4, 8, 11}) {
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = worlds, options.simd = BestSimd();
-    Batch together = MakeBatch(def, options);
+    WorldBatch together = MakeBatch(def, options);
     for (int w = 0; w < worlds; ++w)
       together.SetParameter(w, Parameter::kBodyMass, 2, 0.1 + 0.02 * w);
     for (int w = 0; w < worlds; ++w) together.SetTime(w, 0.05 * w);
     together.Step(1e-3, 600);
     for (int w = 0; w < worlds; ++w) {
-      BatchOptions one;
+      WorldBatchOptions one;
       one.simd = Simd::kScalar;
-      Batch alone = MakeBatch(def, one);
+      WorldBatch alone = MakeBatch(def, one);
       alone.SetParameter(0, Parameter::kBodyMass, 2, 0.1 + 0.02 * w);
       alone.SetTime(0, 0.05 * w);
       alone.Step(1e-3, 600);
@@ -222,7 +222,7 @@ TEST(Motion, LanesHaveTheBitsOfAWorldAlone) {
 }
 
 TEST(Motion, ASnapshotGoesOnWithTheSameBits) {
-  Batch world = MakeBatch(Busy());
+  WorldBatch world = MakeBatch(Busy());
   world.Step(1e-3, 300);
   const auto snapshot = world.Save(0);
   world.Step(1e-3, 300);
@@ -236,7 +236,7 @@ TEST(Motion, ASnapshotGoesOnWithTheSameBits) {
 
 TEST(Motion, BeforeTimeZeroItStandsStill) {
   ModelDef def = Slab(0.5, Sliding({1, 0, 0}, {{{0, 2}}, 0.1, 3, 1}));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetTime(0, -0.5);
   world.Step(1e-3, 499);
   EXPECT_EQ(world.Body(0, 0).position_m.x, 0);

@@ -8,8 +8,8 @@
 namespace taut::test {
 namespace {
 
-double Speed(const Batch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
-double Angle(const Batch& world) { return world.Motor(0, 0).rotor_angle_rad; }
+double Speed(const WorldBatch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
+double Angle(const WorldBatch& world) { return world.Motor(0, 0).rotor_angle_rad; }
 
 // A motor that holds is a fixed end for any motion of the weight: the same bits as without a motor,
 // also with a rotor so light that the cable would be affected by its rotation.
@@ -24,7 +24,7 @@ TEST(MotorStick, AMotorThatHoldsIsAFixedEnd) {
     const double held_n = share > 0 ? 2e-4 / (Way(motor) * share) : 10.0;
     scenes::HangingMass weight = Weight(0.6 * held_n / 9.81, 5000, 0.5);
     weight.length_m += 0.3 * weight.sag_m();
-    Batch held = MakeBatch(MotorWithWeight(motor, weight)), fixed = MakeBatch(weight.Def());
+    WorldBatch held = MakeBatch(MotorWithWeight(motor, weight)), fixed = MakeBatch(weight.Def());
     held.SetMotorEnabled(0, 0, false);
     for (int i = 0; i < 3000; ++i) {
       held.Step(1e-3);
@@ -49,7 +49,7 @@ TEST(MotorStick, ItStopsInTheStepThatFrictionAndBrakeHaveTimeIn) {
   const double rate = k * k / (motor.resistance_ohm * J), slows = 4e-4 / J;
   for (const double duty : {0.2, -0.2}) {
     for (const double longer : {0.99, 1.01, 1.5}) {
-      Batch world = MakeBatch(MotorAlone(motor));
+      WorldBatch world = MakeBatch(MotorAlone(motor));
       world.SetDuty(0, 0, duty);
       world.Step(1e-3, 200);
       const double speed = Speed(world), angle = Angle(world), w = std::fabs(speed);
@@ -82,7 +82,7 @@ TEST(MotorStick, TheEndOfTheSpoolIsNotReachedAgainstTheCable) {
   const double rest_m = 1 - tension_n / 1000;
   ModelDef def = MotorAlone(motor, rest_m + 1e-8, 1000);  // a small remaining travel
   def.cables[0].actuator.min_rest_length_m = rest_m - 1e-7;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetDuty(0, 0, 1);
   world.Step(1e-3, 1000);
   EXPECT_NEAR(world.Cable(0, 0).rest_length_m, rest_m, 2e-8);
@@ -95,7 +95,7 @@ TEST(MotorStick, TheEndOfTheSpoolIsNeverPassed) {
     def.cables[0].attachments[1].position_m = {0.05, 0, 0};
     const double least_m = 0.19 + 1e-4 * i;
     def.cables[0].actuator.min_rest_length_m = least_m;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.SetDuty(0, 0, 1);
     for (int step = 0; step < 300; ++step) {
       world.Step(1e-3);
@@ -114,7 +114,7 @@ TEST(MotorStick, ACableThatStopsItDoesNotTurnItBack) {
     motor.gear_ratio = gear_ratio;
     for (const double stiffness : {1e3, 1e5, 1e7}) {
       for (const double h : kThreeStepsS) {
-        Batch world = MakeBatch(MotorAlone(motor, 1.01, stiffness));
+        WorldBatch world = MakeBatch(MotorAlone(motor, 1.01, stiffness));
         world.SetDuty(0, 0, 1);
         double rest_m = 1.01;
         for (int i = 0; i < StepsIn(1.0, h); ++i) {
@@ -143,7 +143,7 @@ TEST(MotorStick, AWeightThatFallsIntoItsCableDoesNotTurnItBack) {
         scenes::HangingMass weight = Weight(0.3, stiffness, 0.1 * std::sqrt(0.3 * stiffness));
         weight.length_m = 1 - higher_m;
         for (const double h : {1.0 / 2000, 1.0 / 700, 1.0 / 250}) {
-          Batch world = MakeBatch(MotorWithWeight(motor, weight));
+          WorldBatch world = MakeBatch(MotorWithWeight(motor, weight));
           world.SetDuty(0, 0, 0.2);
           double rest_m = 1;
           for (int i = 0; i < StepsIn(0.2, h); ++i) {
@@ -168,7 +168,7 @@ TEST(MotorStick, WhatTurnsRoundWithinAStepWentOnBefore) {
   const double rate = k * k / (motor.resistance_ohm * J), h = 1e-3, z = rate * h;
   const double p = 1 + z + z * z / 2;
   for (const double sign : {1.0, -1.0}) {
-    Batch world = MakeBatch(MotorAlone(motor));
+    WorldBatch world = MakeBatch(MotorAlone(motor));
     world.SetDuty(0, 0, sign);
     world.Step(h, 100);
     world.SetDuty(0, 0, -sign);
@@ -197,7 +197,7 @@ TEST(MotorStick, PaysOutThroughAGearThatLocks) {
   for (const double stiffness : {1e3, 1e5, 1e6}) {
     for (const double h : kThreeStepsS) {
       const double tension_n = 0.3;  // stall torque: 1.3 N
-      Batch world = MakeBatch(MotorAlone(motor, 1 - tension_n / stiffness, stiffness));
+      WorldBatch world = MakeBatch(MotorAlone(motor, 1 - tension_n / stiffness, stiffness));
       world.SetDuty(0, 0, -1);
       double before_n = tension_n;
       for (int i = 0; i < StepsIn(0.2, h); ++i) {
@@ -219,7 +219,7 @@ TEST(MotorStick, FrictionFallsWithTheSquareOfTheSpeed) {
   motor.static_friction_torque_n_m = 3e-4;
   for (const double bend_rad_per_s : {5.0, 30.0}) {
     motor.stribeck_speed_rad_per_s = bend_rad_per_s;
-    Batch world = MakeBatch(MotorAlone(motor));
+    WorldBatch world = MakeBatch(MotorAlone(motor));
     world.SetDuty(0, 0, 0.06);
     world.Step(1e-3, 2000);
     const double k = motor.torque_constant_n_m_per_a, w = Speed(world);
@@ -234,7 +234,7 @@ TEST(MotorStick, FrictionFallsWithTheSquareOfTheSpeed) {
 TEST(MotorStick, AMotorThatIsPutSomewhereHasNoSlackInItsGear) {
   DcMotorDef motor;
   motor.backlash_rad = 0.1;
-  Batch world = MakeBatch(MotorAlone(motor, 1.5));
+  WorldBatch world = MakeBatch(MotorAlone(motor, 1.5));
   world.SetDuty(0, 0, -0.05);
   for (int i = 0; i < 1000 && world.Motor(0, 0).backlash_m < 1e-4; ++i) world.Step(1e-3);
   ASSERT_GT(world.Motor(0, 0).backlash_m, 1e-5);

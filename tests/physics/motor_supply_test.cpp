@@ -23,7 +23,7 @@ TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
   DcMotorDef apart = motor;
   apart.supply = "other";
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(TwoMotors(motor, motor));
+    WorldBatch world = MakeBatch(TwoMotors(motor, motor));
     world.SetDuty(0, 0, 1);
     world.SetDuty(0, 1, 0.5);
     world.Step(h, StepsIn(5.0, h));
@@ -34,7 +34,7 @@ TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
     EXPECT_NEAR(world.Motor(0, 0).current_a, volts / 4, 1e-6 * volts);
     EXPECT_NEAR(world.Motor(0, 1).voltage_v, volts / 2, 1e-6 * volts);
     // On separate supplies each motor has the voltage of a single motor.
-    Batch two = MakeBatch(TwoMotors(motor, apart));
+    WorldBatch two = MakeBatch(TwoMotors(motor, apart));
     two.SetDuty(0, 0, 1);
     two.SetDuty(0, 1, 0.5);
     two.Step(h, StepsIn(5.0, h));
@@ -47,7 +47,7 @@ TEST(MotorSupply, SagsByTheCurrentsOfAllItsMotors) {
 TEST(MotorSupply, DoesNotSagByAMotorThatIsOff) {
   DcMotorDef motor = PlainMotor();
   motor.supply_resistance_ohm = 5;
-  Batch world = MakeBatch(TwoMotors(motor, motor));
+  WorldBatch world = MakeBatch(TwoMotors(motor, motor));
   world.SetDuty(0, 0, 1);
   world.SetDuty(0, 1, 1);
   world.SetMotorEnabled(0, 1, false);
@@ -60,7 +60,7 @@ TEST(MotorSupply, SagsByWhatAServoDrawsWhileItMoves) {
   DcMotorDef motor = PlainMotor();
   motor.supply_resistance_ohm = 5;
   const double k = motor.torque_constant_n_m_per_a, R = motor.resistance_ohm, h = 1e-3;
-  Batch world = MakeBatch(MotorAlone(motor));
+  WorldBatch world = MakeBatch(MotorAlone(motor));
   world.SetRestLengthTarget(0, 0, 100 - 2e-4);
   for (int i = 0; i < 5; ++i) {
     const double w = world.Motor(0, 0).rotor_speed_rad_per_s;
@@ -79,7 +79,7 @@ TEST(MotorSupply, SagsByWhatAServoDrawsWhileItMoves) {
 TEST(MotorSupply, IsNotChargedAboveItsVoltage) {
   DcMotorDef motor = PlainMotor();
   motor.supply_resistance_ohm = 5;
-  Batch world = MakeBatch(MotorAlone(motor));
+  WorldBatch world = MakeBatch(MotorAlone(motor));
   world.SetDuty(0, 0, 1);
   world.Step(1e-3, 200);
   const double energy = world.Motor(0, 0).energy_from_supply_j;

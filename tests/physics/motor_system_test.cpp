@@ -9,9 +9,9 @@
 namespace taut::test {
 namespace {
 
-double Rest(const Batch& world, int cable = 0) { return world.Cable(0, cable).rest_length_m; }
+double Rest(const WorldBatch& world, int cable = 0) { return world.Cable(0, cable).rest_length_m; }
 
-double RotorEnergy(const Batch& world, const DcMotorDef& motor) {
+double RotorEnergy(const WorldBatch& world, const DcMotorDef& motor) {
   const double w = world.Motor(0, 0).rotor_speed_rad_per_s;
   return 0.5 * motor.rotor_inertia_kg_m2 * w * w;
 }
@@ -24,7 +24,7 @@ TEST(MotorEnergy, IsAllAccountedFor) {
   double before = 0;
   for (const double h : {1.0 / 1000, 1.0 / 2000, 1.0 / 4000}) {
     const scenes::HangingMass weight = Weight(2, 2000, 5);
-    Batch world = MakeBatch(MotorWithWeight(motor, weight));
+    WorldBatch world = MakeBatch(MotorWithWeight(motor, weight));
     double most = 0;
     for (int i = 0; i < StepsIn(1.0, h); ++i) {
       const double t = i * h;
@@ -50,7 +50,7 @@ TEST(MotorEnergy, IsAllAccountedFor) {
 // The energy that a motor supplies to its cable is the gain of the weight and the spring.
 TEST(MotorEnergy, ToTheCableIsWhatItStoresAndLifts) {
   for (const double stiffness : {300.0, 1e5}) {
-    Batch world = MakeBatch(MotorWithWeight(DcMotorDef(), Weight(1.5, stiffness)));
+    WorldBatch world = MakeBatch(MotorWithWeight(DcMotorDef(), Weight(1.5, stiffness)));
     const double start = EnergyOf(world);
     world.SetRestLengthTarget(0, 0, 0.9);
     world.Step(1e-3, 6000);
@@ -72,7 +72,7 @@ TEST(MotorEnergy, OfASteadyLiftIsThatOfTheLaw) {
   const double ohm = motor.resistance_ohm + motor.driver_resistance_ohm;
   const double current = (way * load / motor.gear_efficiency + motor.friction_torque_n_m) / k;
   const double speed = (12 - ohm * current) / k;
-  Batch world = MakeBatch(MotorWithWeight(motor, Weight(load / 9.81, 1e4, 200)));
+  WorldBatch world = MakeBatch(MotorWithWeight(motor, Weight(load / 9.81, 1e4, 200)));
   world.SetDuty(0, 0, 1);
   world.Step(1e-3, 1000);
   const MotorState from = world.Motor(0, 0);
@@ -92,7 +92,7 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
   DcMotorDef motor = PlainMotor();
   DcMotorDef cold = motor;
   cold.housing_thermal_time_s = 1e12;
-  Batch world = MakeBatch(MotorAlone(cold, 1, 1e5));
+  WorldBatch world = MakeBatch(MotorAlone(cold, 1, 1e5));
   world.SetDuty(0, 0, 0.5);
   world.Step(1e-3, 5600);
   const double power = 36 / 19.8;  // from the start: it stalls within milliseconds
@@ -102,7 +102,7 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
 
   motor.winding_thermal_time_s = 0.56;  // for an earlier steady state
   motor.housing_thermal_time_s = 2.2;
-  Batch warm = MakeBatch(MotorAlone(motor, 1, 1e5));
+  WorldBatch warm = MakeBatch(MotorAlone(motor, 1, 1e5));
   warm.SetDuty(0, 0, 0.5);
   warm.Step(1e-3, 60'000);
   EXPECT_NEAR(warm.Motor(0, 0).winding_temperature_c - 22, 39 * power, 1e-6 * 39 * power);
@@ -110,7 +110,7 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
 
   // Copper: P = V^2 / R(T), R = R0 (1 + a (T - T0)), T - T0 = 39 P: a quadratic equation.
   motor.resistance_rise_per_k = 3.93e-3;
-  Batch copper = MakeBatch(MotorAlone(motor, 1, 1e5));
+  WorldBatch copper = MakeBatch(MotorAlone(motor, 1, 1e5));
   copper.SetDuty(0, 0, 0.5);
   copper.Step(1e-3, 60'000);
   const double a = 3.93e-3, rise = (std::sqrt(1 + 4 * a * 39 * power) - 1) / (2 * a);
@@ -123,7 +123,7 @@ TEST(MotorBacklash, IsFeltWhereTheCableIsSlack) {
   DcMotorDef motor;
   motor.backlash_rad = 0.1;
   const double gap = motor.backlash_rad * motor.spool_radius_m;
-  Batch world = MakeBatch(MotorAlone(motor));
+  WorldBatch world = MakeBatch(MotorAlone(motor));
   const auto wound = [&] { return Way(motor) * world.Motor(0, 0).rotor_angle_rad; };
   world.SetDuty(0, 0, 0.5);
   world.Step(1e-3, 500);
@@ -150,9 +150,9 @@ TEST(MotorBacklash, IsFeltWhereTheCableIsSlack) {
 TEST(MotorBacklash, AWeightKeepsTheFlanksTogether) {
   DcMotorDef motor, exact;
   motor.backlash_rad = 0.1;
-  Batch loose = MakeBatch(MotorWithWeight(motor, Weight(2, 3000, 10)));
-  Batch tight = MakeBatch(MotorWithWeight(exact, Weight(2, 3000, 10)));
-  for (Batch* world : {&loose, &tight}) {
+  WorldBatch loose = MakeBatch(MotorWithWeight(motor, Weight(2, 3000, 10)));
+  WorldBatch tight = MakeBatch(MotorWithWeight(exact, Weight(2, 3000, 10)));
+  for (WorldBatch* world : {&loose, &tight}) {
     world->SetRestLengthTarget(0, 0, 0.95);
     world->Step(1e-3, 1500);
     world->SetRestLengthTarget(0, 0, 1.02);
@@ -179,7 +179,7 @@ TEST(MotorServo, IsTheLinearLawOfItsGains) {
   };
   double before = 0;
   for (const double h : {1.0 / 500, 1.0 / 1000, 1.0 / 2000, 1.0 / 4000}) {
-    Batch world = MakeBatch(MotorAlone(motor));
+    WorldBatch world = MakeBatch(MotorAlone(motor));
     world.SetRestLengthTarget(0, 0, 100 - 1e-4);
     EXPECT_EQ(world.Motor(0, 0).mode, MotorMode::kServo);
     double worst = 0;
@@ -196,7 +196,7 @@ TEST(MotorServo, IsTheLinearLawOfItsGains) {
 }
 
 TEST(MotorServo, TakesOverFromADutyAndGivesWayToIt) {
-  Batch world = MakeBatch(MotorAlone(DcMotorDef(), 1.5));
+  WorldBatch world = MakeBatch(MotorAlone(DcMotorDef(), 1.5));
   world.SetDuty(0, 0, 0.5);
   world.Step(1e-3, 300);
   EXPECT_LT(Rest(world), 1.495);
@@ -220,7 +220,7 @@ TEST(MotorServo, StopsAtTheShortestRestLength) {
   ModelDef def = MotorAlone(DcMotorDef(), 1.0, 500);
   def.cables[0].attachments[1].position_m = {0.2, 0, 0};
   def.cables[0].actuator.min_rest_length_m = 0.15;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetDuty(0, 0, 1);
   world.Step(1e-3, 30'000);
   EXPECT_NEAR(Rest(world), 0.15, 1e-12);
@@ -232,7 +232,7 @@ TEST(MotorServo, StopsAtTheShortestRestLength) {
 }
 
 TEST(Motor, ADutyBeyondItsEndsCountsAsTheEndAndNotANumberHaltsTheWorld) {
-  Batch world = MakeBatch(MotorAlone(DcMotorDef()));
+  WorldBatch world = MakeBatch(MotorAlone(DcMotorDef()));
   world.SetDuty(0, 0, 7);
   world.Step(1e-3);
   EXPECT_EQ(world.Motor(0, 0).duty, 1);
@@ -250,7 +250,7 @@ TEST(Motor, ADutyBeyondItsEndsCountsAsTheEndAndNotANumberHaltsTheWorld) {
 // A motor starts at rest at the given rest length, with the corresponding angle.
 TEST(Motor, IsPutSomewhereByItsRestLength) {
   const DcMotorDef motor;
-  Batch world = MakeBatch(MotorAlone(motor, 1.5));
+  WorldBatch world = MakeBatch(MotorAlone(motor, 1.5));
   EXPECT_EQ(world.Motor(0, 0).rotor_angle_rad, 0);
   world.SetDuty(0, 0, 1);
   world.Step(1e-3, 100);
@@ -265,7 +265,7 @@ std::vector<double> EndOfARun(double h, double stiffness, double damping, double
   DcMotorDef motor;
   motor.gear_ratio = gear_ratio;
   motor.supply_resistance_ohm = 0.3;
-  Batch world = MakeBatch(MotorWithWeight(motor, Weight(0.8, stiffness, damping)));
+  WorldBatch world = MakeBatch(MotorWithWeight(motor, Weight(0.8, stiffness, damping)));
   const double fastest = Way(motor) * 12 / motor.torque_constant_n_m_per_a;
   // Tension peak of catching a weight that falls by some millimeters, or at the motor's highest
   // speed.

@@ -8,8 +8,8 @@
 namespace taut::test {
 namespace {
 
-double Speed(const Batch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
-double Rest(const Batch& world) { return world.Cable(0, 0).rest_length_m; }
+double Speed(const WorldBatch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
+double Rest(const WorldBatch& world) { return world.Cable(0, 0).rest_length_m; }
 
 // Data sheet of the Faulhaber 1524T012SR: 9800 rpm and 7 mA without load, 6.92 mN m at stall, a
 // mechanical time constant of 8.3 ms. These numbers agree with each other to some 1 %.
@@ -17,7 +17,7 @@ TEST(Motor, DoesWhatItsDataSheetSays) {
   DcMotorDef motor;
   motor.driver_resistance_ohm = 0;
   motor.resistance_rise_per_k = 0;
-  Batch free = MakeBatch(MotorAlone(motor));
+  WorldBatch free = MakeBatch(MotorAlone(motor));
   free.SetDuty(0, 0, 1);
   free.Step(1e-3, 8);
   const double after_8_ms = Speed(free);
@@ -26,7 +26,7 @@ TEST(Motor, DoesWhatItsDataSheetSays) {
   EXPECT_NEAR(free.Motor(0, 0).current_a, 0.007, 0.01 * 0.007);
   EXPECT_NEAR(after_8_ms / Speed(free), 1 - std::exp(-8 / 8.3), 0.02);
 
-  Batch stalled = MakeBatch(MotorAlone(motor, 1, 1e5));
+  WorldBatch stalled = MakeBatch(MotorAlone(motor, 1, 1e5));
   stalled.SetDuty(0, 0, 1);
   stalled.Step(1e-3, 2000);
   EXPECT_EQ(Speed(stalled), 0);
@@ -43,7 +43,7 @@ TEST(Motor, RunsUpExponentially) {
   for (const double duty : {1.0, -0.3}) {
     const double final_speed = duty * motor.supply_voltage_v / k;
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(MotorAlone(motor));
+      WorldBatch world = MakeBatch(MotorAlone(motor));
       world.SetDuty(0, 0, duty);
       const int steps = StepsIn(0.016, h);
       world.Step(h, steps);
@@ -66,7 +66,7 @@ TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
   motor.friction_torque_n_m = motor.static_friction_torque_n_m = 8e-5;
   const double falls = motor.friction_torque_n_m / motor.rotor_inertia_kg_m2;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(MotorAlone(motor));
+    WorldBatch world = MakeBatch(MotorAlone(motor));
     world.SetDuty(0, 0, 1);
     world.Step(h, StepsIn(0.2, h));
     const double start = Speed(world), angle = world.Motor(0, 0).rotor_angle_rad;
@@ -94,7 +94,7 @@ TEST(Motor, ViscousFrictionSlowsItDown) {
   const double c = motor.friction_torque_n_m / motor.viscous_friction_n_m_s_per_rad;
   const double tau = motor.rotor_inertia_kg_m2 / motor.viscous_friction_n_m_s_per_rad;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(MotorAlone(motor));
+    WorldBatch world = MakeBatch(MotorAlone(motor));
     world.SetDuty(0, 0, -1);
     world.Step(h, StepsIn(0.2, h));
     const double start = -Speed(world);
@@ -110,7 +110,7 @@ TEST(Motor, DutyZeroBrakes) {
   const DcMotorDef motor = PlainMotor();
   const double k = motor.torque_constant_n_m_per_a;
   const double tau = motor.resistance_ohm * motor.rotor_inertia_kg_m2 / (k * k);
-  Batch world = MakeBatch(MotorAlone(motor));
+  WorldBatch world = MakeBatch(MotorAlone(motor));
   world.SetDuty(0, 0, 1);
   world.Step(1e-4, 2000);
   const double start = Speed(world);
@@ -132,7 +132,7 @@ TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
     const double tension =
         motor.gear_efficiency * (torque - motor.friction_torque_n_m) / Way(motor);
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(MotorAlone(motor, 1, 2e4));
+      WorldBatch world = MakeBatch(MotorAlone(motor, 1, 2e4));
       world.SetDuty(0, 0, duty);
       world.Step(h, StepsIn(2.0, h));
       // exponential decay, as friction does not depend on the speed
@@ -163,13 +163,13 @@ TEST(Motor, SwitchedOffItHoldsWhatItsFrictionCan) {
     motor.gear_efficiency = efficiency;
     const double held_n = std::min(LargestHeldN(motor), 1e3);
     for (const double h : {2.5e-4, 1e-3, 2e-3}) {
-      Batch world = MakeBatch(MotorWithWeight(motor, Weight(0.99 * held_n / 9.81, 1e4)));
+      WorldBatch world = MakeBatch(MotorWithWeight(motor, Weight(0.99 * held_n / 9.81, 1e4)));
       world.SetMotorEnabled(0, 0, false);
       world.Step(h, 20'000);
       EXPECT_EQ(Rest(world), 1.0) << efficiency;
       EXPECT_EQ(Speed(world), 0) << efficiency;
       if (held_n == 1e3) continue;
-      Batch heavier = MakeBatch(MotorWithWeight(motor, Weight(1.01 * held_n / 9.81, 1e4)));
+      WorldBatch heavier = MakeBatch(MotorWithWeight(motor, Weight(1.01 * held_n / 9.81, 1e4)));
       heavier.SetMotorEnabled(0, 0, false);
       heavier.Step(h, StepsIn(2.0, h));
       EXPECT_GT(Rest(heavier), 1.001) << efficiency;
@@ -183,7 +183,7 @@ TEST(Motor, HoldsARingingCableWithoutCreep) {
   for (const double stiffness : {227.0, 1e4, 1e6}) {
     scenes::HangingMass weight = Weight(0.6 * LargestHeldN(motor) / 9.81, stiffness);
     weight.length_m += 0.2 * weight.sag_m();
-    Batch world = MakeBatch(MotorWithWeight(motor, weight));
+    WorldBatch world = MakeBatch(MotorWithWeight(motor, weight));
     world.SetMotorEnabled(0, 0, false);
     double least = 1e9, most = 0;
     for (int i = 0; i < 20'000; ++i) {
@@ -205,7 +205,7 @@ TEST(Motor, AWeightDrivesItBack) {
                    (motor.rotor_inertia_kg_m2 + m * way * way * share);
   for (const double stiffness : {1e4, 1e6}) {
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(MotorWithWeight(motor, Weight(m, stiffness, 200)));
+      WorldBatch world = MakeBatch(MotorWithWeight(motor, Weight(m, stiffness, 200)));
       world.SetMotorEnabled(0, 0, false);
       const int steps = StepsIn(0.5, h);
       world.Step(h, steps);
@@ -224,7 +224,7 @@ TEST(Motor, SinksEvenlyWhenBraked) {
   const double ohm = motor.resistance_ohm + motor.driver_resistance_ohm;
   const double torque = 30 * Way(motor) * share - motor.friction_torque_n_m;
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(MotorWithWeight(motor, Weight(30 / 9.81, 1e4, 100)));
+    WorldBatch world = MakeBatch(MotorWithWeight(motor, Weight(30 / 9.81, 1e4, 100)));
     world.SetDuty(0, 0, 0);
     world.Step(h, StepsIn(2.0, h));
     const double expected = -torque * ohm / (k * k);
@@ -242,7 +242,7 @@ TEST(Motor, BreaksAwayAtTheFrictionOfRest) {
   motor.stribeck_speed_rad_per_s = 1;
   const double per_duty =
       motor.torque_constant_n_m_per_a * motor.supply_voltage_v / motor.resistance_ohm;
-  Batch world = MakeBatch(MotorAlone(motor));
+  WorldBatch world = MakeBatch(MotorAlone(motor));
   world.SetDuty(0, 0, 0.99 * 3e-4 / per_duty);
   world.Step(1e-3, 1000);
   EXPECT_EQ(Rest(world), 100);

@@ -28,7 +28,7 @@ PlaneDef Ground() {
 }
 
 /// Returns the only overlap.
-Overlap OnlyOne(const Batch& world) {
+Overlap OnlyOne(const WorldBatch& world) {
   const std::vector<Overlap> found = world.Overlaps(0);
   EXPECT_EQ(found.size(), 1u);
   return found.empty() ? Overlap{} : found[0];
@@ -92,9 +92,9 @@ TEST(Overlaps, AreThoseOfTheMoment) {
   def.bodies = {BodyAt({0, 0, 1})};
   def.spheres = {{"ball", 0, {0, 0, 1}, 0.1, {}, true}};
   def.planes = {Ground()};
-  BatchOptions two;
+  WorldBatchOptions two;
   two.worlds = 2;
-  Batch world = MakeBatch(def, two);
+  WorldBatch world = MakeBatch(def, two);
   EXPECT_TRUE(world.Overlaps(1).empty());
   BodyState state = world.Body(1, 0);
   state.position_m.z = 0.07;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "tests/scenes/hanging_mass.h"
 
 namespace taut::test {
@@ -16,17 +16,17 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Batch BatchOf(const ModelDef& def) {
+WorldBatch BatchOf(const ModelDef& def) {
   Diagnostics out;
   auto model = Model::Compile(def, out);
   EXPECT_TRUE(model) << out.Format();
-  BatchOptions options;
+  WorldBatchOptions options;
   options.worlds = 2;
-  return Batch(std::move(model), options);
+  return WorldBatch(std::move(model), options);
 }
 
 TEST(Parameters, ValuesOutsideTheLimitsOfModelFilesAreRefused) {
-  Batch batch = BatchOf(scenes::HangingMass{}.Def());
+  WorldBatch batch = BatchOf(scenes::HangingMass{}.Def());
   const struct {
     Parameter parameter;
     std::vector<double> wrong;
@@ -60,7 +60,7 @@ TEST(Parameters, ValuesOutsideTheLimitsOfModelFilesAreRefused) {
 TEST(Parameters, AFixedBodyHasNoMassAndAcceptsAny) {
   ModelDef def = scenes::HangingMass{}.Def();
   def.bodies[0].fixed = true;
-  Batch batch = BatchOf(def);
+  WorldBatch batch = BatchOf(def);
   const std::uint64_t before = batch.Hash(0);
   EXPECT_TRUE(batch.SetParameter(0, Parameter::kBodyMass, 0, 0.0));
   EXPECT_EQ(batch.Hash(0), before);

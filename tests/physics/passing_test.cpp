@@ -31,7 +31,7 @@ int Deflected(const Flyby& flyby, double clear_m, double speed_m_per_s, double s
     const Vec3 v{speed_m_per_s, 0, 0}, w{spin_rad_per_s, 0, 0};
     def.bodies[0].velocity_m_per_s = v;
     def.bodies[0].angular_velocity_rad_per_s = w;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(kStepS, StepsIn(0.7 / speed_m_per_s + 2 * kStepS, kStepS));
     double off = Distance(world.Body(0, 0).velocity_m_per_s, v) +
                  Distance(world.Body(0, 0).angular_velocity_rad_per_s, w);
@@ -139,7 +139,7 @@ TEST(Passing, ABallThatMeetsAnEdgeReboundsFromWhereTheyTouch) {
       scenes::AddBall(def, "flies", 1, kBallM, {-back, 0, 0.05 + s * kBallM}, material);
       def.terrain_boxes.push_back({"wall", {0.1, 0, 0}, {}, {0.1, 1, 0.05}, material});
       def.bodies[0].velocity_m_per_s = {speed, 0, 0};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.Step(kStepS, StepsIn(0.5 / speed, kStepS));
       const BodyState ball = world.Body(0, 0);
       // Balls count as touching within a thousandth of a step's travel; divided by the lever arm r.
@@ -172,7 +172,7 @@ TEST(Passing, WhatMeetsAWallOrABoxReboundsWithItsEnergy) {
         def.bodies[0].velocity_m_per_s = {speed, 0, 0};
         for (CapsuleDef& shape : def.capsules) shape.material.restitution = 1;
         for (BoxDef& shape : def.boxes) shape.material.restitution = 1;
-        Batch world = MakeBatch(def);
+        WorldBatch world = MakeBatch(def);
         const double start = EnergyOf(world);
         world.Step(kStepS, StepsIn(0.4 / speed, kStepS));
         EXPECT_NEAR(EnergyOf(world) / start, 1, 1e-3) << which << " " << speed << " " << phase;
@@ -198,7 +198,7 @@ TEST(Passing, ASlabOnBallsKeepsAllItsContacts) {
       def.bodies.back().fixed = fixed;
     }
     scenes::AddBox(def, "slab", 5, {0.3, 0.3, 0.02}, {0, 0, 2 * r + 0.02}, {}, material);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(kStepS);
     const std::size_t count = world.Contacts(0).size();
     EXPECT_EQ(count, fixed ? 30u : 60u);

@@ -41,7 +41,7 @@ TEST(Prestress, AcrossAStiffCableAMassSwingsByTheMidpointRuleAtAnyTension) {
   const double h = 1e-3, off = 1e-6;
   for (const double share : {1e-4, 0.01, 0.5, 0.99, 1.01, 10.0, 25.0}) {  // (w h)^2 / 4
     const double tension = share * 2 * 0.1 / (h * h), theta = 2 * std::atan(std::sqrt(share));
-    Batch world = MakeBatch(Plucked(tension, off));
+    WorldBatch world = MakeBatch(Plucked(tension, off));
     for (int n = 1; n <= 1000; ++n) {
       world.Step(h);
       ASSERT_NEAR(world.Body(0, 0).position_m.z, off * std::cos(n * theta), 1e-3 * off)
@@ -68,7 +68,7 @@ TEST(Prestress, AcrossAStiffCableWithFixedDirectionsAMassSwingsAsTheLeapfrogsClo
   const double h = 1e-3, off = 1e-6;
   for (const double share : {1e-4, 0.01, 0.5, 0.99}) {  // of the limit (w h)^2 = 4
     const double tension = share * 2 * 0.1 / (h * h), theta = std::acos(1 - 2 * share);
-    Batch world = MakeBatch(PluckedOfOtherCables(tension, off));
+    WorldBatch world = MakeBatch(PluckedOfOtherCables(tension, off));
     for (int n = 1; n <= 1000; ++n) {
       world.Step(h);
       ASSERT_NEAR(world.Body(0, 0).position_m.z, off * std::cos(n * theta), 1e-3 * off)
@@ -81,7 +81,7 @@ TEST(Prestress, AcrossAStiffCableWithFixedDirectionsAMassSwingsAsTheLeapfrogsClo
 TEST(Prestress, BeyondTheLimitOfFixedDirectionsAPluckedCableSwingsEverWider) {
   // The limit of eq. (12) is sharp: just beyond it the oscillation grows.
   const double h = 1e-3, off = 1e-6;
-  Batch world = MakeBatch(PluckedOfOtherCables(1.01 * 2 * 0.1 / (h * h), off));
+  WorldBatch world = MakeBatch(PluckedOfOtherCables(1.01 * 2 * 0.1 / (h * h), off));
   double widest = 0;
   for (int n = 0; n < 100; ++n) {
     world.Step(h);
@@ -109,14 +109,14 @@ ModelDef OverwoundSpine() {
   return def;
 }
 
-double EnergyOf(const Batch& world) {
+double EnergyOf(const WorldBatch& world) {
   const Energy e = world.TotalEnergy(0);
   return e.kinetic_j + e.elastic_j;
 }
 
 TEST(Prestress, ASpineWoundTo200KilonewtonKeepsItsEnergyAtAStepThatResolvesIt) {
   // Its cables snap apart, go slack and become taut again, at 5000 rad/s: w h = 0.05 here.
-  Batch world = MakeBatch(OverwoundSpine());
+  WorldBatch world = MakeBatch(OverwoundSpine());
   const double start = EnergyOf(world), h = 1e-5;
   EXPECT_NEAR(world.Cable(0, 2).tension_n, 2e5, 1);
   double worst = 0;
@@ -130,7 +130,7 @@ TEST(Prestress, ASpineWoundTo200KilonewtonKeepsItsEnergyAtAStepThatResolvesIt) {
 
 TEST(Prestress, ASpineWoundTo200KilonewtonKeepsItsEnergyAtStepsThatDoNotResolveIt) {
   for (const double h : {1e-3, 4e-3}) {
-    Batch world = MakeBatch(OverwoundSpine());
+    WorldBatch world = MakeBatch(OverwoundSpine());
     const double start = EnergyOf(world);
     double most = 0;
     for (int n = 0; n < 1000; ++n) {

@@ -20,7 +20,7 @@ TEST(PushOut, ABallInTheGroundComesOutAndDoesNotRise) {
       scenes::Ball scene;
       scene.radius_m = 0.05;
       scene.drop_m = -depth;
-      Batch world = MakeBatch(scene.Def());
+      WorldBatch world = MakeBatch(scene.Def());
       double highest = -1;
       for (int n = 0; n < StepsIn(1, h); ++n) {
         world.Step(h);
@@ -49,7 +49,7 @@ Rise RiseOf(ModelDef def, double depth, double h) {
   scenes::AddGround(def, {0.5, 0.5, 0});
   def.planes[0].point_m = {0, 0, low + depth};
   def.restitution_combine = CombineRule::kMinimum;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   Rise rise;
   for (int n = 0; n < StepsIn(2, h); ++n) {
     world.Step(h);
@@ -105,7 +105,7 @@ ModelDef OverlappingRods(double depth) {
 
 TEST(PushOut, TwoRodsInEachOtherPartWithoutSpeed) {
   for (const double h : {4e-3, 1e-3, 1e-4}) {
-    Batch world = MakeBatch(OverlappingRods(2e-3));
+    WorldBatch world = MakeBatch(OverlappingRods(2e-3));
     world.Step(h, 100);
     for (int b = 0; b < 2; ++b) {
       EXPECT_LE(Norm(world.Body(0, b).velocity_m_per_s), 1e-9) << h;
@@ -123,7 +123,7 @@ TEST(PushOut, TwoRodsThatMoveAndSpinKeepTheirMomentaWhileTheyArePushedOut) {
     def.bodies[0].angular_velocity_rad_per_s = {5, 3, -2};
     def.bodies[1].velocity_m_per_s = {0.5, 0.7, 0.1};
     def.bodies[1].angular_velocity_rad_per_s = {-1, 4, 6};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
     bool touched = false;
     for (int n = 1; n <= 200; ++n) {

@@ -145,7 +145,7 @@ struct Apart {
 /// ms.
 Apart Compare(const json& run, int steps) {
   const json &places = run["History.Nhist"], &speeds = run["History.Ndhist"];
-  Batch world = MakeBatch(ModelOf(run));
+  WorldBatch world = MakeBatch(ModelOf(run));
   if (run.contains("debug.forces.W")) {
     for (std::size_t node = 0; node < run["debug.forces.W"][0].size(); ++node) {
       world.SetNodeForce(0, static_cast<int>(node), Column(run["debug.forces.W"], node));
@@ -247,7 +247,7 @@ TEST(Reference, TheDBarOfClassKSwingsWithTheFrequenciesOfTsgFem) {
   }
   // Each push excites one mode only, and the measured velocity excludes the other mode.
   const auto frequency = [&](int first_node, int last_node, const Vec3& push_n, double Vec3::*way) {
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const auto push = [&](const Vec3& force_n) {
       for (int i = first_node; i <= last_node; ++i) world.SetNodeForce(0, i, force_n);
     };
@@ -327,7 +327,7 @@ TEST(Reference, TheTBarStaysInTheEquilibriumOfTheStructuralTools) {
   }
   ASSERT_EQ(def.bodies.size(), 2u);
   ASSERT_EQ(tension.size(), 4u);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 5000);
   for (int c = 0; c < 4; ++c) {
     const double expected = tension[static_cast<std::size_t>(c)];

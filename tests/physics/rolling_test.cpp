@@ -40,7 +40,7 @@ TEST(Rolling, DownASlopeTheAccelerationIsGSineOverOnePlusTheInertiasShare) {
   for (const Roller& roller : kRollers) {
     const double a = kG * std::sin(angle) / (1 + roller.share);
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(roller.Def(angle, 0.5));
+      WorldBatch world = MakeBatch(roller.Def(angle, 0.5));
       const Vec3 start = world.Body(0, 0).position_m;
       const int steps = StepsIn(1, h);
       world.Step(h, steps);
@@ -65,7 +65,7 @@ TEST(Rolling, DownASlopeTooSteepItSlidesAndFrictionTurnsIt) {
     const double a = kG * (std::sin(angle) - mu * std::cos(angle));
     const double alpha = mu * kG * std::cos(angle) / (roller.share * 0.1);
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(roller.Def(angle, mu));
+      WorldBatch world = MakeBatch(roller.Def(angle, mu));
       const int steps = StepsIn(1, h);
       world.Step(h, steps);
       const BodyState end = world.Body(0, 0);
@@ -83,7 +83,7 @@ TEST(Rolling, ASlidingRodRollsInTheEndWithTwoThirdsOfItsSpeed) {
   const double v = 2;
   for (const double mu : {0.1, 0.4}) {
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(kRollers[1].Def(0, mu));
+      WorldBatch world = MakeBatch(kRollers[1].Def(0, mu));
       BodyState rod = world.Body(0, 0);
       rod.velocity_m_per_s = {v, 0, 0};
       world.SetBodyState(0, 0, rod);
@@ -102,7 +102,7 @@ TEST(Rolling, ASlidingRodRollsInTheEndWithTwoThirdsOfItsSpeed) {
 
 TEST(Rolling, OnLevelGroundItLosesNothing) {
   for (const Roller& roller : kRollers) {
-    Batch world = MakeBatch(roller.Def(0, 0.5));
+    WorldBatch world = MakeBatch(roller.Def(0, 0.5));
     BodyState body = world.Body(0, 0);
     body.velocity_m_per_s = {1.5, 0, 0};
     body.angular_velocity_rad_per_s = {0, 15, 0};
@@ -128,7 +128,7 @@ TEST(Rolling, ARodSpinningOnTheGroundStopsAsItsTwoEndsSay) {
     scenes::AddRod(def, "rod", 0.2, 0.01, {-a, 0, 0.01}, {a, 0, 0.01}, material);
     def.bodies[0].angular_velocity_rad_per_s = {0, 0, w0};
     const double slowing = mu * 0.2 * kG * a / def.bodies[0].inertia_kg_m2.zz;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double stops_s = w0 / slowing;
     double turned = 0;
     for (int n = 1; n <= StepsIn(0.4, h); ++n) {
@@ -153,7 +153,7 @@ TEST(Rolling, ARodSpinningOnTheGroundStopsAsItsTwoEndsSay) {
 
 TEST(Rolling, ABallSpinningOnItsPoleGoesOn) {
   // A contact is a point without a lever arm: friction exerts no torque about the normal.
-  Batch world = MakeBatch(kRollers[0].Def(0, 0.5));
+  WorldBatch world = MakeBatch(kRollers[0].Def(0, 0.5));
   BodyState ball = world.Body(0, 0);
   ball.angular_velocity_rad_per_s = {0, 0, 30};
   world.SetBodyState(0, 0, ball);

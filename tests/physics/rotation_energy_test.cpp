@@ -34,7 +34,7 @@ TEST(RotationEnergy, AThinRodKeepsItToRoundingHoweverFastItSpinsAboutItself) {
         ModelDef def = ThinRod(axis, spin * axis + (4 / Norm(across)) * across);
         const Inertia& i = def.bodies[0].inertia_kg_m2;
         ASSERT_NEAR((i.xx + i.yy + i.zz) / 2.001 / 0.1, 0.25 * 0.25 / 3, 1e-4);
-        Batch world = MakeBatch(def);
+        WorldBatch world = MakeBatch(def);
         const double start = EnergyOf(world);
         // An axis that is off by eps turns transverse momentum into axial momentum, with the large
         // axial angular velocity.
@@ -67,7 +67,7 @@ Ranges EnergyOfBox(double h) {
   def.gravity_m_per_s2 = {0, 0, 0};
   scenes::AddBox(def, "box", 1, {0.1, 0.06, 0.04}, {0, 0, 0}, scenes::Turn({0.6, 0, 0.8}, 0.7), {});
   def.bodies[0].angular_velocity_rad_per_s = {7, -5, 11};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double start = EnergyOf(world);
   Ranges ranges;
   for (int n = 1; n <= StepsIn(100, h); ++n) {

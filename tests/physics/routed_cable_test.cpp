@@ -44,7 +44,7 @@ void HangsStill(double span, double rise) {
   ModelDef def;
   def.bodies.push_back(PointMass("mass", m, p));
   def.cables.push_back(Cable({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {span, 0, rise}}}, k, rest));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   EXPECT_NEAR(world.Cable(0, 0).length_m, l, RoundOff(1, l));
   EXPECT_NEAR(world.Cable(0, 0).tension_n, k * (l - rest), RoundOff(1, k));
   world.Step(1e-3, 2000);
@@ -74,7 +74,7 @@ TEST(RoutedCable, AHeavyRingHangsOnOneMetreOfCable) {
     def.bodies.push_back(PointMass("ring", 1.0, p));
     def.cables.push_back(
         Cable({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {0.8, 0, rise}}}, k, 1.0 - tension / k));
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 2000);
     EXPECT_NEAR(world.Cable(0, 0).tension_n, 8.175, 1e-6) << rise;
     EXPECT_NEAR(Norm(world.Body(0, 0).position_m), left, 1e-9) << rise;
@@ -92,7 +92,7 @@ TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
   def.bodies.push_back(PointMass("mass", m, p));
   def.cables.push_back(Cable(
       {{kWorld, {0, 0, 0.5}}, {kWorld, {0, 0, 0}}, {kWorld, {0.4, 0.3, 0}}, {0, p}}, k, rest));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double theta = 2 * std::asin(std::sqrt(k / m) * h / 2);
   for (int n = 1; n <= 3000; ++n) {
     world.Step(h);
@@ -118,7 +118,7 @@ ModelDef Atwood(double m1, double m2, double stiffness, double stretch) {
 
 TEST(RoutedCable, BothSidesOfAnEyeletPullEquallyHoweverTheCableSwings) {
   const double m1 = 0.3, m2 = 0.5, g = 9.81;
-  Batch world = MakeBatch(Atwood(m1, m2, 500, 0.02));
+  WorldBatch world = MakeBatch(Atwood(m1, m2, 500, 0.02));
   for (int n = 1; n <= 400; ++n) {
     world.Step(1e-3);
     const double t = n * 1e-3;
@@ -135,7 +135,7 @@ TEST(RoutedCable, AtwoodsMachineAcceleratesAtItsClosedFormForAnyStiffness) {
   const double tension = 2 * m1 * m2 / (m1 + m2) * g, a = (m2 - m1) / (m1 + m2) * g;
   for (const double stiffness : {500.0, 2e4, 1e6}) {
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(Atwood(m1, m2, stiffness, tension / stiffness));
+      WorldBatch world = MakeBatch(Atwood(m1, m2, stiffness, tension / stiffness));
       const int steps = StepsIn(0.4, h);
       world.Step(h, steps);
       // The solver's residual continues as an oscillation at the frequency w of the two masses on
@@ -158,7 +158,7 @@ TEST(RoutedCable, ABeadOnATautCableSlidesFreely) {
   def.bodies[0].velocity_m_per_s = {0.5, 0, 0};
   def.cables.push_back(
       Cable({{kWorld, {0, 0, 0}}, {0, {0.3, 0, 0}}, {kWorld, {1, 0, 0}}}, 1000, 0.9));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 1; n <= 1000; ++n) {
     world.Step(1e-3);
     // Unit vectors are rounded: by that share of T h / m = 1 m/s a step.
@@ -180,7 +180,7 @@ TEST(RoutedCable, AnEyeletBesideTheCentreOfMassTurnsItsBody) {
   def.cables.push_back(
       Cable({{kWorld, eyelet + Vec3{0, 0, 1}}, {0, eyelet}, {kWorld, eyelet + Vec3{1, 0, 0}}}, 1200,
             1.99));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(h);
   const Vec3 force{tension, 0, tension}, torque = Cross(eyelet, force);
   const BodyState body = world.Body(0, 0);

@@ -54,7 +54,7 @@ TEST(Scale, APrismDropsBouncesAndComesToRestAlikeFromATenthOfAMillimetreToAHundr
     ModelDef scaled = Scaled(def, s);
     for (BodyDef& body : scaled.bodies)
       body.velocity_m_per_s = std::sqrt(s) * body.velocity_m_per_s;
-    Batch world = MakeBatch(scaled);
+    WorldBatch world = MakeBatch(scaled);
     world.Step(1e-3 * std::sqrt(s), 1500);
     const Vec3 place = (1 / s) * world.Body(0, 0).position_m;
     if (s == 1) expected = place;

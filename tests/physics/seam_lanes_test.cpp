@@ -40,7 +40,7 @@ TEST(SeamLanes, APieceBeyondReachChangesNoBit) {
     // The second piece begins beyond all bodies.
     ModelDef two = Crossing(a, Piece::kSolid, 40), one = two;
     one.terrain_meshes.pop_back();
-    Batch with = MakeBatch(two), without = MakeBatch(one);
+    WorldBatch with = MakeBatch(two), without = MakeBatch(one);
     with.Step(1e-3, 150);
     without.Step(1e-3, 150);
     for (int body = 0; body < 5; ++body) {

@@ -27,7 +27,7 @@ int AddBox(ModelDef& def, const std::string& name, double mass_kg, const Vec3& c
 }
 
 /// Returns the force of body `b` (or the world) on body `a`, over all their contacts [N].
-Vec3 ForceOn(const Batch& world, int a, int b) {
+Vec3 ForceOn(const WorldBatch& world, int a, int b) {
   Vec3 sum;
   for (const ContactState& contact : world.Contacts(0)) {
     if (contact.body_a == a && contact.body_b == b) sum = sum + contact.force_n;
@@ -37,7 +37,7 @@ Vec3 ForceOn(const Batch& world, int a, int b) {
 }
 
 /// Checks that bodies are at their initial positions and at rest.
-void ExpectAtRest(const Batch& world, const ModelDef& def, double within_m) {
+void ExpectAtRest(const WorldBatch& world, const ModelDef& def, double within_m) {
   for (int i = 0; i < static_cast<int>(def.bodies.size()); ++i) {
     const BodyDef& body = def.bodies[static_cast<std::size_t>(i)];
     EXPECT_LE(Distance(world.Body(0, i).position_m, body.com_m), within_m) << body.name;
@@ -57,7 +57,7 @@ TEST(Stack, ARodOnTwoRodsWeighsOnThemByTheLawOfTheLever) {
     }
     scenes::AddRod(def, "rod", 0.5, 0.02, {-0.5, 0, 0.04}, {0.5, 0, 0.04}, material);
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       world.Step(h, StepsIn(5, h));
       const double allowed = 0.5 * SolverError(1) / h;
       EXPECT_NEAR(ForceOn(world, 2, 0).z, 0.5 * kG * b / (a + b), allowed) << a << ' ' << h;
@@ -77,7 +77,7 @@ TEST(Stack, ARodOnTwoRodsOnTheGroundStaysThoughAllCouldRoll) {
     scenes::AddRod(def, "roller", 0.2, 0.02, {x, -0.3, 0.02}, {x, 0.3, 0.02}, material);
   }
   scenes::AddRod(def, "rod", 0.5, 0.02, {-0.5, 0, 0.06}, {0.5, 0, 0.06}, material);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 10000);
   const double share[] = {0.25 / 0.4, 0.15 / 0.4};
   for (int i = 0; i < 2; ++i) {
@@ -101,7 +101,7 @@ TEST(Stack, BoxesOnEachOtherCarryAllThatIsAboveThem) {
     top += 2 * half.z;
   }
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(h, StepsIn(5, h));
     double above = 0;
     for (int i = static_cast<int>(mass_kg.size()) - 1; i >= 0; --i) {
@@ -135,7 +135,7 @@ TEST(Stack, ARodInAGrooveSlidesAsItsWalledInFrictionSays) {
   const double r = 0.02, up = r / std::sin(b);
   scenes::AddRod(def, "rod", 0.4, r, {-0.3, 0, up}, {0.3, 0, up}, material);
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const int steps = StepsIn(1, h);
     world.Step(h, steps);
     EXPECT_LE(Distance(world.Body(0, 0).velocity_m_per_s, {a, 0, 0}), 0.005 * a) << h;
@@ -164,7 +164,7 @@ TEST(Stack, ABallBetweenAWallAndASlopeWedgesItself) {
   def.terrain_boxes.push_back({"wall", {1 + r + 0.5, 0, 0}, {}, {0.5, 2, 2}, {0, 0, 0}});
   scenes::AddBall(def, "ball", 0.3, r, center, {0, 0, 0});
   for (const double h : kThreeStepsS) {
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(h, StepsIn(3, h));
     EXPECT_LE(Distance(world.Body(0, 0).position_m, center), 1e-8) << h;
     const auto contacts = world.Contacts(0);
@@ -187,11 +187,11 @@ TEST(Stack, ASlabTenThousandTimesAsHeavyAsThirtyBallsStandsOnThem) {
   }
   AddBox(def, "slab", ratio * mass, {0.5, 0.4, 2 * r + 0.1}, {0.7, 0.7, 0.1}, material);
   const double weight = (30 + ratio) * mass * kG;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 500; ++n) {
     world.Step(1e-3);
     ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
-    ASSERT_LE(world.Status(0).residual_m_per_s, BatchOptions().tolerance_m_per_s);
+    ASSERT_LE(world.Status(0).residual_m_per_s, WorldBatchOptions().tolerance_m_per_s);
     ASSERT_EQ(world.Contacts(0).size(), 60u) << n;
   }
   double ground = 0;
@@ -212,11 +212,11 @@ TEST(Stack, BoxesThatAlternateByTenThousandOverSixtyContactsConverge) {
     AddBox(def, "box_" + std::to_string(i), i % 2 == 0 ? 0.1 : 1000, {0, 0, half.z * (2 * i + 1)},
            half, material);
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   for (int n = 0; n < 500; ++n) {
     world.Step(1e-3);
     ASSERT_EQ(world.Status(0).bits, kStatusOk) << n;
-    ASSERT_LE(world.Status(0).residual_m_per_s, BatchOptions().tolerance_m_per_s) << n;
+    ASSERT_LE(world.Status(0).residual_m_per_s, WorldBatchOptions().tolerance_m_per_s) << n;
     ASSERT_GE(world.Contacts(0).size(), 60u) << n;
   }
   double above = 0;
@@ -238,9 +238,9 @@ TEST(Stack, ASolverThatIsStoppedEarlySaysSoInTheSameStep) {
     AddBox(def, "box_" + std::to_string(i), i % 2 == 0 ? 0.1 : 1000, {0, 0, half.z * (2 * i + 1)},
            half, material);
   }
-  BatchOptions options;
+  WorldBatchOptions options;
   options.max_linear_solves = 5;
-  Batch world = MakeBatch(def, options);
+  WorldBatch world = MakeBatch(def, options);
   int stopped = 0;
   for (int n = 0; n < 10; ++n) {
     world.ClearStatus(0);

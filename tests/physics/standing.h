@@ -52,7 +52,7 @@ inline ModelDef Standing(const std::string& robot) {
 inline void StandsStill(const std::string& robot, double slope_deg, double time_s) {
   const double slope = slope_deg * std::numbers::pi / 180, h = 1e-3;
   const ModelDef def = Standing(robot);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetParameter(0, Parameter::kGravityX, 0, 9.81 * std::sin(slope));
   world.SetParameter(0, Parameter::kGravityZ, 0, -9.81 * std::cos(slope));
   world.Step(h, StepsIn(20, h));

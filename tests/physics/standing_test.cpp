@@ -29,7 +29,7 @@ TEST(Standing, APrestressedSixStrutAtRestDoesNotVibrate) {
     ASSERT_EQ(def.cables.size(), 24u);
     def.gravity_m_per_s2 = {0, 0, 0};
     for (const double h : kThreeStepsS) {
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       double largest = 0;
       for (int n = 0; n < StepsIn(10, h); ++n) {
         world.Step(h);

@@ -18,7 +18,7 @@ namespace {
 /// Brings a robot without gravity to rest: whenever its kinetic energy begins to fall, all
 /// velocities are set to zero (kinetic damping), so that mechanisms, which cables damp least,
 /// settle as fast as other motions. Returns the largest speed of a node in the last second.
-double Settle(Batch& world, double time_s) {
+double Settle(WorldBatch& world, double time_s) {
   const double h = 1e-3;
   const ModelDef& def = world.model().def();
   double before = 0, speed = 0;
@@ -87,7 +87,7 @@ TEST(Statics, APrismSettlesAtItsTwistWithItsSelfStress) {
     for (const double twist_off : {-0.15, 0.1}) {
       for (const double side_rest : {0.42, 0.48}) {
         const double edge = 2 * 0.3 * std::sin(std::numbers::pi / n);
-        Batch world = MakeBatch(Prism(n, 0.9 * edge, side_rest, twist_off));
+        WorldBatch world = MakeBatch(Prism(n, 0.9 * edge, side_rest, twist_off));
         const double speed = Settle(world, 20);
         const std::string what = std::to_string(n) + " struts, side " + std::to_string(side_rest);
         EXPECT_LT(speed, 1e-9) << what;
@@ -131,7 +131,7 @@ TEST(Statics, ASixStrutSettlesWhereItsStrutsAreSqrt8ThirdsOfItsCables) {
       scene.orientation = scenes::Turn({0.6, 0.48, 0.64}, 1.1);
       ModelDef def = scene.Def();
       def.gravity_m_per_s2 = {0, 0, 0};
-      Batch world = MakeBatch(def);
+      WorldBatch world = MakeBatch(def);
       const double speed = Settle(world, 60);
       EXPECT_LT(speed, 1e-9);
       for (int c = 0; c < 24; ++c) {
@@ -167,7 +167,7 @@ ModelDef Cross(double a, double b, double stiffness, const std::vector<double>& 
 TEST(Statics, SnelsonsXSettlesAsASquareWhoseStrutsCarrySqrt2OfItsCables) {
   for (const double length : {0.6, 1.0}) {
     const double side = length / std::sqrt(2.0), rest = 0.9 * side;
-    Batch world = MakeBatch(Cross(length, length, 1000, {rest, rest, rest, rest}));
+    WorldBatch world = MakeBatch(Cross(length, length, 1000, {rest, rest, rest, rest}));
     EXPECT_LT(Settle(world, 40), 1e-9);
     for (int c = 0; c < 4; ++c) {
       EXPECT_NEAR(world.Cable(0, c).length_m, side, 1e-10) << c;
@@ -190,7 +190,7 @@ TEST(Statics, ATBarSettlesAsARhombusWithOneForceDensity) {
   // Struts of 2 m and 4 m that bisect each other at a right angle: cables of sqrt(5) m, all with
   // the same force density q, the struts with -q. (T-bar of the structural tools: 50 N/m.)
   const double side = std::sqrt(5.0), stiffness = 5000, q = 50, rest = side - q * side / stiffness;
-  Batch world = MakeBatch(Cross(2, 4, stiffness, {rest, rest, rest, rest}));
+  WorldBatch world = MakeBatch(Cross(2, 4, stiffness, {rest, rest, rest, rest}));
   EXPECT_LT(Settle(world, 60), 1e-9);
   for (int c = 0; c < 4; ++c) {
     EXPECT_NEAR(world.Cable(0, c).length_m, side, 1e-10) << c;

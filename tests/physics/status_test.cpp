@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool Finite(const Batch& batch, int world, int body) {
+bool Finite(const WorldBatch& batch, int world, int body) {
   const BodyState state = batch.Body(world, body);
   return std::isfinite(Norm(state.position_m) + Norm(state.velocity_m_per_s) +
                        Norm(state.angular_velocity_rad_per_s) + state.orientation.w +
@@ -26,14 +26,14 @@ bool Finite(const Batch& batch, int world, int body) {
 
 /// Breaks world 1 of three after 0.05 s and checks that it reports the error and halts, and that
 /// the other worlds are unaffected.
-void BreaksAlone(const std::function<void(Batch&)>& breaks, int body) {
+void BreaksAlone(const std::function<void(WorldBatch&)>& breaks, int body) {
   for (const auto& [name, simd] : kInstructionSets) {
     SCOPED_TRACE(name);
-    BatchOptions options;
+    WorldBatchOptions options;
     options.worlds = 3;
     options.simd = simd;
     const ModelDef def = scenes::Tetraspine().Def();
-    Batch batch = MakeBatch(def, options), healthy = MakeBatch(def, options);
+    WorldBatch batch = MakeBatch(def, options), healthy = MakeBatch(def, options);
     batch.Step(1e-3, 50);
     healthy.Step(1e-3, 50);
     breaks(batch);
@@ -59,14 +59,14 @@ void BreaksAlone(const std::function<void(Batch&)>& breaks, int body) {
 }
 
 TEST(Status, AForceThatIsNotANumberStopsItsWorldAndNamesTheBody) {
-  BreaksAlone([](Batch& batch) { batch.SetNodeForce(1, 6 * 2 + 3, {0, kNan, 0}); }, 2);
-  BreaksAlone([](Batch& batch) { batch.SetNodeForce(1, 6 * 1 + 3, {kInfinity, 0, 0}); }, 1);
+  BreaksAlone([](WorldBatch& batch) { batch.SetNodeForce(1, 6 * 2 + 3, {0, kNan, 0}); }, 2);
+  BreaksAlone([](WorldBatch& batch) { batch.SetNodeForce(1, 6 * 1 + 3, {kInfinity, 0, 0}); }, 1);
 }
 
 TEST(Status, ACommandThatIsNotANumberNamesTheCable) {
   ModelDef def = scenes::Tetraspine().Def();
   for (CableDef& cable : def.cables) cable.actuator.kind = ActuatorDef::Kind::kIdeal;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.SetRestLengthTarget(0, 7, kNan);
   world.Step(1e-3);
   EXPECT_EQ(world.Status(0).bits & kStatusNonFinite, kStatusNonFinite);
@@ -77,7 +77,7 @@ TEST(Status, ACommandThatIsNotANumberNamesTheCable) {
 
 TEST(Status, AWorldThatIsMendedGoesOn) {
   const ModelDef def = scenes::Tetraspine().Def();
-  Batch world = MakeBatch(def), healthy = MakeBatch(def);
+  WorldBatch world = MakeBatch(def), healthy = MakeBatch(def);
   world.Step(1e-3, 50);
   healthy.Step(1e-3, 50);
   world.SetNodeForce(0, 3, {kNan, 0, 0});
@@ -94,7 +94,7 @@ TEST(Status, AWorldThatIsMendedGoesOn) {
 }
 
 TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
-  BatchOptions options;
+  WorldBatchOptions options;
   options.max_linear_solves = 1;
   ModelDef def;
   const Material material{0.5, 0.5, 0};
@@ -105,7 +105,7 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   for (int i = 0; i < 4; ++i) {
     scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.1 + gap_m + (0.2 + gap_m) * i}, material);
   }
-  Batch hasty = MakeBatch(def, options);
+  WorldBatch hasty = MakeBatch(def, options);
   hasty.Step(1e-3);
   EXPECT_EQ(hasty.Status(0).bits, kStatusNotConverged);
   EXPECT_EQ(hasty.Status(0).first_time_s, 0);
@@ -116,7 +116,7 @@ TEST(Status, ASolveThatIsCutShortSaysSoAndNamesABodyInContact) {
   hasty.ClearStatus(0);
   EXPECT_EQ(hasty.Status(0).bits, kStatusOk);
 
-  Batch thorough = MakeBatch(def);
+  WorldBatch thorough = MakeBatch(def);
   thorough.Step(1e-3, 100);
   EXPECT_EQ(thorough.Status(0).bits, kStatusOk);
   EXPECT_LE(thorough.Status(0).residual_m_per_s, options.tolerance_m_per_s);
@@ -130,7 +130,7 @@ TEST(Status, ATurnTooFastForItsQuaternionHaltsTheWorldInTheSameStep) {
   def.nodes.push_back({"node", 0, {0.1, 0.05, 1.02}});
   int halted = 0;
   for (int i = 0; i < 400; ++i) {
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.SetNodeForce(0, 1, std::pow(10, 15 + 0.1 * i) * Vec3{0.1, 0.5, 1});
     world.Step(1e-3);
     const Quat q = world.Body(0, 0).orientation;
@@ -143,7 +143,7 @@ TEST(Status, ATurnTooFastForItsQuaternionHaltsTheWorldInTheSameStep) {
 
 TEST(Status, PushingOutCountsAsWorkOfItsOwn) {
   // The same column with overlaps of 1 mm: one linear system for velocities, one for displacements.
-  BatchOptions options;
+  WorldBatchOptions options;
   options.max_linear_solves = 1;
   ModelDef def;
   const Material material{0.5, 0.5, 0};
@@ -151,7 +151,7 @@ TEST(Status, PushingOutCountsAsWorkOfItsOwn) {
   for (int i = 0; i < 4; ++i) {
     scenes::AddBall(def, "ball", 0.1, 0.1, {0, 0, 0.099 + 0.199 * i}, material);
   }
-  Batch hasty = MakeBatch(def, options);
+  WorldBatch hasty = MakeBatch(def, options);
   hasty.Step(1e-3);
   EXPECT_EQ(hasty.Status(0).linear_solves, 2);
 }
@@ -176,7 +176,7 @@ TEST(Status, MoreContactsThanRoomAreSaidAndTheOthersStillHold) {
     def.spheres.push_back({"ball", 1, p, 0.02, material});
   }
   def.bodies.push_back(parts.Body("carpet"));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 100);
   EXPECT_EQ(world.Status(0).bits & kStatusContactOverflow, kStatusContactOverflow);
   EXPECT_LT(world.Contacts(0).size(), 60u);

@@ -25,7 +25,7 @@ double SpeedAt45(double h) {
   scenes::AddGround(def, kRough);
   scenes::AddRod(def, "rod", 1, r, {0, 0, r},
                  {length * std::sin(start), 0, r + length * std::cos(start)}, kRough);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   double angle_before = start, w_before = 0;
   for (int n = 0; n < StepsIn(3, h); ++n) {
     world.Step(h);
@@ -81,7 +81,7 @@ TopMotion Spin(double h) {
   body.velocity_m_per_s = Cross(body.angular_velocity_rad_per_s, kStem * axis);
   def.bodies.push_back(body);
   def.spheres.push_back({"tip", 0, {0, 0, r}, r, kRough, true});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   TopMotion motion;
   double turned = 0;
   Vec3 before = axis;

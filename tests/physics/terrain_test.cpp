@@ -23,7 +23,7 @@ TEST(Terrain, ABallRollsOffAStepAndFallsAsAParabola) {
   scenes::AddBall(def, "ball", 0.2, r, {-1, 0, top + r}, material);
   def.bodies[0].velocity_m_per_s = {v, 0, 0};
   def.bodies[0].angular_velocity_rad_per_s = {0, v / r, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double h = 1e-3;
   // On the box: no force but its weight.
   const int on_box = 330;
@@ -73,7 +73,7 @@ TEST(Terrain, ABoxRestsOnATerrainBoxAndCarriesItsWeight) {
   body.inertia_kg_m2 = scenes::BoxInertia(1.5, half);
   def.bodies.push_back(body);
   def.boxes.push_back({"box", 0, body.com_m, {}, half, material});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 2000);
   EXPECT_LE(Distance(world.Body(0, 0).position_m, body.com_m), 1e-9);
   Vec3 force;
@@ -107,7 +107,7 @@ TEST(Terrain, ABoxOnABoxStandsStillAndSticksOnASlope) {
     def.bodies.push_back(body);
     def.boxes.push_back({body.name, i, body.com_m, q, half[i], material});
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 500);
   const Vec3 before[2] = {world.Body(0, 0).position_m, world.Body(0, 1).position_m};
   world.Step(1e-3, 5000);
@@ -128,7 +128,7 @@ TEST(Terrain, AWallStopsABall) {
       {"wall", {1, 0, 0}, scenes::Turn({0, 0, 1}, 0.3), {0.1, 2, 1}, material});
   scenes::AddBall(def, "ball", 0.2, 0.1, {0, 0, 0}, material);
   def.bodies[0].velocity_m_per_s = {2, 0, 0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 800);
   // v' = v - (1 + e) (v . n) n
   const Vec3 n{-std::cos(0.3), -std::sin(0.3), 0};
@@ -148,7 +148,7 @@ TEST(Terrain, AWedgeOfTwoPlanesHoldsABall) {
     def.planes.push_back(plane);
   }
   scenes::AddBall(def, "ball", 0.2, r, {0, 0, r / std::cos(a)}, {0, 0, 0});
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 2000);
   EXPECT_LE(Distance(world.Body(0, 0).position_m, {0, 0, r / std::cos(a)}), 1e-9);
   const auto contacts = world.Contacts(0);
@@ -168,7 +168,7 @@ TEST(Terrain, ARodJammedAcrossAGrooveStaysAndItsForcesDoNotGrow) {
     rod.tilt_rad = chance.Within(-0.4, 0.4);
     ModelDef def = rod.Def();
     def.bodies[0].velocity_m_per_s = chance.Jolt(0.01);
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     double jammed_n = 0;
     Vec3 jammed_m;
     for (int step = 0; step < 1000; ++step) {
@@ -195,7 +195,7 @@ TEST(Terrain, ABallThatFallsBesideAPlaneOrABoxDoesNotTouchIt) {
   const Material material{0.5, 0.5, 0};
   def.terrain_boxes.push_back({"post", {0, 0, 0}, {}, {0.5, 0.5, 0.5}, material});
   scenes::AddBall(def, "ball", 0.2, 0.1, {0.61, 0, 1}, material);  // 10 mm from the post
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 1000);
   EXPECT_NEAR(world.Body(0, 0).position_m.z, 1 - kG / 2, RoundOff(1000, 10));
   EXPECT_EQ(world.Body(0, 0).position_m.x, 0.61);

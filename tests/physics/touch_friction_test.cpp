@@ -14,7 +14,7 @@ namespace taut::test {
 namespace {
 
 /// Checks that the spans' rest lengths add up to the rest length of the cable.
-void ExpectNothingLost(const Batch& world) {
+void ExpectNothingLost(const WorldBatch& world) {
   double sum = 0;
   for (int i = 0; i < world.CableSpans(0); ++i) sum += world.CableSpan(0, 0, i).rest_length_m;
   ASSERT_NEAR(sum, world.Cable(0, 0).rest_length_m, 1e-12);
@@ -22,7 +22,7 @@ void ExpectNothingLost(const Batch& world) {
 
 /// Lowers two bodies from above to both sides of an obstacle, so that their cable lies over it, and
 /// stops them.
-void Lower(Batch& world, const Vec3& from, const Vec3& to) {
+void Lower(WorldBatch& world, const Vec3& from, const Vec3& to) {
   constexpr double kAbove = 0.2, kBeside = 0.3;
   for (int i = 1; i <= 100; ++i) {
     const double left = 1 - i / 100.0;
@@ -40,8 +40,8 @@ void Lower(Batch& world, const Vec3& from, const Vec3& to) {
 }
 
 /// Returns two masses on a cable over the two edges of a wall: a wrap angle of half a turn in all.
-Batch Atwood(double m1, double m2, double friction, double damping,
-             ActuatorDef::Kind actuator = ActuatorDef::Kind::kNone) {
+WorldBatch Atwood(double m1, double m2, double friction, double damping,
+                  ActuatorDef::Kind actuator = ActuatorDef::Kind::kNone) {
   const double radius = 1e-3;
   const Vec3 from{-radius, 0, -1}, to{0.1 + radius, 0, -1};
   ModelDef def;
@@ -58,7 +58,7 @@ Batch Atwood(double m1, double m2, double friction, double damping,
   def.cables[0].touch_friction = friction;
   def.cables[0].damping_n_s_per_m = damping;
   def.cables[0].actuator.kind = actuator;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   Lower(world, from, to);
   return world;
 }
@@ -66,7 +66,7 @@ Batch Atwood(double m1, double m2, double friction, double damping,
 TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
   const double c = std::exp(0.2 * std::numbers::pi);
   for (const double m2 : {0.4, 0.5, 0.53}) {
-    Batch world = Atwood(1, m2, 0.2, 20);
+    WorldBatch world = Atwood(1, m2, 0.2, 20);
     const double a = (1 - c * m2) / (1 + c * m2) * kG;
     EXPECT_NEAR(-AccelerationOf(world, 0, 0.6), a, 1e-3) << m2;
     ASSERT_EQ(world.CableBends(0, 0), 2);
@@ -77,7 +77,7 @@ TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
 
 TEST(TouchFriction, WithinTheRatioItDoesNotCreep) {
   for (const double m2 : {0.54, 0.7, 0.9}) {
-    Batch world = Atwood(1, m2, 0.2, 200);
+    WorldBatch world = Atwood(1, m2, 0.2, 200);
     world.Step(1e-3, 4000);
     const double z = world.Body(0, 0).position_m.z;
     world.Step(1e-3, 4000);
@@ -88,7 +88,7 @@ TEST(TouchFriction, WithinTheRatioItDoesNotCreep) {
 }
 
 TEST(TouchFriction, WhatItTakesIsWhatIsMissing) {
-  Batch world = Atwood(1, 0.4, 0.2, 0);
+  WorldBatch world = Atwood(1, 0.4, 0.2, 0);
   const double before = EnergyOf(world) + world.CableFrictionLoss(0, 0);
   world.Step(1e-3, 900);
   const double loss = world.CableFrictionLoss(0, 0);
@@ -97,7 +97,7 @@ TEST(TouchFriction, WhatItTakesIsWhatIsMissing) {
 }
 
 TEST(TouchFriction, WhatIsWoundComesFromTheFirstSpan) {
-  Batch world = Atwood(1, 0.7, 0.2, 200, ActuatorDef::Kind::kIdeal);
+  WorldBatch world = Atwood(1, 0.7, 0.2, 200, ActuatorDef::Kind::kIdeal);
   world.Step(1e-3, 2000);
   const double left = world.Body(0, 0).position_m.z, right = world.Body(0, 1).position_m.z;
   const double rest = world.Cable(0, 0).rest_length_m;
@@ -113,7 +113,7 @@ TEST(TouchFriction, WhatIsWoundComesFromTheFirstSpan) {
 
 /// A cable whose bodies are repositioned has no contacts until it reaches an obstacle again.
 TEST(TouchFriction, PutElsewhereItHasOneSpan) {
-  Batch world = Atwood(1, 0.4, 0.2, 20);
+  WorldBatch world = Atwood(1, 0.4, 0.2, 20);
   world.Step(1e-3, 100);
   ASSERT_EQ(world.CableSpanTensions(0, 0).size(), 3u);
   for (int b = 0; b < 2; ++b) {
@@ -148,7 +148,7 @@ TEST(TouchFriction, ARodThatTurnsCarriesTheCableAlong) {
   axle.body_b = 2;
   axle.axis = {0, 1, 0};
   def.joints.push_back(axle);
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   Lower(world, from, to);
   ASSERT_EQ(world.CableBends(0, 0), 1);
   const double a = (1 - m2) * kG / (1 + m2 + inertia / (radius * radius));
@@ -183,7 +183,7 @@ struct Across {
 /// Both parts pull with T sin b along the ridge, against the friction mu T theta.
 TEST(TouchFriction, AcrossItSticksAndThenTrailsBehind) {
   const Across across;
-  Batch world = MakeBatch(across.def);
+  WorldBatch world = MakeBatch(across.def);
   const auto at_middle = [&] { return world.Body(0, 0).position_m.y - 0.5e-3 * Across::kSpeed; };
   const auto bend_y = [&] {
     const std::vector<Vec3> places = world.CableBendPlaces(0, 0);
@@ -219,7 +219,7 @@ TEST(TouchFriction, WhatIsHeldStaysWhereOtherBendsComeAndGo) {
     def.terrain_boxes = {Box({0, -5, -3}, {0.1, 5, 0})};
     def.cables = {Cable({0, from}, {1, to}, 1000, 0.6, 1e-3)};
     def.cables[0].touch_friction = 0.5;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const auto go = [&](int body, const Vec3& velocity, int steps, int* fewest) {
       BodyState state = world.Body(0, body);
       state.velocity_m_per_s = velocity;
@@ -261,7 +261,7 @@ TEST(TouchFriction, WhereItSlipsFrictionIsAgainstItsWay) {
   const double runs = 0.03, aside = 0.02, far = std::hypot(0.2, 0.1);
   across.def.bodies[0].velocity_m_per_s = {0.2 / far * runs, aside, 0.1 / far * runs};
   across.def.bodies[1].velocity_m_per_s = {0.2 / far * runs, aside, -0.1 / far * runs};
-  Batch world = MakeBatch(across.def);
+  WorldBatch world = MakeBatch(across.def);
   world.Step(1e-3, 2000);
   const double loss = world.CableFrictionLoss(0, 0);
   world.Step(1e-3, 100);
@@ -288,7 +288,7 @@ TEST(TouchFriction, WhereItSlipsFrictionIsAgainstItsWay) {
 TEST(TouchFriction, AFlightKeepsMomentaAndEnergyOnlyFalls) {
   ModelDef def = Flight();
   def.cables[0].touch_friction = 0.3;
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const double energy = EnergyOf(world);
   const Vec3 momentum = world.Momentum(0), angular = world.AngularMomentum(0);
   int touched = 0;
@@ -311,7 +311,7 @@ TEST(TouchFriction, WithHardlyAnyItLiesAsWithout) {
   for (const double friction : {0.0, 1e-12}) {
     ModelDef def = OverARod(from + up, to + up, 0.1, 0.001);
     def.cables[0].touch_friction = friction;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     for (int i = 0; i <= 100; ++i) {
       Lead(world, 0, from + (1 - 0.01 * i) * up);
       Lead(world, 1, to + (1 - 0.01 * i) * up);
@@ -327,9 +327,9 @@ TEST(TouchFriction, WithHardlyAnyItLiesAsWithout) {
 
 TEST(TouchFriction, HardlyAnyIsNone) {
   ModelDef def = Flight();
-  Batch without = MakeBatch(def);
+  WorldBatch without = MakeBatch(def);
   def.cables[0].touch_friction = 1e-12;
-  Batch with = MakeBatch(def);
+  WorldBatch with = MakeBatch(def);
   without.Step(1e-3, 4000), with.Step(1e-3, 4000);
   EXPECT_LT(Distance(without.Body(0, 2).position_m, with.Body(0, 2).position_m), 1e-4);
   EXPECT_GT(Distance(without.Body(0, 2).position_m, def.bodies[2].com_m), 0.05);

@@ -12,7 +12,7 @@ namespace taut::test {
 namespace {
 
 /// Moves the rods to different places in each world, so that the cables touch different ones.
-void MoveRods(Batch& batch, int world, int rods, int which) {
+void MoveRods(WorldBatch& batch, int world, int rods, int which) {
   for (int rod = 0; rod < rods; ++rod) {
     BodyState state = batch.Body(world, rod);
     state.position_m.z += 0.05 * which * (rod % 2 == 0 ? 1 : -1);
@@ -31,16 +31,16 @@ TEST(TouchRods, StiffCablesOverManyRodsStayInTheirMemoryAndLane) {
       def.cables[0].touch_friction = friction;
       std::uint64_t alone[kWorlds];
       for (int world = 0; world < kWorlds; ++world) {
-        Batch batch = MakeBatch(def);
+        WorldBatch batch = MakeBatch(def);
         MoveRods(batch, 0, rods, world);
         batch.Step(1e-3, kSteps);
         alone[world] = batch.Hash(0);
       }
       for (const InstructionSet& set : kInstructionSets) {
-        BatchOptions options;
+        WorldBatchOptions options;
         options.worlds = kWorlds;
         options.simd = set.simd;
-        Batch batch = MakeBatch(def, options);
+        WorldBatch batch = MakeBatch(def, options);
         for (int world = 0; world < kWorlds; ++world) MoveRods(batch, world, rods, world);
         batch.Step(1e-3, kSteps);
         int bends = 0;
@@ -71,7 +71,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
     AddRod(def, {-kArch * std::cos(angle), 0, kArch * std::sin(angle)}, 0.3, 0.01);
     for (int j = 0; j < i; ++j) def.apart.push_back({2 + j, 2 + i});
   }
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   int most = 0;
   double full = 0;  // drop [m] at which the ninth rod is reached
   for (int i = 1; i <= 200; ++i) {
@@ -96,7 +96,7 @@ TEST(TouchRods, MoreRodsThanACableCanLieAgainstAreReported) {
 TEST(TouchRods, APathInALoopComesToNoRodThatItHasNotMet) {
   for (const double step_s : {1e-3, 2.5e-4}) {
     for (const int rods : {3, 5}) {
-      Batch world = MakeBatch(AcrossFreeRods(rods, 1e4));
+      WorldBatch world = MakeBatch(AcrossFreeRods(rods, 1e4));
       const double energy = EnergyOf(world);
       double most = 0, jump = 0, last = world.Cable(0, 0).length_m;
       for (int i = 0; i < StepsIn(0.2, step_s); ++i) {

@@ -36,7 +36,7 @@ inline TerrainBoxDef Box(const Vec3& low, const Vec3& high) {
 
 /// Step [s] in which a body is moved to a point, so short that nothing else changes.
 inline constexpr double kStep = 1e-9;
-inline void Lead(Batch& world, int body, const Vec3& p) {
+inline void Lead(WorldBatch& world, int body, const Vec3& p) {
   BodyState state = world.Body(0, body);
   state.velocity_m_per_s = (1 / kStep) * (p - state.position_m);
   world.SetBodyState(0, body, state);

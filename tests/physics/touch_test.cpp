@@ -31,7 +31,7 @@ TEST(Touch, ACableAcrossAWallLiesOverItsTwoEdges) {
     def.bodies = {Ball(1, from), Ball(1, to)};
     def.terrain_boxes = {Box({0, -1, -1}, {0.1, 1, 0.06})};
     def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, radius)};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(1e-3);
     EXPECT_EQ(world.CableBends(0, 0), 2);
     EXPECT_NEAR(world.Cable(0, 0).length_m, OverTheWall(from, to, radius), 1e-14);
@@ -52,7 +52,7 @@ TEST(Touch, LengthsAreThoseOfThePathWhereverItGoes) {
   def.bodies = {Ball(1, from), Ball(1, to)};
   def.terrain_boxes = {Box({0, -1, -1}, {0.1, 1, 0.06})};
   def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, radius)};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   int most = 0, changes = 0, last = 0;
   for (int i = 0; i < 2000; ++i) {
     const double t = i * 1e-3;
@@ -81,7 +81,7 @@ TEST(Touch, OverAHeapOfBoxesItLiesOverAllOfTheirEdgesThatStickOut) {
   def.terrain_boxes = {Box({-0.1, -1, -1}, {0, 1, 0.045}), Box({0, -1, -1}, {0.1, 1, 0.06}),
                        Box({0.1, -1, -1}, {0.2, 1, 0.045})};
   def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, radius)};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(kStep);
   EXPECT_EQ(world.CableBends(0, 0), 4);
   CableDef path = def.cables[0];
@@ -101,7 +101,7 @@ TEST(Touch, ABarIsPassedOnTheSideToWhichItTakesLess) {
     def.bodies = {Ball(1, from), Ball(1, to)};
     def.terrain_boxes = {Box({0, -1, 0}, {0.1, 1, 0.06})};
     def.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, 1e-3)};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     world.Step(kStep);
     return world.CableBendPlaces(0, 0).at(0);
   };
@@ -142,7 +142,7 @@ TEST(Touch, RidgesOfFieldsAndMeshesAreEdges) {
     } else {
       def.terrain_meshes = {mesh};
     }
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     int bent = 0;
     for (int i = 0; i < 1000; ++i) {
       const double t = i * 1e-3;
@@ -168,7 +168,7 @@ TEST(Touch, AnInterruptedPendulumKeepsItsEnergy) {
     def.terrain_boxes = {Box({-0.03, -1, -0.61}, {-0.02, 1, -0.6})};
     const double fall = 0.2 * 9.81 * 0.6;
     def.cables = {Cable({kWorld, {}}, {0, start}, 2000, 1.0 - fall / 2000, 1e-3)};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double energy = EnergyOf(world);
     double off = 0, most = 0;
     int touches = 0, last = 0;
@@ -190,7 +190,7 @@ TEST(Touch, AnInterruptedPendulumKeepsItsEnergy) {
 
 TEST(Touch, ASkewCableOverARodMeetsItAtTheSameAngleBeforeAndBehind) {
   const Vec3 from{-0.3, -0.1, -0.2}, to{0.4, 0.15, -0.1};
-  Batch world = MakeBatch(OverARod(from + Vec3{0, 0, 1}, to + Vec3{0, 0, 1}, 0.01, 0.001));
+  WorldBatch world = MakeBatch(OverARod(from + Vec3{0, 0, 1}, to + Vec3{0, 0, 1}, 0.01, 0.001));
   for (int i = 0; i <= 100; ++i) {
     Lead(world, 0, from + Vec3{0, 0, 1 - 0.01 * i});
     Lead(world, 1, to + Vec3{0, 0, 1 - 0.01 * i});
@@ -205,7 +205,7 @@ TEST(Touch, NoCableGoesThroughARodHoweverFast) {
     const Vec3 from{-0.3, 0.1, 0.02}, to{0.4, -0.1, 0.02};
     ModelDef def = OverARod(from, to, 0.003, 1e-4);
     def.bodies[0].velocity_m_per_s = def.bodies[1].velocity_m_per_s = {0, 0, -speed};
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     int steps = 0;
     while (world.Body(0, 0).position_m.z > -0.05) world.Step(1e-3), ++steps;
     EXPECT_EQ(world.CableBends(0, 0), 1) << speed;
@@ -214,7 +214,7 @@ TEST(Touch, NoCableGoesThroughARodHoweverFast) {
   // Beyond the rod's end there is no contact.
   ModelDef def = OverARod({-0.3, 0.31, 0.1}, {0.4, 0.31, 0.1}, 0.003, 1e-4);
   def.bodies[0].velocity_m_per_s = def.bodies[1].velocity_m_per_s = {0, 0, -5.0};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 50);
   EXPECT_LT(world.Body(0, 0).position_m.z, -0.1);
   EXPECT_EQ(world.CableBends(0, 0), 0);
@@ -229,7 +229,7 @@ TEST(Touch, WhereARodOrAnEdgeEndsItSlipsOff) {
   wall.terrain_boxes = {Box({0, -1, -1}, {0.1, 0.3, 0.06})};
   wall.cables = {Cable({0, from}, {1, to}, 1e-9, 0.1, 1e-3)};
   for (const bool is_rod : {true, false}) {
-    Batch world = MakeBatch(is_rod ? rod : wall);
+    WorldBatch world = MakeBatch(is_rod ? rod : wall);
     // On a box, three radii before the corner.
     const double end = is_rod ? 0.3 : 0.297;
     for (const double along : {0.0, 0.1, 0.2, end - 1e-4, end + 1e-4, 0.32}) {
@@ -252,7 +252,7 @@ TEST(Touch, WhereARodOrAnEdgeEndsItSlipsOff) {
 TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
   const double radius = 0.004, far = 0.3;
   const Vec3 from{-far, 0, 0};
-  Batch world = MakeBatch(OverARod(from, {far, 0, 0.01}, radius, 1e-4));
+  WorldBatch world = MakeBatch(OverARod(from, {far, 0, 0.01}, radius, 1e-4));
   const double tangent = std::sqrt(far * far - radius * radius);
   for (int i = 0; i <= 810; ++i) {
     // Downwards, three and a half turns around, and back.
@@ -276,7 +276,7 @@ TEST(Touch, ARodWindsUpAndUnwindsAnyNumberOfTurns) {
 
 /// On a flying and rotating rod: the rate for sensors against a difference of lengths.
 TEST(Touch, TheRateIsThatOfTheLength) {
-  Batch world = MakeBatch(OverARod({-0.3, 0.1, -0.02}, {0.4, 0.05, 0.03}, 0.02, 1e-3));
+  WorldBatch world = MakeBatch(OverARod({-0.3, 0.1, -0.02}, {0.4, 0.05, 0.03}, 0.02, 1e-3));
   BodyState rod = world.Body(0, 2);
   rod.velocity_m_per_s = {0.3, -0.2, 0.4};
   rod.angular_velocity_rad_per_s = {2, 1, -3};
@@ -293,7 +293,7 @@ TEST(Touch, TheRateIsThatOfTheLength) {
 
 /// Flies for 10 s and counts the steps in which the cable touches. Momenta are kept to 1e-12, the
 /// energy to `energy_share`.
-void FlyKeepingAll(double energy_share, Batch& world, int& touched) {
+void FlyKeepingAll(double energy_share, WorldBatch& world, int& touched) {
   const double energy = EnergyOf(world);
   const Vec3 momentum = world.Momentum(0), angular = world.AngularMomentum(0);
   touched = 0;
@@ -307,7 +307,7 @@ void FlyKeepingAll(double energy_share, Batch& world, int& touched) {
 }
 
 TEST(Touch, AFlightOverAFreeRodKeepsMomentaAndEnergy) {
-  Batch world = MakeBatch(Flight());
+  WorldBatch world = MakeBatch(Flight());
   int touched = 0;
   ASSERT_NO_FATAL_FAILURE(FlyKeepingAll(1e-4, world, touched));
   EXPECT_GT(touched, 100);
@@ -315,7 +315,7 @@ TEST(Touch, AFlightOverAFreeRodKeepsMomentaAndEnergy) {
 }
 
 TEST(Touch, WhatNtrtLosesInMuscleNpIsKept) {
-  Batch world = MakeBatch(MuscleNp());
+  WorldBatch world = MakeBatch(MuscleNp());
   // NTRT ends with 0.86466503, -0.041891, 0.83705044 of 1, 0, 1
   EXPECT_NEAR(world.Momentum(0).x, 0.8, 1e-12);
   EXPECT_NEAR(world.Momentum(0).z, 0.8, 1e-12);

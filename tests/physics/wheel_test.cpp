@@ -130,7 +130,7 @@ ModelDef Atwood(double m1, double m2, int wheels, double stiffness = 1e5) {
 
 TEST(Wheel, AtwoodsMachineIsThatOfAFreePulleyWhateverItRunsOver) {
   for (const int wheels : {1, 2, 3, 5, 9}) {
-    Batch world = MakeBatch(Atwood(1, 0.7, wheels));
+    WorldBatch world = MakeBatch(Atwood(1, 0.7, wheels));
     world.Step(1e-3, 400);
     const double fall = 0.5 * 0.3 / 1.7 * 9.81 * 0.4 * 0.4;
     EXPECT_NEAR(world.Body(0, 0).position_m.z, -1 - fall, 1e-11) << wheels;
@@ -154,7 +154,7 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
       {kWorld, end}, Round(0, center, {0, 1, 0}, radius, true, 3), {0, rim}};
   ASSERT_NEAR(LengthOf(path), 1 + radius * wound, 1e-13);
   def.cables.push_back(Cable(path, 1e3, 1 + radius * wound - 0.03));
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Energy before = world.TotalEnergy(0);
   const Vec3 turned = world.AngularMomentum(0);
   double length = 0;
@@ -184,7 +184,7 @@ TEST(Wheel, MomentaAndEnergyAreKeptInFreeFlightOverAFreeRod) {
   def.cables[0].attachments[1].wheel->counterclockwise = false;
   def.bodies[0].velocity_m_per_s = {-2, 0.3, 0.4};
   def.bodies[1].velocity_m_per_s = {-1, -0.2, 0.9};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   const Vec3 p = world.Momentum(0), l = world.AngularMomentum(0);
   const double energy = EnergyOf(world);
   double off = 0, on = 0;
@@ -245,7 +245,7 @@ TEST(Wheel, TheRateIsThatOfTheLength) {
                                 Round(0, center + Vec3{0.1, 0, 0.2}, {0, 1, 0}, 0.05, true),
                                 {kWorld, {1, 0.2, 0}}},
                                1e-9, 1));
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     BodyState state = world.Body(0, 0);
     const double turn = 0.5 * 3.0 * time_s;
     state.position_m = state.position_m + time_s * Vec3{0.3, -0.2, 0.4};
@@ -271,7 +271,7 @@ TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
         {kWorld, {}}, Round(kWorld, {-0.02, 0, -0.6}, {0, 1, 0}, 0.01, true), {0, start}};
     def.cables.push_back(Cable(path, 2000, LengthOf(path) - 0.2 * 9.81 * 0.6 / 2000));
     const double fall = 0.2 * 9.81 * 0.6;
-    Batch world = MakeBatch(def);
+    WorldBatch world = MakeBatch(def);
     const double energy = EnergyOf(world);
     double most = 0;
     double off = 0;

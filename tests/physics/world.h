@@ -6,15 +6,15 @@
 #include <stdexcept>
 
 #include "math/vec.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::test {
 
-inline Batch MakeBatch(const ModelDef& def, const BatchOptions& options = {}) {
+inline WorldBatch MakeBatch(const ModelDef& def, const WorldBatchOptions& options = {}) {
   Diagnostics complaints;
   const auto model = Model::Compile(def, complaints);
   if (model == nullptr) throw std::runtime_error(complaints.Format());
-  return Batch(model, options);
+  return WorldBatch(model, options);
 }
 
 /// 4 kHz, 1 kHz and 250 Hz.
@@ -36,12 +36,13 @@ inline double RoundOff(int steps, double size) {
 /// Returns a bound of the accumulated error of n contact solves [m/s]. A residual is the change by
 /// one step of the natural map (docs/theory/contact.md, eq. 16), and below the tolerance. The
 /// distance from the solution may be larger where contacts share loads: a factor of ten is assumed.
-inline double SolverError(int solves, double tolerance_m_per_s = BatchOptions().tolerance_m_per_s) {
+inline double SolverError(int solves,
+                          double tolerance_m_per_s = WorldBatchOptions().tolerance_m_per_s) {
   return 10 * solves * tolerance_m_per_s;
 }
 
 /// Returns the energy of world 0: kinetic, gravity and elastic [J].
-inline double EnergyOf(const Batch& world) {
+inline double EnergyOf(const WorldBatch& world) {
   const Energy e = world.TotalEnergy(0);
   return e.kinetic_j + e.gravity_j + e.elastic_j;
 }
@@ -51,7 +52,7 @@ inline double Distance(const Vec3& a, const Vec3& b) { return Norm(a - b); }
 
 /// Returns the upward acceleration of a body in the second half of a time span, after the initial
 /// transient [m/s^2].
-inline double AccelerationOf(Batch& world, int body, double time_s) {
+inline double AccelerationOf(WorldBatch& world, int body, double time_s) {
   const int steps = StepsIn(time_s, 1e-3);
   world.Step(1e-3, steps / 2);
   const double t0 = world.Time(0), v0 = world.Body(0, body).velocity_m_per_s.z;

@@ -139,7 +139,7 @@ def IsBuiltWithoutAWarning():
         assert count > 1000, count
         for name in ("index.html", "docs/gallery.html", "api/batch.html", "searchindex.js", "_static/report.html"):
             assert (site / name).is_file(), name
-        assert "BatchOptions" in (site / "api/batch.html").read_text()
+        assert "WorldBatchOptions" in (site / "api/world_batch.html").read_text()
 
 
 # Releases

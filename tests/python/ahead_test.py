@@ -107,7 +107,7 @@ class Sequences(unittest.TestCase):
         return batch.rest_length_target_m()[:, None] + noise
 
     def test_is_what_steps_one_by_one_give(self):
-        whole, single = taut.Batch(taut.load(PUSH), worlds=5, threads=2), taut.Batch(taut.load(PUSH), worlds=5)
+        whole, single = taut.Batch(taut.load(PUSH).robot, worlds=5, threads=2), taut.Batch(taut.load(PUSH).robot, worlds=5)
         whole.step(1e-3, 20)
         start = whole.save(2)
         targets = self.targets(whole, 4)
@@ -124,7 +124,7 @@ class Sequences(unittest.TestCase):
         self.assertFalse((whole.rollout(targets, 1e-3, 3) == positions).any())  # continues from the current state
 
     def test_wrong_calls(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         good = self.targets(batch, 3)
         for call, why in ((lambda: batch.rollout(good[0], 1e-3), r"\(3, 12\).*\(2, 1, 12\)"),
                           (lambda: batch.rollout(good[:1], 1e-3), r"\(1, 3, 12\).*\(2, 3, 12\)"),
@@ -137,7 +137,7 @@ class Sequences(unittest.TestCase):
         self.assertRaises(TypeError, lambda: batch.rollout(good, 1e-3, 1, "text"))
 
     def test_control_c_ends_it(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         interrupted(self, lambda: batch.rollout(np.repeat(self.targets(batch, 1), 5000, axis=1), 1e-3, 1000))
 
 
@@ -156,13 +156,13 @@ class Rows(unittest.TestCase):
 
     def test_they_are_what_the_methods_copy(self):
         for how in ({"worlds": 19}, {"worlds": 3, "simd": "scalar"}, {}):
-            batch = taut.Batch(taut.load(PUSH), **how)
+            batch = taut.Batch(taut.load(PUSH).robot, **how)
             target = batch.rest_length_target_m()
             batch.step(1e-3, 30, target - 0.001 * np.arange(batch.worlds)[:, None])
             self.check(batch)
 
     def test_they_show_what_is_now(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=4)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=4)
         position = batch.rows.body_position_m
         before = position.copy()
         batch.step(1e-3, 10)
@@ -170,7 +170,7 @@ class Rows(unittest.TestCase):
         self.check(batch)
 
     def test_targets_that_are_written_are_commanded(self):
-        written, told = (taut.Batch(taut.load(PUSH), worlds=5) for _ in range(2))
+        written, told = (taut.Batch(taut.load(PUSH).robot, worlds=5) for _ in range(2))
         target = told.rest_length_target_m() - 0.01 * np.arange(1, 6)[:, None]
         rows, worlds = written.rows.rest_length_target_m, np.arange(5)
         rows[worlds // written.lanes, :, worlds % written.lanes] = target
@@ -180,14 +180,14 @@ class Rows(unittest.TestCase):
         self.assertEqual([written.hash(w) for w in worlds], [told.hash(w) for w in worlds])
 
     def test_others_cannot_be_written(self):
-        rows = taut.Batch(taut.load(PUSH), worlds=2).rows
+        rows = taut.Batch(taut.load(PUSH).robot, worlds=2).rows
         with self.assertRaises(ValueError):
             rows.body_position_m[0, 0, 0] = 1
         with self.assertRaises(ValueError):
             rows.tension_n.setflags(write=True)
 
     def test_they_keep_their_batch_alive(self):
-        rows = taut.Batch(taut.load(PUSH), worlds=200).rows.body_position_m
+        rows = taut.Batch(taut.load(PUSH).robot, worlds=200).rows.body_position_m
         kept = rows.copy()
         gc.collect()
         taut.Batch(taut.load(PRISM), worlds=200)  # would reuse freed memory

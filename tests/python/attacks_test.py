@@ -134,7 +134,7 @@ class Processes(Attack):
     def test_forked_children_end(self):
         self.expect("""
             env = taut.gym.make_vec(SPINE, 32, threads=2)
-            batch = taut.Batch(taut.load(PUSH), worlds=32, threads=2)
+            batch = taut.Batch(taut.load(PUSH).robot, worlds=32, threads=2)
             for i in range(20):
                 env.step(np.zeros(env.action_space.shape))
                 batch.step(1e-3)
@@ -150,7 +150,7 @@ class Processes(Attack):
             text = f"""
                 endless = taut.load(PUSH)
                 endless.duration_s = 1e6
-                batch = taut.Batch(endless, worlds=8, threads=2)
+                batch = taut.Batch(endless.robot, worlds=8, threads=2)
                 env = taut.gym.make_vec(SPINE, 8, judge=lambda *_: None)
                 zero = np.zeros(env.action_space.shape)
                 def work():
@@ -174,7 +174,7 @@ class Processes(Attack):
             import taut
             push = taut.load({PUSH!r})
             push.duration_s = 0.1
-            batch = taut.Batch(push, worlds=2, threads=2)"""
+            batch = taut.Batch(push.robot, worlds=2, threads=2)"""
         ran = subprocess.run([sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True,
                              timeout=TOO_LONG_S)
         self.assertEqual((ran.returncode, ran.stdout), (0, "0.005 True\n"), ran.stderr)
@@ -183,7 +183,7 @@ class Processes(Attack):
 class Resources(Attack):
     def test_thread_counts_have_a_limit(self):
         push = taut.load(PUSH)
-        for call in (lambda n: taut.Batch(push, threads=n), lambda n: taut.gym.make_vec(SPINE, 1, threads=n),
+        for call in (lambda n: taut.Batch(push.robot, threads=n), lambda n: taut.gym.make_vec(SPINE, 1, threads=n),
                      lambda n: taut.run(push, threads=n), lambda n: taut.rollout(push, "distance", 1, threads=n),
                      lambda n: taut.learn(str(ROOT / "share/studies" / "sidewinder3.yaml"), "/nowhere", threads=n),
                      lambda n: taut.fit(str(ROOT / "share/fits" / "tetraspine3_push.yaml"), threads=n)):
@@ -193,7 +193,7 @@ class Resources(Attack):
 
     def test_world_counts_have_a_limit(self):
         for n in (0, 10**9 + 1, 2**31 - 1):
-            for make in (lambda: taut.Batch(taut.load(PUSH), worlds=n), lambda: taut.gym.make_vec(SPINE, n)):
+            for make in (lambda: taut.Batch(taut.load(PUSH).robot, worlds=n), lambda: taut.gym.make_vec(SPINE, n)):
                 with self.assertRaisesRegex(ValueError, f"worlds: {n}; expected 1 to 1000000000"):
                     make()
 
@@ -201,7 +201,7 @@ class Resources(Attack):
         self.expect("""
             push = taut.load(PUSH)
             limit_memory(1 << 30)
-            for make in (lambda: taut.Batch(push, threads=1024), lambda: taut.gym.make_vec(SPINE, 1, threads=1024)):
+            for make in (lambda: taut.Batch(push.robot, threads=1024), lambda: taut.gym.make_vec(SPINE, 1, threads=1024)):
                 try:
                     make()
                 except (RuntimeError, MemoryError) as error:
@@ -213,7 +213,7 @@ class Resources(Attack):
                 push = taut.load(PUSH)
                 limit_memory(900 << 20)
                 for make in (lambda n: taut.gym.make_vec(SPINE, n, threads={threads}),
-                             lambda n: taut.Batch(push, worlds=n, threads={threads})):
+                             lambda n: taut.Batch(push.robot, worlds=n, threads={threads})):
                     for n in (30_000, 100_000, 10**6, 10**9):
                         try:
                             made = make(n)
@@ -255,7 +255,7 @@ class Resources(Attack):
 
 class Interrupts(unittest.TestCase):
     def test_control_c_ends_steps(self):
-        batch = taut.Batch(taut.load(GAIT), worlds=3)
+        batch = taut.Batch(taut.load(GAIT).robot, worlds=3)
         before = time.monotonic()
         interrupted(self, lambda: batch.step(1e-3, 2 * 10**9))
         self.assertLess(time.monotonic() - before, 30)
@@ -266,7 +266,7 @@ class Interrupts(unittest.TestCase):
         interrupted(self, lambda: batch.rollout(targets, 1e-3, 2 * 10**9))
 
     def test_control_c_ends_waiting_for_another_thread(self):
-        batch = taut.Batch(taut.load(GAIT), worlds=3)
+        batch = taut.Batch(taut.load(GAIT).robot, worlds=3)
         stop = threading.Event()
 
         def step():
@@ -283,7 +283,7 @@ class Interrupts(unittest.TestCase):
             thread.join()
 
     def test_pieces_between_which_signals_are_seen_change_no_bits(self):
-        at_once, singly = (taut.Batch(taut.load(GAIT), worlds=4096) for _ in range(2))
+        at_once, singly = (taut.Batch(taut.load(GAIT).robot, worlds=4096) for _ in range(2))
         targets = 0.95 * at_once.rest_length_target_m()
         at_once.step(1e-3, 7, targets)
         singly.step(1e-3, 1, targets)
@@ -292,7 +292,7 @@ class Interrupts(unittest.TestCase):
         self.assertEqual([at_once.hash(w) for w in range(0, 4096, 500)], [singly.hash(w) for w in range(0, 4096, 500)])
 
     def test_signal_handlers_may_read_the_batch_that_steps(self):
-        batch, seen = taut.Batch(taut.load(GAIT), worlds=2), []
+        batch, seen = taut.Batch(taut.load(GAIT).robot, worlds=2), []
 
         def handler(*_):
             seen.append(batch.time_s()[0])
@@ -310,7 +310,7 @@ class Interrupts(unittest.TestCase):
 
 class Nonsense(unittest.TestCase):
     def test_parameters_have_the_limits_of_model_files(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=3)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=3)
         nan, infinite = float("nan"), float("inf")
         for name, wrong in (("body_mass_kg", (-1, 0, nan, infinite)), ("cable_stiffness_n_per_m", (-1000, 0, nan)),
                             ("cable_damping_n_s_per_m", (-1000, nan)), ("friction_scale", (-0.1, nan, infinite)),
@@ -323,7 +323,7 @@ class Nonsense(unittest.TestCase):
             np.testing.assert_array_equal(batch.parameter(name), good)  # no world was changed
 
     def test_commands_are_finite(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         wrong = batch.rest_length_target_m()
         wrong[1, 3] = np.nan
         for call in (lambda: batch.set_rest_length_target(wrong), lambda: batch.step(1e-3, 1, wrong),

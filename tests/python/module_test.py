@@ -156,7 +156,7 @@ class Tables(unittest.TestCase):
 
 class Batches(unittest.TestCase):
     def test_arrays_have_the_shapes_that_are_said(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=3)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=3)
         robot = taut.load(PUSH).robot
         b, c, n = len(robot.bodies), len(robot.cables), len(robot.nodes)
         self.assertEqual(batch.body_position_m().shape, (3, b, 3))
@@ -178,7 +178,7 @@ class Batches(unittest.TestCase):
 
     def test_worlds_lanes_and_threads_give_the_same_bits(self):
         def hashes(**how):
-            batch = taut.Batch(taut.load(PUSH), **how)
+            batch = taut.Batch(taut.load(PUSH).robot, **how)
             target = np.tile(batch.rest_length_target_m()[0], (batch.worlds, 1))
             target -= 0.001 * np.arange(batch.worlds)[:, None]
             batch.step(1e-3, 20, target)
@@ -189,7 +189,7 @@ class Batches(unittest.TestCase):
         self.assertEqual(hashes(worlds=11, simd="scalar"), many)
 
     def test_targets_of_all_or_of_one_world(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         lengths = batch.rest_length_target_m()
         batch.set_rest_length_target(lengths[1] * 0.9, world=-1)
         np.testing.assert_array_equal(batch.rest_length_target_m(), [lengths[0], lengths[1] * 0.9])
@@ -210,7 +210,7 @@ class Batches(unittest.TestCase):
         np.testing.assert_allclose(fallen, [0, 0.005, 0.01], rtol=0.02, atol=1e-9)
 
     def test_snapshots(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         batch.step(1e-3, 5)
         kept, hash_then = batch.save(1), batch.hash(1)
         batch.step(1e-3, 5)
@@ -226,7 +226,7 @@ class Batches(unittest.TestCase):
             taut.Batch(taut.load(PRISM)).restore(kept)
 
     def test_contacts_carry_the_weight(self):
-        batch = taut.Batch(taut.load(PUSH))
+        batch = taut.Batch(taut.load(PUSH).robot)
         batch.step(1e-3, 3000)
         touching = batch.contacts()
         self.assertGreater(len(touching["gap_m"]), 2)
@@ -236,7 +236,7 @@ class Batches(unittest.TestCase):
         self.assertAlmostEqual(touching["force_n"][:, 2].sum(), weight, delta=0.02 * weight)
 
     def test_out_is_written_into(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         out = np.empty((2, 12))
         self.assertIs(batch.tension_n(out=out), out)
         np.testing.assert_array_equal(out, batch.tension_n())
@@ -248,7 +248,7 @@ class Batches(unittest.TestCase):
                 batch.tension_n(out=bad)
 
     def test_every_index_and_shape_is_looked_at(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=2)
         for call in (lambda: batch.hash(2), lambda: batch.hash(-3), lambda: batch.save(10**12),
                      lambda: batch.contacts(2), lambda: batch.set_node_force(0, 10**6, [0, 0, 0]),
                      lambda: batch.set_parameter("body_mass_kg", [1, 1], 99),
@@ -263,23 +263,23 @@ class Batches(unittest.TestCase):
                           (lambda: batch.set_rest_length_target("no"), "rest_length_m"),
                           (lambda: batch.set_parameter("mass", [1, 1]), "body_mass_kg"),
                           (lambda: batch.parameter("mass"), "body_mass_kg"),
-                          (lambda: taut.Batch(taut.load(PUSH), worlds=0), "expected 1 to 1000000000"),
-                          (lambda: taut.Batch(taut.load(PUSH), simd="wide"), "avx512")):
+                          (lambda: taut.Batch(taut.load(PUSH).robot, worlds=0), "expected 1 to 1000000000"),
+                          (lambda: taut.Batch(taut.load(PUSH).robot, simd="wide"), "avx512")):
             self.assertRaisesRegex(ValueError, why, call)
 
     def test_threads_of_python_wait_for_each_other(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=4)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=4)
         threads = [threading.Thread(target=batch.step, args=(1e-3, 50)) for _ in range(4)]
         for thread in threads:
             thread.start()
         for thread in threads:
             thread.join()
-        alone = taut.Batch(taut.load(PUSH), worlds=4)
+        alone = taut.Batch(taut.load(PUSH).robot, worlds=4)
         alone.step(1e-3, 200)
         self.assertEqual([batch.hash(w) for w in range(4)], [alone.hash(w) for w in range(4)])
 
     def test_a_forked_child_is_told_and_does_not_hang(self):
-        batch = taut.Batch(taut.load(PUSH), worlds=16, threads=2)
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=16, threads=2)
         batch.step(1e-3)
         child = os.fork()
         if child == 0:

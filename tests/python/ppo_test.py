@@ -25,7 +25,7 @@ import taut  # noqa: E402
 import taut.gym  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "examples"), str(ROOT / "script")]
+sys.path[:0] = [str(ROOT / "examples"), str(ROOT / "benchmarks")]
 import ppo  # noqa: E402
 import ppo_play  # noqa: E402
 from validation import rolling  # noqa: E402

@@ -15,7 +15,7 @@ import tempfile
 import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "script"))
+sys.path[:0] = [str(ROOT / "script"), str(ROOT / "benchmarks")]
 
 from measuring import compare, hills, joints, measure, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402

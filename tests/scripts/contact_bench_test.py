@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "script"))
+sys.path[:0] = [str(ROOT / "script"), str(ROOT / "benchmarks")]
 
 from measuring import contacts, page, wasm  # noqa: E402
 from validation.runs import Problem  # noqa: E402

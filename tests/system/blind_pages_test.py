@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "script"))
+sys.path[:0] = [str(ROOT / "script"), str(ROOT / "benchmarks")]
 sys.dont_write_bytecode = True
 from validation import blind, drag_friction, runs, twin, virtual_robot_fit  # noqa: E402
 

@@ -196,13 +196,13 @@ TEST(PushPage, ShowsTheMeansOfThisVersion) {
 TEST(PushPage, ShowsHowNearThisVersionIsToNtrt) {
   const PageTable table("### Agreement with NTRT");
   const double ntrt_n = NtrtLargestTension();
-  table.Expect("NTRT", "largest `elastic` N", ntrt_n);
+  table.Expect("NTRT", "largest `elastic` [N]", ntrt_n);
   for (const auto& [name, who] :
        {std::pair("push_20n_ntrt", "its laws"), {"push_20n", "taut's own laws"}}) {
     const RunSummary run = Simulate(Load(name));
-    table.Expect(who, "largest `elastic` N", run.system_max_elastic_n);
-    table.Expect(who, "against NTRT", 100 * (run.system_max_elastic_n / ntrt_n - 1));
-    table.Expect(who, "means against NTRT, worst", WorstMeanPercent(run));
+    table.Expect(who, "largest `elastic` [N]", run.system_max_elastic_n);
+    table.Expect(who, "difference from NTRT", 100 * (run.system_max_elastic_n / ntrt_n - 1));
+    table.Expect(who, "largest difference of a mean from NTRT", WorstMeanPercent(run));
   }
 }
 
@@ -217,13 +217,13 @@ TEST(PushPage, ShowsTheSixMaximaOfTheRobotAndOfThisVersion) {
   for (const CableSummary& cable : run.cables) {
     if (robot.count(cable.name) == 0) continue;
     const std::string row = Plain(cable.name);
-    whole.Expect(row, "robot N", robot.at(cable.name));
-    whole.Expect(row, "NTRT `elastic` N", ntrt.at(cable.name));
-    whole.Expect(row, "taut `tension` N", cable.tension.max_n);
-    whole.Expect(row, "taut `elastic` N", cable.elastic.max_n);
-    after.Expect(row, "robot N", robot.at(cable.name));
-    after.Expect(row, "taut `tension` N", cable.tension.max_after_start_n);
-    after.Expect(row, "taut `elastic` N", cable.elastic.max_after_start_n);
+    whole.Expect(row, "robot [N]", robot.at(cable.name));
+    whole.Expect(row, "NTRT `elastic` [N]", ntrt.at(cable.name));
+    whole.Expect(row, "taut `tension` [N]", cable.tension.max_n);
+    whole.Expect(row, "taut `elastic` [N]", cable.elastic.max_n);
+    after.Expect(row, "robot [N]", robot.at(cable.name));
+    after.Expect(row, "taut `tension` [N]", cable.tension.max_after_start_n);
+    after.Expect(row, "taut `elastic` [N]", cable.elastic.max_after_start_n);
   }
 }
 

@@ -72,7 +72,7 @@ inline SchemeRun RunTaut(const Hanging& robot, const HangingState& start, double
     above = cable.attachments[1];
   }
   def.gravity_m_per_s2 = {0, 0, -kGravity};
-  Batch world = MakeBatch(def);
+  WorldBatch world = MakeBatch(def);
   // A new world has no data about cables that were taut before: one step provides them.
   world.Step(h);
   for (int i = 0; i < robot.masses; ++i) {

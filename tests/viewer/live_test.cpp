@@ -70,13 +70,13 @@ TEST(LiveRun, AHandHoldsANodeUpAgainstItsWeight) {
   run->SetHand(HandSpec{mass, {start.x, start.y, start.z + 0.2}});
   while (run->time_s() < 10) ASSERT_TRUE(run->Step());
   EXPECT_EQ(run->Observe().Cable(0).tension_n, 0);
-  ASSERT_EQ(run->OutsideForces().size(), 1u);
-  EXPECT_NEAR(run->OutsideForces()[0].force_n.z, weight_n, 1e-6);
+  ASSERT_EQ(run->ExternalForces().size(), 1u);
+  EXPECT_NEAR(run->ExternalForces()[0].force_n.z, weight_n, 1e-6);
   EXPECT_NEAR(run->world()->NodePosition(0, mass).z,
               start.z + 0.2 - weight_n / run->DragStiffness(), 1e-6);
   run->SetHand({});
   ASSERT_TRUE(run->Step());
-  EXPECT_TRUE(run->OutsideForces().empty());
+  EXPECT_TRUE(run->ExternalForces().empty());
   EXPECT_NEAR(run->world()->Body(0, 0).velocity_m_per_s.z, -9.81e-3, 1e-6);  // it falls
 }
 
@@ -94,7 +94,7 @@ TEST(LiveRun, APushGivesItsImpulse) {
   };
   EXPECT_NEAR(momentum_x(*pushed) - momentum_x(*alone), 0.1, 0.002);
   ASSERT_TRUE(pushed->Step());
-  EXPECT_TRUE(pushed->OutsideForces().empty());
+  EXPECT_TRUE(pushed->ExternalForces().empty());
 }
 
 TEST(LiveRun, SetPointsAndGainsTakeEffect) {

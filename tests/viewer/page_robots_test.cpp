@@ -46,7 +46,7 @@ TEST_F(PageTest, CablesGoRoundTheirWheelsAndHaveTheirSpans) {
       LoadExperiment(TAUT_SOURCE_DIR "/docs/tutorial_cables/fall.yaml", {}, found);
   ASSERT_TRUE(experiment) << found.Format();
   const ModelDef& def = experiment->robot.def;
-  Batch batch(Model::Compile(def, found), {});
+  WorldBatch batch(Model::Compile(def, found), {});
   batch.Step(1e-3, 100);
   const auto page = Open();
   page->Add(def, "a");

@@ -19,9 +19,9 @@ TEST_F(PageTest, ShowsTwoWorldsBesideEachOtherAsTheyAre) {
     Diagnostics found;
     return Model::Compile(Prism(), found);
   }();
-  BatchOptions two;
+  WorldBatchOptions two;
   two.worlds = 2;
-  Batch batch(model, two);
+  WorldBatch batch(model, two);
   batch.SetNodeForce(1, 2, {3, 0, 1});
   for (int i = 0; i < 100; ++i) batch.Step(kStepS);
   const auto page = Open();

@@ -1,5 +1,5 @@
 // Batches of worlds: choice of the SIMD kernel, memory, start, steps, and setters of the state.
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +85,7 @@ std::string_view SimdWish() {
   return text == nullptr ? "" : text;
 }
 
-BatchOptions Sane(BatchOptions o) {
+WorldBatchOptions Sane(WorldBatchOptions o) {
   o.worlds = std::max(o.worlds, 1);
   o.simd = o.simd ? WidestUpTo(*o.simd) : (o.worlds == 1 ? Simd::kScalar : BestSimd());
   return o;
@@ -123,7 +123,7 @@ bool sim::CheckEnvironment(Diagnostics& out) {
   return false;
 }
 
-Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
+WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& o)
     : model(std::static_pointer_cast<const sim::Tables>(std::move(m))),
       view(model->View()),
       options(Sane(o)),
@@ -164,7 +164,7 @@ Batch::Impl::Impl(std::shared_ptr<const Model> m, const BatchOptions& o)
   for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
 }
 
-void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
+void WorldBatch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
   const sim::start_of::Masses m = sim::start_of::MassesOf(*model, body, mass_kg);
   at(world, layout.mass + body) = m.mass;
   at(world, layout.inv_mass + body) = m.inv_mass;
@@ -172,7 +172,7 @@ void Batch::Impl::SetMass(int world, int body, double mass_kg) noexcept {
   set(world, layout.inv_inertia + 3 * body, m.inv_inertia);
 }
 
-void Batch::Impl::StartWorld(int world) noexcept {
+void WorldBatch::Impl::StartWorld(int world) noexcept {
 #define TAUT_ROW(name, type, per, role, halted, start)                 \
   for (int i = 0; i < view.Count(sim::Per::per); ++i) {                \
     const sim::start_of::type first = sim::start_of::start(*model, i); \
@@ -183,7 +183,7 @@ void Batch::Impl::StartWorld(int world) noexcept {
   JudgeStiffness(world);
 }
 
-void Batch::Impl::JudgeStiffness(int world) noexcept {
+void WorldBatch::Impl::JudgeStiffness(int world) noexcept {
   const ModelDef& def = model->def();
   double lighter = 1, k_max = 0;
   for (int b = 0; b < view.body_count; ++b) {
@@ -202,18 +202,18 @@ void Batch::Impl::JudgeStiffness(int world) noexcept {
   }
 }
 
-void Batch::Impl::Moved(int world) noexcept {
+void WorldBatch::Impl::Moved(int world) noexcept {
   for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
   for (int i = 0; i < view.touch_count; ++i) at(world, layout.touch_free + i) = 0.0;
   ForgetMeans(world);
 }
 
-void Batch::Impl::ForgetMeans(int world) noexcept {
+void WorldBatch::Impl::ForgetMeans(int world) noexcept {
   at(world, layout.mean_step) = 0.0;
   group(world).sensed = false;
 }
 
-void Batch::Impl::Sense(int world) const noexcept {
+void WorldBatch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
   // Several threads may read at once: one senses, the others wait for it. Later calls in the same
   // step take no lock. std::atomic_ref is not available everywhere (the libc++ of emscripten
@@ -225,7 +225,7 @@ void Batch::Impl::Sense(int world) const noexcept {
   __atomic_store_n(&g.sensed, true, __ATOMIC_RELEASE);
 }
 
-void Batch::Impl::ForceNode(int world, int node) noexcept {
+void WorldBatch::Impl::ForceNode(int world, int node) noexcept {
   sim::Group& g = group(world);
   int* const end = g.forced_nodes + g.forced_count;
   int* const place = std::lower_bound(g.forced_nodes, end, node);
@@ -236,17 +236,17 @@ void Batch::Impl::ForceNode(int world, int node) noexcept {
   ++g.forced_count;
 }
 
-Batch::Batch(std::shared_ptr<const Model> model, const BatchOptions& options)
+WorldBatch::WorldBatch(std::shared_ptr<const Model> model, const WorldBatchOptions& options)
     : impl_(std::make_unique<Impl>(std::move(model), options)) {}
-Batch::~Batch() = default;
-Batch::Batch(Batch&&) noexcept = default;
-Batch& Batch::operator=(Batch&&) noexcept = default;
+WorldBatch::~WorldBatch() = default;
+WorldBatch::WorldBatch(WorldBatch&&) noexcept = default;
+WorldBatch& WorldBatch::operator=(WorldBatch&&) noexcept = default;
 
-const Model& Batch::model() const noexcept { return *impl_->model; }
-int Batch::worlds() const noexcept { return impl_->options.worlds; }
-int Batch::lanes() const noexcept { return impl_->lanes(); }
+const Model& WorldBatch::model() const noexcept { return *impl_->model; }
+int WorldBatch::worlds() const noexcept { return impl_->options.worlds; }
+int WorldBatch::lanes() const noexcept { return impl_->lanes(); }
 
-void Batch::Impl::Step(double step_s, int count, const double* targets_m) noexcept {
+void WorldBatch::Impl::Step(double step_s, int count, const double* targets_m) noexcept {
   const sim::StepSettings settings{options.max_linear_solves, options.tolerance_m_per_s};
   auto work = [&](int thread, std::size_t g) {
     if (targets_m != nullptr) SetTargets(static_cast<int>(g), targets_m);
@@ -256,7 +256,7 @@ void Batch::Impl::Step(double step_s, int count, const double* targets_m) noexce
   pool.ForEach(groups.size(), work);
 }
 
-void Batch::Impl::SetTargets(int group_number, const double* targets_m) const noexcept {
+void WorldBatch::Impl::SetTargets(int group_number, const double* targets_m) const noexcept {
   const int cables = view.cable_count, first = group_number * lanes();
   const int here = std::min(lanes(), options.worlds - first);
   for (int c = 0; c < cables; ++c) {
@@ -267,35 +267,36 @@ void Batch::Impl::SetTargets(int group_number, const double* targets_m) const no
   }
 }
 
-void Batch::Step(double step_s, int count) noexcept { impl_->Step(step_s, count, nullptr); }
+void WorldBatch::Step(double step_s, int count) noexcept { impl_->Step(step_s, count, nullptr); }
 
-void Batch::Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept {
+void WorldBatch::Step(double step_s, int count,
+                      std::span<const double> rest_length_targets_m) noexcept {
   const auto worlds = static_cast<std::size_t>(impl_->options.worlds);
   sim::CheckCount(__func__, "target for each cable of each world", rest_length_targets_m.size(),
                   worlds * static_cast<std::size_t>(impl_->view.cable_count));
   impl_->Step(step_s, count, rest_length_targets_m.data());
 }
 
-double Batch::Time(int world) const noexcept {
+double WorldBatch::Time(int world) const noexcept {
   impl_->CheckWorld(__func__, world);
   return impl_->at(world, impl_->layout.time);
 }
 
-double Batch::RestLengthTarget(int world, int cable) const noexcept {
+double WorldBatch::RestLengthTarget(int world, int cable) const noexcept {
   impl_->CheckCable(__func__, world, cable);
   return impl_->at(world, impl_->layout.target + cable);
 }
-Vec3 Batch::NodeForce(int world, int node) const noexcept {
+Vec3 WorldBatch::NodeForce(int world, int node) const noexcept {
   impl_->CheckNode(__func__, world, node);
   return impl_->vec(world, impl_->layout.node_force + 3 * node);
 }
-void Batch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
+void WorldBatch::SetNodeForce(int world, int node, const Vec3& force_n) noexcept {
   impl_->CheckNode(__func__, world, node);
   impl_->ForceNode(world, node);
   impl_->set(world, impl_->layout.node_force + 3 * node, force_n);
 }
 
-void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
+void WorldBatch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   Impl& d = *impl_;
   d.CheckBody(__func__, world, body);
   if (d.view.HasMotion(body)) return;
@@ -318,13 +319,13 @@ void Batch::SetBodyState(int world, int body, const BodyState& state) noexcept {
   d.Moved(world);
 }
 
-void Batch::SetTime(int world, double time_s) noexcept {
+void WorldBatch::SetTime(int world, double time_s) noexcept {
   impl_->CheckWorld(__func__, world);
   impl_->at(world, impl_->layout.time) = time_s;
   impl_->PlaceMotions(world);
 }
 
-std::size_t Batch::BytesPerWorld() const noexcept {
+std::size_t WorldBatch::BytesPerWorld() const noexcept {
   const Impl& d = *impl_;
   return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus) +
          static_cast<std::size_t>(d.model->kept_count) * sizeof(sim::NearParts);

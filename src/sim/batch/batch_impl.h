@@ -1,4 +1,4 @@
-/// Data of a Batch; shared by the files that implement it.
+/// Data of a WorldBatch; shared by the files that implement it.
 #pragma once
 
 #include <cstdlib>
@@ -14,7 +14,7 @@
 #include "sim/batch/check_index.h"
 #include "sim/data/group.h"
 #include "sim/data/tables.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 
@@ -34,13 +34,13 @@ Aligned<T> AllocateAligned(std::size_t count) {
   return Aligned<T>(static_cast<T*>(memory));
 }
 
-struct Batch::Impl {
-  Impl(std::shared_ptr<const Model> m, const BatchOptions& o);
+struct WorldBatch::Impl {
+  Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& o);
 
   std::shared_ptr<const sim::Tables> model;
   sim::View view;
   sim::FrictionTable friction;  ///< `view` points to it if the model needs it.
-  BatchOptions options;
+  WorldBatchOptions options;
   const sim::Kernel* kernel;
   sim::Layout layout;
   mutable std::vector<sim::Group> groups;

@@ -6,10 +6,10 @@
 namespace taut {
 
 struct BatchInside {
-  using Impl = Batch::Impl;
-  static Impl& Of(Batch& batch) noexcept { return *batch.impl_; }
+  using Impl = WorldBatch::Impl;
+  static Impl& Of(WorldBatch& batch) noexcept { return *batch.impl_; }
   /// Enables time stamps between the stages of the batch's steps (benchmarks/stage_watch.h).
-  static void Watch(Batch& batch);
+  static void Watch(WorldBatch& batch);
 };
 
 }  // namespace taut

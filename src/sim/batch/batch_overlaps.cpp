@@ -147,7 +147,7 @@ class Finder {
 
 }  // namespace
 
-std::vector<Overlap> Batch::Overlaps(int world) const {
+std::vector<Overlap> WorldBatch::Overlaps(int world) const {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   std::vector<ShapePose> poses;

@@ -6,7 +6,7 @@
 
 namespace taut {
 
-BodyRows RowsOfBodies(Batch& batch, int group) noexcept {
+BodyRows RowsOfBodies(WorldBatch& batch, int group) noexcept {
   const BatchInside::Impl& d = BatchInside::Of(batch);
   sim::CheckIndex(__func__, "group", group, batch.groups());
   // Without bodies the rows are empty, and may start after the last row.
@@ -16,7 +16,7 @@ BodyRows RowsOfBodies(Batch& batch, int group) noexcept {
   return {d.lanes(), group * d.lanes(), first(d.layout.pos), first(d.layout.vel)};
 }
 
-std::ptrdiff_t GroupStride(Batch& batch) noexcept {
+std::ptrdiff_t GroupStride(WorldBatch& batch) noexcept {
   const auto& groups = BatchInside::Of(batch).groups;
   return groups.size() < 2 ? 0 : groups[1].rows - groups[0].rows;
 }

@@ -1,7 +1,7 @@
 /// Height of the terrain, seen from above.
 #pragma once
 
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::sim {
 

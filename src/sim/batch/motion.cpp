@@ -67,7 +67,7 @@ MotionSample SampleMotion(const View& m, int motion, double time_s) noexcept {
 
 namespace taut {
 
-void Batch::Impl::PlaceMotions(int world) noexcept {
+void WorldBatch::Impl::PlaceMotions(int world) noexcept {
   for (int i = 0; i < view.motion_count; ++i) {
     const int body = view.motions[i].body;
     const sim::MotionSample now = sim::SampleMotion(view, i, at(world, layout.time));
@@ -78,7 +78,7 @@ void Batch::Impl::PlaceMotions(int world) noexcept {
   if (view.motion_count > 0) Moved(world);
 }
 
-MotionState Batch::Motion(int world, int motion) const noexcept {
+MotionState WorldBatch::Motion(int world, int motion) const noexcept {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   sim::CheckIndex(__func__, "motion", motion, d.view.motion_count);

@@ -60,14 +60,14 @@ void LayOutMotors(Tables& tables) {
 
 }  // namespace sim
 
-void Batch::Impl::Order(int world, int motor, double sim::MotorOrders<double>::*order,
-                        double value) const noexcept {
+void WorldBatch::Impl::Order(int world, int motor, double sim::MotorOrders<double>::*order,
+                             double value) const noexcept {
   sim::MotorOrders<double> now = orders(world, motor);
   now.*order = value;
   set(world, layout.orders + sim::kWidthOrders * motor, now);
 }
 
-void Batch::Impl::StopMotor(int world, int cable) const noexcept {
+void WorldBatch::Impl::StopMotor(int world, int cable) const noexcept {
   const int number = view.cables[cable].motor;
   if (number < 0) return;
   sim::MotorNumbers<double> now = motor(world, number);
@@ -75,18 +75,18 @@ void Batch::Impl::StopMotor(int world, int cable) const noexcept {
   set(world, layout.motor + sim::kWidthMotor * number, now);
 }
 
-void Batch::SetDuty(int world, int cable, double duty) noexcept {
+void WorldBatch::SetDuty(int world, int cable, double duty) noexcept {
   const int motor = impl_->CheckMotor(__func__, world, cable);
   impl_->Order(world, motor, &sim::MotorOrders<double>::duty, std::clamp(duty, -1.0, 1.0));
   impl_->Order(world, motor, &sim::MotorOrders<double>::by_duty, 1.0);
 }
 
-void Batch::SetMotorEnabled(int world, int cable, bool enabled) noexcept {
+void WorldBatch::SetMotorEnabled(int world, int cable, bool enabled) noexcept {
   const int motor = impl_->CheckMotor(__func__, world, cable);
   impl_->Order(world, motor, &sim::MotorOrders<double>::on, enabled ? 1.0 : 0.0);
 }
 
-MotorState Batch::Motor(int world, int cable) const noexcept {
+MotorState WorldBatch::Motor(int world, int cable) const noexcept {
   const Impl& d = *impl_;
   const int number = d.CheckMotor(__func__, world, cable);
   const sim::MotorOrders<double> orders = d.orders(world, number);

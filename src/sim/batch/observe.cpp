@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <cstring>
 
+#include "math/cable_law.h"
 #include "sim/batch/batch_impl.h"
 #include "sim/batch/motion.h"
 
 namespace taut {
 
-void Batch::Sense(int group) const noexcept {
+void WorldBatch::Sense(int group) const noexcept {
   sim::CheckIndex(__func__, "group", group, groups());
   impl_->Sense(group * impl_->lanes());
 }
 
-BodyState Batch::Body(int world, int body) const noexcept {
+BodyState WorldBatch::Body(int world, int body) const noexcept {
   const Impl& d = *impl_;
   d.CheckBody(__func__, world, body);
   const Quat q = d.quat(world, body);
@@ -30,7 +31,7 @@ BodyState Batch::Body(int world, int body) const noexcept {
           Rotate(q, {inv.x * l.x, inv.y * l.y, inv.z * l.z})};
 }
 
-Vec3 Batch::NodePosition(int world, int node) const noexcept {
+Vec3 WorldBatch::NodePosition(int world, int node) const noexcept {
   const Impl& d = *impl_;
   d.CheckNode(__func__, world, node);
   const sim::AttachmentTable& n = d.view.nodes[node];
@@ -39,7 +40,7 @@ Vec3 Batch::NodePosition(int world, int node) const noexcept {
   return d.vec(world, d.layout.pos + 3 * n.body) + Rotate(d.quat(world, n.body), p);
 }
 
-Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
+Vec3 WorldBatch::NodeVelocity(int world, int node) const noexcept {
   const Impl& d = *impl_;
   d.CheckNode(__func__, world, node);
   const sim::AttachmentTable& n = d.view.nodes[node];
@@ -49,7 +50,7 @@ Vec3 Batch::NodeVelocity(int world, int node) const noexcept {
   return b.velocity_m_per_s + Cross(b.angular_velocity_rad_per_s, arm);
 }
 
-Energy Batch::TotalEnergy(int world) const noexcept {
+Energy WorldBatch::TotalEnergy(int world) const noexcept {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   Energy e;
@@ -71,12 +72,12 @@ Energy Batch::TotalEnergy(int world) const noexcept {
         const CableSpanState span = CableSpan(world, c, i);
         if (span.rest_length_m == 0) continue;  // its place has no contact now
         const double longer = std::max(span.length_m - span.rest_length_m, 0.0);
-        e.elastic_j += 0.5 * area_n / span.rest_length_m * longer * longer;
+        e.elastic_j += math::CableLaw{area_n / span.rest_length_m}.Energy(longer);
       }
       continue;
     }
     const double stretch = std::max(cable.length_m - cable.rest_length_m, 0.0);
-    e.elastic_j += 0.5 * d.at(world, d.layout.stiffness + c) * stretch * stretch;
+    e.elastic_j += math::CableLaw{d.at(world, d.layout.stiffness + c)}.Energy(stretch);
   }
   for (int i = 0; i < d.view.joint_count; ++i) {
     const JointDef& joint = d.model->def().joints[static_cast<std::size_t>(i)];
@@ -89,7 +90,7 @@ Energy Batch::TotalEnergy(int world) const noexcept {
   return e;
 }
 
-Vec3 Batch::Momentum(int world) const noexcept {
+Vec3 WorldBatch::Momentum(int world) const noexcept {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   Vec3 sum;
@@ -99,7 +100,7 @@ Vec3 Batch::Momentum(int world) const noexcept {
   return sum;
 }
 
-Vec3 Batch::AngularMomentum(int world) const noexcept {
+Vec3 WorldBatch::AngularMomentum(int world) const noexcept {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   Vec3 sum;
@@ -138,7 +139,7 @@ Touching BodiesOf(const sim::Tables& m, double key) {
 
 }  // namespace
 
-std::vector<ContactState> Batch::Contacts(int world) const {
+std::vector<ContactState> WorldBatch::Contacts(int world) const {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   const sim::Tables& m = *d.model;
@@ -196,7 +197,7 @@ T Read(const std::uint8_t*& at) {
 
 }  // namespace
 
-std::vector<std::uint8_t> Batch::Save(int world) const {
+std::vector<std::uint8_t> WorldBatch::Save(int world) const {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   const sim::Group& g = d.group(world);
@@ -218,7 +219,7 @@ std::vector<std::uint8_t> Batch::Save(int world) const {
   return out;
 }
 
-bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept {
+bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept {
   Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   if (snapshot.size() < sizeof(SnapshotHeader)) return false;
@@ -285,7 +286,7 @@ bool Batch::Restore(int world, const std::vector<std::uint8_t>& snapshot) noexce
   return true;
 }
 
-std::uint64_t Batch::Hash(int world) const noexcept {
+std::uint64_t WorldBatch::Hash(int world) const noexcept {
   // FNV-1a over the contents of a snapshot without readings, without building one.
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
@@ -300,7 +301,7 @@ std::uint64_t Batch::Hash(int world) const noexcept {
   return hash;
 }
 
-WorldStatus Batch::Status(int world) const noexcept {
+WorldStatus WorldBatch::Status(int world) const noexcept {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   const sim::LaneStatus& s = d.group(world).status[world % d.lanes()];
@@ -314,7 +315,7 @@ WorldStatus Batch::Status(int world) const noexcept {
           d.at(world, d.layout.relaxation)};
 }
 
-void Batch::ClearStatus(int world) noexcept {
+void WorldBatch::ClearStatus(int world) noexcept {
   impl_->CheckWorld(__func__, world);
   impl_->group(world).status[world % impl_->lanes()] = {};
   impl_->at(world, impl_->layout.halted) = 0.0;

@@ -21,20 +21,20 @@ CableReadings<int> RowsOf(const sim::Layout& l) {
 
 }  // namespace
 
-CableState Batch::Cable(int world, int cable) const noexcept {
+CableState WorldBatch::Cable(int world, int cable) const noexcept {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   d.Sense(world);
   return MapReadings([&](int row) { return d.at(world, row + cable); }, RowsOf(d.layout));
 }
 
-int Batch::CableSpans(int cable) const noexcept {
+int WorldBatch::CableSpans(int cable) const noexcept {
   const Impl& d = *impl_;
   d.CheckCable(__func__, 0, cable);
   return std::max(d.view.cables[cable].span_count, 1);
 }
 
-CableSpanState Batch::CableSpan(int world, int cable, int span) const noexcept {
+CableSpanState WorldBatch::CableSpan(int world, int cable, int span) const noexcept {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   sim::CheckIndex(__func__, "span", span, CableSpans(cable));
@@ -49,7 +49,7 @@ CableSpanState Batch::CableSpan(int world, int cable, int span) const noexcept {
           d.at(world, d.layout.sense_span_rest + row), d.at(world, d.layout.span_tension + row)};
 }
 
-struct Batch::Impl::LaidCable {
+struct WorldBatch::Impl::LaidCable {
   std::vector<PathPoint<Vec3>> points;
   std::vector<int> bodies;  ///< By point; the world's number follows the last body's.
   std::vector<int>
@@ -57,7 +57,7 @@ struct Batch::Impl::LaidCable {
   std::vector<Wheel<Vec3>> wheels;
 };
 
-std::vector<double> Batch::CableSpanTensions(int world, int cable) const {
+std::vector<double> WorldBatch::CableSpanTensions(int world, int cable) const {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   const sim::CableTable& table = d.view.cables[cable];
@@ -78,7 +78,7 @@ std::vector<double> Batch::CableSpanTensions(int world, int cable) const {
   return tensions;
 }
 
-double Batch::WheelAngle(int world, int cable, int wheel) const noexcept {
+double WorldBatch::WheelAngle(int world, int cable, int wheel) const noexcept {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   const sim::CableTable& table = d.view.cables[cable];
@@ -86,7 +86,7 @@ double Batch::WheelAngle(int world, int cable, int wheel) const noexcept {
   return d.at(world, d.layout.wheel_angle + table.first_wheel + wheel);
 }
 
-std::vector<sim::WrapPointNumbers<double>> Batch::Impl::Bends(int world, int cable) const {
+std::vector<sim::WrapPointNumbers<double>> WorldBatch::Impl::Bends(int world, int cable) const {
   std::vector<sim::WrapPointNumbers<double>> bends;
   const int touch = view.cables[cable].touch;
   for (int k = 0; touch >= 0 && k < sim::kMostBends; ++k) {
@@ -97,11 +97,11 @@ std::vector<sim::WrapPointNumbers<double>> Batch::Impl::Bends(int world, int cab
   return bends;
 }
 
-int Batch::CableBends(int world, int cable) const {
+int WorldBatch::CableBends(int world, int cable) const {
   return static_cast<int>(CableBendPlaces(world, cable).size());
 }
 
-Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
+WorldBatch::Impl::LaidCable WorldBatch::Impl::Lay(int world, int cable) const {
   Sense(world);
   const sim::CableTable& table = view.cables[cable];
   const auto turned = [&](int body, const double* p) {
@@ -165,7 +165,7 @@ Batch::Impl::LaidCable Batch::Impl::Lay(int world, int cable) const {
   return laid;
 }
 
-std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
+std::vector<CablePoint> WorldBatch::CablePath(int world, int cable) const {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   const sim::CableTable& table = d.view.cables[cable];
@@ -187,7 +187,7 @@ std::vector<CablePoint> Batch::CablePath(int world, int cable) const {
   return path;
 }
 
-std::vector<Vec3> Batch::CableBendPlaces(int world, int cable) const {
+std::vector<Vec3> WorldBatch::CableBendPlaces(int world, int cable) const {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   std::vector<Vec3> places;
@@ -205,7 +205,7 @@ std::vector<Vec3> Batch::CableBendPlaces(int world, int cable) const {
   return places;
 }
 
-double Batch::CableWrap(int world, int cable) const {
+double WorldBatch::CableWrap(int world, int cable) const {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   double sum_rad = 0;
@@ -213,7 +213,7 @@ double Batch::CableWrap(int world, int cable) const {
   return sum_rad;
 }
 
-double Batch::CableFrictionLoss(int world, int cable) const noexcept {
+double WorldBatch::CableFrictionLoss(int world, int cable) const noexcept {
   const Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   d.Sense(world);
@@ -224,9 +224,9 @@ double Batch::CableFrictionLoss(int world, int cable) const noexcept {
   return sum_j;
 }
 
-int Batch::groups() const noexcept { return static_cast<int>(impl_->groups.size()); }
+int WorldBatch::groups() const noexcept { return static_cast<int>(impl_->groups.size()); }
 
-CableRows Batch::Cables(int group) noexcept {
+CableRows WorldBatch::Cables(int group) noexcept {
   const Impl& d = *impl_;
   sim::CheckIndex(__func__, "group", group, groups());
   const int first_world = group * d.lanes();

@@ -18,7 +18,7 @@ struct Side {
 
 }  // namespace
 
-JointState Batch::Joint(int world, int joint) const noexcept {
+JointState WorldBatch::Joint(int world, int joint) const noexcept {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   sim::CheckIndex(__func__, "joint", joint, d.view.joint_count);

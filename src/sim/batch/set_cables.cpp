@@ -4,7 +4,7 @@
 
 namespace taut {
 
-void Batch::Impl::ForgetBends(int world) noexcept {
+void WorldBatch::Impl::ForgetBends(int world) noexcept {
   for (int i = 0; i < view.touch_rod_count; ++i) at(world, layout.touch_side + i) = 0.0;
   for (int i = 0; i < view.Count(sim::Per::kBend); ++i) {
     set(world, layout.bend + sim::kWidthWrapPoint * i, sim::kNoWrapPoint);
@@ -23,14 +23,14 @@ void Batch::Impl::ForgetBends(int world) noexcept {
   }
 }
 
-void Batch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
+void WorldBatch::SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept {
   impl_->CheckCable(__func__, world, cable);
   impl_->at(world, impl_->layout.target + cable) = rest_length_m;
   const int motor = impl_->view.cables[cable].motor;
   if (motor >= 0) impl_->Order(world, motor, &sim::MotorOrders<double>::by_duty, 0.0);
 }
 
-void Batch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
+void WorldBatch::SetRestLength(int world, int cable, double rest_length_m) noexcept {
   Impl& d = *impl_;
   d.CheckCable(__func__, world, cable);
   const sim::CableTable& table = d.view.cables[cable];

@@ -32,8 +32,8 @@ bool IsWithoutMass(const ModelDef& def, Parameter parameter, int index) noexcept
 
 }  // namespace
 
-int Batch::Impl::ParameterRow(const char* function, int world, Parameter parameter,
-                              int index) const noexcept {
+int WorldBatch::Impl::ParameterRow(const char* function, int world, Parameter parameter,
+                                   int index) const noexcept {
   switch (parameter) {
     case Parameter::kBodyMass:
       CheckBody(function, world, index);
@@ -61,7 +61,7 @@ int Batch::Impl::ParameterRow(const char* function, int world, Parameter paramet
   }
 }
 
-std::string Batch::ParameterError(Parameter parameter, int index, double value) const {
+std::string WorldBatch::ParameterError(Parameter parameter, int index, double value) const {
   impl_->ParameterRow(__func__, 0, parameter, index);
   if (IsWithoutMass(model().def(), parameter, index)) return {};
   const char* const violated = BoundViolatedBy(parameter, value);
@@ -69,7 +69,7 @@ std::string Batch::ParameterError(Parameter parameter, int index, double value) 
   return std::string("must be ") + violated + ", got " + base::Brief(value);
 }
 
-bool Batch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {
+bool WorldBatch::SetParameter(int world, Parameter parameter, int index, double value) noexcept {
   Impl& d = *impl_;
   const int row = d.ParameterRow(__func__, world, parameter, index);
   if (IsWithoutMass(d.model->def(), parameter, index)) return true;
@@ -90,7 +90,7 @@ bool Batch::SetParameter(int world, Parameter parameter, int index, double value
   return true;
 }
 
-double Batch::GetParameter(int world, Parameter parameter, int index) const noexcept {
+double WorldBatch::GetParameter(int world, Parameter parameter, int index) const noexcept {
   return impl_->at(world, impl_->ParameterRow(__func__, world, parameter, index));
 }
 

@@ -43,7 +43,7 @@ class Still {
 
 }  // namespace
 
-void Batch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
+void WorldBatch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
   const sim::StepSettings settings{options.max_linear_solves, options.tolerance_m_per_s};
   const int n = lanes();
   auto work = [&](int thread, std::size_t number) {
@@ -84,7 +84,7 @@ void Batch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
   pool.ForEach(groups.size(), work);
 }
 
-void Batch::StepMasked(double step_s, std::span<const std::uint8_t> mask) {
+void WorldBatch::StepMasked(double step_s, std::span<const std::uint8_t> mask) {
   sim::CheckCount(__func__, "word for each world", mask.size(),
                   static_cast<std::size_t>(impl_->options.worlds));
   impl_->StepMasked(step_s, mask.data());

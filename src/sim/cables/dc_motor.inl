@@ -10,6 +10,7 @@
 /// cable's law (DriveMotor); and the rotation under the computed tension (StageMotors).
 #pragma once
 
+#include "math/cable_law.h"
 #include "sim/data/rows.h"
 
 namespace taut::sim {
@@ -128,7 +129,8 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W least = W::Splat(t.min_rest_m);
   const W stop_rest = RestOnSpool(t, wound - half_h * way * stopping, s.rest[c], l);
   const W stretch = l - stop_rest;
-  const W tension = Select(stretch > zero, Max(k * stretch + b * dl, zero), zero);
+  const W tension =
+      Select(stretch > zero, Max(math::CableLaw{k}.Force(stretch) + b * dl, zero), zero);
   const W pull = inv_J * way;
   const W slip = speed / (h * decay.half) + drive - pull * tension;
   const W slowness = W::Splat(t.inv_stribeck2) * speed * speed;

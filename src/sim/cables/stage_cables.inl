@@ -6,6 +6,7 @@
 ///   T       tension [N]
 #pragma once
 
+#include "math/cable_law.h"
 #include "sim/cables/cable_follow.inl"
 #include "sim/cables/cable_pulls.inl"
 #include "sim/cables/cable_wheels.inl"
@@ -27,7 +28,7 @@ template <class W>
 TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
   const W zero = W::Splat(0.0);
   const W stretch = l - rest;
-  const W spring = k * stretch;
+  const W spring = math::CableLaw{k}.Force(stretch);
   W damper = b * dl;
   if (clamped) damper = Max(Min(damper, spring), -spring);
   const auto taut = stretch > zero;
@@ -150,7 +151,7 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   const W stretch = l - mean;
   const auto stiff = s.stiff_k[c] > work.implicit.limit[c];
   row.soft = !stiff;
-  row.spring = Max(k * stretch, zero);
+  row.spring = Max(math::CableLaw{k}.Force(stretch), zero);
   const bool any_stiff = Any(stiff);
   if (damped || any_stiff) FinishLinks<kTwo>(work, row);
   if (any_stiff) {
@@ -209,7 +210,7 @@ template <bool kMotors, class W>
       k = k * share;
       b = b * share;
     }
-    const W spring = W::Splat(0.25) * step.h * step.h * k;
+    const W spring = W::Splat(0.25) * step.h * step.h * math::CableLaw{k}.Slope(row.stretch);
     CableRow<W> law;
     law.A = row.A;
     SetCableLaw(m, s, work, c, length, row.stretch, before, step.h, spring / (one - spring * law.A),

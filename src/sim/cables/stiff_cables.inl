@@ -6,6 +6,7 @@
 /// contacts. Soft cables are explicit, except in a step in which they become slack or taut.
 #pragma once
 
+#include "math/cable_law.h"
 #include "sim/cables/cable_wheels.inl"
 #include "sim/cables/cable_wrapping.inl"
 #include "sim/data/rows.h"
@@ -95,7 +96,7 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
   row.links = linked.links;
   row.link_count = linked.link_count;
   const W rate = RateBefore(work, row.links, row.link_count);
-  const W spring = W::Splat(0.25) * h * h * k;
+  const W spring = W::Splat(0.25) * h * h * math::CableLaw{k}.Slope(stretch);
   SetCableLaw(m, s, work, c, length, stretch, rate, h, spring, b, row);
   row.FinishMasses();
   row.across = W::Splat(0.25) * h * h * s.stiff_k[c] / (s.stiffness[c] * length);

@@ -330,6 +330,16 @@ class Compiler {
 }  // namespace
 
 std::shared_ptr<const Model> Model::Compile(const ModelDef& def, Diagnostics& out) {
+  if (!def.experiment_parts.empty()) {
+    out.Warning("model.experiment_left_out", {},
+                "the experiment has " + def.experiment_parts + ", which are left out here",
+                "use Simulation; or clear ModelDef::experiment_parts, in Python use "
+                "experiment.robot");
+  }
+  return CompileForExperiment(def, out);
+}
+
+std::shared_ptr<const Model> Model::CompileForExperiment(const ModelDef& def, Diagnostics& out) {
   if (!sim::CheckModel(def, out) || !sim::CheckEnvironment(out)) return nullptr;
   auto tables = std::make_shared<Tables>(def);
   Compiler(*tables).Run();

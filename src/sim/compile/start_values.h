@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/cable_law.h"
 #include "math/described_path.h"
 #include "math/vec.h"
 #include "sim/data/group.h"
@@ -28,7 +29,7 @@ inline Nothing Zero(const Tables&, int) noexcept { return {}; }
 inline double One(const Tables&, int) noexcept { return 1.0; }
 inline double NoKey(const Tables&, int) noexcept { return kNoKey; }
 inline double SlipUnknown(const Tables&, int) noexcept { return kSlipUnknown; }
-/// Batch::Impl::JudgeStiffness writes it after the masses, stiffnesses and dampings.
+/// WorldBatch::Impl::JudgeStiffness writes it after the masses, stiffnesses and dampings.
 inline Nothing ByJudgeStiffness(const Tables&, int) noexcept { return {}; }
 
 inline const BodyDef& BodyOf(const Tables& t, int i) noexcept {
@@ -101,7 +102,7 @@ inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).da
 inline double Tension(const Tables& t, int i) noexcept {
   const CableDef& cable = CableOf(t, i);
   const double length = math::DescribedPath(cable).length_m();
-  return std::max(cable.stiffness_n_per_m * (length - cable.rest_length_m), 0.0);
+  return std::max(math::CableLaw{cable.stiffness_n_per_m}.Force(length - cable.rest_length_m), 0.0);
 }
 inline double SpanTension(const Tables& t, int i) noexcept {
   int cable = 0;

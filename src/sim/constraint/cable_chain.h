@@ -4,6 +4,7 @@
 /// follow from the velocities of all spans together.
 #pragma once
 
+#include "math/cable_law.h"
 #include "sim/constraint/capstan.h"
 #include "sim/constraint/links.h"
 
@@ -82,7 +83,7 @@ struct CableChain {
       // taut.
       b.law.spans[i].p = 1.0 / (slips + c / step);
       b.law.spans[i].q = 1.0 / (slips + 2.0 * c / step);
-      b.law.spans[i].a = (k * stretch + c * rate) * b.law.spans[i].p;
+      b.law.spans[i].a = (math::CableLaw{k}.Force(stretch) + c * rate) * b.law.spans[i].p;
       b.law.spans[i].e = stretch;
       b.law.ratio[i] = s.ratio[0];
     }

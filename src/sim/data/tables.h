@@ -8,7 +8,7 @@
 #include "sim/data/view.h"
 #include "sim/geometry/hull_build.h"
 #include "sim/geometry/surface_build.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::sim {
 

@@ -17,7 +17,7 @@
 #include "sim/geometry/seams.h"
 #include "sim/geometry/shape_contacts.h"
 #include "sim/geometry/surface.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 
 namespace taut::sim {
 

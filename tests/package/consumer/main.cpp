@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "taut/batch.h"
 #include "taut/control/impedance.h"
 #include "taut/spec.h"
 #include "taut/trace.h"
 #include "taut/version.h"
+#include "taut/world_batch.h"
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
     std::fputs(diagnostics.Format().c_str(), stderr);
     return 1;
   }
-  taut::Batch batch(model, {});
+  taut::WorldBatch batch(model, {});
   for (int step = 1; step <= 10; ++step) {
     batch.Step(0.001);
     const double tension_n = batch.Cable(0, 0).tension_n;

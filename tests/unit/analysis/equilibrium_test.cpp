@@ -7,7 +7,7 @@
 #include "analysis/minimum.h"
 #include "math/vec.h"
 #include "taut/analysis.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "tests/scenes/rod.h"
 #include "tests/unit/analysis/analysis_scenes.h"
 
@@ -166,7 +166,7 @@ TEST(Equilibrium, WhatStandsOnAPlaneStandsAsItSettlesInASimulation) {
   for (const ContactState& c : e.contacts) pushes += c.force_n.z;
   EXPECT_NEAR(pushes, 9.81 * TotalMass(def), 1e-7);
 
-  Batch world(Model::Compile(def, out), {});
+  WorldBatch world(Model::Compile(def, out), {});
   ASSERT_TRUE(Settle(world, 0, 1e-3));
   for (int c = 0; c < static_cast<int>(def.cables.size()); ++c) {
     EXPECT_NEAR(world.Cable(0, c).elastic_n, e.cable_tension_n[static_cast<std::size_t>(c)], 1e-5);

@@ -9,8 +9,8 @@
 #include "math/angle.h"
 #include "mechanics/mass_properties.h"
 #include "taut/analysis.h"
-#include "taut/batch.h"
 #include "taut/cable_scheme.h"
+#include "taut/world_batch.h"
 #include "tests/scenes/rod.h"
 #include "tests/unit/description/structural_files.h"
 
@@ -205,7 +205,7 @@ TEST(Modes, OfAFloatingPrismAreThoseOfARingDown) {
   const Mode& mode = modes.modes[6];
   for (const double step_s : {1e-3, 5e-4}) {
     Diagnostics out;
-    Batch world(Model::Compile(def, out), {});
+    WorldBatch world(Model::Compile(def, out), {});
     constexpr double kAmplitude = 1e-6;
     for (int b = 0; b < 3; ++b) {
       const std::size_t i = static_cast<std::size_t>(b);

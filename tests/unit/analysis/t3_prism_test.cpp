@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "taut/analysis.h"
-#include "taut/batch.h"
 #include "taut/spec.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 namespace {
@@ -36,7 +36,7 @@ TEST(T3Prism, SteppedItStaysInThatEquilibrium) {
   const Equilibrium wanted = FindEquilibrium(experiment.robot.def, loads);
   ASSERT_TRUE(wanted.found) << wanted.why;
   Diagnostics out;
-  Batch world(Model::Compile(ModelAt(experiment.robot.def, wanted.pose), out), {});
+  WorldBatch world(Model::Compile(ModelAt(experiment.robot.def, wanted.pose), out), {});
   for (const auto& force : loads.forces) world.SetNodeForce(0, force.node, force.force_n);
   for (int n = 0; n < 1000; ++n) {
     world.Step(1e-3);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "unit/description/model_fixture.h"
 
 namespace taut {
@@ -206,7 +206,7 @@ TEST(Bar, PushesAndPullsAsASpringOfItsStiffness) {
         "stiffness_n_per_m: 500, mass_kg: 4, rest_length_m: " + std::to_string(2 - stretch_m),
         "gravity_m_per_s2: [0, 0, 0]\n"));
     Diagnostics out;
-    Batch world(Model::Compile(robot.def, out), {});
+    WorldBatch world(Model::Compile(robot.def, out), {});
     double least = 1e9, most = -1e9;
     for (int n = 1; n <= 2000; ++n) {
       world.Step(h);
@@ -232,7 +232,7 @@ TEST(Bar, CarriesAWeightStandingAndHanging) {
              "  - {match: bar, bar: {young_pa: 1e6, area_m2: 1e-3, damping_n_s_per_m: 60, mass_kg: "
              "4}}\n");
     Diagnostics out;
-    Batch world(Model::Compile(robot.def, out), {});
+    WorldBatch world(Model::Compile(robot.def, out), {});
     world.Step(1e-3, 4000);
     const double sag_m = 2 * 9.81 / 500;  // k = E A / L = 1000 N / 2 m
     EXPECT_NEAR(world.Body(0, 0).position_m.z, z - sag_m, 1e-9);

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "taut/batch.h"
 #include "taut/run.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 #include "unit/description/model_fixture.h"
 

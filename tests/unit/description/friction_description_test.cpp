@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "math/vec.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 #include "unit/description/model_fixture.h"
 

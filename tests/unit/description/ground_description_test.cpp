@@ -6,8 +6,8 @@
 #include "math/noise.h"
 #include "math/random.h"
 #include "math/vec.h"
-#include "taut/batch.h"
 #include "taut/run.h"
+#include "taut/world_batch.h"
 #include "unit/description/ground_fixture.h"
 
 namespace taut::test {

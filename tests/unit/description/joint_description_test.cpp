@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 
 #include "plant/find_start.h"
-#include "taut/batch.h"
 #include "taut/run.h"
 #include "taut/start.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 #include "unit/description/model_fixture.h"
 
@@ -155,7 +155,7 @@ TEST(JointText, AnotherPoseHasTheSameCoordinates) {
     Diagnostics out;
     const auto model = Model::Compile(robot.def, out);
     ASSERT_NE(model, nullptr) << out.Format();
-    Batch batch(model, {});
+    WorldBatch batch(model, {});
     batch.SetParameter(0, Parameter::kGravityZ, 0, 0);
     BodyState kicked = batch.Body(0, 1);
     kicked.velocity_m_per_s = {0.3, 1.1, -0.4};
@@ -168,7 +168,7 @@ TEST(JointText, AnotherPoseHasTheSameCoordinates) {
     const RobotSpec moved = RobotAt(robot, pose);
     const auto again = Model::Compile(moved.def, out);
     ASSERT_NE(again, nullptr) << kind << out.Format();
-    const JointState here = Batch(again, {}).Joint(0, 0);
+    const JointState here = WorldBatch(again, {}).Joint(0, 0);
     EXPECT_NEAR(here.coordinate, there.coordinate, 1e-12) << kind;
     EXPECT_LT(here.gap_m, 1e-10) << kind;
     if (kind == "hinge") {
@@ -322,7 +322,7 @@ TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
   Write("trial.yaml", experiment);
   const auto gap = [&](const ExperimentSpec& e) {
     Diagnostics out;
-    Batch batch(Model::Compile(e.robot.def, out), {});
+    WorldBatch batch(Model::Compile(e.robot.def, out), {});
     EXPECT_TRUE(plant::PrepareStart(e, batch, out)) << out.Format();
     EXPECT_NE(batch.Body(0, 0).position_m.x, e.robot.def.bodies[0].com_m.x);
     return batch.Joint(0, 0).gap_m;
@@ -333,7 +333,7 @@ TEST_F(JointedStart, NoiseMovesWhatIsJoinedTogether) {
   Write("trial.yaml", experiment + "");
   Diagnostics out;
   const ExperimentSpec held = Load();
-  Batch batch(Model::Compile(held.robot.def, out), {});
+  WorldBatch batch(Model::Compile(held.robot.def, out), {});
   ASSERT_TRUE(plant::PrepareStart(held, batch, out));
   EXPECT_EQ(batch.Body(0, 0).position_m.x, held.robot.def.bodies[0].com_m.x);
   Write("trial.yaml",

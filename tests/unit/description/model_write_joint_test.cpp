@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "taut/batch.h"
 #include "taut/start.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
@@ -105,11 +105,11 @@ class ModelWriteJoints : public ExperimentFolder {
     return Robot(Path("written.yaml"));
   }
 
-  static std::unique_ptr<Batch> Run(const RobotSpec& robot, int steps) {
+  static std::unique_ptr<WorldBatch> Run(const RobotSpec& robot, int steps) {
     Diagnostics out;
     const auto model = Model::Compile(robot.def, out);
     EXPECT_NE(model, nullptr) << out.Format();
-    auto batch = std::make_unique<Batch>(model, BatchOptions{});
+    auto batch = std::make_unique<WorldBatch>(model, WorldBatchOptions{});
     batch->Step(1e-3, steps);
     EXPECT_EQ(batch->Status(0).bits, 0u);
     return batch;

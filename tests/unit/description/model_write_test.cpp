@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "math/vec.h"
-#include "taut/batch.h"
 #include "taut/start.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 #include "unit/scenes/heap_models.h"
 
@@ -134,7 +134,7 @@ TEST_F(ModelWrite, TheSettledRobotIsAtRestWhenItIsLoaded) {
   again.robot.def.planes = experiment.robot.def.planes;
   const auto model = Model::Compile(again.robot.def, out);
   ASSERT_TRUE(model) << out.Format();
-  Batch batch(model, {});
+  WorldBatch batch(model, {});
   batch.Step(0.001, 1000);
   for (std::size_t n = 0; n < again.robot.def.nodes.size(); ++n) {
     const int node = static_cast<int>(n);

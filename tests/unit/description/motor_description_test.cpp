@@ -1,8 +1,8 @@
 // Motors in files: values of keys, errors, writing and reading back
 #include <cmath>
 
-#include "taut/batch.h"
 #include "taut/start.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 #include "unit/description/model_fixture.h"
 

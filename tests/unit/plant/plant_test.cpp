@@ -55,7 +55,7 @@ class Company {
   }
 
   void BringToStart(int lane) {
-    Batch alone(model_, {});
+    WorldBatch alone(model_, {});
     const auto& world = worlds_[static_cast<std::size_t>(lane)];
     EXPECT_TRUE(plant::PrepareStart(ExperimentOf(experiment_, world), alone, out_));
     EXPECT_TRUE(batch_.Restore(lane, alone.Save(0)));
@@ -81,7 +81,7 @@ class Company {
   const ExperimentSpec& experiment_;
   std::vector<RolloutWorld> worlds_;
   std::shared_ptr<const Model> model_;
-  Batch batch_;
+  WorldBatch batch_;
   std::unique_ptr<Plant> plant_;
   std::optional<plant::Loop> loop_;
 };

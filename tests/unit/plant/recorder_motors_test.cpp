@@ -90,7 +90,7 @@ TEST(CommandedMotor, GoesOffAndOn) {
   Diagnostics out;
   ExperimentSpec experiment = RecordedExperiment(Crane(), 1, {});
   experiment.step_s = 1e-3;
-  Batch batch(Model::Compile(experiment.robot.def, out), {});
+  WorldBatch batch(Model::Compile(experiment.robot.def, out), {});
   const auto plant = PlantOf(batch);
   RunOptions options;
   options.plant = plant.get();

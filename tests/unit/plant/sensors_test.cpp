@@ -310,7 +310,7 @@ TEST(Sensors, NoiseDoesNotDependOnTheStep) {
   experiment->sensors = WithCell(cell);
   const auto noise_at_end = [&](double step_s) {
     experiment->step_s = step_s;
-    Batch batch(Model::Compile(experiment->robot.def, out), {});
+    WorldBatch batch(Model::Compile(experiment->robot.def, out), {});
     const auto plant = PlantOf(batch);
     Loop loop(*experiment, *plant);
     while (loop.time_s() < 0.1 - 1e-9) loop.Step();

@@ -104,7 +104,7 @@ TEST_F(SettledStartTest, LookingOnDoesNotChangeWhatItSettlesTo) {
   const ExperimentSpec experiment = Load("stands.yaml");
   Diagnostics out;
   const auto model = Model::Compile(experiment.robot.def, out);
-  Batch seen(model, {}), unseen(model, {});
+  WorldBatch seen(model, {}), unseen(model, {});
   std::optional<taut::SettledStart> settled;
   ASSERT_TRUE(plant::PrepareStart(experiment, seen, out, {}, &settled)) << out.Format();
   ASSERT_TRUE(plant::PrepareStart(experiment, unseen, out)) << out.Format();

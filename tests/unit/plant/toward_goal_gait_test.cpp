@@ -7,7 +7,7 @@
 #include "math/vec.h"
 #include "plant/find_start.h"
 #include "plant/player_kinds.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
@@ -258,18 +258,18 @@ TEST_F(TowardGoalGaits, AStartInAnyPoseIsATurnAboutTheCentreOfMass) {
   ExperimentSpec experiment = Load();
   Diagnostics out;
   const auto model = Model::Compile(experiment.robot.def, out);
-  const auto center = [](const Batch& batch) {
+  const auto center = [](const WorldBatch& batch) {
     Vec3 sum;
     for (int b = 0; b < 4; ++b) sum = sum + 0.25 * batch.Body(0, b).position_m;
     return sum;
   };
-  const Batch described(model, {});
+  const WorldBatch described(model, {});
   const Vec3 middle = center(described);
   Vec3 mean, squares;
   constexpr int kStarts = 600;
   for (int i = 0; i < kStarts; ++i) {
     experiment.seed = static_cast<std::uint64_t>(i);
-    Batch batch(model, {});
+    WorldBatch batch(model, {});
     ASSERT_TRUE(plant::PrepareStart(experiment, batch, out)) << out.Format();
     const Vec3 moved = center(batch) - middle;
     EXPECT_LT(std::sqrt(Dot(moved, moved)), 1e-14);

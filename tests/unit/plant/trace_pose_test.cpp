@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "taut/batch.h"
 #include "taut/statics.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 namespace {

@@ -92,7 +92,7 @@ TEST(Sizing, AMotorsFactorsAreWhatItHasOverWhatIsNeeded) {
   cable.peak_force_n = 30, cable.rms_force_n = 10;
   cable.peak_speed_m_per_s = 0.5, cable.peak_power_w = 8, cable.wound_m = 0.2 * std::numbers::pi;
   // Spool of 1 cm: 30 N are 0.3 N m behind the gear, 0.06 before it; 0.5 m/s are 500 rad/s.
-  const Fit fit = FitOf(motor, 0.01, 1.0, cable);
+  const SizingMargins fit = SizingMarginsOf(motor, 0.01, 1.0, cable);
   ASSERT_EQ(fit.margins.size(), 4u);
   EXPECT_NEAR(fit.margins[0].factor, 2, 1e-12);
   EXPECT_NEAR(fit.margins[1].factor, 2, 1e-12);
@@ -100,23 +100,24 @@ TEST(Sizing, AMotorsFactorsAreWhatItHasOverWhatIsNeeded) {
   EXPECT_NEAR(fit.margins[3].factor, 20 / (8 / 0.5), 1e-12);
   EXPECT_EQ(fit.least.of, "speed");
   EXPECT_NEAR(fit.spool_turns, 10, 1e-12);
-  EXPECT_FALSE(FitOf(motor, 0.01, 1.01, cable).fits);
-  EXPECT_TRUE(FitOf(motor, 0.0101, 1.0, cable).fits);
-  EXPECT_TRUE(std::isinf(FitOf(motor, 0.01, 1.0, {}).least.factor)) << "nothing is needed";
+  EXPECT_FALSE(SizingMarginsOf(motor, 0.01, 1.01, cable).fits);
+  EXPECT_TRUE(SizingMarginsOf(motor, 0.0101, 1.0, cable).fits);
+  EXPECT_TRUE(std::isinf(SizingMarginsOf(motor, 0.01, 1.0, {}).least.factor))
+      << "nothing is needed";
 }
 
 TEST(Sizing, ASpringFitsByForceTravelAndStiffness) {
   const CatalogueSpring spring{"s", 500, 0.04, 30};
   CableDemand cable;
   cable.stiffness_n_per_m = 480, cable.peak_elastic_n = 15;
-  const Fit fit = FitOf(spring, 1.0, 0.1, cable);
+  const SizingMargins fit = SizingMarginsOf(spring, 1.0, 0.1, cable);
   EXPECT_TRUE(fit.fits);
   EXPECT_NEAR(fit.margins[0].factor, 2, 1e-12);
   EXPECT_NEAR(fit.margins[1].factor, 0.04 * 500 / 15, 1e-12);
   EXPECT_EQ(fit.least.of, "travel");
   EXPECT_NEAR(fit.stiffness_off, 500.0 / 480 - 1, 1e-12);
-  EXPECT_FALSE(FitOf(spring, 1.0, 0.04, cable).fits);
-  EXPECT_FALSE(FitOf(spring, 1.4, 0.1, cable).fits);
+  EXPECT_FALSE(SizingMarginsOf(spring, 1.0, 0.04, cable).fits);
+  EXPECT_FALSE(SizingMarginsOf(spring, 1.4, 0.1, cable).fits);
 }
 
 TEST(Sizing, ATraceThatLacksSomethingIsRefused) {

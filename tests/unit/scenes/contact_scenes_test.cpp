@@ -5,7 +5,7 @@
 #include <map>
 
 #include "math/vec.h"
-#include "taut/batch.h"
+#include "taut/world_batch.h"
 #include "tests/scenes/heap.h"
 #include "tests/scenes/many_rows.h"
 #include "tests/scenes/prism_tower.h"
@@ -39,7 +39,7 @@ std::map<std::string, ModelDef> Scenes() {
   return all;
 }
 
-Batch World(const ModelDef& def) {
+WorldBatch World(const ModelDef& def) {
   Diagnostics complaints;
   const auto model = Model::Compile(def, complaints);
   EXPECT_NE(model, nullptr) << complaints.Format();
@@ -48,7 +48,7 @@ Batch World(const ModelDef& def) {
 
 /// Returns the hash of the state after some steps.
 std::uint64_t HashAfter(const ModelDef& def, int steps) {
-  Batch world = World(def);
+  WorldBatch world = World(def);
   world.Step(0.001, steps);
   return world.Hash(0);
 }
@@ -62,7 +62,7 @@ TEST(ContactScenes, FollowFromTheirSeedAlone) {
 
 TEST(ContactScenes, DoNotStartInsideEachOther) {
   for (const auto& [name, def] : Scenes()) {
-    Batch world = World(def);
+    WorldBatch world = World(def);
     world.Step(1e-6);
     for (const ContactState& c : world.Contacts(0)) {
       EXPECT_GT(c.gap_m, -1e-6) << name << ": bodies " << c.body_a << " and " << c.body_b;
@@ -72,7 +72,7 @@ TEST(ContactScenes, DoNotStartInsideEachOther) {
 
 TEST(ContactScenes, HaveRoomForTheirContactsAndStayFinite) {
   for (const auto& [name, def] : Scenes()) {
-    Batch world = World(def);
+    WorldBatch world = World(def);
     world.Step(0.001, 200);
     EXPECT_EQ(world.Status(0).bits & ~kStatusNotConverged, 0U) << name;
   }
@@ -81,7 +81,7 @@ TEST(ContactScenes, HaveRoomForTheirContactsAndStayFinite) {
 TEST(ContactScenes, AHeapTouchesItselfAndItsFunnelHoldsIt) {
   scenes::RodHeap heap;
   heap.rods = 6;
-  Batch world = World(heap.Def());
+  WorldBatch world = World(heap.Def());
   world.Step(0.001, 1000);
   int pairs = 0;
   for (const ContactState& c : world.Contacts(0)) pairs += c.body_b != kWorld;
@@ -98,7 +98,7 @@ TEST(ContactScenes, ANetHoldsItsBallByCablesAlone) {
   net.damping_n_s_per_m = 1e4;
   const ModelDef def = net.Def();
   EXPECT_EQ(def.cables.size(), 24U) << "none along the rim";
-  Batch world = World(def);
+  WorldBatch world = World(def);
   world.Step(0.001, 500);
   const int ball = static_cast<int>(def.bodies.size()) - 1;
   const BodyState state = world.Body(0, ball);
@@ -109,7 +109,7 @@ TEST(ContactScenes, ANetHoldsItsBallByCablesAlone) {
 TEST(ContactScenes, AStackStandsAndAWallAndATower) {
   const auto top = [](const ModelDef& def) {
     const int last = static_cast<int>(def.bodies.size()) - 1;
-    Batch world = World(def);
+    WorldBatch world = World(def);
     const double before = world.Body(0, last).position_m.z;
     world.Step(0.001, 300);
     return world.Body(0, last).position_m.z / before;
@@ -124,7 +124,7 @@ TEST(ContactScenes, AStackStandsAndAWallAndATower) {
 TEST(ContactScenes, APainleveRodTouchesWithItsLowerEndOnly) {
   scenes::PainleveRod rod;
   rod.friction = 0.1;
-  Batch world = World(rod.Def());
+  WorldBatch world = World(rod.Def());
   world.Step(0.001);
   const std::vector<ContactState> contacts = world.Contacts(0);
   ASSERT_EQ(contacts.size(), 1U);
@@ -133,7 +133,7 @@ TEST(ContactScenes, APainleveRodTouchesWithItsLowerEndOnly) {
 }
 
 TEST(ContactScenes, ARodInAWedgeTouchesBothPlanesAndStays) {
-  Batch world = World(scenes::RodInWedge().Def());
+  WorldBatch world = World(scenes::RodInWedge().Def());
   world.Step(0.001, 2000);
   EXPECT_EQ(world.Contacts(0).size(), 2U);
   const BodyState state = world.Body(0, 0);

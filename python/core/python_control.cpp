@@ -1,0 +1,354 @@
+// Controllers that are written in Python: `act(seen, commands)` for the worlds whose tick is due.
+#include "python_control.h"
+
+#include "taut/lane_state.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace taut::python {
+namespace {
+
+/// Holds the GIL on any thread. A thread of a pool counts as computing meanwhile, as the thread
+/// that released the GIL does.
+class AcquiredAnywhere {
+ public:
+  AcquiredAnywhere() : of_pool_(!Released::Here()) {
+    if (of_pool_) EndOfProgram::Compute(+1);
+    acquired_.emplace();
+  }
+  ~AcquiredAnywhere() {
+    acquired_.reset();
+    if (of_pool_) EndOfProgram::Compute(-1);
+  }
+  AcquiredAnywhere(const AcquiredAnywhere&) = delete;
+  AcquiredAnywhere& operator=(const AcquiredAnywhere&) = delete;
+
+ private:
+  bool of_pool_;
+  std::optional<Acquired> acquired_;
+};
+
+/// Shares a Python object among C++ objects that are copied and destroyed without the GIL.
+std::shared_ptr<py::object> Shared(py::object object) {
+  return {new py::object(std::move(object)), [](py::object* of) {
+            if (PyGILState_Check() != 0) {
+              delete of;
+            } else {
+              const AcquiredAnywhere mine;
+              delete of;
+            }
+          }};
+}
+
+/// Rows of a plant as arrays (worlds, cables), of the worlds whose tick is due.
+class DueRows {
+ public:
+  DueRows(std::vector<int> lanes, int plant_lanes, std::size_t cables)
+      : lanes_(std::move(lanes)), plant_lanes_(plant_lanes), cables_(cables) {}
+
+  py::ssize_t count() const { return static_cast<py::ssize_t>(lanes_.size()); }
+
+  template <class T>
+  Rows<T> Copy(const T* row) const {
+    Rows<T> a({count(), static_cast<py::ssize_t>(cables_)});
+    T* to = a.mutable_data();
+    for (const int lane : lanes_) {
+      for (std::size_t c = 0; c < cables_; ++c) *to++ = row[At(c, lane)];
+    }
+    return a;
+  }
+
+  /// Writes an array back. Raises ValueError if its shape or type has changed, or if a number is
+  /// not finite.
+  template <class T>
+  void Back(const py::object& from, T* row, const char* name) const {
+    const auto a = Exactly<T>(from, {count(), static_cast<py::ssize_t>(cables_)}, name, false);
+    const T* values = a.data();
+    for (const int lane : lanes_) {
+      for (std::size_t c = 0; c < cables_; ++c, ++values) {
+        if (!std::isfinite(static_cast<double>(*values))) {
+          throw py::value_error(fmt::format("commands.{}: not finite for cable {}", name, c));
+        }
+        row[At(c, lane)] = *values;
+      }
+    }
+  }
+
+ private:
+  std::size_t At(std::size_t cable, int lane) const {
+    return cable * static_cast<std::size_t>(plant_lanes_) + static_cast<std::size_t>(lane);
+  }
+
+  std::vector<int> lanes_;
+  int plant_lanes_;
+  std::size_t cables_;
+};
+
+/// Controller in Python.
+class PythonController final : public Controller {
+ public:
+  PythonController(const ControlSetup& setup, std::shared_ptr<py::object> of, ClockSpec clock,
+                   std::shared_ptr<Callbacks> callbacks)
+      : of_(std::move(of)),
+        clock_(clock),
+        callbacks_(std::move(callbacks)),
+        first_world_(setup.first_world),
+        worlds_(setup.worlds < 0 ? static_cast<int>(setup.lanes.size()) : setup.worlds),
+        cables_(setup.experiment.robot.def.cables.size()) {}
+
+  ClockSpec clock() const override { return clock_; }
+
+  void Act(const Tick& tick, const Observation& seen, Commands& commands) override {
+    std::vector<int> lanes;
+    for (int j = 0; j < worlds_; ++j) {
+      if (Has(tick.due, j)) lanes.push_back(j);
+    }
+    if (lanes.empty()) return;
+    callbacks_->Call([&] { Act(tick, std::move(lanes), seen, commands); });
+  }
+
+  /// Saves the memory of the Python object, by its methods `save` and `restore`.
+  void Serialize(plant::LaneState& state) override {
+    if (state.lane() >= worlds_) return;
+    callbacks_->Call([&] { Serialize(state, first_world_ + state.lane()); });
+  }
+
+ private:
+  void Act(const Tick& tick, std::vector<int> lanes, const Observation& seen, Commands& commands) {
+    const auto count = static_cast<py::ssize_t>(lanes.size());
+    Rows<std::int64_t> worlds(count), ticks(count);
+    Rows<double> time_s(count);
+    for (py::ssize_t i = 0; i < count; ++i) {
+      const int lane = lanes[static_cast<std::size_t>(i)];
+      worlds.mutable_data()[i] = first_world_ + lane;
+      ticks.mutable_data()[i] = tick.number[lane];
+      time_s.mutable_data()[i] = seen.time_s[lane];
+    }
+    const DueRows rows(std::move(lanes), seen.lanes, cables_);
+    const py::object simple = py::module_::import("types").attr("SimpleNamespace");
+    const py::object what =
+        simple(py::arg("world") = worlds, py::arg("tick") = ticks, py::arg("time_s") = time_s,
+               py::arg("cable_length_m") = rows.Copy(seen.cables.length_m),
+               py::arg("cable_rate_m_per_s") = rows.Copy(seen.cables.rate_m_per_s),
+               py::arg("rest_length_m") = rows.Copy(seen.cables.rest_length_m),
+               py::arg("tension_n") = rows.Copy(seen.cables.tension_n),
+               py::arg("elastic_n") = rows.Copy(seen.cables.elastic_n),
+               py::arg("stiffness_n_per_m") = rows.Copy(seen.cables.stiffness_n_per_m));
+    const py::object now =
+        simple(py::arg("rest_length_m") = rows.Copy(commands.rest_length_m),
+               py::arg("set_point_n") = rows.Copy(commands.set_point_n),
+               py::arg("velocity_input_m_per_s") = rows.Copy(commands.velocity_input_m_per_s),
+               py::arg("signal") = rows.Copy(commands.signal));
+    CallPython(of_->attr("act"), what, now);
+    rows.Back(now.attr("rest_length_m"), commands.rest_length_m, "rest_length_m");
+    rows.Back(now.attr("set_point_n"), commands.set_point_n, "set_point_n");
+    rows.Back(now.attr("velocity_input_m_per_s"), commands.velocity_input_m_per_s,
+              "velocity_input_m_per_s");
+    rows.Back(now.attr("signal"), commands.signal, "signal");
+  }
+
+  /// Stores the bytes of `save(world)`, or passes them to `restore(world, bytes)`.
+  void Serialize(plant::LaneState& state, int world) {
+    const bool has_memory = py::hasattr(*of_, "save") && py::hasattr(*of_, "restore");
+    if (!has_memory && !IsStateless()) {
+      throw py::type_error(
+          py::str(py::type::of(*of_).attr("__name__")).cast<std::string>() +
+          ": a simulation is saved with its controllers; define save(world), which returns bytes, "
+          "and restore(world, bytes), or set `stateless = True` if it has no memory");
+    }
+    if (!has_memory) return;
+    std::string bytes;
+    if (!state.reads()) bytes = CallPython(of_->attr("save"), world).cast<py::bytes>();
+    std::uint64_t size = bytes.size();
+    state.Value(size);
+    bytes.resize(static_cast<std::size_t>(size));
+    for (char& byte : bytes) state.Value(byte);
+    if (state.reads()) CallPython(of_->attr("restore"), world, py::bytes(bytes));
+  }
+  bool IsStateless() const {
+    return py::hasattr(*of_, "stateless") && py::bool_(of_->attr("stateless"));
+  }
+
+  std::shared_ptr<py::object> of_;
+  ClockSpec clock_;
+  std::shared_ptr<Callbacks> callbacks_;
+  int first_world_, worlds_;
+  std::size_t cables_;
+};
+
+/// Returns the number of an attribute, or `otherwise` without one. Raises ValueError unless it is
+/// finite and at least `least`.
+double NumberOf(const py::object& of, const char* name, const std::string& where, double otherwise,
+                bool may_be_zero) {
+  if (!py::hasattr(of, name)) return otherwise;
+  const double value = of.attr(name).cast<double>();
+  if (!std::isfinite(value) || value < 0 || (value == 0 && !may_be_zero)) {
+    throw py::value_error(fmt::format("{}.{}: {}; expected a number {} 0 [s]", where, name, value,
+                                      may_be_zero ? ">=" : ">"));
+  }
+  return value;
+}
+
+/// Plant in Python.
+class CallingPlant final : public PythonPlant {
+ public:
+  CallingPlant(py::object of, const RobotSpec& robot, std::shared_ptr<Callbacks> callbacks)
+      : of_(Shared(std::move(of))),
+        callbacks_(std::move(callbacks)),
+        cables_(robot.def.cables.size()),
+        rows_(7 * cables_),
+        set_point_n_(cables_),
+        velocity_input_m_per_s_(cables_),
+        signal_(cables_),
+        mode_(cables_, CommandMode::kRestLength) {
+    seen_.time_s = &time_s_;
+    seen_.cables = {Row(0), Row(1), Row(2), Row(3), Row(4), Row(5)};
+    commands_ = {1,
+                 Row(6),
+                 set_point_n_.data(),
+                 velocity_input_m_per_s_.data(),
+                 signal_.data(),
+                 mode_.data(),
+                 &gait_};
+    for (std::size_t c = 0; c < cables_; ++c) {
+      Row(5)[c] = robot.def.cables[c].stiffness_n_per_m;
+      Row(6)[c] = robot.def.cables[c].rest_length_m;
+    }
+    Read();
+  }
+
+  const Observation& Observe() override { return seen_; }
+  Commands& commands() override { return commands_; }
+  void Advance(const double* step_s, const double* to_s) override {
+    callbacks_->Call([&] {
+      const py::object simple = py::module_::import("types").attr("SimpleNamespace");
+      const auto array = [&](const double* row) {
+        return Rows<double>(static_cast<py::ssize_t>(cables_), row);
+      };
+      CallPython(of_->attr("advance"), *step_s, *to_s,
+                 simple(py::arg("rest_length_m") = array(commands_.rest_length_m),
+                        py::arg("set_point_n") = array(commands_.set_point_n),
+                        py::arg("velocity_input_m_per_s") = array(commands_.velocity_input_m_per_s),
+                        py::arg("signal") = array(commands_.signal)));
+    });
+    time_s_ = *to_s;
+    Read();
+  }
+  void Restart(int) override { time_s_ = 0; }
+  bool IsRunning(int) const override { return running_ && !callbacks_->failed(); }
+
+ private:
+  double* Row(std::size_t i) { return rows_.data() + i * cables_; }
+
+  /// Reads the observation: a dict, or an object with these attributes.
+  void Read() {
+    callbacks_->Call([&] {
+      const py::object now = CallPython(of_->attr("observe"));
+      const auto read = [&](const char* name, double* to, bool required) {
+        const bool dict = py::isinstance<py::dict>(now);
+        const bool has = dict ? now.cast<py::dict>().contains(name) : py::hasattr(now, name);
+        if (!has && !required) return;
+        if (!has) throw py::value_error(fmt::format("observe(): no \"{}\"", name));
+        const py::object given = dict ? py::object(now[name]) : py::object(now.attr(name));
+        const Array a = Finite(given, {static_cast<py::ssize_t>(cables_)}, name);
+        std::copy_n(a.data(), cables_, to);
+      };
+      read("rest_length_m", Row(0), true);
+      read("cable_length_m", Row(1), true);
+      read("cable_rate_m_per_s", Row(2), true);
+      read("tension_n", Row(3), true);
+      std::copy_n(Row(3), cables_, Row(4));
+      read("elastic_n", Row(4), false);
+      running_ = !py::hasattr(*of_, "is_running") || py::bool_(CallPython(of_->attr("is_running")));
+    });
+  }
+
+  std::shared_ptr<py::object> of_;
+  std::shared_ptr<Callbacks> callbacks_;
+  std::size_t cables_;
+  std::vector<double> rows_;  ///< Readings, then the commanded rest lengths.
+  std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
+  std::vector<CommandMode> mode_;
+  int gait_ = -1;
+  double time_s_ = 0;
+  bool running_ = true;
+  Observation seen_;
+  Commands commands_;
+};
+
+}  // namespace
+
+void Callbacks::Call(const std::function<void()>& f) {
+  if (failed()) return;
+  const AcquiredAnywhere mine;
+  std::exception_ptr raised;
+  try {
+    return f();
+  } catch (const abi::__forced_unwind&) {  // end of the thread, not an exception of f
+    EndOfProgram::Sleep();
+  } catch (...) {
+    raised = std::current_exception();
+  }
+  const std::lock_guard lock(mutex_);
+  if (!raised_) raised_ = raised;
+}
+
+bool Callbacks::failed() const {
+  const std::lock_guard lock(mutex_);
+  return raised_ != nullptr;
+}
+
+void Callbacks::Rethrow() {
+  std::exception_ptr raised;
+  {
+    const std::lock_guard lock(mutex_);
+    raised = std::exchange(raised_, nullptr);
+  }
+  if (raised) std::rethrow_exception(raised);
+}
+
+Extensions ExtensionsOf(const py::object& controllers, std::shared_ptr<Callbacks> callbacks,
+                        bool& in_python) {
+  Extensions extensions;
+  if (controllers.is_none()) return extensions;
+  std::size_t number = 0;
+  for (const py::handle& item : controllers) {
+    const auto of = py::reinterpret_borrow<py::object>(item);
+    const std::string where = fmt::format("controllers[{}]", number++);
+    if (py::isinstance<ControllerSpec>(of)) {
+      for (auto& factory : ControllersOf(of.cast<ControllerSpec>())) {
+        extensions.controllers.push_back(std::move(factory));
+      }
+      continue;
+    }
+    if (!py::hasattr(of, "act") || !py::hasattr(of, "period_s")) {
+      throw py::type_error(where + ": " + py::repr(of).cast<std::string>() +
+                           "; expected an object with period_s and act(seen, commands), or a "
+                           "controller of taut.control");
+    }
+    in_python = true;
+    const ClockSpec clock{NumberOf(of, "period_s", where, 0, false),
+                          NumberOf(of, "phase_s", where, 0, true)};
+    extensions.controllers.push_back(
+        [shared = Shared(of), clock, callbacks](const ControlSetup& setup) {
+          return std::make_unique<PythonController>(setup, shared, clock, callbacks);
+        });
+  }
+  return extensions;
+}
+
+std::unique_ptr<PythonPlant> PythonPlant::Of(const py::object& plant, const RobotSpec& robot,
+                                             std::shared_ptr<Callbacks> callbacks) {
+  for (const char* name : {"observe", "advance"}) {
+    if (!py::hasattr(plant, name)) {
+      throw py::type_error("plant: " + py::repr(plant).cast<std::string>() +
+                           "; expected an object with observe() and advance(step_s, time_s, "
+                           "commands), or a taut.Replay");
+    }
+  }
+  return std::make_unique<CallingPlant>(plant, robot, std::move(callbacks));
+}
+
+}  // namespace taut::python

@@ -1,0 +1,117 @@
+/// C++ part of `taut.Simulation`, for the files that add its methods.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "owner.h"
+#include "python_control.h"
+#include "taut/find.h"
+#include "taut/simulation.h"
+#include "text.h"
+#include "variants.h"
+#include "worlds.h"
+
+namespace taut::python {
+
+/// A simulation for all Python threads, one at a time.
+class SharedSimulation {
+ public:
+  SharedSimulation(const ExperimentSpec& experiment, int worlds,
+                   const std::optional<std::vector<GivenVariant>>& given, int threads,
+                   const std::optional<std::string>& simd, const py::object& controllers);
+
+  template <class F>
+  auto With(F f) {
+    return owned_->With(f);
+  }
+  template <class F>
+  auto Look(F f) {
+    return owned_->Look(f);
+  }
+
+  const Simulation& peek() const { return owned_->peek(); }
+  const ModelDef& def() const { return peek().def(); }
+  int worlds() const { return peek().worlds(); }
+  int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
+  /// Returns the worlds of an argument: one, or all for None.
+  std::pair<int, int> Range(std::optional<py::ssize_t> world) const {
+    if (!world) return {0, worlds()};
+    const int first = World(*world);
+    return {first, first + 1};
+  }
+
+  /// Returns the index of an element given by name or index. Raises KeyError or IndexError.
+  template <class Elements>
+  int ElementOf(const py::object& given, const Elements& elements, const char* kind,
+                std::optional<int> (*find)(const ModelDef&, std::string_view, Diagnostics*)) const {
+    if (!py::isinstance<py::str>(given)) {
+      return Index(given.cast<py::ssize_t>(), static_cast<int>(elements.size()), kind);
+    }
+    Diagnostics said;
+    if (const auto found = find(def(), given.cast<std::string>(), &said)) return *found;
+    throw py::key_error(said.items()[0].what + " (" + said.items()[0].hint + ")");
+  }
+  int Cable(const py::object& given) const {
+    return ElementOf(given, def().cables, "cable", FindCable);
+  }
+  int Body(const py::object& given) const {
+    return ElementOf(given, def().bodies, "body", FindBody);
+  }
+  int Node(const py::object& given) const {
+    return ElementOf(given, def().nodes, "node", FindNode);
+  }
+  int Joint(const py::object& given) const {
+    return ElementOf(given, def().joints, "joint", FindJoint);
+  }
+
+  /// Returns an array (worlds, count, width), (worlds, count) or, for one element, without `count`.
+  template <class Put>
+  py::array_t<double> Read(std::optional<int> element, py::ssize_t count, py::ssize_t width,
+                           Put put) {
+    std::vector<py::ssize_t> shape{worlds()};
+    if (!element) shape.push_back(count);
+    if (width > 1) shape.push_back(width);
+    Rows<double> a(shape);
+    double* to = a.mutable_data();
+    const int first = element.value_or(0), last = element ? first + 1 : static_cast<int>(count);
+    Look([&](Simulation& s) {
+      for (int w = 0; w < s.worlds(); ++w) {
+        for (int i = first; i < last; ++i, to += width) put(s, w, i, to);
+      }
+    });
+    return a;
+  }
+
+  /// Runs `step(simulation)` until it returns false, while other Python threads run.
+  template <class StepOnce>
+  void Run(StepOnce step) {
+    const bool done = With([&](Simulation& s) {
+      Signals signals;
+      while (step(s)) {
+        if (callbacks_->failed()) return true;
+        if (signals.Raised()) return false;
+      }
+      return true;
+    });
+    if (!done) throw py::error_already_set();
+    callbacks_->Rethrow();
+  }
+
+  std::shared_ptr<Callbacks> callbacks() const { return callbacks_; }
+
+ private:
+  std::shared_ptr<Callbacks> callbacks_;
+  std::unique_ptr<Owner<Simulation>> owned_;
+};
+
+using SimulationType = py::class_<SharedSimulation, std::shared_ptr<SharedSimulation>>;
+
+/// Adds the methods that read and command.
+void AddReadings(SimulationType& type);
+void AddCommands(SimulationType& type);
+
+}  // namespace taut::python

@@ -1,0 +1,49 @@
+"""`taut.Simulation`: experiments with controllers and events, stepped from Python."""
+
+import os
+from typing import Any, Optional, Sequence, Union
+
+from taut import _core
+from taut._core import Experiment, Robot
+from taut._results import World, _world
+
+
+class Simulation(_core.Simulation):
+    """An experiment with its start, controllers, sensors and events, in one or many worlds.
+
+        sim = taut.Simulation("experiments/push_20n.yaml")
+        sim.run_until(1.0)
+        print(sim.tension_n("outer_right_1"))
+
+    `experiment`: an `Experiment`, a `Robot`, or the path of their file. `worlds`: number of equal worlds. `variants`:
+    one world for each dict of parameters by name (`taut.tunables`) and optionally its "seed", instead of `worlds`.
+    `threads`: number of threads; 0: one per core. `simd`: as in `taut.Batch`.
+
+    `controllers`: list of controllers that act after the experiment's: of the library (`taut.control`), or of your
+    own, on one thread:
+
+        class Hold:
+            period_s = 0.01
+            def act(self, seen, commands):
+                commands.rest_length_m[:] = seen.cable_length_m - 0.02
+
+    `act` is called every `period_s` with the worlds that are due. `seen` has `world`, `tick` (number of earlier ticks
+    since the start) and `time_s`, (n,), and `cable_length_m`, `cable_rate_m_per_s`, `rest_length_m`, `tension_n`,
+    `elastic_n`, `stiffness_n_per_m`, (n, cables), as the experiment's sensors measure them. `commands` has
+    `rest_length_m`, `set_point_n`, `velocity_input_m_per_s` and `signal`, (n, cables), to be changed in place.
+
+    Worlds have the bits of `taut.run`, whatever the other worlds, threads and instruction set. Several Python threads
+    may use one simulation; calls wait for each other. Raises `taut.InputError` if a start does not exist.
+    """
+
+    def __init__(self, experiment: Union[str, "os.PathLike[str]", Experiment, Robot], worlds: int = 1, *,
+                 variants: Optional[Sequence[World]] = None, threads: int = 1, simd: Optional[str] = None,
+                 controllers: Optional[Sequence[Any]] = None) -> None:
+        what = _core.load(os.fspath(experiment)) if isinstance(experiment, (str, os.PathLike)) else experiment
+        given = None if variants is None else [_world(number, one, "variants") for number, one in enumerate(variants)]
+        if given is not None and not given:
+            raise ValueError("variants: empty; expected at least one dict")
+        super().__init__(what, worlds, given, threads, simd, controllers)
+
+    def __repr__(self) -> str:
+        return f"<taut.Simulation: {self.worlds} world{'s' if self.worlds != 1 else ''}, {self.time_s().min():g} s>"

@@ -1,0 +1,32 @@
+/// Elastic law of a cable: its force against its stretch, the only place of this law
+/// (docs/theory/cables.md, eq. 1). The step, statics, energies, starts and sizing use it; the
+/// dampers, and the rule that a cable does not push, belong to their callers.
+#pragma once
+
+namespace taut::math {
+
+/// Linear spring with the stiffness k [N/m]. `Num`: double, or the lanes of a SIMD register.
+/// Another law has the same members.
+template <class Num>
+struct CableLaw {
+  Num stiffness;
+
+  /// Returns the force at a stretch (length minus rest length) > 0 [N].
+  [[gnu::always_inline]] constexpr Num Force(Num stretch_m) const noexcept {
+    return stiffness * stretch_m;
+  }
+  /// Returns the derivative of the force by the stretch [N/m].
+  [[gnu::always_inline]] constexpr Num Slope(Num) const noexcept { return stiffness; }
+  /// Returns the stretch at a force >= 0 [m].
+  [[gnu::always_inline]] constexpr Num Stretch(Num force_n) const noexcept {
+    return force_n / stiffness;
+  }
+  /// Returns the stored energy at a stretch >= 0 [J].
+  constexpr double Energy(double stretch_m) const noexcept {
+    return 0.5 * stiffness * stretch_m * stretch_m;
+  }
+};
+template <class Num>
+CableLaw(Num) -> CableLaw<Num>;
+
+}  // namespace taut::math

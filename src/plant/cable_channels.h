@@ -1,0 +1,42 @@
+/// Channels of a cable in a trace, `cable/NAME/...`, in one table: recorder, sensors, environments
+/// and replays read their names, units and rows from it. A new channel is one line, and one in
+/// docs/formats/trace.md.
+#pragma once
+
+#include <cstddef>
+
+#include "taut/plant.h"
+
+namespace taut::plant {
+
+struct CableChannel {
+  const char* name;
+  const char* unit;
+  // One of these rows has the values: cable c of lane j at [c * lanes + j].
+  const double* ReadingRows::*reading;
+  double* Commands::*command;
+  bool sensed = false;          ///< A robot's sensors measure it: also `sensor/NAME/...`.
+  bool with_set_point = false;  ///< Only of cables with a set point of tension.
+
+  const double* Row(const ReadingRows& readings, const Commands& commands) const noexcept {
+    return reading != nullptr ? readings.*reading : commands.*command;
+  }
+  double Value(const ReadingRows& readings, const Commands& commands, std::size_t cable,
+               int lane) const noexcept {
+    return Row(readings, commands)[cable * static_cast<std::size_t>(commands.lanes) +
+                                   static_cast<std::size_t>(lane)];
+  }
+};
+
+inline constexpr CableChannel kCableChannels[] = {
+    {"tension_n", "N", &ReadingRows::tension_n, nullptr, true},
+    {"elastic_n", "N", &ReadingRows::elastic_n, nullptr},
+    {"length_m", "m", &ReadingRows::length_m, nullptr, true},
+    {"rate_m_per_s", "m/s", &ReadingRows::rate_m_per_s, nullptr, true},
+    {"rest_length_m", "m", &ReadingRows::rest_length_m, nullptr, true},
+    {"target_rest_length_m", "m", nullptr, &Commands::rest_length_m},
+    {"setpoint_n", "N", nullptr, &Commands::set_point_n, false, true},
+    {"velocity_input_m_per_s", "m/s", nullptr, &Commands::velocity_input_m_per_s, false, true},
+};
+
+}  // namespace taut::plant

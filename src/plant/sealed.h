@@ -1,0 +1,33 @@
+/// Envelope of a world's snapshot with its kind and a checksum, to reject foreign or damaged data.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "taut/diagnostics.h"
+
+namespace taut::plant {
+
+/// Seals snapshots of one class, "environment" or "simulation".
+class Sealing {
+ public:
+  /// `kind`: a hash that is equal for objects with compatible snapshots. `differences`: hint for a
+  /// snapshot of another kind.
+  Sealing(std::string_view class_name, std::uint64_t kind, std::string_view differences)
+      : class_name_(class_name), kind_(kind), differences_(differences) {}
+
+  std::vector<std::uint8_t> Seal(const std::vector<std::uint8_t>& saved) const;
+  /// Returns the contents. Nothing, with an error, if they are of another kind or damaged.
+  std::optional<std::span<const std::uint8_t>> Open(std::span<const std::uint8_t> sealed,
+                                                    Diagnostics& out) const;
+
+ private:
+  std::string_view class_name_;
+  std::uint64_t kind_;
+  std::string_view differences_;
+};
+
+}  // namespace taut::plant

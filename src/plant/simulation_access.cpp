@@ -1,0 +1,117 @@
+// Readings and commands of a simulation, by name or index.
+#include "plant/simulation_impl.h"
+#include "plant/status_text.h"
+
+namespace taut {
+
+// --- readings ------------------------------------------------------------------------------------
+
+CableState Simulation::Cable(const ElementRef& cable, int world) const {
+  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
+  return impl_->GroupOf(__func__, world).batch.Cable(impl_->LaneOf(world), c);
+}
+BodyState Simulation::Body(const ElementRef& body, int world) const {
+  const int b = impl_->bodies.IndexOf(__func__, impl_->def(), body);
+  return impl_->GroupOf(__func__, world).batch.Body(impl_->LaneOf(world), b);
+}
+Vec3 Simulation::NodePosition(const ElementRef& node, int world) const {
+  const int n = impl_->nodes.IndexOf(__func__, impl_->def(), node);
+  return impl_->GroupOf(__func__, world).batch.NodePosition(impl_->LaneOf(world), n);
+}
+Vec3 Simulation::NodeVelocity(const ElementRef& node, int world) const {
+  const int n = impl_->nodes.IndexOf(__func__, impl_->def(), node);
+  return impl_->GroupOf(__func__, world).batch.NodeVelocity(impl_->LaneOf(world), n);
+}
+JointState Simulation::Joint(const ElementRef& joint, int world) const {
+  const int j = impl_->joints.IndexOf(__func__, impl_->def(), joint);
+  return impl_->GroupOf(__func__, world).batch.Joint(impl_->LaneOf(world), j);
+}
+MotionState Simulation::Motion(const ElementRef& motion, int world) const {
+  const int m = impl_->motions.IndexOf(__func__, impl_->def(), motion);
+  return impl_->GroupOf(__func__, world).batch.Motion(impl_->LaneOf(world), m);
+}
+MotorState Simulation::Motor(const ElementRef& cable, int world) const {
+  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
+  return impl_->GroupOf(__func__, world).batch.Motor(impl_->LaneOf(world), c);
+}
+Energy Simulation::TotalEnergy(int world) const {
+  return impl_->GroupOf(__func__, world).batch.TotalEnergy(impl_->LaneOf(world));
+}
+std::vector<ContactState> Simulation::Contacts(int world) const {
+  return impl_->GroupOf(__func__, world).batch.Contacts(impl_->LaneOf(world));
+}
+WorldStatus Simulation::Status(int world) const {
+  return impl_->GroupOf(__func__, world).batch.Status(impl_->LaneOf(world));
+}
+std::string Simulation::StatusText(int world) const {
+  return plant::StatusText(impl_->def(), Status(world));
+}
+std::uint64_t Simulation::Hash(int world) const {
+  return impl_->GroupOf(__func__, world).batch.Hash(impl_->LaneOf(world));
+}
+
+// --- commands ------------------------------------------------------------------------------------
+
+void Simulation::SetRestLength(const ElementRef& cable, double rest_length_m, int world) {
+  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
+  impl_->GroupOf(__func__, world).loop.SetRestLength(impl_->LaneOf(world), c, rest_length_m);
+}
+double Simulation::RestLengthCommand(const ElementRef& cable, int world) const {
+  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
+  const Commands& commands = impl_->GroupOf(__func__, world).loop.commands();
+  return commands.rest_length_m[impl_->RowIndex(c, world)];
+}
+void Simulation::SetMode(const ElementRef& cable, CommandMode mode, int world) {
+  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
+  impl_->GroupOf(__func__, world).plant->commands().mode[impl_->RowIndex(c, world)] = mode;
+}
+std::optional<ImpedanceGains> Simulation::Gains(const ElementRef& cable, int world) const {
+  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
+  return impl_->GroupOf(__func__, world).loop.Gains(impl_->LaneOf(world), c);
+}
+bool Simulation::SetGains(const ImpedanceGains& gains, int world) {
+  impl_->cables.IndexOf(__func__, impl_->def(), gains.cable);
+  return impl_->GroupOf(__func__, world).loop.SetGains(impl_->LaneOf(world), gains);
+}
+void Simulation::SetNodeForce(const ElementRef& node, const Vec3& force_n, int world) {
+  const int n = impl_->nodes.IndexOf(__func__, impl_->def(), node);
+  plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
+  std::vector<ExternalForce>& forces = impl_->SlotOf(world).forces;
+  std::erase_if(forces, [n](const ExternalForce& one) { return one.node == n; });
+  if (force_n.x != 0 || force_n.y != 0 || force_n.z != 0) forces.push_back({n, force_n});
+  group.loop.SetHandForces(impl_->LaneOf(world), forces);
+}
+void Simulation::SetExternalForces(std::span<const ExternalForce> forces, int world) {
+  plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
+  for (const ExternalForce& one : forces) {
+    impl_->nodes.IndexOf(__func__, impl_->def(), one.node);
+  }
+  impl_->SlotOf(world).forces.assign(forces.begin(), forces.end());
+  group.loop.SetHandForces(impl_->LaneOf(world), impl_->SlotOf(world).forces);
+}
+std::vector<ExternalForce> Simulation::ExternalForces(int world) const {
+  std::vector<ExternalForce> forces =
+      impl_->GroupOf(__func__, world).loop.timeline(impl_->LaneOf(world)).EventForces();
+  const std::vector<ExternalForce>& own = impl_->SlotOf(world).forces;
+  forces.insert(forces.end(), own.begin(), own.end());
+  return forces;
+}
+
+// --- state and parameters ------------------------------------------------------------------------
+
+void Simulation::SetBodyState(const ElementRef& body, const BodyState& state, int world) {
+  const int b = impl_->bodies.IndexOf(__func__, impl_->def(), body);
+  impl_->GroupOf(__func__, world).batch.SetBodyState(impl_->LaneOf(world), b, state);
+}
+
+double Simulation::GetParameter(Parameter parameter, const ElementRef& of, int world) const {
+  const int index = impl_->ParameterIndex(__func__, parameter, of);
+  return impl_->GroupOf(__func__, world).batch.GetParameter(impl_->LaneOf(world), parameter, index);
+}
+bool Simulation::SetParameter(Parameter parameter, const ElementRef& of, double value, int world) {
+  const int index = impl_->ParameterIndex(__func__, parameter, of);
+  return impl_->GroupOf(__func__, world)
+      .batch.SetParameter(impl_->LaneOf(world), parameter, index, value);
+}
+
+}  // namespace taut
