@@ -272,7 +272,8 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
       ->needs(response);
   analyze
       .add_option("--to_hz", linear.to_hz,
-                  "With --response: last frequency [Hz] (default: half the tick rate)")
+                  "With --response: last frequency [Hz] (default: half the tick rate; a tick is "
+                  "one period of the controllers, or one step without controllers)")
       ->option_text("NUMBER")
       ->check(NumberWithin(1e-9, 1e9))
       ->needs(response);

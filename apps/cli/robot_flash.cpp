@@ -26,7 +26,8 @@ struct FlashArguments {
 /// build tree.
 std::string HexPath(const FlashArguments& args) {
   if (!args.hex.empty()) return args.hex;
-  return FindBesideProgram({"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex"})
+  return FindBesideProgram({"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex",
+                            "share/taut/firmware/taut_board.hex"})
       .value_or("");
 }
 

@@ -57,7 +57,7 @@ struct IdentifyCounts {
 struct CarriedLoad {
   struct Row {
     std::string where;     ///< As in `FitPoint`.
-    double applied_n = 0;  ///< Loads and weight of the bodies.
+    double applied_n = 0;  ///< Loads and weight of the bodies, along the check's direction.
     double carried_n = 0;  ///< Measured forces of the members.
     double sd_n = 0;       ///< Standard deviation of `carried_n`, by the sds of the data.
   };

@@ -26,8 +26,14 @@ class LaneState {
 
   int lane() const noexcept { return static_cast<int>(lane_); }
   bool reads() const noexcept { return to_ == nullptr; }
+  /// Marks the state as one that cannot be restored.
+  void Fail() noexcept { failed_ = true; }
+  /// Returns true after `Fail`, or if more was read than there is.
+  bool failed() const noexcept { return failed_ || short_; }
+  /// Returns the number of bytes that are left to be read.
+  std::size_t left() const noexcept { return from_.size(); }
   /// Returns true if exactly all bytes were read.
-  bool at_end() const noexcept { return from_.empty() && !short_; }
+  bool at_end() const noexcept { return from_.empty() && !failed(); }
 
   /// Serializes a number. Structs are serialized member by member, because their padding is
   /// undefined.
@@ -73,7 +79,7 @@ class LaneState {
   std::size_t lane_, lanes_;
   std::vector<std::uint8_t>* to_ = nullptr;
   std::span<const std::uint8_t> from_;
-  bool short_ = false;
+  bool short_ = false, failed_ = false;
 };
 
 }  // namespace taut::plant

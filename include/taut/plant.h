@@ -96,7 +96,7 @@ enum class CommandMode : unsigned char {
 struct Commands {
   int lanes = 1;
   double* rest_length_m = nullptr;  ///< Set points of the rest lengths [m].
-  /// Set points of the tensions [N], if the control law has any; else 0.
+  /// Set points of the tensions [N]; the values are 0 if the control law has none.
   double* set_point_n = nullptr;
   /// V0 of impedance control [m/s], including a gait's part.
   double* velocity_input_m_per_s = nullptr;
@@ -260,7 +260,7 @@ struct Extensions {
 
 /// Returns the library's controllers of a specification, as an experiment file describes them, for
 /// `Extensions::controllers`: a gait and the law that it feeds, or one of them. They have the same
-/// numbers in all variants.
+/// numbers in all variants. Its cables must be those of the robot that they are used with.
 std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> ControllersOf(
     const ControllerSpec& spec);
 

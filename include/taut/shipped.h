@@ -11,6 +11,9 @@ namespace taut {
 
 /// Returns the path of the running program; empty if the system does not provide it.
 std::string RunningProgram();
+/// Sets the path that `RunningProgram` returns, for a command that is part of another program. Call
+/// it before other threads start.
+void SetRunningProgram(const std::string& path);
 
 /// Returns the first of these paths that exists, relative to the folder of the running program.
 std::optional<std::string> FindBesideProgram(std::initializer_list<const char*> paths);

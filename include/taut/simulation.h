@@ -16,12 +16,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "taut/plant.h"
@@ -47,7 +49,8 @@ class ElementRef {
  public:
   template <class Integer>
   requires std::is_integral_v<Integer> ElementRef(Integer index)
-      : index_(static_cast<int>(index)) {}
+      : index_(std::in_range<int>(index) ? static_cast<int>(index)
+                                         : std::numeric_limits<int>::max()) {}
   ElementRef(std::string_view name) : name_(name) {}
   ElementRef(const char* name) : name_(name) {}
   ElementRef(const std::string& name) : name_(name) {}
@@ -100,7 +103,9 @@ class Simulation {
   void Step();
   /// Steps each world whose time is less than `time_s` until it is not; the length of steps does
   /// not depend on `time_s`, so a world may stop up to one step later.
-  void RunUntil(double time_s);
+  /// `keep_going`, polled before each step of each group, by the thread that steps it: once it
+  /// returns false, no group takes a further step.
+  void RunUntil(double time_s, const std::function<bool()>& keep_going = {});
   double Time(int world = 0) const;  ///< [s], since the start.
   /// Returns false once a state is not finite; the world keeps its last state.
   bool IsRunning(int world = 0) const;
@@ -155,9 +160,9 @@ class Simulation {
   /// Serializes a world with its clocks, controllers and sensors. Custom controllers and sensors
   /// take part by `Serialize`.
   std::vector<std::uint8_t> Save(int world = 0);
-  /// Restores a serialized world into any world of a simulation of the same experiment; the
-  /// continuation is bit-identical. Returns false, with an error and without a change, if the
-  /// snapshot is damaged or of another experiment.
+  /// Restores a serialized world, with its variant, into any world of a simulation of the same
+  /// experiment and extensions; the continuation is bit-identical. Returns false, with an error and
+  /// without a change, if the snapshot is damaged, of another experiment or of other controllers.
   bool Restore(std::span<const std::uint8_t> snapshot, Diagnostics& out, int world = 0);
 
   // --- recording ---------------------------------------------------------------------------------
@@ -166,8 +171,9 @@ class Simulation {
   /// Returns their present values; valid until the next call.
   const std::vector<double>& Row(int world = 0);
   /// Appends the present row, and from now on each row that is due by `record.rate_hz`, to a
-  /// writer of `channels()`; null ends the recording. The caller finishes and destroys the writer
-  /// after that. A failed writer gets no more rows; see `TraceWriter::error`.
+  /// writer of `channels()`; null ends the recording, as `Reset` and `Restore` of the world do. The
+  /// caller finishes and destroys the writer after that. A failed writer gets no more rows; see
+  /// `TraceWriter::error`.
   void Record(TraceWriter* writer, int world = 0);
 
   // --- groups: worlds that share a SIMD register, for controllers and learners -------------------

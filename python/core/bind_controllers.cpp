@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "python_control.h"
 #include "taut/find.h"
 #include "text.h"
 
@@ -32,6 +33,13 @@ std::vector<int> CablesOf(const RobotSpec& robot, const py::object& names) {
   return cables;
 }
 
+/// Returns a period; raises ValueError if it is too short.
+double PeriodOf(double period_s) {
+  if (std::isfinite(period_s) && period_s >= kLeastPeriodS) return period_s;
+  throw py::value_error(
+      fmt::format("period_s: {}; expected a number >= {} [s]", period_s, kLeastPeriodS));
+}
+
 /// Returns one number per cable: of an array, or the same one for all.
 std::vector<double> PerCable(const py::object& given, std::size_t count, const char* what,
                              bool may_be_negative) {
@@ -48,13 +56,13 @@ std::vector<double> PerCable(const py::object& given, std::size_t count, const c
   return all;
 }
 
-std::shared_ptr<ControllerSpec> Impedance(const RobotSpec& robot, const py::object& names,
-                                          const py::object& tension_offset_n,
-                                          const py::object& length_offset_m,
-                                          const py::object& position_gain_n_per_m,
-                                          const py::object& velocity_gain_n_s_per_m,
-                                          const py::object& velocity_offset_m_per_s,
-                                          double period_s, bool differenced_rate) {
+std::shared_ptr<LibrarySpec> Impedance(const RobotSpec& robot, const py::object& names,
+                                       const py::object& tension_offset_n,
+                                       const py::object& length_offset_m,
+                                       const py::object& position_gain_n_per_m,
+                                       const py::object& velocity_gain_n_s_per_m,
+                                       const py::object& velocity_offset_m_per_s, double period_s,
+                                       bool differenced_rate) {
   const std::vector<int> cables = CablesOf(robot, names);
   const std::size_t n = cables.size();
   const auto tension = PerCable(tension_offset_n, n, "tension_offset_n", false);
@@ -62,23 +70,25 @@ std::shared_ptr<ControllerSpec> Impedance(const RobotSpec& robot, const py::obje
   const auto position = PerCable(position_gain_n_per_m, n, "position_gain_n_per_m", false);
   const auto velocity = PerCable(velocity_gain_n_s_per_m, n, "velocity_gain_n_s_per_m", false);
   const auto offset = PerCable(velocity_offset_m_per_s, n, "velocity_offset_m_per_s", true);
-  auto spec = std::make_shared<ControllerSpec>();
+  auto made = std::make_shared<LibrarySpec>(LibrarySpec{{}, NamesOf(robot.def.cables)});
+  ControllerSpec* const spec = &made->spec;
   spec->name = "impedance";
-  spec->clock.period_s = Positive(period_s, "period_s");
+  spec->clock.period_s = PeriodOf(period_s);
   spec->impedance.emplace();
   spec->impedance->differenced_rate = differenced_rate;
   for (std::size_t i = 0; i < n; ++i) {
     spec->impedance->cables.push_back(
         {cables[i], tension[i], length[i], position[i], velocity[i], offset[i]});
   }
-  return spec;
+  return made;
 }
 
-std::shared_ptr<ControllerSpec> Position(const RobotSpec& robot, const py::dict& programs,
-                                         double period_s) {
-  auto spec = std::make_shared<ControllerSpec>();
+std::shared_ptr<LibrarySpec> Position(const RobotSpec& robot, const py::dict& programs,
+                                      double period_s) {
+  auto made = std::make_shared<LibrarySpec>(LibrarySpec{{}, NamesOf(robot.def.cables)});
+  ControllerSpec* const spec = &made->spec;
   spec->name = "position";
-  spec->clock.period_s = Positive(period_s, "period_s");
+  spec->clock.period_s = PeriodOf(period_s);
   for (const auto& [name, points] : programs) {
     const std::string cable = py::str(name);
     PositionProgram program;
@@ -98,20 +108,44 @@ std::shared_ptr<ControllerSpec> Position(const RobotSpec& robot, const py::dict&
     spec->position.push_back(std::move(program));
   }
   if (spec->position.empty()) throw py::value_error("programs: no cable");
-  return spec;
+  return made;
 }
 
 }  // namespace
 
+void LibrarySpec::Check(const RobotSpec& robot, const std::string& where) const {
+  const std::vector<std::string> names = NamesOf(robot.def.cables);
+  const auto check = [&](int cable) {
+    const auto i = static_cast<std::size_t>(cable);
+    if (i < names.size() && names[i] == cables[i]) return;
+    throw py::value_error(fmt::format(
+        "{}: it is for another robot, whose cable {} is \"{}\"{}", where, i, cables[i],
+        i < names.size() ? fmt::format("; here it is \"{}\"", names[i]) : "; here there is none"));
+  };
+  if (spec.impedance) {
+    for (const ImpedanceGains& gains : spec.impedance->cables) check(gains.cable);
+  }
+  for (const PositionProgram& program : spec.position) check(program.cable);
+  const GaitInputSpec* const input = GaitInputOf(spec);
+  if (input == nullptr) return;
+  Diagnostics said;
+  for (std::size_t g = 0; g <= input->others.size(); ++g) {
+    ResolveGait(GaitOf(*input, g), robot, said);
+  }
+  if (said.ok()) return;
+  throw py::value_error(where + ": " + said.items()[0].what);
+}
+
 void AddControllers(py::module_& module) {
-  py::class_<ControllerSpec, std::shared_ptr<ControllerSpec>>(
+  py::class_<LibrarySpec, std::shared_ptr<LibrarySpec>>(
       module, "ControllerSpec",
       "A controller of the library with its numbers, for `controllers=` of `taut.Simulation` and "
       "`taut.run`. Made by `taut.control`, or one of `Experiment.controllers`.")
-      .def_readonly("name", &ControllerSpec::name)
-      .def_property_readonly("period_s", [](const ControllerSpec& c) { return c.clock.period_s; })
-      .def("__repr__", [](const ControllerSpec& c) {
-        return fmt::format("<taut.ControllerSpec \"{}\", every {:g} s>", c.name, c.clock.period_s);
+      .def_property_readonly("name", [](const LibrarySpec& c) { return c.spec.name; })
+      .def_property_readonly("period_s", [](const LibrarySpec& c) { return c.spec.clock.period_s; })
+      .def("__repr__", [](const LibrarySpec& c) {
+        return fmt::format("<taut.ControllerSpec \"{}\", every {:g} s>", c.spec.name,
+                           c.spec.clock.period_s);
       });
   module.def("impedance", &Impedance);
   module.def("position", &Position);

@@ -28,7 +28,7 @@ void RunUntil(S& shared, double time_s) {
     for (int w = 0; w < s.worlds(); ++w) now_s = std::min(now_s, s.Time(w));
     if (now_s >= time_s - 1e-9) return false;
     const auto start = std::chrono::steady_clock::now();
-    s.RunUntil(std::min(time_s, now_s + piece_s));
+    s.RunUntil(std::min(time_s, now_s + piece_s), [&] { return !shared.callbacks()->failed(); });
     const auto took = std::chrono::steady_clock::now() - start;
     if (took < std::chrono::milliseconds(25)) piece_s *= 2;
     if (took > std::chrono::milliseconds(100)) piece_s /= 2;
@@ -64,7 +64,9 @@ void AddStates(SimulationType& type) {
         const auto [first, last] = shared.Range(world);
         Diagnostics said;
         shared.With([&, from = first, to = last](Simulation& s) {
-          for (int w = from; w < to && said.ok(); ++w) s.Restore(BytesOf(snapshot), said, w);
+          for (int w = from; w < to && said.ok() && !shared.callbacks()->failed(); ++w) {
+            s.Restore(BytesOf(snapshot), said, w);
+          }
         });
         shared.callbacks()->Rethrow();
         Tell(said);
@@ -76,7 +78,7 @@ void AddStates(SimulationType& type) {
       "row",
       [](S& shared, py::ssize_t world) {
         const int w = shared.World(world);
-        return ArrayOf(shared.With([&](Simulation& s) { return s.Row(w); }));
+        return ArrayOf(shared.Look([&](Simulation& s) { return s.Row(w); }));
       },
       py::arg("world") = 0, "(channels,) float64: present values of `channels`.");
   type.def_property_readonly(
@@ -102,7 +104,7 @@ SharedSimulation::SharedSimulation(const ExperimentSpec& experiment, int worlds,
   options.threads = Threads(threads);
   options.simd = SimdOf(simd);
   bool in_python = false;
-  options.extensions = ExtensionsOf(controllers, callbacks_, in_python);
+  options.extensions = ExtensionsOf(controllers, experiment.robot, callbacks_, in_python);
   if (in_python && threads != 1) {
     throw py::value_error(fmt::format(
         "threads: {}; controllers in Python run on one thread: use threads=1", threads));

@@ -219,6 +219,10 @@ void AddCommands(SimulationType& type) {
           for (const auto& [field, at] : fields) {
             if (name != field) continue;
             known = true;
+            if (PyNumber_Check(value.ptr()) == 0) {
+              throw py::type_error(name + ": " + py::repr(value).cast<std::string>() +
+                                   "; expected a number");
+            }
             const double number = value.cast<double>();
             const bool offset = at == &ImpedanceGains::velocity_offset_m_per_s;
             if (!std::isfinite(number) || (number < 0 && !offset)) {
@@ -229,6 +233,7 @@ void AddCommands(SimulationType& type) {
           }
           if (!known) throw py::type_error("set_gains: there is no gain \"" + name + "\"");
         }
+        if (changes.empty()) throw py::type_error("set_gains: no gain given");
         const bool good = shared.With([&, from = first, to = last](Simulation& s) {
           for (int w = from; w < to; ++w) {
             auto gains = s.Gains(c, w);

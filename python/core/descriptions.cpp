@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "python_control.h"
 #include "taut/files.h"
 #include "text.h"
 
@@ -103,9 +104,10 @@ void AddDescriptions(py::module_& module) {
       .def_property_readonly(
           "controllers",
           [](const Experiment& e) {
-            std::vector<std::shared_ptr<ControllerSpec>> all;
+            std::vector<std::shared_ptr<LibrarySpec>> all;
             for (const ControllerSpec& one : e.controllers) {
-              all.push_back(std::make_shared<ControllerSpec>(one));
+              all.push_back(
+                  std::make_shared<LibrarySpec>(LibrarySpec{one, NamesOf(e.robot.def.cables)}));
             }
             return all;
           },

@@ -63,7 +63,7 @@ class Owner {
   void CheckProcess() const {
     if (!Forked()) return;
     throw std::runtime_error(std::string(what_) +
-                             " was made before fork(): make a new one in the child, or start "
+                             " made before fork(): make a new one in the child, or start "
                              "workers with multiprocessing's \"spawn\"");
   }
 

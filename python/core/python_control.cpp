@@ -63,13 +63,18 @@ class DueRows {
   /// Writes an array back. Raises ValueError if its shape or type has changed, or if a number is
   /// not finite.
   template <class T>
-  void Back(const py::object& from, T* row, const char* name) const {
-    const auto a = Exactly<T>(from, {count(), static_cast<py::ssize_t>(cables_)}, name, false);
+  void Back(const py::object& from, T* row, const char* name, bool at_least_zero = false) const {
+    const auto a = Exactly<T>(from, {count(), static_cast<py::ssize_t>(cables_)},
+                              ("commands." + std::string(name)).c_str(), false);
     const T* values = a.data();
     for (const int lane : lanes_) {
       for (std::size_t c = 0; c < cables_; ++c, ++values) {
         if (!std::isfinite(static_cast<double>(*values))) {
           throw py::value_error(fmt::format("commands.{}: not finite for cable {}", name, c));
+        }
+        if (at_least_zero && *values < 0) {
+          throw py::value_error(fmt::format("commands.{}: {} for cable {}; expected a number >= 0",
+                                            name, *values, c));
         }
         row[At(c, lane)] = *values;
       }
@@ -112,7 +117,19 @@ class PythonController final : public Controller {
   /// Saves the memory of the Python object, by its methods `save` and `restore`.
   void Serialize(plant::LaneState& state) override {
     if (state.lane() >= worlds_) return;
-    callbacks_->Call([&] { Serialize(state, first_world_ + state.lane()); });
+    const int world = first_world_ + state.lane();
+    std::string bytes;
+    if (!state.reads()) callbacks_->Call([&] { bytes = SaveOf(world); });
+    std::uint64_t size = bytes.size();
+    state.Value(size);
+    if (state.reads() && size > state.left()) return state.Fail();
+    bytes.resize(static_cast<std::size_t>(size));
+    for (char& byte : bytes) state.Value(byte);
+    if (!state.reads()) return;
+    callbacks_->Call([&] {
+      if (HasMemory()) CallPython(of_->attr("restore"), world, py::bytes(bytes));
+    });
+    if (callbacks_->failed()) state.Fail();
   }
 
  private:
@@ -142,30 +159,30 @@ class PythonController final : public Controller {
                py::arg("velocity_input_m_per_s") = rows.Copy(commands.velocity_input_m_per_s),
                py::arg("signal") = rows.Copy(commands.signal));
     CallPython(of_->attr("act"), what, now);
-    rows.Back(now.attr("rest_length_m"), commands.rest_length_m, "rest_length_m");
+    rows.Back(now.attr("rest_length_m"), commands.rest_length_m, "rest_length_m", true);
     rows.Back(now.attr("set_point_n"), commands.set_point_n, "set_point_n");
     rows.Back(now.attr("velocity_input_m_per_s"), commands.velocity_input_m_per_s,
               "velocity_input_m_per_s");
     rows.Back(now.attr("signal"), commands.signal, "signal");
   }
 
-  /// Stores the bytes of `save(world)`, or passes them to `restore(world, bytes)`.
-  void Serialize(plant::LaneState& state, int world) {
-    const bool has_memory = py::hasattr(*of_, "save") && py::hasattr(*of_, "restore");
-    if (!has_memory && !IsStateless()) {
+  bool HasMemory() const { return py::hasattr(*of_, "save") && py::hasattr(*of_, "restore"); }
+  /// Returns the bytes of `save(world)`; none if the object is stateless.
+  std::string SaveOf(int world) const {
+    const auto name = py::str(py::type::of(*of_).attr("__name__")).cast<std::string>();
+    if (!HasMemory() && !IsStateless()) {
       throw py::type_error(
-          py::str(py::type::of(*of_).attr("__name__")).cast<std::string>() +
-          ": a simulation is saved with its controllers; define save(world), which returns bytes, "
-          "and restore(world, bytes), or set `stateless = True` if it has no memory");
+          name +
+          ": a simulation is saved with its controllers; define save(world), which returns "
+          "bytes, and restore(world, bytes), or set `stateless = True` if it has no memory");
     }
-    if (!has_memory) return;
-    std::string bytes;
-    if (!state.reads()) bytes = CallPython(of_->attr("save"), world).cast<py::bytes>();
-    std::uint64_t size = bytes.size();
-    state.Value(size);
-    bytes.resize(static_cast<std::size_t>(size));
-    for (char& byte : bytes) state.Value(byte);
-    if (state.reads()) CallPython(of_->attr("restore"), world, py::bytes(bytes));
+    if (!HasMemory()) return {};
+    const py::object saved = CallPython(of_->attr("save"), world);
+    if (!py::isinstance<py::bytes>(saved)) {
+      throw py::type_error(name + ".save: " + py::repr(saved).cast<std::string>() +
+                           "; expected bytes");
+    }
+    return saved.cast<py::bytes>();
   }
   bool IsStateless() const {
     return py::hasattr(*of_, "stateless") && py::bool_(of_->attr("stateless"));
@@ -178,15 +195,20 @@ class PythonController final : public Controller {
   std::size_t cables_;
 };
 
-/// Returns the number of an attribute, or `otherwise` without one. Raises ValueError unless it is
-/// finite and at least `least`.
+/// Returns the number of an attribute, or `otherwise` without one. Raises TypeError or ValueError
+/// unless it is finite and long enough.
 double NumberOf(const py::object& of, const char* name, const std::string& where, double otherwise,
                 bool may_be_zero) {
   if (!py::hasattr(of, name)) return otherwise;
-  const double value = of.attr(name).cast<double>();
-  if (!std::isfinite(value) || value < 0 || (value == 0 && !may_be_zero)) {
-    throw py::value_error(fmt::format("{}.{}: {}; expected a number {} 0 [s]", where, name, value,
-                                      may_be_zero ? ">=" : ">"));
+  const py::object given = of.attr(name);
+  if (PyNumber_Check(given.ptr()) == 0) {
+    throw py::type_error(where + "." + name + ": " + py::repr(given).cast<std::string>() +
+                         "; expected a number [s]");
+  }
+  const double value = given.cast<double>(), least = may_be_zero ? 0 : kLeastPeriodS;
+  if (!std::isfinite(value) || value < least) {
+    throw py::value_error(
+        fmt::format("{}.{}: {}; expected a number >= {} [s]", where, name, value, least));
   }
   return value;
 }
@@ -309,16 +331,22 @@ void Callbacks::Rethrow() {
   if (raised) std::rethrow_exception(raised);
 }
 
-Extensions ExtensionsOf(const py::object& controllers, std::shared_ptr<Callbacks> callbacks,
-                        bool& in_python) {
+Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
+                        std::shared_ptr<Callbacks> callbacks, bool& in_python) {
   Extensions extensions;
   if (controllers.is_none()) return extensions;
+  if (!py::isinstance<py::list>(controllers) && !py::isinstance<py::tuple>(controllers)) {
+    throw py::type_error("controllers: " + py::repr(controllers).cast<std::string>() +
+                         "; expected a list of controllers");
+  }
   std::size_t number = 0;
   for (const py::handle& item : controllers) {
     const auto of = py::reinterpret_borrow<py::object>(item);
     const std::string where = fmt::format("controllers[{}]", number++);
-    if (py::isinstance<ControllerSpec>(of)) {
-      for (auto& factory : ControllersOf(of.cast<ControllerSpec>())) {
+    if (py::isinstance<LibrarySpec>(of)) {
+      const auto& given = of.cast<const LibrarySpec&>();
+      given.Check(robot, where);
+      for (auto& factory : ControllersOf(given.spec)) {
         extensions.controllers.push_back(std::move(factory));
       }
       continue;

@@ -5,6 +5,8 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "taut/plant.h"
 #include "text.h"
@@ -25,12 +27,24 @@ class Callbacks {
   std::exception_ptr raised_;
 };
 
+/// Shortest period of a controller: times that differ by 1e-9 s count as equal.
+inline constexpr double kLeastPeriodS = 1e-6;
+
+/// Controller of the library, with the names of the cables that its indices mean.
+struct LibrarySpec {
+  ControllerSpec spec;
+  std::vector<std::string> cables;  ///< All cables of the robot that it was made for.
+
+  /// Raises ValueError, which contains `where`, if the robot has other cables in these places.
+  void Check(const RobotSpec& robot, const std::string& where) const;
+};
+
 /// Returns the controllers of a list: each is a `taut.control` specification, or an object with
 /// `period_s` and `act(seen, commands)`. Raises TypeError or ValueError, with its place in the
 /// list, otherwise.
 /// `in_python`: set if one of them is written in Python.
-Extensions ExtensionsOf(const py::object& controllers, std::shared_ptr<Callbacks> callbacks,
-                        bool& in_python);
+Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
+                        std::shared_ptr<Callbacks> callbacks, bool& in_python);
 
 /// Plant of one lane in Python.
 class PythonPlant : public Plant {

@@ -65,7 +65,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   Threads(threads);
   const auto callbacks = std::make_shared<Callbacks>();
   bool in_python = false;
-  const Extensions extensions = ExtensionsOf(controllers, callbacks, in_python);
+  const Extensions extensions = ExtensionsOf(controllers, experiment.robot, callbacks, in_python);
   std::unique_ptr<Plant> own;
   if (py::isinstance<Recorded>(plant)) {
     own = plant.cast<Recorded&>().PlantFor(experiment);

@@ -33,16 +33,22 @@ class Simulation(_core.Simulation):
     `rest_length_m`, `set_point_n`, `velocity_input_m_per_s` and `signal`, (n, cables), to be changed in place.
 
     Worlds have the bits of `taut.run`, whatever the other worlds, threads and instruction set. Several Python threads
-    may use one simulation; calls wait for each other. Raises `taut.InputError` if a start does not exist.
+    may use one simulation; calls wait for each other, so `act` must not wait for a thread that uses this simulation. An
+    exception in `act` ends the call after the present step. A controller that keeps a reference to its simulation keeps
+    it in memory: use `weakref`. Raises `taut.InputError` if a start does not exist.
     """
 
     def __init__(self, experiment: Union[str, "os.PathLike[str]", Experiment, Robot], worlds: int = 1, *,
                  variants: Optional[Sequence[World]] = None, threads: int = 1, simd: Optional[str] = None,
                  controllers: Optional[Sequence[Any]] = None) -> None:
+        if not isinstance(experiment, (str, os.PathLike, Experiment, Robot)):
+            raise TypeError(f"experiment: {experiment!r}; expected an Experiment, a Robot or the path of their file")
         what = _core.load(os.fspath(experiment)) if isinstance(experiment, (str, os.PathLike)) else experiment
         given = None if variants is None else [_world(number, one, "variants") for number, one in enumerate(variants)]
         if given is not None and not given:
             raise ValueError("variants: empty; expected at least one dict")
+        if given is not None and worlds not in (1, len(given)):
+            raise ValueError(f"worlds: {worlds}, but there are {len(given)} variants; give only one of them")
         super().__init__(what, worlds, given, threads, simd, controllers)
 
     def __repr__(self) -> str:

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "plant/controller_kinds.h"
+#include "sim/batch/check_index.h"
 
 namespace taut {
 namespace {
@@ -10,6 +11,14 @@ class LibraryController final : public Controller {
  public:
   LibraryController(const ControlSetup& setup, ControllerSpec spec, plant::MakeController make)
       : spec_(std::move(spec)) {
+    const int cables = static_cast<int>(setup.experiment.robot.def.cables.size());
+    const auto check = [cables](int cable) {
+      sim::CheckIndex("ControllersOf", "cable", cable, cables);
+    };
+    if (spec_.impedance) {
+      for (const ImpedanceGains& gains : spec_.impedance->cables) check(gains.cable);
+    }
+    for (const PositionProgram& program : spec_.position) check(program.cable);
     std::vector<RolloutWorld> own;
     for (const RolloutWorld* lane : setup.lanes) own.push_back(Own(*lane));
     std::vector<const RolloutWorld*> lanes;

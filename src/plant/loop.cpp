@@ -172,6 +172,7 @@ void Loop::Serialize(LaneState& state) {
   const auto lane = static_cast<std::size_t>(state.lane());
   schedules_[schedules_.size() == 1 ? 0 : lane].Serialize(state);
   timelines_[lane].Serialize(state);
+  has_forces_ = has_forces_ || !timelines_[lane].idle();
   for (Sensor& sensor : sensors_) {
     sensor.model->Serialize(state);
     sensor.clock.Serialize(state);

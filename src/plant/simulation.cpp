@@ -59,7 +59,7 @@ void Simulation::Step() {
   impl_->pool.ForEach(impl_->groups.size(), work);
 }
 
-void Simulation::RunUntil(double time_s) {
+void Simulation::RunUntil(double time_s, const std::function<bool()>& keep_going) {
   auto work = [&](int, std::size_t g) {
     plant::Loop& loop = impl_->groups[g]->loop;
     for (;;) {
@@ -67,7 +67,7 @@ void Simulation::RunUntil(double time_s) {
       for (int j = 0; j < impl_->CountIn(g); ++j) {
         if (loop.time_s(j) < time_s - plant::kTimeToleranceS) active |= Lanes{1} << j;
       }
-      if (active == 0) return;
+      if (active == 0 || (keep_going && !keep_going())) return;
       impl_->StepLanes(g, active);
     }
   };
@@ -87,8 +87,14 @@ void Simulation::Reset(int world) {
   plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
   plant::WorldSlot& slot = impl_->SlotOf(world);
   impl_->PutToStart(world);
-  group.loop.Restart(impl_->LaneOf(world), slot.variant->world);
+  const int lane = impl_->LaneOf(world);
+  group.loop.Restart(lane, slot.variant->world);
+  for (int j = impl_->CountIn(static_cast<std::size_t>(world / impl_->lanes));
+       lane == 0 && j < impl_->lanes; ++j) {
+    group.loop.Restart(j, slot.variant->world);
+  }
   slot.forces.clear();
+  slot.recording.reset();
   group.loop.Prepare();
 }
 

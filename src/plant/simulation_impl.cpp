@@ -28,6 +28,7 @@ void Simulation::Impl::MakeSlots(const SimulationOptions& options) {
     } else {
       slots[i].variant = std::make_shared<plant::Variant>();
       slots[i].variant->world = variants.empty() ? WorldOf(experiment) : variants[i];
+      created.push_back(slots[i].variant);
     }
   }
 }

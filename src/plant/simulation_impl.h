@@ -130,7 +130,12 @@ struct Simulation::Impl {
   void RecordRow(int world);
   plant::Sealing Seal();
   std::uint64_t HashOf(plant::Variant& variant) const;
-  /// Returns the variant of any world that has this hash, or null.
+  /// Returns the bytes of a world, without a seal.
+  plant::Bytes StateOf(int world);
+  /// Puts such bytes into a world. Returns false if they do not fit; the world is then in no valid
+  /// state.
+  bool Put(int world, std::span<const std::uint8_t> saved, std::shared_ptr<plant::Variant> variant);
+  /// Returns the variant with this hash, of any world or of the creation; or null.
   std::shared_ptr<plant::Variant> VariantWith(std::uint64_t hash, int world);
 
   const ExperimentSpec experiment;
@@ -140,6 +145,7 @@ struct Simulation::Impl {
   base::ThreadPool pool;
   int lanes = 1;
   std::vector<plant::WorldSlot> slots;
+  std::vector<std::shared_ptr<plant::Variant>> created;  ///< Variants at the creation.
   std::vector<std::unique_ptr<plant::SimulationGroup>> groups;
   std::uint64_t kind = 0;  ///< Of snapshots; 0: not known yet.
   plant::Names bodies{"body", experiment.robot.def.bodies, FindBody};

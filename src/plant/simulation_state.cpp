@@ -1,5 +1,4 @@
 // Snapshots of a simulation's worlds. Not in the browser build, which writes no experiments.
-#include "base/assert.h"
 #include "base/hash.h"
 #include "plant/simulation_impl.h"
 
@@ -9,10 +8,14 @@ plant::Sealing Simulation::Impl::Seal() {
   if (kind == 0) {
     base::Fnv1a hash;
     hash.AddText("simulation");
+    hash.AddText(std::to_string(extensions.controllers.size()));
+    hash.AddText(extensions.sensors ? "own sensors" : "");
+    hash.AddText(batch_options.friction ? "own friction" : "");
     hash.AddText(ResolvedYaml(experiment));
     kind = hash.value();
   }
-  return {"simulation", kind, "both simulations must be of the same experiment"};
+  return {"simulation", kind,
+          "experiment, number of custom controllers, custom sensors and friction must be the same"};
 }
 
 std::uint64_t Simulation::Impl::HashOf(plant::Variant& variant) const {
@@ -30,63 +33,96 @@ std::shared_ptr<plant::Variant> Simulation::Impl::VariantWith(std::uint64_t hash
   for (plant::WorldSlot& slot : slots) {
     if (HashOf(*slot.variant) == hash) return slot.variant;
   }
+  for (const auto& variant : created) {
+    if (HashOf(*variant) == hash) return variant;
+  }
   return nullptr;
 }
 
-std::vector<std::uint8_t> Simulation::Save(int world) {
-  plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
-  plant::WorldSlot& slot = impl_->SlotOf(world);
-  const int lane = impl_->LaneOf(world);
+namespace {
+
+/// Numbers before a world's bytes.
+struct Head {
+  std::uint64_t variant = 0, size = 0, forces = 0;
+  void Serialize(plant::LaneState& state) { state.Values(variant, size, forces); }
+  static constexpr std::size_t kBytes = 3 * sizeof(std::uint64_t);
+};
+
+}  // namespace
+
+plant::Bytes Simulation::Impl::StateOf(int world) {
+  plant::SimulationGroup& group = *groups[static_cast<std::size_t>(world / lanes)];
+  plant::WorldSlot& slot = SlotOf(world);
   plant::Bytes saved;
-  plant::LaneState state(lane, impl_->lanes, saved);
-  const plant::Bytes bytes = group.batch.Save(lane);
-  std::uint64_t variant = impl_->HashOf(*slot.variant), size = bytes.size(),
-                forces = slot.forces.size();
-  state.Values(variant, size, forces);
+  plant::LaneState state(LaneOf(world), lanes, saved);
+  const plant::Bytes bytes = group.batch.Save(LaneOf(world));
+  Head head{HashOf(*slot.variant), bytes.size(), slot.forces.size()};
+  head.Serialize(state);
   saved.insert(saved.end(), bytes.begin(), bytes.end());
   for (ExternalForce& force : slot.forces) {
     state.Value(force.node);
     state.Value(force.force_n);
   }
   group.loop.Serialize(state);
-  return impl_->Seal().Seal(saved);
+  return saved;
 }
 
-bool Simulation::Restore(std::span<const std::uint8_t> snapshot, Diagnostics& out, int world) {
-  plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
-  const auto saved = impl_->Seal().Open(snapshot, out);
-  if (!saved) return false;
-  const int lane = impl_->LaneOf(world);
-  plant::LaneState head(lane, impl_->lanes, *saved);
-  std::uint64_t hash = 0, size = 0, count = 0;
-  head.Values(hash, size, count);
-  constexpr std::size_t kHead = 3 * sizeof(std::uint64_t);
-  const std::shared_ptr<plant::Variant> variant = impl_->VariantWith(hash, world);
-  if (!variant) {
-    out.Error("snapshot.other_variant", {},
-              "the snapshot is of a variant that no world of this simulation has",
-              "create both simulations with the same variants, or reset a world to the variant");
+bool Simulation::Impl::Put(int world, std::span<const std::uint8_t> saved,
+                           std::shared_ptr<plant::Variant> variant) {
+  plant::SimulationGroup& group = *groups[static_cast<std::size_t>(world / lanes)];
+  const int lane = LaneOf(world);
+  plant::LaneState first(lane, lanes, saved);
+  Head head;
+  head.Serialize(first);
+  if (first.failed() || head.size > saved.size() - Head::kBytes ||
+      head.forces > saved.size() / sizeof(ExternalForce)) {
     return false;
   }
-  const auto bytes = saved->subspan(kHead, static_cast<std::size_t>(size));
-  if (!group.batch.Restore(lane, {bytes.begin(), bytes.end()})) {
-    out.Error("snapshot.other_model", {},
-              "the state in the snapshot does not belong to this model");
-    return false;
-  }
-  plant::WorldSlot& slot = impl_->SlotOf(world);
-  slot.variant = variant;
-  group.loop.Restart(lane, variant->world);
-  plant::LaneState state(lane, impl_->lanes, saved->subspan(kHead + bytes.size()));
-  slot.forces.assign(static_cast<std::size_t>(count), {});
+  const auto bytes = saved.subspan(Head::kBytes, static_cast<std::size_t>(head.size));
+  if (!group.batch.Restore(lane, {bytes.begin(), bytes.end()})) return false;
+  plant::WorldSlot& slot = SlotOf(world);
+  slot.variant = std::move(variant);
+  slot.recording.reset();
+  group.loop.Restart(lane, slot.variant->world);
+  plant::LaneState state(lane, lanes, saved.subspan(Head::kBytes + bytes.size()));
+  slot.forces.assign(static_cast<std::size_t>(head.forces), {});
   for (ExternalForce& force : slot.forces) {
     state.Value(force.node);
     state.Value(force.force_n);
+    if (force.node < 0 || force.node >= static_cast<int>(def().nodes.size())) return false;
   }
   group.loop.SetHandForces(lane, slot.forces);
   group.loop.Serialize(state);
-  TAUT_ASSERT(state.at_end());
-  return true;
+  return state.at_end();
+}
+
+std::vector<std::uint8_t> Simulation::Save(int world) {
+  impl_->GroupOf(__func__, world);
+  return impl_->Seal().Seal(impl_->StateOf(world));
+}
+
+bool Simulation::Restore(std::span<const std::uint8_t> snapshot, Diagnostics& out, int world) {
+  impl_->GroupOf(__func__, world);
+  const auto saved = impl_->Seal().Open(snapshot, out);
+  if (!saved) return false;
+  plant::LaneState first(0, 1, *saved);
+  Head head;
+  head.Serialize(first);
+  const std::shared_ptr<plant::Variant> variant = impl_->VariantWith(head.variant, world);
+  if (!variant) {
+    out.Error("snapshot.other_variant", {},
+              "the snapshot is of a variant that this simulation does not have",
+              "create both simulations with the same variants");
+    return false;
+  }
+  const plant::Bytes before = impl_->StateOf(world);
+  const std::shared_ptr<plant::Variant> variant_before = impl_->SlotOf(world).variant;
+  if (impl_->Put(world, *saved, variant)) return true;
+  impl_->Put(world, before, variant_before);
+  out.Error("snapshot.other_controllers", {},
+            "the snapshot is of a simulation with other custom controllers or sensors",
+            "both simulations must have the same");
+  return false;
 }
 
 }  // namespace taut

@@ -103,7 +103,26 @@ void Timeline::Serialize(LaneState& state) {
   const auto all = [&state](auto& list) {
     for (auto& x : list) state.Value(x);
   };
-  all(set_n_), all(push_n_), all(drag_n_), all(drag_start_m_), all(dragging_);
+  all(push_n_), all(drag_n_), all(drag_start_m_), all(dragging_);
+  // Nodes that a program has ever pushed, so that their forces are set, to zero if need be.
+  std::uint64_t count = nodes_.size();
+  state.Value(count);
+  if (!state.reads()) return all(nodes_);
+  for (std::uint64_t i = 0; i < count && !state.failed(); ++i) {
+    int node = 0;
+    state.Value(node);
+    AddNode(node);
+  }
+  // The world's forces are part of its own snapshot, but not the forces that a lane's timeline has
+  // yet to set or to clear: all are set anew.
+  set_n_.assign(nodes_.size(), kNothingYet);
+}
+
+void Timeline::AddNode(int node) {
+  const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), node);
+  if (at != nodes_.end() && *at == node) return;
+  set_n_.insert(set_n_.begin() + (at - nodes_.begin()), kNothingYet);
+  nodes_.insert(at, node);
 }
 
 std::vector<ExternalForce> Timeline::EventForces() const {
@@ -125,13 +144,8 @@ std::vector<ExternalForce> Timeline::EventForces() const {
 
 void Timeline::SetHandForces(std::vector<ExternalForce> forces) {
   hand_ = std::move(forces);
-  for (const ExternalForce& hand : hand_) {
-    const auto at = std::lower_bound(nodes_.begin(), nodes_.end(), hand.node);
-    // A node stays here after its release, so that its force is set to zero.
-    if (at != nodes_.end() && *at == hand.node) continue;
-    set_n_.insert(set_n_.begin() + (at - nodes_.begin()), kNothingYet);
-    nodes_.insert(at, hand.node);
-  }
+  // A node stays in the list after its release, so that its force is set to zero.
+  for (const ExternalForce& hand : hand_) AddNode(hand.node);
 }
 
 }  // namespace taut::plant

@@ -45,6 +45,8 @@ class Timeline {
   const std::vector<double>& drag_n() const noexcept { return drag_n_; }
 
  private:
+  /// Adds a node to the nodes whose forces are set.
+  void AddNode(int node);
   Vec3 DragForce(const Bodies& bodies, int lane, std::size_t drag, double time_s);
 
   const ExperimentSpec& experiment_;

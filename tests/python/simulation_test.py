@@ -210,6 +210,84 @@ class OwnControllers(unittest.TestCase):
             self.assertRaises(TypeError, taut.Simulation, PUSH, controllers=[wrong])
         self.assertRaises(ValueError, taut.Simulation, PUSH, controllers=[type("Zero", (), {"act": 1, "period_s": 0})()])
 
+    def test_an_exception_ends_the_call_at_its_step(self):
+        class Fails:
+            period_s = 0.01
+
+            def __init__(self):
+                self.ticks = 0
+
+            def act(self, seen, commands):
+                self.ticks += 1
+                if self.ticks == 6:
+                    raise RuntimeError("once")
+
+        controller = Fails()
+        sim = taut.Simulation(PUSH, controllers=[controller])
+        self.assertRaisesRegex(RuntimeError, "once", sim.run_until, 1000)
+        self.assertAlmostEqual(sim.time_s()[0], 0.051)
+        sim.run_until(0.1)
+        self.assertEqual(controller.ticks, 10)
+
+    def test_controllers_of_another_robot_are_refused(self):
+        big, small = taut.load(str(ROOT / "share/models/superball.yaml")), taut.load(PRISM)
+        impedance = taut.control.impedance(big, tension_offset_n=5)
+        position = taut.control.position(big, {big.cables[0]: [(0, 0.5)]})
+        gait = taut.load(GAIT).controllers[0]
+        for one in (impedance, position, gait):
+            with self.assertRaises(ValueError) as caught:
+                taut.Simulation(small, controllers=[one])
+            self.assertIn("controllers[0]", str(caught.exception))
+            self.assertRaises(ValueError, taut.run, taut.load(str(ROOT / "share/experiments/hang.yaml")), controllers=[one])
+        for wrong in (impedance, 3, {}):  # not in a list
+            self.assertRaises(TypeError, taut.Simulation, PUSH, controllers=wrong)
+
+    def test_a_failed_restore_changes_nothing(self):
+        class Fails:
+            period_s = 0.01
+
+            def act(self, seen, commands):
+                pass
+
+            def save(self, world):
+                return b"memory"
+
+            def restore(self, world, saved):
+                raise RuntimeError("not today")
+
+        sim = taut.Simulation(PUSH, worlds=2, controllers=[Fails()])
+        sim.run_until(0.05)
+        saved = sim.save(0)
+        sim.run_until(0.1)
+        before = [sim.hash(w) for w in range(2)]
+        self.assertRaisesRegex(RuntimeError, "not today", sim.restore, saved)
+        self.assertEqual([sim.hash(w) for w in range(2)], before)
+        self.assertTrue(np.allclose(sim.time_s(), 0.1))
+
+    def test_wrong_types_and_numbers_are_named(self):
+        sim = taut.Simulation(PUSH)
+
+        class Negative:
+            period_s = 0.01
+
+            def act(self, seen, commands):
+                commands.rest_length_m[:] = -1
+
+        for wrong, words in ((lambda: sim.tension_n(1.5), "cable: 1.5; expected a name or an index"),
+                             (lambda: sim.tension_n(True), "cable: True"), (lambda: sim.set_gains(0), "no gain given"),
+                             (lambda: sim.set_gains(0, tension_offset_n="a"), "tension_offset_n: 'a'"),
+                             (lambda: taut.Simulation(5), "experiment: 5")):
+            with self.assertRaises(TypeError) as caught:
+                wrong()
+            self.assertIn(words, str(caught.exception))
+        self.assertEqual(sim.tension_n(np.int64(1)).shape, (1,))
+        for wrong, words in ((lambda: taut.Simulation(PUSH, worlds=5, variants=[{}]), "worlds: 5, but there are 1 variants"),
+                             (lambda: taut.Simulation(PUSH, controllers=[Negative()]), "commands.rest_length_m: -1"),
+                             (lambda: taut.control.impedance(taut.load(PRISM), period_s=1e-12), "period_s")):
+            with self.assertRaises(ValueError) as caught:
+                wrong()
+            self.assertIn(words, str(caught.exception))
+
     def test_memory_is_saved_with_the_world(self):
         class Counts:
             period_s = 0.01
@@ -255,7 +333,7 @@ class OwnControllers(unittest.TestCase):
 
             def act(self, seen, commands):
                 if sims:
-                    assert sims[0].tension_n().shape[0] == 1
+                    assert sims[0].tension_n().shape[0] == 1 and sims[0].row().size > 0
                     sims[0].step()
 
         sims.append(taut.Simulation(PUSH, controllers=[Reads()]))

@@ -44,8 +44,8 @@ def check(wheel, version):
         info = next(name for name in names if name.endswith(".dist-info/METADATA")).removesuffix("METADATA")
         metadata = email.message_from_bytes(file.read(info + "METADATA"))
         tags = file.read(info + "WHEEL").decode()
-    assert info == f"taut-{version}.dist-info/", info
-    assert (metadata["Name"], metadata["Version"], metadata["License"]) == ("taut", version, "Apache-2.0"), metadata
+    assert info == f"tautsim-{version}.dist-info/", info
+    assert (metadata["Name"], metadata["Version"], metadata["License"]) == ("tautsim", version, "Apache-2.0"), metadata
     assert metadata.get_all("License-File") == ["LICENSE", "NOTICE"]
     assert {info + "LICENSE", info + "NOTICE"} <= names
     assert "numpy" in metadata.get_all("Requires-Dist")[0]

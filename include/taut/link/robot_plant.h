@@ -45,8 +45,8 @@ class RobotPlant final : public Plant {
   /// Gives motors power and holds their positions. Returns false, with an error, if a board does
   /// not follow, or boards cannot run the experiment.
   bool Hold(Diagnostics& out);
-  /// After `Hold`: starts the experiment's mode with the next broadcast; the experiment's time is 0
-  /// now.
+  /// After `Hold`: sets the experiment's time to 0 at once; boards enter the experiment's mode
+  /// (`ModeFor`) with the next broadcast.
   void Begin();
 
   const Observation& Observe() override;

@@ -163,7 +163,7 @@ class JointMaker {
       std::snprintf(text, sizeof text, "%.3g m", gap);
       once_("joint.gap", at,
             "the nodes of " + called + " are " + text +
-                " apart in a direction that it does not leave free",
+                " apart in a direction in which it allows no motion",
             joint.kind == JointKind::kBall ? "place them at the same position"
                                            : "move the nodes, or change the joint's kind or axis");
       return;

@@ -90,11 +90,10 @@ void CheckJoints(const ModelDef& def, Checker& check) {
     const double gap = JointError(j);
     check.Require(!(gap > JointDef::kClosed_m),
                   name + ": its points are " + Metres(gap) +
-                      " apart in a direction that it does not leave free");
+                      " apart in a direction in which it allows no motion");
     check.Require(
         !(math::HeldTurn(j) > math::kClosedTurn_rad),
-        name +
-            ": its bodies are rotated relative to each other in a way that it does not leave free");
+        name + ": its bodies are rotated relative to each other by a turn that it does not allow");
   }
   for (const auto& pair : def.apart) {
     check.Body(pair.body_a, def, "a pair of bodies that do not collide");

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "taut/find.h"
+#include "taut/lane_state.h"
 #include "taut/rollout.h"
 #include "taut/run.h"
 #include "tests/instruction_sets.h"
@@ -169,6 +170,97 @@ TEST(Simulation, SnapshotsOfOthersAreRefused) {
   EXPECT_EQ(refused(damaged), "snapshot.damaged");
 }
 
+/// Forces of the program at the snapshot, before it and after it, also cleared ones.
+TEST(Simulation, SnapshotsHoldAndClearForcesOnNodes) {
+  for (const char* name : {"push_20n", "stand_still"}) {
+    const ExperimentSpec experiment = Load(name, 1);
+    const auto plain = Create(experiment), simulation = Create(experiment);
+    Diagnostics out;
+    const auto untouched = simulation->Save();
+    simulation->SetNodeForce(3, {0, 0, 2});
+    simulation->RunUntil(0.05);
+    const auto pushed = simulation->Save();
+    simulation->SetNodeForce(3, {});  // cleared, but not stepped yet
+    const auto cleared = simulation->Save();
+    simulation->RunUntil(0.1);
+    const std::uint64_t expected = simulation->Hash();
+    ASSERT_TRUE(simulation->Restore(untouched, out)) << out.Format();
+    simulation->RunUntil(0.1);
+    plain->RunUntil(0.1);
+    EXPECT_EQ(simulation->Hash(), plain->Hash()) << name;
+    // Into a simulation that never had a force on this node, but one on another
+    const auto other = Create(experiment, {.worlds = 3});
+    other->SetNodeForce(5, {1, 0, 0}, 1);
+    other->RunUntil(0.02);
+    for (int w = 0; w < 3; ++w) ASSERT_TRUE(other->Restore(cleared, out, w)) << out.Format();
+    ASSERT_TRUE(other->Restore(pushed, out, 2)) << out.Format();
+    ASSERT_EQ(other->ExternalForces(2).size(), 1u);
+    other->SetNodeForce(3, {}, 2);
+    other->RunUntil(0.1);
+    for (int w = 0; w < 3; ++w) EXPECT_EQ(other->Hash(w), expected) << name << w;
+  }
+}
+
+/// Remembers how often it has acted
+class Counter final : public Controller {
+ public:
+  ClockSpec clock() const override { return {0.01, 0.0}; }
+  void Act(const Tick& tick, const Observation&, Commands&) override {
+    if (Has(tick.due, 0)) ++count_;
+  }
+  void Serialize(plant::LaneState& state) override { state.Value(count_); }
+
+ private:
+  std::uint64_t count_ = 0;
+};
+
+TEST(Simulation, SnapshotsOfOtherControllersChangeNothing) {
+  const ExperimentSpec experiment = Load("push_20n", 1);
+  Extensions counts, also_positions;
+  counts.controllers = {[](const ControlSetup&) { return std::make_unique<Counter>(); }};
+  ControllerSpec position;
+  position.position.push_back({0, {{0.0, 0.2}}});
+  also_positions.controllers = ControllersOf(position);
+  const auto plain = Create(experiment);
+  const auto counting = Create(experiment, {.extensions = counts});
+  const auto other = Create(experiment, {.extensions = also_positions});
+  for (Simulation* one : {plain.get(), counting.get(), other.get()}) one->RunUntil(0.1);
+  const auto refused = [&](Simulation& into, const std::vector<std::uint8_t>& bytes) {
+    const std::uint64_t before = into.Hash();
+    const auto saved = into.Save();
+    Diagnostics out;
+    EXPECT_FALSE(into.Restore(bytes, out));
+    EXPECT_EQ(into.Hash(), before);
+    EXPECT_EQ(into.Save(), saved);
+    return out.items().empty() ? std::string() : std::string(out.items()[0].id);
+  };
+  EXPECT_EQ(refused(*counting, plain->Save()), "snapshot.other_environment");
+  EXPECT_EQ(refused(*plain, counting->Save()), "snapshot.other_environment");
+  EXPECT_EQ(refused(*counting, other->Save()), "snapshot.other_controllers");
+  EXPECT_EQ(refused(*other, counting->Save()), "snapshot.other_controllers");
+}
+
+TEST(Simulation, VariantsThatWereReplacedCanBeRestored) {
+  const ExperimentSpec experiment = Load("push_20n", 1);
+  const auto variants = Variants(experiment, 2);
+  const auto simulation = Create(experiment, {.variants = variants});
+  const auto first = simulation->Save(0), second = simulation->Save(1);
+  Diagnostics out;
+  EXPECT_TRUE(simulation->Restore(second, out, 0)) << out.Format();
+  EXPECT_TRUE(simulation->Restore(first, out, 1)) << out.Format();
+  const auto plain = Create(experiment, {.variants = variants});
+  for (Simulation* one : {simulation.get(), plain.get()}) one->RunUntil(0.2);
+  EXPECT_EQ(simulation->Hash(0), plain->Hash(1));
+  EXPECT_EQ(simulation->Hash(1), plain->Hash(0));
+}
+
+TEST(Simulation, EndsBetweenTwoStepsOnRequest) {
+  const auto simulation = Create(Load("push_20n", 1));
+  int steps = 0;
+  simulation->RunUntil(1, [&] { return ++steps <= 7; });
+  EXPECT_NEAR(simulation->Time(), 0.007, 1e-12);
+}
+
 TEST(Simulation, CommandsOfAProgramReplacePositionPrograms) {
   const ExperimentSpec experiment = Load("rest_length_sine", 1);
   const auto simulation = Create(experiment, {.worlds = 2});
@@ -238,6 +330,13 @@ TEST(SimulationDeath, AWrongNameNamesTheClosest) {
                "\"outer_right_1\"");
   EXPECT_DEATH(simulation->Body(99), "taut: Body: there is no body 99");
   EXPECT_DEATH(simulation->Hash(1), "taut: Hash: there is no world 1: valid are 0 to 0");
+  EXPECT_DEATH(simulation->Body(std::int64_t{1} << 32), "taut: Body: there is no body");
+  ControllerSpec position;
+  position.position.push_back({99, {{0.0, 0.2}}});
+  Extensions of_another;
+  of_another.controllers = ControllersOf(position);
+  EXPECT_DEATH(Create(Load("push_20n", 1), {.extensions = of_another}),
+               "taut: ControllersOf: there is no cable 99");
 }
 
 /// Keeps rows in memory
