@@ -332,7 +332,7 @@ void Callbacks::Rethrow() {
 }
 
 Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
-                        std::shared_ptr<Callbacks> callbacks, bool& in_python) {
+                        const std::shared_ptr<Callbacks>& callbacks, bool& in_python) {
   Extensions extensions;
   if (controllers.is_none()) return extensions;
   if (!py::isinstance<py::list>(controllers) && !py::isinstance<py::tuple>(controllers)) {

@@ -44,7 +44,7 @@ struct LibrarySpec {
 /// list, otherwise.
 /// `in_python`: set if one of them is written in Python.
 Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
-                        std::shared_ptr<Callbacks> callbacks, bool& in_python);
+                        const std::shared_ptr<Callbacks>& callbacks, bool& in_python);
 
 /// Plant of one lane in Python.
 class PythonPlant : public Plant {

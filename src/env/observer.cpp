@@ -37,8 +37,7 @@ ExperimentSpec Observed(const ExperimentSpec& experiment) {
 Observer::Observer(const Plan& plan, const ExperimentSpec& observed,
                    const std::vector<ChannelInfo>& channels, plant::Loop& loop,
                    const LaneBodies& bodies)
-    : plan_(plan),
-      loop_(loop),
+    : loop_(loop),
       count_(channels.size()),
       lanes_(static_cast<std::size_t>(plan.lanes)),
       slots_(static_cast<std::size_t>(plan.most_observation_delay) + 1),

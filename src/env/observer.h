@@ -47,7 +47,6 @@ class Observer {
     return ring_[(slot * count_ + i) * lanes_ + lane];
   }
 
-  const Plan& plan_;
   plant::Loop& loop_;
   std::size_t count_, lanes_, slots_, now_ = 0;
   const plant::LaneKernel& kernel_;
