@@ -1,6 +1,5 @@
 # Common part of the other scripts, which source it: changes to the top of the tree, sets up the compiler
-# cache and the
-# number of jobs.
+# cache and the number of jobs.
 # shellcheck shell=bash
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -39,8 +38,7 @@ build_quietly() {
 }
 
 # build_showing PRESET [TARGET...]: same as build_quietly, with a progress line: rewritten on a terminal, once
-# a
-# minute elsewhere. Prints nothing if there is nothing to build.
+# a minute elsewhere. Prints nothing if there is nothing to build.
 build_showing() {
   local log=build/$1.build.log line done_count count started_s=$SECONDS shown_s=$SECONDS ended='' left
   mkdir -p build
@@ -66,6 +64,19 @@ build_showing() {
   done < <(build "$@" 2>&1 || echo "the build failed")
   printf '%s' "$ended"
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
+}
+
+# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with Debian's archive of SUITE alone (KIND: deb or
+# deb-src) and no installed packages; its lists stay in FOLDER. The machine's sources may lack this suite.
+apt_apart() {
+  local folder=$1 kind=$2 suite=$3
+  shift 3
+  mkdir -p "$folder/lists/partial" "$folder/archives/partial"
+  echo "$kind [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian $suite main" \
+    >"$folder/sources.list"
+  apt-get -q -o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=- \
+    -o "Dir::State::Lists=$folder/lists" -o Dir::State::status=/dev/null -o Dir::Cache::pkgcache= \
+    -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User= "$@"
 }
 
 # passed_commit: prints the last commit that passed CI (.ci/passed; TAUT_CI_PASSED overrides it); status 1

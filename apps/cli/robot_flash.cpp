@@ -26,9 +26,7 @@ struct FlashArguments {
 /// build tree.
 std::string HexPath(const FlashArguments& args) {
   if (!args.hex.empty()) return args.hex;
-  return FindBesideProgram({"firmware/taut_board.hex", "../share/taut/firmware/taut_board.hex",
-                            "share/taut/firmware/taut_board.hex"})
-      .value_or("");
+  return FindBesideProgram("firmware/taut_board.hex").value_or("");
 }
 
 std::vector<std::string> Words(const FlashArguments& args, const std::string& hex) {

@@ -78,6 +78,19 @@ bool DoOnAll(RobotConsole& desk, board::Action action, Diagnostics& found) {
   return true;
 }
 
+/// Reports that a board returned another value than the one that was set.
+void RefuseSetting(const RobotConsole& desk, const link::ParameterValue& value,
+                   const link::Setting& setting, int motor, double read, Diagnostics& out) {
+  const auto infos = value.of_motor ? link::MotorParameters() : link::BoardParameters();
+  std::string board = fmt::format("board {}", setting.place.board);
+  if (value.of_motor) {
+    board += fmt::format(" (cable \"{}\")", desk.cables()[static_cast<std::size_t>(motor)]);
+  }
+  out.Error("board.setting_not_kept", {},
+            fmt::format("{} returned {} = {:g} after it was set to {:g}", board,
+                        infos[value.parameter].key, read, setting.value));
+}
+
 int Set(const SetArguments& args) {
   Diagnostics found;
   std::vector<link::ParameterValue> values;
@@ -110,15 +123,7 @@ int Set(const SetArguments& args) {
       const auto read = desk->driver().requests().Get(setting.place, found);
       if (!read) return Fail(found, kFailed);
       if (*read != setting.value) {
-        const auto infos = value.of_motor ? link::MotorParameters() : link::BoardParameters();
-        found.Error("board.setting_not_kept", {},
-                    fmt::format("board {}{} returned {} = {:g} after it was set to {:g}",
-                                setting.place.board,
-                                value.of_motor
-                                    ? fmt::format(" (cable \"{}\")",
-                                                  desk->cables()[static_cast<std::size_t>(motor)])
-                                    : "",
-                                infos[value.parameter].key, *read, setting.value));
+        RefuseSetting(*desk, value, setting, motor, *read, found);
         return Fail(found, kFailed);
       }
       ++done;

@@ -16,8 +16,7 @@ std::optional<std::string> FindWebFolder(std::string& error, const std::string& 
   fs::path folder = otherwise;
   if (const char* named = std::getenv("TAUT_WEB"); named != nullptr && *named != '\0') {
     folder = named;
-  } else if (const auto page = FindBesideProgram(
-                 {"web/index.html", "../share/taut/web/index.html", "share/taut/web/index.html"})) {
+  } else if (const auto page = FindBesideProgram("web/index.html")) {
     folder = fs::path(*page).parent_path();
   }
   std::error_code failed;

@@ -48,10 +48,7 @@ struct Arguments {
 
 /// Returns the path of the default firmware: in the program's folder for a build, in share/taut for
 /// an installation; empty if there is none.
-std::string OwnFirmware() {
-  return FindBesideProgram({"firmware/taut_board.elf", "../share/taut/firmware/taut_board.elf"})
-      .value_or("");
-}
+std::string OwnFirmware() { return FindBesideProgram("firmware/taut_board.elf").value_or(""); }
 
 std::atomic<bool> stop_asked{false};
 extern "C" void AskToStop(int) { stop_asked = true; }

@@ -1,9 +1,10 @@
-/// Elements of a model by name: the index that all other functions take.
+/// Look-up of model elements by name. Each function returns the index of an element, as other
+/// functions take it.
 ///
 ///   const auto cable = taut::FindCable(model->def(), "outer_top_1", &found);
 ///
-/// Each function returns nothing if there is no such element; `out`, if given, then receives an
-/// error with the closest name. A search takes time proportional to the number of elements: search
+/// If there is no such element, a function returns nothing and reports an error with the closest
+/// name to `out`, if given. A search takes time proportional to the number of elements: search
 /// once, before the loop.
 ///
 /// Threads: all functions are pure; any number may run concurrently.

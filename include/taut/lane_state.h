@@ -1,5 +1,6 @@
-/// Serialization of one lane's state (snapshot). The same sequence of calls writes the bytes and
-/// reads them back, into any lane of the same loop or of a loop with the same structure.
+/// Serialization of one lane's state (snapshot), for `Controller::Serialize` and
+/// `SensorModel::Serialize`. The same sequence of calls writes the bytes, and reads them back into
+/// any lane of a plant with the same controllers and sensors.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +16,11 @@ namespace taut::plant {
 
 class LaneState {
  public:
-  /// Writes: appends to `to`.
+  /// Creates a writer, which appends the bytes to `to`.
   LaneState(int lane, int lanes, std::vector<std::uint8_t>& to)
       : lane_(static_cast<std::size_t>(lane)), lanes_(static_cast<std::size_t>(lanes)), to_(&to) {}
-  /// Reads bytes that the same sequence of calls wrote. Beyond the end it reads zeros.
+  /// Creates a reader of bytes that the same sequence of calls wrote. Beyond their end it reads
+  /// zeros and `failed()` is true.
   LaneState(int lane, int lanes, std::span<const std::uint8_t> from)
       : lane_(static_cast<std::size_t>(lane)),
         lanes_(static_cast<std::size_t>(lanes)),
@@ -28,7 +30,7 @@ class LaneState {
   bool reads() const noexcept { return to_ == nullptr; }
   /// Marks the state as one that cannot be restored.
   void Fail() noexcept { failed_ = true; }
-  /// Returns true after `Fail`, or if more was read than there is.
+  /// Returns true after `Fail`, or if a call read beyond the end.
   bool failed() const noexcept { return failed_ || short_; }
   /// Returns the number of bytes that are left to be read.
   std::size_t left() const noexcept { return from_.size(); }

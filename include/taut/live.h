@@ -35,7 +35,7 @@ class LiveRun {
  public:
   /// Brings the experiment to its start. Reports diagnostics as `RunExperiment` does. Returns null
   /// in the same cases, or if `go_on`, which is polled repeatedly, returns false before the start
-  /// is found. `brought`: custom controllers and sensors in addition to the experiment's.
+  /// is found. `extensions`: custom controllers and sensors in addition to the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on = {},
                                         const Extensions& extensions = {});

@@ -273,8 +273,8 @@ struct ModelDef {
   CombineRule restitution_combine = CombineRule::kMaximum;
   FrictionLaw friction_law = FrictionLaw::kCone;
 
-  /// Parts of the experiment file from which this model was read ("controllers, pushes"); empty for
-  /// a model file. A `WorldBatch` leaves them out, and `Model::Compile` warns of that.
+  /// Parts of the experiment file from which this model was read (`ActingParts`); empty for a model
+  /// file. A `WorldBatch` leaves them out, and `Model::Compile` warns of that.
   std::string experiment_parts;
 };
 

@@ -109,7 +109,7 @@ struct Commands {
 
 // --- plants --------------------------------------------------------------------------------------
 
-/// External force on a node, in W.
+/// External force on a node [N], in W.
 struct ExternalForce {
   int node = 0;
   Vec3 force_n;
@@ -125,7 +125,8 @@ class World : public Bodies {
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
-  virtual double CableFrictionLoss(int lane, int cable) const = 0;  ///< These as in `WorldBatch`:
+  virtual double CableFrictionLoss(int lane,
+                                   int cable) const = 0;  ///< As in `WorldBatch`, all below.
   virtual std::vector<double> CableSpanTensions(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
   virtual std::vector<CablePoint> CablePath(int lane, int cable) const = 0;
@@ -195,8 +196,8 @@ struct Tick {
 struct ControlSetup {
   const ExperimentSpec& experiment;
   std::span<const RolloutWorld* const> lanes;  ///< Variant of the experiment, one per lane.
-  int first_world = 0;  ///< Number of the first lane's world in a `Simulation`.
-  /// Number of lanes with results; the others repeat the first one. -1: all.
+  int first_world = 0;  ///< Index of the first lane's world in a `Simulation`; else 0.
+  /// Number of lanes whose results are used; the others repeat the first lane. -1: all lanes.
   int worlds = -1;
 };
 
@@ -217,8 +218,8 @@ class Controller {
   virtual void Retune(int lane, const std::vector<ControllerSpec>& controllers) {
     (void)lane, (void)controllers;
   }
-  /// Saves or restores a lane's memory, for environments that save and restore episodes.
-  /// Controllers of taut implement it.
+  /// Saves or restores a lane's memory, for `Simulation::Save` and `Env::Save`. All controllers of
+  /// taut implement it.
   virtual void Serialize(plant::LaneState& state) { (void)state; }
 
   // --- interactive changes in a lane; controllers without such quantities keep these defaults ----
@@ -250,19 +251,21 @@ class SensorModel {
   virtual void Serialize(plant::LaneState& state) { (void)state; }  ///< As in `Controller`.
 };
 
-/// Custom controllers, which act after the experiment's controllers in this order and may overrule
+using ControllerFactory = std::function<std::unique_ptr<Controller>(const ControlSetup&)>;
+
+/// Custom controllers, which act in this order after the experiment's controllers and may overrule
 /// them, and custom sensors, whose input is the output of the experiment's sensors. Factories are
 /// called once per plant, from the thread that runs it.
 struct Extensions {
-  std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> controllers;
+  std::vector<ControllerFactory> controllers;
   std::function<std::unique_ptr<SensorModel>(const ControlSetup&)> sensors;
 };
 
-/// Returns the library's controllers of a specification, as an experiment file describes them, for
-/// `Extensions::controllers`: a gait and the law that it feeds, or one of them. They have the same
-/// numbers in all variants. Its cables must be those of the robot that they are used with.
-std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> ControllersOf(
-    const ControllerSpec& spec);
+/// Returns factories of the library's controllers for a specification, as in an experiment file,
+/// for `Extensions::controllers`: a gait and the control law that it feeds, or one of the two.
+/// Their parameters are the same in all variants. The cable indices of `spec` must be those of the
+/// robot that the controllers are used with.
+std::vector<ControllerFactory> ControllersOf(const ControllerSpec& spec);
 
 using Brought [[deprecated("Extensions")]] = Extensions;
 

@@ -3,7 +3,6 @@
 /// Threads: any number may call these functions at once.
 #pragma once
 
-#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -15,8 +14,9 @@ std::string RunningProgram();
 /// it before other threads start.
 void SetRunningProgram(const std::string& path);
 
-/// Returns the first of these paths that exists, relative to the folder of the running program.
-std::optional<std::string> FindBesideProgram(std::initializer_list<const char*> paths);
+/// Returns the path of a file that belongs to the running program: in its folder in a build, in
+/// `../share/taut` of an installation, in `share/taut` of a Python package.
+std::optional<std::string> FindBesideProgram(const std::string& path);
 
 /// Returns the folder of the shipped files: `share/taut` in the folder of a program or library, or
 /// in a parent folder. So it is found in a build, in a Python package and below /usr.

@@ -364,6 +364,11 @@ struct RolloutWorld {
   std::vector<double> numbers;
 };
 
+/// Returns the parts of an experiment that act on its model in a run ("controllers, pushes"), for
+/// `ModelDef::experiment_parts`. `LoadExperiment` sets `experiment_parts`; set it again if you
+/// change such a part and then compile the model for a `WorldBatch`.
+std::string ActingParts(const ExperimentSpec& experiment);
+
 /// Returns the variant that equals the experiment.
 RolloutWorld WorldOf(const ExperimentSpec& experiment);
 /// Returns the experiment that runs only this variant.

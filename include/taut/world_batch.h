@@ -1,7 +1,7 @@
-/// Vectorized simulation of many worlds of one model, without controllers and events: for
-/// experiments use `Simulation` (taut/simulation.h). One world per SIMD lane, groups of lanes on a
-/// thread pool. Results of a world are bit-identical alone, in any lane, on any number of threads
-/// and on any instruction set (docs/determinism.md).
+/// Vectorized simulation of many worlds of one model, without controllers and events. For
+/// experiments use `Simulation` (taut/simulation.h). Each SIMD lane contains one world; a thread
+/// pool steps the groups of lanes. Results of a world are bit-identical for any number of worlds,
+/// lane, number of threads and instruction set (docs/determinism.md).
 #pragma once
 
 #include <cstddef>
@@ -26,11 +26,11 @@ class Model {
   /// Checks the numbers of `def` and compiles it. Returns null and adds diagnostics (without file
   /// positions) if a number is invalid (a negative mass, NaN, an index out of range), or if the
   /// environment variable TAUT_SIMD does not name an instruction set.
-  /// Warns if the model is of an experiment with controllers or events, which a `WorldBatch` leaves
-  /// out.
+  /// Warns if `def` belongs to an experiment with controllers, events or a settled start, which a
+  /// `WorldBatch` ignores.
   static std::shared_ptr<const Model> Compile(const ModelDef& def, Diagnostics& out);
-  /// Compiles without this warning, for programs that run the experiment's controllers and events
-  /// themselves.
+  /// Compiles as `Compile`, without the warning about controllers and events, for programs that run
+  /// them themselves.
   static std::shared_ptr<const Model> CompileForExperiment(const ModelDef& def, Diagnostics& out);
 
   virtual ~Model() = default;
@@ -65,6 +65,9 @@ struct WorldBatchOptions {
   std::shared_ptr<const ContactFriction> friction = nullptr;
 };
 
+/// Returns the instruction set of a batch with these options; its value is the number of lanes.
+Simd SimdOf(const WorldBatchOptions& options);
+
 /// Condition bits of a world; 0: no problem. Bits stay set until `ClearStatus`.
 enum StatusBits : std::uint32_t {
   kStatusOk = 0,
@@ -74,8 +77,8 @@ enum StatusBits : std::uint32_t {
   /// it can bend around (docs/theory/cables.md, section 6).
   kStatusContactOverflow = 1u << 2,
   /// The step is too long: for transverse motion under a cable's tension (docs/theory/cables.md,
-  /// 12), for the joint forces of a body, or for its rotation about a hinge away from its center of
-  /// mass (docs/theory/joints.md, section 6).
+  /// eq. 12), for the joint forces of a body, or for its rotation about a hinge away from its
+  /// center of mass (docs/theory/joints.md, section 6).
   kStatusStepTooLong = 1u << 3,
   /// A body's center of mass is below the whole terrain, which has a height field or a mesh and no
   /// plane: the body left the terrain and falls forever.
@@ -106,8 +109,8 @@ struct WorldStatus {
 using CableState = CableReadings<double>;
 
 /// All cables of the worlds that share a SIMD register: cable c of world `first_world + j` is at
-/// [c * lanes + j]. The pointers lead into the batch; readings are invalid after the next step or
-/// change.
+/// [c * lanes + j]. The pointers refer to memory of the batch. After a step or change, call
+/// `WorldBatch::Sense` to update the readings.
 struct CableRows : ReadingRows {
   int lanes = 1, first_world = 0;
   double* rest_length_target_m = nullptr;  ///< As in `SetRestLengthTarget`; may be written.
@@ -202,13 +205,13 @@ enum class Parameter {
   kCableStiffness,  ///< [N/m]
   kCableDamping,    ///< [N s/m]
   kFrictionScale,   ///< Factor on all coefficients of the world; index 0. [1]
-  kGravityX,
+  kGravityX,        ///< [m/s^2], in W; index 0. So are the next two.
   kGravityY,
-  kGravityZ,  ///< [m/s^2]; index 0.
+  kGravityZ,
 };
 
 /// Set of worlds of one model, stepped together. It has no controllers, no sensors, no events and
-/// no start: it steps the numbers of the model under the commands that the caller sets.
+/// no start: worlds begin in the described pose, and move under the commands that the caller sets.
 ///
 /// Errors: an index out of range (world, group, body, cable, joint, node) is a programming error; a
 /// line on stderr names it, and the program ends by abort().
@@ -231,12 +234,12 @@ class WorldBatch {
   void Step(double step_s, int count = 1) noexcept;
   /// Sets the rest length targets of all cables of all worlds [m], cable c of world w at
   /// [w * cables + c], and advances every world by `count` steps of `step_s`. The thread that steps
-  /// a world sets its targets; separate calls of `SetRestLengthTarget` would keep the other threads
-  /// waiting.
+  /// a world also sets its targets, in parallel; separate calls of `SetRestLengthTarget` run on the
+  /// caller's thread alone.
   void Step(double step_s, int count, std::span<const double> rest_length_targets_m) noexcept;
 
-  /// Advances by one step the worlds with `mask[world]` != 0; the others keep their bits. Costs as
-  /// much as a step of all worlds, and allocates memory.
+  /// Advances the worlds with `mask[world]` != 0 by one step; the state of the others does not
+  /// change. Costs as much as a step of all worlds, and allocates memory.
   void StepMasked(double step_s, std::span<const std::uint8_t> mask);
   [[deprecated("StepMasked")]] void StepSome(double step_s, std::span<const std::uint8_t> mask) {
     StepMasked(step_s, mask);
@@ -252,8 +255,8 @@ class WorldBatch {
   /// Sets the duty of a cable's motor: its share of the supply voltage, clipped to -1..1; positive
   /// winds in. NaN halts the world. Switches the motor to duty mode, in which it ignores rest
   /// length targets, until `SetRestLengthTarget` for this cable reactivates the servo. (Targets set
-  /// for many cables at once do not change a motor's mode.) For this and the next two functions, a
-  /// cable without a `dc_motor` is an index out of range.
+  /// for many cables at once do not change a motor's mode.) A cable without a `dc_motor` counts as
+  /// an index out of range in this and the next two functions.
   void SetDuty(int world, int cable, double duty) noexcept;
   /// Switches the motor's driver on (the initial state) or off. While it is off, no current flows
   /// at any duty or target, and friction slows the motor down.
@@ -265,9 +268,9 @@ class WorldBatch {
 
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
-  /// Returns the number of spans of a cable, between places with friction, each with its tension.
-  /// For a `touches` cable with friction: the largest possible number; spans beyond the current
-  /// CableBends() + 1 are all 0.
+  /// Returns the number of spans of a cable: parts between places with friction, each with a
+  /// tension that may differ. For a `touches` cable with friction: the largest possible number;
+  /// spans beyond the current CableBends() + 1 are all 0.
   int CableSpans(int cable) const noexcept;
   CableSpanState CableSpan(int world, int cable, int span) const noexcept;
   /// Returns the tensions of a cable's current spans from its first end on [N]: one more than
@@ -276,8 +279,8 @@ class WorldBatch {
   /// Returns the energy dissipated by friction along a cable since the start [J].
   double CableFrictionLoss(int world, int cable) const noexcept;
   /// Returns the wrap angle of a cable about one of its wheels (the first is 0), from the point
-  /// before the wheel to the point behind it, with all turns, counter-clockwise about the wheel's
-  /// axis [rad].
+  /// before the wheel to the point after it, including full turns, counter-clockwise about the
+  /// wheel's axis [rad].
   double WheelAngle(int world, int cable, int wheel) const noexcept;
   /// Returns the number of edges and rods that bend a `touches` cable.
   int CableBends(int world, int cable) const;
@@ -289,11 +292,11 @@ class WorldBatch {
   /// Returns the points at which a cable exerts forces on bodies: its attachments, and the points
   /// where it meets and leaves wheels, edges and rods.
   std::vector<CablePoint> CablePath(int world, int cable) const;
-  /// Returns the readings of `Cable` for all cables of a group of `lanes()` worlds, and their
-  /// commands: for controllers that run over lanes. Group g contains the worlds from g * lanes()
-  /// on; its rows have all lanes, also those behind the last world.
+  /// Returns the readings and commands of all cables of a group of `lanes()` worlds, as rows for
+  /// vectorized controllers. Group g begins with world g * lanes(). The rows of the last group have
+  /// all lanes, including unused ones beyond the last world.
   CableRows Cables(int group) noexcept;
-  /// Updates the readings that `Cables` points to, after steps.
+  /// Updates the readings in the rows of `Cables`. Call it after steps.
   void Sense(int group) const noexcept;
   int groups() const noexcept;
   BodyState Body(int world, int body) const noexcept;
@@ -316,10 +319,12 @@ class WorldBatch {
   void SetBodyState(int world, int body, const BodyState& state) noexcept;
   /// Sets the simulated time. Kinematic bodies move to their poses at that time.
   void SetTime(int world, double time_s) noexcept;
+  /// Sets a cable's rest length [m] and its target at once, without the actuator's limits; stops
+  /// its motor.
   void SetRestLength(int world, int cable, double rest_length_m) noexcept;
   /// Returns the reason why `SetParameter` refuses a value ("must be a positive number [kg], got
-  /// -1"); empty if it accepts it. Limits are the same as in model files. Fixed bodies have no
-  /// mass and accept any value.
+  /// -1"); empty if the value is valid. Limits are the same as in model files. For a fixed body any
+  /// mass is valid, and has no effect.
   std::string ParameterError(Parameter parameter, int index, double value) const;
   /// Returns false and changes nothing if `ParameterError` returns a reason.
   bool SetParameter(int world, Parameter parameter, int index, double value) noexcept;
@@ -327,7 +332,8 @@ class WorldBatch {
 
   /// Serializes all data that determine a world's future, commands and parameters included.
   std::vector<std::uint8_t> Save(int world) const;
-  /// Restores a serialized world. Returns false if the snapshot belongs to another model.
+  /// Restores a serialized world into any world. Returns false, without a change, if the snapshot
+  /// belongs to another model.
   bool Restore(int world, const std::vector<std::uint8_t>& snapshot) noexcept;
   std::uint64_t Hash(int world) const noexcept;
   WorldStatus Status(int world) const noexcept;

@@ -128,12 +128,7 @@ void AddEquilibrium(Type& type) {
       "left_out", [](const Analysis& a) { return a.at.left_out; },
       "Parts of the model that the analysis ignores, in words.");
   type.def_property_readonly(
-      "robot",
-      [](const Analysis& a) {
-        auto robot = std::make_shared<RobotSpec>(a.there);
-        robot->def.experiment_parts.clear();
-        return robot;
-      },
+      "robot", [](const Analysis& a) { return WithoutExperiment(a.there); },
       "The `Robot` in its equilibrium pose.");
   type.def_property_readonly(
       "body_position_m",

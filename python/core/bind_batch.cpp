@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "text.h"
+#include "readings.h"
 #include "worlds.h"
 
 namespace taut::python {
@@ -61,59 +61,32 @@ void Step(Worlds& worlds, double step_s, int count, const py::object& targets) {
 }
 
 void AddStates(BatchType& type) {
-  // One per line: name, count, width, values, docstring.
-  const auto bodies = [&](const char* name, py::ssize_t width, auto put, const char* words) {
+  for (const BodyReading& reading : kBodyReadings) {
     type.def(
-        name,
-        [=](Worlds& worlds, const py::object& out) {
+        reading.name,
+        [put = reading.put, width = reading.width](Worlds& worlds, const py::object& out) {
           return worlds.Read(
               out, worlds.bodies(), width,
               [=](WorldBatch& b, int w, int i, double* to) { put(b.Body(w, i), to); });
         },
-        py::arg("out") = py::none(), words);
-  };
-  bodies(
-      "body_position_m", 3, [](const BodyState& s, double* to) { Put(s.position_m, to); },
-      "(worlds, bodies, 3) float64: positions of the centers of mass, in W [m]. `out`: existing "
-      "array for the result.");
-  bodies(
-      "body_orientation", 4,
-      [](const BodyState& s, double* to) {
-        const Quat& q = s.orientation;
-        to[0] = q.w, to[1] = q.x, to[2] = q.y, to[3] = q.z;
-      },
-      "(worlds, bodies, 4) float64: rotations from the initial orientations, as unit quaternions "
-      "w, x, y, z, in W.");
-  bodies(
-      "body_velocity_m_per_s", 3,
-      [](const BodyState& s, double* to) { Put(s.velocity_m_per_s, to); },
-      "(worlds, bodies, 3) float64: velocities of the centers of mass, in W [m/s].");
-  bodies(
-      "body_angular_velocity_rad_per_s", 3,
-      [](const BodyState& s, double* to) { Put(s.angular_velocity_rad_per_s, to); },
-      "(worlds, bodies, 3) float64: angular velocities, in W [rad/s].");
-
-  const auto cables = [&](const char* name, double CableState::*field, const char* words) {
+        py::arg("out") = py::none(),
+        fmt::format("(worlds, bodies, {}) float64: {}. `out`: existing array for the result.",
+                    reading.width, reading.words)
+            .c_str());
+  }
+  for (const CableReading& reading : kCableReadings) {
     type.def(
-        name,
-        [=](Worlds& worlds, const py::object& out) {
+        reading.name,
+        [field = reading.field](Worlds& worlds, const py::object& out) {
           return worlds.Read(out, worlds.cables(), 1, [=](WorldBatch& b, int w, int i, double* to) {
             *to = b.Cable(w, i).*field;
           });
         },
-        py::arg("out") = py::none(), words);
-  };
-  cables("cable_length_m", &CableState::length_m,
-         "(worlds, cables) float64: path lengths between the ends of each cable, along all "
-         "attachments [m].");
-  cables("cable_rate_m_per_s", &CableState::rate_m_per_s,
-         "(worlds, cables) float64: rates of the cable lengths [m/s].");
-  cables("rest_length_m", &CableState::rest_length_m,
-         "(worlds, cables) float64: rest lengths [m].");
-  cables("tension_n", &CableState::tension_n,
-         "(worlds, cables) float64: tensions as measured by a load cell, spring and damper [N].");
-  cables("elastic_n", &CableState::elastic_n,
-         "(worlds, cables) float64: spring part of the tensions, max(0, k (l - L)) [N].");
+        py::arg("out") = py::none(),
+        fmt::format("(worlds, cables) float64: {}. `out`: existing array for the result.",
+                    reading.words)
+            .c_str());
+  }
   type.def(
       "rest_length_target_m",
       [](Worlds& worlds, const py::object& out) {
@@ -158,11 +131,10 @@ void AddCommands(BatchType& type) {
         std::vector<py::ssize_t> shape{worlds.cables()};
         if (!world) shape.insert(shape.begin(), worlds.worlds());
         const Array a = Finite(rest_length_m, shape, "rest_length_m");
-        const int first = world ? worlds.World(*world) : 0,
-                  last = world ? first + 1 : worlds.worlds();
+        const auto [first, last] = worlds.Range(world);
         const double* from = a.data();
-        worlds.With([&](WorldBatch& b) {
-          for (int w = first; w < last; ++w) {
+        worlds.With([&, from_world = first, to_world = last](WorldBatch& b) {
+          for (int w = from_world; w < to_world; ++w) {
             for (int c = 0; c < static_cast<int>(worlds.cables()); ++c) {
               b.SetRestLengthTarget(w, c, *from++);
             }
@@ -230,19 +202,17 @@ void AddSnapshots(BatchType& type) {
       "save",
       [](Worlds& worlds, py::ssize_t world) {
         const int w = worlds.World(world);
-        const auto bytes = worlds.Look([&](WorldBatch& b) { return b.Save(w); });
-        return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        return BytesFrom(worlds.Look([&](WorldBatch& b) { return b.Save(w); }));
       },
       py::arg("world") = 0, "Returns the complete state of a world as bytes.");
   type.def(
       "restore",
       [](Worlds& worlds, const py::bytes& snapshot, std::optional<py::ssize_t> world) {
-        const int first = world ? worlds.World(*world) : 0,
-                  last = world ? first + 1 : worlds.worlds();
-        const std::string_view text = snapshot;
-        const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-        const bool all = worlds.With([&](WorldBatch& b) {
-          for (int w = first; w < last; ++w) {
+        const auto [first, last] = worlds.Range(world);
+        const auto view = BytesOf(snapshot);
+        const std::vector<std::uint8_t> bytes(view.begin(), view.end());
+        const bool all = worlds.With([&, from = first, to = last](WorldBatch& b) {
+          for (int w = from; w < to; ++w) {
             if (!b.Restore(w, bytes)) return false;
           }
           return true;
@@ -308,7 +278,7 @@ void AddBatch(py::module_& module) {
            py::arg("simd") = py::none(),
            "Creates worlds of an `Experiment`'s robot on its ground, without its controllers and "
            "timeline.");
-  type.def_property_readonly("worlds", &Worlds::worlds);
+  type.def_property_readonly("worlds", [](const Worlds& of) { return of.worlds(); });
   type.def_property_readonly("lanes", &Worlds::lanes, "Number of worlds per SIMD register.");
   AddStates(type);
   AddCommands(type);

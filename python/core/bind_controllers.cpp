@@ -27,7 +27,7 @@ std::vector<int> CablesOf(const RobotSpec& robot, const py::object& names) {
   for (const py::handle& name : names) {
     Diagnostics said;
     const auto cable = FindCable(robot.def, name.cast<std::string>(), &said);
-    if (!cable) throw py::key_error(said.items()[0].what + " (" + said.items()[0].hint + ")");
+    if (!cable) RefuseName(said);
     cables.push_back(*cable);
   }
   return cables;
@@ -104,10 +104,11 @@ std::shared_ptr<LibrarySpec> Position(const RobotSpec& robot, const py::dict& pr
       }
       before_s = time_s;
     }
-    if (program.rest_length_m.empty()) throw py::value_error(cable + ": no point");
+    if (program.rest_length_m.empty())
+      throw py::value_error(cable + ": the program is empty; expected (time [s], rest length [m])");
     spec->position.push_back(std::move(program));
   }
-  if (spec->position.empty()) throw py::value_error("programs: no cable");
+  if (spec->position.empty()) throw py::value_error("programs: empty; expected at least one cable");
   return made;
 }
 
@@ -119,7 +120,8 @@ void LibrarySpec::Check(const RobotSpec& robot, const std::string& where) const 
     const auto i = static_cast<std::size_t>(cable);
     if (i < names.size() && names[i] == cables[i]) return;
     throw py::value_error(fmt::format(
-        "{}: it is for another robot, whose cable {} is \"{}\"{}", where, i, cables[i],
+        "{}: the controller was made for another robot, whose cable {} is \"{}\"{}", where, i,
+        cables[i],
         i < names.size() ? fmt::format("; here it is \"{}\"", names[i]) : "; here there is none"));
   };
   if (spec.impedance) {

@@ -9,12 +9,6 @@
 namespace taut::python {
 namespace {
 
-/// Returns a view of bytes.
-std::span<const std::uint8_t> BytesOf(const py::bytes& bytes) {
-  const auto text = static_cast<std::string_view>(bytes);
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
 using S = SharedSimulation;
 
 /// Runs to a time in pieces that take a fraction of a second.
@@ -46,14 +40,15 @@ void AddStates(SimulationType& type) {
         });
         shared.callbacks()->Rethrow();
       },
-      py::arg("world") = py::none(), "Brings one `world`, or all, back to the start.");
+      py::arg("world") = py::none(),
+      "Brings one `world`, or all worlds, back to the start, and removes external forces.");
   type.def(
       "save",
       [](S& shared, py::ssize_t world) {
         const int w = shared.World(world);
         const auto saved = shared.With([&](Simulation& s) { return s.Save(w); });
         shared.callbacks()->Rethrow();
-        return py::bytes(reinterpret_cast<const char*>(saved.data()), saved.size());
+        return BytesFrom(saved);
       },
       py::arg("world") = 0,
       "Returns a world with its clocks, controllers and sensors as bytes. Controllers in Python "
@@ -80,7 +75,8 @@ void AddStates(SimulationType& type) {
         const int w = shared.World(world);
         return ArrayOf(shared.Look([&](Simulation& s) { return s.Row(w); }));
       },
-      py::arg("world") = 0, "(channels,) float64: present values of `channels`.");
+      py::arg("world") = 0,
+      "(channels,) float64: present values of the `channels` in one `world`.");
   type.def_property_readonly(
       "channels", [](const S& shared) { return NamesOf(shared.peek().channels()); },
       "Names of the channels that the experiment's `record` selects.");
@@ -103,9 +99,8 @@ SharedSimulation::SharedSimulation(const ExperimentSpec& experiment, int worlds,
   options.variants = variants;
   options.threads = Threads(threads);
   options.simd = SimdOf(simd);
-  bool in_python = false;
-  options.extensions = ExtensionsOf(controllers, experiment.robot, callbacks_, in_python);
-  if (in_python && threads != 1) {
+  options.extensions = ExtensionsOf(controllers, experiment.robot, callbacks_);
+  if (callbacks_->is_used && threads != 1) {
     throw py::value_error(fmt::format(
         "threads: {}; controllers in Python run on one thread: use threads=1", threads));
   }
@@ -141,7 +136,7 @@ void AddSimulation(py::module_& module) {
            }),
            py::arg("robot"), py::arg("worlds"), py::arg("variants"), py::arg("threads"),
            py::arg("simd"), py::arg("controllers"));
-  type.def_property_readonly("worlds", &S::worlds);
+  type.def_property_readonly("worlds", [](const S& of) { return of.worlds(); });
   type.def_property_readonly("bodies", [](const S& s) { return NamesOf(s.def().bodies); });
   type.def_property_readonly("nodes", [](const S& s) { return NamesOf(s.def().nodes); });
   type.def_property_readonly("cables", [](const S& s) { return NamesOf(s.def().cables); });
@@ -149,7 +144,7 @@ void AddSimulation(py::module_& module) {
   type.def_property_readonly(
       "experiment",
       [](const S& s) { return std::make_shared<ExperimentSpec>(s.peek().experiment()); },
-      "The experiment: a copy.");
+      "Copy of the experiment.");
   type.def(
       "step",
       [](S& shared, int count) {
@@ -163,9 +158,11 @@ void AddSimulation(py::module_& module) {
       py::arg("count") = 1,
       "Advances every world by `count` steps, which end at the ticks of controllers and sensors. "
       "Other Python threads run meanwhile; Ctrl-C ends the call between two steps.");
-  type.def("run_until", &RunUntil, py::arg("time_s"),
-           "Advances each world to the end of the first step at or after a time [s]. Worlds that "
-           "are past it wait. Other Python threads run meanwhile; Ctrl-C ends the call.");
+  type.def(
+      "run_until", &RunUntil, py::arg("time_s"),
+      "Advances each world until its time is at least `time_s`; it may stop up to one step later. "
+      "Worlds that are already there do not move. Other Python threads run meanwhile; Ctrl-C ends "
+      "the call.");
   AddReadings(type);
   AddCommands(type);
   AddStates(type);

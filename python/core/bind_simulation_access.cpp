@@ -1,4 +1,5 @@
 // Readings and commands of `taut.Simulation`.
+#include "readings.h"
 #include "shared_simulation.h"
 
 namespace taut::python {
@@ -6,96 +7,60 @@ namespace {
 
 using S = SharedSimulation;
 
+/// Returns the docstring of a reading of all elements of a `kind`, or of one. `width`: ", 3".
+std::string Words(const char* what, const std::string& kind, const std::string& width) {
+  return fmt::format(
+      "Returns {0}: float64, shape (worlds, {1}{2}); for one `{4}`, by name or index, shape "
+      "(worlds{3}).",
+      what, kind == "body" ? "bodies" : kind + "s", width, width.empty() ? "," : width, kind);
+}
+
 }  // namespace
 
 void AddReadings(SimulationType& type) {
-  const auto cables = [&](const char* name, double CableState::*field, const char* words) {
+  for (const CableReading& reading : kCableReadings) {
     type.def(
-        name,
-        [=](S& shared, const py::object& cable) {
-          std::optional<int> one;
-          if (!cable.is_none()) one = shared.Cable(cable);
+        reading.name,
+        [field = reading.field](S& shared, const py::object& cable) {
           return shared.Read(
-              one, static_cast<py::ssize_t>(shared.def().cables.size()), 1,
+              shared.OneOf(&S::Cable, cable), shared.cables(), 1,
               [=](Simulation& s, int w, int i, double* to) { *to = s.Cable(i, w).*field; });
         },
-        py::arg("cable") = py::none(), words);
-  };
-  cables("cable_length_m", &CableState::length_m,
-         "(worlds, cables) float64: path lengths between the ends of each cable [m]. With `cable`, "
-         "a name or an index: (worlds,).");
-  cables("cable_rate_m_per_s", &CableState::rate_m_per_s,
-         "(worlds, cables) or (worlds,) float64: rates of the cable lengths [m/s].");
-  cables("rest_length_m", &CableState::rest_length_m,
-         "(worlds, cables) or (worlds,) float64: rest lengths [m].");
-  cables("tension_n", &CableState::tension_n,
-         "(worlds, cables) or (worlds,) float64: tensions as measured by a load cell, spring and "
-         "damper [N].");
-  cables("elastic_n", &CableState::elastic_n,
-         "(worlds, cables) or (worlds,) float64: spring part of the tensions, max(0, k (l - L)) "
-         "[N].");
+        py::arg("cable") = py::none(), Words(reading.words, "cable", "").c_str());
+  }
   type.def(
       "rest_length_command_m",
       [](S& shared, const py::object& cable) {
-        std::optional<int> one;
-        if (!cable.is_none()) one = shared.Cable(cable);
         return shared.Read(
-            one, static_cast<py::ssize_t>(shared.def().cables.size()), 1,
+            shared.OneOf(&S::Cable, cable), shared.cables(), 1,
             [](Simulation& s, int w, int i, double* to) { *to = s.RestLengthCommand(i, w); });
       },
       py::arg("cable") = py::none(),
-      "(worlds, cables) or (worlds,) float64: rest lengths commanded by the controllers [m].");
-
-  const auto bodies = [&](const char* name, py::ssize_t width, auto put, const char* words) {
+      Words("rest lengths commanded by the controllers [m]", "cable", "").c_str());
+  for (const BodyReading& reading : kBodyReadings) {
     type.def(
-        name,
-        [=](S& shared, const py::object& body) {
-          std::optional<int> one;
-          if (!body.is_none()) one = shared.Body(body);
+        reading.name,
+        [put = reading.put, width = reading.width](S& shared, const py::object& body) {
           return shared.Read(
-              one, static_cast<py::ssize_t>(shared.def().bodies.size()), width,
+              shared.OneOf(&S::Body, body), shared.bodies(), width,
               [=](Simulation& s, int w, int i, double* to) { put(s.Body(i, w), to); });
         },
-        py::arg("body") = py::none(), words);
-  };
-  bodies(
-      "body_position_m", 3, [](const BodyState& s, double* to) { Put(s.position_m, to); },
-      "(worlds, bodies, 3) float64: positions of the centers of mass, in W [m]. With `body`, a "
-      "name or an index: (worlds, 3).");
-  bodies(
-      "body_orientation", 4,
-      [](const BodyState& s, double* to) {
-        const Quat& q = s.orientation;
-        to[0] = q.w, to[1] = q.x, to[2] = q.y, to[3] = q.z;
-      },
-      "(worlds, bodies, 4) or (worlds, 4) float64: rotations from the initial orientations, as "
-      "unit quaternions w, x, y, z, in W.");
-  bodies(
-      "body_velocity_m_per_s", 3,
-      [](const BodyState& s, double* to) { Put(s.velocity_m_per_s, to); },
-      "(worlds, bodies, 3) or (worlds, 3) float64: velocities of the centers of mass, in W [m/s].");
-  bodies(
-      "body_angular_velocity_rad_per_s", 3,
-      [](const BodyState& s, double* to) { Put(s.angular_velocity_rad_per_s, to); },
-      "(worlds, bodies, 3) or (worlds, 3) float64: angular velocities, in W [rad/s].");
+        py::arg("body") = py::none(),
+        Words(reading.words, "body", fmt::format(", {}", reading.width)).c_str());
+  }
   const auto nodes = [&](const char* name, Vec3 (Simulation::*read)(const ElementRef&, int) const,
                          const char* words) {
     type.def(
         name,
         [=](S& shared, const py::object& node) {
-          std::optional<int> one;
-          if (!node.is_none()) one = shared.Node(node);
           return shared.Read(
-              one, static_cast<py::ssize_t>(shared.def().nodes.size()), 3,
+              shared.OneOf(&S::Node, node), shared.nodes(), 3,
               [=](Simulation& s, int w, int i, double* to) { Put((s.*read)(i, w), to); });
         },
-        py::arg("node") = py::none(), words);
+        py::arg("node") = py::none(), Words(words, "node", ", 3").c_str());
   };
-  nodes("node_position_m", &Simulation::NodePosition,
-        "(worlds, nodes, 3) float64: positions of the nodes, in W [m]. With `node`, a name or an "
-        "index: (worlds, 3).");
-  nodes("node_velocity_m_per_s", &Simulation::NodeVelocity,
-        "(worlds, nodes, 3) or (worlds, 3) float64: velocities of the nodes, in W [m/s].");
+  nodes("node_position_m", &Simulation::NodePosition, "positions of the nodes, in W [m]");
+  nodes("node_velocity_m_per_s", &Simulation::NodeVelocity, "velocities of the nodes, in W [m/s]");
   type.def(
       "joint",
       [](S& shared, const py::object& joint, py::ssize_t world) {
@@ -136,14 +101,15 @@ void AddReadings(SimulationType& type) {
         });
         return a;
       },
-      "(worlds,) bool: False once a state is not finite.");
+      "(worlds,) bool: False for worlds whose state is not finite; they are frozen.");
   type.def(
       "status",
       [](S& shared, py::ssize_t world) {
         const int w = shared.World(world);
         return shared.Look([&](Simulation& s) { return s.StatusText(w); });
       },
-      py::arg("world") = 0, "Returns the problems of a world in words; empty if there are none.");
+      py::arg("world") = 0,
+      "Returns a description of a world's problems (status bits); empty if there are none.");
   type.def(
       "hash",
       [](S& shared, py::ssize_t world) {
@@ -151,7 +117,7 @@ void AddReadings(SimulationType& type) {
         return shared.Look([&](Simulation& s) { return s.Hash(w); });
       },
       py::arg("world") = 0,
-      "Returns a hash of a world's state; that of `Run.state_hash` for equal states.");
+      "Returns a hash of a world's state, equal to `Run.state_hash` for equal states.");
 }
 
 void AddCommands(SimulationType& type) {
@@ -167,8 +133,10 @@ void AddCommands(SimulationType& type) {
         });
       },
       py::arg("cable"), py::arg("rest_length_m"), py::arg("world") = py::none(),
-      "Commands a cable's rest length [m], in one `world` or in all. Position controllers keep it "
-      "instead of their program; other controllers overwrite it at their next tick.");
+      "Commands a cable's rest length [m], in one `world` or in all. A position controller of the "
+      "cable holds it instead of following its program; other controllers of the cable overwrite "
+      "it "
+      "at their next tick.");
   type.def(
       "set_node_force",
       [](S& shared, const py::object& node, const py::object& force_n,
@@ -183,7 +151,7 @@ void AddCommands(SimulationType& type) {
       },
       py::arg("node"), py::arg("force_n"), py::arg("world") = py::none(),
       "Sets an external force on a node, in W [N], in addition to the experiment's pushes; it acts "
-      "until it is changed.");
+      "until it is changed or the world is reset.");
   type.def(
       "gains",
       [](S& shared, const py::object& cable, py::ssize_t world) -> py::object {
@@ -199,7 +167,7 @@ void AddCommands(SimulationType& type) {
         return all;
       },
       py::arg("cable"), py::arg("world") = 0,
-      "Returns the gains of a cable under impedance control as a dict; None without.");
+      "Returns the gains of a cable under impedance control as a dict; None for other cables.");
   type.def(
       "set_gains",
       [](S& shared, const py::object& cable, std::optional<py::ssize_t> world,
@@ -231,9 +199,12 @@ void AddCommands(SimulationType& type) {
             }
             changes.emplace_back(at, number);
           }
-          if (!known) throw py::type_error("set_gains: there is no gain \"" + name + "\"");
+          if (!known)
+            throw py::type_error("set_gains: there is no gain \"" + name +
+                                 "\"; expected keywords as in gains()");
         }
-        if (changes.empty()) throw py::type_error("set_gains: no gain given");
+        if (changes.empty())
+          throw py::type_error("set_gains: no gain is given; expected keywords as in gains()");
         const bool good = shared.With([&, from = first, to = last](Simulation& s) {
           for (int w = from; w < to; ++w) {
             auto gains = s.Gains(c, w);
@@ -243,7 +214,9 @@ void AddCommands(SimulationType& type) {
           }
           return true;
         });
-        if (!good) throw py::value_error("the cable is not under impedance control");
+        if (!good)
+          throw py::value_error("cable \"" + shared.def().cables[static_cast<std::size_t>(c)].name +
+                                "\" is not under impedance control");
       },
       py::arg("cable"), py::arg("world") = py::none(),
       "Sets gains of a cable under impedance control by keyword, as `gains` names them, in one "

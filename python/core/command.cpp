@@ -1,5 +1,4 @@
 // `taut._core.main`: the command `taut` inside the module, for wheels.
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -25,8 +24,7 @@ void AddCommand(py::module_& module) {
       },
       py::arg("place"), py::arg("arguments"),
       "Runs the command `taut` with these arguments; returns its exit status. `place`: path of "
-      "this "
-      "module, beside which the shipped files are.");
+      "this module, beside which the shipped files are.");
 }
 
 }  // namespace taut::python

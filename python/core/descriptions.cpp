@@ -73,12 +73,7 @@ void AddDescriptions(py::module_& module) {
       .def_readonly("name", &Experiment::name)
       .def_readonly("description", &Experiment::description)
       .def_property_readonly(
-          "robot",
-          [](const Experiment& e) {
-            auto robot = std::make_shared<Robot>(e.robot);
-            robot->def.experiment_parts.clear();
-            return robot;
-          },
+          "robot", [](const Experiment& e) { return WithoutExperiment(e.robot); },
           "The robot in its place, with the experiment's terrain: a copy.")
       .def_readonly("step_s", &Experiment::step_s, "Time step [s].")
       .def_property(
@@ -117,6 +112,7 @@ void AddDescriptions(py::module_& module) {
           [](const Experiment& e) {
             auto bare = std::make_shared<Experiment>(e);
             bare->controllers.clear();
+            bare->robot.def.experiment_parts = ActingParts(*bare);
             return bare;
           },
           "Returns the experiment without its controllers, for others in their place.")

@@ -39,7 +39,7 @@ std::span<const T> ConstSpan(const Rows<T>& a) {
   return {a.data(), static_cast<std::size_t>(a.size())};
 }
 
-class Environments {
+class Environments : public OwnedWorlds<Env> {
  public:
   Environments(const ExperimentSpec& experiment, int worlds, int threads,
                const std::optional<std::string>& simd, const std::string& autoreset, bool randomise,
@@ -80,13 +80,9 @@ class Environments {
     owned_ = std::make_unique<Owner<Env>>(std::move(env), "these environments were");
   }
 
-  Owner<Env>& owner() { return *owned_; }
-  const Env& env() const { return owned_->peek(); }
-  py::ssize_t worlds() const { return env().worlds(); }
-  int World(py::ssize_t world) const { return Index(world, env().worlds(), "world"); }
-  py::ssize_t actions() const { return static_cast<py::ssize_t>(env().action_channels().size()); }
+  py::ssize_t actions() const { return static_cast<py::ssize_t>(peek().action_channels().size()); }
   py::ssize_t observations() const {
-    return static_cast<py::ssize_t>(env().observation_channels().size());
+    return static_cast<py::ssize_t>(peek().observation_channels().size());
   }
 
   template <class T>
@@ -100,8 +96,7 @@ class Environments {
     const auto seed_span = seeds.is_none() ? std::span<const std::uint64_t>() : ConstSpan(seed_of);
     const auto mask_span = mask.is_none() ? std::span<const std::uint8_t>() : ConstSpan(chosen);
     const auto rows = Span(observations_out);
-    const bool good =
-        owner().With([&](Env& env) { return env.Reset(seed_span, mask_span, rows, said); });
+    const bool good = With([&](Env& env) { return env.Reset(seed_span, mask_span, rows, said); });
     Rethrow();
     if (!good) Refuse(said);
     Tell(said);
@@ -123,7 +118,7 @@ class Environments {
       step.final_observations = Span(last);
     }
     const auto act_span = ConstSpan(act);
-    owner().With([&](Env& env) { env.Step(act_span, step); });
+    With([&](Env& env) { env.Step(act_span, step); });
     Rethrow();
   }
 
@@ -138,7 +133,7 @@ class Environments {
     auto* count = steps.mutable_data();
     auto* reward = rewards.mutable_data();
     auto* end = ends.mutable_data();
-    owner().Look([&](const Env& env) {
+    Look([&](const Env& env) {
       for (int w = 0; w < static_cast<int>(n); ++w) {
         const EpisodeState e = last ? env.Last(w) : env.Episode(w);
         seed[w] = e.seed, count[w] = e.steps, reward[w] = e.reward;
@@ -166,9 +161,9 @@ class Environments {
       raised_ = std::current_exception();
     }
     // A child of fork() within f lacks the threads that the step needs.
-    if (owner().Forked()) {
+    if (owned_->Forked()) {
       Rethrow();
-      owner().CheckProcess();
+      owned_->CheckProcess();
     }
   }
   template <class T>
@@ -213,7 +208,6 @@ class Environments {
 
   const py::object observe_, judge_;
   std::exception_ptr raised_;
-  std::unique_ptr<Owner<Env>> owned_;
   bool same_step_ = false;
 };
 
@@ -231,14 +225,14 @@ void AddEnvironments(py::module_& module) {
            py::arg("randomise") = true, py::arg("seed") = py::none(),
            py::arg("own_observations") = 0, py::arg("observe") = py::none(),
            py::arg("judge") = py::none());
-  type.def_property_readonly("worlds", &E::worlds);
+  type.def_property_readonly("worlds", [](const E& e) { return e.worlds(); });
   type.def_property_readonly("action_channels",
-                             [](const E& e) { return NamesOf(e.env().action_channels()); });
-  type.def_property_readonly("action_scales", [](const E& e) { return e.env().action_scales(); });
+                             [](const E& e) { return NamesOf(e.peek().action_channels()); });
+  type.def_property_readonly("action_scales", [](const E& e) { return e.peek().action_scales(); });
   type.def_property_readonly("observation_channels",
-                             [](const E& e) { return NamesOf(e.env().observation_channels()); });
-  type.def_property_readonly("period_s", [](const E& e) { return e.env().period_s(); });
-  type.def_property_readonly("episode_steps", [](const E& e) { return e.env().episode_steps(); });
+                             [](const E& e) { return NamesOf(e.peek().observation_channels()); });
+  type.def_property_readonly("period_s", [](const E& e) { return e.peek().period_s(); });
+  type.def_property_readonly("episode_steps", [](const E& e) { return e.peek().episode_steps(); });
   type.def("reset_f32", &E::Reset<float>);
   type.def("reset_f64", &E::Reset<double>);
   type.def("step_f32", &E::Step<float>);
@@ -247,33 +241,31 @@ void AddEnvironments(py::module_& module) {
   type.def("experiment", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
     return std::make_shared<ExperimentSpec>(
-        e.owner().Look([&](const Env& env) { return env.Experiment(w); }));
+        e.Look([&](const Env& env) { return env.Experiment(w); }));
   });
   type.def("hash", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
-    return e.owner().Look([&](const Env& env) { return env.Hash(w); });
+    return e.Look([&](const Env& env) { return env.Hash(w); });
   });
   type.def(
       "save",
       [](E& e, py::ssize_t world) {
         const int w = e.World(world);
-        const auto saved = e.owner().With([&](Env& env) { return env.Save(w); });
-        return py::bytes(reinterpret_cast<const char*>(saved.data()), saved.size());
+        return BytesFrom(e.With([&](Env& env) { return env.Save(w); }));
       },
       py::arg("world") = 0);
   type.def(
       "restore",
       [](E& e, const py::bytes& snapshot, py::ssize_t world) {
         const int w = e.World(world);
-        const auto text = static_cast<std::string_view>(snapshot);
-        const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+        const auto bytes = BytesOf(snapshot);
         Diagnostics said;
-        if (!e.owner().With([&](Env& env) { return env.Restore(w, bytes, said); })) Refuse(said);
+        if (!e.With([&](Env& env) { return env.Restore(w, bytes, said); })) Refuse(said);
       },
       py::arg("snapshot"), py::arg("world") = 0);
   type.def("time_s", [](E& e, py::ssize_t world) {
     const int w = e.World(world);
-    return e.owner().Look([&](const Env& env) { return env.Time(w); });
+    return e.Look([&](const Env& env) { return env.Time(w); });
   });
   py::list ends;
   for (const auto& [name, end] : kEnds) ends.append(py::make_tuple(name, static_cast<int>(end)));

@@ -56,11 +56,9 @@ class Released {
       EndOfProgram::Sleep();
     }
     EndOfProgram::Compute(+1);  // before the GIL is released, so that Begin() waits
-    ++here_;
     state_ = PyEval_SaveThread();
   }
   ~Released() {
-    --here_;
     EndOfProgram::SleepIfReached();
     OrSleep([this] { PyEval_RestoreThread(state_); });
     EndOfProgram::Compute(-1);
@@ -68,11 +66,7 @@ class Released {
   Released(const Released&) = delete;
   Released& operator=(const Released&) = delete;
 
-  /// Returns whether this thread is within the lifetime of a Released.
-  static bool Here() { return here_ > 0; }
-
  private:
-  static inline thread_local int here_ = 0;
   PyThreadState* state_;
 };
 

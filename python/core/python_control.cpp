@@ -1,45 +1,27 @@
 // Controllers that are written in Python: `act(seen, commands)` for the worlds whose tick is due.
 #include "python_control.h"
 
-#include "taut/lane_state.h"
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "taut/lane_state.h"
+
 namespace taut::python {
 namespace {
 
-/// Holds the GIL on any thread. A thread of a pool counts as computing meanwhile, as the thread
-/// that released the GIL does.
-class AcquiredAnywhere {
- public:
-  AcquiredAnywhere() : of_pool_(!Released::Here()) {
-    if (of_pool_) EndOfProgram::Compute(+1);
-    acquired_.emplace();
-  }
-  ~AcquiredAnywhere() {
-    acquired_.reset();
-    if (of_pool_) EndOfProgram::Compute(-1);
-  }
-  AcquiredAnywhere(const AcquiredAnywhere&) = delete;
-  AcquiredAnywhere& operator=(const AcquiredAnywhere&) = delete;
-
- private:
-  bool of_pool_;
-  std::optional<Acquired> acquired_;
-};
+/// Calls f() with the GIL, whether this thread holds it or is within a `Released`.
+template <class F>
+void WithPython(F f) {
+  if (PyGILState_Check() != 0) return f();
+  const Acquired mine;
+  f();
+}
 
 /// Shares a Python object among C++ objects that are copied and destroyed without the GIL.
 std::shared_ptr<py::object> Shared(py::object object) {
-  return {new py::object(std::move(object)), [](py::object* of) {
-            if (PyGILState_Check() != 0) {
-              delete of;
-            } else {
-              const AcquiredAnywhere mine;
-              delete of;
-            }
-          }};
+  return {new py::object(std::move(object)),
+          [](py::object* of) { WithPython([of] { delete of; }); }};
 }
 
 /// Rows of a plant as arrays (worlds, cables), of the worlds whose tick is due.
@@ -70,7 +52,8 @@ class DueRows {
     for (const int lane : lanes_) {
       for (std::size_t c = 0; c < cables_; ++c, ++values) {
         if (!std::isfinite(static_cast<double>(*values))) {
-          throw py::value_error(fmt::format("commands.{}: not finite for cable {}", name, c));
+          throw py::value_error(fmt::format(
+              "commands.{}: {} for cable {}; expected a finite number", name, *values, c));
         }
         if (at_least_zero && *values < 0) {
           throw py::value_error(fmt::format("commands.{}: {} for cable {}; expected a number >= 0",
@@ -90,6 +73,17 @@ class DueRows {
   int plant_lanes_;
   std::size_t cables_;
 };
+
+py::object Namespace() { return py::module_::import("types").attr("SimpleNamespace"); }
+
+/// Returns the commands for Python: an object whose attributes are `array(row)` of the rows.
+template <class Array>
+py::object CommandsOf(const Commands& commands, Array array) {
+  return Namespace()(py::arg("rest_length_m") = array(commands.rest_length_m),
+                     py::arg("set_point_n") = array(commands.set_point_n),
+                     py::arg("velocity_input_m_per_s") = array(commands.velocity_input_m_per_s),
+                     py::arg("signal") = array(commands.signal));
+}
 
 /// Controller in Python.
 class PythonController final : public Controller {
@@ -114,7 +108,7 @@ class PythonController final : public Controller {
     callbacks_->Call([&] { Act(tick, std::move(lanes), seen, commands); });
   }
 
-  /// Saves the memory of the Python object, by its methods `save` and `restore`.
+  /// Saves or restores the memory of the Python object, by its methods `save` and `restore`.
   void Serialize(plant::LaneState& state) override {
     if (state.lane() >= worlds_) return;
     const int world = first_world_ + state.lane();
@@ -144,20 +138,15 @@ class PythonController final : public Controller {
       time_s.mutable_data()[i] = seen.time_s[lane];
     }
     const DueRows rows(std::move(lanes), seen.lanes, cables_);
-    const py::object simple = py::module_::import("types").attr("SimpleNamespace");
     const py::object what =
-        simple(py::arg("world") = worlds, py::arg("tick") = ticks, py::arg("time_s") = time_s,
-               py::arg("cable_length_m") = rows.Copy(seen.cables.length_m),
-               py::arg("cable_rate_m_per_s") = rows.Copy(seen.cables.rate_m_per_s),
-               py::arg("rest_length_m") = rows.Copy(seen.cables.rest_length_m),
-               py::arg("tension_n") = rows.Copy(seen.cables.tension_n),
-               py::arg("elastic_n") = rows.Copy(seen.cables.elastic_n),
-               py::arg("stiffness_n_per_m") = rows.Copy(seen.cables.stiffness_n_per_m));
-    const py::object now =
-        simple(py::arg("rest_length_m") = rows.Copy(commands.rest_length_m),
-               py::arg("set_point_n") = rows.Copy(commands.set_point_n),
-               py::arg("velocity_input_m_per_s") = rows.Copy(commands.velocity_input_m_per_s),
-               py::arg("signal") = rows.Copy(commands.signal));
+        Namespace()(py::arg("world") = worlds, py::arg("tick") = ticks, py::arg("time_s") = time_s,
+                    py::arg("cable_length_m") = rows.Copy(seen.cables.length_m),
+                    py::arg("cable_rate_m_per_s") = rows.Copy(seen.cables.rate_m_per_s),
+                    py::arg("rest_length_m") = rows.Copy(seen.cables.rest_length_m),
+                    py::arg("tension_n") = rows.Copy(seen.cables.tension_n),
+                    py::arg("elastic_n") = rows.Copy(seen.cables.elastic_n),
+                    py::arg("stiffness_n_per_m") = rows.Copy(seen.cables.stiffness_n_per_m));
+    const py::object now = CommandsOf(commands, [&](const double* row) { return rows.Copy(row); });
     CallPython(of_->attr("act"), what, now);
     rows.Back(now.attr("rest_length_m"), commands.rest_length_m, "rest_length_m", true);
     rows.Back(now.attr("set_point_n"), commands.set_point_n, "set_point_n");
@@ -173,8 +162,8 @@ class PythonController final : public Controller {
     if (!HasMemory() && !IsStateless()) {
       throw py::type_error(
           name +
-          ": a simulation is saved with its controllers; define save(world), which returns "
-          "bytes, and restore(world, bytes), or set `stateless = True` if it has no memory");
+          ": its state cannot be saved; define save(world), which returns bytes, and "
+          "restore(world, bytes), or set `stateless = True` if the controller has no memory");
     }
     if (!HasMemory()) return {};
     const py::object saved = CallPython(of_->attr("save"), world);
@@ -195,8 +184,8 @@ class PythonController final : public Controller {
   std::size_t cables_;
 };
 
-/// Returns the number of an attribute, or `otherwise` without one. Raises TypeError or ValueError
-/// unless it is finite and long enough.
+/// Returns the number of an attribute, or `otherwise` without one. Raises TypeError if it is not
+/// a number, ValueError if it is not finite or too small.
 double NumberOf(const py::object& of, const char* name, const std::string& where, double otherwise,
                 bool may_be_zero) {
   if (!py::hasattr(of, name)) return otherwise;
@@ -220,20 +209,11 @@ class CallingPlant final : public PythonPlant {
       : of_(Shared(std::move(of))),
         callbacks_(std::move(callbacks)),
         cables_(robot.def.cables.size()),
-        rows_(7 * cables_),
-        set_point_n_(cables_),
-        velocity_input_m_per_s_(cables_),
-        signal_(cables_),
+        rows_(10 * cables_),
         mode_(cables_, CommandMode::kRestLength) {
     seen_.time_s = &time_s_;
     seen_.cables = {Row(0), Row(1), Row(2), Row(3), Row(4), Row(5)};
-    commands_ = {1,
-                 Row(6),
-                 set_point_n_.data(),
-                 velocity_input_m_per_s_.data(),
-                 signal_.data(),
-                 mode_.data(),
-                 &gait_};
+    commands_ = {1, Row(6), Row(7), Row(8), Row(9), mode_.data(), &gait_};
     for (std::size_t c = 0; c < cables_; ++c) {
       Row(5)[c] = robot.def.cables[c].stiffness_n_per_m;
       Row(6)[c] = robot.def.cables[c].rest_length_m;
@@ -245,15 +225,10 @@ class CallingPlant final : public PythonPlant {
   Commands& commands() override { return commands_; }
   void Advance(const double* step_s, const double* to_s) override {
     callbacks_->Call([&] {
-      const py::object simple = py::module_::import("types").attr("SimpleNamespace");
-      const auto array = [&](const double* row) {
-        return Rows<double>(static_cast<py::ssize_t>(cables_), row);
-      };
       CallPython(of_->attr("advance"), *step_s, *to_s,
-                 simple(py::arg("rest_length_m") = array(commands_.rest_length_m),
-                        py::arg("set_point_n") = array(commands_.set_point_n),
-                        py::arg("velocity_input_m_per_s") = array(commands_.velocity_input_m_per_s),
-                        py::arg("signal") = array(commands_.signal)));
+                 CommandsOf(commands_, [&](const double* row) {
+                   return Rows<double>(static_cast<py::ssize_t>(cables_), row);
+                 }));
     });
     time_s_ = *to_s;
     Read();
@@ -272,7 +247,11 @@ class CallingPlant final : public PythonPlant {
         const bool dict = py::isinstance<py::dict>(now);
         const bool has = dict ? now.cast<py::dict>().contains(name) : py::hasattr(now, name);
         if (!has && !required) return;
-        if (!has) throw py::value_error(fmt::format("observe(): no \"{}\"", name));
+        if (!has)
+          throw py::value_error(
+              fmt::format("observe(): \"{}\" is missing; expected rest_length_m, cable_length_m, "
+                          "cable_rate_m_per_s and tension_n",
+                          name));
         const py::object given = dict ? py::object(now[name]) : py::object(now.attr(name));
         const Array a = Finite(given, {static_cast<py::ssize_t>(cables_)}, name);
         std::copy_n(a.data(), cables_, to);
@@ -290,8 +269,7 @@ class CallingPlant final : public PythonPlant {
   std::shared_ptr<py::object> of_;
   std::shared_ptr<Callbacks> callbacks_;
   std::size_t cables_;
-  std::vector<double> rows_;  ///< Readings, then the commanded rest lengths.
-  std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
+  std::vector<double> rows_;  ///< Readings, then commands.
   std::vector<CommandMode> mode_;
   int gait_ = -1;
   double time_s_ = 0;
@@ -304,17 +282,16 @@ class CallingPlant final : public PythonPlant {
 
 void Callbacks::Call(const std::function<void()>& f) {
   if (failed()) return;
-  const AcquiredAnywhere mine;
-  std::exception_ptr raised;
-  try {
-    return f();
-  } catch (const abi::__forced_unwind&) {  // end of the thread, not an exception of f
-    EndOfProgram::Sleep();
-  } catch (...) {
-    raised = std::current_exception();
-  }
-  const std::lock_guard lock(mutex_);
-  if (!raised_) raised_ = raised;
+  WithPython([&] {
+    try {
+      f();
+    } catch (const abi::__forced_unwind&) {  // end of the thread, not an exception of f
+      EndOfProgram::Sleep();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      raised_ = std::current_exception();
+    }
+  });
 }
 
 bool Callbacks::failed() const {
@@ -332,7 +309,7 @@ void Callbacks::Rethrow() {
 }
 
 Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
-                        const std::shared_ptr<Callbacks>& callbacks, bool& in_python) {
+                        const std::shared_ptr<Callbacks>& callbacks) {
   Extensions extensions;
   if (controllers.is_none()) return extensions;
   if (!py::isinstance<py::list>(controllers) && !py::isinstance<py::tuple>(controllers)) {
@@ -356,7 +333,7 @@ Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
                            "; expected an object with period_s and act(seen, commands), or a "
                            "controller of taut.control");
     }
-    in_python = true;
+    callbacks->is_used = true;
     const ClockSpec clock{NumberOf(of, "period_s", where, 0, false),
                           NumberOf(of, "phase_s", where, 0, true)};
     extensions.controllers.push_back(

@@ -1,4 +1,5 @@
-/// Controllers and plants that are written in Python, or made from the library's in Python.
+/// Controllers and plants that are written in Python, and controllers of the library that Python
+/// programs configure.
 #pragma once
 
 #include <exception>
@@ -13,38 +14,41 @@
 
 namespace taut::python {
 
-/// Exceptions of Python code that the simulator calls. The first one ends all further calls.
+/// Calls of Python code by the simulator. After the first exception, no further call is made.
 class Callbacks {
  public:
-  /// Calls f() with the GIL, on any thread; keeps its exception. Does nothing after an exception.
+  /// Calls f() with the GIL, which this thread holds or has released, and stores its exception.
+  /// Does nothing after the first exception.
   void Call(const std::function<void()>& f);
   bool failed() const;
   /// Raises the exception that was kept, if any. The GIL must be held.
   void Rethrow();
+
+  bool is_used = false;  ///< A controller is written in Python.
 
  private:
   mutable std::mutex mutex_;  ///< Guards `raised_`.
   std::exception_ptr raised_;
 };
 
-/// Shortest period of a controller: times that differ by 1e-9 s count as equal.
+/// Shortest period of a controller [s]; well above 1e-9 s, below which times count as equal.
 inline constexpr double kLeastPeriodS = 1e-6;
 
-/// Controller of the library, with the names of the cables that its indices mean.
+/// Controller of the library, with the names of the cables to which its indices refer.
 struct LibrarySpec {
   ControllerSpec spec;
   std::vector<std::string> cables;  ///< All cables of the robot that it was made for.
 
-  /// Raises ValueError, which contains `where`, if the robot has other cables in these places.
+  /// Raises ValueError, with `where` in its message, if the robot has other cables at these
+  /// indices.
   void Check(const RobotSpec& robot, const std::string& where) const;
 };
 
 /// Returns the controllers of a list: each is a `taut.control` specification, or an object with
-/// `period_s` and `act(seen, commands)`. Raises TypeError or ValueError, with its place in the
-/// list, otherwise.
-/// `in_python`: set if one of them is written in Python.
+/// `period_s` and `act(seen, commands)`. For other items, raises TypeError or ValueError with their
+/// place in the list.
 Extensions ExtensionsOf(const py::object& controllers, const RobotSpec& robot,
-                        const std::shared_ptr<Callbacks>& callbacks, bool& in_python);
+                        const std::shared_ptr<Callbacks>& callbacks);
 
 /// Plant of one lane in Python.
 class PythonPlant : public Plant {

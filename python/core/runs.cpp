@@ -64,8 +64,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
         const py::object& controllers, const py::object& plant) {
   Threads(threads);
   const auto callbacks = std::make_shared<Callbacks>();
-  bool in_python = false;
-  const Extensions extensions = ExtensionsOf(controllers, experiment.robot, callbacks, in_python);
+  const Extensions extensions = ExtensionsOf(controllers, experiment.robot, callbacks);
   std::unique_ptr<Plant> own;
   if (py::isinstance<Recorded>(plant)) {
     own = plant.cast<Recorded&>().PlantFor(experiment);

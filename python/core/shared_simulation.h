@@ -17,32 +17,17 @@
 
 namespace taut::python {
 
-/// A simulation for all Python threads, one at a time.
-class SharedSimulation {
+/// Simulation shared by all Python threads, of which one at a time has access.
+class SharedSimulation : public OwnedWorlds<Simulation> {
  public:
   SharedSimulation(const ExperimentSpec& experiment, int worlds,
                    const std::optional<std::vector<GivenVariant>>& given, int threads,
                    const std::optional<std::string>& simd, const py::object& controllers);
 
-  template <class F>
-  auto With(F f) {
-    return owned_->With(f);
-  }
-  template <class F>
-  auto Look(F f) {
-    return owned_->Look(f);
-  }
-
-  const Simulation& peek() const { return owned_->peek(); }
   const ModelDef& def() const { return peek().def(); }
-  int worlds() const { return peek().worlds(); }
-  int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
-  /// Returns the worlds of an argument: one, or all for None.
-  std::pair<int, int> Range(std::optional<py::ssize_t> world) const {
-    if (!world) return {0, worlds()};
-    const int first = World(*world);
-    return {first, first + 1};
-  }
+  py::ssize_t bodies() const { return static_cast<py::ssize_t>(def().bodies.size()); }
+  py::ssize_t cables() const { return static_cast<py::ssize_t>(def().cables.size()); }
+  py::ssize_t nodes() const { return static_cast<py::ssize_t>(def().nodes.size()); }
 
   /// Returns the index of an element given by name or index. Raises KeyError or IndexError.
   template <class Elements>
@@ -57,7 +42,7 @@ class SharedSimulation {
     }
     Diagnostics said;
     if (const auto found = find(def(), given.cast<std::string>(), &said)) return *found;
-    throw py::key_error(said.items()[0].what + " (" + said.items()[0].hint + ")");
+    RefuseName(said);
   }
   int Cable(const py::object& given) const {
     return ElementOf(given, def().cables, "cable", FindCable);
@@ -71,8 +56,15 @@ class SharedSimulation {
   int Joint(const py::object& given) const {
     return ElementOf(given, def().joints, "joint", FindJoint);
   }
+  /// Returns an element by `find`, such as `Cable`; nothing for None.
+  std::optional<int> OneOf(int (SharedSimulation::*find)(const py::object&) const,
+                           const py::object& given) const {
+    if (given.is_none()) return std::nullopt;
+    return (this->*find)(given);
+  }
 
-  /// Returns an array (worlds, count, width), (worlds, count) or, for one element, without `count`.
+  /// Returns an array of shape (worlds, count, width), without `width` if it is 1, and without
+  /// `count` for a single element.
   template <class Put>
   py::array_t<double> Read(std::optional<int> element, py::ssize_t count, py::ssize_t width,
                            Put put) {
@@ -109,7 +101,6 @@ class SharedSimulation {
 
  private:
   std::shared_ptr<Callbacks> callbacks_;
-  std::unique_ptr<Owner<Simulation>> owned_;
 };
 
 using SimulationType = py::class_<SharedSimulation, std::shared_ptr<SharedSimulation>>;

@@ -90,6 +90,10 @@ py::dict ContactsOf(const std::vector<ContactState>& touching) {
   return all;
 }
 
+void RefuseName(const Diagnostics& said) {
+  throw py::key_error(said.items()[0].what + " (" + said.items()[0].hint + ")");
+}
+
 Overrides OverridesOf(const py::kwargs& values) {
   Overrides overrides;
   for (const auto& [name, value] : values) {
@@ -126,6 +130,12 @@ int Index(py::ssize_t index, int count, const char* what) {
     throw py::index_error(fmt::format("{} {} is out of range: there are {}", what, index, count));
   }
   return static_cast<int>(from_start);
+}
+
+std::shared_ptr<RobotSpec> WithoutExperiment(const RobotSpec& robot) {
+  auto copy = std::make_shared<RobotSpec>(robot);
+  copy->def.experiment_parts.clear();
+  return copy;
 }
 
 std::string ShapeText(const std::vector<py::ssize_t>& shape) {

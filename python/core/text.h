@@ -8,8 +8,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -49,6 +52,13 @@ void Tell(const Diagnostics& said);
 
 /// Raises `taut.InputError` unconditionally.
 [[noreturn]] void Refuse(const Diagnostics& said);
+
+/// Raises KeyError for a name that a search did not find. `said`: error of the search.
+[[noreturn]] void RefuseName(const Diagnostics& said);
+
+/// Returns a copy of an experiment's robot without `experiment_parts`, so that `Batch` does not
+/// warn about ignored controllers and events.
+std::shared_ptr<RobotSpec> WithoutExperiment(const RobotSpec& robot);
 
 /// Converts Python's keyword arguments to overrides: `edge_m=0.3`, `tau="2 * pi"`.
 Overrides OverridesOf(const py::kwargs& values);
@@ -126,6 +136,16 @@ inline Rows<double> ArrayOf(const std::vector<Vec3>& vectors) {
 /// Returns a new array (rows, columns).
 inline Rows<double> ArrayOf(const Matrix& m) {
   return Rows<double>({m.rows, m.columns}, m.values.data());
+}
+
+/// Returns a view of bytes.
+inline std::span<const std::uint8_t> BytesOf(const py::bytes& bytes) {
+  const auto text = static_cast<std::string_view>(bytes);
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+/// Returns a copy as Python's bytes.
+inline py::bytes BytesFrom(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// Returns a dict of arrays in the form of `WorldBatch.contacts`.

@@ -25,8 +25,38 @@ inline void CheckWorlds(int worlds) {
   throw py::value_error(fmt::format("worlds: {}; expected 1 to {}", worlds, kMost));
 }
 
+/// Object T with worlds, for all Python threads, one at a time (`Owner`).
+template <class T>
+class OwnedWorlds {
+ public:
+  /// Calls f(T&), which may change the object; see `Owner`.
+  template <class F>
+  auto With(F f) {
+    return owned_->With(f);
+  }
+  /// Calls f(T&), which only reads.
+  template <class F>
+  auto Look(F f) {
+    return owned_->Look(f);
+  }
+  const T& peek() const { return owned_->peek(); }
+
+  int worlds() const { return peek().worlds(); }
+  /// Returns the index of a world; raises IndexError.
+  int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
+  /// Returns the range [first, last) of worlds that an argument selects: one, or all for None.
+  std::pair<int, int> Range(std::optional<py::ssize_t> world) const {
+    if (!world) return {0, worlds()};
+    const int first = World(*world);
+    return {first, first + 1};
+  }
+
+ protected:
+  std::unique_ptr<Owner<T>> owned_;
+};
+
 /// Worlds of a batch. Thread-safe: calls from several Python threads wait for each other.
-class Worlds {
+class Worlds : public OwnedWorlds<WorldBatch> {
  public:
   Worlds(const ModelDef& def, int worlds, int threads, const std::optional<std::string>& simd) {
     CheckWorlds(worlds);
@@ -47,21 +77,8 @@ class Worlds {
     owned_ = std::make_unique<Owner<WorldBatch>>(std::move(batch), "this batch was");
   }
 
-  /// Calls f(WorldBatch&), which may change the batch; see `Owner`.
-  template <class F>
-  auto With(F f) {
-    return owned_->With(f);
-  }
-  /// Calls f(WorldBatch&), which only reads.
-  template <class F>
-  auto Look(F f) {
-    return owned_->Look(f);
-  }
-
-  const ModelDef& def() const { return owned_->peek().model().def(); }
-  int worlds() const { return owned_->peek().worlds(); }
-  int lanes() const { return owned_->peek().lanes(); }
-  int World(py::ssize_t world) const { return Index(world, worlds(), "world"); }
+  const ModelDef& def() const { return peek().model().def(); }
+  int lanes() const { return peek().lanes(); }
   py::ssize_t bodies() const { return static_cast<py::ssize_t>(def().bodies.size()); }
   py::ssize_t cables() const { return static_cast<py::ssize_t>(def().cables.size()); }
   py::ssize_t nodes() const { return static_cast<py::ssize_t>(def().nodes.size()); }
@@ -81,9 +98,6 @@ class Worlds {
     });
     return a;
   }
-
- private:
-  std::unique_ptr<Owner<WorldBatch>> owned_;
 };
 
 /// Runs Python's signal handlers, at most ten times per second.

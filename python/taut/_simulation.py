@@ -1,4 +1,4 @@
-"""`taut.Simulation`: experiments with controllers and events, stepped from Python."""
+"""`taut.Simulation`: steps an experiment with its controllers and events from Python."""
 
 import os
 from typing import Any, Optional, Sequence, Union
@@ -15,40 +15,43 @@ class Simulation(_core.Simulation):
         sim.run_until(1.0)
         print(sim.tension_n("outer_right_1"))
 
-    `experiment`: an `Experiment`, a `Robot`, or the path of their file. `worlds`: number of equal worlds. `variants`:
-    one world for each dict of parameters by name (`taut.tunables`) and optionally its "seed", instead of `worlds`.
+    `experiment`: an `Experiment`, a `Robot`, or the path of an experiment or model file. `worlds`: number of equal
+    worlds. `variants`: instead of `worlds`, a list with one dict per world: values of parameters by name
+    (`taut.tunables`), and optionally a "seed".
     `threads`: number of threads; 0: one per core. `simd`: as in `taut.Batch`.
 
-    `controllers`: list of controllers that act after the experiment's: of the library (`taut.control`), or of your
-    own, on one thread:
+    `controllers`: list of controllers that act after those of the experiment. They are from the library
+    (`taut.control`), or objects like this one, which require `threads=1`:
 
         class Hold:
             period_s = 0.01
             def act(self, seen, commands):
                 commands.rest_length_m[:] = seen.cable_length_m - 0.02
 
-    `act` is called every `period_s` with the worlds that are due. `seen` has `world`, `tick` (number of earlier ticks
-    since the start) and `time_s`, (n,), and `cable_length_m`, `cable_rate_m_per_s`, `rest_length_m`, `tension_n`,
-    `elastic_n`, `stiffness_n_per_m`, (n, cables), as the experiment's sensors measure them. `commands` has
-    `rest_length_m`, `set_point_n`, `velocity_input_m_per_s` and `signal`, (n, cables), to be changed in place.
+    `act` is called every `period_s`, with the n worlds whose tick is due. `seen` has arrays of shape (n,): `world`,
+    `tick` (number of earlier ticks since the start) and `time_s`. It also has the readings of the experiment's sensors,
+    of shape (n, cables): `cable_length_m`, `cable_rate_m_per_s`, `rest_length_m`, `tension_n`, `elastic_n`,
+    `stiffness_n_per_m`. `commands` has `rest_length_m`, `set_point_n`, `velocity_input_m_per_s` and `signal`, of shape
+    (n, cables); change these arrays in place.
 
-    Worlds have the bits of `taut.run`, whatever the other worlds, threads and instruction set. Several Python threads
+    As long as nothing is changed, each world is bit-identical to `taut.run`, for any other worlds, number of threads
+    and instruction set. Several Python threads
     may use one simulation; calls wait for each other, so `act` must not wait for a thread that uses this simulation. An
-    exception in `act` ends the call after the present step. A controller that keeps a reference to its simulation keeps
-    it in memory: use `weakref`. Raises `taut.InputError` if a start does not exist.
+    exception in `act` ends the call (`step`, `run_until`) after the present step. If a controller needs a reference to its
+    simulation, use `weakref`; otherwise neither is freed. Raises `taut.InputError` if a start cannot be found.
     """
 
     def __init__(self, experiment: Union[str, "os.PathLike[str]", Experiment, Robot], worlds: int = 1, *,
                  variants: Optional[Sequence[World]] = None, threads: int = 1, simd: Optional[str] = None,
                  controllers: Optional[Sequence[Any]] = None) -> None:
         if not isinstance(experiment, (str, os.PathLike, Experiment, Robot)):
-            raise TypeError(f"experiment: {experiment!r}; expected an Experiment, a Robot or the path of their file")
+            raise TypeError(f"experiment: {experiment!r}; expected an Experiment, a Robot or the path of an experiment or model file")
         what = _core.load(os.fspath(experiment)) if isinstance(experiment, (str, os.PathLike)) else experiment
         given = None if variants is None else [_world(number, one, "variants") for number, one in enumerate(variants)]
         if given is not None and not given:
             raise ValueError("variants: empty; expected at least one dict")
         if given is not None and worlds not in (1, len(given)):
-            raise ValueError(f"worlds: {worlds}, but there are {len(given)} variants; give only one of them")
+            raise ValueError(f"worlds: {worlds}, but there are {len(given)} variants; pass either `worlds` or `variants`")
         super().__init__(what, worlds, given, threads, simd, controllers)
 
     def __repr__(self) -> str:

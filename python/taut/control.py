@@ -3,7 +3,7 @@
     hold = taut.control.impedance(robot, tension_offset_n=5, length_offset_m=0.2, position_gain_n_per_m=60)
     sim = taut.Simulation(robot, controllers=[hold])
 
-A controller of your own is an object with `period_s` and `act(seen, commands)`; see `taut.Simulation`.
+A custom controller is an object with `period_s` and `act(seen, commands)`; see `taut.Simulation`.
 """
 
 from __future__ import annotations
@@ -27,8 +27,9 @@ def impedance(robot: Robot, cables: Optional[Sequence[str]] = None, *, tension_o
               period_s: float = 0.001, differenced_rate: bool = False) -> ControllerSpec:
     """Impedance control (Mirletz et al. 2015, eq. 3): tension T0 + K (L - L0) + B (V - V0), at least 0.
 
-    `cables`: names; None: all cables with an actuator. Each gain is one number for all cables, or one per cable.
-    `period_s`: between two ticks. `differenced_rate`: the rate V is the difference of two lengths, as on a board.
+    `cables`: names of the controlled cables; None: all cables with an actuator. Each offset or gain is one number for all
+    cables, or one per cable. `period_s`: time between two ticks. `differenced_rate`: compute the rate V from the
+    difference of two lengths, as on a board.
     """
     return _core.impedance(robot, cables, tension_offset_n, length_offset_m, position_gain_n_per_m,
                            velocity_gain_n_s_per_m, velocity_offset_m_per_s, period_s, differenced_rate)
@@ -36,7 +37,7 @@ def impedance(robot: Robot, cables: Optional[Sequence[str]] = None, *, tension_o
 
 def position(robot: Robot, programs: Mapping[str, Sequence[tuple[float, float]]], *,
              period_s: float = 0.001) -> ControllerSpec:
-    """Position control: rest lengths [m] against time [s], piecewise linear, by cable.
+    """Position control: rest lengths [m] that follow piecewise linear programs in time [s], one per cable.
 
         taut.control.position(robot, {"outer_top_1": [(0, 0.25), (2, 0.20)]})
     """

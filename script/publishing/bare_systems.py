@@ -3,9 +3,9 @@
 
   bare_systems.py OUT [SUITE...]    OUT: folder of script/portable; suites: bullseye, bookworm, trixie (all by default)
 
-Each system is a chroot that debootstrap makes once (a minute each) and that is kept in build/portable/systems. Compared with
-the command of build/release: the hash of push_20n's final state, from the archive and from the wheel, and the results of
-`taut analyze` for all models. Needs root. Prints one line per check; status 1 if one fails.
+Each system is a chroot in build/portable/systems, which debootstrap creates once (one minute each). Archive and wheel
+must give the same results as build/release: the final state hash of push_20n, and the output of `taut analyze` for
+all models. Needs root. Prints one line per check; status 1 if one fails.
 """
 
 import contextlib
@@ -99,7 +99,7 @@ view = subprocess.Popen(["{taut}", "view", "models/prism3.yaml", "--port", "0"],
 for line in view.stdout:
     found = re.search(r"http://\\S+", line)
     if found:
-        # A bare system has no file of host names.
+        # A bare system has no /etc/hosts, so "localhost" is unknown.
         print(len(urllib.request.urlopen(found[0].replace("localhost", "127.0.0.1"), timeout=10).read()))
         break
 view.terminate()
@@ -146,7 +146,7 @@ def main():
     out = pathlib.Path(sys.argv[1]).resolve()
     suites = sys.argv[2:] or list(SUITES)
     if os.getuid() != 0 or not shutil.which("debootstrap"):
-        sys.exit("bare_systems.py: needs root and debootstrap (script/setup portable)")
+        sys.exit("bare_systems.py: this test needs root and debootstrap (fix: sudo, script/setup portable)")
     archive = next(iter(out.glob("taut-*-linux-x86_64.tar.xz")), None)
     taut = ROOT / "build/release/taut"
     folder = out / "native"

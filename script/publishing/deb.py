@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 
+from .release import current
 from .stage import Problem
 
 TOOLS = {"dpkg-buildpackage": "dpkg-dev", "dh": "debhelper", "lintian": "lintian", "fakeroot": "fakeroot"}
@@ -27,15 +28,11 @@ def run(command, **more):
     return done.stdout
 
 
-def version_of(source):
-    return re.search(r'kVersion = "(.*)"', (source / "include/taut/version.h").read_text())[1]
-
-
 def write_changelog(source, seconds):
     """Writes debian/changelog, in which Debian requires the version; the changes are in CHANGELOG.md only."""
     maintainer = re.search(r"^Maintainer: (.*)$", (source / "debian/control").read_text(), re.MULTILINE)[1]
     (source / "debian/changelog").write_text(
-        f"taut ({version_of(source)}) unstable; urgency=medium\n\n"
+        f"taut ({current(source)}) unstable; urgency=medium\n\n"
         "  * What changes is in /usr/share/doc/taut/CHANGELOG.md.\n\n"
         f" -- {maintainer}  {email.utils.formatdate(seconds)}\n")
 
@@ -99,6 +96,6 @@ def make(source, work, out, seconds, built=None):
     debs = build(source, seconds, built)
     said = look_at(source)
     install([deb.resolve() for deb in debs], work / "root")
-    try_out(work / "root", work, version_of(source))
+    try_out(work / "root", work, current(source))
     out.mkdir(parents=True, exist_ok=True)
     return [shutil.copy(deb, out) for deb in debs], said

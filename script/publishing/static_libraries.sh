@@ -1,32 +1,29 @@
 #!/usr/bin/env bash
-# Builds the libraries that a self-contained taut contains, as static archives, from Debian 12's source
-# packages: HDF5 without compression by szip and without
+# Builds static versions of the libraries that a self-contained taut contains, from the source packages
+# of Debian 12: HDF5 without compression by szip and without
 # tools, NLopt without its LGPL part, SQLite without loadable extensions, yaml-cpp, fmt, tinyxml2,
-# libpng and zlib. About three minutes on two cores; nothing is done if they are there.
+# libpng and zlib. Takes about three minutes on two cores, and does nothing if they are already built.
 #
 #   script/publishing/static_libraries.sh FOLDER     fills FOLDER/include and FOLDER/lib
 set -euo pipefail
 [ $# = 1 ] || { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0" >&2; exit 2; }
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
-jobs=$(nproc)
 names=(hdf5 nlopt yaml-cpp fmtlib tinyxml2 zlib libpng1.6 sqlite3)
 recipe=$(md5sum <"$0")
 [ "$(cat "$folder/made" 2>/dev/null)" != "$recipe" ] || exit 0
+# shellcheck source=script/common.sh
+source "$(dirname "$0")/../common.sh"
 rm -rf "$folder"
-mkdir -p "$folder/src/lists/partial" "$folder/include" "$folder/lib"
+mkdir -p "$folder/src" "$folder/include" "$folder/lib"
 cd "$folder/src"
 log=$folder/log
 trap 'status=$?; [ $status = 0 ] || { tail -20 "$log" >&2; echo "static_libraries.sh: failed, see $log" >&2; }' EXIT
 exec 3>&1 >"$log" 2>&1
 
-# The machine's list of sources may lack source packages.
-echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main" >sources.list
-apt=(apt-get -q -o "Dir::Etc::SourceList=$PWD/sources.list" -o Dir::Etc::SourceParts=-
-  -o "Dir::State::Lists=$PWD/lists" -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=)
-"${apt[@]}" update
+apt_apart "$PWD" deb-src bookworm update
 echo "fetching ${names[*]}" >&3
-"${apt[@]}" source --download-only "${names[@]}"
+apt_apart "$PWD" deb-src bookworm source --download-only "${names[@]}"
 for name in "${names[@]}"; do
   dpkg-source --no-check --extract "$name"_*.dsc "$name"
 done
@@ -41,20 +38,20 @@ with_cmake() {
     -DCMAKE_PREFIX_PATH="$folder" "$@"
   cmake --build "build-$name" --parallel "$jobs" --target install
 }
-echo "building zlib" >&3  # without CMake, whose file names sources that Debian leaves out
+echo "building zlib" >&3  # not with CMake: its CMakeLists.txt lists sources that Debian leaves out
 (cd zlib && CFLAGS="-O2 -fPIC" ./configure --static --prefix="$folder" && make -j "$jobs" install)
 with_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF -DZLIB_ROOT="$folder"
 with_cmake yaml-cpp -DYAML_CPP_BUILD_TESTS=OFF -DYAML_CPP_BUILD_TOOLS=OFF -DYAML_BUILD_SHARED_LIBS=OFF
 with_cmake fmtlib -DFMT_TEST=OFF -DFMT_DOC=OFF
 with_cmake tinyxml2 -Dtinyxml2_BUILD_TESTING=OFF -DBUILD_TESTING=OFF
-echo "building hdf5" >&3  # by configure: its CMake files name files that Debian leaves out
+echo "building hdf5" >&3  # with configure: its CMake files list files that Debian leaves out
 mkdir -p build-hdf5
 (cd build-hdf5 && bash ../hdf5/configure --prefix="$folder" --disable-shared --enable-static --with-pic --disable-hl \
   --disable-fortran --disable-cxx --without-szlib --with-zlib="$folder" --enable-threadsafe --disable-tests --disable-tools \
   --enable-build-mode=production && make -j "$jobs" -C src && make -C src install)
 
-# NLopt's algorithms of its folder luksan are under the LGPL; taut uses none of them. Their names
-# remain, as functions that report a failure.
+# NLopt's algorithms in its folder luksan have the license LGPL. taut uses none of them; stubs that
+# report a failure replace them.
 python3 - <<'END'
 import pathlib, re
 cmake = pathlib.Path("nlopt/CMakeLists.txt")
@@ -65,7 +62,7 @@ rm -rf nlopt/src/algs/luksan/*.c
 with_cmake nlopt -DNLOPT_CXX=OFF -DNLOPT_PYTHON=OFF -DNLOPT_OCTAVE=OFF -DNLOPT_MATLAB=OFF -DNLOPT_GUILE=OFF \
   -DNLOPT_SWIG=OFF -DNLOPT_TESTS=OFF
 cat >stubs.c <<'END'
-/* Algorithms that are left out (see static_libraries.sh): -1 is nlopt's code of a failure. */
+/* Stubs of the omitted algorithms (see static_libraries.sh). NLopt's error code -1 is a failure. */
 int luksan_plis(void) { return -1; }
 int luksan_plip(void) { return -1; }
 int luksan_pnet(void) { return -1; }

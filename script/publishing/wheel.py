@@ -1,10 +1,12 @@
-#!/usr/bin/env python3
 """Packs a linked module and the package's files as a wheel; checks its dependencies.
 
-  wheel.py MODULE WEB OUT    MODULE: _core.cpython-39-x86_64-linux-gnu.so; WEB: folder of the viewer's pages
+  PYTHONPATH=script python3 -m publishing.wheel MODULE WEB OUT
 
-The wheel is byte-identical for the same inputs. The tag is manylinux_2_28: the module may need symbols of glibc up to 2.28
-and the libraries of the policy's list only; otherwise nothing is written and the status is 1.
+MODULE: shared library such as _core.cpython-39-x86_64-linux-gnu.so; WEB: folder of the viewer's pages; OUT: folder for
+the wheel
+
+The wheel is byte-identical for the same inputs. The tag is manylinux_2_28. If the module needs a symbol of
+a later glibc than 2.28, or a library that this policy does not allow, the script writes nothing and returns status 1.
 """
 
 import base64
@@ -14,6 +16,8 @@ import re
 import subprocess
 import sys
 import zipfile
+
+from .release import current
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 GLIBC = (2, 28)
@@ -79,7 +83,7 @@ def main():
     found = list(problems(module))
     if found:
         sys.exit("\n".join(f"{module.name}: {problem}" for problem in found))
-    version = re.search(r'kVersion = "(.*)"', (ROOT / "include/taut/version.h").read_text())[1]
+    version = current(ROOT)
     python = re.search(r"cpython-(\d+)-", module.name)[1]
     tag = f"cp{python}-cp{python}-manylinux_2_28_x86_64"
     files = dict(entries(module, web, version))

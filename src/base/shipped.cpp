@@ -20,12 +20,13 @@ std::string RunningProgram() {
   return fs::read_symlink("/proc/self/exe", failed).string();
 }
 
-std::optional<std::string> FindBesideProgram(std::initializer_list<const char*> paths) {
+std::optional<std::string> FindBesideProgram(const std::string& path) {
   const fs::path folder = fs::path(RunningProgram()).parent_path();
   if (folder.empty()) return std::nullopt;
   std::error_code failed;
-  for (const char* const path : paths) {
-    if (fs::exists(folder / path, failed)) return (folder / path).lexically_normal().string();
+  for (const char* const from : {"", "../share/taut", "share/taut"}) {
+    const fs::path found = folder / from / path;
+    if (fs::exists(found, failed)) return found.lexically_normal().string();
   }
   return std::nullopt;
 }

@@ -338,8 +338,8 @@ std::unique_ptr<Plan> PlanOf(const ExperimentSpec& experiment, const EnvOptions&
   plan->options = options;
   plan->options.worlds = std::max(options.worlds, 1);
   plan->model = std::move(model);
-  plan->simd = options.simd.value_or(plan->options.worlds == 1 ? Simd::kScalar : BestSimd());
-  plan->lanes = WorldBatch(plan->model, {.worlds = 1, .simd = plan->simd}).lanes();
+  plan->simd = SimdOf({.worlds = plan->options.worlds, .simd = options.simd});
+  plan->lanes = static_cast<int>(plan->simd);
   plan->steps_per_period = env::Times(plan->spec.period_s, experiment.step_s);
   plan->episode_steps = env::Times(experiment.duration_s, plan->spec.period_s);
   const EnvironmentVariation& varied = plan->varied;

@@ -33,7 +33,7 @@ std::string ProgramPath() {
   if (const char* const given = std::getenv("TAUT_VIRTUAL_ROBOT"); given && *given != '\0') {
     return given;
   }
-  return FindBesideProgram({kProgram}).value_or(kProgram);
+  return FindBesideProgram(kProgram).value_or(kProgram);
 }
 
 std::string FolderOfIt(Diagnostics& out) {

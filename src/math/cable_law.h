@@ -1,12 +1,12 @@
-/// Elastic law of a cable: its force against its stretch, the only place of this law
-/// (docs/theory/cables.md, eq. 1). The step, statics, energies, starts and sizing use it; the
-/// dampers, and the rule that a cable does not push, belong to their callers.
+/// Elastic law of a cable: force as a function of stretch (docs/theory/cables.md, eq. 1). No other
+/// file computes it. The step, statics, energies, starts and sizing call it; the callers add
+/// dampers and the rule that a cable does not push.
 #pragma once
 
 namespace taut::math {
 
 /// Linear spring with the stiffness k [N/m]. `Num`: double, or the lanes of a SIMD register.
-/// Another law has the same members.
+/// A class for another law must have the same member functions.
 template <class Num>
 struct CableLaw {
   Num stiffness;
@@ -15,7 +15,7 @@ struct CableLaw {
   [[gnu::always_inline]] constexpr Num Force(Num stretch_m) const noexcept {
     return stiffness * stretch_m;
   }
-  /// Returns the derivative of the force by the stretch [N/m].
+  /// Returns the derivative of the force with respect to the stretch [N/m].
   [[gnu::always_inline]] constexpr Num Slope(Num) const noexcept { return stiffness; }
   /// Returns the stretch at a force >= 0 [m].
   [[gnu::always_inline]] constexpr Num Stretch(Num force_n) const noexcept {

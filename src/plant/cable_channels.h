@@ -1,5 +1,5 @@
-/// Channels of a cable in a trace, `cable/NAME/...`, in one table: recorder, sensors, environments
-/// and replays read their names, units and rows from it. A new channel is one line, and one in
+/// Table of the channels of a cable in a trace, `cable/NAME/...`, for recorder, sensors,
+/// environments and replays: names, units and rows. To add a channel, add a line here and in
 /// docs/formats/trace.md.
 #pragma once
 
@@ -12,11 +12,12 @@ namespace taut::plant {
 struct CableChannel {
   const char* name;
   const char* unit;
-  // One of these rows has the values: cable c of lane j at [c * lanes + j].
+  // Row with the values, cable c of lane j at [c * lanes + j]; the other pointer is null.
   const double* ReadingRows::*reading;
   double* Commands::*command;
-  bool sensed = false;          ///< A robot's sensors measure it: also `sensor/NAME/...`.
-  bool with_set_point = false;  ///< Only of cables with a set point of tension.
+  bool sensed = false;  ///< Also measured by a robot's sensors: channel `sensor/NAME/...`.
+  bool with_set_point =
+      false;  ///< Recorded only for cables whose controller has a tension set point.
 
   const double* Row(const ReadingRows& readings, const Commands& commands) const noexcept {
     return reading != nullptr ? readings.*reading : commands.*command;

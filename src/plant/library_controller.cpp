@@ -56,12 +56,11 @@ class LibraryController final : public Controller {
 
 }  // namespace
 
-std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> ControllersOf(
-    const ControllerSpec& spec) {
+std::vector<ControllerFactory> ControllersOf(const ControllerSpec& spec) {
   std::vector<plant::MakeController> kinds;
   if (GaitInputOf(spec) != nullptr) kinds.push_back(plant::MakeGait);
   kinds.push_back(spec.impedance ? plant::MakeImpedance : plant::MakePosition);
-  std::vector<std::function<std::unique_ptr<Controller>(const ControlSetup&)>> factories;
+  std::vector<ControllerFactory> factories;
   for (const plant::MakeController make : kinds) {
     factories.push_back([spec, make](const ControlSetup& setup) {
       return std::make_unique<LibraryController>(setup, spec, make);

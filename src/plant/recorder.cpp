@@ -36,16 +36,14 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
     const bool has_set_point =
         std::binary_search(with_set_point.begin(), with_set_point.end(), static_cast<int>(c));
     std::vector<ChannelInfo> names;
-    std::vector<const CableChannel*> recorded;
     for (const CableChannel& channel : kCableChannels) {
-      if (channel.with_set_point && !has_set_point) continue;
-      names.push_back({channel.name, channel.unit});
-      recorded.push_back(&channel);
+      if (has_set_point || !channel.with_set_point) names.push_back({channel.name, channel.unit});
     }
     Add("cable/" + def.cables[c].name + "/", names,
-        [c, recorded = std::move(recorded)](const RecordSource& s, double* out) {
-          for (const CableChannel* channel : recorded) {
-            *out++ = channel->Value(s.exact->cables, *s.commands, c, s.lane);
+        [c, has_set_point](const RecordSource& s, double* out) {
+          for (const CableChannel& channel : kCableChannels) {
+            if (!has_set_point && channel.with_set_point) continue;
+            *out++ = channel.Value(s.exact->cables, *s.commands, c, s.lane);
           }
         });
   }

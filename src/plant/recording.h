@@ -1,4 +1,4 @@
-/// Rows of a running experiment, appended to traces at the rate of its `record`.
+/// Recording of a running experiment: appends rows to traces at `record.rate_hz`.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,8 @@ class Recording {
     }
     return nullptr;
   }
-  /// Flushes rows that have been in memory for long. Returns the writer that failed, or null.
+  /// Flushes rows that have been in memory for longer than `TraceWriter::FlushOld` allows. Returns
+  /// the writer that failed, or null.
   const TraceWriter* FlushOld() {
     for (TraceWriter* writer : writers_) {
       if (!writer->FlushOld()) return writer;
@@ -55,7 +56,7 @@ class Recording {
   std::vector<TraceWriter*> writers_;
   double from_s_;
   std::int64_t rows_ = 0;
-  bool has_end_ = false;  ///< The row at the experiment's end is written.
+  bool has_end_ = false;  ///< Whether the row at the experiment's end has been appended.
 };
 
 }  // namespace taut::plant

@@ -42,7 +42,7 @@ std::optional<std::span<const std::uint8_t>> Sealing::Open(std::span<const std::
   }
   const auto saved = sealed.subspan(sizeof head);
   if (head.kind != kind_) {
-    out.Error("snapshot.other_environment", {}, "the snapshot is of another " + name,
+    out.Error("snapshot.other_environment", {}, "the snapshot belongs to another " + name,
               std::string(differences_));
     return std::nullopt;
   }

@@ -14,13 +14,14 @@ namespace taut::plant {
 /// Seals snapshots of one class, "environment" or "simulation".
 class Sealing {
  public:
-  /// `kind`: a hash that is equal for objects with compatible snapshots. `differences`: hint for a
-  /// snapshot of another kind.
+  /// `kind`: hash that is equal for objects whose snapshots are compatible. `differences`: hint of
+  /// the error about a snapshot of another kind. Both texts must outlive this object.
   Sealing(std::string_view class_name, std::uint64_t kind, std::string_view differences)
       : class_name_(class_name), kind_(kind), differences_(differences) {}
 
   std::vector<std::uint8_t> Seal(const std::vector<std::uint8_t>& saved) const;
-  /// Returns the contents. Nothing, with an error, if they are of another kind or damaged.
+  /// Returns the contents, or nothing, with an error, if the snapshot has another kind or is
+  /// damaged.
   std::optional<std::span<const std::uint8_t>> Open(std::span<const std::uint8_t> sealed,
                                                     Diagnostics& out) const;
 

@@ -3,36 +3,40 @@
 #include "plant/status_text.h"
 
 namespace taut {
+namespace {
+
+/// Returns a reading of an element in a world. `function`: the caller's name, for messages.
+template <class Impl, class State>
+State Read(const Impl& impl, const char* function, const plant::Names& names,
+           const ElementRef& element, int world, State (WorldBatch::*read)(int, int) const) {
+  const int index = names.IndexOf(function, impl.def(), element);
+  return (impl.GroupOf(function, world).batch.*read)(impl.LaneOf(world), index);
+}
+
+}  // namespace
 
 // --- readings ------------------------------------------------------------------------------------
 
 CableState Simulation::Cable(const ElementRef& cable, int world) const {
-  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
-  return impl_->GroupOf(__func__, world).batch.Cable(impl_->LaneOf(world), c);
+  return Read(*impl_, __func__, impl_->cables, cable, world, &WorldBatch::Cable);
 }
 BodyState Simulation::Body(const ElementRef& body, int world) const {
-  const int b = impl_->bodies.IndexOf(__func__, impl_->def(), body);
-  return impl_->GroupOf(__func__, world).batch.Body(impl_->LaneOf(world), b);
+  return Read(*impl_, __func__, impl_->bodies, body, world, &WorldBatch::Body);
 }
 Vec3 Simulation::NodePosition(const ElementRef& node, int world) const {
-  const int n = impl_->nodes.IndexOf(__func__, impl_->def(), node);
-  return impl_->GroupOf(__func__, world).batch.NodePosition(impl_->LaneOf(world), n);
+  return Read(*impl_, __func__, impl_->nodes, node, world, &WorldBatch::NodePosition);
 }
 Vec3 Simulation::NodeVelocity(const ElementRef& node, int world) const {
-  const int n = impl_->nodes.IndexOf(__func__, impl_->def(), node);
-  return impl_->GroupOf(__func__, world).batch.NodeVelocity(impl_->LaneOf(world), n);
+  return Read(*impl_, __func__, impl_->nodes, node, world, &WorldBatch::NodeVelocity);
 }
 JointState Simulation::Joint(const ElementRef& joint, int world) const {
-  const int j = impl_->joints.IndexOf(__func__, impl_->def(), joint);
-  return impl_->GroupOf(__func__, world).batch.Joint(impl_->LaneOf(world), j);
+  return Read(*impl_, __func__, impl_->joints, joint, world, &WorldBatch::Joint);
 }
 MotionState Simulation::Motion(const ElementRef& motion, int world) const {
-  const int m = impl_->motions.IndexOf(__func__, impl_->def(), motion);
-  return impl_->GroupOf(__func__, world).batch.Motion(impl_->LaneOf(world), m);
+  return Read(*impl_, __func__, impl_->motions, motion, world, &WorldBatch::Motion);
 }
 MotorState Simulation::Motor(const ElementRef& cable, int world) const {
-  const int c = impl_->cables.IndexOf(__func__, impl_->def(), cable);
-  return impl_->GroupOf(__func__, world).batch.Motor(impl_->LaneOf(world), c);
+  return Read(*impl_, __func__, impl_->cables, cable, world, &WorldBatch::Motor);
 }
 Energy Simulation::TotalEnergy(int world) const {
   return impl_->GroupOf(__func__, world).batch.TotalEnergy(impl_->LaneOf(world));

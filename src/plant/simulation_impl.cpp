@@ -74,11 +74,8 @@ bool Simulation::Impl::FindStarts(std::span<plant::WorldSlot> of,
 }
 
 void Simulation::Impl::MakeGroups(std::optional<Simd> simd) {
-  batch_options.simd = simd.value_or(slots.size() == 1 ? Simd::kScalar : BestSimd());
-  batch_options.worlds = 1;
-  // An instruction set that this machine lacks falls back to another one.
-  lanes = WorldBatch(model, batch_options).lanes();
-  batch_options.worlds = lanes;
+  batch_options.simd = SimdOf({.worlds = static_cast<int>(slots.size()), .simd = simd});
+  batch_options.worlds = lanes = static_cast<int>(*batch_options.simd);
   groups.resize((slots.size() + static_cast<std::size_t>(lanes) - 1) /
                 static_cast<std::size_t>(lanes));
   auto work = [&](int, std::size_t g) {
@@ -105,7 +102,7 @@ void Simulation::Impl::PutToStart(int world) {
 
 void Simulation::Impl::StepLanes(std::size_t g, Lanes active) {
   plant::SimulationGroup& group = *groups[g];
-  // Lanes behind the last world step with the first one, so that all lanes may step at once.
+  // Unused lanes of the last group step with its first world, so that all lanes can step at once.
   if (Has(active, 0)) active |= AllLanes(lanes) & ~AllLanes(CountIn(g));
   group.loop.Step(active);
   for (int j = 0; j < CountIn(g); ++j) {

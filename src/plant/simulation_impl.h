@@ -1,4 +1,4 @@
-/// Inside of `Simulation`: its worlds in groups, with their variants and starts.
+/// Implementation of `Simulation`: groups of worlds with their variants and starts.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using Bytes = std::vector<std::uint8_t>;
 struct Variant {
   RolloutWorld world;
   std::shared_ptr<const Bytes> start;
-  std::uint64_t hash = 0;  ///< Of the contents; 0: not known yet.
+  std::uint64_t hash = 0;  ///< Of the resolved experiment and `world.numbers`; 0: not computed yet.
 };
 
 struct WorldSlot {
@@ -98,12 +98,13 @@ struct Simulation::Impl {
   int LaneOf(int world) const noexcept { return world % lanes; }
   plant::WorldSlot& SlotOf(int world) { return slots[static_cast<std::size_t>(world)]; }
   const ModelDef& def() const noexcept { return experiment.robot.def; }
-  /// Number of worlds of a group; further lanes of the last group repeat its first world.
+  /// Returns the number of worlds in a group; further lanes of the last group repeat its first
+  /// world.
   int CountIn(std::size_t group) const noexcept {
     return std::min(lanes, static_cast<int>(slots.size()) - static_cast<int>(group) * lanes);
   }
 
-  /// Index of a cable's value of a world in the rows of its group.
+  /// Returns the index of a cable's value in the rows of the world's group.
   std::ptrdiff_t RowIndex(int cable, int world) const noexcept {
     return static_cast<std::ptrdiff_t>(cable) * lanes + LaneOf(world);
   }
@@ -120,8 +121,8 @@ struct Simulation::Impl {
   }
 
   void MakeSlots(const SimulationOptions& options);
-  /// Finds the start of each slot's variant, on all threads. Returns false, with an error per
-  /// variant, if one has none.
+  /// Finds the start of each slot's variant, on all threads. Returns false, with an error for each
+  /// variant without a start, if there is any, or if `keep_going` returned false.
   bool FindStarts(std::span<plant::WorldSlot> of, const std::function<bool()>& keep_going,
                   Diagnostics& out);
   void MakeGroups(std::optional<Simd> simd);
@@ -132,10 +133,11 @@ struct Simulation::Impl {
   std::uint64_t HashOf(plant::Variant& variant) const;
   /// Returns the bytes of a world, without a seal.
   plant::Bytes StateOf(int world);
-  /// Puts such bytes into a world. Returns false if they do not fit; the world is then in no valid
-  /// state.
+  /// Restores the bytes of `StateOf` into a world. Returns false if they do not fit; the state of
+  /// the world is then invalid.
   bool Put(int world, std::span<const std::uint8_t> saved, std::shared_ptr<plant::Variant> variant);
-  /// Returns the variant with this hash, of any world or of the creation; or null.
+  /// Returns the variant with this hash, of any world, of `world` first, or of the creation of the
+  /// simulation; null if there is none.
   std::shared_ptr<plant::Variant> VariantWith(std::uint64_t hash, int world);
 
   const ExperimentSpec experiment;
@@ -147,7 +149,7 @@ struct Simulation::Impl {
   std::vector<plant::WorldSlot> slots;
   std::vector<std::shared_ptr<plant::Variant>> created;  ///< Variants at the creation.
   std::vector<std::unique_ptr<plant::SimulationGroup>> groups;
-  std::uint64_t kind = 0;  ///< Of snapshots; 0: not known yet.
+  std::uint64_t kind = 0;  ///< Of snapshots (`Sealing`); 0: not computed yet.
   plant::Names bodies{"body", experiment.robot.def.bodies, FindBody};
   plant::Names nodes{"node", experiment.robot.def.nodes, FindNode};
   plant::Names cables{"cable", experiment.robot.def.cables, FindCable};

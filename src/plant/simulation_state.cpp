@@ -1,4 +1,5 @@
-// Snapshots of a simulation's worlds. Not in the browser build, which writes no experiments.
+// Snapshots of a simulation's worlds. Not part of the browser build, which cannot write the
+// resolved experiment that a snapshot's hash needs.
 #include "base/hash.h"
 #include "plant/simulation_impl.h"
 
@@ -15,7 +16,8 @@ plant::Sealing Simulation::Impl::Seal() {
     kind = hash.value();
   }
   return {"simulation", kind,
-          "experiment, number of custom controllers, custom sensors and friction must be the same"};
+          "both must have the same experiment, number of custom controllers, custom sensors and "
+          "custom friction law"};
 }
 
 std::uint64_t Simulation::Impl::HashOf(plant::Variant& variant) const {
@@ -48,6 +50,9 @@ struct Head {
   static constexpr std::size_t kBytes = 3 * sizeof(std::uint64_t);
 };
 
+/// Bytes of an `ExternalForce`, which are fewer than those of the type.
+constexpr std::size_t kForceBytes = sizeof(int) + sizeof(Vec3);
+
 }  // namespace
 
 plant::Bytes Simulation::Impl::StateOf(int world) {
@@ -75,7 +80,7 @@ bool Simulation::Impl::Put(int world, std::span<const std::uint8_t> saved,
   Head head;
   head.Serialize(first);
   if (first.failed() || head.size > saved.size() - Head::kBytes ||
-      head.forces > saved.size() / sizeof(ExternalForce)) {
+      head.forces > saved.size() / kForceBytes) {
     return false;
   }
   const auto bytes = saved.subspan(Head::kBytes, static_cast<std::size_t>(head.size));
@@ -111,7 +116,7 @@ bool Simulation::Restore(std::span<const std::uint8_t> snapshot, Diagnostics& ou
   const std::shared_ptr<plant::Variant> variant = impl_->VariantWith(head.variant, world);
   if (!variant) {
     out.Error("snapshot.other_variant", {},
-              "the snapshot is of a variant that this simulation does not have",
+              "the snapshot belongs to a variant that this simulation does not have",
               "create both simulations with the same variants");
     return false;
   }
@@ -120,8 +125,8 @@ bool Simulation::Restore(std::span<const std::uint8_t> snapshot, Diagnostics& ou
   if (impl_->Put(world, *saved, variant)) return true;
   impl_->Put(world, before, variant_before);
   out.Error("snapshot.other_controllers", {},
-            "the snapshot is of a simulation with other custom controllers or sensors",
-            "both simulations must have the same");
+            "the snapshot belongs to a simulation with other custom controllers or sensors",
+            "use the same custom controllers and sensors in both simulations");
   return false;
 }
 

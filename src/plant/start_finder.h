@@ -12,15 +12,15 @@
 
 namespace taut::plant {
 
-/// Workspace of a thread: one world, which is brought to one start after another.
+/// Workspace of a thread: one world in which it computes one start after another.
 class StartFinder {
  public:
   explicit StartFinder(const std::shared_ptr<const Model>& model,
                        const WorldBatchOptions& options = {})
       : alone_(model, options), fresh_(alone_.Save(kTheWorld)) {}
 
-  /// Returns the snapshot of the experiment's start. Nothing, with an error, if there is none.
-  /// `gravity_m_per_s2`: if given, replaces the model's. `settled` as in `PrepareStart`.
+  /// Returns the snapshot of the experiment's start, or nothing, with an error, if there is none.
+  /// `gravity_m_per_s2`, if given, replaces the model's gravity. `settled`: as in `PrepareStart`.
   std::optional<std::vector<std::uint8_t>> Find(const ExperimentSpec& experiment, Diagnostics& out,
                                                 const Vec3* gravity_m_per_s2 = nullptr,
                                                 const std::function<bool()>& go_on = {},

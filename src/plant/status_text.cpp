@@ -15,7 +15,8 @@ std::string StatusText(const ModelDef& def, const WorldStatus& status) {
   std::string out;
   const auto add = [&](const char* text) { out += (out.empty() ? "" : "; ") + std::string(text); };
   if (status.bits & kStatusNonFinite) add("the state is no longer finite");
-  if (status.bits & kStatusNotConverged) add("a contact solve did not converge");
+  if (status.bits & kStatusNotConverged)
+    add("the contacts or stiff cables were not solved to the tolerance");
   if (status.bits & kStatusStepTooLong) {
     add(status.cable >= 0
             ? "the step is too long for the tension of a cable"

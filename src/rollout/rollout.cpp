@@ -21,12 +21,9 @@ class LaneRollouts final : public Rollouts {
         objective_(objective),
         options_(options),
         model_(std::move(model)),
-        pool_(options.threads) {
-    // A single world uses scalar code, with identical results.
-    WorldBatchOptions probe;
-    probe.simd = options.simd ? *options.simd : BestSimd();
-    simd_ = *probe.simd;
-    lanes_ = WorldBatch(model_, probe).lanes();
+        pool_(options.threads),
+        simd_(SimdOf({.simd = options.simd.value_or(BestSimd())})),
+        lanes_(static_cast<int>(simd_)) {
     places_.resize(static_cast<std::size_t>(pool_.threads()));
   }
 

@@ -226,9 +226,9 @@ TEST(EnvSnapshot, WhatIsNoneIsRefusedAndNothingChanges) {
   }
   ExperimentSpec other = experiment;
   other.controllers[0].impedance->cables[0].tension_offset_n += 1;
-  refused(MakeEnv(other, {.worlds = 1})->Save(0), "of another environment");
+  refused(MakeEnv(other, {.worlds = 1})->Save(0), "belongs to another environment");
   refused(MakeEnv(experiment, {.worlds = 1, .randomise = false})->Save(0),
-          "of another environment");
+          "belongs to another environment");
 }
 
 }  // namespace

@@ -160,6 +160,13 @@ class Access(unittest.TestCase):
         self.assertIn("controllers, pushes", str(caught[0].message))
         self.assertIn("use Simulation", str(caught[0].message))
 
+    def test_a_batch_warns_of_the_parts_that_an_experiment_still_has(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            taut.Batch(push(1).without_controllers())
+        self.assertEqual(len(caught), 1)
+        self.assertIn("the experiment has pushes, which", str(caught[0].message))
+
 
 class OwnControllers(unittest.TestCase):
     def test_sees_the_worlds_that_are_due(self):
@@ -202,7 +209,7 @@ class OwnControllers(unittest.TestCase):
             taut.Simulation(PUSH, controllers=[Fails()]).run_until(1)
         with self.assertRaisesRegex(RuntimeError, "no more string"):
             taut.run(push(1), controllers=[Fails()])
-        with self.assertRaisesRegex(ValueError, "commands.rest_length_m: not finite for cable 0"):
+        with self.assertRaisesRegex(ValueError, "commands.rest_length_m: nan for cable 0"):
             taut.Simulation(PUSH, controllers=[Nan()])
         with self.assertRaises(ValueError):
             taut.Simulation(PUSH, controllers=[Shape()])
@@ -274,7 +281,7 @@ class OwnControllers(unittest.TestCase):
                 commands.rest_length_m[:] = -1
 
         for wrong, words in ((lambda: sim.tension_n(1.5), "cable: 1.5; expected a name or an index"),
-                             (lambda: sim.tension_n(True), "cable: True"), (lambda: sim.set_gains(0), "no gain given"),
+                             (lambda: sim.tension_n(True), "cable: True"), (lambda: sim.set_gains(0), "no gain is given"),
                              (lambda: sim.set_gains(0, tension_offset_n="a"), "tension_offset_n: 'a'"),
                              (lambda: taut.Simulation(5), "experiment: 5")):
             with self.assertRaises(TypeError) as caught:
@@ -322,7 +329,7 @@ class OwnControllers(unittest.TestCase):
         sim.restore(saved, 1)
         sim.run_until(0.1)
         self.assertEqual(sim.hash(1), expected)
-        with self.assertRaisesRegex(TypeError, "Forgets: a simulation is saved with its controllers"):
+        with self.assertRaisesRegex(TypeError, "Forgets: its state cannot be saved; define save"):
             taut.Simulation(bare, controllers=[Forgets()]).save()
 
     def test_reading_within_act_is_allowed_and_stepping_is_not(self):

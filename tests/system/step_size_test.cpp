@@ -3,18 +3,18 @@
 //
 // With a controller at 250 Hz and motors of 0.07 m/s the tensions oscillate by 0.06 N with a random
 // phase: maxima of runs that start a micrometer apart differ by up to 0.2 %. Therefore each step
-// size is run from several such starts, and means are compared.
+// size is run from several such starts, as worlds of one simulation, and means are compared.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <vector>
 
-#include "taut/run.h"
+#include "taut/simulation.h"
 #include "taut/spec.h"
-#include "taut/trace.h"
-#include "tests/row_watch.h"
 
 namespace taut {
 namespace {
@@ -23,55 +23,54 @@ constexpr int kStarts = 48;
 constexpr double kApartM = 1e-6;
 constexpr int kFrontCables = 6;
 
-/// Displacement of the front segment between two times
-class Watch final : public test::RowWatch {
- public:
-  explicit Watch(const ExperimentSpec& experiment) {
-    const auto channels = RunChannels(experiment);
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      if (channels[i].name == "body/segment_0/position_x_m") first_ = i;
-    }
-    EXPECT_EQ(channels[first_ + 1].name, "body/segment_0/position_y_m");
-  }
-  bool Append(double time_s, const double* values) override {
-    if (time_s < 5 + 1e-6) start_[0] = values[first_], start_[1] = values[first_ + 1];
-    end_[0] = values[first_], end_[1] = values[first_ + 1];
-    return true;
-  }
-  double SlideM() const { return std::hypot(end_[0] - start_[0], end_[1] - start_[1]); }
-
- private:
-  std::size_t first_ = 0;
-  double start_[2] = {}, end_[2] = {};
-};
-
 struct Outcome {
   double max_n[kFrontCables] = {};  ///< Spring only, mean over the starts.
-  double slide_m = 0;
+  double slide_m = 0;               ///< Of the front segment, from 5 s to the end; mean.
 };
 
 Outcome MeanOutcome(double step_s) {
-  Outcome outcome;
-  for (int start = 0; start < kStarts; ++start) {
-    Diagnostics out;
-    auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml", {}, out);
-    EXPECT_TRUE(experiment) << out.Format();
-    if (!experiment) return outcome;
-    experiment->step_s = step_s;
-    for (auto& controller : experiment->controllers) controller.clock.period_s = 0.004;
-    for (auto& cable : experiment->robot.def.cables) cable.rest_length_m += kApartM * start;
-    Watch watch(*experiment);
-    RunOptions options;
-    options.traces = {&watch};
-    const auto summary = RunExperiment(*experiment, options, out);
-    EXPECT_TRUE(summary) << out.Format();
-    if (!summary) return outcome;
-    EXPECT_EQ(summary->status_text, "");
-    for (std::size_t i = 0; i < kFrontCables; ++i) {
-      EXPECT_EQ(summary->cables[i].name.back(), '1');
-      outcome.max_n[i] += summary->cables[i].elastic.max_n / kStarts;
+  Diagnostics out;
+  auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml", {}, out);
+  EXPECT_TRUE(experiment) << out.Format();
+  if (!experiment) return {};
+  experiment->step_s = step_s;
+  for (auto& controller : experiment->controllers) controller.clock.period_s = 0.004;
+  SimulationOptions options;
+  options.worlds = kStarts;
+  options.threads = 0;
+  const auto sim = Simulation::Create(*experiment, options, out);
+  EXPECT_TRUE(sim) << out.Format();
+  if (!sim) return {};
+  for (int world = 0; world < kStarts; ++world) {
+    BodyState front = sim->Body("segment_0", world);
+    front.position_m.z += kApartM * world;
+    sim->SetBodyState("segment_0", front, world);
+  }
+  std::vector<std::array<double, kFrontCables>> max_n(kStarts);
+  std::vector<Vec3> begin_m(kStarts);
+  while (sim->Time() < experiment->duration_s) {
+    if (sim->Time() < 5) {
+      for (int world = 0; world < kStarts; ++world) {
+        begin_m[world] = sim->Body("segment_0", world).position_m;
+      }
     }
-    outcome.slide_m += watch.SlideM() / kStarts;
+    sim->Step();
+    for (int world = 0; world < kStarts; ++world) {
+      const Observation& seen = sim->Observe(world / sim->lanes());
+      for (int c = 0; c < kFrontCables; ++c) {
+        max_n[world][c] = std::max(max_n[world][c], seen.Cable(c, world % sim->lanes()).elastic_n);
+      }
+    }
+  }
+  Outcome outcome;
+  for (int world = 0; world < kStarts; ++world) {
+    EXPECT_EQ(sim->StatusText(world), "");
+    for (int c = 0; c < kFrontCables; ++c) outcome.max_n[c] += max_n[world][c] / kStarts;
+    const Vec3 end_m = sim->Body("segment_0", world).position_m;
+    outcome.slide_m += std::hypot(end_m.x - begin_m[world].x, end_m.y - begin_m[world].y) / kStarts;
+  }
+  for (int c = 0; c < kFrontCables; ++c) {
+    EXPECT_EQ(experiment->robot.def.cables[c].name.back(), '1');
   }
   return outcome;
 }

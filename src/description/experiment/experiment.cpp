@@ -105,19 +105,6 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   return text;
 }
 
-/// Returns the parts of an experiment that act on its model in a run.
-std::string PartsOf(const ExperimentSpec& experiment) {
-  std::string parts;
-  const auto add = [&](bool has, const char* name) {
-    if (has) parts += (parts.empty() ? "" : ", ") + std::string(name);
-  };
-  add(!experiment.controllers.empty(), "controllers");
-  add(!experiment.pushes.empty(), "pushes");
-  add(!experiment.drags.empty(), "drags");
-  add(experiment.start != StartKind::kAsDescribed, "a settled start");
-  return parts;
-}
-
 /// Returns whether `path` is a resolved experiment (`ResolvedYaml`). The next reader reports
 /// errors.
 bool IsResolved(const std::string& path) {
@@ -177,8 +164,20 @@ std::optional<ExperimentSpec> description::LoadPartial(
   const std::vector<std::string>& model_files = experiment->robot.files;
   experiment->files.insert(experiment->files.end(), model_files.begin(), model_files.end());
   experiment->input_hash = description::HashInputs(experiment->files, overrides);
-  experiment->robot.def.experiment_parts = description::PartsOf(*experiment);
+  experiment->robot.def.experiment_parts = ActingParts(*experiment);
   return experiment;
+}
+
+std::string ActingParts(const ExperimentSpec& experiment) {
+  std::string parts;
+  const auto add = [&](bool has, const char* name) {
+    if (has) parts += (parts.empty() ? "" : ", ") + std::string(name);
+  };
+  add(!experiment.controllers.empty(), "controllers");
+  add(!experiment.pushes.empty(), "pushes");
+  add(!experiment.drags.empty(), "drags");
+  add(experiment.start != StartKind::kAsDescribed, "a settled start");
+  return parts;
 }
 
 RolloutWorld WorldOf(const ExperimentSpec& experiment) {

@@ -87,7 +87,7 @@ std::string_view SimdWish() {
 
 WorldBatchOptions Sane(WorldBatchOptions o) {
   o.worlds = std::max(o.worlds, 1);
-  o.simd = o.simd ? WidestUpTo(*o.simd) : (o.worlds == 1 ? Simd::kScalar : BestSimd());
+  o.simd = SimdOf(o);
   return o;
 }
 
@@ -107,6 +107,11 @@ Simd BestSimd() {
     if (SimdWish() == name) return WidestUpTo(simd);
   }
   return WidestUpTo(Simd::kAvx512);
+}
+
+Simd SimdOf(const WorldBatchOptions& options) {
+  if (options.simd) return WidestUpTo(*options.simd);
+  return options.worlds == 1 ? Simd::kScalar : BestSimd();
 }
 
 bool sim::CheckEnvironment(Diagnostics& out) {

@@ -332,9 +332,9 @@ class Compiler {
 std::shared_ptr<const Model> Model::Compile(const ModelDef& def, Diagnostics& out) {
   if (!def.experiment_parts.empty()) {
     out.Warning("model.experiment_left_out", {},
-                "the experiment has " + def.experiment_parts + ", which are left out here",
-                "use Simulation; or clear ModelDef::experiment_parts, in Python use "
-                "experiment.robot");
+                "the experiment has " + def.experiment_parts + ", which a batch ignores",
+                "to run them, use Simulation; to ignore them, clear ModelDef::experiment_parts, in "
+                "Python pass experiment.robot");
   }
   return CompileForExperiment(def, out);
 }

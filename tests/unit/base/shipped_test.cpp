@@ -56,10 +56,19 @@ TEST_F(Shipped, AFileIsFoundFromAnyFolder) {
   EXPECT_EQ(FindInput("models/a.yaml", Build()), "share/models/a.yaml");
 }
 
-TEST_F(Shipped, TheFirstPathBesideTheProgramThatExistsIsFound) {
+TEST_F(Shipped, FilesOfTheProgramAreFoundInABuildAnInstallationAndAPackage) {
   const fs::path program = fs::canonical(RunningProgram());
-  EXPECT_EQ(FindBesideProgram({"none", program.filename().c_str(), "."}), program.string());
-  EXPECT_EQ(FindBesideProgram({"none"}), std::nullopt);
+  EXPECT_EQ(FindBesideProgram(program.filename()), program.string());
+  EXPECT_EQ(FindBesideProgram("none"), std::nullopt);
+  for (const char* const share : {"share/taut", "../share/taut"}) {
+    // The installation's folder comes before the package's.
+    const fs::path file = (folder_ / "usr/bin" / share / "web/page.html").lexically_normal();
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << "page";
+    SetRunningProgram(At("usr/bin/taut"));
+    EXPECT_EQ(FindBesideProgram("web/page.html"), file.string());
+    SetRunningProgram("");
+  }
 }
 
 TEST_F(Shipped, AFileOfTheCurrentFolderComesFirst) {

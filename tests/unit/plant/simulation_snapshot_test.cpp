@@ -82,6 +82,18 @@ TEST(Simulation, SnapshotsHoldAndClearForcesOnNodes) {
   }
 }
 
+/// Many forces on few nodes take more room in memory than in the snapshot
+TEST(Simulation, SnapshotsHoldMoreForcesThanNodes) {
+  const auto simulation = Create(Load("stand_still", 1));
+  const std::vector<ExternalForce> forces(20'000, {1, {1e-6, 0, 0}});
+  simulation->SetExternalForces(forces);
+  const auto saved = simulation->Save();
+  simulation->SetExternalForces({});
+  Diagnostics out;
+  ASSERT_TRUE(simulation->Restore(saved, out)) << out.Format();
+  EXPECT_EQ(simulation->ExternalForces().size(), forces.size());
+}
+
 /// Remembers how often it has acted
 class Counter final : public Controller {
  public:

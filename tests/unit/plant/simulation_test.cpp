@@ -153,9 +153,14 @@ TEST(Simulation, ABatchOfAnExperimentWarnsOfWhatItLeavesOut) {
   Diagnostics out;
   EXPECT_TRUE(Model::Compile(experiment.robot.def, out));
   EXPECT_TRUE(out.ok());
-  EXPECT_EQ(out.Format(),
-            "warning: the experiment has controllers, pushes, which are left out here (use "
-            "Simulation; or clear ModelDef::experiment_parts, in Python use experiment.robot)\n");
+  EXPECT_EQ(
+      out.Format(),
+      "warning: the experiment has controllers, pushes, which a batch ignores (to run them, use "
+      "Simulation; to ignore them, clear ModelDef::experiment_parts, in Python pass "
+      "experiment.robot)\n");
+  ExperimentSpec bare = experiment;
+  bare.controllers.clear();
+  EXPECT_EQ(ActingParts(bare), "pushes");
   Diagnostics quiet;
   EXPECT_TRUE(Simulation::Create(experiment, {}, quiet));
   EXPECT_EQ(quiet.Format(), "");
