@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 Json BodiesJson(const ModelDef& def) {
   const std::vector<BodyLoad> loads = StartLoads(def);
   const std::vector<LeftLoad> left = LeftAtStart(def, StartJointLoads(def));
-  const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  const auto shapes = CollidingShapes(def);
   Json bodies = Json::array();
   for (std::size_t i = 0; i < def.bodies.size(); ++i) {
     const BodyDef& body = def.bodies[i];
@@ -35,11 +35,10 @@ Json BodiesJson(const ModelDef& def) {
                       {"cable_torque_n_m", ToJson(loads[i].cable_torque_n_m)},
                       {"weight_n", ToJson(loads[i].weight_n)},
                       {"left_force_n", ToJson(left[i].force_n)},
-                      {"left_torque_n_m", ToJson(left[i].torque_n_m)},
-                      {"colliding_rods", shapes[i].capsules},
-                      {"colliding_spheres", shapes[i].spheres},
-                      {"colliding_boxes", shapes[i].boxes},
-                      {"colliding_hulls", shapes[i].hulls}});
+                      {"left_torque_n_m", ToJson(left[i].torque_n_m)}});
+    for (const ShapeCount& of_kind : shapes[i]) {
+      bodies.back()[std::string("colliding_") + of_kind.name.many] = of_kind.count;
+    }
   }
   return bodies;
 }
@@ -140,6 +139,9 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
     json["experiment"] = {{"name", experiment->name},
                           {"duration_s", experiment->duration_s},
                           {"step_s", LongestStep(*experiment)}};
+    for (const CableScheme scheme : SchemesOf(*experiment)) {
+      json["experiment"]["cable_schemes"].push_back(CableSchemeName(scheme));
+    }
   }
   if (settled) {
     json["settled"] = {{"slack_cables", settled->slack_cables},

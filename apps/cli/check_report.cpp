@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "table.h"
+#include "taut/cable_scheme.h"
 #include "taut/env.h"
 #include "taut/loads.h"
 #include "taut/run.h"
@@ -39,16 +41,19 @@ std::string ActuatorText(const ActuatorDef& actuator) {
   return text.empty() ? "limited" : text.substr(0, text.size() - 1);
 }
 
-std::string ShapeText(const ShapeCount& shapes) {
+int Total(const std::vector<ShapeCount>& shapes) {
+  int total = 0;
+  for (const ShapeCount& of_kind : shapes) total += of_kind.count;
+  return total;
+}
+
+std::string ShapeText(const std::vector<ShapeCount>& shapes) {
   std::string text;
-  const auto add = [&](int count, const char* one, const char* many) {
-    if (count > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : many);
-  };
-  add(shapes.capsules, "rod", "rods");
-  add(shapes.spheres, "sphere", "spheres");
-  add(shapes.boxes, "box", "boxes");
-  add(shapes.hulls, "hull", "hulls");
+  for (const auto& [name, count] : shapes) {
+    if (count == 0) continue;
+    text +=
+        fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? name.one : name.many);
+  }
   return text.empty() ? "-" : text;
 }
 
@@ -56,7 +61,7 @@ std::string Bodies(const ModelDef& def) {
   Table table(
       {"body", "mass", "center x", "y", "z", "principal inertia 1", "2", "3", "colliding shapes"});
   table.Add({"", "kg", "m", "m", "m", "kg m^2", "kg m^2", "kg m^2", ""});
-  const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  const auto shapes = CollidingShapes(def);
   for (std::size_t i = 0; i < def.bodies.size(); ++i) {
     const BodyDef& body = def.bodies[i];
     const Vec3 moments = PrincipalMoments(body.inertia_kg_m2);
@@ -159,13 +164,13 @@ std::string RodsAndAnchors(const ModelDef& def) {
 }
 
 std::string Collisions(const ModelDef& def) {
-  const std::vector<ShapeCount> shapes = CollidingShapes(def);
+  const auto shapes = CollidingShapes(def);
   const auto apart = KeptApart(def);
   Table table({"pair of bodies", "pairs of shapes"});
   long long pairs = 0, shape_pairs = 0;
   for (std::size_t a = 0; a < shapes.size(); ++a) {
     for (std::size_t b = a + 1; b < shapes.size(); ++b) {
-      const long long count = static_cast<long long>(shapes[a].total()) * shapes[b].total();
+      const long long count = static_cast<long long>(Total(shapes[a])) * Total(shapes[b]);
       if (count == 0 || (def.bodies[a].fixed && def.bodies[b].fixed)) continue;
       if (apart.count({static_cast<int>(a), static_cast<int>(b)}) > 0) continue;
       ++pairs;
@@ -214,10 +219,28 @@ std::string RobotTables(const RobotSpec& robot) {
   return text + "\n" + Collisions(def);
 }
 
+std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment) {
+  Diagnostics unused;  // the caller has compiled the model before
+  const auto model = Model::CompileForExperiment(experiment.robot.def, unused);
+  if (!model) return {};
+  return CableSchemes(*model, LongestStep(experiment));
+}
+
 std::string ExperimentTables(const ExperimentSpec& experiment) {
   std::string text = fmt::format("Experiment {}: {:g} s in steps of {:g} s, {}\n", experiment.name,
                                  experiment.duration_s, LongestStep(experiment),
                                  Counted(experiment.controllers.size(), "controller"));
+  std::map<CableScheme, int> schemes;
+  for (const CableScheme scheme : SchemesOf(experiment)) ++schemes[scheme];
+  if (!schemes.empty()) {
+    text += "Integration of cables:";
+    const char* separator = " ";
+    for (const auto& [scheme, count] : schemes) {
+      text += fmt::format("{}{} {}", separator, count, CableSchemeName(scheme));
+      separator = ", ";
+    }
+    text += "\n";
+  }
   const std::vector<NodeDef>& nodes = experiment.robot.def.nodes;
   Table table({"kind", "name", "target", "time"});
   for (const ControllerSpec& controller : experiment.controllers) {

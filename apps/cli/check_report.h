@@ -2,7 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "taut/cable_scheme.h"
 #include "taut/spec.h"
 #include "taut/start.h"
 
@@ -11,7 +13,11 @@ namespace taut::cli {
 /// Formats aligned tables: bodies, cables, loads at the start, possible collisions.
 std::string RobotTables(const RobotSpec& robot);
 
-/// Formats one line on the experiment, and its controllers, events and phases.
+/// Returns the integration scheme of each cable at the experiment's longest step.
+std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment);
+
+/// Formats lines on the experiment and the integration of its cables, and its controllers, events
+/// and phases.
 std::string ExperimentTables(const ExperimentSpec& experiment);
 
 /// Returns the same facts and the warnings as JSON. `experiment` and `settled` (the result of

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "taut/shape_kinds.h"
+
 namespace taut::viewer {
 namespace {
 
@@ -74,22 +76,21 @@ int JoinedRobots::Add(const ModelDef& robot, const std::string& name, const Vec3
     body.com_m = Plus(body.com_m, at_m);
     joined_.bodies.push_back(std::move(body));
   }
-  const auto add = [&](auto part, auto& list, auto... places) {
-    part.name = prefix + part.name;
-    part.body = moved(part.body);
-    ((part.*places = Plus(part.*places, at_m)), ...);
-    list.push_back(std::move(part));
+  const auto add_shapes = [&](const ShapeName&, const auto& shapes, auto& joined) {
+    for (auto shape : shapes) {
+      shape.name = prefix + shape.name;
+      shape.body = moved(shape.body);
+      EachPoint(shape, [&](Vec3& point_m) { point_m = Plus(point_m, at_m); });
+      joined.push_back(std::move(shape));
+    }
   };
-  for (const SphereDef& part : robot.spheres) add(part, joined_.spheres, &SphereDef::center_m);
-  for (const CapsuleDef& part : robot.capsules) {
-    add(part, joined_.capsules, &CapsuleDef::from_m, &CapsuleDef::to_m);
+  EachShapeList(add_shapes, robot, joined_);
+  for (NodeDef node : robot.nodes) {
+    node.name = prefix + node.name;
+    node.body = moved(node.body);
+    node.position_m = Plus(node.position_m, at_m);
+    joined_.nodes.push_back(std::move(node));
   }
-  for (const BoxDef& part : robot.boxes) add(part, joined_.boxes, &BoxDef::center_m);
-  for (HullDef part : robot.hulls) {
-    for (Vec3& corner : part.corners_m) corner = Plus(corner, at_m);
-    add(std::move(part), joined_.hulls);
-  }
-  for (const NodeDef& part : robot.nodes) add(part, joined_.nodes, &NodeDef::position_m);
   for (CableDef cable : robot.cables) {
     cable.name = prefix + cable.name;
     for (AttachmentDef& at : cable.attachments) {

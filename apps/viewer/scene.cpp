@@ -83,36 +83,11 @@ Json Cables(const ModelDef& def) {
   return cables;
 }
 
-/// Returns the spelling of messages.json.
-const char* KindText(JointKind kind) {
-  switch (kind) {
-    case JointKind::kBall:
-      return "ball";
-    case JointKind::kHinge:
-      return "hinge";
-    case JointKind::kWeld:
-      return "weld";
-    case JointKind::kPrismatic:
-      return "prismatic";
-    case JointKind::kCylindrical:
-      return "cylindrical";
-    case JointKind::kPlanar:
-      return "planar";
-    case JointKind::kLine:
-      return "line";
-    case JointKind::kPlane:
-      return "plane";
-    case JointKind::kDistance:
-      return "distance";
-  }
-  return "";
-}
-
 Json Joints(const ModelDef& def) {
   Json joints = Json::array();
   for (const JointDef& joint : def.joints) {
     joints.push_back({{"name", joint.name},
-                      {"kind", KindText(joint.kind)},
+                      {"kind", JointKindName(joint.kind)},
                       {"body_a", joint.body_a},
                       {"body_b", joint.body_b},
                       {"from_m", InBody(def, joint.body_a, joint.from_m)},

@@ -19,6 +19,21 @@ enum class CableScheme {
   kImplicitDamped
 };
 
+/// Returns the name of a scheme in the output of `taut check`.
+constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
+  switch (scheme) {
+    case CableScheme::kExplicit:
+      return "explicit";
+    case CableScheme::kAlong:
+      return "fixed directions";
+    case CableScheme::kImplicit:
+      return "implicit";
+    case CableScheme::kImplicitDamped:
+      return "two stages";
+  }
+  return "";
+}
+
 /// Returns the scheme of each cable at steps of `step_s` > 0. It depends only on the step and on
 /// the model's masses, stiffnesses and dampings, never on the state.
 std::vector<CableScheme> CableSchemes(const Model& model, double step_s);

@@ -80,29 +80,39 @@ struct HeldMotions {
   bool swing = false;   ///< Rotation of the axis.
   bool twist = false;   ///< Rotation about the axis.
 };
+/// Position of a joint as one number.
+enum class JointCoordinate { kNone, kLength, kAngle };
+
+/// Properties of a kind of joint.
+struct JointKindRow {
+  const char* name;  ///< In files.
+  HeldMotions constrained;
+  JointCoordinate coordinate;
+};
+/// Kinds of joints, in the order of `JointKind`. Another kind is a line here, a value there, its
+/// symbol in the viewer, and its coordinate in src/sim/compile/model_joints.cpp.
+inline constexpr JointKindRow kJointKindRows[] = {
+    // Constrained: along, across, swing, twist.
+    {"ball", {true, true, false, false}, JointCoordinate::kAngle},
+    {"hinge", {true, true, true, false}, JointCoordinate::kAngle},
+    {"weld", {true, true, true, true}, JointCoordinate::kNone},
+    {"prismatic", {false, true, true, true}, JointCoordinate::kLength},
+    {"cylindrical", {false, true, true, false}, JointCoordinate::kLength},
+    {"planar", {true, false, true, false}, JointCoordinate::kNone},
+    {"line", {false, true, false, false}, JointCoordinate::kLength},
+    {"plane", {true, false, false, false}, JointCoordinate::kNone},
+    {"distance", {false, false, false, false}, JointCoordinate::kLength},
+};
+constexpr const JointKindRow& RowOf(JointKind kind) noexcept {
+  return kJointKindRows[static_cast<int>(kind)];
+}
+
+/// Returns the name of a kind of joint in files.
+constexpr const char* JointKindName(JointKind kind) noexcept { return RowOf(kind).name; }
+
 /// Returns the motions that a kind of joint constrains.
 constexpr HeldMotions ConstrainedMotions(JointKind kind) noexcept {
-  switch (kind) {
-    case JointKind::kBall:
-      return {true, true, false, false};
-    case JointKind::kHinge:
-      return {true, true, true, false};
-    case JointKind::kWeld:
-      return {true, true, true, true};
-    case JointKind::kPrismatic:
-      return {false, true, true, true};
-    case JointKind::kCylindrical:
-      return {false, true, true, false};
-    case JointKind::kPlanar:
-      return {true, false, true, false};
-    case JointKind::kLine:
-      return {false, true, false, false};
-    case JointKind::kPlane:
-      return {true, false, false, false};
-    case JointKind::kDistance:
-      break;
-  }
-  return {};
+  return RowOf(kind).constrained;
 }
 
 /// Returns the distance between a joint's two points along the directions that it constrains [m].
@@ -121,13 +131,13 @@ struct ApartDef {
 };
 
 /// Returns whether one coordinate describes the position of a joint.
-inline bool HasCoordinate(JointKind kind) noexcept {
-  return kind != JointKind::kWeld && kind != JointKind::kPlanar && kind != JointKind::kPlane;
+constexpr bool HasCoordinate(JointKind kind) noexcept {
+  return RowOf(kind).coordinate != JointCoordinate::kNone;
 }
 
 /// Returns whether a joint's coordinate is an angle.
-inline bool IsAngle(JointKind kind) noexcept {
-  return kind == JointKind::kHinge || kind == JointKind::kBall;
+constexpr bool IsAngle(JointKind kind) noexcept {
+  return RowOf(kind).coordinate == JointCoordinate::kAngle;
 }
 
 }  // namespace taut

@@ -26,9 +26,6 @@ namespace taut {
 /// parts of channel names, file names and pages.
 bool IsName(std::string_view text);
 
-/// Returns the name of a kind of joint in model files.
-std::string JointKindName(JointKind kind);
-
 /// Parameter overrides, as from `--set name=value`: values that replace parameters of a file. A
 /// value may be an expression such as `2 * edge_m`.
 using Overrides = std::vector<std::pair<std::string, std::string>>;

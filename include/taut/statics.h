@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "taut/model_def.h"
+#include "taut/shape_kinds.h"
 
 namespace taut {
 
@@ -67,11 +68,12 @@ Vec3 PrincipalMoments(const Inertia& inertia_kg_m2);
 /// Returns the total mass of the moving bodies [kg].
 double TotalMass(const ModelDef& def);
 
-/// Number of colliding shapes of a body.
+/// Number of colliding shapes of one kind.
 struct ShapeCount {
-  int capsules = 0, spheres = 0, boxes = 0, hulls = 0;
-  int total() const noexcept { return capsules + spheres + boxes + hulls; }
+  ShapeName name;
+  int count = 0;
 };
-std::vector<ShapeCount> CollidingShapes(const ModelDef& def);  ///< Per body of `def`.
+/// Returns the number of colliding shapes of each kind, per body of `def`.
+std::vector<std::vector<ShapeCount>> CollidingShapes(const ModelDef& def);
 
 }  // namespace taut

@@ -52,6 +52,7 @@
 #include "taut/run_folder.h"
 #include "taut/safety.h"
 #include "taut/schema.h"
+#include "taut/shape_kinds.h"
 #include "taut/shape_mesh.h"
 #include "taut/shape_run.h"
 #include "taut/shipped.h"

@@ -6,6 +6,7 @@
 #include "base/brief.h"
 #include "base/fixed.h"
 #include "math/vec.h"
+#include "sim/batch/named_shape.h"
 #include "taut/analysis.h"
 
 namespace taut {
@@ -233,33 +234,10 @@ class Finder {
         if (was.body_a == now.body_a && was.body_b == now.body_b) depth += was.depth_m;
       }
       if (now.depth_m <= depth) continue;
-      return "\"" + NameOf(now.a) + "\" and \"" + NameOf(now.b) + "\" overlap by " +
+      return sim::ShapeText(def_, now.a) + " and " + sim::ShapeText(def_, now.b) + " overlap by " +
              Brief(now.depth_m) + " m in equilibrium: statics supports contact with planes only";
     }
     return "";
-  }
-  const std::string& NameOf(const ShapeRef& shape) const {
-    const std::size_t i = static_cast<std::size_t>(shape.index);
-    using List = ShapeRef::List;
-    switch (shape.list) {
-      case List::kSpheres:
-        return def_.spheres[i].name;
-      case List::kCapsules:
-        return def_.capsules[i].name;
-      case List::kBoxes:
-        return def_.boxes[i].name;
-      case List::kHulls:
-        return def_.hulls[i].name;
-      case List::kTerrainBoxes:
-        return def_.terrain_boxes[i].name;
-      case List::kHeightFields:
-        return def_.height_fields[i].name;
-      case List::kTerrainMeshes:
-        return def_.terrain_meshes[i].name;
-      case List::kPlanes:
-        break;
-    }
-    return def_.planes[i].name;
   }
 
   void AddJoints(Equilibrium& e) const {

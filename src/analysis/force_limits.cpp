@@ -6,8 +6,10 @@
 #include "analysis/force_balance.h"
 #include "analysis/quadratic_program.h"
 #include "base/fixed.h"
+#include "math/shape_corners.h"
 #include "math/vec.h"
 #include "sim/contacts/combine.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::analysis {
 namespace {
@@ -163,25 +165,12 @@ std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m) {
       if (std::none_of(touches.begin(), touches.end(), same)) touches.push_back(touch);
     }
   };
-  for (const SphereDef& s : def.spheres) {
-    if (s.collides) add(s.body, s.center_m, s.radius_m, s.material);
-  }
-  for (const CapsuleDef& c : def.capsules) {
-    if (!c.collides) continue;
-    add(c.body, c.from_m, c.radius_m, c.material);
-    add(c.body, c.to_m, c.radius_m, c.material);
-  }
-  for (const BoxDef& box : def.boxes) {
-    for (int corner = 0; box.collides && corner < 8; ++corner) {
-      const Vec3& h = box.half_extents_m;
-      const Vec3 out{corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y, corner & 4 ? h.z : -h.z};
-      add(box.body, box.center_m + Rotate(box.orientation, out), 0, box.material);
-    }
-  }
-  for (const HullDef& hull : def.hulls) {
-    if (!hull.collides) continue;
-    for (const Vec3& corner : hull.corners_m) add(hull.body, corner, 0, hull.material);
-  }
+  EachShape(def, [&](const auto& shape) {
+    if (!shape.collides) return;
+    math::EachCorner(shape, [&](const Vec3& corner) {
+      add(shape.body, corner, math::RadiusOf(shape), shape.material);
+    });
+  });
   return touches;
 }
 

@@ -5,7 +5,9 @@
 
 #include "base/assert.h"
 #include "math/cable_law.h"
+#include "math/shape_corners.h"
 #include "math/vec.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::analysis {
 
@@ -129,23 +131,11 @@ void Structure::AddTouches() {
                          Dot(plane.normal, plane.point_m) + radius, radius});
     }
   };
-  for (const SphereDef& s : def_.spheres) {
-    if (s.collides) add(s.body, s.center_m, s.radius_m);
-  }
-  for (const CapsuleDef& c : def_.capsules) {
-    if (c.collides) add(c.body, c.from_m, c.radius_m), add(c.body, c.to_m, c.radius_m);
-  }
-  for (const BoxDef& box : def_.boxes) {
-    for (int corner = 0; box.collides && corner < 8; ++corner) {
-      const Vec3& h = box.half_extents_m;
-      const Vec3 out{corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y, corner & 4 ? h.z : -h.z};
-      add(box.body, box.center_m + Rotate(box.orientation, out), 0);
-    }
-  }
-  for (const HullDef& hull : def_.hulls) {
-    if (!hull.collides) continue;
-    for (const Vec3& corner : hull.corners_m) add(hull.body, corner, 0);
-  }
+  EachShape(def_, [&](const auto& shape) {
+    if (!shape.collides) return;
+    math::EachCorner(shape,
+                     [&](const Vec3& corner) { add(shape.body, corner, math::RadiusOf(shape)); });
+  });
 }
 
 void Structure::Measure() {

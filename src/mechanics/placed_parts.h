@@ -3,6 +3,7 @@
 
 #include "math/vec.h"
 #include "taut/model_def.h"
+#include "taut/shape_kinds.h"
 
 namespace taut {
 
@@ -19,26 +20,15 @@ void MoveParts(const Motion& motion, ModelDef& def) {
   const auto turn = [&](int body, Vec3& direction) {
     if (motion.Moves(body)) direction = Rotate(motion.Turned(body), direction);
   };
-  const auto turn_surface = [&](int body, Material& material) {
-    if (material.directions) turn(body, material.directions->axis);
-  };
-  for (SphereDef& sphere : def.spheres) {
-    move(sphere.body, sphere.center_m);
-    turn_surface(sphere.body, sphere.material);
-  }
-  for (CapsuleDef& rod : def.capsules) {
-    move(rod.body, rod.from_m), move(rod.body, rod.to_m);
-    turn_surface(rod.body, rod.material);
-  }
-  for (BoxDef& box : def.boxes) {
-    move(box.body, box.center_m);
-    turn_surface(box.body, box.material);
-    if (motion.Moves(box.body)) box.orientation = motion.Turned(box.body) * box.orientation;
-  }
-  for (HullDef& hull : def.hulls) {
-    for (Vec3& corner : hull.corners_m) move(hull.body, corner);
-    turn_surface(hull.body, hull.material);
-  }
+  EachShape(def, [&](auto& shape) {
+    EachPoint(shape, [&](Vec3& point_m) { move(shape.body, point_m); });
+    if (shape.material.directions) turn(shape.body, shape.material.directions->axis);
+    if constexpr (requires { shape.orientation; }) {
+      if (motion.Moves(shape.body)) {
+        shape.orientation = motion.Turned(shape.body) * shape.orientation;
+      }
+    }
+  });
   for (NodeDef& node : def.nodes) move(node.body, node.position_m);
   for (CableDef& cable : def.cables) {
     for (AttachmentDef& at : cable.attachments) {

@@ -50,12 +50,15 @@ double TotalMass(const ModelDef& def) {
   return mass;
 }
 
-std::vector<ShapeCount> CollidingShapes(const ModelDef& def) {
-  std::vector<ShapeCount> counts(def.bodies.size());
-  for (const CapsuleDef& shape : def.capsules) counts[shape.body].capsules += shape.collides;
-  for (const SphereDef& shape : def.spheres) counts[shape.body].spheres += shape.collides;
-  for (const BoxDef& shape : def.boxes) counts[shape.body].boxes += shape.collides;
-  for (const HullDef& shape : def.hulls) counts[shape.body].hulls += shape.collides;
+std::vector<std::vector<ShapeCount>> CollidingShapes(const ModelDef& def) {
+  std::vector<std::vector<ShapeCount>> counts(def.bodies.size());
+  const auto count = [&](const ShapeName& name, const auto& shapes) {
+    for (auto& of_body : counts) of_body.push_back({name, 0});
+    for (const auto& shape : shapes) {
+      counts[static_cast<std::size_t>(shape.body)].back().count += shape.collides;
+    }
+  };
+  EachShapeList(count, def);
   return counts;
 }
 

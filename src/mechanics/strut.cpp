@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <type_traits>
 #include <utility>
+
+#include "taut/shape_kinds.h"
 
 namespace taut::mechanics {
 namespace {
@@ -74,24 +77,28 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
   const BodyDef& whole = def.bodies[static_cast<std::size_t>(body)];
   const CapsuleDef* const rod = OnlyCapsule(def, body);
   if (whole.fixed || rod == nullptr) return std::nullopt;
-  const auto here = [&](const auto& shape) { return shape.body == body; };
-  if (std::any_of(def.boxes.begin(), def.boxes.end(), here)) return std::nullopt;
-  if (std::any_of(def.hulls.begin(), def.hulls.end(), here)) return std::nullopt;
   const double length_m = Length(rod->to_m - rod->from_m);
   const auto at_end = [&](const Vec3& point_m) {
     return std::min(Length(point_m - rod->from_m), Length(point_m - rod->to_m)) <=
            kRounding * length_m;
   };
-  if (std::any_of(def.spheres.begin(), def.spheres.end(),
-                  [&](const SphereDef& s) { return here(s) && !at_end(s.center_m); })) {
-    return std::nullopt;
-  }
+  // Besides the rod, a strut has only spheres at its ends.
+  bool other = false;
+  EachShape(def, [&](const auto& shape) {
+    using Shape = std::remove_cvref_t<decltype(shape)>;
+    if constexpr (std::is_same_v<Shape, SphereDef>) {
+      other |= shape.body == body && !at_end(shape.center_m);
+    } else if constexpr (!std::is_same_v<Shape, CapsuleDef>) {
+      other |= shape.body == body;
+    }
+  });
+  if (other) return std::nullopt;
   const Vec3 along = (1 / length_m) * (rod->to_m - rod->from_m);
   const auto masses = MassesOf(whole, *rod, along, length_m);
   if (!masses) return std::nullopt;
   // A node that is not an end may carry a point mass, unless there are no masses at the ends.
   const bool ends_only = std::all_of(def.nodes.begin(), def.nodes.end(), [&](const NodeDef& node) {
-    return !here(node) || at_end(node.position_m);
+    return node.body != body || at_end(node.position_m);
   });
   if (!ends_only && std::max(masses->start, masses->end) > 10 * kRounding) return std::nullopt;
   Strut strut;

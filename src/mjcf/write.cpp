@@ -8,6 +8,7 @@
 #include "base/unique_names.h"
 #include "description/yaml/reader.h"
 #include "math/vec.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::mjcf {
 namespace {
@@ -96,16 +97,21 @@ class Writer {
     return FrictionOf(def_, material, material);
   }
 
+  template <class Shape>
+  void Mesh(const Shape&, const std::string&) {}
+  void Mesh(const HullDef& hull, const std::string& name) {
+    std::string corners;
+    for (const Vec3& p : hull.corners_m) {
+      corners += (corners.empty() ? "" : " ") + Numbers(p - Com(hull.body));
+    }
+    xml_ << "<mesh" << Key("name", name) << Key("vertex", corners) << "/>\n";
+  }
+
   void Assets() {
     if (def_.hulls.empty() && def_.height_fields.empty()) return;
     xml_ << "<asset>\n";
-    for (std::size_t i = 0; i < def_.hulls.size(); ++i) {
-      std::string corners;
-      for (const Vec3& p : def_.hulls[i].corners_m) {
-        corners += (corners.empty() ? "" : " ") + Numbers(p - Com(def_.hulls[i].body));
-      }
-      xml_ << "<mesh" << Key("name", geoms_.hulls[i].name) << Key("vertex", corners) << "/>\n";
-    }
+    std::size_t geom = 0;
+    EachShape(def_, [&](const auto& shape) { Mesh(shape, geoms_.shapes[geom++].name); });
     for (std::size_t i = 0; i < def_.height_fields.size(); ++i) {
       constexpr double kBase_m = 1;
       const HeightFieldDef& field = def_.height_fields[i];
@@ -208,31 +214,28 @@ class Writer {
   }
 
   void Shapes(int body) {
-    const Vec3 com = Com(body);
-    for (std::size_t i = 0; i < def_.spheres.size(); ++i) {
-      const SphereDef& s = def_.spheres[i];
-      if (s.body != body) continue;
-      Geom(geoms_.spheres[i], Key("type", "sphere") + Key("pos", Numbers(s.center_m - com)) +
-                                  Key("size", Shown(s.radius_m)));
-    }
-    for (std::size_t i = 0; i < def_.capsules.size(); ++i) {
-      const CapsuleDef& c = def_.capsules[i];
-      if (c.body != body) continue;
-      Geom(geoms_.capsules[i],
-           Key("type", "capsule") +
-               Key("fromto", Numbers(c.from_m - com) + " " + Numbers(c.to_m - com)) +
-               Key("size", Shown(c.radius_m)));
-    }
-    for (std::size_t i = 0; i < def_.boxes.size(); ++i) {
-      const BoxDef& b = def_.boxes[i];
-      if (b.body != body) continue;
-      Geom(geoms_.boxes[i], Key("type", "box") + Key("pos", Numbers(b.center_m - com)) +
-                                TurnKey(b.orientation) + Key("size", Numbers(b.half_extents_m)));
-    }
-    for (std::size_t i = 0; i < def_.hulls.size(); ++i) {
-      if (def_.hulls[i].body != body) continue;
-      Geom(geoms_.hulls[i], Key("type", "mesh") + Key("mesh", geoms_.hulls[i].name));
-    }
+    std::size_t geom = 0;
+    EachShape(def_, [&](const auto& shape) {
+      if (shape.body == body) Geom(geoms_.shapes[geom], ShapeKeys(shape, geoms_.shapes[geom].name));
+      ++geom;
+    });
+  }
+  std::string ShapeKeys(const SphereDef& s, const std::string&) const {
+    return Key("type", "sphere") + Key("pos", Numbers(s.center_m - Com(s.body))) +
+           Key("size", Shown(s.radius_m));
+  }
+  std::string ShapeKeys(const CapsuleDef& c, const std::string&) const {
+    const Vec3 com = Com(c.body);
+    return Key("type", "capsule") +
+           Key("fromto", Numbers(c.from_m - com) + " " + Numbers(c.to_m - com)) +
+           Key("size", Shown(c.radius_m));
+  }
+  std::string ShapeKeys(const BoxDef& b, const std::string&) const {
+    return Key("type", "box") + Key("pos", Numbers(b.center_m - Com(b.body))) +
+           TurnKey(b.orientation) + Key("size", Numbers(b.half_extents_m));
+  }
+  std::string ShapeKeys(const HullDef&, const std::string& name) const {
+    return Key("type", "mesh") + Key("mesh", name);
   }
   void Geom(const Geoms::Geom& geom, const std::string& shape) {
     const double friction = OwnFriction(def_, friction_, geom);

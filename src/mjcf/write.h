@@ -46,7 +46,7 @@ struct Geoms {
     bool meets_planes = true, meets_bodies = true;
     bool is_plane = false;
   };
-  std::vector<Geom> spheres, capsules, boxes, hulls;  ///< Per shape of the model.
+  std::vector<Geom> shapes;  ///< In the order of `EachShape`.
   std::vector<Geom> planes, terrain_boxes, height_fields;
 };
 Geoms GeomsOf(const ModelDef& def);

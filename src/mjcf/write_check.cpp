@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "mjcf/write.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::mjcf {
 namespace {
@@ -19,7 +20,7 @@ void ForMaterials(const ModelDef& def, F f) {
       f(part.name, part.material);
     }
   };
-  all(def.capsules), all(def.spheres), all(def.boxes), all(def.hulls);
+  EachShapeList([&](const ShapeName&, const auto& shapes) { all(shapes); }, def);
   all(def.planes), all(def.terrain_boxes), all(def.height_fields);
 }
 

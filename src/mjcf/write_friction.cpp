@@ -5,22 +5,29 @@
 #include "mechanics/contact_roles.h"
 #include "mjcf/write.h"
 #include "sim/contacts/combine.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::mjcf {
 namespace {
-
-template <class F>
-void ForAll(const Geoms& geoms, F f) {
-  for (const auto* list : {&geoms.spheres, &geoms.capsules, &geoms.boxes, &geoms.hulls}) {
-    for (const Geoms::Geom& geom : *list) f(geom);
-  }
-}
 
 /// Returns the friction of two geoms by MuJoCo's rule, without a pair element.
 double Given(const ModelDef& def, const Friction& all, const Geoms::Geom& shape,
              const Geoms::Geom& other) {
   const double a = OwnFriction(def, all, shape), b = OwnFriction(def, all, other);
   return other.body == kWorld && all.grounds_rule ? b : std::max(a, b);
+}
+
+mechanics::ContactRole RoleOf(const mechanics::ContactRoles& roles, const CapsuleDef&,
+                              std::size_t i) {
+  return roles.capsules[i];
+}
+mechanics::ContactRole RoleOf(const mechanics::ContactRoles& roles, const SphereDef&,
+                              std::size_t i) {
+  return roles.spheres[i];
+}
+template <class Shape>
+mechanics::ContactRole RoleOf(const mechanics::ContactRoles&, const Shape&, std::size_t) {
+  return {};
 }
 
 }  // namespace
@@ -35,16 +42,15 @@ Geoms GeomsOf(const ModelDef& def) {
     list.push_back(
         {names.Take(name), body, &material, role.meets_planes, role.meets_bodies, false});
   };
-  for (std::size_t i = 0; i < def.capsules.size(); ++i) {
-    const CapsuleDef& c = def.capsules[i];
-    add(geoms.capsules, c.name, c.body, c.material, c.collides ? roles.capsules[i] : none(false));
-  }
-  for (std::size_t i = 0; i < def.spheres.size(); ++i) {
-    const SphereDef& s = def.spheres[i];
-    add(geoms.spheres, s.name, s.body, s.material, s.collides ? roles.spheres[i] : none(false));
-  }
-  for (const BoxDef& b : def.boxes) add(geoms.boxes, b.name, b.body, b.material, none(b.collides));
-  for (const HullDef& h : def.hulls) add(geoms.hulls, h.name, h.body, h.material, none(h.collides));
+  EachShapeList(
+      [&](const ShapeName&, const auto& shapes) {
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+          const auto& shape = shapes[i];
+          add(geoms.shapes, shape.name, shape.body, shape.material,
+              shape.collides ? RoleOf(roles, shape, i) : none(false));
+        }
+      },
+      def);
   for (const PlaneDef& p : def.planes) {
     add(geoms.planes, p.name, kWorld, p.material, none(true));
     geoms.planes.back().is_plane = true;
@@ -75,11 +81,11 @@ Friction FrictionsOf(const ModelDef& def, const Geoms& geoms) {
   Friction all;
   all.grounds_rule = def.friction_combine != CombineRule::kMaximum;
   std::vector<Geoms::Geom> shapes, grounds;
-  ForAll(geoms, [&](const Geoms::Geom& geom) {
-    if (!geom.meets_planes && !geom.meets_bodies) return;
+  for (const Geoms::Geom& geom : geoms.shapes) {
+    if (!geom.meets_planes && !geom.meets_bodies) continue;
     if (shapes.empty()) all.shape = geom.material->kinetic_friction;
     shapes.push_back(geom);
-  });
+  }
   for (const auto* list : {&geoms.planes, &geoms.terrain_boxes, &geoms.height_fields}) {
     grounds.insert(grounds.end(), list->begin(), list->end());
   }

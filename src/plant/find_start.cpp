@@ -2,15 +2,18 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "math/elementary.h"
 #include "math/random.h"
+#include "math/shape_corners.h"
 #include "math/vec.h"
 #include "plant/goal.h"
 #include "plant/random_streams.h"
 #include "sim/batch/ground_height.h"
+#include "taut/shape_kinds.h"
 #include "taut/start.h"
 
 namespace taut::plant {
@@ -97,26 +100,18 @@ std::vector<Vec3> PointsOf(const ModelDef& def) {
   for (const NodeDef& node : def.nodes) {
     if (node.body != kWorld) points.push_back(node.position_m);
   }
-  for (const SphereDef& sphere : def.spheres) points.push_back(sphere.center_m);
-  for (const CapsuleDef& rod : def.capsules) {
-    const Vec3 along = rod.to_m - rod.from_m;
-    const double radii = std::sqrt(Dot(along, along)) / rod.radius_m;
-    const int parts = static_cast<int>(std::fmin(std::ceil(radii), kMostOfARod));
-    for (int i = 0; i <= parts; ++i) {
-      points.push_back(rod.from_m + (parts > 0 ? 1.0 * i / parts : 0.0) * along);
+  EachShape(def, [&](const auto& shape) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(shape)>, CapsuleDef>) {
+      const Vec3 along = shape.to_m - shape.from_m;
+      const double radii = std::sqrt(Dot(along, along)) / shape.radius_m;
+      const int parts = static_cast<int>(std::fmin(std::ceil(radii), kMostOfARod));
+      for (int i = 0; i <= parts; ++i) {
+        points.push_back(shape.from_m + (parts > 0 ? 1.0 * i / parts : 0.0) * along);
+      }
+    } else {
+      math::EachCorner(shape, [&](const Vec3& corner) { points.push_back(corner); });
     }
-  }
-  for (const BoxDef& box : def.boxes) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto side = [&](int k) { return (corner >> k & 1) != 0 ? 1.0 : -1.0; };
-      const Vec3& half = box.half_extents_m;
-      points.push_back(box.center_m + Rotate(box.orientation, {side(0) * half.x, side(1) * half.y,
-                                                               side(2) * half.z}));
-    }
-  }
-  for (const HullDef& hull : def.hulls) {
-    points.insert(points.end(), hull.corners_m.begin(), hull.corners_m.end());
-  }
+  });
   return points;
 }
 

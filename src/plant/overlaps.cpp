@@ -3,6 +3,7 @@
 
 #include "base/brief.h"
 #include "plant/find_start.h"
+#include "sim/batch/named_shape.h"
 #include "taut/start.h"
 
 namespace taut {
@@ -14,34 +15,6 @@ using List = ShapeRef::List;
 
 /// Smaller depths, relative to the half thickness, count as touching.
 constexpr double kTouching = 0.01;
-
-bool IsTerrain(const ShapeRef& ref) {
-  return ref.list == List::kPlanes || ref.list == List::kTerrainBoxes ||
-         ref.list == List::kHeightFields || ref.list == List::kTerrainMeshes;
-}
-
-std::string NameOf(const ModelDef& def, const ShapeRef& ref) {
-  const auto i = static_cast<std::size_t>(ref.index);
-  switch (ref.list) {
-    case List::kSpheres:
-      return "the sphere \"" + def.spheres[i].name + '"';
-    case List::kCapsules:
-      return "the rod \"" + def.capsules[i].name + '"';
-    case List::kBoxes:
-      return "the box \"" + def.boxes[i].name + '"';
-    case List::kHulls:
-      return "the hull \"" + def.hulls[i].name + '"';
-    case List::kTerrainBoxes:
-      return "the terrain \"" + def.terrain_boxes[i].name + '"';
-    case List::kPlanes:
-      return "the terrain \"" + def.planes[i].name + '"';
-    case List::kHeightFields:
-      return "the terrain \"" + def.height_fields[i].name + '"';
-    case List::kTerrainMeshes:
-      return "the terrain \"" + def.terrain_meshes[i].name + '"';
-  }
-  return {};
-}
 
 /// Returns the place in the file of the terrain involved, else of the body.
 SourceRef PlaceOf(const RobotSpec& robot, const Overlap& overlap) {
@@ -62,11 +35,12 @@ bool CheckOverlaps(const RobotSpec& robot, const WorldBatch& batch, bool terrain
                    Diagnostics& out) {
   bool good = true;
   for (const Overlap& overlap : batch.Overlaps(kTheWorld)) {
-    const bool with_terrain = IsTerrain(overlap.b);
+    const bool with_terrain = sim::IsTerrain(overlap.b);
     if (with_terrain && !terrain) continue;
     const bool deep = overlap.depth_m > overlap.half_thickness_m;
     if (!deep && (!warn || overlap.depth_m <= kTouching * overlap.half_thickness_m)) continue;
-    const std::string a = NameOf(robot.def, overlap.a), b = NameOf(robot.def, overlap.b);
+    const std::string a = sim::ShapeText(robot.def, overlap.a),
+                      b = sim::ShapeText(robot.def, overlap.b);
     const std::string depth = Brief(overlap.depth_m) + " m";
     const std::string what = with_terrain ? a + " is " + depth + " deep in " + b
                                           : a + " and " + b + " overlap by " + depth;

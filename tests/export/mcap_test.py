@@ -278,7 +278,7 @@ def rows_of(path):
     try:
         with h5py.File(path, "r", libver="latest", swmr=True) as file:
             return file["time_s"].shape[0]
-    except OSError:
+    except (OSError, KeyError):  # not yet begun
         return 0
 
 

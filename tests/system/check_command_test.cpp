@@ -48,7 +48,7 @@ TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
   for (const char* part :
        {"3 bodies, 12 cables, 18 nodes; moving mass 2.349243 kg",
         "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
-        " 0.0157328  0.0241226  8 rods, 6 spheres\n",
+        " 0.0157328  0.0241226  6 spheres, 8 rods\n",
         "inner_top_1    0.213953     0.126678   20.000     229.16       20  "
         "segment_0 - segment_1  0.07 m/s 50 N\n",
         "segment_0        -30.913  0.000  -12.946          0.0000  -2.5616  "
@@ -66,6 +66,7 @@ TEST_F(CheckCommand, ShowsAnExperimentAndItsRobot) {
   EXPECT_EQ(push.status, 0) << push.errors;
   EXPECT_NE(push.output.find("Experiment push_20n: 60 s in steps of 0.001 s, 1 controller\n"),
             std::string::npos);
+  EXPECT_NE(push.output.find("Integration of cables: 12 explicit\n"), std::string::npos);
   EXPECT_NE(push.output.find("segment_0.tip"), std::string::npos);
   EXPECT_NE(push.output.find("Model tetraspine3: 3 bodies"), std::string::npos);
   EXPECT_NE(push.output.find("with 1 terrain surface\n"), std::string::npos);

@@ -12,6 +12,7 @@
 #include "description/yaml/file_parameters.h"
 #include "description/yaml/kinds.h"
 #include "description/yaml/read_keys.h"
+#include "taut/shape_kinds.h"
 #include "taut/study.h"
 
 namespace taut::description {
@@ -193,7 +194,7 @@ void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnosti
   const ModelDef& def = experiment.robot.def;
   check(def.name, IsName(def.name));
   check_all(def.bodies), check_all(def.nodes), check_all(def.cables);
-  check_all(def.spheres), check_all(def.capsules), check_all(def.boxes), check_all(def.hulls);
+  EachShapeList([&](const ShapeName&, const auto& shapes) { check_all(shapes); }, def);
   check_all(def.planes), check_all(def.terrain_boxes), check_all(def.motions);
   check_all(def.height_fields), check_all(def.terrain_meshes);
   check_all(experiment.controllers), check_all(experiment.pushes), check_all(experiment.drags);

@@ -297,20 +297,6 @@ class JointMaker {
 };
 
 }  // namespace
-}  // namespace taut::description
-
-namespace taut {
-
-std::string JointKindName(JointKind kind) {
-  for (const auto& [name, value] : description::kJointKinds) {
-    if (value == kind) return name;
-  }
-  return {};
-}
-
-}  // namespace taut
-
-namespace taut::description {
 
 void BuildJoints(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out) {

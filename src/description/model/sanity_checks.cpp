@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/brief.h"
-#include "math/convex_hull.h"
+#include "math/shape_corners.h"
 #include "math/vec.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::description {
 namespace {
@@ -33,25 +33,6 @@ double Rounding(double x) { return std::nextafter(std::fabs(x), kInf) - std::fab
 
 double Farthest(const Vec3& p) {
   return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
-}
-
-double Thinnest(const BoxDef& box) {
-  return std::min({box.half_extents_m.x, box.half_extents_m.y, box.half_extents_m.z});
-}
-
-/// Returns the smallest extent of the axis-aligned bounding box.
-double Thinnest(const HullDef& hull) {
-  Vec3 low{kInf, kInf, kInf}, high = -1.0 * low;
-  for (const Vec3& p : hull.corners_m) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return std::min({high.x - low.x, high.y - low.y, high.z - low.z});
-}
-
-double VolumeOf(const HullDef& hull) {
-  const math::ConvexHull found = math::HullOf(hull.corners_m, HullDef::kMostCorners);
-  return math::SixVolumes(found.corners, math::TrianglesOf(found)) / 6.0;
 }
 
 double Length(const CapsuleDef& rod) {
@@ -79,17 +60,17 @@ using ItemList = std::vector<Item>;
 
 bool Less(const Item& a, const Item& b) { return a.value < b.value; }
 
-/// Returns radii, half the smallest edges of boxes and half the smallest extents of hulls [m].
+/// Returns the half thickness of each shape [m].
 ItemList Sizes(const RobotSpec& robot) {
   ItemList sizes;
-  const auto add = [&](double size_m, const char* kind, const auto& shape) {
-    sizes.push_back(
-        {size_m, std::string(kind) + " \"" + shape.name + "\"", SourceOf(robot, shape.body)});
+  const auto add = [&](const ShapeName& name, const auto& shapes) {
+    for (const auto& shape : shapes) {
+      sizes.push_back({math::HalfThickness(shape),
+                       std::string(name.one) + " \"" + shape.name + "\"",
+                       SourceOf(robot, shape.body)});
+    }
   };
-  for (const SphereDef& sphere : robot.def.spheres) add(sphere.radius_m, "sphere", sphere);
-  for (const CapsuleDef& rod : robot.def.capsules) add(rod.radius_m, "rod", rod);
-  for (const BoxDef& box : robot.def.boxes) add(Thinnest(box), "box", box);
-  for (const HullDef& hull : robot.def.hulls) add(0.5 * Thinnest(hull), "hull", hull);
+  EachShapeList(add, robot.def);
   return sizes;
 }
 
@@ -142,18 +123,11 @@ void WarnOfThickRods(const RobotSpec& robot, Diagnostics& out) {
 
 void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
   std::vector<double> volume_m3(robot.def.bodies.size());
-  const auto add = [&](int body, double volume) {
-    if (IsBody(robot, body)) volume_m3[static_cast<std::size_t>(body)] += volume;
-  };
-  for (const SphereDef& s : robot.def.spheres)
-    add(s.body, 4.0 / 3.0 * std::numbers::pi * std::pow(s.radius_m, 3));
-  for (const CapsuleDef& c : robot.def.capsules) {
-    add(c.body, std::numbers::pi * c.radius_m * c.radius_m * Length(c));
-  }
-  for (const BoxDef& b : robot.def.boxes) {
-    add(b.body, 8.0 * b.half_extents_m.x * b.half_extents_m.y * b.half_extents_m.z);
-  }
-  for (const HullDef& h : robot.def.hulls) add(h.body, VolumeOf(h));
+  EachShape(robot.def, [&](const auto& shape) {
+    if (IsBody(robot, shape.body)) {
+      volume_m3[static_cast<std::size_t>(shape.body)] += math::VolumeOf(shape);
+    }
+  });
   std::set<std::pair<int, int>> seen;
   for (std::size_t b = 0; b < robot.def.bodies.size(); ++b) {
     const BodyDef& body = robot.def.bodies[b];

@@ -31,15 +31,13 @@ inline const Choices<ActuatorDef::Kind> kActuatorKinds{{"none", ActuatorDef::Kin
                                                        {"ideal", ActuatorDef::Kind::kIdeal},
                                                        {"limited", ActuatorDef::Kind::kLimited},
                                                        {"dc_motor", ActuatorDef::Kind::kDcMotor}};
-inline const Choices<JointKind> kJointKinds{{"ball", JointKind::kBall},
-                                            {"hinge", JointKind::kHinge},
-                                            {"weld", JointKind::kWeld},
-                                            {"prismatic", JointKind::kPrismatic},
-                                            {"cylindrical", JointKind::kCylindrical},
-                                            {"planar", JointKind::kPlanar},
-                                            {"line", JointKind::kLine},
-                                            {"plane", JointKind::kPlane},
-                                            {"distance", JointKind::kDistance}};
+inline const Choices<JointKind> kJointKinds = [] {
+  Choices<JointKind> kinds;
+  for (const JointKindRow& row : kJointKindRows) {
+    kinds.emplace_back(row.name, static_cast<JointKind>(kinds.size()));
+  }
+  return kinds;
+}();
 inline const Choices<CableTouches> kCableTouches{{"none", CableTouches::kNone},
                                                  {"terrain", CableTouches::kTerrain},
                                                  {"rods", CableTouches::kRods},

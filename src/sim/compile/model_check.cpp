@@ -12,6 +12,7 @@
 #include "sim/compile/checker.h"
 #include "sim/constraint/capstan.h"
 #include "sim/data/tables.h"
+#include "taut/shape_kinds.h"
 
 namespace taut::sim {
 namespace {
@@ -212,16 +213,10 @@ void CheckSizes(const ModelDef& def, Checker& check) {
   const auto moves = [&](int body) {
     return body != kWorld && !def.bodies[static_cast<std::size_t>(body)].fixed;
   };
-  const auto count = [&](const auto& list) {
-    for (const auto& shape : list) {
-      if (shape.collides)
-        (moves(shape.body) ? shapes[static_cast<std::size_t>(shape.body)] : fixed) += 1;
-    }
-  };
-  count(def.spheres);
-  count(def.capsules);
-  count(def.boxes);
-  count(def.hulls);
+  EachShape(def, [&](const auto& shape) {
+    if (!shape.collides) return;
+    (moves(shape.body) ? shapes[static_cast<std::size_t>(shape.body)] : fixed) += 1;
+  });
   for (const CableDef& cable : def.cables) {
     for (const AttachmentDef& a : cable.attachments) {
       if (moves(a.body)) ends[static_cast<std::size_t>(a.body)] += 1;

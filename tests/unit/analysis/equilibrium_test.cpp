@@ -232,7 +232,7 @@ TEST(Equilibrium, WhatWouldRestOnABoxIsRefused) {
   def.terrain_boxes.push_back({"step", {0, 0, -1.0}, {}, {0.5, 0.5, 0.6}, {}});
   const Equilibrium e = FindEquilibrium(def);
   EXPECT_FALSE(e.found);
-  EXPECT_NE(e.why.find("\"ball\" and \"step\""), std::string::npos) << e.why;
+  EXPECT_NE(e.why.find("the sphere \"ball\" and the terrain \"step\""), std::string::npos) << e.why;
 }
 
 TEST(Equilibrium, BeginsWhereItIsTold) {

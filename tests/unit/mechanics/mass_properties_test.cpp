@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "math/vec.h"
 #include "taut/statics.h"
@@ -195,8 +197,14 @@ TEST(Counting, OnlyCollidingShapesAndMovingMassesCount) {
   def.spheres.push_back({"b", 0, {}, 0.1, {}, false});
   def.capsules.push_back({"c", 1, {}, {1, 0, 0}, 0.1, {}, true});
   EXPECT_EQ(TotalMass(def), 2.0);
-  EXPECT_EQ(CollidingShapes(def)[0].spheres, 1);
-  EXPECT_EQ(CollidingShapes(def)[1].total(), 1);
+  const auto counts = CollidingShapes(def);
+  std::map<std::string, int> first, second;
+  for (const ShapeCount& of_kind : counts[0]) first[of_kind.name.many] = of_kind.count;
+  for (const ShapeCount& of_kind : counts[1]) second[of_kind.name.many] = of_kind.count;
+  EXPECT_EQ(first,
+            (std::map<std::string, int>{{"spheres", 1}, {"rods", 0}, {"boxes", 0}, {"hulls", 0}}));
+  EXPECT_EQ(second,
+            (std::map<std::string, int>{{"spheres", 0}, {"rods", 1}, {"boxes", 0}, {"hulls", 0}}));
 }
 
 }  // namespace
