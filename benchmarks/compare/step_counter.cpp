@@ -5,7 +5,15 @@
 #include <ctime>
 
 #include "taut/spec.h"
+#if __has_include("taut/world_batch.h")
 #include "taut/world_batch.h"
+#else  // up to 0.2
+#include "taut/batch.h"
+namespace taut {
+using WorldBatch = Batch;
+using WorldBatchOptions = BatchOptions;
+}  // namespace taut
+#endif
 
 int main(int argc, char** argv) {
   if (argc != 4) {
