@@ -1,8 +1,8 @@
-# cmake -DKIND=find_package|add_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
+# cmake -DKIND=find_package|add_subdirectory|core_as_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
 #       -DCXX=... -DCXX_FLAGS=... -DBUILD_TYPE=... -DVERSION=... -P package_test.cmake
 #
-# Builds and runs a program outside of the tree with an installed taut, or with taut as a subfolder. All flags equal the
-# flags of the build under test, so that a compiler cache has the objects.
+# Builds and runs a program outside of the tree with an installed taut, or with taut as a subfolder. The flags
+# equal the flags of the build under test, except for the core.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(failed)
@@ -95,6 +95,16 @@ share/taut/firmware/taut_board.elf;share/taut/firmware/taut_board.hex")
       message(FATAL_ERROR "without its firmware the virtual robot ends with ${status}: ${said}")
     endif()
   endif()
+elseif(KIND STREQUAL core_as_subdirectory)
+  # without optimization, for the time to compile
+  run(${configure} -DTAUT_SOURCE_DIR=${SOURCE_DIR} -DTAUT_INSTRUCTION_SETS=scalar
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+  run(${CMAKE_COMMAND} --build ${build} --target core)
+  run(${build}/core)
+  if(NOT output MATCHES "taut ${VERSION}: 1 cable")
+    message(FATAL_ERROR "the program printed \"${output}\"")
+  endif()
+  return()
 else()
   run(${configure} -DTAUT_SOURCE_DIR=${SOURCE_DIR})
   set(model ${SOURCE_DIR}/share/models/tetraspine3.yaml)
