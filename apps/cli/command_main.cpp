@@ -18,6 +18,7 @@
 
 #include "command_text.h"
 #include "commands.h"
+#include "features.h"
 #include "standard_streams.h"
 #include "taut/version.h"
 #include "usage.h"
@@ -82,6 +83,9 @@ int Run(int argc, char** argv) {
       "taut"};
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.set_version_flag("-V,--version", kVersionText, "Print the version and exit");
+  const CLI::Option* const features = app.add_flag_callback(
+      "--features", [] { throw CLI::CallForVersion(); },
+      "Print the version and the features of this build, and exit");
   app.footer(
       "Examples:\n"
       "  taut new model my_robot\n"
@@ -104,7 +108,7 @@ int Run(int argc, char** argv) {
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}", HelpText(Describe(NamedCommand(app))));
   } catch (const CLI::CallForVersion&) {
-    fmt::print("{}\n", kVersionText);
+    fmt::print("{}\n{}", kVersionText, features->count() > 0 ? FeaturesText() : "");
   } catch (const CLI::ParseError& error) {
     return ExplainUsage(app, error);
   }

@@ -2,6 +2,9 @@
 // start from
 #include <nlohmann/json.hpp>
 
+#include <map>
+#include <sstream>
+
 #include "system/taut_command.h"
 #include "taut/version.h"
 
@@ -173,6 +176,50 @@ TEST_F(CliCommand, TheVersionIsToldEverywhere) {
   }
   for (const char* const flag : {"-V", "--version"}) EXPECT_EQ(Taut({flag}).output, version);
   EXPECT_EQ(Taut({"gait", "export", "-V"}).output, version);
+}
+
+TEST_F(CliCommand, TheFeaturesOfTheBuildFollowTheVersion) {
+  std::map<std::string, std::string> found;
+  const std::string text = Taut({"--version", "--features"}).output;
+  EXPECT_EQ(Taut({"--features"}).output, text);
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, std::string("taut ") + kVersion);
+  while (std::getline(lines, line)) {
+    const std::size_t colon = line.find(": ");
+    ASSERT_NE(colon, std::string::npos) << line;
+    const std::string value = line.substr(colon + 2);
+    EXPECT_TRUE(value.starts_with("yes") || value.starts_with("no (")) << line;
+    found[line.substr(0, colon)] = value;
+  }
+  EXPECT_EQ(found.size(), 9u) << text;
+  // From CMake, independent of the compile definitions of the command
+  EXPECT_EQ(found["MPI"] == "yes", TAUT_MPI_FOUND != 0) << text;
+  const std::string sets = TAUT_SETS;
+  for (const char* const set : {"scalar", "sse2", "avx2", "avx512", "neon"}) {
+    const bool built = ("," + sets + ",").find("," + std::string(set) + ",") != std::string::npos;
+    EXPECT_EQ(found["instruction set " + std::string(set)].starts_with("yes"), built) << text;
+  }
+  EXPECT_EQ(found["instruction set scalar"], "yes") << "every processor has it";
+#ifdef TAUT_ASSERTS
+  EXPECT_EQ(found["assertions"], "yes");
+#else
+  EXPECT_TRUE(found["assertions"].starts_with("no")) << text;
+#endif
+}
+
+TEST_F(CliCommand, TheFeaturesContainThePagesOnlyIfTheyAreThere) {
+  const std::string empty = Path("no_pages");
+  std::filesystem::create_directory(empty);
+  setenv("TAUT_WEB", empty.c_str(), 1);
+  const std::string without = Taut({"--features"}).output;
+  std::ofstream(empty + "/index.html") << "<html></html>";
+  const std::string with = Taut({"--features"}).output;
+  unsetenv("TAUT_WEB");
+  EXPECT_NE(without.find("\nviewer's pages: no (install nodejs and npm"), std::string::npos)
+      << without;
+  EXPECT_NE(with.find("\nviewer's pages: yes\n"), std::string::npos) << with;
 }
 
 TEST_F(CliCommand, AMisspeltWordIsAnsweredByTheRightOne) {
