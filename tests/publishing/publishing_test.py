@@ -4,6 +4,7 @@ Usage: publishing_test.py AREA.TEST [TAUT BUILD_FOLDER]. TEST is the name of a f
 """
 
 import html.parser
+import json
 import os
 import pathlib
 import re
@@ -273,6 +274,83 @@ def WhatGitHubReadsCanBeRead():
     citation = read["CITATION.cff"]
     assert {"cff-version", "message", "title", "authors"} <= citation.keys(), citation
     assert "version" not in citation, "it stands in one place"
+
+
+# Recipes of package managers. Names of the libraries of script/packages.txt (group build) there; None: the recipe
+# has it by other means, such as a compiler.
+CONDA_NAMES = {"g++": None, "cmake": "cmake", "ninja-build": "ninja", "libcli11-dev": "cli11", "libfmt-dev": "fmt",
+               "libyaml-cpp-dev": "yaml-cpp", "libtinyxml2-dev": "tinyxml2", "libhdf5-dev": "hdf5",
+               "pkgconf": "pkg-config", "zlib1g-dev": "zlib", "libpng-dev": "libpng",
+               "nlohmann-json3-dev": "nlohmann_json", "libsqlite3-dev": "sqlite", "libnlopt-dev": "nlopt",
+               "libeigen3-dev": "eigen", "libboost-dev": "libboost-headers"}
+VCPKG_NAMES = CONDA_NAMES | {"cmake": "vcpkg-cmake", "ninja-build": None, "pkgconf": None,
+                             "nlohmann-json3-dev": "nlohmann-json", "libsqlite3-dev": "sqlite3",
+                             "libeigen3-dev": "eigen3", "libboost-dev": "boost-beast"}
+
+
+def build_packages():
+    """Returns {package: reason} of the group build in script/packages.txt."""
+    text = (ROOT / "script/packages.txt").read_text()
+    return dict(re.findall(r"^build +(\S+) +# (.*)$", text, re.MULTILINE))
+
+
+def RecipesHaveTheLibrariesOfTheBuild():
+    try:
+        import yaml
+    except ImportError:
+        raise Skipped("there is no python3-yaml") from None
+    packages = build_packages()
+    assert packages.keys() == CONDA_NAMES.keys() == VCPKG_NAMES.keys(), packages.keys() ^ CONDA_NAMES.keys()
+    # conda: Jinja stands for the version and the compiler.
+    text = (ROOT / "packaging/conda/meta.yaml").read_text()
+    file, pattern = re.search(r'load_file="(.*?)", regex_pattern=\'(.*?)\'', text).groups()
+    version = re.search(pattern, (ROOT / "packaging/conda" / file).read_text())[1]
+    assert version == release.current(ROOT), version
+    text = re.sub(r"{%.*?%}", "", text).replace("{{ version }}", version).replace('{{ compiler("cxx") }}', "cxx")
+    recipe = yaml.safe_load(text)
+    assert recipe["package"] == {"name": "tautsim", "version": version}, recipe["package"]
+    requirements = recipe["requirements"]
+    conda = {each.split()[0] for each in requirements["build"] + requirements["host"]}
+    assert set(filter(None, CONDA_NAMES.values())) <= conda, set(CONDA_NAMES.values()) - conda
+    assert (ROOT / "packaging/conda" / recipe["source"]["path"]).resolve() == ROOT
+    assert all((ROOT / name).is_file() for name in recipe["about"]["license_file"])
+    # vcpkg
+    manifest = json.loads((ROOT / "packaging/vcpkg/taut/vcpkg.json").read_text())
+    assert manifest["name"] == "taut" and manifest["license"] == recipe["about"]["license"] == "Apache-2.0"
+    depends = manifest["dependencies"] + manifest["features"]["command"]["dependencies"]
+    vcpkg = {each if isinstance(each, str) else each["name"] for each in depends}
+    assert set(filter(None, VCPKG_NAMES.values())) <= vcpkg, set(VCPKG_NAMES.values()) - vcpkg
+    port = (ROOT / "packaging/vcpkg/taut/portfile.cmake").read_text()
+    assert "vcpkg_cmake_install()" in port and "vcpkg_install_copyright" in port
+    # Debian
+    control = (ROOT / "debian/control").read_text()
+    needs = re.search(r"^Build-Depends:(.*?)^\S", control, re.MULTILINE | re.DOTALL)[1]
+    assert packages.keys() - set(re.findall(r"[\w+.-]+", needs)) == {"g++"}, needs
+    # CMake options of all recipes exist
+    cmake = "".join(path.read_text() for path in [ROOT / "CMakeLists.txt", *ROOT.glob("cmake/*.cmake"),
+                                                  ROOT / "python/CMakeLists.txt"])
+    for path in (ROOT / "packaging").rglob("*"):
+        for option in re.findall(r"\bTAUT_[A-Z_]+\b", path.read_text()) if path.is_file() else []:
+            assert re.search(rf"(option|set)\({option} ", cmake), f"{path.name}: {option}"
+
+
+def ImagesHaveTheLibrariesThatTheCommandLoads():
+    shared = [name for name, reason in build_packages().items()
+              if name.endswith("-dev") and "headers only" not in reason and name != "libboost-dev"]
+    stems = [name.removesuffix("-dev").replace("libsqlite3", "libsqlite3-0") for name in shared] + ["libopenmpi"]
+    assert len(stems) > 6, stems
+    images = {}
+    for name, begin in (("Containerfile", "FROM debian:12-slim"), ("taut.def", "Stage: final")):
+        text = (ROOT / "packaging" / name).read_text()
+        assert "script/setup build" in text and "include/taut/version.h" not in text
+        installed = text.split(begin)[1].split("apt-get install -y --no-install-recommends")[1].split("rm -rf")[0]
+        images[name] = set(re.findall(r"[a-z0-9][a-z0-9.+-]+", installed.replace("&&", "")))
+        lacking = [stem for stem in stems if not any(each.startswith(stem) for each in images[name])]
+        assert not lacking, (name, lacking)
+    assert images["Containerfile"] == images["taut.def"], images
+    lint = shutil.which("hadolint")
+    if lint:
+        run(lint, "packaging/Containerfile", cwd=ROOT)
 
 
 if __name__ == "__main__":
