@@ -28,6 +28,9 @@ for name in "${names[@]}"; do
   dpkg-source --no-check --extract "$name"_*.dsc "$name"
 done
 
+# Versions for the bill of materials of a release (sbom.py)
+sed -n 's/^Source: //p; s/^Version: //p' ./*.dsc | paste -d ' ' - - >"$folder/versions"
+
 # with_cmake NAME OPTION...: builds and installs a source that has a CMakeLists.txt.
 with_cmake() {
   local name=$1

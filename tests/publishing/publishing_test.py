@@ -17,7 +17,7 @@ import urllib.parse
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "script"))
 sys.dont_write_bytecode = True
-from publishing import contents, deb, release, stage  # noqa: E402
+from publishing import contents, deb, release, sbom, stage  # noqa: E402
 
 
 class Skipped(Exception):
@@ -234,10 +234,40 @@ def ADryRunLeavesNothingButFiles():
         assert not run("git", "status", "--porcelain", cwd=root, env=env), "the tree has changed"
         folder = root / "build" / f"release_{version}"
         names = sorted(path.name.split("_")[0] for path in folder.iterdir())
-        assert names == ["SHA256SUMS", "changes.md", "libtaut-dev", "taut", f"taut-{version}.tar.gz"], (names, said)
+        assert names == ["SHA256SUMS", "changes.md", "libtaut-dev", "taut", f"taut-{version}.cdx.json",
+                         f"taut-{version}.tar.gz"], (names, said)
+        assert json.loads((folder / f"taut-{version}.cdx.json").read_text())["metadata"]["component"]["version"] == version
+        assert f"taut-{version}.cdx.json" in (folder / "SHA256SUMS").read_text()
         run("sha256sum", "--check", "--quiet", "SHA256SUMS", cwd=folder)
         held = run("tar", "-tzf", folder / f"taut-{version}.tar.gz").split()
         assert f"taut-{version}/CMakeLists.txt" in held and not [name for name in held if "node_modules" in name]
+
+
+def TheBillOfMaterialsListsWhatTheFilesContain():
+    versions = {name: f"1.{number}+x" for number, name in enumerate(sbom.LIBRARIES)}
+    lock = ROOT / "web/package-lock.json"
+    text = sbom.bill("1.2.3", versions, lock, "2030-01-02T03:04:05+00:00")
+    assert text == sbom.bill("1.2.3", versions, lock, "2030-01-02T03:04:05+00:00"), "not reproducible"
+    bill = json.loads(text)
+    assert (bill["bomFormat"], bill["specVersion"]) == ("CycloneDX", "1.5")
+    assert bill["metadata"]["component"]["version"] == "1.2.3"
+    parts = {part["name"]: part for part in bill["components"]}
+    # every static library of script/portable, every linked or compiled library of the build, every npm package
+    assert set(sbom.static_sources(ROOT)) <= parts.keys(), set(sbom.static_sources(ROOT)) - parts.keys()
+    sources = {package for package, _, _ in sbom.LIBRARIES.values()}
+    libraries = {name for name in build_packages() if name.endswith("-dev")} - {"libboost-dev"}
+    assert libraries <= sources, libraries - sources
+    npm = json.loads((ROOT / "web/package.json").read_text())["dependencies"]
+    assert npm and npm.keys() <= parts.keys(), npm.keys() - parts.keys()
+    assert parts["hdf5"]["version"] == versions["hdf5"] and "%2B" in parts["hdf5"]["purl"]
+    assert parts["hdf5"]["licenses"] == [{"license": {"id": "BSD-3-Clause"}}]
+    for part in parts.values():
+        assert part["version"] and part["licenses"] and part["purl"].startswith("pkg:"), part
+    refs = {part["bom-ref"] for part in parts.values()}
+    assert len(refs) == len(bill["components"]) and set(bill["dependencies"][0]["dependsOn"]) == refs
+    with tempfile.TemporaryDirectory() as place:  # versions of script/portable take precedence
+        write(pathlib.Path(place), {"libraries/versions": "".join(f"{name} 9.9\n" for name in sbom.LIBRARIES)})
+        assert set(sbom.debian_versions(place).values()) == {"9.9"}
 
 
 def IsCompiledInstalledAndRuns():
