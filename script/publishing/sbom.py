@@ -41,7 +41,7 @@ def installed_version(package):
 
 
 def debian_versions(portable):
-    """Returns {source package: version}: those that script/portable used, else the installed versions."""
+    """Returns {source package: version} that script/portable used, else the installed version."""
     files = [pathlib.Path(portable) / folder / "versions" for folder in ("libraries", "pybind11")]
     text = "".join(path.read_text() for path in files if path.is_file())
     found = dict(line.split() for line in text.splitlines())

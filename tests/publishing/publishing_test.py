@@ -306,6 +306,23 @@ def WhatGitHubReadsCanBeRead():
     assert "version" not in citation, "it stands in one place"
 
 
+def ThePaperCitesItsBibliography():
+    """Form of the Journal of Open Source Software: header, sections, and every key in both files."""
+    text, bib = ((ROOT / "docs/paper" / name).read_text() for name in ("paper.md", "paper.bib"))
+    header, body = text.split("---\n", 2)[1:]
+    for key in ("title", "tags", "authors", "affiliations", "date", "bibliography: paper.bib"):
+        assert re.search(rf"^{key}", header, re.MULTILINE), key
+    sections = re.findall(r"^# (.*)$", body, re.MULTILINE)
+    assert {"Summary", "Statement of need", "State of the field", "References"} <= set(sections), sections
+    cited = set(re.findall(r"@([a-z]+\d{4})", body))
+    entries = re.findall(r"^@\w+\{(\w+),$", bib, re.MULTILINE)
+    assert cited == set(entries) and len(entries) == len(set(entries)) > 5, cited ^ set(entries)
+    for entry in bib.split("\n@"):
+        assert all(f" {key} = {{" in entry for key in ("author", "title", "year")), entry
+        assert entry.count("{") == entry.count("}"), entry
+    assert 250 < len(body.split()) < 1000, len(body.split())
+
+
 # Recipes of package managers. Names of the libraries of script/packages.txt (group build) there; None: the recipe
 # has it by other means, such as a compiler.
 CONDA_NAMES = {"g++": None, "cmake": "cmake", "ninja-build": "ninja", "libcli11-dev": "cli11", "libfmt-dev": "fmt",
