@@ -297,6 +297,17 @@ def WhatGitHubReadsCanBeRead():
     job = read[".github/workflows/nightly.yml"]["jobs"]["debian12"]
     nightly = re.search(r"^all=\((.*)\)", (ROOT / "script/nightly").read_text(), re.MULTILINE)[1].split()
     assert job["strategy"]["matrix"]["part"] == nightly, nightly
+    jobs = {name: read[f".github/workflows/{name}.yml"]["jobs"]["debian12"] for name in ("release", "measurements")}
+    made = {each["part"]: each for each in jobs["release"]["strategy"]["matrix"]["include"]}
+    assert made.keys() == {"portable", "packages", "website"}, made.keys()
+    groups = set(re.search(r"case \$group in\n +([a-z| ]+)\)", (ROOT / "script/setup").read_text())[1].split(" | "))
+    for each in made.values():
+        assert set(each["setup"].split()) <= groups, each
+        assert all((ROOT / word).exists() for word in each["command"].split() if word.startswith("script/")), each
+    parts = {each["part"]: each["command"] for each in jobs["measurements"]["strategy"]["matrix"]["include"]}
+    pages = set(re.findall(r'"(\w+)": \w+\.page\b', (ROOT / "script/validate").read_text()))
+    named = set(parts["validation"].split(" && ")[0].split()[1:])
+    assert len(pages) > 20 and named == pages - {"t3_prism"}, named ^ pages  # its data may not be distributed
     for name, form in read.items():
         if "ISSUE_TEMPLATE" in name and not name.endswith("config.yml"):
             assert {"name", "description", "body"} <= form.keys(), name
