@@ -28,4 +28,8 @@ std::optional<std::string> ShippedFolder(const std::string& program = RunningPro
 /// path that is not found is returned unchanged.
 std::string FindInput(const std::string& path, const std::string& program = RunningProgram());
 
+/// Returns `did you mean "experiments/push_20n.yaml"?` if a file with a similar name is in the same
+/// folder or among the shipped files, else "". The extension may be absent in `path`.
+std::string SimilarInput(const std::string& path, const std::string& program = RunningProgram());
+
 }  // namespace taut

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "taut/shipped.h"
+
 namespace taut::base {
 std::optional<std::string> ReadInputFile(const std::string& path, std::size_t most_bytes,
                                          const std::string& hint, Diagnostics& out,
@@ -15,7 +17,8 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
     return std::nullopt;
   };
   const auto unreadable = [&](std::string what, int error) {
-    out.Unreadable("file.not_readable", {path, 0, 0}, std::move(what) + std::strerror(error));
+    out.Unreadable("file.not_readable", {path, 0, 0}, std::move(what) + std::strerror(error),
+                   error == ENOENT ? SimilarInput(path) : std::string());
     return std::nullopt;
   };
   std::error_code ignored;

@@ -1,6 +1,9 @@
 #include "taut/shipped.h"
 
 #include <filesystem>
+#include <vector>
+
+#include "taut/diagnostics.h"
 
 namespace taut {
 
@@ -55,6 +58,39 @@ std::string FindInput(const std::string& path, const std::string& program) {
   if (failed || !fs::is_regular_file(found, failed)) return path;
   const fs::path in_tree = "share" / given;
   return fs::equivalent(in_tree, found, failed) ? in_tree.string() : found.string();
+}
+
+std::string SimilarInput(const std::string& path, const std::string& program) {
+  constexpr std::size_t kMostFiles = 2000;  // of a folder
+  const fs::path given(path), parent = given.parent_path();
+  std::vector<std::string> names, paths;
+  if (!given.has_stem()) return {};
+  const auto add = [&](const fs::path& folder, const fs::path& shown) {
+    std::error_code failed;
+    std::size_t count = 0;
+    for (fs::directory_iterator it(folder, failed), end; !failed && it != end;
+         it.increment(failed)) {
+      if (++count > kMostFiles) break;
+      std::error_code unknown;
+      const fs::path name = it->path().filename();
+      if (given.has_extension() && name.extension() != given.extension()) continue;
+      if (!it->is_regular_file(unknown)) continue;
+      names.push_back(name.stem().string());
+      paths.push_back((shown / name).string());
+    }
+  };
+  add(parent.empty() ? fs::path(".") : parent, parent);
+  if (const auto shipped = given.is_relative() ? ShippedFolder(program) : std::nullopt) {
+    if (!parent.empty()) add(fs::path(*shipped) / parent, parent);
+    for (const char* const kind : {"experiments", "models", "gaits", "studies", "fits"}) {
+      if (parent.empty()) add(fs::path(*shipped) / kind, kind);
+    }
+  }
+  const std::string_view best = ClosestMatch(given.stem().string(), names);
+  for (std::size_t i = 0; i < names.size() && !best.empty(); ++i) {
+    if (names[i] == best) return "did you mean \"" + paths[i] + "\"?";
+  }
+  return {};
 }
 
 }  // namespace taut

@@ -84,5 +84,20 @@ TEST_F(Shipped, WhatIsNotThereStaysAsItIs) {
   EXPECT_EQ(FindInput("models/a.yaml", ""), "models/a.yaml");
 }
 
+TEST_F(Shipped, AMisspelledFileGetsAHint) {
+  Write("tree/share/models/prism.yaml");
+  Write("work/mine/robot.yaml");
+  EXPECT_EQ(SimilarInput("models/prsim.yaml", Build()), "did you mean \"models/prism.yaml\"?");
+  EXPECT_EQ(SimilarInput("prism.yaml", Build()), "did you mean \"models/prism.yaml\"?");
+  EXPECT_EQ(SimilarInput("prism", Build()), "did you mean \"models/prism.yaml\"?");
+  EXPECT_EQ(SimilarInput("mine/robt.yaml", Build()), "did you mean \"mine/robot.yaml\"?");
+  EXPECT_EQ(SimilarInput(At("work/mine/robot"), ""),
+            "did you mean \"" + At("work/mine/robot.yaml") + "\"?");
+  for (const char* const path :
+       {"", "/", "models/elephant.yaml", "none/prism.yaml", "models/prism.csv"}) {
+    EXPECT_EQ(SimilarInput(path, Build()), "") << path;
+  }
+}
+
 }  // namespace
 }  // namespace taut
