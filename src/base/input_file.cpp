@@ -18,7 +18,7 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
   };
   const auto unreadable = [&](std::string what, int error) {
     out.Unreadable("file.not_readable", {path, 0, 0}, std::move(what) + std::strerror(error),
-                   error == ENOENT ? SimilarInput(path) : std::string());
+                   named_by == NamedBy::kUser && error == ENOENT ? SimilarInput(path) : "");
     return std::nullopt;
   };
   std::error_code ignored;

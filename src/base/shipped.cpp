@@ -1,6 +1,7 @@
 #include "taut/shipped.h"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "taut/diagnostics.h"
