@@ -13,6 +13,12 @@ namespace {
 namespace fs = std::filesystem;
 
 class Shipped : public testing::Test {
+ public:
+  ~Shipped() override {
+    fs::current_path(before_);
+    fs::remove_all(folder_);
+  }
+
  protected:
   Shipped() : before_(fs::current_path()) {
     folder_ = fs::temp_directory_path() / ("taut_shipped_" + std::to_string(getpid()));
@@ -27,10 +33,6 @@ class Shipped : public testing::Test {
     Write("usr/bin/taut");
     fs::create_directories(folder_ / "work");
     fs::current_path(folder_ / "work");
-  }
-  ~Shipped() override {
-    fs::current_path(before_);
-    fs::remove_all(folder_);
   }
   void Write(const fs::path& path) const {
     fs::create_directories((folder_ / path).parent_path());
