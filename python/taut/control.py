@@ -21,16 +21,18 @@ if TYPE_CHECKING:  # numpy.typing is younger than numpy 1.19
 __all__ = ["ControllerSpec", "impedance", "position"]
 
 
-def impedance(robot: Robot, cables: Optional[Sequence[str]] = None, *, tension_offset_n: PerCable = 0.0,
+def impedance(robot: Robot, cables: Union[str, Sequence[str], None] = None, *, tension_offset_n: PerCable = 0.0,
               length_offset_m: PerCable = 0.0, position_gain_n_per_m: PerCable = 0.0,
               velocity_gain_n_s_per_m: PerCable = 0.0, velocity_offset_m_per_s: PerCable = 0.0,
               period_s: float = 0.001, differenced_rate: bool = False) -> ControllerSpec:
     """Impedance control (Mirletz et al. 2015, eq. 3): tension T0 + K (L - L0) + B (V - V0), at least 0.
 
-    `cables`: names of the controlled cables; None: all cables with an actuator. Each offset or gain is one number for all
-    cables, or one per cable. `period_s`: time between two ticks. `differenced_rate`: compute the rate V from the
+    `cables`: one name or several names of controlled cables; None: all cables with an actuator. Each offset or gain is one
+    number for all cables, or one per cable. `period_s`: time between two ticks. `differenced_rate`: compute the rate V from the
     difference of two lengths, as on a board.
     """
+    if isinstance(cables, str):
+        cables = [cables]
     return _core.impedance(robot, cables, tension_offset_n, length_offset_m, position_gain_n_per_m,
                            velocity_gain_n_s_per_m, velocity_offset_m_per_s, period_s, differenced_rate)
 

@@ -239,6 +239,8 @@ class OwnControllers(unittest.TestCase):
     def test_controllers_of_another_robot_are_refused(self):
         big, small = taut.load(str(ROOT / "share/models/superball.yaml")), taut.load(PRISM)
         impedance = taut.control.impedance(big, tension_offset_n=5)
+        self.assertEqual(str(taut.control.impedance(big, big.cables[0])),
+                         str(taut.control.impedance(big, [big.cables[0]])))
         position = taut.control.position(big, {big.cables[0]: [(0, 0.5)]})
         gait = taut.load(GAIT).controllers[0]
         for one in (impedance, position, gait):
