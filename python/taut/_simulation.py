@@ -17,8 +17,8 @@ class Simulation(_core.Simulation):
 
     `experiment`: an `Experiment`, a `Robot`, or the path of an experiment or model file. `worlds`: number of equal
     worlds. `variants`: instead of `worlds`, a list with one dict per world: values of parameters by name
-    (`taut.tunables`), and optionally a "seed".
-    `threads`: number of threads; 0: one per core. `simd`: as in `taut.Batch`.
+    (`taut.tunables`), and optionally a "seed". `threads`: number of threads; 0: one per core. `simd`: as in
+    `taut.Batch`.
 
     `controllers`: list of controllers that act after those of the experiment. They are from the library
     (`taut.control`), or objects like this one, which require `threads=1`:
@@ -35,10 +35,10 @@ class Simulation(_core.Simulation):
     (n, cables); change these arrays in place.
 
     As long as nothing is changed, each world is bit-identical to `taut.run`, for any other worlds, number of threads
-    and instruction set. Several Python threads
-    may use one simulation; calls wait for each other, so `act` must not wait for a thread that uses this simulation. An
-    exception in `act` ends the call (`step`, `run_until`) after the present step. If a controller needs a reference to its
-    simulation, use `weakref`; otherwise neither is freed. Raises `taut.InputError` if a start cannot be found.
+    and instruction set. Several Python threads may use one simulation; calls wait for each other, so `act` must not
+    wait for a thread that uses this simulation. An exception in `act` ends the call (`step`, `run_until`) after the
+    present step. If a controller needs a reference to its simulation, use `weakref`; otherwise neither is freed. Raises
+    `taut.InputError` if a start cannot be found.
     """
 
     def __init__(self, experiment: Union[str, "os.PathLike[str]", Experiment, Robot], worlds: int = 1, *,

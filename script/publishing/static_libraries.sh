@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds static versions of the libraries that a self-contained taut contains, from the source packages
-# of Debian 12: HDF5 without compression by szip and without
-# tools, NLopt without its LGPL part, SQLite without loadable extensions, yaml-cpp, fmt, tinyxml2,
-# libpng and zlib. Takes about three minutes on two cores, and does nothing if they are already built.
+# of Debian 12: HDF5 without compression by szip and without tools, NLopt without its LGPL part, SQLite
+# without loadable extensions, yaml-cpp, fmt, tinyxml2, libpng and zlib. Takes about three minutes on two
+# cores, and does nothing if they are already built.
 #
 #   script/publishing/static_libraries.sh FOLDER     fills FOLDER/include and FOLDER/lib
 set -euo pipefail
