@@ -4,34 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string_view>
-#include <utility>
 
 #include "apps/viewer/web_files.h"
-#include "taut/world_batch.h"
-
-// CMake defines TAUT_SETS_BUILT as the instruction sets with commas, such as "scalar,sse2,avx2".
+#include "taut/instruction_sets.h"
 
 namespace taut::cli {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, Simd>, 5> kSets{{{"scalar", Simd::kScalar},
-                                                                  {"sse2", Simd::kSse2},
-                                                                  {"avx2", Simd::kAvx2},
-                                                                  {"avx512", Simd::kAvx512},
-                                                                  {"neon", Simd::kNeon}}};
-
-bool IsBuilt(std::string_view set) {
-  const std::string all = "," + std::string(TAUT_SETS_BUILT) + ",";
-  return all.find("," + std::string(set) + ",") != std::string::npos;
-}
-
-bool RunsHere(Simd simd) {
-  WorldBatchOptions options;
-  options.simd = simd;
-  return SimdOf(options) == simd;
-}
 
 std::string Line(std::string_view name, bool has, std::string_view fix) {
   return has ? fmt::format("{}: yes\n", name) : fmt::format("{}: no ({})\n", name, fix);
@@ -60,14 +39,15 @@ std::string FeaturesText() {
   std::string missing;
   text += Line("viewer's pages", viewer::FindWebFolder(missing).has_value(),
                "install nodejs and npm, then build from source; or set TAUT_WEB to their folder");
-  for (const auto& [name, simd] : kSets) {
-    const std::string line = fmt::format("instruction set {}", name);
-    if (IsBuilt(name) && !RunsHere(simd)) {
+  for (const InstructionSet& set : InstructionSets()) {
+    if (set.name == "simd128") continue;  // only for browsers
+    const std::string line = fmt::format("instruction set {}", set.name);
+    if (set.is_built && !set.runs_here) {
       text += fmt::format("{}: yes, but this processor lacks it\n", line);
     } else {
-      text += Line(line, IsBuilt(name),
-                   name == "neon" ? "build for AArch64"
-                                  : "build for x86-64, with it in -DTAUT_INSTRUCTION_SETS");
+      text += Line(line, set.is_built,
+                   set.name == "neon" ? "build for AArch64"
+                                      : "build for x86-64, with it in -DTAUT_INSTRUCTION_SETS");
     }
   }
   text += Line("static libraries", kStatic, "build with script/portable");

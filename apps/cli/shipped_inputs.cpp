@@ -9,11 +9,6 @@ namespace taut::cli {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string>& ShippedKinds() {
-  static const std::vector<std::string> kinds{"models", "experiments", "gaits", "studies", "fits"};
-  return kinds;
-}
-
 std::optional<std::string> ShippedFolderOf(const std::string& kind) {
   const auto shipped = ShippedFolder();
   if (!shipped) return std::nullopt;

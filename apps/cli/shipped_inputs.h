@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/shipped.h"
 #include "taut/spec.h"
 
 namespace taut::cli {
@@ -16,10 +17,6 @@ struct ShippedFile {
   std::string path;
   FileHead head;
 };
-
-/// Returns the kinds, which are also their folders: "models", "experiments", "gaits", "studies",
-/// "fits".
-const std::vector<std::string>& ShippedKinds();
 
 /// Returns the folder of a kind: of the installed taut, or of the source tree of a build.
 std::optional<std::string> ShippedFolderOf(const std::string& kind);

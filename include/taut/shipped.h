@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace taut {
 
@@ -21,6 +22,10 @@ std::optional<std::string> FindBesideProgram(const std::string& path);
 /// Returns the folder of the shipped files: `share/taut` in the folder of a program or library, or
 /// in a parent folder. So it is found in a build, in a Python package and below /usr.
 std::optional<std::string> ShippedFolder(const std::string& program = RunningProgram());
+
+/// Returns the kinds of shipped files that commands read, which are also their folders: "models",
+/// "experiments", "gaits", "studies", "fits".
+const std::vector<std::string>& ShippedKinds();
 
 /// Returns the path of an input file. A relative path that does not exist in the current folder is
 /// looked up in the folder of the shipped files, so `experiments/push_20n.yaml` works everywhere.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/instruction_sets.h"
 #include "taut/shipped.h"
 
 namespace taut::python {
@@ -28,20 +29,16 @@ std::string TextOf(const py::array& a) {
   return TextOf({a.shape(), a.shape() + a.ndim()}, py::str(a.dtype()).cast<std::string>().c_str());
 }
 
-const std::pair<const char*, Simd> kSimd[] = {{"scalar", Simd::kScalar},
-                                              {"sse2", Simd::kSse2},
-                                              {"neon", Simd::kNeon},
-                                              {"avx2", Simd::kAvx2},
-                                              {"avx512", Simd::kAvx512}};
-
 }  // namespace
 
 std::optional<Simd> SimdOf(const std::optional<std::string>& name) {
   if (!name) return std::nullopt;
-  for (const auto& [known, simd] : kSimd) {
-    if (*name == known) return simd;
+  std::string known;
+  for (const InstructionSet& set : InstructionSets()) {
+    if (*name == set.name) return set.simd;
+    known += (known.empty() ? "" : ", ") + std::string(set.name);
   }
-  throw py::value_error("simd: \"" + *name + "\"; expected scalar, sse2, neon, avx2 or avx512");
+  throw py::value_error("simd: \"" + *name + "\"; expected one of: " + known);
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #include "taut/shipped.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -47,6 +48,11 @@ std::optional<std::string> ShippedFolder(const std::string& program) {
   return std::nullopt;
 }
 
+const std::vector<std::string>& ShippedKinds() {
+  static const std::vector<std::string> kinds{"models", "experiments", "gaits", "studies", "fits"};
+  return kinds;
+}
+
 std::string FindInput(const std::string& path, const std::string& program) {
   std::error_code failed;
   const fs::path given(path);
@@ -82,16 +88,17 @@ std::string SimilarInput(const std::string& path, const std::string& program) {
   };
   add(parent.empty() ? fs::path(".") : parent, parent);
   if (const auto shipped = given.is_relative() ? ShippedFolder(program) : std::nullopt) {
-    if (!parent.empty()) add(fs::path(*shipped) / parent, parent);
-    for (const char* const kind : {"experiments", "models", "gaits", "studies", "fits"}) {
-      if (parent.empty()) add(fs::path(*shipped) / kind, kind);
+    const fs::path folder(*shipped);
+    if (!parent.empty()) {
+      add(folder / parent, parent);
+    } else {
+      for (const std::string& kind : ShippedKinds()) add(folder / kind, kind);
     }
   }
-  const std::string_view best = ClosestMatch(given.stem().string(), names);
-  for (std::size_t i = 0; i < names.size() && !best.empty(); ++i) {
-    if (names[i] == best) return "did you mean \"" + paths[i] + "\"?";
-  }
-  return {};
+  const auto best =
+      std::find(names.begin(), names.end(), ClosestMatch(given.stem().string(), names));
+  if (best == names.end()) return {};
+  return "did you mean \"" + paths[static_cast<std::size_t>(best - names.begin())] + "\"?";
 }
 
 }  // namespace taut

@@ -12,15 +12,12 @@ bool IsSpecial(const Material& m) { return m.stribeck || m.directions; }
 /// Calls `f` with the name and material of every shape and ground that collides.
 template <class F>
 void ForMaterials(const ModelDef& def, F f) {
+  EachShape(def, [&](const auto& shape) {
+    if (shape.collides) f(shape.name, shape.material);
+  });
   const auto all = [&](const auto& list) {
-    for (const auto& part : list) {
-      if constexpr (requires { part.collides; }) {
-        if (!part.collides) continue;
-      }
-      f(part.name, part.material);
-    }
+    for (const auto& part : list) f(part.name, part.material);
   };
-  EachShapeList([&](const ShapeName&, const auto& shapes) { all(shapes); }, def);
   all(def.planes), all(def.terrain_boxes), all(def.height_fields);
 }
 

@@ -194,7 +194,7 @@ void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnosti
   const ModelDef& def = experiment.robot.def;
   check(def.name, IsName(def.name));
   check_all(def.bodies), check_all(def.nodes), check_all(def.cables);
-  EachShapeList([&](const ShapeName&, const auto& shapes) { check_all(shapes); }, def);
+  EachShape(def, [&](const auto& shape) { check(shape.name, IsFullName(shape.name)); });
   check_all(def.planes), check_all(def.terrain_boxes), check_all(def.motions);
   check_all(def.height_fields), check_all(def.terrain_meshes);
   check_all(experiment.controllers), check_all(experiment.pushes), check_all(experiment.drags);

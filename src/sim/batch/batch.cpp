@@ -7,10 +7,13 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "sim/batch/batch_impl.h"
 #include "sim/compile/model_check.h"
 #include "sim/compile/start_values.h"
+#include "taut/instruction_sets.h"
 
 namespace taut {
 namespace {
@@ -55,30 +58,29 @@ Simd WidestUpTo(Simd wish) {
   return Simd::kScalar;
 }
 
+/// Names of the instruction sets; some have the same width.
+constexpr std::pair<std::string_view, Simd> kSimdNames[] = {
+    {"scalar", Simd::kScalar},   {"sse2", Simd::kSse2}, {"neon", Simd::kNeon},
+    {"simd128", Simd::kSimd128}, {"avx2", Simd::kAvx2}, {"avx512", Simd::kAvx512}};
+/// Those that this build contains.
+constexpr std::string_view kSimdBuilt[] = {
+    "scalar",
 #ifdef TAUT_HAS_SSE2
-constexpr bool kHasSse2 = true;
-#else
-constexpr bool kHasSse2 = false;
+    "sse2",
 #endif
 #ifdef TAUT_HAS_NEON
-constexpr bool kHasNeon = true;
-#else
-constexpr bool kHasNeon = false;
+    "neon",
 #endif
 #ifdef TAUT_HAS_SIMD128
-constexpr bool kHasSimd128 = true;
-#else
-constexpr bool kHasSimd128 = false;
+    "simd128",
 #endif
-
-/// Values of TAUT_SIMD. Three of them have the same width; a build has one of these.
-constexpr struct {
-  std::string_view name;
-  Simd simd;
-  bool built;
-} kSimdNames[] = {{"scalar", Simd::kScalar, true}, {"sse2", Simd::kSse2, kHasSse2},
-                  {"neon", Simd::kNeon, kHasNeon}, {"simd128", Simd::kSimd128, kHasSimd128},
-                  {"avx2", Simd::kAvx2, true},     {"avx512", Simd::kAvx512, true}};
+#ifdef TAUT_HAS_AVX2
+    "avx2",
+#endif
+#ifdef TAUT_HAS_AVX512
+    "avx512",
+#endif
+};
 
 std::string_view SimdWish() {
   const char* const text = std::getenv("TAUT_SIMD");
@@ -103,7 +105,7 @@ bool SamePlace(const BodyState& a, const BodyState& b) {
 }  // namespace
 
 Simd BestSimd() {
-  for (const auto& [name, simd, built] : kSimdNames) {
+  for (const auto& [name, simd] : kSimdNames) {
     if (SimdWish() == name) return WidestUpTo(simd);
   }
   return WidestUpTo(Simd::kAvx512);
@@ -114,13 +116,22 @@ Simd SimdOf(const WorldBatchOptions& options) {
   return options.worlds == 1 ? Simd::kScalar : BestSimd();
 }
 
+std::vector<InstructionSet> InstructionSets() {
+  std::vector<InstructionSet> sets;
+  for (const auto& [name, simd] : kSimdNames) {
+    const bool built = std::ranges::find(kSimdBuilt, name) != std::end(kSimdBuilt);
+    sets.push_back({name, simd, built, built && KernelOf(simd) != nullptr});
+  }
+  return sets;
+}
+
 bool sim::CheckEnvironment(Diagnostics& out) {
   std::string known, here;
   if (SimdWish().empty()) return true;
-  for (const auto& [name, simd, built] : kSimdNames) {
-    if (SimdWish() == name) return true;
-    known += (known.empty() ? "" : ", ") + std::string(name);
-    if (built && KernelOf(simd)) here += (here.empty() ? "" : ", ") + std::string(name);
+  for (const InstructionSet& set : InstructionSets()) {
+    if (SimdWish() == set.name) return true;
+    known += (known.empty() ? "" : ", ") + std::string(set.name);
+    if (set.runs_here) here += (here.empty() ? "" : ", ") + std::string(set.name);
   }
   out.Error("simd.unknown", {},
             "the environment variable TAUT_SIMD is \"" + std::string(SimdWish()) + "\"",
