@@ -66,8 +66,8 @@ build_showing() {
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }
 
-# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with Debian's archive of SUITE alone (KIND: deb or
-# deb-src) and no installed packages; its lists stay in FOLDER. The machine's sources may lack this suite.
+# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with only Debian's archive of SUITE (KIND: deb or deb-src),
+# as if no package were installed. Its lists stay in FOLDER. Needed because the machine's sources may lack SUITE.
 apt_apart() {
   local folder=$1 kind=$2 suite=$3
   shift 3

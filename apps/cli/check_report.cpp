@@ -233,7 +233,7 @@ std::string ExperimentTables(const ExperimentSpec& experiment) {
   std::map<CableScheme, int> schemes;
   for (const CableScheme scheme : SchemesOf(experiment)) ++schemes[scheme];
   if (!schemes.empty()) {
-    text += "Integration of cables:";
+    text += "Cables per integration scheme:";
     const char* separator = " ";
     for (const auto& [scheme, count] : schemes) {
       text += fmt::format("{}{} {}", separator, count, CableSchemeName(scheme));

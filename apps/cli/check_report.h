@@ -16,8 +16,7 @@ std::string RobotTables(const RobotSpec& robot);
 /// Returns the integration scheme of each cable at the experiment's longest step.
 std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment);
 
-/// Formats lines on the experiment and the integration of its cables, and its controllers, events
-/// and phases.
+/// Formats the experiment: number of cables per integration scheme, controllers, events and phases.
 std::string ExperimentTables(const ExperimentSpec& experiment);
 
 /// Returns the same facts and the warnings as JSON. `experiment` and `settled` (the result of

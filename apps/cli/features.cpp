@@ -38,7 +38,8 @@ std::string FeaturesText() {
       Line("MPI", kMpi, "install libopenmpi-dev and openmpi-bin, then build from source");
   std::string missing;
   text += Line("viewer's pages", viewer::FindWebFolder(missing).has_value(),
-               "install nodejs and npm, then build from source; or set TAUT_WEB to their folder");
+               "install nodejs and npm, then build from source; or set TAUT_WEB to the "
+               "pages' folder");
   for (const InstructionSet& set : InstructionSets()) {
     if (set.name == "simd128") continue;  // only for browsers
     const std::string line = fmt::format("instruction set {}", set.name);
@@ -47,7 +48,7 @@ std::string FeaturesText() {
     } else {
       text += Line(line, set.is_built,
                    set.name == "neon" ? "build for AArch64"
-                                      : "build for x86-64, with it in -DTAUT_INSTRUCTION_SETS");
+                                      : "build for x86-64 and add it to -DTAUT_INSTRUCTION_SETS");
     }
   }
   text += Line("static libraries", kStatic, "build with script/portable");

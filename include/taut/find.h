@@ -1,5 +1,5 @@
-/// Look-up of model elements by name. Each function returns the index of an element, as other
-/// functions take it.
+/// Look-up of model elements by name. Each function returns the index of an element, which other
+/// functions of taut take as argument.
 ///
 ///   const auto cable = taut::FindCable(model->def(), "outer_top_1", &found);
 ///

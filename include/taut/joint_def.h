@@ -3,6 +3,7 @@
 /// world.
 #pragma once
 
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -80,7 +81,8 @@ struct HeldMotions {
   bool swing = false;   ///< Rotation of the axis.
   bool twist = false;   ///< Rotation about the axis.
 };
-/// Position of a joint as one number.
+
+/// Type of the scalar coordinate of a joint.
 enum class JointCoordinate { kNone, kLength, kAngle };
 
 /// Properties of a kind of joint.
@@ -89,8 +91,8 @@ struct JointKindRow {
   HeldMotions constrained;
   JointCoordinate coordinate;
 };
-/// Kinds of joints, in the order of `JointKind`. Another kind is a line here, a value there, its
-/// symbol in the viewer, and its coordinate in src/sim/compile/model_joints.cpp.
+/// Kinds of joints, in the order of `JointKind`. A new kind needs a row here, a value of
+/// `JointKind`, a symbol in the viewer, and a case in src/sim/compile/model_joints.cpp.
 inline constexpr JointKindRow kJointKindRows[] = {
     // Constrained: along, across, swing, twist.
     {"ball", {true, true, false, false}, JointCoordinate::kAngle},
@@ -103,6 +105,8 @@ inline constexpr JointKindRow kJointKindRows[] = {
     {"plane", {true, false, false, false}, JointCoordinate::kNone},
     {"distance", {false, false, false, false}, JointCoordinate::kLength},
 };
+static_assert(std::size(kJointKindRows) == static_cast<int>(JointKind::kDistance) + 1);
+/// Returns the properties of a kind of joint.
 constexpr const JointKindRow& RowOf(JointKind kind) noexcept {
   return kJointKindRows[static_cast<int>(kind)];
 }

@@ -274,7 +274,7 @@ struct ModelDef {
   FrictionLaw friction_law = FrictionLaw::kCone;
 
   /// Parts of the experiment file from which this model was read (`ActingParts`); empty for a model
-  /// file. A `WorldBatch` leaves them out, and `Model::Compile` warns of that.
+  /// file. A `WorldBatch` ignores them, and `Model::Compile` warns about it.
   std::string experiment_parts;
 };
 

@@ -125,8 +125,8 @@ class World : public Bodies {
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
-  virtual double CableFrictionLoss(int lane,
-                                   int cable) const = 0;  ///< As in `WorldBatch`, all below.
+  // As in `WorldBatch`:
+  virtual double CableFrictionLoss(int lane, int cable) const = 0;
   virtual std::vector<double> CableSpanTensions(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
   virtual std::vector<CablePoint> CablePath(int lane, int cable) const = 0;

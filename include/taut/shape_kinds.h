@@ -1,7 +1,7 @@
 /// Shapes of a model, for code that handles all kinds of shapes alike.
 ///
-/// Pure functions; thread-safe for different models. docs/extending.md lists the other places of a
-/// new kind.
+/// Pure functions; thread-safe for different models. docs/extending.md lists the other files to
+/// change for a new kind.
 #pragma once
 
 #include "taut/model_def.h"
@@ -33,7 +33,8 @@ void EachShape(Def& def, F f) {
   EachShapeList(each, def);
 }
 
-// Call f(point) by reference for each point that defines the position of a shape [m], in W.
+// EachPoint: calls f(point), by reference, for each point that defines the position of a shape [m],
+// in W.
 template <class F>
 void EachPoint(SphereDef& sphere, F f) {
   f(sphere.center_m);

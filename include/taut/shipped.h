@@ -15,8 +15,8 @@ std::string RunningProgram();
 /// it before other threads start.
 void SetRunningProgram(const std::string& path);
 
-/// Returns the path of a file that belongs to the running program: in its folder in a build, in
-/// `../share/taut` of an installation, in `share/taut` of a Python package.
+/// Returns the path of a file shipped with the running program. Looks, relative to the program's
+/// folder, in this folder (build), `../share/taut` (installation), `share/taut` (Python package).
 std::optional<std::string> FindBesideProgram(const std::string& path);
 
 /// Returns the folder of the shipped files: `share/taut` in the folder of a program or library, or

@@ -8,7 +8,8 @@
 ///   std::printf("%g N\n", sim->Cable("outer_right_1").tension_n);
 ///
 /// As long as the program changes nothing, the results of a world are bit-identical to
-/// `RunExperiment` (taut/run.h), for any other worlds, number of threads and instruction set.
+/// `RunExperiment` (taut/run.h), independent of the other worlds, the number of threads and the
+/// instruction set.
 /// Related classes: `WorldBatch` (taut/world_batch.h) steps a model without controllers and events,
 /// `Rollouts` (taut/rollout.h) score many variants from start to end, and `Env` (taut/env.h) is an
 /// environment for reinforcement learning.
@@ -33,7 +34,7 @@
 namespace taut {
 
 struct SimulationOptions {
-  int worlds = 1;                               ///< Number of worlds of the unchanged experiment.
+  int worlds = 1;                               ///< Number of identical worlds.
   std::span<const RolloutWorld> variants = {};  ///< One world per variant, instead of `worlds`.
   int threads = 1;                              ///< 0: one per core.
   std::optional<Simd> simd = {};                ///< As in `WorldBatchOptions`.
@@ -104,9 +105,8 @@ class Simulation {
   /// stepped beyond the experiment's `duration_s`.
   void Step();
   /// Steps each world until its time is at least `time_s`. Steps are not shortened to end there, so
-  /// a world may stop up to one step later. `keep_going` is polled before each step of each group,
-  /// by the thread that steps the group, so concurrently; a group for which it returns false takes
-  /// no further step.
+  /// a world may stop up to one step later. Each thread polls `keep_going` before each step of a
+  /// group, so it must be thread-safe; a group for which it returns false takes no further step.
   void RunUntil(double time_s, const std::function<bool()>& keep_going = {});
   double Time(int world = 0) const;  ///< [s], since the start.
   /// Returns false once the state is not finite; the world is then frozen.
@@ -119,8 +119,8 @@ class Simulation {
   Vec3 NodeVelocity(const ElementRef& node, int world = 0) const;
   JointState Joint(const ElementRef& joint, int world = 0) const;
   MotionState Motion(const ElementRef& motion, int world = 0) const;
-  MotorState Motor(const ElementRef& cable,
-                   int world = 0) const;  ///< The cable needs a `dc_motor`.
+  /// The cable needs a `dc_motor`.
+  MotorState Motor(const ElementRef& cable, int world = 0) const;
   Energy TotalEnergy(int world = 0) const;
   std::vector<ContactState> Contacts(int world = 0) const;
   WorldStatus Status(int world = 0) const;
@@ -152,8 +152,8 @@ class Simulation {
   // --- state and parameters ----------------------------------------------------------------------
   /// As `WorldBatch::SetBodyState`.
   void SetBodyState(const ElementRef& body, const BodyState& state, int world = 0);
-  /// Returns a parameter. `of`: a body or a cable, by the kind of parameter; ignored for parameters
-  /// of the whole world.
+  /// Returns a parameter. `of`: a body or a cable, depending on the parameter; ignored for
+  /// parameters of the whole world.
   double GetParameter(Parameter parameter, const ElementRef& of, int world = 0) const;
   /// Sets a parameter. Returns false and changes nothing if the value is invalid
   /// (`WorldBatch::ParameterError` returns the reason).
@@ -168,10 +168,10 @@ class Simulation {
   /// custom controllers and sensors is included if they implement `Serialize`.
   std::vector<std::uint8_t> Save(int world = 0);
   /// Restores a serialized world into any world of a simulation of the same experiment and
-  /// extensions; the continuation is bit-identical. The simulation must have the variant of the
-  /// snapshot, since its creation or by `Reset`. Returns false, with an error and without a change,
-  /// if it does not, or if the snapshot is damaged or belongs to another experiment or to other
-  /// controllers.
+  /// extensions; the continuation is bit-identical. The variant of the snapshot must be one of
+  /// the simulation, from its creation or set by `Reset`. Returns false, with an error and without
+  /// a change, if it is not, or if the snapshot is damaged or belongs to another
+  /// experiment or to other controllers.
   bool Restore(std::span<const std::uint8_t> snapshot, Diagnostics& out, int world = 0);
 
   // --- recording ---------------------------------------------------------------------------------

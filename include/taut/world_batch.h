@@ -29,7 +29,7 @@ class Model {
   /// Warns if `def` belongs to an experiment with controllers, events or a settled start, which a
   /// `WorldBatch` ignores.
   static std::shared_ptr<const Model> Compile(const ModelDef& def, Diagnostics& out);
-  /// Compiles as `Compile`, without the warning about controllers and events, for programs that run
+  /// Same as `Compile`, without the warning about controllers and events, for programs that run
   /// them themselves.
   static std::shared_ptr<const Model> CompileForExperiment(const ModelDef& def, Diagnostics& out);
 
@@ -205,7 +205,7 @@ enum class Parameter {
   kCableStiffness,  ///< [N/m]
   kCableDamping,    ///< [N s/m]
   kFrictionScale,   ///< Factor on all coefficients of the world; index 0. [1]
-  kGravityX,        ///< [m/s^2], in W; index 0. So are the next two.
+  kGravityX,        ///< This and the next two: [m/s^2], in W; index 0.
   kGravityY,
   kGravityZ,
 };
@@ -268,8 +268,8 @@ class WorldBatch {
 
   // --- observation -------------------------------------------------------------------------
   CableState Cable(int world, int cable) const noexcept;
-  /// Returns the number of spans of a cable: parts between places with friction, each with a
-  /// tension that may differ. For a `touches` cable with friction: the largest possible number;
+  /// Returns the number of spans of a cable: parts between places with friction, whose tensions may
+  /// differ. For a `touches` cable with friction: the largest possible number;
   /// spans beyond the current CableBends() + 1 are all 0.
   int CableSpans(int cable) const noexcept;
   CableSpanState CableSpan(int world, int cable, int span) const noexcept;

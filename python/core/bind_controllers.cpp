@@ -105,7 +105,8 @@ std::shared_ptr<LibrarySpec> Position(const RobotSpec& robot, const py::dict& pr
       before_s = time_s;
     }
     if (program.rest_length_m.empty())
-      throw py::value_error(cable + ": the program is empty; expected (time [s], rest length [m])");
+      throw py::value_error(cable +
+                            ": the program is empty; expected (time [s], rest length [m]) pairs");
     spec->position.push_back(std::move(program));
   }
   if (spec->position.empty()) throw py::value_error("programs: empty; expected at least one cable");

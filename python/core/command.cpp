@@ -24,7 +24,7 @@ void AddCommand(py::module_& module) {
       },
       py::arg("place"), py::arg("arguments"),
       "Runs the command `taut` with these arguments; returns its exit status. `place`: path of "
-      "this module, beside which the shipped files are.");
+      "this module; the shipped files are in its folder.");
 }
 
 }  // namespace taut::python

@@ -76,7 +76,7 @@ class DueRows {
 
 py::object Namespace() { return py::module_::import("types").attr("SimpleNamespace"); }
 
-/// Returns the commands for Python: an object whose attributes are `array(row)` of the rows.
+/// Returns the commands as a Python object. Each attribute is `array(row)` of one row of commands.
 template <class Array>
 py::object CommandsOf(const Commands& commands, Array array) {
   return Namespace()(py::arg("rest_length_m") = array(commands.rest_length_m),
@@ -184,7 +184,7 @@ class PythonController final : public Controller {
   std::size_t cables_;
 };
 
-/// Returns the number of an attribute, or `otherwise` without one. Raises TypeError if it is not
+/// Returns an attribute as a number, or `otherwise` if it is absent. Raises TypeError if it is not
 /// a number, ValueError if it is not finite or too small.
 double NumberOf(const py::object& of, const char* name, const std::string& where, double otherwise,
                 bool may_be_zero) {

@@ -24,7 +24,7 @@ class Callbacks {
   /// Raises the exception that was kept, if any. The GIL must be held.
   void Rethrow();
 
-  bool is_used = false;  ///< A controller is written in Python.
+  bool is_used = false;  ///< Whether a controller is written in Python.
 
  private:
   mutable std::mutex mutex_;  ///< Guards `raised_`.

@@ -5,7 +5,7 @@
 
 namespace taut::python {
 
-/// Shape: (worlds, bodies, width).
+/// Reading of all bodies, of shape (worlds, bodies, width).
 struct BodyReading {
   const char* name;
   py::ssize_t width;
@@ -29,7 +29,7 @@ inline constexpr BodyReading kBodyReadings[] = {
      [](const BodyState& s, double* to) { Put(s.angular_velocity_rad_per_s, to); },
      "angular velocities, in W [rad/s]"}};
 
-/// Shape: (worlds, cables).
+/// Reading of all cables, of shape (worlds, cables).
 struct CableReading {
   const char* name;
   double CableState::*field;
@@ -42,7 +42,7 @@ inline constexpr CableReading kCableReadings[] = {
     {"cable_rate_m_per_s", &CableState::rate_m_per_s, "rates of the cable lengths [m/s]"},
     {"rest_length_m", &CableState::rest_length_m, "rest lengths [m]"},
     {"tension_n", &CableState::tension_n,
-     "tensions as measured by a load cell, spring and damper [N]"},
+     "tensions, spring and damper, as a load cell measures them [N]"},
     {"elastic_n", &CableState::elastic_n, "spring part of the tensions, max(0, k (l - L)) [N]"}};
 
 }  // namespace taut::python

@@ -17,7 +17,7 @@
 
 namespace taut::python {
 
-/// Simulation shared by all Python threads, of which one at a time has access.
+/// Simulation that all Python threads share; one thread at a time has access.
 class SharedSimulation : public OwnedWorlds<Simulation> {
  public:
   SharedSimulation(const ExperimentSpec& experiment, int worlds,
@@ -56,7 +56,7 @@ class SharedSimulation : public OwnedWorlds<Simulation> {
   int Joint(const py::object& given) const {
     return ElementOf(given, def().joints, "joint", FindJoint);
   }
-  /// Returns an element by `find`, such as `Cable`; nothing for None.
+  /// Returns the index of an element, found by a member function such as `Cable`; nothing for None.
   std::optional<int> OneOf(int (SharedSimulation::*find)(const py::object&) const,
                            const py::object& given) const {
     if (given.is_none()) return std::nullopt;

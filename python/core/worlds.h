@@ -25,7 +25,7 @@ inline void CheckWorlds(int worlds) {
   throw py::value_error(fmt::format("worlds: {}; expected 1 to {}", worlds, kMost));
 }
 
-/// Object T with worlds, for all Python threads, one at a time (`Owner`).
+/// Object T with worlds, which Python threads share; one thread at a time has access (`Owner`).
 template <class T>
 class OwnedWorlds {
  public:

@@ -20,8 +20,8 @@ class Simulation(_core.Simulation):
     (`taut.tunables`), and optionally a "seed". `threads`: number of threads; 0: one per core. `simd`: as in
     `taut.Batch`.
 
-    `controllers`: list of controllers that act after those of the experiment. They are from the library
-    (`taut.control`), or objects like this one, which require `threads=1`:
+    `controllers`: list of controllers that act after those of the experiment. Each is a controller of the
+    library (`taut.control`), or an object like the following one, which requires `threads=1`:
 
         class Hold:
             period_s = 0.01
@@ -34,8 +34,10 @@ class Simulation(_core.Simulation):
     `stiffness_n_per_m`. `commands` has `rest_length_m`, `set_point_n`, `velocity_input_m_per_s` and `signal`, of shape
     (n, cables); change these arrays in place.
 
-    As long as nothing is changed, each world is bit-identical to `taut.run`, for any other worlds, number of threads
-    and instruction set. Several Python threads may use one simulation; calls wait for each other, so `act` must not
+    As long as your program changes nothing, each world is bit-identical to `taut.run`, independent of the other worlds,
+    the number of threads and the instruction set.
+
+    Several Python threads may use one simulation; calls wait for each other, so `act` must not
     wait for a thread that uses this simulation. An exception in `act` ends the call (`step`, `run_until`) after the
     present step. If a controller needs a reference to its simulation, use `weakref`; otherwise neither is freed. Raises
     `taut.InputError` if a start cannot be found.

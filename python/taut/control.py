@@ -29,7 +29,7 @@ def impedance(robot: Robot, cables: Union[str, Sequence[str], None] = None, *, t
 
     `cables`: one name or several names of controlled cables; None: all cables with an actuator. Each offset or gain is one
     number for all cables, or one per cable. `period_s`: time between two ticks. `differenced_rate`: compute the rate V from the
-    difference of two lengths, as on a board.
+    difference of two successive lengths, as motor boards do.
     """
     if isinstance(cables, str):
         cables = [cables]

@@ -5,7 +5,7 @@
 
 Each system is a chroot in build/portable/systems, which debootstrap creates once (one minute each). Archive and wheel
 must give the same results as build/release: the final state hash of push_20n, and the output of `taut analyze` for
-all models. Needs root. Prints one line per check; status 1 if one fails.
+all models. Needs root. Prints one line per check; returns status 1 if a check fails.
 """
 
 import contextlib

@@ -1,4 +1,4 @@
-"""Bill of materials of a release: libraries that its files contain, with versions and licenses, as CycloneDX 1.5.
+"""Software bill of materials (SBOM) of a release, as CycloneDX 1.5: libraries in its files, versions, licenses.
 
 Shared libraries that the Debian packages depend on are not listed: dpkg lists them.
 """
@@ -41,7 +41,7 @@ def installed_version(package):
 
 
 def debian_versions(portable):
-    """Returns {source package: version} that script/portable used, else the installed version."""
+    """Returns {source package: version}: the version that script/portable used, or else the installed one."""
     files = [pathlib.Path(portable) / folder / "versions" for folder in ("libraries", "pybind11")]
     text = "".join(path.read_text() for path in files if path.is_file())
     found = dict(line.split() for line in text.splitlines())

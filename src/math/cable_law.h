@@ -1,12 +1,12 @@
-/// Elastic law of a cable: force as a function of stretch (docs/theory/cables.md, eq. 1). No other
-/// file computes it. The step, statics, energies, starts and sizing call it; the callers add
-/// dampers and the rule that a cable does not push.
+/// Elastic law of a cable: force as a function of stretch (docs/theory/cables.md, eq. 1). It is
+/// defined only here. The step, statics, energies, starts and sizing call it; the callers add
+/// dampers and the condition that a cable does not push.
 #pragma once
 
 namespace taut::math {
 
 /// Linear spring with the stiffness k [N/m]. `Num`: double, or the lanes of a SIMD register.
-/// A class for another law must have the same member functions.
+/// Its callers use no other class: another law is a choice within its member functions.
 template <class Num>
 struct CableLaw {
   Num stiffness;

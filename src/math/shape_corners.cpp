@@ -9,12 +9,12 @@
 
 namespace taut::math {
 
-double HalfThickness(const SphereDef& sphere) { return sphere.radius_m; }
-double HalfThickness(const CapsuleDef& rod) { return rod.radius_m; }
-double HalfThickness(const BoxDef& box) {
+double HalfExtent(const SphereDef& sphere) { return sphere.radius_m; }
+double HalfExtent(const CapsuleDef& rod) { return rod.radius_m; }
+double HalfExtent(const BoxDef& box) {
   return std::min({box.half_extents_m.x, box.half_extents_m.y, box.half_extents_m.z});
 }
-double HalfThickness(const HullDef& hull) {
+double HalfExtent(const HullDef& hull) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   Vec3 low{kInf, kInf, kInf}, high = -1.0 * low;
   for (const Vec3& p : hull.corners_m) {

@@ -1,4 +1,5 @@
-/// Shapes as the convex hull of corners, widened by a radius; their thickness and volume.
+/// Corners of shapes, their radius, thickness and volume. A shape is the Minkowski sum of the
+/// convex hull of its corners and a ball with this radius.
 #pragma once
 
 #include "math/vec.h"
@@ -6,13 +7,13 @@
 
 namespace taut::math {
 
-/// Distance by which the hull of the corners is widened [m].
+// RadiusOf: returns the radius of the ball [m].
 inline double RadiusOf(const SphereDef& sphere) noexcept { return sphere.radius_m; }
 inline double RadiusOf(const CapsuleDef& rod) noexcept { return rod.radius_m; }
 inline double RadiusOf(const BoxDef&) noexcept { return 0; }
 inline double RadiusOf(const HullDef&) noexcept { return 0; }
 
-// Call f(corner) for each corner [m], in W.
+// EachCorner: calls f(corner) for each corner [m], in W.
 template <class F>
 void EachCorner(const SphereDef& sphere, F f) {
   f(sphere.center_m);
@@ -35,13 +36,14 @@ void EachCorner(const HullDef& hull, F f) {
   for (const Vec3& corner : hull.corners_m) f(corner);
 }
 
-/// Returns half the smallest extent along an axis of the shape, or of W for hulls [m].
-double HalfThickness(const SphereDef& sphere);
-double HalfThickness(const CapsuleDef& rod);
-double HalfThickness(const BoxDef& box);
-double HalfThickness(const HullDef& hull);
+/// Returns half the smallest extent [m], along the axes of the shape; for hulls, along the axes of
+/// W.
+double HalfExtent(const SphereDef& sphere);
+double HalfExtent(const CapsuleDef& rod);
+double HalfExtent(const BoxDef& box);
+double HalfExtent(const HullDef& hull);
 
-/// Returns the volume; of a rod without its round ends [m^3].
+/// Returns the volume [m^3]; for a rod, without its round ends.
 double VolumeOf(const SphereDef& sphere);
 double VolumeOf(const CapsuleDef& rod);
 double VolumeOf(const BoxDef& box);

@@ -16,8 +16,8 @@ struct CableChannel {
   const double* ReadingRows::*reading;
   double* Commands::*command;
   bool sensed = false;  ///< Also measured by a robot's sensors: channel `sensor/NAME/...`.
-  bool with_set_point =
-      false;  ///< Recorded only for cables whose controller has a tension set point.
+  /// Recorded only for cables whose controller has a tension set point.
+  bool with_set_point = false;
 
   const double* Row(const ReadingRows& readings, const Commands& commands) const noexcept {
     return reading != nullptr ? readings.*reading : commands.*command;

@@ -96,7 +96,7 @@ share/taut/firmware/taut_board.elf;share/taut/firmware/taut_board.hex")
     endif()
   endif()
 elseif(KIND STREQUAL core_as_subdirectory)
-  # without optimization, for the time to compile
+  # Without optimization, to reduce the compile time
   run(${configure} -DTAUT_SOURCE_DIR=${SOURCE_DIR} -DTAUT_INSTRUCTION_SETS=scalar
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
   run(${CMAKE_COMMAND} --build ${build} --target core)

@@ -50,7 +50,7 @@ def WhatGitHubReadsCanBeRead():
 
 
 def ThePaperCitesItsBibliography():
-    """Form of the Journal of Open Source Software: header, sections, and every key in both files."""
+    """The paper has the form that the Journal of Open Source Software requires: header, sections, all citations."""
     text, bib = ((ROOT / "docs/paper" / name).read_text() for name in ("paper.md", "paper.bib"))
     header, body = text.split("---\n", 2)[1:]
     for key in ("title", "tags", "authors", "affiliations", "date", "bibliography: paper.bib"):
@@ -66,8 +66,8 @@ def ThePaperCitesItsBibliography():
     assert 250 < len(body.split()) < 1000, len(body.split())
 
 
-# Recipes of package managers. Names of the libraries of script/packages.txt (group build) there; None: the recipe
-# has it by other means, such as a compiler.
+# Names in conda and vcpkg of the packages of script/packages.txt (group build). None: the recipe provides the package
+# by other means, such as its compiler.
 CONDA_NAMES = {"g++": None, "cmake": "cmake", "ninja-build": "ninja", "libcli11-dev": "cli11", "libfmt-dev": "fmt",
                "libyaml-cpp-dev": "yaml-cpp", "libtinyxml2-dev": "tinyxml2", "libhdf5-dev": "hdf5",
                "pkgconf": "pkg-config", "zlib1g-dev": "zlib", "libpng-dev": "libpng",
@@ -85,7 +85,7 @@ def RecipesHaveTheLibrariesOfTheBuild():
         raise Skipped("there is no python3-yaml") from None
     packages = build_packages()
     assert packages.keys() == CONDA_NAMES.keys() == VCPKG_NAMES.keys(), packages.keys() ^ CONDA_NAMES.keys()
-    # conda: Jinja stands for the version and the compiler.
+    # conda: Jinja expressions insert the version and the compiler.
     text = (ROOT / "packaging/conda/meta.yaml").read_text()
     file, pattern = re.search(r'load_file="(.*?)", regex_pattern=\'(.*?)\'', text).groups()
     version = re.search(pattern, (ROOT / "packaging/conda" / file).read_text())[1]

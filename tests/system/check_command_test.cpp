@@ -66,7 +66,7 @@ TEST_F(CheckCommand, ShowsAnExperimentAndItsRobot) {
   EXPECT_EQ(push.status, 0) << push.errors;
   EXPECT_NE(push.output.find("Experiment push_20n: 60 s in steps of 0.001 s, 1 controller\n"),
             std::string::npos);
-  EXPECT_NE(push.output.find("Integration of cables: 12 explicit\n"), std::string::npos);
+  EXPECT_NE(push.output.find("Cables per integration scheme: 12 explicit\n"), std::string::npos);
   EXPECT_NE(push.output.find("segment_0.tip"), std::string::npos);
   EXPECT_NE(push.output.find("Model tetraspine3: 3 bodies"), std::string::npos);
   EXPECT_NE(push.output.find("with 1 terrain surface\n"), std::string::npos);

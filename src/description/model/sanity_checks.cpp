@@ -60,13 +60,12 @@ using ItemList = std::vector<Item>;
 
 bool Less(const Item& a, const Item& b) { return a.value < b.value; }
 
-/// Returns the half thickness of each shape [m].
+/// Returns half the smallest extent of each shape [m].
 ItemList Sizes(const RobotSpec& robot) {
   ItemList sizes;
   const auto add = [&](const ShapeName& name, const auto& shapes) {
     for (const auto& shape : shapes) {
-      sizes.push_back({math::HalfThickness(shape),
-                       std::string(name.one) + " \"" + shape.name + "\"",
+      sizes.push_back({math::HalfExtent(shape), std::string(name.one) + " \"" + shape.name + "\"",
                        SourceOf(robot, shape.body)});
     }
   };

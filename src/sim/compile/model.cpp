@@ -333,8 +333,8 @@ std::shared_ptr<const Model> Model::Compile(const ModelDef& def, Diagnostics& ou
   if (!def.experiment_parts.empty()) {
     out.Warning("model.experiment_left_out", {},
                 "the experiment has " + def.experiment_parts + ", which a batch ignores",
-                "to run them, use Simulation; to ignore them, clear ModelDef::experiment_parts, in "
-                "Python pass experiment.robot");
+                "to run them, use Simulation; to suppress this warning, clear "
+                "ModelDef::experiment_parts or, in Python, pass experiment.robot");
   }
   return CompileForExperiment(def, out);
 }

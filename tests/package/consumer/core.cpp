@@ -1,5 +1,5 @@
-// Program that uses only the core of taut as a subfolder: a model defined in C++, its steps, and a
-// tension set point.
+// Program that uses only the core of taut, as a subfolder: defines a model in C++, steps it and
+// computes a tension set point.
 #include <cmath>
 #include <cstdio>
 

@@ -156,7 +156,7 @@ TEST(Simulation, ABatchOfAnExperimentWarnsOfWhatItLeavesOut) {
   EXPECT_EQ(
       out.Format(),
       "warning: the experiment has controllers, pushes, which a batch ignores (to run them, use "
-      "Simulation; to ignore them, clear ModelDef::experiment_parts, in Python pass "
+      "Simulation; to suppress this warning, clear ModelDef::experiment_parts or, in Python, pass "
       "experiment.robot)\n");
   ExperimentSpec bare = experiment;
   bare.controllers.clear();
