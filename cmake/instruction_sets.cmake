@@ -47,12 +47,14 @@ set(TAUT_HAS ${TAUT_INSTRUCTION_SETS})
 list(TRANSFORM TAUT_HAS TOUPPER)
 list(TRANSFORM TAUT_HAS PREPEND TAUT_HAS_)
 
-# taut_kernels(target prefix): adds PREFIX_SET.cpp for each instruction set to the target.
+# taut_kernels(target prefix [set ...]): adds PREFIX_SET.cpp for these instruction sets to the target, and defines their
+# TAUT_HAS_*.
 function(taut_kernels target prefix)
-  foreach(set IN LISTS TAUT_INSTRUCTION_SETS)
+  foreach(set IN LISTS ARGN)
     target_sources(${target} PRIVATE ${prefix}_${set}.cpp)
     set_source_files_properties(${prefix}_${set}.cpp PROPERTIES COMPILE_OPTIONS
       "${TAUT_STEP_FLAGS};${TAUT_FLAGS_${set}}")
+    string(TOUPPER TAUT_HAS_${set} has)
+    target_compile_definitions(${target} PRIVATE ${has})
   endforeach()
-  target_compile_definitions(${target} PRIVATE ${TAUT_HAS})
 endfunction()

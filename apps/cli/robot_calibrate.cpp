@@ -12,7 +12,7 @@
 #include "interrupt.h"
 #include "output.h"
 #include "overrides.h"
-#include "robot_command.h"
+#include "robot_console.h"
 #include "taut/files.h"
 
 namespace taut::cli {

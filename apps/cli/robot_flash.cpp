@@ -8,7 +8,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot_command.h"
+#include "robot_console.h"
 #include "taut/shipped.h"
 
 namespace taut::cli {

@@ -6,7 +6,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot_command.h"
+#include "robot_console.h"
 #include "robot_recording.h"
 #include "taut/run_folder.h"
 #include "taut/version.h"

@@ -7,7 +7,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot_command.h"
+#include "robot_console.h"
 #include "robot_recording.h"
 #include "robot_view.h"
 #include "shipped_inputs.h"

@@ -7,7 +7,7 @@
 
 #include "output.h"
 #include "overrides.h"
-#include "robot_command.h"
+#include "robot_console.h"
 
 namespace taut::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "output.h"
-#include "robot_command.h"
+#include "robot_console.h"
 
 namespace taut::cli {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "apps/viewer/robot_session.h"
 #include "apps/viewer/server.h"
-#include "robot_command.h"
+#include "robot_console.h"
 
 namespace taut::cli {
 

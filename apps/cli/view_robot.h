@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/viewer/server.h"
-#include "robot_command.h"
+#include "robot_console.h"
 
 namespace taut::cli {
 

@@ -1,30 +1,23 @@
 /// A client of the viewer without a browser: HTTP and a WebSocket over a real socket. Waits have no
-/// time limit; ctest ends a test whose answer never comes.
+/// time limit; ctest ends a test whose answer never comes. Only client.cpp uses Boost, which takes
+/// long to compile.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
-#include <cstring>
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
 #include "apps/viewer/protocol_messages.h"
 
 namespace taut::test {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-using asio::ip::tcp;
 using Json = nlohmann::json;
 
 /// Tokens of every server in the tests
@@ -35,28 +28,30 @@ inline const std::string kToDrive = "/ws?token=" + kDriveToken,
 struct HttpAnswer {
   unsigned status = 0;
   std::string body;
-  http::fields fields;
+  std::map<std::string, std::string> fields;
 };
 
 /// Requests a page, with the cookie of a client that may drive unless `fields` contains another.
-inline HttpAnswer Get(std::uint16_t port, const std::string& target,
-                      const std::vector<std::pair<std::string, std::string>>& fields = {},
-                      http::verb method = http::verb::get) {
-  asio::io_context io;
-  beast::tcp_stream stream(io);
-  stream.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
-  http::request<http::empty_body> request{method, target, 11};
-  request.set(http::field::host, "localhost:" + std::to_string(port));
-  request.set(http::field::cookie, "taut_token_" + std::to_string(port) + "=" + kDriveToken);
-  for (const auto& [name, value] : fields) request.set(name, value);
-  http::write(stream, request);
-  beast::flat_buffer buffer;
-  http::response_parser<http::string_body> parser;
-  if (method == http::verb::head) parser.skip(true);
-  http::read(stream, buffer, parser);
-  auto response = parser.release();
-  return {response.result_int(), response.body(), response.base()};
-}
+/// Throws a std::runtime_error if the connection ends before the answer.
+HttpAnswer Get(std::uint16_t port, const std::string& target,
+               const std::vector<std::pair<std::string, std::string>>& fields = {},
+               const std::string& method = "GET");
+
+/// A request that is begun and not completed
+class HalfOpen {
+ public:
+  explicit HalfOpen(std::uint16_t port);
+  ~HalfOpen();
+  /// Returns the status of the answer after sending the rest of the request; 0: the server has
+  /// closed the connection.
+  unsigned End();
+  /// Waits until the server closes the connection.
+  void AwaitClose();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// A received frame, with access by the header generated from messages.json
 struct ReceivedFrame {
@@ -79,91 +74,42 @@ struct ReceivedFrame {
   std::size_t end() const { return values() + Count(viewer::kFrameValueCount); }
 };
 
+/// Reason for which a WebSocket was closed. Codes: RFC 6455, section 7.4.1.
+struct CloseReason {
+  int code = 0;
+  std::string reason;
+};
+inline constexpr int kPolicyViolation = 1008, kMessageTooBig = 1009;
+
 class Client {
  public:
   explicit Client(std::uint16_t port, const std::string& target = kToDrive,
-                  const std::string& origin = "")
-      : stream_(io_) {
-    beast::get_lowest_layer(stream_).connect(
-        tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
-    stream_.set_option(
-        beast::websocket::stream_base::decorator([origin](beast::websocket::request_type& request) {
-          if (!origin.empty()) request.set(http::field::origin, origin);
-        }));
-    stream_.read_message_max(64 << 20);
-    stream_.handshake("localhost:" + std::to_string(port), target, failed_);
-  }
+                  const std::string& origin = "");
+  ~Client();
 
-  bool open() const { return !failed_; }
+  bool open() const { return !failed(); }
+  bool failed() const;
 
   void Send(const Json& message) { SendText(message.dump()); }
-  void SendText(const std::string& text) {
-    stream_.text(true);
-    stream_.write(asio::buffer(text), failed_);
-  }
-  void SendBinary(const std::string& bytes) {
-    stream_.binary(true);
-    stream_.write(asio::buffer(bytes), failed_);
-  }
-  void SendRaw(const std::string& bytes) {
-    asio::write(beast::get_lowest_layer(stream_).socket(), asio::buffer(bytes), failed_);
-  }
+  void SendText(const std::string& text);
+  void SendBinary(const std::string& bytes);
+  void SendRaw(const std::string& bytes);
 
   /// Reads until a text of this type comes; a null if the connection ends before.
   Json Await(const std::string& type) {
     return AwaitText([&](const Json& message) { return message["type"] == type; });
   }
-  Json AwaitText(const std::function<bool(const Json&)>& wanted) {
-    while (Read()) {
-      if (frame_.numbers.empty() && wanted(text_)) return text_;
-    }
-    return nullptr;
-  }
+  Json AwaitText(const std::function<bool(const Json&)>& wanted);
   /// Reads until a frame fulfills `wanted`; an empty frame if the connection ends before.
   ReceivedFrame AwaitFrame(const std::function<bool(const ReceivedFrame&)>& wanted =
-                               [](const auto&) { return true; }) {
-    while (Read()) {
-      if (!frame_.numbers.empty() && wanted(frame_)) return frame_;
-    }
-    return {};
-  }
+                               [](const auto&) { return true; });
   /// Reads until the connection ends. Returns the reason of closing.
-  beast::websocket::close_reason AwaitClose() {
-    while (Read()) {
-    }
-    return stream_.reason();
-  }
-  beast::error_code failed() const { return failed_; }
-  void Close() { stream_.close(beast::websocket::close_code::normal, failed_); }
+  CloseReason AwaitClose();
+  void Close();
 
  private:
-  bool Read() {
-    beast::flat_buffer buffer;
-    bool done = false;
-    beast::get_lowest_layer(stream_).expires_never();
-    stream_.async_read(buffer, [&](beast::error_code failed, std::size_t) {
-      failed_ = failed;
-      done = true;
-    });
-    io_.restart();
-    while (!done) io_.run_one();
-    if (failed_) return false;
-    const std::string bytes = beast::buffers_to_string(buffer.data());
-    frame_.numbers.clear();
-    if (stream_.got_binary()) {
-      frame_.numbers.resize(bytes.size() / sizeof(double));
-      std::memcpy(frame_.numbers.data(), bytes.data(), bytes.size());
-    } else {
-      text_ = Json::parse(bytes);
-    }
-    return true;
-  }
-
-  asio::io_context io_;
-  beast::websocket::stream<beast::tcp_stream> stream_;
-  beast::error_code failed_;
-  ReceivedFrame frame_;
-  Json text_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace taut::test

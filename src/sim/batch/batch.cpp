@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sim/batch/batch_impl.h"
+#include "sim/batch/kernels.h"
 #include "sim/compile/model_check.h"
 #include "sim/compile/start_values.h"
 #include "taut/instruction_sets.h"
@@ -18,42 +19,9 @@
 namespace taut {
 namespace {
 
-/// Returns the kernel of an instruction set; null if the build or the machine has none.
-const sim::Kernel* KernelOf(Simd simd) {
-  switch (simd) {
-#ifdef TAUT_HAS_AVX512
-    case Simd::kAvx512:
-      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                     __builtin_cpu_supports("avx512vl")
-                 ? &sim::kKernelAvx512
-                 : nullptr;
-#endif
-#ifdef TAUT_HAS_AVX2
-    case Simd::kAvx2:
-      return __builtin_cpu_supports("avx2") ? &sim::kKernelAvx2 : nullptr;
-#endif
-#ifdef TAUT_HAS_SSE2
-    case Simd::kSse2:
-      return &sim::kKernelSse2;
-#endif
-#ifdef TAUT_HAS_NEON
-    case Simd::kNeon:
-      return &sim::kKernelNeon;
-#endif
-#ifdef TAUT_HAS_SIMD128
-    case Simd::kSimd128:
-      return &sim::kKernelSimd128;
-#endif
-    case Simd::kScalar:
-      return &sim::kKernelScalar;
-    default:
-      return nullptr;
-  }
-}
-
 Simd WidestUpTo(Simd wish) {
   for (Simd simd : {Simd::kAvx512, Simd::kAvx2, Simd::kSse2}) {
-    if (static_cast<int>(simd) <= static_cast<int>(wish) && KernelOf(simd)) return simd;
+    if (static_cast<int>(simd) <= static_cast<int>(wish) && sim::KernelOf(simd)) return simd;
   }
   return Simd::kScalar;
 }
@@ -62,26 +30,6 @@ Simd WidestUpTo(Simd wish) {
 constexpr std::pair<std::string_view, Simd> kSimdNames[] = {
     {"scalar", Simd::kScalar},   {"sse2", Simd::kSse2}, {"neon", Simd::kNeon},
     {"simd128", Simd::kSimd128}, {"avx2", Simd::kAvx2}, {"avx512", Simd::kAvx512}};
-/// Those that this build contains.
-constexpr std::string_view kSimdBuilt[] = {
-    "scalar",
-#ifdef TAUT_HAS_SSE2
-    "sse2",
-#endif
-#ifdef TAUT_HAS_NEON
-    "neon",
-#endif
-#ifdef TAUT_HAS_SIMD128
-    "simd128",
-#endif
-#ifdef TAUT_HAS_AVX2
-    "avx2",
-#endif
-#ifdef TAUT_HAS_AVX512
-    "avx512",
-#endif
-};
-
 std::string_view SimdWish() {
   const char* const text = std::getenv("TAUT_SIMD");
   return text == nullptr ? "" : text;
@@ -119,8 +67,8 @@ Simd SimdOf(const WorldBatchOptions& options) {
 std::vector<InstructionSet> InstructionSets() {
   std::vector<InstructionSet> sets;
   for (const auto& [name, simd] : kSimdNames) {
-    const bool built = std::ranges::find(kSimdBuilt, name) != std::end(kSimdBuilt);
-    sets.push_back({name, simd, built, built && KernelOf(simd) != nullptr});
+    const bool built = sim::IsBuilt(name);
+    sets.push_back({name, simd, built, built && sim::KernelOf(simd) != nullptr});
   }
   return sets;
 }
@@ -143,7 +91,7 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
     : model(std::static_pointer_cast<const sim::Tables>(std::move(m))),
       view(model->View()),
       options(Sane(o)),
-      kernel(KernelOf(*options.simd)),
+      kernel(sim::KernelOf(*options.simd)),
       layout(model->MakeLayout()),
       pool(options.threads) {
   friction = {model->friction_sides.data(), static_cast<int>(model->shapes.size()),
