@@ -26,7 +26,7 @@ void PrintValues(const StudyResult& study, const Evaluation& best) {
   }
 }
 
-nlohmann::json Json(const StudyResult& study, const Evaluation& evaluation) {
+nlohmann::json EvaluationJson(const StudyResult& study, const Evaluation& evaluation) {
   nlohmann::json values, worlds;
   for (std::size_t i = 0; i < study.parameters.size(); ++i) {
     values[study.parameters[i].name] = evaluation.values[i];
@@ -118,7 +118,7 @@ int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json)
   const auto top = study->top(static_cast<std::size_t>(count));
   if (json) {
     nlohmann::json list = nlohmann::json::array();
-    for (const Evaluation* evaluation : top) list.push_back(Json(*study, *evaluation));
+    for (const Evaluation* evaluation : top) list.push_back(EvaluationJson(*study, *evaluation));
     // Texts in records may contain invalid UTF-8, which JSON does not allow.
     fmt::print("{}\n", list.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     return kOk;

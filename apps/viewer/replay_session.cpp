@@ -8,7 +8,7 @@ namespace taut::viewer {
 namespace {
 
 constexpr std::chrono::microseconds kReplayFramePeriod{16667};
-constexpr std::chrono::milliseconds kIdlePeriod{1000};
+constexpr std::chrono::milliseconds kIdleReplayPeriod{1000};
 /// Fastest replay; unlimited speed makes no sense for a recording.
 constexpr double kMaxSpeed = 100;
 
@@ -85,7 +85,7 @@ Session::Clock::time_point ReplaySession::Work() {
       paused_ = true;
     }
   }
-  if (changed_ || now - shown_wall_ >= kIdlePeriod) {
+  if (changed_ || now - shown_wall_ >= kIdleReplayPeriod) {
     Frame frame = recorded_->FrameOf(row_);
     frame.now_s = frame.time_s;
     frame.speed = speed_;
@@ -96,7 +96,7 @@ Session::Clock::time_point ReplaySession::Work() {
     shown_wall_ = now;
     changed_ = false;
   }
-  return shown_wall_ + (paused_ ? Clock::duration(kIdlePeriod) : kReplayFramePeriod);
+  return shown_wall_ + (paused_ ? Clock::duration(kIdleReplayPeriod) : kReplayFramePeriod);
 }
 
 }  // namespace taut::viewer

@@ -9,7 +9,7 @@
 namespace taut::virtual_robot {
 namespace {
 
-constexpr std::chrono::milliseconds kPeriod{20};
+constexpr std::chrono::milliseconds kWatchPeriod{20};
 
 }  // namespace
 
@@ -20,7 +20,7 @@ ParentWatch::ParentWatch(std::atomic<bool>& stop)
         std::unique_lock lock(mutex);
         while (!ended.stop_requested() && !stop) {
           if (getppid() != parent) stop = true;
-          wake.wait_for(lock, ended, kPeriod, [] { return false; });
+          wake.wait_for(lock, ended, kWatchPeriod, [] { return false; });
         }
       }) {}
 

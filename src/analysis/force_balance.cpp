@@ -27,8 +27,6 @@ ModelDef Freed(const ModelDef& def, bool known_tensions) {
   return freed;
 }
 
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
 }  // namespace
 
 Across AcrossOf(const Vec3& normal) {

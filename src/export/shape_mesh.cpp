@@ -17,8 +17,6 @@ constexpr int kRings = 6;                    // from the equator to a pole
 constexpr double kTurnByShape = 2.39996323;  // see Axes
 constexpr double kNoLength_m = 1e-12;
 
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
 /// A direction and two axes across it. Each shape has a different rotation about the direction:
 /// else consecutive rods would have common edges, which programs that merge equal corners report as
 /// a fault.

@@ -5,6 +5,7 @@
 
 #include "fit/format.h"
 #include "fit/linear_solve.h"
+#include "fit/problem.h"
 #include "taut/fit_verdict.h"
 
 namespace taut {
@@ -12,10 +13,10 @@ namespace {
 
 using fit::Brief;
 using fit::Change;
+using fit::kInfinite;
 using fit::Matrix;
 using fit::Vector;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// A column below this, in residuals per scale, is dead.
 constexpr double kDead = 1e-6;
 /// Correlation above which two estimates are reported together.

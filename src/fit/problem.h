@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,7 @@ using Matrix = Eigen::MatrixXd;
 /// A parameter counts as estimated if its sd is at most this share of its prior sd or scale; for a
 /// direction, the singular value is then at least sqrt(1 / share^2 - 1).
 inline constexpr double kEstimatedShare = 0.5;
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 inline bool HasPrior(const FitParameter& parameter) {
   return parameter.prior_sd < std::numeric_limits<double>::infinity();

@@ -11,7 +11,6 @@
 namespace taut {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// Number of extensions of a side that does not reach the level; each doubles the spacing.
 constexpr int kExtensions = 4;
 constexpr double kLower = 1e-6;   ///< Smaller differences are within the tolerance of the searches.
@@ -130,7 +129,7 @@ class Profile {
     point.value = track.start[parameter_];
     point.values = track.values;
     const bool failed = track.end == FitEnd::kFailed;
-    point.rise = failed ? kInfinite : 2 * (track.cost - cost_);
+    point.rise = failed ? fit::kInfinite : 2 * (track.cost - cost_);
     if (failed) point.failed = track.why;
     const auto at =
         std::lower_bound(points_.begin(), points_.end(), point.value,

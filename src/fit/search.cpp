@@ -1,12 +1,13 @@
 #include "fit/search.h"
 
+#include "fit/problem.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace taut::fit {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLeastDamping = 1e-12, kMostDamping = 1e12;
 /// Slopes are checked again if the gain is below this share of the predicted gain.
 constexpr double kPoorRatio = 0.25;

@@ -7,7 +7,6 @@
 
 namespace taut::import_ntrt {
 
-inline double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 inline Vec3 Unit(const Vec3& v) { return (1.0 / Length(v)) * v; }
 
 /// Returns the rotation about an axis of any nonzero length.

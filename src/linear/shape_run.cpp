@@ -16,10 +16,8 @@
 namespace taut {
 namespace {
 
-double Norm(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
 Quat TurnBy(const Vec3& turn) {
-  const double angle = Norm(turn);
+  const double angle = Length(turn);
   if (angle == 0) return {};
   const Vec3 v = std::sin(angle / 2) / angle * turn;
   return {std::cos(angle / 2), v.x, v.y, v.z};
@@ -28,12 +26,12 @@ Quat TurnBy(const Vec3& turn) {
 /// Returns the largest displacement of any node or center of mass, per amplitude [m].
 double GreatestWay(const ModelDef& def, const Shape& shape) {
   double most = 0;
-  for (const Vec3& t : shape.translation_m) most = std::max(most, Norm(t));
+  for (const Vec3& t : shape.translation_m) most = std::max(most, Length(t));
   for (const NodeDef& node : def.nodes) {
     if (node.body == kWorld || shape.translation_m.empty()) continue;
     const auto b = static_cast<std::size_t>(node.body);
     const Vec3 arm = node.position_m - def.bodies[b].com_m;
-    most = std::max(most, Norm(shape.translation_m[b] + Cross(shape.turn_rad[b], arm)));
+    most = std::max(most, Length(shape.translation_m[b] + Cross(shape.turn_rad[b], arm)));
   }
   return most;
 }
@@ -135,7 +133,7 @@ double SizeOf(const ModelDef& def) {
   for (const CableDef& cable : def.cables) {
     for (const AttachmentDef& at : cable.attachments) add(at.position_m);
   }
-  return low.x > high.x ? 0 : Norm(high - low);
+  return low.x > high.x ? 0 : Length(high - low);
 }
 
 Pose SwungBy(const ModelDef& def, const Shape& shape, double amplitude, double share) {

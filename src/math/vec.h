@@ -1,6 +1,8 @@
 /// Arithmetic on the plain public vectors and quaternions, for code outside of the step.
 #pragma once
 
+#include <cmath>
+
 #include "taut/types.h"
 
 namespace taut {
@@ -9,6 +11,7 @@ inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b
 inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
 inline double Dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 inline Vec3 Cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

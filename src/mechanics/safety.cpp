@@ -13,8 +13,6 @@
 namespace taut {
 namespace {
 
-double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
-
 /// Computes the safety factors of a section (eq. 9 to 11).
 void TakeSection(const MemberDef& member, double length_m, MemberLoad& load) {
   const MemberLimits bears = LimitsOf(member, load.kind, length_m);

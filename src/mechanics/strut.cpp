@@ -19,8 +19,6 @@ Vec3 Times(const Inertia& i, const Vec3& v) {
           i.xz * v.x + i.yz * v.y + i.zz * v.z};
 }
 
-double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
-
 const CapsuleDef* OnlyCapsule(const ModelDef& def, int body) {
   const CapsuleDef* only = nullptr;
   for (const CapsuleDef& capsule : def.capsules) {

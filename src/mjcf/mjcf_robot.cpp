@@ -10,8 +10,6 @@
 namespace taut::mjcf {
 namespace {
 
-double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
-
 /// Motion of bodies from qpos0 to the key's poses.
 struct ToKey {
   std::vector<Pose> motions;  ///< Per body of the robot.

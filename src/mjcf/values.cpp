@@ -12,7 +12,6 @@
 namespace taut::mjcf {
 namespace {
 
-double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
 std::string KindOf(const std::string& name) {
   if (IsActuator(name)) return "actuator";
   if (name == "spatial") return "tendon";

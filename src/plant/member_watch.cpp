@@ -11,8 +11,6 @@ Vec3 PlaceOn(const World& world, int lane, int body, const Vec3& arm_m) {
   return body == kWorld ? arm_m : PlaceOf({body, arm_m}, world.Body(lane, body));
 }
 
-double LengthOf(const Vec3& v) { return std::sqrt(Dot(v, v)); }
-
 void TakeLimit(Overload& of, double time_s, double carried_n) {
   if (!(of.bears_n > 0) || !(carried_n > of.bears_n)) return;
   if (of.carried_n == 0) of.first_time_s = time_s;
@@ -31,8 +29,7 @@ MemberWatch::MemberWatch(const ModelDef& def) : joints_(JointsByArms(def)), forc
   for (std::size_t j = 0; j < def.joints.size(); ++j) {
     const JointDef& bar = def.joints[j];
     if (!IsBar(bar)) continue;
-    Add(MemberKind::kBar, static_cast<int>(j), bar.name, bar.member,
-        LengthOf(bar.to_m - bar.from_m));
+    Add(MemberKind::kBar, static_cast<int>(j), bar.name, bar.member, Length(bar.to_m - bar.from_m));
   }
   for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) {
     const auto strut = mechanics::StrutOf(def, b);
@@ -41,7 +38,7 @@ MemberWatch::MemberWatch(const ModelDef& def) : joints_(JointsByArms(def)), forc
                                   [b](const CapsuleDef& c) { return c.body == b; });
     if (Add(MemberKind::kRod, static_cast<int>(struts_.size()),
             def.bodies[static_cast<std::size_t>(b)].name, rod->member,
-            LengthOf(rod->to_m - rod->from_m))) {
+            Length(rod->to_m - rod->from_m))) {
       struts_.push_back(*strut);
     }
   }
@@ -87,7 +84,7 @@ void MemberWatch::Take(double time_s, const Observation& exact, const World* wor
       const JointDef& bar = joints_[static_cast<std::size_t>(member.index)];
       const Vec3 along = PlaceOn(*world, lane, bar.body_b, bar.to_m) -
                          PlaceOn(*world, lane, bar.body_a, bar.from_m);
-      const double length_m = LengthOf(along);
+      const double length_m = Length(along);
       if (!(length_m > 0)) continue;
       const double tension_n = -Dot(world->Joint(lane, member.index).force_n, along) / length_m;
       Take(member, time_s, tension_n, tension_n);

@@ -17,8 +17,6 @@ namespace {
 /// A cable with less than this fraction of the largest tension as described is slack.
 constexpr double kSlack = 1e-6;
 
-double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
-
 std::pair<int, int> PairOf(const ContactState& contact) {
   return std::minmax(contact.body_a, contact.body_b);
 }

@@ -12,8 +12,6 @@
 
 namespace taut::mechanics {
 
-inline double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
 /// Energy of a model of points and straight rods in the oracle's coordinates: points move along the
 /// free directions of their joint with the world, rods by five coordinates, or by two about a ball
 /// joint with the world.

@@ -12,8 +12,6 @@ namespace {
 constexpr double kSameDirection = 1e-6;  ///< Sine of the angle below which directions count as
                                          ///< parallel; about the precision of numbers in files.
 
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
 /// Returns the point of a drum's rim at which the cable ends, `wound_rad` beyond the point of
 /// tangency of the cable from `from`. `center`: of the drum.
 Vec3 RimPoint(const Vec3& center, const WheelDef& wheel, const Vec3& from, double wound_rad) {

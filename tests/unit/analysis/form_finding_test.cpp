@@ -17,7 +17,6 @@
 namespace taut {
 namespace {
 
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 double Distance(const FormNet& net, int a, int b) {
   return Length(net.nodes_m[static_cast<std::size_t>(a)] -
                 net.nodes_m[static_cast<std::size_t>(b)]);

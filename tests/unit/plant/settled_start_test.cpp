@@ -12,8 +12,6 @@
 namespace taut::test {
 namespace {
 
-double Length(const Vec3& v) { return std::sqrt(Dot(v, v)); }
-
 TEST(Align, FindsTheMotionThatPointsHaveMadeTogether) {
   const std::vector<Vec3> from{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0.3, 0.1, -0.7}};
   const double s = std::sqrt(0.5);

@@ -14,7 +14,6 @@
 namespace taut::math {
 namespace {
 
-double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
 Quat Unit(const Quat& q) {
   const double size = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {q.w / size, q.x / size, q.y / size, q.z / size};

@@ -14,8 +14,6 @@ namespace taut::sim {
 using Points = std::vector<TouchPoint>;
 
 inline Vec3 AsVec(const double* p) { return {p[0], p[1], p[2]}; }
-inline double Length(const Vec3& a) { return std::sqrt(Dot(a, a)); }
-
 /// x -> R(q) x + p
 struct Motion {
   Quat q = {1, 0, 0, 0};
