@@ -39,7 +39,7 @@ def subcommands_of_help(text):
 
 
 def sections_of_page():
-    """Returns the first cells of the tables under each heading "## taut ..."."""
+    """Returns the names in the first cells of the tables under each heading "## taut ...". A cell may hold several."""
     sections, current = {}, None
     for _, line in Page(PAGE).prose:
         heading = re.match(r"## `?(taut.*?)`?$", line)
@@ -47,9 +47,9 @@ def sections_of_page():
             current = sections.setdefault(heading[1], set())
         elif line.startswith("## "):
             current = None
-        cell = re.match(r"\| (?:`-\w`, )?`([^`]+)`", line)
+        cell = re.match(r"\| ((?:`[^`]+`(?:, )?)+) \|", line)
         if cell and current is not None:
-            current.add(cell[1])
+            current.update(re.findall(r"`([^`]+)`", cell[1]))
     return sections
 
 
