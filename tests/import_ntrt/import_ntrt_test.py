@@ -1,7 +1,7 @@
 """Compares every structure of NTRT with a second reader (ntrt_reader.py) and, where available, with reference numbers
 that do not depend on taut's import (expected.json).
 
-Usage: import_ntrt_test.py TAUT TEST     TEST may be `table`, which prints the table of docs/from_ntrt.md
+Usage: import_ntrt_test.py TAUT TEST     TEST may be `table`, which prints the result of ten seconds for each file
 """
 
 import json
