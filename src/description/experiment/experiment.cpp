@@ -105,15 +105,6 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   return text;
 }
 
-/// Returns whether `path` is a resolved experiment (`ResolvedYaml`). The next reader reports
-/// errors.
-bool IsResolved(const std::string& path) {
-  Diagnostics unheard;
-  const ValuePtr root = ReadYaml(path, unheard);
-  const Value* kind = root ? root->Find("kind") : nullptr;
-  return kind && kind->text == kResolvedKind;
-}
-
 }  // namespace
 
 void Check(const MapReader&, RecordText& record) {
@@ -135,10 +126,13 @@ std::optional<ExperimentSpec> description::LoadPartial(
     const std::function<void(const ExperimentSpec&)>& look) {
   const std::size_t errors_before = out.items().size();
   std::optional<ExperimentSpec> experiment;
-  if (description::IsResolved(path)) {
-    experiment = description::ReadResolved(path, overrides, out);
+  const description::ValuePtr root = description::ReadYaml(path, out);
+  if (!root) return std::nullopt;
+  const description::Value* const kind = root->Find("kind");
+  if (kind && kind->text == description::kResolvedKind) {
+    experiment = description::ReadResolved(path, *root, overrides, out);
   } else {
-    description::MergedFile file = description::ReadMergedFile(path, "experiment", out);
+    description::MergedFile file = description::MergeBases(path, root, "experiment", out);
     if (!file.root) return std::nullopt;
     description::OverrideSet set(overrides);
     set.Apply(file.parameters);

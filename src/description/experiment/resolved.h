@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 
+#include "description/yaml/yaml_tree.h"
 #include "taut/spec.h"
 
 namespace taut::description {
 
-/// Reads a file of kind `resolved_experiment`, without its input hash. It has no parameters, so
-/// every override is an error. Returns nothing after any error.
-std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& overrides,
-                                           Diagnostics& out);
+/// Reads `root`, the content of a file of kind `resolved_experiment`, without its input hash. It
+/// has no parameters, so every override is an error. Returns nothing after any error.
+std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Value& root,
+                                           const Overrides& overrides, Diagnostics& out);
 
 }  // namespace taut::description

@@ -283,19 +283,18 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
 
 }  // namespace
 
-std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& overrides,
-                                           Diagnostics& out) {
+std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Value& root,
+                                           const Overrides& overrides, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
-  const ValuePtr root = ReadYaml(path, out);
-  if (!root || !CheckHeader(*root, kResolvedKind, out)) return std::nullopt;
+  if (!CheckHeader(root, kResolvedKind, out)) return std::nullopt;
   OverrideSet(overrides).ReportUnused({}, out);
   const NameTable no_names;
   const Scope scope{no_names, out};
   ExperimentSpec experiment;
-  ReadStruct(*root, "", {"taut", "kind"}, scope, experiment);
+  ReadStruct(root, "", {"taut", "kind"}, scope, experiment);
   if (out.items().size() == errors_before) {
-    CheckNames(experiment, root->at, out);
-    CheckIndices(experiment, root->at, out);
+    CheckNames(experiment, root.at, out);
+    CheckIndices(experiment, root.at, out);
   }
   if (out.items().size() != errors_before) return std::nullopt;
   const SourceRef at{path, 0, 0};

@@ -3,8 +3,8 @@
 
 namespace taut::description {
 
-std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Overrides& /*overrides*/,
-                                           Diagnostics& out) {
+std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Value& /*root*/,
+                                           const Overrides& /*overrides*/, Diagnostics& out) {
   out.Error("browser.no_resolved_experiments", {path, 0, 0},
             "resolved experiments cannot be read in a browser",
             "use the command-line program taut");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "description/yaml/reader.h"
 
@@ -34,11 +35,16 @@ ValuePtr Merge(const Value& top, const Value& base) {
 }  // namespace
 
 MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagnostics& out) {
+  ValuePtr root = ReadYaml(path, out);
+  return root ? MergeBases(path, std::move(root), kind, out) : MergedFile();
+}
+
+MergedFile MergeBases(const std::string& path, ValuePtr root, std::string_view kind,
+                      Diagnostics& out) {
   MergedFile file;
   std::vector<std::vector<ParameterText>> parameters;
   std::vector<std::string> seen;
-  for (std::string next = path; !next.empty();) {
-    const ValuePtr root = ReadYaml(next, out);
+  for (std::string next = path;; root = ReadYaml(next, out)) {
     if (!root || !CheckHeader(*root, kind, out)) return {};
     file.files.push_back(next);
     seen.push_back(Canonical(next));

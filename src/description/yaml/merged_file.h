@@ -22,4 +22,8 @@ struct MergedFile {
 /// root is null after an error.
 MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagnostics& out);
 
+/// Same for a file that `ReadYaml` has read already as `root`, which is not null.
+MergedFile MergeBases(const std::string& path, ValuePtr root, std::string_view kind,
+                      Diagnostics& out);
+
 }  // namespace taut::description
