@@ -37,15 +37,34 @@ def write_faults(folder):
         write("kills", kills.summary(read(folder / "kills.json")))
 
 
+def part(name):
+    """Returns the part `name` of the page."""
+    _, _, rest = PAGE.read_text().partition(f"<!-- {name}: begin -->\n")
+    return rest.partition(f"<!-- {name}: end -->\n")[0]
+
+
 def write_fuzz(path):
-    """Writes the results of script/fuzz, summed over all its runs."""
+    """Adds the runs of script/fuzz to the table of the page, and removes their list at `path`."""
     try:
-        lines = [line.split() for line in path.read_text().splitlines()]
+        runs = [line.split() for line in path.read_text().splitlines()]
     except OSError as error:
         raise Problem(f"{path}: {error}; script/fuzz writes it") from error
-    inputs, wrong = collections.Counter(), collections.Counter()
-    for target, count, result in lines:
-        inputs[target] += int(count)
+    inputs, wrong, rates = collections.Counter(), collections.Counter(), {}
+    for line in part("fuzz").splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) < 3 or not cells[1].replace(" ", "").isdigit():
+            continue
+        inputs[cells[0]], wrong[cells[0]] = int(cells[1].replace(" ", "")), int(cells[-1])
+        rates[cells[0]] = cells[2] if len(cells) > 3 else ""
+    now_inputs, now_seconds = collections.Counter(), collections.Counter()
+    for target, count, result, seconds in runs:
+        now_inputs[target] += int(count)
+        now_seconds[target] += float(seconds)
         wrong[target] += result == "WRONG"
-    write("fuzz", table(["target", "inputs", "crashes, hangs, failed checks"],
-                        [[name, f"{count:,}".replace(",", " "), str(wrong[name])] for name, count in inputs.items()]))
+    for target, count in now_inputs.items():
+        inputs[target] += count
+        rates[target] = f"{count / max(now_seconds[target], 0.01):.2g}"
+    write("fuzz", table(["target", "inputs", "inputs per processor second", "crashes, hangs, failed checks"],
+                        [[name, f"{count:,}".replace(",", " "), rates[name], str(wrong[name])]
+                         for name, count in inputs.items()]))
+    path.unlink()

@@ -56,6 +56,17 @@ class Folder {
   std::filesystem::path path_;
 };
 
+/// Returns a number from 0 to `n - 1` that depends on all bytes of an input. It selects parts of a
+/// target that take much longer than the reader it tests; a saved input repeats the same parts.
+inline unsigned Pick(unsigned n, const std::uint8_t* data, std::size_t size) {
+  std::uint32_t hash = 2166136261U;  // FNV-1a
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ data[i]) * 16777619U;
+  return (hash >> 8) % n;
+}
+inline bool OneIn(unsigned n, const std::uint8_t* data, std::size_t size) {
+  return Pick(n, data, size) == 0;
+}
+
 inline std::string ReadAll(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

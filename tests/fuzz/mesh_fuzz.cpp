@@ -3,9 +3,10 @@
 // Input: byte 0 is the kind of file (OBJ, STL, triangles), byte 1 its use (closed ground, sheet,
 // convex solid with a density, with a mass). The rest is the file, or: byte 2 the number of copies,
 // byte 3 the difference between copies, then triangles of nine floats each, which become a binary
-// STL.
+// STL. For one input in 16, there are up to 64 copies instead of 4, and a rod falls onto the mesh.
 #include <cmath>
 
+#include "description/assets/mesh_file.h"
 #include "fuzz/on_ground.h"
 #include "fuzz/text_mutator.h"
 #include "fuzz/triangle_mutator.h"
@@ -57,7 +58,7 @@ std::string BinaryStl(const std::vector<Triangle>& triangles, int copies, int ho
   return file;
 }
 
-void CheckConvex(const Folder& folder, const std::string& name, bool has_mass) {
+void CheckConvex(const Folder& folder, const std::string& name, bool has_mass, bool drops) {
   const std::string text =
       "taut: 1\nkind: model\nname: m\nnodes: {a: [0, 0, 1]}\nbuilders: [{match: a, convex: "
       "{file: " +
@@ -68,9 +69,24 @@ void CheckConvex(const Folder& folder, const std::string& name, bool has_mass) {
   taut::fuzz::CheckReading(robot.has_value(), out);
   if (!robot) return;
   taut::fuzz::CheckRobot(*robot);
+  if (!drops) return;
   taut::ModelDef def = robot->def;
   def.planes.push_back({"floor", {0, 0, 1}, {0, 0, 0}, {}});
   taut::fuzz::DropARod(std::move(def), 5);
+}
+
+/// Checks the reader and the model check of ground.
+void CheckSurface(const std::string& path, bool closed) {
+  taut::Diagnostics out, refused;
+  auto mesh = taut::description::ReadMeshFile(path, out);
+  taut::fuzz::CheckReading(mesh.has_value(), out);
+  if (!mesh) return;
+  const bool good = taut::description::ReportFaults(*mesh, closed, path, {"the mesh", ""}, out);
+  taut::fuzz::CheckReading(good, out);
+  if (!good) return;
+  taut::ModelDef def;
+  def.terrain_meshes.push_back({"mesh", mesh->corners, mesh->triangles, closed, {}});
+  Must((taut::Model::Compile(def, refused) != nullptr) == refused.ok(), "compiled or refused");
 }
 
 }  // namespace
@@ -93,18 +109,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const Folder folder;
   if (size < kHead) return 0;
   const int kind = data[0] % kKinds, use = data[1] % kUses;
+  const bool whole = taut::fuzz::OneIn(16, data, size);
   std::string file(reinterpret_cast<const char*>(data + 2), size - 2);
   if (kind == kTriangles) {
-    file = BinaryStl(taut::fuzz::TrianglesIn(data + kHead, size - kHead), 1 + data[2] % 64,
-                     data[3] % 5);
+    file = BinaryStl(taut::fuzz::TrianglesIn(data + kHead, size - kHead),
+                     1 + data[2] % (whole ? 64 : 4), data[3] % 5);
   }
   const std::string name = kind == 0 ? "mesh.obj" : "mesh.stl";
-  folder.Write(name, file.data(), file.size());
+  const std::string path = folder.Write(name, file.data(), file.size());
   if (use >= 2) {
-    CheckConvex(folder, name, use == 3);
+    CheckConvex(folder, name, use == 3, whole);
     return 0;
   }
   taut::Diagnostics out;
+  if (!whole) {
+    CheckSurface(path, use == 0);
+    return 0;
+  }
   const auto read = taut::fuzz::ReadTerrain(
       folder,
       "{name: g, mesh: {file: " + name +

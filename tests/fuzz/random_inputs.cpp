@@ -4,11 +4,13 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <random>
 
 #include "fuzz/fuzz_folder.h"
 #include "math/random.h"
@@ -91,7 +93,48 @@ void TryOne(const std::vector<std::uint8_t>& input, unsigned timeout_s, Target t
   Allow(0);
 }
 
+/// Source of the mutations of the current input, for `LLVMFuzzerMutate`, which has no seed.
+std::mt19937 byte_mutations;
+
 }  // namespace
+
+std::size_t MutateBytes(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto below = [&](std::size_t n) { return n == 0 ? std::size_t{0} : random() % n; };
+  const std::size_t at = below(size), count = 1 + below(std::min<std::size_t>(size - at, 16));
+  switch (size == 0 ? 1 : random() % 4) {
+    case 0:  // change
+      data[at] =
+          static_cast<std::uint8_t>(random() % 2 == 0 ? random() : data[at] ^ 1U << below(8));
+      return size;
+    case 1:  // insert
+      if (size >= max_size) return size;
+      std::memmove(data + at + 1, data + at, size - at);
+      data[at] = static_cast<std::uint8_t>(random());
+      return size + 1;
+    case 2:  // remove
+      if (size - at < count) return size;
+      std::memmove(data + at, data + at + count, size - at - count);
+      return size - count;
+    default:  // copy over others
+      if (size - at >= count) std::memmove(data + below(size - count + 1), data + at, count);
+      return size;
+  }
+}
+
+std::vector<std::uint8_t> MutatedInput(std::uint64_t seed, std::uint64_t index, const Inputs& bases,
+                                       Mutator mutator) {
+  math::Random random(seed, 1, index);
+  std::vector<std::uint8_t> input = bases[random.Bits() % bases.size()];
+  std::size_t size = input.size();
+  input.resize(std::max(size, kMostMutated));
+  byte_mutations.seed(static_cast<unsigned>(random.Bits()));
+  for (std::uint64_t i = 0, count = 1 + random.Bits() % 4; i < count; ++i) {
+    size = mutator(input.data(), size, input.size(), static_cast<unsigned>(random.Bits()));
+  }
+  input.resize(size);
+  return input;
+}
 
 std::vector<std::uint8_t> RandomInput(std::uint64_t seed, std::uint64_t index) {
   math::Random random(seed, 0, index);
@@ -134,8 +177,11 @@ int TryRandomInputs(const Campaign& campaign, Target target) {
           "input %ld of seed %llu; again: --seed %llu --first %ld --inputs 1%s%s\n", index, seed,
           seed, index, current.path[0] != 0 ? "; kept as " : "", current.path.data());
     Print(current.count, "stat::number_of_executed_units: %ld\n", tried);  // libFuzzer's format
-    TryOne(RandomInput(campaign.seed, static_cast<std::uint64_t>(index)), campaign.timeout_s,
-           target);
+    const auto number = static_cast<std::uint64_t>(index);
+    TryOne(campaign.bases.empty()
+               ? RandomInput(campaign.seed, number)
+               : MutatedInput(campaign.seed, number, campaign.bases, campaign.mutator),
+           campaign.timeout_s, target);
   }
   if (shown_s > 0 && every_s < 60) std::fprintf(stderr, "\n");
   std::printf("stat::number_of_executed_units: %ld\n", tried);
@@ -152,3 +198,10 @@ void TryFile(const std::string& path, unsigned timeout_s, Target target) {
 }
 
 }  // namespace taut::fuzz
+
+/// In place of libFuzzer's, for its custom mutators.
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
+                                        std::size_t max_size) {
+  const auto seed = static_cast<unsigned>(taut::fuzz::byte_mutations());
+  return taut::fuzz::MutateBytes(data, size, max_size, seed);
+}

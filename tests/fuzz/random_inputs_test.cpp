@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <set>
@@ -63,6 +64,34 @@ TEST(RandomInputs, DifferInAllAndAreTheSameAgain) {
   EXPECT_GE(all.size(), 1990u);  // only 256 inputs of one byte exist
   EXPECT_EQ(*lengths.begin(), 1u);
   EXPECT_EQ(*lengths.rbegin(), 256u);
+}
+
+TEST(RandomInputs, AreMutationsOfGivenOnes) {
+  const Bytes base(40, 'a');
+  std::set<Bytes> all;
+  std::set<std::size_t> lengths;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const Bytes input = MutatedInput(kSeed, i, {base, {}}, MutateBytes);
+    EXPECT_EQ(input, MutatedInput(kSeed, i, {base, {}}, MutateBytes));
+    if (input.size() > 8) {  // of the long base
+      EXPECT_GE(std::count(input.begin(), input.end(), 'a'), static_cast<long>(input.size() / 2));
+      all.insert(input);
+    }
+    lengths.insert(input.size());
+  }
+  EXPECT_GE(all.size(), 300u);  // half of the bases are empty; some copies change nothing
+  EXPECT_LT(*lengths.begin(), 5u);
+  EXPECT_GT(*lengths.rbegin(), 42u);
+}
+
+TEST(RandomInputs, AreMutatedWithinTheirSpace) {
+  for (unsigned seed = 0; seed < 10'000; ++seed) {
+    Bytes data(8, 1);
+    data.push_back(7);  // behind the space
+    const std::size_t size = MutateBytes(data.data(), seed % 9, 8, seed);
+    EXPECT_LE(size, 8u);
+    EXPECT_EQ(data[8], 7);
+  }
 }
 
 TEST(RandomInputs, AreCounted) {
