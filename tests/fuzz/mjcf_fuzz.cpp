@@ -39,6 +39,7 @@ void CheckExport(const ImportedMjcf& made, const taut::MjcfExport& options, cons
   if (!xml) return;
   Diagnostics reading;
   taut::MjcfImport as_written;
+  as_written.slack = taut::MjcfSlack::kAsMujoco;  // bars stay bars, and cables never push
   if (options.keyframe) as_written.keyframe = "start";
   const auto again =
       ImportMjcf(folder.Write("again.xml", xml->data(), xml->size()), as_written, reading);

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <random>
 
 #include "fuzz/fuzz_folder.h"
@@ -83,6 +84,8 @@ void Allow(unsigned seconds) {
   timer.it_value.tv_sec = seconds;
   setitimer(ITIMER_PROF, &timer, nullptr);
 }
+
+double ProcessorTime() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Exceptions terminate the program, as an abort does.
 void TryOne(const std::vector<std::uint8_t>& input, unsigned timeout_s, Target target) noexcept {
@@ -159,8 +162,8 @@ int TryRandomInputs(const Campaign& campaign, Target target) {
   std::signal(SIGINT, Interrupt);
   std::signal(SIGTERM, Interrupt);
   const double every_s = isatty(STDERR_FILENO) == 1 ? 1 : 60;
-  double shown_s = 0;
-  long tried = 0;
+  double shown_s = 0, slowest_s = 0;
+  long tried = 0, slowest = 0;
   while (tried < campaign.count && interrupted == 0) {
     const double now_s = elapsed_s();
     if (campaign.seconds > 0 && now_s >= campaign.seconds) break;
@@ -178,10 +181,18 @@ int TryRandomInputs(const Campaign& campaign, Target target) {
           seed, index, current.path[0] != 0 ? "; kept as " : "", current.path.data());
     Print(current.count, "stat::number_of_executed_units: %ld\n", tried);  // libFuzzer's format
     const auto number = static_cast<std::uint64_t>(index);
-    TryOne(campaign.bases.empty()
-               ? RandomInput(campaign.seed, number)
-               : MutatedInput(campaign.seed, number, campaign.bases, campaign.mutator),
-           campaign.timeout_s, target);
+    const std::vector<std::uint8_t> input =
+        campaign.bases.empty()
+            ? RandomInput(campaign.seed, number)
+            : MutatedInput(campaign.seed, number, campaign.bases, campaign.mutator);
+    const double before_s = ProcessorTime();
+    TryOne(input, campaign.timeout_s, target);
+    if (const double took_s = ProcessorTime() - before_s; took_s > slowest_s) {
+      slowest_s = took_s, slowest = index;
+    }
+  }
+  if (campaign.shows_progress) {
+    std::fprintf(stderr, "slowest input: %ld, %.3f s of processor time\n", slowest, slowest_s);
   }
   if (shown_s > 0 && every_s < 60) std::fprintf(stderr, "\n");
   std::printf("stat::number_of_executed_units: %ld\n", tried);
