@@ -63,7 +63,8 @@ def write_fuzz(path):
         wrong[target] += result == "WRONG"
     for target, count in now_inputs.items():
         inputs[target] += count
-        rates[target] = f"{count / max(now_seconds[target], 0.01):.2g}"
+        rate = float(f"{count / max(now_seconds[target], 0.01):.2g}")  # two digits
+        rates[target] = f"{rate:,g}".replace(",", " ") if rate < 1e5 else f"{rate:.0f}"
     write("fuzz", table(["target", "inputs", "inputs per processor second", "crashes, hangs, failed checks"],
                         [[name, f"{count:,}".replace(",", " "), rates[name], str(wrong[name])]
                          for name, count in inputs.items()]))
