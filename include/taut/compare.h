@@ -22,6 +22,7 @@ struct Mapping {
     std::string unit;     ///< Unit of the result; empty: the unit in the name.
     double scale = 1.0;   ///< result = scale * value + offset
     double offset = 0.0;  ///< In the unit of the result.
+    double period = 0.0;  ///< Period of values that wrap, in the unit of the result; 0: none.
   };
   std::vector<Rule> rules;           ///< In order; vectors and quaternions are resolved to these.
   std::optional<TableLayout> table;  ///< Layout of a file that is a plain table, not a trace.
@@ -73,7 +74,8 @@ struct WindowStatistics {
 
 /// Comparison of one channel of both traces; b is the reference, differences are a - b, and means
 /// are over time. Quaternions get the sign of a, made continuous, since q and -q are the same
-/// orientation. Undefined values (the lag of a constant, a percentage of zero) are NaN.
+/// orientation. A channel with a period is made continuous, and its differences are modulo the
+/// period. Undefined values (the lag of a constant, a percentage of zero) are NaN.
 struct ChannelComparison {
   std::string name, unit;
   std::size_t rows = 0;    ///< Compared rows of the common clock, where both have a number.
@@ -109,6 +111,13 @@ struct TraceSpan {
   std::vector<std::pair<double, double>> gaps_s = {};
 };
 
+/// Angle of a compared channel that jumps by a turn, without a period in its mapping.
+struct WrappedAngle {
+  std::string channel;
+  bool in_b = false;    ///< In the reference, not in a.
+  double time_s = 0.0;  ///< Time of the first jump.
+};
+
 struct Comparison {
   TraceSpan a, b;
   double from_s = 0.0, to_s = 0.0;  ///< Time span common to both and the options. Empty: from > to.
@@ -121,6 +130,7 @@ struct Comparison {
   /// Compared channels `.../orientation_*` whose signs cannot be aligned, because a trace lacks a
   /// component of the quaternion.
   std::vector<std::string> unknown_signs;
+  std::vector<WrappedAngle> wrapped_angles;
   std::vector<std::string> unit_conflicts;  ///< "name: N against lbf": not compared.
 };
 

@@ -22,6 +22,9 @@ namespace taut {
 struct ChannelInfo {
   std::string name;
   std::string unit;  ///< SI: "N", "m", "m/s", "rad", "1".
+  /// Values that differ by a multiple of it are equal, such as wrapped angles; 0: none. Mappings
+  /// set it; trace files do not contain it.
+  double period = 0.0;
 };
 
 /// Returns the unit at the end of a name: "N" for `cable/a/tension_n`, "kg/m" for `mass_kg_per_m`,

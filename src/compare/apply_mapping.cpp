@@ -23,7 +23,7 @@ std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std
       if (const std::size_t star = name.find('*'); star != name.npos) {
         name.replace(star, 1, *wildcard);
       }
-      channel = {name, rule.unit.empty() ? UnitOfName(name) : rule.unit};
+      channel = {name, rule.unit.empty() ? UnitOfName(name) : rule.unit, rule.period};
       for (double& value : trace.values[i]) value = rule.scale * value + rule.offset;
       break;
     }

@@ -6,6 +6,7 @@
 
 #include "compare/gaps.h"
 #include "compare/lag.h"
+#include "compare/wrapped_angle.h"
 
 namespace taut::compare {
 namespace {
@@ -140,14 +141,30 @@ std::vector<double> ChannelComparer::OnClock(const std::vector<double>& time_s,
           values.begin() + static_cast<std::ptrdiff_t>(rows.end)};
 }
 
+ChannelComparer::Columns ChannelComparer::SingleColumns(std::size_t in_a, std::size_t in_b) const {
+  Columns of{a_.values[in_a], b_.values[in_b], {}, {}};
+  const double period_a = a_.channels[in_a].period, period_b = b_.channels[in_b].period;
+  if (period_a > 0) Unwrap(of.a, period_a);  // before rows are interpolated
+  if (period_b > 0) Unwrap(of.b, period_b);
+  of.clock_a = OnClock(a_.time_s, of.a, gaps_a_, clock_.resample_a, rows_a_);
+  of.clock_b = OnClock(b_.time_s, of.b, gaps_b_, clock_.resample_b, rows_b_);
+  // The wrapped trace lacks the number of turns and gets the number of the other one.
+  if (period_b > 0) {
+    AlignTurns(of.clock_a, period_b, of.clock_b);
+    AlignTurns(Interpolate(a_.time_s, of.a, gaps_a_, b_.time_s), period_b, of.b);
+  } else if (period_a > 0) {
+    AlignTurns(of.clock_b, period_a, of.clock_a);
+    AlignTurns(Interpolate(b_.time_s, of.b, gaps_b_, a_.time_s), period_a, of.a);
+  }
+  return of;
+}
+
 const ChannelComparer::Columns& ChannelComparer::ColumnsOf(std::size_t in_a, std::size_t in_b) {
   const auto pair = std::find_if(quaternions_.begin(), quaternions_.end(), [&](const Pair& p) {
     return std::find(p.in_a.begin(), p.in_a.end(), in_a) != p.in_a.end();
   });
   if (pair == quaternions_.end()) {
-    single_ = {a_.values[in_a], b_.values[in_b],
-               OnClock(a_.time_s, a_.values[in_a], gaps_a_, clock_.resample_a, rows_a_),
-               OnClock(b_.time_s, b_.values[in_b], gaps_b_, clock_.resample_b, rows_b_)};
+    single_ = SingleColumns(in_a, in_b);
     return single_;
   }
   const auto which = static_cast<std::size_t>(pair - quaternions_.begin());

@@ -33,8 +33,9 @@ class ChannelComparer {
   };
   std::vector<double> OnClock(const std::vector<double>& time_s, const std::vector<double>& values,
                               const std::vector<bool>& gaps, bool resample, RowRange rows) const;
-  /// Returns the unchanged columns; for quaternions the signs of b are aligned with a.
+  /// Returns the columns. Signs of quaternions and turns of channels with a period are aligned.
   const Columns& ColumnsOf(std::size_t in_a, std::size_t in_b);
+  Columns SingleColumns(std::size_t in_a, std::size_t in_b) const;
   void SetLag(const Columns& columns, ChannelComparison& result) const;
 
   const Trace& a_;

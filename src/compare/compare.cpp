@@ -10,6 +10,7 @@
 #include "base/pattern.h"
 #include "compare/channel_comparer.h"
 #include "compare/common_clock.h"
+#include "compare/wrapped_angle.h"
 
 namespace taut {
 namespace {
@@ -59,6 +60,12 @@ bool SignUnknown(const std::string& channel, const std::unordered_map<std::strin
   });
 }
 
+void AddWraps(const Trace& trace, std::size_t channel, bool in_b, Comparison& result) {
+  const auto row = compare::FindWrap(trace.channels[channel], trace.values[channel]);
+  if (!row) return;
+  result.wrapped_angles.push_back({trace.channels[channel].name, in_b, trace.time_s[*row]});
+}
+
 }  // namespace
 
 Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options) {
@@ -92,6 +99,8 @@ Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options
     } else if (comparer) {
       if (SignUnknown(channel.name, index_a, index_b)) result.unknown_signs.push_back(channel.name);
       result.channels.push_back(comparer->Compare(i, in_b->second));
+      AddWraps(a, i, false, result);
+      AddWraps(b, in_b->second, true, result);
     }
   }
   result.system = SystemMaxima(result.channels, options.system);

@@ -73,6 +73,11 @@ std::string ComparisonJson(const Comparison& comparison, const std::string& name
   json["rows"] = comparison.rows;
   json["resampled"] = comparison.resampled;
   json["unknown_signs"] = comparison.unknown_signs;
+  json["wrapped_angles"] = Json::array();
+  for (const WrappedAngle& angle : comparison.wrapped_angles) {
+    json["wrapped_angles"].push_back(
+        {{"name", angle.channel}, {"trace", angle.in_b ? "b" : "a"}, {"time_s", angle.time_s}});
+  }
   json["unit_conflicts"] = comparison.unit_conflicts;
   json["phases"] = Json::array();
   for (const TimeWindow& phase : comparison.phases) {

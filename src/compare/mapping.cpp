@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 
 #include "base/input_file.h"
@@ -90,7 +92,7 @@ class MappingReader {
     }
     if (root.contains("table")) Table(root["table"]);
     ReadAxes(root);
-    ForEach(root, "channels", {"from", "to", "from_unit", "unit", "scale", "offset"},
+    ForEach(root, "channels", {"from", "to", "from_unit", "unit", "scale", "offset", "wrap"},
             [&](const Json& rule, const std::string& at) { Channel(rule, at); });
     ForEach(root, "vectors", {"from", "to", "from_unit", "unit", "scale", "offset"},
             [&](const Json& rule, const std::string& at) { Vector(rule, at); });
@@ -124,9 +126,26 @@ class MappingReader {
     Mapping::Rule result{Pattern(rule, "from", at), Pattern(rule, "to", at), Unit(rule, at),
                          Number(rule, "scale", at, 1.0), Number(rule, "offset", at, 0.0)};
     result.scale *= FromUnit(rule, result, at);
+    if (rule.contains("wrap")) result.period = Period(rule["wrap"], result, at + ".wrap");
     if (StarsDiffer(result))
       Error("mapping.unpaired_star", at, "has a `*` in only one of \"from\" and \"to\"");
     mapping_.rules.push_back(std::move(result));
+  }
+
+  /// Returns the period of wrapped values, in the unit of the result.
+  double Period(const Json& wrap, const Mapping::Rule& whole, const std::string& at) {
+    if (wrap == "turn") {
+      const std::string unit = whole.unit.empty() ? UnitOfName(whole.to) : whole.unit;
+      if (unit != "rad") {
+        Error("mapping.turn_of_no_angle", at,
+              fmt::format("is \"turn\", but the result is in {}, not in rad", unit));
+      }
+      return 2.0 * std::numbers::pi;
+    }
+    if (wrap.is_number() && wrap > 0.0) return std::abs(whole.scale) * wrap.get<double>();
+    Error("mapping.bad_wrap", at,
+          "must be \"turn\", or the period of the file's values, a number above 0");
+    return 0.0;
   }
 
   void Vector(const Json& rule, const std::string& at) {

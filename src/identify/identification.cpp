@@ -299,6 +299,7 @@ std::map<std::string, std::string> Made::Facts() const {
     }
     for (const Tied& tied : set->rows) {
       if (tied.row.samples) tied.row.samples->AddTo(sum);
+      if (tied.row.period > 0) sum.AddNumber(tied.row.period);
     }
   }
   std::uint64_t experiments = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compare/orientation.h"
+#include "compare/wrapped_angle.h"
 #include "identify/residual_rows.h"
 #include "taut/compare.h"
 #include "taut/run_folder.h"
@@ -27,7 +28,10 @@ std::optional<Trace> Read(const FitExperiment& one, Diagnostics& out) {
   } else if (const auto mapping = LoadMapping(one.map_file, out)) {
     trace = ReadMapped(one.data_file, *mapping, one.map_file, out);
   }
-  if (trace) compare::MakeOrientationsContinuous(*trace);
+  if (trace) {
+    compare::MakeOrientationsContinuous(*trace);
+    compare::Unwrap(*trace);
+  }
   return trace;
 }
 

@@ -10,6 +10,7 @@
 #include "base/pattern.h"
 #include "compare/gaps.h"
 #include "compare/orientation.h"
+#include "compare/wrapped_angle.h"
 #include "report/reference.h"
 
 namespace taut::identify {
@@ -158,6 +159,7 @@ class Maker {
     row.experiment = row.point.experiment = experiment_;
     row.channel = row.point.channel = channel.name;
     row.point.unit = channel.unit;
+    row.period = channel.period;
     row.point.where = where;
     row.window = window;
     return row;
@@ -171,12 +173,15 @@ class Maker {
   double TimeOf(const Window& window, std::size_t row) const {
     return measured_->trace.time_s[row] - window.data_from_s + window.from_s;
   }
-  Samples SamplesOf(const Window& window, const Column& column,
+  Samples SamplesOf(const Window& window, const Column& column, double period,
                     const std::vector<std::size_t>& inside) const {
     Samples samples;
     for (const std::size_t i : inside) {
       samples.time_s.push_back(TimeOf(window, i));
       if (column.HasQuaternion()) samples.orientation.push_back(column.QuaternionAt(i));
+    }
+    if (period > 0) {
+      for (const std::size_t i : inside) samples.measured.push_back((*column.values)[i]);
     }
     samples.weight = compare::TimeWeights(samples.time_s, compare::FindGaps(samples.time_s));
     return samples;
@@ -187,7 +192,7 @@ class Maker {
     row.how = rest ? Row::How::kRest : HowOf(residual_.statistic);
     if (rest) row.from_s = row.point.time_s = window.moment_s;
     if (!column) return Add(std::move(row), 0.0);
-    auto samples = std::make_shared<Samples>(SamplesOf(window, *column, inside));
+    auto samples = std::make_shared<Samples>(SamplesOf(window, *column, row.period, inside));
     const double measured = Of(residual_.statistic, *column->values, inside, samples->weight);
     if (rest && column->HasQuaternion()) {
       auto& sum = row.orientation.emplace();
@@ -286,6 +291,17 @@ std::string Hint(const std::string& name, const std::vector<ChannelInfo>& channe
   return names.empty() ? "there are no channels" : names.size() > 4 ? hint + ", ..." : hint;
 }
 
+void WarnOfWrap(const Measured& measured, std::size_t channel, const FitExperiment& one,
+                const FitResidual& residual, Diagnostics& out) {
+  const Trace& trace = measured.trace;
+  const auto row = compare::FindWrap(trace.channels[channel], trace.values[channel]);
+  if (!row) return;
+  out.Warning("residual.angle_jumps", residual.at,
+              fmt::format("residuals: {} in the data of {} jumps by a turn at {:g} s",
+                          trace.channels[channel].name, one.name, trace.time_s[*row]),
+              "if the angle wraps, set \"wrap\": \"turn\" in its rule of a mapping (`map`)");
+}
+
 }  // namespace
 
 double StartDelay(const FitSpec& spec, std::size_t experiment) {
@@ -329,6 +345,7 @@ std::vector<Row> MakeRows(const FitSpec& spec, const FitResidual& residual, std:
         maker.Channel(offered[c], nullptr);
         continue;
       }
+      WarnOfWrap(*measured, c, one, residual, out);
       const Column column = ColumnOf(measured->trace, c);
       const auto names = compare::QuaternionNames(offered[c].name);
       if (!names.empty() && !column.HasQuaternion() && sign_unknown.insert(names[0]).second) {

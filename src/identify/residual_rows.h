@@ -33,6 +33,8 @@ struct Samples {
   std::vector<double> weight;  ///< Duration that each sample represents (`compare::TimeWeights`).
   /// Measured quaternions of orientation channels; else empty.
   std::vector<std::array<double, 4>> orientation;
+  /// Measured values of channels with a period; else empty.
+  std::vector<double> measured;
 
   void AddTo(base::Fnv1a& sum) const;
 };
@@ -50,6 +52,8 @@ struct Row {
   /// Measured quaternion of an orientation channel, w first, for kAt, kRest and kRow. The sign of
   /// the computed one is chosen to be nearer to it.
   std::optional<std::array<double, 4>> orientation;
+  /// Period of wrapped data; 0: none. The computed value gets the turn nearest to the measured one.
+  double period = 0;
   std::size_t reference = 0;  ///< Index among the experiment's references.
   std::size_t value = 0;      ///< Index among the reference's values.
   std::size_t window = 0;     ///< Index of the window, for groups.

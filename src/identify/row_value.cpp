@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compare/orientation.h"
+#include "compare/wrapped_angle.h"
 #include "identify/residual_rows.h"
 
 namespace taut::identify {
@@ -13,7 +14,7 @@ namespace {
 class Course {
  public:
   Course(const Row& row, const Computed& computed, const RowChannels& channels)
-      : times_(computed.time_s), values_(computed.values[channels.own]) {
+      : times_(computed.time_s), values_(computed.values[channels.own]), period_(row.period) {
     if (!row.HasQuaternion() || !channels.quaternion) return;
     for (std::size_t i = 0; i < 4; ++i) {
       quaternion_[i] = &computed.values[(*channels.quaternion)[i]];
@@ -21,12 +22,12 @@ class Course {
   }
 
   double Clamped(double time_s) const { return std::clamp(time_s, times_.front(), times_.back()); }
-  double At(double time_s) const { return At(time_s, values_); }
+  double At(double time_s) const { return At(time_s, values_, period_); }
   /// Returns the value with the sign that brings the quaternion nearer to `measured`.
   double At(double time_s, const std::array<double, 4>& measured) const {
     if (quaternion_[0] == nullptr) return At(time_s);
     std::array<double, 4> q{};
-    for (std::size_t i = 0; i < 4; ++i) q[i] = At(time_s, *quaternion_[i]);
+    for (std::size_t i = 0; i < 4; ++i) q[i] = At(time_s, *quaternion_[i], 0);
     return compare::NearerSign(q, measured) * At(time_s);
   }
   const std::vector<double>& times() const { return times_; }
@@ -41,17 +42,21 @@ class Course {
   }
 
  private:
-  double At(double time_s, const std::vector<double>& values) const {
+  double At(double time_s, const std::vector<double>& values, double period) const {
     const auto after = std::upper_bound(times_.begin(), times_.end(), time_s);
     if (after == times_.begin()) return values.front();
     if (after == times_.end()) return values.back();
     const auto i = static_cast<std::size_t>(after - times_.begin());
     const double share = (time_s - times_[i - 1]) / (times_[i] - times_[i - 1]);
-    return values[i - 1] + share * (values[i] - values[i - 1]);
+    // The run's rotation vectors wrap, too.
+    const double next =
+        period > 0 ? compare::NearestTurn(values[i], values[i - 1], period) : values[i];
+    return values[i - 1] + share * (next - values[i - 1]);
   }
 
   const std::vector<double>& times_;
   const std::vector<double>& values_;
+  double period_;
   std::array<const std::vector<double>*, 4> quaternion_{};
 };
 
@@ -72,8 +77,9 @@ double OfSamples(const Row& row, const Course& course, double delay_s) {
   Total total;
   for (std::size_t i = 0; i < samples.time_s.size(); ++i) {
     const double time_s = course.Clamped(samples.time_s[i] - delay_s);
-    const double value =
+    double value =
         samples.orientation.empty() ? course.At(time_s) : course.At(time_s, samples.orientation[i]);
+    if (row.period > 0) value = compare::NearestTurn(value, samples.measured[i], row.period);
     total.area += samples.weight[i] * value;
     total.time += samples.weight[i];
     total.Take(value);
@@ -129,20 +135,23 @@ std::optional<double> ValueOf(const Row& row, const Computed& computed, const Ro
     return computed.references[row.reference][row.value];
   }
   const Course course(row, computed, channels);
+  const auto aligned = [&](double value) {
+    return row.period > 0 ? compare::NearestTurn(value, row.point.measured, row.period) : value;
+  };
   if (row.how == Row::How::kRow) {
     if (row.row >= course.values().size()) return std::nullopt;
-    return course.OfRow(row.row, row.orientation);
+    return aligned(course.OfRow(row.row, row.orientation));
   }
   const std::vector<double>& times = computed.time_s;
   if (times.empty()) return std::nullopt;
   if (row.how == Row::How::kRest) {
     const auto moment = std::lower_bound(times.begin(), times.end(), row.from_s - 1e-9);
     if (moment == times.end()) return std::nullopt;
-    return course.OfRow(static_cast<std::size_t>(moment - times.begin()), row.orientation);
+    return aligned(course.OfRow(static_cast<std::size_t>(moment - times.begin()), row.orientation));
   }
   if (row.how == Row::How::kAt) {
     const double time_s = course.Clamped(row.from_s - delay_s);
-    return row.orientation ? course.At(time_s, *row.orientation) : course.At(time_s);
+    return aligned(row.orientation ? course.At(time_s, *row.orientation) : course.At(time_s));
   }
   return row.samples ? OfSamples(row, course, delay_s) : OfWhole(row, course, delay_s);
 }

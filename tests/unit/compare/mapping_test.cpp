@@ -163,6 +163,34 @@ TEST_F(MappingTest, UnitsAreScaledAndTheFirstRuleThatFitsCounts) {
   EXPECT_EQ(trace->channels[1].unit, "N") << "as the name says";
 }
 
+TEST_F(MappingTest, WrapIsThePeriodOfTheResult) {
+  const auto trace = Mapped(WriteFile("m.json", R"({"version": 1, "channels": [
+      {"from": "yaw", "to": "a_rad", "from_unit": "deg", "wrap": "turn"},
+      {"from": "heading", "to": "b_rad", "from_unit": "deg", "wrap": 360},
+      {"from": "drum", "to": "c_m", "scale": -0.5, "wrap": 4096},
+      {"from": "x", "to": "d_rad"}]})"),
+                            Row({{"yaw", 90}, {"heading", 90}, {"drum", 1}, {"x", 1}}));
+  ASSERT_TRUE(trace);
+  EXPECT_EQ(trace->channels[0].period, 2 * std::acos(-1.0));
+  EXPECT_NEAR(trace->channels[1].period, 2 * std::acos(-1.0), 1e-15);
+  EXPECT_EQ(trace->channels[2].period, 2048);
+  EXPECT_EQ(trace->channels[3].period, 0);
+}
+
+TEST_F(MappingTest, WrapIsATurnOfAnAngleOrANumberAbove0) {
+  EXPECT_EQ(Complaint(R"({"version": 1, "channels": [
+              {"from": "a", "to": "a_m", "wrap": "turn"}, {"from": "b", "to": "b_rad", "wrap": 0},
+              {"from": "c", "to": "c_rad", "wrap": "360"},
+              {"from": "d", "to": "d", "unit": "rad", "wrap": true}]})"),
+            "channels[0].wrap is \"turn\", but the result is in m, not in rad\n"
+            "channels[1].wrap must be \"turn\", or the period of the file's values, a number above "
+            "0\n"
+            "channels[2].wrap must be \"turn\", or the period of the file's values, a number above "
+            "0\n"
+            "channels[3].wrap must be \"turn\", or the period of the file's values, a number above "
+            "0\n");
+}
+
 TEST_F(MappingTest, TwoChannelsMayNotBecomeOne) {
   Diagnostics out;
   const auto mapping = LoadMapping(

@@ -1,5 +1,5 @@
-// Fits to data with gaps, uneven rows, quaternions of either sign and tables of other programs: a
-// free box of known velocity and rotation
+// Fits to data with gaps, uneven rows, quaternions of either sign, wrapped angles and tables of
+// other programs: a free box of known velocity and rotation
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -137,6 +137,40 @@ TEST_F(GapsTest, AQuaternionWithoutAComponentIsAWarning) {
   Residual("w", "body/m/orientation_*", "rows");
   EXPECT_NE(out_.Format().find("warning: residuals: the data of t have only some of "
                                "body/m/orientation_{w,x,y,z}, so their sign cannot be aligned"),
+            std::string::npos)
+      << out_.Format();
+}
+
+TEST_F(GapsTest, WrappedAnglesOfPerfectDataAreThoseOfTheRun) {
+  Write("map.json", R"({"version": 1, "channels": [{"from": "yaw", "to": "body/m/rotation_z_rad",
+      "from_unit": "deg", "wrap": "turn"}]})");
+  // The box turns by 206 degrees in 4 s, so the run's rotation vector wraps, too.
+  for (const double least_deg : {0.0, -180.0, -90.0}) {
+    for (const double begin_s : {0.0, 1.0}) {  // 1 s: the turn of the gap is not known
+      WriteRows(Span(0, 4, 0.01), "time_s,yaw", [&](double t) {
+        const double angle = 0.9 * t * 180 / std::acos(-1.0) - least_deg;
+        const bool missing = t > begin_s && t < 3 * begin_s;
+        return missing ? std::string("nan")
+                       : std::to_string(angle - 360 * std::floor(angle / 360) + least_deg);
+      });
+      for (const char* statistic : {"mean", "max", "min", "rows"}) {
+        for (const double r :
+             Residual("w", "body/m/rotation_z_rad", statistic, ", map: map.json")) {
+          EXPECT_NEAR(r, 0, 2e-3) << least_deg << ", " << statistic;
+        }
+      }
+      EXPECT_EQ(out_.Format(), "");
+    }
+  }
+}
+
+TEST_F(GapsTest, AnAngleThatJumpsByATurnIsAWarningWithTheRemedy) {
+  WriteRows(Span(0, 4, 0.01), "time_s,body/m/rotation_z_rad",
+            [](double t) { return std::to_string(std::remainder(0.9 * t, 2 * std::acos(-1.0))); });
+  Residual("w", "body/m/rotation_z_rad", "rows");
+  EXPECT_NE(out_.Format().find("warning: residuals: body/m/rotation_z_rad in the data of t jumps "
+                               "by a turn at 3.49 s (if the angle wraps, set \"wrap\": \"turn\" in "
+                               "its rule of a mapping (`map`))"),
             std::string::npos)
       << out_.Format();
 }
