@@ -7,6 +7,9 @@
 ///
 /// Threads: the thread that advances a plant has exclusive access to the plant, its controllers and
 /// its sensors. Plants are independent of each other.
+///
+/// Commands of custom controllers, and readings of plants other than simulations, must be finite.
+/// Others are refused: runs end with an error, rollouts fail, and a `Simulation` reports them.
 #pragma once
 
 #include <cstddef>

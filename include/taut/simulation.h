@@ -73,7 +73,10 @@ class ElementRef {
 ///
 /// Errors: a name or an index that does not exist is a programming error: the function prints it
 /// and the closest name to stderr and calls abort(). For names that users enter, use taut/find.h,
-/// which reports errors instead.
+/// which reports errors instead. A rest length, gain, force, state of a body or value in `commands`
+/// that is not finite, from the program or a custom controller, is refused: the previous value
+/// stays, `IsRunning` of its world returns false, and `StatusText` contains the name, until `Reset`
+/// or `Restore`.
 ///
 /// Threads: a simulation has an internal thread pool. All functions, const ones too, need exclusive
 /// access. Simulations are independent of each other.
@@ -109,7 +112,8 @@ class Simulation {
   /// group, so it must be thread-safe; a group for which it returns false takes no further step.
   void RunUntil(double time_s, const std::function<bool()>& keep_going = {});
   double Time(int world = 0) const;  ///< [s], since the start.
-  /// Returns false once the state is not finite; the world is then frozen.
+  /// Returns false once the state is not finite, when the world is frozen, or a command was
+  /// refused.
   bool IsRunning(int world = 0) const;
 
   // --- readings ----------------------------------------------------------------------------------
@@ -124,8 +128,8 @@ class Simulation {
   Energy TotalEnergy(int world = 0) const;
   std::vector<ContactState> Contacts(int world = 0) const;
   WorldStatus Status(int world = 0) const;
-  /// Returns a description of the status, with the names of the affected body and cable; empty if
-  /// there is no problem.
+  /// Returns a description of the status and of the first refused command, with the names of the
+  /// affected body and cable; empty if there is no problem.
   std::string StatusText(int world = 0) const;
   std::uint64_t Hash(int world = 0) const;  ///< As `RunSummary::state_hash`.
 
@@ -138,7 +142,7 @@ class Simulation {
   /// Returns the gains of a cable under impedance control; nothing for other cables.
   std::optional<ImpedanceGains> Gains(const ElementRef& cable, int world = 0) const;
   /// Sets the gains of the cable with index `gains.cable`. Returns false, without a change, if it
-  /// is not under impedance control.
+  /// is not under impedance control or a gain is not finite.
   bool SetGains(const ImpedanceGains& gains, int world = 0);
   /// Sets an external force on a node [N], in W, from the next step on. It adds to the experiment's
   /// pushes and drags, and acts until it is changed or the world is reset.

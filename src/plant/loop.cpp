@@ -18,7 +18,9 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
       plant_lanes_(plant.Observe().lanes),
       schedules_(1, Schedule(experiment.step_s, experiment.duration_s)),
       step_s_(static_cast<std::size_t>(plant_lanes_)),
-      to_s_(step_s_.size()) {
+      to_s_(step_s_.size()),
+      check_(experiment.robot.def.cables, plant_lanes_),
+      watches_readings_(plant.world() == nullptr || extensions.sensors) {
   TAUT_ASSERT(0 < count_ && count_ <= plant_lanes_);
   std::vector<const RolloutWorld*> all(lanes.begin(), lanes.end());
   all.resize(step_s_.size(), lanes[0]);
@@ -39,8 +41,13 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   if (extensions.sensors) add(extensions.sensors(setup));
   for (auto& controller : MakeControllers(setup, extensions)) {
     const LaneClock clock(controller->clock(), plant_lanes_);
-    laws_.push_back({std::move(controller), clock});
+    laws_.push_back({std::move(controller), clock, {}});
   }
+  const std::size_t own = laws_.size() - extensions.controllers.size();
+  for (std::size_t i = own; i < laws_.size(); ++i) {
+    laws_[i].custom = "custom controller " + std::to_string(i - own) + " sets";
+  }
+  if (own < laws_.size()) check_.Keep(plant_.commands());  // takes its memory
 }
 
 Lanes Loop::AtBoundary() const {
@@ -73,11 +80,19 @@ void Loop::Prepare(Lanes among) {
   if (at_boundary == 0) return;
   Sense(among);
   const double* const time_s = plant_.Observe().time_s;
+  const auto acts = [&](Law& law) { return law.clock.Due(time_s, at_boundary).due != 0; };
+  const bool reads = watches_readings_ && std::any_of(laws_.begin(), laws_.end(), acts);
+  const Lanes readable = reads ? check_.WithReadings(seen(), at_boundary) : at_boundary;
+  const auto time_of = [time_s](int lane) { return time_s[lane]; };
   for (Law& law : laws_) {
-    const Tick tick = law.clock.Due(time_s, at_boundary);
+    Tick tick = law.clock.Due(time_s, at_boundary);
     if (tick.due == 0) continue;
-    law.controller->Act(tick, seen(), plant_.commands());
-    law.clock.Advance(tick.due);
+    const Lanes due = tick.due;
+    tick.due &= readable;
+    if (!law.custom.empty()) check_.Keep(plant_.commands());
+    if (tick.due != 0) law.controller->Act(tick, seen(), plant_.commands());
+    if (!law.custom.empty()) check_.PutBack(plant_.commands(), tick.due, time_of, law.custom);
+    law.clock.Advance(due);
   }
   for (std::size_t j = 0; j < schedules_.size(); ++j) {
     if (Has(at_boundary, static_cast<int>(j))) {
@@ -105,10 +120,20 @@ void Loop::AdvanceSchedules(int count) {
   }
 }
 
+void Loop::WatchCommands() {
+  if (!watches_commands_) check_.Keep(plant_.commands());
+  watches_commands_ = true;
+}
+
 void Loop::Step(Lanes active) {
   const bool some_wait = active != AllLanes(plant_lanes_);
   if (some_wait) SplitSchedules();
+  if (watches_commands_) {
+    const auto time_of = [this](int lane) { return time_s(lane); };
+    check_.PutBack(plant_.commands(), active, time_of, "the program sets");
+  }
   Prepare(active);
+  if (watches_commands_) check_.Keep(plant_.commands());
   if (has_forces_) Push(active);
   if (some_wait) {
     for (int j = 0; j < plant_lanes_; ++j) {
@@ -162,6 +187,7 @@ void Loop::Restart(int lane, const RolloutWorld& world) {
     law.clock.Restart(lane);
   }
   plant_.Restart(lane);
+  check_.Restart(lane);
 }
 
 void Loop::Retune(int lane, const std::vector<ControllerSpec>& controllers) {
@@ -201,11 +227,19 @@ std::optional<ImpedanceGains> Loop::Gains(int lane, int cable) const {
 }
 
 bool Loop::SetGains(int lane, const ImpedanceGains& gains) {
+  const FiniteCheck::Named numbers[] = {{"tension_offset_n", gains.tension_offset_n},
+                                        {"length_offset_m", gains.length_offset_m},
+                                        {"position_gain_n_per_m", gains.position_gain_n_per_m},
+                                        {"velocity_gain_n_s_per_m", gains.velocity_gain_n_s_per_m},
+                                        {"velocity_offset_m_per_s", gains.velocity_offset_m_per_s}};
+  if (!Accepts(lane, "cable", CableName(gains.cable), numbers)) return false;
   return std::any_of(laws_.begin(), laws_.end(),
                      [&](Law& law) { return law.controller->SetGains(lane, gains); });
 }
 
 void Loop::SetRestLength(int lane, int cable, double rest_length_m) {
+  const FiniteCheck::Named number{"rest_length_m", rest_length_m};
+  if (!Accepts(lane, "cable", CableName(cable), {&number, 1})) return;
   for (Law& law : laws_) {
     if (law.controller->Hold(lane, cable, rest_length_m)) return;
   }

@@ -5,8 +5,10 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "plant/finite_check.h"
 #include "plant/lane_clock.h"
 #include "plant/many_steps.h"
 #include "plant/schedule.h"
@@ -58,7 +60,12 @@ class Loop {
   double time_s(int lane = 0) const noexcept { return ScheduleOf(lane).time_s(); }
   /// Length of the last step of each lane.
   const double* step_s() const noexcept { return step_s_.data(); }
-  bool IsRunning(int lane = 0) const { return plant_.IsRunning(lane); }
+  bool IsRunning(int lane = 0) const {
+    return plant_.IsRunning(lane) && check_.refused(lane).empty();
+  }
+  /// Returns a sentence about the first command or reading of a lane that was refused because it is
+  /// not finite; empty: none. Refused commands keep their previous value.
+  const std::string& refused(int lane = 0) const noexcept { return check_.refused(lane); }
   int lanes() const noexcept { return count_; }
 
   Plant& plant() const noexcept { return plant_; }
@@ -76,6 +83,13 @@ class Loop {
   // --- interactive changes -----------------------------------------------------------------------
   std::optional<ImpedanceGains> Gains(int lane, int cable) const;
   bool SetGains(int lane, const ImpedanceGains& gains);
+  /// From now on, checks the commands before each step: the caller writes to `Plant::commands`.
+  void WatchCommands();
+  /// Refuses numbers of a lane if one is not finite (`refused`). Returns whether all are finite.
+  bool Accepts(int lane, const char* kind, const std::string& name,
+               std::span<const FiniteCheck::Named> numbers) {
+    return check_.Accepts(lane, time_s(lane), kind, name, numbers);
+  }
   /// Commands a cable's rest length; it holds until a controller that drives the cable changes it.
   void SetRestLength(int lane, int cable, double rest_length_m);
   /// Sets forces by a person's hand or a program, in addition to the experiment's events.
@@ -93,8 +107,12 @@ class Loop {
   struct Law {
     std::unique_ptr<Controller> controller;
     LaneClock clock;
+    std::string custom;  ///< "custom controller 0 sets"; empty: not custom.
   };
 
+  const std::string& CableName(int cable) const noexcept {
+    return experiment_.robot.def.cables[static_cast<std::size_t>(cable)].name;
+  }
   const Schedule& ScheduleOf(int lane) const noexcept {
     return schedules_[schedules_.size() == 1 ? 0 : static_cast<std::size_t>(lane)];
   }
@@ -118,6 +136,9 @@ class Loop {
   std::vector<Sensor> sensors_;  ///< Each receives the output of the previous one.
   std::vector<Law> laws_;
   std::vector<double> step_s_, to_s_;
+  FiniteCheck check_;
+  bool watches_commands_ = false;
+  bool watches_readings_;  ///< Readings that taut does not compute.
 };
 
 }  // namespace taut::plant

@@ -140,6 +140,7 @@ const Observation& Simulation::Observe(int group) const {
 }
 Commands& Simulation::commands(int group) {
   sim::CheckIndex(__func__, "group", group, groups());
+  impl_->groups[static_cast<std::size_t>(group)]->loop.WatchCommands();
   return impl_->groups[static_cast<std::size_t>(group)]->plant->commands();
 }
 const World& Simulation::world(int group) const {

@@ -13,6 +13,13 @@ State Read(const Impl& impl, const char* function, const plant::Names& names,
   return (impl.GroupOf(function, world).batch.*read)(impl.LaneOf(world), index);
 }
 
+/// Refuses a vector that is not finite.
+bool Accepts(plant::SimulationGroup& group, int lane, const char* kind, const std::string& name,
+             const char* what, const Vec3& v) {
+  const plant::FiniteCheck::Named numbers[] = {{what, v.x}, {what, v.y}, {what, v.z}};
+  return group.loop.Accepts(lane, kind, name, numbers);
+}
+
 }  // namespace
 
 // --- readings ------------------------------------------------------------------------------------
@@ -48,7 +55,9 @@ WorldStatus Simulation::Status(int world) const {
   return impl_->GroupOf(__func__, world).batch.Status(impl_->LaneOf(world));
 }
 std::string Simulation::StatusText(int world) const {
-  return plant::StatusText(impl_->def(), Status(world));
+  const std::string text = plant::StatusText(impl_->def(), Status(world));
+  const std::string& refused = impl_->GroupOf(__func__, world).loop.refused(impl_->LaneOf(world));
+  return text + (text.empty() || refused.empty() ? "" : "; ") + refused;
 }
 std::uint64_t Simulation::Hash(int world) const {
   return impl_->GroupOf(__func__, world).batch.Hash(impl_->LaneOf(world));
@@ -80,6 +89,8 @@ bool Simulation::SetGains(const ImpedanceGains& gains, int world) {
 void Simulation::SetNodeForce(const ElementRef& node, const Vec3& force_n, int world) {
   const int n = impl_->nodes.IndexOf(__func__, impl_->def(), node);
   plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
+  const std::string& name = impl_->def().nodes[static_cast<std::size_t>(n)].name;
+  if (!Accepts(group, impl_->LaneOf(world), "node", name, "force_n", force_n)) return;
   std::vector<ExternalForce>& forces = impl_->SlotOf(world).forces;
   std::erase_if(forces, [n](const ExternalForce& one) { return one.node == n; });
   if (force_n.x != 0 || force_n.y != 0 || force_n.z != 0) forces.push_back({n, force_n});
@@ -88,7 +99,9 @@ void Simulation::SetNodeForce(const ElementRef& node, const Vec3& force_n, int w
 void Simulation::SetExternalForces(std::span<const ExternalForce> forces, int world) {
   plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
   for (const ExternalForce& one : forces) {
-    impl_->nodes.IndexOf(__func__, impl_->def(), one.node);
+    const int n = impl_->nodes.IndexOf(__func__, impl_->def(), one.node);
+    const std::string& name = impl_->def().nodes[static_cast<std::size_t>(n)].name;
+    if (!Accepts(group, impl_->LaneOf(world), "node", name, "force_n", one.force_n)) return;
   }
   impl_->SlotOf(world).forces.assign(forces.begin(), forces.end());
   group.loop.SetHandForces(impl_->LaneOf(world), impl_->SlotOf(world).forces);
@@ -105,7 +118,20 @@ std::vector<ExternalForce> Simulation::ExternalForces(int world) const {
 
 void Simulation::SetBodyState(const ElementRef& body, const BodyState& state, int world) {
   const int b = impl_->bodies.IndexOf(__func__, impl_->def(), body);
-  impl_->GroupOf(__func__, world).batch.SetBodyState(impl_->LaneOf(world), b, state);
+  plant::SimulationGroup& group = impl_->GroupOf(__func__, world);
+  const int lane = impl_->LaneOf(world);
+  const std::string& name = impl_->def().bodies[static_cast<std::size_t>(b)].name;
+  const Quat& q = state.orientation;
+  const plant::FiniteCheck::Named scalar{"orientation", q.w};
+  if (!Accepts(group, lane, "body", name, "position_m", state.position_m) ||
+      !group.loop.Accepts(lane, "body", name, {&scalar, 1}) ||
+      !Accepts(group, lane, "body", name, "orientation", {q.x, q.y, q.z}) ||
+      !Accepts(group, lane, "body", name, "velocity_m_per_s", state.velocity_m_per_s) ||
+      !Accepts(group, lane, "body", name, "angular_velocity_rad_per_s",
+               state.angular_velocity_rad_per_s)) {
+    return;
+  }
+  group.batch.SetBodyState(lane, b, state);
 }
 
 double Simulation::GetParameter(Parameter parameter, const ElementRef& of, int world) const {

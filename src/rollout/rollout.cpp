@@ -105,7 +105,8 @@ class LaneRollouts final : public Rollouts {
       scorer.Take();
     }
     for (int j = 0; j < count; ++j) {
-      const std::string& failed = no_start[static_cast<std::size_t>(j)];
+      std::string failed = no_start[static_cast<std::size_t>(j)];
+      if (failed.empty()) failed = loop.refused(j);
       if (failed.empty()) {
         results[j] = scorer.Result(j);
       } else {
