@@ -86,6 +86,9 @@ struct EnvOptions {
   /// Called in every step after `observe` and before new episodes begin, for the rows that took
   /// their action. `rewards` contains the rewards by the experiment's objective.
   std::function<void(const EnvView&)> judge = {};
+  /// Polled about ten times a second during the physics steps of `Step`, on the caller's thread.
+  /// Return false to stop the step.
+  std::function<bool()> keep_going = {};
 };
 
 /// Output arrays of a step. A span of the wrong size is a programming error and ends the program,
@@ -152,9 +155,11 @@ class Env {
                      std::span<double> observations, Diagnostics& out) = 0;
 
   /// Advances all worlds by one period under `actions` (worlds, actions). An automatic reset skips
-  /// seeds without a valid start; after eight such seeds the last episode starts again.
-  virtual void Step(std::span<const float> actions, const EnvStep<float>& out) = 0;
-  virtual void Step(std::span<const double> actions, const EnvStep<double>& out) = 0;
+  /// seeds without a valid start; after eight such seeds the last episode starts again. Returns
+  /// false if `keep_going` stopped it: `out` is then undefined, worlds are at different times, and
+  /// further steps return false until all worlds are reset.
+  virtual bool Step(std::span<const float> actions, const EnvStep<float>& out) = 0;
+  virtual bool Step(std::span<const double> actions, const EnvStep<double>& out) = 0;
 
   /// Serializes a world with its episode: state, clocks, memory of controllers, sensors and
   /// rewards, delayed actions and observations. For searches of several futures from one state.

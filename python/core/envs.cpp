@@ -5,6 +5,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -67,6 +68,7 @@ class Environments : public OwnedWorlds<Env> {
     same_step_ = options.autoreset == Autoreset::kSameStep;
     if (!observe.is_none())
       options.observe = [this](const EnvView& v) { Call(observe_, v, false); };
+    options.keep_going = [this] { return KeepGoing(); };
     if (!judge.is_none()) options.judge = [this](const EnvView& v) { Call(judge_, v, true); };
     Diagnostics said;
     std::unique_ptr<Env> env;
@@ -99,6 +101,7 @@ class Environments : public OwnedWorlds<Env> {
     const bool good = With([&](Env& env) { return env.Reset(seed_span, mask_span, rows, said); });
     Rethrow();
     if (!good) Refuse(said);
+    stopped_ = false;
     Tell(said);
   }
 
@@ -118,8 +121,14 @@ class Environments : public OwnedWorlds<Env> {
       step.final_observations = Span(last);
     }
     const auto act_span = ConstSpan(act);
-    With([&](Env& env) { env.Step(act_span, step); });
+    const bool done = With([&](Env& env) { return env.Step(act_span, step); });
     Rethrow();
+    if (!done) StepStopped();
+  }
+
+  std::vector<std::uint8_t> Save(int world) {
+    if (stopped_) StepStopped();
+    return With([&](Env& env) { return env.Save(world); });
   }
 
   /// Returns seeds, steps, rewards and ends of the present or of the last episodes.
@@ -202,6 +211,16 @@ class Environments : public OwnedWorlds<Env> {
     }
     std::copy_n(from.data(), to.size(), to.data());
   }
+  /// Returns false if a signal handler raised an exception (Ctrl-C), which `Rethrow` raises.
+  bool KeepGoing() {
+    const Acquired mine;
+    if (SignalRaised()) raised_ = std::make_exception_ptr(py::error_already_set());
+    stopped_ = stopped_ || raised_;
+    return !raised_;
+  }
+  [[noreturn]] static void StepStopped() {
+    throw std::runtime_error("the last step was interrupted; reset all worlds");
+  }
   void Rethrow() {
     if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
   }
@@ -209,6 +228,7 @@ class Environments : public OwnedWorlds<Env> {
   const py::object observe_, judge_;
   std::exception_ptr raised_;
   bool same_step_ = false;
+  bool stopped_ = false;  ///< The last step was interrupted.
 };
 
 }  // namespace
@@ -251,7 +271,7 @@ void AddEnvironments(py::module_& module) {
       "save",
       [](E& e, py::ssize_t world) {
         const int w = e.World(world);
-        return BytesFrom(e.With([&](Env& env) { return env.Save(w); }));
+        return BytesFrom(e.Save(w));
       },
       py::arg("world") = 0);
   type.def(

@@ -74,6 +74,7 @@ class LaneEnv final : public Env {
     for (std::vector<std::uint8_t>* flags : {&stepped_, &begun_, &all_}) {
       flags->assign(static_cast<std::size_t>(worlds), 1);
     }
+    paused_.assign(groups_.size(), 0);
   }
 
   int worlds() const noexcept override { return plan_->options.worlds; }
@@ -96,11 +97,11 @@ class LaneEnv final : public Env {
              std::span<double> observations, Diagnostics& out) override {
     return ResetAll(seeds, mask, observations, out);
   }
-  void Step(std::span<const float> actions, const EnvStep<float>& out) override {
-    StepAll(actions, out);
+  bool Step(std::span<const float> actions, const EnvStep<float>& out) override {
+    return StepAll(actions, out);
   }
-  void Step(std::span<const double> actions, const EnvStep<double>& out) override {
-    StepAll(actions, out);
+  bool Step(std::span<const double> actions, const EnvStep<double>& out) override {
+    return StepAll(actions, out);
   }
 
   std::vector<std::uint8_t> Save(int world) override {
@@ -210,7 +211,14 @@ class LaneEnv final : public Env {
     if (!seeds.empty()) sim::CheckCount("Reset", "seed for each world", seeds.size(), count);
     if (!mask.empty()) sim::CheckCount("Reset", "word for each world", mask.size(), count);
     CheckWidth("Reset", "observation for each world", observations.size(), width());
+    if (stopped_ && std::find(mask.begin(), mask.end(), 0) != mask.end()) {
+      out.Error("environment.step_stopped", {}, "the last step was stopped before its end",
+                "reset all worlds");
+      return false;
+    }
+    for (const auto& group : groups_) group->Abandon();
     const bool good = BeginAll(seeds, mask, out);
+    stopped_ = stopped_ && !good;
     for (std::size_t w = 0; w < count; ++w) {
       if (begun_[w] != 0) EmitRow(w, observations.data());
     }
@@ -218,8 +226,31 @@ class LaneEnv final : public Env {
     return good;
   }
 
+  /// Performs the period of all groups, in rounds between which `keep_going` is polled. Returns
+  /// false if it stopped the step.
+  template <class Work>
+  bool StepGroups(const Work& work) {
+    const auto& keep_going = plan_->options.keep_going;
+    std::fill(paused_.begin(), paused_.end(), 1);
+    for (;;) {
+      const env::Deadline deadline(static_cast<bool>(keep_going));
+      std::atomic<bool> pauses{false};
+      auto step = [&](int thread, std::size_t g) {
+        if (paused_[g] == 0) return;
+        if (!deadline.Reached() && work(thread, g, deadline)) {
+          paused_[g] = 0;
+        } else {
+          pauses.store(true, std::memory_order_relaxed);
+        }
+      };
+      pool_.ForEach(groups_.size(), step);
+      if (!pauses) return true;
+      if (!keep_going()) return false;
+    }
+  }
+
   template <class T>
-  void StepAll(std::span<const T> actions, const EnvStep<T>& out) {
+  bool StepAll(std::span<const T> actions, const EnvStep<T>& out) {
     const auto count = static_cast<std::size_t>(worlds());
     CheckWidth("Step", "action for each world", actions.size(), action_channels_.size());
     CheckWidth("Step", "observation for each world", out.observations.size(), width());
@@ -238,12 +269,19 @@ class LaneEnv final : public Env {
                                             places_[static_cast<std::size_t>(thread)]);
       if (begun) any_begun.store(true, std::memory_order_relaxed);
     };
-    auto step = [&](int thread, std::size_t g) {
-      groups_[g]->Step(RowsOf(g, actions, out), starts_, places_[static_cast<std::size_t>(thread)]);
+    auto step = [&](int thread, std::size_t g, const env::Deadline& deadline) {
+      if (!groups_[g]->Step(RowsOf(g, actions, out), starts_,
+                            places_[static_cast<std::size_t>(thread)], deadline)) {
+        return false;
+      }
       if (!calls) finish(thread, g);
+      return true;
     };
-    pool_.ForEach(groups_.size(), step);
-    if (!calls) return;
+    if (stopped_ || !StepGroups(step)) {
+      stopped_ = true;
+      return false;
+    }
+    if (!calls) return true;
     CallObserve(all_, out.observations);
     if (plan_->options.judge) {
       EnvView view = ViewOf(stepped_, out.observations);
@@ -258,6 +296,7 @@ class LaneEnv final : public Env {
     }
     pool_.ForEach(groups_.size(), finish);
     if (same_step && any_begun) ObserveBegun(out.observations);
+    return true;
   }
 
   void CheckWidth(const char* function, const char* what, std::size_t given,
@@ -323,36 +362,9 @@ class LaneEnv final : public Env {
   std::vector<env::Place> places_;  ///< Per thread.
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<std::uint8_t> stepped_, begun_, all_;  ///< Per world.
+  std::vector<std::uint8_t> paused_;                 ///< Per group: its period is not complete.
+  bool stopped_ = false;                             ///< `keep_going` stopped the last step.
 };
-
-bool Any(const StartNoise& noise) {
-  return noise.place_m > 0 || noise.position_m > 0 || noise.heading_rad > 0 || noise.any_pose;
-}
-
-std::unique_ptr<Plan> PlanOf(const ExperimentSpec& experiment, const EnvOptions& options,
-                             std::shared_ptr<const Model> model) {
-  auto plan = std::make_unique<Plan>();
-  plan->experiment = experiment;
-  plan->spec = *experiment.environment;
-  if (options.randomise) plan->varied = plan->spec.randomise;
-  plan->options = options;
-  plan->options.worlds = std::max(options.worlds, 1);
-  plan->model = std::move(model);
-  plan->simd = SimdOf({.worlds = plan->options.worlds, .simd = options.simd});
-  plan->lanes = static_cast<int>(plan->simd);
-  plan->steps_per_period = env::Times(plan->spec.period_s, experiment.step_s);
-  plan->episode_steps = env::Times(experiment.duration_s, plan->spec.period_s);
-  const EnvironmentVariation& varied = plan->varied;
-  const auto periods = [&](double delay_s) {
-    return static_cast<int>(env::Times(delay_s, plan->spec.period_s));
-  };
-  plan->most_action_delay = periods(varied.action_delay_s);
-  plan->most_observation_delay = periods(varied.observation_delay_s);
-  plan->start_varies = Any(experiment.start_noise) || Any(varied.start) || varied.friction > 0 ||
-                       varied.mass > 0 || varied.stiffness > 0 || varied.damping > 0 ||
-                       varied.slope_rad > 0;
-  return plan;
-}
 
 }  // namespace
 
@@ -367,7 +379,8 @@ std::unique_ptr<Env> Env::Create(const ExperimentSpec& experiment, const EnvOpti
   auto model = Model::CompileForExperiment(experiment.robot.def, out);
   if (!model) return nullptr;
   const int threads = options.threads;
-  auto made = std::make_unique<LaneEnv>(PlanOf(experiment, options, std::move(model)), threads);
+  auto made =
+      std::make_unique<LaneEnv>(env::PlanOf(experiment, options, std::move(model)), threads);
   if (!made->Begin(out)) return nullptr;
   return made;
 }

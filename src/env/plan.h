@@ -26,6 +26,9 @@ struct Plan {
   std::size_t body_count() const noexcept { return experiment.robot.def.bodies.size(); }
 };
 
+std::unique_ptr<Plan> PlanOf(const ExperimentSpec& experiment, const EnvOptions& options,
+                             std::shared_ptr<const Model> model);
+
 /// Returns whole_s / part_s, rounded to the nearest integer.
 std::int64_t Times(double whole_s, double part_s) noexcept;
 

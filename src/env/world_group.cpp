@@ -15,6 +15,9 @@ std::vector<const RolloutWorld*> AllAs(const RolloutWorld& world, int lanes) {
 
 constexpr int kMostTries = 8;
 
+/// Steps between two looks at the deadline: a few milliseconds for most models.
+constexpr std::int64_t kStepsBetweenLooks = 16;
+
 }  // namespace
 
 Group::Group(const Plan& plan, const ExperimentSpec& observed,
@@ -133,25 +136,37 @@ void Group::BeginNext(int lane, Starts& starts, Place& place) {
   TAUT_ASSERT(good);  // this start has succeeded before
 }
 
-void Group::Advance(Place& place) {
+void Group::Advance(Place& place, const Deadline& deadline) {
   const BorrowedScratch borrowed(place, batch_);
-  for (std::int64_t left = plan_.steps_per_period; left > 0;) {
-    left -= loop_.Steps(reward_and_termination_.measures() ? 1 : static_cast<int>(left));
-    if (reward_and_termination_.measures()) reward_and_termination_.Measure();
+  const bool measures = reward_and_termination_.measures();
+  const std::int64_t most = measures ? 1 : deadline.polls() ? kStepsBetweenLooks : steps_left_;
+  std::int64_t since_look = 0;
+  while (steps_left_ > 0) {
+    const int done = loop_.Steps(static_cast<int>(std::min(most, steps_left_)));
+    steps_left_ -= done;
+    if (measures) reward_and_termination_.Measure();
+    since_look += done;
+    if (since_look < kStepsBetweenLooks || steps_left_ == 0) continue;
+    since_look = 0;
+    if (deadline.Reached()) return;
   }
   if (observer_.senses()) loop_.exact();
 }
 
 template <class T>
-void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
+bool Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place, const Deadline& deadline) {
   const std::size_t width = plan_.action_count();
-  for (int j = 0; j < plan_.lanes; ++j) {
-    Slot& own = worlds_[Index(j)];
-    const bool acts = j < count_ && own.now.end == EpisodeEnd::kNone;
-    own.good_action = actions_.Read(j, acts ? rows.actions + Index(j) * width : nullptr);
+  if (steps_left_ == 0) {
+    for (int j = 0; j < plan_.lanes; ++j) {
+      Slot& own = worlds_[Index(j)];
+      const bool acts = j < count_ && own.now.end == EpisodeEnd::kNone;
+      own.good_action = actions_.Read(j, acts ? rows.actions + Index(j) * width : nullptr);
+    }
+    actions_.Apply(loop_);
+    steps_left_ = plan_.steps_per_period;
   }
-  actions_.Apply(loop_);
-  Advance(place);
+  Advance(place, deadline);
+  if (steps_left_ > 0) return false;
   loop_.Sense();
   bodies_.Read();
   observer_.Next();
@@ -177,9 +192,10 @@ void Group::Step(const GroupRows<T>& rows, Starts& starts, Place& place) {
   observer_.Take(AllLanes(count_), count_);
   if (begins) Settle();
   for (int j = 0; j < count_; ++j) Emit(j, rows.observations + Index(j) * Index(width_));
+  return true;
 }
-template void Group::Step(const GroupRows<float>&, Starts&, Place&);
-template void Group::Step(const GroupRows<double>&, Starts&, Place&);
+template bool Group::Step(const GroupRows<float>&, Starts&, Place&, const Deadline&);
+template bool Group::Step(const GroupRows<double>&, Starts&, Place&, const Deadline&);
 
 template <class T>
 bool Group::Finish(const GroupRows<T>& rows, Starts& starts, Place& place) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "env/actions.h"
+#include "env/deadline.h"
 #include "env/episode.h"
 #include "env/lane_bodies.h"
 #include "env/observer.h"
@@ -44,9 +45,12 @@ class Group {
   bool Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place, std::string& failed);
   void Settle();
 
-  /// Performs a period: actions, steps, rewards, termination, observations.
+  /// Performs a period: actions, steps, rewards, termination, observations. Returns false if it
+  /// paused at the deadline; the next call continues it.
   template <class T>
-  void Step(const GroupRows<T>& rows, Starts& starts, Place& place);
+  bool Step(const GroupRows<T>& rows, Starts& starts, Place& place, const Deadline& deadline);
+  /// Abandons a paused period. Call it before a reset of all worlds.
+  void Abandon() noexcept { steps_left_ = 0; }
   /// Books rewards and ends of episodes, including changes by callbacks, and begins new episodes.
   /// Returns whether any episode began in this step.
   template <class T>
@@ -81,7 +85,8 @@ class Group {
   void Serialize(plant::LaneState& state);
 
   static std::size_t Index(int lane) noexcept { return static_cast<std::size_t>(lane); }
-  void Advance(Place& place);
+  /// Steps until the period's end or the deadline.
+  void Advance(Place& place, const Deadline& deadline);
   void BeginNext(int lane, Starts& starts, Place& place);
 
   const Plan& plan_;
@@ -94,6 +99,7 @@ class Group {
   RewardAndTermination reward_and_termination_;
   Observer observer_;
   std::vector<Slot> worlds_;
+  std::int64_t steps_left_ = 0;  ///< Of a paused period.
 };
 
 }  // namespace taut::env

@@ -5,9 +5,11 @@ attacks_test.py TAUT [unittest's arguments]
 
 import multiprocessing.pool
 import os
+import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import textwrap
 import threading
 import time
@@ -264,6 +266,27 @@ class Interrupts(unittest.TestCase):
         np.testing.assert_allclose(steps, np.round(steps), atol=1e-3)
         targets = np.tile(batch.rest_length_target_m()[:, None], (1, 1, 1))
         interrupted(self, lambda: batch.rollout(targets, 1e-3, 2 * 10**9))
+
+    def test_control_c_ends_a_step_of_environments(self):
+        text = pathlib.Path(SPINE).read_text().replace("../models", str(ROOT / "share/models"))
+        text = text[:text.index("  randomise:")].replace("max_tension_n: 300", "")
+        text = text.replace("duration_s: 10", "duration_s: 4e5").replace("period_s: 0.01", "period_s: 2e5")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "long.yaml")
+            path.write_text(text)
+            for make in (lambda: taut.gym.Env(str(path)), lambda: taut.gym.make_vec(str(path), 20, threads=2)):
+                env = make()
+                env.reset(seed=1)
+                start = env.hash()
+                before = time.monotonic()
+                interrupted(self, lambda: env.step(np.zeros(env.action_space.shape)))
+                self.assertLess(time.monotonic() - before, 10)
+                for call in (lambda: env.step(np.zeros(env.action_space.shape)), env.save):
+                    with self.assertRaisesRegex(RuntimeError, "the last step was interrupted; reset all worlds"):
+                        call()
+                env.reset(seed=1)
+                self.assertEqual(env.hash(), start)
+                env.save()
 
     def test_control_c_ends_waiting_for_another_thread(self):
         batch = taut.Batch(taut.load(GAIT).robot, worlds=3)
