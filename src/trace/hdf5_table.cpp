@@ -11,7 +11,6 @@
 #include "base/input_file.h"
 #include "trace/child_process.h"
 #include "trace/hdf5.h"
-#include "trace/unpack_limit.h"
 
 namespace taut::trace {
 namespace {
@@ -19,7 +18,7 @@ namespace {
 constexpr std::uint64_t kMostErrorBytes = 1 << 16;
 
 /// Opens the dataset; returns a sentence if it is not a table.
-std::string OpenTable(const std::string& path, const std::string& name, double most,
+std::string OpenTable(const std::string& path, const std::string& name, const TableBudget& budget,
                       double file_bytes, Hdf5Id& file, Hdf5Id& set, hsize_t size[2]) {
   const QuietHdf5 quiet;
   file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -36,25 +35,26 @@ std::string OpenTable(const std::string& path, const std::string& name, double m
     return fmt::format("{} has {} dimensions instead of 2", name, dimensions);
   }
   H5Sget_simple_extent_dims(space, size, nullptr);
-  if (static_cast<double>(size[0]) * static_cast<double>(size[1]) > most) {
-    return fmt::format("{} has {} x {} numbers, more than {:.0f}", name, size[0], size[1], most);
+  const double count = static_cast<double>(size[0]) * static_cast<double>(size[1]);
+  if (count > budget.left()) {
+    return fmt::format("{} has {} x {} numbers{}", name, size[0], size[1], budget.MoreThan());
   }
-  const double bytes = sizeof(double) * static_cast<double>(size[0]) * static_cast<double>(size[1]);
-  if (bytes > MostUnpackedBytes(file_bytes)) {
+  const double bytes = sizeof(double) * count;
+  if (!budget.Unpacks(bytes, file_bytes)) {
     return fmt::format(
         "the file has too high a compression ratio: {} unpacks to {:.0f} MiB, {}; unpack it "
         "with `h5repack -f NONE` first",
-        name, bytes / (1 << 20), kUnpackLimit);
+        name, bytes / (1 << 20), budget.UnpackedMoreThan());
   }
   return "";
 }
 
 /// The child's part: reads the file and sends its content.
-void SendTable(const std::string& path, const std::string& name, double most, double file_bytes,
-               const ChildOutput& to) {
+void SendTable(const std::string& path, const std::string& name, const TableBudget& budget,
+               double file_bytes, const ChildOutput& to) {
   Hdf5Id file, set;
   hsize_t size[2] = {0, 0};
-  std::string error = OpenTable(path, name, most, file_bytes, file, set, size);
+  std::string error = OpenTable(path, name, budget, file_bytes, file, set, size);
   std::vector<double> values;
   if (error.empty()) {
     const QuietHdf5 quiet;
@@ -72,14 +72,14 @@ void SendTable(const std::string& path, const std::string& name, double most, do
 }  // namespace
 
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
-                                       double most, Diagnostics& out) {
+                                       TableBudget& budget, Diagnostics& out) {
   // Reports in the system's words if the file cannot be opened.
   constexpr std::size_t kMostBytes = std::size_t{1} << 30;
   const auto bytes = base::ReadInputFile(path, kMostBytes, "use fewer numbers", out);
   if (!bytes) return std::nullopt;
   const auto file_bytes = static_cast<double>(bytes->size());
-  ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, most, file_bytes, to); },
-                     static_cast<std::size_t>(most) * 2 * sizeof(double), kChildPatience);
+  ChildProcess child([&](const ChildOutput& to) { SendTable(path, name, budget, file_bytes, to); },
+                     static_cast<std::size_t>(budget.most()) * 2 * sizeof(double), kChildPatience);
   std::uint64_t head[3] = {};
   std::string error;
   Hdf5Table table;
@@ -89,7 +89,7 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
     good = child.Read(error.data(), error.size());
   }
   if (good && error.empty()) {
-    good = static_cast<double>(head[1]) * static_cast<double>(head[2]) <= most;
+    good = static_cast<double>(head[1]) * static_cast<double>(head[2]) <= budget.left();
     if (good) {
       table.rows = static_cast<int>(head[1]);
       table.columns = static_cast<int>(head[2]);
@@ -105,6 +105,7 @@ std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::strin
     out.Error("hdf5.bad_table", {path}, error);
     return std::nullopt;
   }
+  budget.AddPacked(static_cast<double>(table.values.size()), file_bytes);
   return table;
 }
 

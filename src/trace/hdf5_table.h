@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "taut/diagnostics.h"
+#include "trace/table_budget.h"
 
 namespace taut::trace {
 
@@ -15,9 +16,9 @@ struct Hdf5Table {
 };
 
 /// Reads a two-dimensional dataset of any number type. Returns nothing and reports an error if
-/// there is none called `name`, or it has more than `most` numbers. A child process opens the file,
-/// as for traces (readers.h).
+/// there is none called `name`, or it exceeds the budget, to which it is added. A child process
+/// opens the file, as for traces (readers.h).
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
-                                       double most, Diagnostics& out);
+                                       TableBudget& budget, Diagnostics& out);
 
 }  // namespace taut::trace

@@ -25,7 +25,7 @@ std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out) {
 }
 
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& /*name*/,
-                                       double /*most*/, Diagnostics& out) {
+                                       TableBudget& /*budget*/, Diagnostics& out) {
   Refuse(path, "tables in HDF5", out);
   return std::nullopt;
 }

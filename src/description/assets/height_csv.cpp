@@ -33,7 +33,8 @@ std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& ro
 
 }  // namespace
 
-std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, Diagnostics& out) {
+std::optional<HeightTable> ReadHeightCsv(const std::string& path, trace::TableBudget& budget,
+                                         Diagnostics& out) {
   const auto text = base::ReadInputFile(path, kMostTableBytes, "use fewer, larger cells", out);
   if (!text) return std::nullopt;
   const std::size_t errors_before = out.items().size();
@@ -50,10 +51,12 @@ std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, D
     const SourceRef place{path, line_number, 0};
     // Before the row is read: a line may have as many numbers as a file.
     const auto count = static_cast<double>(1 + std::count(line.begin(), line.end(), ','));
-    if (static_cast<double>(table.height_m.size()) + count > most) {
-      out.Error("heights.too_many", place,
-                "the file has more than " + base::Brief(most) + " heights up to this line",
-                "use fewer, larger cells");
+    const double with_line = static_cast<double>(table.height_m.size()) + count;
+    if (with_line > budget.left()) {
+      out.Error(
+          "heights.too_many", place,
+          "the file has " + base::Brief(with_line) + " heights up to this line" + budget.MoreThan(),
+          "use fewer, larger cells");
       break;
     }
     row.clear();
@@ -73,6 +76,7 @@ std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, D
     if (out.items().size() - errors_before >= kMostErrors) break;
   }
   if (out.items().size() != errors_before) return std::nullopt;
+  budget.Add(static_cast<double>(table.height_m.size()));
   return table;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "taut/diagnostics.h"
+#include "trace/table_budget.h"
 
 namespace taut::description {
 
@@ -15,7 +16,9 @@ struct HeightTable {
 };
 
 /// Reads one row per line; empty lines and lines that begin with # do not count. Returns nothing
-/// after an error: numbers that are not finite, rows of unequal length, more than `most` numbers.
-std::optional<HeightTable> ReadHeightCsv(const std::string& path, double most, Diagnostics& out);
+/// after an error: numbers that are not finite, rows of unequal length, more numbers than the
+/// budget has left. Adds them to the budget.
+std::optional<HeightTable> ReadHeightCsv(const std::string& path, trace::TableBudget& budget,
+                                         Diagnostics& out);
 
 }  // namespace taut::description

@@ -7,9 +7,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "base/brief.h"
 #include "base/input_file.h"
-#include "trace/unpack_limit.h"
 
 namespace taut::description {
 namespace {
@@ -84,7 +82,8 @@ class Reader {
 
 }  // namespace
 
-std::optional<HeightImage> ReadHeightImage(const std::string& path, double most, Diagnostics& out) {
+std::optional<HeightImage> ReadHeightImage(const std::string& path, trace::TableBudget& budget,
+                                           Diagnostics& out) {
   const auto bytes = base::ReadInputFile(path, kMostImageBytes, "use fewer, larger cells", out);
   if (!bytes) return std::nullopt;
   const auto refuse = [&](const std::string& what, const std::string& hint = {}) {
@@ -102,18 +101,20 @@ std::optional<HeightImage> ReadHeightImage(const std::string& path, double most,
                   "save it as grayscale with 16 bits");
   }
   const double samples = static_cast<double>(head.columns) * head.rows;
-  if (samples > most) {
+  if (samples > budget.left()) {
     return refuse("the image has " + std::to_string(head.columns) + " x " +
-                      std::to_string(head.rows) + " samples, more than " + base::Brief(most),
+                      std::to_string(head.rows) + " samples" + budget.MoreThan(),
                   "use fewer, larger cells");
   }
-  const double unpacked = sizeof(double) * samples;
-  if (unpacked > trace::MostUnpackedBytes(static_cast<double>(bytes->size()))) {
+  const auto file_bytes = static_cast<double>(bytes->size());
+  if (!budget.Unpacks(sizeof(double) * samples, file_bytes)) {
     return refuse("the image has too high a compression ratio: " + std::to_string(head.columns) +
                       " x " + std::to_string(head.rows) + " samples from " +
-                      std::to_string(bytes->size()) + " bytes unpack to " + trace::kUnpackLimit,
+                      std::to_string(bytes->size()) + " bytes unpack to " +
+                      budget.UnpackedMoreThan(),
                   "use fewer, larger cells, or save it without compression");
   }
+  budget.AddPacked(samples, file_bytes);
   const std::size_t width = head.bits == 16 ? 2 : 1, columns = head.columns, rows = head.rows;
   std::vector<png_byte> samples_of(width * columns * rows);
   std::vector<png_bytep> row_starts;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "taut/diagnostics.h"
+#include "trace/table_budget.h"
 
 namespace taut::description {
 
@@ -16,7 +17,9 @@ struct HeightImage {
 };
 
 /// Reads a PNG of gray samples as stored: no gamma, no color profile. Returns nothing and reports
-/// an error for other files, for colors, or for more than `most` samples.
-std::optional<HeightImage> ReadHeightImage(const std::string& path, double most, Diagnostics& out);
+/// an error for other files, for colors, or for samples beyond the budget, to which they are added
+/// before memory is allocated.
+std::optional<HeightImage> ReadHeightImage(const std::string& path, trace::TableBudget& budget,
+                                           Diagnostics& out);
 
 }  // namespace taut::description

@@ -3,7 +3,7 @@
 
 namespace taut::description {
 
-std::optional<HeightImage> ReadHeightImage(const std::string& path, double /*most*/,
+std::optional<HeightImage> ReadHeightImage(const std::string& path, trace::TableBudget& /*budget*/,
                                            Diagnostics& out) {
   out.Error("browser.no_images", {path, 0, 0}, "images of heights cannot be read in a browser",
             "use a formula in `height_m`, a .csv in `file`, or the command-line program taut");

@@ -115,6 +115,7 @@ void Check(const MapReader& map, PlaceText& place) {
 void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, RobotSpec& robot) {
   ModelDef& def = robot.def;
   std::map<std::string, SourceRef> names;
+  trace::TableBudget heights(kMostHeights);
   for (const TerrainText& text : texts) {
     if (text.plane) {
       def.planes.push_back(*text.plane);
@@ -125,7 +126,7 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
       def.terrain_boxes.back().name = text.name;
       robot.terrain_box_sources.push_back(text.at);
     } else if (text.height_field) {
-      if (auto field = ReadHeightField(*text.height_field, scope)) {
+      if (auto field = ReadHeightField(*text.height_field, scope, heights)) {
         def.height_fields.push_back(std::move(*field));
         def.height_fields.back().name = text.name;
         robot.height_field_sources.push_back(text.at);

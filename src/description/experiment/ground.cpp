@@ -17,13 +17,13 @@
 namespace taut::description {
 namespace {
 
-constexpr double kMostInFile = 1e8;
 constexpr double kMostByFormula = 4e6;
 /// Limit of the steps of a formula over all corners; a step takes 5 to 50 ns.
 constexpr double kMostSteps = 4e8;
 
 /// Fills the heights by a formula, evaluated at each corner.
-bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
+bool FillByFormula(const HeightFieldText& text, const Scope& scope, trace::TableBudget& budget,
+                   HeightFieldDef& field) {
   const Value& formula = *text.formula.value;
   if (formula.kind != Value::Kind::kScalar) {
     scope.out.Error(
@@ -49,6 +49,14 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
                     "use a shorter formula, fewer, larger cells, or a file");
     return false;
   }
+  if (corners > budget.left()) {
+    scope.out.Error(
+        "heights.too_many", formula.at,
+        "this height field has " + base::Brief(corners) + " heights" + budget.MoreThan(),
+        "use fewer, larger cells");
+    return false;
+  }
+  budget.Add(corners);
   field.height_m.reserve(static_cast<std::size_t>(field.columns) *
                          static_cast<std::size_t>(field.rows));
   for (int j = 0; j < field.rows; ++j) {
@@ -71,8 +79,9 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, HeightFieldD
   return true;
 }
 
-bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field) {
-  auto table = ReadHeightCsv(path, kMostInFile, scope.out);
+bool ReadCsv(const std::string& path, const Scope& scope, trace::TableBudget& budget,
+             HeightFieldDef& field) {
+  auto table = ReadHeightCsv(path, budget, scope.out);
   if (!table) return false;
   field.columns = table->columns;
   field.rows = table->rows;
@@ -83,8 +92,8 @@ bool ReadCsv(const std::string& path, const Scope& scope, HeightFieldDef& field)
 bool IsImage(const std::string& file) { return EndsIn(file, ".png"); }
 
 bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope& scope,
-               HeightFieldDef& field) {
-  const auto image = ReadHeightImage(path, kMostInFile, scope.out);
+               trace::TableBudget& budget, HeightFieldDef& field) {
+  auto image = ReadHeightImage(path, budget, scope.out);
   if (!image || !text.height_range_m) return false;
   const auto [low, high] = *text.height_range_m;
   const double steps = std::exp2(image->bits) - 1;
@@ -97,7 +106,8 @@ bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope
   }
   field.columns = image->columns;
   field.rows = image->rows;
-  for (const double share : image->shares) field.height_m.push_back(low + (high - low) * share);
+  field.height_m = std::move(image->shares);  // a copy would double the memory
+  for (double& height : field.height_m) height = low + (high - low) * height;
   return true;
 }
 
@@ -111,8 +121,8 @@ std::size_t SetIn(const std::string& file) {
 }
 
 bool ReadHdf5(const std::string& path, const std::string& set, const Scope& scope,
-              HeightFieldDef& field) {
-  auto table = trace::ReadHdf5Table(path, set, kMostInFile, scope.out);
+              trace::TableBudget& budget, HeightFieldDef& field) {
+  auto table = trace::ReadHdf5Table(path, set, budget, scope.out);
   if (!table) return false;
   for (std::size_t i = 0; i < table->values.size(); ++i) {
     if (std::isfinite(table->values[i])) continue;
@@ -130,14 +140,15 @@ bool ReadHdf5(const std::string& path, const std::string& set, const Scope& scop
 }
 
 /// Reads the heights from a CSV, PNG or HDF5 file.
-bool ReadHeights(const HeightFieldText& text, const Scope& scope, HeightFieldDef& field) {
+bool ReadHeights(const HeightFieldText& text, const Scope& scope, trace::TableBudget& budget,
+                 HeightFieldDef& field) {
   field.columns = field.rows = 0;
   const std::string& file = text.file.text;
   const std::size_t set = SetIn(file);
   const std::string path = PathOf(text);
-  const bool good = set != file.npos ? ReadHdf5(path, file.substr(set), scope, field)
-                    : IsImage(file)  ? ReadImage(text, path, scope, field)
-                                     : ReadCsv(path, scope, field);
+  const bool good = set != file.npos ? ReadHdf5(path, file.substr(set), scope, budget, field)
+                    : IsImage(file)  ? ReadImage(text, path, scope, budget, field)
+                                     : ReadCsv(path, scope, budget, field);
   if (!good || (field.columns >= 2 && field.rows >= 2)) return good;
   scope.out.Error("heights.too_small", {path, 0, 0},
                   "the file must have at least two rows of at least two heights");
@@ -186,10 +197,11 @@ std::string PathOf(const TerrainMeshText& text) {
   return PathBeside(text.file.at.file, text.file.text);
 }
 
-std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope) {
+std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope,
+                                              trace::TableBudget& budget) {
   HeightFieldDef field = text;
   if (!text.file.text.empty()) {
-    if (!ReadHeights(text, scope, field)) return std::nullopt;
+    if (!ReadHeights(text, scope, budget, field)) return std::nullopt;
   } else {
     const bool known = text.formula.value != nullptr && field.columns >= 2 && field.rows >= 2 &&
                        std::isfinite(field.cell_m);
@@ -199,7 +211,7 @@ std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const
                       "use fewer, larger cells, or a file");
       return std::nullopt;
     }
-    if (!known || !FillByFormula(text, scope, field)) return std::nullopt;
+    if (!known || !FillByFormula(text, scope, budget, field)) return std::nullopt;
   }
   return field;
 }

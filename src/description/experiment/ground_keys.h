@@ -7,6 +7,7 @@
 #include "description/model/surface_keys.h"
 #include "description/yaml/keys.h"
 #include "taut/model_def.h"
+#include "trace/table_budget.h"
 
 namespace taut::description {
 
@@ -129,8 +130,12 @@ void Check(const MapReader& map, TerrainMeshText& mesh);
 /// Return the path of the file, if any.
 std::string PathOf(const HeightFieldText& text);
 std::string PathOf(const TerrainMeshText& text);
-/// Returns a height field with heights from the file or formula; nothing after an error.
-std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope);
+/// Limit of the heights in all height fields of an experiment together.
+inline constexpr double kMostHeights = 1e8;
+/// Returns a height field with heights from the file or formula; nothing after an error. Adds the
+/// heights to the budget of the experiment.
+std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope,
+                                              trace::TableBudget& budget);
 /// Returns a mesh with corners and triangles from the file, in place; nothing after an error.
 std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope);
 

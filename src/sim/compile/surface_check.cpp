@@ -69,7 +69,12 @@ void CheckMesh(const TerrainMeshDef& mesh, Checker& check) {
 }  // namespace
 
 void CheckGround(const ModelDef& def, Checker& check) {
-  for (const HeightFieldDef& field : def.height_fields) CheckField(field, check);
+  double heights = 0;
+  for (const HeightFieldDef& field : def.height_fields) {
+    CheckField(field, check);
+    heights += static_cast<double>(field.columns) * field.rows;
+  }
+  check.Require(heights <= kMaxCells, "the height fields have more than 10^8 heights together");
   for (const TerrainMeshDef& mesh : def.terrain_meshes) CheckMesh(mesh, check);
 }
 

@@ -329,6 +329,10 @@ TEST(GroundModel, GroundThatCannotBeIsRefused) {
     return SaidOf(def);
   };
   has(of([](auto& f) { f.columns = 100'000, f.rows = 1001; }), "has more than 10^8 cells");
+  ModelDef two;
+  two.height_fields = {field, field};
+  for (HeightFieldDef& f : two.height_fields) f.columns = 60'000, f.rows = 1000;
+  has(SaidOf(two), "the height fields have more than 10^8 heights together");
   has(of([](auto& f) { f.height_m.pop_back(); }), "has 5 heights, but needs one for each");
   has(of([](auto& f) { f.height_m[4] = INFINITY; }), "height 4 must be finite");
   has(of([](auto& f) { f.cell_m = 0; }), "edge length of a cell must be a positive number");

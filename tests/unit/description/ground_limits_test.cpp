@@ -56,17 +56,18 @@ TEST_F(GroundLimits, HeightsInAFileAre100MillionAtMost) {
             "larger cells)\n");
   WriteEmptyTable(10'001, 10'000);
   EXPECT_EQ(SaidOfField("file: 'hills.h5:/z'"),
-            "hills.h5: error: /z has 10001 x 10000 numbers, more than 100000000\n");
+            "hills.h5: error: /z has 10001 x 10000 numbers, more than 1e+08\n");
   // Text of 100 million numbers takes too long for a test; a smaller limit works the same way.
   Write("hills.csv", "1,2\n3,4\n5,6\n");
   Diagnostics out;
-  const auto table = description::ReadHeightCsv(Path("hills.csv"), 6, out);
+  trace::TableBudget six(6), five(5);
+  const auto table = description::ReadHeightCsv(Path("hills.csv"), six, out);
   ASSERT_TRUE(table) << out.Format();
   EXPECT_EQ(table->height_m, (std::vector<double>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(table->rows, 3);
-  EXPECT_FALSE(description::ReadHeightCsv(Path("hills.csv"), 5, out));
+  EXPECT_FALSE(description::ReadHeightCsv(Path("hills.csv"), five, out));
   EXPECT_EQ(Without(Path(""), out.Format()),
-            "hills.csv:3: error: the file has more than 5 heights up to this line (use fewer, "
+            "hills.csv:3: error: the file has 6 heights up to this line, more than 5 (use fewer, "
             "larger cells)\n");
 }
 
@@ -75,6 +76,59 @@ TEST_F(GroundLimits, AFormulaHas4MillionCornersAtMost) {
                 .find("error: a height field by formula can have at most 4 000 000 corners (use "
                       "fewer, larger cells, or a file)\n"),
             std::string::npos);
+}
+
+TEST_F(GroundLimits, HeightsOfAnExperimentAre100MillionAtMostInAllItsFields) {
+  const std::string formula =
+      "- {name: hills, height_field: {cell_m: 0.1, height_m: 0, columns: 1000, rows: 1000}}\n";
+  const auto field = [](const std::string& file) {
+    return "    - {name: more, height_field: {cell_m: 0.1, file: '" + file + "'}}";
+  };
+  const auto said = [&](const std::string& terrain) {
+    return Without(Path(""), Said(formula + terrain));
+  };
+  // A file of 10^8 heights alone is below the limit. The image has no samples: nothing is read.
+  Write("hills.png", PngHead(std::string("\0\0\x27\x10\0\0\x27\x10", 8), "\xcf\xb5\xe1\xb8"));
+  EXPECT_EQ(said("    - {name: more, height_field: {cell_m: 0.1, file: hills.png, "
+                 "height_range_m: [0, 1]}}"),
+            "hills.png: error: the image has 10000 x 10000 samples and the other height fields "
+            "1e+06, together more than 1e+08 (use fewer, larger cells)\n");
+  WriteEmptyTable(10'000, 10'000);
+  EXPECT_EQ(said(field("hills.h5:/z")),
+            "hills.h5: error: /z has 10000 x 10000 numbers and the other height fields 1e+06, "
+            "together more than 1e+08\n");
+  Write("hills.csv", "1,2\n3,4\n");
+  Diagnostics out;
+  trace::TableBudget nearly(1e8);
+  nearly.Add(1e8 - 3);
+  EXPECT_FALSE(description::ReadHeightCsv(Path("hills.csv"), nearly, out));
+  EXPECT_EQ(Without(Path(""), out.Format()),
+            "hills.csv:2: error: the file has 4 heights up to this line and the other height "
+            "fields 1e+08, together more than 1e+08 (use fewer, larger cells)\n");
+  std::string formulas;
+  for (int i = 0; i < 25; ++i) {
+    formulas += std::string(i == 0 ? "" : "    ") + "- {name: hill" + std::to_string(i) +
+                ", height_field: {cell_m: 0.1, height_m: 0, columns: 2000, rows: 2000}}\n";
+  }
+  const std::string more = Said(formulas + "    " + formula);
+  EXPECT_NE(more.find("error: this height field has 1e+06 heights and the other height fields "
+                      "1e+08, together more than 1e+08 (use fewer, larger cells)"),
+            more.npos)
+      << more;
+}
+
+TEST_F(GroundLimits, PackedFilesOfAnExperimentUnpackTo256MebibytesTogether) {
+  // Each of the tables unpacks to 128.3 MiB; none of their numbers is stored.
+  WriteEmptyTable(4'100, 4'100);
+  const auto field = [](const std::string& name) {
+    return "- {name: " + name + ", height_field: {cell_m: 0.1, file: 'hills.h5:/z'}}";
+  };
+  const std::string said = Said(field("one") + "\n    " + field("two"));
+  EXPECT_NE(said.find("hills.h5: error: the file has too high a compression ratio: /z unpacks to "
+                      "128 MiB, more than 256 MiB and more than 100 times its size, with the other "
+                      "files"),
+            said.npos)
+      << said;
 }
 
 }  // namespace
