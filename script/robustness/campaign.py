@@ -29,8 +29,8 @@ class Tally:
     wrong: list = dataclasses.field(default_factory=list)
 
 
-def faults_of(scenario, calls, kinds, every):
-    """Returns every call of each kind; of memory allocations every n-th."""
+def faults_of(scenario, calls, kinds, every, most=None):
+    """Returns every call of each kind; of memory allocations every n-th. `most`: limit for each kind and mode."""
     for kind in scenario.kinds:
         if kind not in kinds or not calls[kind]:
             continue
@@ -38,6 +38,8 @@ def faults_of(scenario, calls, kinds, every):
         if isinstance(scenario, View):
             count = int(MORE_CALLS * count)
         step = (every or max(1, count // MOST_POINTS)) if kind in ("memory", "hdf5") else 1
+        if most:
+            step = max(step, -(-count // most))
         modes = ["once", "sticky"] + (["kill"] if scenario.kills and kind in KILL_KINDS else [])
         for mode in modes:
             for at in range(1, count + 1, step):
@@ -82,12 +84,12 @@ class Campaign:
             finally:
                 pool.shutdown(cancel_futures=True)
 
-    def run(self, names, kinds, every=None, sample=None, seed=1):
+    def run(self, names, kinds, every=None, sample=None, seed=1, most=None):
         """Runs all faults, or `sample` of them per scenario, with the same probability for kinds with many and with
         few calls."""
         for name in names:
             scenario, calls = self.prepare(name)
-            faults = list(faults_of(scenario, calls, kinds, every))
+            faults = list(faults_of(scenario, calls, kinds, every, most))
             if sample is not None:
                 faults = drawn(faults, sample, random.Random(f"{seed} {name}"))
             self.run_faults(name, scenario, calls, faults)
