@@ -1,6 +1,8 @@
 // Control characters of untrusted text in messages, and paths that are not regular files
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -55,7 +57,15 @@ class InputFile : public testing::Test {
 TEST_F(InputFile, PipesAndDevicesThatAFileNamesAreRefusedWithoutOpeningThem) {
   const std::string pipe = folder_ + "/pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  for (const std::string& path : {pipe, std::string("/dev/zero"), std::string("/dev/null")}) {
+  const std::string at_socket = folder_ + "/socket";
+  const int listener = socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  at_socket.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  close(listener);
+  for (const std::string& path :
+       {pipe, at_socket, std::string("/dev/zero"), std::string("/dev/null")}) {
     EXPECT_EQ(Complaint(path),
               path + ": error: the path is a pipe, socket or device (expected a regular file)\n");
   }
