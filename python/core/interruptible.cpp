@@ -5,7 +5,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
-#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -18,8 +17,7 @@ namespace py = pybind11;
 void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& work,
                    const std::function<void()>& look) {
   std::atomic<bool> stop{false};
-  std::unique_ptr<py::error_already_set> raised;
-  std::exception_ptr failed;
+  std::exception_ptr raised, failed;
   {
     const Released others;
     std::mutex mutex;
@@ -46,14 +44,16 @@ void Interruptible(const std::function<void(const std::atomic<bool>& stop)>& wor
       try {
         if (SignalRaised()) throw py::error_already_set();
         if (look) look();
-      } catch (py::error_already_set& error) {
-        raised = std::make_unique<py::error_already_set>(std::move(error));
+      } catch (const abi::__forced_unwind&) {  // end of the thread, not an exception
+        EndOfProgram::Sleep();
+      } catch (...) {  // whatever it is, the worker must end before this function does
+        raised = std::current_exception();
         stop = true;
       }
     }
     worker.join();
   }
-  if (raised) throw py::error_already_set(*raised);
+  if (raised) std::rethrow_exception(raised);
   if (failed) std::rethrow_exception(failed);
 }
 
