@@ -82,14 +82,14 @@ TEST_F(GroundLimits, HeightsOfAnExperimentAre100MillionAtMostInAllItsFields) {
   const std::string formula =
       "- {name: hills, height_field: {cell_m: 0.1, height_m: 0, columns: 1000, rows: 1000}}\n";
   const auto field = [](const std::string& file) {
-    return "    - {name: more, height_field: {cell_m: 0.1, file: '" + file + "'}}";
+    return "  - {name: more, height_field: {cell_m: 0.1, file: '" + file + "'}}";
   };
   const auto said = [&](const std::string& terrain) {
     return Without(Path(""), Said(formula + terrain));
   };
   // A file of 10^8 heights alone is below the limit. The image has no samples: nothing is read.
   Write("hills.png", PngHead(std::string("\0\0\x27\x10\0\0\x27\x10", 8), "\xcf\xb5\xe1\xb8"));
-  EXPECT_EQ(said("    - {name: more, height_field: {cell_m: 0.1, file: hills.png, "
+  EXPECT_EQ(said("  - {name: more, height_field: {cell_m: 0.1, file: hills.png, "
                  "height_range_m: [0, 1]}}"),
             "hills.png: error: the image has 10000 x 10000 samples and the other height fields "
             "1e+06, together more than 1e+08 (use fewer, larger cells)\n");
@@ -107,10 +107,10 @@ TEST_F(GroundLimits, HeightsOfAnExperimentAre100MillionAtMostInAllItsFields) {
             "fields 1e+08, together more than 1e+08 (use fewer, larger cells)\n");
   std::string formulas;
   for (int i = 0; i < 25; ++i) {
-    formulas += std::string(i == 0 ? "" : "    ") + "- {name: hill" + std::to_string(i) +
+    formulas += std::string(i == 0 ? "" : "  ") + "- {name: hill" + std::to_string(i) +
                 ", height_field: {cell_m: 0.1, height_m: 0, columns: 2000, rows: 2000}}\n";
   }
-  const std::string more = Said(formulas + "    " + formula);
+  const std::string more = Said(formulas + "  " + formula);
   EXPECT_NE(more.find("error: this height field has 1e+06 heights and the other height fields "
                       "1e+08, together more than 1e+08 (use fewer, larger cells)"),
             more.npos)
@@ -123,7 +123,7 @@ TEST_F(GroundLimits, PackedFilesOfAnExperimentUnpackTo256MebibytesTogether) {
   const auto field = [](const std::string& name) {
     return "- {name: " + name + ", height_field: {cell_m: 0.1, file: 'hills.h5:/z'}}";
   };
-  const std::string said = Said(field("one") + "\n    " + field("two"));
+  const std::string said = Said(field("one") + "\n  " + field("two"));
   EXPECT_NE(said.find("hills.h5: error: the file has too high a compression ratio: /z unpacks to "
                       "128 MiB, more than 256 MiB and more than 100 times its size, with the other "
                       "files"),
