@@ -59,6 +59,7 @@ class ImplicitLaws {
   /// Starts a stage: only contacts that pressed have a row.
   void Begin() noexcept {
     is_jammed = false;
+    residual = 0;
     for (int i = 0; i < island_.rows; ++i) mem_.active[i] = 0;
     island_.pools.ForEach([&](auto& law, auto&, int row, int) {
       if constexpr (kOpens<LawOf<decltype(law)>>) {
@@ -77,6 +78,7 @@ class ImplicitLaws {
     auto& m = island_.m;
     island_.Measure(ends, m.u2);
     count_ = 0;
+    residual = 0;  // unless a contact closes
     for (int i = 0; i < island_.rows; ++i) mem_.compact[i] = -1;
     for (bool more = true; more;) {
       more = false;
