@@ -9,13 +9,15 @@ namespace taut {
 
 enum class CableScheme {
   kExplicit,  ///< Soft cable: explicit force.
-  /// Stiff cable with wheels, edges, friction, a direct-current motor, joints or a kinematic body
-  /// in its group: implicit tension along fixed directions, taken at the middle of the step.
+  /// Stiff cable with wheels, edges, friction, a direct-current motor, a kinematic body, or a joint
+  /// that slides or has stops, friction or springs in its group: implicit tension along fixed
+  /// directions, taken at the middle of the step.
   /// Undamped cables may gain energy from transverse motion, and (12) limits the tension
   /// (`kStatusStepTooLong`).
   kAlong,
   kImplicit,  ///< Implicit in tension and direction: any stiffness and tension; conserves energy.
-  /// kImplicit with a second stage, which damps vibrations that the step does not resolve.
+  /// kImplicit with a second stage, which damps vibrations that the step does not resolve; without
+  /// joints.
   kImplicitDamped
 };
 

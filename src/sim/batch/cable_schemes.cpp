@@ -32,7 +32,7 @@ std::vector<CableScheme> CableSchemes(const Model& model, double step_s) {
     CableScheme scheme = stiff ? CableScheme::kAlong : CableScheme::kExplicit;
     sim::ForEachMoved(view, view.cables[c], moves, [&](int body) {
       if (!groups.IsImplicit(body)) return;
-      scheme = groups.IsDamped(body) ? CableScheme::kImplicitDamped : CableScheme::kImplicit;
+      scheme = groups.HasSecondStage(body) ? CableScheme::kImplicitDamped : CableScheme::kImplicit;
     });
     schemes.push_back(scheme);
   }

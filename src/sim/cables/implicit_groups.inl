@@ -16,12 +16,15 @@ template <class W>
   FindGroups(
       m, step_s, moves, [&](int c) { return s.stiff_k[c][lane]; },
       [&](int c) { return s.damping[c][lane] > 0; }, groups);
-  for (int b = 0; b < m.body_count; ++b) x.bodies[b].Set(lane, groups.IsImplicit(b) ? 1.0 : 0.0);
+  for (int b = 0; b < m.body_count; ++b) {
+    const double kind = groups.HasDamper(b) ? 2.0 : 1.0;
+    x.bodies[b].Set(lane, groups.IsImplicit(b) ? kind : 0.0);
+  }
   for (int c = 0; c < m.cable_count; ++c) {
     bool on = false, damped = false;
     ForEachMoved(m, m.cables[c], moves, [&](int body) {
       on = groups.IsImplicit(body);
-      damped = groups.IsDamped(body);
+      damped = groups.HasSecondStage(body);
     });
     if (on) x.limit[c].Set(lane, -1.0);
     x.damped[c].Set(lane, damped ? 1.0 : 0.0);

@@ -14,6 +14,9 @@
 
 namespace taut::sim {
 
+/// Compliance of held rows, as a share of their inverse effective masses.
+inline constexpr double kHeldCompliance = 1e-7;
+
 template <class Num>
 struct JointRow {
   using Number = Num;

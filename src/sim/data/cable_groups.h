@@ -20,6 +20,7 @@ enum GroupKind : uint8_t {
   kGroupStiff = 1,   ///< One of its cables is stiff.
   kGroupOther = 2,   ///< It has cables or bodies that the scheme does not support.
   kGroupDamped = 4,  ///< A stiff cable that the step does not resolve has a damper.
+  kGroupJoints = 8,  ///< It has joints.
 };
 
 /// Returns whether the scheme supports a cable: straight between points of bodies, no
@@ -33,6 +34,16 @@ TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   return true;
 }
 
+/// Returns whether the scheme supports a joint: it only holds a point, or a distance, of bodies
+/// that are not kinematic (implicit_joints.inl).
+TAUT_INLINE bool OnlyHolds(const View& m, const JointTable& j) noexcept {
+  if (j.a_is_moved || j.b_is_moved) return false;
+  for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
+    if (m.joint_rows[r].role != JointRole::kHold) return false;
+  }
+  return j.holds_point || (j.coordinate == JointMeasure::kDistance && j.rest > 0);
+}
+
 /// Groups of a world. Each array has one element per body.
 struct CableGroups {
   int *group, *size;  ///< Lowest body of the group; number of its bodies (stored at the lowest);
@@ -42,8 +53,13 @@ struct CableGroups {
   TAUT_INLINE bool IsImplicit(int body) const noexcept {
     return (kind[group[body]] & (kGroupStiff | kGroupOther)) == kGroupStiff;
   }
-  TAUT_INLINE bool IsDamped(int body) const noexcept {
+  /// Returns whether one of its unresolved stiff cables has a damper.
+  TAUT_INLINE bool HasDamper(int body) const noexcept {
     return (kind[group[body]] & kGroupDamped) != 0;
+  }
+  /// With joints there is no second stage: it would extrapolate the bodies away from each other.
+  TAUT_INLINE bool HasSecondStage(int body) const noexcept {
+    return (kind[group[body]] & (kGroupDamped | kGroupJoints)) == kGroupDamped;
   }
 };
 
@@ -92,8 +108,9 @@ TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
   };
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
-    if (j.a_moves) mark(j.a, kGroupOther);
-    if (j.b_moves) mark(j.b, kGroupOther);
+    const uint8_t kind = OnlyHolds(m, j) ? kGroupJoints : kGroupOther;
+    if (j.a_moves) mark(j.a, kind);
+    if (j.b_moves) mark(j.b, kind);
   }
   for (int b = 0; b < m.body_count; ++b) {
     if (x.size[b] > kMostInGroup) mark(b, kGroupOther);

@@ -52,6 +52,37 @@ struct ImplicitCable {
   Num elastic_impulse;  ///< and its spring part.
 };
 
+/// A joint whose held rows are integrated together with stiff cables (implicit_joints.inl).
+template <class Num>
+struct ImplicitJoint {
+  ImplicitPoint<Num> a, b;  ///< Its points; of a also from a to b: d0, u, n, l0, l1.
+  int first, count;         ///< Of its rows.
+  bool is_distance;         ///< Its only row is a distance.
+  V3<Num> push;             ///< Impulse on b's point [N s].
+};
+
+/// A row's part on one body, for velocities and spins.
+template <class Num>
+struct ImplicitSides {
+  V3<Num> v, w;
+};
+
+template <class Num>
+struct ImplicitJointRow {
+  int source;                    ///< Row of the model.
+  bool turns;                    ///< Product of two axes, one of each body; else an offset.
+  V3<Num> along;                 ///< Direction of an offset, in W.
+  V3<Num> x_P, y_P;              ///< Axes in the frames of a and b;
+  V3<Num> x0, y0, x1, y1, x, y;  ///< in W: at the start, at the end, and where the torque acts.
+  Num reach;                     ///< Radius that converts rotations to meters.
+  Num stiffness;                 ///< Inverse compliance [kg].
+  Num last_force, force;         ///< Of the previous step; of the previous stage [N].
+  Num target, value;             ///< Coordinate before the stage, and after it [m].
+  Num center, l, step, trial;    ///< Impulses: predicted, accepted, Newton step, evaluated [N s].
+  Num impulse;                   ///< Sum over the stages so far [N s].
+  ImplicitSides<Num> on_a, on_b, by_a, by_b;  ///< Forces; derivatives of the coordinate.
+};
+
 template <class W>
 struct ImplicitMemory {
   using Num = simd::Lane<W>;
@@ -60,7 +91,7 @@ struct ImplicitMemory {
   bool any = false;      ///< Whether any lane has implicit cables;
   Row<W> limit;          ///< per cable: largest K of an explicit cable [1/s^2]; -1: implicit,
   Row<W> damped;         ///< and 1 in lanes whose group has the second stage.
-  Row<W> bodies;         ///< Per body: 1 in lanes with implicit cables on it.
+  Row<W> bodies;         ///< Per body: 1 in lanes with implicit cables on it, 2 with dampers.
   Row<int> group, size;  ///< Groups of one lane (CableGroups).
   Row<uint8_t> kind;
   Row<W> ended;  ///< Per body: 1 in lanes whose final pose is computed:
@@ -71,6 +102,8 @@ struct ImplicitMemory {
   Row<ImplicitBody<Num>> body;
   Row<ImplicitPoint<Num>> points;
   Row<ImplicitCable<Num>> list;
+  Row<ImplicitJoint<Num>> joints;
+  Row<ImplicitJointRow<Num>> joint_rows;
   Row<Num> U, trial, res, trial_res, step, back, ends;  ///< 6 per body.
   Row<Num> gap, bias, start, total, unit;               ///< Per row; start: warm-start impulses.
   Row<int> compact, active;                             ///< Per row.
@@ -93,6 +126,8 @@ struct ImplicitMemory {
     body = room.Take<ImplicitBody<Num>>(n);
     points = room.Take<ImplicitPoint<Num>>(n > 0 ? m.attachment_count : 0);
     list = room.Take<ImplicitCable<Num>>(c);
+    joints = room.Take<ImplicitJoint<Num>>(n > 0 ? m.joint_count : 0);
+    joint_rows = room.Take<ImplicitJointRow<Num>>(n > 0 ? m.joint_row_count : 0);
     Row<Num>* const per_dof[] = {&U, &trial, &res, &trial_res, &step, &back, &ends};
     for (Row<Num>* numbers : per_dof) *numbers = room.Take<Num>(kDofs * n);
     Row<Num>* const per_row[] = {&gap, &bias, &start, &total, &unit};

@@ -16,11 +16,12 @@ TAUT_INLINE W MissOf(JointMeasure measure, const JointTable& j, W value) noexcep
 }
 
 /// Projects velocities onto the joint constraints, or by a share (eq. 7a). It applies impulses, so
-/// energy can only fall and momenta are conserved. `given(body)`: velocities of a kinematic body.
-/// Calls took(number of the row in the model, impulse, row) for each.
-template <class W, class F, class G>
+/// energy can only fall and momenta are conserved. `given(body)`: velocities of a kinematic body;
+/// `skip(joint)`: lanes in which a joint keeps its velocities. Calls took(number of the row in the
+/// model, impulse, row) for each.
+template <class W, class F, class S, class G>
 void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
-                       W share, const F& given, const G& took) noexcept {
+                       W share, const F& given, const S& skip, const G& took) noexcept {
   const W zero = W::Splat(0.0);
   const V3<W> none{zero, zero, zero};
   const auto twist = [&](int number) {
@@ -39,7 +40,8 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
   });
   for (int r = 0; r < system.rows(); ++r) {
     const JointRow<W>& row = system.row(r);
-    const W l = share * system.impulse(r);
+    const JointTable& j = m.joints[work.joints[system.number(r)].joint];
+    const W l = Select(skip(j), zero, share * system.impulse(r));
     for (int k = 0; k < row.link_count; ++k) {
       const Link<W, 1>& link = row.links[k];
       if (link.body >= m.joint_body_count) continue;
@@ -87,18 +89,20 @@ void KeepMomentumOf(const View& m, const Rows<W>& s, Scratch<W>& work, const int
   }
 }
 
-/// Returns the largest gap of held rows and closed stops [m], per lane.
-template <class W>
-W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work) noexcept {
+/// Returns the largest gap of held rows and closed stops [m], per lane. `skip(joint)`: lanes in
+/// which a joint does not count.
+template <class W, class F>
+W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work, const F& skip) noexcept {
   W worst = W::Splat(0.0);
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
+    const auto skipped = skip(j);
     const JointPlace<W> p = PlaceOf(m, s, work, j);
     for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
       const JointMeasure measure = m.joint_rows[r].measure;
       if (m.joint_rows[r].role != JointRole::kHold) break;
       const W value = DirectionOf(j, measure, p, W::Splat(0.0)).value;
-      worst = Max(Abs(MissOf(measure, j, value)), worst);
+      worst = Max(Select(skipped, W::Splat(0.0), Abs(MissOf(measure, j, value))), worst);
     }
     for (int r = j.first_row; r < j.first_row + j.row_count; ++r) {
       if (!IsStop(m.joint_rows[r].role)) continue;
@@ -132,14 +136,16 @@ void TurnJointedBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexce
 }
 
 /// Displaces the bodies of `lanes` by the least amount that closes all gaps to first order.
-template <class W>
+/// `closed(body)`: lanes in which a body stays in place.
+template <class W, class F>
 void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
-               MaskOf<W> lanes) noexcept {
+               MaskOf<W> in_lanes, const F& closed) noexcept {
   const W zero = W::Splat(0.0);  // + 0: see StageDriftSecond
   const V3<W> none{zero, zero, zero};
   system.Solve([&](int r) { return system.gap(r); });
   for (int k = 0; k < m.joint_body_count; ++k) {
     const int b = m.joint_bodies[k];
+    const auto lanes = in_lanes & !closed(b);
     Twist<W> change = system.change(k);
     change.v = Select3(lanes, change.v, none), change.w = Select3(lanes, change.w, none);
     s.pos[b] += change.v + none;
@@ -198,7 +204,8 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
     const Motion<W> now = MotionAt(m, m.motions[m.motion_of_body[b]], s.time[0]);
     return Twist<W>{now.v, now.w};
   };
-  ProjectVelocities(m, s, work, system, Select(s.last_step[0] == zero, one, zero), given,
+  const auto none = [](const JointTable&) { return MaskOf<W>::Splat(false); };
+  ProjectVelocities(m, s, work, system, Select(s.last_step[0] == zero, one, zero), given, none,
                     [](int, const W&, const JointRow<W>&) {});
 }
 
@@ -225,10 +232,19 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
   // change sign at every step.
   constexpr double kShare = 0.5;
   constexpr double kClosed_m = 1e-10;
+  // Between bodies with stiff cables, a gap is the compliance of the joint. Closing it would
+  // stretch the cables; wider gaps were set by a program.
+  constexpr double kCompliant_m = 1e-5;
   constexpr int kRounds = 3;
   const W inv_h = W::Splat(1.0 / step_s);
   TurnJointedBodies(m, s, work);
   FollowHinges(m, s, work, W::Splat(0.5 * step_s));
+  auto compliant = MaskOf<W>::Splat(false);
+  if (work.implicit.any) {
+    const auto none = [](const JointTable&) { return MaskOf<W>::Splat(false); };
+    compliant = WorstGap(m, s, work, none) < W::Splat(kCompliant_m);
+  }
+  const auto closed = [&](const auto& of) { return compliant & EndedImplicitly(m, work, of); };
   JointSystem<W> system(m, s, work);
   auto lanes = MaskOf<W>::Splat(true);
   for (int round = 0; round < kRounds && Any(lanes); ++round) {
@@ -246,13 +262,16 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
           AddToMotion(m, s, work, row.links[k], impulse, inv_h);
         }
       };
-      ProjectVelocities(m, s, work, system, W::Splat(kShare), given, took);
+      const auto conserves = [&](const JointTable& j) {
+        return EndedImplicitly(m, work, j) & !EndedDamped(m, work, j);
+      };
+      ProjectVelocities(m, s, work, system, W::Splat(kShare), given, conserves, took);
       system.IncludeStops();
       if (StopsCatch(m, work)) system.Assemble();
     }
-    CloseGaps(m, s, work, system, lanes);
+    CloseGaps(m, s, work, system, lanes, closed);
     ForgetGains(m, work);
-    lanes = lanes & (WorstGap(m, s, work) > W::Splat(kClosed_m));
+    lanes = lanes & (WorstGap(m, s, work, closed) > W::Splat(kClosed_m));
   }
   FollowHinges(m, s, work, W::Splat(0.0));
 }

@@ -4,7 +4,8 @@
 /// A joint's force is implicit along its direction and explicit across it, where it acts as a
 /// spring with a stiffness proportional to the load; the step must resolve its oscillation. A cheap
 /// bound per body suffices for most worlds. If it is exceeded, power iteration finds the highest
-/// natural frequency that the joints allow.
+/// natural frequency that the joints allow. Joints that were integrated together with stiff cables
+/// are implicit in all directions and have no such limit.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -74,7 +75,7 @@ JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
     const W x = turns[k].x / Max(moments.x, least), y = turns[k].y / Max(moments.y, least),
             z = turns[k].z / Max(moments.z, least);
     const W most = Max(Max(x, y), Max(z, s.inv_mass[b] * slides[k]));
-    bound.Raise(MaskOf<W>::Splat(true), quarter_h2 * most, b);
+    bound.Raise(!EndedImplicitly(m, work, b), quarter_h2 * most, b);
   }
   return bound;
 }
@@ -91,7 +92,7 @@ void PushBack(const View& m, const Rows<W>& s, const Scratch<W>& work, const Row
   for (int i = 0; i < m.joint_count; ++i) {
     const JointTable& j = m.joints[i];
     const JointPlace<W> p = PlaceOf(m, s, work, j);
-    const V3<W>& force = s.joint_force[i];
+    const V3<W> force = Select3(EndedImplicitly(m, work, j), none, s.joint_force[i]);
     const int a = m.joint_number[j.a], b = m.joint_number[j.b];
     const Twist<W> ta = j.a_moves ? Bodies::Load(x + kDofs * a) : Twist<W>{none, none};
     const Twist<W> tb = j.b_moves ? Bodies::Load(x + kDofs * b) : Twist<W>{none, none};

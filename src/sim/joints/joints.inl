@@ -182,9 +182,6 @@ TAUT_INLINE V3<W> Turned(const V3<W>& turn, const V3<W>& a) noexcept {
   return a + once + W::Splat(0.5) * Cross(turn, once);
 }
 
-/// Compliance of held rows, as a share of their inverse effective masses.
-inline constexpr double kHeldCompliance = 1e-7;
-
 template <class W>
 TAUT_INLINE Twist<W> Before(const BodyWork<W>& body) noexcept {
   return {body.v0, body.w0};
@@ -323,6 +320,29 @@ TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
          (row.links[0].ang[0] + row.links[1].ang[0]);
 }
 
+/// Returns the lanes in which a body was integrated together with stiff cables: its joints are
+/// closed, and their momenta are balanced (implicit_joints.inl).
+template <class W>
+TAUT_INLINE MaskOf<W> EndedImplicitly(const View& m, const Scratch<W>& work, int body) noexcept {
+  if (!work.implicit.any || body >= m.body_count) return MaskOf<W>::Splat(false);
+  return work.implicit.ended[body] > W::Splat(0.0);
+}
+/// The same for the bodies of a joint.
+template <class W>
+TAUT_INLINE MaskOf<W> EndedImplicitly(const View& m, const Scratch<W>& work,
+                                      const JointTable& j) noexcept {
+  return EndedImplicitly(m, work, j.b_moves ? j.b : j.a);
+}
+
+/// Returns the lanes in which stiff cables at the bodies of a joint have dampers.
+template <class W>
+TAUT_INLINE MaskOf<W> EndedDamped(const View& m, const Scratch<W>& work,
+                                  const JointTable& j) noexcept {
+  const int body = j.b_moves ? j.b : j.a;
+  if (!work.implicit.any || body >= m.body_count) return MaskOf<W>::Splat(false);
+  return work.implicit.bodies[body] > W::Splat(1.0);
+}
+
 /// Computes loads and angular momenta from the solver's impulses.
 template <class W>
 void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
@@ -347,8 +367,8 @@ void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step
     if (m.joint_rows[r].role != JointRole::kHold || row.link_count < 2) continue;
     const int first = row.links[0].body, second = row.links[1].body;
     if (m.HasMotion(first) || m.HasMotion(second)) continue;
-    work.joint_memory.gained[m.joint_number[first]] +=
-        (h * s.joint_load[r]) * GainOf(row, s.pos[first], s.pos[second]);
+    const W l = Select(EndedImplicitly(m, work, first), zero, h * s.joint_load[r]);
+    work.joint_memory.gained[m.joint_number[first]] += l * GainOf(row, s.pos[first], s.pos[second]);
   }
 }
 

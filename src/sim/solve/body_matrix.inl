@@ -59,6 +59,23 @@ class BodyMatrix {
     add(to + 18, wv.r0, ww.r0), add(to + 24, wv.r1, ww.r1), add(to + 30, wv.r2, ww.r2);
   }
 
+  /// Adds a block of spins alone.
+  TAUT_INLINE void AddSpins(int i, int j, const simd::M3<Num>& ww) noexcept {
+    Num* const to = At(i, j) + 21;
+    const auto add = [](Num* at, const V3<Num>& b) { at[0] += b.x, at[1] += b.y, at[2] += b.z; };
+    add(to, ww.r0), add(to + 6, ww.r1), add(to + 12, ww.r2);
+  }
+  /// Subtracts a block given by its four parts.
+  TAUT_INLINE void SubtractBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
+                                 const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
+    Num* const to = At(i, j);
+    const auto take = [](Num* at, const V3<Num>& a, const V3<Num>& b) {
+      at[0] -= a.x, at[1] -= a.y, at[2] -= a.z, at[3] -= b.x, at[4] -= b.y, at[5] -= b.z;
+    };
+    take(to, vv.r0, vw.r0), take(to + 6, vv.r1, vw.r1), take(to + 12, vv.r2, vw.r2);
+    take(to + 18, wv.r0, ww.r0), take(to + 24, wv.r1, ww.r1), take(to + 30, wv.r2, ww.r2);
+  }
+
   /// Adds J^T G J of one constraint, without prescribed unknowns; G: R x R, row by row. Not
   /// inlined: among other code g++ took up to a fifth more instructions for the same loops.
   template <class Law>

@@ -169,6 +169,7 @@ void LaneSolve<W>::GatherJoints(Pool<JointRow<L>>& pool,
     const HeldRow<W>& from = work_.joints[i];
     if (!(from.live[lane_] > 0) || mem_.root[from.links[0].body] != island_root_) continue;
     if (m_.joint_rows[i].role == JointRole::kTurnFriction) continue;
+    if (IsImplicitJoint(from.joint)) continue;
     JointRow<L>& to = pool.items[pool.count];
     joint_source_[pool.count++] = i;
     to.link_count = from.link_count;

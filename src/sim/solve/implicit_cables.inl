@@ -72,6 +72,39 @@ struct ImplicitStage {
   bool at_end;  ///< Forces at the end of the stage: implicit Euler.
 };
 
+/// Adds h C D B of the pulls at both ends of a straight part, which are opposite, with their
+/// derivative D by the end `a`; by `b` it is -D.
+template <class Num>
+TAUT_INLINE void AddPart(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
+                         const ImplicitPoint<Num>& b, const M3<Num>& D,
+                         BodyMatrix<Num>& matrix) noexcept {
+  const M3<Num> vv = Scaled(stage.h, D);
+  const auto add = [&](const ImplicitPoint<Num>& on, const M3<Num>& wv, int by, const M3<Num>& vw,
+                       bool opposite) {
+    if (!opposite) return matrix.AddBlock(on.body, by, vv, vw, wv, CrossTimes(on.arm, vw));
+    matrix.SubtractBlock(on.body, by, vv, vw, wv, CrossTimes(on.arm, vw));
+  };
+  const M3<Num> none{};
+  const M3<Num> on_a = a.body >= 0 ? CrossTimes(a.arm, vv) : none,
+                on_b = b.body >= 0 ? CrossTimes(b.arm, vv) : none;
+  const M3<Num> by_a = a.body >= 0 ? Product(D, a.turn) : none,
+                by_b = b.body >= 0 ? Product(D, b.turn) : none;
+  if (a.body >= 0) add(a, on_a, a.body, by_a, false);
+  if (b.body >= 0) add(b, on_b, b.body, by_b, false);
+  if (a.body < 0 || b.body < 0) return;
+  add(a, on_a, b.body, by_b, true);
+  add(b, on_b, a.body, by_a, true);
+}
+
+/// Adds h C D B of a pull at `a` with the derivative D by the point `b`.
+template <class Num>
+TAUT_INLINE void AddPair(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
+                         const ImplicitPoint<Num>& b, const M3<Num>& D,
+                         BodyMatrix<Num>& matrix) noexcept {
+  const M3<Num> vw = Product(D, b.turn), vv = Scaled(stage.h, D);
+  matrix.AddBlock(a.body, b.body, vv, vw, CrossTimes(a.arm, vv), CrossTimes(a.arm, vw));
+}
+
 /// The cables and bodies of an island for Newton's method. Unknowns: mean velocities of the stage
 /// (implicit Euler: final velocities), 6 numbers per body.
 template <class W>
@@ -272,14 +305,6 @@ class ImplicitCables {
     return p[i].*which - p[i - 1].*which;
   }
 
-  /// Adds h C D B of a pull at `a` with the derivative D by the point `b`.
-  static void AddPair(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
-                      const ImplicitPoint<Num>& b, const M3<Num>& D,
-                      BodyMatrix<Num>& matrix) noexcept {
-    const M3<Num> vw = Product(D, b.turn), vv = Scaled(stage.h, D);
-    matrix.AddBlock(a.body, b.body, vv, vw, CrossTimes(a.arm, vv), CrossTimes(a.arm, vw));
-  }
-
   void AddCable(const ImplicitStage<Num>& stage, const ImplicitCable<Num>& cable,
                 BodyMatrix<Num>& matrix) noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
@@ -292,20 +317,14 @@ class ImplicitCables {
       const Num length = stage.at_end ? p[i].l1 : p[i].l0 + p[i].l1;
       M3<Num> D = Across(pull / length, p[i].u, p[i].n);
       if (count == 2) AddOuter(D, slope, p[i].u, p[i].n);
-      const M3<Num> minus = Scaled(Num::Splat(-1.0), D);
-      const ImplicitPoint<Num>&a = p[i], &b = p[i + 1];
-      if (a.body >= 0) AddPair(stage, a, a, D, matrix);
-      if (b.body >= 0) AddPair(stage, b, b, D, matrix);
-      if (a.body < 0 || b.body < 0) continue;
-      AddPair(stage, a, b, minus, matrix);
-      AddPair(stage, b, a, minus, matrix);
+      AddPart(stage, p[i], p[i + 1], D, matrix);
     }
     for (int i = 0; i < count; ++i) {
       if (p[i].body < 0) continue;
       const V3<Num> g = Along(p, count, i, &ImplicitPoint<Num>::u);
       // Derivative of the rotating lever arm.
       const Num f = stage.at_end ? pull : half * pull;
-      matrix.AddBlock(p[i].body, p[i].body, none, none, none, CrossTimes(f * g, p[i].turn));
+      matrix.AddSpins(p[i].body, p[i].body, CrossTimes(f * g, p[i].turn));
       for (int j = 0; count > 2 && j < count; ++j) {
         if (p[j].body < 0) continue;
         M3<Num> D = none;

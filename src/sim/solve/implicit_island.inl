@@ -9,6 +9,7 @@
 #include "sim/solve/body_matrix.inl"
 #include "sim/solve/impacts.inl"
 #include "sim/solve/implicit_cables.inl"
+#include "sim/solve/implicit_joints.inl"
 #include "sim/solve/implicit_laws.inl"
 
 namespace taut::sim {
@@ -36,6 +37,7 @@ class ImplicitIsland {
         contact_work_{0, kContactSystems * solver_work.limit},
         laws_(mem_, island, target, contact_work_),
         cables_(mem_, island.bodies, island.pattern.count),
+        joints_(mem_),
         matrix_(island.pattern, island.m.blocks),
         target_(target),
         lane_(lane),
@@ -76,6 +78,10 @@ class ImplicitIsland {
   }
   bool has_cables() const noexcept { return cables_.cable_count > 0; }
 
+  /// Adds the held rows of joint `i` to the island (implicit_state.inl).
+  template <class Number>
+  void AddJoint(int i, const Number& number) noexcept;
+
   /// Solves the step: impulses and velocities in island.m.l and .v, and final poses. Returns the
   /// residual [m/s].
   double Solve() noexcept {
@@ -112,6 +118,10 @@ class ImplicitIsland {
       s_.mean_step[0].Set(lane_, step_s_);
       row.live.Set(lane_, 0.0);
       row.l[0].Set(lane_, 0.0);
+    }
+    for (int r = 0; r < joints_.row_count; ++r) {
+      const ImplicitJointRow<Num>& row = mem_.joint_rows[r];
+      SetLane(work_.joints[row.source].l[0], row.impulse, lane_);
     }
     for (int k = 0; k < count(); ++k) {
       const ImplicitBody<Num>& b = mem_.body[k];
@@ -228,6 +238,7 @@ class ImplicitIsland {
       mem_.body[k].inertia = island_.bodies[k].inertia;
     }
     cables_.Begin();
+    joints_.Restart();
     for (int c = 0; c < cables_.cable_count; ++c) {
       ImplicitCable<Num>& cable = mem_.list[c];
       cable.rest = cable.l0 - cable.stretch;
@@ -255,6 +266,7 @@ class ImplicitIsland {
     const double first = damped_ ? kMiddle : 1.0;
     stage_ = {Num::Splat(first * h), false};
     cables_.Begin();
+    joints_.Begin(stage_, false);
     for (int k = 0; k < count(); ++k) {
       ImplicitBody<Num>& b = mem_.body[k];
       b.share = Num::Splat(first * share);
@@ -294,6 +306,7 @@ class ImplicitIsland {
     constexpr double kRest = (1 - kMiddle) / (2 - kMiddle);
     stage_ = {Num::Splat(kRest * h), true};
     cables_.Begin();
+    joints_.Begin(stage_, true);
     for (int k = 0; k < count(); ++k) {
       ImplicitBody<Num>& b = mem_.body[k];
       b.share = Num::Splat((b.turns ? kRest : 1 - kMiddle) * share);
@@ -366,6 +379,11 @@ class ImplicitIsland {
   void AddImpulses(Num* f) noexcept;
   /// `given`: keeps the impulses.
   bool Newton(bool given) noexcept;
+  /// res <- residual at the velocities U and at `way` times the joints' last Newton step.
+  void Evaluate(const Num* U, double way, Num* res) noexcept {
+    cables_.Evaluate(stage_, U, res);
+    joints_.Evaluate(stage_, way, res);
+  }
 
   const View& m_;
   const Rows<W>& s_;
@@ -376,6 +394,7 @@ class ImplicitIsland {
   SolverWork contact_work_;  ///< Of the contact laws, whose systems are smaller.
   ImplicitLaws<W> laws_;
   ImplicitCables<W> cables_;
+  ImplicitJoints<W> joints_;
   BodyMatrix<Num> matrix_;
   Target target_;
   int lane_;

@@ -32,20 +32,27 @@ double ImplicitIsland<W>::Noise() const noexcept {
   }
   constexpr double kTensions = 8e-15, kPlaces = 1e-15;
   const double h = stage_.h[0];
-  return kTensions * h * cables_.most_tension[0] / lightest[0] + kPlaces * far[0] / h;
+  const Num most = Max(cables_.most_tension, joints_.MostForce(stage_));
+  return kTensions * h * most[0] / lightest[0] + kPlaces * far[0] / h;
 }
 
 template <class W>
 bool ImplicitIsland<W>::Step(const Num* res, bool given, Num* step) noexcept {
   for (int i = 0; i < size(); ++i) step[i] = -res[i];
   if (given) AddImpulses(step);
+  joints_.AddGaps(stage_, step);
   matrix_.Solve(step);
-  if (given || island_.rows == 0) return true;
+  if (given || island_.rows == 0) {
+    joints_.TakeStep(stage_, step);
+    return true;
+  }
   StoreVelocities(mem_.back, &Unknown<Num>::free, [&](int k) {
     const Twist<Num> at = island_.Load(mem_.U + kDofs * k), d = island_.Load(step + kDofs * k);
     return EndVelocityOf(k, {at.v + d.v, at.w + d.w});
   });
-  return laws_.Solve(matrix_, mem_.back, step);
+  const bool fits = laws_.Solve(matrix_, mem_.back, step);
+  joints_.TakeStep(stage_, step);
+  return fits;
 }
 
 template <class W>
@@ -63,13 +70,14 @@ bool ImplicitIsland<W>::Newton(bool given) noexcept {
   for (int k = 0; k < count(); ++k) {
     for (int i = 0; i < kDofs && mem_.body[k].turns; ++i) U[kDofs * k + i] = zero;
   }
-  cables_.Evaluate(stage_, U, mem_.res);
+  Evaluate(U, 0, mem_.res);
   double before = 1e300;
   for (int i = 0; i < kMostSteps; ++i) {
     for (int j = 0; j < size(); ++j) mem_.back[j] = -mem_.res[j];
     if (given || i > 0) AddImpulses(mem_.back);
     matrix_.Clear(island_.bodies, false);
     cables_.AddTo(stage_, mem_.back, matrix_);
+    joints_.AddTo(stage_, matrix_);
     if (IsExhausted()) return false;
     ++work_done_.linear_solves;
     if (!matrix_.Factor() || !Step(mem_.res, given, d)) return false;
@@ -85,18 +93,20 @@ bool ImplicitIsland<W>::Newton(bool given) noexcept {
     for (int tries = 0;; ++tries) {
       const Num part = Num::Splat(way);
       for (int j = 0; j < size(); ++j) trial[j] = U[j] + part * d[j];
-      cables_.Evaluate(stage_, trial, mem_.trial_res);
+      Evaluate(trial, way, mem_.trial_res);
       if (stays || converges || tries == 11) break;
       if (now <= 1e3 * kTolerance * speed + 10 * Noise()) break;
       for (int j = 0; j < size(); ++j) mem_.back[j] = -mem_.trial_res[j];
       AddImpulses(mem_.back);
       cables_.SeenThere(mem_.back);
+      joints_.AddGaps(stage_, mem_.back);
       matrix_.Solve(mem_.back);
       // Natural monotonicity test: the simplified Newton step must be shorter.
       if (Norm(mem_.back) <= (1 - 0.25 * way) * now) break;
       way *= 0.5;
     }
     for (int j = 0; j < size(); ++j) U[j] = trial[j], mem_.res[j] = mem_.trial_res[j];
+    joints_.Accept();
     if (stays || solved || (way == 1 && now <= least)) {
       if (!given) return true;
       StoreVelocities(mem_.ends, &Unknown<Num>::free,

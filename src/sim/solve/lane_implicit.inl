@@ -17,6 +17,7 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   if (!island.has_matrix) return 1.0;
   ImplicitIsland<W> implicit(m_, s_, work_, island, Target{settings_.tolerance_m_per_s}, lane_,
                              h_[0], work);
+  const auto number = [&](int b) { return Moves(b) ? Number(b) : -1; };
   for (int i = 0; i < work_.stiff_count; ++i) {
     if (!IsOn(work_.stiff[i]) || !IsImplicit(work_.stiff[i])) continue;
     const CableTable& cable = m_.cables[work_.stiff[i].cable];
@@ -26,7 +27,11 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
       if (Moves(b)) body = b;
     }
     if (!Moves(body) || mem_.root[body] != island_root_) continue;
-    implicit.AddCable(i, [&](int b) { return Moves(b) ? Number(b) : -1; });
+    implicit.AddCable(i, number);
+  }
+  for (int i = 0; i < m_.joint_count; ++i) {
+    const int body = m_.joints[i].b_moves ? m_.joints[i].b : m_.joints[i].a;
+    if (IsImplicitJoint(i) && mem_.root[body] == island_root_) implicit.AddJoint(i, number);
   }
   const double residual = implicit.Solve();
   if (implicit.failed()) return SolveWithFixedDirections(work);

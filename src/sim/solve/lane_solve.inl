@@ -118,6 +118,12 @@ class LaneSolve {
   bool IsImplicit(const StiffCable<W>& cable) const noexcept {
     return work_.implicit.any && !fixed_directions_ && work_.implicit.limit[cable.cable][lane_] < 0;
   }
+  /// Returns whether joint `i` is integrated implicitly, with the cables of its group.
+  bool IsImplicitJoint(int i) const noexcept {
+    if (!work_.implicit.any || fixed_directions_ || displaces_) return false;
+    const int body = m_.joints[i].b_moves ? m_.joints[i].b : m_.joints[i].a;
+    return work_.implicit.bodies[body][lane_] > 0;
+  }
   /// Returns whether the gathered island is integrated implicitly.
   bool IsImplicit() const noexcept {
     bool any = false;
