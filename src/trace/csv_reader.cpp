@@ -1,6 +1,7 @@
 // CSV reader for traces.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -60,6 +61,18 @@ class CsvParser {
   void Row(std::string_view line) {
     row_.clear();
     bool good = true;
+    const std::size_t columns = trace_.channels.size() + 1;
+    // Each number is cut in two: all other rows have the same error.
+    if (trace_.time_s.empty() &&
+        static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1 == 2 * columns) {
+      Error("csv.decimal_comma", line_, 0,
+            fmt::format("the row has two values per column ({} columns): numbers have a decimal "
+                        "comma",
+                        columns),
+            "write the table with decimal points");
+      error_count_ = kMaxErrors;
+      return;
+    }
     ForEachCell(line, [&](std::string_view cell, int column) {
       double number = 0.0;
       const auto [end, failure] = base::FromChars(cell.data(), cell.data() + cell.size(), number);
@@ -72,10 +85,10 @@ class CsvParser {
       }
       row_.push_back(number);
     });
-    if (row_.size() != trace_.channels.size() + 1) {
+    if (row_.size() != columns) {
       good = Error("csv.ragged_row", line_, 0,
                    fmt::format("the row has {} values, but the header has {} columns", row_.size(),
-                               trace_.channels.size() + 1));
+                               columns));
     }
     if (!good) return;
     if (!std::isfinite(row_[0]) || (!trace_.time_s.empty() && !(row_[0] > trace_.time_s.back()))) {

@@ -121,6 +121,26 @@ class TableParser {
     return errors_ == 0;
   }
 
+  /// Returns whether a text is a number with a comma in place of its decimal point.
+  static bool HasDecimalComma(std::string_view text) {
+    const std::size_t comma = text.find(',');
+    if (comma == text.npos) return false;
+    std::string number(text);
+    number[comma] = '.';
+    double ignored = 0;
+    const auto [end, failure] =
+        base::FromChars(number.data(), number.data() + number.size(), ignored);
+    return failure == std::errc() && end == number.data() + number.size();
+  }
+
+  /// Ends the reading: all other cells have the same error.
+  void RefuseDecimalCommas(const Cell& cell) {
+    Error("csv.decimal_comma", line_, cell.column,
+          fmt::format("numbers have a decimal comma, such as \"{}\"", cell.text),
+          "write the table with decimal points");
+    errors_ = kMaxTableErrors;
+  }
+
   /// Returns NaN for a gap.
   double Number(const Cell& cell) {
     std::string_view text = cell.text;
@@ -129,6 +149,10 @@ class TableParser {
     double number = kNan;
     const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
     if (failure != std::errc() || end != text.data() + text.size()) {
+      if (HasDecimalComma(text)) {
+        RefuseDecimalCommas(cell);
+        return kNan;
+      }
       Error("csv.not_a_number", line_, cell.column,
             fmt::format("\"{}\" is not a number", cell.text),
             "skip lines before the rows with `skip_lines` in the mapping, a column of text with "

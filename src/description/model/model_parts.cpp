@@ -221,8 +221,11 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
 void Check(const MapReader& map, PlacementText& placement) {
   CheckTags(map, placement.tags);
   placement.numbered = map.Has("copies");
-  placement.nodes_complete = map.is_map() && map.Has("part") && placement.copies > 0;
-  placement.copies = std::max(placement.copies, 1);
+  const Value* const copies = map.Find("copies");
+  Diagnostics reported;
+  placement.copies_known =
+      !copies || ReadInteger(*copies, "copies", 1, kMaxCopies, {map.scope().names, reported});
+  placement.nodes_complete = map.is_map() && map.Has("part") && placement.copies_known;
   if (!map.Has("part")) placement.part.at = map.at();
   if (!map.Has("name")) placement.name = placement.part.text;
   const std::size_t errors_before = map.scope().out.items().size();
@@ -271,7 +274,8 @@ void FinishStructure(const MapReader& map, ModelText& model) {
         model.pairs_complete = false;
       }
     }
-    placed.push_back(std::move(placement));
+    // A wrong number of copies would cause false errors, such as of cables between them.
+    if (placement.copies_known) placed.push_back(std::move(placement));
   }
   model.structure = std::move(placed);
 }

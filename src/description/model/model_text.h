@@ -95,6 +95,7 @@ struct PlacementText {
   SourceRef at;
   Placed part;
   int copies = 1;
+  bool copies_known = true;         ///< Whether `copies` is absent or valid.
   bool numbered = false;            ///< `copies` was given: the copies are name_0, name_1, ...
   Vec3 at_m;                        ///< Origin of copy 0 in W.
   Quat rotate;                      ///< q_WPart of copy 0.

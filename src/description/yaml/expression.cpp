@@ -229,8 +229,12 @@ class Parser {
     while (at_ + length < text_.size() && (text_[at_ + length] & 0xC0) == 0x80) ++length;
     const std::string found(text_.substr(at_, length));
     const bool star = found == "*" && at_ > 0 && text_[at_ - 1] == '*';
+    const bool comma = found == "," && at_ > 0 && IsDigit(text_[at_ - 1]) &&
+                       at_ + 1 < text_.size() && IsDigit(text_[at_ + 1]);
     throw Failure{"unexpected \"" + found + "\" in \"" + std::string(text_.substr(0, 60)) + "\"",
-                  star ? "write powers with ^" : ""};
+                  star    ? "write powers with ^"
+                  : comma ? "write decimal fractions with a point"
+                          : ""};
   }
 
   void SkipSpace() {

@@ -247,7 +247,9 @@ void ReadMapping(const Value& value, const std::string& path, const Scope& scope
   Keys(io, out);
   map.RefuseOthers();
   if constexpr (requires { out.at = value.at; }) out.at = value.at;
-  if constexpr (requires { Check(map, out); }) Check(map, out);
+  if constexpr (requires { Check(map, out); }) {
+    map.CheckWith([&](const MapReader& all) { Check(all, out); });
+  }
   if constexpr (requires { out.good = true; }) out.good = scope.out.items().size() == errors_before;
 }
 

@@ -13,6 +13,19 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+/// Returns whether some commas of a list are followed by a space and others by a digit, as in
+/// `[0,5, 0, 0]`.
+bool HasDecimalComma(const Value& list) {
+  bool tight = false, wide = false;
+  for (std::size_t i = 1; i < list.items.size(); ++i) {
+    const Value &before = *list.items[i - 1], &after = *list.items[i];
+    const int end = before.at.column + static_cast<int>(before.text.size()) + 1;
+    if (before.kind != Value::Kind::kScalar || before.at.line != after.at.line) continue;
+    (after.at.column == end ? tight : wide) = true;
+  }
+  return tight && wide;
+}
+
 std::string Joined(const std::vector<std::string>& words, std::string_view between) {
   std::string out;
   for (const std::string& word : words) (out += out.empty() ? "" : between) += word;
@@ -52,16 +65,38 @@ void WrongType(const Value& value, std::string_view what, std::string_view wante
                       std::string(KindName(value)));
 }
 
-std::string KeyHint(std::string_view key, const std::vector<std::string>& known) {
-  std::vector<std::string> longer;
+namespace {
+
+/// Remedy for an unknown key, and the known keys that it suggests.
+struct KeyFix {
+  std::string hint;
+  std::vector<std::string> meant;
+};
+
+KeyFix SimilarKeys(std::string_view key, const std::vector<std::string>& known) {
+  KeyFix fix;
   for (const std::string& candidate : known) {
     if (candidate.size() > key.size() && candidate.compare(0, key.size(), key) == 0 &&
         candidate[key.size()] == '_') {
-      longer.push_back("\"" + candidate + "\"");
+      fix.meant.push_back(candidate);
     }
   }
-  if (longer.empty()) return NameHint(key, known);
-  return "did you mean " + Joined(longer, " or ") + "?";
+  if (!fix.meant.empty()) {
+    std::string all;
+    for (const std::string& one : fix.meant) all += (all.empty() ? "\"" : " or \"") + one + "\"";
+    fix.hint = "did you mean " + all + "?";
+    return fix;
+  }
+  fix.hint = NameHint(key, known);
+  const std::string closest(fix.hint.empty() ? std::string_view() : ClosestMatch(key, known));
+  if (!closest.empty()) fix.meant.push_back(closest);
+  return fix;
+}
+
+}  // namespace
+
+std::string KeyHint(std::string_view key, const std::vector<std::string>& known) {
+  return SimilarKeys(key, known).hint;
 }
 
 std::string NameHint(std::string_view name, const std::vector<std::string>& known) {
@@ -135,7 +170,8 @@ std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_v
   if (value.items.size() != count) {
     scope.out.Error("value.wrong_length", value.at,
                     std::string(what) + " must have " + std::to_string(count) + " numbers, got " +
-                        std::to_string(value.items.size()));
+                        std::to_string(value.items.size()),
+                    HasDecimalComma(value) ? "write decimal fractions with a point" : "");
     return std::nullopt;
   }
   std::vector<double> numbers;
@@ -179,6 +215,14 @@ std::string ReadText(const Value& value, std::string_view what, const Scope& sco
 MapReader::MapReader(const Value& value, std::string what, const Scope& scope)
     : value_(value), what_(std::move(what)), scope_(scope) {}
 
+MapReader::MapReader(const MapReader& other, Diagnostics& out)
+    : value_(other.value_),
+      what_(other.what_),
+      known_(other.known_),
+      meant_(other.meant_),
+      knows_all_(other.knows_all_),
+      scope_{other.scope_.names, out, other.scope_.used, other.scope_.spelling} {}
+
 void MapReader::Know(std::string_view key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
 }
@@ -187,7 +231,7 @@ namespace {
 
 /// Returns the fix for an unknown key: the same quantity in the unit of the files, a synonym, or
 /// the key with the most similar name.
-std::string FixOf(const std::string& key, const std::vector<std::string>& known) {
+KeyFix FixOf(const std::string& key, const std::vector<std::string>& known) {
   struct Unit {
     std::string_view theirs, ours, factor;
   };
@@ -203,26 +247,71 @@ std::string FixOf(const std::string& key, const std::vector<std::string>& known)
     const std::string other =
         key.substr(0, key.size() - unit.theirs.size()) + std::string(unit.ours);
     if (is_known(other)) {
-      return "write \"" + other + "\", and the value times " + std::string(unit.factor);
+      return {"write \"" + other + "\", and the value times " + std::string(unit.factor), {other}};
     }
   }
-  if (key == "pretension_n" && is_known("prestress_n")) return "did you mean \"prestress_n\"?";
-  return KeyHint(key, known);
+  for (const char* const theirs : {"pretension_n", "pretension"}) {
+    if (key == theirs && is_known("prestress_n")) {
+      return {"did you mean \"prestress_n\"?", {"prestress_n"}};
+    }
+  }
+  return SimilarKeys(key, known);
 }
 
 }  // namespace
 
-void MapReader::RefuseOthers() const {
+void MapReader::RefuseOthers() {
   if (!is_map()) {
     WrongType(value_, what_.empty() ? "the file" : what_, "a map", scope_);
     return;
   }
   for (const Entry& entry : value_.entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    KeyFix fix = FixOf(entry.key, known_);
     scope_.out.Error("key.unknown", entry.key_at,
                      "unknown key \"" + entry.key + "\"" + (what_.empty() ? "" : " in " + what_),
-                     FixOf(entry.key, known_));
+                     std::move(fix.hint));
+    meant_.insert(meant_.end(), fix.meant.begin(), fix.meant.end());
   }
+  knows_all_ = true;
+  const std::vector<Missing> missing = std::move(missing_);
+  for (const Missing& one : missing) ReportMissing(one);
+}
+
+void MapReader::ReportMissing(const Missing& missing) const {
+  if (!knows_all_) {
+    missing_.push_back(missing);
+    return;
+  }
+  const std::vector<std::string>& keys = missing.keys;
+  const auto is_meant = [&](const std::string& key) {
+    return std::find(meant_.begin(), meant_.end(), key) != meant_.end();
+  };
+  if (std::any_of(keys.begin(), keys.end(), is_meant)) return;
+  const std::string what = what_.empty() ? "the file" : what_;
+  if (!missing.one_of) {
+    scope_.out.Error("key.missing", at(), what + " needs the key \"" + keys.front() + "\"");
+    return;
+  }
+  scope_.out.Error("key.one_of_missing", at(),
+                   what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
+}
+
+void MapReader::CheckWith(const std::function<void(const MapReader&)>& check) const {
+  if (meant_.empty()) return check(*this);
+  Diagnostics found;
+  check(MapReader(*this, found));
+  const auto is_own = [&](const SourceRef& where) {
+    const auto same = [&](const SourceRef& other) {
+      return where.file == other.file && where.line == other.line && where.column == other.column;
+    };
+    return same(value_.at) || std::any_of(value_.entries.begin(), value_.entries.end(),
+                                          [&](const Entry& entry) { return same(entry.key_at); });
+  };
+  for (const Diagnostic& error : found.items()) {
+    if (!is_own(error.at)) scope_.out.AddError(error);
+  }
+  for (const Diagnostic& warning : found.warnings()) scope_.out.AddWarning(warning);
 }
 
 std::string MapReader::Path(std::string_view key) const {
@@ -238,11 +327,7 @@ bool MapReader::HasAnyBut(std::string_view key) const {
 
 const Value* MapReader::Require(std::string_view key) const {
   const Value* found = Find(key);
-  if (!found && is_map()) {
-    scope_.out.Error(
-        "key.missing", at(),
-        (what_.empty() ? "the file" : what_) + " needs the key \"" + std::string(key) + "\"");
-  }
+  if (!found && is_map()) ReportMissing({{std::string(key)}, false});
   return found;
 }
 
@@ -260,11 +345,10 @@ std::string MapReader::ExactlyOne(const std::vector<std::string>& keys) const {
     if (Has(key)) present.push_back(key);
   }
   if (present.size() == 1) return present[0];
-  const std::string what = what_.empty() ? "the file" : what_;
   if (present.empty()) {
-    scope_.out.Error("key.one_of_missing", at(),
-                     what + " needs " + (keys.size() == 1 ? "" : "one of ") + Joined(keys, ", "));
+    ReportMissing({keys, true});
   } else {
+    const std::string what = what_.empty() ? "the file" : what_;
     Error("key.both_given", present[1], what + " has both " + Joined(present, " and "),
           "give only one of them");
   }

@@ -131,7 +131,12 @@ class MapReader {
   MapReader(const Value& value, std::string what, const Scope& scope);
   void Call(const char* what) { what_ = what; }
   void Know(std::string_view key);
-  void RefuseOthers() const;  ///< Reports every key that is not known by now.
+  /// Reports every key that is not known by now, then the keys that were missing so far. A missing
+  /// key that the remedy of an unknown key suggests is no error: it is the same mistake.
+  void RefuseOthers();
+  /// Calls `check` for conditions on several keys. If keys are misspelled, errors that it reports
+  /// at this map or its keys are dropped, because they may follow from the misspelling.
+  void CheckWith(const std::function<void(const MapReader&)>& check) const;
 
   bool is_map() const { return value_.kind == Value::Kind::kMap; }
   const std::string& what() const { return what_; }
@@ -156,9 +161,24 @@ class MapReader {
   double NumberOr(std::string_view key, double fallback, const Bound& bound) const;
 
  private:
+  /// A copy that reports to `out`.
+  MapReader(const MapReader& other, Diagnostics& out);
+
+  /// Required keys of which none is present.
+  struct Missing {
+    std::vector<std::string> keys;
+    bool one_of = false;  ///< From `ExactlyOne`.
+  };
+
+  /// Reports missing keys, at the latest in `RefuseOthers`.
+  void ReportMissing(const Missing& missing) const;
+
   const Value& value_;
   std::string what_;
   std::vector<std::string> known_;
+  std::vector<std::string> meant_;        ///< Keys that remedies of unknown keys suggest.
+  mutable std::vector<Missing> missing_;  ///< Not yet reported.
+  bool knows_all_ = false;                ///< Whether all keys have been read.
   Scope scope_;
 };
 

@@ -142,8 +142,11 @@ class TreeBuilder : public YAML::EventHandler {
       parent.value->items.push_back(std::move(value));
     } else if (!parent.entry) {
       if (value->kind != Value::Kind::kScalar) {
-        out_.Error("yaml.key_not_text", at,
-                   "a key must be a text, not " + std::string(KindName(*value)));
+        const bool comma = value->kind == Value::Kind::kNull && !parent.value->entries.empty() &&
+                           IsRightAfter(*parent.value->entries.back().value, at);
+        out_.Error(
+            "yaml.key_not_text", at, "a key must be a text, not " + std::string(KindName(*value)),
+            comma ? "write decimal fractions with a point, and a space after each comma" : "");
         throw StopReading{};
       }
       parent.entry = Entry{value->text, at, nullptr};
@@ -152,6 +155,13 @@ class TreeBuilder : public YAML::EventHandler {
       parent.value->entries.push_back(std::move(*parent.entry));
       parent.entry.reset();
     }
+  }
+
+  /// Returns whether only a comma without a space is between a number and a place, as in `0,5`.
+  static bool IsRightAfter(const Value& number, const SourceRef& at) {
+    return number.kind == Value::Kind::kScalar && !number.text.empty() &&
+           number.text.back() >= '0' && number.text.back() <= '9' && number.at.line == at.line &&
+           number.at.column + static_cast<int>(number.text.size()) + 1 == at.column;
   }
 
   void Count(Value& parent, std::size_t more, const SourceRef& at) {

@@ -137,6 +137,15 @@ TEST_F(MeasuredTable, SeparatorsClocksAndUnits) {
 
 constexpr const char* kPlain = R"m("table": {"time": {"column": "t"}})m";
 
+TEST_F(MeasuredTable, DecimalCommasAreOneError) {
+  std::string rows = "t;x\n";
+  for (int i = 0; i < 30; ++i) rows += std::to_string(i) + ",25;7,75\n";
+  EXPECT_EQ(
+      Wrong(rows, R"m("table": {"separator": ";", "time": {"column": "t"}})m"),
+      "t.csv:2:1: error: numbers have a decimal comma, such as \"0,25\" (write the table with "
+      "decimal points)\n");
+}
+
 TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {
   EXPECT_EQ(
       Wrong("t,x\n0,1\n2,2\n1,3\n1,4\n", kPlain),

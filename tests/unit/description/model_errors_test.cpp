@@ -1,6 +1,8 @@
 // Errors of invalid model files: every message with its line and column
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "unit/description/model_fixture.h"
 
 namespace taut {
@@ -8,8 +10,6 @@ namespace {
 
 TEST(ModelErrors, KeysAreStrict) {
   EXPECT_EQ(Errors(OneRod("{radius: 0.1, mass: 1}")),
-            "robot.yaml:6:30: error: rod needs one of mass_kg, density_kg_per_m3, mass_kg_per_m\n"
-            "robot.yaml:6:30: error: rod needs the key \"radius_m\"\n"
             "robot.yaml:6:31: error: unknown key \"radius\" in rod (did you mean \"radius_m\"?)\n"
             "robot.yaml:6:44: error: unknown key \"mass\" in rod (did you mean \"mass_kg\" or "
             "\"mass_kg_per_m\"?)\n");
@@ -19,6 +19,59 @@ TEST(ModelErrors, KeysAreStrict) {
             "parameters, parts, nodes, pairs, structure, builders, apart, ...)\n");
   EXPECT_EQ(Errors(OneRod("{radius_m: 0.1, mass_kg: 1}") + "pairs: []\n"),
             "robot.yaml:7:1: error: duplicate key \"pairs\" (first in line 5)\n");
+}
+
+TEST(ModelErrors, AMisspelledKeyIsOneError) {
+  // Neither the missing key nor a condition on several keys follows as another error.
+  const auto coded = [](const std::string& yaml) {
+    std::string lines = CodedErrors(yaml), without_places;
+    for (std::size_t at = 0; at < lines.size(); at = lines.find('\n', at) + 1) {
+      const std::size_t from = lines.find("error: ", at) + 7;
+      without_places += lines.substr(from, lines.find('\n', at) + 1 - from);
+    }
+    return without_places;
+  };
+  std::string misspelled = TwoRods();
+  misspelled.replace(misspelled.find("stiffness"), 9, "stifness");
+  EXPECT_EQ(coded(misspelled), "key.unknown \"stifness_n_per_m\"\n");
+  EXPECT_EQ(coded(TwoRods("rest_length_m: 0.05, actuator: {max_sped_m_per_s: 1}")),
+            "key.unknown \"max_sped_m_per_s\"\n");
+  EXPECT_EQ(coded(OneRod("{radius_mm: 4, mass_kg: 1}")), "key.unknown \"radius_mm\"\n");
+  // Other keys of the same map are still missing, and errors at other places are independent.
+  EXPECT_EQ(coded(OneRod("{radius: 4}")),
+            "key.one_of_missing mass_kg density_kg_per_m3 mass_kg_per_m\n"
+            "key.unknown \"radius\"\n");
+}
+
+TEST(ModelErrors, AWrongNumberOfCopiesCausesNoErrorsOfTheCopies) {
+  const std::string text = Errors(
+      "parts:\n  strut:\n    nodes: {bottom: [0.1, 0, 0], top: [-0.1, 0.02, 0.2]}\n"
+      "    pairs: [{nodes: [bottom, top], tags: [strut]}]\n"
+      "structure:\n  - part: strut\n    copies: 3.5\n    ring: true\n"
+      "    step_rotate: {axis: z, angle_rad: 2.0943951023931953}\n"
+      "    connect: [{name: side, nodes: [top, bottom], tags: [side]}]\n"
+      "builders:\n  - {match: strut, rod: {radius_m: 0.005, mass_kg: 0.1}}\n"
+      "  - {match: side, cable: {stiffness_n_per_m: 1000, prestress_n: 1}}\n");
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  EXPECT_NE(text.find("structure.copies must be a whole number"), std::string::npos) << text;
+}
+
+TEST(ModelErrors, ADecimalCommaIsOneError) {
+  for (const char* const rod : {"{radius_m: 0,1, mass_kg: 1}", "{mass_kg: 1, radius_m: 0,1}"}) {
+    const std::string text = Errors(OneRod(rod));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_NE(text.find("write decimal fractions with a point"), std::string::npos) << text;
+  }
+  const std::string list = Errors("nodes: {a: [0,5, 0, 1]}\n");
+  EXPECT_EQ(list.rfind("robot.yaml:4:12: error: nodes.a must have 3 numbers, got 4 (write decimal "
+                       "fractions with a point)\n",
+                       0),
+            0u)
+      << list;
+  const std::string block = Errors("parameters:\n  a_m: 0,5\nnodes: {a: [0, 0, a_m]}\n");
+  EXPECT_NE(block.find("unexpected \",\" in \"0,5\" (write decimal fractions with a point)"),
+            std::string::npos)
+      << block;
 }
 
 TEST(ModelErrors, KeysInOtherUnitsHaveTheFactor) {

@@ -196,6 +196,12 @@ TEST_F(TraceTest, AFewGzippedBytesDoNotBecomeGigabytes) {
       "this size is intended, unpack it with `gunzip` first)\n");
 }
 
+TEST_F(TraceTest, DecimalCommasAreOneError) {
+  EXPECT_EQ(CsvComplaint("time_s,a\n0,5,1,5\n0,75,2,5\n1,5,3,5\n"),
+            "t.csv:2: error: the row has two values per column (2 columns): numbers have a decimal "
+            "comma (write the table with decimal points)\n");
+}
+
 TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
   EXPECT_EQ(CsvComplaint("time_s,a,b\n0,1,2\n1,x,\n2,3\n1,5,6\nnan,5,6\n3,1e999,2\n4,1,2 3\n"),
             "t.csv:3:3: error: \"x\" is not a number\n"
