@@ -27,7 +27,7 @@ struct AnalyzeArguments {
   std::string path;
   std::vector<std::string> set, load_cases;
   int modes = 10;
-  bool strict = false, backwards = false, form = false, linear = false;
+  bool tables = false, strict = false, backwards = false, form = false, linear = false;
   PoseArguments pose;
   InverseArguments inverse;       ///< For `--inverse`; its `json` applies to all analyses.
   FormArguments forms;            ///< For `--form`; its `out` also applies to shapes.
@@ -130,13 +130,29 @@ bool CheckSupportsOf(const std::string& file, const ModelDef& def,
   return out.ok();
 }
 
-/// Prints equilibria, members and modes as tables or JSON and writes shapes for the viewer.
+/// Returns the words of this command for the same structure, with other flags.
+std::vector<std::string> Again(const AnalyzeArguments& args,
+                               const std::vector<std::string>& flags) {
+  std::vector<std::string> words{"analyze", args.path};
+  for (const std::string& one : args.set) words.insert(words.end(), {"--set", one});
+  for (const std::string& one : args.load_cases) words.insert(words.end(), {"--load_case", one});
+  if (!args.pose.file.empty()) words.insert(words.end(), {"--pose", args.pose.file});
+  if (args.pose.at_s) words.insert(words.end(), {"--at_s", fmt::format("{}", *args.pose.at_s)});
+  words.insert(words.end(), flags.begin(), flags.end());
+  return words;
+}
+
+/// Prints equilibria, members and modes as text or JSON and writes shapes for the viewer.
 int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult result) {
   result.forces = AnalyseForces(result.robot.def);
   result.cases = SolveCases(result.robot.def, loaded.cases, args.modes > 0);
   const bool json = args.inverse.json;
-  fmt::print("{}",
-             json ? AnalysisJson(result, args.modes) + "\n" : AnalysisTables(result, args.modes));
+  if (json) {
+    fmt::print("{}\n", AnalysisJson(result, args.modes));
+  } else {
+    fmt::print("{}", AnalysisSummary(result));
+    if (args.tables) fmt::print("\n{}", AnalysisTables(result, args.modes));
+  }
   for (const CaseResult& one : result.cases) {
     if (one.at.found) continue;
     fmt::print(stderr, "error: load case {}: {}\n", one.loads.name, one.at.why);
@@ -151,12 +167,20 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
                   "the supports allow a large rotation, or a mechanism moves");
   }
   if (!Pass(found, args.strict)) exit = Fail(found, kFailed);
+  std::vector<std::string> next = !result.Found() ? Again(args, {"--tables"})
+                                  : FormFindingMayHelp(result.forces)
+                                      ? Again(args, {"--form", "--tension_n", "10"})
+                                  : args.modes > 0 ? Again(args, {"--out", "shapes"})
+                                                   : std::vector<std::string>{"view", args.path};
   if (!args.forms.out.empty()) {
     ExperimentSpec there = loaded.experiment;
     there.robot = result.robot;
-    const int written = WriteShapes(args.forms.out, there, result, args.modes, json);
+    std::string first;
+    const int written = WriteShapes(args.forms.out, there, result, args.modes, json, first);
     if (exit == kOk) exit = written;
+    if (!first.empty()) next = {"view", first};
   }
+  if (!json) SayNext(next);
   return result.Found() ? exit : kFailed;
 }
 
@@ -174,16 +198,23 @@ int Analyze(const AnalyzeArguments& args) {
     if (loaded->model && !IsHeld(experiment.robot.def)) {
       experiment.robot.def.gravity_m_per_s2 = {};
     }
-    return Linear(args.path, experiment, loaded->pose, result.notes, args.modes, args.inverse.json,
-                  args.linear_system);
+    LinearArguments linear = args.linear_system;
+    linear.json = args.inverse.json, linear.tables = args.tables;
+    linear.again = Again(args, {});
+    return Linear(args.path, experiment, loaded->pose, result.notes, args.modes, linear);
   }
   result.file = args.path;
   result.robot = loaded->pose ? RobotAt(experiment.robot, *loaded->pose) : experiment.robot;
   if (args.form) {
-    return FindFormOf(args.path, result.robot, loaded->cases.front().weight, args.forms);
+    FormArguments forms = args.forms;
+    forms.tables = args.tables;
+    forms.again = Again(args, {"--form"});
+    return FindFormOf(args.path, result.robot, loaded->cases.front().weight, forms);
   }
   if (args.backwards) {
     InverseArguments inverse = args.inverse;
+    inverse.tables = args.tables;
+    inverse.again = Again(args, {"--inverse"});
     if (loaded->pose) inverse.calibration_rest_m = loaded->file_rest_m;
     return Inverse(args.path, result.robot, loaded->cases, result.notes, inverse);
   }
@@ -284,7 +315,7 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
       ->option_text("NUMBER")
       ->check(WholeNumberWithin(1, 1000000))
       ->needs(response);
-  analyze.add_flag("--csv", linear.csv, "With --response: CSV instead of tables")
+  analyze.add_flag("--csv", linear.csv, "With --response: CSV instead of text")
       ->needs(response)
       ->excludes(analyze.get_option("--json"));
 }
@@ -307,7 +338,8 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
   analyze
       ->add_option(
           "--pose", args->pose.file,
-          "Trace with the pose to analyze instead of the described pose (.h5, .csv, .csv.gz)")
+          "Trace (.h5, .csv, .csv.gz) or folder of a run, with the pose to analyze instead of the "
+          "described pose")
       ->option_text("FILE");
   analyze
       ->add_option("--at_s", args->pose.at_s,
@@ -320,7 +352,8 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
                    "Number of modes besides the rigid motions (default: 10)")
       ->option_text("NUMBER")
       ->check(WholeNumberWithin(0, 100000));
-  analyze->add_flag("--json", args->inverse.json, "JSON instead of tables");
+  analyze->add_flag("--json", args->inverse.json, "JSON instead of text");
+  analyze->add_flag("--tables", args->tables, kTablesHelp);
   AddInverse(*analyze, *args);
   AddForm(*analyze, *args);
   analyze
@@ -338,7 +371,7 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "  taut analyze models/prism3.yaml --inverse --minimise energy --at_least_n 5\n"
       "  taut analyze models/prism3.yaml --form --tension_n 20 --out form.yaml\n"
       "  taut analyze models/prism3.yaml --out shapes && taut view shapes/mode_1/trace.h5\n"
-      "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut/trace.h5\n"
+      "  taut analyze experiments/drop_six_strut.yaml --pose runs/drop_six_strut\n"
       "  taut analyze models/prism3.yaml --linear prism.h5\n"
       "  taut analyze models/hanging_mass.yaml --response node/mass/force_z node/mass/position_z\n"
       "Equilibria, self-stress, --inverse and --form are static: independent of the step, with "

@@ -38,20 +38,13 @@ std::string Counts(const ForceAnalysis& f) {
   return text;
 }
 
-bool HasCables(const ForceAnalysis& f) {
-  return std::any_of(f.members.begin(), f.members.end(), [](const StaticMember& member) {
-    return member.kind == StaticMember::Kind::kCable;
-  });
-}
-
 std::string Prestress(const ForceAnalysis& f) {
   std::string text;
   const auto feasible = std::count_if(f.self_stress.begin(), f.self_stress.end(),
                                       [](const SelfStress& s) { return s.feasible; });
-  if (feasible == 0 && HasCables(f)) {
+  if (LacksPrestress(f)) {
     text += "  no state of self-stress with all cables in tension was found";
-    text += f.rigid == 6 && HasCables(f) ? " (--form --tension_n 10 finds a shape that has one)\n"
-                                         : "\n";
+    text += FormFindingMayHelp(f) ? " (--form --tension_n 10 finds a shape that has one)\n" : "\n";
   } else if (feasible > 0 && !f.mechanism_stiffness.empty()) {
     const double least = f.mechanism_stiffness.front();
     text += fmt::format(
@@ -100,6 +93,19 @@ std::string States(const ModelDef& def, const ForceAnalysis& f) {
 }
 
 }  // namespace
+
+bool LacksPrestress(const ForceAnalysis& forces) {
+  const auto is_cable = [](const StaticMember& member) {
+    return member.kind == StaticMember::Kind::kCable;
+  };
+  const auto feasible = [](const SelfStress& s) { return s.feasible; };
+  return std::any_of(forces.members.begin(), forces.members.end(), is_cable) &&
+         std::none_of(forces.self_stress.begin(), forces.self_stress.end(), feasible);
+}
+
+bool FormFindingMayHelp(const ForceAnalysis& forces) {
+  return forces.rigid == 6 && LacksPrestress(forces);
+}
 
 std::string ForceTables(const ModelDef& def, const ForceAnalysis& forces) {
   std::string text = "\nDescribed pose\n" + Counts(forces) + Prestress(forces);

@@ -1,11 +1,13 @@
 // `taut analyze --form`: form finding from cable tensions or force densities.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "analyze_form.h"
+#include "member_groups.h"
 #include "output.h"
 #include "standard_streams.h"
 #include "table.h"
@@ -41,6 +43,28 @@ std::string FormTable(const ModelDef& before, const Form& form) {
   return cables.Text();
 }
 
+/// Returns the verdict and one line per group of cables.
+std::string FormSummary(const RobotSpec& before, const Form& form, bool weight) {
+  CappedLines lines;
+  for (const CableGroup& group : GroupCables(before, 6)) {
+    const auto range = [&](const std::vector<CableDef>& cables, auto quantity, int digits,
+                           const char* unit) {
+      double low = INFINITY, high = -INFINITY;
+      for (const std::size_t c : group.cables) {
+        low = std::min(low, quantity(cables[c])), high = std::max(high, quantity(cables[c]));
+      }
+      return RangeText(low, high, digits, unit);
+    };
+    const std::vector<CableDef>& now = form.robot.def.cables;
+    lines.Add(fmt::format(
+        "{}: length {}, was {}; tension {}", group.name, range(now, CableLength, 4, "m"),
+        range(before.def.cables, CableLength, 4, "m"), range(now, CableTension, 3, "N")));
+  }
+  return Printable(fmt::format("{}: equilibrium shape found{}\n", before.def.name,
+                               weight ? ", with weight" : ", without weight")) +
+         lines.Text();
+}
+
 }  // namespace
 
 int FindFormOf(const std::string& file, const RobotSpec& robot, bool weight,
@@ -52,9 +76,19 @@ int FindFormOf(const std::string& file, const RobotSpec& robot, bool weight,
     fmt::print(stderr, "error: form finding failed: {}\n", form.why);
     return kFailed;
   }
-  fmt::print("Model {}: equilibrium shape{}\n\n{}", robot.def.name,
-             weight ? ", with weight" : ", without weight", FormTable(robot.def, form));
-  if (args.out.empty()) return kOk;
+  fmt::print("{}", FormSummary(robot, form, weight));
+  if (args.tables) fmt::print("\n{}\n", FormTable(robot.def, form));
+  if (args.out.empty()) {
+    std::vector<std::string> next = args.again;
+    const auto flag = [&](const char* name, const std::optional<double>& value) {
+      if (value) next.insert(next.end(), {name, fmt::format("{}", *value)});
+    };
+    flag("--tension_n", args.tension_n);
+    flag("--force_density_n_per_m", args.force_density_n_per_m);
+    next.insert(next.end(), {"--out", "form.yaml"});
+    SayNext(next);
+    return kOk;
+  }
   const std::optional<std::string> text =
       ModelYaml(form.robot,
                 fmt::format("Made by taut {} from {}: equilibrium shape by form finding.", kVersion,
@@ -63,8 +97,10 @@ int FindFormOf(const std::string& file, const RobotSpec& robot, bool weight,
   if (!text) return Fail(found, kFailed);
   OutputIsNews();
   const int exit = WriteNamed(args.out, *text);
-  if (exit == kOk) fmt::print("\nModel: {}\n", args.out);
-  return exit;
+  if (exit != kOk) return exit;
+  fmt::print("Model: {}\n", args.out);
+  SayNext({"analyze", args.out});
+  return kOk;
 }
 
 }  // namespace taut::cli

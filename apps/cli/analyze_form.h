@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "taut/spec.h"
@@ -13,6 +14,8 @@ namespace taut::cli {
 struct FormArguments {
   std::optional<double> tension_n, force_density_n_per_m;
   std::string out;  ///< Model file to write; empty: none.
+  bool tables = false;
+  std::vector<std::string> again;  ///< Words of this command, for the next one.
 };
 
 /// Prints the equilibrium shape under the given cable forces. Returns the exit status.

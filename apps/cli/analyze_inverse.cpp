@@ -9,6 +9,7 @@
 #include "analyze_inverse.h"
 #include "analyze_names.h"
 #include "json_values.h"
+#include "member_groups.h"
 #include "output.h"
 #include "table.h"
 
@@ -70,6 +71,42 @@ std::string Text(const ModelDef& def, const Answer& answer) {
     bars.Add({def.joints[j].name, Fixed(forces.bar_force_n[j], 3), Fixed(forces.bar_rest_m[j], 6)});
   }
   return any ? text + "\n" + bars.Text() : text;
+}
+
+/// Returns the verdict and a summary of at most ten lines.
+std::string InverseSummary(const RobotSpec& robot, const std::vector<Answer>& answers,
+                           const std::vector<std::string>& notes, const InverseArguments& args) {
+  const bool all =
+      std::all_of(answers.begin(), answers.end(), [](const Answer& a) { return a.forces.found; });
+  CappedLines lines;
+  for (const std::string& note : notes) lines.Add(note);
+  for (const Answer& answer : answers) {
+    const HoldingForces& forces = answer.forces;
+    const std::string name = "load case " + answer.loads.name;
+    for (const std::string& note : forces.notes) lines.Add(name + ": " + note);
+    if (!forces.found) {
+      lines.Add(name + ": no cable forces hold this pose: " + forces.why);
+      continue;
+    }
+    lines.Add(fmt::format("{}: objective {:.6g}, cables at a bound: {}", name, forces.cost,
+                          forces.at_bound.size()));
+    for (const CableGroup& group : GroupCables(robot, answers.size() > 1 ? 2 : 5)) {
+      const auto range = [&](const std::vector<double>& of, int digits, const char* unit) {
+        double low = INFINITY, high = -INFINITY;
+        for (const std::size_t c : group.cables) {
+          low = std::min(low, of[c]), high = std::max(high, of[c]);
+        }
+        return RangeText(low, high, digits, unit);
+      };
+      lines.Add(fmt::format("{}: tension {}, command {}", group.name,
+                            range(forces.cable_tension_n, 3, "N"),
+                            range(forces.command_m, 6, "m")));
+    }
+  }
+  return Printable(fmt::format("{}: {} the described pose (least {})\n", robot.def.name,
+                               all ? "tensions hold" : "no tensions hold",
+                               HoldingCostName(args.minimise))) +
+         lines.Text();
 }
 
 Json CablesJson(const ModelDef& def, const HoldingForces& forces) {
@@ -139,14 +176,20 @@ int Inverse(const std::string& file, const RobotSpec& robot, const std::vector<L
     for (const Answer& answer : answers) json["load_cases"].push_back(AnswerJson(def, answer));
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
   } else {
-    fmt::print("Model {}: inverse statics of the described pose, least {}\n", def.name,
-               HoldingCostName(args.minimise));
-    for (const std::string& note : notes) fmt::print("  {}\n", note);
+    fmt::print("{}", InverseSummary(robot, answers, notes, args));
+  }
+  if (!args.json && args.tables) {
     for (const Answer& answer : answers) fmt::print("{}", Text(def, answer));
+    fmt::print("\n");
   }
   for (const Answer& answer : answers) {
     if (answer.forces.found) continue;
     fmt::print(stderr, "error: load case {}: {}\n", answer.loads.name, answer.forces.why);
+  }
+  if (!args.json) {
+    std::vector<std::string> next = args.again;
+    next.push_back(args.tables ? "--json" : "--tables");
+    SayNext(next);
   }
   return all ? kOk : kFailed;
 }

@@ -16,7 +16,8 @@ inline constexpr double kTouch_m =
 struct InverseArguments {
   HoldingCost minimise = HoldingCost::kForceDensity;
   CableBounds bounds;  ///< Limits for every cable.
-  bool json = false;
+  bool json = false, tables = false;
+  std::vector<std::string> again;          ///< Words of this command, for the next one.
   std::vector<double> calibration_rest_m;  ///< Per cable; empty: as in the file.
 };
 

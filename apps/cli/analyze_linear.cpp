@@ -65,11 +65,29 @@ bool Respond(const LinearArguments& args, double to_hz, LinearResult& result, Di
   return out.ok();
 }
 
+/// Returns the usual next command: a response after the system, all its rows after a response.
+std::vector<std::string> NextOf(const LinearResult& result, const LinearArguments& args) {
+  std::vector<std::string> next = args.again;
+  const StateSpace& system = result.system;
+  if (!args.responses.empty()) {
+    for (const auto& [input, output] : args.responses) {
+      next.insert(next.end(), {"--response", input, output});
+    }
+    next.push_back(args.tables ? "--csv" : "--tables");
+  } else if (!system.inputs.empty() && !system.outputs.empty()) {
+    next.insert(next.end(),
+                {"--response", system.inputs.front().name, system.outputs.front().name});
+  } else {
+    next.insert(next.end(), {"--linear", args.file, "--tables"});
+  }
+  return next;
+}
+
 }  // namespace
 
 int Linear(const std::string& file, const ExperimentSpec& experiment,
            const std::optional<Pose>& from, const std::vector<std::string>& notes, int most_modes,
-           bool json, const LinearArguments& args) {
+           const LinearArguments& args) {
   Diagnostics found;
   LinearResult result;
   result.file = file, result.model = experiment.robot.def.name, result.notes = notes;
@@ -94,13 +112,15 @@ int Linear(const std::string& file, const ExperimentSpec& experiment,
   if (!Respond(args, to_hz, result, found)) return Fail(found, kBadInput);
   result.modes = ModesOf(system);
   if (!args.file.empty() && !WriteStateSpace(system, args.file, found)) return Fail(found, kFailed);
-  if (json) {
+  if (args.json) {
     fmt::print("{}\n", LinearJson(result));
   } else if (args.csv) {
     fmt::print("{}", ResponsesCsv(result));
   } else {
-    fmt::print("{}", LinearTables(result, most_modes));
-    if (!args.file.empty()) fmt::print("\nLinear system: {}\n", args.file);
+    fmt::print("{}", LinearSummary(result));
+    if (args.tables) fmt::print("\n{}\n", LinearTables(result, most_modes));
+    if (!args.file.empty()) fmt::print("Linear system: {}\n", args.file);
+    SayNext(NextOf(result, args));
   }
   return kOk;
 }

@@ -19,7 +19,8 @@ struct LinearArguments {
   double from_hz = 0.1;
   std::optional<double> to_hz;  ///< Nothing: half the tick frequency.
   int points = 40;
-  bool csv = false;
+  bool csv = false, json = false, tables = false;
+  std::vector<std::string> again;  ///< Words of this command, for the next one.
 };
 
 struct LinearResult {
@@ -35,6 +36,8 @@ struct LinearResult {
   std::vector<Response> responses;
 };
 
+/// Formats the verdict on the linear system and a summary of at most ten lines.
+std::string LinearSummary(const LinearResult& result);
 std::string LinearTables(const LinearResult& result, int most_modes);
 std::string LinearJson(const LinearResult& result);
 std::string ResponsesCsv(const LinearResult& result);
@@ -43,6 +46,6 @@ std::string ResponsesCsv(const LinearResult& result);
 /// and writes it if requested. Returns the exit status.
 int Linear(const std::string& file, const ExperimentSpec& experiment,
            const std::optional<Pose>& from, const std::vector<std::string>& notes, int most_modes,
-           bool json, const LinearArguments& args);
+           const LinearArguments& args);
 
 }  // namespace taut::cli

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analyze_linear.h"
+#include "member_groups.h"
 #include "table.h"
 
 namespace taut::cli {
@@ -57,18 +58,31 @@ bool IsNeutral(const LinearMode& mode) { return std::abs(mode.z - 1.0) < 1e-6; }
 /// Returns whether a mode oscillates; others creep back or decay at once.
 bool Swings(const LinearMode& mode) { return mode.frequency_hz > 0 && mode.damping < 0.99; }
 
+/// Numbers of modes by their kind; of a conjugate pair one is counted as an oscillation.
+struct ModeCounts {
+  int neutral = 0, swings = 0, grow = 0;
+};
+
+ModeCounts CountModes(const std::vector<LinearMode>& modes) {
+  ModeCounts counts;
+  for (const LinearMode& mode : modes) {
+    if (IsNeutral(mode)) {
+      counts.neutral += mode.z.imag() > 0 ? 2 : 1;
+      continue;
+    }
+    if (std::abs(mode.z) > 1 + 1e-6) ++counts.grow;
+    if (Swings(mode)) ++counts.swings;
+  }
+  return counts;
+}
+
 std::string ModeTable(const LinearResult& result, int most) {
   Table table({"mode", "frequency", "damping", "amplitude after 1 s"});
   table.Add({"", "Hz", "of critical", "ratio"});
-  int swings = 0, neutral = 0, grow = 0;
+  const ModeCounts counts = CountModes(result.modes);
+  int swings = 0;
   for (const LinearMode& mode : result.modes) {
-    // Only one of a conjugate pair is listed.
-    if (IsNeutral(mode)) {
-      neutral += mode.z.imag() > 0 ? 2 : 1;
-      continue;
-    }
-    if (std::abs(mode.z) > 1 + 1e-6) ++grow;
-    if (!Swings(mode) || ++swings > most) continue;
+    if (IsNeutral(mode) || !Swings(mode) || ++swings > most) continue;
     table.Add({fmt::format("{}", swings), fmt::format("{:.7g}", mode.frequency_hz),
                Fixed(mode.damping, 6),
                fmt::format("{:.3g}", std::pow(std::abs(mode.z), 1 / result.system.period_s))});
@@ -76,7 +90,7 @@ std::string ModeTable(const LinearResult& result, int most) {
   if (most == 0) return {};
   std::string text =
       fmt::format("\nFree motion\n  neutral modes: {}, oscillations: {}, growing modes: {}\n",
-                  neutral, swings, grow);
+                  counts.neutral, counts.swings, counts.grow);
   if (swings > 0) text += table.Text();
   if (swings > most) text += fmt::format("  ... and {} faster oscillations\n", swings - most);
   return text;
@@ -102,6 +116,37 @@ Json SignalsJson(const std::vector<LinearSignal>& signals) {
 }
 
 }  // namespace
+
+std::string LinearSummary(const LinearResult& result) {
+  const StateSpace& system = result.system;
+  const ModeCounts counts = CountModes(result.modes);
+  CappedLines lines;
+  for (const std::string& note : result.notes) lines.Add(note);
+  for (const std::string& remark : system.remarks) lines.Add(remark);
+  lines.Add(fmt::format("states: {}, inputs: {}, outputs: {}; tick: {:g} s, step: {:g} s",
+                        system.states.size(), system.inputs.size(), system.outputs.size(),
+                        system.period_s, system.step_s));
+  std::string swings = fmt::format("neutral modes: {}, oscillations: {}, growing modes: {}",
+                                   counts.neutral, counts.swings, counts.grow);
+  const auto slowest = std::find_if(result.modes.begin(), result.modes.end(),
+                                    [](const LinearMode& m) { return !IsNeutral(m) && Swings(m); });
+  if (slowest != result.modes.end()) {
+    swings += fmt::format("; slowest: {:.4g} Hz, damping {:.3g} of critical", slowest->frequency_hz,
+                          slowest->damping);
+  }
+  lines.Add(swings);
+  for (const LinearResult::Response& response : result.responses) {
+    const FrequencyResponse& r = response.values;
+    const auto peak = std::max_element(r.magnitude.begin(), r.magnitude.end());
+    const auto at = static_cast<std::size_t>(peak - r.magnitude.begin());
+    lines.Add(fmt::format("{} over {} [{}]: gain {:.4g} at {:.4g} Hz, largest {:.4g} at {:.4g} Hz",
+                          response.output, response.input, response.unit, r.magnitude.front(),
+                          r.frequency_hz.front(), *peak, r.frequency_hz[at]));
+  }
+  return Printable(fmt::format("{}: linearized about its equilibrium, {}\n", result.model,
+                               counts.grow > 0 ? "unstable" : "no mode grows")) +
+         lines.Text();
+}
 
 std::string LinearTables(const LinearResult& result, int most_modes) {
   const StateSpace& system = result.system;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "taut/run_folder.h"
 #include "taut/trace_pose.h"
@@ -14,11 +13,6 @@ namespace taut::cli {
 
 std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, Diagnostics& out) {
   const SourceRef at{args.file, 0, 0};
-  if (std::filesystem::is_directory(args.file)) {
-    out.Error("file.is_folder", at, "expected a trace, but this is a folder",
-              "use its trace: " + args.file + "/trace.h5");
-    return std::nullopt;
-  }
   if (args.file.ends_with(".yaml")) {
     out.Error("trace.not_a_recording", at, "a YAML file contains no recorded pose",
               "expected a trace (.h5, .csv or .csv.gz); to analyze a model file of a pose, give it "

@@ -13,8 +13,7 @@ namespace taut::cli {
 namespace {
 
 std::string FactorCell(const std::optional<double>& factor) {
-  if (!factor) return "-";
-  return *factor < 1000 ? fmt::format("{:.2f}", *factor) : fmt::format("{:.3g}", *factor);
+  return factor ? SafetyFactorText(*factor) : "-";
 }
 
 std::vector<std::string> Factors(const MemberLoad& load) {
@@ -180,6 +179,10 @@ std::string CaseText(const CaseResult& result, int most_modes) {
 }
 
 }  // namespace
+
+std::string SafetyFactorText(double factor) {
+  return factor < 1000 ? fmt::format("{:.2f}", factor) : fmt::format("{:.3g}", factor);
+}
 
 bool AnalysisResult::Found() const {
   return std::all_of(cases.begin(), cases.end(), [](const CaseResult& c) { return c.at.found; });

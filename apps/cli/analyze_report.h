@@ -54,6 +54,19 @@ struct AnalysisResult {
   bool Found() const;  ///< Returns whether every case has an equilibrium.
 };
 
+/// Formats the verdict on the structure and a summary of at most ten lines.
+std::string AnalysisSummary(const AnalysisResult& result);
+
+/// Returns a safety factor as text.
+std::string SafetyFactorText(double factor);
+
+/// Returns whether no state of self-stress has all cables in tension, although the structure has
+/// cables.
+bool LacksPrestress(const ForceAnalysis& forces);
+
+/// Returns whether form finding may find a shape of such a structure that has such a state.
+bool FormFindingMayHelp(const ForceAnalysis& forces);
+
 /// Formats the states of self-stress and the mechanisms.
 std::string ForceTables(const ModelDef& def, const ForceAnalysis& forces);
 

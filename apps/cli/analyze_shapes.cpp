@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -12,8 +13,10 @@
 
 namespace taut::cli {
 
+constexpr std::size_t kMostListed = 6;
+
 int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
-                const AnalysisResult& result, int most_modes, bool json) {
+                const AnalysisResult& result, int most_modes, bool json, std::string& to_view) {
   Diagnostics found;
   std::vector<std::string> written;
   const auto write = [&](const std::string& where, const ExperimentSpec& of, const Modes& modes,
@@ -34,10 +37,17 @@ int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
   }
   if (!found.ok()) return Fail(found, kFailed);
   std::FILE* const to = json ? stderr : stdout;
-  if (!json) fmt::print("\n");
   if (written.empty())
     fmt::print(to, "No shape to show: there is no mode, mechanism or self-stress\n");
-  for (const std::string& path : written) fmt::print(to, "Shape: {}/trace.h5\n", path);
+  const std::size_t most = json || written.size() <= kMostListed ? written.size() : kMostListed - 1;
+  for (std::size_t i = 0; i < most; ++i) fmt::print(to, "Shape: {}/trace.h5\n", written[i]);
+  if (most < written.size()) {
+    fmt::print(to, "... and {} more shapes in {}\n", written.size() - most, folder);
+  }
+  const auto mode = std::find_if(written.begin(), written.end(), [](const std::string& path) {
+    return std::filesystem::path(path).filename().string().starts_with("mode_");
+  });
+  if (!written.empty()) to_view = (mode == written.end() ? written.front() : *mode) + "/trace.h5";
   return kOk;
 }
 

@@ -10,8 +10,8 @@ namespace taut::cli {
 
 /// Writes modes, mechanisms and states of self-stress as runs below `folder` and lists them on
 /// stdout, or on stderr if stdout has JSON. Modes of several load cases get one folder per case.
-/// Returns the exit status.
+/// Sets `to_view` to the trace of the first mode, else of the first shape. Returns the exit status.
 int WriteShapes(const std::string& folder, const ExperimentSpec& experiment,
-                const AnalysisResult& result, int most_modes, bool json);
+                const AnalysisResult& result, int most_modes, bool json, std::string& to_view);
 
 }  // namespace taut::cli

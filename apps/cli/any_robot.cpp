@@ -27,7 +27,8 @@ void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args) {
       ->allow_extra_args(false);
   command
       .add_option("--pose", args.pose.file,
-                  "Trace with the pose to use instead of the start (.h5, .csv, .csv.gz)")
+                  "Trace (.h5, .csv, .csv.gz) or folder of a run, with the pose to use instead of "
+                  "the start")
       ->option_text("FILE");
   command
       .add_option("--at_s", args.pose.at_s, "With --pose: time of the pose [s] (default: last row)")

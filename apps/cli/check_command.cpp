@@ -1,6 +1,7 @@
 // Command `taut check`: validation of models, experiments and gaits.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "check_report.h"
 #include "commands.h"
 #include "gait_report.h"
+#include "member_groups.h"
 #include "output.h"
 #include "overrides.h"
 #include "shipped_inputs.h"
@@ -16,7 +18,6 @@
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/start.h"
-#include "taut/summary.h"
 #include "taut/version.h"
 
 namespace taut::cli {
@@ -25,7 +26,8 @@ namespace {
 struct CheckArguments {
   std::string path;
   std::vector<std::string> set;
-  bool json = false, quiet = false, couplings = false, strict = false, settled = false;
+  bool json = false, tables = false, quiet = false, couplings = false, strict = false,
+       settled = false;
   CpgSymmetry symmetry = CpgSymmetry::kSegments;
   std::string svg, out;
 };
@@ -66,7 +68,11 @@ int CheckGait(const CheckArguments& args, Diagnostics& found) {
   if (args.json) {
     fmt::print("{}\n", GaitJson(*gait));
   } else if (!args.quiet) {
-    fmt::print("{}: good\n\n{}", args.path, GaitTable(*gait));
+    const std::string values = GaitTable(*gait);
+    fmt::print("{}: good: gait {}, {}\n", args.path, gait->name,
+               Counted(std::count(values.begin(), values.end(), '\n'), "parameter"));
+    if (args.tables) fmt::print("\n{}", values);
+    SayNext({"gait", "values", args.path});
   }
   return kOk;
 }
@@ -149,10 +155,11 @@ int Check(const CheckArguments& args) {
   if (args.json) {
     fmt::print("{}\n", CheckJson(*robot, of, all, settled ? &settled->change : nullptr));
   } else if (!args.quiet) {
-    fmt::print("{}: good\n", args.path);
-    if (experiment) fmt::print("\n{}", ExperimentTables(*experiment));
-    if (settled) fmt::print("\n{}", StartLine(settled->change));
-    fmt::print("\n{}\n", RobotTables(*robot));
+    fmt::print("{}", CheckSummary(args.path, *robot, of, settled ? &settled->change : nullptr));
+    if (args.tables) {
+      if (experiment) fmt::print("\n{}", ExperimentTables(*experiment));
+      fmt::print("\n{}\n", RobotTables(*robot));
+    }
     std::vector<std::string> next{experiment ? "run" : "view", args.path};
     for (const std::string& one : args.set) next.insert(next.end(), {"--set", one});
     if (args.settled && !experiment) next.push_back("--settled");
@@ -166,7 +173,7 @@ int Check(const CheckArguments& args) {
 void AddCheck(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<CheckArguments>();
   CLI::App* check =
-      app.add_subcommand("check", "Check a model, experiment or gait file and print its contents.");
+      app.add_subcommand("check", "Check a model, experiment or gait file and summarize it.");
   AddInput(*check, "file", args->path, "Model, experiment or gait file (YAML)")->required();
   check->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
@@ -184,13 +191,15 @@ void AddCheck(CLI::App& app, int& exit_code) {
   check->add_option("--out", args->out, "With --settled: model file to write")
       ->option_text("FILE")
       ->needs(settled);
-  check->add_flag("--json", args->json, "JSON instead of tables");
+  check->add_flag("--json", args->json, "JSON instead of text");
+  check->add_flag("--tables", args->tables, kTablesHelp);
   check->add_flag("--quiet", args->quiet, "No output for a valid file");
   check->add_flag("--strict", args->strict, kStrictHelp);
   check->footer(
       "Examples:\n"
       "  taut check models/tetraspine3.yaml\n"
       "  taut check models/tetraspine3.yaml --set segments=12 --set edge_m=0.4\n"
+      "  taut check models/prism3.yaml --tables\n"
       "  taut check experiments/push_20n.yaml --json\n"
       "  taut check models/tetraspine3.yaml --couplings --svg couplings.svg\n"
       "  taut check experiments/drop_six_strut.yaml --settled --out settled.yaml\n"

@@ -8,9 +8,9 @@
 #include <map>
 #include <vector>
 
+#include "member_groups.h"
 #include "table.h"
 #include "taut/cable_scheme.h"
-#include "taut/env.h"
 #include "taut/loads.h"
 #include "taut/run.h"
 
@@ -18,10 +18,6 @@ namespace taut::cli {
 namespace {
 
 constexpr int kMostCollisions = 20;  ///< A longer list of possible collisions is useless.
-
-std::string Counted(long long count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 std::string ActuatorText(const ActuatorDef& actuator) {
   if (actuator.kind == ActuatorDef::Kind::kNone) return "-";
@@ -265,13 +261,7 @@ std::string ExperimentTables(const ExperimentSpec& experiment) {
     table.Add({"phase", phase.name, "", fmt::format("{:g} to {:g} s", phase.from_s, phase.to_s)});
   }
   text += table.Text();
-  if (experiment.environment) {
-    const double period_s = experiment.environment->period_s;
-    text += fmt::format("Environment: {} and {} every {:g} s, {:.0f} steps per episode\n",
-                        Counted(experiment.environment->actions.size(), "action"),
-                        Counted(ObservedChannels(experiment).size(), "observation"), period_s,
-                        experiment.duration_s / period_s);
-  }
+  if (experiment.environment) text += EnvironmentLine(experiment) + "\n";
   return text;
 }
 

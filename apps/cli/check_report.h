@@ -10,6 +10,14 @@
 
 namespace taut::cli {
 
+/// Formats the verdict on a valid file and a summary of at most ten lines. `experiment` and
+/// `settled` (the result of settling) may be null.
+std::string CheckSummary(const std::string& path, const RobotSpec& robot,
+                         const ExperimentSpec* experiment, const StartChange* settled);
+
+/// Formats the environment of an experiment as one line without a line end; empty without one.
+std::string EnvironmentLine(const ExperimentSpec& experiment);
+
 /// Formats aligned tables: bodies, cables, loads at the start, possible collisions.
 std::string RobotTables(const RobotSpec& robot);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "member_groups.h"
 #include "output.h"
 #include "overrides.h"
 #include "shipped_inputs.h"
@@ -20,7 +21,7 @@ struct CompareArguments {
   std::vector<std::string> phases;
   CompareOptions options;
   CompareLimits limits;
-  bool json = false;
+  bool json = false, tables = false;
 };
 
 /// Parses "before=25:30"; nothing if the text has another form.
@@ -44,6 +45,17 @@ std::optional<Trace> Load(const std::string& path, const std::string& map, Diagn
   return ReadMapped(path, *mapping, map, out);
 }
 
+/// Prints the verdict and the summary of a comparison, and its tables on request.
+void PrintComparison(const Comparison& comparison, const CompareArguments& given) {
+  const std::vector<std::string> all = ComparisonLines(comparison, given.path_a, given.path_b);
+  fmt::print("{}\n", Printable(all.front()));
+  CappedLines lines;
+  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
+  fmt::print("{}", lines.Text());
+  if (!given.tables) return;
+  fmt::print("\n{}\n", ComparisonTable(comparison, given.path_a, given.path_b));
+}
+
 int RunCompare(CompareArguments given) {
   for (std::string* path : {&given.path_a, &given.path_b}) *path = TraceOfRun(*path);
   Diagnostics found;
@@ -51,8 +63,24 @@ int RunCompare(CompareArguments given) {
   const auto b = Load(given.path_b, given.map_b, found);
   if (!a || !b) return Fail(found, kBadInput);
   const Comparison comparison = Compare(*a, *b, given.options);
-  fmt::print("{}", given.json ? ComparisonJson(comparison, given.path_a, given.path_b)
-                              : ComparisonTable(comparison, given.path_a, given.path_b));
+  const bool limited = given.limits.max_error_percent || given.limits.max_rmse;
+  const bool comparable = comparison.rows > 0 && !comparison.channels.empty();
+  const std::vector<std::string> exceeded =
+      limited && comparable ? ExceededLimits(comparison, given.limits) : std::vector<std::string>();
+  if (limited && comparable) {
+    std::FILE* const to = given.json ? stderr : stdout;  // keeps stdout pure JSON
+    const std::size_t most = given.tables || exceeded.size() <= 4 ? exceeded.size() : 3;
+    for (std::size_t i = 0; i < most; ++i) fmt::print(to, "FAIL: {}\n", exceeded[i]);
+    if (most < exceeded.size()) {
+      fmt::print(to, "FAIL: {} more limits are exceeded\n", exceeded.size() - most);
+    }
+    if (exceeded.empty()) fmt::print(to, "PASS: within the limits\n");
+  }
+  if (given.json) {
+    fmt::print("{}", ComparisonJson(comparison, given.path_a, given.path_b));
+  } else {
+    PrintComparison(comparison, given);
+  }
   if (comparison.rows == 0) {
     fmt::print(stderr, "error: the time ranges of the traces do not overlap\n");
     return kBadInput;
@@ -61,11 +89,9 @@ int RunCompare(CompareArguments given) {
     fmt::print(stderr, "error: the traces have no channel in common (--map translates names)\n");
     return kBadInput;
   }
-  if (!given.limits.max_error_percent && !given.limits.max_rmse) return kOk;
-  const std::vector<std::string> exceeded = ExceededLimits(comparison, given.limits);
-  std::FILE* to = given.json ? stderr : stdout;  // keeps stdout pure JSON
-  for (const std::string& sentence : exceeded) fmt::print(to, "FAIL: {}\n", sentence);
-  if (exceeded.empty()) fmt::print(to, "PASS: within the limits\n");
+  if (!given.json && given.map_a.empty() && given.map_b.empty()) {
+    SayNext({"report", given.path_a, "--compare", given.path_b});
+  }
   return exceeded.empty() ? kOk : kFailed;
 }
 
@@ -123,7 +149,8 @@ void AddCompare(CLI::App& app, int& exit_code) {
                    "Limit of the RMSE of every compared channel, in its unit")
       ->option_text("X")
       ->check(NumberWithin(0, 1e300));
-  command->add_flag("--json", given->json, "JSON instead of tables");
+  command->add_flag("--json", given->json, "JSON instead of text");
+  command->add_flag("--tables", given->tables, "Also print the tables of all channels");
   command->footer(
       "Examples:\n"
       "  taut compare runs/push/trace.h5 measured.csv --max_error_percent 6.1\n"

@@ -1,6 +1,8 @@
 // `taut export structure`: nodes, bars and strings for tensegrity statics tools.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -9,6 +11,7 @@
 
 #include "any_robot.h"
 #include "export.h"
+#include "member_groups.h"
 #include "output.h"
 #include "standard_streams.h"
 #include "table.h"
@@ -26,7 +29,7 @@ using nlohmann::ordered_json;
 struct StructureArguments {
   PlacedRobotArguments robot;
   std::string out;
-  bool json = false, weightless = false, equilibrium = false;
+  bool json = false, tables = false, weightless = false, equilibrium = false;
 };
 
 const char* KindOf(const PinMember& member) {
@@ -160,7 +163,40 @@ std::string JsonOf(const ModelDef& def, const PinJointed& s) {
   return all.dump(1) + "\n";
 }
 
-std::string TableOf(const ModelDef& def, const PinJointed& s) {
+/// Returns the range of a quantity over the bars or over the strings.
+template <class Quantity>
+std::string RangeOf(const PinJointed& s, bool bars, const Quantity& quantity, const char* unit) {
+  double low = INFINITY, high = -INFINITY;
+  for (const PinMember& m : s.members) {
+    if ((m.kind != PinMember::Kind::kString) != bars) continue;
+    low = std::min(low, quantity(m)), high = std::max(high, quantity(m));
+  }
+  return RangeText(low, high, 3, unit);
+}
+
+std::string StructureSummary(const ModelDef& def, const PinJointed& s) {
+  const auto bars = static_cast<std::size_t>(s.bars);
+  const std::size_t strings = s.members.size() - bars;
+  std::string text = fmt::format("{}: nodes: {}, bars: {}, strings: {}, clusters of strings: {}\n",
+                                 def.name, s.nodes.size(), bars, strings, s.clusters.size() - bars);
+  CappedLines lines;
+  const auto add = [&](const char* what, bool of_bars, std::size_t count) {
+    if (count == 0) return;
+    lines.Add(fmt::format(
+        "{}: length {}, force {}, force density {}", what,
+        RangeOf(
+            s, of_bars, [](const PinMember& m) { return m.length_m; }, "m"),
+        RangeOf(
+            s, of_bars, [](const PinMember& m) { return m.force_n; }, "N"),
+        RangeOf(
+            s, of_bars, [](const PinMember& m) { return m.force_density_n_per_m; }, "N/m")));
+  };
+  add("bars", true, bars);
+  add("strings", false, strings);
+  return Printable(text) + lines.Text();
+}
+
+std::string TableOf(const PinJointed& s) {
   Table members({"member", "kind", "from", "to", "length", "force", "force density"});
   members.Add({"", "", "", "", "m", "N", "N/m"});
   for (const PinMember& m : s.members) {
@@ -168,10 +204,7 @@ std::string TableOf(const ModelDef& def, const PinJointed& s) {
                  s.nodes[static_cast<std::size_t>(m.to)].name, Fixed(m.length_m, 6),
                  Fixed(m.force_n, 3), Fixed(m.force_density_n_per_m, 3)});
   }
-  const std::size_t strings = s.members.size() - static_cast<std::size_t>(s.bars);
-  return fmt::format("Model {}: nodes: {}, bars: {}, strings: {}, clusters of strings: {}\n\n{}",
-                     def.name, s.nodes.size(), s.bars, strings,
-                     s.clusters.size() - static_cast<std::size_t>(s.bars), members.Text());
+  return members.Text();
 }
 
 /// Writes all files into a folder, which may exist.
@@ -221,8 +254,14 @@ int ExportStructure(const StructureArguments& args) {
     exit = WriteFolder(args.out, def, structure);
     if (exit != kOk) return exit;
   }
-  fmt::print("{}", args.json ? JsonOf(def, structure) : TableOf(def, structure));
-  if (!args.out.empty() && !args.json) fmt::print("\nMatrices and tables: {}\n", args.out);
+  if (args.json) {
+    fmt::print("{}", JsonOf(def, structure));
+    return kOk;
+  }
+  fmt::print("{}", StructureSummary(def, structure));
+  if (args.tables) fmt::print("\n{}\n", TableOf(structure));
+  if (!args.out.empty()) fmt::print("Matrices and tables: {}\n", args.out);
+  SayNext({"analyze", args.robot.path});
   return kOk;
 }
 
@@ -242,7 +281,8 @@ void AddExportStructure(CLI::App& group, int& exit_code) {
   command->add_flag("--equilibrium", args->equilibrium,
                     "Use the nearby equilibrium (as in `taut analyze`) instead of the start");
   command->add_flag("--no_weight,--no-weight", args->weightless, "Leave out the robot's weight");
-  command->add_flag("--json", args->json, "JSON instead of the table");
+  command->add_flag("--json", args->json, "JSON instead of text");
+  command->add_flag("--tables", args->tables, "Also print the table of all members");
   command->footer(
       "Examples:\n"
       "  taut export structure models/prism3.yaml --out prism3\n"

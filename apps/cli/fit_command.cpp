@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "fit_runs.h"
 #include "interrupt.h"
+#include "member_groups.h"
 #include "output.h"
 #include "overrides.h"
 #include "progress_line.h"
@@ -26,7 +27,7 @@ struct FitArguments {
   std::string path, out;
   std::vector<std::string> set, profiles;
   int threads = -1;
-  bool check = false, resume = false, design = false, quiet = false, strict = false;
+  bool check = false, resume = false, design = false, tables = false, quiet = false, strict = false;
 };
 
 void Show(ProgressLine& line, const IdentifyProgress& p) {
@@ -36,30 +37,53 @@ void Show(ProgressLine& line, const IdentifyProgress& p) {
 }
 
 /// Prints the result of `--check` for a fit without errors.
-void PrintCheck(const Identification& fit) {
+void PrintCheck(const Identification& fit, bool tables) {
   const FitProblem& train = fit.train();
   fmt::print("{}: {} parameters from {} data points in {} groups", fit.spec().name,
              train.parameters.size(), train.rows.size(), train.group_names.size());
   if (fit.test()) fmt::print(", {} held out", fit.test()->rows.size());
   fmt::print("\n");
-  for (const FitParameter& p : train.parameters) {
+  constexpr std::size_t kMost = 8;
+  const std::size_t count = train.parameters.size();
+  const std::size_t most = tables || count <= kMost ? count : kMost - 1;
+  for (std::size_t i = 0; i < most; ++i) {
+    const FitParameter& p = train.parameters[i];
     fmt::print("  {:<40} {:>12.6g} {}\n", p.name, p.start, p.unit);
   }
+  if (most < count) fmt::print("  ... and {} more (--tables lists all)\n", count - most);
 }
 
 std::string MemoryIn(const std::string& folder) {
   return (fs::path(folder) / "fit.sqlite").string();
 }
 
-/// Prints the commands that show each experiment before and after the fit.
-void PrintLooks(const Identification& fit, const std::string& folder) {
-  fmt::print("Comparison before and after the fit:\n");
-  for (const FitExperiment& one : fit.spec().experiments) {
-    const auto trace = [&](const char* which) {
-      return (fs::path(folder) / (which + one.name) / "trace.h5").string();
-    };
-    fmt::print("  taut view {} --compare {}\n", trace("fitted_"), trace("untuned_"));
+/// Returns the command that shows an experiment before and after the fit.
+std::vector<std::string> LookAt(const FitExperiment& one, const std::string& folder) {
+  const auto trace = [&](const char* which) {
+    return (fs::path(folder) / (which + one.name) / "trace.h5").string();
+  };
+  return {"view", trace("fitted_"), "--compare", trace("untuned_")};
+}
+
+/// Prints the verdict, its summary and, on request, the tables of all parameters and channels.
+void PrintOutcome(const Identification& fit, const FitOutcome& outcome, bool tables,
+                  const std::string& folder) {
+  const std::vector<std::string> all = OutcomeLines(fit, outcome);
+  fmt::print("{}\n", Printable(all.front()));
+  CappedLines lines;
+  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
+  fmt::print("{}", lines.Text());
+  if (tables) fmt::print("\n{}\n", OutcomeText(fit, outcome));
+  fmt::print("Summary, report and fitted experiments: {}\n", folder);
+  const std::vector<FitExperiment>& experiments = fit.spec().experiments;
+  if (tables && experiments.size() > 1) {
+    fmt::print("Comparison of the other experiments before and after the fit:\n");
+    for (std::size_t e = 1; e < experiments.size(); ++e) {
+      const std::vector<std::string> words = LookAt(experiments[e], folder);
+      fmt::print("  taut {} {} {} {}\n", words[0], words[1], words[2], words[3]);
+    }
   }
+  if (!experiments.empty()) SayNext(LookAt(experiments.front(), folder));
 }
 
 bool CheckProfiles(const Identification& fit, const std::vector<std::string>& asked, bool say) {
@@ -112,7 +136,11 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
   if (!fit.input_error().empty()) return FailOfInput(fit);
   if (!depends) return Fail(found, kBadInput);
   if (args.check) {
-    if (!args.quiet) PrintCheck(fit);
+    if (args.quiet) return kOk;
+    PrintCheck(fit, args.tables);
+    std::vector<std::string> next{"fit", args.path};
+    for (const std::string& one : args.set) next.insert(next.end(), {"--set", one});
+    SayNext(next);
     return kOk;
   }
   if (fit.counts().damaged > 0) {
@@ -143,11 +171,7 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
     return kInterrupted;
   }
   if (!written) return Fail(found, kFailed);
-  if (!args.quiet) {
-    fmt::print("{}\nSummary, report and fitted experiments: {}\n", OutcomeText(fit, outcome),
-               folder);
-    PrintLooks(fit, folder);
-  }
+  if (!args.quiet) PrintOutcome(fit, outcome, args.tables, folder);
   return Judge(outcome.verdict);
 }
 
@@ -257,7 +281,8 @@ void AddFit(CLI::App& app, int& exit_code) {
   auto* check = fit->add_flag("--check", args->check, "Check files and data only");
   fit->add_flag("--resume", args->resume, "Fail if the folder has no fit to resume")
       ->excludes(check);
-  fit->add_flag("--quiet", args->quiet, "No progress, no table");
+  fit->add_flag("--tables", args->tables, "Also print the tables of all parameters and channels");
+  fit->add_flag("--quiet", args->quiet, "No progress, no summary");
   fit->add_flag("--strict", args->strict, kStrictHelp);
   design->excludes(check);
   fit->footer(

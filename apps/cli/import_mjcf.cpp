@@ -7,8 +7,10 @@
 #include <memory>
 
 #include "import.h"
+#include "member_groups.h"
 #include "output.h"
 #include "overrides.h"
+#include "standard_streams.h"
 #include "taut/mjcf.h"
 #include "taut/version.h"
 
@@ -44,15 +46,26 @@ int Import(const Arguments& args) {
                "note: a model has no terrain: {} of the world left out (use --experiment)\n",
                terrain == 1 ? "1 geom" : fmt::format("{} geoms", terrain));
   }
+  if (!args.out.empty()) OutputIsNews();
   const auto model = ModelYaml(made->robot, heading, found);
   if (!model) return Fail(found, kBadInput);
   const int wrote = WriteOrPrint(args.out, *model);
-  if (wrote != kOk || args.experiment.empty()) return wrote;
+  if (wrote != kOk || args.out.empty()) return wrote;
+  const ModelDef& def = made->robot.def;
+  fmt::print("{}: model of {}, {}, {}\n", args.out,
+             def.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", def.bodies.size()),
+             Counted(def.cables.size(), "cable"), Counted(def.joints.size(), "joint"));
+  if (args.experiment.empty()) {
+    SayNext({"check", args.out});
+    return kOk;
+  }
   const std::filesystem::path folder =
       std::filesystem::absolute(args.experiment).parent_path().lexically_normal();
   const std::string beside =
       std::filesystem::absolute(args.out).lexically_normal().lexically_relative(folder).string();
-  return WriteNamed(args.experiment, MjcfExperimentYaml(*made, beside));
+  const int exit = WriteNamed(args.experiment, MjcfExperimentYaml(*made, beside));
+  if (exit == kOk) SayNext({"run", args.experiment});
+  return exit;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "import.h"
+#include "member_groups.h"
 #include "output.h"
 #include "overrides.h"
 #include "standard_streams.h"
@@ -18,29 +19,37 @@ namespace {
 struct ImportNtrtArguments {
   std::string path, out, name;
   double length_unit_m = NAN;
-  bool like_ntrt = false, strict = false;
+  bool like_ntrt = false, tables = false, strict = false;
 };
 
-std::string Counted(int count, const char* one, const char* many) {
+std::string CountedAs(int count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-std::string Report(const NtrtImport& import, const std::string& out) {
+/// Returns the verdict and a summary: what differs from NTRT and what is left out. `tables`: also
+/// what is the same.
+std::string Report(const NtrtImport& import, const std::string& out, bool tables) {
   const NtrtCounts& c = import.counts;
-  std::string text = fmt::format(
-      "Model: {}\n{} of {:.4g} kg, {}, size {:.4g} m\n  from {}: {}, {}; {}, {}, {}\n", out,
-      Counted(c.bodies, "body", "bodies"), c.mass_kg, Counted(c.cables, "cable", "cables"),
-      c.size_m, Counted(c.files, "file", "files"), Counted(c.nodes, "node", "nodes"),
-      Counted(c.pairs, "pair", "pairs"), Counted(c.rods, "rod", "rods"),
-      Counted(c.boxes, "box", "boxes"), Counted(c.spheres, "sphere", "spheres"));
-  const auto list = [&](const char* title, const std::vector<std::string>& lines) {
-    if (!lines.empty()) text += fmt::format("\n{}:\n", title);
-    for (const std::string& line : lines) text += fmt::format("  {}\n", line);
+  std::string text = fmt::format("{}: model of {} of {:.4g} kg, {}, size {:.4g} m\n", out,
+                                 CountedAs(c.bodies, "body", "bodies"), c.mass_kg,
+                                 CountedAs(c.cables, "cable", "cables"), c.size_m);
+  CappedLines lines;
+  lines.Add(fmt::format("from {}: {}, {}; {}, {}, {}", CountedAs(c.files, "file", "files"),
+                        CountedAs(c.nodes, "node", "nodes"), CountedAs(c.pairs, "pair", "pairs"),
+                        CountedAs(c.rods, "rod", "rods"), CountedAs(c.boxes, "box", "boxes"),
+                        CountedAs(c.spheres, "sphere", "spheres")));
+  for (const std::string& line : import.different) lines.Add("different from NTRT: " + line);
+  for (const std::string& line : import.dropped) lines.Add("left out: " + line);
+  text += lines.Text();
+  if (!tables) return text;
+  const auto list = [&](const char* title, const std::vector<std::string>& all) {
+    if (!all.empty()) text += fmt::format("\n{}:\n", title);
+    for (const std::string& line : all) text += fmt::format("  {}\n", line);
   };
   list("Same as NTRT", import.as_ntrt);
   list("Different from NTRT", import.different);
   list("Left out", import.dropped);
-  return text;
+  return text + "\n";
 }
 
 /// Prints the robot's size in each unit of length, because the files have no unit and a person can
@@ -76,8 +85,10 @@ int Import(const ImportNtrtArguments& args) {
   }
   OutputIsNews();
   const int exit = WriteNamed(args.out, import->model_yaml);
-  if (exit == kOk) fmt::print("{}", Report(*import, args.out));
-  return exit;
+  if (exit != kOk) return exit;
+  fmt::print("{}", Report(*import, args.out, args.tables));
+  SayNext({"check", args.out});
+  return kOk;
 }
 
 }  // namespace
@@ -100,6 +111,8 @@ void AddImportNtrt(CLI::App& import, int& exit_code) {
       ->check(CheckName);
   ntrt->add_option("--out", args->out, "Output file (default: standard output)")
       ->option_text("FILE");
+  ntrt->add_flag("--tables", args->tables,
+                 "With --out: also list the laws that are the same as NTRT's, and everything else");
   ntrt->add_flag("--strict", args->strict, kStrictHelp);
   ntrt->footer(
       "Examples:\n"

@@ -29,7 +29,8 @@ struct LearnArguments {
   std::string path, out;
   std::vector<std::string> set;
   int threads = -1, top = 0;
-  bool best = false, parameters = false, json = false, quiet = false, strict = false;
+  bool best = false, parameters = false, json = false, tables = false, quiet = false;
+  bool strict = false;
   bool skip_damaged = false;
 };
 
@@ -59,8 +60,8 @@ void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::stri
   } else {
     fmt::print("best: none, every evaluation failed\n");
   }
-  fmt::print("replay the best: taut learn --best {0}\nlist the ten best: taut learn --top 10 {0}\n",
-             folder);
+  SayNext(s.best ? std::vector<std::string>{"learn", "--best", folder}
+                 : std::vector<std::string>{"learn", "--top", "10", folder});
 }
 
 int ListParameters(const LearnArguments& args, const Overrides& overrides) {
@@ -132,7 +133,7 @@ int Run(const LearnArguments& args) {
   const auto overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
   if (args.parameters) return ListParameters(args, *overrides);
-  if (args.best) return ReplayBest(args.path, args.skip_damaged, args.quiet);
+  if (args.best) return ReplayBest(args.path, args.skip_damaged, args.tables, args.quiet);
   if (args.top > 0) return PrintTop(args.path, args.top, args.skip_damaged, args.json);
   return Search(args, *overrides);
 }
@@ -166,6 +167,10 @@ void AddLearn(CLI::App& app, int& exit_code) {
   auto* parameters = learn->add_flag("--parameters", args->parameters,
                                      "List all parameters that a study of an experiment can vary");
   learn->add_flag("--json", args->json, "With --top: JSON instead of a table")->needs(top);
+  learn
+      ->add_flag("--tables", args->tables,
+                 "With --best: also print all parameters and the tables of the run")
+      ->needs(best);
   learn
       ->add_flag("--skip_damaged", args->skip_damaged,
                  "Ignore damaged records of the folder; a search evaluates them again")

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/viewer/report.h"
+#include "member_groups.h"
 #include "output.h"
 #include "standard_streams.h"
 #include "taut/learn.h"
@@ -53,7 +54,7 @@ void WarnOfDamage(const std::string& folder, const std::vector<std::string>& ski
   }
 }
 
-int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
+int ReplayBest(const std::string& folder, bool skip_damaged, bool tables, bool quiet) {
   Diagnostics found;
   const auto study = ReadStudyFolder(folder, found, skip_damaged);
   if (!study) return Fail(found, kBadInput);
@@ -91,9 +92,14 @@ int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet) {
   if (!quiet) {
     fmt::print("{}: evaluation {} of {}, score {:.8g}\n", study->name, best->id,
                study->evaluations.size(), best->score);
-    PrintValues(*study, *best);
-    fmt::print("{}", SummaryTable(*summary));
+    if (tables) {
+      PrintValues(*study, *best);
+      fmt::print("{}", SummaryTable(*summary));
+    } else {
+      PrintRun(*summary, experiment.robot);
+    }
     fmt::print("Trace, inputs, summary, gait and report: {}\n", out->Path(""));
+    SayNext({"view", (fs::path(folder) / "best").string()});
   }
   if (!best->worlds.empty() && best->worlds[0].state_hash != summary->state_hash) {
     if (study->taut_version == kVersion) {

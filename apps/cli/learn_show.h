@@ -8,7 +8,7 @@ namespace taut::cli {
 
 /// Runs the best candidate once more and writes trace, summary, inputs and report to the folder's
 /// best/.
-int ReplayBest(const std::string& folder, bool skip_damaged, bool quiet);
+int ReplayBest(const std::string& folder, bool skip_damaged, bool tables, bool quiet);
 
 /// Prints the best `count` results as a table or JSON.
 int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -18,7 +19,7 @@ namespace {
 
 struct ListArguments {
   std::string kind;
-  bool json = false;
+  bool json = false, tables = false;
 };
 
 void PrintLines(const std::vector<ShippedFile>& files) {
@@ -31,6 +32,33 @@ void PrintLines(const std::vector<ShippedFile>& files) {
     }
     kind = file.kind;
     fmt::print("  {:<{}}  {}\n", file.head.name, width, file.head.description);
+  }
+}
+
+/// Returns the usual command for a shipped file.
+std::vector<std::string> NextOf(const ShippedFile& file) {
+  const std::string name = file.kind + "/" + std::filesystem::path(file.path).filename().string();
+  if (file.kind == "models") return {"view", name};
+  if (file.kind == "experiments") return {"run", name};
+  if (file.kind == "studies") return {"learn", name};
+  if (file.kind == "fits") return {"fit", name};
+  return {"check", name};
+}
+
+/// Prints the number of files of each kind, with examples.
+void PrintKinds(const std::vector<ShippedFile>& files) {
+  fmt::print("Shipped with taut: {} files\n", files.size());
+  for (const std::string& kind : ShippedKinds()) {
+    constexpr std::size_t kMostNamed = 3;
+    std::size_t count = 0;
+    std::string names;
+    for (const ShippedFile& file : files) {
+      if (file.kind != kind || ++count > kMostNamed) continue;
+      names += (names.empty() ? "" : ", ") + file.head.name;
+    }
+    if (count == 0) continue;
+    fmt::print("  {:>3} {}, in {}: {}{}\n", count, kind, *ShippedFolderOf(kind), names,
+               count > kMostNamed ? ", ..." : "");
   }
 }
 
@@ -48,8 +76,14 @@ int List(const ListArguments& args) {
                "next to the folder of the command)\n");
     return kFailed;
   }
+  if (!args.json && args.kind.empty() && !args.tables) {
+    PrintKinds(files);
+    SayNext({"list", "models"});
+    return kOk;
+  }
   if (!args.json) {
     PrintLines(files);
+    if (!args.kind.empty()) SayNext(NextOf(files.front()));
     return kOk;
   }
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -72,10 +106,12 @@ void AddList(CLI::App& app, int& exit_code) {
   list->add_option("kind", args->kind, "models, experiments, gaits, studies or fits (default: all)")
       ->option_text(Alternatives(ShippedKinds()))
       ->check(OneOf(ShippedKinds()));
-  list->add_flag("--json", args->json, "JSON instead of lines");
+  list->add_flag("--json", args->json, "JSON instead of text");
+  list->add_flag("--tables", args->tables, "List the files of all kinds");
   list->footer(
       "Examples:\n"
       "  taut list\n"
+      "  taut list models\n"
       "  taut list experiments --json\n"
       "`taut new` writes a template for a new file.");
   list->callback([args, &exit_code] { exit_code = List(*args); });

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "member_groups.h"
 #include "taut/files.h"
 #include "taut/summary.h"
 #include "taut/trace.h"
@@ -26,6 +28,30 @@ std::string ShellWord(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
+}
+
+/// Returns the largest tensions of a group of cables, and their means in the phases of the run.
+std::string TensionLine(const RunSummary& summary, const CableGroup& group) {
+  const auto range = [&](const auto& value) {
+    double low_n = INFINITY, high_n = -INFINITY;
+    for (const std::size_t c : group.cables) {
+      low_n = std::min(low_n, value(summary.cables[c].tension));
+      high_n = std::max(high_n, value(summary.cables[c].tension));
+    }
+    return RangeText(low_n, high_n, 2, "N");
+  };
+  std::string line = fmt::format("{}: max tension {}", group.name,
+                                 range([](const auto& tension) { return tension.max_n; }));
+  constexpr std::size_t kMostPhases = 3;
+  for (std::size_t i = 0; i < std::min(summary.phases.size(), kMostPhases); ++i) {
+    const PhaseSpec& phase = summary.phases[i];
+    const bool reached = phase.to_s <= summary.simulated_s * (1.0 + 1e-9) &&
+                         i < summary.cables[group.cables.front()].tension.phases.size();
+    if (!reached) continue;
+    line += fmt::format("; mean {} {}", phase.name,
+                        range([&](const auto& tension) { return tension.phases[i].mean; }));
+  }
+  return line;
 }
 
 }  // namespace
@@ -58,8 +84,13 @@ int WriteOrPrint(const std::string& path, const std::string& text) {
   return kOk;
 }
 
-void SayNext(const std::vector<std::string>& words) {
-  std::string line = "next: taut";
+void SayNext(std::vector<std::string> words) {
+  words.insert(words.begin(), "taut");
+  SayNextProgram(words);
+}
+
+void SayNextProgram(const std::vector<std::string>& words) {
+  std::string line = "next:";
   for (const std::string& word : words) line += " " + ShellWord(word);
   fmt::print("{}\n", Printable(line));
 }
@@ -90,6 +121,17 @@ std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& exper
   summary->run = folder.id();
   if (out.ok()) folder.Finish(SummaryJson(*summary), out);
   return summary;
+}
+
+void PrintRun(const RunSummary& summary, const RobotSpec& robot) {
+  const std::vector<std::string> all = SummaryLines(summary);
+  fmt::print("{}\n", Printable(all.front()));
+  CappedLines lines;
+  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
+  if (summary.cables.size() == robot.def.cables.size() && summary.cables.size() > 1) {
+    for (const CableGroup& group : GroupCables(robot, 6)) lines.Add(TensionLine(summary, group));
+  }
+  fmt::print("{}", lines.Text());
 }
 
 }  // namespace taut::cli

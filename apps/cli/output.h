@@ -25,6 +25,9 @@ bool Passes(Diagnostics& found, bool strict);
 /// Help text of `--strict`.
 inline constexpr const char* kStrictHelp = "Warnings are errors";
 
+/// Help text of `--tables`.
+inline constexpr const char* kTablesHelp = "Also print the tables of all members";
+
 /// Writes a file whose path the user gave. Reports errors on stderr, returns the exit status.
 int WriteNamed(const std::string& path, const std::string& text);
 
@@ -33,7 +36,10 @@ int WriteOrPrint(const std::string& path, const std::string& text);
 
 /// Prints the usual next command, as the last line of a command's output:
 /// `next: taut view runs/hang`.
-void SayNext(const std::vector<std::string>& words);
+void SayNext(std::vector<std::string> words);
+
+/// Same as `SayNext` for another program, the first word.
+void SayNextProgram(const std::vector<std::string>& words);
 
 /// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` contain no
 /// traces; their `begin` may refuse the run before warnings about the start are printed. `more`:
@@ -42,6 +48,9 @@ void SayNext(const std::vector<std::string>& words);
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,
                                   const TraceMetadata& more = {});
+
+/// Prints the verdict on a run and its summary, with the largest tensions of groups of cables.
+void PrintRun(const RunSummary& summary, const RobotSpec& robot);
 
 /// Values of `--symmetry`.
 inline const std::map<std::string, CpgSymmetry> kSymmetries{{"segments", CpgSymmetry::kSegments},

@@ -9,6 +9,7 @@
 #include "apps/viewer/report.h"
 #include "apps/viewer/web_files.h"
 #include "commands.h"
+#include "output.h"
 #include "standard_streams.h"
 #include "taut/run_folder.h"
 
@@ -40,6 +41,7 @@ int Report(ReportArguments args) {
     return unwritten ? kFailed : kBadInput;
   }
   fmt::print("Report: {}\n", path);
+  SayNextProgram({"xdg-open", path});
   return kOk;
 }
 

@@ -39,7 +39,7 @@ struct RunArguments {
   std::uint64_t seed = 0;
   int threads = 1;
   bool csv = false, report = false, quiet = false, has_seed = false, strict = false;
-  bool json = false;
+  bool json = false, tables = false;
 };
 
 /// Progress line: rewritten in place on a terminal, printed every ten seconds elsewhere.
@@ -69,11 +69,16 @@ class RunProgressLine {
 };
 
 /// Compares the result with the reference trace of the experiment.
-void CompareWith(const std::string& reference, const std::string& result, bool quiet,
+void CompareWith(const std::string& reference, const std::string& result, const RunArguments& args,
                  Diagnostics& out) {
   const std::optional<Trace> a = ReadTraceOfRun(result, out), b = ReadTraceOfRun(reference, out);
-  if (!a || !b || quiet) return;
-  fmt::print("\n{}", ComparisonTable(Compare(*a, *b, {}), result, reference));
+  if (!a || !b || args.quiet || args.json) return;
+  const Comparison comparison = Compare(*a, *b, {});
+  if (args.tables) {
+    fmt::print("\n{}\n", ComparisonTable(comparison, result, reference));
+  } else {
+    fmt::print("{}\n", ComparisonLines(comparison, result, reference).front());
+  }
 }
 
 /// Returns the duration of a replay: the log's duration, or less on request.
@@ -165,23 +170,27 @@ int Run(const RunArguments& args) {
   line.Clear();
   if (!summary) return Fail(found, kFailed);
 
-  const bool tables = !args.quiet && !args.json;
+  const bool text = !args.quiet && !args.json;
   if (args.json) fmt::print("{}", SummaryJson(*summary));
-  if (tables) {
-    fmt::print("{}\n", SummaryTable(*summary));
+  if (text) {
+    if (args.tables) {
+      fmt::print("{}\n", SummaryTable(*summary));
+    } else {
+      PrintRun(*summary, experiment->robot);
+    }
     if (found.ok()) fmt::print("Trace, inputs and summary: {}\n", path);
   }
-  if (!args.final_pose.empty() && WriteFinalPose(args, *experiment, *summary, found) && tables) {
+  if (!args.final_pose.empty() && WriteFinalPose(args, *experiment, *summary, found) && text) {
     fmt::print("Final pose, without velocities: {}\n", args.final_pose);
   }
   if (args.report && found.ok()) {
     const std::string report = folder->Path("report.html");
-    if (viewer::WriteReport(folder->Path("trace.h5"), {}, report, found) && tables) {
+    if (viewer::WriteReport(folder->Path("trace.h5"), {}, report, found) && text) {
       fmt::print("Report: {}\n", report);
     }
   }
   if (experiment->compare_with && found.ok()) {
-    CompareWith(*experiment->compare_with, folder->Path("trace.h5"), !tables, found);
+    CompareWith(*experiment->compare_with, folder->Path("trace.h5"), args, found);
   }
   if (!summary->status_text.empty()) fmt::print(stderr, "warning: {}\n", summary->status_text);
   if (!found.ok()) return Fail(found, kFailed);
@@ -190,7 +199,7 @@ int Run(const RunArguments& args) {
                summary->simulated_s);
     return kInterrupted;
   }
-  if (tables) SayNext({"view", path});
+  if (text) SayNext({"view", path});
   return summary->status.bits & kStatusNonFinite ? kFailed : kOk;
 }
 
@@ -215,8 +224,10 @@ void AddRun(CLI::App& app, int& exit_code) {
       ->each([args](const std::string&) { args->has_seed = true; });
   run->add_option("--out", args->out, "Output folder (default: runs/<experiment>)")
       ->option_text("FOLDER");
-  run->add_option("--replay", args->replay,
-                  "Recording (trace.h5, .csv) to run the controllers on, instead of a simulation")
+  run->add_option(
+         "--replay", args->replay,
+         "Recording (.h5, .csv, .csv.gz) or folder of a run to run the controllers on, instead of "
+         "a simulation")
       ->option_text("FILE");
   run->add_option("--final_pose", args->final_pose,
                   "Model file to write with the final pose, without velocities")
@@ -227,8 +238,9 @@ void AddRun(CLI::App& app, int& exit_code) {
   run->add_flag("--csv", args->csv, "Also write trace.csv");
   run->add_flag("--report", args->report,
                 "Also write report.html, one file that opens in any browser");
-  run->add_flag("--json", args->json, "Summary as JSON instead of the table");
-  run->add_flag("--quiet", args->quiet, "No progress, no table");
+  run->add_flag("--json", args->json, "Summary as JSON instead of text");
+  run->add_flag("--tables", args->tables, kTablesHelp);
+  run->add_flag("--quiet", args->quiet, "No progress, no summary");
   run->add_flag("--strict", args->strict, kStrictHelp);
   run->footer(
       "Examples:\n"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "member_groups.h"
 #include "output.h"
 #include "overrides.h"
 #include "table.h"
@@ -24,8 +26,16 @@ using Json = nlohmann::ordered_json;
 struct SizeArguments {
   std::string folder, catalogue;
   std::optional<double> spool_radius_m;
-  bool json = false, strict = false;
+  bool json = false, tables = false, strict = false;
 };
+
+/// Returns the folder of a run for its folder or for a trace in it.
+std::string FolderOfRun(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return path;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
 
 /// Suitability of the catalogue's components for a cable, in the order of the catalogue.
 struct Choice {
@@ -133,6 +143,74 @@ std::string Joined(const std::vector<std::string>& names) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
+/// Returns the verdict and a summary of at most ten lines.
+std::string SizeSummary(const RunDemand& run, const Catalogue& of,
+                        const std::vector<Choice>& choices) {
+  CappedLines lines;
+  std::string verdict;
+  const auto fits = [&](const char* kind, std::size_t count,
+                        std::vector<SizingMargins> Choice::*margins) {
+    if (count == 0) return;
+    const auto all = FitAll(choices, margins, count), none = Without(choices, margins);
+    if (!verdict.empty()) verdict += ", ";
+    if (!none.empty()) {
+      verdict += fmt::format("no {} for {}", kind, Counted(none.size(), "cable"));
+      lines.Add(fmt::format("no {} for: {}", kind, Joined(none)));
+    } else {
+      verdict += fmt::format("a {} for every cable", kind);
+    }
+    lines.Add(fmt::format("{}s suitable for all cables: {}", kind, Joined(all)));
+  };
+  fits("motor", of.motors.size(), &Choice::motors);
+  fits("spring", of.springs.size(), &Choice::springs);
+  int actuated = 0;
+  const CableDemand *force = nullptr, *speed = nullptr, *power = nullptr;
+  double energy_j = 0, net_j = 0, stretch_m = 0;
+  for (const CableDemand& d : run.cables) {
+    if (!force || d.peak_force_n > force->peak_force_n) force = &d;
+    stretch_m = std::max(stretch_m, d.stretch_m);
+    if (!d.actuated) continue;
+    ++actuated, energy_j += d.gross_energy_j, net_j += d.net_energy_j;
+    if (!speed || d.peak_speed_m_per_s > speed->peak_speed_m_per_s) speed = &d;
+    if (!power || d.peak_power_w > power->peak_power_w) power = &d;
+  }
+  if (verdict.empty()) {
+    verdict = fmt::format("requirements of {}, {} with actuators",
+                          Counted(run.cables.size(), "cable"), actuated);
+  }
+  if (force) {
+    lines.Add(
+        fmt::format("largest tension: {:.2f} N in {}; largest extension of a spring: {:.5f} m",
+                    force->peak_force_n, force->cable, stretch_m));
+  }
+  if (speed) {
+    lines.Add(fmt::format("largest speed: {:.4f} m/s in {}; largest power: {:.3f} W in {}",
+                          speed->peak_speed_m_per_s, speed->cable, power->peak_power_w,
+                          power->cable));
+    lines.Add(
+        fmt::format("energy of all actuators: gross {:.3f} J, net {:.3f} J", energy_j, net_j));
+  }
+  lines.Add(fmt::format("{:g} to {:g} s, {} rows; peaks and energies of {}", run.from_s, run.to_s,
+                        run.rows, run.every_step ? "every step" : "rows only"));
+  return Printable(run.experiment + ": " + verdict) + "\n" + lines.Text();
+}
+
+std::string SizeTables(const RunDemand& run, const Catalogue& of,
+                       const std::vector<Choice>& choices) {
+  std::string text = DemandTable(run);
+  if (!of.motors.empty()) {
+    text += fmt::format("\nMotors: smallest ratio of rating to requirement (required: {:g})\n{}",
+                        of.factor, FitTable(choices, &Choice::motors));
+  }
+  if (!of.springs.empty()) {
+    text +=
+        "\nSprings: smallest ratio of rating to requirement, and deviation from the cable's "
+        "stiffness\n" +
+        FitTable(choices, &Choice::springs);
+  }
+  return text;
+}
+
 Json FactorJson(double factor) { return std::isfinite(factor) ? Json(factor) : Json(); }
 
 Json FitsJson(const std::vector<SizingMargins>& fits, bool springs) {
@@ -202,7 +280,7 @@ int Size(const SizeArguments& args) {
     catalogue = LoadCatalogue(args.catalogue, found);
     if (catalogue) HaveSpools(args, *catalogue, found);
   }
-  const auto run = DemandOfRun(args.folder, found);
+  const auto run = DemandOfRun(FolderOfRun(args.folder), found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   if (catalogue) {
     // Lists suitable components with the lightest first.
@@ -221,25 +299,15 @@ int Size(const SizeArguments& args) {
     fmt::print("{}\n", SizeJson(*run, catalogue ? &*catalogue : nullptr, choices));
     return exit;
   }
-  fmt::print("{}: {:g} to {:g} s, {} rows; peaks and energies of {}\n\n{}", run->experiment,
-             run->from_s, run->to_s, run->rows, run->every_step ? "every step" : "rows only",
-             DemandTable(*run));
-  if (!of.motors.empty()) {
-    fmt::print("\nMotors: smallest ratio of rating to requirement (required: {:g})\n{}", of.factor,
-               FitTable(choices, &Choice::motors));
-    fmt::print("  suitable for all cables: {}\n",
-               Joined(FitAll(choices, &Choice::motors, of.motors.size())));
-    if (!no_motor.empty()) fmt::print("  no motor for: {}\n", Joined(no_motor));
+  fmt::print("{}", SizeSummary(*run, of, choices));
+  if (args.tables) fmt::print("\n{}\n", SizeTables(*run, of, choices));
+  std::vector<std::string> next{"size", args.folder};
+  if (catalogue) next.insert(next.end(), {"--catalogue", args.catalogue});
+  if (args.spool_radius_m) {
+    next.insert(next.end(), {"--spool_radius_m", fmt::format("{}", *args.spool_radius_m)});
   }
-  if (!of.springs.empty()) {
-    fmt::print(
-        "\nSprings: smallest ratio of rating to requirement, and deviation from the cable's "
-        "stiffness\n{}",
-        FitTable(choices, &Choice::springs));
-    fmt::print("  suitable for all cables: {}\n",
-               Joined(FitAll(choices, &Choice::springs, of.springs.size())));
-    if (!no_spring.empty()) fmt::print("  no spring for: {}\n", Joined(no_spring));
-  }
+  next.push_back(args.tables ? "--json" : "--tables");
+  SayNext(next);
   return exit;
 }
 
@@ -249,7 +317,8 @@ void AddSize(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<SizeArguments>();
   CLI::App* size =
       app.add_subcommand("size", "List the requirements of a run on motors and springs.");
-  size->add_option("run", args->folder, "Folder of the run, with trace.h5 and inputs.yaml")
+  size->add_option("run", args->folder,
+                   "Folder of the run, with trace.h5 and inputs.yaml; or its trace")
       ->required();
   size->add_option("--catalogue", args->catalogue, "Catalogue of motors and springs (YAML)")
       ->option_text("FILE");
@@ -257,7 +326,8 @@ void AddSize(CLI::App& app, int& exit_code) {
                    "Radius of all spools [m] (overrides the catalogue)")
       ->option_text("NUMBER")
       ->check(NumberWithin(1e-6, 1e3));
-  size->add_flag("--json", args->json, "JSON instead of tables");
+  size->add_flag("--json", args->json, "JSON instead of text");
+  size->add_flag("--tables", args->tables, "Also print the tables of all cables and components");
   size->add_flag("--strict", args->strict, kStrictHelp);
   size->footer(
       "Examples:\n"

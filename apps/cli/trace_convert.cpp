@@ -44,9 +44,7 @@ int Convert(const ConvertArguments& args) {
     fmt::print(stderr, "error: unknown format of {} (expected .csv or .mcap)\n", args.out);
     return kUsage;
   }
-  std::error_code error;
-  const std::string path =
-      fs::is_directory(args.path, error) ? (fs::path(args.path) / "trace.h5").string() : args.path;
+  const std::string path = TraceOfRun(args.path);
   Diagnostics found;
   auto whole = ReadTraceOfRun(path, found);
   if (!whole) return Fail(found, kBadInput);

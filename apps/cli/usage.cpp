@@ -47,9 +47,10 @@ bool IsFlag(const std::string& word) {
 /// Returns the command for a word that other programs use for it; empty if there is none.
 std::string CommandMeant(const std::string& word) {
   static const std::map<std::string, std::string> kSynonyms{
-      {"convert", "trace convert"}, {"diff", "compare"}, {"init", "new"},
-      {"optimize", "learn"},        {"plot", "report"},  {"show", "view"},
-      {"simulate", "run"},          {"train", "learn"},  {"validate", "check"}};
+      {"convert", "trace convert"}, {"create", "new"}, {"diff", "compare"},
+      {"identify", "fit"},          {"init", "new"},   {"optimize", "learn"},
+      {"plot", "report"},           {"show", "view"},  {"simulate", "run"},
+      {"train", "learn"},           {"tune", "learn"}, {"validate", "check"}};
   const auto found = kSynonyms.find(word);
   return found == kSynonyms.end() ? "" : found->second;
 }

@@ -2,6 +2,7 @@
 
 import cmath
 import csv
+import json
 import math
 import pathlib
 import time
@@ -240,7 +241,7 @@ def picture(trace):
 
 def page(taut):
     started = time.monotonic()
-    mass_kg = float(taut("check", "models/puppy.yaml").split("moving mass ")[1].split()[0])
+    mass_kg = json.loads(taut("check", "models/puppy.yaml", "--json"))["total_mass_kg"]
     stand = Variant("puppy_stand", "puppy_stand", record(", 'push/*'"), full_trace=True)
     trots = {name: Variant("puppy_" + name.replace(" ", "_"), "puppy_trot", keys + record(), full_trace=True,
                            any_status=True)

@@ -272,7 +272,7 @@ def largest_shift(robot, results, choices):
 
 def comparison(taut):
     arguments = ["runs/validation/push/ntrt/trace.h5", TRACE, "--map", "mappings/ntrt.json",
-                 "--channels", "cable/*/elastic_n"]
+                 "--channels", "cable/*/elastic_n", "--tables"]
     shown = "taut compare " + " ".join(f"'{x}'" if "*" in x else x for x in arguments)
     return f"$ {shown}\n{taut('compare', *arguments)}".rstrip()
 

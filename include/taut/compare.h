@@ -137,6 +137,12 @@ struct Comparison {
 /// Compares the channels that both traces contain.
 Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options);
 
+/// Returns the short summary of a comparison for a terminal, without line ends: the verdict, the
+/// largest values, what was not compared, and one line per phase and per group of channels whose
+/// names differ only in the middle.
+std::vector<std::string> ComparisonLines(const Comparison& comparison, const std::string& name_a,
+                                         const std::string& name_b);
+
 /// Formats the comparison as tables for a terminal. `name_a`, `name_b`: names of the traces.
 std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,
                             const std::string& name_b);

@@ -156,6 +156,9 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options);
 /// `looks`: per experiment, the path of its page with runs before and after the fit, relative to
 /// the page's folder; empty strings, or an empty list, for experiments without one.
 std::string OutcomeText(const Identification& fit, const FitOutcome& outcome);
+/// Returns the short summary for a terminal, without line ends: the verdict, checks and errors, one
+/// line per profile and per parameter.
+std::vector<std::string> OutcomeLines(const Identification& fit, const FitOutcome& outcome);
 std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome);
 std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
                         const std::vector<std::string>& looks = {});

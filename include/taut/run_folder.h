@@ -88,8 +88,8 @@ std::string BesideTrace(const std::string& trace, const std::string& name, const
 /// trace); for other paths, the path itself.
 std::string TraceOfRun(const std::string& path);
 
-/// Reads a trace as `ReadTrace` does, but refuses it if inputs or a summary in its folder belong to
-/// another run. A CSV trace has no id, so for it only inputs and summary are compared.
+/// Reads a trace or that of a run's folder; refuses it if inputs or summary are of another run. A
+/// CSV trace has no id, so for it only inputs and summary are compared.
 std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out);
 
 }  // namespace taut

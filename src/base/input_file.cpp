@@ -26,8 +26,13 @@ std::optional<std::string> ReadInputFile(const std::string& path, std::size_t mo
     return refuse("the file is larger than " + std::to_string(most_bytes / 1'000'000) + " MB",
                   hint);
   };
-  if (std::filesystem::is_directory(path, ignored))
-    return refuse("the path is a directory, not a file");
+  if (std::filesystem::is_directory(path, ignored)) {
+    const std::filesystem::path inputs = std::filesystem::path(path) / "inputs.yaml";
+    return refuse("the path is a directory, not a file",
+                  std::filesystem::exists(inputs, ignored)
+                      ? "the experiment of this run is in " + inputs.string()
+                      : "");
+  }
   if (std::filesystem::is_regular_file(path, ignored)) {
     if (std::filesystem::file_size(path, ignored) > most_bytes && !ignored) return size_limit();
   } else if (named_by == NamedBy::kFile && std::filesystem::exists(path, ignored)) {

@@ -11,10 +11,18 @@
 #include <tuple>
 #include <utility>
 
+#include "compare/channel_groups.h"
 #include "taut/compare.h"
 
 namespace taut {
 namespace {
+
+using compare::Abridged;
+using compare::Group;
+using compare::GroupsOf;
+using compare::GroupTitle;
+using compare::HeadingAndRow;
+using compare::Shown;
 
 /// Returns a number in `width` columns with its significant digits.
 std::string Cell(double value, int width) {
@@ -25,54 +33,9 @@ std::string Cell(double value, int width) {
   return fmt::format("{:>{}.{}f}", value + 0.0, width, size == 0.0 ? 0 : decimals);  // no "-0"
 }
 
-/// Returns the value, without a sign if that many decimals show a zero: no "-0.000".
-double Shown(double value, int decimals) {
-  return std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;
-}
-
 std::string Fixed(double value, int width, int decimals) {
   if (!std::isfinite(value)) return fmt::format("{:>{}}", "-", width);
   return fmt::format("{:>{}.{}f}", Shown(value, decimals), width, decimals);
-}
-
-/// Splits a name: "cable/a/tension_n" is row "a" under heading "cable/*/tension_n";
-/// "system/com_x_m" has no middle and is row "com_x_m" under "system/*".
-std::pair<std::string, std::string> HeadingAndRow(const std::string& name) {
-  const std::size_t first = name.find('/');
-  if (first == name.npos) return {"", name};
-  const std::size_t last = name.rfind('/');
-  if (first == last) return {name.substr(0, first) + "/*", name.substr(first + 1)};
-  return {name.substr(0, first) + "/*" + name.substr(last),
-          name.substr(first + 1, last - first - 1)};
-}
-
-struct Group {
-  std::string heading;
-  std::vector<std::pair<std::string, const ChannelComparison*>> rows;
-  std::size_t name_width = 8;
-};
-
-std::vector<Group> GroupsOf(const std::vector<ChannelComparison>& channels) {
-  std::vector<Group> groups;
-  for (const ChannelComparison& channel : channels) {
-    auto [heading, row] = HeadingAndRow(channel.name);
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&, &name = heading](const Group& g) { return g.heading == name; });
-    if (group == groups.end()) {
-      groups.push_back({heading, {}});
-      group = groups.end() - 1;
-    }
-    group->name_width = std::max(group->name_width, row.size());
-    group->rows.emplace_back(std::move(row), &channel);
-  }
-  return groups;
-}
-
-std::string GroupTitle(const Group& group) {
-  const std::string& unit = group.rows.front().second->unit;
-  const bool one_unit = std::all_of(group.rows.begin(), group.rows.end(),
-                                    [&](const auto& row) { return row.second->unit == unit; });
-  return one_unit ? fmt::format("{} [{}]", group.heading, unit) : group.heading;
 }
 
 /// Returns ">0.5" if the search ended there: the delay may be longer.
@@ -180,27 +143,6 @@ void AppendMissing(const Comparison& comparison, std::string& out) {
     out += fmt::format("  {}: {:.4g} s\n", missing[i].first, missing[i].second);
   }
   if (missing.size() > kMost) out += fmt::format("  and {} more\n", missing.size() - kMost);
-}
-
-/// Merges names that differ in the middle only, with their number: "cable/*/damping_n (12)".
-std::vector<std::string> Abridged(const std::vector<std::string>& names) {
-  std::vector<std::pair<std::string, int>> counts;
-  std::vector<std::string> first;
-  for (const std::string& name : names) {
-    const std::string heading = HeadingAndRow(name).first;
-    const auto known = std::find_if(counts.begin(), counts.end(),
-                                    [&](const auto& count) { return count.first == heading; });
-    if (known != counts.end() && !heading.empty()) {
-      ++known->second;
-    } else {
-      counts.emplace_back(heading, 1);
-      first.push_back(name);
-    }
-  }
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    if (counts[i].second > 1) first[i] = fmt::format("{} ({})", counts[i].first, counts[i].second);
-  }
-  return first;
 }
 
 void AppendList(const std::string& title, const std::vector<std::string>& names, std::string& out) {

@@ -122,6 +122,35 @@ std::string DesignTable(const DesignRanking& design, std::size_t parameters) {
 
 }  // namespace
 
+std::vector<std::string> OutcomeLines(const Identification& fit, const FitOutcome& outcome) {
+  const FitVerdict& verdict = outcome.verdict;
+  const FitProblem& problem = fit.train();
+  std::vector<std::string> lines{fmt::format("{}: {}", fit.spec().name, WordOf(verdict.judgement))};
+  if (!verdict.sentences.empty()) lines.front() += ": " + verdict.sentences.front();
+  for (const CarriedLoad& carried : outcome.carried) lines.push_back(CarriedText(fit, carried));
+  const auto errors = [&](const char* title, const FitErrors& of) {
+    if (of.count == 0) return;
+    lines.push_back(
+        fmt::format("{} ({} residuals): rms {:.4g} untuned, {:.4g} fitted, in "
+                    "standard deviations",
+                    title, of.count, of.untuned, of.fitted));
+  };
+  errors("fitted data", verdict.train);
+  if (verdict.hold_out) errors("held-out data", *verdict.hold_out);
+  for (const FitProfile& profile : outcome.profiles) {
+    lines.push_back("profile of " + problem.parameters[profile.parameter].name + ": " +
+                    (profile.why.empty() ? profile.sentence : profile.why));
+  }
+  const auto& parameters = verdict.identifiability.parameters;
+  for (std::size_t i = 0; i < std::min(problem.parameters.size(), parameters.size()); ++i) {
+    const FitParameter& p = problem.parameters[i];
+    const ParameterVerdict& v = parameters[i];
+    lines.push_back(fmt::format("{}: {:.6g} -> {:.6g} +- {}, {}", WithUnit(p.name, p.unit), p.start,
+                                v.value, ErrorText(v.error()), WordOf(v.kind)));
+  }
+  return lines;
+}
+
 std::string OutcomeText(const Identification& fit, const FitOutcome& outcome) {
   const FitVerdict& verdict = outcome.verdict;
   const FitProblem& problem = fit.train();

@@ -54,28 +54,41 @@ double OurValue(const RunSummary& run, const ReferenceSpec& reference, int cable
   return kUnknown;
 }
 
+namespace {
+
+std::string LargestDifference(const RunSummary& run, const ReferenceSpec& reference) {
+  const ReferenceSpec::Value* worst = nullptr;
+  double worst_share = -1;
+  for (const ReferenceSpec::Value& value : reference.values) {
+    const double share = std::fabs(OurValue(run, reference, value.cable) / value.force_n - 1);
+    if (!(share > worst_share) || !std::isfinite(share)) continue;
+    worst_share = share;
+    worst = &value;
+  }
+  if (worst == nullptr) return "the run did not reach this phase";
+  return fmt::format("largest difference {:.2f} %: {} {:.3f} N, reference {:.3f} N",
+                     100 * worst_share, run.cables[static_cast<std::size_t>(worst->cable)].name,
+                     OurValue(run, reference, worst->cable), worst->force_n);
+}
+
+}  // namespace
+
+std::vector<std::string> ReferenceDifferences(const RunSummary& run) {
+  std::vector<std::string> lines;
+  for (const ReferenceSpec& reference : run.references) {
+    lines.push_back(
+        fmt::format("compared with {}: {}", reference.source, LargestDifference(run, reference)));
+  }
+  return lines;
+}
+
 std::string ReferenceLines(const RunSummary& run) {
   std::string out;
   for (const ReferenceSpec& reference : run.references) {
-    const ReferenceSpec::Value* worst = nullptr;
-    double worst_share = -1;
-    for (const ReferenceSpec::Value& value : reference.values) {
-      const double share = std::fabs(OurValue(run, reference, value.cable) / value.force_n - 1);
-      if (!(share > worst_share) || !std::isfinite(share)) continue;
-      worst_share = share;
-      worst = &value;
-    }
-    out += fmt::format("\ncompared with {}: {} {} of {} cables, {}\n  ", reference.source,
+    out += fmt::format("\ncompared with {}: {} {} of {} cables, {}\n  {}", reference.source,
                        StatisticName(reference), QuantityName(reference), reference.values.size(),
-                       reference.phase.empty() ? "whole run" : reference.phase);
-    if (worst == nullptr) {
-      out += "the run did not reach this phase";
-      continue;
-    }
-    const double ours_n = OurValue(run, reference, worst->cable);
-    out += fmt::format("largest difference {:.2f} %: {} {:.3f} N, reference {:.3f} N",
-                       100 * worst_share, run.cables[static_cast<std::size_t>(worst->cable)].name,
-                       ours_n, worst->force_n);
+                       reference.phase.empty() ? "whole run" : reference.phase,
+                       LargestDifference(run, reference));
   }
   return out.empty() ? out : out + "\n";
 }

@@ -6,6 +6,7 @@
 
 #include "report/facts.h"
 #include "report/reference.h"
+#include "report/summary_lines.h"
 #include "taut/summary.h"
 
 namespace taut {
@@ -35,21 +36,6 @@ std::size_t NameWidth(const Items& items) {
   std::size_t width = 10;
   for (const auto& item : items) width = std::max(width, item.name.size());
   return width;
-}
-
-std::string Head(const RunSummary& run) {
-  std::string out =
-      fmt::format("{}: {:g} s simulated in {:.3g} s ({:.3g} times real time)", run.experiment,
-                  run.simulated_s, run.wall_s, report::RealTimeFactor(run));
-  if (run.interrupted) out += ", interrupted";
-  out += "\n";
-  if (run.start) out += StartLine(*run.start);
-  if (run.status.bits != kStatusOk) {
-    out += fmt::format("WARNING: {} (first at {:.4g} s)\n", report::StatusText(run),
-                       run.status.first_time_s);
-  }
-  if (run.left_out.contacts > 0) out += fmt::format("WARNING: {}\n", report::LeftOutText(run));
-  return out;
 }
 
 /// Table of cables by phases first .. last - 1, and the largest of the whole run.
@@ -188,17 +174,9 @@ std::string MotorTable(const RunSummary& run) {
 
 }  // namespace
 
-std::string StartLine(const StartChange& start) {
-  std::string slack;
-  for (const std::string& name : start.slack_cables) slack += (slack.empty() ? "" : ", ") + name;
-  return fmt::format(
-      "settled at the start: largest displacement {:.4g} m{}{}; robot size {:.4g} m; slack: {}\n",
-      start.largest_displacement_m, start.displaced_node.empty() ? "" : " of ",
-      start.displaced_node, start.size_m, slack.empty() ? "none" : slack);
-}
-
 std::string SummaryTable(const RunSummary& summary) {
-  std::string out = Head(summary);
+  std::string out;
+  for (const std::string& line : report::HeadLines(summary)) out += line + "\n";
   if (!summary.cables.empty()) {
     for (std::size_t i = 0; i == 0 || i < summary.phases.size(); i += kPhasesAbreast) {
       out += PhaseTable(summary, i, std::min(i + kPhasesAbreast, summary.phases.size()));

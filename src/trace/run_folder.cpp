@@ -323,7 +323,8 @@ std::string TraceOfRun(const std::string& path) {
   return (folder / "trace.h5").string();
 }
 
-std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out) {
+std::optional<Trace> ReadTraceOfRun(const std::string& trace_or_folder, Diagnostics& out) {
+  const std::string path = TraceOfRun(trace_or_folder);
   auto trace = ReadTrace(path, out);
   if (!trace) return std::nullopt;
   const auto shown = [](const Piece& piece) { return piece.id.empty() ? "none" : piece.id; };

@@ -86,7 +86,7 @@ TEST_F(AnalyzeCommand, TheFormOfSixStrutsIsAModelWithASelfStressAndAMechanism) {
       Taut({"analyze", TAUT_SOURCE_DIR "/share/models/six_strut.yaml", "--form", "--tension_n",
             "20", "--out", "form.yaml"});
   ASSERT_EQ(formed.status, 0) << formed.errors;
-  const test::CommandResult shown = Taut({"analyze", "form.yaml", "--modes", "0"});
+  const test::CommandResult shown = Taut({"analyze", "form.yaml", "--modes", "0", "--tables"});
   ASSERT_EQ(shown.status, 0) << shown.errors;
   // 30 members at 12 nodes: rank 29, so one state of self-stress and one mechanism
   // (docs/theory/statics.md)
@@ -97,7 +97,7 @@ TEST_F(AnalyzeCommand, TheFormOfSixStrutsIsAModelWithASelfStressAndAMechanism) {
 
 TEST_F(AnalyzeCommand, ARobotThatNothingHoldsIsAnalysedWithoutWeight) {
   const test::CommandResult shown =
-      Taut({"analyze", TAUT_SOURCE_DIR "/share/models/prism3.yaml", "--modes", "6"});
+      Taut({"analyze", TAUT_SOURCE_DIR "/share/models/prism3.yaml", "--modes", "6", "--tables"});
   EXPECT_EQ(shown.status, 0) << shown.errors;
   EXPECT_NE(shown.output.find("the robot has no support in the world: weight is left out"),
             std::string::npos)

@@ -242,7 +242,7 @@ TEST_F(AnalyzeFlags, ForcesThatSupportsLeaveOpenHaveLimits) {
     EXPECT_NEAR(corner["normal_force_n"]["high_n"].get<double>(), weight_n / 2, 1e-6);
     EXPECT_EQ(corner["friction"], 0.5);
   }
-  const test::CommandResult text = Taut({"analyze", "lies.yaml"});
+  const test::CommandResult text = Taut({"analyze", "lies.yaml", "--tables"});
   EXPECT_NE(text.output.find("  ground at slab  0.000  14.715\n"), std::string::npos)
       << text.output;
   // The rotation on the ground is a rigid motion, not a mechanism.
@@ -269,7 +269,8 @@ TEST_F(AnalyzeFlags, OnTwoEndsOnlyFrictionIsOpen) {
     EXPECT_NEAR(end["normal_force_n"]["low_n"].get<double>(), kGravity / 2, 1e-6);
     EXPECT_NEAR(end["normal_force_n"]["high_n"].get<double>(), kGravity / 2, 1e-6);
   }
-  EXPECT_NE(Taut({"analyze", "lies.yaml", "--modes", "0"}).output.find("only along the ground"),
+  EXPECT_NE(Taut({"analyze", "lies.yaml", "--modes", "0", "--tables"})
+                .output.find("only along the ground"),
             std::string::npos);
   const std::string six = TAUT_SOURCE_DIR "/share/experiments/drop_six_strut.yaml";
   EXPECT_TRUE(
@@ -284,7 +285,8 @@ TEST_F(AnalyzeFlags, ForcesThatNothingLeavesOpenHaveNone) {
 
 TEST_F(AnalyzeFlags, WithoutASelfStressTheHintIsTheForm) {
   const std::string six = TAUT_SOURCE_DIR "/share/models/six_strut.yaml";
-  EXPECT_NE(Taut({"analyze", six, "--modes", "0"}).output.find("(--form --tension_n 10 finds"),
+  EXPECT_NE(Taut({"analyze", six, "--modes", "0", "--tables"})
+                .output.find("(--form --tension_n 10 finds"),
             std::string::npos);
   EXPECT_EQ(Taut({"analyze", six, "--form", "--tension_n", "10"}).status, 0) << "as it says";
   EXPECT_EQ(Taut({"analyze", kPrism, "--modes", "0"}).output.find("--form"), std::string::npos);

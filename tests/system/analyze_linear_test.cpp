@@ -72,10 +72,10 @@ TEST_F(AnalyzeLinear, TablesAndCsvSayTheSameAsJson) {
       "--from_hz",  "1",    "--to_hz", "10",         "--points", "3"};
   const auto with = [&](const char* flag) {
     std::vector<std::string> all = Damped(asked);
-    if (flag != nullptr) all.emplace_back(flag);
+    all.emplace_back(flag);
     return Taut(all);
   };
-  const test::CommandResult csv = with("--csv"), table = with(nullptr);
+  const test::CommandResult csv = with("--csv"), table = with("--tables");
   ASSERT_EQ(csv.status, 0) << csv.errors;
   const json result = json::parse(with("--json").output);
   ASSERT_EQ(result["responses"].size(), 2u);

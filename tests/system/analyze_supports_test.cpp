@@ -94,7 +94,8 @@ TEST_F(AnalyzeSupports, SafetyAndSlackAreNumbersOfTheirOwn) {
   EXPECT_GT(lift["least_stiffness_n_per_m"], 0);
   EXPECT_LT(lift["largest_move"]["distance_m"],
             0.25 * lift["largest_move"]["size_m"].get<double>());
-  const test::CommandResult text = Taut({"analyze", "loads.yaml", "--load_case", "lift"});
+  const test::CommandResult text =
+      Taut({"analyze", "loads.yaml", "--load_case", "lift", "--tables"});
   EXPECT_EQ(text.errors, "");
   for (const char* const part :
        {"  least safety factor: ", " (buckling of ", "  first slack: ", " times the load\n",
@@ -129,7 +130,7 @@ TEST_F(AnalyzeSupports, ARowBetweenAnchorsHasMechanisms) {
         "  - {match: a, anchor: {}}\n  - {match: b, anchor: {}}\n"
         "  - {match: m, point_mass: {mass_kg: 1}}\n  - {match: n, point_mass: {mass_kg: 1}}\n"
         "  - {match: cable, cable: {stiffness_n_per_m: 1000, prestress_n: 10}}\n");
-  const test::CommandResult text = Taut({"analyze", "row.yaml"});
+  const test::CommandResult text = Taut({"analyze", "row.yaml", "--tables"});
   EXPECT_EQ(text.status, 0) << text.errors;
   for (const char* const part : {"  states of self-stress: 1, mechanisms: 4, rigid motions: 0",
                                  "    states of self-stress: 1, mechanisms: 4, rigid motions: 0\n",

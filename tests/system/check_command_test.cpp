@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -41,10 +42,15 @@ class CheckCommand : public ::testing::Test {
 };
 
 TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
-  const Outcome spine = Run("models/tetraspine3.yaml");
+  const Outcome spine = Run("models/tetraspine3.yaml --tables");
   EXPECT_EQ(spine.status, 0);
   EXPECT_EQ(spine.errors, "");
-  EXPECT_EQ(spine.output.rfind("share/models/tetraspine3.yaml: good\n", 0), 0u);
+  EXPECT_EQ(
+      spine.output.rfind("share/models/tetraspine3.yaml: good: model tetraspine3, 3 bodies, 12 "
+                         "cables, 18 nodes; moving mass 2.349243 kg\n",
+                         0),
+      0u)
+      << spine.output;
   for (const char* part :
        {"3 bodies, 12 cables, 18 nodes; moving mass 2.349243 kg",
         "segment_0  0.713081  0.793276  0.000000  0.125465            0.0148116 "
@@ -62,7 +68,7 @@ TEST_F(CheckCommand, ShowsMassesLengthsTensionsAndLoads) {
 }
 
 TEST_F(CheckCommand, ShowsAnExperimentAndItsRobot) {
-  const Outcome push = Run("experiments/push_20n.yaml");
+  const Outcome push = Run("experiments/push_20n.yaml --tables");
   EXPECT_EQ(push.status, 0) << push.errors;
   EXPECT_NE(push.output.find("Experiment push_20n: 60 s in steps of 0.001 s, 1 controller\n"),
             std::string::npos);
@@ -70,6 +76,44 @@ TEST_F(CheckCommand, ShowsAnExperimentAndItsRobot) {
   EXPECT_NE(push.output.find("segment_0.tip"), std::string::npos);
   EXPECT_NE(push.output.find("Model tetraspine3: 3 bodies"), std::string::npos);
   EXPECT_NE(push.output.find("with 1 terrain surface\n"), std::string::npos);
+}
+
+TEST_F(CheckCommand, PrintsAVerdictATenLineSummaryAndTheNextCommand) {
+  for (const char* const file :
+       {"models/tetraspine3.yaml", "models/superball.yaml", "experiments/push_20n.yaml",
+        "experiments/drop_six_strut.yaml", "gaits/hand_tuned_sine.yaml"}) {
+    const Outcome outcome = Run(file);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.output.rfind("share/" + std::string(file) + ": good: ", 0), 0u)
+        << outcome.output;
+    EXPECT_LE(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 11) << outcome.output;
+    const std::size_t last = outcome.output.rfind('\n', outcome.output.size() - 2);
+    EXPECT_EQ(outcome.output.compare(last + 1, 11, "next: taut "), 0) << outcome.output;
+    EXPECT_GT(Run(std::string(file) + " --tables").output.size(), outcome.output.size());
+  }
+}
+
+TEST_F(CheckCommand, CablesWithTheSameTagsShareALine) {
+  const Outcome prism = Run("models/prism3.yaml");
+  for (const char* const line : {"\n  3 cables lower: ", "\n  3 cables upper: ",
+                                 "\n  3 cables side: length 0.1863 m, tension "
+                                 "20.000 N, stiffness 1000 N/m\n",
+                                 "\n  3 rods: axial force "}) {
+    EXPECT_NE(prism.output.find(line), std::string::npos) << line << "\n" << prism.output;
+  }
+  const Outcome spine = Run("models/tetraspine3.yaml --set segments=12");
+  EXPECT_NE(spine.output.find("\n  11 cables outer_right: "), std::string::npos) << spine.output;
+}
+
+TEST_F(CheckCommand, AFolderOfARunNamesItsInputs) {
+  std::filesystem::create_directories(folder_ + "/run");
+  std::ofstream(folder_ + "/run/inputs.yaml") << "taut: 1\n";
+  const Outcome refused = Run("'" + folder_ + "/run'");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_EQ(refused.errors, folder_ +
+                                "/run: error: the path is a directory, not a file (the "
+                                "experiment of this run is in " +
+                                folder_ + "/run/inputs.yaml)\n");
 }
 
 TEST_F(CheckCommand, QuietSaysNothingAboutAGoodFile) {

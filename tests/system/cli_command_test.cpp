@@ -111,6 +111,8 @@ TEST_F(CliCommand, WordsOfOtherProgramsNameTheCommand) {
                                                         {"simulate", "run"},
                                                         {"validate", "check"},
                                                         {"train", "learn"},
+                                                        {"identify", "fit"},
+                                                        {"tune", "learn"},
                                                         {"convert", "trace convert"}}) {
     const std::string refusal =
         "error: there is no command \"" + word + "\" (did you mean \"" + command + "\"?)";
@@ -271,7 +273,12 @@ TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
 }
 
 TEST_F(CliCommand, ListNamesWhatComesAlong) {
-  const test::CommandResult all = Taut({"list"});
+  const test::CommandResult brief = Taut({"list"});
+  EXPECT_EQ(brief.output.rfind("Shipped with taut: ", 0), 0u) << brief.output;
+  EXPECT_TRUE(brief.output.ends_with("\nnext: taut list models\n")) << brief.output;
+  EXPECT_LE(std::count(brief.output.begin(), brief.output.end(), '\n'), 11) << brief.output;
+  EXPECT_NE(Taut({"list", "models"}).output.find("\n  tetraspine3 "), std::string::npos);
+  const test::CommandResult all = Taut({"list", "--tables"});
   EXPECT_EQ(all.status, 0) << all.errors;
   for (const char* const part :
        {"models, in " TAUT_SOURCE_DIR "/share/models\n", "\n  tetraspine3 ", "\n  push_20n ",
@@ -298,7 +305,7 @@ TEST_F(CliCommand, ANewModelIsGood) {
             "Written: mine.yaml\nnext: taut view mine.yaml\n");
   const test::CommandResult checked = Taut({"check", "mine.yaml", "--strict"});
   EXPECT_EQ(checked.status, 0) << checked.errors;
-  EXPECT_NE(checked.output.find("Model mine: 3 bodies, 9 cables"), std::string::npos);
+  EXPECT_NE(checked.output.find("model mine, 3 bodies, 9 cables"), std::string::npos);
 }
 
 TEST_F(CliCommand, ANewExperimentRuns) {

@@ -50,11 +50,12 @@ TEST_F(CompareCommand, PassesWithinTheLimitAndFailsBeyondIt) {
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_NE(outcome.output.find("largest cable/*/tension_n: error -31.82 %"), std::string::npos)
       << outcome.output;
-  EXPECT_NE(outcome.output.find("\nPASS: within the limits\n"), std::string::npos);
+  EXPECT_EQ(outcome.output.rfind("PASS: within the limits\n", 0), 0u) << outcome.output;
+  EXPECT_EQ(outcome.output.find("rmse"), std::string::npos) << "tables are printed on request";
+  EXPECT_NE(Run("a.h5 b.csv --map map.json --tables").output.find("rmse"), std::string::npos);
   outcome = Run("a.h5 b.csv --map map.json --max_error_percent 31");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.output.find("\nFAIL: the largest cable/*/tension_n differs by -31.82 %"),
-            std::string::npos)
+  EXPECT_EQ(outcome.output.rfind("FAIL: the largest cable/*/tension_n differs by -31.82 %", 0), 0u)
       << outcome.output;
   outcome = Run("a.h5 b.csv --map map.json");
   EXPECT_EQ(outcome.status, 0) << "no limit, no verdict";
@@ -70,7 +71,13 @@ TEST_F(CompareCommand, AFolderOfARunStandsForItsTrace) {
   std::filesystem::copy_file(Path("a.h5"), Path("run/trace.h5"));
   const Outcome outcome = Run("run a.h5 --max_rmse 0");
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_NE(outcome.output.find("\nPASS: within the limits\n"), std::string::npos);
+  EXPECT_EQ(outcome.output.rfind("PASS: within the limits\nrun/trace.h5 and a.h5 are equal: 2 "
+                                 "channels, 101 rows\n",
+                                 0),
+            0u)
+      << outcome.output;
+  EXPECT_TRUE(outcome.output.ends_with("\nnext: taut report run/trace.h5 --compare a.h5\n"))
+      << outcome.output;
 }
 
 TEST_F(CompareCommand, JsonAloneIsOnStandardOutput) {

@@ -165,7 +165,7 @@ TEST(SummaryTable, IsWhatAPersonReads) {
   RunSummary summary = Summary();
   summary.drags = {{"scale", {1.5, 1.25, 1.75}}};
   EXPECT_EQ(SummaryTable(summary),
-            R"(push_20n: 60 s simulated in 0.125 s (480 times real time)
+            R"(push_20n: ok; 60 s simulated in 0.125 s (480 times real time)
 
                      before 25..30 s          during 35..40 s           after 50..60 s     whole
 tension [N]     mean     min     max     mean     min     max     mean     min     max       max
@@ -231,7 +231,7 @@ TEST(SummaryTable, SaysWhatWentWrongAndLeavesOutWhatWasNotReached) {
   summary.status.first_time_s = 36.5;
   for (CableSummary& cable : summary.cables) cable.max_force_n = cable.max_speed_m_per_s = 0.0;
   const std::string table = SummaryTable(summary);
-  EXPECT_NE(table.find("push_20n: 37 s simulated in 0.125 s (296 times real time), interrupted\n"
+  EXPECT_NE(table.find("push_20n: interrupted; 37 s simulated in 0.125 s (296 times real time)\n"
                        "WARNING: status bits 2 (first at 36.5 s)\n"),
             std::string::npos)
       << table;

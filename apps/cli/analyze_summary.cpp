@@ -1,0 +1,166 @@
+// Verdict and summary of the statics of `taut analyze`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analyze_names.h"
+#include "analyze_report.h"
+#include "member_groups.h"
+#include "table.h"
+
+namespace taut::cli {
+namespace {
+
+/// Result of all load cases together, from best to worst.
+enum class Standing { kStands, kMoves, kUnstable, kNoEquilibrium };
+
+Standing StandingOf(const CaseResult& result) {
+  if (!result.at.found) return Standing::kNoEquilibrium;
+  const bool negative = result.least_stiffness_n_per_m && *result.least_stiffness_n_per_m < 0;
+  if (negative || (result.modes && result.modes->unstable > 0)) return Standing::kUnstable;
+  if (result.modes && result.modes->mechanisms > 0) return Standing::kMoves;
+  return Standing::kStands;
+}
+
+/// Returns the worst load case; of equal ones the one with the least stiffness.
+const CaseResult& WorstOf(const std::vector<CaseResult>& cases) {
+  const auto stiffness = [](const CaseResult& one) {
+    return one.least_stiffness_n_per_m.value_or(INFINITY);
+  };
+  return *std::max_element(cases.begin(), cases.end(),
+                           [&](const CaseResult& a, const CaseResult& b) {
+                             const Standing of_a = StandingOf(a), of_b = StandingOf(b);
+                             return of_a != of_b ? of_a < of_b : stiffness(a) > stiffness(b);
+                           });
+}
+
+/// Returns how the described structure resists its mechanisms.
+std::string Prestressed(const ForceAnalysis& forces) {
+  const bool feasible = std::any_of(forces.self_stress.begin(), forces.self_stress.end(),
+                                    [](const SelfStress& s) { return s.feasible; });
+  if (!feasible || forces.mechanism_stiffness.empty()) return {};
+  return forces.mechanism_stiffness.front() > 0 ? "prestress-stable" : "not stable by prestress";
+}
+
+std::string Stiffness(const CaseResult& result) {
+  return result.least_stiffness_n_per_m
+             ? fmt::format("least stiffness {:.6g} N/m", *result.least_stiffness_n_per_m)
+             : std::string();
+}
+
+std::string VerdictOn(const AnalysisResult& result) {
+  const CaseResult& worst = WorstOf(result.cases);
+  const Standing standing = StandingOf(worst);
+  std::string text = result.robot.def.name;
+  switch (standing) {
+    case Standing::kStands:
+      text += " stands";
+      break;
+    case Standing::kMoves:
+      text += " stands, but mechanisms move freely";
+      break;
+    case Standing::kUnstable:
+      text += " does not stand: the equilibrium is unstable";
+      break;
+    case Standing::kNoEquilibrium:
+      text += " does not stand: no equilibrium";
+      break;
+  }
+  if (result.cases.size() > 1) text += " (load case " + worst.loads.name + ")";
+  std::string details;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty()) details += (details.empty() ? ": " : ", ") + part;
+  };
+  if (standing == Standing::kNoEquilibrium) return text + ": " + worst.at.why;
+  if (standing == Standing::kStands) add(Prestressed(result.forces));
+  add(Stiffness(worst));
+  return text + details;
+}
+
+std::string SelfStressLine(const ForceAnalysis& forces) {
+  std::string line = fmt::format("states of self-stress: {}, mechanisms: {}, rigid motions: {}",
+                                 forces.self_stress.size(), forces.mechanisms.size(), forces.rigid);
+  if (!forces.rank.clear()) line += "; the rank is uncertain";
+  return line;
+}
+
+std::string FormHint(const ForceAnalysis& forces) {
+  return LacksPrestress(forces) ? "no state of self-stress has all cables in tension"
+                                : std::string();
+}
+
+/// Returns the load case in one line: slack cables, safety, the lowest frequency.
+std::string CaseLine(const CaseResult& result) {
+  std::string line =
+      "load case " + result.loads.name + (result.loads.weight ? "" : ", without weight");
+  if (!result.at.found) return line + ": no equilibrium";
+  const auto slack = std::count_if(result.members.begin(), result.members.end(),
+                                   [](const MemberLoad& load) { return load.slack; });
+  line += slack == 0 ? std::string(": slack: none") : fmt::format(": slack: {}", slack);
+  if (const MemberLoad* const least = result.LeastSafe()) {
+    line += fmt::format(", least safety factor {} ({} of {})", SafetyFactorText(*least->Least()),
+                        least->LeastOf(), least->name);
+  }
+  if (!result.move.name.empty()) {
+    line += fmt::format(", largest displacement {:.4g} m of {}", result.move.distance_m,
+                        result.move.name);
+  }
+  if (!result.modes) return line;
+  for (const Mode& mode : result.modes->modes) {
+    if (mode.kind != Mode::Kind::kElastic) continue;
+    return line + fmt::format(", lowest frequency {:.4g} Hz", mode.frequency_hz);
+  }
+  return line;
+}
+
+std::string CablesLine(const CableGroup& group, const CaseResult& result) {
+  double low_n = INFINITY, high_n = -INFINITY;
+  for (const MemberLoad& load : result.members) {
+    if (load.kind != MemberKind::kCable) continue;
+    const auto cable = static_cast<std::size_t>(load.index);
+    if (std::find(group.cables.begin(), group.cables.end(), cable) == group.cables.end()) continue;
+    low_n = std::min(low_n, load.greatest_n), high_n = std::max(high_n, load.greatest_n);
+  }
+  return low_n > high_n ? std::string()
+                        : group.name + ": tension " + RangeText(low_n, high_n, 3, "N");
+}
+
+std::string BarsLine(MemberKind kind, const CaseResult& result) {
+  int count = 0;
+  double low_n = INFINITY, high_n = -INFINITY;
+  for (const MemberLoad& load : result.members) {
+    if (load.kind != kind) continue;
+    ++count, low_n = std::min(low_n, load.least_n), high_n = std::max(high_n, load.greatest_n);
+  }
+  if (count == 0) return {};
+  return Counted(count, NameOf(kind)) + ": axial force " + RangeText(low_n, high_n, 3, "N");
+}
+
+}  // namespace
+
+std::string AnalysisSummary(const AnalysisResult& result) {
+  CappedLines lines;
+  for (const std::string& note : result.notes) lines.Add(note);
+  lines.Add(SelfStressLine(result.forces));
+  lines.Add(FormHint(result.forces));
+  for (const CaseResult& one : result.cases) {
+    lines.Add(CaseLine(one));
+    if (one.open) {
+      lines.Add(
+          fmt::format("load case {}: {} forces are indeterminate (--tables lists their bounds)",
+                      one.loads.name, one.open->forces.undetermined));
+    }
+  }
+  const CaseResult& shown = WorstOf(result.cases);
+  if (shown.at.found) {
+    for (const CableGroup& group : GroupCables(result.robot, 4)) {
+      lines.Add(CablesLine(group, shown));
+    }
+    lines.Add(BarsLine(MemberKind::kBar, shown));
+    lines.Add(BarsLine(MemberKind::kRod, shown));
+  }
+  return Printable(VerdictOn(result)) + "\n" + lines.Text();
+}
+
+}  // namespace taut::cli
