@@ -274,7 +274,9 @@ def comparison(taut):
     arguments = ["runs/validation/push/ntrt/trace.h5", TRACE, "--map", "mappings/ntrt.json",
                  "--channels", "cable/*/elastic_n", "--tables"]
     shown = "taut compare " + " ".join(f"'{x}'" if "*" in x else x for x in arguments)
-    return f"$ {shown}\n{taut('compare', *arguments)}".rstrip()
+    text = taut("compare", *arguments)
+    tables = text[text.index("\na: ") + 1:text.rindex("\nnext: ")].rstrip()
+    return f"$ {shown}\n{tables}"
 
 
 def machine():
