@@ -8,17 +8,15 @@
 namespace taut::test {
 namespace {
 
-namespace fs = std::filesystem;
-
-const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+const std::string kHanging = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class Surroundings : public CommandTest {
  protected:
   /// Returns all files of the folder, with their contents.
   std::map<std::string, std::string> Files() const {
     std::map<std::string, std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-      const std::string name = fs::relative(entry.path(), folder_).string();
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+      const std::string name = std::filesystem::relative(entry.path(), folder_).string();
       if (name == "out.txt" || name == "err.txt") continue;
       files[name] = entry.is_regular_file() ? Read(entry.path().string()) : "";
     }
@@ -28,8 +26,8 @@ class Surroundings : public CommandTest {
 
 TEST_F(Surroundings, ChangeNoBitsOfARun) {
   const auto result = [&](const std::string& out, const std::function<void()>& before) {
-    const CommandResult run =
-        Taut({"run", kHang, "--duration_s", "0.5", "--csv", "--quiet", "--out", Path(out)}, before);
+    const CommandResult run = Taut(
+        {"run", kHanging, "--duration_s", "0.5", "--csv", "--quiet", "--out", Path(out)}, before);
     EXPECT_EQ(run.status, 0) << run.errors;
     const std::string summary = Read(Path(out + "/summary.json"));
     const std::string hash = "\"state_hash\": ";
