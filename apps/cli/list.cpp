@@ -19,7 +19,7 @@ namespace {
 
 struct ListArguments {
   std::string kind;
-  bool json = false, tables = false;
+  bool json = false;
 };
 
 void PrintLines(const std::vector<ShippedFile>& files) {
@@ -45,23 +45,6 @@ std::vector<std::string> NextOf(const ShippedFile& file) {
   return {"check", name};
 }
 
-/// Prints the number of files of each kind, with examples.
-void PrintKinds(const std::vector<ShippedFile>& files) {
-  fmt::print("Shipped with taut: {} files\n", files.size());
-  for (const std::string& kind : ShippedKinds()) {
-    constexpr std::size_t kMostNamed = 3;
-    std::size_t count = 0;
-    std::string names;
-    for (const ShippedFile& file : files) {
-      if (file.kind != kind || ++count > kMostNamed) continue;
-      names += (names.empty() ? "" : ", ") + file.head.name;
-    }
-    if (count == 0) continue;
-    fmt::print("  {:>3} {}, in {}: {}{}\n", count, kind, *ShippedFolderOf(kind), names,
-               count > kMostNamed ? ", ..." : "");
-  }
-}
-
 int List(const ListArguments& args) {
   Diagnostics found;
   std::vector<ShippedFile> files;
@@ -76,14 +59,9 @@ int List(const ListArguments& args) {
                "next to the folder of the command)\n");
     return kFailed;
   }
-  if (!args.json && args.kind.empty() && !args.tables) {
-    PrintKinds(files);
-    SayNext({"list", "models"});
-    return kOk;
-  }
   if (!args.json) {
     PrintLines(files);
-    if (!args.kind.empty()) SayNext(NextOf(files.front()));
+    SayNext(NextOf(files.front()));
     return kOk;
   }
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -107,7 +85,6 @@ void AddList(CLI::App& app, int& exit_code) {
       ->option_text(Alternatives(ShippedKinds()))
       ->check(OneOf(ShippedKinds()));
   list->add_flag("--json", args->json, "JSON instead of text");
-  list->add_flag("--tables", args->tables, "List the files of all kinds");
   list->footer(
       "Examples:\n"
       "  taut list\n"

@@ -90,7 +90,7 @@ std::string RangeText(double min, double max, int digits, const std::string& uni
 }
 
 std::string Counted(long long count, const std::string& one) {
-  return fmt::format("{} {}{}", count, one, count == 1 ? "" : "s");
+  return fmt::format("{} {}{}", count, one, count == 1 ? "" : one.ends_with("sh") ? "es" : "s");
 }
 
 void CappedLines::Add(const std::string& line) {

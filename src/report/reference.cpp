@@ -71,13 +71,19 @@ std::string LargestDifference(const RunSummary& run, const ReferenceSpec& refere
                      OurValue(run, reference, worst->cable), worst->force_n);
 }
 
+/// Returns source, quantity and phase of a comparison.
+std::string SubjectOf(const ReferenceSpec& reference) {
+  return fmt::format("compared with {}: {} {} of {} cables, {}", reference.source,
+                     StatisticName(reference), QuantityName(reference), reference.values.size(),
+                     reference.phase.empty() ? "whole run" : reference.phase);
+}
+
 }  // namespace
 
 std::vector<std::string> ReferenceDifferences(const RunSummary& run) {
   std::vector<std::string> lines;
   for (const ReferenceSpec& reference : run.references) {
-    lines.push_back(
-        fmt::format("compared with {}: {}", reference.source, LargestDifference(run, reference)));
+    lines.push_back(SubjectOf(reference) + ": " + LargestDifference(run, reference));
   }
   return lines;
 }
@@ -85,10 +91,7 @@ std::vector<std::string> ReferenceDifferences(const RunSummary& run) {
 std::string ReferenceLines(const RunSummary& run) {
   std::string out;
   for (const ReferenceSpec& reference : run.references) {
-    out += fmt::format("\ncompared with {}: {} {} of {} cables, {}\n  {}", reference.source,
-                       StatisticName(reference), QuantityName(reference), reference.values.size(),
-                       reference.phase.empty() ? "whole run" : reference.phase,
-                       LargestDifference(run, reference));
+    out += "\n" + SubjectOf(reference) + "\n  " + LargestDifference(run, reference);
   }
   return out.empty() ? out : out + "\n";
 }

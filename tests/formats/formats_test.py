@@ -65,7 +65,7 @@ def ControllersActOnTheTrace(folder):
     for trace in ("run/trace.h5", "run/trace.csv"):
         taut(folder, "run", "experiment.yaml", "--replay", trace, "--quiet", "--out", "replayed")
         rows = taut(folder, "compare", "replayed/trace.h5", trace, "--channels", "cable/*/tension_n",
-                    "--max_rmse", "0")
+                    "--max_rmse", "0", "--tables")
         assert "side_3" in rows, rows
 
 

@@ -147,8 +147,7 @@ TEST_F(AnalyzeFlags, PosesThatAreNoneAreNamed) {
           "half.csv: error: the trace has no channel body/hanger/orientation_z");
   Refuses({"analyze", "hanger.yaml", "--pose", "none.csv"}, 3, "none.csv");
   Refuses({"analyze", "hanger.yaml", "--pose", "nowhere.csv"}, 3, "nowhere.csv");
-  Refuses({"analyze", "hanger.yaml", "--pose", "."}, 3,
-          "this is a folder (use its trace: ./trace.h5)");
+  Refuses({"analyze", "hanger.yaml", "--pose", "."}, 3, "./trace.h5: error: cannot open");
   Refuses({"analyze", "hanger.yaml", "--pose", "hanger.yaml"}, 3,
           "contains no recorded pose (expected a trace");
   Refuses({"analyze", "hanger.yaml", "--pose", "seen.csv", "--at_s", "2"}, 3,

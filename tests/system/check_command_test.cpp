@@ -96,7 +96,7 @@ TEST_F(CheckCommand, PrintsAVerdictATenLineSummaryAndTheNextCommand) {
 TEST_F(CheckCommand, CablesWithTheSameTagsShareALine) {
   const Outcome prism = Run("models/prism3.yaml");
   for (const char* const line : {"\n  3 cables lower: ", "\n  3 cables upper: ",
-                                 "\n  3 cables side: length 0.1863 m, tension "
+                                 "\n  3 cables side: length 0.2066 m, tension "
                                  "20.000 N, stiffness 1000 N/m\n",
                                  "\n  3 rods: axial force "}) {
     EXPECT_NE(prism.output.find(line), std::string::npos) << line << "\n" << prism.output;

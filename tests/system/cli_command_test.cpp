@@ -273,12 +273,9 @@ TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
 }
 
 TEST_F(CliCommand, ListNamesWhatComesAlong) {
-  const test::CommandResult brief = Taut({"list"});
-  EXPECT_EQ(brief.output.rfind("Shipped with taut: ", 0), 0u) << brief.output;
-  EXPECT_TRUE(brief.output.ends_with("\nnext: taut list models\n")) << brief.output;
-  EXPECT_LE(std::count(brief.output.begin(), brief.output.end(), '\n'), 11) << brief.output;
   EXPECT_NE(Taut({"list", "models"}).output.find("\n  tetraspine3 "), std::string::npos);
-  const test::CommandResult all = Taut({"list", "--tables"});
+  const test::CommandResult all = Taut({"list"});
+  EXPECT_NE(all.output.find("\nnext: taut view models/"), std::string::npos) << all.output;
   EXPECT_EQ(all.status, 0) << all.errors;
   for (const char* const part :
        {"models, in " TAUT_SOURCE_DIR "/share/models\n", "\n  tetraspine3 ", "\n  push_20n ",

@@ -130,6 +130,18 @@ class TreeBuilder : public YAML::EventHandler {
     Place(std::move(value), at);
   }
 
+  /// Refuses `radius_m: 0,1` in a flow map, where `1` is a key without a value.
+  void RefuseDecimalComma(const Value& map, const Entry& entry, const Value& value) {
+    const bool is_number = entry.key.find_first_not_of("0123456789") == std::string::npos;
+    if (!is_number || value.kind != Value::Kind::kNull || map.entries.empty()) return;
+    const Value& before = *map.entries.back().value;
+    if (!IsRightAfter(before, entry.key_at)) return;
+    out_.Error("yaml.decimal_comma", entry.key_at,
+               "\"" + before.text + "," + entry.key + "\" is not a number",
+               "write decimal fractions with a point, and a space after each comma");
+    throw StopReading{};
+  }
+
   /// Adds a complete value to the innermost open one.
   void Place(ValuePtr value, const SourceRef& at) {
     if (open_.empty()) {
@@ -151,6 +163,7 @@ class TreeBuilder : public YAML::EventHandler {
       }
       parent.entry = Entry{value->text, at, nullptr};
     } else {
+      RefuseDecimalComma(*parent.value, *parent.entry, *value);
       parent.entry->value = std::move(value);
       parent.value->entries.push_back(std::move(*parent.entry));
       parent.entry.reset();

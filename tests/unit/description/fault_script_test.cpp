@@ -117,7 +117,7 @@ TEST_F(FaultFile, RangesAreChecked) {
 
 TEST_F(FaultFile, AllMistakesAreSaidAtOnce) {
   EXPECT_EQ(Wrong("{kind: cut_cable, at_s: soon, cable: x, boards: 1, for_s: 3}").empty(), false);
-  EXPECT_EQ(out_.items().size(), 4U) << out_.Format();
+  EXPECT_EQ(out_.items().size(), 3U) << out_.Format();
 }
 
 TEST(FaultScripts, ThatAreShippedLoad) {

@@ -40,7 +40,6 @@ TEST(ModelBuildErrors, BuildersAreWellFormed) {
           "{at: 1}}\n")),
       "robot.yaml:12:5: error: key.missing \"match\"\n"
       "robot.yaml:13:5: error: key.one_of_missing point_mass\n"
-      "robot.yaml:14:5: error: key.one_of_missing point_mass\n"
       "robot.yaml:14:18: error: key.unknown \"rods\"\n"
       "robot.yaml:15:50: error: key.both_given\n"
       "robot.yaml:16:25: error: key.unknown \"at\"\n");

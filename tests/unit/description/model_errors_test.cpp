@@ -35,7 +35,7 @@ TEST(ModelErrors, AMisspelledKeyIsOneError) {
   misspelled.replace(misspelled.find("stiffness"), 9, "stifness");
   EXPECT_EQ(coded(misspelled), "key.unknown \"stifness_n_per_m\"\n");
   EXPECT_EQ(coded(TwoRods("rest_length_m: 0.05, actuator: {max_sped_m_per_s: 1}")),
-            "key.unknown \"max_sped_m_per_s\"\n");
+            "key.unknown \"max_sped_m_per_s\" cable.actuator\n");
   EXPECT_EQ(coded(OneRod("{radius_mm: 4, mass_kg: 1}")), "key.unknown \"radius_mm\"\n");
   // Other keys of the same map are still missing, and errors at other places are independent.
   EXPECT_EQ(coded(OneRod("{radius: 4}")),
@@ -156,7 +156,6 @@ TEST(ModelErrors, ActuatorsSayWhatTheyAre) {
   EXPECT_EQ(CodedErrors(TwoRods("prestress_n: 1, actuator: {ideal: true, max_force_n: 3}")),
             "robot.yaml:11:79: error: actuator.ideal_has_no_limits\n");
   EXPECT_EQ(CodedErrors(TwoRods("prestress_n: 1, actuator: {max_speed: 3}")),
-            "robot.yaml:11:78: error: actuator.limits_missing cable.actuator dc_motor\n"
             "robot.yaml:11:79: error: key.unknown \"max_speed\" cable.actuator\n");
 }
 
@@ -184,7 +183,6 @@ TEST(ModelErrors, NodesAndPairsAreWellFormed) {
                   "{tags: [x]}, 7]\nbuilders: []\n"),
       "robot.yaml:4:12: error: value.wrong_kind nodes.a at_m\n"
       "robot.yaml:4:15: error: name.bad \"b.c\"\n"
-      "robot.yaml:4:34: error: key.missing nodes.d \"at_m\"\n"
       "robot.yaml:4:35: error: key.unknown \"at\" nodes.d\n"
       "robot.yaml:4:82: error: node.fixed_to_itself \"e\"\n"
       "robot.yaml:5:17: error: pair.few_nodes pairs.nodes 2 1\n"
@@ -265,7 +263,6 @@ TEST(ModelErrors, RotationsAreWellFormed) {
   EXPECT_EQ(rotate("{axis: z}"),
             "robot.yaml:7:33: error: structure.rotate needs the key \"angle_rad\"\n");
   EXPECT_EQ(rotate("{axis: z, angle_deg: 90}"),
-            "robot.yaml:7:33: error: structure.rotate needs the key \"angle_rad\"\n"
             "robot.yaml:7:43: error: unknown key \"angle_deg\" in structure.rotate (write "
             "\"angle_rad\", and the value times pi / 180)\n");
   EXPECT_EQ(rotate("{axis: [0, 0, 0], angle_rad: 1}"),
@@ -343,7 +340,6 @@ TEST(ModelErrors, AllOfThemAtOnce) {
   EXPECT_EQ(errors,
             "robot.yaml:4:17: error: parameters.x: division by zero\n"
             "robot.yaml:5:40: error: nodes.c must have 3 numbers, got 2\n"
-            "robot.yaml:6:39: error: pairs needs one of nodes, each, route\n"
             "robot.yaml:6:40: error: unknown key \"node\" in pairs (did you mean \"nodes\"?)\n"
             "robot.yaml:7:41: error: rod.radius_m must be positive, got -1\n"
             "robot.yaml:7:101: error: cable.stiffness_n_per_m must be positive, got 0\n");

@@ -133,7 +133,7 @@ TEST_F(StudyFile, AllErrorsAreSaidAtOnce) {
   EXPECT_FALSE(Load(text));
   const std::string all = out_.Format();
   for (const char* part :
-       {"unknown key \"nam\"", "needs the key \"name\"", "unknown key \"hig\"",
+       {"unknown key \"nam\"", "unknown key \"hig\"",
         "worlds.friction must be below 1, got 1.5 (0.2 means factors from 0.8 to 1.2)",
         "search.evaluations",
         "objective.from_s must be before the end of the experiment (the end is at 60 s)"}) {
