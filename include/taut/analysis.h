@@ -112,9 +112,10 @@ struct Tangent {
   std::vector<std::string> left_out;  ///< Parts of the model that are ignored, in words.
 };
 
-/// Computes stiffness and mass in the described pose under these loads. If forces do not balance,
-/// `stiffness` is the second derivative of the energy with rotations as exp(theta), which differs
-/// from the derivative of the forces by half of the residual (docs/theory/statics.md, eq. 4).
+/// Computes stiffness and mass in the described pose under these loads. If the loads are not in
+/// equilibrium, `stiffness` is the Hessian of the energy in rotation vectors theta (rotation
+/// exp(theta)). It is symmetric; the Jacobian of forces and moments differs from it by the
+/// unbalanced moments in eq. 4 of docs/theory/statics.md.
 Tangent FindTangent(const ModelDef& def, const LoadCaseSpec& loads = {});
 
 /// Vibration mode, rigid motion or mechanism.
@@ -141,8 +142,8 @@ struct Modes {
   std::string why;          ///< Reason, if there are no modes.
   std::vector<Mode> modes;  ///< Rigid motions first, then by ascending eigenvalue.
   int rigid = 0, mechanisms = 0, unstable = 0;
-  /// Largest magnitude of an eigenvalue that counts as zero, and smallest of the others, without
-  /// rigid motions [1/s^2]; 0 if there are none.
+  /// Largest magnitude of the eigenvalues that count as zero, and smallest magnitude of the others,
+  /// both without those of rigid motions [1/s^2]. 0: there is no such eigenvalue.
   double largest_dropped = 0, smallest_kept = 0;
 };
 

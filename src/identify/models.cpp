@@ -8,7 +8,8 @@
 namespace taut::identify {
 namespace {
 
-/// Number of cached results; columns that change offsets only need no new computation.
+/// Largest number of cached simulation results. Jacobian columns of parameters that change only
+/// offsets of measurements then need no new simulation.
 constexpr std::size_t kMostKept = 256;
 
 bool ActsOn(const FitEstimate& e, std::size_t experiment) {

@@ -32,8 +32,8 @@ ExperimentSpec Unmoved(const ExperimentSpec& experiment, std::vector<std::string
   return e;
 }
 
-/// Collects the cables under impedance control and the steps of a tick. Returns false, with `why`,
-/// if the controllers have no common tick.
+/// Collects the cables under impedance control and the simulation steps in a control period.
+/// Returns false and sets `why` if the controllers do not share one period and phase.
 bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
   double period_s = 0;
   for (const ControllerSpec& c : e.controllers) {

@@ -10,7 +10,8 @@
 
 namespace taut::linear {
 
-/// Tag of plain numbers that keeps their functions separate from the functions of the step.
+/// Gives numbers without derivatives (`Plain`) a type of their own, so that their template
+/// instances are not shared with those of the step, which are compiled with other options.
 struct OutsideOfSteps {};
 using Plain = simd::Wide<1, OutsideOfSteps>;
 using simd::Dual;

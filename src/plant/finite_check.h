@@ -27,8 +27,8 @@ class FiniteCheck {
   /// them: subject and verb of the message. `time_s` returns the time of a lane.
   void PutBack(const Commands& commands, Lanes among, const std::function<double(int)>& time_s,
                std::string_view who);
-  /// Refuses readings that are not finite, except those with a fault bit. Returns the lanes of
-  /// `among` without such readings.
+  /// Reports an error for each reading that is not finite, unless its fault bit is set. Returns the
+  /// lanes of `among` in which no reading was refused.
   Lanes WithReadings(const Observation& seen, Lanes among);
   /// Refuses numbers that a program sets for an element ("node", "tip") if one of them is not
   /// finite. Returns whether all are finite.

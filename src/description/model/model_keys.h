@@ -89,7 +89,7 @@ void Keys(Io& io, Like<RouteText> auto& r) {
      "Pulley: whole turns in addition to the shortest way around. Drum: all wound turns.");
 }
 void Check(const MapReader& map, RouteText& element);
-/// Reads the short form, a node's name. Returns false for a map.
+/// Reads a route element in its short form, the name of a node. Returns false if it is a map.
 bool ReadShort(const Value& value, const std::string& path, const Scope& scope, RouteText& out);
 
 template <class Io>

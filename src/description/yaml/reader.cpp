@@ -229,8 +229,8 @@ void MapReader::Know(std::string_view key) {
 
 namespace {
 
-/// Returns the fix for an unknown key: the same quantity in the unit of the files, a synonym, or
-/// the key with the most similar name.
+/// Returns the fix for an unknown key: the same quantity in taut's unit (`_mm`: `_m`), a synonym,
+/// or the key with the most similar name.
 KeyFix FixOf(const std::string& key, const std::vector<std::string>& known) {
   struct Unit {
     std::string_view theirs, ours, factor;
