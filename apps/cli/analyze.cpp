@@ -133,8 +133,7 @@ bool CheckSupportsOf(const std::string& file, const ModelDef& def,
 /// Returns the words of this command for the same structure, with other flags.
 std::vector<std::string> Again(const AnalyzeArguments& args,
                                const std::vector<std::string>& flags) {
-  std::vector<std::string> words{"analyze", args.path};
-  for (const std::string& one : args.set) words.insert(words.end(), {"--set", one});
+  std::vector<std::string> words = WithOverrides({"analyze", args.path}, args.set);
   for (const std::string& one : args.load_cases) words.insert(words.end(), {"--load_case", one});
   if (!args.pose.file.empty()) words.insert(words.end(), {"--pose", args.pose.file});
   if (args.pose.at_s) words.insert(words.end(), {"--at_s", fmt::format("{}", *args.pose.at_s)});

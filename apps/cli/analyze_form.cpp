@@ -49,20 +49,16 @@ std::string FormSummary(const RobotSpec& before, const Form& form, bool weight) 
   for (const CableGroup& group : GroupCables(before, 6)) {
     const auto range = [&](const std::vector<CableDef>& cables, auto quantity, int digits,
                            const char* unit) {
-      double low = INFINITY, high = -INFINITY;
-      for (const std::size_t c : group.cables) {
-        low = std::min(low, quantity(cables[c])), high = std::max(high, quantity(cables[c]));
-      }
-      return RangeText(low, high, digits, unit);
+      return RangeOver(group, [&](std::size_t c) { return quantity(cables[c]); })
+          .Text(digits, unit);
     };
     const std::vector<CableDef>& now = form.robot.def.cables;
     lines.Add(fmt::format(
         "{}: length {}, was {}; tension {}", group.name, range(now, CableLength, 4, "m"),
         range(before.def.cables, CableLength, 4, "m"), range(now, CableTension, 3, "N")));
   }
-  return Printable(fmt::format("{}: equilibrium shape found{}\n", before.def.name,
-                               weight ? ", with weight" : ", without weight")) +
-         lines.Text();
+  return lines.Text(fmt::format("{}: equilibrium shape found{}", before.def.name,
+                                weight ? ", with weight" : ", without weight"));
 }
 
 }  // namespace

@@ -92,21 +92,16 @@ std::string InverseSummary(const RobotSpec& robot, const std::vector<Answer>& an
                           forces.at_bound.size()));
     for (const CableGroup& group : GroupCables(robot, answers.size() > 1 ? 2 : 5)) {
       const auto range = [&](const std::vector<double>& of, int digits, const char* unit) {
-        double low = INFINITY, high = -INFINITY;
-        for (const std::size_t c : group.cables) {
-          low = std::min(low, of[c]), high = std::max(high, of[c]);
-        }
-        return RangeText(low, high, digits, unit);
+        return RangeOver(group, [&](std::size_t c) { return of[c]; }).Text(digits, unit);
       };
       lines.Add(fmt::format("{}: tension {}, command {}", group.name,
                             range(forces.cable_tension_n, 3, "N"),
                             range(forces.command_m, 6, "m")));
     }
   }
-  return Printable(fmt::format("{}: {} the described pose (least {})\n", robot.def.name,
-                               all ? "tensions hold" : "no tensions hold",
-                               HoldingCostName(args.minimise))) +
-         lines.Text();
+  return lines.Text(fmt::format("{}: {} the described pose (least {})", robot.def.name,
+                                all ? "tensions hold" : "no tensions hold",
+                                HoldingCostName(args.minimise)));
 }
 
 Json CablesJson(const ModelDef& def, const HoldingForces& forces) {

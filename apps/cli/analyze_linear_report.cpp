@@ -143,9 +143,8 @@ std::string LinearSummary(const LinearResult& result) {
                           response.output, response.input, response.unit, r.magnitude.front(),
                           r.frequency_hz.front(), *peak, r.frequency_hz[at]));
   }
-  return Printable(fmt::format("{}: linearized about its equilibrium, {}\n", result.model,
-                               counts.grow > 0 ? "unstable" : "no mode grows")) +
-         lines.Text();
+  return lines.Text(fmt::format("{}: linearized about its equilibrium, {}", result.model,
+                                counts.grow > 0 ? "unstable" : "no mode grows"));
 }
 
 std::string LinearTables(const LinearResult& result, int most_modes) {

@@ -52,21 +52,10 @@ std::string Stiffness(const CaseResult& result) {
 std::string VerdictOn(const AnalysisResult& result) {
   const CaseResult& worst = WorstOf(result.cases);
   const Standing standing = StandingOf(worst);
-  std::string text = result.robot.def.name;
-  switch (standing) {
-    case Standing::kStands:
-      text += " stands";
-      break;
-    case Standing::kMoves:
-      text += " stands, but mechanisms move freely";
-      break;
-    case Standing::kUnstable:
-      text += " does not stand: the equilibrium is unstable";
-      break;
-    case Standing::kNoEquilibrium:
-      text += " does not stand: no equilibrium";
-      break;
-  }
+  constexpr const char* kTexts[] = {" stands", " stands, but mechanisms move freely",
+                                    " does not stand: the equilibrium is unstable",
+                                    " does not stand: no equilibrium"};  // by Standing
+  std::string text = result.robot.def.name + kTexts[static_cast<int>(standing)];
   if (result.cases.size() > 1) text += " (load case " + worst.loads.name + ")";
   std::string details;
   const auto add = [&](const std::string& part) {
@@ -115,26 +104,25 @@ std::string CaseLine(const CaseResult& result) {
 }
 
 std::string CablesLine(const CableGroup& group, const CaseResult& result) {
-  double low_n = INFINITY, high_n = -INFINITY;
+  Range tension;
   for (const MemberLoad& load : result.members) {
     if (load.kind != MemberKind::kCable) continue;
     const auto cable = static_cast<std::size_t>(load.index);
     if (std::find(group.cables.begin(), group.cables.end(), cable) == group.cables.end()) continue;
-    low_n = std::min(low_n, load.greatest_n), high_n = std::max(high_n, load.greatest_n);
+    tension.Add(load.greatest_n);
   }
-  return low_n > high_n ? std::string()
-                        : group.name + ": tension " + RangeText(low_n, high_n, 3, "N");
+  return tension.empty() ? std::string() : group.name + ": tension " + tension.Text(3, "N");
 }
 
 std::string BarsLine(MemberKind kind, const CaseResult& result) {
   int count = 0;
-  double low_n = INFINITY, high_n = -INFINITY;
+  Range force;
   for (const MemberLoad& load : result.members) {
     if (load.kind != kind) continue;
-    ++count, low_n = std::min(low_n, load.least_n), high_n = std::max(high_n, load.greatest_n);
+    ++count, force.Add(load.least_n), force.Add(load.greatest_n);
   }
   if (count == 0) return {};
-  return Counted(count, NameOf(kind)) + ": axial force " + RangeText(low_n, high_n, 3, "N");
+  return Counted(count, NameOf(kind)) + ": axial force " + force.Text(3, "N");
 }
 
 }  // namespace
@@ -160,7 +148,7 @@ std::string AnalysisSummary(const AnalysisResult& result) {
     lines.Add(BarsLine(MemberKind::kBar, shown));
     lines.Add(BarsLine(MemberKind::kRod, shown));
   }
-  return Printable(VerdictOn(result)) + "\n" + lines.Text();
+  return lines.Text(VerdictOn(result));
 }
 
 }  // namespace taut::cli

@@ -160,8 +160,7 @@ int Check(const CheckArguments& args) {
       if (experiment) fmt::print("\n{}", ExperimentTables(*experiment));
       fmt::print("\n{}\n", RobotTables(*robot));
     }
-    std::vector<std::string> next{experiment ? "run" : "view", args.path};
-    for (const std::string& one : args.set) next.insert(next.end(), {"--set", one});
+    auto next = WithOverrides({experiment ? "run" : "view", args.path}, args.set);
     if (args.settled && !experiment) next.push_back("--settled");
     SayNext(next);
   }

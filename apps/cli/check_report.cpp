@@ -226,17 +226,8 @@ std::string ExperimentTables(const ExperimentSpec& experiment) {
   std::string text = fmt::format("Experiment {}: {:g} s in steps of {:g} s, {}\n", experiment.name,
                                  experiment.duration_s, LongestStep(experiment),
                                  Counted(experiment.controllers.size(), "controller"));
-  std::map<CableScheme, int> schemes;
-  for (const CableScheme scheme : SchemesOf(experiment)) ++schemes[scheme];
-  if (!schemes.empty()) {
-    text += "Cables per integration scheme:";
-    const char* separator = " ";
-    for (const auto& [scheme, count] : schemes) {
-      text += fmt::format("{}{} {}", separator, count, CableSchemeName(scheme));
-      separator = ", ";
-    }
-    text += "\n";
-  }
+  const std::string schemes = SchemesLine(experiment);
+  if (!schemes.empty()) text += schemes + "\n";
   const std::vector<NodeDef>& nodes = experiment.robot.def.nodes;
   Table table({"kind", "name", "target", "time"});
   for (const ControllerSpec& controller : experiment.controllers) {

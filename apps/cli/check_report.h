@@ -15,6 +15,10 @@ namespace taut::cli {
 std::string CheckSummary(const std::string& path, const RobotSpec& robot,
                          const ExperimentSpec* experiment, const StartChange* settled);
 
+/// Formats the numbers of cables per integration scheme as one line without a line end; empty
+/// without cables.
+std::string SchemesLine(const ExperimentSpec& experiment);
+
 /// Formats the environment of an experiment as one line without a line end; empty without one.
 std::string EnvironmentLine(const ExperimentSpec& experiment);
 

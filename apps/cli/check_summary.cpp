@@ -16,13 +16,12 @@
 namespace taut::cli {
 namespace {
 
-constexpr std::size_t kMostGroups = 6;  ///< More lines are no summary.
+constexpr std::size_t kMostGroups = 6;  ///< Limit of the groups in a summary.
 
 std::string Contents(const ModelDef& def) {
-  return fmt::format(
-      "{}, {}, {}; moving mass {:.6f} kg",
-      def.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", def.bodies.size()),
-      Counted(def.cables.size(), "cable"), Counted(def.nodes.size(), "node"), TotalMass(def));
+  return fmt::format("{}, {}, {}; moving mass {:.6f} kg", Counted(def.bodies.size(), "body"),
+                     Counted(def.cables.size(), "cable"), Counted(def.nodes.size(), "node"),
+                     TotalMass(def));
 }
 
 std::string Events(const ExperimentSpec& experiment) {
@@ -37,25 +36,10 @@ std::string Events(const ExperimentSpec& experiment) {
   return text.empty() ? text : "events: " + text;
 }
 
-std::string Schemes(const ExperimentSpec& experiment) {
-  std::map<CableScheme, int> counts;
-  for (const CableScheme scheme : SchemesOf(experiment)) ++counts[scheme];
-  std::string text;
-  for (const auto& [scheme, count] : counts) {
-    text += fmt::format("{}{} {}", text.empty() ? "cables per integration scheme: " : ", ", count,
-                        CableSchemeName(scheme));
-  }
-  return text;
-}
-
 std::string GroupLine(const ModelDef& def, const CableGroup& group) {
   const auto range = [&](auto quantity, int digits, const char* unit) {
-    double low = INFINITY, high = -INFINITY;
-    for (const std::size_t c : group.cables) {
-      low = std::min(low, quantity(def.cables[c]));
-      high = std::max(high, quantity(def.cables[c]));
-    }
-    return RangeText(low, high, digits, unit);
+    return RangeOver(group, [&](std::size_t c) { return quantity(def.cables[c]); })
+        .Text(digits, unit);
   };
   return fmt::format(
       "{}: length {}, tension {}, stiffness {}", group.name, range(CableLength, 4, "m"),
@@ -64,15 +48,12 @@ std::string GroupLine(const ModelDef& def, const CableGroup& group) {
 }
 
 std::string RodLine(const ModelDef& def, const std::vector<JointLoad>& joints) {
-  double low = INFINITY, high = -INFINITY;
+  Range force;
   const std::vector<StrutForce> struts = StrutForces(def, StartForces(def, joints));
-  for (const StrutForce& strut : struts) {
-    low = std::min(low, strut.axial.middle_n);
-    high = std::max(high, strut.axial.middle_n);
-  }
+  for (const StrutForce& strut : struts) force.Add(strut.axial.middle_n);
   if (struts.empty()) return {};
   return fmt::format("{}: axial force {} (tension positive)", Counted(struts.size(), "rod"),
-                     RangeText(low, high, 3, "N"));
+                     force.Text(3, "N"));
 }
 
 /// Returns the largest net force of cables, weight and joints on a body; the ground, which may
@@ -94,6 +75,17 @@ std::string NetLine(const ModelDef& def, const std::vector<JointLoad>& joints) {
 
 }  // namespace
 
+std::string SchemesLine(const ExperimentSpec& experiment) {
+  std::map<CableScheme, int> counts;
+  for (const CableScheme scheme : SchemesOf(experiment)) ++counts[scheme];
+  std::string text;
+  for (const auto& [scheme, count] : counts) {
+    text += fmt::format("{}{} {}", text.empty() ? "Cables per integration scheme: " : ", ", count,
+                        CableSchemeName(scheme));
+  }
+  return text;
+}
+
 std::string EnvironmentLine(const ExperimentSpec& experiment) {
   if (!experiment.environment) return {};
   const double period_s = experiment.environment->period_s;
@@ -113,7 +105,7 @@ std::string CheckSummary(const std::string& path, const RobotSpec& robot,
                            experiment->duration_s, LongestStep(*experiment),
                            Counted(experiment->controllers.size(), "controller"));
     lines.Add(fmt::format("model {}: {}", def.name, Contents(def)));
-    lines.Add(Schemes(*experiment));
+    lines.Add(SchemesLine(*experiment));
     lines.Add(Events(*experiment));
     lines.Add(EnvironmentLine(*experiment));
   } else {
@@ -128,7 +120,7 @@ std::string CheckSummary(const std::string& path, const RobotSpec& robot,
     lines.Add(RodLine(def, joints));
     lines.Add(NetLine(def, joints));
   }
-  return Printable(verdict) + "\n" + lines.Text();
+  return lines.Text(verdict);
 }
 
 }  // namespace taut::cli

@@ -47,11 +47,8 @@ std::optional<Trace> Load(const std::string& path, const std::string& map, Diagn
 
 /// Prints the verdict and the summary of a comparison, and its tables on request.
 void PrintComparison(const Comparison& comparison, const CompareArguments& given) {
-  const std::vector<std::string> all = ComparisonLines(comparison, given.path_a, given.path_b);
-  fmt::print("{}\n", Printable(all.front()));
-  CappedLines lines;
-  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
-  fmt::print("{}", lines.Text());
+  const std::vector<std::string> lines = ComparisonLines(comparison, given.path_a, given.path_b);
+  fmt::print("{}", CappedLines(lines).Text(lines.front()));
   if (!given.tables) return;
   fmt::print("\n{}\n", ComparisonTable(comparison, given.path_a, given.path_b));
 }

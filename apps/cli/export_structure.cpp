@@ -164,36 +164,33 @@ std::string JsonOf(const ModelDef& def, const PinJointed& s) {
 }
 
 /// Returns the range of a quantity over the bars or over the strings.
-template <class Quantity>
-std::string RangeOf(const PinJointed& s, bool bars, const Quantity& quantity, const char* unit) {
-  double low = INFINITY, high = -INFINITY;
+std::string RangeOf(const PinJointed& s, bool bars, double PinMember::*quantity, const char* unit) {
+  Range range;
   for (const PinMember& m : s.members) {
-    if ((m.kind != PinMember::Kind::kString) != bars) continue;
-    low = std::min(low, quantity(m)), high = std::max(high, quantity(m));
+    if ((m.kind != PinMember::Kind::kString) == bars) range.Add(m.*quantity);
   }
-  return RangeText(low, high, 3, unit);
+  return range.Text(3, unit);
 }
 
 std::string StructureSummary(const ModelDef& def, const PinJointed& s) {
   const auto bars = static_cast<std::size_t>(s.bars);
   const std::size_t strings = s.members.size() - bars;
-  std::string text = fmt::format("{}: nodes: {}, bars: {}, strings: {}, clusters of strings: {}\n",
-                                 def.name, s.nodes.size(), bars, strings, s.clusters.size() - bars);
+  const std::string verdict =
+      fmt::format("{}: nodes: {}, bars: {}, strings: {}, clusters of strings: {}", def.name,
+                  s.nodes.size(), bars, strings, s.clusters.size() - bars);
   CappedLines lines;
   const auto add = [&](const char* what, bool of_bars, std::size_t count) {
     if (count == 0) return;
-    lines.Add(fmt::format(
-        "{}: length {}, force {}, force density {}", what,
-        RangeOf(
-            s, of_bars, [](const PinMember& m) { return m.length_m; }, "m"),
-        RangeOf(
-            s, of_bars, [](const PinMember& m) { return m.force_n; }, "N"),
-        RangeOf(
-            s, of_bars, [](const PinMember& m) { return m.force_density_n_per_m; }, "N/m")));
+    const auto range = [&](double PinMember::*quantity, const char* unit) {
+      return RangeOf(s, of_bars, quantity, unit);
+    };
+    lines.Add(fmt::format("{}: length {}, force {}, force density {}", what,
+                          range(&PinMember::length_m, "m"), range(&PinMember::force_n, "N"),
+                          range(&PinMember::force_density_n_per_m, "N/m")));
   };
   add("bars", true, bars);
   add("strings", false, strings);
-  return Printable(text) + lines.Text();
+  return lines.Text(verdict);
 }
 
 std::string TableOf(const PinJointed& s) {

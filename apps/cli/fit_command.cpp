@@ -39,18 +39,15 @@ void Show(ProgressLine& line, const IdentifyProgress& p) {
 /// Prints the result of `--check` for a fit without errors.
 void PrintCheck(const Identification& fit, bool tables) {
   const FitProblem& train = fit.train();
-  fmt::print("{}: {} parameters from {} data points in {} groups", fit.spec().name,
-             train.parameters.size(), train.rows.size(), train.group_names.size());
-  if (fit.test()) fmt::print(", {} held out", fit.test()->rows.size());
-  fmt::print("\n");
-  constexpr std::size_t kMost = 8;
-  const std::size_t count = train.parameters.size();
-  const std::size_t most = tables || count <= kMost ? count : kMost - 1;
-  for (std::size_t i = 0; i < most; ++i) {
-    const FitParameter& p = train.parameters[i];
-    fmt::print("  {:<40} {:>12.6g} {}\n", p.name, p.start, p.unit);
+  std::string verdict =
+      fmt::format("{}: {} parameters from {} data points in {} groups", fit.spec().name,
+                  train.parameters.size(), train.rows.size(), train.group_names.size());
+  if (fit.test()) verdict += fmt::format(", {} held out", fit.test()->rows.size());
+  CappedLines lines(tables ? CappedLines::kAll : CappedLines::kMost);
+  for (const FitParameter& p : train.parameters) {
+    lines.Add(fmt::format("{:<40} {:>12.6g} {}", p.name, p.start, p.unit));
   }
-  if (most < count) fmt::print("  ... and {} more (--tables lists all)\n", count - most);
+  fmt::print("{}", lines.Text(verdict));
 }
 
 std::string MemoryIn(const std::string& folder) {
@@ -68,11 +65,8 @@ std::vector<std::string> LookAt(const FitExperiment& one, const std::string& fol
 /// Prints the verdict, its summary and, on request, the tables of all parameters and channels.
 void PrintOutcome(const Identification& fit, const FitOutcome& outcome, bool tables,
                   const std::string& folder) {
-  const std::vector<std::string> all = OutcomeLines(fit, outcome);
-  fmt::print("{}\n", Printable(all.front()));
-  CappedLines lines;
-  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
-  fmt::print("{}", lines.Text());
+  const std::vector<std::string> lines = OutcomeLines(fit, outcome);
+  fmt::print("{}", CappedLines(lines).Text(lines.front()));
   if (tables) fmt::print("\n{}\n", OutcomeText(fit, outcome));
   fmt::print("Summary, report and fitted experiments: {}\n", folder);
   const std::vector<FitExperiment>& experiments = fit.spec().experiments;
@@ -138,9 +132,7 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
   if (args.check) {
     if (args.quiet) return kOk;
     PrintCheck(fit, args.tables);
-    std::vector<std::string> next{"fit", args.path};
-    for (const std::string& one : args.set) next.insert(next.end(), {"--set", one});
-    SayNext(next);
+    SayNext(WithOverrides({"fit", args.path}, args.set));
     return kOk;
   }
   if (fit.counts().damaged > 0) {

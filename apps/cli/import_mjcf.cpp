@@ -52,8 +52,7 @@ int Import(const Arguments& args) {
   const int wrote = WriteOrPrint(args.out, *model);
   if (wrote != kOk || args.out.empty()) return wrote;
   const ModelDef& def = made->robot.def;
-  fmt::print("{}: model of {}, {}, {}\n", args.out,
-             def.bodies.size() == 1 ? "1 body" : fmt::format("{} bodies", def.bodies.size()),
+  fmt::print("{}: model of {}, {}, {}\n", args.out, Counted(def.bodies.size(), "body"),
              Counted(def.cables.size(), "cable"), Counted(def.joints.size(), "joint"));
   if (args.experiment.empty()) {
     SayNext({"check", args.out});

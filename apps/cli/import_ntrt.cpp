@@ -22,25 +22,20 @@ struct ImportNtrtArguments {
   bool like_ntrt = false, tables = false, strict = false;
 };
 
-std::string CountedAs(int count, const char* one, const char* many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 /// Returns the verdict and a summary: what differs from NTRT and what is left out. `tables`: also
 /// what is the same.
 std::string Report(const NtrtImport& import, const std::string& out, bool tables) {
   const NtrtCounts& c = import.counts;
-  std::string text = fmt::format("{}: model of {} of {:.4g} kg, {}, size {:.4g} m\n", out,
-                                 CountedAs(c.bodies, "body", "bodies"), c.mass_kg,
-                                 CountedAs(c.cables, "cable", "cables"), c.size_m);
+  const std::string verdict =
+      fmt::format("{}: model of {} of {:.4g} kg, {}, size {:.4g} m", out, Counted(c.bodies, "body"),
+                  c.mass_kg, Counted(c.cables, "cable"), c.size_m);
   CappedLines lines;
-  lines.Add(fmt::format("from {}: {}, {}; {}, {}, {}", CountedAs(c.files, "file", "files"),
-                        CountedAs(c.nodes, "node", "nodes"), CountedAs(c.pairs, "pair", "pairs"),
-                        CountedAs(c.rods, "rod", "rods"), CountedAs(c.boxes, "box", "boxes"),
-                        CountedAs(c.spheres, "sphere", "spheres")));
+  lines.Add(fmt::format("from {}: {}, {}; {}, {}, {}", Counted(c.files, "file"),
+                        Counted(c.nodes, "node"), Counted(c.pairs, "pair"), Counted(c.rods, "rod"),
+                        Counted(c.boxes, "box"), Counted(c.spheres, "sphere")));
   for (const std::string& line : import.different) lines.Add("different from NTRT: " + line);
   for (const std::string& line : import.dropped) lines.Add("left out: " + line);
-  text += lines.Text();
+  std::string text = lines.Text(verdict);
   if (!tables) return text;
   const auto list = [&](const char* title, const std::vector<std::string>& all) {
     if (!all.empty()) text += fmt::format("\n{}:\n", title);

@@ -12,8 +12,6 @@
 namespace taut::cli {
 namespace {
 
-constexpr std::size_t kMostLines = 9;  ///< Besides the verdict.
-
 /// Returns whether a tag only tells the copies of a part apart: first, middle, last or a number.
 bool IsPosition(const std::string& tag) {
   return tag == "first" || tag == "middle" || tag == "last" ||
@@ -51,7 +49,7 @@ class Grouping {
     return shared;
   }
 
-  /// A tag that no other cable has is name enough.
+  /// Names a group by one tag if only its cables have it, else by all their common tags.
   void NameGroup(const Tags& tags, CableGroup& group) const {
     const std::size_t count = group.cables.size();
     if (count == 1) {
@@ -84,22 +82,24 @@ std::vector<CableGroup> GroupCables(const RobotSpec& robot, std::size_t most) {
   return grouping.ByTags(0);
 }
 
-std::string RangeText(double min, double max, int digits, const std::string& unit) {
-  const std::string low = Fixed(min, digits), high = Fixed(max, digits);
-  return low == high ? low + " " + unit : low + " to " + high + " " + unit;
+std::string Range::Text(int digits, const std::string& unit) const {
+  const std::string from = Fixed(low, digits), to = Fixed(high, digits);
+  return from == to ? from + " " + unit : from + " to " + to + " " + unit;
 }
 
 std::string Counted(long long count, const std::string& one) {
-  return fmt::format("{} {}{}", count, one, count == 1 ? "" : one.ends_with("sh") ? "es" : "s");
+  if (count == 1) return "1 " + one;
+  if (one.ends_with("dy")) return fmt::format("{} {}ies", count, one.substr(0, one.size() - 1));
+  return fmt::format("{} {}{}", count, one, one.ends_with("sh") || one.ends_with("x") ? "es" : "s");
 }
 
 void CappedLines::Add(const std::string& line) {
   if (!line.empty()) lines_.push_back(line);
 }
 
-std::string CappedLines::Text() const {
-  const std::size_t shown = lines_.size() <= kMostLines ? lines_.size() : kMostLines - 1;
-  std::string text;
+std::string CappedLines::Text(const std::string& verdict) const {
+  const std::size_t shown = lines_.size() <= most_ ? lines_.size() : most_ - 1;
+  std::string text = Printable(verdict) + "\n";
   for (std::size_t i = 0; i < shown; ++i) text += "  " + Printable(lines_[i]) + "\n";
   if (shown < lines_.size()) {
     text +=

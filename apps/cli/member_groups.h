@@ -1,7 +1,10 @@
 /// Groups of equal members in summaries: cables with the same tags share one line.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,22 +23,45 @@ struct CableGroup {
 /// the cables.
 std::vector<CableGroup> GroupCables(const RobotSpec& robot, std::size_t most);
 
-/// Formats the range of a quantity: "20.000 N" if both ends are printed alike, else "10.000 to
-/// 20.000 N".
-std::string RangeText(double min, double max, int digits, const std::string& unit);
+/// Range of a quantity.
+struct Range {
+  double low = INFINITY, high = -INFINITY;
 
-/// Returns "1 cable", "3 cables".
+  void Add(double value) { low = std::min(low, value), high = std::max(high, value); }
+  bool empty() const { return low > high; }
+  /// Returns "20.000 N" if both ends are printed alike, else "10.000 to 20.000 N".
+  std::string Text(int digits, const std::string& unit) const;
+};
+
+/// Returns the range of `quantity(index)` over the cables of a group.
+template <class Quantity>
+Range RangeOver(const CableGroup& group, const Quantity& quantity) {
+  Range range;
+  for (const std::size_t cable : group.cables) range.Add(quantity(cable));
+  return range;
+}
+
+/// Returns "1 cable", "3 cables", "2 boxes", "2 bodies".
 std::string Counted(long long count, const std::string& one);
 
 /// Lines of a summary, at most ten including the verdict; further ones are counted.
 class CappedLines {
  public:
+  static constexpr std::size_t kMost = 9, kAll = std::numeric_limits<std::size_t>::max();
+
+  /// `most`: number of lines besides the verdict.
+  explicit CappedLines(std::size_t most = kMost) : most_(most) {}
+  /// All lines but the first, the verdict.
+  explicit CappedLines(const std::vector<std::string>& all) : lines_(all.begin() + 1, all.end()) {}
+
   /// Adds a line, which is indented. Empty text adds none.
   void Add(const std::string& line);
-  std::string Text() const;
+  /// Returns the verdict and the lines, as printable text with line ends.
+  std::string Text(const std::string& verdict) const;
 
  private:
   std::vector<std::string> lines_;
+  std::size_t most_ = kMost;
 };
 
 }  // namespace taut::cli

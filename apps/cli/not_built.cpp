@@ -10,7 +10,7 @@ namespace {
 
 void AddNotBuilt(CLI::App& app, const char* name, int& exit_code) {
   CLI::App* const command =
-      app.add_subcommand(name, std::string("Not built yet (script/build release taut)."));
+      app.add_subcommand(name, "Not built yet (to build it, run script/build release taut).");
   command->allow_extras();
   command->prefix_command();
   command->callback([name, &exit_code] {

@@ -33,12 +33,8 @@ std::string ShellWord(const std::string& word) {
 /// Returns the largest tensions of a group of cables, and their means in the phases of the run.
 std::string TensionLine(const RunSummary& summary, const CableGroup& group) {
   const auto range = [&](const auto& value) {
-    double low_n = INFINITY, high_n = -INFINITY;
-    for (const std::size_t c : group.cables) {
-      low_n = std::min(low_n, value(summary.cables[c].tension));
-      high_n = std::max(high_n, value(summary.cables[c].tension));
-    }
-    return RangeText(low_n, high_n, 2, "N");
+    return RangeOver(group, [&](std::size_t c) { return value(summary.cables[c].tension); })
+        .Text(2, "N");
   };
   std::string line = fmt::format("{}: max tension {}", group.name,
                                  range([](const auto& tension) { return tension.max_n; }));
@@ -125,13 +121,11 @@ std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& exper
 
 void PrintRun(const RunSummary& summary, const RobotSpec& robot) {
   const std::vector<std::string> all = SummaryLines(summary);
-  fmt::print("{}\n", Printable(all.front()));
-  CappedLines lines;
-  for (std::size_t i = 1; i < all.size(); ++i) lines.Add(all[i]);
+  CappedLines lines(all);
   if (summary.cables.size() == robot.def.cables.size() && summary.cables.size() > 1) {
     for (const CableGroup& group : GroupCables(robot, 6)) lines.Add(TensionLine(summary, group));
   }
-  fmt::print("{}", lines.Text());
+  fmt::print("{}", lines.Text(all.front()));
 }
 
 }  // namespace taut::cli

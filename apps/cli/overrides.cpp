@@ -9,6 +9,12 @@
 
 namespace taut::cli {
 
+std::vector<std::string> WithOverrides(std::vector<std::string> words,
+                                       const std::vector<std::string>& set) {
+  for (const std::string& one : set) words.insert(words.end(), {"--set", one});
+  return words;
+}
+
 std::optional<Overrides> ParseOverrides(const std::vector<std::string>& set) {
   Overrides overrides;
   for (const std::string& text : set) {

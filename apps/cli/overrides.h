@@ -17,6 +17,10 @@ namespace taut::cli {
 /// `name=value`.
 std::optional<Overrides> ParseOverrides(const std::vector<std::string>& set);
 
+/// Returns the words of a command, with `--set` for each of `set`.
+std::vector<std::string> WithOverrides(std::vector<std::string> words,
+                                       const std::vector<std::string>& set);
+
 /// Returns a validator for numbers. CLI11's own accepts NaN and prints 1e-9 as 0.000000.
 std::function<std::string(const std::string&)> NumberWithin(double least, double most);
 

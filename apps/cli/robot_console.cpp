@@ -28,12 +28,6 @@ constexpr double kConfirm_s = 0.4, kConfirmVirtual_s = 3.0;
 const std::map<std::string, link::OnFault> kOnFault{
     {"hold", link::OnFault::kHold}, {"off", link::OnFault::kOff}, {"stop", link::OnFault::kStop}};
 
-std::vector<std::string> WithOverrides(std::vector<std::string> words,
-                                       const std::vector<std::string>& set) {
-  for (const std::string& one : set) words.insert(words.end(), {"--set", one});
-  return words;
-}
-
 }  // namespace
 
 void AddPort(CLI::App& command, RobotArguments& args) {

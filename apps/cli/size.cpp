@@ -192,7 +192,7 @@ std::string SizeSummary(const RunDemand& run, const Catalogue& of,
   }
   lines.Add(fmt::format("{:g} to {:g} s, {} rows; peaks and energies of {}", run.from_s, run.to_s,
                         run.rows, run.every_step ? "every step" : "rows only"));
-  return Printable(run.experiment + ": " + verdict) + "\n" + lines.Text();
+  return lines.Text(run.experiment + ": " + verdict);
 }
 
 std::string SizeTables(const RunDemand& run, const Catalogue& of,

@@ -138,8 +138,8 @@ struct Comparison {
 Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options);
 
 /// Returns the short summary of a comparison for a terminal, without line ends: the verdict, the
-/// largest values, what was not compared, and one line per phase and per group of channels whose
-/// names differ only in the middle.
+/// largest values, channels that were not compared, and one line per phase and per group of
+/// channels whose names differ only in the middle.
 std::vector<std::string> ComparisonLines(const Comparison& comparison, const std::string& name_a,
                                          const std::string& name_b);
 

@@ -112,7 +112,7 @@ class Simulation {
   /// group, so it must be thread-safe; a group for which it returns false takes no further step.
   void RunUntil(double time_s, const std::function<bool()>& keep_going = {});
   double Time(int world = 0) const;  ///< [s], since the start.
-  /// Returns false once the state is not finite, when the world is frozen, or a command was
+  /// Returns false once the state is not finite (the world is then frozen) or a command was
   /// refused.
   bool IsRunning(int world = 0) const;
 

@@ -148,7 +148,7 @@ ChannelComparer::Columns ChannelComparer::SingleColumns(std::size_t in_a, std::s
   if (period_b > 0) Unwrap(of.b, period_b);
   of.clock_a = OnClock(a_.time_s, of.a, gaps_a_, clock_.resample_a, rows_a_);
   of.clock_b = OnClock(b_.time_s, of.b, gaps_b_, clock_.resample_b, rows_b_);
-  // The wrapped trace lacks the number of turns and gets the number of the other one.
+  // The number of turns, which the wrapped trace lacks, is taken from the other trace.
   if (period_b > 0) {
     AlignTurns(of.clock_a, period_b, of.clock_b);
     AlignTurns(Interpolate(a_.time_s, of.a, gaps_a_, b_.time_s), period_b, of.b);

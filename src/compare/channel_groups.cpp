@@ -59,6 +59,27 @@ std::vector<std::string> Abridged(const std::vector<std::string>& names) {
   return first;
 }
 
+std::vector<WrapWarning> WrapWarnings(const std::vector<WrappedAngle>& angles) {
+  std::vector<WrapWarning> warnings;
+  for (const bool in_b : {false, true}) {
+    std::vector<std::string> names;
+    double first_s = INFINITY;
+    for (const WrappedAngle& angle : angles) {
+      if (angle.in_b != in_b) continue;
+      names.push_back(angle.channel);
+      first_s = std::min(first_s, angle.time_s);
+    }
+    if (names.empty()) continue;
+    warnings.push_back(
+        {fmt::format("warning: angles of {} that jump by a turn, first at {:g} s", in_b ? "b" : "a",
+                     first_s),
+         fmt::format("if they wrap, set \"wrap\": \"turn\" in their rule of a mapping ({})",
+                     in_b ? "--map" : "--map_a"),
+         std::move(names)});
+  }
+  return warnings;
+}
+
 double Shown(double value, int decimals) {
   return std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;
 }

@@ -29,6 +29,13 @@ std::string GroupTitle(const Group& group);
 /// Merges names that differ in the middle only, with their number: "cable/*/damping_n (12)".
 std::vector<std::string> Abridged(const std::vector<std::string>& names);
 
+/// Angles of one trace that jump by a turn: a warning about `channels`, and its remedy.
+struct WrapWarning {
+  std::string title, remedy;
+  std::vector<std::string> channels;
+};
+std::vector<WrapWarning> WrapWarnings(const std::vector<WrappedAngle>& angles);
+
 /// Returns the value, without a sign if that many decimals show a zero: no "-0.000".
 double Shown(double value, int decimals);
 

@@ -69,7 +69,7 @@ std::string PhaseLine(const compare::Group& group, const TimeWindow& phase, std:
                      Size(channel->phases[index].b.mean), Size(difference(*channel)), name);
 }
 
-std::string ListLine(const char* title, const std::vector<std::string>& names) {
+std::string ListLine(const std::string& title, const std::vector<std::string>& names) {
   std::string line = fmt::format("{} ({}):", title, names.size());
   constexpr std::size_t kLongest = 90;
   for (const std::string& item : compare::Abridged(names)) {
@@ -85,6 +85,10 @@ std::vector<std::string> ComparisonLines(const Comparison& comparison, const std
                                          const std::string& name_b) {
   std::vector<std::string> lines{Verdict(comparison, name_a, name_b)};
   if (comparison.rows == 0) return lines;
+  for (const compare::WrapWarning& warning : compare::WrapWarnings(comparison.wrapped_angles)) {
+    lines.push_back(ListLine(warning.title, warning.channels));
+    lines.push_back(warning.remedy);
+  }
   for (const SystemMaximum& system : comparison.system) {
     lines.push_back(fmt::format(
         "largest {}: error {:+.2f} %; a {:.4f} {} in {}, b {:.4f} {} in {}", system.pattern,
@@ -101,7 +105,7 @@ std::vector<std::string> ComparisonLines(const Comparison& comparison, const std
   list("only in a", comparison.only_a);
   list("only in b", comparison.only_b);
   list("units differ, not compared", comparison.unit_conflicts);
-  list("signs not aligned", comparison.unknown_signs);
+  list("quaternion signs not aligned", comparison.unknown_signs);
   const std::size_t gaps = comparison.a.gaps_s.size() + comparison.b.gaps_s.size();
   if (gaps > 0) lines.push_back(fmt::format("gaps, not compared: {}", gaps));
   const auto missing = std::count_if(comparison.channels.begin(), comparison.channels.end(),

@@ -160,25 +160,6 @@ void AppendList(const std::string& title, const std::vector<std::string>& names,
   out += line + (items.size() > kMost ? " ...\n" : "\n");
 }
 
-/// Appends the angles that jump by a turn, and the remedy.
-void AppendWraps(const std::vector<WrappedAngle>& angles, std::string& out) {
-  for (const bool in_b : {false, true}) {
-    std::vector<std::string> names;
-    double first_s = INFINITY;
-    for (const WrappedAngle& angle : angles) {
-      if (angle.in_b != in_b) continue;
-      names.push_back(angle.channel);
-      first_s = std::min(first_s, angle.time_s);
-    }
-    if (names.empty()) continue;
-    AppendList(fmt::format("warning: angles of {} that jump by a turn, first at {:g} s",
-                           in_b ? "b" : "a", first_s),
-               names, out);
-    out += fmt::format("  if they wrap, set \"wrap\": \"turn\" in their rule of a mapping ({})\n",
-                       in_b ? "--map" : "--map_a");
-  }
-}
-
 }  // namespace
 
 std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,
@@ -213,7 +194,10 @@ std::string ComparisonTable(const Comparison& comparison, const std::string& nam
   AppendMissing(comparison, out);
   AppendList("signs not aligned (a component of the quaternion is missing)",
              comparison.unknown_signs, out);
-  AppendWraps(comparison.wrapped_angles, out);
+  for (const compare::WrapWarning& warning : compare::WrapWarnings(comparison.wrapped_angles)) {
+    AppendList(warning.title, warning.channels, out);
+    out += "  " + warning.remedy + "\n";
+  }
   AppendList("only in a", comparison.only_a, out);
   AppendList("only in b", comparison.only_b, out);
   if (!comparison.unit_conflicts.empty()) out += "units differ, not compared:\n";

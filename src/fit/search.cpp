@@ -1,9 +1,9 @@
 #include "fit/search.h"
 
-#include "fit/problem.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "fit/problem.h"
 
 namespace taut::fit {
 namespace {

@@ -179,9 +179,7 @@ class Maker {
     for (const std::size_t i : inside) {
       samples.time_s.push_back(TimeOf(window, i));
       if (column.HasQuaternion()) samples.orientation.push_back(column.QuaternionAt(i));
-    }
-    if (period > 0) {
-      for (const std::size_t i : inside) samples.measured.push_back((*column.values)[i]);
+      if (period > 0) samples.measured.push_back((*column.values)[i]);
     }
     samples.weight = compare::TimeWeights(samples.time_s, compare::FindGaps(samples.time_s));
     return samples;

@@ -49,8 +49,7 @@ class Course {
     const auto i = static_cast<std::size_t>(after - times_.begin());
     const double share = (time_s - times_[i - 1]) / (times_[i] - times_[i - 1]);
     // The run's rotation vectors wrap, too.
-    const double next =
-        period > 0 ? compare::NearestTurn(values[i], values[i - 1], period) : values[i];
+    const double next = compare::NearestTurn(values[i], values[i - 1], period);
     return values[i - 1] + share * (next - values[i - 1]);
   }
 
@@ -136,7 +135,7 @@ std::optional<double> ValueOf(const Row& row, const Computed& computed, const Ro
   }
   const Course course(row, computed, channels);
   const auto aligned = [&](double value) {
-    return row.period > 0 ? compare::NearestTurn(value, row.point.measured, row.period) : value;
+    return compare::NearestTurn(value, row.point.measured, row.period);
   };
   if (row.how == Row::How::kRow) {
     if (row.row >= course.values().size()) return std::nullopt;

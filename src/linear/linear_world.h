@@ -10,8 +10,8 @@
 
 namespace taut::linear {
 
-/// Gives numbers without derivatives (`Plain`) a type of their own, so that their template
-/// instances are not shared with those of the step, which are compiled with other options.
+/// Gives numbers without derivatives (`Plain`) a separate type, so that their template
+/// instances differ from the step's, which are compiled with other options.
 struct OutsideOfSteps {};
 using Plain = simd::Wide<1, OutsideOfSteps>;
 using simd::Dual;

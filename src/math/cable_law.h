@@ -6,7 +6,7 @@
 namespace taut::math {
 
 /// Linear spring with the stiffness k [N/m]. `Num`: double, or the lanes of a SIMD register.
-/// Its callers use no other class: another law is a choice within its member functions.
+/// Callers use this class only, so another law would be a branch in its member functions.
 template <class Num>
 struct CableLaw {
   Num stiffness;

@@ -24,6 +24,7 @@ using Face = std::vector<int>;
 using Points = std::vector<Vec3>;
 
 const Vec3& At(const Points& points, int i) { return points[static_cast<std::size_t>(i)]; }
+
 struct Plane {
   Vec3 normal;  ///< Unit vector, outwards.
   double offset_m;

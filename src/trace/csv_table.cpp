@@ -133,7 +133,7 @@ class TableParser {
     return failure == std::errc() && end == number.data() + number.size();
   }
 
-  /// Ends the reading: all other cells have the same error.
+  /// Stops reading, since all other cells have the same error.
   void RefuseDecimalCommas(const Cell& cell) {
     Error("csv.decimal_comma", line_, cell.column,
           fmt::format("numbers have a decimal comma, such as \"{}\"", cell.text),

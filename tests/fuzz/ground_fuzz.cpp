@@ -22,7 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!mesh) return 0;
     def.terrain_meshes.push_back({"mesh", mesh->corners, mesh->triangles, solid, {}});
   } else if (!drops) {
-    const auto table = taut::description::ReadHeightCsv(path, 1e8, out);
+    taut::trace::TableBudget budget(1e8);
+    const auto table = taut::description::ReadHeightCsv(path, budget, out);
     taut::fuzz::CheckReading(table.has_value(), out);
     if (!table) return 0;
     taut::HeightFieldDef& field = def.height_fields.emplace_back();

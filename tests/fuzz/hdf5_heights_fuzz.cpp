@@ -50,7 +50,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string file = taut::fuzz::Damaged(bases, data, size);
   const std::string path = folder.Write("hills.h5", file.data(), file.size());
   taut::Diagnostics of_table, out;
-  const auto table = taut::trace::ReadHdf5Table(path, "/z", 1e8, of_table);
+  taut::trace::TableBudget budget(1e8);
+  const auto table = taut::trace::ReadHdf5Table(path, "/z", budget, of_table);
   taut::fuzz::CheckReading(table.has_value(), of_table);
   if (!table) return 0;
   Must(table->values.size() ==

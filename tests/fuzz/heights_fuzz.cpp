@@ -92,7 +92,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size % 2 == 1) CorrectChecksums(file);
   const std::string path = folder.Write("hills.png", file.data(), file.size());
   taut::Diagnostics of_image, out;
-  const auto image = taut::description::ReadHeightImage(path, 1e8, of_image);
+  taut::trace::TableBudget budget(1e8);
+  const auto image = taut::description::ReadHeightImage(path, budget, of_image);
   taut::fuzz::CheckReading(image.has_value(), of_image);
   if (!image) return 0;
   Must(image->shares.size() ==

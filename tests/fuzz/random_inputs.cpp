@@ -210,7 +210,7 @@ void TryFile(const std::string& path, unsigned timeout_s, Target target) {
 
 }  // namespace taut::fuzz
 
-/// In place of libFuzzer's, for its custom mutators.
+/// Replaces libFuzzer's function of this name, which custom mutators call.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size) {
   const auto seed = static_cast<unsigned>(taut::fuzz::byte_mutations());

@@ -1,5 +1,7 @@
 // TARGET_random_fuzz --inputs N [--seconds S] [--seed S] [--first I] [--found PREFIX]
-// [--bases=FOLDER]... TARGET_random_fuzz FILE...
+// [--bases=F]...
+//
+// TARGET_random_fuzz FILE...
 //
 // script/fuzz TARGET --plain runs it. Status: 0 good, 1 an input failed, 2 usage, 130 Ctrl-C.
 #include <algorithm>
@@ -12,7 +14,7 @@
 #include "fuzz/fuzz_folder.h"
 #include "fuzz/random_inputs.h"
 
-/// Of the target; null if it has none.
+/// Custom mutator of the target; null if it has none.
 extern "C" __attribute__((weak)) std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data,
                                                                      std::size_t size,
                                                                      std::size_t max_size,

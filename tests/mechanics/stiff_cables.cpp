@@ -137,7 +137,7 @@ void Drops(Report& report) {
              {0, 1e8, 200, 4e-3, 0, 0.8},
              {1000, 1e8, 20, 1e-3, 1, 0.4},
              {30, 3e4, 0, 1e-3, 2, 0.4},
-             // Once a contact solve fails, and the substeps have no contact.
+             // In one step a contact solve fails, and its substeps have no contact.
              {30, 1e8, 0, 4e-3, 1, 3}};
   }
   double gained = 0, lowest = 1, highest = 0, fastest = 0;

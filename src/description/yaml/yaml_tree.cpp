@@ -154,11 +154,8 @@ class TreeBuilder : public YAML::EventHandler {
       parent.value->items.push_back(std::move(value));
     } else if (!parent.entry) {
       if (value->kind != Value::Kind::kScalar) {
-        const bool comma = value->kind == Value::Kind::kNull && !parent.value->entries.empty() &&
-                           IsRightAfter(*parent.value->entries.back().value, at);
-        out_.Error(
-            "yaml.key_not_text", at, "a key must be a text, not " + std::string(KindName(*value)),
-            comma ? "write decimal fractions with a point, and a space after each comma" : "");
+        out_.Error("yaml.key_not_text", at,
+                   "a key must be a text, not " + std::string(KindName(*value)));
         throw StopReading{};
       }
       parent.entry = Entry{value->text, at, nullptr};

@@ -30,6 +30,7 @@ Simd WidestUpTo(Simd wish) {
 constexpr std::pair<std::string_view, Simd> kSimdNames[] = {
     {"scalar", Simd::kScalar},   {"sse2", Simd::kSse2}, {"neon", Simd::kNeon},
     {"simd128", Simd::kSimd128}, {"avx2", Simd::kAvx2}, {"avx512", Simd::kAvx512}};
+
 std::string_view SimdWish() {
   const char* const text = std::getenv("TAUT_SIMD");
   return text == nullptr ? "" : text;

@@ -58,11 +58,11 @@ JointState WorldBatch::Joint(int world, int joint) const noexcept {
         return length;
       }
       case M::kSwing1:
-        return j.reach_m * Dot(a.axes[1], b.axes[0]);
       case M::kSwing2:
-        return j.reach_m * Dot(a.axes[2], b.axes[0]);
-      case M::kTwist:
-        return j.reach_m * Dot(a.axes[2], b.axes[1]);
+      case M::kTwist: {
+        const sim::MeasuredAxes axes = sim::AxesOf(measure);
+        return j.reach_m * Dot(a.axes[axes.of_a], b.axes[axes.of_b]);
+      }
       case M::kAngle: {
         const double angle = math::Atan2(Dot(a.axes[2], b.axes[1]), Dot(a.axes[1], b.axes[1]));
         const double last = d.at(world, d.layout.joint_angle + joint);

@@ -55,7 +55,7 @@ struct ImplicitCable {
 /// A joint whose held rows are integrated together with stiff cables (implicit_joints.inl).
 template <class Num>
 struct ImplicitJoint {
-  ImplicitPoint<Num> a, b;  ///< Its points; of a also from a to b: d0, u, n, l0, l1.
+  ImplicitPoint<Num> a, b;  ///< Its points; d0, u, n, l0, l1 of `a` are from a to b.
   int first, count;         ///< Of its rows.
   bool is_distance;         ///< Its only row is a distance.
   V3<Num> push;             ///< Impulse on b's point [N s].
@@ -76,7 +76,7 @@ struct ImplicitJointRow {
   V3<Num> x0, y0, x1, y1, x, y;  ///< in W: at the start, at the end, and where the torque acts.
   Num reach;                     ///< Radius that converts rotations to meters.
   Num stiffness;                 ///< Inverse compliance [kg].
-  Num last_force, force;         ///< Of the previous step; of the previous stage [N].
+  Num last_force, force;         ///< In the previous step; in the previous stage [N].
   Num target, value;             ///< Coordinate before the stage, and after it [m].
   Num center, l, step, trial;    ///< Impulses: predicted, accepted, Newton step, evaluated [N s].
   Num impulse;                   ///< Sum over the stages so far [N s].

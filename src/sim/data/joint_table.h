@@ -20,6 +20,23 @@ enum class JointMeasure {
   kTurn3,
 };
 
+/// Axes of bodies a and b whose product is the coordinate of a swing or twist, as indices.
+struct MeasuredAxes {
+  int of_a = -1, of_b = -1;  ///< -1: the measure is no such product.
+};
+constexpr MeasuredAxes AxesOf(JointMeasure measure) noexcept {
+  switch (measure) {
+    case JointMeasure::kSwing1:
+      return {1, 0};
+    case JointMeasure::kSwing2:
+      return {2, 0};
+    case JointMeasure::kTwist:
+      return {2, 1};
+    default:
+      return {};
+  }
+}
+
 enum class JointRole {
   kHold,
   kLeast,
@@ -54,6 +71,9 @@ struct JointTable {
   // it.
   double least = 0, most = 0, restitution = 0, friction = 0;
   double stiffness = 0, damping = 0, rest = 0;  ///< `rest` of a held distance: its length.
+
+  /// A body that impulses move.
+  constexpr int moved_body() const noexcept { return b_moves ? b : a; }
 };
 
 }  // namespace taut::sim

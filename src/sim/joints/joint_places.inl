@@ -204,9 +204,8 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
     const Motion<W> now = MotionAt(m, m.motions[m.motion_of_body[b]], s.time[0]);
     return Twist<W>{now.v, now.w};
   };
-  const auto none = [](const JointTable&) { return MaskOf<W>::Splat(false); };
-  ProjectVelocities(m, s, work, system, Select(s.last_step[0] == zero, one, zero), given, none,
-                    [](int, const W&, const JointRow<W>&) {});
+  ProjectVelocities(m, s, work, system, Select(s.last_step[0] == zero, one, zero), given,
+                    InNoLane<W>(), [](int, const W&, const JointRow<W>&) {});
 }
 
 /// Updates hinge angles to the current pose, `t` after the last reading.
@@ -241,8 +240,7 @@ void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double 
   FollowHinges(m, s, work, W::Splat(0.5 * step_s));
   auto compliant = MaskOf<W>::Splat(false);
   if (work.implicit.any) {
-    const auto none = [](const JointTable&) { return MaskOf<W>::Splat(false); };
-    compliant = WorstGap(m, s, work, none) < W::Splat(kCompliant_m);
+    compliant = WorstGap(m, s, work, InNoLane<W>()) < W::Splat(kCompliant_m);
   }
   const auto closed = [&](const auto& of) { return compliant & EndedImplicitly(m, work, of); };
   JointSystem<W> system(m, s, work);

@@ -320,6 +320,15 @@ TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
          (row.links[0].ang[0] + row.links[1].ang[0]);
 }
 
+/// For functions with a `skip` or `closed`: no lane.
+template <class W>
+struct InNoLane {
+  template <class T>
+  TAUT_INLINE MaskOf<W> operator()(const T&) const noexcept {
+    return MaskOf<W>::Splat(false);
+  }
+};
+
 /// Returns the lanes in which a body was integrated together with stiff cables: its joints are
 /// closed, and their momenta are balanced (implicit_joints.inl).
 template <class W>
@@ -331,14 +340,14 @@ TAUT_INLINE MaskOf<W> EndedImplicitly(const View& m, const Scratch<W>& work, int
 template <class W>
 TAUT_INLINE MaskOf<W> EndedImplicitly(const View& m, const Scratch<W>& work,
                                       const JointTable& j) noexcept {
-  return EndedImplicitly(m, work, j.b_moves ? j.b : j.a);
+  return EndedImplicitly(m, work, j.moved_body());
 }
 
 /// Returns the lanes in which stiff cables at the bodies of a joint have dampers.
 template <class W>
 TAUT_INLINE MaskOf<W> EndedDamped(const View& m, const Scratch<W>& work,
                                   const JointTable& j) noexcept {
-  const int body = j.b_moves ? j.b : j.a;
+  const int body = j.moved_body();
   if (!work.implicit.any || body >= m.body_count) return MaskOf<W>::Splat(false);
   return work.implicit.bodies[body] > W::Splat(1.0);
 }

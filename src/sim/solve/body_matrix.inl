@@ -51,12 +51,7 @@ class BodyMatrix {
   /// Adds a block given by its four 3x3 parts for velocities and spins.
   TAUT_INLINE void AddBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
                             const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
-    Num* const to = At(i, j);
-    const auto add = [](Num* at, const V3<Num>& a, const V3<Num>& b) {
-      at[0] += a.x, at[1] += a.y, at[2] += a.z, at[3] += b.x, at[4] += b.y, at[5] += b.z;
-    };
-    add(to, vv.r0, vw.r0), add(to + 6, vv.r1, vw.r1), add(to + 12, vv.r2, vw.r2);
-    add(to + 18, wv.r0, ww.r0), add(to + 24, wv.r1, ww.r1), add(to + 30, wv.r2, ww.r2);
+    Combine(At(i, j), vv, vw, wv, ww, [](Num& to, const Num& x) { to += x; });
   }
 
   /// Adds a block of spins alone.
@@ -68,12 +63,7 @@ class BodyMatrix {
   /// Subtracts a block given by its four parts.
   TAUT_INLINE void SubtractBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
                                  const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
-    Num* const to = At(i, j);
-    const auto take = [](Num* at, const V3<Num>& a, const V3<Num>& b) {
-      at[0] -= a.x, at[1] -= a.y, at[2] -= a.z, at[3] -= b.x, at[4] -= b.y, at[5] -= b.z;
-    };
-    take(to, vv.r0, vw.r0), take(to + 6, vv.r1, vw.r1), take(to + 12, vv.r2, vw.r2);
-    take(to + 18, wv.r0, ww.r0), take(to + 24, wv.r1, ww.r1), take(to + 30, wv.r2, ww.r2);
+    Combine(At(i, j), vv, vw, wv, ww, [](Num& to, const Num& x) { to -= x; });
   }
 
   /// Adds J^T G J of one constraint, without prescribed unknowns; G: R x R, row by row. Not
@@ -127,6 +117,18 @@ class BodyMatrix {
   }
 
  private:
+  /// Calls op(entry, number) for all entries of a block given by its four 3x3 parts.
+  template <class Op>
+  TAUT_INLINE static void Combine(Num* to, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
+                                  const simd::M3<Num>& wv, const simd::M3<Num>& ww,
+                                  const Op& op) noexcept {
+    const auto row = [&](Num* at, const V3<Num>& a, const V3<Num>& b) {
+      op(at[0], a.x), op(at[1], a.y), op(at[2], a.z), op(at[3], b.x), op(at[4], b.y),
+          op(at[5], b.z);
+    };
+    row(to, vv.r0, vw.r0), row(to + 6, vv.r1, vw.r1), row(to + 12, vv.r2, vw.r2);
+    row(to + 18, wv.r0, ww.r0), row(to + 24, wv.r1, ww.r1), row(to + 30, wv.r2, ww.r2);
+  }
   /// Adds J^T G J of a constraint whose links have one row each.
   template <class Law>
   void AddByRows(const Law& law, const Num* G) noexcept {

@@ -72,6 +72,22 @@ struct ImplicitStage {
   bool at_end;  ///< Forces at the end of the stage: implicit Euler.
 };
 
+/// Sets place and lever arm of a point of `body` at the end of the stage, and the mean arm.
+template <class Num>
+TAUT_INLINE void MovePoint(const ImplicitStage<Num>& stage, const ImplicitBody<Num>& body,
+                           ImplicitPoint<Num>& p) noexcept {
+  p.arm1 = CayleyTurn(body.half, body.scale, p.arm0);
+  p.p1 = body.x1 + p.arm1;
+  p.arm = stage.at_end ? p.arm1 : Num::Splat(0.5) * (p.arm0 + p.arm1);
+}
+
+/// Derivative of a vector that rotates with `body` by its spin.
+template <class Num>
+TAUT_INLINE M3<Num> TurnOf(const ImplicitStage<Num>& stage, const ImplicitBody<Num>& body,
+                           const V3<Num>& from, const V3<Num>& to) noexcept {
+  return TimesCross(body.undo, (Num::Splat(-0.5) * stage.h) * (from + to));
+}
+
 /// Adds h C D B of the pulls at both ends of a straight part, which are opposite, with their
 /// derivative D by the end `a`; by `b` it is -D.
 template <class Num>
@@ -179,10 +195,7 @@ class ImplicitCables {
         p.p1 = p.p0;
         continue;
       }
-      const ImplicitBody<Num>& b = mem_.body[p.body];
-      p.arm1 = CayleyTurn(b.half, b.scale, p.arm0);
-      p.p1 = b.x1 + p.arm1;
-      p.arm = stage.at_end ? p.arm1 : half * (p.arm0 + p.arm1);
+      MovePoint(stage, mem_.body[p.body], p);
     }
     most_tension = Num::Splat(0.0);
     for (int c = 0; c < cable_count; ++c) Pull(stage, mem_.list[c], res);
@@ -217,10 +230,7 @@ class ImplicitCables {
     }
     for (int i = 0; i < point_count; ++i) {
       ImplicitPoint<Num>& p = mem_.points[i];
-      if (p.body < 0) continue;
-      const ImplicitBody<Num>& b = mem_.body[p.body];
-      const V3<Num> mean = (-half * stage.h) * (p.arm0 + p.arm1);
-      p.turn = TimesCross(b.undo, mean);
+      if (p.body >= 0) p.turn = TurnOf(stage, mem_.body[p.body], p.arm0, p.arm1);
     }
     for (int c = 0; c < cable_count; ++c) AddCable(stage, mem_.list[c], matrix);
   }

@@ -46,41 +46,13 @@ class ImplicitIsland {
   /// After Solve: returns whether the velocities do not satisfy the laws, not even to 1e-6 m/s.
   bool failed() const noexcept { return failed_; }
 
-  /// Adds the stiff cable `row` to the island. `number`: index of a body in it, or -1.
+  /// Adds the stiff cable `row`, or the held rows of joint `i`, to the island
+  /// (implicit_gather.inl). `number`: index of a body in it, or -1.
   template <class Number>
-  void AddCable(int row, const Number& number) noexcept {
-    const StiffCable<W>& from = work_.stiff[row];
-    const CableTable& table = m_.cables[from.cable];
-    ImplicitCable<Num>& c = mem_.list[cables_.cable_count++];
-    const Num h = Num::Splat(step_s_), two = Num::Splat(2.0), half = Num::Splat(0.5);
-    c.source = row;
-    c.first = cables_.point_count, c.count = table.attachment_count;
-    c.k = Num::Splat(4.0 / (step_s_ * step_s_)) * OfLane<Num>(from.spring, lane_);
-    c.b = (two / h) * OfLane<Num>(from.damper, lane_);
-    c.most = OfLane<Num>(from.upper, lane_) / h;
-    c.rate = half * OfLane<Num>(from.winding, lane_);
-    c.stretch = half * h * OfLane<Num>(from.start, lane_);
-    damped_ = damped_ || work_.implicit.damped[from.cable][lane_] > 0;
-    const auto* const pos = reinterpret_cast<const V3<W>*>(work_.start);
-    const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m_.body_count);
-    for (int i = 0; i < c.count; ++i) {
-      const AttachmentTable& at = m_.attachments[table.first_attachment + i];
-      ImplicitPoint<Num>& p = mem_.points[cables_.point_count++];
-      p.p_P = simd::Splat3<Num>(at.p_P);
-      p.body = number(at.body);
-      if (p.body >= 0) continue;
-      p.p0 = p.p_P;
-      if (at.body < m_.body_count) {
-        p.p0 = OfLane<Num>(pos[at.body], lane_) +
-               RotationOf(OfLane<Num>(quat[at.body], lane_)) * p.p_P;
-      }
-    }
-  }
-  bool has_cables() const noexcept { return cables_.cable_count > 0; }
-
-  /// Adds the held rows of joint `i` to the island (implicit_state.inl).
+  void AddCable(int row, const Number& number) noexcept;
   template <class Number>
   void AddJoint(int i, const Number& number) noexcept;
+  bool has_cables() const noexcept { return cables_.cable_count > 0; }
 
   /// Solves the step: impulses and velocities in island.m.l and .v, and final poses. Returns the
   /// residual [m/s].
@@ -379,6 +351,17 @@ class ImplicitIsland {
   void AddImpulses(Num* f) noexcept;
   /// `given`: keeps the impulses.
   bool Newton(bool given) noexcept;
+  /// Pose of a body at the start of the step.
+  V3<Num> StartPosition(int body) const noexcept {
+    return OfLane<Num>(reinterpret_cast<const V3<W>*>(work_.start)[body], lane_);
+  }
+  Q4<Num> StartRotation(int body) const noexcept {
+    const auto* const quat = reinterpret_cast<const Q4<W>*>(work_.start + 3 * m_.body_count);
+    return OfLane<Num>(quat[body], lane_);
+  }
+  /// Sets a point of `body`, whose index in the island is `number`; of a body outside (-1), at the
+  /// start of the step.
+  void SetPoint(int body, int number, const double* own_P, ImplicitPoint<Num>& p) noexcept;
   /// res <- residual at the velocities U and at `way` times the joints' last Newton step.
   void Evaluate(const Num* U, double way, Num* res) noexcept {
     cables_.Evaluate(stage_, U, res);
@@ -406,5 +389,6 @@ class ImplicitIsland {
 
 }  // namespace taut::sim
 
+#include "sim/solve/implicit_gather.inl"
 #include "sim/solve/implicit_newton.inl"
 #include "sim/solve/implicit_state.inl"

@@ -48,8 +48,8 @@ class ImplicitJoints {
     }
   }
 
-  /// Computes arms, axes and coordinates at the start of a stage. `goes_on`: the stage ends at the
-  /// coordinates that the stage before has reached, else at those of its own start.
+  /// Computes arms, axes and coordinates at the start of a stage. `goes_on`: changes of
+  /// coordinates count from the previous stage's final values, else from those at this start.
   void Begin(const ImplicitStage<Num>& stage, bool goes_on) noexcept {
     for (int i = 0; i < joint_count; ++i) {
       ImplicitJoint<Num>& j = mem_.joints[i];
@@ -189,18 +189,10 @@ class ImplicitJoints {
   }
   void Move(const ImplicitStage<Num>& stage, ImplicitPoint<Num>& p) noexcept {
     p.p1 = p.p0;
-    if (p.body < 0) return;
-    p.arm1 = Turned(p.body, p.arm0);
-    p.p1 = mem_.body[p.body].x1 + p.arm1;
-    p.arm = stage.at_end ? p.arm1 : Num::Splat(0.5) * (p.arm0 + p.arm1);
-  }
-  /// Derivative of a rotated vector by the spin.
-  M3<Num> TurnOf(const ImplicitStage<Num>& stage, int body, const V3<Num>& from,
-                 const V3<Num>& to) const noexcept {
-    return TimesCross(mem_.body[body].undo, (Num::Splat(-0.5) * stage.h) * (from + to));
+    if (p.body >= 0) MovePoint(stage, mem_.body[p.body], p);
   }
   void SetTurn(const ImplicitStage<Num>& stage, ImplicitPoint<Num>& p) noexcept {
-    if (p.body >= 0) p.turn = TurnOf(stage, p.body, p.arm0, p.arm1);
+    if (p.body >= 0) p.turn = TurnOf(stage, mem_.body[p.body], p.arm0, p.arm1);
   }
 
   /// Coordinate of a row: offset along a fixed direction, length, or r times the product of an axis
@@ -261,8 +253,9 @@ class ImplicitJoints {
     const ImplicitPoint<Num>& p = by_b ? j.b : j.a;
     if (p.body < 0) return s;
     if (row.turns) {
-      s.w = row.reach * (by_b ? TransposeTimes(TurnOf(stage, p.body, row.y0, row.y1), row.x1)
-                              : TransposeTimes(TurnOf(stage, p.body, row.x0, row.x1), row.y1));
+      const ImplicitBody<Num>& body = mem_.body[p.body];
+      s.w = row.reach * (by_b ? TransposeTimes(TurnOf(stage, body, row.y0, row.y1), row.x1)
+                              : TransposeTimes(TurnOf(stage, body, row.x0, row.x1), row.y1));
       return s;
     }
     const V3<Num> along = j.is_distance ? j.a.n : row.along;
@@ -279,11 +272,11 @@ class ImplicitJoints {
       if (on >= 0) matrix.AddSpins(on, by, ww);
     };
     if (b >= 0) {
-      const M3<Num> Y = TurnOf(stage, b, row.y0, row.y1);
+      const M3<Num> Y = TurnOf(stage, mem_.body[b], row.y0, row.y1);
       add(b, b, CrossTimes(f * row.x, Y)), add(a, b, CrossTimes(-f * row.x, Y));
     }
     if (a >= 0) {
-      const M3<Num> X = TurnOf(stage, a, row.x0, row.x1);
+      const M3<Num> X = TurnOf(stage, mem_.body[a], row.x0, row.x1);
       add(b, a, CrossTimes(-f * row.y, X)), add(a, a, CrossTimes(f * row.y, X));
     }
   }

@@ -15,68 +15,12 @@ namespace taut::sim {
 
 template <class W>
 void ImplicitIsland<W>::LoadStart(int body, ImplicitBody<Num>& b) const noexcept {
-  const int n = m_.body_count;
-  const auto* const pos = reinterpret_cast<const V3<W>*>(work_.start);
-  const auto* const quat = reinterpret_cast<const Q4<W>*>(work_.start + 3 * n);
-  const auto* const mom = reinterpret_cast<const V3<W>*>(work_.start + 10 * n);
-  b.x = OfLane<Num>(pos[body], lane_);
-  b.q = OfLane<Num>(quat[body], lane_);
+  const auto* const mom = reinterpret_cast<const V3<W>*>(work_.start + 10 * m_.body_count);
+  b.x = StartPosition(body);
+  b.q = StartRotation(body);
   b.v = OfLane<Num>(work_.bodies[body].v0, lane_);
   b.w = OfLane<Num>(work_.bodies[body].w0, lane_);
   b.L = OfLane<Num>(mom[body], lane_);
-}
-
-template <class W>
-template <class Number>
-void ImplicitIsland<W>::AddJoint(int i, const Number& number) noexcept {
-  const JointTable& table = m_.joints[i];
-  const Num zero = Num::Splat(0.0);
-  const V3<Num> none{zero, zero, zero};
-  ImplicitJoint<Num>& j = mem_.joints[joints_.joint_count++];
-  const auto* const pos = reinterpret_cast<const V3<W>*>(work_.start);
-  const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m_.body_count);
-  const auto is_fixed = [&](int body) { return body < m_.body_count && number(body) < 0; };
-  const auto axis = [&](int body, const double* axis_P) {
-    const V3<Num> own = simd::Splat3<Num>(axis_P);
-    return is_fixed(body) ? RotationOf(OfLane<Num>(quat[body], lane_)) * own : own;
-  };
-  const auto place = [&](int body, const double* own_P, ImplicitPoint<Num>& p) {
-    p.body = number(body);
-    p.p_P = p.p0 = simd::Splat3<Num>(own_P);
-    if (is_fixed(body)) p.p0 = OfLane<Num>(pos[body], lane_) + axis(body, own_P);
-  };
-  place(table.a, table.own_a_P, j.a), place(table.b, table.own_b_P, j.b);
-  j.first = joints_.row_count, j.count = table.row_count;
-  j.is_distance = m_.joint_rows[table.first_row].measure == JointMeasure::kDistance;
-  for (int r = table.first_row; r < table.first_row + table.row_count; ++r) {
-    const HeldRow<W>& from = work_.joints[r];
-    ImplicitJointRow<Num>& row = mem_.joint_rows[joints_.row_count++];
-    row.source = r;
-    row.along = OfLane<Num>(from.lin, lane_);
-    row.reach = Num::Splat(table.reach_m);
-    // The mean of (3) over the step has half its compliance.
-    row.stiffness = Num::Splat(2.0) / (Num::Splat(kHeldCompliance) * OfLane<Num>(from.A, lane_));
-    row.last_force = OfLane<Num>(s_.joint_load[r], lane_);
-    int x = -1, y = 0;
-    switch (m_.joint_rows[r].measure) {
-      case JointMeasure::kSwing1:
-        x = 1, y = 0;
-        break;
-      case JointMeasure::kSwing2:
-        x = 2, y = 0;
-        break;
-      case JointMeasure::kTwist:
-        x = 2, y = 1;
-        break;
-      default:
-        break;
-    }
-    row.turns = x >= 0;
-    row.x_P = row.y_P = none;
-    if (!row.turns) continue;
-    row.x_P = axis(table.a, table.axes_a_P + 3 * x);
-    row.y_P = axis(table.b, table.axes_b_P + 3 * y);
-  }
 }
 
 template <class W>

@@ -30,8 +30,8 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
     implicit.AddCable(i, number);
   }
   for (int i = 0; i < m_.joint_count; ++i) {
-    const int body = m_.joints[i].b_moves ? m_.joints[i].b : m_.joints[i].a;
-    if (IsImplicitJoint(i) && mem_.root[body] == island_root_) implicit.AddJoint(i, number);
+    const bool is_here = mem_.root[m_.joints[i].moved_body()] == island_root_;
+    if (IsImplicitJoint(i) && is_here) implicit.AddJoint(i, number);
   }
   const double residual = implicit.Solve();
   if (implicit.failed()) return SolveWithFixedDirections(work);

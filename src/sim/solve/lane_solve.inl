@@ -121,8 +121,7 @@ class LaneSolve {
   /// Returns whether joint `i` is integrated implicitly, with the cables of its group.
   bool IsImplicitJoint(int i) const noexcept {
     if (!work_.implicit.any || fixed_directions_ || displaces_) return false;
-    const int body = m_.joints[i].b_moves ? m_.joints[i].b : m_.joints[i].a;
-    return work_.implicit.bodies[body][lane_] > 0;
+    return work_.implicit.bodies[m_.joints[i].moved_body()][lane_] > 0;
   }
   /// Returns whether the gathered island is integrated implicitly.
   bool IsImplicit() const noexcept {

@@ -91,6 +91,11 @@ TEST(WrappedAngles, WithoutAPeriodAreReportedWithTheRemedy) {
                        "  if they wrap, set \"wrap\": \"turn\" in their rule of a mapping (--map)"),
             table.npos)
       << table;
+  const std::vector<std::string> lines = ComparisonLines(found, "a", "b");
+  ASSERT_GT(lines.size(), 2u);
+  EXPECT_EQ(lines[1],
+            "warning: angles of b that jump by a turn, first at 1.19 s (1): joint/hip/angle_rad");
+  EXPECT_EQ(lines[2], "if they wrap, set \"wrap\": \"turn\" in their rule of a mapping (--map)");
   EXPECT_NE(ComparisonJson(found, "a", "b").find(R"("wrapped_angles": [
     {
       "name": "joint/hip/angle_rad",
