@@ -142,6 +142,7 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
     for (const CableScheme scheme : SchemesOf(*experiment)) {
       json["experiment"]["cable_schemes"].push_back(CableSchemeName(scheme));
     }
+    json["experiment"]["substeps"] = SubstepsOf(*experiment);
   }
   if (settled) {
     json["settled"] = {{"slack_cables", settled->slack_cables},

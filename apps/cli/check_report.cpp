@@ -222,6 +222,12 @@ std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment) {
   return CableSchemes(*model, LongestStep(experiment));
 }
 
+int SubstepsOf(const ExperimentSpec& experiment) {
+  Diagnostics unused;
+  const auto model = Model::CompileForExperiment(experiment.robot.def, unused);
+  return model ? SubstepCount(*model, LongestStep(experiment)) : 1;
+}
+
 std::string ExperimentTables(const ExperimentSpec& experiment) {
   std::string text = fmt::format("Experiment {}: {:g} s in steps of {:g} s, {}\n", experiment.name,
                                  experiment.duration_s, LongestStep(experiment),

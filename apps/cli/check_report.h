@@ -27,6 +27,8 @@ std::string RobotTables(const RobotSpec& robot);
 
 /// Returns the integration scheme of each cable at the experiment's longest step.
 std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment);
+/// Returns the number of substeps of that step.
+int SubstepsOf(const ExperimentSpec& experiment);
 
 /// Formats the experiment: number of cables per integration scheme, controllers, events and phases.
 std::string ExperimentTables(const ExperimentSpec& experiment);

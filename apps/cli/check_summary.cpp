@@ -83,6 +83,8 @@ std::string SchemesLine(const ExperimentSpec& experiment) {
     text += fmt::format("{}{} {}", text.empty() ? "Cables per integration scheme: " : ", ", count,
                         CableSchemeName(scheme));
   }
+  const int substeps = SubstepsOf(experiment);
+  if (substeps > 1) text += fmt::format("; {} substeps a step", substeps);
   return text;
 }
 

@@ -11,9 +11,7 @@ enum class CableScheme {
   kExplicit,  ///< Soft cable: explicit force.
   /// Stiff cable with wheels, edges, friction, a direct-current motor, a kinematic body, or a joint
   /// that slides or has stops, friction or springs in its group: implicit tension along fixed
-  /// directions, taken at the middle of the step.
-  /// Undamped cables may gain energy from transverse motion, and (12) limits the tension
-  /// (`kStatusStepTooLong`).
+  /// directions, taken at the middle of the step. (12) limits the tension (`kStatusStepTooLong`).
   kAlong,
   kImplicit,  ///< Implicit in tension and direction: any stiffness and tension; conserves energy.
   /// kImplicit with a second stage, which damps vibrations that the step does not resolve; without
@@ -35,6 +33,12 @@ constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
   }
   return "";
 }
+
+/// Returns the number of equal parts into which each step of `step_s` > 0 is divided. It is 1
+/// unless stiff cables of the model touch edges or rods, or have hardly any damping in a group that
+/// would be `kAlong`. It depends only on the step and on the model, and is at most 100; if that is
+/// not enough, the world has the status `kStatusStepTooLong`.
+int SubstepCount(const Model& model, double step_s);
 
 /// Returns the scheme of each cable at steps of `step_s` > 0. It depends only on the step and on
 /// the model's masses, stiffnesses and dampings, never on the state.

@@ -14,6 +14,10 @@ ROBOTS = ("tetraspine3", "tetraspine12", "six_strut")
 STAGES = ("start", "kinematics", "cables", "kick", "collide", "solve", "integrate", "judge")
 
 
+def counted(count, noun):
+    return f"{count} {noun}" + ("" if count == 1 else "s")
+
+
 def one_world(items):
     """Formats the steps per second of one world, and taut's ratio to them."""
     results = Results(items)
@@ -132,7 +136,7 @@ def spread(items):
     name = SETTINGS[worst["engine"], worst["setting"]]
     return {"spread": number(100 * statistics.median(item["spread"] for item in items), 2),
             "worst": number(100 * worst["spread"], 2),
-            "worst_name": f"{name}, {worst['robot']}, {worst['worlds']} worlds, {worst['lanes']} lanes"}
+            "worst_name": f"{name}, {worst['robot']}, {counted(worst['worlds'], 'world')}, {counted(worst['lanes'], 'lane')}"}
 
 
 def company(machine):

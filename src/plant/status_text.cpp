@@ -19,7 +19,8 @@ std::string StatusText(const ModelDef& def, const WorldStatus& status) {
     add("the contacts or stiff cables were not solved to the tolerance");
   if (status.bits & kStatusStepTooLong) {
     add(status.cable >= 0
-            ? "the step is too long for the tension of a cable"
+            ? "the step is too long for the tension of a cable, for its vibration, or for its path "
+              "around a rod that turns"
             : "the step is too long for the joint forces of a body, or for its rotation about a "
               "hinge away from its center of mass");
   }

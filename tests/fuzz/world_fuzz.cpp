@@ -8,6 +8,7 @@
 #include "fuzz/finite.h"
 #include "fuzz/fuzz_folder.h"
 #include "fuzz/random_input.h"
+#include "taut/cable_scheme.h"
 
 namespace taut::fuzz {
 namespace {
@@ -179,10 +180,11 @@ void Run(const std::uint8_t* data, std::size_t size) {
   const auto model = Model::Compile(RandomModel(draw), refused);
   Must((model != nullptr) == refused.ok(), "compiled or refused");
   if (!model) return;
-  const int most = static_cast<int>(model->def().bodies.size()) * kMaxOfABody;
+  const int substeps = SubstepCount(*model, step_s);
+  const int most = static_cast<int>(model->def().bodies.size()) * kMaxOfABody * substeps;
   WorldBatch batch(model, options);
   long work = 0;
-  for (int step = 0; step < kSteps && work < kEnough; ++step) {
+  for (int step = 0; step == 0 || (step * substeps < kSteps && work < kEnough); ++step) {
     for (int world = 0; world < options.worlds && step % kStepsPerStretch == 0; ++world) {
       Disturb(batch, world, draw);
     }

@@ -357,8 +357,8 @@ void Schemes(Report& report) {
               count(1e6, 20, 1e-3, CableScheme::kImplicitDamped), 24, 0);
   report.Near("1e4 N/m with dampers, 1 ms: implicit", "1",
               count(1e4, 20, 1e-3, CableScheme::kImplicit), 24, 0);
-  report.Near("one of them looks for terrain: fixed directions", "1",
-              count(1e6, 20, 1e-3, CableScheme::kAlong, true), 24, 0);
+  report.Near("one of them looks for terrain: explicit, in substeps", "1",
+              count(1e6, 20, 1e-3, CableScheme::kExplicit, true), 24, 0);
 }
 
 const SceneEntry kSchemes("stiff cables", "Scheme of a six-strut's cables", "the rule", Schemes);

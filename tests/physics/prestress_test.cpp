@@ -51,13 +51,22 @@ TEST(Prestress, AcrossAStiffCableAMassSwingsByTheMidpointRuleAtAnyTension) {
   }
 }
 
-/// Returns the same model with cables that test for terrain contacts and so keep the directions of
-/// the middle of the step.
+/// Returns the same model with damped cables that end at a kinematic body at rest, and so keep the
+/// directions of the middle of the step. The dampers do not act on transverse motion.
 ModelDef PluckedOfOtherCables(double tension_n, double off_m) {
   ModelDef def = Plucked(tension_n, off_m);
+  BodyDef frame = def.bodies[0];
+  frame.name = "frame";
+  frame.fixed = true;
+  frame.com_m = {0, 0, 0};
+  def.bodies.push_back(frame);
+  MotionDef rest;
+  rest.name = "rest";
+  rest.body = 1;
+  def.motions.push_back(rest);
   for (CableDef& cable : def.cables) {
-    cable.touches = CableTouches::kTerrain;
-    cable.radius_m = 1e-3;
+    cable.attachments[0].body = 1;
+    cable.damping_n_s_per_m = 0.2 * std::sqrt(0.1 * cable.stiffness_n_per_m);
   }
   return def;
 }

@@ -94,6 +94,7 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
       options(Sane(o)),
       kernel(sim::KernelOf(*options.simd)),
       layout(model->MakeLayout()),
+      substep_rule(sim::SubstepRuleOf(*model)),
       pool(options.threads) {
   friction = {model->friction_sides.data(), static_cast<int>(model->shapes.size()),
               model->shape_of_point.data(), model->def().friction_combine, options.friction.get()};
@@ -211,8 +212,13 @@ const Model& WorldBatch::model() const noexcept { return *impl_->model; }
 int WorldBatch::worlds() const noexcept { return impl_->options.worlds; }
 int WorldBatch::lanes() const noexcept { return impl_->lanes(); }
 
+sim::StepSettings WorldBatch::Impl::SettingsOf(double step_s) const noexcept {
+  return {options.max_linear_solves, options.tolerance_m_per_s, substep_rule.CountOf(step_s),
+          substep_rule.IsEnough(step_s) ? -1 : substep_rule.cable};
+}
+
 void WorldBatch::Impl::Step(double step_s, int count, const double* targets_m) noexcept {
-  const sim::StepSettings settings{options.max_linear_solves, options.tolerance_m_per_s};
+  const sim::StepSettings settings = SettingsOf(step_s);
   auto work = [&](int thread, std::size_t g) {
     if (targets_m != nullptr) SetTargets(static_cast<int>(g), targets_m);
     kernel->step(view, layout, groups[g], settings, scratch[static_cast<std::size_t>(thread)].get(),

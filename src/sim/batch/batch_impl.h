@@ -12,6 +12,7 @@
 #include "base/thread_pool.h"
 #include "math/vec.h"
 #include "sim/batch/check_index.h"
+#include "sim/batch/substeps.h"
 #include "sim/data/group.h"
 #include "sim/data/tables.h"
 #include "taut/world_batch.h"
@@ -43,6 +44,7 @@ struct WorldBatch::Impl {
   WorldBatchOptions options;
   const sim::Kernel* kernel;
   sim::Layout layout;
+  sim::SubstepRule substep_rule;
   mutable std::vector<sim::Group> groups;
   Aligned<double> rows;
   Aligned<sim::NearParts> kept;
@@ -80,6 +82,9 @@ struct WorldBatch::Impl {
   }
   /// Returns the row of a parameter.
   int ParameterRow(const char* function, int world, Parameter parameter, int index) const noexcept;
+
+  /// Returns the settings of a step of this length.
+  sim::StepSettings SettingsOf(double step_s) const noexcept;
 
   int lanes() const noexcept { return kernel->lanes; }
   sim::Group& group(int world) const noexcept {

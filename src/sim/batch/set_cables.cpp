@@ -19,6 +19,7 @@ void WorldBatch::Impl::ForgetBends(int world) noexcept {
     for (int i = 0; i + 1 < cable.span_count; ++i) {
       at(world, layout.slip_place + cable.first_slip + i) = kNotHeld;
       at(world, layout.slip_along + cable.first_slip + i) = kNotHeld;
+      at(world, layout.slip_height + cable.first_slip + i) = kNotHeld;
     }
   }
 }

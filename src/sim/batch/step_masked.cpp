@@ -44,7 +44,7 @@ class Still {
 }  // namespace
 
 void WorldBatch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
-  const sim::StepSettings settings{options.max_linear_solves, options.tolerance_m_per_s};
+  const sim::StepSettings settings = SettingsOf(step_s);
   const int n = lanes();
   auto work = [&](int thread, std::size_t number) {
     sim::Group& g = groups[number];

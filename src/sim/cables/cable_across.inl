@@ -39,11 +39,63 @@ TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) 
   return b;
 }
 
-/// Slides one lane's bend if friction cannot hold it. Returns the displacement [m].
+/// Returns a direction across the axis of a bend, which rotates with its body.
 template <class W>
-double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, double friction,
-                 const Vec3& p, const Vec3& q, int k, int lane) noexcept {
+V3<W> MarkOfBend(const View& m, const Scratch<W>& work, const WrapPointNumbers<W>& bend) noexcept {
+  const W zero = W::Splat(0.0), one = W::Splat(1.0);
+  const W* const u = bend.axis;
+  const auto x_least = (Abs(u[0]) < Abs(u[1])) & (Abs(u[0]) < Abs(u[2]));
+  const V3<W> axis{u[0], u[1], u[2]};
+  const V3<W> least{Select(x_least, one, zero), Select(x_least, zero, one), zero};
+  V3<W> mark = Cross(axis, least);
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    const int body = BodyOfBend(m, bend, lane);
+    if (body == m.body_count) continue;
+    const Vec3 p = PlaceOf(mark, lane);
+    const double in_P[3] = {p.x, p.y, p.z};
+    SetPlace(mark, TurnedBy(work.bodies[body].R, in_P, lane), lane);
+  }
+  return mark;
+}
+
+/// Returns the smallest turn from one angle to another [rad].
+template <class W>
+TAUT_INLINE W TurnFrom(W from, W to) noexcept {
+  const W turned = to - from;
+  return turned - W::Splat(2 * kPi) * Round(W::Splat(0.5 / kPi) * turned);
+}
+
+/// Change of a held bend's path with the place of its middle along the axis.
+struct Lean {
+  double apart;  ///< Half the change of the length before minus that behind the middle [1].
+  double walk;   ///< Displacement along the axis per displacement around it, of equal work [1].
+};
+inline Lean LeanOf(const Tangents<Vec3>& way, const Rises<double>& rise) noexcept {
+  constexpr double kShortestM = 1e-9, kLeast = 1e-6, kMostTimes = 2.0;
+  const double lp = Max(way.lp, kShortestM), lq = Max(way.lq, kShortestM), w = 0.5 * way.around;
+  const double bent = 0.5 * w * (1.0 / lp - 1.0 / lq) / (1.0 + 0.5 * w * (1.0 / lp + 1.0 / lq));
+  const double cos_before = 1.0 / Sqrt(1.0 + rise.before * rise.before);
+  const double cos_behind = 1.0 / Sqrt(1.0 + rise.behind * rise.behind);
+  const double sin_before = rise.before * cos_before, sin_behind = rise.behind * cos_behind;
+  const double sin_on = rise.on / Sqrt(1.0 + rise.on * rise.on);
+  const double longer = sin_before * (1.0 - bent) - sin_behind * (1.0 + bent) + 2.0 * bent * sin_on;
+  const double mean = (sin_before + sin_behind) / (cos_before + cos_behind);
+  const double most = 1.0 + kMostTimes * Abs(mean);
+  const double exact = Abs(longer) > kLeast ? (cos_behind - cos_before) / longer : mean;
+  return {0.5 * (sin_before + sin_behind + bent * (sin_behind - sin_before)),
+          Max(Min(exact, most), -most)};
+}
+
+/// Slides one lane's bend if friction cannot hold it. `moved`: displacement of the arc's middle on
+/// the wheel since the previous step, about its axis [m]. Along this way the bend follows the mean
+/// direction of the cable, like a rope on a turning drum (eq. 22a). Returns the displacement across
+/// the cable [m].
+template <class W>
+double SlideBend(const View& m, const Rows<W>& s, const TouchTable& touch, Scratch<W>& work,
+                 const Vec3& p, const Vec3& q, int k, int lane, double moved) noexcept {
   constexpr double kSteepest = 0.995;  ///< Share of the friction limit that keeps some slip.
+  constexpr double kMostWalk = 0.1;    ///< Per length of the straight parts (status bit).
+  const CableTable& cable = m.cables[touch.cable];
   W& along = s.slip_along[cable.first_slip + k];
   AcrossWork<W>& across = work.across[cable.first_slip + k];
   const Wheel<V3<W>>& from = work.wheels[k];
@@ -60,15 +112,22 @@ double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, do
                                                         Max(way.lp + way.around + way.lq, 1e-300));
   const double before_n = s.span_tension[cable.first_span + k][lane];
   const double behind_n = s.span_tension[cable.first_span + k + 1][lane];
-  const double mean_n = 0.5 * (before_n + behind_n), old = along[lane];
+  const double mean_n = 0.5 * (before_n + behind_n);
+  double old = along[lane];
   const bool taut = before_n > 0.0 && behind_n > 0.0;
   if (!(old < kNotHeld) || !taut) {
     along.Set(lane, straight);
     across.aside.Set(lane, 0.0), across.drift.Set(lane, 0.0);
+    across.lean.Set(lane, LeanOf(way, RisesAt(way, straight)).apart);
     return old < kNotHeld ? Abs(straight - old) : 0.0;
   }
-  const double hold = friction * Max(way.theta, 0.0), aside = AsideAt(way, old);
+  const Lean lean = LeanOf(way, RisesAt(way, old));
+  const double walk_m = moved * lean.walk;
+  old = old + walk_m;
+  if (Abs(walk_m) > kMostWalk * Min(way.lp, way.lq)) work.WalkedFar(touch.cable, lane);
+  const double hold = touch.friction * Max(way.theta, 0.0), aside = AsideAt(way, old);
   double now = old;
+  along.Set(lane, now);
   if (Abs(aside) > hold) {
     now = SlideTo(way, old, aside > 0.0 ? hold : -hold);
     along.Set(lane, now);
@@ -80,6 +139,7 @@ double SlideBend(const Rows<W>& s, const CableTable& cable, Scratch<W>& work, do
   across.aside.Set(lane, left);
   across.drift.Set(lane, part / Sqrt(1.0 - part * part));
   across.far.Set(lane, straight - now);
+  across.lean.Set(lane, LeanOf(way, RisesAt(way, now)).apart);
   return Abs(now - old);
 }
 
@@ -110,22 +170,33 @@ template <class W>
   constexpr double kStillM = 1e-13;
   const CableTable& cable = m.cables[touch.cable];
   const W zero = W::Splat(0.0);
-  for (int k = 0; k < kMostBends; ++k) work.across[cable.first_slip + k] = {zero, zero, zero};
+  for (int k = 0; k < kMostBends; ++k) work.across[cable.first_slip + k] = {zero, zero, zero, zero};
+  const WrapPointNumbers<W>* const bends = &s.bend[touch.first_bend];
+  W moved[kMostBends];
+  for (int k = 0; k < used; ++k) {
+    const Wheel<V3<W>>& wheel = work.wheels[k];
+    const W known = s.slip_place[cable.first_slip + k];
+    const W shift = TurnFrom(known, MiddleOf(wheel, MarkOfBend(m, work, bends[k]), ends));
+    const W side = Select(wheel.angle < zero, zero - W::Splat(1.0), W::Splat(1.0));
+    const auto held = known < W::Splat(kNotHeld);
+    moved[k] = Select(held, side * shift * wheel.radius, zero);
+  }
   auto slides = s.halted[0] == zero;
   for (int round = 0; round < kMostRounds && Any(slides); ++round) {
     for (int lane = 0; lane < W::kLanes; ++lane) {
       if (!slides[lane]) continue;
-      double moved = 0.0;
+      double slid = 0.0;
       int before = 0;
       for (int k = 0; k < used; ++k) {
         if (!(work.wheels[k].theta[lane] > 0.0)) continue;
         int behind = k + 1;
         while (behind < used && !(work.wheels[behind].theta[lane] > 0.0)) ++behind;
         const Vec3 p = PlaceOf(ends[before].p, lane), q = PlaceOf(ends[2 * behind + 1].p, lane);
-        moved = Max(moved, SlideBend(s, cable, work, touch.friction, p, q, k, lane));
+        const double way = round == 0 ? moved[k][lane] : 0.0;
+        slid = Max(slid, SlideBend(m, s, touch, work, p, q, k, lane, way));
         before = 2 + 2 * k;
       }
-      slides.Set(lane, moved > kStillM);
+      slides.Set(lane, slid > kStillM);
     }
     LayOverBends(m, s, touch, used, ends, work.wheels, PoseNow(s, work));
   }

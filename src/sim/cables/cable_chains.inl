@@ -11,26 +11,38 @@
 
 namespace taut::sim {
 
-/// Moves the material that a turning wheel has carried along since the previous step between its
-/// two spans. `length`: of the spans. `keep`: stores the wheel's new place.
+/// Moves the material that a wheel has carried along since the previous step between its two spans:
+/// the displacement of the arc's middle on the wheel, along the mean of the cable's directions
+/// before and behind it (docs/theory/cables.md, eq. 19a). `length`: of the spans. `keep`: stores
+/// the middle's new place in `place` and `height`.
 template <class W>
 TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, const V3<W>& mark, int span,
-                           const AttachmentWork<W>* ends, const W* length, bool keep, W& place,
-                           W* rest) noexcept {
+                           const AttachmentWork<W>* ends, const W* length, bool keep, W along,
+                           W& place, W& height, W* rest) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
-  const W middle = MiddleOf(wheel, mark, ends);
+  const V3<W>&before = ends[wheel.at].u, &behind = ends[wheel.at + 2].u;
+  const W sin_before = Dot(before, wheel.axis), sin_behind = Dot(behind, wheel.axis);
+  const auto cos_of = [&](W sin) { return Sqrt(Max(one - sin * sin, zero)); };
+  const W around = half * (cos_of(sin_before) + cos_of(sin_behind));
+  const W shift = TurnFrom(place, MiddleOf(wheel, mark, ends));
+  const W middle = Dot(half * (ends[wheel.at].p + ends[wheel.at + 1].p) - wheel.center, wheel.axis);
+  const W rise = Select(height < W::Splat(kNotHeld), middle - height, zero);
+  if (keep) place = place + shift, height = middle;
   const W side = Select(wheel.angle < zero, zero - one, one);
-  const W turned = middle - place;
-  const W shift = turned - W::Splat(2 * kPi) * Round(W::Splat(0.5 / kPi) * turned);
-  if (keep) place = place + shift;
-  // Displacement of the arc's middle along the cable.
-  const auto on = wheel.theta > zero;
-  const W way = Select(on, side * shift * (wheel.arc / Max(wheel.theta, W::Splat(1e-300))), zero);
+  const W way =
+      Select(wheel.theta > zero, side * shift * wheel.radius * around + rise * along, zero);
   const W strain = half * (length[span] / rest[span] + length[span + 1] / rest[span + 1]);
   W moves = way / Max(strain, one);
   moves = Max(Min(moves, half * rest[span + 1]), -(half * rest[span]));
   rest[span] += moves;
   rest[span + 1] -= moves;
+}
+
+/// Returns the mean rise of the cable before and behind a wheel, per length.
+template <class W>
+TAUT_INLINE W LeanOf(const Wheel<V3<W>>& wheel, const AttachmentWork<W>* ends) noexcept {
+  return W::Splat(0.5) *
+         (Dot(ends[wheel.at].u, wheel.axis) + Dot(ends[wheel.at + 2].u, wheel.axis));
 }
 
 /// Applies CarryOver to all wheels with friction of a cable.
@@ -43,7 +55,9 @@ void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, cons
     if (slip.wheel < 0) continue;
     const Wheel<V3<W>>& wheel = work.wheels[slip.wheel - cable.first_wheel];
     const V3<W> mark = work.spots[m.wheels[slip.wheel].mark_spot].p - wheel.center;
-    CarryOver(wheel, mark, i, ends, length, keep, s.slip_place[cable.first_slip + i], rest);
+    const int at = cable.first_slip + i;
+    const W along = LeanOf(wheel, ends);
+    CarryOver(wheel, mark, i, ends, length, keep, along, s.slip_place[at], s.slip_height[at], rest);
   }
 }
 

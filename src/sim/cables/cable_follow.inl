@@ -18,6 +18,7 @@ struct LeftBehind {
   static constexpr int kMost = 2 * kMostBends;
   double key[kMost];
   int count = 0;
+  bool resolved = true;  ///< Bodies move by at most half a rod's radius in a substep.
 };
 
 /// Marks a lane whose cable touches more than kMostBends edges and rods (status bit).
@@ -93,6 +94,14 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   }
   FindRod(m, s, work, touch, parts, lane, taken, taken_count, part >= 0, &deepest, &part);
   if (part < 0) return false;
+  if (left.resolved && deepest.place.body != m.body_count &&
+      deepest.depth_m > deepest.place.radius_m) {
+    // The cable has jumped, so it is deeper in this rod than it can get in a substep. Laid around
+    // the rod, it would lengthen by a jump.
+    ForgetSide(m, s, touch, deepest.place.key, lane);
+    Crowd(work, touch, lane);
+    return true;
+  }
   const double arc_before = part > 0 ? wheels[part - 1].arc[lane] : 0.0;
   const double arc_behind = part < bends.count() ? wheels[part].arc[lane] : 0.0;
   const double share = ShareBefore(m, s, work, deepest.place, parts.span[part], 0.5 * arc_before,
@@ -172,6 +181,7 @@ template <class W>
     if (!Any(here)) break;
     const W ago = Select(here, time * (one - W::Splat(part) / parts), zero);
     LeftBehind left[W::kLanes];
+    for (int lane = 0; lane < W::kLanes; ++lane) left[lane].resolved = parts[lane] < kMostParts;
     auto busy = here;
     for (int round = 0;; ++round) {
       LayThen(m, s, work, touch, used, start, end, &ago);

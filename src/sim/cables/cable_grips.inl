@@ -37,6 +37,22 @@ template <class W>
     if (k < used) is_last = is_last & !HasSpan(m, s, cable, k + 1);
     length[k] = Select(is_last, rest, length[k]);
   }
+  // Spans on both sides of a bend that the cable has left are one, with equal strain.
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    const int count = SpansIn(m, s, cable, lane);
+    for (int first = 0, end; first < count; first = end) {
+      end = first + 1;
+      while (end < count && !(work.wheels[end - 1].theta[lane] > 0.0)) ++end;
+      if (end == first + 1) continue;
+      double long_m = 0.0, rest_m = 0.0;
+      for (int k = first; k < end; ++k) {
+        long_m += length[k][lane], rest_m += s.span_rest[cable.first_span + k][lane];
+      }
+      for (int k = first; k < end; ++k) {
+        length[k].Set(lane, long_m / rest_m * s.span_rest[cable.first_span + k][lane]);
+      }
+    }
+  }
 }
 
 /// Moves cable material with rotating rods, as in CarryOver.
@@ -51,25 +67,16 @@ template <class W>
   }
   for (int k = 0; k < work.bends_used; ++k) {
     const Wheel<V3<W>>& wheel = work.wheels[k];
-    // Any direction across the axis that rotates with the body.
-    const W* const u = bends[k].axis;
-    const auto x_least = (Abs(u[0]) < Abs(u[1])) & (Abs(u[0]) < Abs(u[2]));
-    const V3<W> axis{u[0], u[1], u[2]};
-    const V3<W> least{Select(x_least, one, zero), Select(x_least, zero, one), zero};
-    V3<W> mark = Cross(axis, least);
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      const int body = BodyOfBend(m, bends[k], lane);
-      if (body == m.body_count) continue;
-      const Vec3 p = PlaceOf(mark, lane);
-      const double in_P[3] = {p.x, p.y, p.z};
-      SetPlace(mark, TurnedBy(work.bodies[body].R, in_P, lane), lane);
-    }
+    const V3<W> mark = MarkOfBend(m, work, bends[k]);
     W& known = s.slip_place[cable.first_slip + k];
     const auto has = HasSpan(m, s, cable, k + 1);
     const W middle = MiddleOf(wheel, mark, ends);
     W place = Select(known < W::Splat(kNotHeld), known, middle);
-    CarryOver(wheel, mark, k, ends, length, keep, place, rest);
-    if (keep) known = Select(has, place, known);
+    W& known_height = s.slip_height[cable.first_slip + k];
+    W height = known_height;
+    const W along = keep ? work.across[cable.first_slip + k].lean : LeanOf(wheel, ends);
+    CarryOver(wheel, mark, k, ends, length, keep, along, place, height, rest);
+    if (keep) known = Select(has, place, known), known_height = Select(has, height, known_height);
   }
   for (int k = 1; k <= work.bends_used; ++k) {
     rest[k] = Select(HasSpan(m, s, cable, k), rest[k], zero);

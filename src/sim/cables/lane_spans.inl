@@ -105,10 +105,12 @@ class LaneSpans {
   void CopyPlace(int from, int to) const noexcept {
     Copy(&s_.slip_place[first_slip_], from, to);
     Copy(&s_.slip_along[first_slip_], from, to);
+    Copy(&s_.slip_height[first_slip_], from, to);
   }
   void ForgetPlace(int k) const noexcept {
     s_.slip_place[first_slip_ + k].Set(lane_, kNotHeld);
     s_.slip_along[first_slip_ + k].Set(lane_, kNotHeld);
+    s_.slip_height[first_slip_ + k].Set(lane_, kNotHeld);
   }
 
   const Rows<W>& s_;

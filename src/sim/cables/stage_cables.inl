@@ -238,7 +238,7 @@ template <bool kMotors, class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0);
   work.stiff_count = work.link_count = 0;
-  work.no_room = 0;
+  work.no_room = work.walked_far = 0;
   work.start_known = false;
   auto damps = MaskOf<W>::Splat(false);
   for (int c = 0; c < m.cable_count && Any(!damps); ++c) damps = damps | (s.damping[c] > zero);

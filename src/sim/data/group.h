@@ -41,6 +41,8 @@ struct Group {
 struct StepSettings {
   int max_linear_solves = 1000;  ///< Per island and step.
   double tolerance_m_per_s = 1e-10;
+  int substeps = 1;       ///< Equal parts into which a step is divided.
+  int coarse_cable = -1;  ///< Cable for which even the parts are too long (kStatusStepTooLong).
 };
 
 /// Step functions of one instruction set. Scratch is memory of `scratch_bytes`, aligned to 64.

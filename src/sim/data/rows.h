@@ -75,6 +75,7 @@ struct AcrossWork {
   W aside;  ///< Pull along the axis per tension, positive along the axis [1].
   W drift;  ///< Displacement along the axis per slip along the cable [1].
   W far;    ///< Distance along the axis to the place where it would be straight [m].
+  W lean;   ///< See Lean::apart [1].
 };
 
 /// Center and axis of a rod in W.
@@ -153,6 +154,13 @@ struct Scratch {
   /// Bit mask of the lanes in which a cable exceeds kMostBends, and that cable.
   uint32_t no_room = 0;
   int crowded_cable[W::kLanes];
+  /// Bit mask of the lanes in which a turning rod carries a bend too far in a step; the cable.
+  uint32_t walked_far = 0;
+  int walked_cable[W::kLanes];
+  void WalkedFar(int cable, int in_lane) noexcept {
+    walked_far |= 1u << in_lane;
+    walked_cable[in_lane] = cable;
+  }
   V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
   W* start;  ///< Rows that return to the start of the step in worlds that become non-finite.
   CableWork<W>* cables;

@@ -101,6 +101,7 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(slip_place,     Number, kSlip,     kState,     kGoesBack, SlipPlace)        /* middle of a wheel's arc, on the wheel [rad] */ \
   ROW(slip_loss,      Number, kSlip,     kState,     kGoesBack, Zero)             /* energy lost to friction [J] */ \
   ROW(slip_along,     Number, kSlip,     kState,     kGoesBack, NotHeld)          /* middle of a bend's arc, along its axis [m], or kNotHeld */ \
+  ROW(slip_height,    Number, kSlip,     kState,     kGoesBack, NotHeld)          /* middle of an arc in the last step, along its axis [m], or kNotHeld */ \
   ROW(touch_side,     Number, kTouchRod, kState,     kZero,     TouchSide)        /* side of the rod on which a part of the cable passes it (cable_rods.inl) */ \
   ROW(bend,           WrapPoint,   kBend,     kState,     kForgets,  NoWrapPoint)           /* see WrapPointNumbers */ \
   ROW(motor,          Motor,  kMotor,    kState,     kGoesBack, MotorAtRest) \

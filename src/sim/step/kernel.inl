@@ -165,12 +165,13 @@ void UpdateStatus(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
   JointShare<W> jointed{zero, {}};
   if (m.joint_count > 0) jointed = ShareOfStableJoints(m, s, work, step_s);
   const auto too_long = (Max(share, jointed.share) > W::Splat(1.0)) & (!was_halted);
+  const uint32_t coarse = settings.coarse_cable >= 0 ? ~0u : work.walked_far;
   s.residual[0] = solve.residual;
   s.linear_solves[0] = solve.linear_solves;
   s.relaxation[0] = solve.relaxation;
   auto fallen = MaskOf<W>::Splat(false);
   if (m.ground_count > 0) fallen = FellOff(m, s);
-  if (!Any(lost | unsolved | too_long | fallen) && overflow == 0) return;
+  if (!Any(lost | unsolved | too_long | fallen) && (overflow | coarse) == 0) return;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (was_halted[lane]) continue;
     LaneStatus& status = g.status[lane];
@@ -178,7 +179,8 @@ void UpdateStatus(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
     if (lost[lane]) bits |= kStatusNonFinite;
     if (unsolved[lane]) bits |= kStatusNotConverged;
     if (overflow & (1u << lane)) bits |= kStatusContactOverflow;
-    if (too_long[lane]) bits |= kStatusStepTooLong;
+    const bool too_coarse = (coarse & (1u << lane)) != 0;
+    if (too_long[lane] || too_coarse) bits |= kStatusStepTooLong;
     if (fallen[lane]) bits |= kStatusFellOff;
     if (bits != 0 && status.bits == 0) {
       status.first_time_s = s.time[0][lane];
@@ -189,7 +191,9 @@ void UpdateStatus(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
       status.cable = work.crowded_cable[lane];
     }
     if (bits & ~status.bits & kStatusNotConverged) status.body = solve.body[lane];
-    if (bits & ~status.bits & kStatusStepTooLong && jointed.share[lane] > share[lane]) {
+    if (bits & ~status.bits & kStatusStepTooLong && too_coarse) {
+      status.cable = settings.coarse_cable >= 0 ? settings.coarse_cable : work.walked_cable[lane];
+    } else if (bits & ~status.bits & kStatusStepTooLong && jointed.share[lane] > share[lane]) {
       status.body = jointed.body[lane];
     } else if (bits & ~status.bits & kStatusStepTooLong) {
       for (int i = 0; i < work.stiff_count; ++i) {
@@ -297,9 +301,24 @@ void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings
                void* scratch, double step_s, int count) {
   Scratch<W> work(m, scratch);
   const Rows<W> s(m, layout, g);
-  FindImplicit(m, s, work.implicit, step_s);
   Watch watch;
-  for (int i = 0; i < count; ++i) StepOnce(m, s, g, settings, work, step_s, watch);
+  if (settings.substeps == 1) {
+    FindImplicit(m, s, work.implicit, step_s);
+    for (int i = 0; i < count; ++i) StepOnce(m, s, g, settings, work, step_s, watch);
+    return;
+  }
+  const double part_s = step_s / settings.substeps;
+  FindImplicit(m, s, work.implicit, part_s);
+  for (int i = 0; i < count; ++i) {
+    const W end = s.time[0] + W::Splat(step_s);
+    W solves = W::Splat(0.0);
+    for (int k = 0; k < settings.substeps; ++k) {
+      StepOnce(m, s, g, settings, work, part_s, watch);
+      solves += s.linear_solves[0];
+    }
+    s.linear_solves[0] = solves;
+    s.time[0] = Select(s.halted[0] > W::Splat(0.0), s.time[0], end);
+  }
 }
 
 template <class W>
