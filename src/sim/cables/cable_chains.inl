@@ -161,6 +161,12 @@ TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
     rest[i] += missing;
     rest[i + 1] -= missing;
   }
+  // The last spans may be short, too.
+  for (int i = span_count - 1; i > 0; --i) {
+    const S missing = Max(least - rest[i], zero);
+    rest[i] += missing;
+    rest[i - 1] -= missing;
+  }
 }
 
 /// Prepares a cable with friction at the middle of the step: its actuator, and its spans for the

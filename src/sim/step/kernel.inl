@@ -153,6 +153,7 @@ void UpdateStatus(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
     sum += zero * (p.x + p.y + p.z + v.x + v.y + v.z + l.x + l.y + l.z + s.quat[b].w);
   }
   for (int c = 0; c < m.cable_count; ++c) sum += zero * s.rest[c];
+  for (int i = 0; i < m.span_count; ++i) sum += zero * s.span_rest[i];
   const auto was_halted = s.halted[0] > zero;
   const auto lost = (!(sum == zero)) & (!was_halted);
   const W tolerance = W::Splat(settings.tolerance_m_per_s);
