@@ -85,3 +85,10 @@ passed_commit() {
   local passed=${TAUT_CI_PASSED:-$(cat .ci/passed)}
   git cat-file -e "$passed^{commit}" 2>/dev/null && echo "$passed"
 }
+
+# changed_files: prints the files that changed since CI last passed, and new ones; status 1 if that is unknown.
+changed_files() {
+  local passed
+  passed=$(passed_commit) || return 1
+  git diff --name-only "$passed" && git ls-files --others --exclude-standard
+}
