@@ -67,6 +67,8 @@ class HostileAdapter {
     while (!hostile_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   bool AnyPower() const { return any_power_; }
+  /// Whether a motor has had power, even if too briefly for a test on a busy machine to see it.
+  bool HadPower() const { return had_power_; }
 
  private:
   using Bytes = std::vector<std::uint8_t>;
@@ -90,6 +92,7 @@ class HostileAdapter {
       }
       any_power_ = std::any_of(boards_.begin(), boards_.end(),
                                [](const auto& board) { return board->IsPowered(); });
+      if (any_power_) had_power_ = true;
       if (line_ >= 0) Serve(random);
     }
   }
@@ -178,7 +181,8 @@ class HostileAdapter {
   int line_ = -1, far_end_ = -1;
   std::uint8_t mode_ = 0x40;
   std::vector<std::unique_ptr<FakeBoard>> boards_;
-  std::atomic<bool> attacks_{false}, hostile_{false}, ended_{false}, any_power_{false};
+  std::atomic<bool> attacks_{false}, hostile_{false}, ended_{false}, any_power_{false},
+      had_power_{false};
   std::thread thread_;
 };
 
