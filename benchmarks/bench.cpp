@@ -137,13 +137,14 @@ void JudgeJoints(benchmark::State& state, const Runner& runner) {
 }
 
 void RegisterTaut(Case what, const ModelDef& def, int settle_periods) {
+  const bool joints = what.kind == "joints", stages = joints || what.kind == "stages";
+  if (stages && !sim::HasWatch(what.lanes)) return;
   what.engine = "taut";
   what.setting = "default";
   WorldBatchOptions options;
   options.worlds = what.worlds;
   options.threads = what.threads;
   options.simd = static_cast<Simd>(what.lanes);
-  const bool joints = what.kind == "joints", stages = joints || what.kind == "stages";
   const Make make = [def, options, stages] {
     auto runner = std::make_unique<TautRunner>(def, options);
     if (stages) BatchInside::Watch(runner->batch());

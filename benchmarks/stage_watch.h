@@ -16,6 +16,10 @@ inline constexpr const char* kStageNames[kStages] = {"start",   "kinematics", "c
 /// Clock ticks of the processor spent in each stage so far, by batches with one thread.
 extern std::uint64_t g_stage_ticks[kStages];
 
+/// Returns whether the step with a watch was compiled for batches of so many lanes
+/// (TAUT_WATCHED_SETS).
+bool HasWatch(int lanes);
+
 extern const Kernel kWatchedScalar, kWatchedNeon, kWatchedSse2, kWatchedAvx2, kWatchedAvx512;
 
 }  // namespace sim
