@@ -3,8 +3,8 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "base/brief.h"
 #include "math/vec.h"
 
 namespace taut::analysis {
@@ -176,11 +176,9 @@ std::vector<Unbalanced> ForceBalance::Left(const VectorXd& x) const {
 std::string ForceBalance::Words(const std::vector<Unbalanced>& left) const {
   std::string text;
   for (std::size_t i = 0; i < left.size() && i < 3; ++i) {
-    char numbers[100];
-    std::snprintf(numbers, sizeof numbers, " by %.4g N and %.4g N m", Length(left[i].force_n),
-                  Length(left[i].torque_n_m));
-    text +=
-        (i > 0 ? ", " : "") + def_.bodies[static_cast<std::size_t>(left[i].body)].name + numbers;
+    text += (i > 0 ? ", " : "") + def_.bodies[static_cast<std::size_t>(left[i].body)].name +
+            " by " + base::Brief(Length(left[i].force_n)) + " N and " +
+            base::Brief(Length(left[i].torque_n_m)) + " N m";
   }
   if (left.size() > 3) text += " and " + std::to_string(left.size() - 3) + " more";
   return text;

@@ -1,4 +1,4 @@
-/// Numbers in messages.
+/// Numbers as text, in messages and files
 #pragma once
 
 #include <string>
@@ -7,10 +7,16 @@
 
 namespace taut::base {
 
-/// Returns a number with four digits, for computed values that are displayed only.
-inline std::string Brief(double number) {
+/// Returns a number with so many digits, at most 17, for computed values that are displayed only.
+inline std::string Brief(double number, int digits = 4) {
   char text[32];
-  return {text, ToChars(text, text + sizeof text, number, 4).ptr};
+  return {text, ToChars(text, text + sizeof text, number, digits).ptr};
+}
+
+/// Returns the shortest text that reads back as the same number, for values that somebody chose.
+inline std::string Shortest(double number) {
+  char text[32];
+  return {text, ToChars(text, text + sizeof text, number).ptr};
 }
 
 }  // namespace taut::base

@@ -1,9 +1,9 @@
 // Checks of environments: periods on the grid of steps, actions and observed channels.
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <string>
 
+#include "base/brief.h"
 #include "description/experiment/partial_load.h"
 #include "env/plan.h"
 #include "plant/recorder.h"
@@ -12,12 +12,6 @@
 
 namespace taut {
 namespace {
-
-/// Returns the shortest text that reads back as the same number.
-std::string Shown(double x) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof(text), x).ptr};
-}
 
 /// All lanes take the same steps, at any time of their episodes, only if all times are multiples of
 /// the step (src/plant/schedule.h).
@@ -35,18 +29,19 @@ class Clocks {
   void Check() {
     const double period_s = spec_.period_s, step_s = experiment_.step_s;
     if (!(period_s > 0))
-      return Error("environment.period_not_positive", "must be positive, got " + Shown(period_s),
-                   "");
+      return Error("environment.period_not_positive",
+                   "must be positive, got " + base::Shortest(period_s), "");
     if (!IsWhole(period_s / step_s) || period_s < 0.5 * step_s) {
       Error("environment.period_not_whole",
-            "must be a whole multiple of the step, got " + Shown(period_s / step_s) + " steps",
-            "step_s is " + Shown(step_s));
+            "must be a whole multiple of the step, got " + base::Shortest(period_s / step_s) +
+                " steps",
+            "step_s is " + base::Shortest(step_s));
     }
     const double periods = experiment_.duration_s / period_s;
     if (!IsWhole(periods) || periods < 0.5) {
       Error("environment.period_not_whole",
-            "must divide duration_s into whole periods, got " + Shown(periods),
-            "an episode lasts duration_s, " + Shown(experiment_.duration_s) + " s");
+            "must divide duration_s into whole periods, got " + base::Shortest(periods),
+            "an episode lasts duration_s, " + base::Shortest(experiment_.duration_s) + " s");
     }
     for (const ControllerSpec& controller : experiment_.controllers) {
       Check(controller.clock, "controller " + controller.name);
@@ -67,8 +62,8 @@ class Clocks {
   void Check(const ClockSpec& clock, const std::string& whose) {
     if (!IsWhole(spec_.period_s / clock.period_s)) {
       Error("environment.period_not_whole",
-            "must be a whole multiple of the period of " + whose + ", " + Shown(clock.period_s) +
-                " s",
+            "must be a whole multiple of the period of " + whose + ", " +
+                base::Shortest(clock.period_s) + " s",
             "each action must span the same number of ticks");
     }
     OnGrid(clock.period_s, "the period of " + whose);
@@ -77,10 +72,11 @@ class Clocks {
   void Corner(double time_s, const std::string& whose) { OnGrid(time_s, "a corner of " + whose); }
   void OnGrid(double time_s, const std::string& what) {
     if (IsWhole(time_s / experiment_.step_s)) return;
-    out_.Error(
-        "environment.period_not_whole", spec_.at,
-        "environment: " + what + " must be a whole number of steps, got " + Shown(time_s) + " s",
-        "step_s is " + Shown(experiment_.step_s) + "; all worlds must step at the same times");
+    out_.Error("environment.period_not_whole", spec_.at,
+               "environment: " + what + " must be a whole number of steps, got " +
+                   base::Shortest(time_s) + " s",
+               "step_s is " + base::Shortest(experiment_.step_s) +
+                   "; all worlds must step at the same times");
   }
   void Error(MessageId id, const std::string& what, const std::string& hint) {
     out_.Error(id, spec_.period_at.line > 0 ? spec_.period_at : spec_.at,

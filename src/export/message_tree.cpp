@@ -1,7 +1,7 @@
 #include "export/message_tree.h"
+#include "base/brief.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -16,11 +16,7 @@ std::string Quoted(const std::string& text) {
 
 }  // namespace
 
-void PutNumber(std::string& json, double x) {
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, x).ptr;
-  json.append(digits, static_cast<std::size_t>(end - digits));
-}
+void PutNumber(std::string& json, double x) { json += base::Shortest(x); }
 
 void MessageTree::Add(std::string_view path, std::size_t channel) {
   const std::size_t slash = path.find('/');

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/brief.h"
 #include "math/vec.h"
 #include "mjcf/mjcf_build.h"
 
@@ -326,11 +327,7 @@ class CableBuilder {
     }
     return "it follows from the control of its actuator";
   }
-  static std::string Shown(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", number);
-    return text;
-  }
+  static std::string Shown(double number) { return base::Brief(number, 6); }
 
   Building& b_;
   Scene& scene_;

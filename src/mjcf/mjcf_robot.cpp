@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/brief.h"
 #include "math/vec.h"
 #include "mechanics/placed_parts.h"
 #include "mjcf/mjcf_build.h"
@@ -187,23 +188,25 @@ void ScaleUnits(Building& b) {
   for (const CapsuleDef& rod : def.capsules)
     longest = std::max(longest, Length(rod.to_m - rod.from_m));
   for (const BodyDef& body : def.bodies) heaviest = std::max(heaviest, body.mass_kg);
-  char text[200];
   const SourceRef whole{b.scene.bodies.front().at.file, 0, 0};
   const double g = Length(def.gravity_m_per_s2);
   if (longest > kLong_m && !b.options.length_unit_m) {
-    std::snprintf(text, sizeof text, "a rod is %.3g m long: check that 1 in this file is a meter",
-                  longest);
-    b.out.Warning("mjcf.length_unit", whole, text, "set --length_unit_m");
+    b.out.Warning(
+        "mjcf.length_unit", whole,
+        "a rod is " + base::Brief(longest, 3) + " m long: check that 1 in this file is a meter",
+        "set --length_unit_m");
   }
   if (heaviest > kHeavy_kg && !b.options.mass_unit_kg) {
-    std::snprintf(text, sizeof text,
-                  "a body weighs %.4g kg: check that 1 in this file is a kilogram", heaviest);
-    b.out.Warning("mjcf.mass_unit", whole, text, "set --mass_unit_kg");
+    b.out.Warning(
+        "mjcf.mass_unit", whole,
+        "a body weighs " + base::Brief(heaviest) + " kg: check that 1 in this file is a kilogram",
+        "set --mass_unit_kg");
   }
   if (l != 1 && g > 0 && std::fabs(g / kEarth - 1) > 0.02) {
-    std::snprintf(text, sizeof text,
-                  "gravity is %.3g m/s^2 with this unit of length, the value of the file", g);
-    b.out.Warning("mjcf.gravity", whole, text, "to change it, set gravity_m_per_s2 in the model");
+    b.out.Warning("mjcf.gravity", whole,
+                  "gravity is " + base::Brief(g, 3) +
+                      " m/s^2 with this unit of length, the value of the file",
+                  "to change it, set gravity_m_per_s2 in the model");
   }
 }
 

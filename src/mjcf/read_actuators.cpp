@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/brief.h"
 #include "mjcf/mjcf_scene.h"
 
 namespace taut::mjcf {
@@ -159,10 +160,9 @@ class ActuatorReader {
   }
 
   static std::string Text(const ActuatorSettings& s) {
-    char text[160];
-    std::snprintf(text, sizeof text, "gain %.6g, bias %.6g %.6g %.6g (%s), dyntype %s", s.gain,
-                  s.bias[0], s.bias[1], s.bias[2], s.biastype.c_str(), s.dyntype.c_str());
-    return text;
+    std::string text = "gain " + base::Brief(s.gain, 6) + ", bias";
+    for (const double bias : s.bias) text += " " + base::Brief(bias, 6);
+    return text + " (" + s.biastype + "), dyntype " + s.dyntype;
   }
 
   void ReadLaw(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {

@@ -4,17 +4,12 @@
 #include <ctime>
 #include <fstream>
 
-#include "base/number_text.h"
+#include "base/brief.h"
 #include "taut/run.h"
 #include "taut/version.h"
 
 namespace taut {
 namespace {
-
-std::string Shortest(double x) {
-  char text[32];
-  return {text, base::ToChars(text, text + sizeof(text), x).ptr};
-}
 
 /// Returns the processor's name on Linux; an empty string elsewhere.
 std::string ProcessorName() {
@@ -54,8 +49,8 @@ TraceMetadata RunMetadata(const ExperimentSpec& experiment) {
           {"model", experiment.robot.def.name},
           {"input_hash", hash},
           {"seed", std::to_string(experiment.seed)},
-          {"step_s", Shortest(LongestStep(experiment))},
-          {"duration_s", Shortest(experiment.duration_s)},
+          {"step_s", base::Shortest(LongestStep(experiment))},
+          {"duration_s", base::Shortest(experiment.duration_s)},
           {"started", NowUtc()},
           {"machine", MachineName()},
           {"compiler", __VERSION__}};

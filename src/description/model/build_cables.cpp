@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "base/brief.h"
 #include "base/fixed.h"
 #include "base/union_find.h"
 #include "description/model/build.h"
@@ -17,11 +18,7 @@
 namespace taut::description {
 namespace {
 
-std::string Number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string Number(double value) { return base::Brief(value, 6); }
 
 class CableMaker {
  public:

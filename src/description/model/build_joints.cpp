@@ -159,11 +159,9 @@ class JointMaker {
     }
     const double gap = JointError(joint);
     if (gap > JointDef::kClosed_m) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%.3g m", gap);
       once_("joint.gap", at,
-            "the nodes of " + called + " are " + text +
-                " apart in a direction in which it allows no motion",
+            "the nodes of " + called + " are " + base::Brief(gap, 3) +
+                " m apart in a direction in which it allows no motion",
             joint.kind == JointKind::kBall ? "place them at the same position"
                                            : "move the nodes, or change the joint's kind or axis");
       return;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/number_text.h"
+#include "base/brief.h"
 #include "description/yaml/kinds.h"
 
 namespace taut::description {
@@ -46,11 +46,7 @@ std::string Beyond(double number, const Bound& bound) {
 
 }  // namespace
 
-std::string Shown(double number) {
-  char buffer[32];
-  const auto [end, status] = base::ToChars(buffer, buffer + sizeof buffer, number);
-  return status == std::errc() ? std::string(buffer, end) : "?";
-}
+std::string Shown(double number) { return base::Shortest(number); }
 
 void WrongType(const Value& value, std::string_view what, std::string_view wanted,
                const Scope& scope) {

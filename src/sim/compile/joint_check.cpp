@@ -1,9 +1,9 @@
 // Checks of joint definitions.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
+#include "base/brief.h"
 #include "base/fixed.h"
 #include "math/joint_turn.h"
 #include "math/vec.h"
@@ -27,11 +27,7 @@ namespace {
 
 using K = JointKind;
 
-std::string Metres(double x) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g m", x);
-  return text;
-}
+std::string Metres(double x) { return base::Brief(x, 3) + " m"; }
 
 void CheckCoordinate(const JointDef& j, const std::string& name, Checker& check) {
   const bool acts = j.friction != 0 || j.stiffness != 0 || j.damping != 0;
