@@ -14,7 +14,7 @@
 namespace taut::test {
 namespace {
 
-constexpr int kWorlds = 8;
+constexpr int kCompanyWorlds = 8;
 constexpr double kStepS = 1e-3;
 
 /// Adds a different velocity to every body, up to 0.1 m/s in each direction.
@@ -35,23 +35,23 @@ void Jolt(WorldBatch& batch, int world, int number) {
 
 void ExpectTheSameInAnyCompany(const ModelDef& def, int steps) {
   WorldBatchOptions wide;
-  wide.worlds = kWorlds;
+  wide.worlds = kCompanyWorlds;
   WorldBatch together = MakeBatch(def, wide);
   wide.simd = Simd::kAvx2;  // falls back to an available instruction set
   wide.threads = 2;
   WorldBatch reversed = MakeBatch(def, wide);
-  for (int i = 0; i < kWorlds; ++i) {
+  for (int i = 0; i < kCompanyWorlds; ++i) {
     Jolt(together, i, i);
-    Jolt(reversed, i, kWorlds - 1 - i);
+    Jolt(reversed, i, kCompanyWorlds - 1 - i);
   }
   together.Step(kStepS, steps);
   reversed.Step(kStepS, steps);
-  for (int i = 0; i < kWorlds; ++i) {
+  for (int i = 0; i < kCompanyWorlds; ++i) {
     WorldBatch alone = MakeBatch(def, {});
     Jolt(alone, 0, i);
     alone.Step(kStepS, steps);
     EXPECT_EQ(together.Hash(i), alone.Hash(0)) << i;
-    EXPECT_EQ(reversed.Hash(kWorlds - 1 - i), alone.Hash(0)) << i;
+    EXPECT_EQ(reversed.Hash(kCompanyWorlds - 1 - i), alone.Hash(0)) << i;
   }
 }
 
@@ -101,11 +101,11 @@ TEST(Company, RodsOnDifferentPartsOfAFieldOfManyBoxes) {
     Jolt(batch, world, number);
   };
   WorldBatchOptions wide;
-  wide.worlds = kWorlds;
+  wide.worlds = kCompanyWorlds;
   WorldBatch together = MakeBatch(def, wide);
-  for (int i = 0; i < kWorlds; ++i) start(together, i, i);
+  for (int i = 0; i < kCompanyWorlds; ++i) start(together, i, i);
   together.Step(kStepS, 800);
-  for (int i = 0; i < kWorlds; ++i) {
+  for (int i = 0; i < kCompanyWorlds; ++i) {
     WorldBatch alone = MakeBatch(def, {});
     start(alone, 0, i);
     alone.Step(kStepS, 800);

@@ -121,17 +121,17 @@ std::vector<Named> All() {
 }
 
 /// Outputs of a world over some steps under actions that depend on the step only
-struct Trail {
+struct SnapshotTrail {
   std::vector<std::vector<double>> rows;
   std::vector<double> rewards;
   std::vector<std::uint64_t> hashes;
   std::vector<std::uint8_t> ends;
-  bool operator==(const Trail&) const = default;
+  bool operator==(const SnapshotTrail&) const = default;
 };
 
-Trail Follow(Env& env, std::size_t world, int from, int steps) {
+SnapshotTrail Follow(Env& env, std::size_t world, int from, int steps) {
   Arrays<> arrays(env);
-  Trail trail;
+  SnapshotTrail trail;
   const int w = static_cast<int>(world);
   for (int step = from; step < from + steps; ++step) {
     Wiggle(arrays, step);
@@ -158,7 +158,7 @@ TEST(EnvSnapshot, WhatIsRestoredGoesOnAsItWouldHave) {
       Follow(*env, 2, 0, before);
       const std::vector<std::uint8_t> saved = env->Save(2);
       // through the end of the episode into the next one
-      const Trail expected = Follow(*env, 2, before, 25);
+      const SnapshotTrail expected = Follow(*env, 2, before, 25);
       const auto other = MakeEnv(of.experiment, {.worlds = 3, .simd = Simd::kScalar, .seed = 90});
       Follow(*other, 1, 40, 4);
       Diagnostics out;
@@ -179,7 +179,7 @@ TEST(EnvSnapshot, WithWhateverDelaysItHas) {
     const auto env = MakeEnv(experiment, {.worlds = 8, .seed = 20});
     Follow(*env, world, 0, 5);
     const std::vector<std::uint8_t> saved = env->Save(static_cast<int>(world));
-    const Trail expected = Follow(*env, world, 5, 8);
+    const SnapshotTrail expected = Follow(*env, world, 5, 8);
     Diagnostics out;
     ASSERT_TRUE(env->Restore(static_cast<int>((world + 3) % 8), saved, out)) << out.Format();
     EXPECT_EQ(Follow(*env, (world + 3) % 8, 5, 8), expected) << world;
@@ -196,7 +196,7 @@ TEST(EnvSnapshot, OthersDoNotNotice) {
   Follow(*calm, 0, 4, 3);
   Diagnostics out;
   ASSERT_TRUE(env->Restore(1, saved, out));
-  const Trail trail = Follow(*env, 3, 7, 20), calm_trail = Follow(*calm, 3, 7, 20);
+  const SnapshotTrail trail = Follow(*env, 3, 7, 20), calm_trail = Follow(*calm, 3, 7, 20);
   EXPECT_EQ(trail, calm_trail);
 }
 

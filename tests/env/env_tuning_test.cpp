@@ -12,7 +12,7 @@
 namespace taut::test {
 namespace {
 
-EnvironmentAction Moves(std::vector<std::string> numbers, double by, std::string name = {}) {
+EnvironmentAction TunedMoves(std::vector<std::string> numbers, double by, std::string name = {}) {
   EnvironmentAction action;
   action.cable = kWorld;
   action.numbers = std::move(numbers);
@@ -40,7 +40,7 @@ double& NumberOf(ExperimentSpec& experiment, const std::string& name) {
   throw std::runtime_error("no number " + name);
 }
 
-std::uint64_t HashOfRun(const ExperimentSpec& experiment) {
+std::uint64_t HashOfTunedRun(const ExperimentSpec& experiment) {
   Diagnostics out;
   const auto run = RunExperiment(experiment, {}, out);
   EXPECT_TRUE(run) << out.Format();
@@ -90,12 +90,12 @@ TEST(EnvTuning, AnActionThatStaysIsAnotherNumber) {
   for (const Case& of : kCases) {
     ExperimentSpec experiment = With(of.experiment, 0.3, {});
     NumberOf(experiment, of.number);
-    experiment.environment->actions = {Moves({of.number}, of.by)};
-    const std::uint64_t as_it_is = HashOfRun(experiment);
+    experiment.environment->actions = {TunedMoves({of.number}, of.by)};
+    const std::uint64_t as_it_is = HashOfTunedRun(experiment);
     EXPECT_EQ(HashUnder(experiment, 0), as_it_is) << of.number;
     ExperimentSpec other = experiment;
     NumberOf(other, of.number) += 0.5 * of.by;
-    const std::uint64_t expected = HashOfRun(other);
+    const std::uint64_t expected = HashOfTunedRun(other);
     EXPECT_EQ(HashUnder(experiment, 0.5), expected) << of.number;
     EXPECT_NE(expected, as_it_is) << of.number;
   }
@@ -104,7 +104,7 @@ TEST(EnvTuning, AnActionThatStaysIsAnotherNumber) {
 TEST(EnvTuning, OneActionMovesAllThatBelongTogether) {
   const std::vector<std::string> all{"impedance.inner_top_1.tension_offset_n",
                                      "impedance.inner_left_1.tension_offset_n"};
-  ExperimentSpec experiment = With("push_20n", 0.2, {Moves(all, 6, "front")});
+  ExperimentSpec experiment = With("push_20n", 0.2, {TunedMoves(all, 6, "front")});
   const auto env = MakeEnv(experiment, {.worlds = 1});
   ASSERT_EQ(env->action_channels().size(), 1u);
   EXPECT_EQ(env->action_channels()[0].name, "front");
@@ -112,22 +112,22 @@ TEST(EnvTuning, OneActionMovesAllThatBelongTogether) {
   EXPECT_EQ(env->action_scales(), std::vector<double>{6});
   ExperimentSpec other = experiment;
   for (const std::string& name : all) NumberOf(other, name) -= 3;
-  EXPECT_EQ(HashUnder(experiment, -0.5), HashOfRun(other));
+  EXPECT_EQ(HashUnder(experiment, -0.5), HashOfTunedRun(other));
 }
 
 TEST(EnvTuning, NumbersStayWhereTheyMakeSense) {
   ExperimentSpec experiment =
-      With("push_20n", 0.2, {Moves({"impedance.inner_top_1.tension_offset_n"}, 100)});
+      With("push_20n", 0.2, {TunedMoves({"impedance.inner_top_1.tension_offset_n"}, 100)});
   ExperimentSpec other = experiment;
   NumberOf(other, "impedance.inner_top_1.tension_offset_n") = 0;
-  EXPECT_EQ(HashUnder(experiment, -1), HashOfRun(other));
+  EXPECT_EQ(HashUnder(experiment, -1), HashOfTunedRun(other));
 }
 
 /// V0 of the first cable with a wave is offset + amplitude cos(phase) at each tick. The phase is
 /// the integral of the frequency and continuous across periods.
 TEST(EnvTuning, AFrequencyChangesWithoutAJumpOfThePhase) {
   ExperimentSpec experiment =
-      With("sine_hand_tuned", 1, {Moves({"impedance.sine.frequency_hz"}, 0.4)});
+      With("sine_hand_tuned", 1, {TunedMoves({"impedance.sine.frequency_hz"}, 0.4)});
   const auto& controller = experiment.controllers[0];
   const SineGait& sine = *controller.velocity_input->gait.sine;
   const SineWave& wave = sine.waves[0];
@@ -160,8 +160,8 @@ TEST(EnvTuning, AFrequencyChangesWithoutAJumpOfThePhase) {
 /// All kinds of actions at once, for comparisons of bits
 ExperimentSpec Mixed(const std::string& name, const std::string& gait) {
   ExperimentSpec experiment = With(name, 0.2,
-                                   {Moves({"impedance.inner_top_1.tension_offset_n"}, 8),
-                                    Moves({"impedance." + gait + ".frequency_hz"}, 0.5)});
+                                   {TunedMoves({"impedance.inner_top_1.tension_offset_n"}, 8),
+                                    TunedMoves({"impedance." + gait + ".frequency_hz"}, 0.5)});
   experiment.environment->observations = {"cable/*/velocity_input_m_per_s", "body/*",
                                           "cable/*/setpoint_n"};
   experiment.environment->reward.measure = Measure::kDistance;
@@ -201,7 +201,7 @@ TEST(EnvTuning, ANewEpisodeKnowsNothingOfWhatTheLastOneWasToldOrSaid) {
   for (const auto& [name, number] : {std::pair{"sine_hand_tuned", "impedance.sine.frequency_hz"},
                                      {"cpg_learned", "impedance.cpg.frequency_hz"},
                                      {"roll_to_goal", "motion.toward_goal.beat_hz"}}) {
-    const ExperimentSpec experiment = With(name, 1, {Moves({number}, 0.1)});
+    const ExperimentSpec experiment = With(name, 1, {TunedMoves({number}, 0.1)});
     const auto env = MakeEnv(experiment, {.worlds = 3}), fresh = MakeEnv(experiment, {.worlds = 3});
     Arrays<> arrays(*env), others(*fresh);
     for (int step = 0; step < 7; ++step) {
@@ -228,7 +228,7 @@ TEST(EnvTuning, WhatAGaitRemembersStays) {
                                      {"cpg_learned", "impedance.cpg.amplitude_m_per_s"},
                                      {"goal_flat", "motion.feedback_cpg.phase_gain_rad_per_s"},
                                      {"roll_to_goal", "motion.toward_goal.beat_hz"}}) {
-    const ExperimentSpec experiment = With(name, 1, {Moves({number}, 1e-9)});
+    const ExperimentSpec experiment = With(name, 1, {TunedMoves({number}, 1e-9)});
     const auto env = MakeEnv(experiment, {.worlds = 2});
     Arrays<> arrays(*env);
     EXPECT_TRUE(arrays.Reset(*env, std::vector<std::uint64_t>{5, 5}));
@@ -251,13 +251,13 @@ TEST(EnvTuning, WhatNoActionCanMoveIsSaid) {
        {"motion.nothing", "model.friction",
         "motion.feedback_cpg.frequency_hz"}) {  // this name refers to the start value
     Diagnostics out;
-    EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {Moves({number}, 1)}), out));
+    EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {TunedMoves({number}, 1)}), out));
     EXPECT_NE(out.Format().find("there is no parameter \"" + std::string(number)),
               std::string::npos)
         << out.Format();
   }
   Diagnostics out;
-  EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {Moves({}, 1)}), out));
+  EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {TunedMoves({}, 1)}), out));
 }
 
 }  // namespace

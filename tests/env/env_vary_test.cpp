@@ -89,7 +89,7 @@ ExperimentSpec Delayed(double action_delay_s, double observation_delay_s) {
   return experiment;
 }
 
-constexpr int kSteps = 8;
+constexpr int kVarySteps = 8;
 
 /// Returns the rows of a world with this seed.
 std::vector<std::vector<double>> RowsOf(const ExperimentSpec& experiment, std::uint64_t seed) {
@@ -97,7 +97,7 @@ std::vector<std::vector<double>> RowsOf(const ExperimentSpec& experiment, std::u
   Arrays<> arrays(*env);
   EXPECT_TRUE(arrays.Reset(*env, std::vector<std::uint64_t>{seed}));
   std::vector<std::vector<double>> rows{arrays.Row(0)};
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < kVarySteps; ++step) {
     Wiggle(arrays, step);
     arrays.Step(*env);
     rows.push_back(arrays.Row(0));
@@ -108,7 +108,7 @@ std::vector<std::vector<double>> RowsOf(const ExperimentSpec& experiment, std::u
 TEST(EnvVary, DelayedActionsActWholePeriodsLater) {
   const auto prompt = MakeEnv(Delayed(0, 0), {.worlds = 1});
   std::vector<std::vector<std::vector<double>>> expected;
-  for (int late = 0; late <= 3; ++late) expected.push_back(Rows(*prompt, late, kSteps));
+  for (int late = 0; late <= 3; ++late) expected.push_back(Rows(*prompt, late, kVarySteps));
   std::set<std::ptrdiff_t> met;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const auto found = std::find(expected.begin(), expected.end(), RowsOf(Delayed(0.03, 0), seed));
@@ -120,14 +120,14 @@ TEST(EnvVary, DelayedActionsActWholePeriodsLater) {
 
 TEST(EnvVary, DelayedObservationsAreThoseOfBefore) {
   const auto prompt = MakeEnv(Delayed(0, 0), {.worlds = 1});
-  const auto rows = Rows(*prompt, 0, kSteps);
+  const auto rows = Rows(*prompt, 0, kVarySteps);
   std::set<int> met;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     const auto late = RowsOf(Delayed(0, 0.02), seed);
     int fits = -1;
     for (int delay = 0; delay <= 2; ++delay) {
       bool same = true;
-      for (int k = 0; k <= kSteps; ++k) {
+      for (int k = 0; k <= kVarySteps; ++k) {
         same = same && late[static_cast<std::size_t>(k)] ==
                            rows[static_cast<std::size_t>(std::max(k - delay, 0))];
       }

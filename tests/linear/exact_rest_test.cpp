@@ -38,7 +38,7 @@ ExperimentSpec OnAHinge() {
   return e;
 }
 
-StateSpace Find(const ExperimentSpec& experiment) {
+StateSpace FindExactRest(const ExperimentSpec& experiment) {
   Diagnostics out;
   StateSpace system = FindStateSpace(experiment, {}, out);
   EXPECT_TRUE(out.ok()) << out.Format();
@@ -60,7 +60,7 @@ std::vector<double> Swings(const StateSpace& system) {
 
 TEST(ExactRest, AStiffRope) {
   // Groups that are implicit in tension and direction use differences (linear.md, section 3).
-  const StateSpace system = Find(OnARope(4e6));
+  const StateSpace system = FindExactRest(OnARope(4e6));
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
   // Like a pendulum it swings to both sides, with the length of the rope under the weight.
   const std::vector<double> swings_hz = Swings(system);
@@ -72,7 +72,7 @@ TEST(ExactRest, AStiffRope) {
 
 TEST(ExactRest, AHinge) {
   // Groups with held joints use differences, too.
-  const StateSpace system = Find(OnAHinge());
+  const StateSpace system = FindExactRest(OnAHinge());
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
   const double own_hz = std::sqrt(0.5 * 9.81 * 0.5 / (1e-3 + 0.5 * 0.25)) / (2 * std::numbers::pi);
   const std::vector<double> swings_hz = Swings(system);
@@ -92,7 +92,7 @@ TEST(ExactRest, ABallOnTheGround) {
   ground.name = "ground", ground.point_m = {0, 0, -0.1}, ground.normal = {0, 0, 1};
   ground.material = {0.5, 0.5, 0};
   def.planes.push_back(ground);
-  const StateSpace system = Find(e);
+  const StateSpace system = FindExactRest(e);
   EXPECT_EQ(system.derivatives, Derivatives::kExact);
   const auto entry = [&](const char* row, const char* column) {
     const auto i = FindSignal(system.states, row), j = FindSignal(system.states, column);

@@ -10,7 +10,7 @@
 namespace taut {
 namespace {
 
-const std::vector<std::string> kCables{"front", "back", "left"};
+const std::vector<std::string> kCalibratedCables{"front", "back", "left"};
 
 class CalibrationFile : public testing::Test {
  protected:
@@ -19,7 +19,7 @@ class CalibrationFile : public testing::Test {
                       ("taut_calibration_" + std::to_string(getpid()) + ".yaml");
     std::ofstream(path) << text;
     out_ = {};
-    auto calibration = LoadCalibration(path.string(), kCables, out_);
+    auto calibration = LoadCalibration(path.string(), kCalibratedCables, out_);
     std::filesystem::remove(path);
     return calibration;
   }
@@ -100,7 +100,7 @@ TEST_F(CalibrationFile, AllMistakesAreSaidAtOnce) {
   EXPECT_EQ(out_.items().size(), 3u) << out_.Format();
   EXPECT_FALSE(Load("taut: 1\nkind: faults\nname: c\ncables: []\n"));
   EXPECT_FALSE(Load("taut: 1\nkind: calibration\nname: c\n"));
-  EXPECT_FALSE(LoadCalibration("/nowhere.yaml", kCables, out_));
+  EXPECT_FALSE(LoadCalibration("/nowhere.yaml", kCalibratedCables, out_));
 }
 
 TEST_F(CalibrationFile, IsReadAsItWasWritten) {

@@ -30,7 +30,7 @@ struct Slab {
   double WeightN() const { return kRodKg * (6 + mass_ratio) * 9.81; }
 
   ModelDef Def(std::uint64_t seed) const {
-    constexpr double kRadiusM = 0.01, kHalfLengthM = 0.05, kOutM = 0.2;
+    constexpr double kHeapRadiusM = 0.01, kHalfLengthM = 0.05, kOutM = 0.2;
     const Material material{0.5, 0.5, 0.0};
     ModelDef def;
     scenes::AddGround(def, material);
@@ -38,14 +38,14 @@ struct Slab {
     for (int i = 0; i < 6; ++i) {
       const double place = std::numbers::pi / 3 * i,
                    heading = chance.Within(-crooked_rad, crooked_rad);
-      const Vec3 middle{kOutM * std::cos(place), kOutM * std::sin(place), kRadiusM};
+      const Vec3 middle{kOutM * std::cos(place), kOutM * std::sin(place), kHeapRadiusM};
       const Vec3 half{kHalfLengthM * std::cos(heading), kHalfLengthM * std::sin(heading), 0};
-      scenes::AddRod(def, "rod_" + std::to_string(i), kRodKg, kRadiusM,
+      scenes::AddRod(def, "rod_" + std::to_string(i), kRodKg, kHeapRadiusM,
                      scenes::Between(half, middle), scenes::Sum(middle, half), material);
     }
     const Vec3 half{0.3, 0.3, 0.05};
     const int slab = scenes::AddBox(def, "slab", kRodKg * mass_ratio, half,
-                                    {0, 0, 2 * kRadiusM + half.z}, {}, material);
+                                    {0, 0, 2 * kHeapRadiusM + half.z}, {}, material);
     BodyDef& body = def.bodies[static_cast<std::size_t>(slab)];
     body.velocity_m_per_s = velocity_m_per_s;
     body.angular_velocity_rad_per_s = spin_rad_per_s;

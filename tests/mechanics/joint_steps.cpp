@@ -14,7 +14,7 @@ namespace {
 
 using test::MakeBatch, test::Norm;
 
-constexpr double kStep = 1e-3, kLength = 0.1;
+constexpr double kStep = 1e-3, kLinkLength = 0.1;
 
 JointDef Pin(JointKind kind, int a, int b, const Vec3& from, const Vec3& to) {
   JointDef joint;
@@ -74,9 +74,9 @@ void StrongField(Report& report) {
   // w^2 = m g r / (I + m r^2)
   AroundTheLimit(report, 0.02, 0, [](double load) {
     ModelDef def;
-    scenes::AddRod(def, "rod", 1, 0.01, {}, {0, 0, -kLength}, {});
+    scenes::AddRod(def, "rod", 1, 0.01, {}, {0, 0, -kLinkLength}, {});
     def.bodies[0].velocity_m_per_s.x = 1e-6;
-    const double r = kLength / 2, inertia = def.bodies[0].inertia_kg_m2.yy + r * r;
+    const double r = kLinkLength / 2, inertia = def.bodies[0].inertia_kg_m2.yy + r * r;
     def.gravity_m_per_s2 = {0, 0, -load * 4 * inertia / (kStep * kStep * r)};
     def.joints.push_back(Pin(JointKind::kHinge, kWorld, 0, {}, {}));
     return def;
@@ -89,15 +89,15 @@ void HeavyEnd(Report& report) {
   AroundTheLimit(report, 0.05, 0, [](double load) {
     constexpr double kMass = 0.01;
     ModelDef def;
-    scenes::AddRod(def, "upper", kMass, 1e-3, {}, {0, 0, -kLength}, {});
-    scenes::AddRod(def, "lower", kMass, 1e-3, {0, 0, -kLength}, {0, 0, -2 * kLength}, {});
+    scenes::AddRod(def, "upper", kMass, 1e-3, {}, {0, 0, -kLinkLength}, {});
+    scenes::AddRod(def, "lower", kMass, 1e-3, {0, 0, -kLinkLength}, {0, 0, -2 * kLinkLength}, {});
     for (CapsuleDef& capsule : def.capsules) capsule.collides = false;
-    const double force = load * 4 / (kStep * kStep) * kMass * kLength / 3;
-    const Vec3 end{0, 0, -2 * kLength};
+    const double force = load * 4 / (kStep * kStep) * kMass * kLinkLength / 3;
+    const Vec3 end{0, 0, -2 * kLinkLength};
     AddMass(def, force / kG, 100, end);
     def.bodies[0].velocity_m_per_s.x = 1e-6;
     def.joints.push_back(Pin(JointKind::kBall, kWorld, 0, {}, {}));
-    const Vec3 middle{0, 0, -kLength};
+    const Vec3 middle{0, 0, -kLinkLength};
     def.joints.push_back(Pin(JointKind::kBall, 0, 1, middle, middle));
     def.joints.push_back(Pin(JointKind::kBall, 1, 2, end, end));
     return def;
@@ -109,10 +109,10 @@ void StringOfBeads(Report& report) {
   AroundTheLimit(report, 0.05, 0, [](double load) {
     constexpr double kMass = 0.01;
     ModelDef def;
-    const double force = load * 4 / (kStep * kStep) * kMass * kLength / 3;
+    const double force = load * 4 / (kStep * kStep) * kMass * kLinkLength / 3;
     Vec3 last;
     for (int i = 0; i < 3; ++i) {
-      const Vec3 at{0, 0, -kLength * (i + 1)};
+      const Vec3 at{0, 0, -kLinkLength * (i + 1)};
       AddMass(def, i < 2 ? kMass : force / kG, i < 2 ? 1e-6 : 1, at);
       def.joints.push_back(Pin(JointKind::kDistance, i - 1, i, last, at));
       last = at;

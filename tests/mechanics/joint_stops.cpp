@@ -246,7 +246,7 @@ void FreeElbow(Report& report) {
   report.AtMost("change of the energy, 10 s", "J", change, 1e-5 * start);
 }
 
-constexpr double kSteps[] = {4e-3, 1e-3, 2.5e-4}, kRestitutions[] = {0.5, 0.8, 1.0};
+constexpr double kStopSteps[] = {4e-3, 1e-3, 2.5e-4}, kRestitutions[] = {0.5, 0.8, 1.0};
 
 /// Reports the largest error of `error(restitution, step, which)` over some starts, for all
 /// restitutions and steps: second order, plus the share `lost` of the energy at any step size.
@@ -254,7 +254,7 @@ template <class F>
 void Rebounds(Report& report, double bound_1ms, double lost, const F& error) {
   const int starts = report.IsFull() ? 20 : 5;
   for (const double e : kRestitutions) {
-    for (const double h : kSteps) {
+    for (const double h : kStopSteps) {
       double worst = 0;
       for (int i = 0; i < starts; ++i) worst = std::max(worst, error(e, h, i));
       const double scale = h * h / 1e-6;

@@ -14,7 +14,7 @@ using test::Distance;
 using test::MakeBatch;
 using test::StepsIn;
 
-ModelDef Robot(double damping_n_s_per_m, bool on_ground, bool reversed) {
+ModelDef OrderedRobot(double damping_n_s_per_m, bool on_ground, bool reversed) {
   scenes::SixStrut robot;
   robot.length_m = 0.6;
   robot.rod_mass_kg = 0.1;
@@ -50,12 +50,12 @@ double Apart(const ModelDef& a, double step_a, const ModelDef& b, double step_b)
   return most;
 }
 
-void Reversed(Report& report) {
+void ReversedCables(Report& report) {
   for (const bool on_ground : {false, true}) {
     const std::string where = on_ground ? "on the ground" : "free";
     for (const double damping : {0.0, 1.0, 5.0, 20.0}) {
-      const ModelDef as_listed = Robot(damping, on_ground, false);
-      const double order = Apart(as_listed, 1e-3, Robot(damping, on_ground, true), 1e-3);
+      const ModelDef as_listed = OrderedRobot(damping, on_ground, false);
+      const double order = Apart(as_listed, 1e-3, OrderedRobot(damping, on_ground, true), 1e-3);
       const double step = Apart(as_listed, 1e-3, as_listed, 2.5e-4);
       report.AtMost(where + ", " + std::to_string(static_cast<int>(damping)) +
                         " N s/m: change by the order over error of the step",
@@ -66,7 +66,7 @@ void Reversed(Report& report) {
 
 const SceneEntry kReversed(
     "cables", "Six-strut with its cables listed in reverse",
-    "after 0.3 s at 1 ms, the poses change by less than the error of the step", Reversed);
+    "after 0.3 s at 1 ms, the poses change by less than the error of the step", ReversedCables);
 
 }  // namespace
 }  // namespace taut::mechanics

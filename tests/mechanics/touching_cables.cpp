@@ -66,7 +66,7 @@ Gain Fly(const ModelDef& def, double step_s) {
 }
 
 /// Returns the largest gains with 1 to 20 rods, from starts `first` to `last`.
-Gain Worst(double stiffness, double friction, double step_s, unsigned first, unsigned last) {
+Gain WorstGain(double stiffness, double friction, double step_s, unsigned first, unsigned last) {
   Gain worst;
   for (const int rods : {1, 2, 3, 5, 10, 20}) {
     for (unsigned seed = first; seed <= last; ++seed) {
@@ -89,11 +89,11 @@ void IntoFreeRods(Report& report) {
         if (!report.IsFull() && step_s < 1e-3 && stiffness > 1e4) continue;
         const std::string name = fmt::format("{:g} N/m, friction {:g}, {:g} ms, 1 to 20 rods",
                                              stiffness, friction, 1e3 * step_s);
-        const Gain worst = Worst(stiffness, friction, step_s, 0, 0);
+        const Gain worst = WorstGain(stiffness, friction, step_s, 0, 0);
         report.AtMost("energy above the start's, " + name, "1", worst.most, kMostGain);
         report.AtMost("change of momentum, " + name, "1", worst.drift, 1e-11);
         if (!report.IsFull()) continue;
-        const Gain random = Worst(stiffness, friction, step_s, 1, kRandomStarts);
+        const Gain random = WorstGain(stiffness, friction, step_s, 1, kRandomStarts);
         report.AtMost("the same, 36 random starts, without a status", "1", random.silent, 1.5e-3);
         report.AtMost("random starts with a gain above 1e-3, all with a status", "1", random.told,
                       1);

@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kSame = 1e-12;
+constexpr double kSameExport = 1e-12;
 
 class Shipment : public MjcfFolder, public testing::WithParamInterface<const char*> {
  protected:
@@ -29,19 +29,19 @@ TEST_P(Shipment, HasItsMassesLengthsAndTensionsInMujoco) {
       SCOPED_TRACE(body.name);
       const int id = theirs.Id(mjOBJ_BODY, body.name);
       ASSERT_GT(id, 0);
-      EXPECT_NEAR(theirs.model().body_mass[id], body.mass_kg, kSame * body.mass_kg);
-      ExpectNear(theirs.Com(id), body.com_m, kSame);
-      ExpectNear(theirs.InertiaOf(id), body.inertia_kg_m2, kSame);
+      EXPECT_NEAR(theirs.model().body_mass[id], body.mass_kg, kSameExport * body.mass_kg);
+      ExpectNear(theirs.Com(id), body.com_m, kSameExport);
+      ExpectNear(theirs.InertiaOf(id), body.inertia_kg_m2, kSameExport);
     }
     for (const CableDef& cable : def.cables) {
       SCOPED_TRACE(cable.name);
       const int id = theirs.Id(mjOBJ_TENDON, cable.name);
       ASSERT_GE(id, 0);
-      EXPECT_NEAR(theirs.data().ten_length[id], CableLength(cable), kSame);
-      EXPECT_NEAR(theirs.Tension(id), CableTension(cable), kSame * cable.stiffness_n_per_m);
+      EXPECT_NEAR(theirs.data().ten_length[id], CableLength(cable), kSameExport);
+      EXPECT_NEAR(theirs.Tension(id), CableTension(cable), kSameExport * cable.stiffness_n_per_m);
     }
     for (const NodeDef& node : def.nodes) {
-      ExpectNear(theirs.SitePlace(theirs.Id(mjOBJ_SITE, node.name)), node.position_m, kSame);
+      ExpectNear(theirs.SitePlace(theirs.Id(mjOBJ_SITE, node.name)), node.position_m, kSameExport);
     }
     EXPECT_EQ(theirs.model().opt.gravity[2], def.gravity_m_per_s2.z);
   }
@@ -94,9 +94,9 @@ TEST_P(Shipment, ComesBackAsTheSameRobot) {
   for (const BodyDef& body : def.bodies) {
     SCOPED_TRACE(body.name);
     ASSERT_TRUE(bodies.contains(body.name));
-    EXPECT_NEAR(bodies[body.name]->mass_kg, body.mass_kg, kSame * body.mass_kg);
-    ExpectNear(bodies[body.name]->com_m, body.com_m, kSame);
-    ExpectNear(bodies[body.name]->inertia_kg_m2, body.inertia_kg_m2, kSame);
+    EXPECT_NEAR(bodies[body.name]->mass_kg, body.mass_kg, kSameExport * body.mass_kg);
+    ExpectNear(bodies[body.name]->com_m, body.com_m, kSameExport);
+    ExpectNear(bodies[body.name]->inertia_kg_m2, body.inertia_kg_m2, kSameExport);
   }
   // Nodes and shapes by name, with their bodies by name.
   const auto each = [&](const auto& a, const auto& b, auto compare) {
@@ -111,31 +111,32 @@ TEST_P(Shipment, ComesBackAsTheSameRobot) {
       compare(x, *y);
     }
   };
-  each(def.nodes, back.nodes,
-       [&](const NodeDef& x, const NodeDef& y) { ExpectNear(y.position_m, x.position_m, kSame); });
+  each(def.nodes, back.nodes, [&](const NodeDef& x, const NodeDef& y) {
+    ExpectNear(y.position_m, x.position_m, kSameExport);
+  });
   EXPECT_EQ(back.spheres.size(), def.spheres.size());
   each(def.spheres, back.spheres, [&](const SphereDef& x, const SphereDef& y) {
-    ExpectNear(y.center_m, x.center_m, kSame);
+    ExpectNear(y.center_m, x.center_m, kSameExport);
     EXPECT_EQ(y.radius_m, x.radius_m);
   });
   EXPECT_EQ(back.capsules.size(), def.capsules.size());
   each(def.capsules, back.capsules, [&](const CapsuleDef& x, const CapsuleDef& y) {
-    ExpectNear(y.from_m, x.from_m, kSame);
-    ExpectNear(y.to_m, x.to_m, kSame);
+    ExpectNear(y.from_m, x.from_m, kSameExport);
+    ExpectNear(y.to_m, x.to_m, kSameExport);
     EXPECT_EQ(y.radius_m, x.radius_m);
   });
   EXPECT_EQ(back.cables.size(), def.cables.size());
   each(def.cables, back.cables, [&](const CableDef& x, const CableDef& y) {
     ASSERT_EQ(y.attachments.size(), x.attachments.size());
     for (std::size_t i = 0; i < x.attachments.size(); ++i) {
-      ExpectNear(y.attachments[i].position_m, x.attachments[i].position_m, kSame);
+      ExpectNear(y.attachments[i].position_m, x.attachments[i].position_m, kSameExport);
       EXPECT_EQ(name_of(back, y.attachments[i].body), name_of(def, x.attachments[i].body));
     }
-    EXPECT_NEAR(y.stiffness_n_per_m, x.stiffness_n_per_m, kSame * x.stiffness_n_per_m);
-    EXPECT_NEAR(y.damping_n_s_per_m, x.damping_n_s_per_m, kSame * x.damping_n_s_per_m);
-    EXPECT_NEAR(y.rest_length_m, x.rest_length_m, kSame);
+    EXPECT_NEAR(y.stiffness_n_per_m, x.stiffness_n_per_m, kSameExport * x.stiffness_n_per_m);
+    EXPECT_NEAR(y.damping_n_s_per_m, x.damping_n_s_per_m, kSameExport * x.damping_n_s_per_m);
+    EXPECT_NEAR(y.rest_length_m, x.rest_length_m, kSameExport);
   });
-  ExpectNear(back.gravity_m_per_s2, def.gravity_m_per_s2, kSame);
+  ExpectNear(back.gravity_m_per_s2, def.gravity_m_per_s2, kSameExport);
 }
 
 TEST(MjcfExport, SpringsHaveADeadBandFromZeroToTheRestLength) {
@@ -220,12 +221,12 @@ TEST(MjcfExport, BoxesHullsBarsFixedBodiesAndTerrainAreThere) {
                    def.terrain_boxes[0].half_extents_m}}) {
     const int g = geom(name);
     ASSERT_GE(g, 0);
-    ExpectNear(theirs.GeomPlace(g), center, kSame);
-    ExpectNear(theirs.GeomAxis(g, 0), Rotate(q, {1, 0, 0}), kSame);
-    ExpectNear(theirs.GeomAxis(g, 2), Rotate(q, {0, 0, 1}), kSame);
-    ExpectNear(MujocoModel::Of(theirs.model().geom_size + 3 * g), half, kSame);
+    ExpectNear(theirs.GeomPlace(g), center, kSameExport);
+    ExpectNear(theirs.GeomAxis(g, 0), Rotate(q, {1, 0, 0}), kSameExport);
+    ExpectNear(theirs.GeomAxis(g, 2), Rotate(q, {0, 0, 1}), kSameExport);
+    ExpectNear(MujocoModel::Of(theirs.model().geom_size + 3 * g), half, kSameExport);
   }
-  ExpectNear(theirs.GeomAxis(geom("slope"), 2), def.planes[0].normal, kSame);
+  ExpectNear(theirs.GeomAxis(geom("slope"), 2), def.planes[0].normal, kSameExport);
   // MuJoCo stores corners in single precision.
   const int hull = geom("hb"), mesh = theirs.model().geom_dataid[hull];
   const float* const corners = theirs.model().mesh_vert + 3 * theirs.model().mesh_vertadr[mesh];
@@ -244,8 +245,8 @@ TEST(MjcfExport, BoxesHullsBarsFixedBodiesAndTerrainAreThere) {
   EXPECT_EQ(theirs.model().nv, 12);  // "held" is static
   const int bar = theirs.Id(mjOBJ_TENDON, "bar");
   const double length = std::sqrt(0.01 + 0.04 + 1);
-  EXPECT_NEAR(theirs.data().ten_length[bar], length, kSame);
-  EXPECT_NEAR(theirs.Tension(bar), 500 * (length - 1.1), 500 * kSame);
+  EXPECT_NEAR(theirs.data().ten_length[bar], length, kSameExport);
+  EXPECT_NEAR(theirs.Tension(bar), 500 * (length - 1.1), 500 * kSameExport);
   EXPECT_EQ(theirs.model().tendon_damping[bar], 3);
   ExpectNear(MujocoModel::Of(theirs.data().qvel), {1, 2, 3}, 0);
   ExpectNear(MujocoModel::Of(theirs.data().qvel + 3), {0.1, 0.2, 0.3}, 0);

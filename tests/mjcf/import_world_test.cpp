@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kSame = 1e-12;
+constexpr double kSameWorld = 1e-12;
 
 class MjcfWorld : public MjcfFolder {};
 
@@ -29,7 +29,7 @@ TEST_F(MjcfWorld, WhatTouchesNothingDoesNotCollide) {
   EXPECT_EQ(def.apart[0].body_a + def.apart[0].body_b, 1);
   EXPECT_EQ(def.friction_combine, CombineRule::kMaximum);
   ASSERT_EQ(def.planes.size(), 1u);
-  ExpectNear(def.planes[0].normal, {0, std::sqrt(0.5), std::sqrt(0.5)}, kSame);
+  ExpectNear(def.planes[0].normal, {0, std::sqrt(0.5), std::sqrt(0.5)}, kSameWorld);
   EXPECT_EQ(def.planes[0].material.kinetic_friction, 0.4);
   ASSERT_EQ(def.terrain_boxes.size(), 1u);
   EXPECT_TRUE(out_.warnings().empty()) << Said();
@@ -40,11 +40,11 @@ TEST_F(MjcfWorld, WhatTouchesNothingDoesNotCollide) {
   ASSERT_TRUE(experiment) << out.Format();
   EXPECT_EQ(experiment->step_s, 0.002);
   const ModelDef& on = experiment->robot.def;
-  ExpectNear(on.planes[0].point_m, def.planes[0].point_m, kSame);
-  ExpectNear(on.planes[0].normal, def.planes[0].normal, kSame);
-  ExpectNear(on.terrain_boxes[0].half_extents_m, {0.1, 0.2, 0.3}, kSame);
+  ExpectNear(on.planes[0].point_m, def.planes[0].point_m, kSameWorld);
+  ExpectNear(on.planes[0].normal, def.planes[0].normal, kSameWorld);
+  ExpectNear(on.terrain_boxes[0].half_extents_m, {0.1, 0.2, 0.3}, kSameWorld);
   ExpectNear(Rotate(on.terrain_boxes[0].orientation, {1, 0, 0}),
-             Rotate(def.terrain_boxes[0].orientation, {1, 0, 0}), kSame);
+             Rotate(def.terrain_boxes[0].orientation, {1, 0, 0}), kSameWorld);
   EXPECT_EQ(on.terrain_boxes[0].material.kinetic_friction, 0.7);
 }
 
@@ -60,9 +60,9 @@ TEST_F(MjcfWorld, AGroundOfHigherPrioritySaysTheFriction) {
                  b = def.planes[0].material.kinetic_friction;
     return def.friction_combine == CombineRule::kMaximum ? std::max(a, b) : std::sqrt(a * b);
   };
-  EXPECT_NEAR(friction("friction=\"0.2\""), 0.4, kSame);
-  EXPECT_NEAR(friction("friction=\"0.2\" priority=\"1\""), 0.2, kSame);
-  EXPECT_NEAR(friction("friction=\"0.9\" priority=\"1\""), 0.9, kSame);
+  EXPECT_NEAR(friction("friction=\"0.2\""), 0.4, kSameWorld);
+  EXPECT_NEAR(friction("friction=\"0.2\" priority=\"1\""), 0.2, kSameWorld);
+  EXPECT_NEAR(friction("friction=\"0.9\" priority=\"1\""), 0.9, kSameWorld);
   EXPECT_TRUE(out_.warnings().empty()) << Said();
 }
 
@@ -134,7 +134,7 @@ TEST_F(MjcfWorld, DryFrictionOfATendonIsABarsOrLeftOutWhenAsked) {
       << Said();
   const auto bar = Import(rough, {.length_unit_m = 0.1, .slack = MjcfSlack::kAsMujoco});
   ASSERT_TRUE(bar);
-  EXPECT_NEAR(bar->robot.def.joints.at(0).friction, 0.05, kSame);
+  EXPECT_NEAR(bar->robot.def.joints.at(0).friction, 0.05, kSameWorld);
 }
 
 TEST_F(MjcfWorld, ATendonInOneBodyIsLeftOut) {

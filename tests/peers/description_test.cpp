@@ -66,7 +66,7 @@ TEST_P(Description, CableLengthsAndTensionsAtRestAreOurs) {
   }
 }
 
-std::string CaseName(const testing::TestParamInfo<Description::ParamType>& info) {
+std::string DescriptionCaseName(const testing::TestParamInfo<Description::ParamType>& info) {
   return std::string(Name(std::get<0>(info.param))) + "_" + std::get<1>(info.param);
 }
 
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Peers, Description,
                          testing::Combine(testing::ValuesIn(kEngines),
                                           testing::Values("tetraspine3", "tetraspine12",
                                                           "six_strut", "prism3")),
-                         CaseName);
+                         DescriptionCaseName);
 
 TEST(Peers, SayWhatTheyDoNotKnow) {
   ModelDef def = test::OnGround(test::Robot("tetraspine3"));

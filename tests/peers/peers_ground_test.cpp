@@ -165,11 +165,11 @@ TEST_P(GroundOf, ARobotStandsOnHills) {
   EXPECT_GT(lowest_m, 0.05);
 }
 
-std::string CaseName(const testing::TestParamInfo<Setting>& info) {
+std::string GroundCaseName(const testing::TestParamInfo<Setting>& info) {
   return std::string(Name(info.param.engine)) + "_" + info.param.name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Peers, GroundOf, testing::ValuesIn(kSettings), CaseName);
+INSTANTIATE_TEST_SUITE_P(Peers, GroundOf, testing::ValuesIn(kSettings), GroundCaseName);
 
 }  // namespace
 }  // namespace taut::peers

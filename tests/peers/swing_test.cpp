@@ -113,7 +113,7 @@ TEST_P(Swing, AllComeToTheSameTrajectoryAsTheStepGoesToZero) {
   EXPECT_LT(theirs_off + ours_off, first / 20);
 }
 
-std::string CaseName(const testing::TestParamInfo<Swing::ParamType>& info) {
+std::string SwingCaseName(const testing::TestParamInfo<Swing::ParamType>& info) {
   return std::string(Name(std::get<0>(info.param))) + "_" + std::get<1>(info.param) +
          (std::get<2>(info.param) ? "_moored" : "_free");
 }
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(Peers, Swing,
                          testing::Combine(testing::ValuesIn(kEngines),
                                           testing::Values("tetraspine3", "six_strut", "prism3"),
                                           testing::Bool()),
-                         CaseName);
+                         SwingCaseName);
 
 }  // namespace
 }  // namespace taut::peers

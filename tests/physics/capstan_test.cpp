@@ -14,7 +14,7 @@
 namespace taut::test {
 namespace {
 
-BodyDef Ball(double mass_kg, const Vec3& p, double inertia = 1e-4) {
+BodyDef CapstanBall(double mass_kg, const Vec3& p, double inertia = 1e-4) {
   BodyDef body;
   body.mass_kg = mass_kg;
   body.com_m = p;
@@ -22,8 +22,8 @@ BodyDef Ball(double mass_kg, const Vec3& p, double inertia = 1e-4) {
   return body;
 }
 
-AttachmentDef Round(int body, const Vec3& center, double radius_m, double friction,
-                    bool counterclockwise = true, int turns = 0) {
+AttachmentDef CapstanRound(int body, const Vec3& center, double radius_m, double friction,
+                           bool counterclockwise = true, int turns = 0) {
   return {body, center, friction, WheelDef{{0, 1, 0}, radius_m, counterclockwise, turns}};
 }
 
@@ -39,7 +39,8 @@ void AddCable(ModelDef& def, std::vector<AttachmentDef> attachments, double stif
 }
 
 /// Returns two masses on a cable over fixed wheels on a semicircle (Atwood's machine).
-ModelDef Atwood(double m1, double m2, double friction, int wheels = 1, double stiffness = 1e5) {
+ModelDef CapstanAtwood(double m1, double m2, double friction, int wheels = 1,
+                       double stiffness = 1e5) {
   const double arch = 0.1, radius = wheels == 1 ? arch : 0.005;
   const double x = arch + (wheels == 1 ? 0 : radius);
   std::vector<AttachmentDef> path{{0, {-x, 0, -1}}};
@@ -47,11 +48,11 @@ ModelDef Atwood(double m1, double m2, double friction, int wheels = 1, double st
     const double angle = wheels == 1 ? 0 : std::numbers::pi * k / (wheels - 1);
     const double out = wheels == 1 ? 0 : arch;
     path.push_back(
-        Round(kWorld, {-out * std::cos(angle), 0, out * std::sin(angle)}, radius, friction));
+        CapstanRound(kWorld, {-out * std::cos(angle), 0, out * std::sin(angle)}, radius, friction));
   }
   path.push_back({1, {x, 0, -1}});
   ModelDef def;
-  def.bodies = {Ball(m1, path.front().position_m), Ball(m2, path.back().position_m)};
+  def.bodies = {CapstanBall(m1, path.front().position_m), CapstanBall(m2, path.back().position_m)};
   AddCable(def, path, stiffness, m2 * kG);
   return def;
 }
@@ -59,7 +60,7 @@ ModelDef Atwood(double m1, double m2, double friction, int wheels = 1, double st
 TEST(Capstan, AtwoodsMachineSlipsAsEytelweinSays) {
   const double c = std::exp(0.2 * std::numbers::pi);
   for (const double m2 : {0.4, 0.5, 0.53}) {
-    ModelDef def = Atwood(1, m2, 0.2);
+    ModelDef def = CapstanAtwood(1, m2, 0.2);
     def.cables[0].damping_n_s_per_m = 20;
     WorldBatch world = MakeBatch(def);
     const double a = (1 - c * m2) / (1 + c * m2) * kG;
@@ -70,7 +71,7 @@ TEST(Capstan, AtwoodsMachineSlipsAsEytelweinSays) {
 
 TEST(Capstan, WithinTheRatioItDoesNotCreep) {
   for (const double m2 : {0.54, 0.7, 0.9}) {
-    ModelDef def = Atwood(1, m2, 0.2);
+    ModelDef def = CapstanAtwood(1, m2, 0.2);
     def.cables[0].damping_n_s_per_m = 200;
     WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 4000);
@@ -84,7 +85,7 @@ TEST(Capstan, WithinTheRatioItDoesNotCreep) {
 }
 
 TEST(Capstan, WhatFrictionTakesIsWhatIsMissing) {
-  ModelDef def = Atwood(1, 0.4, 0.2);
+  ModelDef def = CapstanAtwood(1, 0.4, 0.2);
   WorldBatch world = MakeBatch(def);
   const double before = EnergyOf(world);
   world.Step(1e-3, 900);
@@ -95,7 +96,7 @@ TEST(Capstan, WhatFrictionTakesIsWhatIsMissing) {
 
 TEST(Capstan, OverManyRodsTheRatioIsThatOfTheWholeAngle) {
   for (const int wheels : {1, 2, 3, 5, 9}) {
-    ModelDef def = Atwood(1, 0.4, 0.2, wheels);
+    ModelDef def = CapstanAtwood(1, 0.4, 0.2, wheels);
     def.cables[0].damping_n_s_per_m = 20;
     WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 500);
@@ -109,9 +110,9 @@ TEST(Capstan, AFreePulleyTurnsWithTheCable) {
   const double radius = 0.05, inertia = 0.002;
   ModelDef def;
   std::vector<AttachmentDef> path{
-      {0, {-radius, 0, -1}}, Round(2, {}, radius, 1.0), {1, {radius, 0, -1}}};
-  def.bodies = {Ball(1, path.front().position_m), Ball(0.7, path.back().position_m),
-                Ball(1, {}, inertia)};
+      {0, {-radius, 0, -1}}, CapstanRound(2, {}, radius, 1.0), {1, {radius, 0, -1}}};
+  def.bodies = {CapstanBall(1, path.front().position_m), CapstanBall(0.7, path.back().position_m),
+                CapstanBall(1, {}, inertia)};
   AddCable(def, path, 1e5, 0.8 * kG);
   def.cables[0].damping_n_s_per_m = 20;
   JointDef axle;
@@ -133,8 +134,8 @@ TEST(Capstan, OverThreeQuartersOfATurn) {
   // The ball on the right pulls down and the tension at the other end up to the slip limit.
   ModelDef def;
   const Vec3 p{-0.5, 0, -0.1}, q{-0.1, 0, -0.4};
-  def.bodies = {Ball(1, q)};
-  AddCable(def, {{kWorld, p}, Round(kWorld, {}, 0.1, 0.3, false, 1), {0, q}}, 1e4, 1.0);
+  def.bodies = {CapstanBall(1, q)};
+  AddCable(def, {{kWorld, p}, CapstanRound(kWorld, {}, 0.1, 0.3, false, 1), {0, q}}, 1e4, 1.0);
   EXPECT_NEAR(math::DescribedPath(def.cables[0]).length_m(), 1.371238898, 5e-10);
   def.cables[0].actuator.kind = ActuatorDef::Kind::kIdeal;
   def.cables[0].damping_n_s_per_m = 100;
@@ -248,11 +249,11 @@ TEST(Capstan, ItsDerivativesAreThoseOfTheImpulses) {
 TEST(Capstan, MomentaAreKeptAndEnergyOnlyFalls) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
-  def.bodies = {Ball(0.4, {0, 0, -1}, 0.01), Ball(0.5, {0.3, 0.1, 1}, 0.01),
-                Ball(0.6, {-0.2, 0, 0}, 0.02), Ball(0.3, {0.5, 0, 0}, 0.02)};
+  def.bodies = {CapstanBall(0.4, {0, 0, -1}, 0.01), CapstanBall(0.5, {0.3, 0.1, 1}, 0.01),
+                CapstanBall(0.6, {-0.2, 0, 0}, 0.02), CapstanBall(0.3, {0.5, 0, 0}, 0.02)};
   AddCable(def,
            {{0, {0, 0, -1}},
-            Round(2, {-0.2, 0, -0.1}, 0.05, 0.3),
+            CapstanRound(2, {-0.2, 0, -0.1}, 0.05, 0.3),
             {3, {0.5, 0.1, 0}, 0.4},
             {1, {0.3, 0.1, 1}}},
            2000, 5);
@@ -276,7 +277,7 @@ TEST(Capstan, HardlyAnyFrictionIsNone) {
   double tension[2];
   for (const double friction : {0.0, 1e-9}) {
     ModelDef def;
-    def.bodies = {Ball(1e6, {1, 0, 0})};
+    def.bodies = {CapstanBall(1e6, {1, 0, 0})};
     def.bodies[0].velocity_m_per_s = {0.2, 0, 0};
     def.gravity_m_per_s2 = {};
     AddCable(def, {{kWorld, {0, 0, -0.3}}, {kWorld, {0, 0, 0}, friction}, {0, {1, 0, 0}}}, 200, 20);
@@ -296,7 +297,7 @@ TEST(Capstan, HardlyAnyFrictionIsNone) {
 }
 
 TEST(Capstan, LanesAreLikeWorldsAlone) {
-  ExpectLanesLikeWorldsAlone(Atwood(1, 0.4, 0.2, 5), {0.002, 0.01, 0.03}, 60);
+  ExpectLanesLikeWorldsAlone(CapstanAtwood(1, 0.4, 0.2, 5), {0.002, 0.01, 0.03}, 60);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ ModelDef Closed(ModelDef def) {
   return def;
 }
 
-double Total(const WorldBatch& world) {
+double TotalOfWorld(const WorldBatch& world) {
   const Energy e = world.TotalEnergy(0);
   return e.kinetic_j + e.elastic_j;
 }
@@ -31,12 +31,12 @@ double Total(const WorldBatch& world) {
 void KeepsEverything(const ModelDef& def, double share) {
   WorldBatch world = MakeBatch(def);
   const Vec3 p0 = world.Momentum(0), l0 = world.AngularMomentum(0);
-  const double start = Total(world), kinetic = world.TotalEnergy(0).kinetic_j;
+  const double start = TotalOfWorld(world), kinetic = world.TotalEnergy(0).kinetic_j;
   ASSERT_GT(kinetic, 0);
   double largest = 0;
   for (int n = 1; n <= 60000; ++n) {
     world.Step(1e-3);
-    largest = std::max(largest, std::fabs(Total(world) - start));
+    largest = std::max(largest, std::fabs(TotalOfWorld(world) - start));
   }
   EXPECT_LT(largest, share * start);
   EXPECT_LE(Distance(world.Momentum(0), p0), RoundOff(60000, 1));

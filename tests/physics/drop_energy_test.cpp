@@ -3,7 +3,7 @@
 /// impact gains energy with friction at several contacts at once (Kane's and Levinson's pendulum),
 /// sequential impacts with stacked balls of different restitution.
 ///
-/// A sample of the drops always runs, all 3550 with `script/test --full` or `drop_energy_test
+/// A sample of the drops always runs, all 3550 with `script/test --full` or `long_physics_test
 /// --gtest_filter='AllDrops.*'`; each failure reports its kind, number and gain.
 
 #include <gtest/gtest.h>

@@ -25,8 +25,8 @@ int AddPointMass(ModelDef& def, const std::string& name, double mass_kg, const V
   return static_cast<int>(def.bodies.size()) - 1;
 }
 
-void AddCable(ModelDef& def, const AttachmentDef& from, const AttachmentDef& to, double stiffness,
-              double damping, double rest_length) {
+void AddHangingCable(ModelDef& def, const AttachmentDef& from, const AttachmentDef& to,
+                     double stiffness, double damping, double rest_length) {
   CableDef cable;
   cable.name = "cable_" + std::to_string(def.cables.size());
   cable.attachments = {from, to};
@@ -39,7 +39,7 @@ void AddCable(ModelDef& def, const AttachmentDef& from, const AttachmentDef& to,
 /// Equal masses on a line of equal elastic cables between two points of the same height. With the
 /// horizontal force H everywhere, cable i has the vertical force V_i = m g ((n - 1) / 2 - i), the
 /// tension sqrt(H^2 + V_i^2) and the length L + T_i / k, from which all positions follow.
-struct Chain {
+struct HangingChain {
   int cables = 20;
   double mass_kg = 0.05, rest_length_m = 0.1, stiffness_n_per_m = 500, horizontal_n = 3;
   std::vector<double> tension_n;  ///< Of each cable.
@@ -65,7 +65,7 @@ struct Chain {
       } else {
         to.body = kWorld;
       }
-      AddCable(def, from, to, stiffness_n_per_m, 0, rest_length_m);
+      AddHangingCable(def, from, to, stiffness_n_per_m, 0, rest_length_m);
     }
     return def;
   }
@@ -76,7 +76,7 @@ TEST(Hanging, AChainOfMassesStaysInItsClosedForm) {
   // chain would swing about it, with twice the difference.
   for (const double stiffness : {500.0, 1e5, 1e6}) {
     for (const double h : kThreeStepsS) {
-      Chain chain;
+      HangingChain chain;
       chain.stiffness_n_per_m = stiffness;
       const ModelDef def = chain.Solve();
       WorldBatch world = MakeBatch(def);
@@ -103,7 +103,7 @@ TEST(Hanging, AChainOfMassesStaysInItsClosedForm) {
 TEST(Hanging, AChainOfManyMassesHangsAsDeepAsTheCatenary) {
   // y = a (cosh(x / a) - 1), a = H / (weight per length), between ends that are half a mass's share
   // further out. A polygon of n chords differs from it by a share of 1 / n^2.
-  Chain chain;
+  HangingChain chain;
   chain.cables = 64;
   chain.rest_length_m = 1.0 / 32;
   chain.mass_kg = 0.01;
@@ -128,7 +128,7 @@ TEST(Hanging, StiffCablesBetweenLightBodiesCarryTheirWeightsAfterAFall) {
       for (int i = 0; i < 3; ++i) {
         const Vec3 p{0, 0, -0.299 * (i + 1)};
         const AttachmentDef below{AddPointMass(def, "body_" + std::to_string(i), 0.1, p), p};
-        AddCable(def, above, below, stiffness, damping, 0.3);
+        AddHangingCable(def, above, below, stiffness, damping, 0.3);
         above = below;
       }
       WorldBatch world = MakeBatch(def);
@@ -158,7 +158,7 @@ TEST(Hanging, AnUndampedCableAtOmegaH006KeepsPeriodAndAmplitudeForAHundredPeriod
   ModelDef def;
   const Vec3 start{0, 0, -(1 + sag + amplitude)};
   AddPointMass(def, "mass", mass, start);
-  AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
+  AddHangingCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
   WorldBatch world = MakeBatch(def);
   const auto place = [&] { return world.Body(0, 0).position_m.z + 1 + sag; };
   double before = place(), here = before, crossing = -1, last_crossing = -1, first_top = 0, top = 0;
@@ -199,7 +199,7 @@ TEST(Hanging, AMassThatACableCatchesAgainAndAgainKeepsTheEnergyOfItsFall) {
       ModelDef def;
       const Vec3 start{0, 0, -(1 - fall)};
       AddPointMass(def, "mass", mass, start);
-      AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
+      AddHangingCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
       WorldBatch world = MakeBatch(def);
       const auto energy = [&] {
         const Energy e = world.TotalEnergy(0);
@@ -229,7 +229,7 @@ TEST(Hanging, AStiffCableThatIsTautAtTheStartKeepsItsEnergyFromTheFirstStepOn) {
     ModelDef def;
     const Vec3 start{0, 0, -(1 + 1.5 * sag)};
     AddPointMass(def, "mass", mass, start);
-    AddCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
+    AddHangingCable(def, {kWorld, {}}, {0, start}, stiffness, 0, 1);
     WorldBatch world = MakeBatch(def);
     const auto energy = [&] {
       const Energy e = world.TotalEnergy(0);

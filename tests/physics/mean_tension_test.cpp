@@ -14,7 +14,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kStepS = 1e-3;
+constexpr double kMeanStepS = 1e-3;
 
 /// Returns a mass that hangs on a damped cable of 1 m, initially unstretched.
 scenes::HangingMass LightMass(double mass_kg, double stiffness_n_per_m, double damping_ratio) {
@@ -46,17 +46,17 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
         for (int n = 0; n < 200; ++n) {
           const double before = world.Body(0, 0).velocity_m_per_s.z;
           const double stretch_before = LengthOf(world) - 1;
-          world.Step(kStepS);
+          world.Step(kMeanStepS);
           const double change = world.Body(0, 0).velocity_m_per_s.z - before;
           const CableState cable = world.Cable(0, 0);
-          const double tension = mass * (kG + change / kStepS);
+          const double tension = mass * (kG + change / kMeanStepS);
           // The stiffness multiplies the rounding error of the length.
           ASSERT_NEAR(cable.tension_n, tension,
-                      SolverError(1) * mass / kStepS + stiffness * RoundOff(1, 1))
+                      SolverError(1) * mass / kMeanStepS + stiffness * RoundOff(1, 1))
               << mass << ' ' << stiffness << ' ' << ratio << ' ' << n;
           // Spring part: stored energy over the displacement of the cable's end. The two stages of
           // damped cables that the step does not resolve (cables.md, 12e) differ from it.
-          if (ratio > 0 && stiffness / mass * kStepS * kStepS > 4) continue;
+          if (ratio > 0 && stiffness / mass * kMeanStepS * kMeanStepS > 4) continue;
           const double stretch = LengthOf(world) - 1;
           const double a = std::max(stretch_before, 0.0), b = std::max(stretch, 0.0);
           if (std::fabs(stretch - stretch_before) < 1e-12) continue;
@@ -74,7 +74,7 @@ TEST(MeanTension, IsWhatTheStepGaveToTheMass) {
 TEST(MeanTension, OfALightMassOnAStiffCableIsItsWeightFromTheFirstStepOn) {
   WorldBatch world = MakeBatch(LightMass(1e-3, 1e7, 0.5).Def());
   for (int n = 0; n < 300; ++n) {
-    world.Step(kStepS);
+    world.Step(kMeanStepS);
     ASSERT_NEAR(world.Cable(0, 0).tension_n, 1e-3 * kG, (n < 50 ? 0.02 : 0.01) * 1e-3 * kG) << n;
   }
 }
@@ -85,12 +85,12 @@ TEST(MeanTension, BeforeAStepAndAfterAChangeByHandItIsThatOfTheMoment) {
   const auto change = [&](const char* what, double rest_length_m, const auto& by_hand) {
     WorldBatch world = MakeBatch(scene.Def());
     EXPECT_NEAR(world.Cable(0, 0).tension_n, 5e-3, 1e7 * RoundOff(1, 1)) << "before the first step";
-    world.Step(kStepS, 7);
+    world.Step(kMeanStepS, 7);
     EXPECT_GT(std::fabs(world.Cable(0, 0).tension_n - AtOnce(world, 1)), 1e-3)
         << "or this tests nothing";
     by_hand(world);
     EXPECT_EQ(world.Cable(0, 0).tension_n, AtOnce(world, rest_length_m)) << what;
-    world.Step(kStepS);
+    world.Step(kMeanStepS);
     EXPECT_NE(world.Cable(0, 0).tension_n, AtOnce(world, rest_length_m)) << what;
   };
   change("state", 1, [](WorldBatch& world) { world.SetBodyState(0, 0, world.Body(0, 0)); });
@@ -105,7 +105,7 @@ TEST(MeanTension, BeforeAStepAndAfterAChangeByHandItIsThatOfTheMoment) {
 
 TEST(MeanTension, IsThatOfTheMomentAfterAStepInWhichTheCableIsSoft) {
   WorldBatch world = MakeBatch(LightMass(1e-3, 1e4, 0.05).Def());
-  world.Step(kStepS, 5);
+  world.Step(kMeanStepS, 5);
   EXPECT_NE(world.Cable(0, 0).tension_n, AtOnce(world, 1));
   world.Step(1e-5, 3);
   EXPECT_EQ(world.Cable(0, 0).tension_n, AtOnce(world, 1));
@@ -118,8 +118,8 @@ TEST(MeanTension, ComesAlongInASnapshot) {
     options.worlds = 5;
     options.simd = simd;
     WorldBatch world = MakeBatch(def), other = MakeBatch(def, options);
-    world.Step(kStepS, 7);
-    other.Step(kStepS, 3);
+    world.Step(kMeanStepS, 7);
+    other.Step(kMeanStepS, 3);
     const CableState cable = world.Cable(0, 0), neighbour = other.Cable(1, 0);
     ASSERT_TRUE(other.Restore(2, world.Save(0)));
     EXPECT_EQ(other.Cable(2, 0).tension_n, cable.tension_n) << name;
@@ -128,8 +128,8 @@ TEST(MeanTension, ComesAlongInASnapshot) {
     world.SetRestLength(0, 0, 0.99);
     ASSERT_TRUE(other.Restore(2, world.Save(0)));
     EXPECT_EQ(other.Cable(2, 0).tension_n, world.Cable(0, 0).tension_n) << name;
-    world.Step(kStepS);
-    other.Step(kStepS);
+    world.Step(kMeanStepS);
+    other.Step(kMeanStepS);
     EXPECT_EQ(other.Cable(2, 0).tension_n, world.Cable(0, 0).tension_n) << name;
   }
 }
@@ -137,9 +137,9 @@ TEST(MeanTension, ComesAlongInASnapshot) {
 /// A world that is no longer finite returns the values of its last finite state.
 TEST(MeanTension, OfAWorldThatIsHaltedIsThatOfTheMoment) {
   WorldBatch world = MakeBatch(LightMass(1e-3, 1e7, 0.05).Def());
-  world.Step(kStepS, 7);
+  world.Step(kMeanStepS, 7);
   world.SetNodeForce(0, 0, {0, 0, HUGE_VAL});
-  world.Step(kStepS);
+  world.Step(kMeanStepS);
   ASSERT_NE(world.Status(0).bits & kStatusNonFinite, 0u);
   EXPECT_EQ(world.Cable(0, 0).tension_n, AtOnce(world, 1));
 }

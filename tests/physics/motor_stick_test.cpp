@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-double Speed(const WorldBatch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
+double RotorSpeed(const WorldBatch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
 double Angle(const WorldBatch& world) { return world.Motor(0, 0).rotor_angle_rad; }
 
 // A motor that holds is a fixed end for any motion of the weight: the same bits as without a motor,
@@ -53,7 +53,7 @@ TEST(MotorStick, ItStopsInTheStepThatFrictionAndBrakeHaveTimeIn) {
       WorldBatch world = MakeBatch(MotorAlone(motor));
       world.SetDuty(0, 0, duty);
       world.Step(1e-3, 200);
-      const double speed = Speed(world), angle = Angle(world), w = std::fabs(speed);
+      const double speed = RotorSpeed(world), angle = Angle(world), w = std::fabs(speed);
       world.SetDuty(0, 0, 0);
       // w = slows h (1 + rate h / 2), solved for h
       const double enough_s = (std::sqrt(1 + 2 * rate * w / slows) - 1) / rate;
@@ -62,10 +62,10 @@ TEST(MotorStick, ItStopsInTheStepThatFrictionAndBrakeHaveTimeIn) {
       world.Step(h);
       const double sign = speed > 0 ? 1 : -1;
       if (longer > 1) {
-        EXPECT_EQ(Speed(world), 0);
+        EXPECT_EQ(RotorSpeed(world), 0);
         EXPECT_NEAR(Angle(world) - angle, h * speed / (2 + z), 1e-9 * h * w) << longer;
       } else {
-        EXPECT_NEAR(Speed(world), sign * (w - slows * h * (1 + z / 2)) / p, 1e-9 * w);
+        EXPECT_NEAR(RotorSpeed(world), sign * (w - slows * h * (1 + z / 2)) / p, 1e-9 * w);
         const double mean = (w * (1 + z / 2) - slows * h * (1 + z) / 2) / p;
         EXPECT_NEAR(Angle(world) - angle, sign * h * mean, 1e-9 * h * w);
       }
@@ -124,9 +124,9 @@ TEST(MotorStick, ACableThatStopsItDoesNotTurnItBack) {
           const double before_m = rest_m;
           rest_m = world.Cable(0, 0).rest_length_m;
           ASSERT_LE(rest_m, before_m) << gear_ratio << " " << stiffness << " " << h;
-          ASSERT_GE(Speed(world), 0) << gear_ratio << " " << stiffness << " " << h;
+          ASSERT_GE(RotorSpeed(world), 0) << gear_ratio << " " << stiffness << " " << h;
         }
-        EXPECT_EQ(Speed(world), 0);
+        EXPECT_EQ(RotorSpeed(world), 0);
         EXPECT_GT(world.Cable(0, 0).tension_n, 0);
       }
     }
@@ -152,7 +152,7 @@ TEST(MotorStick, AWeightThatFallsIntoItsCableDoesNotTurnItBack) {
             const double before_m = rest_m;
             rest_m = world.Cable(0, 0).rest_length_m;
             ASSERT_LE(rest_m, before_m) << gear_ratio << " " << stiffness << " " << h;
-            ASSERT_GE(Speed(world), 0) << gear_ratio << " " << stiffness << " " << h;
+            ASSERT_GE(RotorSpeed(world), 0) << gear_ratio << " " << stiffness << " " << h;
           }
         }
       }
@@ -175,12 +175,12 @@ TEST(MotorStick, WhatTurnsRoundWithinAStepWentOnBefore) {
     world.SetDuty(0, 0, -sign);
     const double drive = -k * motor.supply_voltage_v / motor.resistance_ohm / J;
     bool turned_on = false;
-    for (double w = sign * Speed(world), angle = sign * Angle(world); w > 0;) {
+    for (double w = sign * RotorSpeed(world), angle = sign * Angle(world); w > 0;) {
       world.Step(h);
       const double a = drive + (w / (h * (1 + z / 2)) + drive < 0 ? 8e-5 : -8e-5) / J;
       const double end = (w + a * h * (1 + z / 2)) / p;
       const double mean = (w * (1 + z / 2) + a * h * (1 + z) / 2) / p;
-      EXPECT_NEAR(sign * Speed(world), end, 1e-9 * 1043);
+      EXPECT_NEAR(sign * RotorSpeed(world), end, 1e-9 * 1043);
       EXPECT_NEAR(sign * Angle(world) - angle, h * mean, 1e-9 * h * 1043);
       turned_on = turned_on || (end < 0 && mean > 0);
       w = end, angle = sign * Angle(world);
@@ -223,7 +223,7 @@ TEST(MotorStick, FrictionFallsWithTheSquareOfTheSpeed) {
     WorldBatch world = MakeBatch(MotorAlone(motor));
     world.SetDuty(0, 0, 0.06);
     world.Step(1e-3, 2000);
-    const double k = motor.torque_constant_n_m_per_a, w = Speed(world);
+    const double k = motor.torque_constant_n_m_per_a, w = RotorSpeed(world);
     const double torque = k * (0.06 * motor.supply_voltage_v - k * w) / motor.resistance_ohm;
     const double ratio = w / bend_rad_per_s;
     ASSERT_GT(w, 10);

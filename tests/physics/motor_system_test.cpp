@@ -9,7 +9,9 @@
 namespace taut::test {
 namespace {
 
-double Rest(const WorldBatch& world, int cable = 0) { return world.Cable(0, cable).rest_length_m; }
+double RestOfCable(const WorldBatch& world, int cable = 0) {
+  return world.Cable(0, cable).rest_length_m;
+}
 
 double RotorEnergy(const WorldBatch& world, const DcMotorDef& motor) {
   const double w = world.Motor(0, 0).rotor_speed_rad_per_s;
@@ -54,7 +56,7 @@ TEST(MotorEnergy, ToTheCableIsWhatItStoresAndLifts) {
     const double start = EnergyOf(world);
     world.SetRestLengthTarget(0, 0, 0.9);
     world.Step(1e-3, 6000);
-    EXPECT_NEAR(Rest(world), 0.9, 1e-3);
+    EXPECT_NEAR(RestOfCable(world), 0.9, 1e-3);
     const double given = world.Motor(0, 0).energy_to_cable_j;
     EXPECT_NEAR(given, EnergyOf(world) - start, 1e-3 * given) << stiffness;
     EXPECT_NEAR(given, 1.5 * 9.81 * 0.1, 0.02 * given) << stiffness;
@@ -129,21 +131,21 @@ TEST(MotorBacklash, IsFeltWhereTheCableIsSlack) {
   world.Step(1e-3, 500);
   world.SetDuty(0, 0, 0);
   world.Step(1e-3, 300);
-  const double rest = Rest(world), start = wound();
+  const double rest = RestOfCable(world), start = wound();
   EXPECT_NEAR(100 - rest, start, 1e-12);
   world.SetDuty(0, 0, -0.05);
   while (start - wound() < 0.99 * gap) world.Step(1e-4);
-  EXPECT_EQ(Rest(world), rest);
+  EXPECT_EQ(RestOfCable(world), rest);
   EXPECT_NEAR(world.Motor(0, 0).backlash_m, start - wound(), 1e-12);
   world.Step(1e-3, 1000);
-  EXPECT_NEAR(Rest(world) - rest, start - wound() - gap, 1e-12);
-  const double back = Rest(world);
+  EXPECT_NEAR(RestOfCable(world) - rest, start - wound() - gap, 1e-12);
+  const double back = RestOfCable(world);
   const double turned = wound();
   world.SetDuty(0, 0, 0.05);
   while (wound() - turned < 0.95 * gap) world.Step(1e-4);
-  EXPECT_NEAR(Rest(world), back, 1e-5);  // it took time to stop
+  EXPECT_NEAR(RestOfCable(world), back, 1e-5);  // it took time to stop
   world.Step(1e-3, 2000);
-  EXPECT_NEAR(100 - Rest(world), wound(), 1e-12);
+  EXPECT_NEAR(100 - RestOfCable(world), wound(), 1e-12);
   EXPECT_EQ(world.Motor(0, 0).backlash_m, 0);
 }
 
@@ -158,7 +160,7 @@ TEST(MotorBacklash, AWeightKeepsTheFlanksTogether) {
     world->SetRestLengthTarget(0, 0, 1.02);
     world->Step(1e-3, 1500);
   }
-  EXPECT_NEAR(Rest(loose), Rest(tight), 1e-12);
+  EXPECT_NEAR(RestOfCable(loose), RestOfCable(tight), 1e-12);
   EXPECT_EQ(loose.Motor(0, 0).backlash_m, 0);
 }
 
@@ -185,7 +187,7 @@ TEST(MotorServo, IsTheLinearLawOfItsGains) {
     double worst = 0;
     for (int i = 1; i <= StepsIn(0.05, h); ++i) {
       world.Step(h);
-      worst = std::max(worst, std::fabs(Rest(world) - (100 - 1e-4) - error(i * h)));
+      worst = std::max(worst, std::fabs(RestOfCable(world) - (100 - 1e-4) - error(i * h)));
     }
     EXPECT_LT(worst, 1e-5 * (h * 1000) * (h * 1000)) << h;
     if (before > 0) {
@@ -199,21 +201,21 @@ TEST(MotorServo, TakesOverFromADutyAndGivesWayToIt) {
   WorldBatch world = MakeBatch(MotorAlone(DcMotorDef(), 1.5));
   world.SetDuty(0, 0, 0.5);
   world.Step(1e-3, 300);
-  EXPECT_LT(Rest(world), 1.495);
+  EXPECT_LT(RestOfCable(world), 1.495);
   EXPECT_EQ(world.RestLengthTarget(0, 0), 1.5);
   world.SetRestLengthTarget(0, 0, 1.45);
   EXPECT_EQ(world.Motor(0, 0).mode, MotorMode::kServo);
   world.Step(1e-3, 1500);
-  EXPECT_NEAR(Rest(world), 1.45, 5e-6);
+  EXPECT_NEAR(RestOfCable(world), 1.45, 5e-6);
   EXPECT_LT(std::fabs(world.Motor(0, 0).duty), 0.05);
   world.SetMotorEnabled(0, 0, false);
   world.SetRestLengthTarget(0, 0, 1.4);
   EXPECT_EQ(world.Motor(0, 0).mode, MotorMode::kOff);
   world.Step(1e-3, 1000);
-  EXPECT_NEAR(Rest(world), 1.45, 5e-6);
+  EXPECT_NEAR(RestOfCable(world), 1.45, 5e-6);
   world.SetMotorEnabled(0, 0, true);
   world.Step(1e-3, 2000);
-  EXPECT_NEAR(Rest(world), 1.4, 5e-6);
+  EXPECT_NEAR(RestOfCable(world), 1.4, 5e-6);
 }
 
 TEST(MotorServo, StopsAtTheShortestRestLength) {
@@ -223,12 +225,12 @@ TEST(MotorServo, StopsAtTheShortestRestLength) {
   WorldBatch world = MakeBatch(def);
   world.SetDuty(0, 0, 1);
   world.Step(1e-3, 30'000);
-  EXPECT_NEAR(Rest(world), 0.15, 1e-12);
-  EXPECT_GE(Rest(world), 0.15 - 1e-12);
+  EXPECT_NEAR(RestOfCable(world), 0.15, 1e-12);
+  EXPECT_GE(RestOfCable(world), 0.15 - 1e-12);
   EXPECT_EQ(world.Motor(0, 0).rotor_speed_rad_per_s, 0);
   world.SetDuty(0, 0, -1);
   world.Step(1e-3, 1000);
-  EXPECT_GT(Rest(world), 0.2);
+  EXPECT_GT(RestOfCable(world), 0.2);
 }
 
 TEST(Motor, ADutyBeyondItsEndsCountsAsTheEndAndNotANumberHaltsTheWorld) {
@@ -239,11 +241,11 @@ TEST(Motor, ADutyBeyondItsEndsCountsAsTheEndAndNotANumberHaltsTheWorld) {
   world.SetDuty(0, 0, -INFINITY);
   world.Step(1e-3);
   EXPECT_EQ(world.Motor(0, 0).duty, -1);
-  const double rest = Rest(world);
+  const double rest = RestOfCable(world);
   world.SetDuty(0, 0, NAN);
   world.Step(1e-3, 10);
   EXPECT_EQ(world.Status(0).bits & kStatusNonFinite, kStatusNonFinite);
-  EXPECT_EQ(Rest(world), rest);
+  EXPECT_EQ(RestOfCable(world), rest);
   EXPECT_EQ(world.Motor(0, 0).duty, -1);  // unchanged
 }
 
@@ -283,7 +285,7 @@ std::vector<double> EndOfARun(double h, double stiffness, double damping, double
   }
   if (finite != nullptr) *finite = world.Status(0).bits == kStatusOk && most < 100 + jerk;
   const MotorState m = world.Motor(0, 0);
-  return {Rest(world), world.Body(0, 0).position_m.z, 1e-3 * m.rotor_speed_rad_per_s,
+  return {RestOfCable(world), world.Body(0, 0).position_m.z, 1e-3 * m.rotor_speed_rad_per_s,
           m.energy_from_supply_j};
 }
 

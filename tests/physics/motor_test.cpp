@@ -9,7 +9,7 @@ namespace taut::test {
 namespace {
 
 double Speed(const WorldBatch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
-double Rest(const WorldBatch& world) { return world.Cable(0, 0).rest_length_m; }
+double RestLength(const WorldBatch& world) { return world.Cable(0, 0).rest_length_m; }
 
 // Data sheet of the Faulhaber 1524T012SR: 9800 rpm and 7 mA without load, 6.92 mN m at stall, a
 // mechanical time constant of 8.3 ms. These numbers agree with each other to some 1 %.
@@ -55,7 +55,7 @@ TEST(Motor, RunsUpExponentially) {
       // The angle is the sum of the speeds: J dw = k i dt, V = R i + k dtheta/dt.
       const double angle = (final_speed * 0.016 - Speed(world) * tau);
       EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad, angle, RoundOff(steps, 1e5));
-      EXPECT_NEAR(Rest(world), 100 - Way(motor) * angle, RoundOff(steps, 200));
+      EXPECT_NEAR(RestLength(world), 100 - Way(motor) * angle, RoundOff(steps, 200));
     }
   }
 }
@@ -80,9 +80,9 @@ TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
     // The motor stops within the last step, in half of it.
     EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad - angle, start * start / (2 * falls),
                 0.5 * falls * h * h + RoundOff(4000, 1e6));
-    const double rest = Rest(world);
+    const double rest = RestLength(world);
     world.Step(h, 1000);
-    EXPECT_EQ(Rest(world), rest);
+    EXPECT_EQ(RestLength(world), rest);
   }
 }
 
@@ -140,10 +140,10 @@ TEST(Motor, StallsAtTheTensionThatItsTorqueHolds) {
       // The tension is approached from below; the rotor's inertia overshoots by less than this.
       EXPECT_NEAR(world.Cable(0, 0).tension_n, tension, 1e-3 * tension);
       // Between winding in and being pulled out, friction in both directions holds the motor.
-      const double rest = Rest(world);
+      const double rest = RestLength(world);
       world.SetDuty(0, 0, 0.8 * duty);
       world.Step(h, 500);
-      EXPECT_EQ(Rest(world), rest);
+      EXPECT_EQ(RestLength(world), rest);
     }
   }
 }
@@ -166,13 +166,13 @@ TEST(Motor, SwitchedOffItHoldsWhatItsFrictionCan) {
       WorldBatch world = MakeBatch(MotorWithWeight(motor, Weight(0.99 * held_n / 9.81, 1e4)));
       world.SetMotorEnabled(0, 0, false);
       world.Step(h, 20'000);
-      EXPECT_EQ(Rest(world), 1.0) << efficiency;
+      EXPECT_EQ(RestLength(world), 1.0) << efficiency;
       EXPECT_EQ(Speed(world), 0) << efficiency;
       if (held_n == 1e3) continue;
       WorldBatch heavier = MakeBatch(MotorWithWeight(motor, Weight(1.01 * held_n / 9.81, 1e4)));
       heavier.SetMotorEnabled(0, 0, false);
       heavier.Step(h, StepsIn(2.0, h));
-      EXPECT_GT(Rest(heavier), 1.001) << efficiency;
+      EXPECT_GT(RestLength(heavier), 1.001) << efficiency;
     }
   }
 }
@@ -191,7 +191,7 @@ TEST(Motor, HoldsARingingCableWithoutCreep) {
       least = std::min(least, world.Cable(0, 0).tension_n);
       most = std::max(most, world.Cable(0, 0).tension_n);
     }
-    EXPECT_EQ(Rest(world), 1.0) << stiffness;
+    EXPECT_EQ(RestLength(world), 1.0) << stiffness;
     EXPECT_GT(most - least, 0.2 * weight.mass_kg * 9.81) << stiffness;
   }
 }
@@ -209,7 +209,7 @@ TEST(Motor, AWeightDrivesItBack) {
       world.SetMotorEnabled(0, 0, false);
       const int steps = StepsIn(0.5, h);
       world.Step(h, steps);
-      EXPECT_NEAR(Rest(world) - 1, a * 0.125, 0.01 * a * 0.125) << stiffness << " " << h;
+      EXPECT_NEAR(RestLength(world) - 1, a * 0.125, 0.01 * a * 0.125) << stiffness << " " << h;
       EXPECT_NEAR(-Speed(world) * way, a * 0.5, 0.01 * a * 0.5) << stiffness << " " << h;
     }
   }
@@ -245,7 +245,7 @@ TEST(Motor, BreaksAwayAtTheFrictionOfRest) {
   WorldBatch world = MakeBatch(MotorAlone(motor));
   world.SetDuty(0, 0, 0.99 * 3e-4 / per_duty);
   world.Step(1e-3, 1000);
-  EXPECT_EQ(Rest(world), 100);
+  EXPECT_EQ(RestLength(world), 100);
   world.SetDuty(0, 0, 1.05 * 3e-4 / per_duty);
   world.Step(1e-3, 1000);
   // (torque - friction) R / k^2, less the Stribeck term at that speed.

@@ -14,7 +14,7 @@ namespace taut::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfiniteValue = std::numeric_limits<double>::infinity();
 
 WorldBatch BatchOf(const ModelDef& def) {
   Diagnostics out;
@@ -34,13 +34,13 @@ TEST(Parameters, ValuesOutsideTheLimitsOfModelFilesAreRefused) {
     std::string reason;
   } cases[] = {
       {Parameter::kBodyMass,
-       {-1, 0, kNan, kInfinity},
+       {-1, 0, kNan, kInfiniteValue},
        1e-3,
        "must be a positive number [kg], got "},
       {Parameter::kCableStiffness, {-9, 0, kNan}, 1, "must be a positive number [N/m], got "},
       {Parameter::kCableDamping, {-9, kNan}, 0, "must be zero or a positive number [N s/m], got "},
       {Parameter::kFrictionScale, {-0.1, kNan}, 0, "must be zero or a positive number, got "},
-      {Parameter::kGravityX, {kNan, -kInfinity}, -9, "must be a finite number [m/s^2], got "},
+      {Parameter::kGravityX, {kNan, -kInfiniteValue}, -9, "must be a finite number [m/s^2], got "},
   };
   for (const auto& [parameter, wrong, least, reason] : cases) {
     const std::uint64_t before = batch.Hash(1);

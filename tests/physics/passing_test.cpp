@@ -14,7 +14,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kStepS = 1e-3;
+constexpr double kFlybyStepS = 1e-3;
 const Material kSmooth{0, 0, 0};
 
 /// Returns a model whose body 0 flies along x past body 1 or the terrain: it starts `back_m` behind
@@ -26,13 +26,13 @@ using Flyby = std::function<ModelDef(double clear_m, double back_m)>;
 int Deflected(const Flyby& flyby, double clear_m, double speed_m_per_s, double spin_rad_per_s = 0) {
   int deflected = 0;
   for (int phase = 0; phase < 16; ++phase) {
-    ModelDef def = flyby(clear_m, 0.3 + phase * speed_m_per_s * kStepS / 16);
+    ModelDef def = flyby(clear_m, 0.3 + phase * speed_m_per_s * kFlybyStepS / 16);
     def.gravity_m_per_s2 = {0, 0, 0};
     const Vec3 v{speed_m_per_s, 0, 0}, w{spin_rad_per_s, 0, 0};
     def.bodies[0].velocity_m_per_s = v;
     def.bodies[0].angular_velocity_rad_per_s = w;
     WorldBatch world = MakeBatch(def);
-    world.Step(kStepS, StepsIn(0.7 / speed_m_per_s + 2 * kStepS, kStepS));
+    world.Step(kFlybyStepS, StepsIn(0.7 / speed_m_per_s + 2 * kFlybyStepS, kFlybyStepS));
     double off = Distance(world.Body(0, 0).velocity_m_per_s, v) +
                  Distance(world.Body(0, 0).angular_velocity_rad_per_s, w);
     for (std::size_t b = 1; b < def.bodies.size(); ++b) {
@@ -135,15 +135,15 @@ TEST(Passing, ABallThatMeetsAnEdgeReboundsFromWhereTheyTouch) {
       ModelDef def;
       def.gravity_m_per_s2 = {0, 0, 0};
       const Material material{0, 0, 1};
-      const double back = 0.3 + phase * speed * kStepS / 16;
+      const double back = 0.3 + phase * speed * kFlybyStepS / 16;
       scenes::AddBall(def, "flies", 1, kBallM, {-back, 0, 0.05 + s * kBallM}, material);
       def.terrain_boxes.push_back({"wall", {0.1, 0, 0}, {}, {0.1, 1, 0.05}, material});
       def.bodies[0].velocity_m_per_s = {speed, 0, 0};
       WorldBatch world = MakeBatch(def);
-      world.Step(kStepS, StepsIn(0.5 / speed, kStepS));
+      world.Step(kFlybyStepS, StepsIn(0.5 / speed, kFlybyStepS));
       const BodyState ball = world.Body(0, 0);
       // Balls count as touching within a thousandth of a step's travel; divided by the lever arm r.
-      const double off = 4e-3 * speed * kStepS / kBallM;
+      const double off = 4e-3 * speed * kFlybyStepS / kBallM;
       EXPECT_NEAR(EnergyOf(world), 0.5 * speed * speed, 1e-9 * speed * speed) << speed;
       EXPECT_LE(Distance((1 / speed) * ball.velocity_m_per_s, {1 - 2 * c * c, 0, 2 * c * s}), off)
           << speed << " " << phase;
@@ -167,14 +167,14 @@ TEST(Passing, WhatMeetsAWallOrABoxReboundsWithItsEnergy) {
   for (const Flyby& meeting : meetings) {
     for (const double speed : {1.0, 3.0, 10.0}) {
       for (int phase = 0; phase < 16; ++phase) {
-        ModelDef def = meeting(-2e-3, 0.3 + phase * speed * kStepS / 16);
+        ModelDef def = meeting(-2e-3, 0.3 + phase * speed * kFlybyStepS / 16);
         def.gravity_m_per_s2 = {0, 0, 0};
         def.bodies[0].velocity_m_per_s = {speed, 0, 0};
         for (CapsuleDef& shape : def.capsules) shape.material.restitution = 1;
         for (BoxDef& shape : def.boxes) shape.material.restitution = 1;
         WorldBatch world = MakeBatch(def);
         const double start = EnergyOf(world);
-        world.Step(kStepS, StepsIn(0.4 / speed, kStepS));
+        world.Step(kFlybyStepS, StepsIn(0.4 / speed, kFlybyStepS));
         EXPECT_NEAR(EnergyOf(world) / start, 1, 1e-3) << which << " " << speed << " " << phase;
         EXPECT_GT(Distance(world.Body(0, 0).velocity_m_per_s, {speed, 0, 0}), 0.1 * speed)
             << which << " " << speed << " " << phase;
@@ -199,11 +199,11 @@ TEST(Passing, ASlabOnBallsKeepsAllItsContacts) {
     }
     scenes::AddBox(def, "slab", 5, {0.3, 0.3, 0.02}, {0, 0, 2 * r + 0.02}, {}, material);
     WorldBatch world = MakeBatch(def);
-    world.Step(kStepS);
+    world.Step(kFlybyStepS);
     const std::size_t count = world.Contacts(0).size();
     EXPECT_EQ(count, fixed ? 30u : 60u);
     for (int n = 0; n < 3000; ++n) {
-      world.Step(kStepS);
+      world.Step(kFlybyStepS);
       ASSERT_EQ(world.Contacts(0).size(), count) << n;
     }
   }

@@ -34,12 +34,12 @@ TEST(PushOut, ABallInTheGroundComesOutAndDoesNotRise) {
 }
 
 /// Two seconds of a robot whose lowest points start `depth` deep in the ground.
-struct Rise {
+struct PushedRise {
   double speed_m_per_s = 0;  ///< Largest upward speed of any body.
   double height_m = 0;       ///< Largest rise of any body above its start.
   double gap_m = 0;          ///< Deepest contact at the end.
 };
-Rise RiseOf(ModelDef def, double depth, double h) {
+PushedRise RiseOf(ModelDef def, double depth, double h) {
   double low = 1;
   for (const CapsuleDef& c : def.capsules) {
     low = std::min({low, c.from_m.z - c.radius_m, c.to_m.z - c.radius_m});
@@ -50,7 +50,7 @@ Rise RiseOf(ModelDef def, double depth, double h) {
   def.planes[0].point_m = {0, 0, low + depth};
   def.restitution_combine = CombineRule::kMinimum;
   WorldBatch world = MakeBatch(def);
-  Rise rise;
+  PushedRise rise;
   for (int n = 0; n < StepsIn(2, h); ++n) {
     world.Step(h);
     for (std::size_t b = 0; b < def.bodies.size(); ++b) {
@@ -67,7 +67,7 @@ Rise RiseOf(ModelDef def, double depth, double h) {
 TEST(PushOut, ASpineInTheGroundGoesUpNoFasterThanOneOnIt) {
   const ModelDef def = scenes::Tetraspine().Def();
   for (const double h : {1e-3, 1e-4}) {
-    const Rise without = RiseOf(def, -1e-6, h), with = RiseOf(def, 1e-3, h);
+    const PushedRise without = RiseOf(def, -1e-6, h), with = RiseOf(def, 1e-3, h);
     EXPECT_LE(with.speed_m_per_s, 0.1030) << h;
     EXPECT_LE(with.speed_m_per_s, without.speed_m_per_s + 0.0025) << h;
     EXPECT_GE(with.gap_m, -1e-9) << h;
@@ -81,8 +81,9 @@ TEST(PushOut, APrismInTheGroundComesOutNoHigherThanItWasDeep) {
   scenes::Prism3 scene;
   scene.damping_n_s_per_m = 10;
   for (const double depth : {1e-3, 5e-3}) {
-    const Rise coarse = RiseOf(scene.Def(), depth, 2e-4), fine = RiseOf(scene.Def(), depth, 1e-4);
-    for (const Rise& rise : {coarse, fine, RiseOf(scene.Def(), depth, 1e-3)}) {
+    const PushedRise coarse = RiseOf(scene.Def(), depth, 2e-4),
+                     fine = RiseOf(scene.Def(), depth, 1e-4);
+    for (const PushedRise& rise : {coarse, fine, RiseOf(scene.Def(), depth, 1e-3)}) {
       EXPECT_LE(rise.height_m, 1.02 * depth) << depth;
       EXPECT_LE(rise.speed_m_per_s, 42 * depth) << depth;
       EXPECT_GE(rise.gap_m, -1e-9) << depth;

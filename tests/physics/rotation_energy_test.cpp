@@ -51,7 +51,7 @@ TEST(RotationEnergy, AThinRodKeepsItToRoundingHoweverFastItSpinsAboutItself) {
 
 /// Lowest and highest energy of a rotating box relative to the start: over the first ten seconds
 /// and over the last ten of a hundred.
-struct Range {
+struct EnergyBand {
   double low = 0, high = 0;
   void Take(double x) {
     low = std::min(low, x);
@@ -60,7 +60,7 @@ struct Range {
   double size() const { return high - low; }
 };
 struct Ranges {
-  Range first, last;
+  EnergyBand first, last;
 };
 Ranges EnergyOfBox(double h) {
   ModelDef def;

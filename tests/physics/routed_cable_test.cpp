@@ -17,7 +17,7 @@ BodyDef PointMass(const std::string& name, double mass_kg, const Vec3& p) {
   return body;
 }
 
-CableDef Cable(std::vector<AttachmentDef> attachments, double stiffness, double rest_length) {
+CableDef CableAlong(std::vector<AttachmentDef> attachments, double stiffness, double rest_length) {
   CableDef cable;
   cable.name = "cable";
   cable.attachments = std::move(attachments);
@@ -43,7 +43,8 @@ void HangsStill(double span, double rise) {
   const Vec3 p{left * span / l, 0, -left * cosine};
   ModelDef def;
   def.bodies.push_back(PointMass("mass", m, p));
-  def.cables.push_back(Cable({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {span, 0, rise}}}, k, rest));
+  def.cables.push_back(
+      CableAlong({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {span, 0, rise}}}, k, rest));
   WorldBatch world = MakeBatch(def);
   EXPECT_NEAR(world.Cable(0, 0).length_m, l, RoundOff(1, l));
   EXPECT_NEAR(world.Cable(0, 0).tension_n, k * (l - rest), RoundOff(1, k));
@@ -73,7 +74,7 @@ TEST(RoutedCable, AHeavyRingHangsOnOneMetreOfCable) {
     ModelDef def;
     def.bodies.push_back(PointMass("ring", 1.0, p));
     def.cables.push_back(
-        Cable({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {0.8, 0, rise}}}, k, 1.0 - tension / k));
+        CableAlong({{kWorld, {0, 0, 0}}, {0, p}, {kWorld, {0.8, 0, rise}}}, k, 1.0 - tension / k));
     WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 2000);
     EXPECT_NEAR(world.Cable(0, 0).tension_n, 8.175, 1e-6) << rise;
@@ -90,7 +91,7 @@ TEST(RoutedCable, AMassOnACableThroughTwoFixedEyeletsIsTheLeapfrogsOscillator) {
   const Vec3 p{0.4, 0.3, -(hang + a)};
   ModelDef def;
   def.bodies.push_back(PointMass("mass", m, p));
-  def.cables.push_back(Cable(
+  def.cables.push_back(CableAlong(
       {{kWorld, {0, 0, 0.5}}, {kWorld, {0, 0, 0}}, {kWorld, {0.4, 0.3, 0}}, {0, p}}, k, rest));
   WorldBatch world = MakeBatch(def);
   const double theta = 2 * std::asin(std::sqrt(k / m) * h / 2);
@@ -110,7 +111,7 @@ ModelDef Atwood(double m1, double m2, double stiffness, double stretch) {
   def.bodies.push_back(PointMass("one", m1, {-0.1, 0, -0.7}));
   def.bodies.push_back(PointMass("two", m2, {0.1, 0, -0.9}));
   // Eyelets straight above the masses keep the motion vertical.
-  def.cables.push_back(Cable(
+  def.cables.push_back(CableAlong(
       {{0, {-0.1, 0, -0.7}}, {kWorld, {-0.1, 0, 0}}, {kWorld, {0.1, 0, 0}}, {1, {0.1, 0, -0.9}}},
       stiffness, 1.8 - stretch));
   return def;
@@ -157,7 +158,7 @@ TEST(RoutedCable, ABeadOnATautCableSlidesFreely) {
   def.bodies.push_back(PointMass("bead", 0.1, {0.3, 0, 0}));
   def.bodies[0].velocity_m_per_s = {0.5, 0, 0};
   def.cables.push_back(
-      Cable({{kWorld, {0, 0, 0}}, {0, {0.3, 0, 0}}, {kWorld, {1, 0, 0}}}, 1000, 0.9));
+      CableAlong({{kWorld, {0, 0, 0}}, {0, {0.3, 0, 0}}, {kWorld, {1, 0, 0}}}, 1000, 0.9));
   WorldBatch world = MakeBatch(def);
   for (int n = 1; n <= 1000; ++n) {
     world.Step(1e-3);
@@ -178,8 +179,8 @@ TEST(RoutedCable, AnEyeletBesideTheCentreOfMassTurnsItsBody) {
   def.bodies[0].inertia_kg_m2 = {0.01, 0.02, 0.03, 0, 0, 0};
   const Vec3 eyelet{0.1, 0.05, 0.02};
   def.cables.push_back(
-      Cable({{kWorld, eyelet + Vec3{0, 0, 1}}, {0, eyelet}, {kWorld, eyelet + Vec3{1, 0, 0}}}, 1200,
-            1.99));
+      CableAlong({{kWorld, eyelet + Vec3{0, 0, 1}}, {0, eyelet}, {kWorld, eyelet + Vec3{1, 0, 0}}},
+                 1200, 1.99));
   WorldBatch world = MakeBatch(def);
   world.Step(h);
   const Vec3 force{tension, 0, tension}, torque = Cross(eyelet, force);

@@ -15,7 +15,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfiniteForce = std::numeric_limits<double>::infinity();
 
 bool Finite(const WorldBatch& batch, int world, int body) {
   const BodyState state = batch.Body(world, body);
@@ -60,7 +60,11 @@ void BreaksAlone(const std::function<void(WorldBatch&)>& breaks, int body) {
 
 TEST(Status, AForceThatIsNotANumberStopsItsWorldAndNamesTheBody) {
   BreaksAlone([](WorldBatch& batch) { batch.SetNodeForce(1, 6 * 2 + 3, {0, kNan, 0}); }, 2);
-  BreaksAlone([](WorldBatch& batch) { batch.SetNodeForce(1, 6 * 1 + 3, {kInfinity, 0, 0}); }, 1);
+  BreaksAlone(
+      [](WorldBatch& batch) {
+        batch.SetNodeForce(1, 6 * 1 + 3, {kInfiniteForce, 0, 0});
+      },
+      1);
 }
 
 TEST(Status, ACommandThatIsNotANumberNamesTheCable) {

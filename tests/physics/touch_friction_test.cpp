@@ -40,8 +40,8 @@ void Lower(WorldBatch& world, const Vec3& from, const Vec3& to) {
 }
 
 /// Returns two masses on a cable over the two edges of a wall: a wrap angle of half a turn in all.
-WorldBatch Atwood(double m1, double m2, double friction, double damping,
-                  ActuatorDef::Kind actuator = ActuatorDef::Kind::kNone) {
+WorldBatch TouchAtwood(double m1, double m2, double friction, double damping,
+                       ActuatorDef::Kind actuator = ActuatorDef::Kind::kNone) {
   const double radius = 1e-3;
   const Vec3 from{-radius, 0, -1}, to{0.1 + radius, 0, -1};
   ModelDef def;
@@ -66,7 +66,7 @@ WorldBatch Atwood(double m1, double m2, double friction, double damping,
 TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
   const double c = std::exp(0.2 * std::numbers::pi);
   for (const double m2 : {0.4, 0.5, 0.53}) {
-    WorldBatch world = Atwood(1, m2, 0.2, 20);
+    WorldBatch world = TouchAtwood(1, m2, 0.2, 20);
     const double a = (1 - c * m2) / (1 + c * m2) * kG;
     EXPECT_NEAR(-AccelerationOf(world, 0, 0.6), a, 1e-3) << m2;
     ASSERT_EQ(world.CableBends(0, 0), 2);
@@ -77,7 +77,7 @@ TEST(TouchFriction, AtwoodsMachineOverAWallSlipsAsEytelweinSays) {
 
 TEST(TouchFriction, WithinTheRatioItDoesNotCreep) {
   for (const double m2 : {0.54, 0.7, 0.9}) {
-    WorldBatch world = Atwood(1, m2, 0.2, 200);
+    WorldBatch world = TouchAtwood(1, m2, 0.2, 200);
     world.Step(1e-3, 4000);
     const double z = world.Body(0, 0).position_m.z;
     world.Step(1e-3, 4000);
@@ -88,7 +88,7 @@ TEST(TouchFriction, WithinTheRatioItDoesNotCreep) {
 }
 
 TEST(TouchFriction, WhatItTakesIsWhatIsMissing) {
-  WorldBatch world = Atwood(1, 0.4, 0.2, 0);
+  WorldBatch world = TouchAtwood(1, 0.4, 0.2, 0);
   const double before = EnergyOf(world) + world.CableFrictionLoss(0, 0);
   world.Step(1e-3, 900);
   const double loss = world.CableFrictionLoss(0, 0);
@@ -97,7 +97,7 @@ TEST(TouchFriction, WhatItTakesIsWhatIsMissing) {
 }
 
 TEST(TouchFriction, WhatIsWoundComesFromTheFirstSpan) {
-  WorldBatch world = Atwood(1, 0.7, 0.2, 200, ActuatorDef::Kind::kIdeal);
+  WorldBatch world = TouchAtwood(1, 0.7, 0.2, 200, ActuatorDef::Kind::kIdeal);
   world.Step(1e-3, 2000);
   const double left = world.Body(0, 0).position_m.z, right = world.Body(0, 1).position_m.z;
   const double rest = world.Cable(0, 0).rest_length_m;
@@ -113,7 +113,7 @@ TEST(TouchFriction, WhatIsWoundComesFromTheFirstSpan) {
 
 /// A cable whose bodies are repositioned has no contacts until it reaches an obstacle again.
 TEST(TouchFriction, PutElsewhereItHasOneSpan) {
-  WorldBatch world = Atwood(1, 0.4, 0.2, 20);
+  WorldBatch world = TouchAtwood(1, 0.4, 0.2, 20);
   world.Step(1e-3, 100);
   ASSERT_EQ(world.CableSpanTensions(0, 0).size(), 3u);
   for (int b = 0; b < 2; ++b) {

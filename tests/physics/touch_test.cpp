@@ -11,15 +11,17 @@
 namespace taut::test {
 namespace {
 
-AttachmentDef Round(const Vec3& center, double radius) {
+AttachmentDef TouchRound(const Vec3& center, double radius) {
   return {kWorld, center, 0.0, WheelDef{{0, 1, 0}, radius, true, 0}};
 }
 
 /// Returns the length of a path over the edges of a wall from x = 0 to 0.1 and 0.06 high.
 double OverTheWall(const Vec3& from, const Vec3& to, double radius) {
   CableDef cable = Cable({kWorld, from}, {kWorld, to}, 1, 1, radius);
-  cable.attachments = {
-      {kWorld, from}, Round({0, 0, 0.06}, radius), Round({0.1, 0, 0.06}, radius), {kWorld, to}};
+  cable.attachments = {{kWorld, from},
+                       TouchRound({0, 0, 0.06}, radius),
+                       TouchRound({0.1, 0, 0.06}, radius),
+                       {kWorld, to}};
   return math::DescribedPath(cable).length_m();
 }
 
@@ -86,10 +88,10 @@ TEST(Touch, OverAHeapOfBoxesItLiesOverAllOfTheirEdgesThatStickOut) {
   EXPECT_EQ(world.CableBends(0, 0), 4);
   CableDef path = def.cables[0];
   path.attachments = {{kWorld, from},
-                      Round({-0.1, 0, 0.045}, radius),
-                      Round({0, 0, 0.06}, radius),
-                      Round({0.1, 0, 0.06}, radius),
-                      Round({0.2, 0, 0.045}, radius),
+                      TouchRound({-0.1, 0, 0.045}, radius),
+                      TouchRound({0, 0, 0.06}, radius),
+                      TouchRound({0.1, 0, 0.06}, radius),
+                      TouchRound({0.2, 0, 0.045}, radius),
                       {kWorld, to}};
   EXPECT_NEAR(world.Cable(0, 0).length_m, math::DescribedPath(path).length_m(), 1e-12);
 }
@@ -128,7 +130,7 @@ TEST(Touch, RidgesOfFieldsAndMeshesAreEdges) {
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   const auto over_the_ridge = [&](const Vec3& from, const Vec3& to) {
     CableDef cable = Cable({kWorld, from}, {kWorld, to}, 1, 1, radius);
-    cable.attachments = {{kWorld, from}, Round({0, 0, height}, radius), {kWorld, to}};
+    cable.attachments = {{kWorld, from}, TouchRound({0, 0, height}, radius), {kWorld, to}};
     return math::DescribedPath(cable).length_m();
   };
   for (const bool is_field : {true, false}) {

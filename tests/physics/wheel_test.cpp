@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-BodyDef Ball(double mass_kg, const Vec3& p, const Vec3& velocity = {}, double inertia = 1e-4) {
+BodyDef WheelBall(double mass_kg, const Vec3& p, const Vec3& velocity = {}, double inertia = 1e-4) {
   BodyDef body;
   body.mass_kg = mass_kg;
   body.com_m = p;
@@ -25,7 +25,7 @@ AttachmentDef Round(int body, const Vec3& center, const Vec3& axis, double radiu
   return {body, center, 0.0, WheelDef{axis, radius_m, counterclockwise, turns}};
 }
 
-CableDef Cable(std::vector<AttachmentDef> attachments, double stiffness, double rest_length) {
+CableDef WheelCable(std::vector<AttachmentDef> attachments, double stiffness, double rest_length) {
   CableDef cable;
   cable.name = "cable";
   cable.attachments = std::move(attachments);
@@ -35,7 +35,7 @@ CableDef Cable(std::vector<AttachmentDef> attachments, double stiffness, double 
 }
 
 double LengthOf(const std::vector<AttachmentDef>& attachments) {
-  return math::DescribedPath(Cable(attachments, 1, 1)).length_m();
+  return math::DescribedPath(WheelCable(attachments, 1, 1)).length_m();
 }
 
 TEST(Wheel, APathOfThreeQuartersOfATurnHasTheLengthOfItsTangentsAndArc) {
@@ -57,10 +57,10 @@ TEST(Wheel, APathOfThreeQuartersOfATurnHasTheLengthOfItsTangentsAndArc) {
 
 /// An oblique path is straight on the unrolled cylinder: the same slope before and behind it.
 TEST(Wheel, ASkewPathMeetsTheAxisAtTheSameAngleBeforeAndBehind) {
-  const CableDef cable = Cable({{kWorld, {-0.3, -0.1, -0.2}},
-                                Round(kWorld, {}, {0, 1, 0}, 0.01, true),
-                                {kWorld, {0.4, 0.15, -0.1}}},
-                               1, 1);
+  const CableDef cable = WheelCable({{kWorld, {-0.3, -0.1, -0.2}},
+                                     Round(kWorld, {}, {0, 1, 0}, 0.01, true),
+                                     {kWorld, {0.4, 0.15, -0.1}}},
+                                    1, 1);
   math::DescribedPath path(cable);
   EXPECT_NEAR(path.wheels()[0].theta, 0.884976, 5e-7);
   EXPECT_NEAR(path.length_m(), 0.820470984681, 5e-13);
@@ -121,9 +121,9 @@ ModelDef Atwood(double m1, double m2, int wheels, double stiffness = 1e5) {
   }
   path.push_back({1, {-path[0].position_m.x, 0, -1}});
   ModelDef def;
-  def.bodies = {Ball(m1, path.front().position_m), Ball(m2, path.back().position_m)};
+  def.bodies = {WheelBall(m1, path.front().position_m), WheelBall(m2, path.back().position_m)};
   const double tension = 2 * m1 * m2 / (m1 + m2) * 9.81;
-  def.cables.push_back(Cable(path, stiffness, LengthOf(path)));
+  def.cables.push_back(WheelCable(path, stiffness, LengthOf(path)));
   def.cables[0].rest_length_m -= tension / stiffness;
   return def;
 }
@@ -149,11 +149,11 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
                  radius * std::cos(std::numbers::pi + wound)};
   ModelDef def;
   def.gravity_m_per_s2 = {};
-  def.bodies = {Ball(1, center, {}, inertia)};
+  def.bodies = {WheelBall(1, center, {}, inertia)};
   std::vector<AttachmentDef> path{
       {kWorld, end}, Round(0, center, {0, 1, 0}, radius, true, 3), {0, rim}};
   ASSERT_NEAR(LengthOf(path), 1 + radius * wound, 1e-13);
-  def.cables.push_back(Cable(path, 1e3, 1 + radius * wound - 0.03));
+  def.cables.push_back(WheelCable(path, 1e3, 1 + radius * wound - 0.03));
   WorldBatch world = MakeBatch(def);
   const Energy before = world.TotalEnergy(0);
   const Vec3 turned = world.AngularMomentum(0);
@@ -169,18 +169,19 @@ TEST(Wheel, ACableWindsOffADrumAndOnToIt) {
 }
 
 /// Returns a scene like NTRT's MuscleNP: two bodies in flight on one cable, a free rod in its way.
-ModelDef Flight() {
+ModelDef WheelFlight() {
   ModelDef def;
   def.gravity_m_per_s2 = {};
-  def.bodies = {Ball(0.3927, {0, 0, 3}, {0.4, 0, 0.4}, 0.01),
-                Ball(0.5, {0, 0, 12}, {0.4, 0, 0.4}, 0.01), Ball(0.4, {-0.6, 0, 8}, {}, 0.05)};
-  def.cables.push_back(Cable(
+  def.bodies = {WheelBall(0.3927, {0, 0, 3}, {0.4, 0, 0.4}, 0.01),
+                WheelBall(0.5, {0, 0, 12}, {0.4, 0, 0.4}, 0.01),
+                WheelBall(0.4, {-0.6, 0, 8}, {}, 0.05)};
+  def.cables.push_back(WheelCable(
       {{0, {0, 0, 4}}, Round(2, {-0.6, 0, 8}, {0, 1, 0}, 0.25, true), {1, {0, 0, 12}}}, 1000, 8));
   return def;
 }
 
 TEST(Wheel, MomentaAndEnergyAreKeptInFreeFlightOverAFreeRod) {
-  ModelDef def = Flight();
+  ModelDef def = WheelFlight();
   def.cables[0].attachments[1].wheel->counterclockwise = false;
   def.bodies[0].velocity_m_per_s = {-2, 0.3, 0.4};
   def.bodies[1].velocity_m_per_s = {-1, -0.2, 0.9};
@@ -210,7 +211,7 @@ TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
                                     {4, {1.2, -0.2, 0.1}}};
     path[static_cast<std::size_t>(which)].position_m =
         path[static_cast<std::size_t>(which)].position_m + shift;
-    return Cable(path, 1, 1);
+    return WheelCable(path, 1, 1);
   };
   math::DescribedPath path(cable_of({}, 0));
   for (const Wheel<Vec3>& wheel : path.wheels()) EXPECT_GT(wheel.theta, 0.05);
@@ -239,12 +240,12 @@ TEST(Wheel, TheRateIsThatOfTheLength) {
     ModelDef def;
     def.gravity_m_per_s2 = {};
     const Vec3 center{0.2, 0.1, 0.3};
-    def.bodies = {Ball(1, center)};
+    def.bodies = {WheelBall(1, center)};
     // The wheel is off the center of its body.
-    def.cables.push_back(Cable({{kWorld, {-1, 0, 0}},
-                                Round(0, center + Vec3{0.1, 0, 0.2}, {0, 1, 0}, 0.05, true),
-                                {kWorld, {1, 0.2, 0}}},
-                               1e-9, 1));
+    def.cables.push_back(WheelCable({{kWorld, {-1, 0, 0}},
+                                     Round(0, center + Vec3{0.1, 0, 0.2}, {0, 1, 0}, 0.05, true),
+                                     {kWorld, {1, 0.2, 0}}},
+                                    1e-9, 1));
     WorldBatch world = MakeBatch(def);
     BodyState state = world.Body(0, 0);
     const double turn = 0.5 * 3.0 * time_s;
@@ -266,10 +267,10 @@ TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
     // As high as the peg: the pendulum comes to rest at that height on the other side, without
     // winding up.
     const Vec3 start{0.8, 0, -0.6};
-    def.bodies = {Ball(0.2, start)};
+    def.bodies = {WheelBall(0.2, start)};
     std::vector<AttachmentDef> path{
         {kWorld, {}}, Round(kWorld, {-0.02, 0, -0.6}, {0, 1, 0}, 0.01, true), {0, start}};
-    def.cables.push_back(Cable(path, 2000, LengthOf(path) - 0.2 * 9.81 * 0.6 / 2000));
+    def.cables.push_back(WheelCable(path, 2000, LengthOf(path) - 0.2 * 9.81 * 0.6 / 2000));
     const double fall = 0.2 * 9.81 * 0.6;
     WorldBatch world = MakeBatch(def);
     const double energy = EnergyOf(world);
@@ -289,7 +290,7 @@ TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
 }
 
 TEST(Wheel, LanesAreLikeWorldsAlone) {
-  ExpectLanesLikeWorldsAlone(Flight(), {0.02, 0.01, 0.03}, 300);
+  ExpectLanesLikeWorldsAlone(WheelFlight(), {0.02, 0.01, 0.03}, 300);
   ExpectLanesLikeWorldsAlone(Atwood(1, 0.7, 9), {0.002, 0.01, 0.03}, 100);
 }
 

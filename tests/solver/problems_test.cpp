@@ -12,7 +12,7 @@
 namespace taut::test {
 namespace {
 
-const std::vector<ContactProblem>& All() {
+const std::vector<ContactProblem>& AllProblems() {
   static const std::vector<ContactProblem> problems = LoadProblems();
   return problems;
 }
@@ -54,13 +54,13 @@ void Add(const ContactProblem& p, Checksum& sum) {
 }
 
 /// Returns the name of a problem for failure messages.
-std::string Name(const ContactProblem& p) {
-  return p.scene + ", problem " + std::to_string(&p - All().data());
+std::string ProblemName(const ContactProblem& p) {
+  return p.scene + ", problem " + std::to_string(&p - AllProblems().data());
 }
 
 TEST(ContactProblems, AreAsManyOfEachSceneAsWereStored) {
   std::map<std::string, int> count, gave_up;
-  for (const ContactProblem& p : All()) {
+  for (const ContactProblem& p : AllProblems()) {
     ++count[p.scene];
     if (p.residual_m_per_s > 1e-10) ++gave_up[p.scene];
   }
@@ -79,34 +79,34 @@ TEST(ContactProblems, AreAsManyOfEachSceneAsWereStored) {
 
 TEST(ContactProblems, AreBitForBitWhatWasStored) {
   Checksum sum;
-  for (const ContactProblem& p : All()) Add(p, sum);
+  for (const ContactProblem& p : AllProblems()) Add(p, sum);
   // Computed by a separate program (in Python) from the output of the runs.
   EXPECT_EQ(sum.sum(), std::uint64_t{0x92d529e3b6d56d4e});
 }
 
 TEST(ContactProblems, HaveBodiesWithMassAndInertia) {
-  for (const ContactProblem& p : All()) {
-    ASSERT_FALSE(p.bodies.empty()) << Name(p);
+  for (const ContactProblem& p : AllProblems()) {
+    ASSERT_FALSE(p.bodies.empty()) << ProblemName(p);
     for (const ProblemBody& b : p.bodies) {
-      EXPECT_GT(b.inverse_mass, 0) << Name(p);
+      EXPECT_GT(b.inverse_mass, 0) << ProblemName(p);
       const auto& m = b.inverse_inertia;
       const double minor = m[0][0] * m[1][1] - m[0][1] * m[1][0];
       const double det = minor * m[2][2] - m[0][2] * (m[2][0] * m[1][1] - m[2][1] * m[1][0]) +
                          m[1][2] * (m[2][0] * m[0][1] - m[2][1] * m[0][0]);
-      EXPECT_TRUE(m[0][0] > 0 && minor > 0 && det > 0) << Name(p);
-      EXPECT_TRUE(m[0][1] == m[1][0] && m[0][2] == m[2][0] && m[1][2] == m[2][1]) << Name(p);
+      EXPECT_TRUE(m[0][0] > 0 && minor > 0 && det > 0) << ProblemName(p);
+      EXPECT_TRUE(m[0][1] == m[1][0] && m[0][2] == m[2][0] && m[1][2] == m[2][1]) << ProblemName(p);
     }
   }
 }
 
 TEST(ContactProblems, HaveNormalsAndTangentsAcrossEachOther) {
-  for (const ContactProblem& p : All()) {
+  for (const ContactProblem& p : AllProblems()) {
     for (const ProblemContact& c : p.contacts) {
-      for (const Vec3& d : {c.n, c.t1, c.t2}) EXPECT_NEAR(LengthOf(d), 1, 1e-15) << Name(p);
+      for (const Vec3& d : {c.n, c.t1, c.t2}) EXPECT_NEAR(LengthOf(d), 1, 1e-15) << ProblemName(p);
       for (const double cosine : {Dot(c.n, c.t1), Dot(c.n, c.t2), Dot(c.t1, c.t2)}) {
-        EXPECT_NEAR(cosine, 0, 4e-16) << Name(p);
+        EXPECT_NEAR(cosine, 0, 4e-16) << ProblemName(p);
       }
-      EXPECT_NEAR(Dot(Cross(c.n, c.t1), c.t2), 1, 2e-15) << Name(p) << ": not right-handed";
+      EXPECT_NEAR(Dot(Cross(c.n, c.t1), c.t2), 1, 2e-15) << ProblemName(p) << ": not right-handed";
     }
   }
 }
@@ -114,14 +114,14 @@ TEST(ContactProblems, HaveNormalsAndTangentsAcrossEachOther) {
 TEST(ContactProblems, HaveLeversOfOneArm) {
   // arm x n, arm x t1, arm x t2: each perpendicular to its direction, and any two give the same
   // third component of the arm: n . (arm x t1) = -t1 . (arm x n).
-  for (const ContactProblem& p : All()) {
+  for (const ContactProblem& p : AllProblems()) {
     for (const ProblemContact& c : p.contacts) {
       for (const std::array<Vec3, 3>& l : {c.lever_a, c.lever_b}) {
         const double size = 1e-15 * (LengthOf(l[0]) + LengthOf(l[1]) + LengthOf(l[2]));
         const std::array<Vec3, 3> d = {c.n, c.t1, c.t2};
         for (std::size_t i = 0; i < 3; ++i) {
           for (std::size_t j = 0; j < 3; ++j) {
-            EXPECT_NEAR(Dot(d[i], l[j]) + Dot(d[j], l[i]), 0, size) << Name(p);
+            EXPECT_NEAR(Dot(d[i], l[j]) + Dot(d[j], l[i]), 0, size) << ProblemName(p);
           }
         }
       }
@@ -134,31 +134,33 @@ TEST(ContactProblems, HaveContactsOnTheSideThatTheirNormalSays) {
   // contact lies against its normal, and from the center of B along it. The check uses arm . n,
   // which is t2 . (arm x t1): n = t1 x t2. Rods that cross at a small angle share one normal
   // between two contacts, for which this need not hold; hence no piles.
-  for (const ContactProblem& p : All()) {
+  for (const ContactProblem& p : AllProblems()) {
     const std::string kind = p.scene.substr(0, p.scene.find('_'));
     if (kind == "pile" || kind == "spine3" || kind == "wall12" || kind == "six") continue;
     for (const ProblemContact& c : p.contacts) {
-      EXPECT_LT(Dot(c.t2, c.lever_a[1]), 0) << Name(p);
+      EXPECT_LT(Dot(c.t2, c.lever_a[1]), 0) << ProblemName(p);
       if (c.b == kWorld) continue;
-      EXPECT_GT(Dot(c.t2, c.lever_b[1]), 0) << Name(p);
+      EXPECT_GT(Dot(c.t2, c.lever_b[1]), 0) << ProblemName(p);
     }
   }
 }
 
 TEST(ContactProblems, NameBodiesThatAreThere) {
-  for (const ContactProblem& p : All()) {
+  for (const ContactProblem& p : AllProblems()) {
     const int bodies = static_cast<int>(p.bodies.size());
-    EXPECT_GT(p.contacts.size() + p.cables.size(), 0U) << Name(p) << ": nothing to solve";
+    EXPECT_GT(p.contacts.size() + p.cables.size(), 0U) << ProblemName(p) << ": nothing to solve";
     for (const ProblemContact& c : p.contacts) {
-      EXPECT_TRUE(c.a >= 0 && c.a < bodies && c.b >= -1 && c.b < bodies && c.a != c.b) << Name(p);
-      EXPECT_TRUE(c.mu >= 0 && c.impulse[0] >= 0) << Name(p);
+      EXPECT_TRUE(c.a >= 0 && c.a < bodies && c.b >= -1 && c.b < bodies && c.a != c.b)
+          << ProblemName(p);
+      EXPECT_TRUE(c.mu >= 0 && c.impulse[0] >= 0) << ProblemName(p);
     }
     for (const ProblemCable& c : p.cables) {
-      EXPECT_TRUE(c.gain > 0 && c.upper >= 0 && !c.links.empty()) << Name(p);
+      EXPECT_TRUE(c.gain > 0 && c.upper >= 0 && !c.links.empty()) << ProblemName(p);
       for (const ProblemLink& l : c.links) {
-        EXPECT_TRUE(l.body >= 0 && l.body < bodies) << Name(p);
-        EXPECT_NEAR(LengthOf(l.pull), 1, 1e-15) << Name(p) << ": these cables are not routed";
-        EXPECT_NEAR(Dot(l.pull, l.lever), 0, 4e-16) << Name(p);
+        EXPECT_TRUE(l.body >= 0 && l.body < bodies) << ProblemName(p);
+        EXPECT_NEAR(LengthOf(l.pull), 1, 1e-15)
+            << ProblemName(p) << ": these cables are not routed";
+        EXPECT_NEAR(Dot(l.pull, l.lever), 0, 4e-16) << ProblemName(p);
       }
     }
   }

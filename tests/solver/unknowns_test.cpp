@@ -11,14 +11,14 @@ namespace {
 
 /// All equations in one matrix: M v - J^T l = M v_free, J v + C l = r, for the columns that are not
 /// prescribed. `C`: compliance and other relations between a row's impulses.
-struct Reference {
+struct ReferenceEquations {
   Dense a;
   std::vector<double> b;
   std::vector<int> first;  ///< Column of each unknown by its place, or -1.
 };
 
-Reference Equations(const Machine& machine, bool slides, const double (&s)[2]) {
-  Reference out;
+ReferenceEquations Equations(const Machine& machine, bool slides, const double (&s)[2]) {
+  ReferenceEquations out;
   const auto& island = machine.island.island;
   int columns = 0;
   for (int k = 0; k < island.body_count; ++k) {
@@ -86,7 +86,7 @@ TEST(Unknowns, ARotorAPointMassAndADrivenBeltMoveAsADenseMatrixSays) {
     const std::vector<double> l = machine.island.Impulses();
     const double across = std::hypot(l[4], l[5]);
     const double s[2] = {l[4] / across, l[5] / across};
-    const Reference wanted = Equations(machine, slides, s);
+    const ReferenceEquations wanted = Equations(machine, slides, s);
     const std::vector<double> x = DenseSolve(wanted.a, wanted.b);
     for (int k = 0; k < island.body_count; ++k) {
       Num free[6];

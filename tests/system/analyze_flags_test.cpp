@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kGravity = 9.81;
-const std::string kPrism = TAUT_SOURCE_DIR "/share/models/prism3.yaml";
+const std::string kAnalyzedPrism = TAUT_SOURCE_DIR "/share/models/prism3.yaml";
 
 class AnalyzeFlags : public test::CommandTest {
  protected:
@@ -174,7 +174,8 @@ TEST_F(AnalyzeFlags, ARecordingOfAnotherPlacementIsAWarning) {
 }
 
 TEST_F(AnalyzeFlags, ShapesAreRuns) {
-  const test::CommandResult shown = Taut({"analyze", kPrism, "--modes", "2", "--out", "shapes"});
+  const test::CommandResult shown =
+      Taut({"analyze", kAnalyzedPrism, "--modes", "2", "--out", "shapes"});
   ASSERT_EQ(shown.status, 0) << shown.errors;
   for (const char* name : {"mode_1", "mode_2", "mechanism_1", "self_stress_1"}) {
     const std::string folder = std::string("shapes/") + name;
@@ -192,7 +193,7 @@ TEST_F(AnalyzeFlags, ShapesAreRuns) {
     EXPECT_EQ(cable["tension"]["max_n"] == 100, side) << cable;
     EXPECT_GT(cable["tension"]["max_n"], 0);
   }
-  const json silent = Json({"analyze", kPrism, "--modes", "1", "--out", "again", "--json"});
+  const json silent = Json({"analyze", kAnalyzedPrism, "--modes", "1", "--out", "again", "--json"});
   EXPECT_EQ(silent["format_version"], 1) << "what is written is told on stderr";
 }
 
@@ -222,10 +223,10 @@ TEST_F(AnalyzeFlags, ShapesOfSeveralLoadCasesHaveAFolderEach) {
 
 TEST_F(AnalyzeFlags, ShapesThatCannotBeWrittenAreAnError) {
   Write("taken", "a file");
-  const test::CommandResult shown = Taut({"analyze", kPrism, "--out", "taken"});
+  const test::CommandResult shown = Taut({"analyze", kAnalyzedPrism, "--out", "taken"});
   EXPECT_EQ(shown.status, 1);
   EXPECT_NE(shown.errors.find("taken"), std::string::npos) << shown.errors;
-  Refuses({"analyze", kPrism, "--out", "x", "--inverse"}, 2, "--inverse excludes --out");
+  Refuses({"analyze", kAnalyzedPrism, "--out", "x", "--inverse"}, 2, "--inverse excludes --out");
 }
 
 TEST_F(AnalyzeFlags, ForcesThatSupportsLeaveOpenHaveLimits) {
@@ -288,7 +289,8 @@ TEST_F(AnalyzeFlags, WithoutASelfStressTheHintIsTheForm) {
                 .output.find("(--form --tension_n 10 finds"),
             std::string::npos);
   EXPECT_EQ(Taut({"analyze", six, "--form", "--tension_n", "10"}).status, 0) << "as it says";
-  EXPECT_EQ(Taut({"analyze", kPrism, "--modes", "0"}).output.find("--form"), std::string::npos);
+  EXPECT_EQ(Taut({"analyze", kAnalyzedPrism, "--modes", "0"}).output.find("--form"),
+            std::string::npos);
   WriteHanger();  // it hangs from the world: no form with a self-stress exists
   EXPECT_EQ(Taut({"analyze", "hanger.yaml", "--modes", "0"}).output.find("--form"),
             std::string::npos);

@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-const char* const kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+const char* const kHangOnTheLine = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class CliCommand : public test::CommandTest {
  protected:
@@ -231,21 +231,21 @@ TEST_F(CliCommand, AMisspeltWordIsAnsweredByTheRightOne) {
             "error: there is no command \"gait exprot\" (did you mean \"export\"?)");
   EXPECT_EQ(Refusal({"gait"}),
             "error: taut gait needs a command: export, import, create or values");
-  EXPECT_EQ(Refusal({"run", kHang, "--duration", "1"}),
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--duration", "1"}),
             "error: taut run has no flag \"--duration\" (did you mean \"--duration_s\"?)");
-  EXPECT_EQ(Refusal({"run", "--duration=1", kHang}),
+  EXPECT_EQ(Refusal({"run", "--duration=1", kHangOnTheLine}),
             "error: taut run has no flag \"--duration\" (did you mean \"--duration_s\"?)");
-  EXPECT_EQ(Refusal({"run", "--sep_s", "0.1", kHang}),
+  EXPECT_EQ(Refusal({"run", "--sep_s", "0.1", kHangOnTheLine}),
             "error: taut run has no flag \"--sep_s\" (did you mean \"--step_s\"?)");
-  EXPECT_EQ(Refusal({"run", kHang, "--re"}),
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--re"}),
             "error: taut run has no flag \"--re\" (did you mean \"--replay\" or \"--report\"?)");
-  EXPECT_EQ(Refusal({"run", kHang, "-q"}),
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "-q"}),
             "error: taut run has no flag \"-q\" (did you mean \"--quiet\"?)");
   EXPECT_EQ(Refusal({"check", "--quite"}),
             "error: taut check has no flag \"--quite\" (did you mean \"--quiet\"?)");
   EXPECT_EQ(Refusal({"compare", "a.h5", "b.h5", "--max-rmse", "1"}),
             "error: taut compare has no flag \"--max-rmse\" (did you mean \"--max_rmse\"?)");
-  EXPECT_EQ(Refusal({"run", kHang, "--xyzzy"}), "error: taut run has no flag \"--xyzzy\"");
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--xyzzy"}), "error: taut run has no flag \"--xyzzy\"");
   EXPECT_EQ(Refusal({"schema", "modl"}),
             "error: format: \"modl\" is unknown (did you mean \"model\"?)");
   EXPECT_EQ(Refusal({"gait", "create", "a.yaml", "--symmetry", "segment"}),
@@ -264,11 +264,11 @@ TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
   EXPECT_EQ(Refusal({"view", "a.h5", "b.h5"}),
             "error: unexpected argument \"b.h5\"; usage: taut view [FLAGS] [FILE] (to compare: "
             "--compare b.h5)");
-  EXPECT_EQ(Refusal({"run", kHang, "--out"}), "error: --out needs a value: --out FOLDER");
-  EXPECT_EQ(Refusal({"run", kHang, "--csv=3"}), "error: --csv takes no value");
-  EXPECT_EQ(Refusal({"run", kHang, "--out", "a", "--out", "b"}),
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--out"}), "error: --out needs a value: --out FOLDER");
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--csv=3"}), "error: --csv takes no value");
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--out", "a", "--out", "b"}),
             "error: --out was given more than once");
-  EXPECT_EQ(Refusal({"run", kHang, "--seed", "-1"}),
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--seed", "-1"}),
             "error: --seed: \"-1\" is not a whole number from 0 to 18446744073709551615");
 }
 
@@ -337,9 +337,9 @@ TEST_F(CliCommand, NewOverwritesNothing) {
 }
 
 TEST_F(CliCommand, RunPrintsItsSummaryAsJson) {
-  const test::CommandResult run = Taut({"run", kHang, "--json", "--report_never"});
+  const test::CommandResult run = Taut({"run", kHangOnTheLine, "--json", "--report_never"});
   EXPECT_EQ(run.status, 2);
-  const test::CommandResult good = Taut({"run", kHang, "--json", "--out", "here"});
+  const test::CommandResult good = Taut({"run", kHangOnTheLine, "--json", "--out", "here"});
   EXPECT_EQ(good.status, 0) << good.errors;
   EXPECT_EQ(good.output, Read(Path("here/summary.json")));
   EXPECT_EQ(nlohmann::json::parse(good.output)["experiment"], "hang");

@@ -9,7 +9,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kExperiment = R"(taut: 1
+const std::string kStudiedExperiment = R"(taut: 1
 kind: experiment
 base: )" TAUT_SOURCE_DIR R"(/share/experiments/sidewinder3_start.yaml
 duration_s: 0.5
@@ -35,7 +35,7 @@ search:
 class Mpi : public RanksTest {
  protected:
   void SetUp() override {
-    Write("experiment.yaml", kExperiment);
+    Write("experiment.yaml", kStudiedExperiment);
     Write("study.yaml", Study(20));
     RanksTest::SetUp();
   }

@@ -6,7 +6,7 @@ namespace taut::test {
 namespace {
 
 /// Rows, equilibria and references together; the clock delay makes the same run count differently.
-const std::string kExperiment = R"(taut: 1
+const std::string kFittedExperiment = R"(taut: 1
 kind: experiment
 name: pull
 model: model.yaml
@@ -18,7 +18,7 @@ timeline:
 reference: [{source: a scale, cables_n: {c: 11.2}}]
 load_cases: [{name: down, forces: [{node: ball, force_n: [0, 0, -2]}]}, {name: up, forces: [{node: ball, force_n: [0, 0, 1]}]}]
 )";
-const std::string kFit = R"(taut: 1
+const std::string kRanksFit = R"(taut: 1
 kind: fit
 name: f
 experiments:
@@ -40,8 +40,8 @@ search: {starts: 2, folds: 2, iterations: 5}
 class FitRanks : public RanksTest {
  protected:
   FitRanks() {
-    Write("model.yaml", kModel);
-    Write("experiment.yaml", kExperiment);
+    Write("model.yaml", kHangingModel);
+    Write("experiment.yaml", kFittedExperiment);
     std::string runs = "time_s,node/ball/position_z_m\n";
     for (int i = 0; i <= 60; ++i) {
       const double t = 0.05 * i, pull_n = t < 0.1 ? 0 : t < 1.1 ? 3.2 * (t - 0.1) : 3.2;
@@ -50,7 +50,7 @@ class FitRanks : public RanksTest {
     Write("runs.csv", runs);
     Write("rests.csv", "time_s,node/ball/position_z_m\n0,0.0375\n1,0.0643\n");
     Write("later.csv", "time_s,node/ball/position_z_m\n0,0.0286\n1,0.0554\n");
-    Write("fit.yaml", kFit);
+    Write("fit.yaml", kRanksFit);
   }
 };
 
@@ -79,7 +79,7 @@ TEST_F(FitRanks, MistakesAreSaidOnceAndEndAll) {
   const std::size_t at = done.errors.find(message);
   ASSERT_NE(at, std::string::npos) << done.errors;
   EXPECT_EQ(done.errors.find(message, at + 1), std::string::npos);
-  Write("fit.yaml", kFit);
+  Write("fit.yaml", kRanksFit);
   Write("rests.csv", "time_s,node/ball/position_z_m\n0,0.0375\n1,0.0643\n");
   EXPECT_EQ(End(StartRanks(3, {"fit", "fit.yaml", "--out", "bad", "--profile", "none"})).status, 2);
 }

@@ -10,7 +10,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kModel = R"(taut: 1
+const std::string kFitModel = R"(taut: 1
 kind: model
 name: hanging
 parameters: {k_n_per_m: 100, mass_kg: 0.5, radius_m: 0.01}
@@ -21,7 +21,7 @@ builders:
   - {match: ball, point_mass: {mass_kg: mass_kg, radius_m: radius_m}}
   - {match: cable, cable: {stiffness_n_per_m: k_n_per_m, damping_n_s_per_m: 8, rest_length_m: 0.9, actuator: {ideal: true}}}
 )";
-const std::string kExperiment = R"(taut: 1
+const std::string kFitExperiment = R"(taut: 1
 kind: experiment
 name: pull
 model: model.yaml
@@ -46,8 +46,8 @@ groups: window
 class FitCommand : public CommandTest {
  protected:
   FitCommand() {
-    Write("model.yaml", kModel);
-    Write("experiment.yaml", kExperiment);
+    Write("model.yaml", kFitModel);
+    Write("experiment.yaml", kFitExperiment);
     WriteData("a.csv", 110, 0.001, 1);
     WriteData("b.csv", 110, 0.001, 2);
   }

@@ -14,22 +14,22 @@
 namespace taut {
 namespace {
 
-const std::string kRoot = TAUT_SOURCE_DIR "/";
+const std::string kGaitRoot = TAUT_SOURCE_DIR "/";
 constexpr double kRowS = 0.04;  // period of NTRT's traces in tests/data
 
-ExperimentSpec Load(const std::string& name) {
+ExperimentSpec LoadGaitExperiment(const std::string& name) {
   Diagnostics out;
-  auto experiment = LoadExperiment(kRoot + "share/experiments/" + name + ".yaml", {}, out);
+  auto experiment = LoadExperiment(kGaitRoot + "share/experiments/" + name + ".yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
   return experiment.value_or(ExperimentSpec{});
 }
 
-struct Outcome {
+struct GaitOutcome {
   Columns columns;
   double largest_n = 0;
 };
 
-Outcome Simulate(ExperimentSpec experiment) {
+GaitOutcome Simulate(ExperimentSpec experiment) {
   experiment.record.rate_hz = 1 / kRowS;
   experiment.record.channels = {"cable/*/elastic_n", "system/com_*_m", "body/*/position_*_m"};
   Rows rows(experiment);
@@ -40,7 +40,7 @@ Outcome Simulate(ExperimentSpec experiment) {
   EXPECT_TRUE(summary) << out.Format();
   if (!summary) return {};
   EXPECT_EQ(summary->status_text, "");
-  Outcome outcome{std::move(rows.columns), 0};
+  GaitOutcome outcome{std::move(rows.columns), 0};
   for (const auto& cable : summary->cables) {
     outcome.largest_n = std::max(outcome.largest_n, cable.elastic.max_n);
   }
@@ -107,7 +107,7 @@ double Turned(const Columns& columns) {
 /// Returns NTRT's tensions under taut's channel names.
 Columns NtrtTensions(const std::string& file) {
   Diagnostics out;
-  const auto trace = ReadTrace(kRoot + "tests/data/ntrt/" + file, out);
+  const auto trace = ReadTrace(kGaitRoot + "tests/data/ntrt/" + file, out);
   EXPECT_TRUE(trace) << out.Format();
   Columns columns;
   const std::string ending = "_tension_N";
@@ -122,7 +122,7 @@ Columns NtrtTensions(const std::string& file) {
 }
 
 /// Expects means within `mean_percent` of NTRT's largest tension, and strongest lines within 1 %.
-void ExpectLikeNtrt(const Outcome& outcome, const Columns& ntrt, double largest_n,
+void ExpectLikeNtrt(const GaitOutcome& outcome, const Columns& ntrt, double largest_n,
                     double mean_percent) {
   EXPECT_NEAR(outcome.largest_n, largest_n, 0.005 * largest_n);
   for (const auto& [name, values] : ntrt) {
@@ -137,7 +137,7 @@ void ExpectLikeNtrt(const Outcome& outcome, const Columns& ntrt, double largest_
 
 // NTRT's largest tensions are from 100 Hz samples (26.93 N and 30.27 N).
 TEST(Gaits, TheHandTunedGaitUnderNtrtsLawsIsNtrts) {
-  const Outcome outcome = Simulate(Load("sine_hand_tuned_ntrt"));
+  const GaitOutcome outcome = Simulate(LoadGaitExperiment("sine_hand_tuned_ntrt"));
   ExpectLikeNtrt(outcome, NtrtTensions("sine_hand_tuned_1000hz.csv.gz"), 26.9256, 0.3);
   // NTRT: 18.2 cm straight ahead; 17.0 to 25.0 cm with other steps and solvers
   EXPECT_GT(ComMoved(outcome.columns, "x", 60), 0.17);
@@ -147,7 +147,7 @@ TEST(Gaits, TheHandTunedGaitUnderNtrtsLawsIsNtrts) {
 }
 
 TEST(Gaits, TheLearnedGaitUnderNtrtsLawsIsNtrts) {
-  const Outcome outcome = Simulate(Load("cpg_learned_ntrt"));
+  const GaitOutcome outcome = Simulate(LoadGaitExperiment("cpg_learned_ntrt"));
   ExpectLikeNtrt(outcome, NtrtTensions("cpg_learned_1000hz.csv.gz"), 30.2723, 0.3);
   // NTRT: 20.0 cm to the left in 20 s and 57.5 cm in 60 s, turning to the right
   EXPECT_NEAR(ComMoved(outcome.columns, "y", 20), 0.20, 0.03);
@@ -156,10 +156,10 @@ TEST(Gaits, TheLearnedGaitUnderNtrtsLawsIsNtrts) {
 }
 
 TEST(Gaits, UnderTautsOwnLawsTheyGoTheSameWays) {
-  const Outcome sine = Simulate(Load("sine_hand_tuned"));
+  const GaitOutcome sine = Simulate(LoadGaitExperiment("sine_hand_tuned"));
   ExpectLikeNtrt(sine, NtrtTensions("sine_hand_tuned_1000hz.csv.gz"), 26.9256, 0.3);
   EXPECT_NEAR(ComMoved(sine.columns, "x", 60), 0.21, 0.03);
-  const Outcome learned = Simulate(Load("cpg_learned"));
+  const GaitOutcome learned = Simulate(LoadGaitExperiment("cpg_learned"));
   EXPECT_NEAR(learned.largest_n, 31.46, 0.1);  // the gait is sampled at 100 Hz
   EXPECT_NEAR(ComMoved(learned.columns, "y", 60), 0.62, 0.06);
   EXPECT_LT(Turned(learned.columns), -0.4);
@@ -169,7 +169,7 @@ TEST(Gaits, UnderTautsOwnLawsTheyGoTheSameWays) {
 double Distance(const std::string& name, double step_s, int starts) {
   double sum = 0;
   for (int start = 0; start < starts; ++start) {
-    ExperimentSpec experiment = Load(name);
+    ExperimentSpec experiment = LoadGaitExperiment(name);
     experiment.step_s = step_s;
     experiment.duration_s = 20;
     experiment.phases.clear();
@@ -179,7 +179,7 @@ double Distance(const std::string& name, double step_s, int starts) {
       controller.impedance->differenced_rate = true;
     }
     for (auto& cable : experiment.robot.def.cables) cable.rest_length_m += 1e-6 * start;
-    const Outcome outcome = Simulate(experiment);
+    const GaitOutcome outcome = Simulate(experiment);
     sum += std::hypot(ComMoved(outcome.columns, "x", 20), ComMoved(outcome.columns, "y", 20));
   }
   return sum / starts;

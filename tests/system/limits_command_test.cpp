@@ -12,7 +12,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+const std::string kHangToLimits = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class Limits : public CommandTest {
  protected:
@@ -40,26 +40,27 @@ class Limits : public CommandTest {
 };
 
 TEST_F(Limits, AnExperimentWithoutDurationRecordsItsStart) {
-  const Trace trace = Run({kHang, "--duration_s", "0"});
+  const Trace trace = Run({kHangToLimits, "--duration_s", "0"});
   EXPECT_EQ(trace.time_s, std::vector<double>{0});
   EXPECT_EQ(Summary().at("simulated_s"), 0.0);
 }
 
 TEST_F(Limits, AnExperimentOfOneStepRecordsItsStartAndItsEnd) {
-  EXPECT_EQ(Run({kHang, "--duration_s", "0.001"}).time_s, (std::vector<double>{0, 0.001}));
+  EXPECT_EQ(Run({kHangToLimits, "--duration_s", "0.001"}).time_s, (std::vector<double>{0, 0.001}));
   // A duration shorter than a step is one shorter step.
-  EXPECT_EQ(Run({kHang, "--duration_s", "0.0004"}).time_s, (std::vector<double>{0, 0.0004}));
+  EXPECT_EQ(Run({kHangToLimits, "--duration_s", "0.0004"}).time_s,
+            (std::vector<double>{0, 0.0004}));
 }
 
 TEST_F(Limits, StepsOfASecondAndOfANanosecondAreTaken) {
   // The period of a pendulum of 1 m is 2 s, so that steps of 1 s cannot resolve it. At this step
   // its cable is implicit in tension and direction, a scheme that is stable at any tension
   // (theory/cables.md, 12a).
-  const Trace coarse = Run({kHang, "--step_s", "1"});
+  const Trace coarse = Run({kHangToLimits, "--step_s", "1"});
   // Steps also end at the corners of the push: 0.5, 0.55 and 0.6 s.
   EXPECT_EQ(coarse.time_s.front(), 0.0);
   EXPECT_EQ(coarse.time_s.back(), 5.0);
-  const Trace fine = Run({kHang, "--step_s", "1e-9", "--duration_s", "1e-6"});
+  const Trace fine = Run({kHangToLimits, "--step_s", "1e-9", "--duration_s", "1e-6"});
   EXPECT_EQ(fine.time_s, (std::vector<double>{0, 1e-6}));
   for (const Trace* trace : {&coarse, &fine}) {
     for (const auto& column : trace->values) {
@@ -74,12 +75,12 @@ TEST_F(Limits, StepsOfASecondAndOfANanosecondAreTaken) {
 
 TEST_F(Limits, NumbersOutOfRangeAreBadUsage) {
   for (const std::string text : {"0", "-1", "nan", "inf", "1e-10", "2", "fast"}) {
-    ExpectRefused({"run", kHang, "--step_s", text}, 2,
+    ExpectRefused({"run", kHangToLimits, "--step_s", text}, 2,
                   "error: --step_s: \"" + text +
                       "\" is not a number from 1e-09 to 1\nsee `taut run --help`\n");
   }
   for (const std::string text : {"-1", "nan", "inf", "2e9"}) {
-    ExpectRefused({"run", kHang, "--duration_s", text}, 2,
+    ExpectRefused({"run", kHangToLimits, "--duration_s", text}, 2,
                   "error: --duration_s: \"" + text +
                       "\" is not a number from 0 to 1e+09\nsee `taut run --help`\n");
   }
@@ -124,8 +125,8 @@ TEST_F(Limits, AnUnknownCommandIsAnsweredByThoseThatThereAre) {
 TEST_F(Limits, StrictRunsAndSearchesRefuseWarnings) {
   const std::string warning =
       "the parameter \"idle\" is not used (remove it, or use it in an expression)\n";
-  Write("odd.yaml",
-        "taut: 1\nkind: experiment\nbase: " + kHang + "\nname: odd\nparameters: {idle: 1}\n");
+  Write("odd.yaml", "taut: 1\nkind: experiment\nbase: " + kHangToLimits +
+                        "\nname: odd\nparameters: {idle: 1}\n");
   const CommandResult run = Taut({"run", "odd.yaml", "--quiet", "--duration_s", "0"});
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(run.errors, "odd.yaml:5:20: warning: " + warning);

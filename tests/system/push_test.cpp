@@ -24,7 +24,7 @@ ExperimentSpec Load(const std::string& name) {
   return experiment ? *experiment : ExperimentSpec{};
 }
 
-RunSummary Simulate(const ExperimentSpec& experiment) {
+RunSummary SimulatePush(const ExperimentSpec& experiment) {
   Diagnostics out;
   const auto summary = RunExperiment(experiment, {}, out);
   EXPECT_TRUE(summary) << out.Format();
@@ -87,19 +87,19 @@ double WorstMeanPercent(const RunSummary& run) {
 }
 
 TEST(Push, MeansMatchNtrtUnderItsLaws) {
-  EXPECT_LT(WorstMeanPercent(Simulate(Load("push_20n_ntrt"))), 1.0);
+  EXPECT_LT(WorstMeanPercent(SimulatePush(Load("push_20n_ntrt"))), 1.0);
 }
 
 TEST(Push, LargestTensionMatchesNtrtUnderItsLaws) {
   const double ntrt_n = NtrtLargestTension();
-  EXPECT_NEAR(Simulate(Load("push_20n_ntrt")).system_max_elastic_n, ntrt_n, 0.005 * ntrt_n);
+  EXPECT_NEAR(SimulatePush(Load("push_20n_ntrt")).system_max_elastic_n, ntrt_n, 0.005 * ntrt_n);
 }
 
 TEST(Push, MeansStayNearNtrtWithTheExactCone) {
   ExperimentSpec experiment = Load("push_20n_ntrt");
   ASSERT_EQ(experiment.robot.def.friction_law, FrictionLaw::kAlongSlip);
   experiment.robot.def.friction_law = FrictionLaw::kCone;
-  EXPECT_LT(WorstMeanPercent(Simulate(experiment)), 1.5);
+  EXPECT_LT(WorstMeanPercent(SimulatePush(experiment)), 1.5);
 }
 
 /// NTRT's code has 2.3 * 9.81 N, a B of 150 N s/m and a friction of 0.15 * 0.5.
@@ -183,7 +183,7 @@ TEST(PushPage, ShowsTheMeansOfThisVersion) {
   EXPECT_EQ(table.rows.size(), 12u);
   for (const auto& [name, who] :
        {std::pair("push_20n_ntrt", "its laws"), {"push_20n", "own laws"}}) {
-    const RunSummary run = Simulate(Load(name));
+    const RunSummary run = SimulatePush(Load(name));
     for (const CableSummary& cable : run.cables) {
       for (std::size_t p = 0; p < run.phases.size(); ++p) {
         table.Expect(Plain(cable.name), run.phases[p].name + ": " + who,
@@ -199,7 +199,7 @@ TEST(PushPage, ShowsHowNearThisVersionIsToNtrt) {
   table.Expect("NTRT", "largest `elastic` [N]", ntrt_n);
   for (const auto& [name, who] :
        {std::pair("push_20n_ntrt", "its laws"), {"push_20n", "taut's own laws"}}) {
-    const RunSummary run = Simulate(Load(name));
+    const RunSummary run = SimulatePush(Load(name));
     table.Expect(who, "largest `elastic` [N]", run.system_max_elastic_n);
     table.Expect(who, "difference from NTRT", 100 * (run.system_max_elastic_n / ntrt_n - 1));
     table.Expect(who, "largest difference of a mean from NTRT", WorstMeanPercent(run));
@@ -213,7 +213,7 @@ TEST(PushPage, ShowsTheSixMaximaOfTheRobotAndOfThisVersion) {
   const auto ntrt = ReadNumbers("tests/data/ntrt/push_maxima.csv");
   EXPECT_EQ(whole.rows.size(), 6u);
   EXPECT_EQ(after.rows.size(), 6u);
-  const RunSummary run = Simulate(Load("push_20n"));
+  const RunSummary run = SimulatePush(Load("push_20n"));
   for (const CableSummary& cable : run.cables) {
     if (robot.count(cable.name) == 0) continue;
     const std::string row = Plain(cable.name);

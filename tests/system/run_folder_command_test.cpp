@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+const std::string kHangInFolder = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 class RunCommand : public CommandTest {
  protected:
@@ -40,7 +40,8 @@ class RunCommand : public CommandTest {
   /// Starts a run that would take hours, and waits until it has written a row. `id`: id of the
   /// existing trace, if any.
   pid_t StartLong(const std::string& folder, const std::string& id = "") const {
-    const pid_t pid = Start({"run", kHang, "--duration_s", "1e6", "--out", folder, "--quiet"});
+    const pid_t pid =
+        Start({"run", kHangInFolder, "--duration_s", "1e6", "--out", folder, "--quiet"});
     for (std::string now; now.empty() || now == id; now = IdOfTrace(folder + "/trace.h5")) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
       if (waitpid(pid, nullptr, WNOHANG) != 0) throw std::runtime_error("the run has ended");
@@ -72,8 +73,8 @@ class RunCommand : public CommandTest {
 };
 
 TEST_F(RunCommand, EveryPieceHasTheRunsId) {
-  ASSERT_EQ(Taut({"run", kHang, "--out", "a", "--csv", "--report", "--quiet"}).status, 0);
-  ASSERT_EQ(Taut({"run", kHang, "--out", "b", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHangInFolder, "--out", "a", "--csv", "--report", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHangInFolder, "--out", "b", "--quiet"}).status, 0);
   const std::string id = IdOfTrace("a/trace.h5");
   EXPECT_EQ(id.size(), 16u);
   EXPECT_EQ(Read(Path("a/inputs.yaml")).rfind("# run " + id + "\n", 0), 0u);
@@ -85,17 +86,17 @@ TEST_F(RunCommand, EveryPieceHasTheRunsId) {
 
 TEST_F(RunCommand, TwoAtOnceAreRefused) {
   const pid_t first = StartLong("run");
-  const CommandResult second = Taut({"run", kHang, "--out", "run", "--quiet"});
+  const CommandResult second = Taut({"run", kHangInFolder, "--out", "run", "--quiet"});
   EXPECT_EQ(second.status, 1);
   EXPECT_EQ(second.errors,
             "run: error: another process is writing into this folder (wait for it, stop it, or "
             "give `--out` another folder)\n");
   EXPECT_EQ(Kill(first, SIGTERM).status, 130);
-  EXPECT_EQ(Taut({"run", kHang, "--out", "run", "--quiet"}).status, 0);
+  EXPECT_EQ(Taut({"run", kHangInFolder, "--out", "run", "--quiet"}).status, 0);
 }
 
 TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
-  ASSERT_EQ(Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHangInFolder, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
   const std::string before = IdOfTrace("run/trace.h5");
   Kill(StartLong("run", before), SIGKILL);
   Diagnostics out;
@@ -113,8 +114,8 @@ TEST_F(RunCommand, AKilledRunLeavesItsFirstRowAndNothingOfTheRunBefore) {
 }
 
 TEST_F(RunCommand, PiecesOfDifferentRunsAreBadInput) {
-  ASSERT_EQ(Taut({"run", kHang, "--out", "a", "--quiet"}).status, 0);
-  ASSERT_EQ(Taut({"run", kHang, "--out", "b", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHangInFolder, "--out", "a", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHangInFolder, "--out", "b", "--quiet"}).status, 0);
   fs::copy_file(Path("a/summary.json"), Path("b/summary.json"),
                 fs::copy_options::overwrite_existing);
   const std::string said =
@@ -133,11 +134,11 @@ TEST_F(RunCommand, PiecesOfDifferentRunsAreBadInput) {
 }
 
 TEST_F(RunCommand, ARunThatCannotBeginLeavesTheRunBefore) {
-  ASSERT_EQ(Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
+  ASSERT_EQ(Taut({"run", kHangInFolder, "--out", "run", "--csv", "--report", "--quiet"}).status, 0);
   const std::vector<std::string> names = Names("run");
   const std::string summary = Read(Path("run/summary.json")), id = IdOfTrace("run/trace.h5");
   // no space: a limit of the file size acts like a full disk
-  const CommandResult full = Taut({"run", kHang, "--out", "run", "--quiet"}, [] {
+  const CommandResult full = Taut({"run", kHangInFolder, "--out", "run", "--quiet"}, [] {
     const rlimit size{500, 500};
     setrlimit(RLIMIT_FSIZE, &size);
   });
@@ -159,7 +160,8 @@ TEST_F(RunCommand, LinksInTheFolderAreReplacedAndNotFollowed) {
   const std::vector<std::string> pieces{"inputs.yaml", "report.html", "summary.json", "trace.csv",
                                         "trace.h5"};
   for (const std::string& name : pieces) fs::create_symlink("../victim", Path("run/" + name));
-  const CommandResult result = Taut({"run", kHang, "--out", "run", "--csv", "--report", "--quiet"});
+  const CommandResult result =
+      Taut({"run", kHangInFolder, "--out", "run", "--csv", "--report", "--quiet"});
   EXPECT_EQ(result.status, 0) << result.errors;
   EXPECT_EQ(Read(Path("victim")), "untouched");
   for (const std::string& name : pieces) {

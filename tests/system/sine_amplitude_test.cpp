@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kSegments = 3, kPerSegment = 5;  // x, y, z, and x, y of the orientation
 
 /// Least distance of neighboring segments and least uprightness
-class Watch final : public test::RowWatch {
+class SineWatch final : public test::RowWatch {
  public:
   bool Append(double, const double* values) override {
     for (std::size_t i = 0; i < kSegments; ++i) {
@@ -33,11 +33,11 @@ class Watch final : public test::RowWatch {
   double nearest_m = 1, uprightness = 1;  ///< Uprightness: cosine of the tilt.
 };
 
-Watch Walk(double factor, const std::string& ground_friction) {
+SineWatch Walk(double factor, const std::string& ground_friction) {
   Diagnostics out;
   auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/sine_hand_tuned.yaml",
                                    {{"ground_friction", ground_friction}}, out);
-  Watch watch;
+  SineWatch watch;
   EXPECT_TRUE(experiment) << out.Format();
   if (!experiment) return watch;
   for (SineWave& wave : experiment->controllers[0].velocity_input->gait.sine->waves) {
@@ -60,7 +60,7 @@ Watch Walk(double factor, const std::string& ground_friction) {
 // Ground friction times the robot's 0.15: 0.075 as in NTRT, and 1.2
 TEST(HandTunedSine, KeepsItsSegmentsApart) {
   for (const char* const ground : {"0.5", "8"}) {
-    const Watch watch = Walk(1, ground);
+    const SineWatch watch = Walk(1, ground);
     EXPECT_GT(watch.nearest_m, 0.10) << ground;
     EXPECT_GT(watch.uprightness, std::cos(0.35)) << ground;
   }
@@ -68,7 +68,7 @@ TEST(HandTunedSine, KeepsItsSegmentsApart) {
 
 TEST(HandTunedSine, WithTheRobotsAmplitudesSlidesTogetherAndDoesNotTopple) {
   for (const char* const ground : {"0.5", "8"}) {
-    const Watch watch = Walk(10, ground);
+    const SineWatch watch = Walk(10, ground);
     EXPECT_LT(watch.nearest_m, 0.02) << ground;
     EXPECT_GT(watch.uprightness, std::cos(0.6)) << ground;
   }

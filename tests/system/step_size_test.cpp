@@ -23,12 +23,12 @@ constexpr int kStarts = 48;
 constexpr double kApartM = 1e-6;
 constexpr int kFrontCables = 6;
 
-struct Outcome {
+struct PushOutcome {
   double max_n[kFrontCables] = {};  ///< Spring only, mean over the starts.
   double slide_m = 0;               ///< Of the front segment, from 5 s to the end; mean.
 };
 
-Outcome MeanOutcome(double step_s) {
+PushOutcome MeanOutcome(double step_s) {
   Diagnostics out;
   auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n.yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
@@ -62,7 +62,7 @@ Outcome MeanOutcome(double step_s) {
       }
     }
   }
-  Outcome outcome;
+  PushOutcome outcome;
   for (int world = 0; world < kStarts; ++world) {
     EXPECT_EQ(sim->StatusText(world), "");
     for (int c = 0; c < kFrontCables; ++c) outcome.max_n[c] += max_n[world][c] / kStarts;
@@ -76,10 +76,10 @@ Outcome MeanOutcome(double step_s) {
 }
 
 TEST(StepSize, LargestTensionsOfThePushHardlyDependOnIt) {
-  const Outcome at_1_khz = MeanOutcome(1e-3);
+  const PushOutcome at_1_khz = MeanOutcome(1e-3);
   const std::map<double, double> limit_percent{{4e-3, 0.5}, {2.5e-4, 0.1}};
   for (const auto& [step_s, limit] : limit_percent) {
-    const Outcome other = MeanOutcome(step_s);
+    const PushOutcome other = MeanOutcome(step_s);
     double worst = 0;
     for (int i = 0; i < kFrontCables; ++i) {
       const double percent = 100 * (other.max_n[i] / at_1_khz.max_n[i] - 1);

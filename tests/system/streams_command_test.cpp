@@ -8,7 +8,7 @@
 namespace taut::test {
 namespace {
 
-const std::string kHang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+const std::string kHangOnStreams = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
 
 /// Closed and full streams as by a shell: `2>&-`, `>/dev/full`
 std::function<void()> Closed(std::vector<int> descriptors) {
@@ -43,7 +43,8 @@ class Streams : public CommandTest {
   /// Runs with output on both streams: a table, and a warning that the step is too long.
   CommandResult RunCoarse(const std::function<void()>& before) {
     std::filesystem::remove_all(Path("run"));
-    const CommandResult result = Taut({"run", kHang, "--step_s", "1", "--out", "run"}, before);
+    const CommandResult result =
+        Taut({"run", kHangOnStreams, "--step_s", "1", "--out", "run"}, before);
     Diagnostics out;
     const auto trace = ReadTrace(Path("run/trace.h5"), out);
     EXPECT_TRUE(trace) << out.Format();
@@ -98,10 +99,10 @@ TEST_F(Streams, BadInputKeepsItsStatus) {
 
 TEST_F(Streams, WhatWasToBePrintedAndWasNotIsAFailure) {
   const std::string gait = TAUT_SOURCE_DIR "/share/gaits/hand_tuned_sine.yaml";
-  for (const auto& words : {std::vector<std::string>{"check", kHang},
-                            {"check", "--json", kHang},
+  for (const auto& words : {std::vector<std::string>{"check", kHangOnStreams},
+                            {"check", "--json", kHangOnStreams},
                             {"gait", "values", gait},
-                            {"learn", "--parameters", kHang},
+                            {"learn", "--parameters", kHangOnStreams},
                             {"--help"},
                             {"--version"}}) {
     const CommandResult full = Taut(words, Full({1}));
@@ -114,7 +115,8 @@ TEST_F(Streams, WhatWasToBePrintedAndWasNotIsAFailure) {
         << words[0];
     EXPECT_EQ(Taut(words, NobodyReads).status, 1) << words[0];
   }
-  EXPECT_EQ(Taut({"check", kHang, "--quiet"}, Full({1})).status, 0) << "there is nothing to print";
+  EXPECT_EQ(Taut({"check", kHangOnStreams, "--quiet"}, Full({1})).status, 0)
+      << "there is nothing to print";
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace taut {
 namespace {
 
 const std::string kShare = TAUT_SOURCE_DIR "/share/";
-const std::string kHang = kShare + "experiments/hang.yaml";
+const std::string kHangSummary = kShare + "experiments/hang.yaml";
 const std::string kPrism = kShare + "models/prism3.yaml";
 
 class SummaryCommand : public test::CommandTest {
@@ -37,7 +37,7 @@ class SummaryCommand : public test::CommandTest {
   }
 
   void RunHang(const std::string& folder, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{"run", kHang, "--quiet", "--out", folder};
+    std::vector<std::string> words{"run", kHangSummary, "--quiet", "--out", folder};
     words.insert(words.end(), more.begin(), more.end());
     ASSERT_EQ(Taut(words).status, 0);
   }
@@ -115,7 +115,8 @@ TEST_F(SummaryCommand, FoldersOfRunsStandForTheirTraces) {
   }
   RunHang("a");
   for (const std::string where : {"a", "a/trace.h5"}) {
-    EXPECT_EQ(Taut({"run", kHang, "--replay", where, "--out", "b", "--quiet"}).status, 0) << where;
+    EXPECT_EQ(Taut({"run", kHangSummary, "--replay", where, "--out", "b", "--quiet"}).status, 0)
+        << where;
     EXPECT_EQ(Taut({"trace", "convert", where, "--out", "t.csv", "--quiet"}).status, 0) << where;
     EXPECT_EQ(Taut({"size", where}).status, 0) << where;
     EXPECT_EQ(Taut({"compare", where, where}).status, 0) << where;

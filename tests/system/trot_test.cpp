@@ -25,7 +25,7 @@ struct Outcome {
 };
 
 /// Runs an experiment. `friction`: factor of all coefficients.
-Outcome Simulate(const std::string& name, double friction = 1) {
+Outcome SimulateTrot(const std::string& name, double friction = 1) {
   Outcome outcome;
   Diagnostics out;
   auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml", {}, out);
@@ -118,7 +118,7 @@ double Alike(const Outcome& outcome, const std::string& one, const std::string& 
 }
 
 TEST(Puppy, StandsOnItsFourFeetAndStandsUpToAPush) {
-  const Outcome outcome = Simulate("puppy_stand");
+  const Outcome outcome = SimulateTrot("puppy_stand");
   ASSERT_EQ(outcome.carries.size(), 4u);
   EXPECT_TRUE(outcome.only_feet);
   for (const auto& [leg, carries] : outcome.carries) EXPECT_TRUE(carries.back()) << leg;
@@ -129,7 +129,7 @@ TEST(Puppy, StandsOnItsFourFeetAndStandsUpToAPush) {
 
 TEST(Puppy, TrotsAMetreWithoutFalling) {
   for (const double friction : {1.0, 0.7, 1.3}) {
-    const Outcome outcome = Simulate("puppy_trot", friction);
+    const Outcome outcome = SimulateTrot("puppy_trot", friction);
     ASSERT_EQ(outcome.carries.size(), 4u);
     EXPECT_TRUE(outcome.only_feet) << friction;
     EXPECT_GT(Ahead(outcome), 1.0) << friction;
@@ -139,7 +139,7 @@ TEST(Puppy, TrotsAMetreWithoutFalling) {
 }
 
 TEST(Puppy, MovesTheLegsOfADiagonalTogether) {
-  const Outcome outcome = Simulate("puppy_trot");
+  const Outcome outcome = SimulateTrot("puppy_trot");
   ASSERT_EQ(outcome.carries.size(), 4u);
   EXPECT_GT(Alike(outcome, "front_left", "rear_right"), 0.7);
   EXPECT_GT(Alike(outcome, "front_right", "rear_left"), 0.7);

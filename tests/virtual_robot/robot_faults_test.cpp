@@ -19,7 +19,7 @@ using board::Mode;
 constexpr double kLimit_n = 50;
 constexpr double kFault_s = 0.3, kEnd_s = 0.8;  // of the experiment
 
-ExperimentSpec Push() {
+ExperimentSpec FaultPush() {
   Diagnostics found;
   auto experiment =
       LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/push_20n_motors.yaml", {}, found);
@@ -31,7 +31,7 @@ ExperimentSpec Push() {
 /// An experiment on boards, with the events reported after its fault
 class Broken {
  public:
-  explicit Broken(FaultSpec fault, BoardsOptions options = {}) : experiment_(Push()) {
+  explicit Broken(FaultSpec fault, BoardsOptions options = {}) : experiment_(FaultPush()) {
     Diagnostics found;
     options.robot.program = ReadAvrProgram(TAUT_FIRMWARE_ELF, found);
     motors = MotorPlant::Make(experiment_.robot, found);
@@ -145,7 +145,7 @@ TEST_P(RobotFaults, AreToldAndHarmNothing) {
   fault.line = one.line;
   fault.flips_per_bit = 1e-3;
   if (!std::isnan(one.force_n)) fault.force_n = one.force_n;
-  const std::vector<std::string> names = link::MotorNames(Push().robot);
+  const std::vector<std::string> names = link::MotorNames(FaultPush().robot);
   fault.cable =
       static_cast<int>(std::find(names.begin(), names.end(), "inner_top_1") - names.begin());
   fault.board = 2;

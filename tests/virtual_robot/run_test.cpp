@@ -25,14 +25,14 @@ BoardsOptions Options() {
   return options;
 }
 
-struct Done {
+struct RunDone {
   RunSummary summary;
   link::State heard;
   std::int64_t bad_frames = 0;
   std::vector<double> tensions_n;
 };
 
-Done RunPush(double duration_s, const BoardsOptions& options) {
+RunDone RunPush(double duration_s, const BoardsOptions& options) {
   const ExperimentSpec experiment = Push(duration_s);
   Diagnostics found;
   const auto motors = MotorPlant::Make(experiment.robot, found);
@@ -42,14 +42,14 @@ Done RunPush(double duration_s, const BoardsOptions& options) {
   how.plant = &plant;
   const auto summary = RunExperiment(experiment, how, found);
   EXPECT_TRUE(summary.has_value()) << found.Format();
-  Done done{*summary, plant.heard(), plant.bad_frames(), {}};
+  RunDone done{*summary, plant.heard(), plant.bad_frames(), {}};
   for (int m = 0; m < motors->motor_count(); ++m)
     done.tensions_n.push_back(motors->LoadCellForce(m));
   return done;
 }
 
 TEST(RunOnBoards, HoldsTheSpineAsTheSimulationDoes) {
-  const Done boards = RunPush(3.0, Options());
+  const RunDone boards = RunPush(3.0, Options());
   EXPECT_EQ(boards.bad_frames, 0);
   EXPECT_EQ(boards.heard.link.late_cycles, 0);
   for (const link::BoardView& heard : boards.heard.boards) {
@@ -67,7 +67,7 @@ TEST(RunOnBoards, HoldsTheSpineAsTheSimulationDoes) {
 
 TEST(RunOnBoards, TwoRunsAreTheSameAndNoiseIsAnother) {
   BoardsOptions options = Options();
-  const Done first = RunPush(0.3, options), second = RunPush(0.3, options);
+  const RunDone first = RunPush(0.3, options), second = RunPush(0.3, options);
   EXPECT_EQ(first.summary.state_hash, second.summary.state_hash);
   options.robot.seed = 2;
   EXPECT_NE(RunPush(0.3, options).summary.state_hash, first.summary.state_hash);
@@ -87,7 +87,7 @@ TEST(RunOnBoards, WhatThePcBelievesOfACellIsWhatItHears) {
   CableCalibration cell{"inner_top_1", "2026-01-01", "believed"};
   cell.load_cell_n_per_count = 0.1567 * 0.9;
   options.calibration = Calibration{"believed", "", {cell}};
-  const Done done = RunPush(0.3, options);
+  const RunDone done = RunPush(0.3, options);
   const auto heard_n = [&](std::size_t m) { return done.heard.motors[m].tension_n; };
   ASSERT_GT(done.tensions_n[5], 10.0);
   // A count is 0.16 N, its noise 0.11 N before the filter.
@@ -95,7 +95,7 @@ TEST(RunOnBoards, WhatThePcBelievesOfACellIsWhatItHears) {
   EXPECT_NEAR(heard_n(4), done.tensions_n[4], 0.4) << "inner_left_1 is believed to be what it is";
   // Parameters of --board are applied last.
   options.settings.push_back({true, board::kNewtonsPerCount, 0.1567f * 0.8f});
-  const Done all = RunPush(0.3, options);
+  const RunDone all = RunPush(0.3, options);
   EXPECT_NEAR(all.heard.motors[5].tension_n, 0.8 * all.tensions_n[5], 0.4);
 }
 

@@ -13,11 +13,11 @@
 namespace taut::virtual_robot {
 namespace {
 
-using Kind = BusStep::Kind;
-using Bytes = std::vector<std::uint8_t>;
+using TwiKind = BusStep::Kind;
+using TwiBytes = std::vector<std::uint8_t>;
 
-constexpr Time kBit = 2'500 * kNanosecond;
-constexpr Time kByte = 9 * kBit;
+constexpr Time kTwiBit = 2'500 * kNanosecond;
+constexpr Time kTwiByte = 9 * kTwiBit;
 
 /// Boards and a bus, without motors
 class Wires {
@@ -69,16 +69,16 @@ class Wires {
   Time now = 0, began = 0;
 };
 
-std::vector<BusStep> Write(std::uint8_t address, const Bytes& bytes) {
-  std::vector<BusStep> steps{{Kind::kStart}, {Kind::kWrite, address}};
-  for (const std::uint8_t byte : bytes) steps.push_back({Kind::kWrite, byte});
-  steps.push_back({Kind::kStop});
+std::vector<BusStep> TwiWrite(std::uint8_t address, const TwiBytes& bytes) {
+  std::vector<BusStep> steps{{TwiKind::kStart}, {TwiKind::kWrite, address}};
+  for (const std::uint8_t byte : bytes) steps.push_back({TwiKind::kWrite, byte});
+  steps.push_back({TwiKind::kStop});
   return steps;
 }
-std::vector<BusStep> Read(std::uint8_t address, int count) {
-  std::vector<BusStep> steps{{Kind::kStart}, {Kind::kWrite, address}};
-  for (int i = 0; i < count; ++i) steps.push_back({Kind::kRead, 0, i + 1 < count});
-  steps.push_back({Kind::kStop});
+std::vector<BusStep> TwiRead(std::uint8_t address, int count) {
+  std::vector<BusStep> steps{{TwiKind::kStart}, {TwiKind::kWrite, address}};
+  for (int i = 0; i < count; ++i) steps.push_back({TwiKind::kRead, 0, i + 1 < count});
+  steps.push_back({TwiKind::kStop});
   return steps;
 }
 constexpr std::uint8_t To(int board) { return static_cast<std::uint8_t>((0x10 + board) << 1); }
@@ -86,8 +86,8 @@ constexpr std::uint8_t From(int board) { return static_cast<std::uint8_t>(To(boa
 
 TEST(Twi, AGeneralCallReachesAllBoards) {
   Wires wires(3);
-  const Bytes message{0xC3, 1, 2, 3, 0xFF, 0x00};
-  const BusResult result = wires.Transfer(Write(0, message));
+  const TwiBytes message{0xC3, 1, 2, 3, 0xFF, 0x00};
+  const BusResult result = wires.Transfer(TwiWrite(0, message));
   EXPECT_EQ(result.outcome, BusOutcome::kDone);
   EXPECT_EQ(result.written, 7);
   for (int i = 0; i < 3; ++i) {
@@ -99,7 +99,7 @@ TEST(Twi, AGeneralCallReachesAllBoards) {
 
 TEST(Twi, AnAddressReachesItsBoardAlone) {
   Wires wires(3);
-  EXPECT_EQ(wires.Transfer(Write(To(1), {0xAB})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(To(1), {0xAB})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(0), "");
   EXPECT_EQ(wires.Codes(1), "60 80 a0");
   EXPECT_EQ(wires.Codes(2), "");
@@ -107,39 +107,39 @@ TEST(Twi, AnAddressReachesItsBoardAlone) {
 
 TEST(Twi, SixteenBytesAreReadAtOnce) {
   Wires wires(2);
-  Bytes expected;
+  TwiBytes expected;
   for (int i = 0; i < 16; ++i) {
     expected.push_back(static_cast<std::uint8_t>(17 * i + 3));
     wires.board(1).SetMemory(static_cast<std::uint16_t>(kBoxSend + i), expected.back());
   }
-  const BusResult result = wires.Transfer(Read(From(1), 16));
+  const BusResult result = wires.Transfer(TwiRead(From(1), 16));
   EXPECT_EQ(result.read, expected);
   EXPECT_EQ(wires.Codes(1), "a8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 c0");
   EXPECT_EQ(wires.Codes(0), "");
   // Immediately again: no state is left over.
-  EXPECT_EQ(wires.Transfer(Read(From(1), 16)).read, expected);
+  EXPECT_EQ(wires.Transfer(TwiRead(From(1), 16)).read, expected);
 }
 
 TEST(Twi, NobodyAnswersForABoardThatIsNotThere) {
   Wires wires(2);
-  const BusResult result = wires.Transfer(Read(From(5), 4));
+  const BusResult result = wires.Transfer(TwiRead(From(5), 4));
   EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
   EXPECT_EQ(result.written, 0);
   EXPECT_TRUE(result.read.empty());
   // Start, address, stop; no slave holds the clock.
-  EXPECT_EQ(result.ended - wires.began, kBit + kByte + kBit);
+  EXPECT_EQ(result.ended - wires.began, kTwiBit + kTwiByte + kTwiBit);
   EXPECT_EQ(wires.Codes(0) + wires.Codes(1), "");
 }
 
 TEST(Twi, ASlaveRefusesBytes) {
   Wires wires(1);
   wires.board(0).SetMemory(kBoxNackFrom, 3);
-  const BusResult result = wires.Transfer(Write(To(0), {1, 2, 3, 4, 5}));
+  const BusResult result = wires.Transfer(TwiWrite(To(0), {1, 2, 3, 4, 5}));
   EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
   EXPECT_EQ(result.written, 3) << "the address and two bytes";
   EXPECT_EQ(wires.Codes(0), "60 80 80 88");
   wires.board(0).SetMemory(kBoxNackFrom, 0);
-  EXPECT_EQ(wires.Transfer(Write(To(0), {6})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(To(0), {6})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(0), "60 80 a0");
 }
 
@@ -147,22 +147,22 @@ TEST(Twi, ASlaveRefusesBytes) {
 TEST(Twi, ASlaveThatLetsGoIsNotAddressedUntilTheNextStart) {
   Wires wires(2);
   wires.board(0).SetMemory(kBoxLetGo, 2);
-  const BusResult result = wires.Transfer(Write(To(0), {1, 2, 3, 4, 5}));
+  const BusResult result = wires.Transfer(TwiWrite(To(0), {1, 2, 3, 4, 5}));
   EXPECT_EQ(result.outcome, BusOutcome::kNoAcknowledge);
   EXPECT_EQ(result.written, 3) << "the address and two bytes";
   EXPECT_EQ(wires.Codes(0), "60 80 80") << "not even a stop";
-  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1, 2})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(0, {0xC3, 1, 2})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(0), "70 90 90");
   EXPECT_EQ(wires.Codes(1), "70 90 90 90 a0") << "others stay";
   wires.board(0).SetMemory(kBoxLetGo, 0);
-  EXPECT_EQ(wires.Transfer(Write(To(0), {6})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(To(0), {6})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(0), "60 80 a0");
 }
 
 TEST(Twi, ABoardThatRefusesDoesNotStopAGeneralCall) {
   Wires wires(2);
   wires.board(0).SetMemory(kBoxNackFrom, 1);
-  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 9, 9})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(0, {0xC3, 9, 9})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(0), "70 98");
   EXPECT_EQ(wires.Codes(1), "70 90 90 90 a0");
 }
@@ -171,22 +171,22 @@ TEST(Twi, ASlaveThatHasNoMoreSendsOnes) {
   Wires wires(1);
   for (std::uint16_t i = 0; i < 4; ++i) wires.board(0).SetMemory(kBoxSend + i, 0x21);
   wires.board(0).SetMemory(kBoxLastByte, 2);
-  EXPECT_EQ(wires.Transfer(Read(From(0), 4)).read, (Bytes{0x21, 0x21, 0xFF, 0xFF}));
+  EXPECT_EQ(wires.Transfer(TwiRead(From(0), 4)).read, (TwiBytes{0x21, 0x21, 0xFF, 0xFF}));
   EXPECT_EQ(wires.Codes(0), "a8 b8 c8");
 }
 
 TEST(Twi, ARepeatedStartEndsAMessageAndBeginsTheNext) {
   Wires wires(1);
   wires.board(0).SetMemory(kBoxSend, 0x5A);
-  const BusResult result = wires.Transfer({{Kind::kStart},
-                                           {Kind::kWrite, To(0)},
-                                           {Kind::kWrite, 0xD2},
-                                           {Kind::kStart},
-                                           {Kind::kWrite, From(0)},
-                                           {Kind::kRead, 0, false},
-                                           {Kind::kStop}});
+  const BusResult result = wires.Transfer({{TwiKind::kStart},
+                                           {TwiKind::kWrite, To(0)},
+                                           {TwiKind::kWrite, 0xD2},
+                                           {TwiKind::kStart},
+                                           {TwiKind::kWrite, From(0)},
+                                           {TwiKind::kRead, 0, false},
+                                           {TwiKind::kStop}});
   EXPECT_EQ(result.outcome, BusOutcome::kDone);
-  EXPECT_EQ(result.read, Bytes{0x5A});
+  EXPECT_EQ(result.read, TwiBytes{0x5A});
   EXPECT_EQ(wires.Codes(0), "60 80 a0 a8 c0");
 }
 
@@ -198,16 +198,16 @@ TEST(Twi, TheClockIsHeldForAsLongAsTheInterruptTakes) {
   for (const int extra : {0, 1, 4}) {
     Wires wires(1);
     wires.board(0).SetMemory(kBoxStretch, static_cast<std::uint8_t>(extra));
-    const BusResult result = wires.Transfer(Write(To(0), Bytes(kBytes, 0xEE)));
+    const BusResult result = wires.Transfer(TwiWrite(To(0), TwiBytes(kBytes, 0xEE)));
     took[extra == 4 ? 2 : extra] = result.ended - wires.began;
     EXPECT_EQ(wires.Codes(0), "60 80 80 80 80 80 80 a0");
     const StretchStats& stretch = wires.bus.stretch();
     EXPECT_EQ(stretch.bytes, kBytes + 1U);
     // The statistics contain all waits except the last, for the stop.
-    const Time waits = took[extra == 4 ? 2 : extra] - 2 * kBit - (kBytes + 1) * kByte;
+    const Time waits = took[extra == 4 ? 2 : extra] - 2 * kTwiBit - (kBytes + 1) * kTwiByte;
     EXPECT_NEAR(ToSeconds(stretch.sum), ToSeconds(waits) * kBytes / (kBytes + 1), 4e-6);
   }
-  const Time plain = took[0] - 2 * kBit - (kBytes + 1) * kByte;
+  const Time plain = took[0] - 2 * kTwiBit - (kBytes + 1) * kTwiByte;
   EXPECT_GT(plain, (kBytes + 1) * kMicrosecond);
   EXPECT_LT(plain, (kBytes + 1) * 10 * kMicrosecond);
   const double one = ToSeconds(took[1] - took[0]), four = ToSeconds(took[2] - took[0]);
@@ -222,7 +222,7 @@ TEST(Twi, TheSlowestBoardSetsThePaceOfAGeneralCall) {
     for (const int stretch : stretches) {
       wires.board(i++).SetMemory(kBoxStretch, static_cast<std::uint8_t>(stretch));
     }
-    const BusResult result = wires.Transfer(Write(0, {0xC3, 1, 2, 3}));
+    const BusResult result = wires.Transfer(TwiWrite(0, {0xC3, 1, 2, 3}));
     EXPECT_EQ(result.outcome, BusOutcome::kDone);
     return ToSeconds(result.ended - wires.began);
   };
@@ -234,13 +234,13 @@ TEST(Twi, TheSlowestBoardSetsThePaceOfAGeneralCall) {
 TEST(Twi, AHungBoardHoldsTheClockUntilTheMasterGivesUp) {
   Wires wires(2);
   wires.board(0).Hang();
-  const BusResult result = wires.Transfer(Write(0, {0xC3, 1}));
+  const BusResult result = wires.Transfer(TwiWrite(0, {0xC3, 1}));
   EXPECT_EQ(result.outcome, BusOutcome::kStuck);
   EXPECT_NEAR(ToSeconds(result.ended - wires.began), 25e-3, 0.1e-3);
   // The watchdog resets the board, which leaves the bus; then transfers work again.
   wires.RunTo(wires.now + 100 * kMillisecond);
   wires.Codes(0), wires.Codes(1);
-  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(0, {0xC3, 1})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(0), "70 90 90 a0");
   EXPECT_EQ(wires.Codes(1), "a0 70 90 90 a0") << "only the next start ended the message for it";
 }
@@ -248,9 +248,9 @@ TEST(Twi, AHungBoardHoldsTheClockUntilTheMasterGivesUp) {
 TEST(Twi, AnIllegalStartIsSeenAsABusErrorAndRecoveredFrom) {
   Wires wires(2);
   wires.bus.DisturbNextByte();
-  EXPECT_EQ(wires.Transfer(Write(0, {0xC3, 1, 2})).outcome, BusOutcome::kError);
+  EXPECT_EQ(wires.Transfer(TwiWrite(0, {0xC3, 1, 2})).outcome, BusOutcome::kError);
   EXPECT_EQ(wires.Codes(0), "") << "before it was addressed it is nothing to it";
-  std::vector<BusStep> steps = Write(To(1), {0xC3, 1, 2});
+  std::vector<BusStep> steps = TwiWrite(To(1), {0xC3, 1, 2});
   wires.began = wires.now;
   wires.bus.Begin(wires.now, steps, {});
   wires.RunTo(wires.now + 40 * kMicrosecond);  // within the first byte after the address
@@ -258,7 +258,7 @@ TEST(Twi, AnIllegalStartIsSeenAsABusErrorAndRecoveredFrom) {
   wires.RunTo(wires.now + kMillisecond);
   EXPECT_EQ(wires.bus.result().outcome, BusOutcome::kError);
   EXPECT_EQ(wires.Codes(1).substr(0, 2), "60");
-  EXPECT_EQ(wires.Transfer(Write(To(1), {7})).outcome, BusOutcome::kDone);
+  EXPECT_EQ(wires.Transfer(TwiWrite(To(1), {7})).outcome, BusOutcome::kDone);
   EXPECT_EQ(wires.Codes(1), "60 80 a0");
 }
 
@@ -297,9 +297,9 @@ TEST(Twi, TheNextMessageWaitsForTheInterruptOfTheLast) {
   Wires wires(1);
   wires.board(0).SetMemory(kBoxStretch, 9);
   wires.began = wires.now;
-  wires.bus.Begin(wires.now, Write(To(0), {1}), {});
+  wires.bus.Begin(wires.now, TwiWrite(To(0), {1}), {});
   while (wires.bus.Busy()) wires.Advance(wires.now + kSecond);
-  wires.bus.Begin(wires.now, Write(To(0), {2}), {});  // the interrupt of the stop has just begun
+  wires.bus.Begin(wires.now, TwiWrite(To(0), {2}), {});  // the interrupt of the stop has just begun
   while (wires.bus.Busy()) wires.Advance(wires.now + kSecond);
   wires.RunTo(wires.now + kMillisecond);
   EXPECT_EQ(wires.Codes(0), "60 80 a0 60 80 a0");

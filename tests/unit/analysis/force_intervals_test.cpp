@@ -17,7 +17,7 @@ using test::Body;
 using test::CableTo;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kWeight = 2 * 9.81;
+constexpr double kBarWeight = 2 * 9.81;
 
 ForceIntervals Find(const ModelDef& def, const IntervalOptions& options = {},
                     const LoadCaseSpec& loads = {}) {
@@ -55,12 +55,12 @@ TEST(ForceIntervals, FourFeetOfATableShareInManyWays) {
   const ForceIntervals middle = Find(Table({0, 0, 0.3}), options);
   ASSERT_TRUE(middle.found) << middle.why;
   EXPECT_EQ(middle.undetermined, 1);
-  for (const ForceInterval& foot : middle.touch) ExpectInterval(foot, 0, kWeight / 2);
+  for (const ForceInterval& foot : middle.touch) ExpectInterval(foot, 0, kBarWeight / 2);
   // The center of mass at (0.5, 0): N = W (3, 1, 1, 3) / 8 + a (1, -1, 1, -1)
   const ForceIntervals aside = Find(Table({0.5, 0, 0.3}), options);
   ASSERT_TRUE(aside.found) << aside.why;
-  ExpectInterval(aside.touch[0], kWeight / 4, kWeight / 2);
-  ExpectInterval(aside.touch[1], 0, kWeight / 4);
+  ExpectInterval(aside.touch[0], kBarWeight / 4, kBarWeight / 2);
+  ExpectInterval(aside.touch[1], 0, kBarWeight / 4);
 }
 
 /// Bodies that are not connected by unknown forces are solved separately; a cable of known tension
@@ -81,8 +81,8 @@ TEST(ForceIntervals, EachPartByItselfIsAsInTheWhole) {
   EXPECT_EQ(both.undetermined, 1 + 6);
   ASSERT_EQ(both.touch.size(), 8u);
   for (std::size_t i = 0; i < 4; ++i) {
-    ExpectInterval(both.touch[i], 0, kWeight / 2);
-    ExpectInterval(both.touch[4 + i], 0, kWeight / 4);
+    ExpectInterval(both.touch[i], 0, kBarWeight / 2);
+    ExpectInterval(both.touch[4 + i], 0, kBarWeight / 4);
   }
   // If any of the separate parts does not balance, it is reported by name.
   options.touches.resize(5);
@@ -149,7 +149,8 @@ TEST(ForceIntervals, ThreeFeetAreDeterminateWithFrictionToo) {
   const ForceIntervals table = Find(Table({0, 0, 0.3}), options);
   ASSERT_TRUE(table.found) << table.why;
   EXPECT_EQ(table.undetermined, 3);
-  for (const ForceInterval& foot : table.touch) ExpectInterval(foot, kWeight / 3, kWeight / 3);
+  for (const ForceInterval& foot : table.touch)
+    ExpectInterval(foot, kBarWeight / 3, kBarWeight / 3);
 }
 
 TEST(ForceIntervals, ATableThatTipsIsNotHeld) {
@@ -187,7 +188,7 @@ TEST(ForceIntervals, ALadderAgainstAWall) {
   };
   for (const Case& c : {Case{1.1, 0.6, 0.4}, Case{0.9, 0.5, 0.5}, Case{1.3, 0.3, 0.2}}) {
     const Ladder ladder = LadderAt(c.angle_rad, c.floor, c.wall);
-    const double r = 1 / std::tan(c.angle_rad), w = kWeight;
+    const double r = 1 / std::tan(c.angle_rad), w = kBarWeight;
     const double most = c.wall * r * w / 2 / (1 + c.wall * r);
     double least = -c.wall * r * w / 2 / (1 - c.wall * r);
     if (r > c.floor) least = std::fmax(least, w * (r / 2 - c.floor) / (r - c.floor));
@@ -216,7 +217,8 @@ TEST(ForceIntervals, AJamHasNoUpperLimit) {
                      {0, kWorld, {1, 0, 0}, {-1, 0, 0}, 0.25}};
   const ForceIntervals found = Find(def, options);
   ASSERT_TRUE(found.found) << found.why;
-  for (const ForceInterval& wall : found.touch) ExpectInterval(wall, kWeight / 2 / 0.25, kInfinity);
+  for (const ForceInterval& wall : found.touch)
+    ExpectInterval(wall, kBarWeight / 2 / 0.25, kInfinity);
 }
 
 TEST(ForceIntervals, CablesThatMayPullAsTheyLikeWithinBounds) {
@@ -228,8 +230,8 @@ TEST(ForceIntervals, CablesThatMayPullAsTheyLikeWithinBounds) {
   options.bounds = {{0, 50}, {}};
   const ForceIntervals found = Find(def, options);
   ASSERT_TRUE(found.found) << found.why;
-  ExpectInterval(found.cable[0], kWeight, 50);
-  ExpectInterval(found.cable[1], 0, 50 - kWeight);
+  ExpectInterval(found.cable[0], kBarWeight, 50);
+  ExpectInterval(found.cable[1], 0, 50 - kBarWeight);
 }
 
 TEST(ForceIntervals, TensionsThatFollowFromRestLengthsAreKnown) {
@@ -243,7 +245,7 @@ TEST(ForceIntervals, TensionsThatFollowFromRestLengthsAreKnown) {
   ASSERT_TRUE(found.found) << found.why;
   ExpectInterval(found.cable[0], 12, 12);
   for (const ForceInterval& foot : found.touch)
-    ExpectInterval(foot, kWeight / 2 - 6, kWeight / 2 - 6);
+    ExpectInterval(foot, kBarWeight / 2 - 6, kBarWeight / 2 - 6);
 }
 
 // A beam on two fixed balls: each carries half the weight, with any axial force.
@@ -260,7 +262,7 @@ TEST(ForceIntervals, RedundantSupports) {
   ASSERT_TRUE(found.found) << found.why;
   EXPECT_EQ(found.undetermined, 1);
   for (std::size_t j = 0; j < 2; ++j) {
-    ExpectInterval(found.joint_z[j], kWeight / 2, kWeight / 2);
+    ExpectInterval(found.joint_z[j], kBarWeight / 2, kBarWeight / 2);
     ExpectInterval(found.joint_y[j], 0, 0);
     EXPECT_EQ(found.joint_x[j].low_n, -kInfinity);
     EXPECT_EQ(found.joint_x[j].high_n, kInfinity);

@@ -95,7 +95,7 @@ TEST(FormFinding, PrismsTwistByWhatTheirCornersAsk) {
   }
 }
 
-FormNet SixStruts(double spacing) {
+FormNet SixStrutNet(double spacing) {
   FormNet net;
   const double h = 1, s = spacing;
   net.nodes_m = {{-s, -h, 0}, {-s, h, 0}, {s, -h, 0},  {s, h, 0},  {0, -s, -h}, {0, -s, h},
@@ -110,7 +110,7 @@ FormNet SixStruts(double spacing) {
 }
 
 TEST(FormFinding, SixStrutsAreHalfTheirLengthApartAndBearOneAndAHalf) {
-  const FormNet net = SixStruts(0.65);
+  const FormNet net = SixStrutNet(0.65);
   std::vector<int> group(net.members.size(), 0);
   for (std::size_t i = 0; i < 6; ++i) group[i] = 1;
   Diagnostics out;

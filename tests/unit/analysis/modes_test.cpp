@@ -68,13 +68,14 @@ TEST(Modes, AreThoseOfStructuralFiles) {
 
 /// Two crossing rigid bars in the plane of x and y, as in tests/physics/clustered_test.cpp; one of
 /// the cables runs through an eyelet at the end of a bar.
-struct Cross {
+struct CrossFrame {
   double half, mass[2], stiffness, rest, cable_mass;  ///< Of a cable of one side.
 };
-constexpr Cross kTBar{2, {2.4746351864, 13.9986379133}, 31107.8383, 2.2324739177, 0.0160550684};
-constexpr Cross kDBar{1, {7.8255358022, 7.8255358022}, 311079.532, 1.4119404794, 0.0642202734};
+constexpr CrossFrame kTBar{
+    2, {2.4746351864, 13.9986379133}, 31107.8383, 2.2324739177, 0.0160550684};
+constexpr CrossFrame kDBar{1, {7.8255358022, 7.8255358022}, 311079.532, 1.4119404794, 0.0642202734};
 
-ModelDef ModelOf(const Cross& cross, bool cables_have_mass) {
+ModelDef ModelOf(const CrossFrame& cross, bool cables_have_mass) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
   const Vec3 node[4] = {{0, 0, 0}, {1, cross.half, 0}, {2, 0, 0}, {1, -cross.half, 0}};
@@ -126,7 +127,7 @@ ModelDef ModelOf(const Cross& cross, bool cables_have_mass) {
 // w^2 / 6) = k^2 has one negative root.
 TEST(Modes, ClusteredCablesVibrateAsTheirExactEquationsSay) {
   struct {
-    const Cross* cross;
+    const CrossFrame* cross;
     bool mass;
     double hz[3];  ///< After three rigid motions in the plane.
     double relative;

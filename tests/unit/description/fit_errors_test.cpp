@@ -12,7 +12,7 @@ namespace taut {
 namespace {
 
 namespace fs = std::filesystem;
-using test::kModel;
+using test::kHangingModel;
 
 const std::string kExperiment = R"(taut: 1
 kind: experiment
@@ -25,7 +25,7 @@ controllers:
   - {name: play, period_s: 0.01, position: {programs: [{cables: c, change_m: [[0, 0], [1, 0], [1.1, -up_m]]}]}}
 reference: [{source: a scale, cables_n: {c: 5}}]
 )";
-const std::string kGood = R"(taut: 1
+const std::string kGoodFit = R"(taut: 1
 kind: fit
 name: f
 experiments:
@@ -47,7 +47,7 @@ class FitFile : public testing::Test {
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("taut_fit_" + std::to_string(getpid()));
     fs::create_directories(folder_);
-    Write("model.yaml", kModel);
+    Write("model.yaml", kHangingModel);
     Write("experiment.yaml", kExperiment);
     Write("a.csv", "time_s,body/ball/position_z_m\n0,0\n");
     Write("b.csv", "time_s,body/ball/position_z_m\n0,0\n");
@@ -63,7 +63,7 @@ class FitFile : public testing::Test {
   }
   /// Returns the messages, without the file's name, for the valid fit with `old` replaced.
   std::string Wrong(const std::string& old, const std::string& by) {
-    std::string text = kGood;
+    std::string text = kGoodFit;
     const std::size_t at = text.find(old);
     EXPECT_NE(at, text.npos) << old;
     EXPECT_FALSE(Load(text.replace(at, old.size(), by)));
@@ -79,7 +79,7 @@ class FitFile : public testing::Test {
 };
 
 TEST_F(FitFile, IsRead) {
-  const auto fit = Load(kGood);
+  const auto fit = Load(kGoodFit);
   ASSERT_TRUE(fit) << out_.Format();
   ASSERT_EQ(fit->experiments.size(), 2u);
   EXPECT_TRUE(fit->experiments[0].train);
@@ -102,17 +102,17 @@ TEST_F(FitFile, IsRead) {
 }
 
 TEST_F(FitFile, OverridesReachItsOwnParametersAndThoseOfTheExperiments) {
-  const auto fit = Load(kGood + "parameters: {wide_n_per_m: 7}\n", {{"mass_kg", "0.6"}});
+  const auto fit = Load(kGoodFit + "parameters: {wide_n_per_m: 7}\n", {{"mass_kg", "0.6"}});
   ASSERT_TRUE(fit) << out_.Format();
   EXPECT_EQ(fit->experiments[0].experiment.robot.parameters.at("mass_kg"), 0.6);
   EXPECT_EQ(out_.warnings().size(), 1u);  // wide_n_per_m is unused
 }
 
 TEST_F(FitFile, SaysTheSameOfItselfWheneverItIsTheSame) {
-  const auto fit = Load(kGood), other = Load(kGood);
+  const auto fit = Load(kGoodFit), other = Load(kGoodFit);
   ASSERT_TRUE(fit && other);
   EXPECT_EQ(FitText(*fit), FitText(*other));
-  std::string text = kGood;
+  std::string text = kGoodFit;
   const auto changed = Load(text.replace(text.find("sd: 0.5"), 7, "sd: 0.6"));
   ASSERT_TRUE(changed);
   EXPECT_NE(FitText(*fit), FitText(*changed));
@@ -178,7 +178,7 @@ TEST_F(FitFile, WindowsAreOnesThatTheExperimentHas) {
 }
 
 TEST_F(FitFile, EveryMistakeIsSaidAtOnce) {
-  std::string text = kGood;
+  std::string text = kGoodFit;
   text.replace(text.find("data: a.csv"), 11, "data: c.csv");
   text.replace(text.find("experiments:\n"), 12, "experiments:");
   text.replace(text.find("loss: huber"), 11, "loss: hubert, experiments: [z]");

@@ -5,7 +5,7 @@
 
 namespace taut::test {
 
-inline const std::string kModel = R"(taut: 1
+inline const std::string kHangingModel = R"(taut: 1
 kind: model
 name: hanging
 parameters: {k_n_per_m: 100, mass_kg: 0.5}

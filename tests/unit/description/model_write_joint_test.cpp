@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-double Distance(const Vec3& a, const Vec3& b) { return std::sqrt(Dot(a - b, a - b)); }
+double NodeDistance(const Vec3& a, const Vec3& b) { return std::sqrt(Dot(a - b, a - b)); }
 
 /// A leg in an oblique part: a knee with all properties of a hinge, and a hip in the world
 constexpr const char* kLeg = R"(
@@ -147,7 +147,7 @@ TEST_F(ModelWriteJoints, ThePuppyComesBack) {
   const RobotSpec back = Back(puppy);
   const auto a = Run(puppy, 200), b = Run(back, 200);
   for (int n = 0; n < static_cast<int>(puppy.def.nodes.size()); ++n) {
-    EXPECT_LT(Distance(a->NodePosition(0, n), b->NodePosition(0, n)), 1e-9);
+    EXPECT_LT(NodeDistance(a->NodePosition(0, n), b->NodePosition(0, n)), 1e-9);
   }
   const RobotSpec again = Back(back);
   ExpectTheSameInTheSameOrder(back.def, again.def);
@@ -178,7 +178,7 @@ TEST_F(ModelWriteJoints, InAnotherPoseAnglesAndSlidesGoOn) {
              moved.def.nodes[static_cast<std::size_t>(n)].name) {
         ++k;
       }
-      EXPECT_LT(Distance(a->NodePosition(0, n), b->NodePosition(0, k)), 1e-8);
+      EXPECT_LT(NodeDistance(a->NodePosition(0, n), b->NodePosition(0, k)), 1e-8);
     }
     // written once more it is the same robot to the last bit
     const RobotSpec again = Back(back);
@@ -248,7 +248,7 @@ TEST_F(ModelWriteJoints, WhatAnExperimentMovesIsTheExperiments) {
   EXPECT_EQ(back.def.bodies.size() + 1, robot.def.bodies.size());  // the plate is terrain
   for (const BodyDef& body : back.def.bodies) EXPECT_FALSE(body.fixed) << body.name;
   for (std::size_t n = 0; n < back.def.nodes.size(); ++n) {
-    EXPECT_LT(Distance(back.def.nodes[n].position_m, moved.def.nodes[n].position_m), 1e-9);
+    EXPECT_LT(NodeDistance(back.def.nodes[n].position_m, moved.def.nodes[n].position_m), 1e-9);
   }
   // the beam was moved by 5 cm, and is written at its new place
   const std::size_t e = 4;

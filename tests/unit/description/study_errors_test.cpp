@@ -9,7 +9,7 @@
 namespace taut {
 namespace {
 
-const std::string kGood = R"(taut: 1
+const std::string kGoodStudy = R"(taut: 1
 kind: study
 name: s
 experiment: )" TAUT_SOURCE_DIR R"(/share/experiments/push_20n.yaml
@@ -37,7 +37,7 @@ class StudyFile : public testing::Test {
   }
   /// Returns the messages, without the file's name, for the valid study with `old` replaced.
   std::string Wrong(const std::string& old, const std::string& by) {
-    std::string text = kGood;
+    std::string text = kGoodStudy;
     const std::size_t at = text.find(old);
     EXPECT_NE(at, text.npos) << old;
     EXPECT_FALSE(Load(text.replace(at, old.size(), by)));
@@ -52,7 +52,7 @@ class StudyFile : public testing::Test {
 };
 
 TEST_F(StudyFile, IsRead) {
-  const auto study = Load(kGood);
+  const auto study = Load(kGoodStudy);
   ASSERT_TRUE(study) << out_.Format();
   ASSERT_EQ(study->parameters.size(), 4u);
   EXPECT_EQ(study->parameters[0].name, "impedance.outer_right_1.tension_offset_n");
@@ -65,7 +65,7 @@ TEST_F(StudyFile, IsRead) {
 }
 
 TEST_F(StudyFile, AParameterThatNothingReadsIsAWarning) {
-  std::string text = kGood;
+  std::string text = kGoodStudy;
   text.replace(text.find("low: 1,"), 7, "low: least_n,");
   text += "parameters: {least_n: 1, idle: least_n}\n";
   ASSERT_TRUE(Load(text)) << out_.Format();
@@ -121,7 +121,7 @@ TEST_F(StudyFile, ANumberIsVariedOnce) {
 }
 
 TEST_F(StudyFile, AllErrorsAreSaidAtOnce) {
-  std::string text = kGood;
+  std::string text = kGoodStudy;
   const auto replace = [&](const std::string& old, const std::string& by) {
     text.replace(text.find(old), old.size(), by);
   };
@@ -142,7 +142,7 @@ TEST_F(StudyFile, AllErrorsAreSaidAtOnce) {
 }
 
 TEST_F(StudyFile, AnObjectiveAloneIsReadAsThatOfAStudy) {
-  const auto study = Load(kGood);
+  const auto study = Load(kGoodStudy);
   ASSERT_TRUE(study);
   Diagnostics out;
   const auto same =
@@ -193,8 +193,8 @@ TEST_F(StudyFile, ErrorsOfItsExperimentAreItsErrors) {
 }
 
 TEST_F(StudyFile, WhatItFindsDoesNotDependOnTheLastBudget) {
-  const auto a = Load(kGood);
-  std::string text = kGood;
+  const auto a = Load(kGoodStudy);
+  std::string text = kGoodStudy;
   text.replace(text.find("evaluations: 20"), 15, "evaluations: 90");
   const auto b = Load(text);
   text.replace(text.find("evaluations: 10"), 15, "evaluations: 11");

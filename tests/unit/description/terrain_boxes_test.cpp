@@ -9,12 +9,12 @@
 namespace taut::test {
 namespace {
 
-const std::string kGround = "- {name: ground, plane: {height_m: 0, friction: 0.5}}";
+const std::string kBoxlessGround = "- {name: ground, plane: {height_m: 0, friction: 0.5}}";
 
 class TerrainBoxes : public ExperimentFolder {
  protected:
   RobotSpec With(const std::string& terrain) {
-    Change(kGround, terrain);
+    Change(kBoxlessGround, terrain);
     Diagnostics out;
     const auto experiment = LoadExperiment(Path("trial.yaml"), {}, out);
     EXPECT_TRUE(experiment) << out.Format();
@@ -121,7 +121,7 @@ TEST_F(TerrainBoxes, StairsRiseFromTheirFoot) {
 class TerrainBoxErrors : public ExperimentErrors {
  protected:
   void ExpectGood(const std::string& terrain) {
-    Change(kGround, terrain);
+    Change(kBoxlessGround, terrain);
     EXPECT_EQ(Complaints(), "");
   }
 };
@@ -131,7 +131,7 @@ TEST_F(TerrainBoxErrors, OfScatteredBlocks) {
     ExpectGood("- {name: f, scatter: {" + scatter + "}}");
   };
   const auto expect = [&](const std::string& scatter, const std::string& message) {
-    Expect(kGround, "- {name: f, scatter: {" + scatter + "}}", message);
+    Expect(kBoxlessGround, "- {name: f, scatter: {" + scatter + "}}", message);
   };
   const std::string within = "within_m: [[0, 0, 0], [1, 1, 1]]", box = "box_m: [1, 1, 1]";
   good("count: 3, " + within + ", " + box);
@@ -168,7 +168,7 @@ TEST_F(TerrainBoxErrors, OfStairs) {
     ExpectGood("- {name: f, stairs: {" + stairs + "}}");
   };
   const auto expect = [&](const std::string& stairs, const std::string& message) {
-    Expect(kGround, "- {name: f, stairs: {" + stairs + "}}", message);
+    Expect(kBoxlessGround, "- {name: f, stairs: {" + stairs + "}}", message);
   };
   const std::string sizes = "width_m: 1, tread_m: 1, rise_m: 1";
   good("steps: 3, " + sizes);
@@ -197,18 +197,18 @@ TEST_F(TerrainBoxErrors, OfNamesAndNumbers) {
   const auto stairs = [&](const std::string& name, int steps) {
     return "- {name: " + name + ", stairs: {steps: " + std::to_string(steps) + sizes;
   };
-  Expect(kGround, stairs("a", 3) + "\n  " + stairs("a", 3),
+  Expect(kBoxlessGround, stairs("a", 3) + "\n  " + stairs("a", 3),
          "8:6: error: two terrain elements are called a (the first is in line 7)");
-  Expect(kGround, stairs("a", 3) + "\n  - {name: a_2, plane: {}}",
+  Expect(kBoxlessGround, stairs("a", 3) + "\n  - {name: a_2, plane: {}}",
          "8:6: error: two terrain elements are called a_2 (the first is in line 7)\n"
          "8:24: error: plane needs one of height_m, normal, slope_rad");
-  Expect(kGround, "- {name: a_2, plane: {height_m: 0}}\n  " + stairs("a", 5),
+  Expect(kBoxlessGround, "- {name: a_2, plane: {height_m: 0}}\n  " + stairs("a", 5),
          "8:6: error: two terrain elements are called a_2 (the first is in line 7)");
   ExpectGood(stairs("a", 3000) + "\n  " + stairs("b", 2000));
-  Expect(kGround, stairs("a", 3000) + "\n  " + stairs("b", 2001),
+  Expect(kBoxlessGround, stairs("a", 3000) + "\n  " + stairs("b", 2001),
          "8:5: error: the terrain has 5001 boxes up to this element, more than 5000 (use a height "
          "field or a mesh)");
-  Expect(kGround, stairs(std::string(199, 'n'), 3),
+  Expect(kBoxlessGround, stairs(std::string(199, 'n'), 3),
          "7:12: error: terrain.name and the appended number of a box have more than 200 characters "
          "(use a "
          "shorter name)");
@@ -222,7 +222,7 @@ TEST_F(TerrainBoxErrors, ThousandsOfEntriesAreRefusedBeforeTheyAreMade) {
     many += (i == 0 ? "" : "\n  ") + ("- {name: a" + std::to_string(i)) +
             ", stairs: {steps: 5000, width_m: 1, tread_m: 1, rise_m: 1}}";
   }
-  Expect(kGround, many,
+  Expect(kBoxlessGround, many,
          "8:5: error: the terrain has 10000 boxes up to this element, more than 5000 (use a height "
          "field or a mesh)");
 }

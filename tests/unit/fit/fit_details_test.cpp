@@ -14,7 +14,7 @@ using test::Linear;
 using test::MakeProblem;
 using test::Parameter;
 
-FitVerdict Judged(const FitProblem& problem, const FitProblem* test = nullptr) {
+FitVerdict JudgedInDetail(const FitProblem& problem, const FitProblem* test = nullptr) {
   return JudgeFit(problem, Fit(problem, {}), {}, test);
 }
 
@@ -86,7 +86,7 @@ TEST(FitDetails, APriorCountsBesideTheScaleAndTheOthers) {
   x.prior_mean = 3;
   y.prior_sd = 2;
   const FitProblem problem = MakeProblem({x, y}, 2, Linear{{{0.4, 0}, {0.4, 1}}, {0.4, 0.4}});
-  const FitVerdict verdict = Judged(problem);
+  const FitVerdict verdict = JudgedInDetail(problem);
   const ParameterVerdict& of = verdict.identifiability.parameters[0];
   EXPECT_NEAR(of.se_alone, 1 / std::sqrt(2 * 0.16 + 1), 1e-9);
   // (J^T J + P)^-1, explicitly
@@ -170,7 +170,7 @@ TEST(FitDetails, DataThatContradictThemselvesAreRejectedWhereTheWholeIsNot) {
   }
   linear.A.emplace_back(10, 0.0)[0] = 1;
   linear.b.push_back(4.9);
-  const FitVerdict verdict = Judged(MakeProblem(p, 11, linear));
+  const FitVerdict verdict = JudgedInDetail(MakeProblem(p, 11, linear));
   EXPECT_NEAR(verdict.data.value, 0.5 * 4.9 * 4.9, 1e-4);
   EXPECT_NEAR(verdict.data.freedom, 1, 1e-4);
   EXPECT_NEAR(verdict.total.freedom, 11, 1e-9);
@@ -182,11 +182,11 @@ TEST(FitDetails, DataThatContradictThemselvesAreRejectedWhereTheWholeIsNot) {
 TEST(FitDetails, AHoldOutThatCannotBeComputedIsNoGoodFit) {
   FitProblem problem = MeanOf({0.1, -0.2, 0.3, -0.1});
   problem.parameters[0].scale = 10;
-  EXPECT_EQ(Judged(problem).judgement, FitJudgement::kGood);
+  EXPECT_EQ(JudgedInDetail(problem).judgement, FitJudgement::kGood);
   const FitProblem test = MakeProblem(problem.parameters, 1, [](const std::vector<double>&) {
     return Residuals{{}, "it blows up"};
   });
-  const FitVerdict verdict = Judged(problem, &test);
+  const FitVerdict verdict = JudgedInDetail(problem, &test);
   EXPECT_EQ(verdict.judgement, FitJudgement::kWorse);
   bool said = false;
   for (const std::string& s : verdict.sentences) said |= s.find("it blows up") != s.npos;
@@ -196,7 +196,7 @@ TEST(FitDetails, AHoldOutThatCannotBeComputedIsNoGoodFit) {
 TEST(FitDetails, LossesStandInPlaceOfSquaresInChiSquare) {
   FitProblem problem = MeanOf({0, 0.5, -0.5, 0.2, 9});
   for (FitRow& row : problem.rows) row.loss = FitLoss::kHuber, row.loss_width = 1;
-  const FitVerdict verdict = Judged(problem);
+  const FitVerdict verdict = JudgedInDetail(problem);
   const double m = verdict.values[0];
   double expected = 2 * std::fabs(9 - m) - 1;
   for (const double y : {0.0, 0.5, -0.5, 0.2}) expected += (y - m) * (y - m);
@@ -206,7 +206,7 @@ TEST(FitDetails, LossesStandInPlaceOfSquaresInChiSquare) {
 TEST(FitDetails, CauchysLossHasItsWidth) {
   FitProblem problem = MeanOf({0, 0.5, -0.5, 0.2, 9});
   for (FitRow& row : problem.rows) row.loss = FitLoss::kCauchy, row.loss_width = 2;
-  const FitVerdict verdict = Judged(problem);
+  const FitVerdict verdict = JudgedInDetail(problem);
   const double m = verdict.values[0];
   double expected = 0, slope = 0;
   for (const double y : {0.0, 0.5, -0.5, 0.2, 9.0}) {
@@ -223,7 +223,7 @@ TEST(FitDetails, AtEitherBoundAParameterIsHeldOnlyIfTheDataWantItBeyond) {
     FitProblem problem = MeanOf({3 * sign, 3.2 * sign, 2.8 * sign, 3 * sign});
     FitParameter& p = problem.parameters[0];
     p.low = sign > 0 ? 0 : -1, p.high = sign > 0 ? 1 : 0;
-    const FitVerdict verdict = Judged(problem);
+    const FitVerdict verdict = JudgedInDetail(problem);
     EXPECT_EQ(verdict.values[0], sign);
     EXPECT_EQ(verdict.identifiability.parameters[0].kind, Determined::kAtBound);
     EXPECT_EQ(verdict.total.freedom, 4);
@@ -255,7 +255,7 @@ TEST(FitDetails, ACombinationThatNothingHoldsTakesNoDegreeOfFreedom) {
   const FitProblem problem =
       MakeProblem({Parameter("a", 0), Parameter("b", 0)}, 5,
                   Linear{{{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}}, {0.5, -1, 2, 0, 1}});
-  const FitVerdict verdict = Judged(problem);
+  const FitVerdict verdict = JudgedInDetail(problem);
   EXPECT_EQ(verdict.identifiability.endless, 1);
   EXPECT_NEAR(verdict.total.freedom, 4, 1e-9);
   EXPECT_NEAR(verdict.data.freedom, 4, 1e-6);
@@ -348,7 +348,7 @@ TEST(FitDetails, ErrorsByGroupsThatAreALittleLargerAreNotTold) {
   std::vector<double> y;
   for (int i = 0; i < 40; ++i) y.push_back((i % 2 == 0 ? 1 : -1) * 1.6 * std::sqrt(39.0 / 40));
   FitProblem problem = MeanOf(y);
-  const FitVerdict verdict = Judged(problem);
+  const FitVerdict verdict = JudgedInDetail(problem);
   const ParameterVerdict& m = verdict.identifiability.parameters[0];
   EXPECT_NEAR(*m.se_jackknife / m.se, 1.6, 1e-6);
   EXPECT_LT(ChiSquareTail(39 * 1.6 * 1.6, 39), 1e-5);

@@ -10,7 +10,7 @@ using test::IdentifyTest;
 
 /// Stiff, so that the ball and the directions stay as described: both cables at 45 degrees upward,
 /// the bar straight downward. A third cable is not part of the cut.
-const std::string kModel = R"(taut: 1
+const std::string kCarriedModel = R"(taut: 1
 kind: model
 name: held
 parameters: {k_n_per_m: 1.0e7}
@@ -30,7 +30,7 @@ builders:
   - {match: cable_2, cable: {stiffness_n_per_m: 1000, damping_n_s_per_m: 8, rest_length_m: 0.5}}
   - {match: bar, bar: {stiffness_n_per_m: 1.0e5, rest_length_m: 1}}
 )";
-const std::string kExperiment = R"(taut: 1
+const std::string kCarriedExperiment = R"(taut: 1
 kind: experiment
 name: press
 model: model.yaml
@@ -41,7 +41,7 @@ load_cases:
   - {name: two, forces: [{node: ball, force_n: [2, 0, -25]}]}
   - {name: three, weight: false, forces: [{node: ball, force_n: [0, 0, -40]}]}
 )";
-const std::string kFit = R"(taut: 1
+const std::string kCarriedFit = R"(taut: 1
 kind: fit
 name: f
 experiments: [{name: a, experiment: experiment.yaml, data: a.csv, forward: load_cases}]
@@ -56,8 +56,8 @@ class Carried : public IdentifyTest {
  protected:
   void SetUp() override {
     IdentifyTest::SetUp();
-    Write("model.yaml", kModel);
-    Write("experiment.yaml", kExperiment);
+    Write("model.yaml", kCarriedModel);
+    Write("experiment.yaml", kCarriedExperiment);
     Write("a.csv",
           "time_s,cable/l/tension_n,cable/r/tension_n,joint/b/axial_n,cable/other/tension_n\n"
           "0,8,9,-1,7\n1,14,17,-4,7\n2,22,23,-6,7\n");
@@ -65,7 +65,7 @@ class Carried : public IdentifyTest {
 };
 
 TEST_F(Carried, SharesAreThoseOfTheDrawing) {
-  const auto fit = Make(kFit);
+  const auto fit = Make(kCarriedFit);
   ASSERT_TRUE(fit) << out_.Format();
   const auto all = fit->Carried();
   ASSERT_EQ(all.size(), 1u);
@@ -95,7 +95,8 @@ TEST_F(Carried, SharesAreThoseOfTheDrawing) {
 }
 
 TEST_F(Carried, ALoadToTheSideIsLookedAtInItsDirection) {
-  const auto fit = Make(Replaced(kFit, "bodies: [ball]", "bodies: [ball], direction: [4, 0, 0]"));
+  const auto fit =
+      Make(Replaced(kCarriedFit, "bodies: [ball]", "bodies: [ball], direction: [4, 0, 0]"));
   ASSERT_TRUE(fit) << out_.Format();
   const CarriedLoad of = fit->Carried()[0];
   ASSERT_EQ(of.check.why, "");
@@ -110,7 +111,7 @@ TEST_F(Carried, ARowThatLacksAForceIsNone) {
       "a.csv",
       "time_s,cable/l/tension_n,cable/r/tension_n,joint/b/axial_n\n0,8,9,-1\n1,nan,17,-4\n2,22,23,-"
       "6\n");
-  const auto fit = Make(kFit);
+  const auto fit = Make(kCarriedFit);
   ASSERT_TRUE(fit) << out_.Format();
   const CarriedLoad of = fit->Carried()[0];
   ASSERT_EQ(of.rows.size(), 2u);
@@ -119,7 +120,7 @@ TEST_F(Carried, ARowThatLacksAForceIsNone) {
 
 TEST_F(Carried, AllMembersHaveToBeCompared) {
   EXPECT_EQ(
-      Wrong(Replaced(Replaced(kFit, "cable/*/tension_n", "cable/r/tension_n"),
+      Wrong(Replaced(Replaced(kCarriedFit, "cable/*/tension_n", "cable/r/tension_n"),
                      "  - {channel: joint/*/axial_n, sd: 0.2}\n", "")),
       "carried: ball of a: cable/l/tension_n is not compared (add all members between the "
       "bodies and the rest of the robot to `residuals`)\n"
@@ -128,11 +129,12 @@ TEST_F(Carried, AllMembersHaveToBeCompared) {
 }
 
 TEST_F(Carried, WhatElseHoldsTheBodiesIsSaid) {
-  EXPECT_EQ(Wrong(Replaced(kFit, "bodies: [ball]", "bodies: [ball, fer]")),
+  EXPECT_EQ(Wrong(Replaced(kCarriedFit, "bodies: [ball]", "bodies: [ball, fer]")),
             "carried.bodies: a has no body \"fer\" (did you mean \"far\"?)\n");
-  Write("model.yaml", Replaced(kModel, "ball, point_mass: {", "ball, sphere: {"));
-  Write("experiment.yaml", kExperiment + "terrain: [{name: ground, plane: {height_m: -0.0099}}]\n");
-  const auto fit = Make(kFit);
+  Write("model.yaml", Replaced(kCarriedModel, "ball, point_mass: {", "ball, sphere: {"));
+  Write("experiment.yaml",
+        kCarriedExperiment + "terrain: [{name: ground, plane: {height_m: -0.0099}}]\n");
+  const auto fit = Make(kCarriedFit);
   ASSERT_TRUE(fit) << out_.Format();
   const CarriedLoad of = fit->Carried()[0];
   EXPECT_EQ(of.check.why.find("other supports than members, such as the ground, hold the bodies: "),
@@ -142,18 +144,18 @@ TEST_F(Carried, WhatElseHoldsTheBodiesIsSaid) {
 
 TEST_F(Carried, MistakesOfTheFileAreSaidAtOnce) {
   EXPECT_EQ(
-      Wrong(Replaced(Replaced(kFit, "forward: load_cases", "forward: dynamic"), "bodies: [ball]",
-                     "bodies: [ball], experiments: [a], direction: [0, 0, 0]")),
+      Wrong(Replaced(Replaced(kCarriedFit, "forward: load_cases", "forward: dynamic"),
+                     "bodies: [ball]", "bodies: [ball], experiments: [a], direction: [0, 0, 0]")),
       "carried.direction must not be zero\n"
       "carried: a is dynamic, but carried loads are compared at rest (write `forward: static` or "
       "`forward: load_cases`)\n");
   EXPECT_EQ(
-      Wrong(Replaced(kFit, "forward: load_cases", "forward: dynamic")),
+      Wrong(Replaced(kCarriedFit, "forward: load_cases", "forward: dynamic")),
       "carried: no experiment is at rest (write `forward: static` or `forward: load_cases`)\n");
 }
 
 TEST_F(Carried, WorkThatIsSharedOutHasTheSameBits) {
-  const auto fit = Make(kFit), other = Make(kFit), third = Make(kFit);
+  const auto fit = Make(kCarriedFit), other = Make(kCarriedFit), third = Make(kCarriedFit);
   ASSERT_TRUE(fit && other && third) << out_.Format();
   EXPECT_EQ(fit->Agreed(), other->Agreed());
   const std::vector<std::vector<double>> points{{1e7}, {2e7}, {-1}, {3e7}, {4e7}};
@@ -180,7 +182,7 @@ TEST_F(Carried, WorkThatIsSharedOutHasTheSameBits) {
   EXPECT_EQ(fit->train().forward(std::vector<std::vector<double>>{{5e7}}).size(), 0u);
   // Fits with different residuals must not share results.
   const auto less =
-      Make(Replaced(kFit, "cable/*/tension_n, sd: 0.3", "cable/*/tension_n, sd: 0.31"));
+      Make(Replaced(kCarriedFit, "cable/*/tension_n, sd: 0.3", "cable/*/tension_n, sd: 0.31"));
   EXPECT_NE(fit->Agreed(), less->Agreed());
 }
 

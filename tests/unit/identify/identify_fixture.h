@@ -46,7 +46,7 @@ class IdentifyTest : public testing::Test {
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("taut_identify_" + std::to_string(getpid()));
     fs::create_directories(folder_);
-    Write("model.yaml", kModel);
+    Write("model.yaml", kHangingModel);
     Write("experiment.yaml", kExperiment);
     WriteData("node/ball/position_z_m", 110, 0);
   }

@@ -18,7 +18,7 @@ struct Case {
 constexpr std::array<Case, 4> kCases{
     {{"side", 3, 0, true}, {"down", 0, -7, true}, {"both", -4, -2, true}, {"alone", 0, -2, false}}};
 
-const std::string kFit = R"(taut: 1
+const std::string kLoadCasesFit = R"(taut: 1
 kind: fit
 name: f
 experiments: [{name: a, experiment: experiment.yaml, data: a.csv, forward: load_cases}]
@@ -63,7 +63,7 @@ class LoadCases : public IdentifyTest {
 };
 
 TEST_F(LoadCases, RowsAreThoseOfTheCases) {
-  const auto fit = Make(kFit);
+  const auto fit = Make(kLoadCasesFit);
   ASSERT_TRUE(fit) << out_.Format();
   ASSERT_EQ(fit->train_points().size(), 8u);  // x of all cases, then z
   const Residuals at = IdentifyTest::At(*fit, {90});
@@ -79,7 +79,7 @@ TEST_F(LoadCases, RowsAreThoseOfTheCases) {
 }
 
 TEST_F(LoadCases, AStiffnessIsFoundFromDeflections) {
-  const auto fit = Make(kFit);
+  const auto fit = Make(kLoadCasesFit);
   ASSERT_TRUE(fit) << out_.Format();
   const FitOutcome outcome = RunFit(*fit, {});
   ASSERT_EQ(outcome.why, "");
@@ -103,7 +103,7 @@ TEST_F(LoadCases, AGapInTheDataIsThatCasesOnly) {
     file << "\n";
   }
   file.close();
-  const auto fit = Make(kFit);
+  const auto fit = Make(kLoadCasesFit);
   ASSERT_TRUE(fit) << out_.Format();
   ASSERT_EQ(fit->train_points().size(), 3u);
   EXPECT_EQ(fit->train_points()[1].where, "load case both");
@@ -112,7 +112,7 @@ TEST_F(LoadCases, AGapInTheDataIsThatCasesOnly) {
 
 TEST_F(LoadCases, RowsMoreOrLessThanCasesAreAMistake) {
   Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n1,0\n");
-  EXPECT_EQ(Wrong(kFit),
+  EXPECT_EQ(Wrong(kLoadCasesFit),
             "experiments: a has 4 load cases, but its data have 2 rows (row i of the data must "
             "belong to load case i)\n");
 }

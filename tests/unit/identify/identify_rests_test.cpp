@@ -9,9 +9,9 @@ namespace {
 
 using test::Height;
 using test::IdentifyTest;
-using test::kModel;
+using test::kHangingModel;
 
-const std::string kFit = R"(taut: 1
+const std::string kRestsFit = R"(taut: 1
 kind: fit
 name: f
 experiments: [{name: a, experiment: experiment.yaml, data: a.csv, forward: load_cases}]
@@ -32,7 +32,7 @@ TEST_F(Rests, ACaseHasNothingOfTheOneBefore) {
                    "  - {name: pulled, forces: [{node: ball, force_n: [0, 0, -3]}]}\n"
                    "  - {name: plain}\n"));
   Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n1,0\n2,0\n");
-  const auto fit = Make(kFit);
+  const auto fit = Make(kRestsFit);
   ASSERT_TRUE(fit) << out_.Format();
   const auto at = At(*fit, {100}).value;
   EXPECT_NEAR(at[0] * 0.001, Height(0.95, 100), 1e-7);
@@ -42,7 +42,8 @@ TEST_F(Rests, ACaseHasNothingOfTheOneBefore) {
 
 TEST_F(Rests, NodesOfARodAreWhereItHangs) {
   // A rod of 1 m below the cable, whose end is fixed to it.
-  std::string model = Replaced(kModel, "ball: [0, 0, 0]}", "ball: [0, 0, 0], end: [0, 0, -1]}");
+  std::string model =
+      Replaced(kHangingModel, "ball: [0, 0, 0]}", "ball: [0, 0, 0], end: [0, 0, -1]}");
   model = Replaced(model, "tags: [cable]}]",
                    "tags: [cable]}, {name: r, nodes: [ball, end], tags: [rod]}]");
   model = Replaced(model, "{match: ball, point_mass: {mass_kg: mass_kg, radius_m: 0.01}}",
@@ -51,7 +52,7 @@ TEST_F(Rests, NodesOfARodAreWhereItHangs) {
   Write("experiment.yaml", Experiment("  - {name: plain}\n"));
   Write("a.csv",
         "time_s,node/ball/position_z_m,node/end/position_z_m,node/top/position_z_m\n0,0,0,0\n");
-  const auto fit = Make(kFit);
+  const auto fit = Make(kRestsFit);
   ASSERT_TRUE(fit) << out_.Format();
   const auto at = At(*fit, {110}).value;
   ASSERT_EQ(at.size(), 3u);
@@ -61,14 +62,14 @@ TEST_F(Rests, NodesOfARodAreWhereItHangs) {
 }
 
 TEST_F(Rests, ABarThatIsPulledHasAForceAboveZero) {
-  Write("model.yaml", Replaced(Replaced(kModel,
+  Write("model.yaml", Replaced(Replaced(kHangingModel,
                                         "cable: {stiffness_n_per_m: k_n_per_m, damping_n_s_per_m: "
                                         "8, rest_length_m: 0.9, actuator: {ideal: true}}",
                                         "bar: {stiffness_n_per_m: k_n_per_m, rest_length_m: 0.9}"),
                                "tags: [cable]", "tags: [cable]"));
   Write("experiment.yaml", Experiment("  - {name: plain}\n"));
   Write("a.csv", "time_s,joint/c/axial_n,node/ball/position_z_m\n0,0,0\n");
-  const auto fit = Make(kFit);
+  const auto fit = Make(kRestsFit);
   ASSERT_TRUE(fit) << out_.Format();
   const auto at = At(*fit, {110}).value;
   EXPECT_NEAR(at[0] * 0.001, 5, 1e-6);
@@ -84,7 +85,7 @@ TEST_F(Rests, APushActsNoLongerThanItLasts) {
         "    - push: {name: q, node: ball, direction: [0, 0, -1], force_n: [[3, 0], [4, 1], [5, "
         "1]]}\n");
   Write("a.csv", "time_s,node/ball/position_z_m\n1,0\n4,0\n");
-  const auto fit = Make(Replaced(Replaced(kFit, "load_cases", "static"), "sd: 0.001",
+  const auto fit = Make(Replaced(Replaced(kRestsFit, "load_cases", "static"), "sd: 0.001",
                                  "sd: 0.001, window: {after_setpoint_s: [-0.1, 0.1]}"));
   ASSERT_TRUE(fit) << out_.Format();
   const auto at = At(*fit, {100}).value;
@@ -99,7 +100,7 @@ TEST_F(Rests, MomentsOfAllItsMeasurementsAreLookedAtInOrder) {
   Write("a_when.csv", "time_s,experiment_s\n3.6,3.6\n");
   Write("b_when.csv", "time_s,experiment_s\n1.1,1.1\n");
   const auto fit = Make(Replaced(
-      Replaced(Replaced(kFit, "load_cases}",
+      Replaced(Replaced(kRestsFit, "load_cases}",
                         "static, setpoints: a_when.csv}, {name: b, experiment: experiment.yaml, "
                         "data: b.csv, forward: static, setpoints: b_when.csv}"),
                "sd: 0.001", "sd: 0.001, window: {after_setpoint_s: [-0.1, 0.1]}"),
@@ -119,8 +120,8 @@ TEST_F(Rests, WhatActsByItsSquareIsNoMistake) {
         Replaced(Experiment("  - {name: side, forces: [{node: ball, force_n: [side_n, 0, 0]}]}\n"),
                  "duration_s: 1", "duration_s: 1\nparameters: {side_n: 0}"));
   Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n");
-  const std::string text =
-      Replaced(kFit, "{parameter: k_n_per_m, scale: 20}", "{parameter: side_n, prior: {sd: 2}}");
+  const std::string text = Replaced(kRestsFit, "{parameter: k_n_per_m, scale: 20}",
+                                    "{parameter: side_n, prior: {sd: 2}}");
   const auto fit = Make(text);
   ASSERT_TRUE(fit) << out_.Format();
   EXPECT_TRUE(CheckDependence(*fit, out_)) << out_.Format();
@@ -157,7 +158,7 @@ TEST_F(Rests, ARunThatBlowsUpSaysItself) {
   Write("experiment.yaml",
         "taut: 1\nkind: experiment\nname: e\nmodel: model.yaml\nduration_s: 0.02\n");
   Write("a.csv", "time_s,node/ball/position_z_m\n0,0\n");
-  const auto fit = Make(Replaced(kFit, ", forward: load_cases", ""));
+  const auto fit = Make(Replaced(kRestsFit, ", forward: load_cases", ""));
   ASSERT_TRUE(fit) << out_.Format();
   const Residuals at = At(*fit, {1e308});
   EXPECT_NE(at.failed, "");

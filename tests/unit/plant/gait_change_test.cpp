@@ -11,7 +11,7 @@
 namespace taut::test {
 namespace {
 
-RobotSpec Spine() {
+RobotSpec ChangingSpine() {
   Diagnostics out;
   auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", {}, out);
   EXPECT_TRUE(robot) << out.Format();
@@ -21,19 +21,19 @@ RobotSpec Spine() {
 /// An oscillator per cable of the spine, uncoupled
 GaitSpec Cpg(double frequency_hz, double amplitude) {
   Diagnostics out;
-  GaitSpec gait = NewCpgGait(Spine(), CpgSymmetry::kSegments, out).value_or(GaitSpec{});
+  GaitSpec gait = NewCpgGait(ChangingSpine(), CpgSymmetry::kSegments, out).value_or(GaitSpec{});
   gait.cpg->frequency_hz = frequency_hz;
   gait.cpg->amplitude = amplitude;
   return gait;
 }
 
-GaitSpec Sine(double frequency_hz, double amplitude) {
+GaitSpec SineOf(double frequency_hz, double amplitude) {
   Diagnostics out;
   GaitSpec gait;
   gait.name = "s";
   SineWave wave;
   wave.name = "w";
-  const RobotSpec robot = Spine();
+  const RobotSpec robot = ChangingSpine();
   const auto resolved = ResolveGait(Cpg(1, 1), robot, out);
   for (const int cable : resolved.value_or(ResolvedGait{}).cables) {
     wave.cables.push_back({robot.def.cables[static_cast<std::size_t>(cable)].name});
@@ -48,7 +48,7 @@ struct Played {
   explicit Played(const GaitInputSpec& input, double duration_s,
                   const Extensions& extensions = {}) {
     ExperimentSpec experiment;
-    experiment.robot = Spine();
+    experiment.robot = ChangingSpine();
     experiment.step_s = input.clock.period_s;
     experiment.duration_s = duration_s;
     ControllerSpec controller;
@@ -122,7 +122,7 @@ TEST(GaitChange, OscillatorsPassSmoothlyFromOneGaitToTheNext) {
 TEST(GaitChange, WithoutABlendAWaveJumpsAndWithOneItDoesNot) {
   double before = 0;
   for (const double period_s : {0.004, 0.002, 0.001}) {
-    GaitInputSpec input = Input(Sine(1.0, 0.05), Sine(1.5, 0.1), 2.013, period_s);
+    GaitInputSpec input = Input(SineOf(1.0, 0.05), SineOf(1.5, 0.1), 2.013, period_s);
     input.blend_s = 0;
     const double jump = Played(input, 4.0).Jerk(1.9, 2.7);
     input.blend_s = 0.5;
@@ -142,7 +142,7 @@ TEST(GaitChange, WithoutABlendAWaveJumpsAndWithOneItDoesNot) {
 }
 
 TEST(GaitChange, GoesBackToTheFirstAndWaitsForABlendToEnd) {
-  GaitInputSpec input = Input(Sine(1.0, 0.05), Sine(1.0, 0.1), 1.0, 0.01);
+  GaitInputSpec input = Input(SineOf(1.0, 0.05), SineOf(1.0, 0.1), 1.0, 0.01);
   input.changes = {{1.0, 1}, {1.2, 0}};  // during the blend of half a second
   const Played played(input, 4.0);
   const auto at = [&](double time_s) {
@@ -158,7 +158,7 @@ TEST(GaitChange, ATableBeginsAtItsFirstRow) {
   table.name = "t";
   table.table.emplace();
   Diagnostics out;
-  const RobotSpec robot = Spine();
+  const RobotSpec robot = ChangingSpine();
   const auto resolved = ResolveGait(Cpg(1, 1), robot, out);
   for (const int cable : resolved.value_or(ResolvedGait{}).cables) {
     table.table->cables.push_back(robot.def.cables[static_cast<std::size_t>(cable)].name);
@@ -167,7 +167,7 @@ TEST(GaitChange, ATableBeginsAtItsFirstRow) {
   table.table->time_s = {0.0, 1.0};
   table.table->rows = {std::vector<double>(count, 0.0), std::vector<double>(count, 0.1)};
   table.table->linear = true;
-  GaitInputSpec input = Input(Sine(1.0, 0.05), table, 1.0, 0.01);
+  GaitInputSpec input = Input(SineOf(1.0, 0.05), table, 1.0, 0.01);
   input.blend_s = 0.1;
   const Played played(input, 2.0);
   EXPECT_NEAR(played.said[150], 0.05, 1e-12);  // half a second of it
@@ -190,10 +190,10 @@ TEST(GaitChange, AControllerChooses) {
 
 TEST(RestLengthGait, IsAddedToTheProgramOrToTheStart) {
   ExperimentSpec experiment;
-  experiment.robot = Spine();
+  experiment.robot = ChangingSpine();
   experiment.step_s = 0.001;
   experiment.duration_s = 1.0;
-  GaitSpec gait = Sine(0.5, 0.01);
+  GaitSpec gait = SineOf(0.5, 0.01);
   gait.drives = GaitDrives::kRestLength;
   ControllerSpec controller;
   controller.name = "c";

@@ -9,12 +9,12 @@
 namespace taut::test {
 namespace {
 
-const std::string kRoot = TAUT_SOURCE_DIR "/";
+const std::string kIntegratorRoot = TAUT_SOURCE_DIR "/";
 constexpr double kPlayedS = 10.0, kRateHz = 100.0;  // of the shipped experiment
 
-GaitSpec Load(const std::string& name) {
+GaitSpec LoadShippedGait(const std::string& name) {
   Diagnostics out;
-  const auto gait = LoadGait(kRoot + "share/gaits/" + name + ".yaml", out);
+  const auto gait = LoadGait(kIntegratorRoot + "share/gaits/" + name + ".yaml", out);
   if (!gait) throw std::runtime_error(out.Format());
   return *gait;
 }
@@ -22,8 +22,8 @@ GaitSpec Load(const std::string& name) {
 /// Returns the network's commands when it is integrated in steps of `step_s`.
 std::vector<std::vector<double>> Play(double step_s, double played_s = kPlayedS) {
   Diagnostics out;
-  const auto robot = LoadRobot(kRoot + "share/models/tetraspine3.yaml", {}, out);
-  GaitSpec gait = Load("cpg_learned");
+  const auto robot = LoadRobot(kIntegratorRoot + "share/models/tetraspine3.yaml", {}, out);
+  GaitSpec gait = LoadShippedGait("cpg_learned");
   gait.cpg->integrator_step_s = step_s;
   const auto table = robot ? PlayGait(gait, *robot, kRateHz, played_s, out) : std::nullopt;
   if (!table) throw std::runtime_error(out.Format());
@@ -70,16 +70,16 @@ TEST(GaitIntegratorInTime, TheErrorGrowsWithTimeAndNoFaster) {
 // Relative to the amplitude of 0.515 m/s, at the step of the shipped gait; at NTRT's step it is
 // 4000 times smaller.
 TEST_F(GaitIntegrator, AtTheShippedStepItIsATenthOfAPercent) {
-  const double amplitude = Load("cpg_learned").cpg->amplitude;
-  EXPECT_LT(Error(Load("cpg_learned").cpg->integrator_step_s), 0.00125 * amplitude);
-  EXPECT_LT(Error(Load("cpg_learned_ntrt").cpg->integrator_step_s), 1e-6 * amplitude);
+  const double amplitude = LoadShippedGait("cpg_learned").cpg->amplitude;
+  EXPECT_LT(Error(LoadShippedGait("cpg_learned").cpg->integrator_step_s), 0.00125 * amplitude);
+  EXPECT_LT(Error(LoadShippedGait("cpg_learned_ntrt").cpg->integrator_step_s), 1e-6 * amplitude);
   EXPECT_GT(Error(0.005), 0.04 * amplitude) << "so far the step can be too long";
 }
 
 // Apart from the step the fine gait equals the shipped one.
 TEST_F(GaitIntegrator, OnlyTheStepIsNtrts) {
-  GaitSpec fine = Load("cpg_learned_ntrt");
-  const GaitSpec shipped = Load("cpg_learned");
+  GaitSpec fine = LoadShippedGait("cpg_learned_ntrt");
+  const GaitSpec shipped = LoadShippedGait("cpg_learned");
   EXPECT_EQ(fine.cpg->integrator_step_s, shipped.cpg->integrator_step_s / 8);
   fine.cpg->integrator_step_s = shipped.cpg->integrator_step_s;
   fine.name = shipped.name;

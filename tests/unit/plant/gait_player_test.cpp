@@ -16,11 +16,11 @@
 namespace taut::test {
 namespace {
 
-const std::string kRoot = TAUT_SOURCE_DIR "/";
+const std::string kPlayerRoot = TAUT_SOURCE_DIR "/";
 
-RobotSpec Spine() {
+RobotSpec PlayerSpine() {
   Diagnostics out;
-  auto robot = LoadRobot(kRoot + "share/models/tetraspine3.yaml", {}, out);
+  auto robot = LoadRobot(kPlayerRoot + "share/models/tetraspine3.yaml", {}, out);
   EXPECT_TRUE(robot) << out.Format();
   return robot.value_or(RobotSpec{});
 }
@@ -29,7 +29,7 @@ RobotSpec Spine() {
 struct Player {
   Player(const GaitSpec& gait, const ClockSpec& on) : spec(on), clock(on, 1) {
     Diagnostics out;
-    const auto resolved = ResolveGait(gait, Spine(), out);
+    const auto resolved = ResolveGait(gait, PlayerSpine(), out);
     EXPECT_TRUE(resolved) << out.Format();
     player = plant::PlayerOf({{&gait}, resolved.value_or(ResolvedGait{}), on.period_s});
   }
@@ -129,7 +129,7 @@ TEST(GaitPlayer, ATableRepeats) {
 
 GaitSpec BlankCpg() {
   Diagnostics out;
-  auto gait = NewCpgGait(Spine(), CpgSymmetry::kSegments, out);
+  auto gait = NewCpgGait(PlayerSpine(), CpgSymmetry::kSegments, out);
   EXPECT_TRUE(gait);
   gait->cpg->frequency_hz = 1.0;
   gait->cpg->amplitude = 0.1;
@@ -142,7 +142,7 @@ TEST(GaitPlayer, OscillatorsStartAtTheFirstTickAndSomeAreInverted) {
   player.Act(0.0);
   for (const double v : player.signal()) EXPECT_EQ(v, 0.0);  // amplitudes grow from 0
   for (int tick = 1; tick <= 200; ++tick) player.Act(0.01 * tick);
-  const RobotSpec robot = Spine();
+  const RobotSpec robot = PlayerSpine();
   for (std::size_t i = 0; i < player.cables().size(); ++i) {
     const std::string& name = robot.def.cables[static_cast<std::size_t>(player.cables()[i])].name;
     // two turns after the start; (1 + 20) exp(-20) of the amplitude is missing
@@ -154,10 +154,10 @@ TEST(GaitPlayer, OscillatorsStartAtTheFirstTickAndSomeAreInverted) {
 // steps; periods divided by 40 and by 4 may differ by rounding.
 TEST(GaitPlayer, TheRateOfTheGaitDoesNotChangeItsOscillators) {
   Diagnostics out;
-  const auto gait = LoadGait(kRoot + "share/gaits/cpg_learned_ntrt.yaml", out);
+  const auto gait = LoadGait(kPlayerRoot + "share/gaits/cpg_learned_ntrt.yaml", out);
   ASSERT_TRUE(gait) << out.Format();
-  const auto fast = PlayGait(*gait, Spine(), 1000.0, 2.0, out);
-  const auto slow = PlayGait(*gait, Spine(), 100.0, 2.0, out);
+  const auto fast = PlayGait(*gait, PlayerSpine(), 1000.0, 2.0, out);
+  const auto slow = PlayGait(*gait, PlayerSpine(), 100.0, 2.0, out);
   ASSERT_TRUE(fast && slow);
   ASSERT_EQ(slow->rows.size(), 201u);
   for (std::size_t i = 0; i < slow->rows.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(GaitPlayer, TensionActsOnTheOscillatorOfItsCable) {
   gait.cpg->inverted.clear();
   gait.cpg->feedback = CpgFeedback{5.0, 10.0};
   Player player(gait, {0.001, 0.0});
-  std::vector<double> tension_n(Spine().def.cables.size(), 10.0);
+  std::vector<double> tension_n(PlayerSpine().def.cables.size(), 10.0);
   tension_n[static_cast<std::size_t>(player.cables()[3])] = 12.0;
   for (int tick = 0; tick <= 5000; ++tick) {
     player.Act(0.001 * tick, tension_n);
@@ -186,9 +186,9 @@ TEST(GaitPlayer, TensionActsOnTheOscillatorOfItsCable) {
 
 TEST(GaitPlayer, ATableOfAGaitPlaysAsTheGaitItself) {
   Diagnostics out;
-  const auto gait = LoadGait(kRoot + "share/gaits/cpg_learned.yaml", out);
+  const auto gait = LoadGait(kPlayerRoot + "share/gaits/cpg_learned.yaml", out);
   ASSERT_TRUE(gait) << out.Format();
-  const auto table = PlayGait(*gait, Spine(), 100.0, 3.0, out);
+  const auto table = PlayGait(*gait, PlayerSpine(), 100.0, 3.0, out);
   ASSERT_TRUE(table);
   const auto folder = std::filesystem::path(testing::TempDir()) / "taut_gait_table";
   std::filesystem::create_directories(folder);
@@ -208,7 +208,7 @@ TEST(GaitPlayer, ATableOfAGaitPlaysAsTheGaitItself) {
 
 /// An impedance controller of one cable at 1 kHz with a gait at 4 Hz
 TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
-  const RobotSpec robot = Spine();
+  const RobotSpec robot = PlayerSpine();
   int cable = 0;
   while (robot.def.cables[static_cast<std::size_t>(cable)].name != "outer_top_2") ++cable;
   ControllerSpec spec;
@@ -236,7 +236,7 @@ TEST(GaitPlayer, TheGaitActsBeforeTheLawThatItFeeds) {
 // clocks.
 TEST(GaitPlayer, StepsLandOnTheTicksOfTheGait) {
   Diagnostics out;
-  auto experiment = LoadExperiment(kRoot + "share/experiments/sine_hand_tuned.yaml", {}, out);
+  auto experiment = LoadExperiment(kPlayerRoot + "share/experiments/sine_hand_tuned.yaml", {}, out);
   ASSERT_TRUE(experiment) << out.Format();
   experiment->controllers[0].velocity_input->clock = {0.0037, 0.0005};
   experiment->duration_s = 0.05;

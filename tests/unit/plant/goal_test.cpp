@@ -39,7 +39,7 @@ BodyState At(const Vec3& position_m, const Quat& orientation) {
   return state;
 }
 
-Quat About(const Vec3& axis, double angle_rad) {
+Quat TurnAbout(const Vec3& axis, double angle_rad) {
   const double s = std::sin(angle_rad / 2);
   return {std::cos(angle_rad / 2), s * axis.x, s * axis.y, s * axis.z};
 }
@@ -52,9 +52,9 @@ TEST_F(Goal, TheSensorSaysTheWayInTheBodysHorizontalFrame) {
   Standing bodies;
   // Heading along x; rotated left by a quarter turn; also rolled about its axis, and pitched up.
   bodies.states[{0, 1}].position_m = {0, 0, 5};
-  bodies.states[{1, 1}] = At({3, 1, 0}, About({0, 0, 1}, std::numbers::pi / 2));
-  bodies.states[{2, 1}] = At({3, 1, 0}, About({0, 0, 1}, std::numbers::pi / 2) *
-                                            About({0, 1, 0}, -0.7) * About({1, 0, 0}, 2.0));
+  bodies.states[{1, 1}] = At({3, 1, 0}, TurnAbout({0, 0, 1}, std::numbers::pi / 2));
+  bodies.states[{2, 1}] = At({3, 1, 0}, TurnAbout({0, 0, 1}, std::numbers::pi / 2) *
+                                            TurnAbout({0, 1, 0}, -0.7) * TurnAbout({1, 0, 0}, 2.0));
   const std::array<std::int64_t, 3> number{};
   Observation exact;
   exact.lanes = 3;
@@ -86,7 +86,7 @@ TEST_F(Goal, ACompassSaysItInTheWorlds) {
   const std::array lanes{&world};
   plant::GoalSensor sensor({experiment, lanes});
   Standing bodies;
-  bodies.states[{0, 1}] = At({0, 0, 0}, About({0, 0, 1}, 1.0));
+  bodies.states[{0, 1}] = At({0, 0, 0}, TurnAbout({0, 0, 1}, 1.0));
   const std::int64_t number = 0;
   Observation exact;
   exact.bodies = &bodies;

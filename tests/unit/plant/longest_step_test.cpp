@@ -25,7 +25,7 @@ class LongestRow final : public test::RowWatch {
   double time_s_ = 0, longest_s_ = 0;
 };
 
-ExperimentSpec Load(const char* name) {
+ExperimentSpec LoadLongest(const char* name) {
   Diagnostics out;
   auto experiment =
       LoadExperiment(std::string(TAUT_SOURCE_DIR "/share/experiments/") + name, {}, out);
@@ -55,7 +55,7 @@ std::string WarningOf(const ExperimentSpec& experiment) {
 
 TEST(LongestStepTest, IsThatOfTheRun) {
   for (const char* const name : {"push_20n.yaml", "hang.yaml", "puppy_trot.yaml"}) {
-    ExperimentSpec experiment = Load(name);
+    ExperimentSpec experiment = LoadLongest(name);
     for (const double step_s : {0.0003, 0.001, 0.004, 0.02}) {
       experiment.step_s = step_s;
       EXPECT_NEAR(LongestStep(experiment), LongestStepOfRun(experiment), 1e-12)
@@ -65,7 +65,7 @@ TEST(LongestStepTest, IsThatOfTheRun) {
 }
 
 TEST(LongestStepTest, OfAStepWithoutEffectThereIsAWarning) {
-  ExperimentSpec experiment = Load("push_20n.yaml");
+  ExperimentSpec experiment = LoadLongest("push_20n.yaml");
   EXPECT_EQ(WarningOf(experiment), "");
   experiment.step_s = 0.0003;
   EXPECT_EQ(WarningOf(experiment), "");

@@ -15,7 +15,7 @@
 namespace taut::test {
 namespace {
 
-ExperimentSpec Load(const std::string& name) {
+ExperimentSpec LoadShipped(const std::string& name) {
   Diagnostics out;
   auto experiment = LoadExperiment(TAUT_SOURCE_DIR "/share/experiments/" + name + ".yaml", {}, out);
   EXPECT_TRUE(experiment) << out.Format();
@@ -23,7 +23,7 @@ ExperimentSpec Load(const std::string& name) {
 }
 
 /// A different variant for each lane
-std::vector<RolloutWorld> Variants(const ExperimentSpec& experiment, int count) {
+std::vector<RolloutWorld> VariantsOf(const ExperimentSpec& experiment, int count) {
   std::vector<RolloutWorld> worlds(static_cast<std::size_t>(count), WorldOf(experiment));
   for (std::size_t j = 0; j < worlds.size(); ++j) {
     worlds[j].seed = 100 + j;
@@ -97,7 +97,7 @@ std::uint64_t HashAlone(const ExperimentSpec& experiment, const RolloutWorld& wo
 void ExpectOwnBits(ExperimentSpec experiment, double duration_s) {
   experiment.duration_s = duration_s;
   const int lanes = static_cast<int>(BestSimd());
-  Company company(experiment, Variants(experiment, lanes), BestSimd());
+  Company company(experiment, VariantsOf(experiment, lanes), BestSimd());
   const std::vector<RolloutWorld>& worlds = company.worlds();
   plant::Loop& loop = company.loop();
   const std::pair<double, int> restarts[] = {
@@ -125,18 +125,18 @@ void ExpectOwnBits(ExperimentSpec experiment, double duration_s) {
 }
 
 TEST(Lanes, BeginAnewWhileTheirNeighboursRunOn) {
-  ExpectOwnBits(Load("cpg_learned"), 0.7);
-  ExperimentSpec push = Load("push_20n");
+  ExpectOwnBits(LoadShipped("cpg_learned"), 0.7);
+  ExperimentSpec push = LoadShipped("push_20n");
   for (auto& [time_s, force_n] : push.pushes[0].force_n) time_s = 0.05 * time_s + 0.0003;
   ExpectOwnBits(push, 0.7);
-  ExperimentSpec drag = Load("drag");
+  ExperimentSpec drag = LoadShipped("drag");
   drag.drags[0].from_s = 0.1003;
   drag.drags[0].to_s = 0.9;
   ExpectOwnBits(drag, 0.7);
 }
 
 TEST(Lanes, BeginAnewWithSensorsAndUnevenClocks) {
-  ExperimentSpec experiment = Load("sine_hand_tuned");
+  ExperimentSpec experiment = LoadShipped("sine_hand_tuned");
   experiment.sensors.emplace();
   experiment.sensors->period_s = 0.0013;
   experiment.sensors->load_cell = LoadCellSpec{.noise_n = 0.2, .bias_n = 0.1, .delay_s = 0.0026};
@@ -146,7 +146,7 @@ TEST(Lanes, BeginAnewWithSensorsAndUnevenClocks) {
   ExpectOwnBits(experiment, 0.7);
 }
 
-TEST(Lanes, BeginAnewWhileTheyFallAndTouch) { ExpectOwnBits(Load("drop_six_strut"), 0.9); }
+TEST(Lanes, BeginAnewWhileTheyFallAndTouch) { ExpectOwnBits(LoadShipped("drop_six_strut"), 0.9); }
 
 /// A controller that lets every cable out and in, by its number in the world
 class Breathe final : public Controller {
@@ -174,7 +174,7 @@ class Breathe final : public Controller {
 };
 
 TEST(Extensions, AControllerActsInARunALiveRunAndLanesToTheSameBits) {
-  ExperimentSpec experiment = Load("stand_still");
+  ExperimentSpec experiment = LoadShipped("stand_still");
   experiment.duration_s = 0.5;
   Extensions extensions;
   extensions.controllers.push_back(
@@ -223,7 +223,7 @@ class Double final : public SensorModel {
 };
 
 TEST(Extensions, SensorsStandBetweenThePlantAndTheControllers) {
-  ExperimentSpec experiment = Load("stand_still");
+  ExperimentSpec experiment = LoadShipped("stand_still");
   experiment.duration_s = 0.1;
   struct Sees final : Controller {
     explicit Sees(double& into) : tension_n(into) {}
@@ -248,7 +248,7 @@ TEST(Extensions, SensorsStandBetweenThePlantAndTheControllers) {
 }
 
 TEST(Extensions, AScoreTakesThePlaceOfTheMeasure) {
-  ExperimentSpec experiment = Load("stand_still");
+  ExperimentSpec experiment = LoadShipped("stand_still");
   experiment.duration_s = 0.25;
   struct Steps final : Score {
     explicit Steps(std::size_t lanes) : sum_s(lanes) {}
@@ -276,7 +276,7 @@ TEST(Extensions, AScoreTakesThePlaceOfTheMeasure) {
 }
 
 TEST(Commands, AnActuatorHoldsWhereItIs) {
-  ExperimentSpec experiment = Load("push_20n");
+  ExperimentSpec experiment = LoadShipped("push_20n");
   experiment.duration_s = 0.4;
   struct Freeze final : Controller {
     ClockSpec clock() const override { return {0.001, 0.2}; }
@@ -303,7 +303,7 @@ TEST(Commands, AnActuatorHoldsWhereItIs) {
 }
 
 TEST(Replay, ControllersSayToALogWhatTheySaidToTheRobot) {
-  ExperimentSpec experiment = Load("cpg_learned");
+  ExperimentSpec experiment = LoadShipped("cpg_learned");
   experiment.duration_s = 1.5;
   experiment.record.rate_hz = 0;  // every step
   experiment.record.channels.clear();
@@ -328,7 +328,7 @@ TEST(Replay, ControllersSayToALogWhatTheySaidToTheRobot) {
 }
 
 TEST(Replay, WhatALogLacksIsAFault) {
-  const ExperimentSpec experiment = Load("stand_still");
+  const ExperimentSpec experiment = LoadShipped("stand_still");
   const std::string cable = experiment.robot.def.cables[1].name;
   Trace log;
   log.channels = {{"cable/" + cable + "/tension_n", "N"}};

@@ -40,7 +40,7 @@ builders:
   - {match: driven, cable: {stiffness_n_per_m: 100, rest_length_m: 2, actuator: {max_speed_m_per_s: 1}}}
 )";
 
-constexpr const char* kGait = R"(taut: 1
+constexpr const char* kTowardGoalGait = R"(taut: 1
 kind: gait
 name: rolling
 drives: rest_length
@@ -60,7 +60,7 @@ toward_goal:
   beat_hz: 0.5
 )";
 
-constexpr const char* kGoal = "goal: {at_m: [3, 0, 0], body: a, frame: world}\n";
+constexpr const char* kWorldGoal = "goal: {at_m: [3, 0, 0], body: a, frame: world}\n";
 
 class TowardGoalGaits : public ExperimentFolder {
  protected:
@@ -75,13 +75,13 @@ class TowardGoalGaits : public ExperimentFolder {
     return Complaints();
   }
   static std::string Changed(const std::string& from, const std::string& to) {
-    std::string text = kGait;
+    std::string text = kTowardGoalGait;
     return text.replace(text.find(from), from.size(), to);
   }
 };
 
 TEST_F(TowardGoalGaits, WhatIsWrittenIsReadBack) {
-  Write("g.yaml", kGait);
+  Write("g.yaml", kTowardGoalGait);
   Diagnostics out;
   auto gait = LoadGait(Path("g.yaml"), out);
   ASSERT_TRUE(gait) << out.Format();
@@ -107,7 +107,9 @@ TEST_F(TowardGoalGaits, WhatIsWrittenIsReadBack) {
 }
 
 TEST_F(TowardGoalGaits, AResolvedExperimentHasItAndItsStart) {
-  EXPECT_EQ(PlayedComplaints(kGait, std::string(kGoal) + "start_noise: {any_pose: true}\n"), "");
+  EXPECT_EQ(PlayedComplaints(kTowardGoalGait,
+                             std::string(kWorldGoal) + "start_noise: {any_pose: true}\n"),
+            "");
   const ExperimentSpec experiment = Load();
   Write("resolved.yaml", ResolvedYaml(experiment));
   const ExperimentSpec again = Load("resolved.yaml");
@@ -115,27 +117,29 @@ TEST_F(TowardGoalGaits, AResolvedExperimentHasItAndItsStart) {
   EXPECT_EQ(GaitYaml(again.controllers[0].rest_length_input->gait),
             GaitYaml(experiment.controllers[0].rest_length_input->gait));
   // Files without this feature stay readable by earlier versions.
-  EXPECT_EQ(PlayedComplaints(kGait, std::string(kGoal) + "start_noise: {position_m: 0.1}\n"), "");
+  EXPECT_EQ(PlayedComplaints(kTowardGoalGait,
+                             std::string(kWorldGoal) + "start_noise: {position_m: 0.1}\n"),
+            "");
   EXPECT_EQ(ResolvedYaml(Load()).find("any_pose"), std::string::npos);
 }
 
 TEST_F(TowardGoalGaits, WhatIsWrongIsAnswered) {
-  EXPECT_EQ(PlayedComplaints(kGait, ""),
+  EXPECT_EQ(PlayedComplaints(kTowardGoalGait, ""),
             "g.yaml:6:3: error: gait rolling moves toward a goal, but the experiment has no `goal` "
             "(add its position and the tracked body: `goal: {at_m: [3.5, 0, 0], body: ...}`)\n");
-  EXPECT_EQ(PlayedComplaints(kGait, "goal: {at_m: [3, 0, 0], body: a}\n"),
+  EXPECT_EQ(PlayedComplaints(kTowardGoalGait, "goal: {at_m: [3, 0, 0], body: a}\n"),
             "g.yaml:6:3: error: gait rolling needs the direction to the goal in the world frame "
             "(write `goal: {frame: world, ...}`: a rolling body has no forward direction)\n");
   EXPECT_EQ(
-      PlayedComplaints(kGait, kGoal, "model.yaml"),
+      PlayedComplaints(kTowardGoalGait, kWorldGoal, "model.yaml"),
       "g.yaml:6:3: error: toward_goal: the 2 struts of pair do not have three independent "
       "directions (the rotation of the robot is computed from bodies that are a single rod)\n");
-  EXPECT_EQ(PlayedComplaints(Changed("cables: driven", "cables: one"), kGoal),
+  EXPECT_EQ(PlayedComplaints(Changed("cables: driven", "cables: one"), kWorldGoal),
             "g.yaml:6:3: error: toward_goal: the midpoints of all its cables are at the same "
             "position (select cables on all sides of the robot)\n");
-  EXPECT_EQ(PlayedComplaints(Changed("beat_hz: 0.5", "beat_hz: -1"), kGoal),
+  EXPECT_EQ(PlayedComplaints(Changed("beat_hz: 0.5", "beat_hz: -1"), kWorldGoal),
             "g.yaml:18:12: error: toward_goal.beat_hz must not be negative, got -1\n");
-  EXPECT_EQ(PlayedComplaints(Changed("up3_m: 0.08", "up4_m: 0.08"), kGoal)
+  EXPECT_EQ(PlayedComplaints(Changed("up3_m: 0.08", "up4_m: 0.08"), kWorldGoal)
                 .find("g.yaml:16:3: error: unknown key \"up4_m\" in toward_goal"),
             0u);
 }
@@ -157,8 +161,8 @@ Quat About(const Vec3& axis, double angle_rad) {
   return {std::cos(angle_rad / 2), s * axis.x, s * axis.y, s * axis.z};
 }
 
-struct Playing {
-  Playing(const std::vector<const GaitSpec*>& gaits, const RobotSpec& robot) {
+struct PlayingToGoal {
+  PlayingToGoal(const std::vector<const GaitSpec*>& gaits, const RobotSpec& robot) {
     plant::GaitSetup setup;
     setup.gaits = gaits;
     Diagnostics out;
@@ -196,10 +200,10 @@ double Polynomial(double a, double z, double strength) {
 // The middles of the cables are 1.25 m from their mean, which is the radius: in radii, a rotated
 // robot's middles are (0, 1, 0) and (0, -1, 0) after the rotation.
 TEST_F(TowardGoalGaits, ACablesPlaceIsThatOfTheTurnedRobot) {
-  ASSERT_EQ(PlayedComplaints(kGait, kGoal), "");
+  ASSERT_EQ(PlayedComplaints(kTowardGoalGait, kWorldGoal), "");
   const ExperimentSpec experiment = Load();
   const GaitSpec& gait = experiment.controllers[0].rest_length_input->gait;
-  Playing playing({&gait}, experiment.robot);
+  PlayingToGoal playing({&gait}, experiment.robot);
   playing.goal = {0.6, -0.8};
   for (const Quat& turn :
        {Quat{}, About({1, 0, 0}, 0.7), About({1, 0, 0}, 0.7) * About({0, 0, 1}, 2.0),
@@ -216,9 +220,9 @@ TEST_F(TowardGoalGaits, ACablesPlaceIsThatOfTheTurnedRobot) {
 
 // Unknown orientation: only the constant part. Unknown goal: the vertical direction still acts.
 TEST_F(TowardGoalGaits, WhatIsNotSensedIsNothing) {
-  ASSERT_EQ(PlayedComplaints(kGait, kGoal), "");
+  ASSERT_EQ(PlayedComplaints(kTowardGoalGait, kWorldGoal), "");
   const ExperimentSpec experiment = Load();
-  Playing playing({&experiment.controllers[0].rest_length_input->gait}, experiment.robot);
+  PlayingToGoal playing({&experiment.controllers[0].rest_length_input->gait}, experiment.robot);
   playing.goal = {1, 0};
   EXPECT_EQ(playing.At(0, false), (std::vector<double>{0.01, 0.01}));
   playing.goal = {0, 0};
@@ -227,19 +231,19 @@ TEST_F(TowardGoalGaits, WhatIsNotSensedIsNothing) {
 }
 
 TEST_F(TowardGoalGaits, ALaneHasItsOwnNumbersAndBodies) {
-  ASSERT_EQ(PlayedComplaints(kGait, kGoal), "");
+  ASSERT_EQ(PlayedComplaints(kTowardGoalGait, kWorldGoal), "");
   const ExperimentSpec experiment = Load();
   std::vector<GaitSpec> gaits(3, experiment.controllers[0].rest_length_input->gait);
   gaits[1].toward_goal->ahead = 0.4;
   gaits[2].toward_goal->beat_hz = 0.9;
-  Playing together({&gaits[0], &gaits[1], &gaits[2]}, experiment.robot);
+  PlayingToGoal together({&gaits[0], &gaits[1], &gaits[2]}, experiment.robot);
   together.goal = {1, 0.6, 0, 0, 0.8, -1};
   for (std::size_t j = 0; j < 3; ++j) {
     together.bodies.turns[j] = About({0, 0.6, 0.8}, 0.5 + static_cast<double>(j));
   }
   const std::vector<double> all = together.At(0.4);
   for (std::size_t j = 0; j < 3; ++j) {
-    Playing alone({&gaits[j]}, experiment.robot);
+    PlayingToGoal alone({&gaits[j]}, experiment.robot);
     alone.goal = {together.goal[j], together.goal[3 + j]};
     alone.bodies.turns = {together.bodies.turns[j]};
     EXPECT_EQ(alone.At(0.4)[0], all[j]);
@@ -254,7 +258,9 @@ TEST_F(TowardGoalGaits, ALaneHasItsOwnNumbersAndBodies) {
 // of its square 1/3 along each axis of the world, here for 600 starts to three deviations. The
 // center of mass is unchanged, and so are distances from it.
 TEST_F(TowardGoalGaits, AStartInAnyPoseIsATurnAboutTheCentreOfMass) {
-  ASSERT_EQ(PlayedComplaints(kGait, std::string(kGoal) + "start_noise: {any_pose: true}\n"), "");
+  ASSERT_EQ(PlayedComplaints(kTowardGoalGait,
+                             std::string(kWorldGoal) + "start_noise: {any_pose: true}\n"),
+            "");
   ExperimentSpec experiment = Load();
   Diagnostics out;
   const auto model = Model::Compile(experiment.robot.def, out);

@@ -14,7 +14,7 @@ namespace taut::test {
 namespace {
 
 /// One cable under T0 + B cos(w t), wound in by A sin(w t), for `cycles` periods of a second
-struct Sine {
+struct SineLoad {
   double base_n = 20, swing_n = 8, wound_m = 0.05, w = 2 * std::numbers::pi;
   int cycles = 3, rows = 30001;
 
@@ -46,7 +46,7 @@ struct Sine {
 };
 
 TEST(Sizing, ASineHasTheDemandsOfItsClosedForm) {
-  const Sine sine;
+  const SineLoad sine;
   Diagnostics out;
   const auto run = DemandOf(sine.Rows(), sine.Experiment(), "trace.h5", out);
   ASSERT_TRUE(run) << out.Format();
@@ -71,11 +71,11 @@ TEST(Sizing, ASineHasTheDemandsOfItsClosedForm) {
 
 /// Distant rows: force and rest length are linear in between, and means are means of the lines.
 TEST(Sizing, BetweenRowsAllGoesStraight) {
-  Trace trace = Sine{}.Rows();
+  Trace trace = SineLoad{}.Rows();
   trace.time_s = {0, 2};
   trace.values = {{0, 6}, {0, 6}, {1, 0.5}};
   Diagnostics out;
-  const auto run = DemandOf(trace, Sine{}.Experiment(), "trace.h5", out);
+  const auto run = DemandOf(trace, SineLoad{}.Experiment(), "trace.h5", out);
   ASSERT_TRUE(run) << out.Format();
   const CableDemand& d = run->cables.at(0);
   EXPECT_NEAR(d.rms_force_n, std::sqrt(12.0), 1e-12);  // of (6 s)^2, s from 0 to 1
@@ -121,7 +121,7 @@ TEST(Sizing, ASpringFitsByForceTravelAndStiffness) {
 }
 
 TEST(Sizing, ATraceThatLacksSomethingIsRefused) {
-  const Sine sine;
+  const SineLoad sine;
   Trace trace = sine.Rows();
   trace.channels[0].name = "cable/other/tension_n";
   trace.values[2][5] = std::numeric_limits<double>::quiet_NaN();

@@ -13,7 +13,7 @@ namespace {
 
 const std::string kExperiments = std::string(TAUT_SOURCE_DIR) + "/share/experiments/";
 
-ExperimentSpec Load(const std::string& name, double duration_s) {
+ExperimentSpec LoadVariants(const std::string& name, double duration_s) {
   Diagnostics out;
   auto experiment = LoadExperiment(kExperiments + name + ".yaml", {}, out);
   if (!experiment) throw std::runtime_error(out.Format());
@@ -78,11 +78,11 @@ void EveryWorldEqualsItsRun(const ExperimentSpec& experiment) {
 }
 
 TEST(Rollout, EveryWorldGoesThroughTheBitsOfARunOfItsOwn) {
-  EveryWorldEqualsItsRun(Load("push_20n", 0.7));
+  EveryWorldEqualsItsRun(LoadVariants("push_20n", 0.7));
 }
 
 TEST(Rollout, SoItDoesWithPushesStepsOffTheTicksAndAPid) {
-  ExperimentSpec experiment = Load("push_20n", 0.35);
+  ExperimentSpec experiment = LoadVariants("push_20n", 0.35);
   experiment.step_s = 0.0007;
   experiment.controllers[0].clock = {0.002, 0.0005};
   ImpedanceSpec& impedance = *experiment.controllers[0].impedance;
@@ -95,7 +95,7 @@ TEST(Rollout, SoItDoesWithPushesStepsOffTheTicksAndAPid) {
 }
 
 TEST(Rollout, SoItDoesWithSensors) {
-  ExperimentSpec experiment = Load("push_20n", 0.35);
+  ExperimentSpec experiment = LoadVariants("push_20n", 0.35);
   experiment.sensors = SensorSpec{};
   experiment.sensors->load_cell = LoadCellSpec{0.1, 0.2, 0.0, 50.0, 0.05, 0.003};
   experiment.sensors->encoder = EncoderSpec{1e-5, 0.001};
@@ -103,23 +103,25 @@ TEST(Rollout, SoItDoesWithSensors) {
   EveryWorldEqualsItsRun(experiment);
 }
 
-TEST(Rollout, SoItDoesWithASineGait) { EveryWorldEqualsItsRun(Load("sine_hand_tuned", 0.5)); }
+TEST(Rollout, SoItDoesWithASineGait) {
+  EveryWorldEqualsItsRun(LoadVariants("sine_hand_tuned", 0.5));
+}
 
 TEST(Rollout, SoItDoesWithOscillatorsThatFeel) {
-  ExperimentSpec experiment = Load("cpg_learned", 0.4);
+  ExperimentSpec experiment = LoadVariants("cpg_learned", 0.4);
   experiment.controllers[0].velocity_input->gait.cpg->feedback = CpgFeedback{0.1, 10.0};
   EveryWorldEqualsItsRun(experiment);
 }
 
 TEST(Rollout, SoItDoesFromASettledStart) {
-  ExperimentSpec experiment = Load("push_20n", 0.02);
+  ExperimentSpec experiment = LoadVariants("push_20n", 0.02);
   experiment.start = StartKind::kSettledFloating;
   experiment.robot.def.planes[0].point_m.z = -0.02;  // its ends move down while it settles
   EveryWorldEqualsItsRun(experiment);
 }
 
 TEST(Rollout, AWorldThatCannotStartFailsAlone) {
-  ExperimentSpec experiment = Load("push_20n", 0.1);
+  ExperimentSpec experiment = LoadVariants("push_20n", 0.1);
   experiment.start = StartKind::kSettled;
   // a body of almost no mass: its first step is not finite
   auto worlds = Varied(experiment, 3);

@@ -8,7 +8,7 @@
 namespace taut::sim {
 namespace {
 
-constexpr double kTiny = 1e-12;
+constexpr double kBoxTiny = 1e-12;
 /// Distance by which an edge must be nearer than a face to be preferred, for random boxes
 constexpr double kPreferenceM = 1e-4 * 0.2;
 
@@ -26,8 +26,8 @@ void ExpectPlaces(const Points& points, const std::vector<Vec3>& places, double 
 
 void ExpectAll(const Points& points, const Vec3& normal, double gap_m) {
   for (const TouchPoint& p : points) {
-    EXPECT_LT(Length(AsVec(p.normal) - normal), kTiny);
-    EXPECT_NEAR(p.gap_m, gap_m, kTiny);
+    EXPECT_LT(Length(AsVec(p.normal) - normal), kBoxTiny);
+    EXPECT_NEAR(p.gap_m, gap_m, kBoxTiny);
   }
 }
 
@@ -43,7 +43,7 @@ TEST(TouchBoxBox, BoxOnAFloorRestsOnItsFourCorners) {
   ExpectPlaces(
       points,
       {{0.1, -0.1, -0.0005}, {0.5, -0.1, -0.0005}, {0.5, 0.3, -0.0005}, {0.1, 0.3, -0.0005}},
-      kTiny);
+      kBoxTiny);
   ExpectAll(points, {0, 0, 1}, -0.001);
   ExpectFeaturesDiffer(points);
 }
@@ -69,7 +69,7 @@ TEST(TouchBoxBox, BoxAboveAFloorIsFoundWithinTheMargin) {
 TEST(TouchBoxBox, OverhangingBoxIsCarriedWhereItOverlaps) {
   const Points points = Touch(Cube(0.2, Shift({0.3, 0, 0.4})), Cube(0.2), 1e-3);
   ExpectPlaces(points, {{0.1, -0.2, 0.2}, {0.2, -0.2, 0.2}, {0.2, 0.2, 0.2}, {0.1, 0.2, 0.2}},
-               kTiny);
+               kBoxTiny);
   ExpectAll(points, {0, 0, 1}, 0.0);
   ExpectFeaturesDiffer(points);
 }
@@ -110,7 +110,7 @@ TEST(TouchBoxBox, BoxOnItsEdgeTouchesInTwoPoints) {
   const BoxShape floor = Box({1, 1, 0.1}, Shift({0, 0, -0.1}));
   const Points points = Touch(
       Box({0.1, 0.3, 0.1}, Turn({0, 1, 0}, std::numbers::pi / 4, {0, 0, reach - 0.001})), floor);
-  ExpectPlaces(points, {{0, -0.3, -0.0005}, {0, 0.3, -0.0005}}, kTiny);
+  ExpectPlaces(points, {{0, -0.3, -0.0005}, {0, 0.3, -0.0005}}, kBoxTiny);
   ExpectAll(points, {0, 0, 1}, -0.001);
 }
 
@@ -120,7 +120,7 @@ TEST(TouchBoxBox, BoxOnItsCornerTouchesInOnePoint) {
   const double reach = 0.1 * std::sqrt(3.0);
   const Motion stand = Turn({1, -1, 0}, std::acos(1.0 / std::sqrt(3.0)), {0, 0, reach + 0.001});
   const Points points = Touch(Cube(0.1, stand), floor, 0.01);
-  ExpectPlaces(points, {{0, 0, 0.0005}}, kTiny);
+  ExpectPlaces(points, {{0, 0, 0.0005}}, kBoxTiny);
   ExpectAll(points, {0, 0, 1}, 0.001);
 }
 
@@ -132,11 +132,11 @@ TEST(TouchBoxBox, CrossedEdgesTouchInOnePoint) {
     const BoxShape high =
         Box({0.1, 0.3, 0.1}, Turn({0, 1, 0}, std::numbers::pi / 4, {0.05, 0.02, 2 * reach + gap}));
     const Points points = Touch(high, low, 0.01);
-    ExpectPlaces(points, {{0.05, 0, reach + 0.5 * gap}}, kTiny);
+    ExpectPlaces(points, {{0.05, 0, reach + 0.5 * gap}}, kBoxTiny);
     ExpectAll(points, {0, 0, 1}, gap);
     EXPECT_EQ(points[0].feature, 12);
     const Points swapped = Touch(low, high, 0.01);
-    ExpectPlaces(swapped, {{0.05, 0, reach + 0.5 * gap}}, kTiny);
+    ExpectPlaces(swapped, {{0.05, 0, reach + 0.5 * gap}}, kBoxTiny);
     ExpectAll(swapped, {0, 0, -1}, gap);
   }
 }
@@ -145,9 +145,9 @@ TEST(TouchBoxBox, CornersDiagonallyOppositeEachOtherAreFoundWithinTheMargin) {
   const BoxShape high = Cube(0.1, Shift({0.202, 0.202, 0.201}));
   EXPECT_EQ(Touch(high, Cube(0.1), 0.0029).size(), 0u);
   const Points points = Touch(high, Cube(0.1), 0.0031), swapped = Touch(Cube(0.1), high, 0.0031);
-  ExpectPlaces(points, {{0.101, 0.101, 0.1005}}, kTiny);
+  ExpectPlaces(points, {{0.101, 0.101, 0.1005}}, kBoxTiny);
   ExpectAll(points, {2.0 / 3, 2.0 / 3, 1.0 / 3}, 0.003);
-  ExpectPlaces(swapped, {{0.101, 0.101, 0.1005}}, kTiny);
+  ExpectPlaces(swapped, {{0.101, 0.101, 0.1005}}, kBoxTiny);
   ExpectAll(swapped, {-2.0 / 3, -2.0 / 3, -1.0 / 3}, 0.003);
 }
 
@@ -220,8 +220,8 @@ TEST(TouchBoxBox, OverlappingBoxesHavePointsThatLeadApart) {
       EXPECT_GT(Deepest(left).gap_m, -1e-5 * 0.2) << i;  // tolerance of a clipped face
     }
     for (const TouchPoint& p : points) {
-      EXPECT_LT(Length(AsVec(p.normal) - AsVec(deepest.normal)), kTiny);
-      EXPECT_NEAR(Length(AsVec(p.normal)), 1.0, kTiny);
+      EXPECT_LT(Length(AsVec(p.normal) - AsVec(deepest.normal)), kBoxTiny);
+      EXPECT_NEAR(Length(AsVec(p.normal)), 1.0, kBoxTiny);
     }
   }
   EXPECT_GT(overlapping, 5000);
@@ -284,9 +284,9 @@ TEST(DistanceBoxBox, NeverExceedsTheDistanceAndIsCloseToIt) {
 }
 
 TEST(DistanceBoxBox, IsExactForFacesEdgesAndCornersAlongTheAxes) {
-  EXPECT_NEAR(Distance(Cube(0.1), Cube(0.1, Shift({0.5, 0, 0}))), 0.3, kTiny);
-  EXPECT_NEAR(Distance(Cube(0.1), Cube(0.1, Shift({0.5, 0.6, 0}))), 0.5, kTiny);
-  EXPECT_NEAR(Distance(Cube(0.1), Cube(0.1, Shift({0.3, 0.4, -0.4}))), 0.3, kTiny);
+  EXPECT_NEAR(Distance(Cube(0.1), Cube(0.1, Shift({0.5, 0, 0}))), 0.3, kBoxTiny);
+  EXPECT_NEAR(Distance(Cube(0.1), Cube(0.1, Shift({0.5, 0.6, 0}))), 0.5, kBoxTiny);
+  EXPECT_NEAR(Distance(Cube(0.1), Cube(0.1, Shift({0.3, 0.4, -0.4}))), 0.3, kBoxTiny);
   EXPECT_EQ(Distance(Cube(0.1), Cube(0.1, Shift({0.1, 0, 0}))), 0.0);
 }
 

@@ -42,7 +42,7 @@ inline double RadiusOf(const HullShape&) { return 0; }
 
 namespace {
 
-constexpr double kTiny = 1e-12;
+constexpr double kHullTiny = 1e-12;
 
 /// A hull with its table
 struct OwnHull {
@@ -96,7 +96,7 @@ void ExpectSamePoints(const Points& found, const Points& expected, double tolera
   }
 }
 
-void ExpectFeaturesDiffer(const Points& points) {
+void ExpectHullFeaturesDiffer(const Points& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_GE(points[i].feature, 0);
     EXPECT_LT(points[i].feature, kMaxPointsPerPair);
@@ -114,7 +114,7 @@ TEST(TouchHull, TopologyOfABoxIsTheSameEitherWay) {
     int sides = 0;
     c.EachSide(face, [&](const Vec3& from, const Vec3& to) {
       ++sides;
-      EXPECT_NEAR(c.Above(face, from), 0, kTiny);
+      EXPECT_NEAR(c.Above(face, from), 0, kHullTiny);
       EXPECT_GT(Dot(Cross(to - from, c.center - from), c.normals[face]), 0);  // counter-clockwise
     });
     EXPECT_EQ(sides, 4);
@@ -122,8 +122,8 @@ TEST(TouchHull, TopologyOfABoxIsTheSameEitherWay) {
   for (int i = 0; i < c.table->edge_count; ++i) {
     const HullEdge& edge = c.table->edges[i];
     for (const int face : {edge.left, edge.right}) {
-      EXPECT_NEAR(c.Above(face, c.corners[edge.from]), 0, kTiny);
-      EXPECT_NEAR(c.Above(face, c.corners[edge.to]), 0, kTiny);
+      EXPECT_NEAR(c.Above(face, c.corners[edge.from]), 0, kHullTiny);
+      EXPECT_NEAR(c.Above(face, c.corners[edge.to]), 0, kHullTiny);
     }
     EXPECT_GT(Dot(Cross(c.normals[edge.left], c.normals[edge.right]), c.AlongOf(edge)), 0);
   }
@@ -132,9 +132,9 @@ TEST(TouchHull, TopologyOfABoxIsTheSameEitherWay) {
 TEST(TouchHull, OfAPointInsideTheNearestPlaceIsOnAFace) {
   const Convex c(Box({0.3, 0.2, 0.1}));
   const NearestOfConvex nearest = NearestTo(c, {0.1, 0.05, 0.08});
-  EXPECT_NEAR(nearest.distance_m, -0.02, kTiny);
-  EXPECT_LT(Length(nearest.at - Vec3{0.1, 0.05, 0.1}), kTiny);
-  EXPECT_LT(Length(nearest.normal - Vec3{0, 0, 1}), kTiny);
+  EXPECT_NEAR(nearest.distance_m, -0.02, kHullTiny);
+  EXPECT_LT(Length(nearest.at - Vec3{0.1, 0.05, 0.1}), kHullTiny);
+  EXPECT_LT(Length(nearest.normal - Vec3{0, 0, 1}), kHullTiny);
 }
 
 TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
@@ -148,7 +148,7 @@ TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
     const double depth = Deepest(Touch(round, box, 1.0)).gap_m;
     if (depth < -0.9 * round.radius_m) continue;  // so deep inside, a hull has fewer directions out
     const Points points = Touch(round, hull.At(), 1e-2), expected = Touch(round, box, 1e-2);
-    ExpectFeaturesDiffer(points);
+    ExpectHullFeaturesDiffer(points);
     if (expected.empty()) {
       EXPECT_TRUE(points.empty()) << i;
       continue;
@@ -170,11 +170,11 @@ TEST(TouchHull, ARodOnAFaceIsHeldAtTheEndsOfWhatLiesOnIt) {
   const OwnHull hull(CornersOf(Box({0.2, 0.1, 0.05})));
   const Points points = Touch(Rod({-0.3, 0.02, 0.0599}, {0.1, 0.02, 0.0599}, 0.01), hull.At());
   ASSERT_EQ(points.size(), 2u);
-  EXPECT_NEAR(std::min(points[0].point[0], points[1].point[0]), -0.2, kTiny);
-  EXPECT_NEAR(std::max(points[0].point[0], points[1].point[0]), 0.1, kTiny);
+  EXPECT_NEAR(std::min(points[0].point[0], points[1].point[0]), -0.2, kHullTiny);
+  EXPECT_NEAR(std::max(points[0].point[0], points[1].point[0]), 0.1, kHullTiny);
   for (const TouchPoint& p : points) {
-    EXPECT_NEAR(p.gap_m, -1e-4, kTiny);
-    EXPECT_LT(Length(AsVec(p.normal) - Vec3{0, 0, 1}), kTiny);
+    EXPECT_NEAR(p.gap_m, -1e-4, kHullTiny);
+    EXPECT_LT(Length(AsVec(p.normal) - Vec3{0, 0, 1}), kHullTiny);
   }
 }
 
@@ -183,9 +183,9 @@ TEST(TouchHull, ARodWhoseMiddleIsInsideLeavesThroughTheNearestFace) {
   const Points points = Touch(Rod({-0.3, 0.02, 0.04}, {0.3, 0.02, 0.04}, 0.01), hull.At());
   ASSERT_EQ(points.size(), 2u);
   for (const TouchPoint& p : points) {
-    EXPECT_NEAR(p.gap_m, -0.02, kTiny);
-    EXPECT_LT(Length(AsVec(p.normal) - Vec3{0, 0, 1}), kTiny);
-    EXPECT_NEAR(std::fabs(p.point[0]), 0.2, kTiny);
+    EXPECT_NEAR(p.gap_m, -0.02, kHullTiny);
+    EXPECT_LT(Length(AsVec(p.normal) - Vec3{0, 0, 1}), kHullTiny);
+    EXPECT_NEAR(std::fabs(p.point[0]), 0.2, kHullTiny);
   }
 }
 
@@ -196,7 +196,7 @@ TEST(TouchHull, TwoHullsOfBoxesTouchAsTheBoxes) {
     const BoxShape a = random.AnyBox(0.2), b = random.AnyBox(0.2);
     const OwnHull hull_a(CornersOf(a)), hull_b(CornersOf(b));
     const Points expected = Touch(a, b, 1e-2), points = Touch(hull_a.At(), hull_b.At(), 1e-2);
-    ExpectFeaturesDiffer(points);
+    ExpectHullFeaturesDiffer(points);
     if (expected.empty()) {
       EXPECT_TRUE(points.empty()) << i;
       continue;
@@ -265,11 +265,11 @@ TEST(TouchHull, OfAFaceOfManyCornersTheOutermostAreKept) {
   const BoxShape floor = Box({1, 1, 0.1}, Shift({0, 0, -0.1}));
   const Points level = Touch(floor, hull.At(Shift({0, 0, -1e-5})));
   EXPECT_GE(level.size(), 8u);
-  ExpectFeaturesDiffer(level);
+  ExpectHullFeaturesDiffer(level);
   Vec3 sum;
   for (const TouchPoint& p : level) {
     EXPECT_NEAR(p.gap_m, -1e-5, 1e-9);
-    EXPECT_NEAR(p.normal[2], -1, kTiny);
+    EXPECT_NEAR(p.normal[2], -1, kHullTiny);
     sum = sum + AsVec(p.point);
   }
   EXPECT_LT(std::hypot(sum.x, sum.y), 0.1);  // all around
