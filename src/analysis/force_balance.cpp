@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/svd.h"
 #include "base/brief.h"
 #include "math/vec.h"
 
@@ -196,14 +197,22 @@ ForceBalance::Solutions ForceBalance::Solve() const {
   all.particular = VectorXd::Zero(n);
   all.free = MatrixXd::Identity(n, n);
   if (n > 0 && columns.rows() > 0) {
-    const Eigen::BDCSVD<MatrixXd> svd(columns, Eigen::ComputeThinU | Eigen::ComputeFullV);
-    const VectorXd& values = svd.singularValues();
-    Index rank = 0;
-    while (rank < values.size() && values[rank] > kRank * values[0]) ++rank;
-    all.particular =
-        svd.matrixV().leftCols(rank) *
-        (svd.matrixU().leftCols(rank).transpose() * load).cwiseQuotient(values.head(rank));
-    all.free = svd.matrixV().rightCols(n - rank);
+    const auto use = [&](const auto& svd) {
+      const VectorXd& values = svd.singularValues();
+      Index rank = 0;
+      while (rank < values.size() && values[rank] > kRank * values[0]) ++rank;
+      all.particular =
+          svd.matrixV().leftCols(rank) *
+          (svd.matrixU().leftCols(rank).transpose() * load).cwiseQuotient(values.head(rank));
+      all.free = svd.matrixV().rightCols(n - rank);
+    };
+    constexpr unsigned kParts = Eigen::ComputeThinU | Eigen::ComputeFullV;
+    constexpr Index kFewColumns = 16;  // below, BDCSVD is a JacobiSVD
+    if (n < kFewColumns) {
+      use(analysis::Svd(columns, kParts));
+    } else {
+      use(Eigen::BDCSVD<MatrixXd>(columns, kParts));
+    }
   }
   const VectorXd left = load - columns * all.particular;
   all.left_n = left.size() > 0 ? left.lpNorm<Eigen::Infinity>() : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/svd.h"
 #include "taut/form_finding.h"
 
 namespace taut {
@@ -120,7 +121,7 @@ class FreeSearch {
         forces(c * n + j, group_[m]) -= apart;
       }
     }
-    const Eigen::JacobiSVD<MatrixXd> svd(forces, Eigen::ComputeThinV);
+    const analysis::Svd svd(forces, Eigen::ComputeThinV);
     return svd.matrixV().col(groups_ - 1);
   }
 

@@ -1,9 +1,9 @@
 #include "analysis/structure_members.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/svd.h"
 #include "math/vec.h"
 
 namespace taut::analysis {
@@ -103,7 +103,7 @@ Split SplitOf(const Eigen::MatrixXd& matrix) {
     out.left = Eigen::MatrixXd::Identity(rows, rows);
     return out;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const analysis::Svd svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::VectorXd& values = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < values.size() && values[rank] > kSmall * values[0]) ++rank;
@@ -118,7 +118,7 @@ Split SplitOf(const Eigen::MatrixXd& matrix) {
 Parts PartsOf(const Eigen::MatrixXd& space, const Eigen::MatrixXd& part) {
   const Eigen::MatrixXd span = SpanOf(part);
   if (space.cols() == 0 || span.cols() == 0) return {space.leftCols(0), space};
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(space.transpose() * span, Eigen::ComputeFullU);
+  const analysis::Svd svd(space.transpose() * span, Eigen::ComputeFullU);
   Eigen::Index in = 0;  // cosines of the principal angles: 1 where the spaces share a direction
   while (in < svd.singularValues().size() && svd.singularValues()[in] > 1 - 1e-9) ++in;
   const Eigen::MatrixXd turned = space * svd.matrixU();

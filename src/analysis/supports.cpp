@@ -2,12 +2,12 @@
 // section 4).
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "analysis/structure_members.h"
+#include "analysis/svd.h"
 #include "analysis/whole_motions.h"
 #include "base/brief.h"
 #include "math/vec.h"
@@ -49,7 +49,7 @@ std::vector<Vec3> AxesIn(const Eigen::MatrixXd& span) {
   }
   const Eigen::Index left = span.cols() - static_cast<Eigen::Index>(axes.size());
   if (left <= 0) return axes;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rest, Eigen::ComputeThinU);
+  const analysis::Svd svd(rest, Eigen::ComputeThinU);
   for (Eigen::Index i = 0; i < left; ++i) {
     Eigen::Vector3d unit = svd.matrixU().col(i);
     Eigen::Index largest = 0;
@@ -81,7 +81,7 @@ class Words {
     std::vector<std::string> moves;
     for (const Vec3& axis : AxesIn(still.topRows(3))) moves.push_back(AxisName(axis));
     if (!moves.empty()) out_.push_back("translate along " + Joined(moves));
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(turns, Eigen::ComputeThinU);
+    const analysis::Svd svd(turns, Eigen::ComputeThinU);
     const Eigen::Index count = twists_.cols() - still.cols();
     for (const Vec3& axis : AxesIn(svd.matrixU().leftCols(count))) AddTurn(turns, axis);
     for (const auto& [line, axes] : lines_) out_.push_back("rotate about " + Joined(axes) + line);
@@ -252,7 +252,7 @@ SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
     const Eigen::MatrixXd motions = EffectivePart(effective, MotionsOf(s, component, twists));
     if (twists.cols() == 0) continue;
     // Drops twists that only rotate points and rods about themselves.
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(motions, Eigen::ComputeFullV);
+    const analysis::Svd svd(motions, Eigen::ComputeFullV);
     Eigen::Index rank = 0;
     while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kSmall) ++rank;
     if (rank == 0) continue;

@@ -4,10 +4,10 @@
 #include "analysis/structure_members.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/svd.h"
 #include "math/vec.h"
 
 namespace taut {
@@ -79,7 +79,7 @@ HeldStiffness StiffnessAsDescribed(const Structure& s) {
 Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns) {
   constexpr double kSmallShare = 1e-9;
   if (columns.cols() == 0 || columns.rows() == 0) return Eigen::MatrixXd(columns.rows(), 0);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(columns, Eigen::ComputeThinU);
+  const analysis::Svd svd(columns, Eigen::ComputeThinU);
   const Eigen::VectorXd& values = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < values.size() && values[rank] > kSmallShare * values[0]) ++rank;

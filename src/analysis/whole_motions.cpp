@@ -1,10 +1,10 @@
 #include "analysis/whole_motions.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/svd.h"
 #include "analysis/tangent.h"
 #include "base/union_find.h"
 #include "math/vec.h"
@@ -196,7 +196,7 @@ Eigen::MatrixXd EffectivePart(const Eigen::MatrixXd& effective, const Eigen::Mat
 Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit) {
   if (rows.rows() == 0) return Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
   if (rows.cols() == 0) return Eigen::MatrixXd(0, 0);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
+  const analysis::Svd svd(rows, Eigen::ComputeFullV);
   Eigen::Index rank = 0;
   while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
   return svd.matrixV().rightCols(rows.cols() - rank);
