@@ -1,10 +1,11 @@
 """Scenarios of script/faults by name."""
 
-from robustness import conversions, fits, scenarios
+from robustness import conversions, fits, robots, scenarios
 
 ALL = {"run": scenarios.Run, "learn": scenarios.Learn, "view": scenarios.View, "check": scenarios.Check,
        "compare": scenarios.Compare, "report": scenarios.Report, "top": scenarios.Top,
        "import_mjcf": conversions.ImportMjcf, "import_ntrt": conversions.ImportNtrt,
        "export_mjcf": conversions.ExportMjcf, "export_shape": conversions.ExportShape,
        "export_structure": conversions.ExportStructure, "analyze": conversions.Analyze, "size": conversions.Size,
-       "fit": fits.Fit, "fit_resumed": fits.FitResumed}
+       "fit": fits.Fit, "fit_resumed": fits.FitResumed,
+       "robot_log": robots.Log, "robot_hold": robots.Hold, "robot_calibrate": robots.Calibrate, "robot_run": robots.Run}

@@ -79,27 +79,36 @@ class Shared:
 
 
 class Program:
-    """The taut command with the library preloaded."""
+    """The taut command with the library preloaded, and the boards for `taut robot`."""
 
-    def __init__(self, command, library):
+    def __init__(self, command, library, variables=None, adapter=None):
+        self.variables, self.adapter = variables or {}, adapter
         for path in (command, library):
             if not pathlib.Path(path).exists():
                 raise Problem(f"there is no {path}; script/build makes it")
         self.command, self.library = str(pathlib.Path(command).resolve()), str(pathlib.Path(library).resolve())
 
     def environment(self, shared, fault):
-        return {**os.environ, "LD_PRELOAD": self.library, "TAUT_FAULTS": shared.path,
+        return {**os.environ, **self.variables, "LD_PRELOAD": self.library, "TAUT_FAULTS": shared.path,
                 **(fault.environment() if fault else {})}
 
-    def run(self, words, folder, fault=None, during=None):
-        """Runs once in `folder`, with output to files, as on a disk. `during(process, shared, output)` is called after
-        the start for programs that must be ended from outside; output() returns the output so far."""
+    def with_variables(self, variables):
+        """Returns the program with these environment variables."""
+        return Program(self.command, self.library, variables)
+
+    def run(self, words, folder, fault=None, during=None, lines=""):
+        """Runs once in `folder`, with output to files, as on a disk, and `lines` as input. `during(process, shared,
+        output)` is called after the start for programs that must be ended from outside; output() returns the output so
+        far."""
         shared = Shared(folder.parent)
         try:
             with tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as output, \
-                    tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as errors:
-                process = subprocess.Popen([self.command, *map(str, words)], cwd=folder, stdin=subprocess.DEVNULL,
-                                           stdout=output, stderr=errors, env=self.environment(shared, fault))
+                    tempfile.TemporaryFile("w+", dir=folder.parent, errors="replace") as errors, \
+                    tempfile.TemporaryFile("w+", dir=folder.parent) as given:
+                given.write(lines)
+                given.seek(0)
+                process = subprocess.Popen([self.command, *map(str, words)], cwd=folder, stdin=given, stdout=output,
+                                           stderr=errors, env=self.environment(shared, fault))
                 try:
                     if during:
                         during(process, shared, lambda: pathlib.Path(f"/proc/self/fd/{output.fileno()}").read_text())
@@ -119,4 +128,5 @@ class Program:
     def plain(self, words, folder):
         """Runs without faults and without the library, to see the result as a user does."""
         return subprocess.run([self.command, *map(str, words)], cwd=folder, stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, errors="replace", timeout=PATIENCE_S)
+                              env={**os.environ, **self.variables}, capture_output=True, text=True, errors="replace",
+                              timeout=PATIENCE_S)

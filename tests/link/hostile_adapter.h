@@ -37,7 +37,9 @@ enum class Hostility {
 
 class HostileAdapter {
  public:
-  explicit HostileAdapter(Hostility hostility) : hostility_(hostility) {
+  /// `winds_m_per_s`: the first motor is turned by hand at this speed, for calibrations.
+  explicit HostileAdapter(Hostility hostility, double winds_m_per_s = 0)
+      : hostility_(hostility), winds_m_per_s_(winds_m_per_s) {
     char name[128] = {};
     EXPECT_EQ(openpty(&line_, &far_end_, name, nullptr, nullptr), 0);
     device_ = name;
@@ -89,6 +91,7 @@ class HostileAdapter {
       ticked = std::max(ticked, now - std::chrono::milliseconds(10));
       for (; ticked < now; ticked += std::chrono::milliseconds(1)) {
         for (const auto& board : boards_) board->Tick();
+        boards_[0]->motors[0].wound_m += 1e-3 * winds_m_per_s_;
       }
       any_power_ = std::any_of(boards_.begin(), boards_.end(),
                                [](const auto& board) { return board->IsPowered(); });
@@ -177,6 +180,7 @@ class HostileAdapter {
   }
 
   Hostility hostility_;
+  double winds_m_per_s_;
   std::string device_;
   int line_ = -1, far_end_ = -1;
   std::uint8_t mode_ = 0x40;
