@@ -146,11 +146,11 @@ class CableBuilder {
       return;
     }
     const double rest = law.c / law.k;
-    if (!(rest > 0)) {
-      b_.out.Error(
-          "mjcf.no_rest_length", tendon.at,
-          "the rest length of " + called + " at the start must be positive, got " + Shown(rest),
-          law.actuators > 0 ? KeyHint() : "set springlength");
+    if (!(rest > 0) || !std::isfinite(rest)) {
+      b_.out.Error("mjcf.no_rest_length", tendon.at,
+                   "the rest length of " + called +
+                       " at the start must be positive and finite, got " + Shown(rest),
+                   law.actuators > 0 ? KeyHint() : "set springlength");
       return;
     }
     std::vector<AttachmentDef> ends;

@@ -101,6 +101,9 @@ struct Scene {
   std::vector<ContactPair> pairs;
   std::vector<std::pair<int, int>> excludes;  ///< Of bodies.
   std::map<std::string, int> site_by_name, body_by_name, shape_by_name, tendon_by_name;
+  /// Indices of geoms that are no shapes: refused with an error, or of an unsupported type without
+  /// contacts and mass.
+  static constexpr int kRefused = -1, kLeftOut = -2;
   LeftOut left_out;
   std::vector<SourceRef> twisting;  ///< Geoms and pairs with torsional or rolling friction.
   int pictures = 0;                 ///< Tendons without effect.
@@ -113,7 +116,8 @@ struct Scene {
 /// for a duplicate.
 void Register(std::map<std::string, int>& by_name, const Element& element, int index,
               Diagnostics& out);
-/// Returns the index of the item that the attribute names; -1 after an error.
+/// Returns the index of the item that the attribute names; -1 after an error, also after an earlier
+/// one about the item.
 int Find(const std::map<std::string, int>& by_name, const Element& element,
          std::string_view attribute, const char* kind, Diagnostics& out);
 

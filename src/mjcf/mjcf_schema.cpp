@@ -112,9 +112,10 @@ class Checker {
   }
 
  private:
-  /// `site` within a tendon has another meaning than in a body.
+  /// `site` within a tendon, and `joint` within equality, have other meanings than in a body.
   static std::string KindOf(const std::string& in, const std::string& name) {
     if (in == "spatial") return "spatial/" + name;
+    if (in == "equality" && (name == "joint" || name == "tendon")) return "equality/" + name;
     if (name == "frame" || name == "worldbody") return "body";
     return name;
   }

@@ -236,6 +236,7 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
     const bool weighs = !body_has_mass && layers.Number("mass", 1) != 0 && from.body != 0;
     if (!touches && !weighs) {
       ++scene_.left_out["visual geom of type " + type];
+      Register(scene_.shape_by_name, *from.element, Scene::kLeftOut, out_);
       return;
     }
     const bool known = type == "mesh" || type == "hfield" || type == "ellipsoid" || type == "sdf";
@@ -246,6 +247,7 @@ void BodyReader::ReadGeom(const GeomAt& from, bool body_has_mass) {
                      : "there is no geom type \"" + type + "\"",
                  "use sphere, capsule, cylinder, box or plane; visual geoms (contype and "
                  "conaffinity 0, no mass) are left out");
+    Register(scene_.shape_by_name, *from.element, Scene::kRefused, out_);
     return;
   }
   const Attribute* const name = from.element->Find("name");

@@ -153,6 +153,11 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
         const Layers layers = defaults.Over(e, "", out);
         const int a = Find(scene.shape_by_name, e, "geom1", "geom", out),
                   b = Find(scene.shape_by_name, e, "geom2", "geom", out);
+        if (a == Scene::kLeftOut || b == Scene::kLeftOut) {
+          layers.Error("mjcf.pair_type", a == Scene::kLeftOut ? "geom1" : "geom2",
+                       "this geom has a type that is not supported",
+                       "use sphere, capsule, cylinder, box or plane");
+        }
         if (a < 0 || b < 0) continue;
         // MuJoCo ignores the friction and condim of the geoms here.
         const auto friction = layers.Numbers("friction", {1, 1, 0.005, 0.0001, 0.0001}, 1, 5);

@@ -215,7 +215,8 @@ class Comparison:
             if NEWER and (m.actuator_damping[a] != 0 or m.actuator_armature[a] != 0):
                 self.wrong.append(f"a{a} has damping or armature and is read")
             if int(m.actuator_dyntype[a]) != DYNAMICS[0]:
-                self.warned(f"lag of a{a}", "with a lag (dyntype)")
+                if m.actuator_dynprm[a][0] > 0:
+                    self.warned(f"lag of a{a}", "with a lag behind their controls (dyntype)")
                 if m.actuator_actlimited[a]:
                     self.wrong.append(f"a{a} has a range of its activation and is read")
             if m.actuator_forcelimited[a]:
@@ -228,7 +229,7 @@ class Comparison:
                 self.wrong.append(f"{name} is missing")
             return
         if limited:
-            self.warned(f"range of {name}", "a limit of length (range)")
+            self.warned(f"range of {name}", "a length limit (range)")
         stiffness, damping, rest = self.cables[name]
         self.same(f"stiffness of {name}", stiffness, k)
         self.same(f"damping of {name}", damping, b)

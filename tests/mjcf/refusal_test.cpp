@@ -85,7 +85,10 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
       {"", "<spatial name=\"d\" limited=\"true\" range=\"0 1\">" + spatial, "", "",
        "6: error: tendon \"d\" has a length limit (range) but no stiffness"},
       {"", "<spatial name=\"d\" stiffness=\"1\" springlength=\"0\">" + spatial, "", "",
-       "6: error: the rest length of tendon \"d\" at the start must be positive, got"},
+       "6: error: the rest length of tendon \"d\" at the start must be positive and finite, got"},
+      {"", "<spatial name=\"d\" stiffness=\"9\" springlength=\"0 1e308\">" + spatial, "", "",
+       "6: error: the rest length of tendon \"d\" at the start must be positive and finite, got "
+       "inf"},
       {"", "<spatial name=\"d\" stiffness=\"1\"><site site=\"top\"/></spatial>", "", "",
        "6: error: spatial \"d\" has fewer than two sites"},
       {"", "<spatial name=\"d\"><site site=\"tip\"/><site site=\"s\"/></spatial>", "", "",
@@ -181,6 +184,31 @@ TEST_F(MjcfRefusal, NamesEachWithItsLine) {
     const std::string said = Refused(With(c[0], c[1], c[2], c[3]));
     EXPECT_NE(said.find(c[4]), std::string::npos) << c[4] << "\n" << said;
   }
+}
+
+TEST_F(MjcfRefusal, AGeomOfAnUnsupportedTypeExists) {
+  const std::string pair = "<contact><pair geom1=\"g\" geom2=\"e\"/></contact>";
+  const std::string refused =
+      Refused(With("<geom name=\"e\" type=\"ellipsoid\" size=\"1 1 1\"/>", "", "", pair));
+  EXPECT_NE(refused.find("3: error: geom \"e\": geoms of type ellipsoid"), refused.npos) << refused;
+  EXPECT_EQ(refused.find("there is no geom"), refused.npos) << refused;
+  // Contacts of a pair do not depend on contype and conaffinity.
+  const std::string visual =
+      Refused(With("<geom name=\"e\" type=\"ellipsoid\" size=\"1 1 1\" mass=\"0\" contype=\"0\" "
+                   "conaffinity=\"0\"/>",
+                   "", "", pair));
+  EXPECT_NE(visual.find("10: error: pair: this geom has a type that is not supported"), visual.npos)
+      << visual;
+  EXPECT_EQ(visual.find("there is no geom"), visual.npos) << visual;
+}
+
+TEST_F(MjcfRefusal, AnEqualityOfJointsHasItsOwnAttributes) {
+  const std::string said = Refused(With("", "", "",
+                                        "<equality><joint joint1=\"a\" joint2=\"b\" polycoef=\"0 "
+                                        "1\"/><tendon tendon1=\"c\"/></equality>"));
+  EXPECT_NE(said.find("10: error: the equality joint is not supported"), said.npos) << said;
+  EXPECT_NE(said.find("10: error: the equality tendon is not supported"), said.npos) << said;
+  EXPECT_EQ(said.find("has no attribute"), said.npos) << said;
 }
 
 TEST_F(MjcfRefusal, SaysAllAtOnce) {
