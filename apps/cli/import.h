@@ -11,9 +11,11 @@ namespace taut::cli {
 void AddImportMjcf(CLI::App& group, int& exit_code);
 void AddImportNtrt(CLI::App& group, int& exit_code);
 
+/// File name of the model to which the experiment of `WarnOfRefusal` refers.
+inline constexpr const char* kCheckedModel = "model.yaml";
 /// Reports, at the imported file, each reason for which `taut check` would refuse the imported
-/// model, as a warning.
-void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
-                   Diagnostics& out);
+/// model, as a warning; with a text of an experiment, each reason for the experiment.
+void WarnOfRefusal(const std::string& model_yaml, const std::string& experiment_yaml,
+                   const std::string& imported_file, Diagnostics& out);
 
 }  // namespace taut::cli

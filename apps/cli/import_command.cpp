@@ -38,29 +38,37 @@ class TemporaryFolder {
 
 }  // namespace
 
-void WarnOfRefusal(const std::string& model_yaml, const std::string& imported_file,
-                   Diagnostics& out) {
+void WarnOfRefusal(const std::string& model_yaml, const std::string& experiment_yaml,
+                   const std::string& imported_file, Diagnostics& out) {
+  const std::string kind = experiment_yaml.empty() ? "model" : "experiment";
   const auto not_checked = [&](const std::string& why) {
-    out.Warning("import.not_checked", {imported_file, 0, 0}, "cannot check the model: " + why,
-                "run `taut check`");
+    out.Warning("import.not_checked", {imported_file, 0, 0},
+                "cannot check the " + kind + ": " + why, "run `taut check`");
   };
   const TemporaryFolder folder;
   if (folder.path().empty()) return not_checked("no temporary folder");
-  const std::string path = folder.path() + "/model.yaml";
+  const std::string model = folder.path() + "/" + kCheckedModel;
+  const std::string path = experiment_yaml.empty() ? model : folder.path() + "/experiment.yaml";
   Diagnostics found;
-  if (WriteWholeFile(path, model_yaml, found)) {
-    if (const auto robot = LoadRobot(path, {}, found)) {
-      CheckStart(*robot, StartKind::kAsDescribed, found);
+  if (WriteWholeFile(model, model_yaml, found)) {
+    if (experiment_yaml.empty()) {
+      if (const auto robot = LoadRobot(path, {}, found)) {
+        CheckStart(*robot, StartKind::kAsDescribed, found);
+      }
+    } else if (WriteWholeFile(path, experiment_yaml, found)) {
+      if (const auto experiment = LoadExperiment(path, {}, found)) {
+        CheckStart(experiment->robot, experiment->start, found);
+      }
     }
   }
   for (const Diagnostic& reason : found.items()) {
-    // Errors in the model have a line. This one concerns the temporary file, not its contents.
-    if (reason.at.file == path && reason.at.line == 0) {
+    // Errors in a file have a line. This one concerns a temporary file, not its contents.
+    if ((reason.at.file == path || reason.at.file == model) && reason.at.line == 0) {
       not_checked("temporary file: " + reason.what);
       continue;
     }
     out.Warning("import.model_refused", {imported_file, 0, 0},
-                "`taut check` refuses the model: " + reason.what, reason.hint);
+                "`taut check` refuses the " + kind + ": " + reason.what, reason.hint);
   }
 }
 

@@ -33,22 +33,24 @@ int Import(const Arguments& args) {
   }
   Diagnostics found;
   const auto made = ImportMjcf(args.input, args.options, found);
-  if (!made || !Pass(found, args.strict)) return Fail(found, kBadInput);
+  if (!made) return Fail(found, kBadInput);
   std::string heading = fmt::format("Made by taut {} from {}.", kVersion,
                                     std::filesystem::path(args.input).filename().string());
   const std::size_t terrain = made->robot.def.planes.size() + made->robot.def.terrain_boxes.size();
-  for (const std::string& note : made->notes) {
-    fmt::print(stderr, "note: {}\n", note);
-    heading += "\n" + note;
+  for (const std::string& note : made->notes) heading += "\n" + note;
+  const auto model = ModelYaml(made->robot, heading, found);
+  if (model) {
+    WarnOfRefusal(*model, args.experiment.empty() ? "" : MjcfExperimentYaml(*made, kCheckedModel),
+                  args.input, found);
   }
+  if (!model || !Pass(found, args.strict)) return Fail(found, kBadInput);
+  for (const std::string& note : made->notes) fmt::print(stderr, "note: {}\n", note);
   if (terrain > 0 && args.experiment.empty()) {
     fmt::print(stderr,
                "note: a model has no terrain: {} of the world left out (use --experiment)\n",
                terrain == 1 ? "1 geom" : fmt::format("{} geoms", terrain));
   }
   if (!args.out.empty()) OutputIsNews();
-  const auto model = ModelYaml(made->robot, heading, found);
-  if (!model) return Fail(found, kBadInput);
   const int wrote = WriteOrPrint(args.out, *model);
   if (wrote != kOk || args.out.empty()) return wrote;
   const ModelDef& def = made->robot.def;

@@ -72,7 +72,7 @@ int Import(const ImportNtrtArguments& args) {
   if (std::isnan(args.length_unit_m)) return AskForUnit(args);
   Diagnostics found;
   const auto import = ImportNtrt(args.path, {args.length_unit_m, args.like_ntrt, args.name}, found);
-  if (import) WarnOfRefusal(import->model_yaml, args.path, found);
+  if (import) WarnOfRefusal(import->model_yaml, "", args.path, found);
   if (!import || !Pass(found, args.strict)) return Fail(found, kBadInput);
   if (args.out.empty()) {
     fmt::print("{}", import->model_yaml);
