@@ -2,7 +2,9 @@
 // pairs of geoms; taut by shapes as a whole and by pairs of bodies.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <vector>
 
 #include "math/vec.h"
 #include "mechanics/contact_roles.h"
@@ -33,39 +35,50 @@ class ContactBuilder {
   }
 
   void Apart() {
-    std::map<std::pair<int, int>, int> meet, pass;
+    // Pairs of bodies with shapes that pass through each other; true: others of their shapes meet.
+    // Pairs that only meet, which are most, have no entry.
+    std::map<std::pair<int, int>, bool> pass;
     const int count = static_cast<int>(scene_.shapes.size());
+    const std::vector<int> body = Bodies();
+    const auto pair_of = [&](int i, int j) {
+      return std::minmax(body[Scene::Index(i)], body[Scene::Index(j)]);
+    };
     std::string example;
     SourceRef example_at;
     int finer = 0;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const int one = Body(i), two = Body(j);
-        if (!MayMeet(i, j) || !At(i).collides || !At(j).collides) continue;
-        if (one == kWorld || two == kWorld) {
-          if (Meet(i, j) || Covered(i, j)) continue;
-        } else {
-          ++(Meet(i, j) ? meet : pass)[std::minmax(one, two)];
-          continue;
+    const auto add_finer = [&](int i, int j) {
+      ++finer;
+      if (example.empty()) example_at = At(i).at, example = Named(i) + " and " + Named(j);
+    };
+    const auto for_each_pair = [&](const auto& use) {
+      for (int i = 0; i < count; ++i) {
+        if (!At(i).collides) continue;
+        for (int j = 0; j < i; ++j) {
+          if (At(j).collides && MayMeet(i, j)) use(i, j, pair_of(i, j));
         }
-        ++finer;
-        if (example.empty()) example_at = At(i).at, example = Named(i) + " and " + Named(j);
       }
-    }
-    for (const auto& [pair, passing] : pass) {
-      if (!meet.contains(pair)) b_.def().apart.push_back({pair.first, pair.second});
-    }
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const int one = Body(i), two = Body(j);
-        if (one == kWorld || two == kWorld || !MayMeet(i, j) || !At(i).collides ||
-            !At(j).collides || Meet(i, j) || Covered(i, j) ||
-            !meet.contains(std::minmax(one, two))) {
-          continue;
-        }
-        ++finer;
-        if (example.empty()) example_at = At(i).at, example = Named(i) + " and " + Named(j);
+    };
+    for_each_pair([&](int i, int j, const std::pair<int, int>& bodies) {
+      if (Meet(i, j)) return;
+      if (bodies.first != kWorld && bodies.second != kWorld) {
+        pass.try_emplace(bodies, false);
+      } else if (!Covered(i, j)) {
+        add_finer(i, j);
       }
+    });
+    if (!pass.empty()) {
+      for_each_pair([&](int i, int j, const std::pair<int, int>& bodies) {
+        if (!Meet(i, j)) return;
+        if (const auto found = pass.find(bodies); found != pass.end()) found->second = true;
+      });
+      for (const auto& [pair, meets] : pass) {
+        if (!meets) b_.def().apart.push_back({pair.first, pair.second});
+      }
+      for_each_pair([&](int i, int j, const std::pair<int, int>& bodies) {
+        if (Meet(i, j)) return;
+        const auto found = pass.find(bodies);
+        if (found != pass.end() && found->second && !Covered(i, j)) add_finer(i, j);
+      });
     }
     if (finer == 0) return;
     b_.out.Warning(
@@ -84,7 +97,7 @@ class ContactBuilder {
     for (int i = 0; i < count; ++i) {
       if (Body(i) != kWorld && At(i).collides) of_shapes.insert(At(i).friction);
       for (int j = 0; j < i; ++j) {
-        if (MayMeet(i, j) && At(i).priority != At(j).priority) priorities = true;
+        if (At(i).priority != At(j).priority && MayMeet(i, j)) priorities = true;
       }
     }
     ModelDef& def = b_.def();
@@ -114,6 +127,11 @@ class ContactBuilder {
     const Building::Made& made = b_.made_of_shape[Scene::Index(i)];
     const std::string list = made.list;
     return list == "plane" || list == "terrain box" ? kWorld : b_.RigidOf(At(i).body).body;
+  }
+  std::vector<int> Bodies() {
+    std::vector<int> bodies;
+    for (int i = 0; i < static_cast<int>(scene_.shapes.size()); ++i) bodies.push_back(Body(i));
+    return bodies;
   }
   std::string Named(int i) {
     const Shape& s = At(i);
@@ -169,6 +187,12 @@ class ContactBuilder {
       return m->kinetic_friction;
     };
     const int count = static_cast<int>(scene_.shapes.size());
+    std::vector<double> friction(scene_.shapes.size(), -1);  // -1: not yet known
+    const auto friction_of = [&](int i) {
+      double& its = friction[Scene::Index(i)];
+      if (its < 0) its = material(i);
+      return its;
+    };
     for (int i = 0; i < count; ++i) {
       for (int j = 0; j < i; ++j) {
         if (!MayMeet(i, j) || !Meet(i, j)) continue;
@@ -178,7 +202,7 @@ class ContactBuilder {
                               : one.priority > two.priority ? one.friction
                               : two.priority > one.priority ? two.friction
                                                             : std::max(one.friction, two.friction);
-        const double m = material(i), n = material(j);
+        const double m = friction_of(i), n = friction_of(j);
         const double ours =
             def.friction_combine == CombineRule::kMaximum ? std::max(m, n) : std::sqrt(m * n);
         if (std::fabs(ours - theirs) <= 1e-12 * (1 + theirs)) continue;

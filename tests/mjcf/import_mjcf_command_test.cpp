@@ -1,4 +1,6 @@
 // Command `taut import mjcf`
+#include <sys/resource.h>
+
 #include "tests/system/taut_command.h"
 
 namespace taut::test {
@@ -42,6 +44,25 @@ TEST_F(ImportMjcfCommand, WhyCheckRefusesTheExperimentIsAWarning) {
   EXPECT_NE(warned.errors.find("deep in the terrain \"floor\""), std::string::npos)
       << warned.errors;
   EXPECT_EQ(Taut({"check", "e.yaml", "--quiet"}).status, 3);
+}
+
+TEST_F(ImportMjcfCommand, PairsOfThousandsOfBodiesThatMeetTakeNoMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need more address space";
+#endif
+  std::string bodies;
+  for (int i = 0; i < 4900; ++i) {
+    bodies +=
+        "<body pos=\"" + std::to_string(i) + " 0 0\"><freejoint/><geom size=\"0.01\"/></body>\n";
+  }
+  Write("many.xml", "<mujoco><worldbody>\n" + bodies + "</worldbody></mujoco>\n");
+  const CommandResult done = Taut({"import", "mjcf", "many.xml", "--out", "m.yaml"}, [] {
+    const rlimit limit{400'000'000, 400'000'000};
+    setrlimit(RLIMIT_AS, &limit);
+  });
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_NE(done.errors.find("more than 10000000 pairs of shapes may collide"), std::string::npos)
+      << done.errors;
 }
 
 }  // namespace
