@@ -116,6 +116,55 @@ INSTANTIATE_TEST_SUITE_P(Long, HostileHold,
                          testing::Values(Hostility::kGarbage, Hostility::kHalf, Hostility::kFlood,
                                          Hostility::kUnread));
 
+/// Arguments of a command of `taut robot`; `experiment`: it also gets an experiment file.
+struct RobotCommand {
+  std::vector<std::string> words;
+  bool experiment = false;
+};
+
+class HostileCommand
+    : public HostileRobot,
+      public testing::WithParamInterface<std::tuple<RobotCommand, Hostility, bool>> {};
+
+TEST_P(HostileCommand, EndsByAnInterruptAndSaysNothingUnconfirmed) {
+  const auto& [command, hostility, from_start] = GetParam();
+  HostileAdapter adapter(hostility);
+  std::vector<std::string> words = command.words;
+  if (command.experiment) {
+    EXPECT_EQ(Robot(adapter, {"reference", "--as_model"}).status, 0);
+    words.push_back(
+        Write("drive.yaml",
+              "taut: 1\nkind: experiment\nname: drive\nduration_s: 60\nbase: " TAUT_SOURCE_DIR
+              "/share/experiments/push_20n_motors.yaml\n"));
+  }
+  if (from_start) adapter.Attack();
+  const pid_t robot = StartRobot(adapter, words);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  if (!from_start) adapter.Attack();
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  kill(robot, SIGINT);
+  const CommandResult done = EndSoon(robot);
+  const bool says_off = Count(done.output + done.errors, "Motors are off.") > 0;
+  EXPECT_FALSE(says_off && adapter.AnyPower()) << done.output << done.errors;
+  if (from_start) {  // nothing was ever confirmed
+    EXPECT_NE(done.status, 0) << done.output << done.errors;
+    EXPECT_FALSE(says_off) << done.output << done.errors;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Adapters, HostileCommand,
+    testing::Combine(
+        testing::Values(RobotCommand{{"scan"}}, RobotCommand{{"status"}},
+                        RobotCommand{{"run", "--quiet", "--out", "drive"}, true},
+                        RobotCommand{{"hold"}}, RobotCommand{{"log", "--out", "log"}},
+                        RobotCommand{{"calibrate", "encoder", "outer_top_1", "--way_m", "0.1"}},
+                        RobotCommand{{"calibrate", "load_cell", "outer_top_1"}},
+                        RobotCommand{{"reference", "--as_model"}}, RobotCommand{{"release"}},
+                        RobotCommand{{"set", "duty_limit=0.5"}},
+                        RobotCommand{{"selftest", "--move"}}, RobotCommand{{"estop"}}),
+        testing::Values(Hostility::kSilent, Hostility::kUnplugged), testing::Bool()));
+
 TEST_F(HostileRobot, OneProgramDrivesWhateverTheRuntimeFolder) {
   HostileAdapter adapter(Hostility::kNone);
   const pid_t hold = Hold(adapter);
