@@ -211,7 +211,9 @@ void Defaults::Add(const Element& element, const Class* in, Diagnostics& out) {
     return;
   }
   for (const Element& child : element.children) {
-    if (child.name != "default") its->settings.push_back(&child);
+    if (child.name == "default") continue;
+    its->settings.push_back(&child);
+    class_of_[&child] = its;
   }
   for (const Element& child : element.children) {
     if (child.name == "default") Add(child, its, out);

@@ -76,6 +76,11 @@ class Defaults {
   /// Returns the element with the defaults of its kind (one kind, `actuator`, for all actuators),
   /// from the element's class, else from `child_class`.
   Layers Over(const Element& element, const std::string& child_class, Diagnostics& out) const;
+  /// Identifies the class that contains the setting; null for other elements.
+  const void* ClassOf(const Element& setting) const {
+    const auto found = class_of_.find(&setting);
+    return found == class_of_.end() ? nullptr : found->second;
+  }
   /// Reports an error for a class that does not exist.
   void CheckClass(const Element& element, std::string_view attribute, Diagnostics& out) const;
 
@@ -91,6 +96,7 @@ class Defaults {
                       std::vector<const Element*>& found);
   void Add(const Element& element, const Class* in, Diagnostics& out);
   std::map<std::string, Class> classes_;
+  std::map<const Element*, const Class*> class_of_;
   std::string main_ = "main";
 };
 

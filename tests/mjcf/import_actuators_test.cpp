@@ -56,6 +56,7 @@ TEST_F(MjcfActuators, WhereVersionsOfMujocoInheritOtherParametersTheActuatorIsRe
       {"<general biasprm=\"0 -80 -3\"/><motor/>",
        "<general name=\"a\" tendon=\"c\" biastype=\"affine\"/>"},
       {"<general dyntype=\"filter\"/>", "<position name=\"a\" tendon=\"c\"/>"},
+      {"<position kv=\"5\"/><motor/>", "<position name=\"a\" tendon=\"c\" kp=\"100\"/>"},
   };
   for (const auto& [defaults, actuator] : cases) {
     EXPECT_NE(Refused(Pulled("stiffness=\"9\" springlength=\"0 0.5\"", actuator,
