@@ -154,8 +154,11 @@ class Writer:
 
 def taut_cables(text):
     """Returns the cables of the model written by taut, by name: stiffness, damping, rest length."""
-    cables = {}
-    for match, keys in re.findall(r"^  - \{match: ([^,]+|\[[^\]]*\]), cable: \{(.*)\}\}$", text, re.M):
+    cables, anchors = {}, {}
+    for match, anchor, keys in re.findall(r"^  - \{match: ([^,]+|\[[^\]]*\]), cable: (?:&(\w+) )?\{(.*)\}\}$", text, re.M):
+        if base := re.match(r"<<: \*(\w+), ", keys):
+            keys = keys[base.end():] + ", " + anchors[base[1]]  # the first one of a key counts
+        anchors[anchor] = keys
         number = lambda key, if_absent=0.0: float((re.findall(rf"\b{key}: ([-+.\de]+)", keys) or [if_absent])[0])
         for name in re.findall(r"t\d+", match):
             cables[name] = number("stiffness_n_per_m"), number("damping_n_s_per_m"), number("rest_length_m")
