@@ -29,6 +29,9 @@ void RefuseWhatIsNotInitialized(const py::module_& module) {
 PYBIND11_MODULE(_core, module) {
   module.doc() = "C++ part of the simulator; use it through `import taut`.";
   module.attr("version") = taut::kVersion;
+  // Before 2.12, pybind11 reads the layout of NumPy 1. With NumPy 2, it would silently return
+  // arrays whose elements are all the first one.
+  module.attr("supports_numpy_2") = PYBIND11_VERSION_HEX >= 0x020C0000;
   taut::python::AddDescriptions(module);
   taut::python::AddBatch(module);
   taut::python::AddControllers(module);

@@ -10,6 +10,8 @@ have the shape (worlds, ...).
 
 import enum as _enum
 
+import numpy as _numpy
+
 try:
     from taut import _core
 except ImportError as error:
@@ -21,6 +23,9 @@ except ImportError as error:
     if _built and not any(f".{_sys.implementation.cache_tag}-" in name for name in _built):
         raise ImportError(f"taut is built for another Python: {', '.join(_built)}; {_this}") from None
     raise ImportError(f"{error}; {_this}\nIf taut is not built yet: script/build release taut_python") from None
+if int(_numpy.__version__.split(".")[0]) >= 2 and not _core.supports_numpy_2:
+    raise ImportError(f"this build of taut needs NumPy 1, because it was built with a pybind11 before 2.12; this is "
+                      f"NumPy {_numpy.__version__} (pip install 'numpy<2')")
 from taut import _results, _tables, control
 from taut._core import (Analysis, Batch, ControllerSpec, Experiment, Fitted, LinearSystem, Replay, Robot, Rows, Run, Study,
                         Trace, analyze, fit, learn, linear_system, load, read_study, read_trace, run)

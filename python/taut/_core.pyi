@@ -9,6 +9,7 @@ Floats = npt.NDArray[np.float64]
 ArrayLike = npt.ArrayLike
 
 version: str
+supports_numpy_2: bool
 status_bits: dict[str, int]
 episode_ends: list[tuple[str, int]]
 

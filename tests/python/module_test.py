@@ -34,6 +34,17 @@ def short(seconds=0.3):
     return experiment
 
 
+class OtherNumpys(unittest.TestCase):
+    def test_numpy_2_is_refused_by_a_module_that_reads_the_layout_of_numpy_1(self):
+        # Its arrays would have wrong values.
+        ran = subprocess.run([sys.executable, "-c", "import numpy; numpy.__version__ = '2.0.0'; import taut"],
+                             capture_output=True, text=True)
+        if taut._core.supports_numpy_2:
+            self.assertEqual(ran.returncode, 0, ran.stderr)
+        else:
+            self.assertRegex(ran.stderr, "ImportError: this build of taut needs NumPy 1, .* this is NumPy 2.0.0")
+
+
 class Loading(unittest.TestCase):
     def test_a_model_and_an_experiment(self):
         robot, experiment = taut.load(PRISM), taut.load(PUSH)
