@@ -66,14 +66,18 @@ build_showing() {
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }
 
-# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with only Debian's archive of SUITE (KIND: deb or deb-src),
-# as if no package were installed. Its lists stay in FOLDER. Needed because the machine's sources may lack SUITE.
+# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with only one archive, as if no package were installed: SUITE of
+# Debian, or ubuntu/SUITE with the signatures in $ubuntu_keyring. KIND: deb or deb-src. Its lists stay in FOLDER. Needed
+# because the machine's sources may lack SUITE.
 apt_apart() {
-  local folder=$1 kind=$2 suite=$3
+  local folder=$1 kind=$2 suite=$3 archive=http://deb.debian.org/debian
+  local keyring=/usr/share/keyrings/debian-archive-keyring.gpg
   shift 3
+  if [[ $suite == ubuntu/* ]]; then
+    suite=${suite#ubuntu/} archive=http://archive.ubuntu.com/ubuntu keyring=$ubuntu_keyring
+  fi
   mkdir -p "$folder/lists/partial" "$folder/archives/partial"
-  echo "$kind [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian $suite main" \
-    >"$folder/sources.list"
+  echo "$kind [signed-by=$keyring] $archive $suite main" >"$folder/sources.list"
   apt-get -q -o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=- \
     -o "Dir::State::Lists=$folder/lists" -o Dir::State::status=/dev/null -o Dir::Cache::pkgcache= \
     -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User= "$@"

@@ -5,16 +5,19 @@
 MODULE: shared library such as _core.cpython-39-x86_64-linux-gnu.so; WEB: folder of the viewer's pages; OUT: folder for
 the wheel
 
-The wheel is byte-identical for the same inputs. The tag is manylinux_2_28. If the module needs a symbol of
+The wheel is byte-identical for the same inputs; the environment variable SOURCE_DATE_EPOCH contains the time stamp of
+its files [s since 1970]. The tag is manylinux_2_28. If the module needs a symbol of
 a later glibc than 2.28, or a library that this policy does not allow, the script writes nothing and returns status 1.
 """
 
 import base64
 import hashlib
+import os
 import pathlib
 import re
 import subprocess
 import sys
+import time
 import zipfile
 
 from .release import current
@@ -94,9 +97,10 @@ def main():
     files[f"{info}/RECORD"] = ("\n".join([*rows, f"{info}/RECORD,,"]) + "\n").encode()
     out.mkdir(parents=True, exist_ok=True)
     path = out / f"{NAME}-{version}-{tag}.whl"
+    moment = time.gmtime(int(os.environ["SOURCE_DATE_EPOCH"]))[:6]
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for name, data in files.items():
-            entry = zipfile.ZipInfo(name, (2026, 1, 1, 0, 0, 0))
+            entry = zipfile.ZipInfo(name, moment)
             entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             wheel.writestr(entry, data)
