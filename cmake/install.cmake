@@ -56,6 +56,14 @@ install(FILES LICENSE NOTICE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
   PATTERN "__pycache__" EXCLUDE) # left by programs that were run here
 
+include(cmake/pkg_config.cmake)
+if(TAUT_SELF_CONTAINED)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/self_contained.cmake DESTINATION ${config_dir})
+  install(DIRECTORY ${TAUT_SELF_CONTAINED}/lib/ DESTINATION ${CMAKE_INSTALL_LIBDIR} FILES_MATCHING PATTERN "*.a")
+  set(static_libraries TRUE)
+else()
+  set(static_libraries FALSE)
+endif()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/tautConfig.cmake.in
   ${PROJECT_BINARY_DIR}/tautConfig.cmake INSTALL_DESTINATION ${config_dir}
   PATH_VARS CMAKE_INSTALL_DATADIR)

@@ -1,6 +1,7 @@
 # Libraries of a self-contained build (script/portable): static archives from Debian's sources, in the
 # folder TAUT_SELF_CONTAINED that script/publishing/static_libraries.sh fills. The command is linked
 # without any shared library, so it runs on any Linux; the Python module needs the C library only.
+# Part of the archive, too: its tautConfig.cmake includes this file.
 set(TAUT_USE_MPI OFF)  # MPI comes with the cluster
 
 # static_library(TARGET ARCHIVE...): an imported target of archives in lib/
@@ -13,7 +14,7 @@ function(static_library target)
   foreach(archive IN LISTS ARGN)
     set(path ${TAUT_SELF_CONTAINED}/lib/${archive})
     if(NOT EXISTS ${path})
-      message(FATAL_ERROR "there is no ${path}; script/portable builds it")
+      message(FATAL_ERROR "${path} is missing (script/portable builds it)")
     endif()
     target_link_libraries(${target} INTERFACE ${path})
   endforeach()

@@ -18,6 +18,7 @@ import resource
 import shutil
 import subprocess
 import sys
+import tempfile
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -203,22 +204,39 @@ def check(suite, archive, wheels, native):
     place = bare_system(suite)
     with mounted(place):
         tag = f"-cp{python.replace('.', '')}-"
-        wheel = next((one for one in wheels if tag in one.name), None)
-        if wheel is None:
-            raise Failed(f"there is no wheel for Python {python} (script/portable builds it)")
-        shutil.copy(wheel, place / "tmp")
         compiler = subprocess.run(["chroot", place, "sh", "-c", "command -v cc gcc g++ c++ clang"], capture_output=True, check=False)
         yield f"{name}: no compiler", compiler.returncode != 0, ""
         start = cpu_s()
         top = archive.name[: -len(".tar.xz")]
         subprocess.run(["tar", "-C", place / "tmp", "-xf", archive], check=True)  # a minimal system has no xz
         yield from check_archive(place, top, native)
+        wheel = next((one for one in wheels if tag in one.name), None)
+        if wheel is None:
+            raise Failed(f"there is no wheel for Python {python} (script/portable builds it)")
+        shutil.copy(wheel, place / "tmp")
         yield from check_wheel(place, wheel, python, native)
         used = cpu_s() - start
         yield f"all within {SYSTEM_CPU_S} s", used <= SYSTEM_CPU_S, f"{used:.0f} s processor time"
         other = next((one for one in wheels if tag not in one.name), None)
         if other is not None:
             yield from check_other_python(place, other, python)
+
+
+def check_library(archive):
+    """Compiles a C++ program with the unpacked archive on this machine, by pkg-config and by CMake."""
+    name, source = archive.name[: -len(".tar.xz")], ROOT / "tests/package/consumer"
+    with tempfile.TemporaryDirectory() as folder:
+        run(["tar", "-C", folder, "-xf", archive])
+        prefix = pathlib.Path(folder) / name
+        flags = run(["pkgconf", "--cflags", "--libs", "taut"], env={**os.environ, "PKG_CONFIG_LIBDIR": str(prefix / "lib/pkgconfig")})
+        run(["c++", "-std=c++20", source / "main.cpp", "-o", f"{folder}/by_pkgconf", *flags.split()])
+        run(["cmake", "-S", source, "-B", f"{folder}/by_cmake", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}"])
+        run(["cmake", "--build", f"{folder}/by_cmake"])
+        for way, program in (("pkg-config", f"{folder}/by_pkgconf"), ("find_package", f"{folder}/by_cmake/consumer")):
+            said = run([program, prefix / "share/taut/models/tetraspine3.yaml", f"{folder}/trace.h5"]).strip()
+            needed = re.findall(r"NEEDED\s+(\S+)", run(["objdump", "-p", program]))
+            others = [library for library in needed if not library.startswith(("libstdc++.", "libgcc_s.", "libc.", "libm."))]
+            yield f"archive: C++ program by {way}", "12 cables" in said and not others, " ".join([said, *others])
 
 
 def native_results(taut):
@@ -250,8 +268,11 @@ def main():
     wheels = sorted(out.glob("*.whl"))
     if archive is None:
         sys.exit(f"bare_systems.py: {out} contains no archive (script/portable builds it)")
-    native = native_results(pathlib.Path(os.environ.get("TAUT_COMMAND", ROOT / "build/release/taut")).resolve())
     failed = 0
+    for what, good, note in check_library(archive):
+        print(f"{'ok    ' if good else 'WRONG '} {what} ({note})", flush=True)
+        failed += not good
+    native = native_results(pathlib.Path(os.environ.get("TAUT_COMMAND", ROOT / "build/release/taut")).resolve())
     for suite in suites:
         try:
             for what, good, note in check(suite, archive, wheels, native):

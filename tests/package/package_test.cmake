@@ -1,4 +1,4 @@
-# cmake -DKIND=find_package|add_subdirectory|core_as_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
+# cmake -DKIND=find_package|pkg_config|add_subdirectory|core_as_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
 #       -DCXX=... -DCXX_FLAGS=... -DBUILD_TYPE=... -DVERSION=... -P package_test.cmake
 #
 # Builds and runs a program outside of the tree with an installed taut, or with taut as a subfolder. The flags
@@ -48,7 +48,7 @@ if(KIND STREQUAL find_package)
     message(FATAL_ERROR "the installed command lists \"${output}\"")
   endif()
   # no installed file refers to the build or source folder
-  file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.h ${prefix}/*.yaml ${prefix}/share/man/*
+  file(GLOB_RECURSE texts ${prefix}/*.cmake ${prefix}/*.pc ${prefix}/*/libtaut.a ${prefix}/*.h ${prefix}/*.yaml ${prefix}/share/man/*
     ${prefix}/share/bash-completion/* ${prefix}/share/zsh/* ${prefix}/share/fish/*)
   foreach(file IN LISTS texts)
     file(READ ${file} text)
@@ -95,6 +95,23 @@ share/taut/firmware/taut_board.elf;share/taut/firmware/taut_board.hex")
       message(FATAL_ERROR "without its firmware the virtual robot ends with ${status}: ${said}")
     endif()
   endif()
+elseif(KIND STREQUAL pkg_config)
+  # The prefix is moved: paths in the file are relative to it.
+  run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${prefix})
+  file(RENAME ${prefix} ${WORK_DIR}/moved)
+  file(GLOB_RECURSE file ${WORK_DIR}/moved/*taut.pc)
+  cmake_path(GET file PARENT_PATH folder)
+  find_program(PKG_CONFIG NAMES pkgconf pkg-config REQUIRED)
+  run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${folder} ${PKG_CONFIG} --modversion "taut = ${VERSION}")
+  run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${folder} ${PKG_CONFIG} --cflags --libs taut)
+  separate_arguments(flags UNIX_COMMAND "${CXX_FLAGS} ${output}")
+  file(MAKE_DIRECTORY ${build})
+  run(${CXX} -std=c++20 ${SOURCE_DIR}/tests/package/consumer/main.cpp -o ${build}/consumer ${flags})
+  run(${build}/consumer ${WORK_DIR}/moved/share/taut/models/tetraspine3.yaml ${WORK_DIR}/consumer.h5)
+  if(NOT output MATCHES "taut ${VERSION}: 12 cables")
+    message(FATAL_ERROR "the program printed \"${output}\"")
+  endif()
+  return()
 elseif(KIND STREQUAL core_as_subdirectory)
   # Without optimization, to reduce the compile time
   run(${configure} -DTAUT_SOURCE_DIR=${SOURCE_DIR} -DTAUT_INSTRUCTION_SETS=scalar
