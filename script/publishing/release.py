@@ -1,7 +1,9 @@
 """Texts of a release: version and changes, and the files that contain them."""
 
+import lzma
 import pathlib
 import re
+import subprocess
 
 from .stage import Problem
 
@@ -59,3 +61,12 @@ def write(root, version, date):
             raise Problem(f"{name} does not say {old}")
         (root / name).write_text(text.replace(old, new))
     return changes
+
+
+def pack(source, name, seconds, folder):
+    """Packs the folder `source` as NAME.tar.xz with the top folder `name`: the same bytes for the same files."""
+    tar = subprocess.run(["tar", "-C", source, "--sort=name", f"--mtime=@{seconds}", "--owner=0", "--group=0", "--numeric-owner",
+                          "--mode=go=rX,u+rw,a-s", f"--transform=s,^[.],{name},", "-cf", "-", "."], stdout=subprocess.PIPE, check=True)
+    path = pathlib.Path(folder) / f"{name}.tar.xz"
+    path.write_bytes(lzma.compress(tar.stdout, preset=9))
+    return path

@@ -7,12 +7,13 @@ import os
 import pathlib
 import shutil
 import sys
+import tarfile
 import tempfile
 import zipfile
 
 sys.dont_write_bytecode = True
 from harness import ROOT, Skipped, main, run  # noqa: E402
-from publishing import bare_systems  # noqa: E402
+from publishing import bare_systems, release  # noqa: E402
 
 OLD = "extern int abs(int); int f(int x) { return abs(x); }"  # since glibc 2.2.5
 NEW = "extern double hypot(double, double); double f(double x) { return hypot(x, 1); }"  # a later version in glibc 2.35
@@ -58,6 +59,22 @@ def AModuleThatNeedsALaterCLibraryIsRefused():
         said = pack(place, module(place, NEW, "-lm"), place / "out", status=1)
         assert "needs glibc 2.35: hypot" in said, said
         assert not (place / "out").exists()
+
+
+def PackingAFolderTwiceGivesTheSameBytes():
+    with tempfile.TemporaryDirectory() as name:
+        place = pathlib.Path(name)
+        for folder, files in (("a", ("x", "y")), ("b", ("y", "x"))):  # created in another order, at another time
+            (place / folder / "assets").mkdir(parents=True)
+            for file in files:
+                (place / folder / "assets" / file).write_text(file)
+        os.utime(place / "b/assets/x", (1, 1))
+        packed = [release.pack(place / folder, "taut-browser", 1767225600, place / folder) for folder in "ab"]
+        assert packed[0].read_bytes() == packed[1].read_bytes()
+        with tarfile.open(packed[0]) as file:
+            names = {one.name: one.mtime for one in file}
+        assert names.keys() == {"taut-browser", "taut-browser/assets", "taut-browser/assets/x", "taut-browser/assets/y"}, names
+        assert set(names.values()) == {1767225600}
 
 
 def EveryPythonHasASystemThatTheDocumentsName():
