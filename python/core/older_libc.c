@@ -50,9 +50,8 @@ extern double older_pow(double, double);
 __asm__(".symver older_pow,pow@GLIBC_2.2.5");
 HIDDEN double pow(double x, double y) { return older_pow(x, y); }
 
-/* 2.30: waits on another clock; the remaining time is transferred to the real-time clock. */
-HIDDEN int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
-                                  const struct timespec* until) {
+/* 2.30: waits until a time of another clock; the remaining time is transferred to the real-time clock. */
+static struct timespec real_time(clockid_t clock, const struct timespec* until) {
   struct timespec now, real;
   clock_gettime(clock, &now);
   clock_gettime(CLOCK_REALTIME, &real);
@@ -60,5 +59,16 @@ HIDDEN int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mu
   real.tv_nsec += until->tv_nsec - now.tv_nsec;
   if (real.tv_nsec < 0) real.tv_nsec += 1000000000, --real.tv_sec;
   if (real.tv_nsec >= 1000000000) real.tv_nsec -= 1000000000, ++real.tv_sec;
+  return real;
+}
+
+HIDDEN int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
+                                  const struct timespec* until) {
+  const struct timespec real = real_time(clock, until);
   return pthread_cond_timedwait(condition, mutex, &real);
+}
+
+HIDDEN int pthread_mutex_clocklock(pthread_mutex_t* mutex, clockid_t clock, const struct timespec* until) {
+  const struct timespec real = real_time(clock, until);
+  return pthread_mutex_timedlock(mutex, &real);
 }

@@ -3,12 +3,14 @@
 Usage: portable_test.py Portable.TEST. TEST is the name of a function of this file.
 """
 
+import ctypes
 import os
 import pathlib
 import shutil
 import sys
 import tarfile
 import tempfile
+import time
 import zipfile
 
 sys.dont_write_bytecode = True
@@ -17,6 +19,17 @@ from publishing import bare_systems, release  # noqa: E402
 
 OLD = "extern int abs(int); int f(int x) { return abs(x); }"  # since glibc 2.2.5
 NEW = "extern double hypot(double, double); double f(double x) { return hypot(x, 1); }"  # a later version in glibc 2.35
+
+LOCKS = """
+#include <chrono>
+#include <mutex>
+#include <thread>
+extern "C" int Locks(bool held, int wait_ms) {
+  std::timed_mutex mutex;
+  if (held) std::thread([&] { mutex.lock(); }).join();
+  return mutex.try_lock_for(std::chrono::milliseconds(wait_ms));
+}
+"""
 
 
 def module(place, code, *libraries):
@@ -75,6 +88,28 @@ def PackingAFolderTwiceGivesTheSameBytes():
             names = {one.name: one.mtime for one in file}
         assert names.keys() == {"taut-browser", "taut-browser/assets", "taut-browser/assets/x", "taut-browser/assets/y"}, names
         assert set(names.values()) == {1767225600}
+
+
+def TimedLocksNeedNoLaterCLibrary():
+    """The module's timed mutexes wait by functions of glibc 2.28 (older_libc.c), for the right time."""
+    compiler, c_compiler = shutil.which("c++"), shutil.which("cc")
+    if compiler is None or c_compiler is None:
+        raise Skipped("there is no compiler")
+    with tempfile.TemporaryDirectory() as name:
+        place = pathlib.Path(name)
+        (place / "locks.cpp").write_text(LOCKS)
+        run(c_compiler, "-fPIC", "-c", ROOT / "python/core/older_libc.c", "-o", place / "older.o")
+        run(compiler, "-std=c++20", "-shared", "-fPIC", place / "locks.cpp", place / "older.o", "-o", place / "locks.so", "-pthread")
+        listed = run("objdump", "-T", place / "locks.so")
+        wanted = [line.split()[-1] for line in listed.splitlines() if "*UND*" in line]
+        assert "pthread_mutex_timedlock" in wanted and "pthread_mutex_clocklock" not in wanted, wanted
+        locks = ctypes.CDLL(str(place / "locks.so"))
+        start = time.monotonic()
+        assert locks.Locks(False, 10000) == 1
+        assert time.monotonic() - start < 9
+        start = time.monotonic()
+        assert locks.Locks(True, 50) == 0
+        assert 0.05 <= time.monotonic() - start < 10
 
 
 def EveryPythonHasASystemThatTheDocumentsName():
