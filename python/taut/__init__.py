@@ -18,7 +18,7 @@ except ImportError as error:
     import pathlib as _pathlib
     import sys as _sys
 
-    _built = sorted(file.name for file in _pathlib.Path(__file__).parent.glob("_core.*"))
+    _built = sorted(file.name for file in _pathlib.Path(__file__).parent.glob("_core.*.so"))
     _this = f"this is Python {_sys.version_info.major}.{_sys.version_info.minor} ({_sys.implementation.cache_tag})"
     if _built and not any(f".{_sys.implementation.cache_tag}-" in name for name in _built):
         raise ImportError(f"taut is built for another Python: {', '.join(_built)}; {_this}") from None

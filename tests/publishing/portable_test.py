@@ -112,6 +112,16 @@ def TimedLocksNeedNoLaterCLibrary():
         assert 0.05 <= time.monotonic() - start < 10
 
 
+def TheErrorOfAnotherPythonNamesBothVersions():
+    with tempfile.TemporaryDirectory() as name:
+        shutil.copytree(ROOT / "python/taut", pathlib.Path(name) / "taut")
+        (pathlib.Path(name) / "taut/_core.cpython-399-x86_64-linux-gnu.so").touch()
+        env = dict(os.environ, PYTHONPATH=name, PYTHONDONTWRITEBYTECODE="1")
+        said = run(sys.executable, "-c", "import taut", env=env, status=1)
+        python = f"this is Python {sys.version_info.major}.{sys.version_info.minor} ({sys.implementation.cache_tag})"
+        assert f"taut is built for another Python: _core.cpython-399-x86_64-linux-gnu.so; {python}" in said, said
+
+
 def EveryPythonHasASystemThatTheDocumentsName():
     text = (ROOT / "docs/install.md").read_text()
     systems = bare_systems.systems()
