@@ -28,6 +28,7 @@ ARCHIVES = {"debian": ("http://deb.debian.org/debian", "main", "/usr/share/keyri
                        ROOT / "build/portable/ubuntu-keyring/usr/share/keyrings/ubuntu-archive-keyring.gpg")}
 SYSTEM_CPU_S = 60  # all checks of a system, so that a user's first minute suffices
 IMPORT_CPU_S = 0.06  # besides numpy
+ARCHIVE_MB, WHEEL_MB = 15, 13
 PROGRAM = """
 import time
 start = time.process_time()
@@ -146,6 +147,12 @@ def same_analyses(taut, native, place):
     found = analyses(taut, native["models"], lambda command: within(place, command))
     wrong = [model for model in found if found[model] != native["analyses"][model]]
     return not wrong, ", ".join(wrong)
+
+
+def small(path, most_mb):
+    """Returns (whether the file has at most this size, its size)."""
+    size_mb = path.stat().st_size / 1e6
+    return size_mb <= most_mb, f"{size_mb:.1f} MB"
 
 
 def features(place, taut):
@@ -271,6 +278,10 @@ def main():
     failed = 0
     for what, good, note in check_library(archive):
         print(f"{'ok    ' if good else 'WRONG '} {what} ({note})", flush=True)
+        failed += not good
+    for path, most_mb in ((archive, ARCHIVE_MB), *((wheel, WHEEL_MB) for wheel in wheels)):
+        good, note = small(path, most_mb)
+        print(f"{'ok    ' if good else 'WRONG '} {path.name}: at most {most_mb} MB ({note})", flush=True)
         failed += not good
     native = native_results(pathlib.Path(os.environ.get("TAUT_COMMAND", ROOT / "build/release/taut")).resolve())
     for suite in suites:
