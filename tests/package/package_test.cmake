@@ -1,4 +1,4 @@
-# cmake -DKIND=find_package|pkg_config|add_subdirectory|core_as_subdirectory -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
+# cmake -DKIND=find_package|pkg_config|add_subdirectory|core_as_subdirectory|fetch_content -DBINARY_DIR=... -DSOURCE_DIR=... -DWORK_DIR=...
 #       -DCXX=... -DCXX_FLAGS=... -DBUILD_TYPE=... -DVERSION=... -P package_test.cmake
 #
 # Builds and runs a program outside of the tree with an installed taut, or with taut as a subfolder. The flags
@@ -112,10 +112,19 @@ elseif(KIND STREQUAL pkg_config)
     message(FATAL_ERROR "the program printed \"${output}\"")
   endif()
   return()
-elseif(KIND STREQUAL core_as_subdirectory)
+elseif(KIND STREQUAL core_as_subdirectory OR KIND STREQUAL fetch_content)
+  set(source -DTAUT_SOURCE_DIR=${SOURCE_DIR})
+  if(KIND STREQUAL fetch_content) # the last commit, cloned as from another machine
+    execute_process(COMMAND git -C ${SOURCE_DIR} rev-parse HEAD RESULT_VARIABLE failed OUTPUT_VARIABLE commit
+      OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+    if(failed)
+      message(STATUS "skipped: ${SOURCE_DIR} is not a git clone")
+      return()
+    endif()
+    set(source -DTAUT_REPOSITORY=file://${SOURCE_DIR} -DTAUT_COMMIT=${commit})
+  endif()
   # Without optimization, to reduce the compile time
-  run(${configure} -DTAUT_SOURCE_DIR=${SOURCE_DIR} -DTAUT_INSTRUCTION_SETS=scalar
-    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
+  run(${configure} ${source} -DTAUT_INSTRUCTION_SETS=scalar -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0)
   run(${CMAKE_COMMAND} --build ${build} --target core)
   run(${build}/core)
   if(NOT output MATCHES "taut ${VERSION}: 1 cable")
