@@ -4,6 +4,7 @@
 #include <string>
 
 #include "commands.h"
+#include "view_statics.h"
 
 namespace taut::cli {
 namespace {
@@ -34,5 +35,16 @@ void AddLearn(CLI::App& app, int& exit_code) { AddNotBuilt(app, "learn", exit_co
 void AddRobot(CLI::App& app, int& exit_code) { AddNotBuilt(app, "robot", exit_code); }
 void AddSize(CLI::App& app, int& exit_code) { AddNotBuilt(app, "size", exit_code); }
 void AddTrace(CLI::App& app, int& exit_code) { AddNotBuilt(app, "trace", exit_code); }
+
+viewer::Json ViewStatics(const ExperimentSpec&) {
+  return {{"found", false},
+          {"reason", "the analysis is not built yet (run script/build release taut)"},
+          {"self_stress_states", 0},
+          {"feasible", false},
+          {"mechanisms", 0},
+          {"rigid_motions", 0},
+          {"cable_tension_n", viewer::Json::array()},
+          {"modes", viewer::Json::array()}};
+}
 
 }  // namespace taut::cli

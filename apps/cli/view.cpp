@@ -26,6 +26,7 @@
 #include "taut/spec.h"
 #include "view_robot.h"
 #include "view_server.h"
+#include "view_statics.h"
 
 namespace taut::cli {
 namespace {
@@ -91,6 +92,7 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   options.paused = args.paused || model;
   options.record = viewer::RecordInto(args.out);
   options.tell = Tell;
+  if (model) options.statics = ViewStatics;
   auto session = viewer::LiveSession::Create(model ? "model" : "live", experiment, options, found);
   fmt::print(stderr, "{}",
              found.Format());  // a settled start far from the described pose is only a warning

@@ -93,6 +93,7 @@ bool CheckRanges(const Command& command, std::string& error) {
     return command.value == 0 || within("factor", command.value, 0.001, 1000);
   }
   if (command.type == "push") return within("duration_s", command.value, 0.001, 1000);
+  if (command.type == "open_shape") return within("number", command.count, 1, 100000);
   if (command.type == "step") return within("count", command.count, -1000, 1000);
   if (command.type == "want_series") {
     return within("points", command.points, 2, 10000) &&
@@ -121,7 +122,7 @@ std::optional<Command> ParseCommand(std::string_view text, std::string& error) {
       command.name = value.get<std::string>();
     } else if (key == "gain") {
       command.gain = value.get<std::string>();
-    } else if (key == "mode") {
+    } else if (key == "mode" || key == "as") {
       command.mode = value.get<std::string>();
     } else if (key == "on") {
       command.on = value.get<bool>();
@@ -139,7 +140,7 @@ std::optional<Command> ParseCommand(std::string_view text, std::string& error) {
       command.source = static_cast<int>(value.get<double>());
     } else if (key == "points") {
       command.points = static_cast<int>(value.get<double>());
-    } else if (key == "count") {
+    } else if (key == "count" || key == "number") {
       command.count = static_cast<int>(value.get<double>());
     }
   }

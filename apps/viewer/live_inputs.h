@@ -14,6 +14,13 @@ struct LiveInputs {
       false;  ///< A model alone: without weight and ground, paused until the user drags it.
 };
 
+/// Starts of a model (message start of web/protocol/messages.json).
+enum class ModelStart { kDescribed, kDropped, kSettled };
+
+/// Returns the experiment of a model with another start: with weight, above a plane if the model
+/// has no ground. `alone`: from LoadLiveInputs.
+ExperimentSpec StartModel(const ExperimentSpec& alone, ModelStart start);
+
 /// Reads an experiment or a model. Returns nothing, with errors in `out`, if it cannot run.
 /// `settled`: the run begins at the settled pose.
 std::optional<LiveInputs> LoadLiveInputs(const std::string& path, const Overrides& overrides,

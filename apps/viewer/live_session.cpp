@@ -6,7 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "live_inputs.h"
 #include "live_parameters.h"
+#include "taut/start.h"
 
 namespace taut::viewer {
 namespace {
@@ -31,6 +33,7 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
   if (!run) return nullptr;
   std::unique_ptr<LiveSession> session(new LiveSession(mode, std::move(run), options));
   session->experiment_ = experiment;
+  if (mode == "model") session->model_ = experiment;
   session->given_ = ParametersOfFiles(experiment);
   if (options.record) {
     const auto say = [self = session.get()](const std::string& text) {
@@ -100,6 +103,8 @@ bool LiveSession::Drive(int client, const Command& command, std::string& error) 
     return true;
   }
   Restart();
+  if (type == "start") return StartModelAs(command.mode, error);
+  if (type == "analyze") return Analyze(error);
   if (type == "pause" || type == "resume") {
     if (type == "pause") {
       Pause();
@@ -217,8 +222,14 @@ void LiveSession::Restart(Clock::time_point deadline) {
     SayError(refusal.client, refusal.why);
   }
   if (!start) return;
-  run_ = std::move(start->run);
-  experiment_ = std::move(start->experiment);
+  Begin(std::move(start->run), std::move(start->experiment));
+  SayEvent(0, "restarted");
+  for (const Diagnostic& warning : start->warnings) SayEvent(0, "warning: " + warning.what);
+}
+
+void LiveSession::Begin(std::unique_ptr<LiveRun> run, ExperimentSpec experiment) {
+  run_ = std::move(run);
+  experiment_ = std::move(experiment);
   ++run_number_;
   end_told_ = broken_told_ = dragging_ = touched_ = false;
   overloads_told_ = 0;
@@ -227,8 +238,45 @@ void LiveSession::Restart(Clock::time_point deadline) {
   StartHistory();
   Anchor();
   changed_ = scene_changed_ = true;
-  SayEvent(0, "restarted");
-  for (const Diagnostic& warning : start->warnings) SayEvent(0, "warning: " + warning.what);
+}
+
+bool LiveSession::StartModelAs(const std::string& start, std::string& error) {
+  if (mode() != "model") {
+    error = "start is possible only in the view of a model";
+    return false;
+  }
+  const ModelStart kind = start == "dropped"   ? ModelStart::kDropped
+                          : start == "settled" ? ModelStart::kSettled
+                                               : ModelStart::kDescribed;
+  ExperimentSpec experiment = StartModel(model_, kind);
+  Diagnostics wrong;
+  auto run = CheckStart(experiment.robot, experiment.start, wrong)
+                 ? LiveRun::Start(experiment, wrong, [this] { return !stopping(); })
+                 : nullptr;
+  if (!run) {
+    error = wrong.Format();
+    return false;
+  }
+  Begin(std::move(run), std::move(experiment));
+  for (const Diagnostic& warning : Sorted(wrong.warnings())) {
+    SayEvent(0, "warning: " + warning.what);
+  }
+  if (kind == ModelStart::kDropped) {
+    pace_.Resume(run_->time_s());
+  } else {
+    Pause();
+  }
+  return true;
+}
+
+bool LiveSession::Analyze(std::string& error) {
+  if (mode() != "model" || !options_.statics) {
+    error = "analyze is possible only in the view of a model";
+    return false;
+  }
+  if (statics_.is_null()) statics_ = options_.statics(model_);
+  scene_changed_ = true;
+  return true;
 }
 
 std::optional<StateMark> LiveSession::State() const {
@@ -368,6 +416,7 @@ Json LiveSession::MakeScene() const {
   scene["drag_stiffness_n_per_m"] = run_->DragStiffness();
   scene["contact_forces"] = run_->world() != nullptr;
   if (recording_ && !recording_->notice().empty()) scene["notice"] = recording_->notice();
+  if (!statics_.is_null()) scene["statics"] = statics_;
   return scene;
 }
 

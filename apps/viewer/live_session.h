@@ -23,6 +23,8 @@ struct LiveOptions {
   double speed = 1;         ///< Simulated seconds per second; 0: as fast as possible.
   bool paused = false;
   MakeRecorder record;  ///< Null: no recording.
+  /// Computes Scene.statics of a model; null: not available.
+  std::function<Json(const ExperimentSpec&)> statics;
   /// Prints lines to the terminal about interruptions of the recording. Called on the session's
   /// thread and by Finish.
   std::function<void(const std::string&)> tell = [](const std::string&) {};
@@ -68,6 +70,10 @@ class LiveSession final : public Session {
   bool SetParameter(int client, const Command& command, std::string& error);
   bool SetControl(const Command& command, std::string& error);
   void Restart(Clock::time_point deadline = Clock::time_point::max());
+  /// Replaces the run of a model by one with another start.
+  bool StartModelAs(const std::string& start, std::string& error);
+  bool Analyze(std::string& error);
+  void Begin(std::unique_ptr<LiveRun> run, ExperimentSpec experiment);
   void StartHistory();
   void Log(const std::string& text);
   void TellOverloads();
@@ -83,6 +89,8 @@ class LiveSession final : public Session {
 
   LiveOptions options_;
   Restarts restarts_;
+  ExperimentSpec model_;       ///< Of a model: its experiment without weight and ground.
+  Json statics_;               ///< Null until computed.
   ExperimentSpec experiment_;  ///< As read; `run_` may differ after manual changes.
   /// Initial values of the files' parameters, which determine the ranges of sliders.
   std::map<std::string, double> given_;

@@ -3,7 +3,7 @@
 
 namespace taut::viewer {
 
-inline constexpr int kProtocolVersion = 9;
+inline constexpr int kProtocolVersion = 10;
 
 /// How a field of a message is written in JSON.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
@@ -39,6 +39,9 @@ inline constexpr MessageField kClientFields[] = {
     {"set_gain", "cable", FieldKind::kString, false, ""},
     {"set_gain", "gain", FieldKind::kChoice, false, "length_offset_m|position_gain_n_per_m|velocity_gain_n_s_per_m"},
     {"set_gain", "value", FieldKind::kNumber, false, ""},
+    {"start", "as", FieldKind::kChoice, false, "described|dropped|settled"},
+    {"analyze", "", FieldKind::kString, true, ""},
+    {"open_shape", "number", FieldKind::kInteger, false, ""},
     {"stop", "", FieldKind::kString, true, ""},
     {"robot_mode", "mode", FieldKind::kChoice, false, "off|arm|hold|impedance|clear_faults"},
     {"robot_gain", "cable", FieldKind::kString, false, ""},

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 namespace taut::viewer {
 namespace {
@@ -18,7 +20,29 @@ ReplaySession::ReplaySession(std::unique_ptr<Recorded> recorded, double speed)
     : Session("replay", recorded->title()),
       recorded_(std::move(recorded)),
       speed_(speed == 0 ? kMaxSpeed : speed) {
-  SetScene(recorded_->scene(), false);
+  SetScene(MakeScene(), false);
+  Anchor(recorded_->trace().time_s.front());
+}
+
+Json ReplaySession::MakeScene() const {
+  Json scene = recorded_->scene();
+  if (!recorded_->summary().is_null()) scene["summary"] = recorded_->summary();
+  return scene;
+}
+
+void ReplaySession::OpenShape(int client, int number) {
+  namespace fs = std::filesystem;
+  const Json scene = recorded_->scene();
+  if (!scene.contains("shape")) return SayError(client, "this trace does not show a shape");
+  const fs::path file = recorded_->path();
+  const fs::path folder = file.parent_path().parent_path() /
+                          fmt::format("{}_{}", scene["shape"]["kind"].get<std::string>(), number);
+  Diagnostics found;
+  auto other = Recorded::Load((folder / file.filename()).string(), {}, found);
+  if (!other) return SayError(client, found.Format());
+  recorded_ = std::move(other);
+  ++run_;
+  SetScene(MakeScene(), true);
   Anchor(recorded_->trace().time_s.front());
 }
 
@@ -62,6 +86,8 @@ void ReplaySession::Handle(int client, const Command& command) {
   } else if (type == "speed") {
     Anchor(now_s);
     speed_ = command.value == 0 ? kMaxSpeed : command.value;
+  } else if (type == "open_shape") {
+    OpenShape(client, command.count);
   } else if (type == "step") {
     Anchor(now_s);
     const auto row = static_cast<std::int64_t>(row_) + command.count;
@@ -91,7 +117,7 @@ Session::Clock::time_point ReplaySession::Work() {
     frame.speed = speed_;
     frame.paused = paused_;
     frame.real_time_factor = paused_ ? 0 : speed_;
-    frame.run = 1;
+    frame.run = run_;
     Publish(std::move(frame));
     shown_wall_ = now;
     changed_ = false;

@@ -1,14 +1,18 @@
 #include "scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "taut/safety.h"
 #include "taut/statics.h"
 
 namespace taut::viewer {
 namespace {
 
 Vec3 Minus(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+double Length(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
 
 /// Converts a point in W at t = 0 to its body's frame.
 Json InBody(const ModelDef& def, int body, const Vec3& point_m) {
@@ -31,11 +35,15 @@ Json Bodies(const ModelDef& def) {
       bodies[static_cast<std::size_t>(body)]["shapes"].push_back(std::move(shape));
   };
   for (const CapsuleDef& rod : def.capsules) {
-    add(rod.body, {{"kind", "rod"},
-                   {"name", rod.name},
-                   {"from_m", InBody(def, rod.body, rod.from_m)},
-                   {"to_m", InBody(def, rod.body, rod.to_m)},
-                   {"radius_m", rod.radius_m}});
+    Json one{{"kind", "rod"},
+             {"name", rod.name},
+             {"from_m", InBody(def, rod.body, rod.from_m)},
+             {"to_m", InBody(def, rod.body, rod.to_m)},
+             {"radius_m", rod.radius_m}};
+    const double length_m = Length(Minus(rod.to_m, rod.from_m));
+    const MemberLimits limits = LimitsOf(rod.member, MemberKind::kRod, length_m);
+    if (limits.buckling_n) one["buckling_n"] = *limits.buckling_n;
+    add(rod.body, std::move(one));
   }
   for (const SphereDef& sphere : def.spheres) {
     add(sphere.body, {{"kind", "sphere"},
@@ -58,9 +66,11 @@ Json Bodies(const ModelDef& def) {
   return bodies;
 }
 
-Json Cables(const ModelDef& def) {
+Json Cables(const RobotSpec& robot) {
   Json cables = Json::array();
-  for (const CableDef& cable : def.cables) {
+  const ModelDef& def = robot.def;
+  for (std::size_t c = 0; c < def.cables.size(); ++c) {
+    const CableDef& cable = def.cables[c];
     Json attachments = Json::array();
     for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
       const AttachmentDef& at = cable.attachments[i];
@@ -77,10 +87,53 @@ Json Cables(const ModelDef& def) {
                       {"attachments", attachments},
                       {"stiffness_n_per_m", cable.stiffness_n_per_m},
                       {"actuated", cable.actuator.kind != ActuatorDef::Kind::kNone}});
+    if (c < robot.cable_tags.size()) {
+      Json tags = Json::array();
+      for (const std::string& tag : robot.cable_tags[c]) {
+        if (tag != cable.name) tags.push_back(tag);
+      }
+      cables.back()["tags"] = std::move(tags);
+    }
     if (cable.touches != CableTouches::kNone) cables.back()["most_bends"] = CableDef::kMostBends;
     if (HasFriction(cable)) cables.back()["parted"] = true;
   }
   return cables;
+}
+
+/// Returns the pushes and drags, each from its first to its last force.
+Json Actions(const ExperimentSpec& experiment) {
+  const auto node = [&](int index) {
+    return experiment.robot.def.nodes[static_cast<std::size_t>(index)].name;
+  };
+  Json actions = Json::array();
+  for (const PushSpec& push : experiment.pushes) {
+    double most_n = 0, from_s = 0, to_s = 0;
+    bool acts = false;
+    for (std::size_t i = 0; i < push.force_n.size(); ++i) {
+      const auto [time_s, force_n] = push.force_n[i];
+      if (force_n == 0) continue;
+      most_n = std::max(most_n, std::abs(push.scale * force_n));
+      // the force changes linearly from and to its neighbors
+      if (!acts) from_s = push.force_n[i == 0 ? 0 : i - 1].first;
+      to_s = i + 1 < push.force_n.size() ? push.force_n[i + 1].first
+                                         : std::max(time_s, experiment.duration_s);
+      acts = true;
+    }
+    if (!acts || most_n == 0) continue;
+    actions.push_back(
+        {{"kind", "push"},
+         {"text", fmt::format("{}: up to {:.3g} N on {}", push.name, most_n, node(push.node))},
+         {"from_s", from_s},
+         {"to_s", to_s}});
+  }
+  for (const DragSpec& drag : experiment.drags) {
+    actions.push_back({{"kind", "drag"},
+                       {"text", fmt::format("{}: {} at {:.3g} m/s", drag.name, node(drag.node),
+                                            Length(drag.velocity_m_per_s))},
+                       {"from_s", drag.from_s},
+                       {"to_s", drag.to_s}});
+  }
+  return actions;
 }
 
 Json Joints(const ModelDef& def) {
@@ -219,13 +272,14 @@ Json SceneOf(const ExperimentSpec& experiment) {
                               {"body", node.body},
                               {"position_m", InBody(def, node.body, node.position_m)}});
   }
-  scene["cables"] = Cables(def);
+  scene["cables"] = Cables(experiment.robot);
   scene["joints"] = Joints(def);
   scene["terrain"] = Terrain(def);
   for (const PhaseSpec& phase : experiment.phases) {
     scene["phases"].push_back(
         {{"name", phase.name}, {"from_s", phase.from_s}, {"to_s", phase.to_s}});
   }
+  scene["actions"] = Actions(experiment);
   scene["duration_s"] = experiment.duration_s;
   return scene;
 }

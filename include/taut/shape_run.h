@@ -21,6 +21,9 @@ struct Shape {
   std::vector<Vec3> translation_m, turn_rad;
   /// Per cable; empty: tensions of the model's springs in each pose.
   std::vector<double> tension_n;
+  /// Place in a list of such shapes, from 1, and their number; 0: unknown.
+  int number = 0, count = 0;
+  double frequency_hz = 0;  ///< Of a mode; 0: none.
 };
 
 struct ShapeLook {
@@ -45,6 +48,8 @@ bool WriteShapeRun(const std::string& folder, const ExperimentSpec& experiment, 
 
 /// Writes one such folder per mode ("mode_1", ...; at most `most_modes`), mechanism ("mechanism_1",
 /// ...) and state of self-stress ("self_stress_1", ...), without rigid motions, below `folder`.
+/// The metadata of the traces contain number and count, of modes also frequency, slowdown and
+/// relative amplitude.
 /// Returns the written folders. Tensions of a self-stress are in percent of the largest.
 std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
                                         const Modes& modes, const ForceAnalysis& forces,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string>
 
 #include "math/angle.h"
 #include "math/vec.h"
@@ -102,6 +103,17 @@ bool Fill(const RunFolder& folder, const ExperimentSpec& e, const Shape& shape,
   TraceMetadata metadata = RunMetadata(e);
   metadata.emplace_back(kRunIdKey, folder.id());
   metadata.emplace_back("shape", shape.name);
+  if (shape.count > 0) {
+    metadata.emplace_back("shape_number", std::to_string(shape.number));
+    metadata.emplace_back("shape_count", std::to_string(shape.count));
+  }
+  if (shape.frequency_hz > 0) {
+    metadata.emplace_back("shape_frequency_hz", fmt::format("{}", shape.frequency_hz));
+    metadata.emplace_back("shape_slowdown", fmt::format("{}", shape.frequency_hz * look.period_s));
+  }
+  if (!shape.translation_m.empty()) {
+    metadata.emplace_back("shape_amplitude", fmt::format("{}", look.size));
+  }
   const auto trace = CreateHdf5Trace(folder.Path("trace.h5"), Channels(def), metadata, out);
   if (!trace) return false;
   const double way = GreatestWay(def, shape);
@@ -181,29 +193,42 @@ std::vector<std::string> WriteShapeRuns(const std::string& folder, const Experim
     const std::string path = (std::filesystem::path(folder) / shape.name).string();
     if (WriteShapeRun(path, experiment, shape, look, out)) written.push_back(path);
   };
-  int number = 0;
+  std::vector<const Mode*> shown;
   for (const Mode& mode : modes.modes) {
-    if (mode.kind == Mode::Kind::kRigid || number == most_modes) continue;
+    if (mode.kind == Mode::Kind::kRigid || static_cast<int>(shown.size()) == most_modes) continue;
+    shown.push_back(&mode);
+  }
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const Mode& mode = *shown[i];
     const char* const kind = mode.kind == Mode::Kind::kUnstable ? ", unstable" : "";
-    write({fmt::format("mode_{}", ++number),
+    write({fmt::format("mode_{}", i + 1),
            fmt::format("Mode of {:.6g} Hz{}, slowed down and enlarged.", mode.frequency_hz, kind),
            mode.translation_m,
            mode.turn_rad,
-           {}});
+           {},
+           static_cast<int>(i + 1),
+           static_cast<int>(shown.size()),
+           mode.frequency_hz});
   }
-  number = 0;
+  int number = 0;
   for (const Mode& mechanism : forces.mechanisms) {
-    write({fmt::format("mechanism_{}", ++number),
+    ++number;
+    write({fmt::format("mechanism_{}", number),
            "Infinitesimal mechanism: a motion that changes no member's length to first order.",
            mechanism.translation_m,
            mechanism.turn_rad,
-           {}});
+           {},
+           number,
+           static_cast<int>(forces.mechanisms.size()),
+           0});
   }
   number = 0;
   const std::size_t cables = experiment.robot.def.cables.size();
   for (const SelfStress& state : forces.self_stress) {
     Shape shape;
     shape.name = fmt::format("self_stress_{}", ++number);
+    shape.number = number;
+    shape.count = static_cast<int>(forces.self_stress.size());
     shape.description =
         state.feasible
             ? "Self-stress, scaled to a largest force of 100 N; all cables are in tension."

@@ -4,7 +4,7 @@
 import type { RobotStatus, Scene, SeriesData, Vec3 } from "./structs";
 export type * from "./structs";
 
-export const PROTOCOL_VERSION = 9;
+export const PROTOCOL_VERSION = 10;
 
 /** The first message. */
 export interface HelloMessage {
@@ -164,6 +164,24 @@ export interface SetGainMessage {
   value: number;
 }
 
+/** Model: simulate it without weight and ground, dropped onto ground from half of its size above it, or settled on the ground. */
+export interface StartMessage {
+  type: "start";
+  as: "described" | "dropped" | "settled";
+}
+
+/** Model: compute Scene.statics. */
+export interface AnalyzeMessage {
+  type: "analyze";
+}
+
+/** Replay of a shape: show another of the same kind. */
+export interface OpenShapeMessage {
+  type: "open_shape";
+  /** From 1. */
+  number: number;
+}
+
 /** Robot: emergency stop. Obeyed from every link that may drive, whoever drives. */
 export interface StopMessage {
   type: "stop";
@@ -219,6 +237,9 @@ export type ClientMessage =
   | SetParameterMessage
   | SetSetpointMessage
   | SetGainMessage
+  | StartMessage
+  | AnalyzeMessage
+  | OpenShapeMessage
   | StopMessage
   | RobotModeMessage
   | RobotGainMessage

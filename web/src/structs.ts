@@ -17,6 +17,8 @@ export interface Shape {
   center_m?: Vec3;
   /** rod, sphere */
   radius_m?: number;
+  /** rod: Euler's load, if its model has a cross section */
+  buckling_n?: number;
   /** box: along its axes */
   half_extents_m?: Vec3;
   /** box: q_BodyBox */
@@ -75,6 +77,8 @@ export interface Cable {
   /** 0 where it is not known */
   stiffness_n_per_m: number;
   actuated: boolean;
+  /** Of its pair in the model, without its name. */
+  tags?: string[];
   /** It lies against what it comes to: frames hold its bends, so many at most. */
   most_bends?: number;
   /** Friction parts it: frames hold its spans. True or absent. */
@@ -150,6 +154,59 @@ export interface Channel {
   /** As in traces: cable/<name>/tension_n. */
   name: string;
   unit: string;
+}
+
+/** A push or drag of the experiment. */
+export interface Action {
+  kind: "push" | "drag";
+  /** Name, node and largest force or velocity. */
+  text: string;
+  from_s: number;
+  to_s: number;
+}
+
+/** Mode, mechanism or state of self-stress that a trace animates (`taut analyze --out`). */
+export interface ShapeInfo {
+  kind: "mode" | "mechanism" | "self_stress";
+  /** From 1. */
+  number: number;
+  /** Number of shapes of this kind in the folder. */
+  count: number;
+  /** Of a mode. */
+  frequency_hz?: number;
+  /** Of a mode: period in the trace over the natural period. */
+  slowdown?: number;
+  /** Of a motion: largest displacement in the trace over the robot's size. */
+  amplitude?: number;
+}
+
+/** Mode shape; the largest translation of any body is 1 m. */
+export interface MotionShape {
+  kind: "mechanism" | "elastic" | "unstable";
+  /** 0 for mechanisms. */
+  frequency_hz: number;
+  /** Per body. */
+  translation_m: Vec3[];
+  /** Per body. */
+  rotation_rad: Vec3[];
+}
+
+/** Statics of a model without weight, about its equilibrium. */
+export interface Statics {
+  /** An equilibrium exists near the described pose. */
+  found: boolean;
+  /** Reason, if none was found; else empty. */
+  reason: string;
+  self_stress_states: number;
+  /** A state of self-stress has all cables in tension. */
+  feasible: boolean;
+  /** Without rigid motions. */
+  mechanisms: number;
+  rigid_motions: number;
+  /** Per cable, in the equilibrium. */
+  cable_tension_n: (number | null)[];
+  /** The first modes other than rigid motions, in the order of their frequencies. */
+  modes: MotionShape[];
 }
 
 /** A named span of the timeline. */
@@ -370,6 +427,14 @@ export interface Scene {
   /** What want_series may ask for, places of nodes that nobody recorded among them; live, of the run so far. */
   channels: Channel[];
   phases: Phase[];
+  /** Pushes and drags of the experiment. */
+  actions?: Action[];
+  /** Absent unless the trace animates a shape. */
+  shape?: ShapeInfo;
+  /** Replay: the content of summary.json. */
+  summary?: unknown;
+  /** Model: result of analyze. */
+  statics?: Statics;
   /** Channels that frames hold in `values`, in their order. */
   values: string[];
   /** Time of the first row of a trace; 0 when live. */
