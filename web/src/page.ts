@@ -10,6 +10,7 @@ import { legend } from "./scene/legend";
 import { foresee } from "./scene/foresee";
 import { runsList } from "./scene/runs_list";
 import { View } from "./scene/view";
+import { viewTools } from "./scene/view_tools";
 import { alarms, poseNote, robotBar } from "./robot/bar";
 import { robotPanel } from "./robot/panel";
 import { giveRunColours } from "./runs";
@@ -18,11 +19,15 @@ import { belowView } from "./ui/below_view";
 import { controls } from "./ui/controls";
 import { gifMaker } from "./ui/gif";
 import { failurePage, header, notices } from "./ui/header";
+import { headline } from "./ui/headline";
 import { Help } from "./ui/help";
 import { inspector } from "./ui/inspector";
 import { keysOf, listenToKeys } from "./ui/keyboard";
+import { modelPanel } from "./ui/model_panel";
 import { recorder } from "./ui/record";
+import { ModePlayer, shapeBar } from "./ui/shape_bar";
 import { timeline } from "./ui/timeline";
+import { videoMakers } from "./ui/video";
 import { button, el } from "./util";
 
 /** Additional parts of some pages. */
@@ -56,13 +61,19 @@ export function buildPage(root: HTMLElement, app: App, more: More = {}): void {
   help.fill(keys);
   listenToKeys(app, keys);
 
-  view.element.append(runsList(app, view));
+  view.element.append(runsList(app, view), ...(view.draws ? [viewTools(app, view)] : []));
   const below = belowView(view.element, [poseNote(app, view.element), ...(view.draws ? [legend(app, view)] : []), inspector(app)]);
-  plots.element.prepend(robotPanel(app), drawer);
-  const top = header(app, () => help.toggle(), [...(more.buttons ?? []), controlsButton, recorder(app, view), gifMaker(app, store, view)]);
+  const numbers = headline(app, store);
+  const player = new ModePlayer(app, view);
+  view.element.append(shapeBar(app, player));
+  plots.element.prepend(robotPanel(app), drawer, ...(report ? [] : [modelPanel(app, player, plots.element, more.beside === undefined)]));
+  const top = header(app, () => help.toggle(), [...(more.buttons ?? []), controlsButton, recorder(app, view), gifMaker(app, store, view), ...videoMakers(app, store, view)]);
   const overlays = [help.element, notices(app), failurePage(app, more.advice)];
-  if (report) reportPage(root, report, { top, view, plots, timeline: timeline(app), overlays });
-  else root.append(top, alarms(app), el("main.split", {}, ...(more.beside ? [more.beside] : []), view.element, plots.element), timeline(app), robotBar(app), ...overlays);
+  if (report) reportPage(root, report, { top, numbers, view, plots, timeline: timeline(app), overlays });
+  else {
+    plots.element.prepend(numbers);
+    root.append(top, alarms(app), el("main.split", {}, ...(more.beside ? [more.beside] : []), view.element, plots.element), timeline(app), robotBar(app), ...overlays);
+  }
   view.element.after(below);
   Object.assign(window, { taut: { app, view, store } });
   app.start();

@@ -42,9 +42,17 @@ export function el<T extends HTMLElement = HTMLElement>(
   return element as T;
 }
 
-/** Returns a button with an accessible label and a tooltip. */
+/** Attributes of a wide table's frame, which the keyboard can scroll. */
+export const SCROLLS = { tabindex: 0, role: "region", "aria-label": "table; scrolls sideways" } as const;
+
+/**
+ * Returns a button with an accessible label and a tooltip. The label begins with the visible words, by which
+ * users of speech input choose it.
+ */
 export function button(label: string | Node, title: string, onclick: () => void, spec = "button"): HTMLButtonElement {
-  return el<HTMLButtonElement>(spec, { type: "button", title, "aria-label": title, onclick }, label);
+  const isWord = typeof label === "string" && /[\p{L}\p{N}]/u.test(label);
+  const name = isWord && !title.startsWith(label) ? `${label}: ${title}` : title;
+  return el<HTMLButtonElement>(spec, { type: "button", title, "aria-label": name, onclick }, label);
 }
 
 export function number(value: number, digits = 3): string {

@@ -31,10 +31,21 @@ export async function closeBrowser() {
   browsers.clear();
 }
 
-/** Opens a page that records its errors and all requested addresses. */
-export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1, webgl = true, touch = false } = {}) {
+/**
+ * Opens a page that records its errors and all requested addresses. `groups`: one plot per group of cables,
+ * the default of the page; most tests read the values of single cables.
+ */
+export async function openPage(url, { width = 1000, height = 560, theme = "light", wait = true, scale = 1, webgl = true, touch = false, groups = false, motion = "no-preference" } = {}) {
   const context = await (await openBrowser(webgl ? GRAPHICS : NO_GRAPHICS)).newContext({
     viewport: { width, height }, colorScheme: theme, acceptDownloads: true, deviceScaleFactor: scale, hasTouch: touch,
+    reducedMotion: motion,
+  });
+  if (!groups) await context.addInitScript(() => {
+    try {
+      if (localStorage.getItem("taut.plots") === null) localStorage.setItem("taut.plots", "small");
+    } catch {
+      // a page that may not store anything
+    }
   });
   context.setDefaultTimeout(0);
   const page = await context.newPage();

@@ -36,7 +36,7 @@ afterEach(async () => {
 });
 
 const editor = () => page.locator(".editor");
-const press = (name) => editor().getByRole("button", { name, exact: true }).click();
+const press = (name) => editor().getByRole("button", { name }).click();
 const NEW_PLOT = "put the chosen channels into a new plot";
 const EACH = "put each chosen channel into a separate plot";
 const ADD_TO = "add the chosen channels to the plot named next to this button";

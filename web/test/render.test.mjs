@@ -81,8 +81,9 @@ for (const theme of ["light", "dark"]) {
   test(`RodsAreWhereTheirBodiesAre (${theme})`, async (t) => {
     for (const time_s of [0, 4, 8]) {
       const { page, project, image } = await sceneAt(t, theme, time_s);
-      const isRod = (colour) => (theme === "light" ? brightness(colour) < 110 : brightness(colour) > 75) &&
-        Math.max(...colour) - Math.min(...colour) < 45;
+      // gray, or red under compression
+      const isRod = (colour) => (colour[0] - colour[1] > 30 && colour[0] - colour[2] > 30) ||
+        ((theme === "light" ? brightness(colour) < 110 : brightness(colour) > 75) && Math.max(...colour) - Math.min(...colour) < 45);
       for (let i = 0; i < 3; ++i) {
         const share = along(project, image, rodEnds(i, time_s), othersThan("rod", i, time_s), isRod);
         assert.ok(share > 0.9, `rod ${i} at ${time_s} s: ${share} of its axis is drawn`);
@@ -108,20 +109,94 @@ for (const theme of ["light", "dark"]) {
   });
 }
 
+/** Returns pixels per meter at a point, with a projection computed independently of the page's camera. */
+async function scaleAt(page, project, point) {
+  const { height, fov } = await page.evaluate(() => ({ height: window.taut.view.canvas.clientHeight, fov: window.taut.view.camera.fov }));
+  return height / 2 / Math.tan((fov * Math.PI) / 360) / project(point).depth;
+}
+
+const widthsOf = (page) => page.evaluate(() => window.taut.view.world.cables.object.children.map(({ material }) => ({ width: material.linewidth, dashed: material.dashed })));
+const STRUT_M = 0.016; // diameter of the fixture's rods
+
 test("ColourAndWidthRiseWithTension", async (t) => {
-  const { page } = await sceneAt(t, "light", 4);
-  const lines = await page.evaluate(() => window.taut.view.world.cables.object.children.map(({ material }) => ({
-    width: material.linewidth, dashed: material.dashed, red: material.color.clone().convertLinearToSRGB().r,
-  })));
+  const { page, project } = await sceneAt(t, "light", 4);
+  const lines = await widthsOf(page);
   for (let i = 0; i < CABLE_COUNT; ++i) {
     assert.equal(lines[i].dashed, i === SLACK);
     if (i === SLACK) continue;
-    const width = 1.5 + (5.5 * tension_n(i, 4)) / SCALE_N;
-    assert.ok(Math.abs(lines[i].width - width) < 1e-9, `cable ${i}: ${lines[i].width} px, not ${width}`);
-    if (i > 0) assert.ok(lines[i].width > lines[i - 1].width);
+    // widths are in meters: from 14 % to 50 % of the strut's diameter
+    const width = STRUT_M * (0.14 + (0.36 * tension_n(i, 4)) / SCALE_N) * (await scaleAt(page, project, between(...cableEnds(i, 4), 0.5)));
+    assert.ok(Math.abs(lines[i].width - Math.max(width, 1.25)) < 0.02, `cable ${i}: ${lines[i].width} px, not ${width}`);
   }
-  const legend = await page.locator(".legend .marks").innerText();
+  const legend = await page.locator(".legend .marks").first().innerText();
   assert.deepEqual(legend.split(/\s*N\s*/).filter((part) => part !== "").map(Number), [0, 20, 40]);
+});
+
+test("ACableIsNeverThickerThanAStrut", async (t) => {
+  const { page } = await sceneAt(t, "light", 4);
+  for (const far of [1, 3, 10, 30]) {
+    await page.evaluate((factor) => {
+      const { camera, target, view } = { ...window.taut.view, view: window.taut.view, camera: window.taut.view.camera, target: window.taut.view.target };
+      camera.position.copy(target).add(camera.position.clone().set(1.03, 0.28, 0.43).multiplyScalar(factor));
+      view.invalidate();
+    }, far);
+    await drawn(page);
+    const project = await projection(page);
+    for (const [i, { width }] of (await widthsOf(page)).entries()) {
+      const strut_px = STRUT_M * (await scaleAt(page, project, between(...cableEnds(i, 4), 0.5)));
+      assert.ok(width <= Math.max(strut_px, 0.51), `cable ${i} is ${width} px wide, a strut ${strut_px}, at ${far} times the distance`);
+    }
+  }
+});
+
+/** Returns CIELAB of an sRGB color. */
+function lab(colour) {
+  const [r, g, b] = colour.map((value) => (value / 255 <= 0.04045 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  const f = (value) => (value > 0.008856 ? Math.cbrt(value) : 7.787 * value + 16 / 116);
+  const [x, y, z] = [(0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505, 0.2126 * r + 0.7152 * g + 0.0722 * b, (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089].map(f);
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+for (const theme of ["light", "dark"]) {
+  test(`TheScaleOfTensionIsPerceptuallyUniform (${theme})`, async (t) => {
+    const page = await openPage(server.url, { theme });
+    t.after(() => page.context().close());
+    const colours = await page.evaluate(() => {
+      const scale = document.querySelector(".legend canvas");
+      const { data } = scale.getContext("2d").getImageData(0, scale.height / 2, scale.width, 1);
+      return Array.from({ length: 17 }, (_, i) => [...data.slice(4 * Math.round((i * (scale.width - 1)) / 16), 4 * Math.round((i * (scale.width - 1)) / 16) + 3)]);
+    });
+    const points = colours.map(lab);
+    const steps = points.slice(1).map((point, i) => Math.hypot(...point.map((value, k) => value - points[i][k])));
+    const rises = points.slice(1).map(([l], i) => l - points[i][0]);
+    assert.ok(rises.every((rise) => (theme === "light" ? rise < 0 : rise > 0)), `lightness is monotonic: ${rises}`);
+    // a straight line in CIELAB would have equal steps; the old scale's differed by a factor of 4
+    assert.ok(Math.max(...steps) < 2.6 * Math.min(...steps), `steps: ${steps}`);
+  });
+}
+
+test("StrutsAreColouredByTheirCompression", async (t) => {
+  const { page } = await sceneAt(t, "light", 4);
+  const shown = await page.evaluate(() => ({ force_n: [...window.taut.view.world.compression.force_n], scale_n: window.taut.view.world.compressionScale_n,
+    red: window.taut.view.world.bodies.meshes.filter(({ userData }) => userData.kind === "rod").map(({ material }) => material.color.clone().convertLinearToSRGB().r) }));
+  for (let i = 0; i < 3; ++i) {
+    // half of the axial components of the cables' forces at both ends
+    const [low, high] = rodEnds(i, 4);
+    const axis = between(low, high, 1).map((value, k) => value - low[k]);
+    const length = Math.hypot(...axis);
+    let compression_n = 0;
+    cables.forEach(({ attachments }, c) => attachments.forEach(({ body, position_m }, end) => {
+      if (body !== i) return;
+      const [here, there] = [cableEnds(c, 4)[end], cableEnds(c, 4)[1 - end]];
+      const pull = there.map((value, k) => value - here[k]);
+      const side = Math.hypot(...position_m.map((value, k) => value - nodes[2 * i + 1].position_m[k])) < 1e-9 ? 1 : -1;
+      compression_n -= (0.5 * side * tension_n(c, 4) * pull.reduce((sum, value, k) => sum + value * axis[k], 0)) / length / Math.hypot(...pull);
+    }));
+    assert.ok(Math.abs(shown.force_n[i] - compression_n) < 1e-9, `rod ${i}: ${shown.force_n[i]} N, not ${compression_n}`);
+  }
+  const most = shown.force_n.indexOf(Math.max(...shown.force_n));
+  assert.ok(shown.scale_n >= shown.force_n[most] && shown.red[most] === Math.max(...shown.red), JSON.stringify(shown));
+  assert.match(await page.evaluate(() => document.querySelector(".legend").textContent), /strut compression/);
 });
 
 test("ContactForcesAreArrowsToScale", async (t) => {

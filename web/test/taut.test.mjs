@@ -361,3 +361,47 @@ test("ShapesOfAnAnalysisFillTheViewAndMove", options, async (t) => {
   const moved = Math.max(...to.map(({ x, y }, i) => Math.hypot(x - back[i].x, y - back[i].y)));
   assert.ok(moved > 0.04 * width, `${moved} pixels of ${width}`);
 });
+
+test("AModelIsAnalyzedDroppedSettledAndPutBack", options, async (t) => {
+  const page = await openPage(await view("models/prism3.yaml", "--port", "0"), { groups: true });
+  t.after(() => page.context().close());
+  await page.waitForFunction(() => document.querySelectorAll(".statics button").length > 0);
+  const known = JSON.parse(taut("analyze", "models/prism3.yaml", "--json", "--modes", "3").toString());
+  const frequencies = await page.evaluate(() => window.taut.app.tuning.value.statics.modes.slice(0, 3).map(({ frequency_hz }) => frequency_hz));
+  const text = JSON.stringify(known);
+  for (const frequency_hz of frequencies) assert.ok(text.includes(`"frequency_hz":${frequency_hz}`), `${frequency_hz} Hz is a mode of taut analyze`);
+  const height = () => page.evaluate(() => Math.min(...window.taut.app.scene.value.nodes.map((_, i) => window.taut.view.nodeAt(i).z)));
+  const before_m = await height();
+  await page.getByRole("button", { name: "simulate the robot falling onto the ground" }).click();
+  await page.waitForFunction(() => window.taut.app.frame.value.now_s > 0.6);
+  assert.ok((await height()) < before_m - 0.05, "it has fallen");
+  assert.equal(await page.evaluate(() => window.taut.app.scene.value.terrain.length), 1);
+  assert.ok((await page.locator(".plots .grid:visible").count()) > 0, "plots of the fall");
+  await page.getByRole("button", { name: "let the robot settle on the ground" }).click();
+  await page.waitForFunction(() => window.taut.app.frame.value.now_s === 0 && window.taut.app.scene.value.terrain.length === 1);
+  await page.getByRole("button", { name: "back to the described pose, without weight" }).click();
+  await page.waitForFunction(() => window.taut.app.scene.value.terrain.length === 0 && window.taut.app.frame.value.now_s === 0);
+  assert.ok(Math.abs((await height()) - before_m) < 1e-9);
+});
+
+test("TheNextModeIsThatOfTheSameAnalysis", options, async (t) => {
+  const shapes = join(folder, "shapes");
+  taut("analyze", "models/prism3.yaml", "--modes", "2", "--out", shapes);
+  const page = await openPage(await view(join(shapes, "mode_1", "trace.h5"), "--port", "0"), { groups: true });
+  t.after(() => page.context().close());
+  const bar = page.locator(".shapebar span");
+  const first = await bar.innerText();
+  assert.match(first, /^mode 1 of 2 · [\d.]+ Hz · slowed [\d.]+× · amplitude 8 % of its size$/);
+  await page.getByRole("button", { name: "next mode" }).click();
+  await page.waitForFunction(() => document.querySelector(".shapebar span").textContent.startsWith("mode 2 of 2"));
+  await page.getByRole("button", { name: "next mode" }).click();
+  await page.waitForFunction((text) => document.querySelector(".shapebar span").textContent === text, first);
+});
+
+test("PushesAndTagsOfTheFilesAreInTheScene", options, async (t) => {
+  const page = await openPage(await view("experiments/push_20n.yaml", "--paused", "--port", "0"), { groups: true });
+  t.after(() => page.context().close());
+  const { actions, tags } = await page.evaluate(() => ({ actions: window.taut.app.scene.value.actions, tags: window.taut.app.scene.value.cables.map((cable) => cable.tags) }));
+  assert.ok(actions.length > 0 && actions.every(({ kind, text, from_s, to_s }) => kind === "push" && / N on /.test(text) && from_s < to_s), JSON.stringify(actions));
+  assert.ok(tags.every((list) => list.length > 0), JSON.stringify(tags));
+});

@@ -72,10 +72,6 @@ export class ChannelBrowser {
     this.showChosen();
   }
 
-  focus(): void {
-    this.search.focus();
-  }
-
   private get matches(): string[] {
     const finds = finder(this.search.value);
     return this.channels.map(({ name }) => name).filter(finds);

@@ -1,14 +1,18 @@
-// One plot on the screen (uPlot), with the values under the cursor.
+// One plot on the screen (uPlot), with the values under the cursor; of tensions of several cables, with the line
+// under the mouse.
 import uPlot from "uplot";
 import type { App } from "../app";
 import { palette } from "../colours";
 import { NOTHING, type Points } from "../points";
 import type { SeriesStore } from "../series";
-import { el, number, tickText } from "../util";
+import { el, nameAndUnit, number, tickText } from "../util";
+import { partsOf } from "./channels";
 import { Differences } from "./differences";
-import { coarseness, type Figure, type Filled, ink, isDashed, valueRange } from "./figure";
+import { coarseness, type Figure, type Filled, ink, isDashed, TENSION, valueRange } from "./figure";
+import { NearLine } from "./near_line";
 
 const SYNC = "taut";
+const MOST_IN_KEY = 12; // lines of an overlay; the box at the mouse names them, too
 const DIGITS = 4; // significant digits of a value beside a plot
 const AWAY = 0.01; // relative to the window: a row farther from the displayed time is labeled with its time
 
@@ -23,9 +27,13 @@ export class Chart {
   private readonly values = el("span.values");
   private readonly differences: Differences;
   private readonly now = el("div.now");
+  private stops: (() => void)[] = [];
   private readonly coarse = el("div.coarse");
+  private near: NearLine | null = null;
   private shared: [number, number] | null = null;
   private span: readonly [number, number] = [0, 1];
+  /** Has axis labels. */
+  private readonly isLarge: boolean;
 
   constructor(
     private readonly app: App,
@@ -35,12 +43,15 @@ export class Chart {
   ) {
     this.filled = { figure, data: figure.lines.map(() => NOTHING) };
     this.differences = new Differences(figure);
-    this.place = el("div.canvas", { role: "img", "aria-label": `${figure.title} over time` });
-    this.key.hidden = figure.group === "tension" || figure.lines.length < 2;
+    this.isLarge = figure.group !== "tension";
+    this.place = el(this.isLarge ? "div.canvas.labeled" : "div.canvas", { role: "img", "aria-label": `${figure.title} over time` });
+    this.key.hidden = figure.group === "tension" || figure.lines.length < 2 || figure.lines.length > MOST_IN_KEY;
     this.element = el("figure.chart", { "data-figure": figure.id, "aria-label": figure.title },
       el("figcaption", {}, el("span.name", { title: figure.title }, figure.title), this.values, tools), this.differences.element, this.key, this.place);
     this.showKey();
     new ResizeObserver(() => this.resize()).observe(this.place);
+    if (figure.group !== "overlay") return;
+    this.stops = [app.hover, app.selection].map((signal) => signal.watch(() => this.markCable()));
   }
 
   get range(): [number, number] {
@@ -90,6 +101,12 @@ export class Chart {
       return shown;
     });
     const where = Number.isNaN(away_s) ? "" : ` at ${tickText(away_s)} s`;
+    if (this.figure.group === "overlay") {
+      const known = rows.flatMap((row) => (row && Number.isFinite(row.value) ? [row.value] : []));
+      const text = known.length < rows.length ? "…" : `${number(Math.min(...known), DIGITS)} to ${number(Math.max(...known), DIGITS)} ${unit}${where}`;
+      this.values.replaceChildren(el("span", { title: "least and greatest value of the lines" }, text));
+      return;
+    }
     this.values.replaceChildren(...texts.flatMap((text) => [text, " "]), unit + where);
   }
 
@@ -103,6 +120,7 @@ export class Chart {
 
   dispose(): void {
     if (this.plot?.over.matches(":hover")) this.app.cursor_s.value = null; // a removed element receives no mouseleave
+    for (const stop of this.stops) stop();
     this.plot?.destroy();
     this.plot = null;
     this.element.remove();
@@ -131,6 +149,7 @@ export class Chart {
       stroke: colours.text, font: "11px system-ui, sans-serif", ticks: { show: false },
       grid: { stroke: colours.grid, width: 1 }, gap: 3,
     };
+    const label: uPlot.Axis = { labelFont: "11px system-ui, sans-serif", labelSize: 15, labelGap: 0 };
     const series: uPlot.Series[] = [{}];
     const bands: uPlot.Band[] = [];
     for (const line of this.figure.lines) {
@@ -146,8 +165,8 @@ export class Chart {
       legend: { show: false },
       series, bands,
       axes: [
-        { ...axis, size: 20, space: 44, values: (_, ticks) => ticks.map(tickText) },
-        { ...axis, size: 38, space: 22, values: (_, ticks) => ticks.map(tickText) },
+        { ...axis, size: 20, space: 44, values: (_, ticks) => ticks.map(tickText), ...(this.isLarge ? { ...label, label: "time [s]" } : {}) },
+        { ...axis, size: 38, space: 22, values: (_, ticks) => ticks.map(tickText), ...(this.isLarge ? { ...label, label: yLabel(this.figure) } : {}) },
       ],
       scales: {
         x: { time: false, range: () => [this.span[0], this.span[1]] },
@@ -164,20 +183,50 @@ export class Chart {
       },
     };
     const plot = new uPlot(options, data, this.place);
-    plot.over.append(this.now, this.coarse);
+    plot.over.append(this.now);
+    (this.isLarge ? this.place : plot.over).append(this.coarse);
+    if (this.figure.group === "overlay") {
+      this.near = new NearLine(this.figure.lines.map((line) => ({ label: line.label, colour: ink(colours, line.ink) })), this.figure.unit);
+      plot.over.append(this.near.element);
+    }
     plot.ctx.canvas.setAttribute("aria-hidden", "true"); // the surrounding element has the label
     plot.over.addEventListener("click", () => {
       const left = plot.cursor.left ?? -1;
       if (left >= 0 && plot.select.width === 0) this.app.seek(plot.posToVal(left, "x"));
+      const { hover } = this.app;
+      if (this.near && hover.value?.kind === "cable") this.app.selection.value = hover.value;
     });
-    plot.over.addEventListener("mouseleave", () => (this.app.cursor_s.value = null));
+    plot.over.addEventListener("mouseleave", () => {
+      this.app.cursor_s.value = null;
+      if (!this.near) return;
+      this.near.element.hidden = true;
+      this.app.hover.value = null;
+    });
     return plot;
+  }
+
+  /** Emphasizes the line of the cable under the mouse, or of the selected one. */
+  private markCable(): void {
+    const scene = this.app.scene.value;
+    const shown = this.app.hover.value ?? this.app.selection.value;
+    if (!this.plot || !this.near || !scene) return;
+    const name = shown?.kind === "cable" ? scene.cables[shown.index]?.name : undefined;
+    this.near.mark(this.plot, this.figure.lines.findIndex(({ channel }) => TENSION.exec(channel)?.[1] === name));
+  }
+
+  /** Makes the nearest line's cable the one under the mouse. */
+  private hoverLine(plot: uPlot): void {
+    const line = this.near!.find(plot);
+    const name = line < 0 ? undefined : TENSION.exec(this.figure.lines[line]!.channel)?.[1];
+    const index = this.app.scene.value?.cables.findIndex((cable) => cable.name === name) ?? -1;
+    if (this.app.hover.value?.index !== index) this.app.hover.value = index < 0 ? null : { kind: "cable", index };
   }
 
   private point(plot: uPlot): void {
     // of the plots that share the cursor, only the plot under the mouse sets the time
     if (plot.cursor.event === undefined || plot.cursor.event === null) return;
     const left = plot.cursor.left ?? -1;
+    if (this.near) this.hoverLine(plot);
     this.app.cursor_s.value = left >= 0 ? plot.posToVal(left, "x") : null;
   }
 
@@ -187,6 +236,14 @@ export class Chart {
     this.app.range_s.value = [plot.posToVal(left, "x"), plot.posToVal(left + width, "x")];
     plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
   }
+}
+
+/** Returns the label of the axis of values: quantity and unit. */
+function yLabel({ title, unit, lines, group }: Figure): string {
+  const quantity = group === "overlay" ? "tension" : lines.length > 0 ? nameAndUnit(partsOf(lines[0]!.channel).quantity)[0] : title;
+  const shared = lines.every(({ channel }) => nameAndUnit(partsOf(channel).quantity)[0] === quantity) || group === "overlay";
+  const name = shared ? quantity : title;
+  return unit === "" ? name : `${name} [${unit}]`;
 }
 
 /** uPlot requires one list of times for all lines; two recordings have two. */

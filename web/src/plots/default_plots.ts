@@ -1,20 +1,36 @@
-// Default plots: the tensions of all cables, or, if there are too many, of the cables with the largest; the
-// values of a program; and quantities of the whole system.
+// Default plots: the tensions of all cables, one large plot per group or one small plot per cable; if there are
+// too many, of the cables with the largest; the values of a program; and quantities of the whole system.
 import type { App } from "../app";
 import { cableState } from "../frame";
 import type { Scene } from "../protocol";
 import type { SeriesStore } from "../series";
+import { cableGroups } from "./groups";
 import type { PlotSpec } from "./layouts";
 
 /** Up to this number all cables are plotted; of more, those with the largest tensions. */
 const FEW_CABLES = 24;
 const LARGEST = 12;
+/** The same for plots of groups. */
+const FEW_LINES = 48;
+const LARGEST_LINES = 24;
 
 const SYSTEM: readonly PlotSpec[] = [
   { title: "energy", channels: ["system/kinetic_j", "system/gravity_j", "system/elastic_j"] },
   { title: "contacts", channels: ["system/contact_count"] },
   { title: "real-time factor", channels: ["real_time_factor"] },
 ];
+
+/** Returns one plot per group of cables. */
+function groupPlots(scene: Scene, cables: readonly string[]): PlotSpec[] {
+  const shown = new Set(cables);
+  const groups = cableGroups(scene.cables.filter(({ name }) => shown.has(name)));
+  return groups.map((group) => ({ title: groups.length > 1 ? `tension: ${group.name}` : "tension", channels: group.cables.map((name) => `cable/${name}/tension_n`) }));
+}
+
+/** Whether tensions have one plot per cable; compared runs, set points of boards and single cables need it. */
+export function needsSmallPlots(scene: Scene): boolean {
+  return scene.compared.length > 0 || scene.robot !== undefined || scene.cables.length < 2;
+}
 
 export function tensionPlot(cable: string): PlotSpec {
   return { title: cable, channels: [`cable/${cable}/setpoint_n`, `cable/${cable}/tension_n`] };
@@ -45,33 +61,37 @@ export class DefaultPlots {
     private readonly store: SeriesStore,
   ) {}
 
-  find(scene: Scene, done: (plots: PlotSpec[]) => void): void {
+  /** `small`: one plot per cable. */
+  find(scene: Scene, small: boolean, done: (plots: PlotSpec[]) => void): void {
     const asked = ++this.wanted;
+    const each = small || needsSmallPlots(scene);
     const all = scene.robot?.motors ?? scene.cables.map(({ name }) => name);
     // a layout derived from these must not contain channels that the run does not have
     const known = ({ title, channels }: PlotSpec) => ({ title, channels: channels.filter((name) => this.store.has(name, 0) || this.store.has(name, 1)) });
     const answer = (cables: readonly string[]) => {
       if (asked !== this.wanted) return;
-      done([...cables.map(tensionPlot), ...scene.values.map(alone), ...(scene.robot ? robotPlots(scene.robot.motors) : SYSTEM)].map(known).filter(({ channels }) => channels.length > 0));
+      const tensions = each ? cables.map(tensionPlot) : groupPlots(scene, cables);
+      done([...tensions, ...scene.values.map(alone), ...(scene.robot ? robotPlots(scene.robot.motors) : SYSTEM)].map(known).filter(({ channels }) => channels.length > 0));
     };
-    if (all.length <= FEW_CABLES) answer(all);
-    else if (this.app.live) this.ofTheMoment(scene, answer);
-    else this.ofTheWholeTime(scene, answer);
+    const most = each ? LARGEST : LARGEST_LINES;
+    if (all.length <= (each ? FEW_CABLES : FEW_LINES)) answer(all);
+    else if (this.app.live) this.ofTheMoment(scene, most, answer);
+    else this.ofTheWholeTime(scene, most, answer);
   }
 
   /** A live run has no complete time span yet: uses the tensions when the page opens. */
-  private ofTheMoment(scene: Scene, answer: (cables: readonly string[]) => void): void {
+  private ofTheMoment(scene: Scene, most: number, answer: (cables: readonly string[]) => void): void {
     let stop = () => {};
     let found = false;
     stop = this.app.frame.watch((frame) => {
       if (found || !frame || frame.run < 0 || frame.cable_count !== scene.cables.length) return;
       found = true;
       queueMicrotask(() => stop());
-      answer(largest(scene, (_, i) => cableState(frame, i).tension_n));
+      answer(largest(scene, most, (_, i) => cableState(frame, i).tension_n));
     });
   }
 
-  private ofTheWholeTime(scene: Scene, answer: (cables: readonly string[]) => void): void {
+  private ofTheWholeTime(scene: Scene, count: number, answer: (cables: readonly string[]) => void): void {
     const most = new Map<string, number>();
     for (const { name } of scene.cables) {
       const channel = `cable/${name}/tension_n`;
@@ -81,17 +101,17 @@ export class DefaultPlots {
       }
       this.store.want(channel, 0, scene.first_s, scene.duration_s, 2, ({ max }) => {
         most.set(name, Math.max(...max.map((value) => value ?? -Infinity)));
-        if (most.size === scene.cables.length) answer(largest(scene, (cable) => most.get(cable)!));
+        if (most.size === scene.cables.length) answer(largest(scene, count, (cable) => most.get(cable)!));
       });
     }
   }
 }
 
 /** Returns the cables with the largest tensions in the order of the model; of equal ones the first. */
-function largest(scene: Scene, tension_n: (cable: string, i: number) => number): string[] {
+function largest(scene: Scene, count: number, tension_n: (cable: string, i: number) => number): string[] {
   const order = scene.cables.map(({ name }, i) => ({ i, n: tension_n(name, i) }));
   // unknown values sort last, so that the order is unique
   const known = (n: number) => (Number.isNaN(n) ? -Infinity : n);
   order.sort((a, b) => (known(b.n) > known(a.n) ? 1 : known(b.n) < known(a.n) ? -1 : a.i - b.i));
-  return order.slice(0, LARGEST).map(({ i }) => i).sort((a, b) => a - b).map((i) => scene.cables[i]!.name);
+  return order.slice(0, count).map(({ i }) => i).sort((a, b) => a - b).map((i) => scene.cables[i]!.name);
 }

@@ -5,7 +5,10 @@ import { download, tickText } from "../util";
 import { coarseness, type Filled, ink, isDashed, valueRange } from "./figure";
 import { linesOf } from "./key";
 
-const CELL = { width: 300, height: 170, left: 42, right: 10, top: 22, bottom: 24 };
+interface Cell { width: number; height: number; left: number; right: number; top: number; bottom: number }
+const SMALL: Cell = { width: 300, height: 170, left: 42, right: 10, top: 22, bottom: 36 };
+/** Of a single figure: a column of two in a paper. */
+const LARGE: Cell = { width: 600, height: 320, left: 50, right: 12, top: 24, bottom: 38 };
 const KEY_PX = 26;
 
 export function exportSvg(filled: Filled[], span: readonly [number, number], name: string): void {
@@ -13,6 +16,22 @@ export function exportSvg(filled: Filled[], span: readonly [number, number], nam
 }
 
 export async function exportPng(filled: Filled[], span: readonly [number, number], name: string): Promise<void> {
+  download(`${fileName(name)}.png`, await png(filled, span));
+}
+
+/** Copies a picture of the plots to the clipboard. Returns the reason of a failure; null: none. */
+export async function copyPng(filled: Filled[], span: readonly [number, number]): Promise<string | null> {
+  if (!navigator.clipboard?.write) return "this browser lets pages copy pictures only from localhost, files or https";
+  try {
+    // the promise itself, because Safari permits copying only within the click
+    await navigator.clipboard.write([new ClipboardItem({ "image/png": png(filled, span) })]);
+    return null;
+  } catch (error) {
+    return error instanceof Error ? error.message : String(error);
+  }
+}
+
+async function png(filled: Filled[], span: readonly [number, number]): Promise<Blob> {
   const text = svg(filled, span);
   const image = new Image();
   const loaded = new Promise<void>((resolve, reject) => {
@@ -25,7 +44,7 @@ export async function exportPng(filled: Filled[], span: readonly [number, number
   canvas.width = 3 * image.width;
   canvas.height = 3 * image.height;
   canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);
-  canvas.toBlob((blob) => blob && download(`${fileName(name)}.png`, blob), "image/png");
+  return new Promise((resolve, reject) => canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser cannot encode the picture"))), "image/png"));
 }
 
 /**
@@ -64,6 +83,7 @@ function columnName(label: string): string {
 
 export function svg(filled: readonly Filled[], span: readonly [number, number]): string {
   const across = Math.min(filled.length, filled.length > 4 ? 3 : 2);
+  const CELL = filled.length === 1 ? LARGE : SMALL;
   const down = Math.ceil(filled.length / across);
   const width = across * CELL.width;
   const height = down * CELL.height + KEY_PX;
@@ -72,7 +92,7 @@ export function svg(filled: readonly Filled[], span: readonly [number, number]):
   const cells = filled.map((each, i) => {
     const range = shared && each.figure.group === "tension" ? shared : valueRange([each]);
     const place = `translate(${(i % across) * CELL.width} ${Math.floor(i / across) * CELL.height})`;
-    return `<g transform="${place}">${cell(each, span, range)}</g>`;
+    return `<g transform="${place}">${cell(each, span, range, CELL)}</g>`;
   });
   return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" font-family="sans-serif" font-size="11">
 <rect width="100%" height="100%" fill="#fff"/>
@@ -82,7 +102,7 @@ ${cells.join("\n")}
 `;
 }
 
-function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0, y1]: [number, number]): string {
+function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0, y1]: [number, number], CELL: Cell): string {
   const right = CELL.width - CELL.right;
   const bottom = CELL.height - CELL.bottom;
   const x = (t: number) => CELL.left + ((t - t0) / (t1 - t0)) * (right - CELL.left);
@@ -94,8 +114,9 @@ function cell({ figure, data }: Filled, [t0, t1]: readonly [number, number], [y0
     parts.push(`<path d="M${CELL.left} ${y(tick).toFixed(1)}H${right}" stroke="#ddd"/><text x="${CELL.left - 4}" y="${(y(tick) + 4).toFixed(1)}" text-anchor="end">${tickText(tick)}</text>`);
   }
   for (const tick of ticks(t0, t1, 5)) {
-    parts.push(`<path d="M${x(tick).toFixed(1)} ${CELL.top}V${bottom}" stroke="#eee"/><text x="${x(tick).toFixed(1)}" y="${bottom + 14}" text-anchor="middle">${tickText(tick)} s</text>`);
+    parts.push(`<path d="M${x(tick).toFixed(1)} ${CELL.top}V${bottom}" stroke="#eee"/><text x="${x(tick).toFixed(1)}" y="${bottom + 14}" text-anchor="middle">${tickText(tick)}</text>`);
   }
+  parts.push(`<text x="${(CELL.left + right) / 2}" y="${bottom + 28}" text-anchor="middle">time [s]</text>`);
   parts.push(`<svg x="${CELL.left}" y="${CELL.top}" width="${right - CELL.left}" height="${bottom - CELL.top}" viewBox="${CELL.left} ${CELL.top} ${right - CELL.left} ${bottom - CELL.top}">`);
   figure.lines.forEach((line, i) => {
     const colour = ink(palette("light"), line.ink);

@@ -1,6 +1,6 @@
 // Figure: content of a plot, lines over time with their channels, for the screen and for export.
 import type { Selection } from "../app";
-import type { Palette } from "../colours";
+import { hueColour, type Palette } from "../colours";
 import { NOTHING, type Points } from "../points";
 import type { Scene } from "../protocol";
 import type { SeriesStore } from "../series";
@@ -9,8 +9,8 @@ import { nameAndUnit, unitText } from "../util";
 import { labelsOf } from "./channels";
 import type { PlotSpec } from "./layouts";
 
-/** `run k`: the color of a compared run. */
-export type Ink = "own" | "setpoint" | `run ${number}` | number;
+/** `run k`: the color of a compared run; `hue i/n`: color i of n lines of equal rank. */
+export type Ink = "own" | "setpoint" | `run ${number}` | `hue ${number}/${number}` | number;
 
 export interface Line {
   label: string;
@@ -24,7 +24,8 @@ export interface Figure {
   title: string;
   unit: string;
   lines: Line[];
-  group: "tension" | "own" | "further";
+  /** overlay: tensions of several cables, one large plot. */
+  group: "overlay" | "tension" | "own" | "further";
 }
 
 /** A figure with the points of its lines, in their order. */
@@ -35,6 +36,8 @@ export interface Filled {
 
 export function ink(palette: Palette, which: Ink): string {
   if (typeof which === "number") return palette.further[which % palette.further.length]!;
+  const [, i, n] = /^hue (\d+)\/(\d+)$/.exec(which) ?? [];
+  if (n !== undefined) return hueColour(Number(i) / Number(n), palette.lineLightness);
   return which === "own" || which === "setpoint" ? palette[which] : runColour(palette, Number(which.slice("run ".length)));
 }
 
@@ -43,6 +46,8 @@ function linesOfRuns(scene: Scene, channel: string): Line[] {
   const others = scene.compared.map((run, k): Line => ({ label: runName(run), channel, source: k + 1, ink: `run ${k + 1}` }));
   return [...others, { label: THIS_RUN, channel, source: 0, ink: "own" }];
 }
+
+export const TENSION = /^cable\/(.*)\/tension_n$/;
 
 /** Number of colors; they repeat for further lines, which are dashed. */
 const INKS = 6;
@@ -84,6 +89,11 @@ function figureOf(plot: PlotSpec, scene: Scene, store: SeriesStore): Figure {
     const lines = linesOfRuns(scene, `cable/${cable}/tension_n`);
     const wanted = plot.channels.includes(setpoint.channel) ? [setpoint, ...lines] : lines;
     return known({ id: `tension:${cable}`, title: plot.title, unit: "N", group: "tension", lines: wanted }, store);
+  }
+  const cables = plot.channels.map((channel) => TENSION.exec(channel)?.[1]);
+  if (cables.length > 1 && cables.every((name) => name !== undefined)) {
+    const lines = cables.map((name, i): Line => ({ label: name!, channel: plot.channels[i]!, source: 0, ink: cables.length > INKS ? `hue ${i}/${cables.length}` : i }));
+    return known({ id: `overlay:${plot.title}`, title: plot.title, unit: "N", group: "overlay", lines }, store);
   }
   const id = plot.title.toLowerCase().replace(/[^\p{L}\p{N}_]+/gu, "-");
   const labels = labelsOf(plot.channels);

@@ -1,13 +1,13 @@
 // Panel of all plots: their content, updates and visibility.
 import { type App, nameOf, type Selection } from "../app";
-import { button, el } from "../util";
+import { button, el, memory, Signal } from "../util";
 import type { SeriesStore } from "../series";
 import { Chart } from "./chart";
-import { exportCsv, exportPng, exportSvg } from "./export";
+import { copyPng, exportCsv, exportPng, exportSvg } from "./export";
 import { type Plots, withChannels, withNewPlot, withoutPlot } from "./arrangement";
 import { ChannelBrowser, dropTarget } from "./browser";
 import { titleOf } from "./channels";
-import { DefaultPlots } from "./default_plots";
+import { DefaultPlots, needsSmallPlots } from "./default_plots";
 import { type Figure, figuresOf, fill, type Filled, ownFigures, valueRange } from "./figure";
 import { Key } from "./key";
 import { layoutBar } from "./layout_bar";
@@ -20,7 +20,7 @@ const POINTS = 600; // of a plot; about two per pixel of its width
 
 export class PlotPanel {
   readonly element = el("section.plots", { "aria-label": "plots" });
-  private readonly grids = { tension: el("div.grid"), own: el("div.grid.wide"), further: el("div.grid.wide") };
+  private readonly grids = { own: el("div.grid.wide"), overlay: el("div.grid.large"), tension: el("div.grid"), further: el("div.grid.wide") };
   private readonly layouts: Layouts;
   private readonly defaults: DefaultPlots;
   private readonly browser: ChannelBrowser;
@@ -30,6 +30,8 @@ export class PlotPanel {
   /** The plots, without the figures of the selection in the view. */
   private plots: Plots = [];
   private readonly key = new Key();
+  /** Increases when plots are added or removed. */
+  private readonly shownPlots = new Signal(0);
   private charts: Chart[] = [];
   /** Places of the charts in the layout. */
   private places = new Map<Chart, number>();
@@ -37,6 +39,8 @@ export class PlotPanel {
   private readonly visible = new Set<Chart>();
   private readonly seen: IntersectionObserver;
   private sameScale = true;
+  /** One plot per cable, instead of one per group of cables. */
+  private small = memory.get("plots") === "small";
   private wholeRun = false;
   private due = 0;
   private own: { kind: Selection["kind"]; name: string } | null = null;
@@ -54,7 +58,7 @@ export class PlotPanel {
       plots: () => this.plots.map(({ title }, place) => ({ place, title })),
     });
     this.editor = this.makeEditor();
-    this.element.append(this.toolbar(), this.editor, this.remark, this.grids.tension, this.grids.own, this.grids.further, this.dialog.element);
+    this.element.append(this.toolbar(), this.editor, this.remark, ...Object.values(this.grids), this.dialog.element);
     this.seen = new IntersectionObserver((entries) => {
       for (const entry of entries) {
         const chart = this.charts.find((each) => each.element === entry.target);
@@ -118,7 +122,7 @@ export class PlotPanel {
     if (!scene) return;
     const { value: arranged } = this.layouts.plots;
     if (arranged) this.showPlots(arranged);
-    this.defaults.find(scene, (plots) => {
+    this.defaults.find(scene, this.small, (plots) => {
       if (this.layouts.plots.value === null && this.app.scene.value === scene) this.showPlots(plots);
     });
   }
@@ -142,13 +146,14 @@ export class PlotPanel {
     this.showRemark();
     this.browser.showPlots();
     this.showKey();
+    ++this.shownPlots.value;
     this.refresh();
   }
 
   private showRemark(): void {
     const scene = this.app.scene.value;
     const cables = (scene?.robot?.motors ?? scene?.cables ?? []).length;
-    const shown = this.charts.filter(({ figure }) => figure.group === "tension").length;
+    const shown = this.charts.reduce((sum, { figure }) => sum + (figure.group === "tension" ? 1 : figure.group === "overlay" ? figure.lines.length : 0), 0);
     const absent = [...new Set(this.plots.flatMap(({ channels }) => channels))].filter((name) => !this.store.has(name, 0) && !this.store.has(name, 1));
     const isDefault = this.layouts.plots.value === null;
     const when = this.app.live ? "when the page was opened" : "of the run";
@@ -171,13 +176,13 @@ export class PlotPanel {
     this.editButton.setAttribute("aria-expanded", String(!this.editor.hidden));
     if (this.editor.hidden) return;
     this.editor.scrollIntoView({ block: "nearest" });
-    this.browser.focus();
+    this.editor.focus(); // not the search, which would take the key that closes this
   }
 
   private makeEditor(): HTMLElement {
     const target = el("div.newplot", {}, "drop channels here for a new plot, or into a plot");
     dropTarget(target, (channels) => this.layouts.change(withNewPlot(this.plots, channels, this.store)));
-    return el("section.editor", { "aria-label": "channels and layouts", hidden: true }, layoutBar(this.app, this.layouts, () => this.plots), this.browser.element, target);
+    return el("section.editor", { "aria-label": "channels and layouts", hidden: true, tabindex: -1 }, layoutBar(this.app, this.layouts, () => this.plots), this.browser.element, target);
   }
 
   private showKey(): void {
@@ -197,7 +202,10 @@ export class PlotPanel {
   private add(figure: Figure, place: number | null): Chart {
     const save = (name: string, write: (filled: Filled[], name: string) => void) =>
       button(name, `save ${figure.title} as ${name}`, () => write([chart.filled], figure.title), "button.small");
-    const tools = el("span.tools", {}, save("PNG", (f, n) => void exportPng(f, this.span, n)), save("SVG", (f, n) => exportSvg(f, this.span, n)), save("CSV", exportCsv),
+    const copy = button("copy", `copy ${figure.title} as a picture`, () => void copyPng([chart.filled], this.span).then((failed) => {
+      this.app.notice.value = failed === null ? `copied ${figure.title}` : `not copied: ${failed}`;
+    }), "button.small");
+    const tools = el("span.tools", {}, copy, save("PNG", (f, n) => void exportPng(f, this.span, n)), save("SVG", (f, n) => exportSvg(f, this.span, n)), save("CSV", exportCsv),
       ...(place === null
         ? [button("keep", `keep ${figure.title} in the layout`, () => this.layouts.change([...this.plots, { title: figure.title, channels: figure.lines.map(({ channel }) => channel) }]), "button.small")]
         : [
@@ -233,15 +241,17 @@ export class PlotPanel {
 
   /** Returns the common scale of the tensions, for comparable heights, unless it is switched off. */
   private scaleOf(chart: Chart): [number, number] | null {
-    if (!this.sameScale || chart.figure.group !== "tension") return null;
-    return valueRange(this.charts.filter((each) => each.figure.group === "tension").map((each) => each.filled));
+    const { group } = chart.figure;
+    if (!this.sameScale || (group !== "tension" && group !== "overlay")) return null;
+    return valueRange(this.charts.filter((each) => each.figure.group === group).map((each) => each.filled));
   }
 
   private rescale(except: Chart): void {
-    if (except.figure.group !== "tension" || !this.sameScale) return;
+    const { group } = except.figure;
+    if ((group !== "tension" && group !== "overlay") || !this.sameScale) return;
     const shared = this.scaleOf(except);
     for (const chart of this.visible) {
-      if (chart !== except && chart.figure.group === "tension" && chart.filled.data.some((points) => points.t.length > 0)) {
+      if (chart !== except && chart.figure.group === group && chart.filled.data.some((points) => points.t.length > 0)) {
         chart.show(chart.filled, this.span, shared);
       }
     }
@@ -258,12 +268,27 @@ export class PlotPanel {
     } });
     const wholeLabel = el("label", { title: `the whole run, not its last ${LIVE_SPAN_S} s` }, whole, " whole run");
     this.app.hello.watch(() => (wholeLabel.hidden = !this.app.live));
-    const all = (which: "tension" | "all") => this.charts.filter((chart) => which === "all" || chart.figure.group === which).map((chart) => chart.filled);
+    const isTension = ({ figure }: Chart) => figure.group === "tension" || figure.group === "overlay";
+    const all = (which: "tension" | "all") => this.charts.filter((chart) => which === "all" || isTension(chart)).map((chart) => chart.filled);
+    const small = el<HTMLInputElement>("input", { type: "checkbox", checked: this.small, onchange: () => {
+      this.small = small.checked;
+      memory.set("plots", this.small ? "small" : "groups");
+      this.arrange();
+    } });
+    const smallLabel = el("label", { title: "one small plot per cable, instead of one plot per group of cables" }, small, " one plot per cable");
+    const scaleLabel = el("label", { title: "the same scale for all tensions" }, scale, " same scale");
+    const fitBar = () => {
+      const { value: scene } = this.app.scene;
+      smallLabel.hidden = scene === null || this.layouts.plots.value !== null || needsSmallPlots(scene);
+      scaleLabel.hidden = this.charts.filter(isTension).length < 2;
+      this.key.element.hidden = !this.charts.some(({ figure }) => figure.group === "tension");
+    };
+    this.shownPlots.watch(fitBar);
     const zoomOut = button("zoom out", "show the whole time range (double click in a plot)", () => (this.app.range_s.value = null));
     this.app.range_s.watch((range) => (zoomOut.hidden = range === null));
     return el("div.toolbar", {},
       this.key.element,
-      el("label", { title: "the same scale for all tensions" }, scale, " same scale"),
+      smallLabel, scaleLabel,
       wholeLabel, zoomOut,
       el("span.spring"),
       this.editButton,

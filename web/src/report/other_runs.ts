@@ -2,7 +2,7 @@
 // the other run minus this one, as in `taut compare RUN THIS`.
 import type { Report } from "../protocol";
 import { runName, signed, swatch, thisRunName } from "../runs";
-import { el, number } from "../util";
+import { el, number, SCROLLS } from "../util";
 import { section } from "./page";
 
 interface Extreme { value: number | null; time_s: number | null }
@@ -54,7 +54,7 @@ function apartTable(report: Report): HTMLElement {
       where(tension, TENSION, "N"), tension?.rmse === null || !tension ? "–" : `${number(tension.rmse, DIGITS)} N`, where(position, POSITION, "m"),
     ].map((text) => el("td", {}, text)));
   });
-  return el("div.scroll", {}, el("table.numbers.apart", {}, el("thead", {}, head), el("tbody", {}, ...rows)));
+  return el("div.scroll", SCROLLS, el("table.numbers.apart", {}, el("thead", {}, head), el("tbody", {}, ...rows)));
 }
 
 /** Returns the channel with the largest difference among those whose names match. */
@@ -93,5 +93,5 @@ function tensionTable(report: Report, title: string, pick: (channel: Channel) =>
     return el("tr", {}, el("th", { scope: "row" }, cable), el("td", {}, number(own_n, DIGITS)),
       ...pairs.flatMap(([a, b]) => [number(a ?? NaN, DIGITS), a === null || b === null ? "–" : signed(number(a - b, DIGITS))].map((text) => el("td", {}, text))));
   });
-  return [el("h3", {}, title), el("div.scroll", {}, el("table.numbers", {}, head, el("tbody", {}, ...rows)))];
+  return [el("h3", {}, title), el("div.scroll", SCROLLS, el("table.numbers", {}, head, el("tbody", {}, ...rows)))];
 }

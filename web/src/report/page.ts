@@ -10,15 +10,17 @@ import { outcomeSection, remarksOf, verdict } from "./summary";
 
 interface Parts {
   top: HTMLElement;
+  numbers: HTMLElement;
   view: View;
   plots: PlotPanel;
   timeline: HTMLElement;
   overlays: HTMLElement[];
 }
 
-export function reportPage(root: HTMLElement, report: Report, { top, view, plots, timeline, overlays }: Parts): void {
+export function reportPage(root: HTMLElement, report: Report, { top, numbers, view, plots, timeline, overlays }: Parts): void {
   document.body.classList.add("report");
   root.append(top, el("main.report", {},
+    numbers,
     whatWasRun(report),
     section("Replay", el("div.replay", {}, view.element, timeline)),
     ...outcomeSection(report),

@@ -1,6 +1,6 @@
 // Comparison with reference values that the experiment lists.
 import type { Report } from "../protocol";
-import { el, number } from "../util";
+import { el, number, SCROLLS } from "../util";
 import { section } from "./page";
 
 interface Reference {
@@ -18,7 +18,7 @@ export function referenceSection(report: Report): HTMLElement[] {
   if (sources.length === 0) return [];
   return [section("Comparison with references", ...sources.flatMap((source) => [
     el("h3", {}, `This run and ${source}`),
-    el("div.scroll", {}, sourceTable(references.filter((each) => each.source === source))),
+    el("div.scroll", SCROLLS, sourceTable(references.filter((each) => each.source === source))),
   ]))];
 }
 

@@ -1,6 +1,6 @@
 // summary.json as text and table: end of the run, then the tension of each cable in each phase.
 import type { Report } from "../protocol";
-import { el, nameAndUnit, number } from "../util";
+import { el, nameAndUnit, number, SCROLLS } from "../util";
 import { facts, section } from "./page";
 
 interface Span { mean_n: number; min_n: number; max_n: number }
@@ -56,5 +56,5 @@ function cableTable({ cables = [], phases = [] }: Summary): HTMLElement[] {
   const rows = cables.map(({ name, tension, actuator }) => el("tr", {}, el("th", { scope: "row" }, name),
     ...[tension?.max_n, tension?.max_after_start_n, ...phases.map((phase) => tension?.phases?.[phase.name]?.mean_n), actuator?.max_power_w, actuator?.energy_j, actuator?.net_energy_j]
       .map((value) => el("td", {}, number(value ?? NaN, 4)))));
-  return [el("h3", {}, "Tensions and motors"), el("div.scroll", {}, el("table.numbers", {}, el("thead", {}, head, units), el("tbody", {}, ...rows)))];
+  return [el("h3", {}, "Tensions and motors"), el("div.scroll", SCROLLS, el("table.numbers", {}, el("thead", {}, head, units), el("tbody", {}, ...rows)))];
 }

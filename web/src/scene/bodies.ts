@@ -4,7 +4,7 @@ import {
 } from "three";
 import { ConvexGeometry } from "three/examples/jsm/geometries/ConvexGeometry.js";
 import type { Theme } from "../app";
-import { palette } from "../colours";
+import { compressionColour, palette } from "../colours";
 import type { Frame } from "../frame";
 import { VALUES } from "../layout";
 import type { Scene, Shape } from "../protocol";
@@ -17,6 +17,8 @@ export class Bodies implements Part {
   readonly meshes: Mesh[] = [];
   private readonly groups: Group[];
   private readonly axes: AxesHelper[];
+  /** Compression of each body relative to the end of the scale; NaN: none. */
+  private shares: ArrayLike<number> = [];
   private marked = -1;
   private theme: Theme = "light";
 
@@ -56,8 +58,18 @@ export class Bodies implements Part {
     for (const mesh of this.meshes) {
       const material = mesh.material as MeshStandardMaterial;
       const kind = mesh.userData["kind"] as Shape["kind"];
-      material.color.set(mesh.userData["body"] === this.marked ? colours.selected : colours[kind]);
+      const body = mesh.userData["body"] as number;
+      const share = kind === "rod" ? this.shares[body] : undefined;
+      if (body === this.marked) material.color.set(colours.selected);
+      else if (share === undefined || Number.isNaN(share)) material.color.set(colours[kind]);
+      else material.color.setRGB(...compressionColour(share, theme), "srgb");
     }
+  }
+
+  /** Colors struts by compression, relative to the end of the scale. */
+  showCompression(shares: ArrayLike<number>): void {
+    this.shares = shares;
+    this.paint(this.theme);
   }
 
   dispose(): void {

@@ -1,24 +1,38 @@
-// Cables: lines whose thickness and color show the tension; slack ones are dashed and gray.
-import { Color, Group, type InstancedInterleavedBuffer, Vector2, Vector3 } from "three";
+// Cables: lines whose thickness and color show the tension; slack ones are dashed and gray. Widths are in meters,
+// relative to the thinnest strut, so that a cable never looks thicker than a strut at any distance.
+import { Color, Group, type InstancedInterleavedBuffer, type PerspectiveCamera, Vector2, Vector3 } from "three";
 import { Line2 } from "three/examples/jsm/lines/Line2.js";
 import { LineGeometry } from "three/examples/jsm/lines/LineGeometry.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import type { Theme } from "../app";
-import { palette, tensionColour } from "../colours";
+import { palette, strainColour, tensionColour } from "../colours";
 import { cableState, type Frame, isSlack } from "../frame";
 import type { Cable, Scene } from "../protocol";
 import { layCable, pointCount, spansOfParts, spanTensions } from "./cable_path";
 import { type Part, release } from "./part";
 
-export const THINNEST_PX = 1.5;
-export const THICKEST_PX = 7;
+/** Widths of cables without tension and at the end of the scale, relative to the diameter of the thinnest strut. */
+const THINNEST = 0.14;
+const THICKEST = 0.5;
+/** Of the strut's diameter, where the floor in pixels would exceed it. */
+const MOST = 0.85;
+const FLOOR_PX = 1.25;
+const MARKED_PX = 2;
+/** Diameter in place of the struts', relative to the robot's size, if there are none. */
+const WITHOUT_STRUTS = 0.012;
 
 export class Cables implements Part {
   readonly object = new Group();
   /** Points of each cable in W, as last drawn. */
   readonly points: Vector3[][];
   scale_n = 1;
+  /** Lengths of the cables without strain; set: colors show strain, relative to the largest. */
+  strainFrom_m: readonly number[] | null = null;
+  largestStrain = 0;
   private readonly lines: (Line2 | null)[];
+  private strains: readonly number[] = [];
+  private readonly diameter_m: number;
+  private readonly widths_m: number[];
   private marked = -1;
   private theme: Theme = "light";
   private frame: Frame | null = null;
@@ -26,6 +40,29 @@ export class Cables implements Part {
   constructor(private readonly scene: Scene, size_m: number) {
     this.points = scene.cables.map((cable) => Array.from({ length: pointCount(cable) }, () => new Vector3()));
     this.lines = scene.cables.map((cable) => this.line(cable, size_m));
+    const radii_m = scene.bodies.flatMap(({ shapes }) => shapes.flatMap(({ kind, radius_m }) => (kind === "rod" ? [radius_m!] : [])));
+    this.diameter_m = radii_m.length > 0 ? 2 * Math.min(...radii_m) : WITHOUT_STRUTS * size_m;
+    this.widths_m = scene.cables.map(() => 0);
+  }
+
+  /** Returns the lengths of the drawn paths [m]. */
+  lengths(): number[] {
+    return this.points.map((points) => points.reduce((sum, point, k) => sum + (k > 0 ? point.distanceTo(points[k - 1]!) : 0), 0));
+  }
+
+  /** Converts the widths to pixels at the cables' distances from the camera. */
+  seenFrom(camera: PerspectiveCamera, height_px: number): void {
+    const focal_px = height_px / 2 / Math.tan((camera.fov * Math.PI) / 360);
+    const ahead = camera.getWorldDirection(new Vector3());
+    const middle = new Vector3();
+    this.lines.forEach((line, i) => {
+      const points = this.points[i]!;
+      if (!line || points.length < 2) return;
+      const depth_m = middle.copy(points[0]!).add(points[points.length - 1]!).multiplyScalar(0.5).sub(camera.position).dot(ahead);
+      const px_per_m = focal_px / Math.max(depth_m, 1e-6);
+      const wanted_px = Math.max(FLOOR_PX, this.widths_m[i]! * px_per_m);
+      line.material.linewidth = Math.min(wanted_px, Math.max(MOST * this.diameter_m * px_per_m, 0.5)) + (i === this.marked ? MARKED_PX : 0);
+    });
   }
 
   update(frame: Frame): void {
@@ -36,8 +73,12 @@ export class Cables implements Part {
       const points = this.points[i]!;
       layCable(frame, frame, cable, i, cableState(frame, i).length_m, points);
       moveLine(line, points);
-      this.colour(i);
     });
+    if (this.strainFrom_m) {
+      this.strains = this.lengths().map((length_m, i) => length_m / this.strainFrom_m![i]! - 1);
+      this.largestStrain = this.strains.reduce((most, strain) => (Math.abs(strain) > most ? Math.abs(strain) : most), this.largestStrain);
+    }
+    this.lines.forEach((_, i) => this.colour(i));
   }
 
   mark(cable: number): void {
@@ -72,10 +113,11 @@ export class Cables implements Part {
       material.needsUpdate = true;
     }
     if (slack) line.computeLineDistances();
-    material.linewidth = slack ? THINNEST_PX : THINNEST_PX + (THICKEST_PX - THINNEST_PX) * Math.min(share, 1);
+    this.widths_m[i] = this.diameter_m * (slack ? THINNEST : THINNEST + (THICKEST - THINNEST) * Math.min(Math.max(share, 0), 1));
     if (i === this.marked) {
-      material.linewidth += 3;
       material.color.set(palette(this.theme).selected);
+    } else if (this.strainFrom_m) {
+      material.color.setRGB(...strainColour((this.strains[i] ?? 0) / (this.largestStrain || 1), this.theme), "srgb");
     } else if (slack) {
       material.color.set(palette(this.theme).slack);
     } else {
@@ -104,8 +146,9 @@ export class Cables implements Part {
     geometry.setPositions(new Float32Array(3 * pointCount(cable)));
     if (cable.parted) geometry.setColors(new Float32Array(3 * pointCount(cable)));
     const vertexColors = cable.parted === true;
-    const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m, vertexColors });
+    const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m, vertexColors, transparent: true });
     const line = new Line2(geometry, material);
+    line.renderOrder = 1; // above coinciding cables of ghosts, which are transparent, too
     line.frustumCulled = false; // its bounds are those at the start
     this.object.add(line);
     return line;

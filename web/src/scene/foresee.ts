@@ -1,5 +1,5 @@
 // Data of a trace known before it is played: the path of the center of mass, and the largest tension, so that
-// the tension scale stays constant. In a live run, both grow with time.
+// the tension scale stays constant and the camera shows the whole path. In a live run, both grow with time.
 import { Vector3 } from "three";
 import type { App } from "../app";
 import { niceAbove } from "../util";
@@ -34,6 +34,7 @@ export function foresee(app: App, store: SeriesStore, view: View): void {
         if (--missing > 0 || view.world?.scene !== scene) return;
         const [x, y, z] = parts as [Points, Points, Points];
         view.world.path.set(x.t, x.t.map((_, i) => new Vector3(x.first[i] ?? 0, y.first[i] ?? 0, z.first[i] ?? 0)));
+        view.following.value = !view.fitPath(true); // of a longer path, the part around the robot
         view.invalidate();
       }),
     );

@@ -13,7 +13,7 @@ const CAPACITY = 20_000;
 export class Path implements Part {
   readonly object = new Group();
   private readonly times_s: number[] = [];
-  private readonly places: Vector3[] = [];
+  readonly places: Vector3[] = [];
   private readonly line: Line<BufferGeometry, LineBasicMaterial>;
   private readonly dot: Mesh<SphereGeometry, MeshBasicMaterial>;
   private readonly now = new Vector3();

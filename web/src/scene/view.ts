@@ -1,18 +1,20 @@
 // The 3D view: camera, light, mouse; draws only after changes.
 import {
-  AmbientLight, type Box3, Color, DirectionalLight, PCFSoftShadowMap, PerspectiveCamera, Scene as ThreeScene, Vector3,
+  AmbientLight, Box3, Color, DirectionalLight, PCFSoftShadowMap, PerspectiveCamera, Scene as ThreeScene, Vector3,
   WebGLRenderer, HemisphereLight,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { type App, nameOf } from "../app";
 import { palette } from "../colours";
-import { el } from "../util";
+import type { Frame } from "../frame";
+import { el, Signal } from "../util";
 import { Grip } from "./grip";
 import { nodeUnder, pick, project, type Viewport } from "./pick";
 import { centreOfMass, worldPoint } from "./poses";
 import { World } from "./world";
 
 const FILLED = 0.76; // largest part of half the view that the robot occupies
+const MOST_SIZES = 8; // longest path that is shown as a whole, in robot sizes; longer ones are followed
 const FREE = 0.3; // displacement of the robot before the camera follows, in robot sizes
 const CLICK_PX = 4; // a press that moves less is a click
 const NO_PICTURE = "No 3-D view: this browser has no WebGL, or it is switched off.";
@@ -24,7 +26,9 @@ export class View {
   readonly canvas: HTMLCanvasElement;
   readonly camera = new PerspectiveCamera(40, 1, 0.01, 500);
   world: World | null = null;
-  follow = true;
+  /** Displayed instead of the app's frame: a mode of the model. */
+  override: Frame | null = null;
+  readonly following = new Signal(true);
   readonly frames = { drawn: 0 };
   /** Called after each picture, for elements that describe this picture. */
   readonly afterDraw: (() => void)[] = [];
@@ -34,6 +38,9 @@ export class View {
   private readonly tip = el("div.tip", { role: "tooltip" });
   private readonly grip: Grip;
   private dirty = true;
+  private filmSize: { width: number; height: number } | null = null;
+  /** Of the pictures, in pixels of the page. */
+  private height_px = 1;
   /** Center of mass now, and the position that the camera has followed. */
   private readonly followed = new Vector3();
   private readonly anchor = new Vector3();
@@ -96,16 +103,36 @@ export class View {
     const centre = world.bounds.getCenter(new Vector3());
     const frame = this.app.frame.value;
     const now = new Vector3();
-    if (frame && centreOfMass(world.scene, frame, now)) centre.set(now.x, now.y, centre.z);
-    const direction = fromFront
-      ? new Vector3(0.55, -1, 0.5)
-      : this.camera.position.clone().sub(this.controls.target);
-    const shift = centre.clone().sub(world.bounds.getCenter(new Vector3()));
-    const corners = cornersOf(world.bounds.clone().translate(shift));
+    const shift = new Vector3();
+    if (frame && centreOfMass(world.scene, frame, now)) shift.set(now.x - centre.x, now.y - centre.y, 0);
+    const box = world.bounds.clone().translate(shift);
+    this.fitBox(box, fromFront);
+    this.anchor.copy(box.getCenter(new Vector3()));
+  }
+
+  /** Shows the robot at all places of its path. Returns false, without effect, if the path is too long for that. */
+  fitPath(fromFront = false): boolean {
+    const world = this.world;
+    const places = world?.path.places ?? [];
+    if (!world || places.length === 0) return false;
+    const box = new Box3();
+    for (const place of places) box.expandByPoint(place);
+    if (box.getSize(new Vector3()).length() > MOST_SIZES * world.size_m) return false;
+    const half = world.bounds.getSize(new Vector3()).multiplyScalar(0.5);
+    box.min.sub(half);
+    box.max.add(half);
+    this.fitBox(box, fromFront);
+    return true;
+  }
+
+  private fitBox(box: Box3, fromFront: boolean): void {
+    const world = this.world!;
+    const centre = box.getCenter(new Vector3());
+    const direction = fromFront ? new Vector3(0.55, -1, 0.5) : this.camera.position.clone().sub(this.controls.target);
+    const corners = cornersOf(box);
     this.controls.target.copy(centre);
-    this.anchor.copy(centre);
     direction.normalize();
-    let distance_m = 2 * world.size_m;
+    let distance_m = 2 * Math.max(world.size_m, box.getSize(new Vector3()).length());
     // nearer parts look larger, so the distance is found by iteration
     for (let round = 0; round < 6; ++round) {
       this.camera.position.copy(centre).addScaledVector(direction, distance_m);
@@ -136,7 +163,7 @@ export class View {
       if (frame && frame.body_count === this.world.scene.bodies.length) this.world.update(frame);
     });
     this.app.frame.watch((frame) => {
-      if (!frame || !this.world) return;
+      if (!frame || !this.world || this.override) return;
       this.world.update(frame);
       this.grip.update();
       this.followCentre();
@@ -158,13 +185,23 @@ export class View {
     };
     this.app.selection.watch(mark);
     this.app.hover.watch(mark);
+    this.following.watch((on) => on && this.centre());
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
+  /** Draws pictures of another size from now on, for a film; null: those on the screen again. */
+  setFilmSize(size: { width: number; height: number } | null): void {
+    this.filmSize = size;
+    this.renderer?.setPixelRatio(size ? 1 : screenRatio());
+    this.resize();
+  }
+
   private resize(): void {
-    const { clientWidth: width, clientHeight: height } = this.element;
+    const { clientWidth, clientHeight } = this.element;
+    const { width, height } = this.filmSize ?? { width: clientWidth, height: clientHeight };
     if (width === 0 || height === 0) return;
-    this.renderer?.setSize(width, height);
+    this.renderer?.setSize(width, height, this.filmSize === null);
+    this.height_px = height;
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.world?.cables.resize(width, height);
@@ -180,11 +217,23 @@ export class View {
     this.followed.copy(now);
     const away = now.sub(this.anchor).setZ(0);
     const free_m = FREE * world.size_m;
-    if (!this.follow || away.length() <= free_m) return;
+    if (!this.following.value || away.length() <= free_m) return;
     away.multiplyScalar(1 - free_m / away.length());
     this.anchor.add(away);
     this.controls.target.add(away);
     this.camera.position.add(away);
+  }
+
+  /** Moves the camera so that it looks at the robot. */
+  private centre(): void {
+    const frame = this.app.frame.value;
+    const now = new Vector3();
+    if (!this.world || !frame || !centreOfMass(this.world.scene, frame, now)) return;
+    this.anchor.copy(now);
+    const away = now.sub(this.controls.target);
+    this.controls.target.add(away);
+    this.camera.position.add(away);
+    this.invalidate();
   }
 
   private loop(): void {
@@ -199,6 +248,7 @@ export class View {
     if (!this.renderer) return;
     this.aimSun();
     this.world?.ground.seenFrom(this.camera.position);
+    this.world?.cables.seenFrom(this.camera, this.height_px);
     this.renderer.render(this.stage, this.camera);
     ++this.frames.drawn;
     this.element.dataset["drawn"] = String(this.frames.drawn);
@@ -286,13 +336,15 @@ export class View {
   }
 }
 
+const screenRatio = () => Math.min(devicePixelRatio, 2);
+
 /** Returns null without WebGL; three.js also logs this to the console. */
 function makeRenderer(): WebGLRenderer | null {
   try {
     const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = PCFSoftShadowMap;
-    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    renderer.setPixelRatio(screenRatio());
     return renderer;
   } catch {
     return null;

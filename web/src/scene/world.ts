@@ -7,11 +7,13 @@ import { niceAbove } from "../util";
 import { Bodies } from "./bodies";
 import { spanTensions } from "./cable_path";
 import { Cables } from "./cables";
+import { Compression } from "./compression";
 import { Forces } from "./forces";
 import { Ghosts } from "./ghosts";
 import { Joints } from "./joints";
 import type { Part } from "./part";
 import { Path } from "./path";
+import { RestForm } from "./rest_form";
 import { worldPoint } from "./poses";
 import { Ground } from "./terrain";
 import { Wheels } from "./wheels";
@@ -24,7 +26,11 @@ export class World {
   readonly forces: Forces;
   readonly ghosts: Ghosts;
   readonly path: Path;
+  private readonly rest: RestForm;
   readonly ground: Ground;
+  readonly compression: Compression;
+  /** End of the scale of compression [N] for struts without a known Euler load. */
+  compressionScale_n = 0;
   /** Of the bodies at the start. */
   readonly bounds = new Box3();
   readonly size_m: number;
@@ -34,14 +40,28 @@ export class World {
     this.bounds = boundsOf(scene);
     this.size_m = Math.max(this.bounds.getSize(new Vector3()).length(), 0.05);
     this.bodies = new Bodies(scene, this.size_m);
+    this.compression = new Compression(scene);
     this.cables = new Cables(scene, this.size_m);
     this.joints = new Joints(scene, this.size_m);
     this.forces = new Forces(scene, this.size_m);
     this.ghosts = new Ghosts(scene);
     this.path = new Path(scene, this.size_m);
+    this.rest = new RestForm(scene);
     this.ground = new Ground(scene, this.size_m);
-    this.parts = [this.ground, this.bodies, new Wheels(scene), this.cables, this.joints, this.forces, this.path, this.ghosts];
+    this.parts = [this.ground, this.bodies, new Wheels(scene), this.cables, this.joints, this.forces, this.path, this.ghosts, this.rest];
     this.object.add(...this.parts.map((part) => part.object));
+    if (scene.shape && scene.shape.kind !== "self_stress") this.showShape(true);
+  }
+
+  /** Colors cables by strain from the described pose, which is shown as a ghost; or by tension. */
+  showShape(on: boolean): void {
+    this.cables.strainFrom_m = null;
+    this.cables.largestStrain = 0;
+    this.rest.object.visible = on;
+    if (!on) return;
+    this.cables.update(frameOfScene(this.scene));
+    this.cables.strainFrom_m = this.cables.lengths();
+    this.bodies.showCompression([]);
   }
 
   update(frame: Frame): void {
@@ -53,6 +73,22 @@ export class World {
     }
     this.cables.scale_n = niceAbove(largest_n);
     for (const part of this.parts) part.update(frame);
+    if (this.compression.hasStruts && !this.cables.strainFrom_m) this.showCompression(frame);
+  }
+
+  /** Whether colors show compression as a share of Euler's load. */
+  get usesBuckling(): boolean {
+    const { buckling_n, force_n } = this.compression;
+    return force_n.some((force, body) => !Number.isNaN(force) && buckling_n[body]! > 0);
+  }
+
+  private showCompression(frame: Frame): void {
+    this.compression.update(frame);
+    const { force_n, buckling_n } = this.compression;
+    const { usesBuckling } = this;
+    const most_n = force_n.reduce((most, force) => (force > most ? force : most), 0);
+    this.compressionScale_n = niceAbove(Math.max(most_n, this.compressionScale_n));
+    this.bodies.showCompression(force_n.map((force, body) => (usesBuckling ? force / (buckling_n[body] ?? NaN) : force / this.compressionScale_n)));
   }
 
   paint(theme: Theme): void {

@@ -103,7 +103,7 @@ function together(parts: readonly Uint8ClampedArray[]): Uint8ClampedArray {
 }
 
 /** Displays the row at a time; returns false if this fails: the server is gone, or another client drives. */
-function goTo(app: App, store: SeriesStore, time_s: number): Promise<boolean> {
+export function goTo(app: App, store: SeriesStore, time_s: number): Promise<boolean> {
   app.seek(time_s);
   if (app.report) return Promise.resolve(true); // a report updates at once
   return new Promise((resolve) => {

@@ -12,8 +12,15 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
   const driver = el("span.driver");
   const take = button("take control", "take control; all others can only watch", () => app.send({ type: "take_control" }));
   const theme = button(icon("theme"), "dark or light (T)", () => app.toggleTheme());
-  const element = el("header.top", {}, el("span.brand", {}, "taut"), title, mode, link, driver, take,
-    el("span.spring"), ...toggles, theme, button("?", "help (?)", help));
+  // on phones these are behind one button, so that the header has one row
+  const extras = el("span.extras", {}, ...toggles, theme);
+  const more = button("⋯", "more buttons", () => {
+    const open = element.classList.toggle("open");
+    more.setAttribute("aria-expanded", String(open));
+  }, "button.more");
+  more.setAttribute("aria-expanded", "false");
+  const element: HTMLElement = el("header.top", {}, el("span.brand", {}, "taut"), title, mode, link, driver, take,
+    el("span.spring"), extras, more, button("?", "help (?)", help));
 
   app.hello.watch((hello) => {
     title.textContent = title.title = hello?.title ?? "";

@@ -2,6 +2,7 @@
 import type { App } from "../app";
 import { toggleGhosts } from "../scene/runs_list";
 import type { View } from "../scene/view";
+import { showPath } from "../scene/view_tools";
 import { nextSpeed } from "./timeline";
 
 export interface Key {
@@ -46,9 +47,10 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
     { time: true, keys: ["["], shown: "[", does: "slower", act: speed(false) },
     { time: true, keys: ["]"], shown: "]", does: "faster", act: speed(true) },
     { keys: ["f", "F"], shown: "F", does: "fit the robot into the view", act: () => view.fit() },
+    { keys: ["w", "W"], shown: "W", does: "fit the whole path into the view", act: () => showPath(app, view) },
     { keys: ["v", "V"], shown: "V", does: "the view follows the robot, or stays", act: () => {
-      view.follow = !view.follow;
-      app.notice.value = view.follow ? "the view follows the robot" : "the view stays";
+      view.following.value = !view.following.value;
+      app.notice.value = view.following.value ? "the view follows the robot" : "the view stays";
     } },
     { keys: ["a", "A"], shown: "A", does: "arrows of forces on or off", act: show("forces") },
     { keys: ["p", "P"], shown: "P", does: "path of the center of mass on or off", act: show("path") },

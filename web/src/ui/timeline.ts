@@ -1,6 +1,7 @@
 // Timeline: play, step, speed, and a time bar with phases, which is a scrubber in a replay.
 import type { App } from "../app";
 import { icon } from "./icons";
+import { TrackMarks } from "./track_marks";
 import { button, clock, el, number } from "../util";
 
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 0];
@@ -17,34 +18,36 @@ export function timeline(app: App): HTMLElement {
   const now = button("now", "back to the present (end)", () => app.goToNow(), "button.now");
   const time = el("span.time", { "aria-live": "off" });
   const factor = el("span.factor", { title: "real-time factor: simulated over wall-clock time" });
-  const phases = el("div.phases");
-  const events = el("div.events");
+  const marks = new TrackMarks(app, (time_s) => shareOf(time_s));
   const cursor = el("div.cursor");
   const slider = el<HTMLInputElement>("input", {
     type: "range", step: "any", min: 0, max: 1, value: 0, "aria-label": "time",
     oninput: () => app.seek(Number(slider.value)),
   });
   const present = el("div.present", { hidden: true, title: "present time of the run" });
-  const track = el("div.track", {}, phases, slider, events, cursor, present);
-  const element = el("footer.timeline", {}, back, stepBack, play, step, speed, track, now, time, factor);
+  const track = el("div.track", {}, marks.phases, marks.actions, slider, marks.events, cursor, present, marks.hover);
+  // phones show these two and the bar; the others on request
+  const fold = button("⋯", "more playback controls", () => {
+    const open = element.classList.toggle("open");
+    fold.setAttribute("aria-expanded", String(open));
+  }, "button.fold");
+  fold.setAttribute("aria-expanded", "false");
+  const element: HTMLElement = el("footer.timeline", {}, back, stepBack, play, step, speed, track, now, time, factor, fold);
 
-  const share = (time_s: number): string => {
+  const shareOf = (time_s: number): number => {
     const min = Number(slider.min);
     const max = Number(slider.max);
-    return `${(100 * Math.min(Math.max((time_s - min) / (max - min || 1), 0), 1)).toFixed(3)}%`;
+    return Math.min(Math.max((time_s - min) / (max - min || 1), 0), 1);
   };
+  const share = (time_s: number): string => `${(100 * shareOf(time_s)).toFixed(3)}%`;
   const stretch = () => {
     const scene = app.scene.value;
     if (!scene) return;
     const now_s = app.frame.value?.now_s ?? 0;
     slider.min = String(scene.first_s);
     slider.max = String(app.live ? Math.max(scene.duration_s, now_s) : scene.duration_s);
-    phases.replaceChildren(...scene.phases.map((phase) => {
-      const span = el("span", { title: `${phase.name}: ${phase.from_s} s to ${phase.to_s} s` }, phase.name);
-      span.style.left = share(phase.from_s);
-      span.style.width = `calc(${share(phase.to_s)} - ${share(phase.from_s)})`;
-      return span;
-    }));
+    marks.draw(scene, track.clientWidth);
+    marks.drawEvents();
   };
   app.scene.watch(stretch);
   app.hello.watch(() => {
@@ -74,12 +77,15 @@ export function timeline(app: App): HTMLElement {
     cursor.hidden = time_s === null;
     if (time_s !== null) cursor.style.left = share(time_s);
   });
-  app.events.watch((list) =>
-    events.replaceChildren(...list.map((event) => {
-      const mark = el("i", { title: `${clock(event.time_s)} ${event.text}` });
-      mark.style.left = share(event.time_s);
-      return mark;
-    })));
+  app.events.watch(() => marks.drawEvents());
+  new ResizeObserver(stretch).observe(track);
+  track.addEventListener("pointermove", (event) => {
+    const box = track.getBoundingClientRect();
+    const min = Number(slider.min);
+    const time_s = min + ((event.clientX - box.left) / box.width) * (Number(slider.max) - min);
+    marks.point(time_s, box.width);
+  });
+  track.addEventListener("pointerleave", () => marks.point(null, track.clientWidth));
   return element;
 }
 
