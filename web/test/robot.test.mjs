@@ -26,7 +26,7 @@ async function bring(page, wanted) {
   await until(async () => {
     const now = await page.locator(".robotbar .state").innerText();
     if (now === wanted) return true;
-    const next = now === "armed" || (now !== OFF && now !== "stopped") ? `2 ${wanted}` : await page.locator(".alarms").isHidden() ? "1 arm" : "clear faults";
+    const next = now === "armed" || (now !== OFF && now !== "stopped") ? { hold: "2 hold", impedance: "3 run" }[wanted] : await page.locator(".alarms").isHidden() ? "1 arm" : "clear faults";
     await page.evaluate((name) => [...document.querySelectorAll(".robotbar button")].find((each) => each.textContent === name && !each.disabled)?.click(), next);
     await new Promise((resolve) => setTimeout(resolve, 200));
     return false;
@@ -83,6 +83,11 @@ test("PowerComesInTwoStepsAndSpaceStopsFromAnyBrowser", options, async (t) => {
   await page.waitForFunction(() => document.querySelectorAll('[data-figure^="tension:"] .uplot').length === 12);
   await page.waitForFunction(() => window.taut.app.frame.value.time_s > 4);
   await drawn(page);
+  assert.deepEqual(await page.locator('.stepper button[aria-current="step"]').allInnerTexts(), ["3 run"]);
+  // counts of the start, which have stopped rising, are no alarm
+  await page.waitForFunction(() => document.querySelector(".health").dataset.state !== "bad");
+  assert.match(await page.locator(".health").innerText(), /^healthy/);
+  assert.equal(await page.locator(".robotpanel .bad.idle").count(), 0);
   await picture(page, "robot-desktop");
 
   // the last pressed button has the focus: space must stop the robot, not press the button again
@@ -95,7 +100,7 @@ test("PowerComesInTwoStepsAndSpaceStopsFromAnyBrowser", options, async (t) => {
   await press(page, "clear faults");
   await state(page, OFF);
   await bring(page, "hold");
-  await page.locator(".robotbar").getByText("2 impedance").focus();
+  await page.locator(".robotbar").getByText("3 run").focus();
   await page.keyboard.press("Space");
   await state(page, "stopped");
   assert.deepEqual(page.complaints.filter((text) => !text.includes("WebGL")), []);

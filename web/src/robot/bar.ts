@@ -18,13 +18,15 @@ export function robotBar(app: App): HTMLElement {
   const off = mode("off", "off", "motors off: they coast");
   const arm = mode("arm", "1 arm", "first step: prepare the boards, nothing moves yet");
   const hold = mode("hold", "2 hold", "second step: turn the motors on and hold their positions");
-  const impedance = mode("impedance", "2 impedance", "second step: turn the motors on, hold, then impedance control about the measured tensions and lengths");
+  const impedance = mode("impedance", "3 run", "third step: impedance control about the measured tensions and lengths (from armed, too: the motors hold first)");
+  const steps = [arm, hold, impedance];
+  const stepper = el("ol.stepper", { "aria-label": "steps to power" }, ...steps.map((step) => el("li", {}, step)));
   const clear = mode("clear_faults", "clear faults", "clear latched faults, time-outs and emergency stops; motors are turned off unless they hold");
   const record = button("record cycles", "start or end recording every cycle to a folder", () => app.send({ type: "record", on: app.robot.value?.recording === "" }));
   const state = el("span.state", { role: "status" });
   const time = el("span.time");
   const element = el("footer.robotbar", { "aria-label": "the robot" }, stopButton,
-    el("div.modes", {}, state, arm, hold, impedance, off, clear, record, time));
+    el("div.modes", {}, state, stepper, off, clear, record, time));
 
   const draw = () => {
     const status = app.robot.value;
@@ -42,6 +44,14 @@ export function robotBar(app: App): HTMLElement {
     clear.disabled = !mayDrive || info?.experiment === true;
     for (const each of [arm, hold, impedance, clear]) each.hidden = app.watches || info?.experiment === true;
     off.hidden = app.watches;
+    const reached = status === null || status.stopping ? 0 : stepReached(status);
+    stepper.hidden = app.watches || info?.experiment === true;
+    steps.forEach((step, i) => {
+      step.parentElement!.classList.toggle("done", i + 1 < reached);
+      step.parentElement!.classList.toggle("current", i + 1 === reached);
+      if (i + 1 === reached) step.setAttribute("aria-current", "step");
+      else step.removeAttribute("aria-current");
+    });
     arm.classList.toggle("primary", !arm.disabled);
     for (const each of [hold, impedance]) each.classList.toggle("primary", stage === "ready" && !each.disabled);
     record.hidden = app.watches || info?.may_record !== true;
@@ -70,6 +80,11 @@ export function robotBar(app: App): HTMLElement {
     event.stopPropagation();
   }, { capture: true });
   return element;
+}
+
+/** Returns the step to power that the robot is in: 0 off, 1 armed, 2 hold, 3 any other control. */
+function stepReached({ stage, commanded }: RobotStatus): number {
+  return stage === "ready" ? 1 : stage !== "active" ? 0 : commanded === "hold" ? 2 : 3;
 }
 
 function stateText({ stage, commanded, stopping }: RobotStatus): string {
