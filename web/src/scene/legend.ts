@@ -39,7 +39,8 @@ export function legend(app: App, view: View): HTMLElement {
     compression.draw(world.usesBuckling ? "strut compression / Euler load" : "strut compression", (share) => css(compressionColour(share, theme)), [0, 0.5, 1].map(end));
     const colours = palette(theme);
     const { contact_forces } = world.scene;
-    unrecorded.hidden = contact_forces || app.live;
+    unrecorded.hidden = contact_forces || app.live || strain;
+    arrows.hidden = strain;
     arrows.replaceChildren(
       ...(contact_forces ? [sign(colours.contact), "contact"] : []), sign(colours.push), "push",
       el("span.note", {}, `${number(reference_m, 2)} m = ${number(reference_n, 2)} N`));

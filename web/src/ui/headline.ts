@@ -12,8 +12,11 @@ const POINTS = 600;
 const FINE = 10_000;
 const LIVE_EVERY_MS = 1000;
 const DIGITS = 3;
+const SAME = 1e-6; // relative rounding of tensions in traces
 
 export interface RunSummary {
+  system_max_tension_n?: number;
+  system_max_tension_cable?: string;
   status?: string;
   interrupted?: boolean;
   cables?: { actuator?: { energy_j?: number } }[];
@@ -38,13 +41,13 @@ export function headline(app: App, store: SeriesStore): HTMLElement {
   };
   const compute = (scene: Scene, to_s: number) => {
     const current = () => app.scene.value === scene;
-    peakOf(store, scene, to_s, (peak) => current() && show(peak, "peak"));
     motionOf(store, scene, to_s, (distance, speed) => {
       if (!current()) return;
       show(distance, "distance");
       show(speed, "speed");
     });
     const summary = (app.report?.summary ?? scene.summary ?? null) as RunSummary | null;
+    peakOf(store, scene, to_s, summary, (peak) => current() && show(peak, "peak"));
     energyOf(store, scene, to_s, summary, (energy) => current() && show(energy, "energy"));
     show(statusOf(app, summary), "status");
     show(safetyOf(scene, summary), "safety");
@@ -67,19 +70,27 @@ export function headline(app: App, store: SeriesStore): HTMLElement {
 /** Returns the largest known value; -Infinity: there is none. */
 const largest = (values: readonly (number | null)[]) => values.reduce<number>((most, value) => (value !== null && value > most ? value : most), -Infinity);
 
-/** Finds the largest tension of all cables: first in blocks of rows, then in the rows of the largest block. */
-function peakOf(store: SeriesStore, scene: Scene, to_s: number, done: (card: Card) => void): void {
-  const channels = scene.channels.map(({ name }) => name).filter((name) => TENSION.test(name));
+/**
+ * Finds the largest tension of all cables: first in blocks of rows, then in the rows of the largest block. The
+ * summary contains the largest tension of all steps, which may lie between two rows.
+ */
+function peakOf(store: SeriesStore, scene: Scene, to_s: number, summary: RunSummary | null, done: (card: Card) => void): void {
+  const { system_max_tension_n: most_n, system_max_tension_cable: most } = summary ?? {};
+  const known = most_n !== undefined && most !== undefined ? { most_n, channel: `cable/${most}/tension_n` } : null;
+  const channels = scene.channels.map(({ name }) => name).filter((name) => (known ? name === known.channel : TENSION.test(name)));
   let missing = channels.length;
   let peak_n = -Infinity;
   let block: { channel: string; from_s: number; to_s: number } | null = null;
-  const say = (at_s: number) => done({ label: "peak tension", value: `${number(peak_n, DIGITS)} N`, detail: `${TENSION.exec(block!.channel)![1]} at ${number(at_s, DIGITS)} s` });
+  const say = (at_s: number) => {
+    const isRow = !known || known.most_n <= peak_n * (1 + SAME);
+    done({ label: "peak tension", value: `${number(known?.most_n ?? peak_n, DIGITS)} N`, detail: `${TENSION.exec(block!.channel)![1]} ${isRow ? "at" : "near"} ${number(at_s, DIGITS)} s` });
+  };
   for (const channel of channels) {
     store.want(channel, 0, scene.first_s, to_s, POINTS, (points) => {
-      const most_n = largest(points.max);
-      if (most_n > peak_n) {
-        const i = points.max.indexOf(most_n);
-        peak_n = most_n;
+      const greatest_n = largest(points.max);
+      if (greatest_n > peak_n) {
+        const i = points.max.indexOf(greatest_n);
+        peak_n = greatest_n;
         block = { channel, from_s: points.t[i]!, to_s: points.t[i + 1] ?? to_s };
       }
       if (--missing > 0 || !block) return;
@@ -105,7 +116,7 @@ function motionOf(store: SeriesStore, scene: Scene, to_s: number, done: (distanc
     const [dx, dy] = [(x.first[last] ?? NaN) - (x.first[0] ?? NaN), (y.first[last] ?? NaN) - (y.first[0] ?? NaN)];
     const distance_m = Math.hypot(dx, dy);
     const span_s = x.t[last]! - x.t[0]!;
-    const heading = distance_m > 0 ? `${number((Math.atan2(dy, dx) * 180) / Math.PI, 2)}° from x` : "";
+    const heading = distance_m > 0 ? `${number(Math.round((Math.atan2(dy, dx) * 180) / Math.PI))}° from x` : "";
     done({ label: "distance", value: `${number(distance_m, DIGITS)} m`, detail: heading },
       { label: "mean speed", value: `${number(span_s > 0 ? distance_m / span_s : NaN, DIGITS)} m/s`, detail: `over ${number(span_s, DIGITS)} s` });
   }));

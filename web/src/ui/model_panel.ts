@@ -68,7 +68,7 @@ function memberTable(scene: Scene, frame: Frame): HTMLElement {
   const cables = cableGroups(scene.cables).map(({ name, cables: names }) => {
     const places = names.map((each) => index.get(each)!);
     const states = places.map((i) => cableState(frame, i));
-    return [name === "cables" ? "cables" : `cables: ${name}`, String(names.length), range(states.map(({ tension_n }) => tension_n)),
+    return [["cable", "cables"].includes(name) ? "cables" : `cables: ${name}`, String(names.length), range(states.map(({ tension_n }) => tension_n)),
       range(states.map(({ length_m }) => length_m)), range(places.map((i) => scene.cables[i]!.stiffness_n_per_m || NaN))];
   });
   const compression = new Compression(scene);
@@ -90,7 +90,7 @@ function memberTable(scene: Scene, frame: Frame): HTMLElement {
 const plural = (count: number, one: string, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
 
 function staticsOf(statics: Statics, player: ModePlayer): HTMLElement[] {
-  const stress = statics.self_stress_states === 0 ? "none: this pose cannot be prestressed"
+  const stress = statics.self_stress_states === 0 ? "none in this pose"
     : statics.feasible ? "one has all cables in tension" : "none has all cables in tension";
   const facts = el("dl.headline", {}, ...[
     [plural(statics.self_stress_states, "state"), "self-stress", stress],
