@@ -11,7 +11,7 @@ let page;
 
 before(async () => {
   server = await new MockServer(PAGE, { mode: "replay", compared: [reference] }).start();
-  page = await openPage(server.url);
+  page = await openPage(server.url, { height: 900 }); // plots out of sight are not updated
 });
 after(async () => {
   await closeBrowser();
