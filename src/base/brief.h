@@ -13,7 +13,7 @@ inline std::string Brief(double number, int digits = 4) {
   return {text, ToChars(text, text + sizeof text, number, digits).ptr};
 }
 
-/// Returns the shortest text that reads back as the same number, for values that somebody chose.
+/// Returns the shortest text that reads back as the same number: for values from files and flags.
 inline std::string Shortest(double number) {
   char text[32];
   return {text, ToChars(text, text + sizeof text, number).ptr};

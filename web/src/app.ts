@@ -186,8 +186,8 @@ export function nameOf(scene: Scene, { kind, index }: Selection): string {
   return list[index]?.name ?? "";
 }
 
-function looks({ bodies, nodes, cables, joints, terrain, channels, phases, duration_s, compared, contact_forces, notice }: Scene): string {
-  return JSON.stringify([bodies, nodes, cables, joints, terrain, channels, phases, duration_s, compared, contact_forces, notice]);
+function looks({ bodies, nodes, cables, joints, terrain, channels, phases, duration_s, compared, contact_forces, notice, shape, summary }: Scene): string {
+  return JSON.stringify([bodies, nodes, cables, joints, terrain, channels, phases, duration_s, compared, contact_forces, notice, shape, summary]);
 }
 
 function names({ bodies, nodes, cables, joints }: Scene): string {

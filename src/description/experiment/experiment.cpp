@@ -157,7 +157,9 @@ std::optional<ExperimentSpec> description::LoadPartial(
   }
   const std::vector<std::string>& model_files = experiment->robot.files;
   experiment->files.insert(experiment->files.end(), model_files.begin(), model_files.end());
-  experiment->input_hash = description::HashInputs(experiment->files, overrides);
+  const auto hash = description::HashInputs(experiment->files, overrides, out);
+  if (!hash) return std::nullopt;
+  experiment->input_hash = *hash;
   experiment->robot.def.experiment_parts = ActingParts(*experiment);
   return experiment;
 }

@@ -1,17 +1,26 @@
 #include "description/yaml/yaml_hash.h"
 
-#include <fstream>
-#include <iterator>
+#include <filesystem>
+#include <limits>
 
 #include "base/hash.h"
+#include "base/input_file.h"
 
 namespace taut::description {
 
-std::uint64_t HashInputs(const std::vector<std::string>& files, const Overrides& overrides) {
+std::optional<std::uint64_t> HashInputs(const std::vector<std::string>& files,
+                                        const Overrides& overrides, Diagnostics& out) {
+  constexpr auto kAnySize = std::numeric_limits<std::size_t>::max();
   base::Fnv1a hash;
   for (const std::string& path : files) {
-    std::ifstream in(path, std::ios::binary);
-    hash.AddText(std::string(std::istreambuf_iterator<char>(in), {}));
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+      hash.AddText("");
+      continue;
+    }
+    const auto text = base::ReadInputFile(path, kAnySize, "", out);
+    if (!text) return std::nullopt;
+    hash.AddText(*text);
   }
   for (const auto& [name, expression] : overrides) {
     hash.AddText(name);

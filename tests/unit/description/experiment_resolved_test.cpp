@@ -43,8 +43,9 @@ TEST_F(ExperimentRecord, TheHashIsFnv1a) {
   for (const unsigned char byte : {'3', ':', 'a', 'b', 'c'}) {
     expected = (expected ^ byte) * 0x100000001b3;
   }
-  EXPECT_EQ(description::HashInputs({Path("abc")}, {}), expected);
-  EXPECT_EQ(description::HashInputs({}, {}), 0xcbf29ce484222325);
+  Diagnostics out;
+  EXPECT_EQ(description::HashInputs({Path("abc")}, {}, out), expected);
+  EXPECT_EQ(description::HashInputs({}, {}, out), 0xcbf29ce484222325);
   EXPECT_EQ(base::HashText(0x00f), "000000000000000f");
 }
 
