@@ -61,7 +61,7 @@ def AFitKilledAtItsFirstWritesGoesOn():
 def AFileThatCannotBeReadEndsAFitAndIsNoFailedTrial():
     calls = faults("fit", "--at", "read 1 once").stdout
     count = int(re.search(r"(\d+) read", calls)[1])
-    # Reads of the search; the first and the last ones may belong to what is before and behind it.
+    # Reads of the search; the first and the last ones may belong to the stages around it.
     run = faults("fit", *(word for part in range(21, 28) for word in ("--at", f"read {count * part // 100} sticky")))
     assert run.returncode == 0 and run.stdout.count("run the same command again to resume") > 0, run
 
