@@ -1,7 +1,7 @@
 // Marks on the time bar: phases, pushes and drags, events; and a label with the time under the mouse and all
 // that happens then.
 import type { App } from "../app";
-import type { EventMessage, Scene } from "../protocol";
+import type { Action, EventMessage, Scene } from "../protocol";
 import { clock, el, number } from "../util";
 
 /** An event counts as under the mouse within this distance. */
@@ -15,6 +15,21 @@ export function eventsOf(app: App): { time_s: number; text: string }[] {
   const summary = (app.report?.summary ?? app.scene.value?.summary ?? null) as { overloads?: Overload[] } | null;
   const overloads = (summary?.overloads ?? []).map(({ kind, name, limit, first_time_s }) => ({ time_s: first_time_s, text: `${kind} ${name} exceeds its ${limit}` }));
   return [...app.events.value.map(({ time_s, text }: EventMessage) => ({ time_s, text })), ...overloads];
+}
+
+/** Joins pushes and drags that overlap in time: their labels would be drawn over each other. */
+function overlapping(actions: readonly Action[]): { from_s: number; to_s: number; members: Action[] }[] {
+  const groups: { from_s: number; to_s: number; members: Action[] }[] = [];
+  for (const action of [...actions].sort((a, b) => a.from_s - b.from_s)) {
+    const last = groups[groups.length - 1];
+    if (last && action.from_s < last.to_s) {
+      last.members.push(action);
+      last.to_s = Math.max(last.to_s, action.to_s);
+    } else {
+      groups.push({ from_s: action.from_s, to_s: action.to_s, members: [action] });
+    }
+  }
+  return groups;
 }
 
 /** Creates the marks inside the bar; `share`: place of a time, 0 to 1. */
@@ -43,8 +58,13 @@ export class TrackMarks {
     };
     const next = (list: readonly { from_s: number }[], i: number) => (list[i + 1] ? this.share(list[i + 1]!.from_s) : 1);
     this.phases.replaceChildren(...scene.phases.map(({ name, from_s, to_s }, i) => span(from_s, to_s, name, "span", next(scene.phases, i))));
-    const actions = scene.actions ?? [];
-    this.actions.replaceChildren(...actions.map(({ kind, text, from_s, to_s }, i) => span(from_s, to_s, text, `span.${kind}`, next(actions, i))));
+    const groups = overlapping(scene.actions ?? []);
+    this.actions.replaceChildren(...groups.map(({ from_s, to_s, members }, i) => {
+      const [{ kind, text }, others] = [members[0]!, members.length - 1];
+      const made = span(from_s, to_s, others > 0 ? `${text}, and ${others} more` : text, `span.${kind}`, next(groups, i));
+      made.title = members.map((each) => `${each.text}: ${number(each.from_s, 4)} s to ${number(each.to_s, 4)} s`).join("\n");
+      return made;
+    }));
   }
 
   drawEvents(): void {
