@@ -89,7 +89,8 @@ inline ModelDef AcrossFreeRods(int rods, double stiffness_n_per_m) {
   ModelDef def;
   def.gravity_m_per_s2 = {};
   for (int i = 0; i < rods; ++i) {
-    AddRod(def, {0.1 * (i % 5) - 0.2, 0, 0.1 * (i / 5) - 0.15}, kHalfM, kRadiusM, kRodKg);
+    const int place = i % 5, layer = i / 5;
+    AddRod(def, {0.1 * place - 0.2, 0, 0.1 * layer - 0.15}, kHalfM, kRadiusM, kRodKg);
     for (int j = 0; j < i; ++j) def.apart.push_back({j, i});
   }
   const Vec3 from{-0.6, 0, -0.6}, to{0.6, 0.1, -0.6};
