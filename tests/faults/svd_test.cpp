@@ -12,7 +12,7 @@ int allocations_until_failure = 0;  ///< 0: none fails.
 }  // namespace
 
 extern "C" {
-void* __libc_malloc(std::size_t);
+void* __libc_malloc(std::size_t);  // NOLINT(clang-diagnostic-reserved-identifier): glibc's name
 void* malloc(std::size_t size) {
   if (allocations_until_failure > 0 && --allocations_until_failure == 0) return nullptr;
   return __libc_malloc(size);
