@@ -139,10 +139,11 @@ std::string CheckJson(const RobotSpec& robot, const ExperimentSpec* experiment,
     json["experiment"] = {{"name", experiment->name},
                           {"duration_s", experiment->duration_s},
                           {"step_s", LongestStep(*experiment)}};
-    for (const CableScheme scheme : SchemesOf(*experiment)) {
+    const CableIntegration integration = IntegrationOf(*experiment);
+    for (const CableScheme scheme : integration.schemes) {
       json["experiment"]["cable_schemes"].push_back(CableSchemeName(scheme));
     }
-    json["experiment"]["substeps"] = SubstepsOf(*experiment);
+    json["experiment"]["substeps"] = integration.substeps;
   }
   if (settled) {
     json["settled"] = {{"slack_cables", settled->slack_cables},

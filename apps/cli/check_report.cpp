@@ -215,17 +215,12 @@ std::string RobotTables(const RobotSpec& robot) {
   return text + "\n" + Collisions(def);
 }
 
-std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment) {
+CableIntegration IntegrationOf(const ExperimentSpec& experiment) {
   Diagnostics unused;  // the caller has compiled the model before
   const auto model = Model::CompileForExperiment(experiment.robot.def, unused);
   if (!model) return {};
-  return CableSchemes(*model, LongestStep(experiment));
-}
-
-int SubstepsOf(const ExperimentSpec& experiment) {
-  Diagnostics unused;
-  const auto model = Model::CompileForExperiment(experiment.robot.def, unused);
-  return model ? SubstepCount(*model, LongestStep(experiment)) : 1;
+  const double step_s = LongestStep(experiment);
+  return {CableSchemes(*model, step_s), SubstepCount(*model, step_s)};
 }
 
 std::string ExperimentTables(const ExperimentSpec& experiment) {

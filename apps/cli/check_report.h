@@ -25,10 +25,12 @@ std::string EnvironmentLine(const ExperimentSpec& experiment);
 /// Formats aligned tables: bodies, cables, loads at the start, possible collisions.
 std::string RobotTables(const RobotSpec& robot);
 
-/// Returns the integration scheme of each cable at the experiment's longest step.
-std::vector<CableScheme> SchemesOf(const ExperimentSpec& experiment);
-/// Returns the number of substeps of that step.
-int SubstepsOf(const ExperimentSpec& experiment);
+/// Integration of an experiment's cables at its longest step.
+struct CableIntegration {
+  std::vector<CableScheme> schemes;  ///< Of each cable.
+  int substeps = 1;                  ///< Of a step.
+};
+CableIntegration IntegrationOf(const ExperimentSpec& experiment);
 
 /// Formats the experiment: number of cables per integration scheme, controllers, events and phases.
 std::string ExperimentTables(const ExperimentSpec& experiment);

@@ -77,14 +77,16 @@ std::string NetLine(const ModelDef& def, const std::vector<JointLoad>& joints) {
 
 std::string SchemesLine(const ExperimentSpec& experiment) {
   std::map<CableScheme, int> counts;
-  for (const CableScheme scheme : SchemesOf(experiment)) ++counts[scheme];
+  const CableIntegration integration = IntegrationOf(experiment);
+  for (const CableScheme scheme : integration.schemes) ++counts[scheme];
   std::string text;
   for (const auto& [scheme, count] : counts) {
     text += fmt::format("{}{} {}", text.empty() ? "Cables per integration scheme: " : ", ", count,
                         CableSchemeName(scheme));
   }
-  const int substeps = SubstepsOf(experiment);
-  if (substeps > 1) text += fmt::format("; {} substeps a step", substeps);
+  if (integration.substeps > 1) {
+    text += fmt::format("; {} substeps a step", integration.substeps);
+  }
   return text;
 }
 

@@ -10,19 +10,6 @@ namespace {
 /// Modes listed on the page, as many as `taut analyze` computes by default.
 constexpr std::size_t kMostModes = 10;
 
-const char* ModeKindName(Mode::Kind kind) {
-  switch (kind) {
-    case Mode::Kind::kMechanism:
-      return "mechanism";
-    case Mode::Kind::kUnstable:
-      return "unstable";
-    case Mode::Kind::kRigid:
-    case Mode::Kind::kElastic:
-      break;
-  }
-  return "elastic";
-}
-
 viewer::Json VectorsJson(const std::vector<Vec3>& vectors) {
   viewer::Json json = viewer::Json::array();
   for (const Vec3& v : vectors) json.push_back(viewer::ToJson(v));
@@ -41,7 +28,7 @@ viewer::Json ViewStatics(const ExperimentSpec& experiment) {
   const Modes found = at.found ? FindModes(ModelAt(def, at.pose), unloaded) : Modes{};
   for (const Mode& mode : found.modes) {
     if (mode.kind == Mode::Kind::kRigid || modes.size() == kMostModes) continue;
-    modes.push_back({{"kind", ModeKindName(mode.kind)},
+    modes.push_back({{"kind", NameOf(mode.kind)},
                      {"frequency_hz", mode.frequency_hz},
                      {"translation_m", VectorsJson(mode.translation_m)},
                      {"rotation_rad", VectorsJson(mode.turn_rad)}});

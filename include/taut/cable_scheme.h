@@ -35,9 +35,9 @@ constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
 }
 
 /// Returns the number of equal parts into which each step of `step_s` > 0 is divided. It is 1
-/// unless stiff cables of the model touch edges or rods, or have hardly any damping in a group that
-/// would be `kAlong`. It depends only on the step and on the model, and is at most 100; if that is
-/// not enough, the world has the status `kStatusStepTooLong`.
+/// unless stiff cables of the model can touch edges or rods, or have less than 5 % of the critical
+/// damping in a group that would be `kAlong`. It depends only on the step and on the model, and is
+/// at most 100; if that is not enough, the world has the status `kStatusStepTooLong`.
 int SubstepCount(const Model& model, double step_s);
 
 /// Returns the scheme of each cable at steps of `step_s` > 0. It depends only on the step and on

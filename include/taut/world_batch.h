@@ -77,8 +77,8 @@ enum StatusBits : std::uint32_t {
   /// it can bend around (docs/theory/cables.md, section 6).
   kStatusContactOverflow = 1u << 2,
   /// The step is too long: for transverse motion under a cable's tension (docs/theory/cables.md,
-  /// eq. 12), for the substeps of stiff cables (eq. 12i), for a bend of a cable on a rod that turns
-  /// (section 6), for the joint forces of a body, or for its rotation about a hinge away from its
+  /// eq. 12), for the substeps of stiff cables (eq. 12i), for a bend that a turning rod moves along its
+  /// axis (section 6), for the joint forces of a body, or for its rotation about a hinge away from its
   /// center of mass (docs/theory/joints.md, section 6).
   kStatusStepTooLong = 1u << 3,
   /// A body's center of mass is below the whole terrain, which has a height field or a mesh and no

@@ -199,8 +199,7 @@ ForceBalance::Solutions ForceBalance::Solve() const {
   if (n > 0 && columns.rows() > 0) {
     const auto use = [&](const auto& svd) {
       const VectorXd& values = svd.singularValues();
-      Index rank = 0;
-      while (rank < values.size() && values[rank] > kRank * values[0]) ++rank;
+      const Index rank = analysis::RankAbove(values, kRank * values[0]);
       all.particular =
           svd.matrixV().leftCols(rank) *
           (svd.matrixU().leftCols(rank).transpose() * load).cwiseQuotient(values.head(rank));

@@ -105,8 +105,7 @@ Split SplitOf(const Eigen::MatrixXd& matrix) {
   }
   const analysis::Svd svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::VectorXd& values = svd.singularValues();
-  Eigen::Index rank = 0;
-  while (rank < values.size() && values[rank] > kSmall * values[0]) ++rank;
+  const Eigen::Index rank = analysis::RankAbove(values, kSmall * values[0]);
   out.rank.rank = static_cast<int>(rank);
   if (rank > 0) out.rank.smallest_kept = values[rank - 1];
   if (rank < values.size()) out.rank.largest_dropped = values[rank];
@@ -119,8 +118,8 @@ Parts PartsOf(const Eigen::MatrixXd& space, const Eigen::MatrixXd& part) {
   const Eigen::MatrixXd span = SpanOf(part);
   if (space.cols() == 0 || span.cols() == 0) return {space.leftCols(0), space};
   const analysis::Svd svd(space.transpose() * span, Eigen::ComputeFullU);
-  Eigen::Index in = 0;  // cosines of the principal angles: 1 where the spaces share a direction
-  while (in < svd.singularValues().size() && svd.singularValues()[in] > 1 - 1e-9) ++in;
+  // Cosines of the principal angles: 1 where the spaces share a direction.
+  const Eigen::Index in = analysis::RankAbove(svd.singularValues(), 1 - 1e-9);
   const Eigen::MatrixXd turned = space * svd.matrixU();
   return {turned.leftCols(in), turned.rightCols(space.cols() - in)};
 }

@@ -253,8 +253,7 @@ SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
     if (twists.cols() == 0) continue;
     // Drops twists that only rotate points and rods about themselves.
     const analysis::Svd svd(motions, Eigen::ComputeFullV);
-    Eigen::Index rank = 0;
-    while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kSmall) ++rank;
+    const Eigen::Index rank = analysis::RankAbove(svd.singularValues(), kSmall);
     if (rank == 0) continue;
     twists = twists * svd.matrixV().leftCols(rank);
     const std::string part =

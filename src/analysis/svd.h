@@ -1,4 +1,4 @@
-/// Singular value decomposition of any matrix that survives missing memory.
+/// Singular value decomposition (Jacobi) that tolerates failed allocations, and ranks.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,27 +6,34 @@
 
 namespace taut::analysis {
 
+/// Returns the number of singular values above a limit; they are in descending order.
+inline Eigen::Index RankAbove(const Eigen::VectorXd& values, double limit) {
+  Eigen::Index rank = 0;
+  while (rank < values.size() && values[rank] > limit) ++rank;
+  return rank;
+}
+
 /// Eigen's `JacobiSVD` destroys one of its members and constructs it again in place. If the
-/// construction throws for lack of memory, the destructor of `JacobiSVD` would free the memory of
-/// this member a second time. `Svd` leaks the decomposition in this case.
+/// construction throws for lack of memory, the destructor of `JacobiSVD` frees the memory of this
+/// member a second time. `Svd` leaks the decomposition in this case.
 class Svd {
  public:
   using Decomposition = Eigen::JacobiSVD<Eigen::MatrixXd>;
 
-  /// `options` as in Eigen.
-  Svd(const Eigen::MatrixXd& matrix, unsigned options) : of_(new Decomposition) {
-    of_->compute(matrix, options);
+  /// Computes the decomposition; `options` as for `Eigen::JacobiSVD`.
+  Svd(const Eigen::MatrixXd& matrix, unsigned options) : decomposition_(new Decomposition) {
+    decomposition_->compute(matrix, options);
   }
-  ~Svd() { delete of_; }
+  ~Svd() { delete decomposition_; }
   Svd(const Svd&) = delete;
   Svd& operator=(const Svd&) = delete;
 
-  const Eigen::MatrixXd& matrixU() const { return of_->matrixU(); }
-  const Eigen::MatrixXd& matrixV() const { return of_->matrixV(); }
-  const Eigen::VectorXd& singularValues() const { return of_->singularValues(); }
+  const Eigen::MatrixXd& matrixU() const { return decomposition_->matrixU(); }
+  const Eigen::MatrixXd& matrixV() const { return decomposition_->matrixV(); }
+  const Eigen::VectorXd& singularValues() const { return decomposition_->singularValues(); }
 
  private:
-  Decomposition* of_;
+  Decomposition* decomposition_;
 };
 
 }  // namespace taut::analysis

@@ -81,9 +81,7 @@ Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0 || columns.rows() == 0) return Eigen::MatrixXd(columns.rows(), 0);
   const analysis::Svd svd(columns, Eigen::ComputeThinU);
   const Eigen::VectorXd& values = svd.singularValues();
-  Eigen::Index rank = 0;
-  while (rank < values.size() && values[rank] > kSmallShare * values[0]) ++rank;
-  return svd.matrixU().leftCols(rank);
+  return svd.matrixU().leftCols(analysis::RankAbove(values, kSmallShare * values[0]));
 }
 
 Eigen::MatrixXd HeldDirections(const Structure& s, const Reactions& holding) {

@@ -197,8 +197,7 @@ Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit) {
   if (rows.rows() == 0) return Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
   if (rows.cols() == 0) return Eigen::MatrixXd(0, 0);
   const analysis::Svd svd(rows, Eigen::ComputeFullV);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
+  const Eigen::Index rank = analysis::RankAbove(svd.singularValues(), limit);
   return svd.matrixV().rightCols(rows.cols() - rank);
 }
 

@@ -1,5 +1,5 @@
-/// Substeps of models whose stiff cables have neither a straight path nor enough damping
-/// (docs/theory/cables.md, section 3).
+/// Substeps for stiff cables that touch edges or rods, or that have hardly any damping in a group
+/// with fixed directions (docs/theory/cables.md, section 3).
 #pragma once
 
 #include "sim/data/tables.h"
@@ -8,19 +8,20 @@ namespace taut::sim {
 
 /// Largest number of substeps of a step.
 inline constexpr int kMostSubsteps = 100;
-/// h^2 K of a substep. The energy of an explicit spring oscillates by a quarter of it.
+/// Largest h^2 K of a substep. The energy of an explicit spring then oscillates by up to a quarter
+/// of this value, relative to its mean (docs/theory/cables.md, eq. 11a).
 inline constexpr double kSubstepSpring = 0.05;
 
 struct SubstepRule {
-  double rate_per_s = 0;  ///< Substeps per time that make the cables soft.
-  int cable = -1;         ///< The stiffest of them.
+  double rate_per_s = 0;  ///< Substeps per second that these cables need; 0: none.
+  int cable = -1;         ///< Index of the stiffest such cable; -1: none.
 
   int CountOf(double step_s) const noexcept;
-  /// Returns whether the cables are soft after CountOf substeps.
+  /// Returns whether CountOf(step_s) substeps suffice.
   bool IsEnough(double step_s) const noexcept;
 };
 
-/// Returns the rule of a model: it depends on its masses, stiffnesses and dampings, not on
+/// Returns the rule of a model. It depends on the model's masses, stiffnesses and dampings, not on
 /// parameters of a world.
 SubstepRule SubstepRuleOf(const Tables& tables);
 

@@ -39,7 +39,7 @@ TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) 
   return b;
 }
 
-/// Returns a direction across the axis of a bend, which rotates with its body.
+/// Returns a unit vector perpendicular to a bend's axis, fixed in the bend's body.
 template <class W>
 V3<W> MarkOfBend(const View& m, const Scratch<W>& work, const WrapPointNumbers<W>& bend) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
@@ -58,17 +58,25 @@ V3<W> MarkOfBend(const View& m, const Scratch<W>& work, const WrapPointNumbers<W
   return mark;
 }
 
-/// Returns the smallest turn from one angle to another [rad].
+/// Returns the difference of two angles, from -pi to pi.
 template <class W>
 TAUT_INLINE W TurnFrom(W from, W to) noexcept {
   const W turned = to - from;
   return turned - W::Splat(2 * kPi) * Round(W::Splat(0.5 / kPi) * turned);
 }
 
-/// Change of a held bend's path with the place of its middle along the axis.
+/// Returns the displacement around a wheel, positive along the cable, for a turn about its axis
+/// [m].
+template <class W>
+TAUT_INLINE W WayAround(const Wheel<V3<W>>& wheel, W turn) noexcept {
+  return Select(wheel.angle < W::Splat(0.0), -turn, turn) * wheel.radius;
+}
+
+/// Derivatives of a held bend's path length with respect to the position of its middle along the
+/// axis.
 struct Lean {
-  double apart;  ///< Half the change of the length before minus that behind the middle [1].
-  double walk;   ///< Displacement along the axis per displacement around it, of equal work [1].
+  double apart;  ///< Half the difference of the derivatives before and behind the middle [1].
+  double walk;   ///< Displacement along the axis per displacement around it without work (eq. 22a).
 };
 inline Lean LeanOf(const Tangents<Vec3>& way, const Rises<double>& rise) noexcept {
   constexpr double kShortestM = 1e-9, kLeast = 1e-6, kMostTimes = 2.0;
@@ -87,14 +95,15 @@ inline Lean LeanOf(const Tangents<Vec3>& way, const Rises<double>& rise) noexcep
 }
 
 /// Slides one lane's bend if friction cannot hold it. `moved`: displacement of the arc's middle on
-/// the wheel since the previous step, about its axis [m]. Along this way the bend follows the mean
-/// direction of the cable, like a rope on a turning drum (eq. 22a). Returns the displacement across
-/// the cable [m].
+/// the wheel since the previous step, about its axis [m]. In the meantime, the bend moves in the
+/// mean direction of the cable, like a rope on a turning drum (eq. 22a). Returns the displacement
+/// across the cable [m].
 template <class W>
 double SlideBend(const View& m, const Rows<W>& s, const TouchTable& touch, Scratch<W>& work,
                  const Vec3& p, const Vec3& q, int k, int lane, double moved) noexcept {
   constexpr double kSteepest = 0.995;  ///< Share of the friction limit that keeps some slip.
-  constexpr double kMostWalk = 0.1;    ///< Per length of the straight parts (status bit).
+  /// Largest motion along the axis in a step, per length of the shorter straight part (status bit).
+  constexpr double kMostWalk = 0.1;
   const CableTable& cable = m.cables[touch.cable];
   W& along = s.slip_along[cable.first_slip + k];
   AcrossWork<W>& across = work.across[cable.first_slip + k];
@@ -121,19 +130,19 @@ double SlideBend(const View& m, const Rows<W>& s, const TouchTable& touch, Scrat
     across.lean.Set(lane, LeanOf(way, RisesAt(way, straight)).apart);
     return old < kNotHeld ? Abs(straight - old) : 0.0;
   }
-  const Lean lean = LeanOf(way, RisesAt(way, old));
-  const double walk_m = moved * lean.walk;
-  old = old + walk_m;
-  if (Abs(walk_m) > kMostWalk * Min(way.lp, way.lq)) work.WalkedFar(touch.cable, lane);
+  if (moved != 0.0) {
+    const double walk_m = moved * LeanOf(way, RisesAt(way, old)).walk;
+    old = old + walk_m;
+    if (Abs(walk_m) > kMostWalk * Min(way.lp, way.lq)) work.WalkedFar(touch.cable, lane);
+  }
   const double hold = touch.friction * Max(way.theta, 0.0), aside = AsideAt(way, old);
   double now = old;
-  along.Set(lane, now);
   if (Abs(aside) > hold) {
     now = SlideTo(way, old, aside > 0.0 ? hold : -hold);
-    along.Set(lane, now);
     W& loss = s.slip_loss[cable.first_slip + k];
     loss.Set(lane, loss[lane] + 0.5 * mean_n * (Abs(aside) + hold) * Abs(now - old));
   }
+  along.Set(lane, now);
   const double left = Max(Min(aside, hold), -hold);
   const double part = hold > 0.0 ? Max(Min(left / hold, kSteepest), -kSteepest) : 0.0;
   across.aside.Set(lane, left);
@@ -176,10 +185,8 @@ template <class W>
   for (int k = 0; k < used; ++k) {
     const Wheel<V3<W>>& wheel = work.wheels[k];
     const W known = s.slip_place[cable.first_slip + k];
-    const W shift = TurnFrom(known, MiddleOf(wheel, MarkOfBend(m, work, bends[k]), ends));
-    const W side = Select(wheel.angle < zero, zero - W::Splat(1.0), W::Splat(1.0));
-    const auto held = known < W::Splat(kNotHeld);
-    moved[k] = Select(held, side * shift * wheel.radius, zero);
+    const W turn = TurnFrom(known, MiddleOf(wheel, MarkOfBend(m, work, bends[k]), ends));
+    moved[k] = Select(known < W::Splat(kNotHeld), WayAround(wheel, turn), zero);
   }
   auto slides = s.halted[0] == zero;
   for (int round = 0; round < kMostRounds && Any(slides); ++round) {

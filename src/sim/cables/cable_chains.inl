@@ -11,38 +11,31 @@
 
 namespace taut::sim {
 
-/// Moves the material that a wheel has carried along since the previous step between its two spans:
-/// the displacement of the arc's middle on the wheel, along the mean of the cable's directions
-/// before and behind it (docs/theory/cables.md, eq. 19a). `length`: of the spans. `keep`: stores
-/// the middle's new place in `place` and `height`.
+/// Transfers cable between the two spans of a wheel that has turned since the previous step: the
+/// displacement of the arc's middle on the wheel, along the mean of the cable's directions
+/// before and behind it (docs/theory/cables.md, eq. 15a). `middle`: angle of the arc's middle;
+/// `length`: of the spans; `lean`: Lean::apart of a held bend, or null. `keep`: stores the middle's
+/// new place in `place` and `height`.
 template <class W>
-TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, const V3<W>& mark, int span,
-                           const AttachmentWork<W>* ends, const W* length, bool keep, W along,
+TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, W middle, int span,
+                           const AttachmentWork<W>* ends, const W* length, bool keep, const W* lean,
                            W& place, W& height, W* rest) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), half = W::Splat(0.5);
-  const V3<W>&before = ends[wheel.at].u, &behind = ends[wheel.at + 2].u;
-  const W sin_before = Dot(before, wheel.axis), sin_behind = Dot(behind, wheel.axis);
+  const W before = Dot(ends[wheel.at].u, wheel.axis),
+          behind = Dot(ends[wheel.at + 2].u, wheel.axis);
   const auto cos_of = [&](W sin) { return Sqrt(Max(one - sin * sin, zero)); };
-  const W around = half * (cos_of(sin_before) + cos_of(sin_behind));
-  const W shift = TurnFrom(place, MiddleOf(wheel, mark, ends));
-  const W middle = Dot(half * (ends[wheel.at].p + ends[wheel.at + 1].p) - wheel.center, wheel.axis);
-  const W rise = Select(height < W::Splat(kNotHeld), middle - height, zero);
-  if (keep) place = place + shift, height = middle;
-  const W side = Select(wheel.angle < zero, zero - one, one);
-  const W way =
-      Select(wheel.theta > zero, side * shift * wheel.radius * around + rise * along, zero);
+  const W around = half * (cos_of(before) + cos_of(behind));
+  const W along = lean != nullptr ? *lean : half * (before + behind);
+  const W turn = TurnFrom(place, middle);
+  const W at = Dot(half * (ends[wheel.at].p + ends[wheel.at + 1].p) - wheel.center, wheel.axis);
+  const W rise = Select(height < W::Splat(kNotHeld), at - height, zero);
+  if (keep) place = place + turn, height = at;
+  const W way = Select(wheel.theta > zero, WayAround(wheel, turn) * around + rise * along, zero);
   const W strain = half * (length[span] / rest[span] + length[span + 1] / rest[span + 1]);
   W moves = way / Max(strain, one);
   moves = Max(Min(moves, half * rest[span + 1]), -(half * rest[span]));
   rest[span] += moves;
   rest[span + 1] -= moves;
-}
-
-/// Returns the mean rise of the cable before and behind a wheel, per length.
-template <class W>
-TAUT_INLINE W LeanOf(const Wheel<V3<W>>& wheel, const AttachmentWork<W>* ends) noexcept {
-  return W::Splat(0.5) *
-         (Dot(ends[wheel.at].u, wheel.axis) + Dot(ends[wheel.at + 2].u, wheel.axis));
 }
 
 /// Applies CarryOver to all wheels with friction of a cable.
@@ -56,8 +49,9 @@ void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, cons
     const Wheel<V3<W>>& wheel = work.wheels[slip.wheel - cable.first_wheel];
     const V3<W> mark = work.spots[m.wheels[slip.wheel].mark_spot].p - wheel.center;
     const int at = cable.first_slip + i;
-    const W along = LeanOf(wheel, ends);
-    CarryOver(wheel, mark, i, ends, length, keep, along, s.slip_place[at], s.slip_height[at], rest);
+    const W* const lean = nullptr;
+    CarryOver(wheel, MiddleOf(wheel, mark, ends), i, ends, length, keep, lean, s.slip_place[at],
+              s.slip_height[at], rest);
   }
 }
 
@@ -161,7 +155,7 @@ TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
     rest[i] += missing;
     rest[i + 1] -= missing;
   }
-  // The last spans may be short, too.
+  // The last spans may be below the least length, too.
   for (int i = span_count - 1; i > 0; --i) {
     const S missing = Max(least - rest[i], zero);
     rest[i] += missing;

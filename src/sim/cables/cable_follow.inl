@@ -18,7 +18,6 @@ struct LeftBehind {
   static constexpr int kMost = 2 * kMostBends;
   double key[kMost];
   int count = 0;
-  bool resolved = true;  ///< Bodies move by at most half a rod's radius in a substep.
 };
 
 /// Marks a lane whose cable touches more than kMostBends edges and rods (status bit).
@@ -43,10 +42,11 @@ int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const T
 
 /// Changes a lane's bends once, by the current path. Removes bends that the cable has left, that
 /// would be beyond an edge's end or inside the ground; adds an edge that a straight part is below.
+/// `resolved`: bodies have moved by at most half a rod's radius since the previous path.
 /// Returns whether the bends changed.
 template <class W>
 bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
-                 int used, int lane, LeftBehind& left) noexcept {
+                 int used, int lane, bool resolved, LeftBehind& left) noexcept {
   const AttachmentWork<W>* const ends = work.attachments;
   const Wheel<V3<W>>* const wheels = work.wheels;
   LaneBends<W> bends(m, s, touch, lane);
@@ -94,10 +94,9 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   }
   FindRod(m, s, work, touch, parts, lane, taken, taken_count, part >= 0, &deepest, &part);
   if (part < 0) return false;
-  if (left.resolved && deepest.place.body != m.body_count &&
-      deepest.depth_m > deepest.place.radius_m) {
-    // The cable has jumped, so it is deeper in this rod than it can get in a substep. Laid around
-    // the rod, it would lengthen by a jump.
+  if (resolved && deepest.place.body != m.body_count && deepest.depth_m > deepest.place.radius_m) {
+    // The cable has jumped: it is deeper in this rod than a substep allows. A bend around the rod
+    // would lengthen the cable by a jump.
     ForgetSide(m, s, touch, deepest.place.key, lane);
     Crowd(work, touch, lane);
     return true;
@@ -181,7 +180,6 @@ template <class W>
     if (!Any(here)) break;
     const W ago = Select(here, time * (one - W::Splat(part) / parts), zero);
     LeftBehind left[W::kLanes];
-    for (int lane = 0; lane < W::kLanes; ++lane) left[lane].resolved = parts[lane] < kMostParts;
     auto busy = here;
     for (int round = 0;; ++round) {
       LayThen(m, s, work, touch, used, start, end, &ago);
@@ -189,7 +187,8 @@ template <class W>
       busy = busy & MayChangeBends(m, s, work, touch, used);
       for (int lane = 0; lane < W::kLanes; ++lane) {
         if (busy[lane]) {
-          busy.Set(lane, ChangeBends(m, s, work, touch, used, lane, left[lane]));
+          const bool resolved = parts[lane] < kMostParts;
+          busy.Set(lane, ChangeBends(m, s, work, touch, used, lane, resolved, left[lane]));
         }
       }
       if (!Any(busy)) break;

@@ -10,6 +10,27 @@
 
 namespace taut::sim {
 
+/// Distributes lengths to equal strain over spans between which the cable has left its bends.
+template <class W>
+void ShareLengths(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
+                  W* length) noexcept {
+  for (int lane = 0; lane < W::kLanes; ++lane) {
+    const int count = SpansIn(m, s, cable, lane);
+    for (int first = 0, end; first < count; first = end) {
+      end = first + 1;
+      while (end < count && !(work.wheels[end - 1].theta[lane] > 0.0)) ++end;
+      if (end == first + 1) continue;
+      double long_m = 0.0, rest_m = 0.0;
+      for (int k = first; k < end; ++k) {
+        long_m += length[k][lane], rest_m += s.span_rest[cable.first_span + k][lane];
+      }
+      for (int k = first; k < end; ++k) {
+        length[k].Set(lane, long_m / rest_m * s.span_rest[cable.first_span + k][lane]);
+      }
+    }
+  }
+}
+
 /// Computes lengths and tension ratios of a cable's spans in its path over work.wheels.
 template <class W>
 [[gnu::noinline]] void MeasureGrips(const View& m, const Rows<W>& s, const CableTable& cable,
@@ -37,22 +58,7 @@ template <class W>
     if (k < used) is_last = is_last & !HasSpan(m, s, cable, k + 1);
     length[k] = Select(is_last, rest, length[k]);
   }
-  // Spans on both sides of a bend that the cable has left are one, with equal strain.
-  for (int lane = 0; lane < W::kLanes; ++lane) {
-    const int count = SpansIn(m, s, cable, lane);
-    for (int first = 0, end; first < count; first = end) {
-      end = first + 1;
-      while (end < count && !(work.wheels[end - 1].theta[lane] > 0.0)) ++end;
-      if (end == first + 1) continue;
-      double long_m = 0.0, rest_m = 0.0;
-      for (int k = first; k < end; ++k) {
-        long_m += length[k][lane], rest_m += s.span_rest[cable.first_span + k][lane];
-      }
-      for (int k = first; k < end; ++k) {
-        length[k].Set(lane, long_m / rest_m * s.span_rest[cable.first_span + k][lane]);
-      }
-    }
-  }
+  ShareLengths(m, s, cable, work, length);
 }
 
 /// Moves cable material with rotating rods, as in CarryOver.
@@ -67,15 +73,13 @@ template <class W>
   }
   for (int k = 0; k < work.bends_used; ++k) {
     const Wheel<V3<W>>& wheel = work.wheels[k];
-    const V3<W> mark = MarkOfBend(m, work, bends[k]);
-    W& known = s.slip_place[cable.first_slip + k];
+    const int slip = cable.first_slip + k;
+    W &known = s.slip_place[slip], &known_height = s.slip_height[slip];
     const auto has = HasSpan(m, s, cable, k + 1);
-    const W middle = MiddleOf(wheel, mark, ends);
-    W place = Select(known < W::Splat(kNotHeld), known, middle);
-    W& known_height = s.slip_height[cable.first_slip + k];
-    W height = known_height;
-    const W along = keep ? work.across[cable.first_slip + k].lean : LeanOf(wheel, ends);
-    CarryOver(wheel, mark, k, ends, length, keep, along, place, height, rest);
+    const W middle = MiddleOf(wheel, MarkOfBend(m, work, bends[k]), ends);
+    W place = Select(known < W::Splat(kNotHeld), known, middle), height = known_height;
+    const W* const lean = keep ? &work.across[slip].lean : nullptr;  // readings: of another pose
+    CarryOver(wheel, middle, k, ends, length, keep, lean, place, height, rest);
     if (keep) known = Select(has, place, known), known_height = Select(has, height, known_height);
   }
   for (int k = 1; k <= work.bends_used; ++k) {

@@ -86,7 +86,7 @@ void CheckJoints(const ModelDef& def, Checker& check) {
     const double gap = JointError(j);
     check.Require(!(gap > JointDef::kClosed_m),
                   name + ": its points are " + Metres(gap) +
-                      " apart in a direction in which it allows no motion");
+                      " apart in a direction that the joint locks");
     check.Require(
         !(math::HeldTurn(j) > math::kClosedTurn_rad),
         name + ": its bodies are rotated relative to each other by a turn that it does not allow");

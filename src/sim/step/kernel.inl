@@ -303,11 +303,6 @@ void StepGroup(const View& m, const Layout& layout, Group& g, const StepSettings
   Scratch<W> work(m, scratch);
   const Rows<W> s(m, layout, g);
   Watch watch;
-  if (settings.substeps == 1) {
-    FindImplicit(m, s, work.implicit, step_s);
-    for (int i = 0; i < count; ++i) StepOnce(m, s, g, settings, work, step_s, watch);
-    return;
-  }
   const double part_s = step_s / settings.substeps;
   FindImplicit(m, s, work.implicit, part_s);
   for (int i = 0; i < count; ++i) {
