@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "command.h"
 #include "run_names.h"
+#include "shape_info.h"
 #include "taut/run_folder.h"
 
 namespace taut::viewer {
@@ -217,31 +217,6 @@ bool Recorded::has_poses() const {
 std::string Recorded::title() const {
   return experiment_ ? experiment_->name : fs::path(path_).filename().string();
 }
-
-namespace {
-
-/// Returns the ShapeInfo of a trace of `taut analyze --out`; null for other traces.
-Json ShapeOf(const TraceMetadata& metadata) {
-  const auto text = [&](const char* key) {
-    const auto at = std::find_if(metadata.begin(), metadata.end(),
-                                 [&](const auto& entry) { return entry.first == key; });
-    return at == metadata.end() ? std::string() : at->second;
-  };
-  const std::string name = text("shape");
-  const std::size_t end = name.rfind('_');
-  if (name.empty() || end == name.npos || text("shape_count").empty()) return nullptr;
-  const auto number = [&](const char* key) { return std::strtod(text(key).c_str(), nullptr); };
-  Json shape{{"kind", name.substr(0, end)},
-             {"number", static_cast<int>(number("shape_number"))},
-             {"count", static_cast<int>(number("shape_count"))}};
-  for (const char* key : {"frequency_hz", "slowdown", "amplitude"}) {
-    const std::string entry = std::string("shape_") + key;
-    if (!text(entry.c_str()).empty()) shape[key] = number(entry.c_str());
-  }
-  return shape;
-}
-
-}  // namespace
 
 Json Recorded::scene() const {
   Json scene = experiment_ ? SceneOf(*experiment_) : SceneOf(trace_);

@@ -21,9 +21,9 @@ struct Shape {
   std::vector<Vec3> translation_m, turn_rad;
   /// Per cable; empty: tensions of the model's springs in each pose.
   std::vector<double> tension_n;
-  /// Place in a list of such shapes, from 1, and their number; 0: unknown.
+  /// Index (from 1) among the shapes of this kind, and their count; 0: unknown.
   int number = 0, count = 0;
-  double frequency_hz = 0;  ///< Of a mode; 0: none.
+  double frequency_hz = 0;  ///< Natural frequency of a mode; 0: not a mode.
 };
 
 struct ShapeLook {
@@ -48,9 +48,9 @@ bool WriteShapeRun(const std::string& folder, const ExperimentSpec& experiment, 
 
 /// Writes one such folder per mode ("mode_1", ...; at most `most_modes`), mechanism ("mechanism_1",
 /// ...) and state of self-stress ("self_stress_1", ...), without rigid motions, below `folder`.
-/// The metadata of the traces contain number and count, of modes also frequency, slowdown and
-/// relative amplitude.
-/// Returns the written folders. Tensions of a self-stress are in percent of the largest.
+/// The metadata of each trace contain index and count; those of motions also the relative
+/// amplitude, those of modes frequency and slowdown. Returns the written folders. Tensions of a
+/// self-stress are in percent of the largest.
 std::vector<std::string> WriteShapeRuns(const std::string& folder, const ExperimentSpec& experiment,
                                         const Modes& modes, const ForceAnalysis& forces,
                                         int most_modes, const ShapeLook& look, Diagnostics& out);

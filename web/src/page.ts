@@ -57,7 +57,7 @@ export function buildPage(root: HTMLElement, app: App, more: More = {}): void {
   };
   const controlsButton = button("controls", "live controls (C)", toggleControls);
   app.hello.watch(() => (controlsButton.hidden = !app.movable || app.watches));
-  const keys = keysOf(app, view, { help: () => help.toggle(), controls: toggleControls, editor: () => plots.toggleEditor() });
+  const keys = keysOf(app, view, { help: () => help.toggle(), controls: toggleControls, editor: () => plots.toggleEditor(), search: () => plots.searchChannels() });
   help.fill(keys);
   listenToKeys(app, keys);
 

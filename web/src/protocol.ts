@@ -164,7 +164,7 @@ export interface SetGainMessage {
   value: number;
 }
 
-/** Model: simulate it without weight and ground, dropped onto ground from half of its size above it, or settled on the ground. */
+/** Model: simulate it without gravity and ground, dropped onto the ground from a height of half its size, or settled on the ground. */
 export interface StartMessage {
   type: "start";
   as: "described" | "dropped" | "settled";

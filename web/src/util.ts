@@ -43,7 +43,7 @@ export function el<T extends HTMLElement = HTMLElement>(
 }
 
 /** Attributes of a wide table's frame, which the keyboard can scroll. */
-export const SCROLLS = { tabindex: 0, role: "region", "aria-label": "table; scrolls sideways" } as const;
+export const SCROLLS = { tabindex: 0, role: "region", "aria-label": "table, scrollable horizontally" } as const;
 
 /**
  * Returns a button with an accessible label and a tooltip. The label begins with the visible words, by which
@@ -53,6 +53,18 @@ export function button(label: string | Node, title: string, onclick: () => void,
   const isWord = typeof label === "string" && /[\p{L}\p{N}]/u.test(label);
   const name = isWord && !title.startsWith(label) ? `${label}: ${title}` : title;
   return el<HTMLButtonElement>(spec, { type: "button", title, "aria-label": name, onclick }, label);
+}
+
+/** Returns a button that unfolds an element (class open), which the caller has yet to make. */
+export function foldButton(title: string, spec: string, element: () => HTMLElement): HTMLButtonElement {
+  const made = button("⋯", title, () => made.setAttribute("aria-expanded", String(element().classList.toggle("open"))), spec);
+  made.setAttribute("aria-expanded", "false");
+  return made;
+}
+
+/** Formats a number of things: "1 state", "2 states". */
+export function counted(count: number, what: string): string {
+  return `${count} ${what}${count === 1 ? "" : "s"}`;
 }
 
 export function number(value: number, digits = 3): string {

@@ -49,9 +49,9 @@ test("AReportBeginsWithItsHeadlineNumbers", async (t) => {
   const at_s = Math.round((Math.PI / 2) * 200) / 200;
   assert.equal(cards["peak tension"], `${tension_n(7, at_s).toFixed(1)} N side_1 at ${at_s.toFixed(2)} s`);
   assert.equal(cards.distance, `${(SPEED_M_PER_S * DURATION_S).toFixed(3)} m 0° from x`);
-  assert.match(cards["mean speed"], /^0\.0500 m\/s over 10 s$/);
+  assert.match(cards["net speed"], /^0\.0500 m\/s over 10 s$/);
   assert.equal(cards.status, "complete no problems");
-  assert.equal(cards.safety, "2.50 × least: buckling of rod_1");
+  assert.equal(cards["buckling safety"], "2.50 × lowest: strut rod_1");
   assert.ok(await page.evaluate(() => document.querySelector(".headline").compareDocumentPosition(document.querySelector("main.report h2")) & Node.DOCUMENT_POSITION_FOLLOWING), "above everything else");
   assert.deepEqual(await violations(page), []);
   await picture(page, "overview-report", { fullPage: true });
@@ -150,7 +150,7 @@ test("AModelShowsItsMembersAndModesInsteadOfEmptyPlots", async (t) => {
   assert.deepEqual(await page.locator(".statics .headline b").allInnerTexts(), ["1 state", "1", "6"]);
   assert.deepEqual(await page.locator(".statics button").allInnerTexts(), ["1: 16.9 Hz", "2: 42 Hz"]);
   await page.getByRole("button", { name: "play mode 1, 16.9 Hz" }).click();
-  assert.equal(await page.locator(".shapebar span").innerText(), "mode 1 of 2 · 16.9 Hz · slowed 34× · amplitude 8 % of its size");
+  assert.equal(await page.locator(".shapebar span").innerText(), "mode 1 of 2 · 16.9 Hz · slowed 34× · amplitude: 8 % of the robot's size");
   const x = () => page.evaluate(() => window.taut.view.world.bodies.object.children[2].position.z);
   const [first, rest] = [await x(), scene.bodies[2].position_m[2]];
   await page.waitForFunction((before) => Math.abs(window.taut.view.world.bodies.object.children[2].position.z - before) > 0.01, first);
@@ -182,7 +182,7 @@ test("AModePlaysByItselfUnlessMotionIsUnwanted", async (t) => {
   const page = await opened({ more: { shape } });
   const server = servers.at(-1);
   await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 0.1);
-  assert.equal(await page.locator(".shapebar span").innerText(), "mode 1 of 10 · 16.9 Hz · slowed 34× · amplitude 8 % of its size");
+  assert.equal(await page.locator(".shapebar span").innerText(), "mode 1 of 10 · 16.9 Hz · slowed 34× · amplitude: 8 % of the robot's size");
   assert.match(await page.locator(".legend").innerText(), /strain of cables/);
   await page.getByRole("button", { name: "next mode" }).click();
   for (let i = 0; i < 100 && server.of("open_shape").length === 0; ++i) await new Promise((resolve) => setTimeout(resolve, 50));
@@ -221,4 +221,35 @@ test("AFigureIsCopiedAsAPicture", async (t) => {
   await page.waitForFunction(() => window.taut.app.notice.value !== null);
   assert.equal(await page.evaluate(() => window.taut.app.notice.value), "copied energy");
   assert.deepEqual(await page.evaluate(async () => (await navigator.clipboard.read()).flatMap(({ types }) => types)), ["image/png"]);
+});
+
+test("ASavedVideoIsReadableOrThePageTellsThatItIsNotSaved", async (t) => {
+  const page = await opened({});
+  t.after(() => page.context().close());
+  await page.evaluate(() => (window.taut.app.range_s.value = [1, 2]));
+  for (const kind of ["WebM", "MP4"]) {
+    const made = page.locator("button.film", { hasText: kind });
+    if (!(await made.isVisible())) continue; // the browser has no encoder
+    await page.evaluate(() => (window.taut.app.notice.value = null));
+    const saved = page.waitForEvent("download");
+    const refused = page.waitForFunction(() => window.taut.app.notice.value?.startsWith("not saved: ")).then(() => null);
+    await made.click();
+    const file = await Promise.race([saved, refused]);
+    if (file === null) {
+      saved.catch(() => {});
+      continue;
+    }
+    refused.catch(() => {});
+    const bytes = readFileSync(await file.path());
+    const size = await page.evaluate(async ([base64, type]) => {
+      const video = document.createElement("video");
+      video.src = URL.createObjectURL(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type }));
+      await new Promise((resolve, reject) => {
+        video.onloadedmetadata = resolve;
+        video.onerror = () => reject(video.error);
+      });
+      return [video.videoWidth, video.videoHeight];
+    }, [bytes.toString("base64"), `video/${kind.toLowerCase()}`]);
+    assert.deepEqual(size, [1920, 1080], kind);
+  }
 });

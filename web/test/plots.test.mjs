@@ -102,7 +102,7 @@ test("ChosenChannelsComeIntoANewPlotOfTheirUnit", async () => {
 });
 
 test("KeysAloneDoTheSame", async () => {
-  await page.keyboard.press("b");
+  await page.keyboard.press("/");
   await page.keyboard.type("rod_2 position");
   const go = async (name) => {
     for (let i = 0; i < 60; ++i) {

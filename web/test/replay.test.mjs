@@ -171,11 +171,11 @@ test("NothingIsAskedOfAnyOtherHost", async () => {
 });
 
 test("TheViewIsRecordedAsAVideo", async () => {
-  await page.getByRole("button", { name: /as a video/ }).click();
+  await page.getByRole("button", { name: /^record the 3-D view/ }).click();
   await page.keyboard.press("Escape"); // removes the focus from the button, which space would press
   await page.evaluate(() => window.taut.app.togglePlay());
   await page.waitForFunction(() => Number(document.querySelector(".timeline").dataset.time) > 1);
-  const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /as a video/ }).click()]);
+  const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: /^record the 3-D view/ }).click()]);
   assert.equal(file.suggestedFilename(), "taut-turning prism.webm");
   // the file is a video that the browser plays, with motion
   const video = readFileSync(await file.path()).toString("base64");

@@ -391,7 +391,7 @@ test("TheNextModeIsThatOfTheSameAnalysis", options, async (t) => {
   t.after(() => page.context().close());
   const bar = page.locator(".shapebar span");
   const first = await bar.innerText();
-  assert.match(first, /^mode 1 of 2 · [\d.]+ Hz · slowed [\d.]+× · amplitude 8 % of its size$/);
+  assert.match(first, /^mode 1 of 2 · [\d.]+ Hz · slowed [\d.]+× · amplitude: 8 % of the robot's size$/);
   await page.getByRole("button", { name: "next mode" }).click();
   await page.waitForFunction(() => document.querySelector(".shapebar span").textContent.startsWith("mode 2 of 2"));
   await page.getByRole("button", { name: "next mode" }).click();

@@ -1,5 +1,5 @@
 // Text editor for the files: numbered lines, marks at errors and warnings, and their list.
-import { button, download, el } from "../util";
+import { button, counted, download, el } from "../util";
 import type { Complaint } from "./core";
 import type { Project } from "./project";
 
@@ -88,7 +88,6 @@ export class Editor {
   private drawFound(found: readonly Complaint[]): void {
     const errors = found.filter(({ error }) => error).length;
     const warnings = found.length - errors;
-    const counted = (count: number, what: string) => `${count} ${what}${count === 1 ? "" : "s"}`;
     this.verdict.textContent = errors > 0 ? counted(errors, "error") : warnings > 0 ? counted(warnings, "warning") : "no errors";
     this.verdict.classList.toggle("wrong", errors > 0);
     this.problems.replaceChildren(...found.map(({ file, line, column, error, what, hint }) => {

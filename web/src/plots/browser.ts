@@ -25,7 +25,7 @@ export class ChannelBrowser {
   private readonly list = el("div.list");
   private readonly found = el("span", { role: "status" });
   private readonly chosenText = el("span.chosen", { role: "status" });
-  private readonly search = el<HTMLInputElement>("input", {
+  readonly search = el<HTMLInputElement>("input", {
     type: "search", placeholder: "search: outer tension, node/*_z_m", "aria-label": "search channels: words, * for any text",
     oninput: () => this.showList(),
   });

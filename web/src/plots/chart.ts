@@ -104,7 +104,7 @@ export class Chart {
     if (this.figure.group === "overlay") {
       const known = rows.flatMap((row) => (row && Number.isFinite(row.value) ? [row.value] : []));
       const text = known.length < rows.length ? "…" : `${number(Math.min(...known), DIGITS)} to ${number(Math.max(...known), DIGITS)} ${unit}${where}`;
-      this.values.replaceChildren(el("span", { title: "least and greatest value of the lines" }, text));
+      this.values.replaceChildren(el("span", { title: "smallest and largest value of all lines" }, text));
       return;
     }
     this.values.replaceChildren(...texts.flatMap((text) => [text, " "]), unit + where);

@@ -179,6 +179,12 @@ export class PlotPanel {
     this.editor.focus(); // not the search, which would take the key that closes this
   }
 
+  searchChannels(): void {
+    if (this.editor.hidden) this.toggleEditor();
+    this.browser.search.focus();
+    this.browser.search.select();
+  }
+
   private makeEditor(): HTMLElement {
     const target = el("div.newplot", {}, "drop channels here for a new plot, or into a plot");
     dropTarget(target, (channels) => this.layouts.change(withNewPlot(this.plots, channels, this.store)));

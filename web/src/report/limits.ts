@@ -1,15 +1,20 @@
 // Use of the struts' limits: largest compression over Euler's load.
-import type { Scene } from "../protocol";
+import type { Body, Scene, Shape } from "../protocol";
 
 export interface StrutUse {
   name: string;
   axial_least_n?: number;
 }
 
-/** Returns Euler's load of a body that is one rod; NaN if unknown. */
-export function bucklingLoad(body: Scene["bodies"][number]): number {
+/** Returns the rod of a strut, a body with one rod; undefined for other bodies. */
+export function rodOf(body: Body): Shape | undefined {
   const rods = body.shapes.filter(({ kind }) => kind === "rod");
-  return rods.length === 1 ? (rods[0]!.buckling_n ?? NaN) : NaN;
+  return rods.length === 1 ? rods[0] : undefined;
+}
+
+/** Returns Euler's load of a strut; NaN if unknown. */
+export function bucklingLoad(body: Body): number {
+  return rodOf(body)?.buckling_n ?? NaN;
 }
 
 /** Returns the strut with the largest compression relative to its Euler load; undefined: no load is known. */

@@ -18,9 +18,9 @@ export function robotBar(app: App): HTMLElement {
   const off = mode("off", "off", "motors off: they coast");
   const arm = mode("arm", "1 arm", "first step: prepare the boards, nothing moves yet");
   const hold = mode("hold", "2 hold", "second step: turn the motors on and hold their positions");
-  const impedance = mode("impedance", "3 run", "third step: impedance control about the measured tensions and lengths (from armed, too: the motors hold first)");
+  const impedance = mode("impedance", "3 run", "third step: impedance control around the measured tensions and lengths; an armed robot holds first");
   const steps = [arm, hold, impedance];
-  const stepper = el("ol.stepper", { "aria-label": "steps to power" }, ...steps.map((step) => el("li", {}, step)));
+  const stepper = el("ol.stepper", { "aria-label": "power-up steps" }, ...steps.map((step) => el("li", {}, step)));
   const clear = mode("clear_faults", "clear faults", "clear latched faults, time-outs and emergency stops; motors are turned off unless they hold");
   const record = button("record cycles", "start or end recording every cycle to a folder", () => app.send({ type: "record", on: app.robot.value?.recording === "" }));
   const state = el("span.state", { role: "status" });
@@ -82,7 +82,7 @@ export function robotBar(app: App): HTMLElement {
   return element;
 }
 
-/** Returns the step to power that the robot is in: 0 off, 1 armed, 2 hold, 3 any other control. */
+/** Returns the power-up step that the robot is in: 0 off, 1 armed, 2 hold, 3 any other control. */
 function stepReached({ stage, commanded }: RobotStatus): number {
   return stage === "ready" ? 1 : stage !== "active" ? 0 : commanded === "hold" ? 2 : 3;
 }

@@ -1,7 +1,7 @@
 // Status of boards, motors and link: tables whose layout is constant while their numbers change.
 import type { App } from "../app";
 import type { BoardStatus, MotorStatus, RobotStatus } from "../protocol";
-import { clock, el, number } from "../util";
+import { clock, counted, el, number } from "../util";
 import { gainEditor } from "./gains";
 import { Rising } from "./rising";
 
@@ -19,7 +19,7 @@ export function robotPanel(app: App): HTMLElement {
   const all = el<HTMLInputElement>("input", { type: "checkbox", onchange: () => app.robot.value && show(app.robot.value) });
   const events = el<HTMLOListElement>("ol.eventlist");
   const element = el("section.robotpanel", { "aria-label": "state of the robot", hidden: true },
-    health, group("Boards", boards.element, true, el("label", { title: "counters of messages and ticks, even if they do not rise" }, all, " all counters")), group("Link", link, true),
+    health, group("Boards", boards.element, true, el("label", { title: "show all fault counters, also those that do not increase" }, all, " all counters")), group("Link", link, true),
     group("Motors", motors.element, false), group("Gains", gainEditor(app), false), group("Events", events, true));
 
   let shownEvents = "";
@@ -57,9 +57,9 @@ function showHealth(line: HTMLElement, { boards, motors, link, stopping, alarms 
   const wrong = [
     ...(link.connected ? [] : ["the adapter is disconnected"]), ...(stopping ? ["emergency stop"] : []),
     ...(ill > 0 ? [`${ill} of ${boards.length} boards need attention`] : []), ...(faulty > 0 ? [`${faulty} of ${motors.length} motors have faults`] : []),
-    ...(alarms.length > 0 && ill + faulty === 0 && link.connected && !stopping ? [`${alarms.length} alarms`] : []),
+    ...(alarms.length > 0 && ill + faulty === 0 && link.connected && !stopping ? [counted(alarms.length, "alarm")] : []),
   ];
-  const text = wrong.length > 0 ? wrong.join("; ") : counts ? "healthy, but counters of faults rise" : `healthy: ${boards.length} boards, ${motors.length} motors`;
+  const text = wrong.length > 0 ? wrong.join("; ") : counts ? "healthy, but fault counters increased recently" : `healthy: ${boards.length} boards, ${motors.length} motors`;
   if (line.textContent !== text) line.textContent = text;
   line.dataset["state"] = wrong.length > 0 ? "bad" : counts ? "watch" : "good";
 }

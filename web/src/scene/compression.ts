@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 import { cableState, type Frame } from "../frame";
 import type { Scene, Vec3 } from "../protocol";
-import { bucklingLoad } from "../report/limits";
+import { bucklingLoad, rodOf } from "../report/limits";
 import { worldPoint } from "./poses";
 
 interface Strut {
@@ -32,8 +32,8 @@ export class Compression {
     this.force_n = new Float64Array(scene.bodies.length).fill(NaN);
     this.buckling_n = scene.bodies.map(bucklingLoad);
     this.struts = scene.bodies.flatMap((body, index) => {
-      const rods = body.shapes.filter(({ kind }) => kind === "rod");
-      return rods.length === 1 ? [{ body: index, from_m: rods[0]!.from_m!, to_m: rods[0]!.to_m! }] : [];
+      const rod = rodOf(body);
+      return rod ? [{ body: index, from_m: rod.from_m!, to_m: rod.to_m! }] : [];
     });
     const strutOf = new Map(this.struts.map(({ body }, strut) => [body, strut]));
     this.pulls = scene.cables.flatMap(({ attachments }, cable) => attachments.flatMap(({ body, position_m }, attachment) => {

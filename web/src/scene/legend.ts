@@ -1,6 +1,7 @@
 // Legend of the colors, widths and arrows in the 3D view.
 import type { App } from "../app";
 import { compressionColour, css, palette, strainColour, tensionColour } from "../colours";
+import { signed } from "../runs";
 import { el, number } from "../util";
 import type { View } from "./view";
 
@@ -31,7 +32,7 @@ export function legend(app: App, view: View): HTMLElement {
     const key = `${theme} ${max_n} ${strain} ${world.cables.largestStrain} ${world.compressionScale_n} ${world.usesBuckling} ${reference_n} ${world.size_m} ${world.scene.contact_forces} ${world.scene.joints.length}`;
     if (key === shown) return;
     shown = key;
-    if (strain) tension.draw("strain of cables", (share) => css(strainColour(2 * share - 1, theme)), [-1, 0, 1].map((share) => `${signed(100 * share * world.cables.largestStrain)} %`));
+    if (strain) tension.draw("strain of cables", (share) => css(strainColour(2 * share - 1, theme)), [-1, 0, 1].map((share) => `${signed(number(100 * share * world.cables.largestStrain, 2))} %`));
     else tension.draw("cable tension", (share) => css(tensionColour(share, theme)), [0, 0.5, 1].map((share) => `${number(share * max_n, 2)} N`), true);
     slack.hidden = strain;
     compression.element.hidden = strain || !world.compression.hasStruts;
@@ -44,7 +45,7 @@ export function legend(app: App, view: View): HTMLElement {
     arrows.replaceChildren(
       ...(contact_forces ? [sign(colours.contact), "contact"] : []), sign(colours.push), "push",
       el("span.note", {}, `${number(reference_m, 2)} m = ${number(reference_n, 2)} N`));
-    centre.replaceChildren(sign(colours.path, "●"), "center of mass, its path");
+    centre.replaceChildren(sign(colours.path, "●"), "center of mass and its path");
     centre.hidden = !world.path.object.visible;
     joints.replaceChildren(sign(colours.joint, "●"), "joint");
     joints.hidden = world.scene.joints.length === 0;
@@ -55,8 +56,6 @@ export function legend(app: App, view: View): HTMLElement {
   view.afterDraw.push(draw); // scales may change without a new frame
   return element;
 }
-
-const signed = (value: number) => (value > 0 ? `+${number(value, 2)}` : number(value, 2));
 
 /** A color scale with a title and numbers below it. */
 function bar() {

@@ -6,7 +6,7 @@ import type { View } from "./view";
 /** Shows the whole path; the camera then stays. */
 export function showPath(app: App, view: View): void {
   if (view.fitPath()) view.following.value = false;
-  else app.notice.value = "there is no path yet, or it is too long to show: the view follows the robot";
+  else app.notice.value = view.world?.path.places.length ? "the path is too long to show the robot in it" : "there is no path yet";
 }
 
 export function viewTools(app: App, view: View): HTMLElement {

@@ -1,7 +1,7 @@
 // Header: title, mode, driver, state of the connection.
 import type { App } from "../app";
 import { icon } from "./icons";
-import { button, el } from "../util";
+import { button, el, foldButton } from "../util";
 
 const NOTICE_MS = 6000;
 
@@ -14,11 +14,7 @@ export function header(app: App, help: () => void, toggles: HTMLElement[]): HTML
   const theme = button(icon("theme"), "dark or light (T)", () => app.toggleTheme());
   // on phones these are behind one button, so that the header has one row
   const extras = el("span.extras", {}, ...toggles, theme);
-  const more = button("⋯", "more buttons", () => {
-    const open = element.classList.toggle("open");
-    more.setAttribute("aria-expanded", String(open));
-  }, "button.more");
-  more.setAttribute("aria-expanded", "false");
+  const more = foldButton("more buttons", "button.more", () => element);
   const element: HTMLElement = el("header.top", {}, el("span.brand", {}, "taut"), title, mode, link, driver, take,
     el("span.spring"), extras, more, button("?", "help (?)", help));
 

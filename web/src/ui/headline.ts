@@ -1,4 +1,4 @@
-// Headline numbers of a run: peak tension, distance, speed, energy, status, safety. Computed from the rows, so
+// Headline numbers of a run: peak tension, distance, net speed, energy, status, buckling safety. Computed from the rows, so
 // that a report, a replay and a live run show the same; energy of motors, status and limits from the summary.
 import type { App } from "../app";
 import { TENSION } from "../plots/figure";
@@ -103,7 +103,7 @@ function peakOf(store: SeriesStore, scene: Scene, to_s: number, summary: RunSumm
   }
 }
 
-/** Horizontal displacement of the center of mass, and mean speed along its path. */
+/** Horizontal displacement of the center of mass, and this displacement divided by the time. */
 function motionOf(store: SeriesStore, scene: Scene, to_s: number, done: (distance: Card, speed: Card) => void): void {
   const channels = ["x", "y"].map((axis) => `system/com_${axis}_m`);
   if (!channels.every((name) => store.has(name, 0))) return;
@@ -118,20 +118,20 @@ function motionOf(store: SeriesStore, scene: Scene, to_s: number, done: (distanc
     const span_s = x.t[last]! - x.t[0]!;
     const heading = distance_m > 0 ? `${number(Math.round((Math.atan2(dy, dx) * 180) / Math.PI))}° from x` : "";
     done({ label: "distance", value: `${number(distance_m, DIGITS)} m`, detail: heading },
-      { label: "mean speed", value: `${number(span_s > 0 ? distance_m / span_s : NaN, DIGITS)} m/s`, detail: `over ${number(span_s, DIGITS)} s` });
+      { label: "net speed", value: `${number(span_s > 0 ? distance_m / span_s : NaN, DIGITS)} m/s`, detail: `over ${number(span_s, DIGITS)} s` });
   }));
 }
 
 function energyOf(store: SeriesStore, scene: Scene, to_s: number, summary: RunSummary | null, done: (card: Card | null) => void): void {
   const motors_j = (summary?.cables ?? []).reduce((sum, { actuator }) => sum + (actuator?.energy_j ?? 0), 0);
   if (motors_j > 0) {
-    done({ label: "energy", value: `${number(motors_j, DIGITS)} J`, detail: "of the motors" });
+    done({ label: "motor energy", value: `${number(motors_j, DIGITS)} J`, detail: "" });
     return;
   }
   if (!store.has("system/kinetic_j", 0)) return;
   store.want("system/kinetic_j", 0, scene.first_s, to_s, POINTS, ({ max }) => {
     const most_j = largest(max);
-    done(Number.isFinite(most_j) ? { label: "energy", value: `${number(most_j, DIGITS)} J`, detail: "largest kinetic" } : null);
+    done(Number.isFinite(most_j) ? { label: "peak kinetic energy", value: `${number(most_j, DIGITS)} J`, detail: "" } : null);
   });
 }
 
@@ -147,6 +147,6 @@ function safetyOf(scene: Scene, summary: RunSummary | null): Card | null {
   const over = summary.overloads?.length ?? 0;
   if (over > 0) return { label: "safety", value: `${over} overloaded`, detail: over === 1 ? "member" : "members", bad: true };
   const use = largestUse(scene, summary.struts ?? []);
-  return use ? { label: "safety", value: `${number(1 / use.share, DIGITS)} ×`, detail: `least: buckling of ${use.name}`, good: true }
-    : { label: "safety", value: "–", detail: "no limits in the model" };
+  return use ? { label: "buckling safety", value: `${number(1 / use.share, DIGITS)} ×`, detail: `lowest: strut ${use.name}`, good: true }
+    : { label: "buckling safety", value: "–", detail: "no Euler load known" };
 }

@@ -19,6 +19,7 @@ export interface Toggles {
   help(): void;
   controls(): void;
   editor(): void;
+  search(): void;
 }
 
 export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
@@ -48,9 +49,9 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
     { time: true, keys: ["]"], shown: "]", does: "faster", act: speed(true) },
     { keys: ["f", "F"], shown: "F", does: "fit the robot into the view", act: () => view.fit() },
     { keys: ["w", "W"], shown: "W", does: "fit the whole path into the view", act: () => showPath(app, view) },
-    { keys: ["v", "V"], shown: "V", does: "the view follows the robot, or stays", act: () => {
+    { keys: ["v", "V"], shown: "V", does: "the camera follows the robot, or stays still", act: () => {
       view.following.value = !view.following.value;
-      app.notice.value = view.following.value ? "the view follows the robot" : "the view stays";
+      app.notice.value = view.following.value ? "the camera follows the robot" : "the camera stays still";
     } },
     { keys: ["a", "A"], shown: "A", does: "arrows of forces on or off", act: show("forces") },
     { keys: ["p", "P"], shown: "P", does: "path of the center of mass on or off", act: show("path") },
@@ -66,6 +67,7 @@ export function keysOf(app: App, view: View, toggles: Toggles): Key[] {
     { keys: ["Escape"], shown: "esc", does: "clear the selection; close this help", act: () => (app.selection.value = null) },
     { keys: ["c", "C"], shown: "C", does: "live controls", act: () => toggles.controls() },
     { keys: ["b", "B"], shown: "B", does: "edit plots: all channels, layouts", act: () => toggles.editor() },
+    { keys: ["/"], shown: "/", does: "search the channels of plots", act: () => toggles.search() },
     { keys: ["t", "T"], shown: "T", does: "dark or light", act: () => app.toggleTheme() },
     { keys: ["?", "h", "H"], shown: "?", does: "this help", act: () => toggles.help() },
   ];

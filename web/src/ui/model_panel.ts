@@ -3,8 +3,9 @@ import type { App } from "../app";
 import { cableState, type Frame } from "../frame";
 import { cableGroups } from "../plots/groups";
 import type { Scene, Statics } from "../protocol";
+import { rodOf } from "../report/limits";
 import { Compression } from "../scene/compression";
-import { button, el, number, SCROLLS } from "../util";
+import { button, counted, el, number, SCROLLS } from "../util";
 import type { ModePlayer } from "./shape_bar";
 
 /** Larger models are analyzed on request only, because that can take seconds. */
@@ -20,7 +21,7 @@ export function modelPanel(app: App, player: ModePlayer, plots: HTMLElement, ana
   const actions = el("div.row", { role: "group", "aria-label": "start a run" },
     button("drop it", "simulate the robot falling onto the ground", start("dropped"), "button.primary"),
     button("settle", "let the robot settle on the ground", start("settled")), analyze,
-    button("as described", "back to the described pose, without weight", start("described")));
+    button("as described", "return to the described pose, without gravity", start("described")));
   const element = el("section.model", { "aria-label": "the model", hidden: true }, el("h2", {}, "Model"), actions, members, statics);
   analyze.hidden = !analyzes;
   let asked: Scene | null = null;
@@ -74,28 +75,26 @@ function memberTable(scene: Scene, frame: Frame): HTMLElement {
   const compression = new Compression(scene);
   compression.update(frame);
   const struts = scene.bodies.flatMap((body, i) => {
-    const rods = body.shapes.filter(({ kind }) => kind === "rod");
-    return rods.length === 1 ? [{ force_n: -(compression.force_n[i] ?? NaN), length_m: Math.hypot(...rods[0]!.to_m!.map((x, k) => x - rods[0]!.from_m![k]!)) }] : [];
+    const rod = rodOf(body);
+    return rod ? [{ force_n: -(compression.force_n[i] ?? NaN), length_m: Math.hypot(...rod.to_m!.map((x, k) => x - rod.from_m![k]!)) }] : [];
   });
   const others = scene.bodies.length - struts.length;
   const rows = [...cables,
     ...(struts.length > 0 ? [["struts", String(struts.length), range(struts.map(({ force_n }) => force_n)), range(struts.map(({ length_m }) => length_m)), "–"]] : []),
     ...(others > 0 ? [[struts.length > 0 ? "other bodies" : "bodies", String(others), "–", "–", "–"]] : [])];
   const head = ["members", "number", "force [N]", "length [m]", "stiffness [N/m]"];
-  return el("table.numbers", {}, el("caption", {}, "Members and prestress; tension positive"),
+  return el("table.numbers", {}, el("caption", {}, "Members and prestress (tension is positive)"),
     el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col" }, text)))),
     el("tbody", {}, ...rows.map(([name, ...cells]) => el("tr", {}, el("th", { scope: "row" }, name!), ...cells.map((text) => el("td", {}, text))))));
 }
 
-const plural = (count: number, one: string, many = `${one}s`) => `${count} ${count === 1 ? one : many}`;
-
 function staticsOf(statics: Statics, player: ModePlayer): HTMLElement[] {
   const stress = statics.self_stress_states === 0 ? "none in this pose"
-    : statics.feasible ? "one has all cables in tension" : "none has all cables in tension";
+    : statics.feasible ? "a state puts all cables in tension" : "no state puts all cables in tension";
   const facts = el("dl.headline", {}, ...[
-    [plural(statics.self_stress_states, "state"), "self-stress", stress],
+    [counted(statics.self_stress_states, "state"), "self-stress", stress],
     [String(statics.mechanisms), statics.mechanisms === 1 ? "mechanism" : "mechanisms", "infinitesimal"],
-    [String(statics.rigid_motions), "rigid motions", statics.rigid_motions === 0 ? "supported" : "free in the world"],
+    [String(statics.rigid_motions), statics.rigid_motions === 1 ? "rigid motion" : "rigid motions", statics.rigid_motions === 0 ? "supported" : "free in the world"],
   ].map(([value, label, detail]) => el("div", {}, el("dt", {}, label!), el("dd", {}, el("b", {}, value!), detail!))));
   if (!statics.found) return [facts, el("p.remark", { role: "note" }, `No equilibrium near this pose: ${statics.reason}`)];
   const modes = statics.modes.map((mode, i) => {
@@ -105,5 +104,5 @@ function staticsOf(statics: Statics, player: ModePlayer): HTMLElement[] {
     made.setAttribute("aria-pressed", "false");
     return made;
   });
-  return [facts, el("h3", {}, "First modes"), modes.length > 0 ? el("div.row", {}, ...modes) : el("p.remark", {}, statics.reason || "There are none.")];
+  return [facts, el("h3", {}, "First modes"), modes.length > 0 ? el("div.row", {}, ...modes) : el("p.remark", {}, statics.reason || "No modes other than rigid motions.")];
 }

@@ -18,7 +18,7 @@ export function shapeText({ kind, number: place, count, frequency_hz, slowdown, 
   return [`${kind.replace("_", "-")} ${place} of ${count}`,
     ...(frequency_hz ? [`${number(frequency_hz, 3)} Hz`] : []),
     ...(slowdown ? [slowdown >= 1 ? `slowed ${number(slowdown, 2)}×` : `sped up ${number(1 / slowdown, 2)}×`] : []),
-    ...(amplitude ? [`amplitude ${number(100 * amplitude, 2)} % of its size`] : [])].join(" · ");
+    ...(amplitude ? [`amplitude: ${number(100 * amplitude, 2)} % of the robot's size`] : [])].join(" · ");
 }
 
 /** The mode of the model that swings at present; null: none. */

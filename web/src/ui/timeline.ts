@@ -2,7 +2,7 @@
 import type { App } from "../app";
 import { icon } from "./icons";
 import { TrackMarks } from "./track_marks";
-import { button, clock, el, number } from "../util";
+import { button, clock, el, foldButton, number } from "../util";
 
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 5, 10, 0];
 
@@ -27,11 +27,7 @@ export function timeline(app: App): HTMLElement {
   const present = el("div.present", { hidden: true, title: "present time of the run" });
   const track = el("div.track", {}, marks.phases, marks.actions, slider, marks.events, cursor, present, marks.hover);
   // phones show these two and the bar; the others on request
-  const fold = button("⋯", "more playback controls", () => {
-    const open = element.classList.toggle("open");
-    fold.setAttribute("aria-expanded", String(open));
-  }, "button.fold");
-  fold.setAttribute("aria-expanded", "false");
+  const fold = foldButton("more playback controls", "button.fold", () => element);
   const element: HTMLElement = el("footer.timeline", {}, back, stepBack, play, step, speed, track, now, time, factor, fold);
 
   const shareOf = (time_s: number): number => {

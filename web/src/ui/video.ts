@@ -3,13 +3,12 @@
 import type { App } from "../app";
 import type { View } from "../scene/view";
 import type { SeriesStore } from "../series";
-import { button, download } from "../util";
-import { goTo } from "./gif";
+import { filmMaker } from "./film";
 
 const SIZE = { width: 1920, height: 1080 };
 const FRAMES_PER_S = 30;
 const BITS_PER_S = 12e6;
-const MAX_SPEED = 10; // in place of "max", which has no meaning for a film
+const CHECK_MS = 10_000;
 
 type Kind = "WebM" | "MP4";
 const TYPES: Record<Kind, readonly string[]> = {
@@ -27,29 +26,15 @@ export function videoMakers(app: App, store: SeriesStore, view: View): HTMLEleme
 }
 
 function videoMaker(app: App, store: SeriesStore, view: View, kind: Kind): HTMLElement {
-  let running = false;
-  const made = button(kind, `save the time range of the plots as a video (${kind}, 1080p)`, () => {
-    if (running) running = false;
-    else void make();
-  }, "button.film");
   const type = typeOf(kind);
-  app.hello.watch(() => (made.hidden = !app.replay || !view.draws || type === undefined));
-
-  const make = async () => {
-    const { value: scene } = app.scene;
-    const { value: frame } = app.frame;
-    if (!scene || !frame) return;
-    running = true;
-    made.classList.add("recording");
-    const before_s = frame.time_s;
-    const [from_s, to_s] = app.range_s.value ?? [scene.first_s, scene.duration_s];
-    const speed = frame.speed > 0 ? frame.speed : MAX_SPEED;
+  const title = `save the time range of the plots as a video (${kind}, 1080p)`;
+  return filmMaker(app, store, kind, title, () => view.draws && type !== undefined, async (film) => {
+    const { from_s, to_s, speed } = film;
     const canvas = Object.assign(document.createElement("canvas"), SIZE);
     const context = canvas.getContext("2d", { alpha: false })!;
-    app.send({ type: "pause" });
     view.setFilmSize(SIZE);
     const draw = async (time_s: number) => {
-      if (!(await goTo(app, store, time_s))) running = false;
+      await film.goTo(time_s);
       view.draw();
       context.drawImage(view.canvas, 0, 0);
     };
@@ -60,23 +45,33 @@ function videoMaker(app: App, store: SeriesStore, view: View, kind: Kind): HTMLE
     const ended = new Promise((resolve) => (recorder.onstop = resolve));
     recorder.start();
     const start_ms = performance.now();
-    for (let time_s = from_s; running && time_s < to_s;) {
+    for (let time_s = from_s; film.running && time_s < to_s;) {
       await nextPicture();
       time_s = Math.min(from_s + (speed * (performance.now() - start_ms)) / 1000, to_s);
       await draw(time_s);
-      made.textContent = `stop ${kind} (${Math.round((100 * (time_s - from_s)) / (to_s - from_s || 1))} %)`;
+      film.tell((time_s - from_s) / (to_s - from_s || 1));
     }
     await nextPicture(); // the encoder has the last one
     recorder.stop();
     await ended;
     view.setFilmSize(null);
-    if (running) download(`taut-${app.hello.value?.title ?? "view"}.${kind.toLowerCase()}`, new Blob(parts, { type: type!.split(";")[0]! }));
-    running = false;
-    made.textContent = kind;
-    made.classList.remove("recording");
-    app.seek(before_s);
-  };
-  return made;
+    const file = new Blob(parts, { type: type!.split(";")[0]! });
+    if (!film.running || (await isReadable(file))) return file;
+    app.notice.value = `not saved: the browser's encoder got too few pictures for ${kind}; save a GIF instead`;
+    return null;
+  });
 }
 
 const nextPicture = () => new Promise((resolve) => setTimeout(resolve, 1000 / FRAMES_PER_S));
+
+/** Returns whether the browser itself can read a film: encoders may leave an empty or broken file behind. */
+function isReadable(file: Blob): Promise<boolean> {
+  const video = document.createElement("video");
+  const url = URL.createObjectURL(file);
+  return new Promise<boolean>((resolve) => {
+    video.onloadedmetadata = () => resolve(video.videoWidth === SIZE.width);
+    video.onerror = () => resolve(false);
+    setTimeout(() => resolve(false), CHECK_MS);
+    video.src = url;
+  }).finally(() => URL.revokeObjectURL(url));
+}
