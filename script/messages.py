@@ -20,6 +20,7 @@ IDENTIFIER = re.compile(r'"([a-z][a-z0-9_]*\.[a-z][a-z0-9_]*)"')
 CALL = re.compile(r"\b(Error|Warning|Unreadable|Stop|Refuse|refuse|once_|bodiless_|short_|complain_|MessageId)\(\s*(?=\")")
 KEY = re.compile(r'"[\w.]*"|fmt::format\("[^" ]*".*|.*\bat \+ "\.\w+"', re.DOTALL)
 LITERAL = re.compile(r'"((?:\\.|[^"\\])*)"')
+CHARACTER = re.compile(r"'(\\?.)'")
 
 
 def outside(text, at=0):
@@ -96,6 +97,8 @@ def with_conditions(expression):
         return functools.reduce(both, map(with_conditions, parts))
     if re.fullmatch(rf"(?:{LITERAL.pattern}\s*)+", expression):
         return [({}, "".join(LITERAL.findall(expression)).replace('\\"', '"'))]
+    if character := CHARACTER.fullmatch(expression):
+        return [({}, character[1][-1])]
     call = re.match(r"(?:fmt::format|std::string|std::string_view)?\(", expression)
     given = arguments(expression, call.end()) if call else []
     if not given or sum(map(len, given)) + len(call[0]) < len(re.sub(r"\s*,\s*", "", expression)) - 1 or not given[0]:

@@ -29,7 +29,7 @@ std::optional<Trace> ApplyMapping(const Mapping& mapping, Trace trace, const std
     }
     if (!names.insert(channel.name).second) {
       out.Error("mapping.duplicate_channel", {path},
-                fmt::format("the mapping creates two channels {}", channel.name));
+                fmt::format("the mapping creates the channel {} twice", channel.name));
       good = false;
     }
   }

@@ -36,6 +36,9 @@ class Texts(unittest.TestCase):
     def test_braces_outside_of_a_format_are_kept(self):
         self.assertEqual(messages.templates('"write `goal: {frame: world}`"', ""), {"write `goal: {frame: world}`"})
 
+    def test_a_character_is_text(self):
+        self.assertEqual(messages.templates("""'"' + name + '"' + " is " + '\\''""", ""), {""""{}" is '"""})
+
     def test_texts_in_calls_are_values(self):
         self.assertEqual(messages.templates('At("friction") + " must not be " + Name(x, "a")', ""), {"{} must not be {}"})
 

@@ -161,7 +161,7 @@ class JointMaker {
     if (gap > JointDef::kClosed_m) {
       once_("joint.gap", at,
             "the nodes of " + called + " are " + base::Brief(gap, 3) +
-                " m apart in a direction in which it allows no motion",
+                " m apart in a direction that the joint locks",
             joint.kind == JointKind::kBall ? "place them at the same position"
                                            : "move the nodes, or change the joint's kind or axis");
       return;

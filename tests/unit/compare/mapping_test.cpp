@@ -200,7 +200,7 @@ TEST_F(MappingTest, TwoChannelsMayNotBecomeOne) {
       WriteFile("m.json", R"({"version": 1, "channels": [{"from": "a", "to": "b"}]})"), out = {});
   ASSERT_TRUE(good) << out.Format();
   EXPECT_FALSE(ApplyMapping(*good, Row({{"a", 1}, {"b", 2}}), "t.csv", out));
-  EXPECT_EQ(out.Format(), "t.csv: error: the mapping creates two channels b\n");
+  EXPECT_EQ(out.Format(), "t.csv: error: the mapping creates the channel b twice\n");
 }
 
 TEST_F(MappingTest, AFileOfMoreThan10MbIsRefused) {
