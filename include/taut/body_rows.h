@@ -1,8 +1,8 @@
-/// Direct access to the body positions and velocities of a batch, without a copy: the counterpart
-/// of `WorldBatch::Cables` for bodies.
+/// Direct access to the body positions and velocities of a batch without a copy.
+/// `WorldBatch::Cables` does the same for cables.
 ///
-/// Threads: these functions count as non-const functions of the batch; reading through the returned
-/// pointers counts as a const one.
+/// Threads: these functions count as non-const functions of the batch. Reads through the returned
+/// pointers count as const functions.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace taut {
 
-/// Bodies of the worlds that share a SIMD register: component i (x, y, z) of body b of world
-/// `first_world + j` is at [(3 * b + i) * lanes + j]. The pointers lead into the batch, so the
-/// values are always current, also of kinematic bodies.
+/// Body data of a group, the worlds that share a SIMD register. Component i (x, y, z) of body b of
+/// world `first_world + j` is at [(3 * b + i) * lanes + j]. The pointers refer to memory of the
+/// batch, so the values are always current, also for kinematic bodies.
 struct BodyRows {
   int lanes = 1, first_world = 0;
   const double* position_m = nullptr;        ///< Centers of mass, in W.
@@ -21,12 +21,12 @@ struct BodyRows {
 };
 
 /// Returns the rows of all bodies of group `group`, 0 <= group < `WorldBatch::groups`. An index out
-/// of range ends the program, as in `WorldBatch`.
+/// of range aborts the program, as in `WorldBatch`.
 BodyRows RowsOfBodies(WorldBatch& batch, int group) noexcept;
 
-/// Returns the distance, in doubles, between the same row of successive groups: a pointer from
-/// `WorldBatch::Cables` or `RowsOfBodies` for group g is g times this behind the pointer for group
-/// 0. 0 if there is one group. Constant for the life of the batch.
+/// Returns the distance, in doubles, between the same rows of successive groups; 0 if there is one
+/// group. A pointer from `WorldBatch::Cables` or `RowsOfBodies` for group g is the pointer for
+/// group 0 plus g times this distance. Constant for the lifetime of the batch.
 std::ptrdiff_t GroupStride(WorldBatch& batch) noexcept;
 
 }  // namespace taut

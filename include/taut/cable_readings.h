@@ -1,26 +1,27 @@
-/// Cable readings: length, rate, tension and stiffness, with the same fields for one cable, for
-/// rows of many cables and for the lanes of a SIMD register. Free of the standard library, because
-/// code that is compiled once per instruction set includes it.
+/// Cable readings: length, rate, tension and stiffness. The same fields serve one cable, rows of
+/// many cables, and the lanes of a SIMD register. Free of the standard library, because code that
+/// is compiled once per instruction set includes this header.
 #pragma once
 
 namespace taut {
 
-/// Number: double; a pointer to a row, with cable c of lane j at [c * lanes + j]; or a SIMD number.
+/// `Number` is one of: double; a pointer to a row with cable c of lane j at [c * lanes + j]; a SIMD
+/// number.
 template <class Number>
 struct CableReadings {
-  Number rest_length_m{};  ///< L, as a robot's encoder measures it.
+  Number rest_length_m{};  ///< L, as measured by the encoder of a robot.
   Number length_m{};       ///< l: path length between the ends, along all attachments.
-  Number rate_m_per_s{};   ///< dl/dt, exact.
-  // Forces of stiff cables are means over the last step (docs/theory/cables.md, section 3).
-  Number tension_n{};          ///< Spring and damper, as a load cell measures it.
-  Number elastic_n{};          ///< Spring only, max(0, k (l - L)): NTRT logs this as tension.
+  Number rate_m_per_s{};   ///< dl/dt, exact, not a difference quotient.
+  // // Forces of stiff cables are averages over the last step (docs/theory/cables.md, section 3).
+  Number tension_n{};          ///< Spring and damper, as measured by a load cell.
+  Number elastic_n{};          ///< Spring only: max(0, k (l - L)), logged by NTRT as tension.
   Number stiffness_n_per_m{};  ///< k.
 };
 
 /// Readings of many cables.
 using ReadingRows = CableReadings<const double*>;
 
-/// Calls f(field, same field of the next record, ...) for each field.
+/// Calls f(field of the first record, same field of the second record, ...) for each field.
 template <class F, class... Records>
 [[gnu::always_inline]] constexpr void EachReading(F f, Records&&... of) {
   f(of.rest_length_m...);

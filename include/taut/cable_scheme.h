@@ -9,17 +9,18 @@ namespace taut {
 
 enum class CableScheme {
   kExplicit,  ///< Soft cable: explicit force.
-  /// Stiff cable with wheels, edges, friction, a direct-current motor, a kinematic body, or a joint
-  /// that slides or has stops, friction or springs in its group: implicit tension along fixed
-  /// directions, taken at the middle of the step. (12) limits the tension (`kStatusStepTooLong`).
+  /// Stiff cable: implicit tension along fixed directions, taken at the middle of the step. For
+  /// cables with wheels, edges, friction or a DC motor, and for cables in a group with a kinematic
+  /// body or with a joint that slides or has limits, friction or springs. Eq. 12 limits the tension
+  /// (`kStatusStepTooLong`).
   kAlong,
-  kImplicit,  ///< Implicit in tension and direction: any stiffness and tension; conserves energy.
-  /// kImplicit with a second stage, which damps vibrations that the step does not resolve; without
-  /// joints.
+  /// Stiff cable, implicit in tension and direction. Any stiffness and tension; conserves energy.
+  kImplicit,
+  /// kImplicit with a second stage that damps vibrations too fast for the step. Without joints.
   kImplicitDamped
 };
 
-/// Returns the name of a scheme in the output of `taut check`.
+/// Returns the name of a scheme as printed by `taut check`.
 constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
   switch (scheme) {
     case CableScheme::kExplicit:
@@ -34,14 +35,14 @@ constexpr const char* CableSchemeName(CableScheme scheme) noexcept {
   return "";
 }
 
-/// Returns the number of equal parts into which each step of `step_s` > 0 is divided. It is 1
-/// unless stiff cables of the model can touch edges or rods, or have less than 5 % of the critical
-/// damping in a group that would be `kAlong`. It depends only on the step and on the model, and is
-/// at most 100; if that is not enough, the world has the status `kStatusStepTooLong`.
+/// Returns the number of equal substeps of each step of `step_s` > 0, from 1 to 100. It depends
+/// only on the step and the model. It exceeds 1 only if stiff cables can touch edges or rods, or
+/// have less than 5 % of critical damping in a group with the scheme `kAlong`. If 100 substeps are
+/// too few, the world has the status `kStatusStepTooLong`.
 int SubstepCount(const Model& model, double step_s);
 
-/// Returns the scheme of each cable at steps of `step_s` > 0. It depends only on the step and on
-/// the model's masses, stiffnesses and dampings, never on the state.
+/// Returns the scheme of each cable at steps of `step_s` > 0. The schemes depend on the step and on
+/// the masses, stiffnesses and dampings of the model, never on the state.
 std::vector<CableScheme> CableSchemes(const Model& model, double step_s);
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-/// Catalogs of commercial motors and springs, for sizing a robot (docs/formats/catalogue.md).
+/// Catalogs of commercial motors and springs for the sizing of a robot (docs/formats/catalogue.md).
 ///
 /// Threads: any number may call these functions concurrently.
 #pragma once
@@ -15,9 +15,9 @@ namespace taut {
 struct CatalogueMotor {
   std::string name;
   double gear_ratio = 1.0;               ///< Turns of the motor per turn of the spool, > 0.
-  double gear_efficiency = 1.0;          ///< While winding in, 0..1.
-  std::optional<double> spool_radius_m;  ///< To the cable's center line, > 0.
-  // At the motor shaft, before the gear:
+  double gear_efficiency = 1.0;          ///< Efficiency while winding in, 0..1.
+  std::optional<double> spool_radius_m;  ///< Radius to the center line of the cable, > 0.
+  // // at the motor shaft, before the gear
   double rated_torque_n_m = 0.0;                      ///< Continuous torque, > 0.
   double peak_torque_n_m = 0.0;                       ///< > 0.
   double max_speed_rad_per_s = 0.0;                   ///< At the rated torque, > 0.
@@ -34,15 +34,15 @@ struct CatalogueSpring {
 
 struct Catalogue {
   std::string name, description;
-  double factor = 1.0;  ///< Safety factor: smallest ratio of available to required value.
-  /// Largest difference of a spring's stiffness from the cable's, relative to the cable's.
+  double factor = 1.0;  ///< Safety factor: smallest allowed ratio of available to required value.
+  /// Allowed relative difference between the stiffnesses of a spring and the cable.
   double stiffness_tolerance = 0.1;
   std::vector<CatalogueMotor> motors;
   std::vector<CatalogueSpring> springs;
-  std::vector<std::string> files{};  ///< All files read, the catalog first.
+  std::vector<std::string> files{};  ///< All files read; the catalog file is first.
 };
 
-/// Reads a catalog. Returns nothing, and adds diagnostics, on any error.
+/// Reads a catalog. On an error, returns nothing and adds diagnostics.
 std::optional<Catalogue> LoadCatalogue(const std::string& path, Diagnostics& out);
 
 }  // namespace taut

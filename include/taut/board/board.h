@@ -1,9 +1,8 @@
-/// Firmware of a motor board for two motors: modes, commands and safety reactions. It is everything
-/// but access to the chip's registers, so that the same source runs on an ATmega328P, in its
-/// emulator and natively. Freestanding C++14. docs/hardware/firmware.md.
+/// Firmware of a board for two motors: modes, commands and safety reactions. Only access to the
+/// registers of the chip is elsewhere, so the same source runs on an ATmega328P, in an emulator of
+/// it and on a PC. Freestanding C++14. See docs/hardware/firmware.md.
 ///
-/// Not thread safe; on the chip, all functions are called from the main loop, none from an
-/// interrupt.
+/// Not thread safe. On the chip, only the main loop calls these functions, never an interrupt.
 #pragma once
 
 #include "taut/board/requests.h"

@@ -1,5 +1,5 @@
 /// Messages from the PC to the motor boards over I2C: cyclic commands, stops and requests
-/// (docs/hardware/protocol.md). `taut/board/protocol.h` contains all of the protocol.
+/// (docs/hardware/protocol.md). `taut/board/protocol.h` includes the whole protocol.
 ///
 /// Messages have at most 32 bytes; numbers are little endian. Freestanding C++14.
 #pragma once
@@ -14,11 +14,12 @@ namespace board {
 
 constexpr uint8_t kProtocolVersion = 1;
 constexpr uint8_t kBoards = 6;
-/// Per board. Motor m of board b drives the (2 b + m)-th cable with an actuator.
+/// Motors per board. Motor m of board b winds the cable with index 2 b + m, counted over the cables
+/// with an actuator.
 constexpr uint8_t kMotors = 2;
 constexpr uint8_t kCables = kBoards * kMotors;
 
-constexpr uint8_t kBroadcastAddress = 0x00;  ///< General call of I2C.
+constexpr uint8_t kBroadcastAddress = 0x00;  ///< General-call address of I2C.
 /// Returns the 7-bit I2C address of a board.
 constexpr uint8_t BoardAddress(uint8_t board) noexcept {
   return static_cast<uint8_t>(0x10 + board);
@@ -28,34 +29,34 @@ constexpr uint8_t BoardAddress(uint8_t board) noexcept {
 
 enum class Mode : uint8_t {
   kOff = 0,        ///< The driver is off: motors coast.
-  kHold = 1,       ///< Position control at the motors' positions at the start of the mode.
-  kPosition = 2,   ///< Values: encoder counts from the reference.
-  kImpedance = 3,  ///< Values: V0 in units of `kSpeedUnit_m_per_s`, lengthening positive.
-  kDuty = 4,       ///< Values: duty in 1/32767, winding in positive. For bench tests.
-  kReply = 5,      ///< Never commanded: marks the reply to a request.
-  kStopped = 7,    ///< Emergency stop: as kOff, until faults are cleared.
+  kHold = 1,       ///< Position control; targets are the positions at the start of this mode.
+  kPosition = 2,   ///< Values: encoder counts relative to the reference position.
+  kImpedance = 3,  ///< Values: V0 in `kSpeedUnit_m_per_s`; positive lengthens the cable.
+  kDuty = 4,       ///< Values: duty in 1/32767; positive winds in. For bench tests.
+  kReply = 5,      ///< Never commanded; marks the reply to a request.
+  kStopped = 7,    ///< Emergency stop: like kOff, until faults are cleared.
 };
 
 constexpr float kSpeedUnit_m_per_s = 2e-5f;
 
-/// Arming: motors get power in two steps, by a broadcast with kReady in mode kOff without faults,
-/// then by kGo.
+/// Arming in two steps: a broadcast with kReady in mode kOff without faults, then one with kGo.
+/// Motors have power only after both.
 enum class Arm : uint8_t { kNot = 0, kReady = 1, kGo = 2 };
 
 /// Cyclic broadcast to all boards, 29 bytes.
 struct Cyclic {
-  /// A board applies a broadcast only if its number differs from the previous one's.
+  /// Sequence number. A board ignores a broadcast with the same number as the previous one.
   uint8_t sequence = 0;
   Mode mode = Mode::kOff;
-  bool capture = false;  ///< On entering kImpedance: measured values become L0 and T0 (paper).
-  /// In mode kOff or kHold: clears latched faults, an emergency stop and a timeout.
+  bool capture = false;  ///< At the start of kImpedance: L0 and T0 become the measured values.
+  /// Clears latched faults, an emergency stop and a timeout. Only in mode kOff or kHold.
   bool clear_faults = false;
-  bool zero_inputs = false;  ///< V0 = 0, instead of the values.
+  bool zero_inputs = false;  ///< Sets V0 = 0 instead of the values.
   Arm arm = Arm::kNot;
   int16_t values[kCables] = {};
 };
 
-/// Part of a broadcast for one board.
+/// Data of a broadcast for one board.
 struct Command {
   uint8_t sequence = 0;
   Mode mode = Mode::kOff;
@@ -69,7 +70,7 @@ enum class Decoded : uint8_t { kGood, kUnknown, kWrongSize, kWrongCrc, kWrongVer
 constexpr size_t kMaxMessageSize = 32;
 constexpr size_t kCyclicSize = 29;
 constexpr size_t kStopSize = 4;
-constexpr uint8_t kCyclicHead = 0xc0;  ///< High half; the low half is the version.
+constexpr uint8_t kCyclicHead = 0xc0;  ///< Upper half of the byte; the lower half is the version.
 constexpr uint8_t kStopHead = 0xce;
 
 namespace internal {
@@ -88,15 +89,15 @@ constexpr void Put32(uint8_t* at, uint32_t x) noexcept {
 constexpr uint32_t Get32(const uint8_t* at) noexcept {
   return Get16(at) | static_cast<uint32_t>(Get16(at + 2)) << 16;
 }
-/// Appends the CRC-16, with the high byte first, in contrast to other numbers. So it continues the
-/// message's bits as in the theory of CRCs, and any burst of up to 16 wrong bits at any position is
-/// detected.
+/// Appends the CRC-16, high byte first (other numbers are little endian). In this order, as in the
+/// theory of CRCs, the checksum continues the bits of the message and detects any burst of up to 16
+/// wrong bits.
 constexpr void Seal16(uint8_t* frame, size_t size) noexcept {
   const uint16_t crc = Crc16(frame, size - 2);
   frame[size - 2] = static_cast<uint8_t>(crc >> 8);
   frame[size - 1] = static_cast<uint8_t>(crc & 0xff);
 }
-/// Returns whether the CRC-16 is right: the remainder of a frame with its checksum is 0.
+/// Returns whether the CRC-16 is correct: the remainder of message and checksum is 0.
 constexpr bool IsSealed16(const uint8_t* frame, size_t size) noexcept {
   return Crc16(frame, size) == 0;
 }
@@ -116,8 +117,8 @@ constexpr void Encode(const Cyclic& message, uint8_t (&frame)[kCyclicSize]) noex
   internal::Seal16(frame, kCyclicSize);
 }
 
-/// Decodes the part of a broadcast for the board whose first motor has the number `first`. For a
-/// board without a number it is kWrongValue.
+/// Decodes the data for the board whose first motor has index `first`. Returns kWrongValue if the
+/// message contains no data for this board.
 constexpr Decoded Decode(const uint8_t* frame, size_t size, uint8_t first, Command& out) noexcept {
   if (first + kMotors > kCables) return Decoded::kWrongValue;
   if (size < 1 || (frame[0] & 0xf0) != kCyclicHead || frame[0] == kStopHead)
@@ -141,7 +142,7 @@ constexpr Decoded Decode(const uint8_t* frame, size_t size, uint8_t first, Comma
   return Decoded::kGood;
 }
 
-/// Encodes an emergency stop for all boards. Send it alone and several times.
+/// Encodes an emergency stop for all boards. Send it several times, without other messages.
 constexpr void EncodeStop(uint8_t (&frame)[kStopSize]) noexcept {
   frame[0] = kStopHead;
   frame[1] = 'S';
@@ -154,7 +155,8 @@ constexpr bool IsStop(const uint8_t* frame, size_t size) noexcept {
          frame[3] == Crc8(frame, 3);
 }
 
-// --- requests to one board; the next read of the board returns the reply -------------------------
+// // --- requests to one board; the next read from the board returns the reply
+// ------------------------
 
 enum class Request : uint8_t {
   kSet = 0xd1,  ///< Sets a parameter.
@@ -162,25 +164,27 @@ enum class Request : uint8_t {
   kDo = 0xd3,   ///< Performs one of `Action`.
 };
 
-/// Readable data other than parameters (0 .. 127).
+/// Readable data other than parameters; parameters have the numbers 0 .. 127.
 enum class Asked : uint8_t { kInfo = 0xf0, kFaults = 0xf1, kCounters = 0xf2 };
 
 enum class Action : uint8_t {
-  kStore = 0xe1,         ///< Stores the parameters in the EEPROM; only while off.
-  kLoad = 0xe2,          ///< Loads the parameters from the EEPROM; only while off.
-  kDefaults = 0xe3,      ///< Restores the firmware's defaults; only while off.
-  kSetReference = 0xe4,  ///< Sets the motor's encoder count to `value`; off or holding.
+  kStore = 0xe1,     ///< Stores the parameters in the EEPROM. Only in mode kOff.
+  kLoad = 0xe2,      ///< Loads the parameters from the EEPROM. Only in mode kOff.
+  kDefaults = 0xe3,  ///< Restores the firmware's defaults. Only in mode kOff.
+  /// Sets the encoder count of the motor to `value`. Only in mode kOff or kHold.
+  kSetReference = 0xe4,
 };
 
-constexpr int32_t kMostReference = int32_t{1} << 23;  ///< 112 m of cable; exact in a float.
+/// Limit of encoder counts: 112 m of cable; exact in a float.
+constexpr int32_t kMostReference = int32_t{1} << 23;
 
 /// Request to one board. Sizes: kSet 9, kAsk 4, kDo 11 bytes.
 struct Asking {
   Request request = Request::kAsk;
-  uint8_t what = 0;    ///< Parameter, `Asked` or `Action`.
-  uint8_t index = 0;   ///< Motor, or `kMotors` for the board.
+  uint8_t what = 0;    ///< Number of a parameter, an `Asked` or an `Action`.
+  uint8_t index = 0;   ///< Index of the motor; `kMotors`: the board.
   uint32_t value = 0;  ///< kSet: bits of a float; kDo: an int32.
-  uint16_t nonce = 0;  ///< kDo: boot number of the board (`Info::nonce`); boards refuse others.
+  uint16_t nonce = 0;  ///< kDo: boot number (`Info::nonce`); other numbers are rejected.
 };
 constexpr size_t kSetSize = 9, kAskSize = 4, kDoSize = 11;
 

@@ -1,5 +1,5 @@
-/// Frames from a motor board to the PC over I2C, 16 bytes for every read: status, replies and
-/// board information (docs/hardware/protocol.md). Freestanding C++14.
+/// Frames from a motor board to the PC over I2C: status, replies and board information
+/// (docs/hardware/protocol.md). Every read returns 16 bytes. Freestanding C++14.
 #pragma once
 
 #include "taut/board/board_commands.h"
@@ -9,7 +9,7 @@ namespace board {
 
 constexpr size_t kFrameSize = 16;
 
-/// Meaning of the byte `Status::more`, by its frame's sequence number modulo 16.
+/// Meaning of the byte `Status::more`, selected by the sequence number of the frame modulo 16.
 enum class More : uint8_t {
   kFaults0,
   kFaults1,
@@ -32,35 +32,35 @@ constexpr uint8_t kMores = 16;
 
 /// Status of one motor.
 struct MotorStatus {
-  /// Filtered reading of the load cell in quarters of a count, 12 bits.
+  /// Filtered load cell reading in quarters of an ADC count, 12 bits.
   uint16_t tension_quarters = 0;
-  uint16_t set_point_quarters = 0;  ///< Set point in the same unit; 0: none.
-  uint16_t encoder_counts = 0;      ///< Modulo 2^16; winding in positive.
-  int8_t duty = 0;                  ///< In 1/127, winding in positive.
+  uint16_t set_point_quarters = 0;  ///< Tension set point in the same unit; 0: none.
+  uint16_t encoder_counts = 0;      ///< Modulo 2^16; increases when winding in.
+  int8_t duty = 0;                  ///< In 1/127; positive winds in.
 };
 
 /// Status of a board.
 struct Status {
-  uint8_t sequence = 0;  ///< Of the last broadcast that was applied.
+  uint8_t sequence = 0;  ///< Sequence number of the last applied broadcast.
   Mode mode = Mode::kOff;
   bool referenced = false, faulty = false, timeout = false;
-  bool overrun = false;    ///< A tick was late since the last frame.
-  bool was_reset = false;  ///< Reset since faults were last cleared.
+  bool overrun = false;    ///< At least one tick was late since the last frame.
+  bool was_reset = false;  ///< The board was reset after faults were last cleared.
   MotorStatus motors[kMotors];
-  uint8_t more = 0;  ///< `More`.
+  uint8_t more = 0;  ///< Meaning: see `More`.
 };
 
 /// Results of a request.
 enum class Answer : uint8_t {
   kGood = 0,
   kUnknown = 1,     ///< No such parameter, action or motor.
-  kOutOfRange = 2,  ///< Not finite, or outside the limits of the parameter or reference.
+  kOutOfRange = 2,  ///< Not finite, or outside the limits of the parameter or the count.
   kNotInThisMode = 3,
   kBusy = 4,   ///< The EEPROM is being written.
-  kStale = 5,  ///< Boot number of another boot.
+  kStale = 5,  ///< The boot number is not the present one.
 };
 
-/// Reply: frame after a request.
+/// Reply to a request.
 struct Reply {
   uint8_t what = 0;
   uint8_t index = 0;
@@ -70,9 +70,9 @@ struct Reply {
 
 namespace internal {
 
-/// Returns the checksum of a frame. It includes the board's number, which is not part of the frame,
-/// so that frames of other boards are rejected. The start is not 0, so that a line stuck at low is
-/// rejected too.
+/// Returns the checksum of a frame. It includes the board number, which the frame does not contain,
+/// so frames of other boards fail the check. Its start value is not 0, so a data line stuck at low
+/// also fails.
 constexpr uint8_t FrameCrc(const uint8_t* frame, uint8_t board) noexcept {
   return Crc8(frame, kFrameSize - 1, AddToCrc8(0xff, board));
 }
@@ -109,11 +109,11 @@ constexpr void Encode(const Reply& reply, uint8_t board, uint8_t (&frame)[kFrame
   frame[15] = internal::FrameCrc(frame, board);
 }
 
-/// Returns whether a message is a complete frame of this board.
+/// Returns whether a message is a complete, valid frame of this board.
 constexpr bool IsFrame(const uint8_t* frame, size_t size, uint8_t board) noexcept {
   return size == kFrameSize && frame[15] == internal::FrameCrc(frame, board);
 }
-/// Returns whether a frame is a reply, otherwise it is a status.
+/// Returns whether a frame is a reply; otherwise it is a status.
 constexpr bool IsReply(const uint8_t (&frame)[kFrameSize]) noexcept {
   return (frame[1] & 7) == static_cast<uint8_t>(Mode::kReply);
 }
@@ -158,7 +158,7 @@ struct Info {
   uint16_t nonce = 0;               ///< Boot number, incremented at each boot.
   uint8_t board = 0;
 };
-/// Encodes the payload.
+/// Encodes board information.
 constexpr void Encode(const Info& info, uint8_t (&payload)[11]) noexcept {
   payload[0] = info.protocol_min;
   payload[1] = info.protocol_max;
@@ -168,7 +168,7 @@ constexpr void Encode(const Info& info, uint8_t (&payload)[11]) noexcept {
   internal::Put16(payload + 8, info.nonce);
   payload[10] = info.board;
 }
-/// Decodes the payload.
+/// Decodes board information.
 constexpr Info DecodeInfo(const uint8_t (&payload)[11]) noexcept {
   Info info;
   info.protocol_min = payload[0];

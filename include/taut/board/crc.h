@@ -8,8 +8,7 @@ namespace taut {
 namespace board {
 namespace internal {
 
-/// Tables for half a byte: 16 numbers of RAM on an AVR, which keeps constants in RAM, instead of
-/// 256 for a byte.
+/// Table for half bytes: 16 entries. A table for bytes has 256, and an AVR keeps constants in RAM.
 constexpr uint16_t kCrc16[16] = {0x0000, 0x1021, 0x2042, 0x3063, 0x4084, 0x50a5, 0x60c6, 0x70e7,
                                  0x8108, 0x9129, 0xa14a, 0xb16b, 0xc18c, 0xd1ad, 0xe1ce, 0xf1ef};
 constexpr uint8_t kCrc8[16] = {0x00, 0x07, 0x0e, 0x09, 0x1c, 0x1b, 0x12, 0x15,
@@ -20,8 +19,8 @@ constexpr uint8_t kCrc8[16] = {0x00, 0x07, 0x0e, 0x09, 0x1c, 0x1b, 0x12, 0x15,
 constexpr uint16_t kCrc16Start = 0xffff;
 constexpr uint8_t kCrc8Start = 0;
 
-/// Adds a byte to a CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xffff, not reflected) and returns
-/// it: 0x29b1 for "123456789".
+/// Returns a CRC-16/CCITT-FALSE extended by one byte. Polynomial 0x1021, start 0xffff, not
+/// reflected; check value 0x29b1 for "123456789".
 constexpr uint16_t AddToCrc16(uint16_t crc, uint8_t byte) noexcept {
   crc = static_cast<uint16_t>(static_cast<uint16_t>(crc << 4) ^
                               internal::kCrc16[(crc >> 12) ^ (byte >> 4)]);
@@ -29,21 +28,21 @@ constexpr uint16_t AddToCrc16(uint16_t crc, uint8_t byte) noexcept {
                                internal::kCrc16[(crc >> 12) ^ (byte & 0x0f)]);
 }
 
-/// Adds a byte to a CRC-8 (polynomial 0x07, start 0, not reflected) and returns it: 0xf4 for
-/// "123456789".
+/// Returns a CRC-8 extended by one byte. Polynomial 0x07, start 0, not reflected; check value 0xf4
+/// for "123456789".
 constexpr uint8_t AddToCrc8(uint8_t crc, uint8_t byte) noexcept {
   crc = static_cast<uint8_t>(crc ^ byte);
   crc = static_cast<uint8_t>(static_cast<uint8_t>(crc << 4) ^ internal::kCrc8[crc >> 4]);
   return static_cast<uint8_t>(static_cast<uint8_t>(crc << 4) ^ internal::kCrc8[crc >> 4]);
 }
 
-/// Returns the CRC-16 of `count` bytes, continued from `crc`.
+/// Returns the CRC-16 of `count` bytes; `crc` is the checksum of the bytes before them.
 constexpr uint16_t Crc16(const uint8_t* bytes, size_t count, uint16_t crc = kCrc16Start) noexcept {
   for (size_t i = 0; i < count; ++i) crc = AddToCrc16(crc, bytes[i]);
   return crc;
 }
 
-/// Returns the CRC-8 of `count` bytes, continued from `crc`.
+/// Returns the CRC-8 of `count` bytes; `crc` is the checksum of the bytes before them.
 constexpr uint8_t Crc8(const uint8_t* bytes, size_t count, uint8_t crc = kCrc8Start) noexcept {
   for (size_t i = 0; i < count; ++i) crc = AddToCrc8(crc, bytes[i]);
   return crc;

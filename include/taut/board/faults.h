@@ -1,4 +1,4 @@
-/// Fault bits of a board and its motors. Latched until cleared.
+/// Fault bits of a board and its motors. They stay set until they are cleared.
 #pragma once
 
 #include <stdint.h>
@@ -6,29 +6,33 @@
 namespace taut {
 namespace board {
 
-/// Faults of a motor. The motor then has no power (duty 0, which brakes); the board's other motor
-/// holds.
+/// Faults of a motor. The motor then brakes (duty 0), and the other motor of the board holds its
+/// position.
 enum MotorFault : uint8_t {
-  kOverTension = 1,  ///< Five readings above the limit. Pays out until below limit minus band.
-  /// Five readings at an end of the amplifier's range, or an unchanged reading while the cable is
-  /// wound in far.
+  /// Five successive tension readings above the limit. The motor unwinds until the tension is below
+  /// the limit minus `kTensionBand`.
+  kOverTension = 1,
+  /// Five successive readings outside the valid range of the load cell, or the same reading while
+  /// the motor winds in more than `kSlackWay`.
   kSensor = 2,
-  kSlack = 4,  ///< No tension after winding in far: the cable is cut.
+  kSlack = 4,  ///< No tension after winding in more than `kSlackWay`: probably a broken cable.
   /// High duty for 100 ms without an encoder count: blocked motor or defective encoder.
   kStall = 8,
-  kPolarity = 16,  ///< High duty for 100 ms with motion in the opposite direction.
-  kRunaway = 32,   ///< Faster than 1.3 times the motor's maximum speed.
-  kHot = 64,       ///< Computed temperature of the winding above its limit.
+  kPolarity = 16,  ///< High duty for 100 ms, but the motor turns in the opposite direction.
+  /// Five successive ticks with a speed above `kSpeedLimit`, 1.3 times the maximum speed of the
+  /// motor by default.
+  kRunaway = 32,
+  kHot = 64,  ///< Computed winding temperature above its limit.
 };
 
 /// Faults of a board.
 enum BoardFault : uint8_t {
-  kDriverFault = 1,      ///< Fault signal of the driver (nSF): all off.
+  kDriverFault = 1,      ///< Fault signal of the driver (nSF). The driver is switched off.
   kTooManyOverruns = 2,  ///< More than 5 % of the ticks of a second were late.
-  kParametersLost = 4,   ///< Wrong checksum of the EEPROM: defaults are used.
-  kUnreferenced = 8,     ///< Position command without a reference of the encoder.
-  kNotArmed = 16,        ///< Command to run without the two steps of arming.
-  kBusStuck = 32,        ///< The bus had to be restarted.
+  kParametersLost = 4,   ///< Wrong EEPROM checksum; the defaults are in use.
+  kUnreferenced = 8,     ///< Position command before the encoder reference was set.
+  kNotArmed = 16,        ///< Command to run before both steps of arming.
+  kBusStuck = 32,        ///< The I2C bus was restarted.
 };
 
 /// Causes of a board's last reset: bits of MCUSR of an ATmega328P.

@@ -1,6 +1,6 @@
-/// Motor control loop of a board at 1 kHz: evaluates load cell and encoder and computes the duty by
-/// the laws of include/taut/control (paper section III). Freestanding C++14; float arithmetic gives
-/// the same bits on an AVR and on a PC.
+/// Motor control loop of a board at 1 kHz. It evaluates the load cell and the encoder and computes
+/// the duty with the control laws of include/taut/control (paper section III). Freestanding C++14;
+/// float arithmetic gives the same bits on an AVR and on a PC.
 #pragma once
 
 #include <stdint.h>
@@ -14,33 +14,34 @@ namespace taut {
 namespace board {
 
 constexpr float kTick_s = 0.001f;
-constexpr int16_t kFullWidth = 400;  ///< Steps of the PWM at full duty.
+constexpr int16_t kFullWidth = 400;  ///< PWM steps at full duty.
 
-/// A motor's parameters in the units of its loop. Computed when a parameter changes, since a
-/// division takes 30 us.
+/// Parameters of a motor in the units of the control loop. Updated only when a parameter changes,
+/// since a division takes 30 us.
 struct LoopNumbers {
-  /// From N and from counts to steps of the PWM; time in units of `kHalfTick_s`.
+  /// Gains from tension [N] and from encoder counts to PWM steps. Time unit: `kHalfTick_s`.
   control::Pid<float> force, length;
-  float limit_counts;             ///< Of the load cell: winding in stops here.
-  float band_from_counts;         ///< Of the load cell: winding in is reduced from here on.
-  float most, most_per_count;     ///< Largest drive [steps of the PWM], and per count of the band.
-  float counts_per_n;             ///< Of the load cell.
-  float speed_per_count_m_per_s;  ///< Rate of lengthening for one count per tick.
+  float limit_counts;      ///< ADC count of the load cell at which winding in stops.
+  float band_from_counts;  ///< ADC count above which winding in is reduced.
+  /// Largest drive [PWM steps], and its slope within the band [PWM steps per ADC count].
+  float most, most_per_count;
+  float counts_per_n;             ///< ADC counts of the load cell per newton.
+  float speed_per_count_m_per_s;  ///< Rate of lengthening at one encoder count per tick.
 };
 
-/// Time unit of the PIDs: half a tick. Their period is 2, so that the compiler removes
-/// multiplications by half a period. For the same reason errors are in counts of the sensors and
-/// outputs in steps of the PWM.
+/// Time unit of the PID controllers: half a tick. Their period is then 2, so the compiler removes
+/// multiplications by half a period. To save further multiplications, errors are in sensor counts
+/// and outputs in PWM steps.
 constexpr float kHalfTick_s = 0.5f * kTick_s;
 constexpr float kPeriod = 2.0f;
 
-/// Converts gains from duty per unit of error to steps of the PWM and half ticks.
+/// Converts gains from duty, unit of error and seconds to PWM steps, counts and half ticks.
 inline control::Pid<float> InSteps(float per_unit, float p, float i, float d) noexcept {
   const float scale = per_unit * static_cast<float>(kFullWidth);
   return control::Pid<float>{scale * p, scale * (i * kHalfTick_s), scale * (d / kHalfTick_s)};
 }
 
-/// Computes the loop's numbers from a motor's parameters.
+/// Computes `LoopNumbers` from the parameters of a motor.
 inline LoopNumbers NumbersOf(const float* p) noexcept {
   const float counts_per_n = 1.0f / p[kNewtonsPerCount];
   LoopNumbers numbers;
@@ -56,29 +57,29 @@ inline LoopNumbers NumbersOf(const float* p) noexcept {
   return numbers;
 }
 
-/// State of a motor's loop.
+/// State of the control loop of one motor.
 struct MotorLoop {
   // measured
   uint16_t encoder = 0;         ///< Last reading, modulo 2^16.
-  int16_t step = 0;             ///< Counts since the previous tick.
-  int32_t counts = 0;           ///< From the reference; winding in is positive.
+  int16_t step = 0;             ///< Encoder counts since the previous tick.
+  int32_t counts = 0;           ///< Relative to the reference position; winding in is positive.
   float tension_counts = 0.0f;  ///< Filtered.
-  // for impedance control only, so that other modes have no cost
+  // // only for impedance control; other modes skip its computation
   float counts_per_tick = 0.0f;  ///< Filtered.
   float tension_n = 0.0f, rest_length_m = 0.0f, length_m = 0.0f, rate_m_per_s = 0.0f;
   // commanded
   int32_t target_counts = 0;
   float velocity_input_m_per_s = 0.0f;  ///< V0.
   float drive_input = 0.0f;
-  control::Impedance<float> gains{};  ///< Gains now in effect.
+  control::Impedance<float> gains{};  ///< Effective gains; they follow the parameters slowly.
   // results
   control::PidState<float> pid{};
   float set_point_n = 0.0f;
-  float drive = 0.0f;  ///< Steps of the PWM, winding in is positive.
-  int16_t width = 0;   ///< `drive`, truncated.
+  float drive = 0.0f;  ///< PWM steps; winding in is positive.
+  int16_t width = 0;   ///< `drive`, truncated to an integer.
 };
 
-/// Updates sensor values. `adc`: 0 .. 1023; `encoder`: modulo 2^16.
+/// Processes new sensor values. `adc`: 0 .. 1023; `encoder`: modulo 2^16.
 inline void Sense(const float* p, uint16_t adc, uint16_t encoder, MotorLoop& motor) noexcept {
   motor.step = static_cast<int16_t>(static_cast<uint16_t>(encoder - motor.encoder));
   motor.encoder = encoder;
@@ -98,9 +99,9 @@ inline float Tension(const float* p, const MotorLoop& motor) noexcept {
   return (motor.tension_counts - p[kCountsAtZero]) * p[kNewtonsPerCount];
 }
 
-/// Computes the quantities of impedance control that position control does not use (the paper: it
-/// "consumes additional computational time"). The rate is the rest length's rate: the spring's rate
-/// is below the resolution of the load cell.
+/// Computes length, rate and tension for impedance control. Position control skips this ("consumes
+/// additional computational time", paper). The rate is that of the rest length, because the load
+/// cell cannot resolve the rate of the spring's extension.
 inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   control::StepLowPass(motor.counts_per_tick, static_cast<float>(motor.step), p[kRateShare]);
   motor.rate_m_per_s = motor.counts_per_tick * numbers.speed_per_count_m_per_s;
@@ -109,8 +110,8 @@ inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& mo
   motor.length_m = control::LengthFromTension(motor.rest_length_m, motor.tension_n, p[kStiffness]);
 }
 
-/// Returns the limits of the drive: winding in decreases linearly in the band below the tension
-/// limit, to 0 at the limit.
+/// Returns the limits of the drive. In the band below the tension limit, the limit for winding in
+/// decreases linearly to 0.
 inline control::OutputLimits<float> DriveLimits(const LoopNumbers& numbers,
                                                 const MotorLoop& motor) noexcept {
   float winding = numbers.most;
@@ -121,34 +122,34 @@ inline control::OutputLimits<float> DriveLimits(const LoopNumbers& numbers,
   return control::OutputLimits<float>{-numbers.most, winding};
 }
 
-/// Returns the rest length minus its target [counts]: the length to wind in.
+/// Returns the rest length minus its target [encoder counts]; positive: wind in.
 inline float LengthError(const MotorLoop& motor) noexcept {
   return static_cast<float>(motor.target_counts - motor.counts);
 }
 
-/// Starts position control with the present drive (bumpless transfer).
+/// Starts position control from the present drive (bumpless transfer).
 inline void StartPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   motor.set_point_n = 0.0f;
   motor.pid = control::StartPidFrom(numbers.length, LengthError(motor), motor.drive, kPeriod);
 }
-/// Computes the drive of one tick of position control.
+/// Advances position control by one tick and sets the drive.
 inline void StepPosition(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   motor.drive = control::StepPidLimited(numbers.length, motor.pid, LengthError(motor), kPeriod,
                                         DriveLimits(numbers, motor), control::Windup::kHeld);
 }
 
-/// Computes the tension set point (paper eq. 3).
+/// Computes the tension set point from the impedance law (paper eq. 3).
 inline void FindSetPoint(MotorLoop& motor) noexcept {
   motor.set_point_n = control::ImpedanceTension(motor.gains, motor.length_m, motor.rate_m_per_s,
                                                 motor.velocity_input_m_per_s);
 }
 
-/// Starts impedance control with the present drive (bumpless transfer). `capture`: the measured
-/// length and tension become L0 and T0, also in the parameters; T0 is limited to its range, so that
-/// a higher tension is reduced.
+/// Starts impedance control from the present drive (bumpless transfer). With `capture`, L0 and T0
+/// become the measured length and tension, also in the parameters. T0 is clamped to its range, so a
+/// higher tension decreases to it.
 inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
                            MotorLoop& motor) noexcept {
-  motor.counts_per_tick = 0.0f;  // one count of a motor that holds would count as 13 mm/s
+  motor.counts_per_tick = 0.0f;  // // otherwise one count of a holding motor would count as 13 mm/s
   SenseCable(p, numbers, motor);
   if (capture) {
     const Range range = MotorRange(kTensionOffset);
@@ -161,7 +162,7 @@ inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
   motor.pid = control::StartPidFrom(numbers.force, motor.set_point_n - motor.tension_n, motor.drive,
                                     kPeriod);
 }
-/// Computes the drive of one tick of impedance control.
+/// Advances impedance control by one tick and sets the drive.
 inline void StepImpedance(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   SenseCable(p, numbers, motor);
   FindSetPoint(motor);
@@ -170,7 +171,7 @@ inline void StepImpedance(const float* p, const LoopNumbers& numbers, MotorLoop&
                               kPeriod, DriveLimits(numbers, motor), control::Windup::kHeld);
 }
 
-/// Sets the commanded duty as drive, within its limits.
+/// Sets the drive to the commanded duty, within the limits.
 inline void StepDuty(const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   const control::OutputLimits<float> limits = DriveLimits(numbers, motor);
   motor.drive = control::Clamp(motor.drive_input, limits.low, limits.high);
@@ -184,8 +185,8 @@ inline float Towards(float from, float to, float most) noexcept {
 
 }  // namespace internal
 
-/// Moves a gain toward its parameter, within about a second, if it was set while the motor runs.
-/// One gain per call, `which` = 0 .. 3; `share_s`: time since the previous call for this gain.
+/// Moves one gain toward its parameter, which it reaches within about a second. `which`: gain, 0 ..
+/// 3. `share_s`: time since the previous call for this gain.
 inline void SlewGain(const float* p, uint8_t which, float share_s, MotorLoop& motor) noexcept {
   control::Impedance<float>& gains = motor.gains;
   switch (which) {

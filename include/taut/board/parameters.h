@@ -1,6 +1,5 @@
-/// Parameters of a motor board, which it stores in its EEPROM. A new parameter is one line here.
-///
-/// All are floats, as used by the loop, without conversion. Freestanding C++14.
+/// Parameters of a motor board, stored in its EEPROM. To add a parameter, add one line to a list
+/// below. All parameters are floats in the units of their keys. Freestanding C++14.
 #pragma once
 
 #include <stddef.h>
@@ -8,7 +7,7 @@
 
 #include "taut/board/crc.h"
 
-/// X(name, key, default, least, greatest) for each parameter of a motor. Keys end with their unit.
+/// Parameters of a motor: X(name, key, default, least, greatest). Each key ends with its unit.
 /// Defaults marked "assumed" in docs/hardware/parameters.md are neither measured nor published.
 #define TAUT_MOTOR_PARAMETERS(X)                                       \
   X(kTensionOffset, "tension_offset_n", 10.0f, 0.0f, 50.0f)            \
@@ -52,8 +51,8 @@
 namespace taut {
 namespace board {
 
-/// Numbers of a motor's parameters in messages. The first `kGains` may be set while a motor runs;
-/// their effective values then change slowly.
+/// Numbers of motor parameters in messages. The first `kGains` may be set while a motor runs; their
+/// effective values then change slowly.
 enum MotorParameter : uint8_t {
 #define TAUT_MOTOR_ENUM(name, key, value, least, greatest) name,
   TAUT_MOTOR_PARAMETERS(TAUT_MOTOR_ENUM)
@@ -62,7 +61,7 @@ enum MotorParameter : uint8_t {
 };
 constexpr uint8_t kGains = 4;
 
-/// Numbers of the board's parameters in messages.
+/// Numbers of board parameters in messages.
 enum BoardParameter : uint8_t {
 #define TAUT_BOARD_ENUM(name, key, value, least, greatest) name,
   TAUT_BOARD_PARAMETERS(TAUT_BOARD_ENUM)
@@ -75,7 +74,8 @@ struct Range {
   float value, least, greatest;
 };
 
-/// Returns default and limits. Code instead of a table, since an AVR keeps constants in RAM.
+/// Returns default and limits of a parameter. Code instead of a table, since an AVR keeps tables in
+/// RAM.
 constexpr Range MotorRange(uint8_t parameter) noexcept {
   Range range{0.0f, 0.0f, 0.0f};
   switch (parameter) {
@@ -102,7 +102,7 @@ constexpr Range BoardRange(uint8_t parameter) noexcept {
   return range;
 }
 
-/// All parameters of a board: contents of its EEPROM.
+/// All parameters of a board, as stored in its EEPROM.
 struct Parameters {
   float motor[2][kMotorParameters];
   float board[kBoardParameters];
@@ -116,16 +116,16 @@ constexpr void SetDefaults(Parameters& all) noexcept {
   for (uint8_t i = 0; i < kBoardParameters; ++i) all.board[i] = BoardRange(i).value;
 }
 
-/// Returns whether a value is within the limits; false for NaN.
+/// Returns whether a value is within its limits; false for NaN.
 constexpr bool IsWithin(const Range& range, float value) noexcept {
   return value >= range.least && value <= range.greatest;
 }
 
-/// Checksum of names and order. If it differs between a PC and a board, parameter numbers have
-/// different meanings.
+/// Checksum of parameter names and their order. If PC and board have different checksums, parameter
+/// numbers have different meanings on them.
 constexpr uint16_t kParametersVersion = 0x5bee;
 
-#ifndef __AVR__  // a string, even if used only at compile time, takes RAM on an AVR
+#ifndef __AVR__  // // on an AVR, strings take RAM, even if used only at compile time
 namespace internal {
 
 constexpr uint16_t AddKey(uint16_t crc, const char* key) noexcept {

@@ -7,7 +7,7 @@
 namespace taut {
 namespace board {
 
-/// Initializes a board at its start. `board.parameters` must be loaded before.
+/// Initializes a board after a reset. Load `board.parameters` before the call.
 inline void Start(const Boot& boot, Board& board) noexcept {
   board.boot = boot;
   if (!boot.parameters_good) {
@@ -15,8 +15,7 @@ inline void Start(const Boot& boot, Board& board) noexcept {
     board.board_faults |= kParametersLost;
   }
   Prepare(board);
-  // After a reset without a power cycle, the temperature of the motors is unknown: assume warm
-  // motors.
+  // // After a reset without a power cycle, the motor temperatures are unknown; they may be warm.
   if ((boot.reset_cause & kPowerOn) == 0) {
     for (uint8_t m = 0; m < kMotors; ++m) board.watches[m].housing_rise_k = 40.0f;
   }
@@ -35,14 +34,14 @@ inline uint32_t ToBits(float value) noexcept {
   return bits;
 }
 
-/// Returns the address of a parameter, or null if it does not exist.
+/// Returns a pointer to a parameter, or null if it does not exist.
 inline float* ParameterAt(Board& board, uint8_t what, uint8_t index) noexcept {
   if (index < kMotors && what < kMotorParameters) return &board.parameters.motor[index][what];
   if (index == kMotors && what < kBoardParameters) return &board.parameters.board[what];
   return nullptr;
 }
 
-/// Returns whether the mode allows changes of all parameters, since none of them moves a motor.
+/// Returns whether all parameters may change: no parameter moves a motor in this mode.
 inline bool IsQuiet(const Board& board) noexcept {
   return board.mode == Mode::kOff || board.mode == Mode::kHold || board.mode == Mode::kStopped;
 }
@@ -64,7 +63,7 @@ inline Answer SetParameter(Board& board, const Asking& asking) noexcept {
   } else {
     Prepare(board);
   }
-  // Changed gains would make the PID's output jump: continue from the present duty.
+  // // Changed gains would make the output of the PID jump; restart it from the present duty.
   if (of_motor && board.mode == Mode::kHold) {
     StartPosition(board.numbers[asking.index], board.loops[asking.index]);
   }
@@ -103,7 +102,7 @@ inline Answer Do(Board& board, const Asking& asking) noexcept {
   return Answer::kUnknown;
 }
 
-/// Reads a parameter or other data into `payload`.
+/// Reads a parameter or an `Asked` into `payload`.
 inline Answer Ask(Board& board, const Asking& asking, uint8_t (&payload)[11]) noexcept {
   if (asking.what < 0x80) {
     const float* const at = ParameterAt(board, asking.what, asking.index);
@@ -147,8 +146,9 @@ inline Answer Ask(Board& board, const Asking& asking, uint8_t (&payload)[11]) no
 
 }  // namespace internal
 
-/// Processes a complete message from the bus, between ticks. `to_all`: sent to the general call, as
-/// broadcasts and emergency stops are; requests are sent to the board's address.
+/// Processes a complete message from the bus, between ticks. `to_all`: whether it was sent to the
+/// general-call address, like broadcasts and emergency stops. Requests go to the address of one
+/// board.
 inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board) noexcept {
   if (!to_all) {
     Asking asking;
@@ -172,7 +172,7 @@ inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board
     return;
   }
   if (IsStop(bytes, size)) {
-    board.stopped = true;  // cancels a pending command
+    board.stopped = true;  // // cancels a pending command
     board.command_due = false;
     return;
   }
@@ -188,7 +188,7 @@ inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board
   board.silence = 0;
 }
 
-/// Makes the frame for the next read. Call it when `reply_due`, or after a tick when `status_due`.
+/// Fills the frame for the next read. Call it if `reply_due`, or after a tick if `status_due`.
 inline void MakeFrame(Board& board, uint8_t (&frame)[kFrameSize]) noexcept {
   if (board.reply_due) {
     Encode(board.reply, board.boot.board, frame);

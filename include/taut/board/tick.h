@@ -1,5 +1,5 @@
-/// Control tick of a motor board (1 ms): faults, commands, control laws, monitoring. Freestanding
-/// C++14.
+/// Control tick of a motor board (1 ms): faults, commands, control laws and monitoring.
+/// Freestanding C++14.
 #pragma once
 
 #include "taut/board/state.h"
@@ -8,7 +8,7 @@ namespace taut {
 namespace board {
 namespace internal {
 
-/// Enters a mode. Control laws start with the present drive (bumpless transfer).
+/// Enters a mode. Control laws start from the present drive (bumpless transfer).
 inline void Enter(Mode mode, bool capture, Board& board) noexcept {
   board.mode = mode;
   for (uint8_t m = 0; m < kMotors; ++m) {
@@ -32,7 +32,7 @@ inline void Enter(Mode mode, bool capture, Board& board) noexcept {
   }
 }
 
-/// Applies the values of the last broadcast according to the mode.
+/// Applies the values of the last broadcast in the present mode.
 inline void TakeValues(Board& board) noexcept {
   const Command& command = board.command;
   for (uint8_t m = 0; m < kMotors; ++m) {
@@ -48,14 +48,14 @@ inline void TakeValues(Board& board) noexcept {
   }
 }
 
-/// Returns whether a mode requires a reference of the encoders.
+/// Returns whether a mode needs encoder references.
 inline bool Needs(Mode mode, bool capture) noexcept {
   return mode == Mode::kPosition || (mode == Mode::kImpedance && !capture);
 }
 
-/// Applies the last broadcast as far as permitted. Returns true if a new control law was started,
-/// which computes its first duty in the next tick; until then duties stay, and this tick is
-/// complete.
+/// Applies the last broadcast if it is permitted. Returns true if a new control law starts. It
+/// computes its first duty in the next tick; until then the duties stay the same, and no work
+/// remains in this tick.
 inline bool Apply(Board& board) noexcept {
   const Command& command = board.command;
   board.command_due = false;
@@ -79,7 +79,7 @@ inline bool Apply(Board& board) noexcept {
     board.armed = true;
     board.ready = false;
   }
-  // After a fault, timeout or stop, the reaction to it continues until it is cleared.
+  // // The reaction to a fault, timeout or stop continues until it is cleared.
   if (!IsHealthy(board)) return false;
   if (Needs(command.mode, command.capture) && board.mode != command.mode &&
       !(board.referenced[0] && board.referenced[1])) {
@@ -90,8 +90,8 @@ inline bool Apply(Board& board) noexcept {
     TakeValues(board);
     return false;
   }
-  // The first target must be set before the PID of a position starts, and an earlier V0 must not
-  // remain.
+  // // The first target must be set before the PID of a position starts, and the previous V0 must
+  // not remain.
   const Mode before = board.mode;
   board.mode = command.mode;
   for (uint8_t m = 0; m < kMotors; ++m) board.loops[m].velocity_input_m_per_s = 0.0f;
@@ -101,7 +101,7 @@ inline bool Apply(Board& board) noexcept {
   return true;
 }
 
-/// Reacts to missing broadcasts and to faults of motors or board.
+/// Reacts to missing broadcasts and to faults of the motors and the board.
 inline void React(bool driver_fault, Board& board) noexcept {
   const bool runs = board.mode != Mode::kOff && board.mode != Mode::kStopped;
   if (driver_fault && runs) board.board_faults |= kDriverFault;
@@ -122,18 +122,18 @@ inline void React(bool driver_fault, Board& board) noexcept {
     if (board.parameters.board[kOnTimeout] >= 0.5f) {
       Enter(Mode::kOff, false, board);
       board.armed = false;
-      return;  // an additional fault does not start holding
+      return;  // // otherwise an additional fault would start holding
     }
     if (board.mode != Mode::kImpedance && board.mode != Mode::kHold) {
-      Enter(Mode::kHold, false, board);  // impedance control continues, with V0 = 0
+      Enter(Mode::kHold, false, board);  // // impedance control continues with V0 = 0
     }
   }
   const bool faulty = board.faults[0] != 0 || board.faults[1] != 0 || board.board_faults != 0;
   if (faulty && board.mode != Mode::kHold) Enter(Mode::kHold, false, board);
 }
 
-/// Removes power from a motor with a fault. With too high a tension it pays out until the tension
-/// is low enough.
+/// Removes power from a motor with a fault. If its tension is too high, the motor unwinds until the
+/// tension is low enough.
 inline void Restrain(Board& board, uint8_t m) noexcept {
   if (board.faults[m] == 0) return;
   constexpr float kPayOut = -0.3f * kFullWidth;
@@ -166,8 +166,8 @@ inline void CountTicks(uint8_t elapsed, Board& board) noexcept {
 
 }  // namespace internal
 
-/// Runs one tick of 1 ms. Then the duties are `loops[m].width`, and the driver has power if
-/// `IsPowered`.
+/// Runs one tick of 1 ms. Results: the duties in `loops[m].width`, and the driver's power state
+/// from `IsPowered`.
 inline void Tick(const Inputs& in, Board& board) noexcept {
   internal::CountTicks(in.elapsed, board);
   for (uint8_t m = 0; m < kMotors; ++m) {
@@ -195,27 +195,27 @@ inline void Tick(const Inputs& in, Board& board) noexcept {
         break;
       default:
         motor.drive = 0.0f;
-        motor.step = 0;  // for `Feel`: no current flows, however fast the cable turns the motor
+        motor.step = 0;  // // for `Feel`: no current flows, even if the cable turns the motor
     }
     internal::Restrain(board, m);
     motor.width = static_cast<int16_t>(motor.drive);
   }
 }
 
-/// Returns whether the driver is on. Off: motors coast; on with duty 0: motors brake.
+/// Returns whether the driver is on. Motors coast if it is off and brake if it is on with duty 0.
 inline bool IsPowered(const Board& board) noexcept {
   return board.mode != Mode::kOff && board.mode != Mode::kStopped && !board.stopped;
 }
 
-/// Updates the heat sums of the motors. Call it after every tick.
+/// Adds this tick to the heat sums of the motors. Call it after every tick.
 inline void Feel(Board& board) noexcept {
   for (uint8_t m = 0; m < kMotors; ++m) {
     FeelHeat(board.loops[m].width, board.loops[m].step, board.watches[m]);
   }
 }
 
-/// Performs one of the tasks that need not run in every tick: a motor's temperature or a gain's
-/// slow change. Call it after ticks that leave time.
+/// Performs one slow task: updates the temperature of a motor or moves a gain. Call it after ticks
+/// with enough time left.
 inline void DoSlowWork(Board& board) noexcept {
   for (uint8_t m = 0; m < kMotors; ++m) {
     Watch& watch = board.watches[m];

@@ -1,5 +1,5 @@
-/// Fault detection and temperature model of a motor, for every tick. Detection counts events
-/// instead of computing, since a tick has little time. Freestanding C++14.
+/// Fault detection and temperature model of a motor, run in every tick. Detection only counts
+/// events, which takes little time. Freestanding C++14.
 #pragma once
 
 #include <stdint.h>
@@ -10,35 +10,37 @@
 namespace taut {
 namespace board {
 
-constexpr uint16_t kSensorLow = 2;     ///< Readings are clipped here under compression [counts].
-constexpr uint16_t kSensorHigh = 735;  ///< The amplifier saturates at about 741 [counts].
-constexpr uint8_t kReadings = 5;       ///< Consecutive readings for a fault.
+/// Lower limit of readings; clipped under compression [ADC counts].
+constexpr uint16_t kSensorLow = 2;
+/// Upper limit of readings; the amplifier saturates at about 741 [ADC counts].
+constexpr uint16_t kSensorHigh = 735;
+constexpr uint8_t kReadings = 5;  ///< Consecutive bad readings that make a fault.
 constexpr uint8_t kMuchDutyTicks = 100;
 constexpr float kSlackTension_n = 0.5f;
-constexpr uint8_t kThermalTicks = 64;  ///< Ticks between two updates of a motor's temperatures.
+constexpr uint8_t kThermalTicks = 64;  ///< Ticks between temperature updates of a motor.
 
-/// Limits of a motor in units of its sensors. Computed when a parameter changes.
+/// Limits of a motor in sensor counts. Updated only when a parameter changes.
 struct WatchLimits {
   uint16_t over_counts = 0, slack_counts = 0;
-  int16_t step_counts = 0;  ///< Per tick.
+  int16_t step_counts = 0;  ///< Encoder counts per tick at the speed limit.
   int16_t slack_way_counts = 0;
-  int16_t stall_width = 0;      ///< Steps of the PWM.
-  int16_t polarity_counts = 0;  ///< In kMuchDutyTicks: a tenth of the speed limit.
+  int16_t stall_width = 0;      ///< PWM steps.
+  int16_t polarity_counts = 0;  ///< Encoder counts in kMuchDutyTicks at a tenth of the speed limit.
 };
 
 namespace internal {
 
-/// Converts to int16_t, at most INT16_MAX.
+/// Converts to int16_t, clamped to INT16_MAX.
 inline int16_t Saturated(float x) noexcept {
   return x < 32767.0f ? static_cast<int16_t>(x) : INT16_MAX;
 }
 
 }  // namespace internal
 
-/// Computes the limits from a motor's parameters.
+/// Computes the limits from the parameters of a motor.
 inline WatchLimits LimitsOf(const float* p) noexcept {
   const float per_n = 1.0f / p[kNewtonsPerCount], per_m = 1.0f / p[kLengthPerCount];
-  const float speed = p[kSpeedLimit] * per_m * kTick_s;  // counts a tick
+  const float speed = p[kSpeedLimit] * per_m * kTick_s;  // // encoder counts per tick
   WatchLimits limits;
   limits.over_counts =
       static_cast<uint16_t>(internal::Saturated(p[kCountsAtZero] + p[kTensionLimit] * per_n));
@@ -53,30 +55,31 @@ inline WatchLimits LimitsOf(const float* p) noexcept {
 
 /// State of a motor's fault detection and temperatures.
 struct Watch {
-  uint8_t sensor = 0, over = 0, fast = 0;  ///< Consecutive readings.
-  uint8_t much_duty = 0;                   ///< Consecutive ticks, with one sign.
-  bool winds = false;                      ///< That sign.
-  int16_t way = 0;                         ///< Counts in these ticks.
-  int16_t slack_way = 0;  ///< Wound in while slack, or while the reading did not change [counts].
-  uint16_t adc = 0;       ///< Previous reading.
-  float winding_rise_k = 0.0f;  ///< Winding above housing.
-  float housing_rise_k = 0.0f;  ///< Housing above air.
-  // Sums over the ticks since the last update of temperatures, in steps of the PWM and counts.
+  uint8_t sensor = 0, over = 0, fast = 0;  ///< Numbers of consecutive readings beyond each limit.
+  uint8_t much_duty = 0;                   ///< Consecutive ticks with high duty of one sign.
+  bool winds = false;                      ///< Sign of this duty: true winds in.
+  int16_t way = 0;                         ///< Encoder counts during these ticks.
+  /// Counts wound in while the cable is slack or the reading stays the same.
+  int16_t slack_way = 0;
+  uint16_t adc = 0;             ///< Previous reading.
+  float winding_rise_k = 0.0f;  ///< Temperature of the winding above the housing.
+  float housing_rise_k = 0.0f;  ///< Temperature of the housing above the air.
+  // // Sums of products of duty [PWM steps] and step [counts] since the last temperature update.
   int32_t width_width = 0, width_step = 0, step_step = 0;
-  uint8_t felt = 0;  ///< Number of these ticks.
+  uint8_t felt = 0;  ///< Number of ticks in these sums.
 };
 
 namespace internal {
 
-/// Returns the next number of consecutive events, at most 255.
+/// Returns the updated number of consecutive events, at most 255.
 inline uint8_t InARow(bool so, uint8_t count) noexcept {
   return so ? (count < 255 ? static_cast<uint8_t>(count + 1) : count) : uint8_t{0};
 }
 
 }  // namespace internal
 
-/// Returns the fault bits of this tick. `step`: counts since the previous tick; `width`: duty of
-/// the previous tick.
+/// Returns the faults detected in this tick. `step`: encoder counts since the previous tick;
+/// `width`: duty of the previous tick.
 inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16_t width,
                     Watch& watch) noexcept {
   uint8_t wrong = 0;
@@ -88,7 +91,7 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
       internal::InARow(step > limits.step_counts || step < -limits.step_counts, watch.fast);
   if (watch.fast >= kReadings) wrong |= kRunaway;
 
-  // A converter does not give exactly the same reading repeatedly while the cable is being wound.
+  // // While a cable is wound, noise changes the readings of a working converter.
   const bool slack = adc <= limits.slack_counts;
   if (!slack && adc != watch.adc) {
     watch.slack_way = 0;
@@ -118,16 +121,17 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
   return wrong;
 }
 
-/// Coefficients of the temperature model: current from duty and speed, two thermal masses
-/// (docs/theory/motor.md), updated every kThermalTicks. Computed when a parameter changes.
+/// Coefficients of the temperature model: the current follows from duty and speed and heats two
+/// thermal masses (docs/theory/motor.md). Updated only when a parameter changes.
 struct HeatNumbers {
-  float width_width_w, width_step_w, step_step_w;  ///< Mean heat [W] per sum of `Watch`.
-  /// Share of the difference to the steady-state temperature by which a temperature changes per
-  /// update.
+  /// Mean heat [W] per unit of the sums in `Watch`.
+  float width_width_w, width_step_w, step_step_w;
+  /// Fraction of the difference from the steady-state temperature by which an update changes a
+  /// temperature.
   float winding_share, housing_share;
 };
 
-/// Computes the coefficients from the board's parameters and a motor's length per count [m].
+/// Computes the coefficients from the board parameters and the motor's cable length per count [m].
 inline HeatNumbers HeatOf(const float* board, float length_per_count_m) noexcept {
   constexpr float kTime_s = kThermalTicks * kTick_s;
   const float width_v = board[kSupply] / kFullWidth;
@@ -138,12 +142,12 @@ inline HeatNumbers HeatOf(const float* board, float length_per_count_m) noexcept
                      kTime_s / board[kHousingTime]};
 }
 
-constexpr int16_t kMostStep = 2000;  ///< Largest step in heat sums [counts per tick].
+constexpr int16_t kMostStep = 2000;  ///< Largest step that the heat sums accept [counts per tick].
 
-/// Adds a tick to the heat sums. The heat of a winding is proportional to the square of the current
-/// in each tick: a drive that changes its sign ten times per second has zero mean, but heats.
+/// Adds a tick to the heat sums. The heat follows the square of the current in each tick: a current
+/// that alternates ten times per second has zero mean but heats the winding.
 inline void FeelHeat(int16_t width, int16_t step, Watch& watch) noexcept {
-  // Real encoders count less, and up to this limit the sums do not overflow between two updates.
+  // // Real steps are smaller, and up to this limit the sums do not overflow between two updates.
   if (step > kMostStep) step = kMostStep;
   if (step < -kMostStep) step = -kMostStep;
   watch.width_width += int32_t{width} * width;
@@ -152,7 +156,7 @@ inline void FeelHeat(int16_t width, int16_t step, Watch& watch) noexcept {
   if (watch.felt < 255) ++watch.felt;
 }
 
-/// Updates both temperatures from the heat sums, as over kThermalTicks, and returns the winding's
+/// Updates both temperatures from the heat sums of the last kThermalTicks. Returns the winding
 /// temperature [deg C].
 inline float StepTemperature(const HeatNumbers& numbers, const float* board,
                              Watch& watch) noexcept {

@@ -15,23 +15,23 @@
 namespace taut {
 namespace control {
 
-/// Targets of one oscillator. They may change at any time: phase and amplitude stay smooth.
+/// Law of one oscillator. Parameters may change at any time; phase and amplitude stay smooth.
 template <class Real>
 struct CpgLaw {
-  Real frequency_hz;       ///< v: of the uncoupled oscillator.
+  Real frequency_hz;       ///< v: frequency of the uncoupled oscillator.
   Real amplitude_m_per_s;  ///< R >= 0: target amplitude.
   Real convergence_per_s;  ///< a > 0: rate of convergence to R.
 };
 
-/// Coupling: effect of oscillator `from` on oscillator `to`. Created by `MakeCoupling`.
+/// Coupling from oscillator `from` to oscillator `to`. Use `MakeCoupling` to create it.
 template <class Real>
 struct CpgCoupling {
   uint16_t to, from;
   Real along, across;  ///< w / (2 pi) times the cosine and sine of phi [turns/m].
 };
 
-/// Returns a coupling with weight w [rad/s per m/s of the neighbor's amplitude] and phase phi
-/// [turns], -1/2..1/2: it pulls theta_from - theta_to toward phi.
+/// Returns a coupling that pulls theta_from - theta_to toward phi. w: weight in rad/s per m/s of
+/// amplitude of `from`; phi: phase in turns, -1/2..1/2.
 template <class Real>
 constexpr CpgCoupling<Real> MakeCoupling(uint16_t to, uint16_t from, Real weight_per_m,
                                          Real phase_turns) noexcept {
@@ -54,27 +54,27 @@ constexpr CpgState<Real> StartCpg() noexcept {
   return CpgState<Real>{Literal<Real>(0.0f), Literal<Real>(0.0f), Literal<Real>(0.0f)};
 }
 
-/// Returns V = r cos theta [m/s] (paper eq. 6, docs/theory/gaits.md eq. G.5).
+/// Returns the output V = r cos theta [m/s] (paper eq. 6, docs/theory/gaits.md eq. G.5).
 template <class Real>
 constexpr Real CpgVelocity(const CpgState<Real>& state) noexcept {
   return state.amplitude_m_per_s * CosTurns(state.phase_turns);
 }
 
-/// Work space of a step, one per oscillator.
+/// Scratch memory of a step, one per oscillator.
 template <class Real>
 struct CpgWork {
   CpgState<Real> stage, sum;
-  // Sine and cosine of the phase; both times the amplitude, as used by neighbors; S and C of eq.
-  // G.6, in turns. The order matters: with S and C adjacent, g++ 12 would sum them twice, as a pair
-  // and individually.
+  // // Sine and cosine of the phase; both times the amplitude, as used by neighbors; S and C of eq.
+  // G.6, in turns. Keep S and C apart: if they were adjacent, g++ 12 would sum them twice, as a
+  // pair and individually.
   Real sine, scaled_sine, pull_sine;
   Real cosine, scaled_cosine, pull_cosine;
 };
 
-/// Network of `count` oscillators with couplings in any order, which is the order of summation.
+/// Network of `count` oscillators. The order of the couplings is the order of summation.
 template <class Real>
 struct CpgNetwork {
-  const CpgLaw<Real>* laws;  ///< Per oscillator.
+  const CpgLaw<Real>* laws;  ///< One per oscillator.
   size_t count;
   const CpgCoupling<Real>* couplings;
   size_t coupling_count;
@@ -82,9 +82,8 @@ struct CpgNetwork {
 
 namespace internal {
 
-/// Sets sine and cosine of an oscillator's phase for its neighbors. Since the sine of a phase
-/// difference is expanded (G.6), each oscillator needs one sine and one cosine, and a coupling
-/// none.
+/// Computes sine and cosine of an oscillator's phase for its neighbors. Eq. G.6 expands the sine of
+/// a phase difference, so each oscillator needs one sine and one cosine, and couplings need none.
 template <class Real, class Work>
 constexpr void SetWave(Real turns, Real amplitude, Work& w) noexcept {
   w.sine = SinTurns(turns);
@@ -93,8 +92,8 @@ constexpr void SetWave(Real turns, Real amplitude, Work& w) noexcept {
   w.scaled_cosine = amplitude * w.cosine;
 }
 
-/// Adds the couplings' terms to S and C (G.6). Consecutive couplings to the same oscillator are
-/// fastest: their sums stay in registers.
+/// Adds the terms of the couplings to S and C (G.6). Consecutive couplings to the same oscillator
+/// are fastest, since their sums stay in registers.
 template <class Real, class Work>
 constexpr void AddPulls(const CpgCoupling<Real>* link, size_t coupling_count, Work* work) noexcept {
   const CpgCoupling<Real>* const end = link + coupling_count;
@@ -113,13 +112,13 @@ constexpr void AddPulls(const CpgCoupling<Real>* link, size_t coupling_count, Wo
   }
 }
 
-/// Returns sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) in turns, from S and C.
+/// Returns sum_j w_ij r_j sin(theta_j - theta_i - phi_ij) [turns/s], computed from S and C.
 template <class Real, class Work>
 constexpr Real PullOf(const Work& w) noexcept {
   return w.pull_sine * w.cosine - w.pull_cosine * w.sine;
 }
 
-/// Sets the waves of all oscillators.
+/// Computes sines and cosines of the phases of all oscillators.
 template <class Real>
 constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) noexcept {
   for (size_t i = 0; i < network.count; ++i) {
@@ -128,7 +127,7 @@ constexpr void CpgWaves(const CpgNetwork<Real>& network, CpgWork<Real>* work) no
   }
 }
 
-/// Computes S and C of all oscillators. `feedback` [rad/s] as in `StepCpg`.
+/// Computes S and C of all oscillators. `feedback` [rad/s]: see `StepCpg`.
 template <class Real>
 constexpr void CpgPulls(const CpgNetwork<Real>& network, const Real* feedback,
                         CpgWork<Real>* work) noexcept {
@@ -152,7 +151,7 @@ constexpr CpgState<Real> CpgRate(const CpgLaw<Real>& law, const CpgWork<Real>& w
            w.stage.amplitude_rate_m_per_s2)};
 }
 
-/// Returns state + h rate.
+/// Returns state + h * rate.
 template <class Real>
 constexpr CpgState<Real> Advanced(const CpgState<Real>& state, const CpgState<Real>& rate,
                                   Real h) noexcept {
@@ -163,13 +162,13 @@ constexpr CpgState<Real> Advanced(const CpgState<Real>& state, const CpgState<Re
 
 }  // namespace internal
 
-/// Advances all oscillators by `step_count` steps of `step_s` with the classical Runge-Kutta method
-/// of fourth order (eq. G.7). It is stable if step_s times the sum of |w| R over an oscillator's
-/// couplings is below 2.7; choose a step well below this.
+/// Advances all oscillators by `step_count` steps of `step_s` with the classical fourth-order
+/// Runge-Kutta method (eq. G.7). Stable if step_s times the sum of |w| R over the couplings of each
+/// oscillator is below 2.7. Choose a much smaller step.
 ///
-/// `feedback` [rad/s] is null or has one s_i per oscillator, constant during the call: a sensor
-/// reading times a gain. It changes an oscillator's phase rate by s_i cos theta_i. `states` and
-/// `work` have `network.count` entries.
+/// `feedback` [rad/s]: null, or one s_i per oscillator, a sensor reading times a gain. It is
+/// constant during the call and adds s_i cos theta_i to the phase rate of an oscillator. `states`
+/// and `work` have `network.count` entries.
 template <class Real>
 constexpr void StepCpg(const CpgNetwork<Real>& network, const Real* feedback, Real step_s,
                        uint16_t step_count, CpgState<Real>* states, CpgWork<Real>* work) noexcept {

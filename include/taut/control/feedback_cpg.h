@@ -1,11 +1,11 @@
-/// Central pattern generator with sensor feedback to frequency, amplitude and phase of its
+/// Central pattern generator with sensor feedback to the frequency, amplitude and phase of its
 /// oscillators.
 ///
 /// Source: Mirletz, Bhandal, Adams, Agogino, Quinn, SunSpiral, "Goal-directed CPG-based control for
 /// tensegrity spines with many degrees of freedom traversing irregular terrain", Soft Robotics
-/// 2(4), 2015, as in its program (NTRTsim, src/util/CPGNodeFB.cpp). Difference: the amplitude is
-/// relative to R, so that gains do not have the unit of a gait's signal. Equations:
-/// docs/theory/gaits.md.
+/// 2(4), 2015, and its source code (NTRTsim, src/util/CPGNodeFB.cpp). Difference: the amplitude is
+/// relative to R, so the units of the gains do not depend on the unit of the gait's signal.
+/// Equations: docs/theory/gaits.md.
 #pragma once
 
 #include <stddef.h>
@@ -28,7 +28,7 @@ struct FeedbackCpgLaw {
   Real phase_gain_turns_per_s;   ///< k_p.
 };
 
-/// Feedback to one oscillator, each -1..1, from a network (network.h).
+/// Feedback from a neural network (network.h) to one oscillator; each value is -1..1.
 template <class Real>
 struct CpgFeedback {
   Real frequency, amplitude, phase;  ///< f_f, f_a, f_p.
@@ -38,24 +38,24 @@ struct CpgFeedback {
 template <class Real>
 struct FeedbackCpgState {
   Real phase_turns;   ///< theta, -1/2..1/2.
-  Real relative;      ///< rho = r / R; 0 stays 0.
+  Real relative;      ///< rho = r / R; a value of 0 stays 0.
   Real frequency_hz;  ///< v.
 };
 
-/// Returns an initial state with the full amplitude, since an amplitude of 0 cannot grow.
+/// Returns an initial state with the full amplitude; an amplitude of 0 could not grow.
 template <class Real>
 constexpr FeedbackCpgState<Real> StartFeedbackCpg(Real phase_turns, Real frequency_hz) noexcept {
   return FeedbackCpgState<Real>{phase_turns, Literal<Real>(1.0f), frequency_hz};
 }
 
-/// Returns the signal R rho cos theta [m/s] or [m] (G.18).
+/// Returns the output R rho cos theta [m/s] or [m] (G.18).
 template <class Real>
 constexpr Real FeedbackCpgSignal(const FeedbackCpgLaw<Real>& law,
                                  const FeedbackCpgState<Real>& state) noexcept {
   return law.amplitude * state.relative * CosTurns(state.phase_turns);
 }
 
-/// Work space of a step, one per oscillator.
+/// Scratch memory of a step, one per oscillator.
 template <class Real>
 struct FeedbackCpgWork {
   FeedbackCpgState<Real> stage, sum;
@@ -63,10 +63,10 @@ struct FeedbackCpgWork {
   Real cosine, scaled_cosine, pull_cosine;
 };
 
-/// Network of `count` oscillators with couplings in any order, which is the order of summation.
+/// Network of `count` oscillators. The order of the couplings is the order of summation.
 template <class Real>
 struct FeedbackCpgNetwork {
-  const FeedbackCpgLaw<Real>* laws;  ///< Per oscillator.
+  const FeedbackCpgLaw<Real>* laws;  ///< One per oscillator.
   size_t count;
   const CpgCoupling<Real>* couplings;
   size_t coupling_count;
@@ -90,7 +90,7 @@ constexpr FeedbackCpgState<Real> FeedbackCpgRate(const FeedbackCpgLaw<Real>& law
       law.frequency_gain_hz_per_s * says.frequency * w.sine};
 }
 
-/// Returns state + h rate.
+/// Returns state + h * rate.
 template <class Real>
 constexpr FeedbackCpgState<Real> Advanced(const FeedbackCpgState<Real>& state,
                                           const FeedbackCpgState<Real>& rate, Real h) noexcept {
@@ -101,8 +101,8 @@ constexpr FeedbackCpgState<Real> Advanced(const FeedbackCpgState<Real>& state,
 
 }  // namespace internal
 
-/// Advances all oscillators by `step_count` steps of `step_s` with the classical Runge-Kutta method
-/// of fourth order (G.7). `feedback`: one per oscillator, constant during the call. `states` and
+/// Advances all oscillators by `step_count` steps of `step_s` with the classical fourth-order
+/// Runge-Kutta method (G.7). `feedback`: one per oscillator, constant during the call. `states` and
 /// `work` have `network.count` entries.
 template <class Real>
 constexpr void StepFeedbackCpg(const FeedbackCpgNetwork<Real>& network,

@@ -1,5 +1,5 @@
-/// Impedance control of one cable: tension set point from length and rate, and two methods to
-/// control the tension to it, by stiffness and by PID.
+/// Impedance control of one cable: tension set point from length and rate, and two methods to reach
+/// it, by the cable's stiffness and by a PID controller.
 ///
 /// Sources: Mirletz, Park, Quinn, SunSpiral, "Towards bridging the reality gap between tensegrity
 /// simulation and robotic hardware", IROS 2015, eq. 3; NTRT's tgImpedanceController and
@@ -23,10 +23,10 @@ struct Impedance {
 
 /// Returns the tension set point [N] (paper eq. 3, docs/theory/control.md eq. K.2):
 ///   T = max(0, T0 + K (L - L0) + B (V - V0))
-/// with the cable's length L [m] and its rate V [m/s], lengthening positive. V0 [m/s] is the input
-/// by which a gait drives the cable, such as a sine or an oscillator; 0 holds still.
+/// L [m] is the cable's length and V [m/s] its rate; lengthening is positive. V0 [m/s] is the
+/// velocity input of a gait, such as a sine or an oscillator. V0 = 0 holds still.
 ///
-/// The paper omits the lower bound 0; its simulator has it, and a cable cannot push.
+/// The lower bound 0 is not in the paper but in its simulator; a cable cannot push.
 template <class Real>
 constexpr Real ImpedanceTension(const Impedance<Real>& law, Real length_m, Real rate_m_per_s,
                                 Real velocity_offset_m_per_s) noexcept {
@@ -36,13 +36,12 @@ constexpr Real ImpedanceTension(const Impedance<Real>& law, Real length_m, Real 
   return Max(Literal<Real>(0.0f), T);
 }
 
-/// Returns the rest length that gives the tension `set_point_n` while the cable's ends do not move
-/// [m] (eq. K.3):
+/// Returns the rest length [m] for the tension `set_point_n` at fixed cable ends (eq. K.3):
 ///   L' = max(floor, L - (T_set - T) / k)
-/// An ideal taut cable reaches the set point in one tick; a slack cable (T = 0) approaches it by
-/// T_set / k per tick. Source: NTRT's tgTensionController; its floor of 0.1 length units is an
-/// argument here. There, `tension_n` is the elastic tension k (l - L); a measured tension includes
-/// the cable's damping.
+/// An ideal taut cable reaches the set point in one tick. A slack cable (T = 0) winds in by T_set /
+/// k per tick. Source: NTRT's tgTensionController, with its constant floor of 0.1 length units as
+/// an argument. There, `tension_n` is the elastic tension k (l - L); a measured tension includes
+/// the damping.
 template <class Real>
 constexpr Real TensionToRestLengthByStiffness(Real rest_length_m, Real tension_n, Real set_point_n,
                                               Real stiffness_n_per_m, Real floor_m) noexcept {
@@ -51,19 +50,19 @@ constexpr Real TensionToRestLengthByStiffness(Real rest_length_m, Real tension_n
 
 /// Returns the rate of the rest length [m/s] from a PID controller of the tension error (eq. K.7):
 ///   dL/dt = -PID(T_set - T)
-/// Too little tension gives a negative rate: winding in. Gains are in m/s per N, and per second or
-/// times seconds.
+/// If the tension is too low, the rate is negative (winding in). Gains: proportional in m/s per N,
+/// integral and derivative in this unit per second and times seconds.
 ///
-/// According to the paper, its boards run a PID every millisecond; it gives neither gains nor the
-/// quantity of the output before conversion to a PWM duty. The winding rate as output (a DC motor
-/// at a voltage is close to a rate source) and all gains used with this are assumptions of taut.
+/// According to the paper, its boards run a PID every millisecond. The paper specifies neither the
+/// gains nor the output quantity. taut assumes a winding rate as output, since a DC motor at a
+/// voltage is nearly a rate source. All gains are assumptions of taut, too.
 template <class Real>
 constexpr Real TensionByPid(const Pid<Real>& pid, PidState<Real>& state, Real tension_n,
                             Real set_point_n, Real period_s) noexcept {
   return -StepPid(pid, state, set_point_n - tension_n, period_s);
 }
 
-/// Returns the same rate, limited to +-`max_speed_m_per_s`.
+/// Same as above, with the rate limited to +-`max_speed_m_per_s`.
 template <class Real>
 constexpr Real TensionByPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real tension_n,
                                    Real set_point_n, Real period_s, Real max_speed_m_per_s,
@@ -72,18 +71,19 @@ constexpr Real TensionByPidLimited(const Pid<Real>& pid, PidState<Real>& state, 
   return -StepPidLimited(pid, state, set_point_n - tension_n, period_s, limits, windup);
 }
 
-/// Returns the rest length after one period at a commanded rate [m] (eq. K.8).
+/// Returns the rest length [m] after one period at a commanded rate (eq. K.8).
 template <class Real>
 constexpr Real RestLengthAfter(Real rest_length_m, Real rate_m_per_s, Real period_s,
                                Real floor_m) noexcept {
   return Max(floor_m, rest_length_m + rate_m_per_s * period_s);
 }
 
-/// Returns the length of a taut cable from its rest length (encoder) and tension (load cell) [m]
+/// Returns the length [m] of a taut cable from its rest length (encoder) and tension (load cell)
 /// (eq. K.9):
 ///   l = L + T / k
-/// The paper's boards have no other means, and the paper does not describe theirs. Too long by b
-/// dl/dt / k if T contains the cable's damping; for a slack cable (T = 0) only an upper bound.
+/// The paper's boards have no other length measurement, and the paper does not describe its method.
+/// The result is too long by b dl/dt / k if T contains the damping of the cable. For a slack cable
+/// (T = 0) it is an upper bound.
 template <class Real>
 constexpr Real LengthFromTension(Real rest_length_m, Real tension_n,
                                  Real stiffness_n_per_m) noexcept {

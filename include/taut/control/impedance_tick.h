@@ -1,5 +1,5 @@
-/// Tick of impedance control of one cable: sensing, impedance law and optional tension PID. The
-/// simulation (Real = double, or a SIMD type with one world per lane) and the boards (float)
+/// One tick of impedance control of a cable: sensing, impedance law and optional tension PID. The
+/// simulation (`Real` = double, or a SIMD type with one world per lane) and the boards (float)
 /// compile the same source.
 #pragma once
 
@@ -11,13 +11,13 @@
 namespace taut {
 namespace control {
 
-/// Parameters common to all cables of a controller. Numbers only, so that no function of the
-/// standard library is compiled for an instruction set that a machine may lack.
+/// Parameters for all cables of a controller. Plain numbers, so that no standard library function
+/// is compiled for an instruction set that a machine may lack.
 struct ImpedanceLaw {
-  bool by_pid = false;  ///< Tension control by PID; else by the cable's stiffness.
+  bool by_pid = false;  ///< Tension control by PID instead of by the cable's stiffness.
   bool differenced_rate = false, start_from_rest_length = false;
   bool first_tick = true;
-  double proportional = 0, integral = 0, derivative = 0;  ///< Of the PID.
+  double proportional = 0, integral = 0, derivative = 0;  ///< PID gains.
   double period_s = 0.001;
 };
 
@@ -35,7 +35,7 @@ struct ImpedanceCommand {
 };
 
 /// Computes the command of one tick. `sensed` has the fields of `CableReadings` that the law uses:
-/// rest_length_m, length_m, tension_n, elastic_n, stiffness_n_per_m, rate_m_per_s.
+/// rest_length_m, length_m, tension_n, elastic_n, stiffness_n_per_m and rate_m_per_s.
 template <class Real, class Readings>
 [[gnu::always_inline]] inline ImpedanceCommand<Real> StepImpedance(
     const ImpedanceLaw& law, const Impedance<Real>& gains, Real velocity_offset_m_per_s,

@@ -1,7 +1,7 @@
 /// Feed-forward neural network with one hidden layer.
 ///
-/// Its exponential uses only + and *, so that outputs are bit-identical on a microcontroller, on a
-/// PC and in every lane. Equations: docs/theory/gaits.md.
+/// The exponential uses only + and *, so outputs are bit-identical on a microcontroller, on a PC
+/// and in every SIMD lane. Equations: docs/theory/gaits.md.
 #pragma once
 
 #include "taut/control/real.h"
@@ -11,7 +11,7 @@ namespace control {
 
 namespace internal {
 
-/// Returns 1 / n!, n >= 0. A template, so that object code for different instruction sets shares no
+/// Returns 1 / n!, n >= 0. A template, so that object files for different instruction sets share no
 /// function.
 template <class Real>
 constexpr double ExpTerm(int n) noexcept {
@@ -29,8 +29,8 @@ constexpr double ExpTerm(int n) noexcept {
   return kTerms[n];
 }
 
-/// Returns exp(-y), 0 <= y <= 40: the series at y / 256, squared eight times. The relative error is
-/// at most 256 rounding errors: 3e-14 in double, 2e-5 in float.
+/// Returns exp(-y), 0 <= y <= 40: the Taylor series at y / 256, squared eight times. The relative
+/// error is at most 256 rounding errors: 3e-14 in double, 2e-5 in float.
 template <class Real>
 constexpr Real ExpOfMinus(Real y) noexcept {
   const Real z = Literal<Real>(-0.00390625f) * y;
@@ -42,7 +42,7 @@ constexpr Real ExpOfMinus(Real y) noexcept {
 
 }  // namespace internal
 
-/// Returns 1 / (1 + exp(-x)) without overflow, to 1e-14 in double. NaN stays NaN.
+/// Returns 1 / (1 + exp(-x)) without overflow; accuracy 1e-14 in double. NaN stays NaN.
 template <class Real>
 constexpr Real Sigmoid(Real x) noexcept {
   const Real one = Literal<Real>(1.0f), zero = Literal<Real>(0.0f);
@@ -56,16 +56,16 @@ struct NetworkShape {
   int inputs, hidden, outputs;
 };
 
-/// Returns the number of weights. Order: for each hidden neuron one weight per input, then its
-/// bias; then for each output one weight per hidden neuron, then its bias.
+/// Returns the number of weights. Order of the weights: for each hidden neuron, its input weights
+/// and then its bias; after that for each output, its hidden weights and then its bias.
 constexpr int WeightCount(const NetworkShape& shape) noexcept {
   return (shape.inputs + 1) * shape.hidden + (shape.hidden + 1) * shape.outputs;
 }
 
-/// Evaluates the network:
+/// Evaluates the network (G.19):
 ///   h_j = sigma(sum_i w_ji x_i + b_j),  y_k = 2 sigma(sum_j u_kj h_j + c_k) - 1   (G.19)
-/// `weight(n)` and `input(i)` return a `Real`, `output(k, y)` takes one; `hidden` is a buffer with
-/// one entry per hidden neuron.
+/// `weight(n)` and `input(i)` return a `Real`; `output(k, y)` receives one. `hidden` is scratch
+/// memory with one entry per hidden neuron.
 template <class Real, class Weight, class Input, class Output>
 constexpr void EvaluateNetwork(const NetworkShape& shape, const Weight& weight, const Input& input,
                                Real* hidden, const Output& output) noexcept {

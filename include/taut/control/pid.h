@@ -6,7 +6,8 @@
 namespace taut {
 namespace control {
 
-/// Gains, in units of output per error, and per second or times seconds.
+/// Gains, in units of output per unit of error; the integral gain also per second, the derivative
+/// gain also times seconds.
 template <class Real>
 struct Pid {
   Real proportional;
@@ -17,43 +18,42 @@ struct Pid {
 /// State of a PID controller between ticks.
 template <class Real>
 struct PidState {
-  Real error_before;  ///< e_(n-1) [error].
-  Real integral;      ///< I_n [error s].
+  Real error_before;  ///< e_(n-1), in units of the error.
+  Real integral;      ///< I_n, in units of the error times seconds.
 };
 
-/// Returns the initial state of NTRT's tgPIDController, with e_(-1) = 0: to the first tick, the
-/// whole error is a jump.
+/// Returns the initial state of NTRT's tgPIDController, with e_(-1) = 0. The first tick then sees a
+/// jump from 0 to the error (derivative kick).
 template <class Real>
 constexpr PidState<Real> StartPid() noexcept {
   return PidState<Real>{Literal<Real>(0.0f), Literal<Real>(0.0f)};
 }
 
-/// Returns an initial state without derivative kick: the derivative of the first tick is 0 if its
-/// error is `error`.
+/// Returns an initial state without derivative kick: if the first error is `error`, its derivative
+/// is 0.
 template <class Real>
 constexpr PidState<Real> StartPidAt(Real error) noexcept {
   return PidState<Real>{error, Literal<Real>(0.0f)};
 }
 
-/// Returns an initial state for bumpless transfer (eq. K.14): the first tick gives `output` if its
-/// error is `error`, so that the output of a previous control law continues without a jump. Without
-/// an integral gain this is impossible, and the integral starts at 0; likewise for gains up to
-/// 1e-20, by which a float cannot be divided.
+/// Returns an initial state for bumpless transfer (eq. K.14): if the first error is `error`, the
+/// first output is `output`, so the output of the previous control law continues without a jump.
+/// This needs an integral gain above 1e-20 (float division); otherwise the integral starts at 0.
 template <class Real>
 constexpr PidState<Real> StartPidFrom(const Pid<Real>& pid, Real error, Real output,
                                       Real period_s) noexcept {
   const Real zero = Literal<Real>(0.0f), one = Literal<Real>(1.0f);
   const Real sum = output - pid.proportional * error;
   const auto can = pid.integral > Literal<Real>(1e-20f);
-  // minus the increment of the first tick
+  // // minus the increment in the first tick
   const Real integral = sum / Select(can, pid.integral, one) - error * period_s;
   return PidState<Real>{error, Select(can, integral, zero)};
 }
 
-/// Advances by one tick (docs/theory/control.md, eq. K.5) and returns u.
+/// Advances by one tick and returns u (docs/theory/control.md, eq. K.5):
 ///   I_n = I_(n-1) + (e_n + e_(n-1)) / 2 h
 ///   u_n = kp e_n + ki I_n + kd (e_n - e_(n-1)) / h
-/// Source: NTRT's tgPIDController, except for its signs. I is not bounded.
+/// Source: NTRT's tgPIDController, except for the signs. I has no bound.
 template <class Real>
 constexpr Real StepPid(const Pid<Real>& pid, PidState<Real>& state, Real error,
                        Real period_s) noexcept {
@@ -61,7 +61,7 @@ constexpr Real StepPid(const Pid<Real>& pid, PidState<Real>& state, Real error,
   const Real before = state.error_before;
   state.error_before = error;
   const Real u = pid.proportional * error + pid.integral * state.integral;
-  // saves a board the time of a division if the gain is 0
+  // // a gain of 0 saves a board the time of a division
   const Real zero = Literal<Real>(0.0f);
   if (!Any((pid.derivative > zero) | (pid.derivative < zero))) return u;
   return u + pid.derivative * ((error - before) / period_s);
@@ -73,13 +73,13 @@ struct OutputLimits {
   Real low, high;  ///< low <= high.
 };
 
-/// Anti-windup: behavior of the integral while the output is at a limit.
+/// Anti-windup: integration while the output is at a limit.
 enum class Windup : unsigned char {
-  kAllowed,  ///< Keeps integrating, as in tgPIDController.
-  kHeld,     ///< Constant while further integration would push the output further past the limit.
+  kAllowed,  ///< The integral keeps changing, as in tgPIDController.
+  kHeld,     ///< The integral stays constant if it would push the output further past the limit.
 };
 
-/// Advances by one tick with a limited output (eq. K.5 and K.6) and returns u, low <= u <= high.
+/// Advances by one tick with output limits and returns u, low <= u <= high (eq. K.5 and K.6).
 template <class Real>
 constexpr Real StepPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real error,
                               Real period_s, const OutputLimits<Real>& limits,
@@ -87,7 +87,7 @@ constexpr Real StepPidLimited(const Pid<Real>& pid, PidState<Real>& state, Real 
   const Real integral_before = state.integral;
   const Real u = StepPid(pid, state, error, period_s);
   if (windup == Windup::kAllowed) return Clamp(u, limits.low, limits.high);
-  if (!Any((u > limits.high) | (u < limits.low))) return u;  // the rest would change nothing
+  if (!Any((u > limits.high) | (u < limits.low))) return u;  // // the rest would change nothing
 
   const Real zero = Literal<Real>(0.0f);
   const Real push = pid.integral * (state.integral - integral_before);

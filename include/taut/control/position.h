@@ -1,8 +1,8 @@
 /// Position control: rest lengths follow a program.
 ///
 /// The paper uses position control "at startup to set the initial length of each cable and to
-/// maintain the balance of all three segments". Its boards receive motor angles; taut commands the
-/// rest length, which is the angle times the spool's radius.
+/// maintain the balance of all three segments". The paper's boards receive motor angles. taut
+/// commands rest lengths: the motor angle times the radius of the spool.
 #pragma once
 
 #include <stddef.h>
@@ -13,17 +13,17 @@
 namespace taut {
 namespace control {
 
-/// Point of a program.
+/// Point of a program: a time and a rest length.
 template <class Real, class Time = Real>
 struct ProgramPoint {
   Time time_s;
   Real rest_length_m;
 };
 
-/// Returns the program's rest length at `t_s` [m] (docs/theory/control.md, eq. K.10): linear
-/// between the points, constant before the first and after the last. One point is a constant
-/// command, two are a ramp; two points at one time are a jump, and the later one applies at that
-/// time. `count` >= 1; times must not decrease.
+/// Returns the rest length of the program at `t_s` [m] (docs/theory/control.md, eq. K.10). It is
+/// linear between the points, constant before the first and after the last one. Two points at the
+/// same time are a jump; the later point applies at that time. `count` >= 1; times must not
+/// decrease.
 template <class Real, class Time>
 constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count,
                             Time t_s) noexcept {
@@ -38,9 +38,9 @@ constexpr Real RestLengthAt(const ProgramPoint<Real, Time>* points, size_t count
   return from.rest_length_m + (to.rest_length_m - from.rest_length_m) * FromScalar<Real>(part);
 }
 
-/// Returns the rate of the rest length [m/s] from a PID controller of its error, limited to
-/// +-`max_speed_m_per_s` (eq. K.11), for boards that can command only a winding rate. The paper
-/// gives no gains; the gains used with this are assumptions of taut.
+/// Returns the rate of the rest length [m/s] from a PID controller of the rest length error,
+/// limited to +-`max_speed_m_per_s` (eq. K.11). For boards that can command only a winding rate.
+/// The paper gives no gains; taut assumes them.
 template <class Real>
 constexpr Real RestLengthByPid(const Pid<Real>& pid, PidState<Real>& state, Real rest_length_m,
                                Real set_point_m, Real period_s, Real max_speed_m_per_s,

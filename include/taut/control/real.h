@@ -1,10 +1,10 @@
 /// Number types of the controllers: float on a microcontroller, double in a simulation, or a SIMD
 /// type with one world per lane.
 ///
-/// All code in this folder is C++14 without a standard library, heap, exceptions or libm, and uses
+/// All code in this folder is C++14 without standard library, heap, exceptions or libm. It uses
 /// only + - * / and comparisons, which give the same bits on an AVR and on a PC
-/// (docs/theory/control.md). A SIMD type must provide `Max`, `Min`, `Select` and, for its
-/// conditions, `Any`, in its namespace (found by argument-dependent lookup), and a static `Splat`.
+/// (docs/theory/control.md). A SIMD type must have a static `Splat` and, in its namespace for
+/// argument-dependent lookup, `Max`, `Min`, `Select` and, for its conditions, `Any`.
 #pragma once
 
 namespace taut {
@@ -28,8 +28,8 @@ constexpr Real FromScalar(Scalar x) noexcept {
   return internal::FromScalar<Real>(x, 0);
 }
 
-/// Converts a constant to a `Real`. It must be exact as a float (0, 0.5, 1), so that every `Real`
-/// has the same value.
+/// Converts a constant to a `Real`. The constant must be exact in float (0, 0.5, 1), so that its
+/// value is the same for every `Real`.
 template <class Real>
 constexpr Real Literal(float x) noexcept {
   return FromScalar<Real>(x);
@@ -38,26 +38,26 @@ constexpr Real Literal(float x) noexcept {
 /// Returns whether a condition holds in any lane.
 [[gnu::always_inline]] constexpr bool Any(bool condition) noexcept { return condition; }
 
-/// Returns `yes` where the condition holds, else `no`.
+/// Returns `yes` in lanes where the condition holds, otherwise `no`.
 template <class Real>
 constexpr Real Select(bool condition, Real yes, Real no) noexcept {
   return condition ? yes : no;
 }
 
-/// Returns the maximum of two numbers, and `b` if either is NaN. So to propagate a possible NaN,
-/// pass it as `b`.
+/// Returns the maximum of two numbers, or `b` if either is NaN. To propagate a NaN, pass the number
+/// that may be NaN as `b`.
 template <class Real>
 constexpr Real Max(Real a, Real b) noexcept {
   return Select(a > b, a, b);
 }
 
-/// Returns the minimum of two numbers, and `b` if either is NaN.
+/// Returns the minimum of two numbers, or `b` if either is NaN.
 template <class Real>
 constexpr Real Min(Real a, Real b) noexcept {
   return Select(a < b, a, b);
 }
 
-/// Returns `x` limited to `low`..`high`; NaN stays NaN.
+/// Returns `x` clamped to `low`..`high`; NaN stays NaN.
 template <class Real>
 constexpr Real Clamp(Real x, Real low, Real high) noexcept {
   return Min(high, Max(low, x));

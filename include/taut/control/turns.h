@@ -1,7 +1,7 @@
 /// Angles in turns (1 turn = 2 pi rad), with sine and cosine.
 ///
-/// A phase in turns wraps without rounding error and needs no pi; the functions need only + - * and
-/// comparisons, so that they give the same bits on an AVR, on a PC and in every lane.
+/// A phase in turns wraps without rounding error and needs no pi. The functions use only + - * and
+/// comparisons, so they give the same bits on an AVR, on a PC and in every SIMD lane.
 #pragma once
 
 #include "taut/control/real.h"
@@ -15,7 +15,8 @@ constexpr double kTurnsPerRad = 0.15915494309189534;
 namespace internal {
 
 /// Number whose addition and subtraction rounds a much smaller number to an integer: 1.5 times the
-/// number from which on adjacent floating-point numbers differ by 1. In double, unless specialized.
+/// smallest number above which adjacent floating-point numbers differ by 1. For double, unless
+/// specialized.
 template <class Real>
 struct Rounder {
   static constexpr double kNumber = 6755399441055744.0;  // 1.5 2^52
@@ -25,7 +26,7 @@ struct Rounder<float> {
   static constexpr float kNumber = 12582912.0f;  // 1.5 2^23
 };
 
-/// Number of terms of the sine's series: the next term is below the last digit at a quarter turn.
+/// Number of terms of the sine series. At a quarter turn, the next term is below the last digit.
 template <class Real>
 struct SineTerms {
   static constexpr int kCount = 11;
@@ -35,8 +36,8 @@ struct SineTerms<float> {
   static constexpr int kCount = 7;
 };
 
-/// Returns (-1)^n (2 pi)^(2n+1) / (2n+1)!, rounded. A template, so that object code for different
-/// instruction sets shares no function.
+/// Returns (-1)^n (2 pi)^(2n+1) / (2n+1)!, rounded. A template, so that object files for different
+/// instruction sets share no function.
 template <class Real>
 constexpr double SineTerm(int n) noexcept {
   constexpr double kTerms[] = {
@@ -60,16 +61,16 @@ constexpr Real SineSeries(Real x) noexcept {
 
 }  // namespace internal
 
-/// Returns the same angle within -1/2..1/2 turns, without rounding. For |x| < 2^22 in float and
-/// 2^51 in double; NaN stays NaN.
+/// Wraps an angle to -1/2..1/2 turns without rounding. Valid for |x| < 2^22 in float and 2^51 in
+/// double; NaN stays NaN.
 template <class Real>
 constexpr Real WrapTurns(Real x) noexcept {
   const Real rounder = control::FromScalar<Real>(internal::Rounder<Real>::kNumber);
   return x - ((x + rounder) - rounder);
 }
 
-/// Returns sin(2 pi x), -1/2 <= x <= 1/2 (docs/theory/gaits.md, eq. G.2): the series around the
-/// nearest whole or half turn. Absolute error below 4.4e-16 in double, 2.4e-7 in float.
+/// Returns sin(2 pi x), -1/2 <= x <= 1/2 (docs/theory/gaits.md, eq. G.2), from the series around
+/// the nearest whole or half turn. Absolute error below 4.4e-16 in double and 2.4e-7 in float.
 template <class Real>
 constexpr Real SinTurns(Real x) noexcept {
   const Real half = Literal<Real>(0.5f), quarter = Literal<Real>(0.25f);
