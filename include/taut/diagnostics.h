@@ -1,4 +1,4 @@
-/// Errors and warnings about an input, collected so that a user can fix a file in one pass.
+/// Collected errors and warnings about an input, so that a user can fix a file in one pass.
 #pragma once
 
 #include <string>
@@ -15,12 +15,12 @@ struct SourceRef {
   int column = 0;
 };
 
-/// Stable identifier of a kind of message: the subject, a dot and the problem, such as
-/// `cable.both_ends_fixed`. Texts may change from version to version, identifiers do not.
-/// tests/messages.txt lists all of them.
+/// Stable identifier of a kind of message, such as `cable.both_ends_fixed`: the subject, a dot and
+/// the problem. Message texts may change between versions, but identifiers stay. tests/messages.txt
+/// lists all of them.
 class MessageId {
  public:
-  /// Accepts literals only; a literal that is no identifier does not compile.
+  /// Accepts string literals only; an invalid identifier does not compile.
   consteval MessageId(const char* text) : text_(text) {  // NOLINT(google-explicit-constructor)
     bool has_dot = false, is_word = false;
     for (const char c : text_) {
@@ -35,37 +35,38 @@ class MessageId {
   constexpr std::string_view text() const noexcept { return text_; }
 
  private:
-  static void NotAMessageIdentifier();  ///< Never defined: a call of it does not compile.
+  static void NotAMessageIdentifier();  ///< Without a definition, so that a call does not compile.
 
   std::string_view text_;
 };
 
-/// One error or warning: its identifier, its place, the problem, and a hint how to fix it.
+/// Error or warning: identifier, place, problem, and a hint for the fix.
 struct Diagnostic {
   SourceRef at;
   std::string what;
   std::string hint;     ///< May be empty.
   std::string_view id;  ///< Text of a MessageId.
-  /// The file cannot be opened or read, so its contents are unknown, not wrong.
+  /// The file cannot be opened or read, so its contents are unknown.
   bool unreadable = false;
 };
 
-/// Collects all errors and warnings about one input. No function throws, prints or exits; the
-/// caller decides.
+/// Collection of all errors and warnings about one input. No function throws, prints or exits.
 class Diagnostics {
  public:
   void Error(MessageId id, SourceRef at, std::string what, std::string hint = {});
   /// Adds an error about a file that cannot be opened or read.
   void Unreadable(MessageId id, SourceRef at, std::string what, std::string hint = {});
-  /// Adds a warning: the input is valid, but probably not intended. Warnings do not change results.
+  /// Adds a warning about valid input that is probably not intended. Warnings do not change
+  /// results.
   void Warning(MessageId id, SourceRef at, std::string what, std::string hint = {});
-  /// Adds an error or a warning of other diagnostics, with its identifier.
+  /// Adds an error or a warning from another collection; its identifier stays.
   void AddError(Diagnostic error) { items_.push_back(std::move(error)); }
   void AddWarning(Diagnostic warning) { warnings_.push_back(std::move(warning)); }
-  /// Turns all warnings so far into errors (`--strict`).
+  /// Turns all present warnings into errors (`--strict`).
   void WarningsToErrors();
 
-  bool ok() const noexcept { return items_.empty(); }  ///< No errors; there may be warnings.
+  /// True without errors; warnings are allowed.
+  bool ok() const noexcept { return items_.empty(); }
   const std::vector<Diagnostic>& items() const noexcept { return items_; }  ///< The errors.
   const std::vector<Diagnostic>& warnings() const noexcept { return warnings_; }
 
@@ -77,17 +78,18 @@ class Diagnostics {
   std::vector<Diagnostic> items_, warnings_;
 };
 
-/// Escapes control characters, which could send commands to a terminal, in hexadecimal. Keeps line
-/// ends and tabs. Use it for all printed text from files; `Diagnostics::Format` already does.
+/// Returns the text with control characters escaped in hexadecimal, since these could send commands
+/// to a terminal. Line ends and tabs stay. Call it before printing text from files;
+/// `Diagnostics::Format` calls it already.
 std::string Printable(std::string_view text);
 
-/// Returns `items` by file, line and column, without duplicates, as `Diagnostics::Format` does.
+/// Returns `items` sorted by file, line and column, without duplicates.
 std::vector<Diagnostic> Sorted(std::vector<Diagnostic> items);
 
-/// Returns the candidate closest to `word` if `word` is a likely misspelling of it, else "".
+/// Returns the candidate that `word` probably misspells, or "".
 std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Returns `did you mean "radius_m"?`, or a list of the candidates if none is close.
+/// Returns `did you mean "radius_m"?`, or a list of the candidates if none is similar.
 std::string DidYouMean(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-/// Atomic file replacement, and folder locks between processes.
+/// Atomic file replacement, and locks of folders between processes.
 ///
 /// Threads: any number may call these functions concurrently. If two processes write the same file,
 /// it contains the complete text of one of them.
@@ -14,16 +14,16 @@
 
 namespace taut {
 
-/// Writes `text` to `path` atomically. At any time, also after a kill or a power failure, the file
-/// is the old one or the new one: the text is written to a file in the same folder
-/// (`<path>.<process>.part`), flushed to the disk and then renamed. A symbolic link at `path` is
-/// replaced and its target stays unchanged. Pipes, terminals and everything below /dev are written
-/// directly. Returns false and adds an error on failure.
+/// Writes `text` to `path` atomically: after a kill or power failure, the file is either the old or
+/// the new one. The text is written to `<path>.<process>.part` in the same folder, flushed to the
+/// disk, and renamed. A symbolic link at `path` is replaced; its target stays unchanged. Pipes,
+/// terminals and files below /dev are written directly. Returns false and adds an error on failure.
 bool WriteWholeFile(const std::string& path, std::string_view text, Diagnostics& out);
 
-/// File that gets its final name once it is complete. Until then, an older file of that name stays.
+/// File that appears under its name only when complete. Until then, an older file of that name
+/// remains.
 ///
-/// Thread-compatible: one thread at a time. After a function has returned false, `why()` is the
+/// Thread-compatible: one thread at a time. If a function returns false, `why()` contains the
 /// reason.
 class NewFile {
  public:
@@ -32,20 +32,20 @@ class NewFile {
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
-  /// Creates the file in the folder of its path, under a unique name that no link points to.
+  /// Creates the file under a unique name in the folder of its path; never follows a link.
   bool Create();
   const std::string& path() const { return path_; }
-  /// Returns the temporary path, valid until the file is published.
+  /// Returns the temporary path; valid until `Publish`.
   const std::string& made_at() const { return made_at_; }
 
   bool Write(std::string_view bytes);
-  /// Writes all of the bytes or none: without room, the file keeps its earlier contents.
+  /// Writes all bytes or, if the disk is full, none; the earlier contents remain.
   bool WriteAllOrNone(std::string_view bytes);
-  /// Flushes the file to the disk and gives it its name. Does nothing the second time.
+  /// Flushes the file to the disk and renames it to its final name. A second call has no effect.
   bool Publish();
   /// Flushes the file to the disk.
   bool Sync();
-  /// Keeps the file at `made_at()` even if it is never published.
+  /// Keeps the temporary file `made_at()` even without `Publish`.
   void Leave() { left_ = true; }
 
   bool published() const { return published_; }
@@ -59,7 +59,7 @@ class NewFile {
   bool published_ = false, left_ = false;
 };
 
-/// Identity of the file at a path: differs once another file replaces it.
+/// Identity of the file at a path. It changes if another file replaces that file.
 struct FileIdentity {
   std::uint64_t device = 0, file = 0;  ///< 0, 0: no file.
   bool operator==(const FileIdentity&) const = default;
@@ -67,19 +67,18 @@ struct FileIdentity {
 /// Returns the identity of the file at `path`; {0, 0} without a file.
 FileIdentity IdentityOf(const std::string& path);
 
-/// Lock on a folder, held by one process at a time, for exclusive writing. It ends with the object
-/// or with the process, also if that crashes; the empty file `.lock` stays.
+/// Lock on a folder for exclusive writing by one process. It ends with the object or with the
+/// process, even after a crash; the empty file `.lock` remains.
 class FolderLock {
  public:
-  /// Locks a folder, and creates it if it is missing. Returns null and adds an error if it cannot
+  /// Locks a folder; creates it if necessary. Returns null and adds an error if the folder cannot
   /// be created or written, or if another process holds the lock.
   static std::unique_ptr<FolderLock> Take(const std::string& folder, Diagnostics& out);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// Returns false once the folder was deleted or replaced by another one, which this lock does not
-  /// cover.
+  /// Returns false if the folder was deleted or replaced; the lock does not cover a new folder.
   bool Holds() const;
 
  private:

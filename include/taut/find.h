@@ -1,11 +1,11 @@
-/// Look-up of model elements by name. Each function returns the index of an element, which other
-/// functions of taut take as argument.
+/// Look-up of model elements by name. Each function returns the index of an element, as used by
+/// other functions of taut.
 ///
 ///   const auto cable = taut::FindCable(model->def(), "outer_top_1", &found);
 ///
-/// If there is no such element, a function returns nothing and reports an error with the closest
-/// name to `out`, if given. A search takes time proportional to the number of elements: search
-/// once, before the loop.
+/// If no such element exists, a function returns nothing. If `out` is given, it gets an error with
+/// the most similar name. The search time is proportional to the number of elements, so search
+/// before a loop, not in it.
 ///
 /// Threads: all functions are pure; any number may run concurrently.
 #pragma once
@@ -24,7 +24,7 @@ std::optional<int> FindCable(const ModelDef& def, std::string_view name,
                              Diagnostics* out = nullptr);
 std::optional<int> FindJoint(const ModelDef& def, std::string_view name,
                              Diagnostics* out = nullptr);
-/// Finds the motion of a kinematic body.
+/// Finds the prescribed motion of a kinematic body.
 std::optional<int> FindMotion(const ModelDef& def, std::string_view name,
                               Diagnostics* out = nullptr);
 

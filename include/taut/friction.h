@@ -1,43 +1,43 @@
-/// Interface for custom friction laws: a class that returns the friction coefficient of each
-/// contact, once per step.
+/// Interface for custom friction laws: classes that compute the friction coefficient of each
+/// contact once per step.
 #pragma once
 
 #include "taut/world_batch.h"
 
 namespace taut {
 
-/// Contact before a step solves it. SI units, frame W.
+/// Contact before the solve of a step. SI units, world frame W.
 struct FrictionContact {
   int world = 0;
   double time_s = 0;                ///< Start of the step.
-  int body_a = 0, body_b = kWorld;  ///< A moves.
-  ShapeRef surface_a, surface_b;    ///< Touching surfaces: names and materials are in `ModelDef`.
-  Vec3 point_m;                     ///< Contact point at the middle of the step.
-  Vec3 normal;                      ///< Unit vector from B to A.
-  /// Tangential velocity of A's point relative to B's: mean over the step, extrapolated from the
-  /// previous step.
+  int body_a = 0, body_b = kWorld;  ///< A is a moving body.
+  /// Touching surfaces; `ModelDef` contains their names and materials.
+  ShapeRef surface_a, surface_b;
+  Vec3 point_m;  ///< Contact point in the middle of the step.
+  Vec3 normal;   ///< Unit vector from B to A.
+  /// Tangential velocity of A relative to B at the contact point: mean over the step, extrapolated
+  /// from the previous step.
   Vec3 slip_m_per_s;
-  double normal_force_n = 0;  ///< In the last step; 0 in a new contact.
-  // Coefficients of these surfaces by the model's law at this slip, in the direction in which they
-  // are largest.
+  double normal_force_n = 0;  ///< Force in the previous step; 0 for a new contact.
+  // // Coefficients of these surfaces by the model's own law at this slip velocity, in the
+  // direction of largest friction.
   double static_friction = 0;
   double kinetic_friction = 0;
 };
 
 /// Base class of custom friction laws. Pass an instance as `WorldBatchOptions::friction` or
-/// `RunOptions::friction`. A step evaluates it once per contact, before the solve
-/// (docs/theory/friction.md, section 4), so the coefficient is constant during the solve; a law
-/// that changes much within a step needs a shorter step.
-///
-/// Threads: all threads of a batch call it concurrently, and so does every batch that shares it.
-/// Results are bit-identical in any lane and on any number of threads if the return value depends
-/// only on the argument and on data that are constant while the batch steps.
+/// `RunOptions::friction`. A step evaluates it once per contact before the solve
+/// (docs/theory/friction.md, section 4), so the coefficient is constant during the solve. If the
+/// coefficient changes much within a step, shorten the step.
+/// Threads: all threads of all batches that share an instance call it concurrently. The results are
+/// independent of lanes and threads if the coefficient depends only on the argument and on data
+/// that stay constant during steps.
 class ContactFriction {
  public:
   virtual ~ContactFriction() = default;
-  /// Returns the coefficient of the contact, sticking or sliding. Negative values count as 0; a
-  /// value that is not finite halts the world (`kStatusNonFinite`). On surfaces with
-  /// `FrictionDirections` it is the coefficient of the direction in which friction is largest.
+  /// Returns the friction coefficient of the contact, sticking or sliding. Negative values count as
+  /// 0; a value that is not finite halts the world (`kStatusNonFinite`). On surfaces with
+  /// `FrictionDirections`, it applies to the direction of largest friction.
   /// `Parameter::kFrictionScale` multiplies it.
   virtual double Coefficient(const FrictionContact& contact) const noexcept = 0;
 };

@@ -1,8 +1,8 @@
-/// System identification: builds the least-squares problem of a fit file and its data, runs the fit
-/// (`taut/fit.h`) and writes its results (docs/fit.md). The forward model runs the experiments with
-/// trial values of the estimates and compares them with the measurements.
+/// System identification: builds a least-squares problem from a fit file and its data, runs the fit
+/// (`taut/fit.h`) and writes the results (docs/fit.md). The forward model runs the experiments with
+/// trial values and compares the results with the measurements.
 ///
-/// Threads: an `Identification` may be used by one thread at a time; it has an internal thread
+/// Threads: only one thread at a time may use an `Identification`, which has an internal thread
 /// pool.
 #pragma once
 
@@ -23,101 +23,103 @@
 
 namespace taut {
 
-/// One compared value: its residual is (computed - measured) / sd.
+/// Compared value. Its residual is (computed - measured) / sd.
 struct FitPoint {
-  std::size_t experiment = 0;  ///< Index in the fit.
+  std::size_t experiment = 0;  ///< Index of the experiment in the fit.
   std::string channel, unit;
-  std::string where;  ///< "set point 3", "late", "at 2.5 s".
-  /// On the experiment's clock; the middle of a window. For a load case: its number, from 1.
+  std::string where;  ///< For example "set point 3", "late", "at 2.5 s".
+  /// On the clock of the experiment; for a window, its middle; for a load case, its number, from 1.
   double time_s = 0;
   double measured = 0, sd = 1;
 };
 
-/// Options of an `Identification`. It caches computed points, so that each is computed once; with
-/// `memory_file` once across all runs.
+/// Options of an `Identification`. It caches computed points within a run, and across runs if
+/// `memory_file` is set.
 struct IdentifyOptions {
   int threads = 0;          ///< 0: one per core.
-  std::string memory_file;  ///< SQLite file, created if missing. Empty: none.
+  std::string memory_file;  ///< SQLite file; created if missing. Empty: no file.
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Computes independent pieces of a fit, as `Cluster::Work` spreads them over processes. Returns
-/// the result of each piece, in their order; fewer results than pieces if it was stopped.
+/// Function that processes independent pieces of a fit, like `Cluster::Work`. It returns one result
+/// per piece, in order, or fewer results if it was stopped.
 using FitWork = std::function<std::vector<std::string>(std::span<const std::string> pieces)>;
 
 struct IdentifyCounts {
-  std::int64_t computed = 0;    ///< Experiments that were run, or brought to rest.
-  std::int64_t remembered = 0;  ///< Points read from the memory file.
-  std::int64_t damaged = 0;     ///< Damaged points of the file, which were recomputed.
+  std::int64_t computed = 0;    ///< Number of simulated experiments and computed equilibria.
+  std::int64_t remembered = 0;  ///< Number of points read from the memory file.
+  std::int64_t damaged = 0;     ///< Number of damaged points in the file; they were computed again.
 };
 
-/// Result of the consistency check of measured forces for one experiment (`FitCarried`): applied
-/// and carried force along its direction. Directions of members come from the rests of the unfitted
-/// experiment.
+/// Result of a `FitCarried` check for one experiment: applied load and measured member forces,
+/// along the direction of the check. Member directions come from the equilibria of the experiment
+/// before the fit.
 struct CarriedLoad {
   struct Row {
-    std::string where;     ///< As in `FitPoint`.
-    double applied_n = 0;  ///< Loads and weight of the bodies, along the check's direction.
-    double carried_n = 0;  ///< Measured forces of the members.
-    double sd_n = 0;       ///< Standard deviation of `carried_n`, by the sds of the data.
+    std::string where;     ///< See `FitPoint::where`.
+    double applied_n = 0;  ///< Loads and weight of the bodies, along the direction of the check.
+    double carried_n = 0;  ///< Sum of the measured member forces along this direction.
+    double sd_n = 0;       ///< Standard deviation of `carried_n` from the sds of the data.
   };
   std::string name;  ///< Name of the check.
   std::size_t experiment = 0;
   std::vector<Row> rows;
-  ProportionCheck check;  ///< `why` is also set if the rests could not be computed.
+  ProportionCheck check;  ///< `why` is also set if the equilibria could not be computed.
 };
 
-/// Problem of a fit: data, forward model and cache.
+/// Fit problem: data, forward model and cache.
 class Identification {
  public:
-  /// Reads the data and the memory file. Returns null and adds diagnostics on errors: a window
-  /// without data, channels missing on one side, different units, fewer data than unknowns, the
-  /// memory file of another fit.
+  /// Reads the data and the memory file. On an error, returns null and adds diagnostics. Errors: a
+  /// window without data, channels missing on one side, different units, fewer data than unknowns,
+  /// a memory file of another fit.
   static std::unique_ptr<Identification> Make(const FitSpec& spec, const IdentifyOptions& options,
                                               Diagnostics& out);
   virtual ~Identification() = default;
 
   virtual const FitSpec& spec() const = 0;
-  /// Returns the indices in `spec().estimates` of the problem's parameters, in its order: estimates
-  /// that affect training data. Others keep their start values.
+  /// Returns the index in `spec().estimates` of each parameter of the problem, in order. Only
+  /// estimates that affect training data are parameters; others keep their start values.
   virtual const std::vector<std::size_t>& estimates() const = 0;
 
   virtual const FitProblem& train() const = 0;
-  virtual const FitProblem* test() const = 0;  ///< Null: no held-out data.
-  /// Returns one problem per entry of `design` of the fit; with sds of 1 and measured values of 0.
+  virtual const FitProblem* test() const = 0;  ///< Null without held-out data.
+  /// Returns one problem per entry of `design` in the fit file, with sds of 1 and measured values
+  /// of 0.
   virtual const std::vector<FitProblem>& design() const = 0;
   virtual const std::vector<std::vector<FitPoint>>& design_points() const = 0;
   virtual const std::vector<FitPoint>& train_points() const = 0;  ///< One per row of the problem.
   virtual const std::vector<FitPoint>& test_points() const = 0;
 
-  /// Returns the times at which a static experiment is brought to rest [s], increasing.
+  /// Returns the increasing times [s] at which a static experiment has its equilibria.
   virtual const std::vector<double>& moments_s(std::size_t experiment) const = 0;
-  /// Runs the checks in `carried` of the fit for each of their experiments, which it brings to
-  /// rest.
+  /// Runs the `carried` checks of the fit for all their experiments, including the computation of
+  /// the equilibria.
   virtual std::vector<CarriedLoad> Carried() const = 0;
 
-  /// Computes pieces of a fit in this process, for this object or for the same fit in another
-  /// process.
+  /// Processes pieces of a fit in this process. The pieces come from this object or from another
+  /// process with the same fit.
   virtual std::vector<std::string> Do(std::span<const std::string> pieces) = 0;
-  /// Computes all further pieces by `spread`, over `processes` processes. Results keep their bits.
+  /// Makes `spread` process all further pieces, on `processes` processes. The results stay
+  /// bit-identical.
   virtual void SpreadBy(FitWork spread, int processes) = 0;
-  /// Returns a text for `Cluster::Agree`, which must be equal on all processes: fit, data and
+  /// Returns a text that must be equal on all processes, for `Cluster::Agree`: fit, data and
   /// experiments.
   virtual std::string Agreed() const = 0;
 
   virtual IdentifyCounts counts() const = 0;
-  /// Returns the reason if the memory file can no longer be written; else empty.
+  /// Returns the reason if the memory file is no longer writable; otherwise empty.
   virtual std::string memory_error() const = 0;
-  /// Returns the file of the fit that can no longer be read, and the reason; empty if all can be.
-  /// Such a file ends a search, and the trials so far are kept.
+  /// Returns the first input file of the fit that is no longer readable, with the reason; otherwise
+  /// empty. Such a file ends the search; finished trials are kept.
   virtual std::string input_error() const = 0;
 };
 
 /// Progress of a fit.
 struct IdentifyProgress {
-  const char* what = "";  ///< "searching", "judging", "profile".
-  int iterations = 0;     ///< Sum over all searches of this part.
-  double chi2 = 0;        ///< Lowest chi-square so far, twice the cost.
+  const char* what = "";  ///< "searching", "judging" or "profile".
+  int iterations = 0;     ///< Sum over all searches in progress.
+  double chi2 = 0;        ///< Lowest chi-square so far: twice the cost.
   std::int64_t computed = 0;
 };
 
@@ -128,7 +130,7 @@ struct OutcomeOptions {
   std::function<void(const IdentifyProgress&)> progress;
 };
 
-/// Residuals of a problem's rows, in standard deviations: at the start of the search, and fitted.
+/// Residuals at the start and after the fit, in standard deviations, per row of the problem.
 struct BeforeAfter {
   std::vector<double> untuned, fitted;
 };
@@ -145,19 +147,19 @@ struct FitOutcome {
   std::vector<CarriedLoad> carried;
 };
 
-/// Checks that at least one residual depends on each estimate, at the problem's start. Returns
-/// false and adds an error for each estimate without influence, or if the start cannot be computed.
+/// Checks at the problem's start that at least one residual depends on each estimate. Returns false
+/// and adds an error for each estimate without influence, or if the start cannot be computed.
 bool CheckDependence(const Identification& fit, Diagnostics& out);
 
-/// Runs the search, the verdict, and the requested profiles and design ranking.
+/// Runs the search, the evaluation, and the requested profiles and design ranking.
 FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options);
 
-/// Formats the outcome for a terminal, as one JSON object, or as one self-contained HTML page.
-/// `looks`: per experiment, the path of its page with runs before and after the fit, relative to
-/// the page's folder; empty strings, or an empty list, for experiments without one.
+/// Return the outcome as terminal text, as a JSON object, or as a self-contained HTML page.
+/// `looks`: per experiment, the path of a page with runs before and after the fit, relative to the
+/// folder of the HTML page; empty strings, or an empty list, for experiments without such a page.
 std::string OutcomeText(const Identification& fit, const FitOutcome& outcome);
-/// Returns the short summary for a terminal, without line ends: the verdict, checks and errors, one
-/// line per profile and per parameter.
+/// Returns a short summary for a terminal, one text per line without line ends: the verdict, checks
+/// and errors, one line per profile, and one line per parameter.
 std::vector<std::string> OutcomeLines(const Identification& fit, const FitOutcome& outcome);
 std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome);
 std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
@@ -169,19 +171,20 @@ struct ChannelErrors {
   std::size_t count = 0;
   double untuned = 0, fitted = 0, fitted_bias = 0;
 };
-/// Computes errors by channel, in the order of the points.
+/// Computes the errors of each channel, in order of the points.
 std::vector<ChannelErrors> ErrorsByChannel(const std::vector<FitPoint>& points,
                                            const BeforeAfter& residuals);
 
-/// Returns an experiment file that extends experiment `experiment` of the fit by `base:`,
-/// `parameters:` and `set:` with these values of the problem's parameters. `folder`: folder of the
+/// Returns the text of an experiment file with these values of the problem's parameters. It extends
+/// experiment `experiment` of the fit by `base:`, `parameters:` and `set:`. `folder`: folder of the
 /// new file.
 std::string FittedExperimentYaml(const Identification& fit, std::size_t experiment,
                                  const std::vector<double>& values, const std::string& folder);
 
-/// Writes a run folder, for viewers, with the rests of experiment `experiment` of the fit, computed
-/// with the experiment `with`. The trace has one row per rest; load case i is at i s. Returns false
-/// and adds an error if a rest is not found or the folder cannot be written.
+/// Writes a run folder, for viewers, with the equilibria of experiment `experiment` of the fit,
+/// computed from the experiment `with`. The trace has one row per equilibrium; load case i is at i
+/// s. Returns false and adds an error if an equilibrium is not found or the folder cannot be
+/// written.
 bool WriteRests(const Identification& fit, std::size_t experiment, const ExperimentSpec& with,
                 const std::string& folder, Diagnostics& out);
 

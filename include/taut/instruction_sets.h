@@ -1,6 +1,6 @@
-/// Instruction sets for which the step of a simulation is compiled.
+/// Instruction sets for which taut compiles the simulation step.
 ///
-/// Threads: any number may call these functions at once.
+/// Threads: any number may call these functions concurrently.
 #pragma once
 
 #include <string_view>
@@ -11,10 +11,10 @@
 namespace taut {
 
 struct InstructionSet {
-  std::string_view name;  ///< As in TAUT_SIMD and in Python's `simd`.
+  std::string_view name;  ///< As in TAUT_SIMD, and in `simd` of Python.
   Simd simd = Simd::kScalar;
-  bool is_built = false;   ///< Whether this build contains code for it.
-  bool runs_here = false;  ///< Whether it is built and this processor supports it.
+  bool is_built = false;   ///< Whether this build contains code for the instruction set.
+  bool runs_here = false;  ///< Whether it is built and supported by this processor.
 };
 
 /// Returns all instruction sets that taut supports, on any processor.

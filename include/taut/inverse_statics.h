@@ -1,12 +1,11 @@
-/// Inverse statics: least cable tensions, rest lengths and motor commands that hold a robot in a
+/// Inverse statics: minimal cable tensions, rest lengths and motor commands that hold a robot in a
 /// pose, and intervals of statically indeterminate forces (docs/theory/inverse_statics.md).
 ///
-/// SI units, W frame; the pose is the described pose of the model (`RobotAt` returns a model in
-/// another one). Cables pull; joints, supports and bars transmit any force; contacts push, with
+/// SI units, world frame W. The pose is the described pose of the model; `RobotAt` returns a model
+/// in another pose. Cables pull; joints, supports and bars transmit any force; contacts push, with
 /// Coulomb friction.
 ///
-/// Invalid options are reported as errors. Threads: all functions are pure; any number may run
-/// concurrently.
+/// Errors describe invalid options. Threads: all functions are pure and thread safe.
 #pragma once
 
 #include <limits>
@@ -23,24 +22,24 @@ namespace taut {
 /// Contact point of a body.
 struct TouchDef {
   int body = 0;
-  int other = kWorld;     ///< The other body, which gets the opposite force.
-  Vec3 point_m, normal;   ///< Normal: unit vector toward `body`.
+  int other = kWorld;     ///< Other body; it gets the opposite force.
+  Vec3 point_m, normal;   ///< Unit normal, toward `body`.
   double friction = 0.0;  ///< Static friction coefficient, >= 0.
 };
 
-/// Finds the contact points of colliding spheres, rods, boxes and convex bodies within `within_m`
-/// of the terrain's planes, or below them. A rod has up to two points, a box up to eight;
-/// coincident points of a body are merged.
+/// Finds the contact points of colliding spheres, rods, boxes and convex bodies at or below planes
+/// of the terrain, up to `within_m` above them. A rod has up to two points, a box up to eight.
+/// Coincident points of a body are merged.
 std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m);
 
-/// Bounds of a cable's tension and force density; all apply.
+/// Bounds of tension and force density of a cable. All bounds apply together.
 struct CableBounds {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double at_least_n = 0.0, at_most_n = kNone;              ///< Tension, >= 0.
   double at_least_n_per_m = 0.0, at_most_n_per_m = kNone;  ///< Force density.
 };
 
-/// Objective: term that is summed over the cables and minimized (eq. 3).
+/// Quantity to minimize, summed over the cables (eq. 3).
 enum class HoldingCost {
   kTension,       ///< T^2
   kEnergy,        ///< T^2 / (2 k)
@@ -49,13 +48,13 @@ enum class HoldingCost {
 
 struct HoldingOptions {
   HoldingCost minimise = HoldingCost::kForceDensity;
-  std::vector<CableBounds> bounds;  ///< Per cable; empty: tensions >= 0 only.
+  std::vector<CableBounds> bounds;  ///< One per cable; empty: all tensions >= 0.
   std::vector<TouchDef> touches;
-  /// Per cable, rest lengths at a motor command of 0; empty: the described ones.
+  /// One per cable: rest length at motor command 0. Empty: the described rest lengths.
   std::vector<double> calibration_rest_m;
 };
 
-/// Residual force and torque on a body, in W; the torque about its center of mass.
+/// Residual force and torque on a body, in W. The torque is about the center of mass.
 struct Unbalanced {
   int body = 0;
   Vec3 force_n, torque_n_m;
@@ -66,60 +65,64 @@ struct HoldingForces {
   std::string why;  ///< Reason, if not found.
   std::vector<double> cable_tension_n, cable_force_density_n_per_m;
   std::vector<double> rest_length_m;  ///< l - T / k.
-  std::vector<double> command_m;      ///< Relative to the calibration; lengthening is positive.
-  std::vector<double> bar_force_n;    ///< Per joint, tension > 0; 0 for joints other than bars.
-  std::vector<double> bar_rest_m;     ///< Per joint, l - N / k; 0 for joints other than bars.
+  /// Motor command: rest length minus `calibration_rest_m`; lengthening is positive.
+  std::vector<double> command_m;
+  std::vector<double> bar_force_n;  ///< One per joint; tension > 0; 0 for joints that are not bars.
+  /// Rest length l - N / k, one per joint; 0 for joints that are not bars.
+  std::vector<double> bar_rest_m;
   std::vector<JointLoad> joint_loads;
-  std::vector<Vec3> touch_force_n;  ///< On `body`; per entry of `HoldingOptions::touches`.
-  std::vector<int> at_bound;        ///< Cables whose tension is at a bound.
-  double cost = 0;                  ///< Value of `minimise` [N^2, J, N^2/m^2].
-  double residual_n = 0;            ///< Largest imbalance on a body, due to rounding.
-  /// If not found: residuals of the least-squares solution (torques divided by the body's reach),
-  /// largest first; empty if only rounding errors remain.
+  /// Force on `body`, one per entry of `HoldingOptions::touches`.
+  std::vector<Vec3> touch_force_n;
+  std::vector<int> at_bound;  ///< Cables with a tension at a bound.
+  double cost = 0;            ///< Value of the minimized sum [N^2, J, N^2/m^2].
+  double residual_n = 0;      ///< Largest residual on a body, from rounding.
+  /// If not found: residuals of the least-squares solution, largest first. For the order, torques
+  /// are divided by the largest lever arm on the body. Empty if only rounding errors remain.
   std::vector<Unbalanced> left;
-  std::vector<std::string> notes;  ///< Ignored parts of the model, and infeasible rest lengths.
+  /// Descriptions of ignored parts of the model and of infeasible rest lengths.
+  std::vector<std::string> notes;
 };
 
 /// Computes the forces of least cost that hold the robot in the described pose. Rest lengths of
-/// cables and bars are results, not inputs. Lengthenings of the load case are treated as thermal:
-/// part of the rest lengths, not of the commands. The load case must not have settlements, which
-/// are part of the pose.
+/// cables and bars are results, not inputs. Lengthenings in the load case act like thermal
+/// expansion: they change the rest lengths but not the commands. The load case must not contain
+/// settlements, since the pose already includes them.
 HoldingForces FindHoldingForces(const ModelDef& def, const LoadCaseSpec& loads,
                                 const HoldingOptions& options, Diagnostics& out);
 
-/// Interval of a force; infinite without a limit, as in a jam.
+/// Interval of a force. An end is infinite if the force is unbounded, for example when bodies jam.
 struct ForceInterval {
   double low_n = 0, high_n = 0;
-  /// The interval is never too short; its ends may be too far out by up to this.
+  /// Each end may lie outside the exact interval by up to this; the interval is never too narrow.
   double uncertain_n = 0;
 };
 
 struct IntervalOptions {
   std::vector<TouchDef> touches;
-  /// Whether forces of cables and bars follow from their described rest lengths; otherwise they are
-  /// unknown, cables within `bounds`.
+  /// Whether the described rest lengths determine the forces of cables and bars. Otherwise these
+  /// forces are unknown, with cables within `bounds`.
   bool known_tensions = true;
-  std::vector<CableBounds> bounds;  ///< Per cable; empty: tensions >= 0 only.
-  /// Allowed imbalance, relative to the largest load.
+  std::vector<CableBounds> bounds;  ///< One per cable; empty: all tensions >= 0.
+  /// Allowed residual, relative to the largest load.
   double tolerance = 1e-6;
 };
 
 struct ForceIntervals {
-  bool found = false;                ///< Whether any admissible forces hold the pose.
+  bool found = false;                ///< Whether some admissible forces hold the pose.
   std::string why;                   ///< Reason, if not found.
   int undetermined = 0;              ///< Degree of static indeterminacy (dimension of y in eq. 2).
-  std::vector<ForceInterval> touch;  ///< Normal forces, per contact point.
-  std::vector<ForceInterval> cable;  ///< Tensions; both ends are equal for known ones.
-  /// Forces of joints on their body b, in W.
+  std::vector<ForceInterval> touch;  ///< Normal forces, one per contact point.
+  std::vector<ForceInterval> cable;  ///< Tensions; equal ends for known tensions.
+  /// Forces of the joints on their body b, in W.
   std::vector<ForceInterval> joint_x, joint_y, joint_z;
-  std::vector<Unbalanced> left;  ///< As in `HoldingForces`.
+  std::vector<Unbalanced> left;  ///< As `HoldingForces::left`.
   std::vector<std::string> notes;
 };
 
 /// Computes the interval of each force over all admissible forces that hold the robot in the
-/// described pose, each force separately: the ends may not be attained together. Method: linear
-/// programming with tangent planes of the friction cones, added until the cones are accurate
-/// (Kelley's cutting-plane method).
+/// described pose. Each force is treated separately, so the ends of different intervals need not
+/// occur together. Method: linear programs; tangent planes of the friction cones are added until
+/// the cones are accurate (Kelley's cutting-plane method).
 ForceIntervals FindForceIntervals(const ModelDef& def, const LoadCaseSpec& loads,
                                   const IntervalOptions& options, Diagnostics& out);
 

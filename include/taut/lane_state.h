@@ -1,5 +1,5 @@
-/// Serialization of one lane's state (snapshot), for `Controller::Serialize` and
-/// `SensorModel::Serialize`. The same sequence of calls writes the bytes, and reads them back into
+/// Serialization of the state of one lane, for `Controller::Serialize` and
+/// `SensorModel::Serialize`. The same sequence of calls writes and reads the data. Reading works in
 /// any lane of a plant with the same controllers and sensors.
 #pragma once
 
@@ -16,11 +16,11 @@ namespace taut::plant {
 
 class LaneState {
  public:
-  /// Creates a writer, which appends the bytes to `to`.
+  /// Creates a writer that appends bytes to `to`.
   LaneState(int lane, int lanes, std::vector<std::uint8_t>& to)
       : lane_(static_cast<std::size_t>(lane)), lanes_(static_cast<std::size_t>(lanes)), to_(&to) {}
-  /// Creates a reader of bytes that the same sequence of calls wrote. Beyond their end it reads
-  /// zeros and `failed()` is true.
+  /// Creates a reader of bytes from a writer with the same sequence of calls. Past the end it reads
+  /// zeros, and `failed()` becomes true.
   LaneState(int lane, int lanes, std::span<const std::uint8_t> from)
       : lane_(static_cast<std::size_t>(lane)),
         lanes_(static_cast<std::size_t>(lanes)),
@@ -28,17 +28,16 @@ class LaneState {
 
   int lane() const noexcept { return static_cast<int>(lane_); }
   bool reads() const noexcept { return to_ == nullptr; }
-  /// Marks the state as one that cannot be restored.
+  /// Makes `failed()` true, because the state cannot be restored.
   void Fail() noexcept { failed_ = true; }
-  /// Returns true after `Fail`, or if a call read beyond the end.
+  /// Returns true after `Fail` or after a read past the end.
   bool failed() const noexcept { return failed_ || short_; }
-  /// Returns the number of bytes that are left to be read.
+  /// Returns the number of unread bytes.
   std::size_t left() const noexcept { return from_.size(); }
-  /// Returns true if exactly all bytes were read.
+  /// Returns whether all bytes were read without failure.
   bool at_end() const noexcept { return from_.empty() && !failed(); }
 
-  /// Serializes a number. Structs are serialized member by member, because their padding is
-  /// undefined.
+  /// Serializes a number. Serialize structs member by member, because their padding is undefined.
   template <class T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void Value(T& x) {
     if (!reads()) {
@@ -60,17 +59,17 @@ class LaneState {
   void Values(T&... x) {
     (Value(x), ...);
   }
-  /// Serializes the lane's numbers of `count` consecutive rows.
+  /// Serializes the values of this lane in `count` consecutive rows.
   template <class T>
   void Row(T* row, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) Value(row[i * lanes_ + lane_]);
   }
-  /// Serializes the lane's numbers of all rows of a vector.
+  /// Serializes the values of this lane in all rows of a vector.
   template <class T>
   void Row(std::vector<T>& row) {
     Row(row.data(), row.size() / lanes_);
   }
-  /// Serializes the lane's bit.
+  /// Serializes the bit of this lane.
   void Bit(Lanes& lanes) {
     auto bit = static_cast<std::uint8_t>(lanes >> lane_ & 1u);
     Value(bit);

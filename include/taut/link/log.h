@@ -1,6 +1,6 @@
-/// Log of a driver as a trace with one row per cycle (docs/hardware/driver.md).
+/// Log of a driver: a trace with one row per cycle (docs/hardware/driver.md).
 ///
-/// Threads: use an object from one thread at a time.
+/// Threads: only one thread at a time may use an object.
 #pragma once
 
 #include <memory>
@@ -12,16 +12,16 @@
 
 namespace taut::link {
 
-/// Returns a line of events.jsonl: time, origin and text of an event.
+/// Returns a line of events.jsonl with time, origin and text of an event.
 std::string EventLine(double time_s, const std::string& who, const std::string& what);
 
 class RobotLog {
  public:
-  /// `cables`: names of the motors' cables.
+  /// `cables`: names of the cables that the motors wind.
   explicit RobotLog(const std::vector<std::string>& cables);
 
   const std::vector<ChannelInfo>& channels() const { return channels_; }
-  /// Returns the row of a state; valid until the next call.
+  /// Returns the row for a state; valid until the next call.
   const double* Row(const State& state);
 
  private:

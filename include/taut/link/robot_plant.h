@@ -1,8 +1,10 @@
-/// Robot as a plant (taut/plant.h): observations of an experiment's controllers come from the
-/// boards, and their commands go to the boards. Impedance control runs on the boards: gains become
-/// their parameters, and a gait's part becomes V0 of broadcasts. Rest lengths become positions.
+/// Robot as a plant (taut/plant.h): the boards provide the observations of an experiment's
+/// controllers and receive their commands. Impedance control runs on the boards: gains become board
+/// parameters, and the signal of a gait becomes V0 in broadcasts. Rest lengths become motor
+/// positions.
 ///
-/// Motor m of board b drives the (2 b + m)-th cable with an actuator, in the model's order.
+/// Motor m of board b winds the cable with index 2 b + m, counted over the cables with an actuator
+/// in model order.
 #pragma once
 
 #include <functional>
@@ -16,21 +18,21 @@
 
 namespace taut::link {
 
-/// Returns the indices of the actuated cables. Returns an empty list, with errors, if there are
-/// none or more than the boards can drive.
+/// Returns the indices of the actuated cables. Returns an empty list and adds errors if there are
+/// none or more than the boards have motors.
 std::vector<int> MotorCables(const RobotSpec& robot, Diagnostics& out);
 /// Returns the names of the actuated cables.
 std::vector<std::string> MotorNames(const RobotSpec& robot);
 
-/// Returns the boards' mode for an experiment: impedance control if it uses that for cables, else
-/// position control. Returns nothing, with an error, if it uses impedance control for some motors
-/// only.
+/// Returns the board mode for an experiment: impedance control if the experiment uses it for
+/// cables, otherwise position control. If only some motors use impedance control, returns nothing
+/// and adds an error.
 std::optional<board::Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out);
 
-/// Returns the boards' parameters that follow from gear, spool and spring. `encoder_lines`: marks
-/// per revolution of the motor's shaft; boards count two states per mark.
+/// Returns the board parameters that depend on gear, spool and spring. `encoder_lines`: marks per
+/// revolution of the motor shaft; boards count two edges per mark.
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines);
-/// Returns the boards' parameters for the experiment's impedance gains.
+/// Returns the board parameters for the impedance gains of the experiment.
 std::vector<Setting> GainsFor(const ExperimentSpec& experiment);
 /// Returns the calibrated parameters. Cables of the calibration must belong to this robot.
 std::vector<Setting> SettingsFor(const Calibration& calibration, const RobotSpec& robot);
