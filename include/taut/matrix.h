@@ -1,4 +1,4 @@
-/// Dense matrix of doubles, without linear algebra: use a library for that.
+/// Dense matrix of doubles without linear algebra functions; use a library for those.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace taut {
 
-/// Matrix in row-major order. An index out of range is an error of the caller.
+/// Row-major matrix. Indices are not checked.
 struct Matrix {
   int rows = 0, columns = 0;
   std::vector<double> values;

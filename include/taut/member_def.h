@@ -3,23 +3,23 @@
 
 namespace taut {
 
-/// Distribution of a member's mass in modal analysis. In a step it is always lumped.
+/// Mass distribution of a member in modal analysis. In simulations it is always lumped.
 enum class MemberMass {
-  kLumped,      ///< Half at each end.
-  kConsistent,  ///< Distributed along the member, which moves linearly between its ends.
+  kLumped,      ///< Half the mass at each end.
+  kConsistent,  ///< Distributed along the member, with linear displacements between its ends.
 };
 
-/// Section and limits of a member; 0: not known. The step uses none of them: the stiffness and
-/// masses that follow from them are stored with the other stiffnesses and masses of the model.
+/// Cross section and limits of a member; 0: unknown. Simulations do not use them, because the
+/// stiffnesses and masses that follow from them are stored elsewhere in the model.
 struct MemberDef {
-  double area_m2 = 0.0;            ///< Of its cross section, >= 0.
-  double young_pa = 0.0;           ///< E, >= 0.
-  double second_moment_m4 = 0.0;   ///< Smallest second moment of area, for Euler's load, >= 0.
-  double buckling_length_m = 0.0;  ///< Between points with lateral support, >= 0.
+  double area_m2 = 0.0;            ///< Cross-sectional area, >= 0.
+  double young_pa = 0.0;           ///< Young's modulus E, >= 0.
+  double second_moment_m4 = 0.0;   ///< Smallest second moment of area, for the Euler load, >= 0.
+  double buckling_length_m = 0.0;  ///< Distance between points with lateral support, >= 0.
   double yield_pa = 0.0;           ///< Yield stress in tension and compression, >= 0.
-  double strength_n = 0.0;         ///< Tension at which it breaks, >= 0.
+  double strength_n = 0.0;         ///< Breaking force in tension, >= 0.
   double expansion_per_k = 0.0;    ///< Coefficient of thermal expansion.
-  /// Of a cable or bar: its mass, of which the bodies at its ends contain half each; >= 0.
+  /// Mass of a cable or bar, >= 0. The bodies at both ends include half of it each.
   double mass_kg = 0.0;
   MemberMass mass = MemberMass::kLumped;
   bool operator==(const MemberDef&) const = default;

@@ -1,6 +1,6 @@
-/// Default load case and experiment for a model file without an experiment.
+/// Default load case and default experiment for a model file without an experiment.
 ///
-/// Threads: all functions are pure; any number may run concurrently.
+/// Threads: all functions are pure and thread safe.
 #pragma once
 
 #include <utility>
@@ -10,15 +10,15 @@
 
 namespace taut {
 
-/// Returns whether the world can support the robot: the model has a ground plane, or a joint or a
-/// cable that ends at the world or at a fixed body.
+/// Returns whether the world can support the robot: the model has a ground plane, or a joint or
+/// cable ends at the world or at a fixed body.
 bool IsHeld(const ModelDef& def);
 
-/// Returns the default load case of a structure: its own weight ("own_weight") if `IsHeld`, else no
-/// load ("unloaded").
+/// Returns the default load case of a structure: its weight ("own_weight") if `IsHeld`, otherwise
+/// no load ("unloaded").
 LoadCaseSpec OwnWeight(const ModelDef& def);
 
-/// Returns an experiment with this robot, its name and its files, and nothing else.
+/// Returns an experiment that contains only this robot, its name and its files.
 ExperimentSpec MinimalExperiment(RobotSpec robot, StartKind start = StartKind::kSettled);
 
 [[deprecated("MinimalExperiment")]] inline ExperimentSpec ExperimentWith(RobotSpec robot) {

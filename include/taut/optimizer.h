@@ -1,6 +1,6 @@
-/// Black-box optimizers: `Ask` returns a batch of points, `Tell` takes their scores. The points are
-/// a function of settings, seed and previous scores only, so an optimizer is resumed by passing the
-/// same scores again.
+/// Black-box optimizers: `Ask` returns a batch of points, `Tell` receives their scores. The points
+/// depend only on settings, seed and previous scores. To resume an optimizer, pass the same scores
+/// again.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace taut {
 
-/// Point in [0, 1]^n: each parameter as a fraction of the range between its bounds.
+/// Point in [0, 1]^n: each parameter relative to its bounds.
 using UnitPoint = std::vector<double>;
 
 class Optimizer {
@@ -22,15 +22,15 @@ class Optimizer {
 
   /// Returns the points to evaluate next, at least one.
   virtual std::vector<UnitPoint> Ask() = 0;
-  /// Takes the scores of these points, in the same order; more is better, NaN is a failure.
+  /// Receives the scores of these points, in the same order. Higher is better; NaN marks a failure.
   virtual void Tell(const std::vector<double>& scores) = 0;
 };
 
 struct OptimizerStart {
-  UnitPoint point;              ///< Start of the search.
-  std::optional<double> score;  ///< Of `point`; nothing if it has not been evaluated.
+  UnitPoint point;              ///< Initial point of the search.
+  std::optional<double> score;  ///< Score of `point`; empty if it was not evaluated.
   std::uint64_t seed = 0;
-  /// Number of the random stream; optimizers with the same seed use different ones.
+  /// Number of the random stream, so that optimizers with the same seed differ.
   std::uint32_t stream = 0;
 };
 

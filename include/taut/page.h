@@ -1,5 +1,5 @@
-/// Viewer page: a C++ program opens the viewer in a browser and displays its data, of robots
-/// simulated by taut or from other sources.
+/// Viewer page: displays data of a C++ program in a browser, for robots simulated by taut or from
+/// other sources.
 ///
 ///     taut::Diagnostics out;
 ///     const auto page = taut::Page::Open({}, out);      // open page->url() in a browser
@@ -10,11 +10,10 @@
 ///       page->Show(batch.Time(0));
 ///     }
 ///
-/// Users can pause, slow down, look back and plot, as with a live run (docs/viewer.md). SI units;
+/// Users can pause, slow down, look back and plot, as in a live run (docs/viewer.md). SI units;
 /// world frame W as in taut/model_def.h.
 ///
-/// Threads: the functions of one page must not be called from two threads at once. The server has
-/// separate threads.
+/// Threads: only one thread at a time may call functions of a page. The server has its own threads.
 #pragma once
 
 #include <cmath>
@@ -30,76 +29,75 @@ namespace taut {
 
 struct PageOptions {
   std::string title = "taut";
-  /// Playback speed, simulated time over real time, > 0; 0: `Show` does not wait. Users can change
-  /// it in the browser.
+  /// Playback speed: simulated time / real time, > 0. 0: `Show` does not wait. Users can change it
+  /// in the browser.
   double speed = 1;
-  /// Address to listen on; the default accepts connections from this machine only.
+  /// Address to listen on; the default accepts only connections from this machine.
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;  ///< 0: any free port.
-  /// Folder of the viewer's files, used if neither $TAUT_WEB nor the program's folder has them.
+  /// Folder of the viewer's files, for the case that neither $TAUT_WEB nor the folder of the
+  /// program contains them.
 #ifdef TAUT_WEB_FOLDER  // set by the CMake target
   std::string web_folder = TAUT_WEB_FOLDER;
 #else
   std::string web_folder;
 #endif
-  /// Simulated time between states that are kept for looking back, > 0.
+  /// Simulated time between states that are kept to look back, > 0.
   double history_period_s = 0.01;
 };
 
-/// State of a robot at one time. Each list has the length of the same list of its `ModelDef`, or is
-/// empty if unknown.
+/// State of a robot at one time. Each list has the length of the corresponding list of its
+/// `ModelDef`, or is empty if unknown.
 struct RobotMoment {
   std::vector<BodyState> bodies;  ///< Velocities are not displayed.
-  std::vector<double> tension_n, length_m, rest_length_m, set_point_n;  ///< Per cable.
-  /// Per cable: bends by cable wrapping, in order along the cable, in W; empty for cables that do
-  /// not wrap.
+  std::vector<double> tension_n, length_m, rest_length_m, set_point_n;  ///< One per cable.
+  /// Per cable: bend points from cable wrapping, in order along the cable, in W; empty for cables
+  /// without wrapping.
   std::vector<std::vector<Vec3>> bends_m;
-  /// Per cable: tensions of its spans, in order along the cable; empty for cables without friction.
+  /// Per cable: tensions of the spans, in order along the cable; empty for cables without friction.
   std::vector<std::vector<double>> span_tension_n;
   std::vector<Vec3> node_force_n;  ///< Per node: external force, in W.
-  /// Contacts, any number; their points and forces are drawn. If unknown, leave it empty.
+  /// Contacts to draw, in any number; empty if unknown.
   std::vector<ContactState> contacts;
   Energy energy{NAN, NAN, NAN};  ///< NaN: unknown. The page displays the sum of all robots.
 };
 
-/// Returns the present state of a world of a batch, without set points.
+/// Returns the current state of a world of a batch, without set points.
 RobotMoment MomentOf(const WorldBatch& batch, int world);
 
-/// Web server with the viewer's page for one or more robots.
+/// Web server with a viewer page for one or more robots.
 class Page {
  public:
-  /// Starts the server. Returns null with diagnostics if this fails: port in use, invalid address,
-  /// files of the viewer not found, options out of range.
+  /// Starts the server. On failure, returns null and adds diagnostics: port in use, invalid
+  /// address, viewer files not found, or options out of range.
   static std::unique_ptr<Page> Open(const PageOptions& options, Diagnostics& out);
-  ~Page();  ///< Browsers report that the program has ended.
+  ~Page();  ///< Connected browsers report that the program has ended.
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
 
-  /// Return the page's addresses, each with a secret token: `url` permits pausing and seeking,
+  /// Return addresses of the page, each with a secret token. `url` allows pausing and seeking,
   /// `watch_url` only watching.
   const std::string& url() const noexcept;
   const std::string& watch_url() const noexcept;
 
   /// Adds a robot, displaced by `at_m`, and returns its number. The page displays the terrain of
-  /// the first robot and, of further robots, terrain that differs from it. `name` becomes the
-  /// prefix of the names of its bodies, cables and nodes ("left/rod_0"); it may be empty for one
-  /// robot. The page restarts: it discards its history.
+  /// the first robot, and terrain of further robots if it differs. `name` is the prefix of names of
+  /// bodies, cables and nodes ("left/rod_0"); it may be empty for a single robot. The page restarts
+  /// without its history.
   int Add(const ModelDef& robot, const std::string& name = "", const Vec3& at_m = {});
 
-  /// Sets the state of a robot for the next `Show`. A robot without a state is displayed as
-  /// described. The first `Show` after an `Add` determines which cables have set points. An unknown
-  /// robot, an unknown world of the batch, or lists of wrong length print a line on stderr and
-  /// abort the program with abort().
+  /// Sets the state of a robot for the next `Show`. A robot without a state has its described pose.
+  /// The first `Show` after an `Add` determines which cables have set points. An unknown robot or
+  /// world, or a list of wrong length, prints a message on stderr and calls abort().
   void Set(int robot, const WorldBatch& batch, int world = 0);
   void Set(int robot, const RobotMoment& moment);
 
   /// Sets the value of a custom channel for the next `Show`, such as "reward" or "error/roll_rad".
-  /// A channel exists from its first value on; if the page has displayed data before, it restarts
-  /// then.
+  /// The first value creates the channel; if the page has already displayed data, it restarts.
   void Plot(const std::string& channel, const std::string& unit, double value);
 
-  /// Displays the present states with the time `time_s`. Waits according to the speed, or while the
-  /// page is paused. A time before the previous call's starts a new run.
+  /// Displays the current states at time `time_s`. Waits according to the speed, and while the page
+  /// is paused. A time before that of the previous call starts a new run.
   void Show(double time_s);
 
  private:

@@ -1,7 +1,7 @@
-/// Pin-jointed structure of a robot: nodes, bars and strings, as in the literature and the tools of
+/// Pin-jointed structure of a robot: nodes, bars and strings, as in the literature and tools of
 /// tensegrity statics (docs/export.md, section 1).
 ///
-/// SI units, W frame. Threads: all functions are pure; any number may run at once.
+/// SI units, world frame W. Threads: all functions are pure and thread safe.
 #pragma once
 
 #include <array>
@@ -14,29 +14,29 @@
 
 namespace taut {
 
-/// Node, where members end: point of a body at which a force acts, end of a rod, or points that a
-/// joint joins into one.
+/// Node, where members end: an end of a rod, a point of a body at which a force acts, or several
+/// points that a joint unites.
 struct PinNode {
   std::string name;
   Vec3 position_m;
-  std::array<bool, 3> pinned{};  ///< In x, y, z: on anchored bodies, supports and kinematic bodies.
-  bool on_ground = false;        ///< Touches a plane of the terrain, which can push on it.
-  /// Share of the bodies to which it belongs: nodes have the mass and center of mass of a body, not
-  /// its inertia.
+  /// Fixed in x, y, z: on anchored or kinematic bodies and at supports.
+  std::array<bool, 3> pinned{};
+  bool on_ground = false;  ///< Touches a plane of the terrain, which may push it.
+  /// Share of the masses of its bodies. The nodes reproduce mass and center of mass of a body, but
+  /// not its inertia.
   double mass_kg = 0;
   Vec3 load_n;  ///< Weight.
-  /// Force required for equilibrium in addition to loads and members: at pinned nodes and on the
-  /// ground the reaction, at other nodes the imbalance.
+  /// Force that balances loads and members: the reaction at pinned nodes and on the ground, the
+  /// residual at other nodes.
   Vec3 left_n;
 };
 
 struct PinMember {
   enum class Kind {
-    kRod,     ///< Of a body.
-    kBrace,   ///< Of a body: keeps the distance between two of its points that are not connected by
-              ///< a rod.
-    kBar,     ///< Joint of kind distance, elastic or not.
-    kString,  ///< Cable between two of its attachments.
+    kRod,     ///< Rod of a body.
+    kBrace,   ///< Fixed distance between two points of a body without a rod between them.
+    kBar,     ///< Joint of kind distance, elastic or rigid.
+    kString,  ///< Segment of a cable between two attachments.
   };
   Kind kind = Kind::kRod;
   std::string name;
@@ -46,12 +46,12 @@ struct PinMember {
   double force_n = 0;  ///< Tension > 0.
   double force_density_n_per_m = 0;
   double stiffness_n_per_m = 0;  ///< 0: rigid.
-  double rest_length_m = 0;      ///< Of a rigid member: its length.
-  MemberDef section;             ///< As in the model; 0 where it has no value.
+  double rest_length_m = 0;      ///< For a rigid member: its length.
+  MemberDef section;             ///< As in the model; unknown values are 0.
 };
 
-/// Cluster: members with one force, such as a cable from end to end or between attachments with
-/// friction.
+/// Cluster: members with equal force, such as all segments of a cable, or those between attachments
+/// with friction.
 struct PinCluster {
   std::string name;
   double length_m = 0, rest_length_m = 0, force_n = 0;
@@ -60,29 +60,29 @@ struct PinCluster {
 
 struct PinJointed {
   std::vector<PinNode> nodes;
-  std::vector<PinMember> members;  ///< Strings last.
+  std::vector<PinMember> members;  ///< Strings are last.
   int bars = 0;                    ///< Number of members that are not strings.
   std::vector<PinCluster> clusters;
-  /// Texts on parts of the model that this structure cannot represent, and on imbalances.
+  /// Descriptions of parts of the model that this structure cannot represent, and of residuals.
   std::vector<std::string> notes;
 };
 
-/// Returns the pin-jointed structure of a robot in its described pose. Forces of strings and
-/// elastic bars follow from their rest lengths. The forces of other bars balance the nodes that are
-/// neither pinned nor on the ground, in least squares; of several solutions, the one with the
-/// smallest forces. A body that is more than one rod becomes an equally rigid truss with braces
-/// and, if its points are on a line or in a plane, additional nodes. `weight`: whether weights are
-/// loads. Without pinned nodes and nodes on the ground there are no loads either, since the weight
-/// of a falling robot does not act on its members.
+/// Returns the pin-jointed structure of a robot in its described pose. Rest lengths determine the
+/// forces of strings and elastic bars. The forces of other bars balance the nodes that are neither
+/// pinned nor on the ground, in the least-squares sense; of several solutions, they are the
+/// smallest. A body with more than one rod becomes an equally rigid truss, with braces and, if its
+/// points are on a line or in a plane, additional nodes. `weight`: whether weights are loads.
+/// Without pinned nodes and nodes on the ground, they are no loads, since the weight of a falling
+/// robot does not stress its members.
 PinJointed PinJointedOf(const ModelDef& def, bool weight = true);
 
-// Matrices of a structure: N (3 x nodes); C (members x nodes: -1 at a member's start, 1 at its end)
-// for members `from` to `to`; S (clusters x members).
+// // Matrices of a structure: N (3 x nodes); C (members x nodes) with -1 at the start and 1 at the
+// end of a member; S (clusters x members).
 /// Returns N: node positions [m], one per column.
 Matrix NodeMatrix(const PinJointed& structure);
-/// Returns rows `from` (inclusive) to `to` (exclusive) of C.
+/// Returns the rows of C from `from` (inclusive) to `to` (exclusive).
 Matrix Connectivity(const PinJointed& structure, std::size_t from, std::size_t to);
-/// Returns S: 1 for the members of a cluster, else 0.
+/// Returns S, with 1 for the members of a cluster, otherwise 0.
 Matrix Clustering(const PinJointed& structure);
 
 }  // namespace taut

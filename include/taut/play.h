@@ -8,9 +8,9 @@
 
 namespace taut {
 
-/// Returns the velocities [m/s] that a gait commands to a robot's cables at times 0, 1 / rate, ...
-/// up to `duration_s`. Feedback is omitted, since nothing is measured. Returns nothing, with
-/// diagnostics, if the gait does not fit the robot.
+/// Returns the velocities [m/s] that a gait commands to the cables of a robot at times 0, 1 / rate,
+/// ... up to `duration_s`. Without measurements, feedback is omitted. If the gait does not match
+/// the robot, returns nothing and adds diagnostics.
 std::optional<TableGait> PlayGait(const GaitSpec& gait, const RobotSpec& robot, double rate_hz,
                                   double duration_s, Diagnostics& out);
 

@@ -1,6 +1,6 @@
 /// Rollouts: parallel runs of many variants of one experiment, scored without traces. Each SIMD
-/// lane runs a world, each thread a group of lanes. A variant's run is bit-identical to
-/// `RunExperiment` of its `ExperimentOf`, independent of the other variants.
+/// lane runs a world, each thread runs groups of lanes. The run of a variant is bit-identical to
+/// `RunExperiment` of its `ExperimentOf`, independent of other variants.
 #pragma once
 
 #include <atomic>
@@ -18,61 +18,61 @@
 namespace taut {
 
 struct RolloutResult {
-  bool done = false;   ///< False if the evaluation was stopped before its end.
+  bool done = false;   ///< False if the world was stopped before its end.
   double score = 0;    ///< Measure minus penalties; NaN if the world failed.
-  std::string failed;  ///< Reason of a failure; else empty.
+  std::string failed;  ///< Reason of a failure; otherwise empty.
   double distance_m = 0;
-  double along_m = 0;   ///< Along the objective's direction.
-  double energy_j = 0;  ///< Work of the motors in winding in, whole run.
+  double along_m = 0;   ///< Distance along the direction of the objective.
+  double energy_j = 0;  ///< Motor work of winding in, over the whole run.
   double max_tension_n = 0;
   double tracking_n = 0;         ///< Root mean square of tension minus set point.
   std::optional<double> fell_s;  ///< Time of a fall.
-  std::uint64_t state_hash = 0;  ///< Of the world at the end.
+  std::uint64_t state_hash = 0;  ///< Hash of the state of the world at the end.
 };
 
 /// Custom measure for all lanes of a plant.
 ///
-/// Threads: a score is used by one thread; several scores are used concurrently.
+/// Threads: one thread uses a score; several scores are used concurrently.
 class Score {
  public:
   virtual ~Score() = default;
-  /// Called at the start, with steps of 0, and after every step of `step_s[lane]`.
+  /// Called at the start with steps of 0, then after every step, of length `step_s[lane]`.
   virtual void Take(const Observation& now, const Commands& commands, const World& world,
                     const double* step_s) = 0;
-  /// Returns the score of a lane; more is better. Not finite: failed.
+  /// Returns the score of a lane; higher is better. A value that is not finite is a failure.
   virtual double Result(int lane) const = 0;
 };
 
 struct RolloutOptions {
   int threads = 1;  ///< 0: one per core.
   std::optional<Simd> simd;
-  const std::atomic<bool>* stop = nullptr;  ///< Once true, unfinished worlds are abandoned.
-  /// Custom controllers and sensors in addition to the experiment's. Factories are called from
-  /// several threads concurrently.
+  const std::atomic<bool>* stop = nullptr;  ///< Set it to true to stop unfinished worlds.
+  /// Custom controllers and sensors in addition to those of the experiment. Several threads call
+  /// the factories concurrently.
   Extensions extensions;
-  /// Replaces the objective's measure; penalties still apply. Called from several threads
+  /// Replaces the measure of the objective; penalties still apply. Several threads call it
   /// concurrently.
   std::function<std::unique_ptr<Score>(const ControlSetup&)> score;
 };
 
-/// Runner of rollouts, with a pool of threads.
+/// Runner of rollouts with a thread pool.
 ///
-/// Threads: call `Run` from one thread at a time; it calls `Done` from its threads. `lanes` and
-/// `parallel_worlds` may be called, and `RolloutOptions::stop` set, from any thread. Rollouts are
-/// independent of each other.
+/// Threads: call `Run` from one thread at a time; it calls `Done` from its own threads. Any thread
+/// may call `lanes` and `parallel_worlds` or set `RolloutOptions::stop`. Different objects are
+/// independent.
 class Rollouts {
  public:
-  /// Returns null, with diagnostics, if the experiment's model does not compile.
+  /// Returns null and adds diagnostics if the model of the experiment does not compile.
   static std::unique_ptr<Rollouts> Create(const ExperimentSpec& experiment,
                                           const ObjectiveSpec& objective,
                                           const RolloutOptions& options, Diagnostics& out);
   virtual ~Rollouts() = default;
 
-  /// Called with the index of a finished world, by one thread at a time, in any order. Return false
-  /// to abandon all worlds that have not begun.
+  /// Called with the index of each finished world, in any order, by one thread at a time. Return
+  /// false to skip all worlds that have not begun.
   using Done = std::function<bool(std::size_t world, const RolloutResult&)>;
 
-  /// Runs all worlds from start to end. Returns results in the order of `worlds`; a result depends
+  /// Runs all worlds from start to end. Returns the results in order of `worlds`. A result depends
   /// only on its world.
   virtual std::vector<RolloutResult> Run(std::span<const RolloutWorld> worlds,
                                          const Done& done = {}) = 0;

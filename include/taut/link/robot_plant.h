@@ -32,7 +32,8 @@ std::optional<board::Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics
 /// Returns the board parameters that depend on gear, spool and spring. `encoder_lines`: marks per
 /// revolution of the motor shaft; boards count two edges per mark.
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines);
-/// Returns the board parameters for the impedance gains of the experiment.
+/// Returns the calibrated board parameters. The cables of the calibration must belong to this
+/// robot.
 std::vector<Setting> GainsFor(const ExperimentSpec& experiment);
 /// Returns the calibrated parameters. Cables of the calibration must belong to this robot.
 std::vector<Setting> SettingsFor(const Calibration& calibration, const RobotSpec& robot);
@@ -70,7 +71,7 @@ class RobotPlant final : public Plant {
 
   const ExperimentSpec& experiment_;
   Driver& driver_;
-  std::vector<int> cables_;  ///< Of the motors.
+  std::vector<int> cables_;  ///< Rows of six readings and of the commanded rest lengths.
   board::Mode mode_ = board::Mode::kHold;
   std::vector<double> rows_;  ///< Six readings and the commanded rest lengths.
   std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;

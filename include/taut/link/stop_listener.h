@@ -1,8 +1,8 @@
-/// Emergency stop requests from other programs: the driving program answers on a socket that is
-/// named after the device. Any user of the machine may send a request, in any session or runtime
-/// folder. (`PortUse` ensures that only one program drives.)
+/// Emergency stop requests from other programs. The program that drives a robot listens on a socket
+/// named after the device. Any user of the machine may send a request, from any session or runtime
+/// folder. `PortUse` ensures that only one program drives a robot.
 ///
-/// Threads: use an object from one thread at a time.
+/// Threads: only one thread at a time may use an object.
 #pragma once
 
 #include <memory>
@@ -12,28 +12,28 @@
 
 namespace taut::link {
 
-/// Result of a stop request to the program that drives a robot.
+/// Reply to a stop request.
 enum class StopAnswer {
-  kNobody,       ///< No program drives it.
-  kSilent,       ///< A program drives it, but did not answer in time.
-  kUnconfirmed,  ///< The stop was sent; some boards did not confirm it.
+  kNobody,       ///< No program drives the robot.
+  kSilent,       ///< A program drives the robot but did not reply in time.
+  kUnconfirmed,  ///< The stop was sent, but some boards did not confirm it.
   kStopped,      ///< All boards confirmed the stop.
 };
 
-/// Server side, in the driving program.
+/// Server, for the driving program.
 class StopListener {
  public:
-  /// Opens the socket. Returns null, with a diagnostic, if it cannot be created or another program
+  /// Opens the socket. Returns null and adds an error if it cannot be created or another program
   /// uses it.
   static std::unique_ptr<StopListener> Open(const std::string& device, Diagnostics& out);
   ~StopListener();
   StopListener(const StopListener&) = delete;
   StopListener& operator=(const StopListener&) = delete;
 
-  /// Returns whether another program has requested an emergency stop since the last call. Does not
-  /// wait.
+  /// Returns whether another program has requested an emergency stop since the last call, without
+  /// waiting.
   bool StopAsked();
-  /// Answers all pending requests with kStopped or kUnconfirmed.
+  /// Replies kStopped or kUnconfirmed to all pending requests.
   void Answer(StopAnswer answer);
 
  private:
@@ -44,8 +44,8 @@ class StopListener {
   std::unique_ptr<Askers> askers_;
 };
 
-/// Sends a stop request to the program that drives the robot at a device, and waits for the answer,
-/// at most `patience_s`.
+/// Sends a stop request to the program that drives the robot at a device. Waits for the reply, at
+/// most `patience_s`.
 StopAnswer AskToStop(const std::string& device, double patience_s);
 
 }  // namespace taut::link
