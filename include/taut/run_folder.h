@@ -1,12 +1,12 @@
-/// Folder of a run, written as one transaction (docs/cli.md): trace.h5, optionally trace.csv,
-/// inputs.yaml, summary.json, optionally report.html. A folder has one writer, all files carry the
-/// run's id, and readers refuse files of different runs. The previous run stays complete until the
-/// new trace has its first row on the disk, which replaces the old trace. Then the other old files
-/// are removed, the summary first; inputs.yaml is replaced last. If a writer is killed in between,
-/// the next reader or writer completes the replacement.
+/// Folder of a run, written as one transaction (docs/cli.md). Files: trace.h5, inputs.yaml,
+/// summary.json, and optionally trace.csv and report.html. A folder has one writer at a time. All
+/// files contain the id of the run, and readers reject files of different runs. The previous run
+/// remains complete until the new trace has its first row on the disk and replaces the old one.
+/// Then the other old files are removed, the summary first, and inputs.yaml is replaced last. If a
+/// writer is killed during this, the next reader or writer completes it.
 ///
-/// Threads: a `RunFolder` is used by one thread at a time; any number may call the functions at
-/// once.
+/// Threads: only one thread at a time may use a `RunFolder`. Any number may call the functions
+/// concurrently.
 #pragma once
 
 #include <memory>
@@ -20,30 +20,29 @@
 
 namespace taut {
 
-/// Key of the run's id in a trace's metadata and in a summary.
+/// Key for the id of a run in trace metadata and in summaries.
 inline constexpr char kRunIdKey[] = "run";
 
 /// Returns a unique id of 16 hexadecimal digits.
 std::string NewRunId();
 
-/// Returns the content of a run's `inputs.yaml`: the experiment's text after a first line with the
-/// id.
+/// Returns the contents of `inputs.yaml`: a line with the id, then the text of the experiment.
 std::string InputsOfRun(const std::string& id, const std::string& experiment);
 
-/// Removes unnamed files of a killed writer. The caller must be the folder's writer.
+/// Removes temporary files of a killed writer. Only the writer of the folder may call this.
 void RemoveLeftovers(const std::string& folder);
 
-/// Removes the files of the previous run, the summary first, except for those in `kept`, which the
-/// caller replaces atomically. The caller must be the folder's writer. Returns false, with an
-/// error, if one cannot be removed.
+/// Removes the files of the previous run, the summary first. Files in `kept` remain, because the
+/// caller replaces them atomically. Only the writer of the folder may call this. Returns false and
+/// adds an error if a file cannot be removed.
 bool RemoveRunBefore(const std::string& folder, const std::vector<std::string>& kept,
                      Diagnostics& out);
 
-/// Writer of a run's folder.
+/// Writer of the folder of a run.
 class RunFolder {
  public:
-  /// Creates the folder and becomes its only writer. `more`: names of further files of the run.
-  /// Returns null, with an error, if that fails.
+  /// Creates the folder and becomes its only writer. `more`: names of further files of the run. On
+  /// failure, returns null and adds an error.
   static std::unique_ptr<RunFolder> Open(const std::string& folder,
                                          const std::vector<std::string>& more, Diagnostics& out);
   ~RunFolder();
@@ -51,23 +50,23 @@ class RunFolder {
   const std::string& id() const { return id_; }
   std::string Path(const std::string& name) const;
 
-  /// Writes the experiment's text to the disk, still without a name. Returns false, with an error,
-  /// if there is no space; the folder then still contains all of the previous run.
+  /// Writes the text of the experiment to a temporary file on the disk. Returns false and adds an
+  /// error if there is no space; the previous run then remains complete.
   bool Prepare(const std::string& experiment, Diagnostics& out);
 
-  /// Begins the run: removes the files of the previous run, the summary first, except for `traces`,
-  /// which belong to this run already. Then publishes inputs.yaml, if it was prepared; logs of a
-  /// robot have none. Returns false, with a diagnostic, if that fails.
+  /// Begins the run. Removes the files of the previous run, the summary first, except `traces`,
+  /// which already belong to this run. Then publishes inputs.yaml if it was prepared; logs of a
+  /// robot have none. On failure, returns false and adds an error.
   bool Begin(Diagnostics& out, const std::vector<std::string>& traces = {});
 
-  /// Returns a writer that begins the run as soon as `last` has its first row, so that the previous
-  /// run stays complete until then. `traces`: names of all traces of the run; `last` must get each
-  /// row after the others. The folder must outlive the writer.
+  /// Returns a writer that begins the run when `last` has its first row, so that the previous run
+  /// stays complete until then. `traces`: names of all traces of the run. `last` must receive each
+  /// row after the other writers. The folder must outlive the returned writer.
   std::unique_ptr<TraceWriter> BeginWith(std::unique_ptr<TraceWriter> last,
                                          std::vector<std::string> traces);
 
-  /// Writes the summary, once all traces are finished, and thereby ends the run. Returns false,
-  /// with an error, if it cannot be written or the folder has been deleted or replaced.
+  /// Writes the summary and thereby ends the run. Call it after all traces are finished. Returns
+  /// false and adds an error if it cannot be written, or if the folder was deleted or replaced.
   bool Finish(const std::string& summary_json, Diagnostics& out);
 
  private:
@@ -75,21 +74,21 @@ class RunFolder {
             std::unique_ptr<FolderLock> lock);
 
   std::string folder_, id_;
-  std::vector<std::string> more_;  ///< Also removed at the start of a run.
+  std::vector<std::string> more_;  ///< Further files to remove at the start of a run.
   std::unique_ptr<FolderLock> lock_;
   std::unique_ptr<NewFile> inputs_;
 };
 
-/// Returns the path of another file of a trace's run: for `trace.h5`, "summary" and ".json" it is
-/// `summary.json`, for `trace_2.h5` (a live run that was reset) `summary_2.json`.
+/// Returns the path of another file of the run of a trace. For `trace.h5`, "summary" and ".json":
+/// `summary.json`. For `trace_2.h5` (a live run after a reset): `summary_2.json`.
 std::string BesideTrace(const std::string& trace, const std::string& name, const std::string& end);
 
-/// Returns the path of a run's trace: for a run's folder, the trace in it (`trace.h5`, else the CSV
-/// trace); for other paths, the path itself.
+/// Returns the trace in the folder of a run (`trace.h5`, otherwise the CSV trace). Other paths are
+/// returned unchanged.
 std::string TraceOfRun(const std::string& path);
 
-/// Reads a trace or that of a run's folder; refuses it if inputs or summary are of another run. A
-/// CSV trace has no id, so for it only inputs and summary are compared.
+/// Reads a trace, or the trace in the folder of a run. Rejects it if inputs or summary belong to
+/// another run. A CSV trace has no id, so only inputs and summary are compared.
 std::optional<Trace> ReadTraceOfRun(const std::string& path, Diagnostics& out);
 
 }  // namespace taut

@@ -1,6 +1,6 @@
 /// JSON schemas of the file formats, for editors and documents.
 ///
-/// Threads: any number may call these functions at once.
+/// Threads: any number may call these functions concurrently.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ namespace taut {
 const std::vector<std::string>& FormatNames();
 
 /// Returns the JSON schema (2020-12) of a format: all keys with types, ranges, defaults and
-/// meanings. Keys with a unit have the property `unit`. Returns nothing if there is no such format.
+/// descriptions. Keys with a unit have the property `unit`. Returns nothing for an unknown format.
 std::optional<std::string> FormatSchema(std::string_view format);
 
 }  // namespace taut

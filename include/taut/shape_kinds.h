@@ -1,6 +1,6 @@
-/// Shapes of a model, for code that handles all kinds of shapes alike.
+/// Iteration over all shapes of a model, independent of their kinds.
 ///
-/// Pure functions; thread-safe for different models. docs/extending.md lists the other files to
+/// Pure functions; thread safe for different models. docs/extending.md lists the other files to
 /// change for a new kind.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// Name of a kind of shape, in messages and tables.
+/// Name of a kind of shape for messages and tables.
 struct ShapeName {
   const char* one;
   const char* many;
@@ -24,7 +24,7 @@ void EachShapeList(F f, Defs&... defs) {
   f(ShapeName{"hull", "hulls"}, defs.hulls...);
 }
 
-/// Calls f(shape) for each shape.
+/// Calls f(shape) for each shape of a model.
 template <class Def, class F>
 void EachShape(Def& def, F f) {
   const auto each = [&f](const ShapeName&, auto& shapes) {
@@ -33,8 +33,8 @@ void EachShape(Def& def, F f) {
   EachShapeList(each, def);
 }
 
-// EachPoint: calls f(point), by reference, for each point that defines the position of a shape [m],
-// in W.
+// // EachPoint: calls f(point), by reference, for each point [m], in W, that defines the position
+// of a shape.
 template <class F>
 void EachPoint(SphereDef& sphere, F f) {
   f(sphere.center_m);

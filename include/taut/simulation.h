@@ -1,5 +1,5 @@
-/// Simulation of an experiment: the robot with its start, controllers, sensors and events, in one
-/// or many worlds. A program steps, reads and commands it.
+/// Simulation of an experiment with its start, controllers, sensors and events, in one or many
+/// worlds. A program can step, read and command it.
 ///
 ///   taut::Diagnostics found;
 ///   const auto sim = taut::Simulation::Load("experiments/push_20n.yaml", {}, {}, found);
@@ -7,12 +7,12 @@
 ///   sim->RunUntil(1.0);
 ///   std::printf("%g N\n", sim->Cable("outer_right_1").tension_n);
 ///
-/// As long as the program changes nothing, the results of a world are bit-identical to
-/// `RunExperiment` (taut/run.h), independent of the other worlds, the number of threads and the
-/// instruction set.
-/// Related classes: `WorldBatch` (taut/world_batch.h) steps a model without controllers and events,
-/// `Rollouts` (taut/rollout.h) score many variants from start to end, and `Env` (taut/env.h) is an
-/// environment for reinforcement learning.
+/// While the program changes nothing, the results of a world are bit-identical to `RunExperiment`
+/// (taut/run.h). Other worlds, the number of threads and the instruction set have no effect.
+///
+/// Related classes: `WorldBatch` (taut/world_batch.h) steps a model without controllers and events.
+/// `Rollouts` (taut/rollout.h) score many variants from start to end. `Env` (taut/env.h) is a
+/// reinforcement-learning environment.
 #pragma once
 
 #include <cstdint>
@@ -35,18 +35,18 @@ namespace taut {
 
 struct SimulationOptions {
   int worlds = 1;                               ///< Number of identical worlds.
-  std::span<const RolloutWorld> variants = {};  ///< One world per variant, instead of `worlds`.
+  std::span<const RolloutWorld> variants = {};  ///< One world per variant; replaces `worlds`.
   int threads = 1;                              ///< 0: one per core.
-  std::optional<Simd> simd = {};                ///< As in `WorldBatchOptions`.
+  std::optional<Simd> simd = {};                ///< See `WorldBatchOptions`.
   Extensions extensions = {};                   ///< Custom controllers and sensors.
-  std::shared_ptr<const ContactFriction> friction = nullptr;  ///< Null: the model's law.
-  /// Polled while the starts are computed; once it returns false, `Create` returns null.
+  std::shared_ptr<const ContactFriction> friction = nullptr;  ///< Null: the law of the model.
+  /// Called repeatedly during the preparation of the starts. Return false to cancel; `Create` then
+  /// returns null.
   std::function<bool()> keep_going = {};
 };
 
-/// Element of a model, by name or by index: "outer_top_1" or 3. Each call looks the name up; in
-/// loops use the index, which the functions of taut/find.h return. A name is not copied and must
-/// exist during the call.
+/// Element of a model, by name or index: "outer_top_1" or 3. A name is searched in each call; in
+/// loops, use the index from taut/find.h. The name is not copied and must exist during the call.
 class ElementRef {
  public:
   template <class Integer>
@@ -66,29 +66,28 @@ class ElementRef {
   int index_ = -1;
 };
 
-/// Running simulation.
+/// Running simulation of an experiment.
 ///
 /// Worlds are numbered from 0. `world`, the last argument of functions of a single world, defaults
-/// to the first one. Units and frames are those of `WorldBatch`.
+/// to 0. Units and frames: see `WorldBatch`.
 ///
-/// Errors: a name or an index that does not exist is a programming error: the function prints it
-/// and the closest name to stderr and calls abort(). For names that users enter, use taut/find.h,
-/// which reports errors instead. A rest length, gain, force, state of a body or value in `commands`
-/// that is not finite, from the program or a custom controller, is refused: the previous value
-/// stays, `IsRunning` of its world returns false, and `StatusText` contains the name, until `Reset`
-/// or `Restore`.
+/// Errors: a nonexistent name or index is a programming error. The function prints it and the most
+/// similar name to stderr and calls abort(). For names from users, call the functions of
+/// taut/find.h, which return errors. Rest lengths, gains, forces, body states and values in
+/// `commands` must be finite. Others are rejected: the previous value remains, and until `Reset` or
+/// `Restore`, `IsRunning` of the world returns false and `StatusText` contains the name.
 ///
-/// Threads: a simulation has an internal thread pool. All functions, const ones too, need exclusive
-/// access. Simulations are independent of each other.
+/// Threads: a simulation has an internal thread pool. All functions, including const ones, need
+/// exclusive access. Simulations are independent of each other.
 class Simulation {
  public:
-  /// Creates a simulation with all worlds at their start. Returns null, with diagnostics, if the
+  /// Creates a simulation with all worlds at their starts. Returns null and adds diagnostics if the
   /// model does not compile, a start cannot be found (no equilibrium, overlapping bodies), `worlds`
-  /// is below 1, or `record` selects channels that do not exist. Warns as `RunExperiment` does.
+  /// is below 1, or `record` selects nonexistent channels. Adds the same warnings as
+  /// `RunExperiment`.
   static std::unique_ptr<Simulation> Create(const ExperimentSpec& experiment,
                                             const SimulationOptions& options, Diagnostics& out);
-  /// Creates a simulation of a robot without controllers and events, which starts in the described
-  /// pose.
+  /// Creates a simulation of a robot in its described pose, without controllers and events.
   static std::unique_ptr<Simulation> Create(const RobotSpec& robot,
                                             const SimulationOptions& options, Diagnostics& out);
   /// Creates a simulation of an experiment file or a model file.
@@ -103,17 +102,16 @@ class Simulation {
   int worlds() const noexcept;
 
   // --- time --------------------------------------------------------------------------------------
-  /// Advances each world by one step. Steps are at most `step_s` long. They end at the ticks of
-  /// sensors and controllers, at the corners of push profiles and at `duration_s`. Worlds can be
-  /// stepped beyond the experiment's `duration_s`.
+  /// Advances each world by one step of at most `step_s`. Steps end at the ticks of sensors and
+  /// controllers, at the points of push profiles and at `duration_s`. Worlds can continue beyond
+  /// `duration_s` of the experiment.
   void Step();
-  /// Steps each world until its time is at least `time_s`. Steps are not shortened to end there, so
-  /// a world may stop up to one step later. Each thread polls `keep_going` before each step of a
-  /// group, so it must be thread-safe; a group for which it returns false takes no further step.
+  /// Steps each world until its time is at least `time_s`. The last step is not shortened, so a
+  /// world may end up to one step later. Each thread calls `keep_going` before each step of a
+  /// group; it must be thread safe. Return false to stop the group.
   void RunUntil(double time_s, const std::function<bool()>& keep_going = {});
-  double Time(int world = 0) const;  ///< [s], since the start.
-  /// Returns false once the state is not finite (the world is then frozen) or a command was
-  /// refused.
+  double Time(int world = 0) const;  ///< Time since the start [s].
+  /// Returns false if the state is not finite (the world is then frozen) or a command was rejected.
   bool IsRunning(int world = 0) const;
 
   // --- readings ----------------------------------------------------------------------------------
@@ -123,83 +121,86 @@ class Simulation {
   Vec3 NodeVelocity(const ElementRef& node, int world = 0) const;
   JointState Joint(const ElementRef& joint, int world = 0) const;
   MotionState Motion(const ElementRef& motion, int world = 0) const;
-  /// The cable needs a `dc_motor`.
+  /// Only for cables with a `dc_motor`.
   MotorState Motor(const ElementRef& cable, int world = 0) const;
   Energy TotalEnergy(int world = 0) const;
   std::vector<ContactState> Contacts(int world = 0) const;
   WorldStatus Status(int world = 0) const;
-  /// Returns a description of the status and of the first refused command, with the names of the
-  /// affected body and cable; empty if there is no problem.
+  /// Returns a description of the status and of the first rejected command, with the names of the
+  /// affected body and cable. Empty without problems.
   std::string StatusText(int world = 0) const;
-  std::uint64_t Hash(int world = 0) const;  ///< As `RunSummary::state_hash`.
+  /// Equal to `RunSummary::state_hash` after the same run.
+  std::uint64_t Hash(int world = 0) const;
 
   // --- commands ----------------------------------------------------------------------------------
-  /// Commands a cable's rest length [m]. A position controller of the cable holds it instead of
-  /// following its program; other controllers of the cable overwrite it at their next tick.
+  /// Commands the rest length [m] of a cable. A position controller of the cable then holds it
+  /// instead of following its program. Other controllers of the cable overwrite it at their next
+  /// tick.
   void SetRestLength(const ElementRef& cable, double rest_length_m, int world = 0);
   double RestLengthCommand(const ElementRef& cable, int world = 0) const;
   void SetMode(const ElementRef& cable, CommandMode mode, int world = 0);
   /// Returns the gains of a cable under impedance control; nothing for other cables.
   std::optional<ImpedanceGains> Gains(const ElementRef& cable, int world = 0) const;
-  /// Sets the gains of the cable with index `gains.cable`. Returns false, without a change, if it
-  /// is not under impedance control or a gain is not finite.
+  /// Sets the gains of the cable with index `gains.cable`. Returns false without a change if the
+  /// cable is not under impedance control or a gain is not finite.
   bool SetGains(const ImpedanceGains& gains, int world = 0);
-  /// Sets an external force on a node [N], in W, from the next step on. It adds to the experiment's
-  /// pushes and drags, and acts until it is changed or the world is reset.
+  /// Sets an external force on a node [N], in W, from the next step. It adds to pushes and drags of
+  /// the experiment, and acts until it is changed or the world is reset.
   void SetNodeForce(const ElementRef& node, const Vec3& force_n, int world = 0);
-  /// Replaces all external forces that the program has set.
+  /// Replaces all external forces set by the program.
   void SetExternalForces(std::span<const ExternalForce> forces, int world = 0);
-  /// Returns the nonzero forces by pushes and drags in the last step, and the forces that the
-  /// program has set.
+  /// Returns the nonzero forces of pushes and drags in the last step and the forces set by the
+  /// program.
   std::vector<ExternalForce> ExternalForces(int world = 0) const;
 
   // --- state and parameters ----------------------------------------------------------------------
-  /// As `WorldBatch::SetBodyState`.
+  /// See `WorldBatch::SetBodyState`.
   void SetBodyState(const ElementRef& body, const BodyState& state, int world = 0);
-  /// Returns a parameter. `of`: a body or a cable, depending on the parameter; ignored for
+  /// Returns a parameter. `of`: a body or a cable, depending on the parameter. It is ignored for
   /// parameters of the whole world.
   double GetParameter(Parameter parameter, const ElementRef& of, int world = 0) const;
   /// Sets a parameter. Returns false and changes nothing if the value is invalid
   /// (`WorldBatch::ParameterError` returns the reason).
   bool SetParameter(Parameter parameter, const ElementRef& of, double value, int world = 0);
 
-  /// Brings a world back to its start.
+  /// Resets a world to its start.
   void Reset(int world = 0);
-  /// Replaces the variant of a world and brings the world to the start of the new one. Returns
-  /// false, with an error and without a change, if this start cannot be found.
+  /// Replaces the variant of a world and resets the world to the start of the new variant. If this
+  /// start cannot be found, returns false, adds an error and changes nothing.
   bool Reset(const RolloutWorld& variant, Diagnostics& out, int world = 0);
-  /// Serializes a world with its clocks, controllers, sensors and external forces. The memory of
-  /// custom controllers and sensors is included if they implement `Serialize`.
+  /// Serializes a world with its clocks, controllers, sensors and external forces. Custom
+  /// controllers and sensors are included if they implement `Serialize`.
   std::vector<std::uint8_t> Save(int world = 0);
-  /// Restores a serialized world into any world of a simulation of the same experiment and
-  /// extensions; the continuation is bit-identical. The variant of the snapshot must be one of
-  /// the simulation, from its creation or set by `Reset`. Returns false, with an error and without
-  /// a change, if it is not, or if the snapshot is damaged or belongs to another
-  /// experiment or to other controllers.
+  /// Restores a serialized world into any world of a simulation with the same experiment and
+  /// extensions. The continuation is bit-identical. The simulation must know the variant of the
+  /// snapshot, from its creation or from `Reset`. If it does not, or if the snapshot is damaged or
+  /// from another experiment or other controllers, returns false, adds an error and changes
+  /// nothing.
   bool Restore(std::span<const std::uint8_t> snapshot, Diagnostics& out, int world = 0);
 
   // --- recording ---------------------------------------------------------------------------------
-  /// Returns the channels that the experiment's `record` selects.
+  /// Returns the channels selected by `record` of the experiment.
   const std::vector<ChannelInfo>& channels() const noexcept;
-  /// Returns the present values of `channels()`; valid until the next call for a world of the same
+  /// Returns the current values of `channels()`; valid until the next call for a world of the same
   /// group.
   const std::vector<double>& Row(int world = 0);
-  /// Records a world: appends the present row to a writer of `channels()`, and further rows at
-  /// `record.rate_hz`. Null ends the recording, as `Reset` and `Restore` of the world do; the
-  /// caller then finishes and destroys the writer. A writer that failed receives no more rows
-  /// (`TraceWriter::error`).
+  /// Records a world: appends the current row to a writer of `channels()`, then further rows at
+  /// `record.rate_hz`. Null ends the recording; so do `Reset` and `Restore` of the world. The
+  /// caller then finishes and destroys the writer. After a failure (`TraceWriter::error`), a writer
+  /// receives no more rows.
   void Record(TraceWriter* writer, int world = 0);
 
   // --- groups of worlds that share a SIMD register -----------------------------------------------
   int groups() const noexcept;
-  int lanes() const noexcept;  ///< Worlds per group; world w is lane w % lanes of group w / lanes.
+  /// Worlds per group. World w is lane w % lanes() of group w / lanes().
+  int lanes() const noexcept;
   /// Returns the observation of all lanes of a group; valid until the next step.
   const Observation& Observe(int group = 0) const;
   Commands& commands(int group = 0);
   /// Returns the worlds of a group, for recorders and displays.
   const World& world(int group = 0) const;
-  /// Returns the batch of a group, for readings that this class lacks; world j of the batch is lane
-  /// j. Step the simulation, not the batch.
+  /// Returns the batch of a group, for readings that this class lacks. World j of the batch is lane
+  /// j. Do not step the batch; step the simulation.
   WorldBatch& batch(int group = 0);
 
  private:

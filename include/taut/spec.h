@@ -1,8 +1,8 @@
-/// Robot and experiment specifications: contents of model and experiment files, readers and
-/// writers. Readers neither throw nor print: all problems of a file are reported in `Diagnostics`.
+/// Robot and experiment specifications: contents of model and experiment files, with readers and
+/// writers. Functions neither throw nor print; `Diagnostics` contain all problems of a file.
 ///
-/// Threads: any number may call these functions at once, each with separate diagnostics. A spec is
-/// plain data.
+/// Threads: any number may call these functions concurrently, each with separate diagnostics. A
+/// spec is plain data.
 #pragma once
 
 #include <cstdint>
@@ -22,77 +22,78 @@
 
 namespace taut {
 
-/// Returns whether a text is a valid user-defined name: letters, digits, `_` and `-`. Names become
-/// parts of channel names, file names and pages.
+/// Returns whether a text is a valid name: letters, digits, `_` and `-`. Names become parts of
+/// channel names, file names and pages.
 bool IsName(std::string_view text);
 
-/// Parameter overrides, as from `--set name=value`: values that replace parameters of a file. A
-/// value may be an expression such as `2 * edge_m`.
+/// Parameter overrides, for example from `--set name=value`: new values for parameters of a file. A
+/// value may be an expression, such as `2 * edge_m`.
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 
-/// Tags of a part of the model, which selectors of controllers and events match.
+/// Tags of a model element, matched by selectors of controllers and events.
 using Tags = std::vector<std::string>;
 
-/// Mass of a rod, sphere or box, as given by its builder.
+/// Mass of a rod, sphere or box, as defined by its builder.
 struct SolidMass {
   enum class Per { kWhole, kVolume, kLength };  ///< [kg], [kg/m^3], [kg/m]
   Per per = Per::kWhole;
   double value = 0.0;
 };
 
-/// Parts of which rigid bodies consist. `ModelDef` contains only the resulting mass properties of
-/// the whole body.
+/// Solids of which rigid bodies consist. `ModelDef` contains only the mass properties of whole
+/// bodies.
 struct SolidsSpec {
   struct PointMass {
     int node = 0;
     double mass_kg = 0.0, radius_m = 0.0;
-    std::optional<Inertia> inertia_kg_m2 = {};  ///< About the node, in axes of W.
+    std::optional<Inertia> inertia_kg_m2 = {};  ///< About the node, in axes parallel to W.
   };
-  std::vector<SolidMass> spheres, capsules, boxes;  ///< Per shape of `def`.
+  std::vector<SolidMass> spheres, capsules, boxes;  ///< One per shape of `def`.
   std::vector<PointMass> point_masses;
   bool bounding_box_inertia = false;  ///< `inertia: bounding_box`.
 };
 
-/// Resolved model file: numbers in `def`, and data that only files contain (tags, source
+/// Resolved model file: all numbers in `def`, and data that only files contain (tags, source
 /// positions).
 struct RobotSpec {
   ModelDef def;
-  std::vector<Tags> cable_tags;  ///< Per cable of `def`; includes the cable's name.
-  std::vector<Tags> node_tags;   ///< Per node of `def`; includes the node's name.
+  std::vector<Tags> cable_tags;  ///< Per cable of `def`; includes its name.
+  std::vector<Tags> node_tags;   ///< Per node of `def`; includes its name.
   std::vector<Tags> joint_tags;  ///< Per joint of `def`: tags of its pair or node, including names.
   std::vector<SourceRef> cable_sources;                       ///< Per cable: source of its pair.
   std::vector<SourceRef> body_sources;                        ///< Per body.
   std::vector<SourceRef> node_sources;                        ///< Per node.
   std::vector<SourceRef> plane_sources, terrain_box_sources;  ///< Per part of the terrain.
-  std::vector<SourceRef> height_field_sources, mesh_sources;  ///< Likewise.
-  std::optional<SolidsSpec> solids;                           ///< Unknown in a resolved experiment.
-  std::map<std::string, double> parameters;                   ///< Resolved, with overrides.
-  std::vector<std::string> files;  ///< Every file that was read, the model first.
+  std::vector<SourceRef> height_field_sources, mesh_sources;  ///< Per part of the terrain.
+  std::optional<SolidsSpec> solids;                           ///< Absent in a resolved experiment.
+  std::map<std::string, double> parameters;  ///< Resolved values, including overrides.
+  std::vector<std::string> files;            ///< All files read; the model file is first.
 };
 
-/// Reads a model file. Returns nothing, with diagnostics, if there was any error.
+/// Reads a model file. On an error, returns nothing and adds diagnostics.
 std::optional<RobotSpec> LoadRobot(const std::string& path, const Overrides& overrides,
                                    Diagnostics& out);
 
-/// Returns the kind that a file declares: "model", "experiment" or "gait". Returns nothing, with an
-/// error, for other contents.
+/// Returns the kind that a file declares: "model", "experiment" or "gait". For other contents,
+/// returns nothing and adds an error.
 std::optional<std::string> FileKind(const std::string& path, Diagnostics& out);
 
-/// Kind, name and description that a file declares; the rest of the file may be invalid.
+/// Declared kind, name and description of a file. The rest of the file may be invalid.
 struct FileHead {
   std::string kind, name, description;  ///< Empty if missing.
 };
 
-/// Reads the head of a file of any kind. Returns nothing, with an error, if it is not valid YAML.
+/// Reads the head of a file of any kind. If it is not valid YAML, returns nothing and adds an
+/// error.
 std::optional<FileHead> ReadFileHead(const std::string& path, Diagnostics& out);
 
-/// Clock of a controller: runs at phase_s, phase_s + period_s, ... [s], independent of the step.
+/// Clock of a controller: ticks at phase_s, phase_s + period_s, ... [s], independent of the step.
 struct ClockSpec {
   double period_s = 0.001;
   double phase_s = 0.0;
 };
 
-/// Gains of one cable under impedance control (paper eq. 3); lengthening is positive.
+/// Gains of a cable under impedance control (paper eq. 3). Lengthening is positive.
 struct ImpedanceGains {
   int cable = 0;
   double tension_offset_n = 0.0;         ///< T0 >= 0.
@@ -104,13 +105,14 @@ struct ImpedanceGains {
 
 /// Conversion of a tension set point to a rest length command.
 enum class TensionConversion {
-  kStiffness,  ///< L = L_now - (T_set - T_now) / k: NTRT's tgTensionController.
-  kPid,  ///< A PID controller of the tension commands the rate of the rest length: the paper's
-         ///< boards.
+  kStiffness,  ///< L = L_now - (T_set - T_now) / k, as in NTRT's tgTensionController.
+  /// A PID controller of the tension commands the rate of the rest length, as on the paper's
+  /// boards.
+  kPid,
 };
 
 struct PidGains {
-  double proportional_m_per_s_n = 0.0;  ///< Rate of winding in per newton of error.
+  double proportional_m_per_s_n = 0.0;  ///< Winding-in rate per newton of tension error.
   double integral_m_per_s2_n = 0.0;
   double derivative_m_per_n = 0.0;
 };
@@ -118,57 +120,58 @@ struct PidGains {
 struct ImpedanceSpec {
   TensionConversion conversion = TensionConversion::kStiffness;
   PidGains pid;
-  /// False: dl/dt is exact. True: difference of the lengths of successive ticks, as on a board or
-  /// in NTRT. For the first tick, the previous length is the rest length, as in NTRT, if
-  /// `start_from_rest_length`.
+  /// False: dl/dt is exact. True: difference of the lengths at successive ticks, as on a board or
+  /// in NTRT. `start_from_rest_length`: at the first tick, the rest length is the previous length,
+  /// as in NTRT.
   bool differenced_rate = false;
   bool start_from_rest_length = false;
   std::vector<ImpedanceGains> cables;
 };
 
-/// Rest length against time, piecewise linear, constant before the first and after the last point.
-/// One point is a constant command, two are a ramp.
+/// Rest length against time: linear between points, constant before the first and after the last.
+/// One point is a constant command; two points are a ramp.
 struct PositionProgram {
   int cable = 0;
-  /// (time_s, rest_length_m), times increase.
+  /// (time_s, rest_length_m); times increase.
   std::vector<std::pair<double, double>> rest_length_m;
 };
 
-/// Change to another gait at a given time.
+/// Switch to another gait at a given time.
 struct GaitChange {
   double at_s = 0.0;
-  int gait = 0;  ///< 0: `gait`; i: `others[i - 1]`.
+  int gait = 0;  ///< Gait number. 0: `gait`; i: `others[i - 1]`.
 };
 
-/// Gait as input of a controller, with a separate clock: its output is held from tick to tick.
+/// Gait as input of a controller, with its own clock; its output is constant between ticks.
 struct GaitInputSpec {
   ClockSpec clock{0.01, 0.0};
   GaitSpec gait;                    ///< Initial gait.
-  std::vector<GaitSpec> others;     ///< Further gaits, for the same cables and the same quantity.
-  std::vector<GaitChange> changes;  ///< Times increase.
-  /// Blending time of changes between gaits whose oscillators do not correspond: the previous
-  /// gait's weight decreases smoothly from 1 to 0 in this time.
+  std::vector<GaitSpec> others;     ///< Further gaits for the same cables and the same quantity.
+  std::vector<GaitChange> changes;  ///< In order of increasing time.
+  /// Duration of a transition between gaits without corresponding oscillators. During it, the
+  /// weight of the previous gait decreases smoothly from 1 to 0.
   double blend_s = 0.5;
 };
 
-/// Returns a gait of an input by its number, as in `GaitChange::gait`.
+/// Returns the gait with a number as in `GaitChange::gait`.
 inline const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
   return number == 0 ? input.gait : input.others[number - 1];
 }
 
-/// Controller: impedance control or position control of cables, with an optional gait.
+/// Controller: impedance control or position control of cables, optionally with a gait.
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
-  std::optional<ImpedanceSpec> impedance;  ///< Excludes `position` and `rest_length_input`.
+  std::optional<ImpedanceSpec> impedance;  ///< Not together with `position` or `rest_length_input`.
   std::vector<PositionProgram> position;
-  /// With `impedance` only: added to each cable's velocity offset V0.
+  /// Only with `impedance`; added to the velocity offset V0 of each cable.
   std::optional<GaitInputSpec> velocity_input;
-  /// Added to the cables' programs, or to the initial rest length of cables without a program.
+  /// Added to the programs of the cables, or to the initial rest lengths of cables without a
+  /// program.
   std::optional<GaitInputSpec> rest_length_input;
 };
 
-/// Returns the only gait input of a controller, or null.
+/// Returns the gait input of a controller, or null; there is at most one.
 inline GaitInputSpec* GaitInputOf(ControllerSpec& controller) noexcept {
   if (controller.velocity_input) return &*controller.velocity_input;
   return controller.rest_length_input ? &*controller.rest_length_input : nullptr;
@@ -178,22 +181,22 @@ inline const GaitInputSpec* GaitInputOf(const ControllerSpec& controller) noexce
   return controller.rest_length_input ? &*controller.rest_length_input : nullptr;
 }
 
-/// Push: force on a node against time, piecewise linear, zero before the first and after the last
-/// point.
+/// Push: force on a node against time. It is linear between points and zero before the first and
+/// after the last.
 struct PushSpec {
   std::string name;
   int node = 0;
   Vec3 direction{1.0, 0.0, 0.0};                   ///< Unit vector in W.
-  double scale = 1.0;                              ///< Factor on force_n.
-  std::vector<std::pair<double, double>> force_n;  ///< (time_s, force_n), times increase.
+  double scale = 1.0;                              ///< Factor on `force_n`.
+  std::vector<std::pair<double, double>> force_n;  ///< (time_s, force_n); times increase.
 };
 
-/// Drag: a spring and damper, like a hand-held scale, pulls a node toward a point that starts at
-/// the node's position at `from_s` and moves at constant velocity.
+/// Drag: a spring and damper, like a hand-held scale, pulls a node toward a moving point. The point
+/// starts at the position of the node at `from_s` and has a constant velocity.
 struct DragSpec {
   std::string name;
   int node = 0;
-  Vec3 velocity_m_per_s;  ///< Of the moving point, in W.
+  Vec3 velocity_m_per_s;  ///< Velocity of the moving point, in W.
   double stiffness_n_per_m = 0.0;
   double damping_n_s_per_m = 0.0;
   double from_s = 0.0, to_s = 0.0;
@@ -207,70 +210,72 @@ struct PhaseSpec {
 
 enum class StartKind {
   kAsDescribed,
-  kSettled,          ///< Static equilibrium under gravity and contact, rest lengths fixed.
-  kSettledFloating,  ///< Static equilibrium under cable forces only: no gravity, no ground.
+  kSettled,          ///< Static equilibrium under gravity and contact, with fixed rest lengths.
+  kSettledFloating,  ///< Static equilibrium under cable forces only, without gravity and ground.
 };
 
-/// Frame of the sensed direction to the goal.
+/// Frame of the measured goal direction.
 enum class GoalFrame {
-  kOfBody,   ///< x along `GoalSpec::ahead`, y to its left: a camera that sees a beacon.
-  kOfWorld,  ///< x and y of W: with a compass, as in NTRT.
+  kOfBody,   ///< x along `GoalSpec::ahead`, y to the left: a camera on the body sees a beacon.
+  kOfWorld,  ///< x and y of W: a compass, as in NTRT.
 };
 
-/// Goal of a robot, and the sensor of its direction.
+/// Goal of a robot, and the sensor for its direction.
 struct GoalSpec {
-  Vec3 at_m;                  ///< In W; its height is ignored.
-  int body = 0;               ///< Watched body: its center of mass shall approach the goal.
-  Vec3 ahead{1.0, 0.0, 0.0};  ///< Its forward direction in the initial pose, unit vector in W.
+  Vec3 at_m;     ///< Position in W; the height is ignored.
+  int body = 0;  ///< Body whose center of mass approaches the goal.
+  /// Forward direction of this body in the initial pose; unit vector in W.
+  Vec3 ahead{1.0, 0.0, 0.0};
   GoalFrame frame = GoalFrame::kOfBody;
-  double period_s = 0.01;  ///< Between two readings.
+  double period_s = 0.01;  ///< Time between readings.
 };
 
-/// Digitization of a load cell on a board: integer counts from 0, clipped where the amplifier or
-/// the converter saturates; force = gain count + offset. The defaults are Tetraspine3's (paper eq.
-/// 7).
+/// Digitization of a load cell on a board: force = gain * count + offset. Counts are integers from
+/// 0, clipped at the saturation of the amplifier and of the converter. Defaults: Tetraspine3 (paper
+/// eq. 7).
 struct LoadCellCounts {
   double gain_n_per_count = 0.1567;  ///< > 0.
   double offset_n = -4.9363;         ///< Force at count 0.
-  int bits = 10;                     ///< Of the converter, 1..32.
-  int saturation_count = 741;        ///< Largest count of the amplifier, >= 1.
+  int bits = 10;                     ///< Bits of the converter, 1..32.
+  int saturation_count = 741;        ///< Largest count that the amplifier reaches, >= 1.
   double noise_counts = 0.0;         ///< Standard deviation of each sample before quantization.
 };
 
-/// Load cell: T' = (1 + gain) T + bias + drift t + noise, limited to a range, quantized in steps or
-/// counts, and delayed.
+/// Load cell: T' = (1 + gain) T + bias + drift t + noise. The result is limited to a range,
+/// quantized in steps or counts, and delayed.
 struct LoadCellSpec {
-  double noise_n = 0.0;  ///< Standard deviation of each sample, white.
-  double bias_n = 0.0;   ///< Standard deviation of each cell's error, constant during a run.
-  double min_n = 0.0;    ///< Of the range.
+  double noise_n = 0.0;  ///< Standard deviation of the white noise of each sample.
+  double bias_n = 0.0;   ///< Standard deviation of the bias of each cell, constant during a run.
+  double min_n = 0.0;    ///< Lower end of the range.
   double max_n = std::numeric_limits<double>::infinity();
-  double quantum_n = 0.0;  ///< Step of the converter, from min_n on; 0: none.
-  double delay_s = 0.0;    ///< Whole sensor periods.
-  // Standard deviations over the cells, drawn once per run: errors of a calibration.
-  double gain_error = 0.0;                              ///< Of the gain, relative [1].
-  double drift_n_per_s = 0.0;                           ///< Of the drift rate of the zero.
+  double quantum_n = 0.0;  ///< Step of the converter, starting at `min_n`; 0: none.
+  double delay_s = 0.0;    ///< A whole number of sensor periods.
+  // // Standard deviations of calibration errors over the cells, drawn once per run.
+  double gain_error = 0.0;                              ///< Relative error of the gain [1].
+  double drift_n_per_s = 0.0;                           ///< Drift rate of the zero.
   std::optional<LoadCellCounts> counts = std::nullopt;  ///< Replaces range and quantum.
 };
 
-/// Encoder of a motor: rest length in counts.
+/// Encoder of a motor, which measures the rest length in counts.
 struct EncoderSpec {
   double quantum_m = 0.0;  ///< Rest length per count; 0: exact.
-  double delay_s = 0.0;    ///< Whole sensor periods.
+  double delay_s = 0.0;    ///< A whole number of sensor periods.
   // Standard deviations over the cables, drawn once per run.
-  double zero_error_m = 0.0;  ///< Of the initial rest length.
-  double gain_error = 0.0;    ///< Of the rest length per count, relative [1].
-  /// Distance between index marks; the first mark corrects the zero error up to a multiple of this.
-  /// 0: none.
+  double zero_error_m = 0.0;  ///< Error of the initial rest length.
+  double gain_error = 0.0;    ///< Relative error of the rest length per count [1].
+  /// Distance between index marks; 0: none. The first mark corrects the zero error up to a multiple
+  /// of this distance.
   double index_m = 0.0;
 };
 
-/// Sensors between the robot and its controllers. Without them, controllers get exact values.
+/// Sensors between the robot and its controllers. Without sensors, controllers receive exact
+/// values.
 struct SensorSpec {
-  double period_s = 0.001;  ///< Between samples; the first is at t = 0.
+  double period_s = 0.001;  ///< Time between samples; the first sample is at t = 0.
   std::optional<LoadCellSpec> load_cell;
   std::optional<EncoderSpec> encoder;
-  /// True: a cable's length is estimated from rest length and tension, L + T / k, as on a board,
-  /// and its rate from successive samples. False: both are exact.
+  /// True: the length of a cable is estimated as L + T / k and its rate from successive samples, as
+  /// on a board. False: both are exact.
   bool length_from_tension = false;
 };
 
@@ -281,11 +286,11 @@ struct LoadCaseSpec {
     Vec3 force_n;  ///< In W.
   };
   struct Settlement {
-    int joint = 0;  ///< A support, whose point in the world moves.
+    int joint = 0;  ///< Support whose point in the world moves.
     Vec3 by_m;      ///< In W.
   };
   struct Lengthening {
-    int index = 0;  ///< Of a cable or, in `bars`, of a joint that is a bar.
+    int index = 0;  ///< Index of a cable or, in `bars`, of a joint that is a bar.
     double by_m = 0.0;
   };
   std::string name;
@@ -298,13 +303,13 @@ struct LoadCaseSpec {
 
 struct RecordSpec {
   double rate_hz = 100.0;  ///< Rows per second; 0: every step.
-  /// Name patterns with `*`; empty: all that are not recorded on request only.
+  /// Name patterns with `*`; empty: all default channels.
   std::vector<std::string> channels;
-  std::vector<SourceRef> channel_sources;  ///< Source of each pattern; may be empty.
+  std::vector<SourceRef> channel_sources;  ///< Position of each pattern in the file; may be empty.
   int contacts = 0;                        ///< Contact slots per row.
 };
 
-/// Reference values, such as of a robot or another simulator, for comparison in the summary.
+/// Reference values, for example from a robot or another simulator, for comparison in the summary.
 struct ReferenceSpec {
   enum class Quantity {
     kTension,  ///< Spring and damper, as measured by a load cell.
@@ -315,10 +320,10 @@ struct ReferenceSpec {
     int cable = 0;
     double force_n = 0;
   };
-  std::string source;  ///< Source of the values.
+  std::string source;  ///< Origin of the values.
   Quantity quantity = Quantity::kTension;
   Statistic statistic = Statistic::kMax;
-  std::string phase;  ///< Of the timeline; empty: the whole run, with kMax only.
+  std::string phase;  ///< Phase of the timeline; empty: the whole run, with kMax only.
   std::vector<Value> values;
 };
 
@@ -326,7 +331,7 @@ struct ReferenceSpec {
 struct ExperimentSpec {
   std::string name;
   std::string description;
-  RobotSpec robot;  ///< Including the experiment's terrain and overrides in `robot.def`.
+  RobotSpec robot;  ///< Terrain and overrides of the experiment are in `robot.def`.
   double step_s = 0.001;
   double duration_s = 0.0;
   StartKind start = StartKind::kAsDescribed;
@@ -341,50 +346,50 @@ struct ExperimentSpec {
   std::vector<PhaseSpec> phases;
   RecordSpec record;
   std::vector<LoadCaseSpec> load_cases;
-  std::optional<std::string> compare_with;  ///< Trace for comparison with the result.
+  std::optional<std::string> compare_with;  ///< Trace to compare the result with.
   std::vector<ReferenceSpec> references;
-  /// For reinforcement learning (taut/env.h); ignored by runs.
+  /// Only for reinforcement learning (taut/env.h).
   std::optional<EnvironmentSpec> environment;
-  std::map<std::string, double> parameters;  ///< Of the experiment, resolved.
-  std::vector<std::string> files;            ///< Every file that was read, the experiment first.
-  std::uint64_t input_hash = 0;  ///< FNV-1a of the bytes of `files` and of the overrides.
+  std::map<std::string, double> parameters;  ///< Resolved parameters of the experiment.
+  std::vector<std::string> files;            ///< All files read; the experiment file is first.
+  std::uint64_t input_hash = 0;  ///< FNV-1a hash of the bytes of `files` and of the overrides.
 };
 
-/// Variant of an experiment: numbers of its controllers (except clocks and driven cables), factors
-/// on the model, start and seed.
+/// Variant of an experiment: controller parameters (except clocks and driven cables), factors on
+/// the model, start and seed.
 struct RolloutWorld {
   std::vector<ControllerSpec> controllers;
   std::vector<ScaleSpec> scales;
   StartNoise start_noise;
   std::uint64_t seed = 0;
-  /// For custom controllers (taut/plant.h), which define their meaning.
+  /// Numbers for custom controllers (taut/plant.h), which define their meaning.
   std::vector<double> numbers;
 };
 
-/// Returns the parts of an experiment that act on its model in a run ("controllers, pushes"), for
-/// `ModelDef::experiment_parts`. `LoadExperiment` sets `experiment_parts`; set it again if you
-/// change such a part and then compile the model for a `WorldBatch`.
+/// Returns a list of the parts of an experiment that act on its model in a run, such as
+/// "controllers, pushes". `LoadExperiment` stores it in `ModelDef::experiment_parts`. Set it again
+/// if you change such a part and then compile the model for a `WorldBatch`.
 std::string ActingParts(const ExperimentSpec& experiment);
 
-/// Returns the variant that equals the experiment.
+/// Returns the variant that equals the experiment itself.
 RolloutWorld WorldOf(const ExperimentSpec& experiment);
-/// Returns the experiment that runs only this variant.
+/// Returns the experiment with the values of this variant.
 ExperimentSpec ExperimentOf(const ExperimentSpec& base, const RolloutWorld& world);
 
-/// Reads an experiment file and its model, or the text from `ResolvedYaml`. Returns nothing, with
-/// diagnostics, if there was any error.
+/// Reads an experiment file and its model, or the text from `ResolvedYaml`. On an error, returns
+/// nothing and adds diagnostics.
 std::optional<ExperimentSpec> LoadExperiment(const std::string& path, const Overrides& overrides,
                                              Diagnostics& out);
 
-/// Serializes an experiment and its robot in numbers, without parameters, models or bases, as one
-/// YAML text. `LoadExperiment` restores bit-identical values, so the text reproduces the run
+/// Returns an experiment and its robot as one YAML text of plain numbers, without parameters,
+/// models or bases. `LoadExperiment` restores bit-identical values, so the text reproduces the run
 /// without other files.
 std::string ResolvedYaml(const ExperimentSpec& experiment);
 
-/// Writes a robot as a model file in numbers, for further editing: nodes at the positions in
+/// Returns a robot as the text of a model file, for further editing: nodes at the positions in
 /// `robot.def`, pairs, builders. Velocities and terrain are omitted. `LoadRobot` restores the same
-/// robot up to rounding. Returns nothing, with an error, if a model file cannot represent the
-/// robot. `heading`: comment at the top, one or more lines.
+/// robot up to rounding. If a model file cannot represent the robot, returns nothing and adds an
+/// error. `heading`: comment of one or more lines at the top.
 std::optional<std::string> ModelYaml(const RobotSpec& robot, const std::string& heading,
                                      Diagnostics& out);
 

@@ -1,13 +1,13 @@
-/// Linear state-space model of a robot in discrete time about its equilibrium: effect of small
-/// changes of states and inputs within one tick of its controllers (docs/theory/linear.md).
+/// Discrete-time linear state-space model of a robot about its equilibrium: effect of small changes
+/// of states and inputs within one controller tick (docs/theory/linear.md).
 ///
 ///   x' = A x + B u,   y = C x + D u
 ///
-/// x, u, y: changes from their values at the equilibrium; x' is x one tick later. SI units, W
-/// frame. A, B and C are derivatives of the simulated step, of the control laws and of the sensors,
+/// x, u, y: deviations from the values at the equilibrium; x' is x one tick later. SI units, world
+/// frame W. A, B and C are derivatives of the simulated step, the control laws and the sensors,
 /// including contacts, joints and stiff cables.
 ///
-/// Threads: the functions only read their arguments; any number may run at once.
+/// Threads: the functions only read their arguments and are thread safe.
 #pragma once
 
 #include <complex>
@@ -23,24 +23,24 @@
 
 namespace taut {
 
-/// Method by which the matrices were computed.
+/// Method that computed the matrices.
 enum class Derivatives {
-  kExact,        ///< Automatic differentiation: the chain rule through every operation of the step.
-  kDifferences,  ///< Finite differences of steps, of fourth order.
+  kExact,        ///< Automatic differentiation of all operations of the step.
+  kDifferences,  ///< Fourth-order finite differences of steps.
 };
 
 struct LinearOptions {
-  /// Pose and rest lengths of the equilibrium. Nothing: the pose at which the experiment's robot
-  /// comes to rest under its controllers.
+  /// Equilibrium pose and rest lengths. Absent: the pose in which the robot of the experiment comes
+  /// to rest under its controllers.
   std::optional<Pose> at;
-  /// Longest time for coming to rest [s], simulated.
+  /// Longest simulated time to come to rest [s].
   double most_s = 120.0;
-  bool differences = false;  ///< Finite differences instead of exact derivatives.
-  /// Polled at intervals; return false to abort.
+  bool differences = false;  ///< Use finite differences instead of exact derivatives.
+  /// Called repeatedly; return false to cancel.
   std::function<bool()> go_on;
 };
 
-/// A state, an input or an output.
+/// State, input or output.
 struct LinearSignal {
   std::string name, unit;
   double at = 0;  ///< Value at the equilibrium; 0 for small rotations, which are relative to it.
@@ -52,51 +52,52 @@ struct StateSpace {
   std::string hint;                  ///< Possible remedy.
   std::vector<std::string> remarks;  ///< Omissions, and the reason for finite differences.
   Derivatives derivatives = Derivatives::kExact;
-  /// Largest difference of an entry from its value by the other method, relative to the largest
-  /// entry of its kind (velocities by rotations, tensions by positions, ...).
+  /// Largest difference between both methods in a matrix entry, relative to the largest entry of
+  /// its kind (velocities by rotations, tensions by positions, ...).
   double disagreement = 0;
-  double period_s = 0;  ///< Of a tick: period of the controllers, or a step.
-  double step_s = 0;    ///< Of the steps within a tick.
+  /// Length of a tick: the period of the controllers, or a step without controllers.
+  double period_s = 0;
+  double step_s = 0;  ///< Length of the steps within a tick.
   std::vector<LinearSignal> states, inputs, outputs;
   Matrix A, B, C, D;
-  Pose pose;                                ///< Of the equilibrium.
+  Pose pose;                                ///< Pose of the equilibrium.
   std::vector<std::string> bodies, cables;  ///< Names in the order of `pose`.
 };
 
-/// Computes the linear system of an experiment. Not found, with `why` and `hint`: a robot that does
-/// not come to rest, a cable at the edge of going slack, a contact at the edge of slipping or
-/// opening, controllers with different periods, kinematic bodies. Omitted, with remarks: pushes,
-/// drags, gaits, sensor errors, start noise. Reports diagnostics as `RunExperiment` does if the
-/// experiment cannot start.
+/// Computes the linear system of an experiment. It is not found, with `why` and `hint`, if the
+/// robot does not come to rest, a cable is about to go slack, a contact is about to slip or open,
+/// controllers have different periods, or there are kinematic bodies. Pushes, drags, gaits, sensor
+/// errors and start noise are omitted, with remarks. If the experiment cannot start, adds the same
+/// diagnostics as `RunExperiment`.
 StateSpace FindStateSpace(const ExperimentSpec& experiment, const LinearOptions& options,
                           Diagnostics& out);
 
 /// Mode of the linear system: x' = z x.
 struct LinearMode {
   std::complex<double> z;
-  double frequency_hz = 0;  ///< Natural frequency by the angle of z; 0: not oscillating.
-  double damping = 0;       ///< Damping ratio; negative: growing. 0 if |z| = 1.
+  double frequency_hz = 0;  ///< Natural frequency from the angle of z; 0: no oscillation.
+  double damping = 0;       ///< Damping ratio; negative: growing; 0 if |z| = 1.
 };
 
-/// Returns all modes by frequency; of a conjugate pair, the mode with the positive angle.
+/// Returns all modes sorted by frequency. A conjugate pair appears once, with the positive angle.
 std::vector<LinearMode> ModesOf(const StateSpace& system);
 
 /// Frequency response: steady-state effect of a sinusoidal input on an output.
 struct FrequencyResponse {
-  std::vector<double> frequency_hz, magnitude;  ///< [output's unit per input's unit]
+  std::vector<double> frequency_hz, magnitude;  ///< [unit of the output per unit of the input]
   std::vector<double> phase_rad;                ///< Phase lead of the output, -pi..pi.
 };
 
-/// Returns the response at frequencies from 0 to half the tick's rate. `input`, `output`: indices.
-/// Infinite at an undamped resonance.
+/// Returns the response at frequencies from 0 to half the tick rate; infinite at an undamped
+/// resonance. `input`, `output`: indices.
 FrequencyResponse ResponseOf(const StateSpace& system, int input, int output,
                              const std::vector<double>& frequencies_hz);
 
-/// Returns the index of a signal by its name; nothing if there is none.
+/// Returns the index of a signal with this name, or nothing.
 std::optional<int> FindSignal(const std::vector<LinearSignal>& signals, const std::string& name);
 
-/// Writes A, B, C, D, names, units and the equilibrium into a new HDF5 file
-/// (docs/formats/linear.md), for MATLAB and Python. Returns false, with an error, if that fails.
+/// Writes A, B, C, D, names, units and the equilibrium to a new HDF5 file (docs/formats/linear.md)
+/// for MATLAB and Python. On failure, returns false and adds an error.
 bool WriteStateSpace(const StateSpace& system, const std::string& path, Diagnostics& out);
 
 }  // namespace taut

@@ -1,7 +1,7 @@
-/// Statics of a described model: lengths and tensions of cables, loads on bodies and joints,
-/// principal moments of inertia, colliding shapes. Computed from the `ModelDef` only.
+/// Statics of a described model, computed from the `ModelDef` only: lengths and tensions of cables,
+/// loads on bodies and joints, principal moments of inertia, colliding shapes.
 ///
-/// SI units, W frame.
+/// SI units, world frame W.
 #pragma once
 
 #include <cstddef>
@@ -12,52 +12,51 @@
 
 namespace taut {
 
-/// Returns the wrap angle at the wheel of attachment `i` in the described pose [rad]: from the
-/// point before it to the point after it, including full turns, counterclockwise about the wheel's
-/// axis.
+/// Returns the wrap angle [rad] of a cable at the wheel of attachment `i` in the described pose:
+/// from the point before the wheel to the point after it, including full turns, counterclockwise
+/// about the wheel's axis.
 double WheelStartAngle(const CableDef& cable, std::size_t i);
 
-/// Returns the path length between a cable's ends, along all attachments and around wheels [m].
+/// Returns the path length [m] between the ends of a cable, along all attachments and around
+/// wheels.
 double CableLength(const CableDef& cable);
 
-/// Returns the elastic tension k (l - L), 0 when slack [N].
+/// Returns the elastic tension k (l - L) [N]; 0 if slack.
 double CableTension(const CableDef& cable);
 
 /// Loads on a body in the described pose.
 struct BodyLoad {
   Vec3 cable_force_n;     ///< Sum over all cables, in W.
-  Vec3 cable_torque_n_m;  ///< The same about the body's center of mass, in W.
+  Vec3 cable_torque_n_m;  ///< Their torque about the center of mass of the body, in W.
   Vec3 weight_n;          ///< In W.
 };
 
-/// Returns the loads of each body of `def`. Fixed bodies have loads too, for their supports to
-/// carry.
+/// Returns the loads of each body of `def`, including those of fixed bodies on their supports.
 std::vector<BodyLoad> StartLoads(const ModelDef& def);
 
-/// Force and torque of a joint on its body b at `to_m`, in W; on its body a the opposite. Of a
-/// support: the reaction on the robot.
+/// Force and torque of a joint on its body b at `to_m`, in W; its body a gets the opposite. For a
+/// support, this is the reaction on the robot.
 struct JointLoad {
   Vec3 force_n;
   Vec3 torque_n_m;  ///< About `to_m`.
 };
 
-/// Largest number of constrained directions for `StartJointLoads`: its time grows with the third
-/// power.
+/// Maximum number of constrained directions for `StartJointLoads`, whose time grows with the cube
+/// of this number.
 inline constexpr std::size_t kMostHeldDirections = 2000;
 
-/// Returns the loads of each joint of `def`, by its constraints and its spring, under cable forces
-/// and weight, at rest and without contacts (docs/theory/joints.md, eq. 12). In equilibrium these
-/// are the static loads; else the loads at the moment when the robot is released. If the
-/// distribution of loads is statically indeterminate, one of the possible distributions. Friction
-/// and joint limits are ignored. Empty if joints constrain more than kMostHeldDirections
-/// directions.
+/// Returns the loads of each joint of `def`, from its constraints and its spring, under cable
+/// forces and weight (docs/theory/joints.md, eq. 12). The robot is at rest without contacts. In
+/// equilibrium, these are the static loads; otherwise, the loads at the moment of its release. If
+/// the loads are statically indeterminate, returns one possible distribution. Friction and joint
+/// limits are ignored. Empty if joints constrain more than kMostHeldDirections directions.
 std::vector<JointLoad> StartJointLoads(const ModelDef& def);
 
-/// Resultant of cables, weight and joint loads: accelerates a body, or must be carried by the
-/// support of a fixed body.
+/// Resultant of cables, weight and joint loads. It accelerates a moving body; for a fixed body, its
+/// support carries it.
 struct LeftLoad {
   Vec3 force_n;     ///< In W.
-  Vec3 torque_n_m;  ///< About the body's center of mass, in W.
+  Vec3 torque_n_m;  ///< About the center of mass of the body, in W.
 };
 /// Returns the resultant of each body of `def`. `joints`: one per joint.
 std::vector<LeftLoad> LeftAtStart(const ModelDef& def, const std::vector<JointLoad>& joints);

@@ -1,6 +1,6 @@
-/// All public headers of the library, for programs that use several of its parts. Each header may
-/// also be included alone, which compiles faster. Drivers of robots are in taut/link/, control laws
-/// for firmware in taut/control/ and taut/board/.
+/// All public headers of the library, for programs that use several of its parts. Including single
+/// headers compiles faster. Robot drivers are in taut/link/; control laws for firmware are in
+/// taut/control/ and taut/board/.
 #pragma once
 
 #include "taut/analysis.h"

@@ -1,6 +1,6 @@
 /// Pose of a robot from a trace.
 ///
-/// Threads: any number may call this function at once.
+/// Threads: any number may call this function concurrently.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 namespace taut {
 
 /// Returns the pose of a robot in a row of a trace, in W: positions of centers of mass [m] and
-/// rotations of bodies from their pose in `robot` (`body/NAME/position_x_m`, ..., `orientation_w`,
-/// ...), rest lengths [m] if recorded, else as described. Returns nothing, with errors at `at`, if
-/// values are missing or not numbers. Warns if recorded lengths of cables differ from the lengths
-/// in this pose.
+/// rotations of bodies relative to their pose in `robot` (`body/NAME/position_x_m`, ...,
+/// `orientation_w`, ...). Rest lengths [m] are as recorded, otherwise as described. If values are
+/// missing or not numbers, returns nothing and adds errors at `at`. Adds a warning if recorded
+/// cable lengths differ from the lengths in this pose.
 std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std::size_t row,
                                 const SourceRef& at, Diagnostics& out);
 

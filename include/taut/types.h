@@ -1,11 +1,11 @@
-/// Vectors, quaternions and inertia matrices: plain types that all headers of taut use.
+/// Vectors, quaternions and inertia matrices: plain types for all headers of taut.
 #pragma once
 
 #include <cstdint>
 
 namespace taut {
 
-/// 3-vector; declarations state its unit and frame.
+/// 3-vector. Declarations give its unit and frame.
 struct Vec3 {
   double x = 0.0, y = 0.0, z = 0.0;
   bool operator==(const Vec3&) const = default;
@@ -17,14 +17,14 @@ struct Quat {
   bool operator==(const Quat&) const = default;
 };
 
-/// Symmetric 3x3 inertia matrix [kg m^2] about the center of mass; declarations state the frame.
+/// Symmetric 3x3 inertia matrix [kg m^2] about the center of mass. Declarations give its frame.
 /// Off-diagonal entries are matrix entries (minus the products of inertia).
 struct Inertia {
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
   bool operator==(const Inertia&) const = default;
 };
 
-/// Body index of the world, a fixed reference and not a body.
+/// Body index of the world, which is a fixed reference and not a body.
 inline constexpr int kWorld = -1;
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-/// Version of taut, defined only here: CMake and script/release read it.
+/// Version of taut. CMake and script/release read it from this file.
 #pragma once
 
 namespace taut {

@@ -32,23 +32,23 @@ std::optional<board::Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics
 /// Returns the board parameters that depend on gear, spool and spring. `encoder_lines`: marks per
 /// revolution of the motor shaft; boards count two edges per mark.
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines);
+/// Returns the board parameters for the impedance gains of the experiment.
+std::vector<Setting> GainsFor(const ExperimentSpec& experiment);
 /// Returns the calibrated board parameters. The cables of the calibration must belong to this
 /// robot.
-std::vector<Setting> GainsFor(const ExperimentSpec& experiment);
-/// Returns the calibrated parameters. Cables of the calibration must belong to this robot.
 std::vector<Setting> SettingsFor(const Calibration& calibration, const RobotSpec& robot);
 
-/// Plant of one lane. Threads: use it from the thread that uses the driver.
+/// Plant with one lane. Threads: use it from the thread that uses the driver.
 class RobotPlant final : public Plant {
  public:
-  /// The driver's motors must be the motors of the experiment's robot. Experiment and driver must
-  /// outlive the plant.
+  /// Experiment and driver must outlive the plant. The motors of the driver must be those of the
+  /// robot.
   RobotPlant(const ExperimentSpec& experiment, Driver& driver);
 
-  /// Gives motors power and holds their positions. Returns false, with an error, if a board does
-  /// not follow, or boards cannot run the experiment.
+  /// Gives motors power and holds their positions. Returns false and adds an error if a board does
+  /// not follow or the boards cannot run the experiment.
   bool Hold(Diagnostics& out);
-  /// After `Hold`: sets the experiment's time to 0 at once; boards enter the experiment's mode
+  /// Starts the experiment after `Hold`: its time is 0 now, and the boards enter its mode
   /// (`ModeFor`) with the next broadcast.
   void Begin();
 
@@ -56,24 +56,24 @@ class RobotPlant final : public Plant {
   Commands& commands() override { return commands_; }
   void Advance(const double* step_s, const double* to_s) override;
   void Restart(int lane) override;
-  /// Returns false once motors have been stopped or turned off.
+  /// Returns false after the motors were stopped or turned off.
   bool IsRunning(int lane) const override;
 
-  /// Called once, in the first `Advance`: use it to give power with `Hold` and `Begin` only then,
-  /// since boards time out while an experiment is prepared.
+  /// Called once, in the first `Advance`. Call `Hold` and `Begin` in it, because boards time out
+  /// while an experiment is prepared.
   std::function<void()> before_first_step;
 
   Driver& driver() { return driver_; }
-  double started_s() const { return started_s_; }  ///< By the port's clock.
+  double started_s() const { return started_s_; }  ///< Start time on the clock of the port.
 
  private:
   void Read();
 
   const ExperimentSpec& experiment_;
   Driver& driver_;
-  std::vector<int> cables_;  ///< Rows of six readings and of the commanded rest lengths.
+  std::vector<int> cables_;  ///< Cable indices of the motors.
   board::Mode mode_ = board::Mode::kHold;
-  std::vector<double> rows_;  ///< Six readings and the commanded rest lengths.
+  std::vector<double> rows_;  ///< Rows of six readings and of the commanded rest lengths.
   std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
   std::vector<CommandMode> command_mode_;
   std::vector<std::uint32_t> faults_;
