@@ -143,7 +143,7 @@ FitErrors HoldOut(const FitProblem& test, const std::vector<double>& values);
 
 struct ProfilePoint {
   double value = 0;
-  double rise = 0;             ///< Chi-square (twice the cost) minus that of the fit.
+  double rise = 0;             ///< Chi-square (twice the cost) minus its value for the fit.
   std::vector<double> values;  ///< All parameters.
   std::string failed;          ///< Reason if the point could not be computed.
 };

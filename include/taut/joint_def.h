@@ -43,8 +43,8 @@ struct JointDef {
   int body_a = kWorld, body_b = 0;  ///< a: body or world; b: body. At most one of the two is fixed.
   Vec3 from_m, to_m;                ///< Points of a and b, in W.
   Vec3 axis{0.0, 0.0, 1.0};         ///< Unit vector in W.
-  /// Rotation of the axes of b relative to those of a in the described pose, in W. It differs from
-  /// the identity only if the axes do not coincide there.
+  /// Rotation of b's axes relative to a's axes in the described pose, in W. It differs from the
+  /// identity only if the axes do not coincide there.
   Quat turned;
   bool collides = false;  ///< Whether the two bodies can collide.
 

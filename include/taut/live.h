@@ -36,7 +36,7 @@ class LiveRun {
  public:
   /// Prepares the start of the experiment, with the same diagnostics as `RunExperiment`. Returns
   /// null if the start fails, or if `go_on` returns false; it is polled until the start is found.
-  /// `extensions`: custom controllers and sensors in addition to those of the experiment.
+  /// `extensions`: custom controllers and sensors in addition to the experiment's.
   static std::unique_ptr<LiveRun> Start(const ExperimentSpec& experiment, Diagnostics& out,
                                         const std::function<bool()>& go_on = {},
                                         const Extensions& extensions = {});

@@ -41,7 +41,8 @@ struct FrictionDirections {
   bool operator==(const FrictionDirections&) const = default;
 };
 
-/// Surface properties of a shape. `ModelDef::friction_combine` combines those of two surfaces.
+/// Surface properties of a shape. `ModelDef::friction_combine` combines the properties of two
+/// surfaces.
 struct Material {
   double static_friction = 0.5;  ///< Coulomb coefficient of sticking contacts, >= kinetic_friction.
   double kinetic_friction = 0.5;  ///< Coulomb coefficient of sliding contacts, >= 0.

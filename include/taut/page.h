@@ -97,7 +97,7 @@ class Page {
   void Plot(const std::string& channel, const std::string& unit, double value);
 
   /// Displays the current states at time `time_s`. Waits according to the speed, and while the page
-  /// is paused. A time before that of the previous call starts a new run.
+  /// is paused. A time before the previous call's time starts a new run.
   void Show(double time_s);
 
  private:

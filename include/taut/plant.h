@@ -216,9 +216,9 @@ class Controller {
   virtual void Act(const Tick& tick, const Observation& seen, Commands& commands) = 0;
   /// Restarts a lane with another variant. The next tick of this lane is its first.
   virtual void Restart(int lane, const RolloutWorld& world) { (void)lane, (void)world; }
-  /// Changes parameters of a lane. `controllers` differ from those of the experiment in numbers
-  /// only. The memory of the lane remains, and phases continue without a jump. Called before a
-  /// tick; allocates no memory.
+  /// Changes parameters of a lane. `controllers` differ from the experiment's in numbers only. The
+  /// memory of the lane remains, and phases continue without a jump. Called before a tick;
+  /// allocates no memory.
   virtual void Retune(int lane, const std::vector<ControllerSpec>& controllers) {
     (void)lane, (void)controllers;
   }
@@ -259,9 +259,9 @@ class SensorModel {
 
 using ControllerFactory = std::function<std::unique_ptr<Controller>(const ControlSetup&)>;
 
-/// Custom controllers and sensors. The controllers act in this order after those of the experiment
-/// and may override their commands. The input of the sensors is the output of the experiment's
-/// sensors. Factories are called once per plant, from the thread that runs it.
+/// Custom controllers and sensors. The controllers act in this order after the experiment's
+/// controllers and may override their commands. The input of the sensors is the output of the
+/// experiment's sensors. Factories are called once per plant, from the thread that runs it.
 struct Extensions {
   std::vector<ControllerFactory> controllers;
   std::function<std::unique_ptr<SensorModel>(const ControlSetup&)> sensors;

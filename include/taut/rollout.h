@@ -47,8 +47,8 @@ struct RolloutOptions {
   int threads = 1;  ///< 0: one per core.
   std::optional<Simd> simd;
   const std::atomic<bool>* stop = nullptr;  ///< Set it to true to stop unfinished worlds.
-  /// Custom controllers and sensors in addition to those of the experiment. Several threads call
-  /// the factories concurrently.
+  /// Custom controllers and sensors in addition to the experiment's. Several threads call the
+  /// factories concurrently.
   Extensions extensions;
   /// Replaces the measure of the objective; penalties still apply. Several threads call it
   /// concurrently.

@@ -124,7 +124,7 @@ struct RunOptions {
   std::function<bool(Diagnostics&)> begin;
   /// Writers for the recorded rows. The caller creates them, the run finishes them.
   std::vector<TraceWriter*> traces;
-  /// Custom controllers and sensors in addition to those of the experiment.
+  /// Custom controllers and sensors in addition to the experiment's.
   Extensions extensions;
   /// Custom friction law (taut/friction.h) for the simulation, including settling. Null: the law of
   /// the model. No effect with a `plant`.

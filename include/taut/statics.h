@@ -31,7 +31,7 @@ struct BodyLoad {
   Vec3 weight_n;          ///< In W.
 };
 
-/// Returns the loads of each body of `def`, including those of fixed bodies on their supports.
+/// Returns the loads of each body of `def`, including fixed bodies, whose supports carry them.
 std::vector<BodyLoad> StartLoads(const ModelDef& def);
 
 /// Force and torque of a joint on its body b at `to_m`, in W; its body a gets the opposite. For a

@@ -45,7 +45,7 @@ struct StudyParameter {
 struct PerturbationSpec : VariationSpec {
   int worlds = 1;
   bool redraw = false;  ///< New worlds for each candidate; false: the same worlds for all.
-  bool worst = false;   ///< The score is that of the worst world; false: the mean score.
+  bool worst = false;   ///< The score is the lowest of all worlds; false: the mean.
 };
 
 struct MonteCarloSpec {};

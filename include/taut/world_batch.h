@@ -178,7 +178,7 @@ struct Overlap {
   double half_thickness_m = 0;
 };
 
-/// State of a joint at the current time. Forces are those of the last step.
+/// State of a joint at the current time. Forces are from the last step.
 struct JointState {
   double coordinate = 0;  ///< See `JointDef` [rad] or [m]; 0 without a coordinate.
   double rate = 0;        ///< [rad/s] or [m/s]
@@ -190,8 +190,8 @@ struct JointState {
   double turned_rad = 0;  ///< Rotation angle of b relative to a since the described pose, 0..pi.
 };
 
-/// State of the motion of a kinematic body at the current time. Force and torque are those of the
-/// last step.
+/// State of the motion of a kinematic body at the current time. Force and torque are from the last
+/// step.
 struct MotionState {
   double slide_m = 0, slide_rate_m_per_s = 0;
   double turn_rad = 0, turn_rate_rad_per_s = 0;
@@ -326,8 +326,8 @@ class WorldBatch {
   /// actuator. A motor stops.
   void SetRestLength(int world, int cable, double rest_length_m) noexcept;
   /// Returns why `SetParameter` rejects a value ("must be a positive number [kg], got -1"); empty
-  /// if the value is valid. The limits are those of model files. For a fixed body, any mass is
-  /// valid and has no effect.
+  /// if the value is valid. The limits are the same as in model files. For a fixed body, any mass
+  /// is valid and has no effect.
   std::string ParameterError(Parameter parameter, int index, double value) const;
   /// Returns false and changes nothing if `ParameterError` returns a reason.
   bool SetParameter(int world, Parameter parameter, int index, double value) noexcept;

@@ -100,8 +100,8 @@ inline float Tension(const float* p, const MotorLoop& motor) noexcept {
 }
 
 /// Computes length, rate and tension for impedance control. Position control skips this ("consumes
-/// additional computational time", paper). The rate is that of the rest length, because the load
-/// cell cannot resolve the rate of the spring's extension.
+/// additional computational time", paper). The rate is the rate of the rest length, because the
+/// load cell cannot resolve the rate of the spring's extension.
 inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& motor) noexcept {
   control::StepLowPass(motor.counts_per_tick, static_cast<float>(motor.step), p[kRateShare]);
   motor.rate_m_per_s = motor.counts_per_tick * numbers.speed_per_count_m_per_s;
