@@ -12,7 +12,7 @@ struct CableReadings {
   Number rest_length_m{};  ///< L, as measured by the encoder of a robot.
   Number length_m{};       ///< l: path length between the ends, along all attachments.
   Number rate_m_per_s{};   ///< dl/dt, exact, not a difference quotient.
-  // // Forces of stiff cables are averages over the last step (docs/theory/cables.md, section 3).
+  // Forces of stiff cables are averages over the last step (docs/theory/cables.md, section 3).
   Number tension_n{};          ///< Spring and damper, as measured by a load cell.
   Number elastic_n{};          ///< Spring only: max(0, k (l - L)), logged by NTRT as tension.
   Number stiffness_n_per_m{};  ///< k.

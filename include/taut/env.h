@@ -65,7 +65,7 @@ struct EnvView {
   std::span<const std::uint8_t> rows;  ///< Per world: whether its row is valid.
   std::span<float> observations_f32;   ///< (worlds, observations); writable.
   std::span<double> observations_f64;
-  // // only in `judge`
+  // only in `judge`
   std::span<const float> actions_f32;  ///< (worlds, actions), as passed to `Step`.
   std::span<const double> actions_f64;
   std::span<double> rewards;           ///< (worlds); writable.

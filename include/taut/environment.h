@@ -16,7 +16,7 @@ namespace taut {
 /// experiment unchanged.
 struct EnvironmentAction {
   int cable = 0;  ///< kWorld: no cable.
-  // // Effect of an action of 1, > 0. Exactly one of the next four is present.
+  // Effect of an action of 1, > 0. Exactly one of the next four is present.
   std::optional<double> rest_length_m = {};  ///< Added to the rest length commanded at the start.
   /// Rate of change of the commanded rest length.
   std::optional<double> rest_length_rate_m_per_s = {};
@@ -60,7 +60,7 @@ struct EnvironmentSpec {
   EnvironmentReward reward;
   std::optional<double> max_tension_n;  ///< Cable tension above which an episode ends as a failure.
   EnvironmentVariation randomise;
-  // // Positions in the file; may be empty.
+  // Positions in the file; may be empty.
   SourceRef at, period_at;
   std::vector<SourceRef> observation_sources;
 };

@@ -259,13 +259,13 @@ struct ResolvedGait {
   std::vector<Wave> waves;   ///< For sine gaits: one per driven cable.
   CouplingGraph graph;       ///< For CPG gaits; its cables equal `cables`.
   std::vector<double> sign;  ///< For CPG gaits, per oscillator: 1 or -1.
-  // // For CPG gaits with feedback, per oscillator:
+  // For CPG gaits with feedback, per oscillator:
   std::vector<int> role;  ///< Index in `FeedbackCpgGait::oscillators`.
   /// Joint index: cables with the same number at the end of their names share a joint.
   std::vector<int> joint;
   std::vector<double> place;           ///< Position per joint: 1 at the front, -1 at the rear.
   std::vector<double> most_tension_n;  ///< Largest actuator tension.
-  // // For gaits toward a goal, in W and in the described pose:
+  // For gaits toward a goal, in W and in the described pose:
   struct Strut {
     int body = 0;
     Vec3 along;  ///< Unit vector.

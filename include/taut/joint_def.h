@@ -48,11 +48,11 @@ struct JointDef {
   Quat turned;
   bool collides = false;  ///< Whether the two bodies can collide.
 
-  // // Properties along the coordinate.
+  // Properties along the coordinate.
   std::optional<double> least, most;  ///< Joint limits; a ball joint has only `most`.
   double restitution = 0.0;           ///< Coefficient of restitution of the joint limits, 0..1.
-  // // For a ball joint, the next three act on its rotation vector (angle up to half a turn) and
-  // its angular velocity, in the same way about every axis.
+  // For a ball joint, the next three act on its rotation vector (angle up to half a turn) and its
+  // angular velocity, in the same way about every axis.
   double friction = 0.0;                  ///< Largest Coulomb friction [N or N m], >= 0.
   double stiffness = 0.0, damping = 0.0;  ///< Spring stiffness and damping coefficient, >= 0.
   double rest = 0.0;      ///< Coordinate of the unloaded spring; 0 for a ball joint.
@@ -91,7 +91,7 @@ struct JointKindRow {
 /// Kinds of joints, in the order of `JointKind`. A new kind needs a row here, a value in
 /// `JointKind`, a symbol in the viewer, and a case in src/sim/compile/model_joints.cpp.
 inline constexpr JointKindRow kJointKindRows[] = {
-    // // constrained motions: along, across, swing, twist
+    // constrained motions: along, across, swing, twist
     {"ball", {true, true, false, false}, JointCoordinate::kAngle},
     {"hinge", {true, true, true, false}, JointCoordinate::kAngle},
     {"weld", {true, true, true, true}, JointCoordinate::kNone},

@@ -76,8 +76,8 @@ struct PinJointed {
 /// robot does not stress its members.
 PinJointed PinJointedOf(const ModelDef& def, bool weight = true);
 
-// // Matrices of a structure: N (3 x nodes); C (members x nodes) with -1 at the start and 1 at the
-// end of a member; S (clusters x members).
+// Matrices of a structure: N (3 x nodes); C (members x nodes) with -1 at the start and 1 at the end
+// of a member; S (clusters x members).
 /// Returns N: node positions [m], one per column.
 Matrix NodeMatrix(const PinJointed& structure);
 /// Returns the rows of C from `from` (inclusive) to `to` (exclusive).

@@ -129,7 +129,7 @@ class World : public Bodies {
   virtual Energy TotalEnergy(int lane) const = 0;
   virtual MotorState Motor(int lane, int cable) const = 0;  ///< Motor of a cable with a `dc_motor`.
   virtual std::vector<ContactState> Contacts(int lane) const = 0;
-  // // See `WorldBatch`.
+  // See `WorldBatch`.
   virtual double CableFrictionLoss(int lane, int cable) const = 0;
   virtual std::vector<double> CableSpanTensions(int lane, int cable) const = 0;
   virtual double WheelAngle(int lane, int cable, int wheel) const = 0;
@@ -226,7 +226,7 @@ class Controller {
   /// controllers of taut implement it.
   virtual void Serialize(plant::LaneState& state) { (void)state; }
 
-  // // --- interactive changes of a lane; override these functions if the controller supports them
+  // --- interactive changes of a lane; override these functions if the controller supports them
   // ---
   /// Returns the gains of a cable; nothing if it has none.
   virtual std::optional<ImpedanceGains> Gains(int lane, int cable) const {

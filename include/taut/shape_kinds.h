@@ -33,8 +33,8 @@ void EachShape(Def& def, F f) {
   EachShapeList(each, def);
 }
 
-// // EachPoint: calls f(point), by reference, for each point [m], in W, that defines the position
-// of a shape.
+// EachPoint: calls f(point), by reference, for each point [m], in W, that defines the position of a
+// shape.
 template <class F>
 void EachPoint(SphereDef& sphere, F f) {
   f(sphere.center_m);

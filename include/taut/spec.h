@@ -250,7 +250,7 @@ struct LoadCellSpec {
   double max_n = std::numeric_limits<double>::infinity();
   double quantum_n = 0.0;  ///< Step of the converter, starting at `min_n`; 0: none.
   double delay_s = 0.0;    ///< A whole number of sensor periods.
-  // // Standard deviations of calibration errors over the cells, drawn once per run.
+  // Standard deviations of calibration errors over the cells, drawn once per run.
   double gain_error = 0.0;                              ///< Relative error of the gain [1].
   double drift_n_per_s = 0.0;                           ///< Drift rate of the zero.
   std::optional<LoadCellCounts> counts = std::nullopt;  ///< Replaces range and quantum.

@@ -101,16 +101,16 @@ struct TableLayout {
   char separator = ',';              ///< A blank stands for any number of blanks.
   std::vector<std::string> ignore;   ///< Patterns with `*` of columns to ignore.
 
-  // // Clock: a column in units of `unit_s` [s]; its value `zero` (absent: its first value) becomes
-  // 0 s. Without such a column, rows are `row_s` apart.
+  // Clock: a column in units of `unit_s` [s]; its value `zero` (absent: its first value) becomes 0
+  // s. Without such a column, rows are `row_s` apart.
   std::string time_column;
   double unit_s = 1.0;
   std::optional<double> zero = 0.0;
   double offset_s = 0.0;  ///< Added to all times.
   std::optional<double> row_s;
 
-  // // Only for tables with one value per row (long format): columns whose values, joined by `_`,
-  // are the channel name, and the column of the value.
+  // Only for tables with one value per row (long format): columns whose values, joined by `_`, are
+  // the channel name, and the column of the value.
   std::vector<std::string> name_columns;
   std::string value_column;
 };

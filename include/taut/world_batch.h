@@ -195,8 +195,8 @@ struct JointState {
 struct MotionState {
   double slide_m = 0, slide_rate_m_per_s = 0;
   double turn_rad = 0, turn_rate_rad_per_s = 0;
-  // // Force and torque that the motion exerts against all other forces on the body, in W. The
-  // body's weight and inertia are not included.
+  // Force and torque that the motion exerts against all other forces on the body, in W. The body's
+  // weight and inertia are not included.
   Vec3 force_n;
   Vec3 torque_n_m;    ///< About the body's origin (`BodyDef::com_m`).
   double work_j = 0;  ///< Work of the motion on the other bodies since the start.
@@ -251,7 +251,7 @@ class WorldBatch {
   /// Returns the simulated time of a world [s].
   double Time(int world) const noexcept;
 
-  // // --- commands: valid until changed ------------------------------------------------------
+  // --- commands: valid until changed ------------------------------------------------------
   /// Sets the rest length target [m] for the actuator of a cable.
   void SetRestLengthTarget(int world, int cable, double rest_length_m) noexcept;
   double RestLengthTarget(int world, int cable) const noexcept;

@@ -1,7 +1,7 @@
-/// Assertions of internal invariants. TAUT_ASSERT(condition) prints the condition and its place and
-/// ends the program, in builds with the CMake option TAUT_ASSERTS (CONTRIBUTING.md); in others it
-/// costs nothing. No input and no state of a world may violate one. Without the standard library:
-/// the step includes it.
+/// Assertions of internal invariants. If the condition is false, TAUT_ASSERT(condition) prints it
+/// with its file and line and ends the program. Only builds with the CMake option TAUT_ASSERTS
+/// (CONTRIBUTING.md) check it; others have no cost. No input and no state of a world may make an
+/// assertion fail. No standard library, because the step includes this header.
 #pragma once
 
 #ifdef TAUT_ASSERTS
@@ -15,7 +15,7 @@ namespace taut::base {
 
 #else
 
-// The condition must still compile.
+// unevaluated, but the condition must compile
 #define TAUT_ASSERT(condition) ((void)sizeof(!(condition)))
 
 #endif

@@ -1,4 +1,4 @@
-/// Numbers as text, in messages and files
+/// Conversion of numbers to text for messages and files.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace taut::base {
 
-/// Returns a number with so many digits, at most 17, for computed values that are displayed only.
+/// Returns a number with `digits` digits, at most 17. For computed values that are only displayed.
 inline std::string Brief(double number, int digits = 4) {
   char text[32];
   return {text, ToChars(text, text + sizeof text, number, digits).ptr};
 }
 
-/// Returns the shortest text that reads back as the same number: for values from files and flags.
+/// Returns the shortest text that reads back as the same number. For values from files and flags.
 inline std::string Shortest(double number) {
   char text[32];
   return {text, ToChars(text, text + sizeof text, number).ptr};

@@ -1,4 +1,5 @@
-/// Serialization of numbers, texts and lists between processes of one build on one kind of machine.
+/// Serialization of numbers, texts and lists between processes of the same build on the same kind
+/// of machine.
 #pragma once
 
 #include <cstring>
@@ -25,7 +26,7 @@ class ByteWriter {
   std::string bytes;
 };
 
-/// Beyond the end, values read as zeros.
+/// Reader of serialized data. Values past the end are zeros.
 class ByteReader {
  public:
   explicit ByteReader(const std::string& bytes) : bytes_(bytes) {}
@@ -48,8 +49,8 @@ class ByteReader {
     items.resize(Size());
     for (T& item : items) Get(item);
   }
-  /// Reads the size of the following list. Returns 0 if it exceeds the remaining bytes, since every
-  /// item has at least one.
+  /// Reads the size of a list that follows. Returns 0 if it exceeds the number of remaining bytes,
+  /// since every item has at least one byte.
   std::size_t Size() {
     std::size_t size = 0;
     Get(size);

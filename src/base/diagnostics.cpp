@@ -7,8 +7,8 @@
 namespace taut {
 namespace {
 
-/// Edit distance: insertions, deletions, substitutions and swaps of neighbors cost one each
-/// (optimal string alignment).
+/// Returns the edit distance: insertions, deletions, substitutions and swaps of neighboring letters
+/// cost one each (optimal string alignment).
 int EditDistance(std::string_view a, std::string_view b) {
   std::vector<int> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   std::iota(above.begin(), above.end(), 0);
@@ -110,14 +110,16 @@ std::string Diagnostics::Format() const {
 }
 
 std::string_view ClosestMatch(std::string_view word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongest = 100;  // length of a name; longer words are not misspellings
+  constexpr std::size_t kLongest = 100;  // longest name; longer words are not misspellings
   std::string_view best;
   if (word.size() > kLongest) return best;
-  int best_distance = static_cast<int>(word.size()) / 3 + 1;  // a third of the letters may differ
+  // a third of the letters may differ
+  int best_distance = static_cast<int>(word.size()) / 3 + 1;
   for (const std::string& candidate : candidates) {
     const auto longer =
         static_cast<std::ptrdiff_t>(candidate.size()) - static_cast<std::ptrdiff_t>(word.size());
-    if (longer > best_distance || -longer > best_distance) continue;  // too many letters differ
+    // the lengths differ too much
+    if (longer > best_distance || -longer > best_distance) continue;
     const int distance = EditDistance(word, candidate);
     if (distance <= best_distance && (best.empty() || distance < best_distance)) {
       best = candidate;
@@ -131,7 +133,7 @@ std::string DidYouMean(std::string_view word, const std::vector<std::string>& ca
   const std::string_view best = ClosestMatch(word, candidates);
   if (!best.empty()) return "did you mean \"" + std::string(best) + "\"?";
   if (candidates.empty()) return {};
-  // Up to 14 names are listed in full: leaving out only two would save little.
+  // Up to 14 names are listed in full, since omitting one or two would save little.
   constexpr std::size_t kMostNamed = 12, kMost = 14;
   const std::size_t named = candidates.size() <= kMost ? candidates.size() : kMostNamed;
   std::string out = "one of:";

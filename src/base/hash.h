@@ -15,13 +15,13 @@ class Fnv1a {
       hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 1099511628211u;
     }
   }
-  /// Adds a text with its length, so that the border between two texts matters.
+  /// Adds a text with its length, so that the boundary between two texts matters.
   void AddText(std::string_view text) {
     Add(std::to_string(text.size()) + ":");
     Add(text);
   }
-  /// Adds the bits of a number, except the sign of zero and the kind of NaN, which files do not
-  /// preserve.
+  /// Adds the bits of a number. Zeros of both signs are equal, and so are all NaNs, because files
+  /// do not preserve these differences.
   void AddNumber(double x) {
     AddText(x != x ? "nan" : std::to_string(__builtin_bit_cast(std::uint64_t, x + 0.0)));
   }

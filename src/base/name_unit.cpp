@@ -27,8 +27,8 @@ std::string UnitOfWord(std::string_view word) {
   return {};
 }
 
-/// Many names end in a letter that is an index or a component: body_a, orientation_w. The letter is
-/// a unit only after the name of its quantity.
+/// Returns whether the last letter of a name is an index or component (body_a, orientation_w)
+/// instead of a unit. It is a unit only after the name of its quantity.
 bool IsOnlyLetter(std::string_view word, std::string_view before) {
   constexpr std::string_view kLetters[] = {"a", "v", "w", "k", "c"};
   constexpr std::string_view kQuantities[] = {"current", "voltage", "power", "temperature"};

@@ -6,17 +6,18 @@
 
 namespace taut::base {
 
-/// For damping_n_s_per_m: "N s" over "m". For weight_per_m: nothing over "m", because a count or an
-/// unknown unit precedes "per". Both are empty if a name ends without a unit.
+/// Unit at the end of a name, as numerator and denominator. damping_n_s_per_m: "N s" and "m".
+/// weight_per_m: "" and "m", because "weight" is no unit. Both are empty if the name ends without a
+/// unit.
 struct NameUnit {
   std::string over, under;
 
-  /// Returns text such as "N s/m"; "1/m" with nothing over it.
+  /// Returns a text such as "N s/m", or "1/m" without a numerator.
   std::string Text() const;
 };
 
-/// Returns the unit of a name. The first word names the quantity; the unit consists of all words at
-/// the end that are units: kg_per_m ends with m but is not a length.
+/// Returns the unit of a name. The first word names the quantity; the unit consists of all unit
+/// words at the end. So kg_per_m is a mass per length, although it ends with m.
 NameUnit UnitAtEnd(std::string_view name);
 
 }  // namespace taut::base

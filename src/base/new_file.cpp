@@ -12,22 +12,22 @@
 namespace taut {
 namespace {
 
-/// Returns true if the path is a device or pipe, which can be written to but not replaced.
+/// Returns true for a device or pipe, which can be written to but not replaced.
 bool IsDevice(const std::string& path) {
   for (const char* open_already : {"/dev/stdout", "/dev/stderr", "/dev/fd/", "/proc/"}) {
-    if (path.starts_with(open_already)) return true;  // a link, possibly to a file
+    if (path.starts_with(open_already)) return true;  // a link to an open file
   }
   struct stat info {};
   return lstat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISLNK(info.st_mode) &&
          !S_ISDIR(info.st_mode);
 }
 
-/// Files that cannot be synchronized, such as pipes, are not an error.
+/// Flushes a file to the disk. Files that do not support this, such as pipes, are no error.
 bool SyncDescriptor(int descriptor) {
   return fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS || errno == ENOTSUP;
 }
 
-/// A new name is on the disk once its folder is.
+/// Flushes the folder of a file; a new file name is on the disk only after that.
 bool SyncFolderOf(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int descriptor =
@@ -90,7 +90,7 @@ bool NewFile::WriteAllOrNone(std::string_view bytes) {
   struct stat before {};
   if (fstat(descriptor_, &before) != 0) return Fail();
   if (Write(bytes)) return true;
-  // Truncate to the previous size and continue there. Devices and pipes cannot be truncated.
+  // Truncate to the previous size and continue there. Impossible for devices and pipes.
   if (ftruncate(descriptor_, before.st_size) == 0) lseek(descriptor_, before.st_size, SEEK_SET);
   return false;
 }

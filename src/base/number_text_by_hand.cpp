@@ -1,5 +1,5 @@
-// Conversion of numbers by strtod and snprintf, which round to nearest (in glibc and musl), in the
-// C locale.
+// Conversion of numbers by strtod and snprintf in the C locale. Both round to nearest in glibc and
+// musl.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ bool Follows(const char* at, const char* end, const char* word) {
   return true;
 }
 
-/// Returns the end of the number that begins at `begin`; `begin` if there is none.
+/// Returns the end of the number that begins at `begin`, or `begin` if there is no number.
 const char* EndOfNumber(const char* begin, const char* end) {
   const char* at = begin;
   if (at != end && *at == '-') ++at;
@@ -29,7 +29,7 @@ const char* EndOfNumber(const char* begin, const char* end) {
   if (Follows(at, end, "inf")) return at + 3;
   if (Follows(at, end, "nan")) {
     at += 3;
-    // nan(...), with any letters, digits or underscores
+    // nan(...) with any letters, digits or underscores
     if (at == end || *at != '(') return at;
     const char* close = at + 1;
     while (close != end && (IsDigit(*close) || *close == '_' ||
@@ -61,16 +61,15 @@ std::to_chars_result Put(char* begin, char* end, const char* text, std::size_t s
   return {std::copy_n(text, size, begin), {}};
 }
 
-/// Returns d.ddde+dd with the fewest digits that identify `number`, which is finite and not
-/// negative.
+/// Returns d.ddde+dd with the fewest digits that identify `number`, which must be finite and >= 0.
 std::string ShortestScientific(double number) {
   char text[40];
   const auto means = [&] { return std::strtod(text, nullptr) == number; };
   for (int places = 0;; ++places) {
     std::snprintf(text, sizeof text, "%.*e", places, number);
     if (places == 16 || means()) return text;
-    // Below a power of two, numbers are closer than above it: the nearest decimal may identify
-    // another number, while the next larger decimal identifies this one.
+    // Below a power of two, adjacent numbers are closer than above it. The nearest decimal may then
+    // belong to another number, while the next larger decimal identifies this number.
     int exponent = 0;
     if (std::frexp(number, &exponent) != 0.5) continue;
     char* last = std::strchr(text, 'e') - 1;
@@ -95,7 +94,7 @@ std::from_chars_result FromChars(const char* begin, const char* end, double& num
   if (value == 0) {
     const char* const exponent =
         std::find_if(begin, stop, [](char c) { return (c | 0x20) == 'e'; });
-    // not zero, but too small for a double
+    // not zero, but below the smallest double
     if (std::any_of(begin, exponent, [](char c) { return c >= '1' && c <= '9'; })) {
       return {stop, std::errc::result_out_of_range};
     }
@@ -116,7 +115,7 @@ std::to_chars_result ToChars(char* begin, char* end, double number) noexcept {
   if (e > 2) digits.append(scientific, 2, e - 2);
   const int exponent = std::atoi(scientific.c_str() + e + 1);
   const int count = static_cast<int>(digits.size());
-  // Without an exponent, if that is not longer.
+  // Without an exponent, unless that is longer.
   std::string plain;
   if (exponent >= count - 1) {
     char whole[400];

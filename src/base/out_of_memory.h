@@ -1,4 +1,4 @@
-/// Error of a failed explicit memory allocation.
+/// Error after a failed explicit memory allocation.
 #pragma once
 
 namespace taut::base {

@@ -5,7 +5,8 @@
 namespace taut::base {
 
 bool Fits(std::string_view pattern, std::string_view name) {
-  // Greedy match with one backtracking point: the last `*` takes one more character.
+  // Greedy match with one backtracking point: after a mismatch, the last `*` takes one more
+  // character.
   std::size_t p = 0, n = 0, star = pattern.npos, resume = 0;
   while (n < name.size()) {
     if (p < pattern.size() && pattern[p] == '*') {
@@ -35,7 +36,7 @@ std::optional<std::string_view> Wildcard(std::string_view pattern, std::string_v
     return pattern == name ? std::optional<std::string_view>("") : std::nullopt;
   }
   const std::string_view head = pattern.substr(0, star), tail = pattern.substr(star + 1);
-  // at least one character, so that "*_x_m" matches a part of a name, not its absence
+  // at least one character, so that "*_x_m" needs a name before "_x_m"
   if (name.size() <= head.size() + tail.size() || !name.starts_with(head) ||
       !name.ends_with(tail)) {
     return std::nullopt;

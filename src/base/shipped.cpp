@@ -57,10 +57,11 @@ std::string FindInput(const std::string& path, const std::string& program) {
   std::error_code failed;
   const fs::path given(path);
   if (path.empty() || given.is_absolute() || fs::exists(given, failed)) return path;
-  if (*given.lexically_normal().begin() == "..") return path;  // would leave the folder
+  // it would be outside of the folder
+  if (*given.lexically_normal().begin() == "..") return path;
   const auto shipped = ShippedFolder(program);
   if (!shipped) return path;
-  // share/taut of a build links into the source tree: return the path of the file itself.
+  // In a build, share/taut links to the source tree; return the path of the target.
   const fs::path found = fs::canonical(*shipped / given, failed);
   if (failed || !fs::is_regular_file(found, failed)) return path;
   const fs::path in_tree = "share" / given;
@@ -68,7 +69,7 @@ std::string FindInput(const std::string& path, const std::string& program) {
 }
 
 std::string SimilarInput(const std::string& path, const std::string& program) {
-  constexpr std::size_t kMostFiles = 2000;  // of a folder
+  constexpr std::size_t kMostFiles = 2000;  // per folder
   const fs::path given(path), parent = given.parent_path();
   std::vector<std::string> names, paths;
   if (!given.has_stem()) return {};

@@ -11,13 +11,12 @@
 namespace taut::base {
 namespace {
 
-/// Spin time before a thread sleeps. Falling asleep and waking take 50 us together, so spinning
-/// costs little more than waking. After 10 us the thread yields its core, which the thread that it
-/// waits for may need. It does not yield at once, since that may cost milliseconds, and the next
-/// call is often a few microseconds away.
+/// Spin times of a waiting thread. Sleep and wake-up take 50 us together, so shorter spins cost
+/// little. The next call often comes a few microseconds later. After 10 us (kGivingWay), the thread
+/// yields its core, which the awaited thread may need; yielding earlier may cost milliseconds.
 constexpr std::chrono::microseconds kLooking{60}, kGivingWay{10};
 
-/// Pauses briefly and lets another hardware thread of the core run.
+/// Pauses briefly, so that the other hardware thread of the core can run.
 void Pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
@@ -59,13 +58,13 @@ void ThreadPool::Stop() noexcept {
 void ThreadPool::RunErased(void* context, Call call) {
   if (workers_.empty()) return call(context, 0);
   const std::uint64_t before = state_.load(std::memory_order_relaxed);
-  TAUT_ASSERT((before & (kOpen | kJoined)) == 0);  // one caller at a time
+  TAUT_ASSERT((before & (kOpen | kJoined)) == 0);  // only one caller at a time
   context_ = context;
   call_ = call;
   state_.store(((before >> 32) + 1) << 32 | kOpen);
   Ring(idle_sleepers_, start_);
   Guarded(0);
-  // Threads that have not joined by now must not: this round's context is about to end.
+  // From now on, no further thread may join: the context of this round becomes invalid.
   state_.fetch_and(~kOpen);
   WaitUntil([](std::uint64_t state) { return (state & kJoined) == 0; }, caller_sleeps_, done_);
   if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
@@ -89,7 +88,7 @@ void ThreadPool::Work(int thread) {
         },
         idle_sleepers_, start_);
     if ((state & kStop) != 0) return;
-    // The whole word is compared, so no thread joins a round that has closed since.
+    // Fails if the round has ended since, because the whole word is compared.
     if (!state_.compare_exchange_strong(state, state + 1)) continue;
     seen = state >> 32;
     Guarded(thread);
@@ -114,9 +113,9 @@ std::uint64_t ThreadPool::WaitUntil(const Good& good, std::atomic<int>& sleepers
       if (looked > kGivingWay) std::this_thread::yield();
     }
   }
-  // No wake-up is lost: either the thread that changes `state_` next sees a sleeper and takes the
-  // mutex to ring, or the change precedes the check below. Both sides write first and then read, in
-  // one sequentially consistent order.
+  // No wake-up is lost. Both sides first write and then read, in one sequentially consistent order.
+  // Therefore the thread that next changes `state_` sees this sleeper and takes the mutex to ring,
+  // or this check sees the change.
   std::unique_lock lock(mutex_);
   sleepers.fetch_add(1);
   bell.wait(lock, [&] { return good(state = state_.load()); });

@@ -1,4 +1,5 @@
-/// Union-find (disjoint sets): joined elements, directly or through others, have the same root.
+/// Union-find (disjoint sets). Elements that were united, directly or indirectly, have the same
+/// root.
 #pragma once
 
 #include <numeric>
@@ -13,7 +14,7 @@ class UnionFind {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
 
-  /// Returns the smallest member of i's set.
+  /// Returns the smallest element of the set of i.
   int Root(int i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

@@ -1,4 +1,4 @@
-/// Unique names, made by numbering duplicates.
+/// Unique names: appends numbers to duplicates.
 #pragma once
 
 #include <map>
@@ -8,7 +8,8 @@ namespace taut::base {
 
 class UniqueNames {
  public:
-  /// Returns `name`, or if it is taken or empty, the first of name_2, name_3 ... that is free.
+  /// Returns `name` if it is free and not empty, otherwise the first free name of name_2, name_3
+  /// ...
   std::string Take(const std::string& name) {
     std::string base = name.empty() ? "unnamed" : name;
     const auto [first, fresh] = taken_.try_emplace(base, 1);
@@ -21,7 +22,7 @@ class UniqueNames {
   }
 
  private:
-  /// Names and their number of uses, where the search for a free name begins.
+  /// Number of uses per name; the search for a free name starts there.
   std::map<std::string, int> taken_;
 };
 

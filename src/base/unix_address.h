@@ -8,7 +8,7 @@
 
 namespace taut {
 
-/// Returns false if the path is empty or too long for an address (`sizeof to->sun_path`).
+/// Fills in the address. Returns false if the path is empty or longer than `sun_path`.
 inline bool UnixAddress(const std::string& path, sockaddr_un* to) {
   *to = {};
   to->sun_family = AF_UNIX;

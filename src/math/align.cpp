@@ -9,8 +9,8 @@
 namespace taut {
 namespace {
 
-/// Diagonalizes by cyclic Jacobi rotations. On return the eigenvalues are on the diagonal of `a`
-/// and the columns of `v` are the eigenvectors.
+/// Computes eigenvalues and eigenvectors by cyclic Jacobi rotations. Results: the eigenvalues on
+/// the diagonal of `a`, the eigenvectors in the columns of `v`.
 void Diagonalize(double a[4][4], double v[4][4]) {
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) v[i][j] = i == j ? 1.0 : 0.0;
@@ -54,8 +54,8 @@ Vec3 RigidMotion::Of(const Vec3& point_m) const noexcept {
 }
 
 // B. K. P. Horn, Closed-form solution of absolute orientation using unit quaternions, J. Opt. Soc.
-// Am. A 4 (1987), section 4: the rotation is the eigenvector of the largest eigenvalue of N, whose
-// elements are combinations of the sums S_xy of products of coordinates.
+// Am. A 4 (1987), section 4: the rotation is the eigenvector with the largest eigenvalue of N. The
+// elements of N are combinations of the sums S_xy of products of coordinates.
 RigidMotion Align(std::span<const Vec3> from_m, std::span<const Vec3> to_m) {
   TAUT_ASSERT(from_m.size() == to_m.size());
   RigidMotion motion{Mean(from_m), Mean(to_m), {}};

@@ -7,7 +7,7 @@
 
 namespace taut {
 
-/// Rotation about one center, which moves to the other.
+/// Rigid motion: maps one center to another and rotates about it.
 struct RigidMotion {
   Vec3 from_center_m, to_center_m;
   Quat turn;
@@ -15,8 +15,9 @@ struct RigidMotion {
   Vec3 Of(const Vec3& point_m) const noexcept;
 };
 
-/// Returns the rigid motion that brings points closest to others, pair by pair, in least squares.
-/// `to_m` must have as many points as `from_m`; without points the motion is the identity.
+/// Returns the rigid motion that maps each point of `from_m` as closely as possible to its partner
+/// in `to_m`, in the least-squares sense. Both must have the same size; without points, the result
+/// is the identity.
 RigidMotion Align(std::span<const Vec3> from_m, std::span<const Vec3> to_m);
 
 }  // namespace taut

@@ -1,4 +1,4 @@
-/// Arctangent, exponential and rounding with the same bits on all machines, for wide and plain
+/// Arctangent, exponential and rounding with the same bits on all machines, for SIMD and plain
 /// numbers; only + - * / and Sqrt.
 #pragma once
 
@@ -15,8 +15,8 @@ TAUT_INLINE S Round(S x) noexcept {
   return (x + large) - large;
 }
 
-/// Returns the angle from x to (x, y), -pi..pi, with an error of about 3 units in the last place; 0
-/// for (0, 0). The angle is halved twice, so that the series is short.
+/// Returns the angle of the direction (x, y), -pi..pi; 0 for (0, 0). The error is about 3 units in
+/// the last place. The angle is halved twice, so a short series suffices.
 template <class S>
 TAUT_INLINE S Atan2(S y, S x) noexcept {
   constexpr int kTerms = 12;  // (tan(pi / 16))^25 / 25 < 1e-19
@@ -35,8 +35,8 @@ TAUT_INLINE S Atan2(S y, S x) noexcept {
   return Select(y < zero, zero - angle, angle);
 }
 
-/// Returns e^x - 1 for 0 <= x <= 40, with an error of about 1e-15 of e^x. Uses (1 + y)^2 - 1 = y (2
-/// + y), so that no digits are lost for small x.
+/// Returns e^x - 1 for 0 <= x <= 40, with an error of about 1e-15 e^x. Doubles y by (1 + y)^2 - 1 =
+/// y (2 + y), which loses no digits for small x.
 template <class S>
 TAUT_INLINE S ExpLess1(S x) noexcept {
   constexpr int kHalvings = 8, kTerms = 9;  // remainder (40 / 256)^10 / 10! < 1e-14

@@ -1,12 +1,12 @@
-/// Elastic law of a cable: force as a function of stretch (docs/theory/cables.md, eq. 1). It is
-/// defined only here. The step, statics, energies, starts and sizing call it; the callers add
-/// dampers and the condition that a cable does not push.
+/// Elastic law of a cable: force as a function of stretch (docs/theory/cables.md, eq. 1). This is
+/// the only definition, for the step, statics, energies, starts and sizing. Callers add the damper
+/// and the condition that a cable does not push.
 #pragma once
 
 namespace taut::math {
 
-/// Linear spring with the stiffness k [N/m]. `Num`: double, or the lanes of a SIMD register.
-/// Callers use this class only, so another law would be a branch in its member functions.
+/// Linear spring with stiffness k [N/m]. `Num`: double or a SIMD number. Another law would be a
+/// branch in the member functions; callers need no change.
 template <class Num>
 struct CableLaw {
   Num stiffness;

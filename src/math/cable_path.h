@@ -1,13 +1,13 @@
 /// Cable path: length, rate and pulls of a cable along its attachments (docs/theory/cables.md, eq.
-/// 2, 3). Shared by the step, its sensors, the start, the bounds of stiffness and the statics: for
-/// V3<W> of the step and for Vec3, without the standard library.
+/// 2, 3). Used by the step, sensors, starts, stiffness bounds and statics, with V3<W> in the step
+/// and Vec3 elsewhere. No standard library.
 ///
-/// A path is a sequence of points that belong to bodies, and the spans between them. It provides
-/// its length, its rate, and the pull on each point per unit of tension.
+/// A path is a sequence of points on bodies, and of the spans between them. Results: its length,
+/// its rate, and the pull on each point per unit of tension.
 ///
-/// A point is an attachment, or one of the two points where a cable arrives at a wheel and leaves
-/// it (cable_wheel.h). Between those two there is no span that pulls: the arc adds only to the
-/// length. The rate is correct without it, since the points slide along the spans that they end
+/// A point is an attachment, or one of the two points at which a cable reaches and leaves a wheel
+/// (cable_wheel.h). The arc between these two adds to the length but exerts no pull. It does not
+/// affect the rate, because both points slide in the directions of their spans
 /// (docs/theory/cables.md, eq. 14).
 #pragma once
 
@@ -17,21 +17,21 @@ namespace taut {
 
 template <class V>
 struct PathPoint {
-  V p;    ///< Position; one frame for the whole path [m].
-  V v;    ///< Velocity; only for rates [m/s].
-  V arm;  ///< From the origin of its body; only for torques [m].
-  V u;    ///< Direction of the span from the previous point, per unit of tension.
+  V p;    ///< Position [m], in one frame for the whole path.
+  V v;    ///< Velocity [m/s]; needed for rates only.
+  V arm;  ///< Position relative to the origin of its body [m]; needed for torques only.
+  V u;    ///< Unit vector from the previous point to this one.
 };
 
-/// Length of a path or a part of it, and its exact rate.
+/// Length of a path or of a part of it, and its exact rate.
 template <class V>
 struct PathLength {
   using S = decltype(V::x);
   S l = Constant<S>::Of(0.0), dl = Constant<S>::Of(0.0);
 };
 
-/// Adds the span between two neighbors, and fills in `to.u`. Coincident points have no direction;
-/// the small length makes u = d / tiny ~ 0.
+/// Adds the span between two adjacent points and sets `to.u`. For coincident points, which have no
+/// direction, the small minimum length gives u ~ 0.
 template <class V>
 TAUT_INLINE void AddSpan(const PathPoint<V>& from, PathPoint<V>& to, PathLength<V>& path) noexcept {
   using S = typename PathLength<V>::S;
@@ -42,7 +42,7 @@ TAUT_INLINE void AddSpan(const PathPoint<V>& from, PathPoint<V>& to, PathLength<
   path.dl = path.dl + Dot(to.u, to.v - from.v);
 }
 
-/// Returns length and rate of a path without wheels; fills in the directions.
+/// Returns length and rate of a path without wheels, and sets the directions `u`.
 template <class V>
 TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept {
   PathLength<V> path;
@@ -50,7 +50,7 @@ TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points) noexcept 
   return path;
 }
 
-/// Returns the same for points at `place(i)`, without storing directions.
+/// Returns the same for points at `place(i)` without storing directions.
 template <class V, class Place>
 PathLength<V> MeasureThrough(int count, const Place& place) noexcept {
   PathLength<V> path;
@@ -74,8 +74,8 @@ TAUT_INLINE V PullAt(int count, const PathPoint<V>* points, int i) noexcept {
   return pull;
 }
 
-/// Adds the forces and torques of a tension to its bodies. `body(i)` returns the sums of point i's
-/// body: its `force`, and its `torque` about the origin of the arms.
+/// Adds the forces and torques of a tension to its bodies. `body(i)` returns the body data of point
+/// i: `force`, and `torque` about the origin of the body.
 template <class V, class Body>
 TAUT_INLINE void PullBodies(int count, const PathPoint<V>* points,
                             typename PathLength<V>::S tension, const Body& body) noexcept {

@@ -1,6 +1,7 @@
-/// Cable wrapping around wheels: cylinders of bodies in the cable's path (docs/theory/cables.md,
-/// section 4). The path is the shortest one for its winding, and one angle, tracked from step to
-/// step, determines number and direction of the turns.
+/// Cable wrapping around wheels: cylinders on bodies in the path of the cable
+/// (docs/theory/cables.md, section 4). The path is the shortest one for its winding. The winding
+/// (number and direction of turns) follows from one angle per wheel, which is tracked from step to
+/// step.
 #pragma once
 
 #include "math/angle.h"
@@ -11,13 +12,14 @@ namespace taut {
 template <class V>
 struct Wheel {
   using S = decltype(V::x);
-  V center, axis;  ///< In the path's frame; the axis is a unit vector.
+  V center, axis;  ///< In the frame of the path; the axis is a unit vector.
   S radius;        ///< [m]
-  S before;        ///< Its previous `angle`, at most half a turn different.
-  int at;          ///< Path point where the cable arrives; it leaves from the next one.
+  S before;        ///< `angle` in the previous step; it changes by at most half a turn.
+  /// Index of the path point where the cable reaches the wheel; it leaves at the next one.
+  int at;
   // Results:
-  S angle;  ///< About the axis, from the previous to the next point, with all turns [rad].
-  S theta;  ///< Wrap angle; not positive where the cable does not touch [rad].
+  S angle;  ///< Angle about the axis from the previous to the next point, with all turns [rad].
+  S theta;  ///< Wrap angle [rad]; <= 0 without contact.
   S arc;    ///< Length of the arc [m].
 };
 
@@ -27,21 +29,21 @@ TAUT_INLINE V Pick(M which, const V& yes, const V& no) noexcept {
   return {Select(which, yes.x, no.x), Select(which, yes.y, no.y), Select(which, yes.z, no.z)};
 }
 
-/// Points where a cable from `p` to `q` arrives at a wheel and leaves it.
+/// Points at which a cable from `p` to `q` reaches and leaves a wheel.
 template <class V>
 struct Tangents {
   using S = typename Wheel<V>::S;
   V a, b;
   S angle, theta, arc;
-  S zp, zq, lp, around, lq;  ///< Along the axis; across it: before, on, behind the wheel [m].
+  /// Positions along the axis, and lengths across it: before, on and behind the wheel [m].
+  S zp, zq, lp, around, lq;
 };
 
-/// Value of a free arc's middle along the axis, without friction.
+/// Stands for an arc that is free along the axis, without friction.
 inline constexpr double kNotHeld = 1e300;
 
-/// Slopes of a cable along a wheel's axis, per distance across it. Where friction holds the arc's
-/// middle at `along`, the slope changes at both tangent points; the arc has the mean of the slopes
-/// before and behind it.
+/// Slopes of a cable along the axis of a wheel, per length across it. Where friction holds the
+/// middle of the arc at `along`, the slope changes at both tangent points.
 template <class S>
 struct Rises {
   S before, on, behind;
@@ -57,8 +59,8 @@ TAUT_INLINE Rises<S> RisesAt(const Tangents<V>& way, S along) noexcept {
   return {(along - on * w - way.zp) / lp, on, (way.zq - along - on * w) / lq};
 }
 
-/// Lays a cable around a wheel: a straight line on the unrolled cylinder, unless it is held at
-/// `along` (if not null). Points within the cylinder count as on it.
+/// Lays a cable around a wheel. The path is a straight line on the unrolled cylinder, unless
+/// friction holds it at `along` (if not null). Points inside the cylinder count as on its surface.
 template <class V, class S = typename Wheel<V>::S>
 TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q,
                               const S* along = nullptr) noexcept {
@@ -91,7 +93,7 @@ TAUT_INLINE Tangents<V> LayOn(const Wheel<V>& wheel, const V& p, const V& q,
   return found;
 }
 
-/// Returns the next point of the cable after wheel k of a row that ends before `last`.
+/// Returns the next path point after wheel k that the cable touches, at the latest `to`.
 template <class V>
 TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, int last,
                      const V& to) noexcept {
@@ -101,14 +103,15 @@ TAUT_INLINE V Behind(const PathPoint<V>* points, const Wheel<V>* wheels, int k, 
   return q;
 }
 
-/// Lays wheels first..last-1, which are consecutive, between the points before and behind them.
-/// `begun`: points and thetas contain an initial guess; else the cable starts off all wheels.
+/// Lays consecutive wheels first..last-1 between the points before and after them. `begun`: points
+/// and wrap angles contain an initial guess; otherwise the iteration starts without contact.
 template <class V, class S = typename Wheel<V>::S>
 void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last, const S* along,
                      bool begun) noexcept {
   using C = Constant<S>;
   constexpr int kMostRounds = 200;
-  constexpr double kStill = 1e-15;  ///< Relative to their distance.
+  /// Convergence tolerance relative to the distance of the end points.
+  constexpr double kStill = 1e-15;
   const S zero = C::Of(0.0);
   const V from = points[wheels[first].at - 1].p, to = points[wheels[last - 1].at + 2].p;
   for (int k = first; k < last; ++k) {
@@ -142,7 +145,8 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
     }
     busy = moved;
   }
-  // Where the cable does not touch, the pulls on its two points cancel anywhere on the way.
+  // Without contact, the pulls on both points of the wheel cancel, wherever these are on the
+  // straight line.
   for (int k = first; k < last; ++k) {
     const V half = C::Of(0.5) * (points[wheels[k].at - 1].p + Behind(points, wheels, k, last, to));
     V& a = points[wheels[k].at].p;
@@ -152,9 +156,9 @@ void LayOnNeighbours(PathPoint<V>* points, Wheel<V>* wheels, int first, int last
   }
 }
 
-/// Computes the points where the cable arrives at wheels and leaves them; other points are given. A
-/// path neither starts nor ends at a wheel. `along`, if not null: per wheel, the position along the
-/// axis from its center at which the middle of the arc is held [m], or kNotHeld. `begun`: as in
+/// Computes the points at which the cable reaches and leaves wheels; other points are given. A path
+/// neither starts nor ends at a wheel. `along`, if not null: per wheel, the axial position [m],
+/// relative to the center, at which friction holds the middle of the arc, or kNotHeld. `begun`: see
 /// LayOnNeighbours.
 template <class V, class S = typename Wheel<V>::S>
 void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels, const S* along = nullptr,
@@ -168,11 +172,11 @@ void LayOnWheels(PathPoint<V>* points, int wheel_count, Wheel<V>* wheels, const 
   }
 }
 
-/// Sets the initial guess for consecutive wheels: points on the side of the axis on which the cable
-/// passes, near the crossing of the way to its end, at most `half` from the wheel's middle [m]. The
-/// previous angle determines the whole turns of an angle about an axis, which is measured between
-/// the neighboring points along the cable. With the cable's ends as initial guess, a looped cable
-/// was found to touch no wheel. `has`: 1 for existing wheels, else 0.
+/// Computes an initial guess for consecutive wheels: points on the correct side of each axis, near
+/// the crossing with the line to the end, at most `half` from the center [m]. Angles about an axis
+/// are measured between neighboring points; the previous angle determines their full turns. With
+/// the cable's ends as initial guess, a looped cable would lose contact with its wheel. `has`: 1
+/// for existing wheels, otherwise 0.
 template <class V, class S = typename Wheel<V>::S>
 void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* half,
                    const S* has) noexcept {
@@ -203,9 +207,9 @@ void BeginOnWheels(PathPoint<V>* points, int count, Wheel<V>* wheels, const S* h
   }
 }
 
-/// Returns the middle of the arc on a wheel, as an angle about its axis from `mark`, a direction
-/// across it [rad]: it divides the cable's material before and behind it. If the cable does not
-/// touch, the nearest place.
+/// Returns the middle of the arc on a wheel as an angle about its axis [rad], measured from `mark`,
+/// a direction normal to the axis. It separates the material of the spans before and after the
+/// wheel. Without contact, it is the point of the line nearest to the axis.
 template <class V>
 TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
                                           const PathPoint<V>* points) noexcept {
@@ -226,7 +230,7 @@ TAUT_INLINE typename Wheel<V>::S MiddleOf(const Wheel<V>& wheel, const V& mark,
          Select(on, C::Of(0.5) * side * wheel.theta, zero);
 }
 
-/// Returns length and rate of a path with given points; fills in the directions.
+/// Returns length and rate of a path with given points, and sets the directions `u`.
 template <class V>
 TAUT_INLINE PathLength<V> MeasurePath(int count, PathPoint<V>* points, int wheel_count,
                                       const Wheel<V>* wheels) noexcept {

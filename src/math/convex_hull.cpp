@@ -1,6 +1,6 @@
-// Convex hull by brute force: any three points whose plane has all others on one side form a face.
-// The work is the fourth power of the number of corners, which is small, and there are no special
-// cases: points in one plane to within a tolerance form one face.
+// Convex hull by brute force: three points form a face if all others are on one side of their
+// plane. The work is proportional to the fourth power of the number of corners, which is small.
+// There are no special cases: points that are coplanar to within a tolerance form one face.
 #include "math/convex_hull.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@
 namespace taut::math {
 namespace {
 
-/// Tolerances relative to the size of the body: coplanar or coincident points; its largest value,
-/// and the factor by which it is increased while faces do not close.
+/// Tolerance for coplanar or coincident points, relative to the size of the body. While faces do
+/// not close, it increases by the factor kWider, up to kWidest.
 constexpr double kSame = 1e-7, kWidest = 1e-3, kWider = 10.0;
-/// Number of points that may be added without one more corner. In a body whose thickness is near
-/// the tolerance, an added corner may be dropped with the next faces, or drop another one.
+/// Maximum number of added points without a gain of corners. In a body with a thickness near the
+/// tolerance, an added corner may disappear later, or remove another one.
 constexpr int kMostFruitless = 16;
 
 using Face = std::vector<int>;
@@ -26,13 +26,13 @@ using Points = std::vector<Vec3>;
 const Vec3& At(const Points& points, int i) { return points[static_cast<std::size_t>(i)]; }
 
 struct Plane {
-  Vec3 normal;  ///< Unit vector, outwards.
+  Vec3 normal;  ///< Unit vector, outward.
   double offset_m;
   double Above(const Vec3& p) const { return Dot(normal, p) - offset_m; }
 };
 
-/// Returns the corners of a face among `on`, all in one plane, counterclockwise seen from outside:
-/// after each corner comes the point without others to its right; of several, the farthest.
+/// Returns the corners of a face among the coplanar points `on`, counterclockwise seen from
+/// outside. The next corner is the point without others to its right; of several, the farthest.
 Face Around(const Points& points, const Face& on, const Vec3& normal, double same_m) {
   int start = on.front();
   Vec3 u = Cross(normal, std::fabs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
@@ -40,7 +40,7 @@ Face Around(const Points& points, const Face& on, const Vec3& normal, double sam
   for (const int i : on) {
     if (Dot(u, At(points, i)) > Dot(u, At(points, start)) + same_m) start = i;
   }
-  // Among points at the same place along u, the foremost across it.
+  // Of points with equal coordinate along u, take the foremost along v.
   const Vec3 v = Cross(normal, u);
   const double foremost = Dot(u, At(points, start));
   for (const int i : on) {
@@ -94,7 +94,7 @@ std::vector<Face> FacesOf(const Points& points, double same_m) {
             on.push_back(i);
         }
         if (above && below) continue;
-        // Three of its points may be nearly collinear, which tilts their plane.
+        // Faces may contain each other, since the plane of nearly collinear points is inaccurate.
         const auto holds = [](const Face& big, const Face& small) {
           return std::includes(big.begin(), big.end(), small.begin(), small.end());
         };
@@ -135,7 +135,7 @@ bool Closes(const std::vector<Face>& faces) {
   });
 }
 
-/// Returns the hull of some points, without points that are corners of fewer than three faces.
+/// Returns the hull of points, without those that are corners of fewer than three faces.
 ConvexHull Closed(Points points, double same_m) {
   for (;;) {
     ConvexHull hull;
@@ -158,7 +158,7 @@ ConvexHull Closed(Points points, double same_m) {
   }
 }
 
-/// Returns four points that span a body, outermost first.
+/// Returns four points that span a volume, outermost first.
 Points Start(const Points& points, double same_m) {
   Points start{points.front()};
   const auto add_farthest = [&](const auto& distance) {
@@ -181,8 +181,8 @@ Points Start(const Points& points, double same_m) {
   return start.size() == 4 ? start : Points{};
 }
 
-/// Returns the point farthest outside, and its distance. Removes points that are not outside from
-/// `outside`, since they stay inside as the hull grows.
+/// Returns the point farthest outside and its distance. Removes points that are inside from
+/// `outside`, since they remain inside as the hull grows.
 std::pair<Vec3, double> Outermost(Points& outside, const ConvexHull& hull, double same_m) {
   std::vector<Plane> planes;
   for (const Face& face : hull.faces) planes.push_back(PlaneOf(hull.corners, face));

@@ -1,4 +1,4 @@
-/// Convex hull of points, as faces with any number of corners.
+/// Convex hull of points, with polygonal faces.
 #pragma once
 
 #include <vector>
@@ -7,25 +7,26 @@
 
 namespace taut::math {
 
-/// Corners are some of the given points. Faces list them counterclockwise seen from outside; at
-/// least three faces meet at each corner, and two at each edge.
+/// The corners are a subset of the points. Faces list corners counterclockwise seen from outside.
+/// At least three faces meet at each corner, and two at each edge.
 struct ConvexHull {
   std::vector<Vec3> corners;
   std::vector<std::vector<int>> faces;
-  double left_out_m = 0.0;  ///< Distance of the farthest point outside.
-  bool too_thin = false;    ///< Faces are indistinguishable, so points stay outside.
+  double left_out_m = 0.0;  ///< Distance of the farthest point that is outside of the hull.
+  /// The body is too thin to distinguish its faces, so points remain outside.
+  bool too_thin = false;
 };
 
-/// Returns the hull of `points` with at most `most_corners` corners, chosen from the outermost
-/// inwards. Points nearer to a face than a ten-millionth of the size lie in it. Returns no corners
-/// if the points have no volume, or are not finite.
+/// Returns the hull of `points` with at most `most_corners` corners, added from the outermost
+/// inward. Points closer to a face than 1e-7 of the size count as in it. Returns no corners if the
+/// points are coplanar or not finite.
 ConvexHull HullOf(const std::vector<Vec3>& points, int most_corners);
 
-/// Returns the normal of a face: unit, outwards; a sum over its fan, so that rounding of single
-/// corners has little effect.
+/// Returns the outward unit normal of a face. It is the normalized sum over a triangle fan, so that
+/// rounding of single corners has little effect.
 Vec3 NormalOf(const std::vector<Vec3>& corners, const std::vector<int>& face);
 
-/// Returns the faces as fans of triangles, counterclockwise seen from outside.
+/// Returns the faces as triangle fans, counterclockwise seen from outside.
 Triangles TrianglesOf(const ConvexHull& hull);
 
 }  // namespace taut::math

@@ -1,4 +1,4 @@
-/// Path of a cable in the described pose, with cable wrapping around its wheels.
+/// Path of a cable in the described pose, including wrapping around its wheels.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,21 @@
 
 namespace taut::math {
 
-/// Returns the initial angle of a wheel (cable_wheel.h), from the description of its attachment `i`
-/// [rad].
+/// Returns the initial angle [rad] of the wheel (cable_wheel.h) of attachment `i`, as defined by
+/// the model.
 double StartAngle(const CableDef& cable, std::size_t i);
 
-/// Path in W. A wheel has two points, where the cable arrives and leaves.
+/// Path in W. A wheel has two points, at which the cable reaches and leaves it.
 class DescribedPath {
  public:
   explicit DescribedPath(const CableDef& cable);
 
   double length_m() const { return length_m_; }
   int count() const { return static_cast<int>(points_.size()); }
-  /// Returns points with positions and directions; arms and velocities are zero.
+  /// Returns the points with positions and directions; `arm` and `v` are zero.
   PathPoint<Vec3>* points() { return points_.data(); }
   const std::vector<Wheel<Vec3>>& wheels() const { return wheels_; }
-  /// Returns the attachment that point `i` of the path belongs to.
+  /// Returns the index of the attachment of point `i` of the path.
   std::size_t attachment(int i) const { return attachment_[static_cast<std::size_t>(i)]; }
 
  private:
@@ -34,7 +34,7 @@ class DescribedPath {
   double length_m_ = 0;
 };
 
-/// Returns the lengths of the spans between slip places, i.e. attachments with friction [m].
+/// Returns the lengths [m] of the spans between attachments with friction.
 std::vector<double> SpanLengths(const CableDef& cable);
 
 }  // namespace taut::math

@@ -8,10 +8,10 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-/// Below it, two terms of a series are exact beyond double precision.
+/// Below this value, two terms of a series are exact beyond double precision.
 constexpr double kTiny = 0x1p-30;
 
-/// A number as the unevaluated sum hi + lo, |lo| <= ulp(hi) / 2.
+/// Double-double number: the unevaluated sum hi + lo, |lo| <= ulp(hi) / 2.
 struct Dd {
   double hi = 0.0, lo = 0.0;
 };
@@ -23,16 +23,16 @@ constexpr double kLn2[3] = {0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56, 0x1.7b5
 constexpr Dd kHalfPiDd{kHalfPi[0], kHalfPi[1]};
 constexpr Dd kPiDd{2.0 * kHalfPi[0], 2.0 * kHalfPi[1]};
 
-// The building blocks are by Knuth and Dekker; the double-double operations are from Joldes, Muller
-// and Popescu, "Tight and rigorous error bounds for basic building blocks of double-word
-// arithmetic", ACM TOMS 44 (2017), who prove an accuracy of a few units of 2^-106.
+// Error-free sums and products are by Knuth and Dekker. The double-double operations are from
+// Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building blocks of
+// double-word arithmetic", ACM TOMS 44 (2017), with proven accuracies of a few units of 2^-106.
 
 Dd TwoSum(double a, double b) {
   const double sum = a + b, of_b = sum - a;
   return {sum, (a - (sum - of_b)) + (b - of_b)};
 }
 
-/// As TwoSum, for |a| >= |b|.
+/// Like TwoSum, for |a| >= |b|.
 Dd FastTwoSum(double a, double b) {
   const double sum = a + b;
   return {sum, b - (sum - a)};
@@ -121,7 +121,7 @@ Dd LogOf(double x) {
          TwoProduct(k, kLn2[0]);
 }
 
-/// Sine and cosine of r, |r| <= 0.79, by their series.
+/// Sine and cosine of r, |r| <= 0.79, from their series.
 struct SinCos {
   Dd sin, cos;
 };
@@ -156,7 +156,7 @@ SinCos SinCosOf(double angle) {
   }
 }
 
-/// Returns the angle of (x, y) for 0 <= y <= x, x near 1.
+/// Returns the angle of the direction (x, y), 0 <= y <= x, x near 1.
 Dd AngleBelowDiagonal(const Dd& y, const Dd& x) {
   Dd t = y / x;
   for (int i = 0; i < 3; ++i) t = t / (Dd{1.0} + Sqrt(Dd{1.0} + t * t));  // halves the angle
@@ -166,7 +166,7 @@ Dd AngleBelowDiagonal(const Dd& y, const Dd& x) {
   return Scaled(t * series, 8.0);
 }
 
-/// Returns the angle of (x, y), the larger of |x|, |y| near 1, y >= 0.
+/// Returns the angle of the direction (x, y), y >= 0, with the larger of |x| and |y| near 1.
 Dd AngleOf(const Dd& y, const Dd& x) {
   const Dd right = x.hi < 0.0 ? -x : x;
   const Dd acute =
@@ -217,7 +217,7 @@ double Atan(double x) noexcept {
 
 double Atan2(double y, double x) noexcept {
   if (std::isnan(x) || std::isnan(y)) return kNan;
-  if (std::isinf(x) || std::isinf(y)) {  // finite ones count as zero, infinite ones as equal
+  if (std::isinf(x) || std::isinf(y)) {  // finite values count as 0, infinite values as equal
     const double finite = 0.0;
     return Atan2(std::isinf(y) ? std::copysign(1.0, y) : std::copysign(finite, y),
                  std::isinf(x) ? std::copysign(1.0, x) : std::copysign(finite, x));

@@ -1,17 +1,17 @@
 /// Elementary functions with the same bits on every machine and with every C library.
 ///
 /// Computed in double-double arithmetic (two doubles, about 2^-100 relative) from +, -, *, / and
-/// sqrt alone, which IEEE 754 fixes, then rounded to a double: the error is at most 0.5001 units in
-/// the last place, and at most one unit for subnormal results. Needs a compiler that does not
-/// contract or reorder (-ffp-contract=off, no -ffast-math). About a hundred times slower than a C
-/// library: for reading files and start-up, not for stepping.
+/// sqrt, which IEEE 754 defines exactly, then rounded to a double. The error is at most 0.5001
+/// units in the last place, and at most one unit for subnormal results. The compiler must not
+/// contract or reorder (-ffp-contract=off, no -ffast-math). About 100 times slower than a C
+/// library: for reading files and start-up, not for steps.
 ///
-/// Special cases follow C: NaN in, NaN out; domain errors are NaN; overflow is infinity.
+/// Special cases as in C: NaN for NaN and for domain errors; infinity on overflow.
 #pragma once
 
 namespace taut::math {
 
-/// Largest angle [rad] of Sin, Cos and Tan; beyond it they return NaN, because the argument
+/// Largest angle [rad] for Sin, Cos and Tan. Beyond it they return NaN, because the argument
 /// reduction has only 160 bits of pi.
 inline constexpr double kMaxAngle = 1e9;
 

@@ -1,4 +1,4 @@
-// Errors of joints in the described pose: distance of their points, and angle between their bodies.
+// Joint errors in the described pose: distance of the joint points, and angle between the bodies.
 #include <cmath>
 
 #include "math/joint_turn.h"

@@ -7,7 +7,7 @@
 namespace taut::math {
 namespace {
 
-constexpr std::uint32_t kStream = 0x6e6f6973;  // unique among streams
+constexpr std::uint32_t kStream = 0x6e6f6973;  // unique among the random streams
 
 double AtCorner(std::uint64_t seed, std::int64_t x, std::int64_t y) noexcept {
   const auto place = static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32 |
@@ -15,7 +15,7 @@ double AtCorner(std::uint64_t seed, std::int64_t x, std::int64_t y) noexcept {
   return Random(seed, kStream, place).Uniform(-1.0, 1.0);
 }
 
-/// Rises from 0 to 1 without slope and curvature at its ends.
+/// Returns a smooth step from 0 to 1 with zero slope and curvature at both ends.
 double Ease(double t) noexcept { return t * t * t * (t * (6.0 * t - 15.0) + 10.0); }
 
 }  // namespace

@@ -1,13 +1,12 @@
-/// Smooth lattice noise for random heights.
+/// Smooth lattice noise for random terrain heights.
 #pragma once
 
 #include <cstdint>
 
 namespace taut::math {
 
-/// Returns noise between -1 and 1: at whole x and y a uniform random number of that lattice point,
-/// and between them a smooth interpolation with continuous curvature. The same bits on every
-/// machine.
+/// Returns noise between -1 and 1: a uniform random number at each lattice point (whole x and y),
+/// and an interpolation with continuous curvature between them. The same bits on every machine.
 double Noise(std::uint64_t seed, double x, double y) noexcept;
 
 }  // namespace taut::math

@@ -5,7 +5,7 @@
 
 namespace taut {
 
-// Cyclic Jacobi rotations: only + - * / sqrt.
+// Cyclic Jacobi rotations; only + - * / sqrt.
 void PrincipalAxes(const Inertia& i, double r[9], double moments[3]) noexcept {
   double a[3][3] = {{i.xx, i.xy, i.xz}, {i.xy, i.yy, i.yz}, {i.xz, i.yz, i.zz}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

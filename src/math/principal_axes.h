@@ -5,13 +5,13 @@
 
 namespace taut {
 
-/// Computes the eigenvectors of an inertia matrix, or any symmetric matrix: on return the columns
-/// of `r` (row major) are the principal axes, right-handed, and `moments` their moments [kg m^2].
-/// Same bits on all machines.
+/// Computes principal axes and moments of an inertia matrix, or eigenvectors and eigenvalues of any
+/// symmetric matrix. Results: the axes in the columns of `r` (row-major), right-handed, and their
+/// moments [kg m^2]. The same bits on all machines.
 void PrincipalAxes(const Inertia& inertia, double r[9], double moments[3]) noexcept;
 
-/// Permutes the axes cyclically so that the two nearest moments come first: the drift of a body is
-/// exact if they are equal. Moments that differ by rounding are set equal.
+/// Permutes the axes cyclically so that the two most similar moments come first; moments that
+/// differ only by rounding become equal. For equal moments, the drift of a body is exact.
 void SymmetryAxisLast(double r[9], double moments[3]) noexcept;
 
 }  // namespace taut

@@ -10,17 +10,17 @@ namespace {
 
 constexpr double kTwoToMinus53 = 1.0 / 9007199254740992.0;
 
-/// Ziggurat method: layers of equal area under exp(-x^2 / 2). 99 % of all numbers are in the part
-/// of a layer that lies entirely under the curve, and cost one multiplication.
+/// Ziggurat method: layers of equal area under exp(-x^2 / 2). In 99 % of all cases the number is in
+/// the part of a layer that is completely under the curve, and costs one multiplication.
 /// Source: G. Marsaglia, W. W. Tsang, "The ziggurat method for generating random variables", J.
 /// Stat. Software 5(8), 2000; in the form of J. A. Doornik, "An improved ziggurat method to
 /// generate normal random samples", 2005, which takes layer and position from separate bits.
 struct Ziggurat {
   static constexpr int kLayers = 128;
-  static constexpr double kTail = 3.442619855899;       ///< Start of the tail,
-  static constexpr double kArea = 9.91256303526217e-3;  ///< and the corresponding area of a layer.
-  double x[kLayers + 1];                                ///< Right end of a layer.
-  double sure[kLayers];  ///< Share of a layer that is entirely under the curve.
+  static constexpr double kTail = 3.442619855899;       ///< Start of the tail.
+  static constexpr double kArea = 9.91256303526217e-3;  ///< Area of each layer for this start.
+  double x[kLayers + 1];                                ///< Right ends of the layers.
+  double sure[kLayers];  ///< Fraction of each layer that is completely under the curve.
 
   Ziggurat() noexcept {
     double f = Exp(-0.5 * kTail * kTail);

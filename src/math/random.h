@@ -1,6 +1,6 @@
 /// Counter-based random numbers: functions of seed, stream and index. There is no sequential state,
-/// so order of evaluation, number of threads and interruptions do not change them. The same bits on
-/// every machine: integers, + - * /, sqrt, and taut's logarithm.
+/// so the order of evaluation, the number of threads and interruptions have no effect. The same
+/// bits on every machine: only integers, + - * /, sqrt, and taut's logarithm.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace taut::math {
 
-/// Philox4x32-10: ten rounds that convert a counter and a key into 128 random bits.
+/// Philox4x32-10: converts a counter and a key into 128 random bits in ten rounds.
 /// Source: J. K. Salmon, M. A. Moraes, R. O. Dror, D. E. Shaw, "Parallel random numbers: as easy as
 /// 1, 2, 3", SC'11, doi:10.1145/2063384.2063405; tested with the authors' known answers.
 std::array<std::uint32_t, 4> Philox(std::array<std::uint32_t, 4> counter,
                                     std::array<std::uint32_t, 2> key) noexcept;
 
-/// Random numbers of one use, as many as needed. Different streams are independent.
+/// Random numbers for one use, in any quantity. Different streams are independent.
 class Random {
  public:
-  /// `stream`: purpose of the numbers. `index`: number of the use.
+  /// `stream`: purpose of the numbers; `index`: number of the use.
   Random(std::uint64_t seed, std::uint32_t stream, std::uint64_t index) noexcept
       : seed_(seed), index_(index), stream_(stream) {}
 

@@ -1,5 +1,5 @@
-/// Corners of shapes, their radius, thickness and volume. A shape is the Minkowski sum of the
-/// convex hull of its corners and a ball with this radius.
+/// Corners, radius, thickness and volume of shapes. A shape is the Minkowski sum of the convex hull
+/// of its corners and a ball.
 #pragma once
 
 #include "math/vec.h"
@@ -7,7 +7,7 @@
 
 namespace taut::math {
 
-// RadiusOf: returns the radius of the ball [m].
+// RadiusOf: returns the radius of this ball [m].
 inline double RadiusOf(const SphereDef& sphere) noexcept { return sphere.radius_m; }
 inline double RadiusOf(const CapsuleDef& rod) noexcept { return rod.radius_m; }
 inline double RadiusOf(const BoxDef&) noexcept { return 0; }
@@ -36,14 +36,14 @@ void EachCorner(const HullDef& hull, F f) {
   for (const Vec3& corner : hull.corners_m) f(corner);
 }
 
-/// Returns half the smallest extent [m], along the axes of the shape; for hulls, along the axes of
+/// Returns half the smallest extent [m] along the axes of the shape; for hulls, along the axes of
 /// W.
 double HalfExtent(const SphereDef& sphere);
 double HalfExtent(const CapsuleDef& rod);
 double HalfExtent(const BoxDef& box);
 double HalfExtent(const HullDef& hull);
 
-/// Returns the volume [m^3]; for a rod, without its round ends.
+/// Returns the volume [m^3]; rods without their round ends.
 double VolumeOf(const SphereDef& sphere);
 double VolumeOf(const CapsuleDef& rod);
 double VolumeOf(const BoxDef& box);

@@ -44,7 +44,8 @@ Faults FaultsOfTriangles(const Corners& corners, const Triangles& triangles, std
   return faults;
 }
 
-/// In a closed mesh every edge belongs to two triangles, with opposite directions.
+/// Finds faulty edges: in a closed mesh, every edge belongs to two triangles, with opposite
+/// directions.
 Faults FaultsOfEdges(const Corners& corners, const Triangles& triangles, std::size_t at_most) {
   struct Use {
     int count = 0, last = -1;

@@ -11,7 +11,7 @@ namespace taut::math {
 
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// Returns six times the signed volume that the triangles enclose, by the divergence theorem.
+/// Returns six times the signed volume enclosed by the triangles (divergence theorem).
 double SixVolumes(const std::vector<Vec3>& corners_m, const Triangles& triangles);
 
 struct MeshFault {
@@ -23,12 +23,12 @@ struct MeshFault {
     kInsideOut,  ///< The triangles of a closed mesh face inward.
   };
   Kind kind;
-  int triangle = -1;       ///< A triangle with the fault; -1: all.
-  int from = -1, to = -1;  ///< Corners of an edge.
+  int triangle = -1;       ///< Triangle with the fault; -1: all.
+  int from = -1, to = -1;  ///< Corners of a faulty edge.
 };
 
-/// Returns the first faults, at most `most`. Corners must be finite. Edges are checked only if the
-/// triangles have no faults and must be `closed`.
+/// Returns the first faults, at most `most`. Corners must be finite. Edges are checked only if all
+/// triangles are valid and the mesh must be `closed`.
 std::vector<MeshFault> FindFaults(const std::vector<Vec3>& corners_m, const Triangles& triangles,
                                   bool closed, std::size_t most);
 

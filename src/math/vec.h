@@ -1,4 +1,4 @@
-/// Arithmetic on the plain public vectors and quaternions, for code outside of the step.
+/// Arithmetic for the public vectors and quaternions, for code outside of the step.
 #pragma once
 
 #include <cmath>

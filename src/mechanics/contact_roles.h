@@ -1,4 +1,4 @@
-/// Redundant shapes of contact detection, for other engines than taut.
+/// Redundant shapes in contact detection, for exports to other engines.
 #pragma once
 
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace taut::mechanics {
 
-/// Redundant tests cost engines time and add contacts in place of others: planes need only the
-/// spheres at a rod's ends, not the rod, and other bodies need the rod, not a sphere at its end
-/// that is no thicker than the rod. taut omits the same tests. Hills fit between the ends of rods,
-/// so height fields count as bodies.
+/// Kinds of geometry that a shape must be tested against. Redundant tests cost time, and their
+/// contacts displace others. Planes need only the spheres at the ends of a rod, not the rod. Other
+/// bodies need the rod, but not an end sphere of at most its radius. Height fields count as bodies,
+/// because hills may fit between the ends of a rod. taut itself omits the same tests.
 struct ContactRole {
   bool meets_planes = true, meets_bodies = true;
 };
 struct ContactRoles {
-  std::vector<ContactRole> spheres, capsules;  ///< Per shape of the model, if it collides.
+  std::vector<ContactRole> spheres, capsules;  ///< One per colliding shape of the model.
 };
 ContactRoles ContactRolesOf(const ModelDef& def);
 

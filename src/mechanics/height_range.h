@@ -8,7 +8,7 @@
 namespace taut::mechanics {
 
 struct HeightRange {
-  double least_m = 0, most_m = 0;  ///< Without the field's origin.
+  double least_m = 0, most_m = 0;  ///< Heights without the origin of the field.
 };
 inline HeightRange HeightsOf(const HeightFieldDef& field) {
   const auto [least, most] = std::minmax_element(field.height_m.begin(), field.height_m.end());

@@ -1,4 +1,4 @@
-/// Directions that a joint holds, as separate rows (docs/theory/joints.md, section 1).
+/// Directions that a joint constrains, as separate rows (docs/theory/joints.md, section 1).
 #pragma once
 
 #include <cmath>
@@ -9,16 +9,16 @@
 
 namespace taut {
 
-/// A force at a joint's point and a torque, on its body b; on a the opposite.
+/// Force at the joint point and torque, on body b; body a gets the opposite.
 struct Wrench {
   Vec3 force, torque;
 };
 
-/// n: the axis; s, t: two directions across it.
+/// n: joint axis; s, t: two directions normal to it.
 enum class HeldRow { kAlong, kAcross1, kAcross2, kSwing1, kSwing2, kTwist, kDistance };
 
 struct JointAxes {
-  Vec3 n, s, t;  ///< In W, as described.
+  Vec3 n, s, t;  ///< In W, in the described pose.
 };
 inline JointAxes AxesOf(const JointDef& j) {
   const Vec3 n = j.axis, other = std::fabs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -38,8 +38,8 @@ inline std::vector<HeldRow> HeldRowsOf(const JointDef& j) {
   return rows;
 }
 
-/// Returns the derivative of a row's coordinate where the axes of both bodies coincide: a unit
-/// wrench, with the force at `to_m`.
+/// Returns the derivative of the coordinate of a row, for coinciding axes of both bodies: a unit
+/// wrench with its force at `to_m`.
 inline Wrench UnitOf(const JointDef& j, HeldRow row) {
   const JointAxes axes = AxesOf(j);
   switch (row) {

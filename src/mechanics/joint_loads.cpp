@@ -1,5 +1,5 @@
-// Joint loads at the start: forces and torques of all held rows, from the masses, J M^-1 J^T x = -J
-// M^-1 f (docs/theory/joints.md, eq. 12).
+// Joint loads at the start: forces and torques of all constrained directions (rows), from J M^-1
+// J^T x = -J M^-1 f (docs/theory/joints.md, eq. 12).
 #include <cmath>
 
 #include "base/fixed.h"
@@ -10,8 +10,7 @@
 namespace taut {
 namespace {
 
-/// L D L^T factorization of a symmetric matrix with positive pivots, row by row; zeros cost
-/// nothing.
+/// L D L^T factorization of a symmetric matrix with positive pivots, row by row; skips zeros.
 class Factors {
  public:
   explicit Factors(std::size_t size) : size_(size), a_(size * size) {}
@@ -42,7 +41,7 @@ class Factors {
   std::vector<double> a_;
 };
 
-/// Returns a joint's wrench about the center of mass of a body.
+/// Returns the wrench of a joint about the center of mass of a body.
 Wrench On(const BodyDef& body, const Wrench& w, const Vec3& point, double sign) {
   return {sign * w.force, sign * (w.torque + Cross(point - body.com_m, w.force))};
 }
@@ -56,12 +55,12 @@ Vec3 TurnBy(const Inertia& i, const Vec3& t) {
   return {t.x / i.xx - l1 * turned - l2 * z, turned, z};
 }
 
-/// Returns the wrench of a joint's springs on its body b in the described pose.
+/// Returns the wrench of the springs of a joint on its body b in the described pose.
 Wrench SpringOf(const JointDef& j) {
   if (j.stiffness == 0) return {};
   const Vec3 apart = j.to_m - j.from_m;
   const double shorter = j.turned.w < 0 ? -1 : 1, cosine = std::fabs(j.turned.w);
-  const Vec3 half = shorter * Vec3{j.turned.x, j.turned.y, j.turned.z};  // sine times axis
+  const Vec3 half = shorter * Vec3{j.turned.x, j.turned.y, j.turned.z};  // sine * axis
   if (j.kind == JointKind::kBall) {
     const double sine = std::sqrt(Dot(half, half));
     if (sine == 0) return {};
@@ -101,7 +100,7 @@ class Reactions {
   }
 
  private:
-  /// A body that a row moves, the row's unit force on it, and the resulting acceleration.
+  /// Body affected by a row: the row's unit force on it, and the resulting acceleration.
   struct Link {
     int body;
     Wrench on, gives;
@@ -141,7 +140,7 @@ class Reactions {
     return sum;
   }
 
-  /// Returns the accelerations along the rows by all known loads, which the rows must cancel.
+  /// Returns the accelerations along the rows under all known loads; the rows must cancel them.
   std::vector<double> RightSide(const std::vector<JointLoad>& springs) const {
     std::vector<Wrench> known(def_.bodies.size());
     for (std::size_t b = 0; b < known.size(); ++b) {
@@ -171,8 +170,8 @@ class Reactions {
     return b;
   }
 
-  /// Solves for the loads. Redundant rows share their load: each has a compliance, a share of its
-  /// inverse mass, and further passes remove the remaining error.
+  /// Solves for the loads. Redundant rows share their load: each has a small compliance, a fraction
+  /// of its inverse mass. Further passes remove the error from it.
   std::vector<double> Solved(const std::vector<double>& b) const {
     constexpr double kCompliance = 1e-9;
     constexpr int kPasses = 4;

@@ -12,8 +12,8 @@
 namespace taut {
 namespace {
 
-/// Returns the inertia with moment `along` about the unit vector u, `across` about all axes normal
-/// to it.
+/// Returns the inertia with the moment `along` about the unit vector u and `across` about normal
+/// axes.
 Inertia AxiallySymmetric(const Vec3& u, double along, double across) {
   const double d = along - across;
   return {across + d * u.x * u.x, across + d * u.y * u.y, across + d * u.z * u.z,
@@ -36,10 +36,10 @@ Inertia PointInertia(double mass, const Vec3& r) {
 
 Vec3 Abs(const Vec3& a) { return {std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; }
 
-/// Returns the shortest rotation from z to the unit vector u.
+/// Returns the smallest rotation that maps z to the unit vector u.
 Quat FromZ(const Vec3& u) {
   const double w = std::sqrt(0.5 * (1.0 + std::max(-1.0, u.z)));
-  if (w < 1e-9) return {0.0, 1.0, 0.0, 0.0};  // straight down: any half turn
+  if (w < 1e-9) return {0.0, 1.0, 0.0, 0.0};  // u points down: any half turn
   const double s = 0.5 / w;
   return {w, -u.y * s, u.x * s, 0.0};
 }
@@ -60,7 +60,7 @@ MassProperties SolidCapsule(const Vec3& from_m, const Vec3& to_m, double radius_
   const double l = std::sqrt(Dot(axis, axis)), r = radius_m;
   const double ends = mass_kg * 4.0 * r / (3.0 * l + 4.0 * r), middle = mass_kg - ends;
   const double along = 0.5 * middle * r * r + 0.4 * ends * r * r;
-  // The center of mass of a half sphere is 3/8 r from its flat side.
+  // The center of mass of a half ball is at 3/8 r from its flat side.
   const double across =
       middle / 12.0 * (3.0 * r * r + l * l) + ends * (0.4 * r * r + 0.25 * l * l + 0.375 * l * r);
   return {mass_kg, 0.5 * (from_m + to_m), AxiallySymmetric((1.0 / l) * axis, along, across)};
@@ -85,10 +85,10 @@ MassProperties SolidBox(const Vec3& center_m, const Quat& q_WBox, const Vec3& ha
 
 MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangles& triangles,
                          double density_kg_per_m3) {
-  // Relative to a corner, not the origin: far from it, large differences would cancel.
+  // relative to a corner, to avoid cancellation far from the origin
   const Vec3 from = corners_m[static_cast<std::size_t>(triangles.front()[0])];
   double volume_m3 = 0.0;
-  Vec3 first;  // of x, y, z
+  Vec3 first;  // first moments of x, y, z
   double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, xz = 0.0, yz = 0.0;
   for (const std::array<int, 3>& t : triangles) {
     const auto corner = [&](std::size_t k) {
@@ -113,7 +113,7 @@ MassProperties SolidMesh(const std::vector<Vec3>& corners_m, const math::Triangl
 }
 
 Inertia Turned(const Quat& q, const Inertia& i) {
-  // Rotates the columns of I, then the rows of the result.
+  // rotates the columns of I, then the rows of the result
   const Vec3 x = Rotate(q, {i.xx, i.xy, i.xz}), y = Rotate(q, {i.xy, i.yy, i.yz}),
              z = Rotate(q, {i.xz, i.yz, i.zz});
   const Vec3 a = Rotate(q, {x.x, y.x, z.x}), b = Rotate(q, {x.y, y.y, z.y}),

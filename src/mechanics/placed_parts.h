@@ -7,7 +7,7 @@
 
 namespace taut {
 
-/// Moves shapes, nodes, cable ends and joints; bodies themselves and terrain stay. A `Motion` has
+/// Moves shapes, nodes, cable ends and joints. Bodies themselves and terrain remain. A `Motion` has
 ///   bool Moves(int body)                       whether the body moves,
 ///   Vec3 Moved(int body, const Vec3& point_m)  new position of one of its points,
 ///   Quat Turned(int body)                      its rotation, in W.

@@ -13,7 +13,7 @@
 namespace taut {
 namespace {
 
-/// Computes the safety factors of a section (eq. 9 to 11).
+/// Computes the safety factors of a cross section (eq. 9 to 11).
 void TakeSection(const MemberDef& member, double length_m, MemberLoad& load) {
   const MemberLimits bears = LimitsOf(member, load.kind, length_m);
   const double push_n = -load.least_n, pull_n = load.greatest_n;
@@ -46,7 +46,7 @@ std::pair<const char*, std::optional<double>> LeastFactor(const MemberLoad& load
 
 MemberLimits LimitsOf(const MemberDef& member, MemberKind kind, double length_m) {
   MemberLimits bears;
-  // A cable does not buckle.
+  // Cables do not buckle.
   if (kind != MemberKind::kCable && member.young_pa > 0 && member.second_moment_m4 > 0) {
     const double free_m = member.buckling_length_m > 0 ? member.buckling_length_m : length_m;
     bears.buckling_n = kPi * kPi * member.young_pa * member.second_moment_m4 / (free_m * free_m);

@@ -17,9 +17,9 @@ double CableTension(const CableDef& cable) {
 
 std::vector<BodyLoad> StartLoads(const ModelDef& def) {
   struct Sum {
-    Vec3 force, torque;  ///< About the center of mass.
+    Vec3 force, torque;  ///< About the center of mass of the body.
   };
-  std::vector<Sum> sums(def.bodies.size() + 1);  // the world last
+  std::vector<Sum> sums(def.bodies.size() + 1);  // the last one is the world
   const auto index = [&](int body) {
     return body == kWorld ? def.bodies.size() : static_cast<std::size_t>(body);
   };

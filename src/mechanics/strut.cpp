@@ -12,7 +12,7 @@
 namespace taut::mechanics {
 namespace {
 
-constexpr double kRounding = 1e-9;  ///< Relative rounding error of sums over a handful of solids.
+constexpr double kRounding = 1e-9;  ///< Relative rounding error of sums over a few solids.
 
 Vec3 Times(const Inertia& i, const Vec3& v) {
   return {i.xx * v.x + i.xy * v.y + i.xz * v.z, i.xy * v.x + i.yy * v.y + i.yz * v.z,
@@ -29,12 +29,12 @@ const CapsuleDef* OnlyCapsule(const ModelDef& def, int body) {
   return only;
 }
 
-/// Distribution of a rod's mass, as shares of the total.
+/// Mass distribution of a rod, as fractions of the total mass.
 struct Masses {
   double rod = 0, start = 0, end = 0;
 };
 
-/// Computes the shares from the moments of the mass along the rod (eq. 5); returns nothing if no
+/// Computes the mass distribution from its moments along the rod (eq. 5). Returns nothing if no
 /// uniform rod with masses at its ends has these moments.
 std::optional<Masses> MassesOf(const BodyDef& body, const CapsuleDef& rod, const Vec3& along,
                                double length_m) {
@@ -46,7 +46,7 @@ std::optional<Masses> MassesOf(const BodyDef& body, const CapsuleDef& rod, const
   const Inertia& inertia = body.inertia_kg_m2;
   const double axial = Dot(along, Times(inertia, along));
   const double across = 0.5 * (inertia.xx + inertia.yy + inertia.zz - axial);
-  // The moment is the same about every axis across the rod: (I - across) v = 0 for all of them.
+  // The moment is equal about every axis normal to the rod: (I - across) v = 0 for all of them.
   for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     const Vec3 v = axis - Dot(axis, along) * along;
     if (Length(Times(inertia, v) - across * v) > tiny) return std::nullopt;
@@ -63,7 +63,7 @@ std::optional<Masses> MassesOf(const BodyDef& body, const CapsuleDef& rod, const
     return std::nullopt;
   }
   const double of_end_masses =
-      axial - masses.rod * m * r2 / 2;  // moments of the masses themselves, if they are balls
+      axial - masses.rod * m * r2 / 2;  // own moments of the end masses, if they are balls
   const bool lone = std::fabs(ends) < -kLeast;
   if (of_end_masses < -tiny || (lone && of_end_masses > tiny)) return std::nullopt;
   return masses;
@@ -80,7 +80,7 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
     return std::min(Length(point_m - rod->from_m), Length(point_m - rod->to_m)) <=
            kRounding * length_m;
   };
-  // Besides the rod, a strut has only spheres at its ends.
+  // A strut has only spheres at its ends besides the rod.
   bool other = false;
   EachShape(def, [&](const auto& shape) {
     using Shape = std::remove_cvref_t<decltype(shape)>;
@@ -94,7 +94,7 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
   const Vec3 along = (1 / length_m) * (rod->to_m - rod->from_m);
   const auto masses = MassesOf(whole, *rod, along, length_m);
   if (!masses) return std::nullopt;
-  // A node that is not an end may carry a point mass, unless there are no masses at the ends.
+  // A node between the ends may carry a point mass, unless the ends have no masses.
   const bool ends_only = std::all_of(def.nodes.begin(), def.nodes.end(), [&](const NodeDef& node) {
     return node.body != body || at_end(node.position_m);
   });
@@ -117,12 +117,12 @@ std::optional<Strut> StrutOf(const ModelDef& def, int body) {
 
 namespace {
 
-/// A force on a strut: its position along it, from the middle, and its axial component.
+/// Force on a strut: position along it from the middle, and axial component.
 struct Pull {
   double at_m, force_n;
 };
 
-/// Axial force in cuts of a strut (eq. 6).
+/// Axial force at cross sections of a strut (eq. 6).
 class Cuts {
  public:
   Cuts(const Strut& strut, double mass_kg, double spin2, double on_all_n)
@@ -131,14 +131,14 @@ class Cuts {
         on_all_n_(on_all_n),
         center_m_(0.5 * strut.length_m * (strut.at_end - strut.at_start)) {}
 
-  /// Returns the force at `x_m` from the middle; `above_n`: sum of the forces beyond it.
+  /// Returns the force at `x_m` from the middle; `above_n`: sum of the forces beyond this point.
   double At(double x_m, double above_n) const {
     const double l = strut_.length_m;
     const double share = strut_.rod * (0.5 - x_m / l) + strut_.at_end;
     const double moment_m = strut_.rod * (l * l / 4 - x_m * x_m) / (2 * l) + strut_.at_end * l / 2;
     return above_n - share * on_all_n_ + spin_n_per_m_ * (moment_m - share * center_m_);
   }
-  /// Returns the position of the maximum between two forces, if it lies there.
+  /// Returns the position of the maximum between two point forces, if there is one.
   double Crest() const { return center_m_ + on_all_n_ / spin_n_per_m_; }
   bool spins() const { return spin_n_per_m_ > 0; }
 
@@ -147,8 +147,8 @@ class Cuts {
   double spin_n_per_m_, on_all_n_, center_m_;
 };
 
-/// Returns the least and the greatest force: on both sides of each point force, from end to start,
-/// and at the maxima between them.
+/// Returns the smallest and the largest force: on both sides of each point force, from end to
+/// start, and at the maxima between them.
 std::pair<double, double> LeastAndGreatest(const Cuts& cuts, double length_m,
                                            std::vector<Pull>& pulls) {
   std::sort(pulls.begin(), pulls.end(),
@@ -163,7 +163,8 @@ std::pair<double, double> LeastAndGreatest(const Cuts& cuts, double length_m,
   double from_m = end_m;
   std::size_t next = 0;
   while (true) {
-    // Forces at or beyond an end act at the end; between two forces at one place there is no cut.
+    // Forces at or beyond an end act at the end. There is no cross section between coincident
+    // forces.
     while (next < pulls.size() && pulls[next].at_m >= from_m - same_m) {
       above_n += pulls[next++].force_n;
     }

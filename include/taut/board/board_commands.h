@@ -155,8 +155,7 @@ constexpr bool IsStop(const uint8_t* frame, size_t size) noexcept {
          frame[3] == Crc8(frame, 3);
 }
 
-// // --- requests to one board; the next read from the board returns the reply
-// ------------------------
+// --- requests to one board; the next read from the board returns the reply ---------------------
 
 enum class Request : uint8_t {
   kSet = 0xd1,  ///< Sets a parameter.

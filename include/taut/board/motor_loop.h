@@ -64,7 +64,7 @@ struct MotorLoop {
   int16_t step = 0;             ///< Encoder counts since the previous tick.
   int32_t counts = 0;           ///< Relative to the reference position; winding in is positive.
   float tension_counts = 0.0f;  ///< Filtered.
-  // // only for impedance control; other modes skip its computation
+  // only for impedance control; other modes skip its computation
   float counts_per_tick = 0.0f;  ///< Filtered.
   float tension_n = 0.0f, rest_length_m = 0.0f, length_m = 0.0f, rate_m_per_s = 0.0f;
   // commanded
@@ -149,7 +149,7 @@ inline void FindSetPoint(MotorLoop& motor) noexcept {
 /// higher tension decreases to it.
 inline void StartImpedance(float* p, const LoopNumbers& numbers, bool capture,
                            MotorLoop& motor) noexcept {
-  motor.counts_per_tick = 0.0f;  // // otherwise one count of a holding motor would count as 13 mm/s
+  motor.counts_per_tick = 0.0f;  // otherwise one count of a holding motor would count as 13 mm/s
   SenseCable(p, numbers, motor);
   if (capture) {
     const Range range = MotorRange(kTensionOffset);

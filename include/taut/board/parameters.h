@@ -125,7 +125,7 @@ constexpr bool IsWithin(const Range& range, float value) noexcept {
 /// numbers have different meanings on them.
 constexpr uint16_t kParametersVersion = 0x5bee;
 
-#ifndef __AVR__  // // on an AVR, strings take RAM, even if used only at compile time
+#ifndef __AVR__  // on an AVR, strings take RAM, even if used only at compile time
 namespace internal {
 
 constexpr uint16_t AddKey(uint16_t crc, const char* key) noexcept {

@@ -15,7 +15,7 @@ inline void Start(const Boot& boot, Board& board) noexcept {
     board.board_faults |= kParametersLost;
   }
   Prepare(board);
-  // // After a reset without a power cycle, the motor temperatures are unknown; they may be warm.
+  // After a reset without a power cycle, the motor temperatures are unknown; they may be warm.
   if ((boot.reset_cause & kPowerOn) == 0) {
     for (uint8_t m = 0; m < kMotors; ++m) board.watches[m].housing_rise_k = 40.0f;
   }
@@ -63,7 +63,7 @@ inline Answer SetParameter(Board& board, const Asking& asking) noexcept {
   } else {
     Prepare(board);
   }
-  // // Changed gains would make the output of the PID jump; restart it from the present duty.
+  // Changed gains would make the output of the PID jump; restart it from the present duty.
   if (of_motor && board.mode == Mode::kHold) {
     StartPosition(board.numbers[asking.index], board.loops[asking.index]);
   }
@@ -172,7 +172,7 @@ inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board
     return;
   }
   if (IsStop(bytes, size)) {
-    board.stopped = true;  // // cancels a pending command
+    board.stopped = true;  // cancels a pending command
     board.command_due = false;
     return;
   }

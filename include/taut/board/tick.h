@@ -79,7 +79,7 @@ inline bool Apply(Board& board) noexcept {
     board.armed = true;
     board.ready = false;
   }
-  // // The reaction to a fault, timeout or stop continues until it is cleared.
+  // The reaction to a fault, timeout or stop continues until it is cleared.
   if (!IsHealthy(board)) return false;
   if (Needs(command.mode, command.capture) && board.mode != command.mode &&
       !(board.referenced[0] && board.referenced[1])) {
@@ -90,8 +90,8 @@ inline bool Apply(Board& board) noexcept {
     TakeValues(board);
     return false;
   }
-  // // The first target must be set before the PID of a position starts, and the previous V0 must
-  // not remain.
+  // The first target must be set before the PID of a position starts, and the previous V0 must not
+  // remain.
   const Mode before = board.mode;
   board.mode = command.mode;
   for (uint8_t m = 0; m < kMotors; ++m) board.loops[m].velocity_input_m_per_s = 0.0f;
@@ -122,10 +122,10 @@ inline void React(bool driver_fault, Board& board) noexcept {
     if (board.parameters.board[kOnTimeout] >= 0.5f) {
       Enter(Mode::kOff, false, board);
       board.armed = false;
-      return;  // // otherwise an additional fault would start holding
+      return;  // otherwise an additional fault would start holding
     }
     if (board.mode != Mode::kImpedance && board.mode != Mode::kHold) {
-      Enter(Mode::kHold, false, board);  // // impedance control continues with V0 = 0
+      Enter(Mode::kHold, false, board);  // impedance control continues with V0 = 0
     }
   }
   const bool faulty = board.faults[0] != 0 || board.faults[1] != 0 || board.board_faults != 0;
@@ -195,7 +195,7 @@ inline void Tick(const Inputs& in, Board& board) noexcept {
         break;
       default:
         motor.drive = 0.0f;
-        motor.step = 0;  // // for `Feel`: no current flows, even if the cable turns the motor
+        motor.step = 0;  // for `Feel`: no current flows, even if the cable turns the motor
     }
     internal::Restrain(board, m);
     motor.width = static_cast<int16_t>(motor.drive);

@@ -40,7 +40,7 @@ inline int16_t Saturated(float x) noexcept {
 /// Computes the limits from the parameters of a motor.
 inline WatchLimits LimitsOf(const float* p) noexcept {
   const float per_n = 1.0f / p[kNewtonsPerCount], per_m = 1.0f / p[kLengthPerCount];
-  const float speed = p[kSpeedLimit] * per_m * kTick_s;  // // encoder counts per tick
+  const float speed = p[kSpeedLimit] * per_m * kTick_s;  // encoder counts per tick
   WatchLimits limits;
   limits.over_counts =
       static_cast<uint16_t>(internal::Saturated(p[kCountsAtZero] + p[kTensionLimit] * per_n));
@@ -64,7 +64,7 @@ struct Watch {
   uint16_t adc = 0;             ///< Previous reading.
   float winding_rise_k = 0.0f;  ///< Temperature of the winding above the housing.
   float housing_rise_k = 0.0f;  ///< Temperature of the housing above the air.
-  // // Sums of products of duty [PWM steps] and step [counts] since the last temperature update.
+  // Sums of products of duty [PWM steps] and step [counts] since the last temperature update.
   int32_t width_width = 0, width_step = 0, step_step = 0;
   uint8_t felt = 0;  ///< Number of ticks in these sums.
 };
@@ -91,7 +91,7 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
       internal::InARow(step > limits.step_counts || step < -limits.step_counts, watch.fast);
   if (watch.fast >= kReadings) wrong |= kRunaway;
 
-  // // While a cable is wound, noise changes the readings of a working converter.
+  // While a cable is wound, noise changes the readings of a working converter.
   const bool slack = adc <= limits.slack_counts;
   if (!slack && adc != watch.adc) {
     watch.slack_way = 0;
@@ -147,7 +147,7 @@ constexpr int16_t kMostStep = 2000;  ///< Largest step that the heat sums accept
 /// Adds a tick to the heat sums. The heat follows the square of the current in each tick: a current
 /// that alternates ten times per second has zero mean but heats the winding.
 inline void FeelHeat(int16_t width, int16_t step, Watch& watch) noexcept {
-  // // Real steps are smaller, and up to this limit the sums do not overflow between two updates.
+  // Real steps are smaller, and up to this limit the sums do not overflow between two updates.
   if (step > kMostStep) step = kMostStep;
   if (step < -kMostStep) step = -kMostStep;
   watch.width_width += int32_t{width} * width;

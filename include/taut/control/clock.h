@@ -41,7 +41,7 @@ constexpr int64_t FirstTickFrom(const Clock<Time>& clock, Time t_s) noexcept {
   const Time ticks = (t_s - clock.phase_s) / clock.period_s;
   if (!(ticks > static_cast<Time>(0))) return 0;
   if (ticks >= static_cast<Time>(kLastTick)) return kLastTick;
-  // // rounding may move the quotient across an integer
+  // rounding may move the quotient across an integer
   const int64_t tick = static_cast<int64_t>(ticks);
   return TickTime(clock, tick) < t_s ? tick + 1 : tick;
 }

@@ -64,7 +64,7 @@ constexpr Real CpgVelocity(const CpgState<Real>& state) noexcept {
 template <class Real>
 struct CpgWork {
   CpgState<Real> stage, sum;
-  // // Sine and cosine of the phase; both times the amplitude, as used by neighbors; S and C of eq.
+  // Sine and cosine of the phase; both times the amplitude, as used by neighbors; S and C of eq.
   // G.6, in turns. Keep S and C apart: if they were adjacent, g++ 12 would sum them twice, as a
   // pair and individually.
   Real sine, scaled_sine, pull_sine;

@@ -43,8 +43,7 @@ class Driver {
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  // // --- before the cycles
-  // -------------------------------------------------------------------------
+  // --- before the cycles -----------------------------------------------------------------------
   /// Identifies adapter and boards, sets parameters and reads the scales of the boards' numbers. On
   /// problems, returns false and adds an error for each: no adapter, missing boards, other protocol
   /// or parameter versions, rejected values. A repeated call restarts the driver. Meanwhile, motors
@@ -61,8 +60,7 @@ class Driver {
   const AdapterInfo& adapter() const { return adapter_info_; }
   const MotorFigures& figures(int motor) const { return figures_[At(motor)]; }
 
-  // // --- commands, sent in the next broadcast
-  // ------------------------------------------------------
+  // --- commands, sent in the next broadcast ----------------------------------------------------
   /// Turns motors off and prepares the boards for power.
   void Arm();
   /// Gives motors power. Call it after `Arm` and a cycle in which no board reported a fault;
@@ -86,8 +84,7 @@ class Driver {
   void Request(int board, const board::Asking& asking,
                std::function<void(const std::optional<board::Reply>&)> done = {});
 
-  // // --- cycles
-  // ------------------------------------------------------------------------------------
+  // --- cycles ----------------------------------------------------------------------------------
   /// Continues the cycle as far as possible without waiting. Returns true if a cycle has just
   /// ended.
   bool Poll();

@@ -35,7 +35,7 @@ class Requests {
   /// `adapter` must outlive the object.
   explicit Requests(UsbIss& adapter) : adapter_(adapter) {}
 
-  // // Each function tries three times. If the board does not answer or rejects the request, it
+  // Each function tries three times. If the board does not answer or rejects the request, it
   // returns nothing or false and adds an error.
   std::optional<board::Reply> Ask(int board, const board::Asking& asking, Diagnostics& out);
   std::optional<board::Info> Info(int board, Diagnostics& out);

@@ -34,8 +34,7 @@ class UsbIss {
   /// `port` must outlive the adapter.
   explicit UsbIss(Port& port) : port_(port) {}
 
-  // // --- transfers without waiting, one at a time
-  // --------------------------------------------------
+  // --- transfers without waiting, one at a time ------------------------------------------------
   enum class State { kIdle, kPending, kDone, kSilent, kLost };
   /// Sends a frame and discards remaining data of an earlier transfer. The reply must arrive within
   /// `patience_s`.
