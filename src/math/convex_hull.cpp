@@ -135,7 +135,7 @@ bool Closes(const std::vector<Face>& faces) {
   });
 }
 
-/// Returns the hull of points, without those that are corners of fewer than three faces.
+/// Returns the hull of points, without points that are corners of fewer than three faces.
 ConvexHull Closed(Points points, double same_m) {
   for (;;) {
     ConvexHull hull;

@@ -1,4 +1,4 @@
-// Batches of worlds: choice of the SIMD kernel, memory, start, steps, and setters of the state.
+// Batches of worlds: choice of the SIMD kernel, memory, starts, steps, and setters of the state.
 #include "taut/world_batch.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Simd WidestUpTo(Simd wish) {
   return Simd::kScalar;
 }
 
-/// Names of the instruction sets; some have the same width.
+/// Names of the instruction sets; some have the same number of lanes.
 constexpr std::pair<std::string_view, Simd> kSimdNames[] = {
     {"scalar", Simd::kScalar},   {"sse2", Simd::kSse2}, {"neon", Simd::kNeon},
     {"simd128", Simd::kSimd128}, {"avx2", Simd::kAvx2}, {"avx512", Simd::kAvx512}};
@@ -42,7 +42,7 @@ WorldBatchOptions Sane(WorldBatchOptions o) {
   return o;
 }
 
-/// Returns whether poses are equal up to rounding.
+/// Returns whether two poses are equal up to rounding.
 bool SamePlace(const BodyState& a, const BodyState& b) {
   constexpr double kTurn = 1e-12;
   const Quat &p = a.orientation, &q = b.orientation;
@@ -126,7 +126,8 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
   for (int i = 0; i < pool.threads(); ++i) {
     scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
   }
-  // Lanes after the last world are worlds, too: no special cases, and no NaN.
+  // Unused lanes after the last world also contain worlds, so they need no special cases and have
+  // no NaN.
   for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
 }
 
@@ -159,7 +160,7 @@ void WorldBatch::Impl::JudgeStiffness(int world) noexcept {
   for (int c = 0; c < view.cable_count; ++c) {
     k_max = std::max(k_max, at(world, layout.stiffness + c));
   }
-  // Two bounds of the same spectral radius: by the column of the cable, and of the whole matrix.
+  // Two bounds of the spectral radius: from the column of the cable, and of the whole matrix.
   for (int c = 0; c < view.cable_count; ++c) {
     const double own = model->coupling[static_cast<std::size_t>(c)];
     const double all = model->largest_coupling;
@@ -181,9 +182,9 @@ void WorldBatch::Impl::ForgetMeans(int world) noexcept {
 
 void WorldBatch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
-  // Several threads may read at once: one senses, the others wait for it. Later calls in the same
-  // step take no lock. std::atomic_ref is not available everywhere (the libc++ of emscripten
-  // 3.1.6).
+  // Several threads may read concurrently: one updates the readings, the others wait. Later calls
+  // in the same step take no lock. Builtins, because std::atomic_ref is missing in the libc++ of
+  // emscripten 3.1.6.
   if (__atomic_load_n(&g.sensed, __ATOMIC_ACQUIRE)) return;
   const std::lock_guard lock(sensing);
   if (__atomic_load_n(&g.sensed, __ATOMIC_RELAXED)) return;
@@ -280,12 +281,12 @@ void WorldBatch::SetBodyState(int world, int body, const BodyState& state) noexc
   d.set(world, d.layout.old_vel + 3 * body, state.velocity_m_per_s);
   d.set(world, d.layout.old_spin + 3 * body, state.angular_velocity_rad_per_s);
   d.set(world, d.layout.quat + 4 * body, q);
-  // Angular momentum in W: R diag(I) R^T w.
+  // angular momentum in W: R diag(I) R^T w
   const Vec3 w = Rotate(Conjugate(q), state.angular_velocity_rad_per_s);
   const Vec3 inertia = d.vec(world, d.layout.inertia + 3 * body);
   d.set(world, d.layout.mom + 3 * body,
         Rotate(q, {inertia.x * w.x, inertia.y * w.y, inertia.z * w.z}));
-  // The next step projects the velocities, like the first one.
+  // The next step projects the velocities onto the joints, like the first step.
   if (d.view.joint_count > 0) d.at(world, d.layout.last_step) = 0;
   d.Moved(world);
 }

@@ -1,4 +1,4 @@
-/// Data of a WorldBatch; shared by the files that implement it.
+/// Implementation data of a WorldBatch, shared by several files.
 #pragma once
 
 #include <cstdlib>
@@ -40,7 +40,7 @@ struct WorldBatch::Impl {
 
   std::shared_ptr<const sim::Tables> model;
   sim::View view;
-  sim::FrictionTable friction;  ///< `view` points to it if the model needs it.
+  sim::FrictionTable friction;  ///< `view` refers to it if the model needs it.
   WorldBatchOptions options;
   const sim::Kernel* kernel;
   sim::Layout layout;
@@ -53,9 +53,10 @@ struct WorldBatch::Impl {
   std::vector<sim::LaneStatus> status;
   std::vector<Aligned<char>> scratch;  ///< One per thread.
   base::ThreadPool pool;
-  mutable std::mutex sensing;  ///< Guards scratch[0] and the kSensed rows in const functions.
+  mutable std::mutex sensing;  ///< Protects scratch[0] and the kSensed rows in const functions.
 
-  // Checks of the callers' arguments (sim/batch/check_index.h); `function` is the caller's name.
+  // Checks of arguments from callers (sim/batch/check_index.h). `function`: name of the public
+  // function.
   void CheckWorld(const char* function, int world) const noexcept {
     sim::CheckIndex(function, "world", world, options.worlds);
   }
@@ -67,7 +68,7 @@ struct WorldBatch::Impl {
     CheckWorld(function, world);
     sim::CheckIndex(function, "cable", cable, view.cable_count);
   }
-  /// Returns the number of a cable's motor.
+  /// Returns the number of the motor of a cable.
   int CheckMotor(const char* function, int world, int cable) const noexcept {
     CheckCable(function, world, cable);
     const int motor = view.cables[cable].motor;
@@ -83,7 +84,7 @@ struct WorldBatch::Impl {
   /// Returns the row of a parameter.
   int ParameterRow(const char* function, int world, Parameter parameter, int index) const noexcept;
 
-  /// Returns the settings of a step of this length.
+  /// Returns the settings for steps of `step_s`.
   sim::StepSettings SettingsOf(double step_s) const noexcept;
 
   int lanes() const noexcept { return kernel->lanes; }
@@ -102,9 +103,9 @@ struct WorldBatch::Impl {
   sim::MotorOrders<double> orders(int world, int number) const noexcept {
     return Struct<sim::MotorOrders<double>>(world, layout.orders, number);
   }
-  /// Returns the bends of a cable that touches, in their order along it.
+  /// Returns the bends of a cable with wrapping, in order along the cable.
   std::vector<sim::WrapPointNumbers<double>> Bends(int world, int cable) const;
-  /// Path of a cable with its bends, without bends that it has left.
+  /// Path of a cable with its bends, except bends that it has left.
   struct LaidCable;
   LaidCable Lay(int world, int cable) const;
   Vec3 vec(int world, int row) const noexcept {
@@ -120,7 +121,7 @@ struct WorldBatch::Impl {
     at(world, row + 1) = x.y;
     at(world, row + 2) = x.z;
   }
-  /// Returns element `number` of a row whose elements are structs of numbers.
+  /// Returns element `number` of a row of structs of numbers.
   template <class T>
   T Struct(int world, int row, int number) const noexcept {
     constexpr int kWidth = sizeof(T) / sizeof(double);
@@ -150,7 +151,8 @@ struct WorldBatch::Impl {
     const int row = layout.quat + 4 * body;
     return {at(world, row), at(world, row + 1), at(world, row + 2), at(world, row + 3)};
   }
-  /// Calls f(number of the memory) for each contact that a world stores; keys ascend within a body.
+  /// Calls f(index of the contact memory) for each stored contact of a world. Keys ascend within a
+  /// body.
   template <class F>
   void ForEachContact(int world, F&& f) const {
     const sim::Group& g = group(world);
@@ -162,13 +164,14 @@ struct WorldBatch::Impl {
     }
     for (int k = 0; k < g.touches_used; ++k) visit(view.slot_count + k);
   }
-  /// Steps all worlds; first sets the targets of all cables of all worlds, unless null.
+  /// Steps all worlds. If `targets_m` is not null, first sets the targets of all cables of all
+  /// worlds.
   void Step(double step_s, int count, const double* targets_m) noexcept;
   void StepMasked(double step_s, const std::uint8_t* mask);
   void SetTargets(int group_number, const double* targets_m) const noexcept;
   void SetMass(int world, int body, double mass_kg) noexcept;
   void StartWorld(int world) noexcept;
-  /// Calls f(number) for all numbers of a contact in a snapshot (serialization).
+  /// Calls f(number) for all numbers of a contact in a snapshot.
   template <class F>
   void EachMemory(int world, int contact, F f) const noexcept {
     TAUT_ASSERT(0 <= contact && contact < view.ContactCapacity());
@@ -178,24 +181,24 @@ struct WorldBatch::Impl {
       for (int k = 0; k < row.width; ++k) f(at(world, first + k));
     }
   }
-  /// Recomputes the stiffness bounds of the cables after a change of masses, stiffnesses or
-  /// dampings.
+  /// Updates the stiffness bounds of the cables after a change of masses, stiffnesses or dampings.
   void JudgeStiffness(int world) noexcept;
-  /// Invalidates clearances after bodies were moved from outside.
+  /// Invalidates the clearances after a setter moved bodies.
   void Moved(int world) noexcept;
-  /// Invalidates the means of the last step, after cables were changed from outside.
+  /// Invalidates the averages of the last step after a setter changed cables.
   void ForgetMeans(int world) noexcept;
-  /// Resets the bends of cables that touch: straight, because their sides are unknown.
+  /// Makes cables with wrapping straight, because the sides of obstacles on which they pass are
+  /// unknown.
   void ForgetBends(int world) noexcept;
-  /// Sets the kinematic bodies to their poses at the world's time.
+  /// Moves the kinematic bodies to their poses at the current time of the world.
   void PlaceMotions(int world) noexcept;
-  /// Updates the kSensed rows of the world's group to the current state. Thread-safe.
+  /// Updates the kSensed rows of the group of a world to the current state. Thread safe.
   void Sense(int world) const noexcept;
   void ForceNode(int world, int node) noexcept;
-  /// Changes one of the commands of a motor.
+  /// Changes a command of a motor.
   void Order(int world, int motor, double sim::MotorOrders<double>::*order,
              double value) const noexcept;
-  /// Stops a cable's motor, if it has one, with the flanks of its gear in contact.
+  /// Stops the motor of a cable, if it has one, with the backlash of its gear closed.
   void StopMotor(int world, int cable) const noexcept;
 };
 

@@ -26,7 +26,7 @@ double HalfThicknessOf(const Shape& shape) {
   return WithShape(shape, [](const auto& s) noexcept { return HalfThickness(s); });
 }
 
-/// Returns the lowest coordinate of a shape in W along a direction.
+/// Returns the smallest coordinate of a shape along a direction in W.
 double Lowest(const sim::RoundShape& s, const double n[3]) {
   const auto along = [n](const double p[3]) { return n[0] * p[0] + n[1] * p[1] + n[2] * p[2]; };
   return std::min(along(s.from), along(s.to)) - s.radius_m;
@@ -47,7 +47,7 @@ double Lowest(const sim::SurfaceShape&, const double*) { return 1e300; }
 
 class Finder {
  public:
-  /// `poses`: of the bodies' principal frames, then of the world.
+  /// `poses`: of the principal frames of all bodies, then of the world.
   Finder(const sim::Tables& tables, std::vector<ShapePose> poses)
       : t_(tables), poses_(std::move(poses)) {}
 
@@ -57,7 +57,7 @@ class Finder {
     };
     for (std::size_t k = 0; k < t_.body_pairs.size(); ++k) {
       const sim::BodyPairTable& pair = t_.body_pairs[k];
-      // All shapes of a body on one ground are consecutive.
+      // All shapes of a body on the same ground are consecutive.
       const bool goes_on = k > 0 && pair.on_ground && t_.body_pairs[k - 1].on_ground &&
                            t_.body_pairs[k - 1].a == pair.a &&
                            other(t_.body_pairs[k - 1]) == other(pair);
@@ -141,7 +141,7 @@ class Finder {
 
   const sim::Tables& t_;
   std::vector<ShapePose> poses_;
-  Overlap worst_;  ///< Of the present pair of bodies.
+  Overlap worst_;  ///< Worst overlap of the current pair of bodies.
   std::vector<Overlap> found_;
 };
 

@@ -9,7 +9,7 @@ namespace taut {
 BodyRows RowsOfBodies(WorldBatch& batch, int group) noexcept {
   const BatchInside::Impl& d = BatchInside::Of(batch);
   sim::CheckIndex(__func__, "group", group, batch.groups());
-  // Without bodies the rows are empty, and may start after the last row.
+  // Without bodies, the rows are empty and may start after the last row.
   const auto first = [&](int row) {
     return d.groups[static_cast<std::size_t>(group)].rows + row * d.lanes();
   };

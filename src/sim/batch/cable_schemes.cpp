@@ -1,4 +1,4 @@
-// Integration scheme of each cable of a model for a given step, and the number of substeps.
+// Integration scheme of each cable of a model for a step length, and the number of substeps.
 #include "taut/cable_scheme.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 std::size_t At(int i) { return static_cast<std::size_t>(i); }
 
-/// Groups of a model's cables for a step.
+/// Groups of the cables of a model, for a step length.
 class ModelGroups {
  public:
   ModelGroups(const sim::Tables& tables, double step_s) : tables_(tables) {
@@ -31,7 +31,7 @@ class ModelGroups {
   const CableDef& cable(int c) const { return def().cables[At(c)]; }
   sim::CableGroups groups() { return {group_.data(), size_.data(), kind_.data()}; }
 
-  /// Returns K of (7) [1/s^2].
+  /// Returns K of eq. 7 [1/s^2].
   double Stiffness(int c) const {
     return std::min(tables_.coupling[At(c)] * cable(c).stiffness_n_per_m,
                     tables_.largest_coupling * k_max_);
@@ -68,7 +68,8 @@ bool SubstepRule::IsEnough(double step_s) const noexcept {
 }
 
 SubstepRule SubstepRuleOf(const Tables& tables) {
-  /// Of the critical damping. With less, cables with fixed directions gained energy.
+  /// Fraction of the critical damping. With less damping, cables with fixed directions gained
+  /// energy.
   constexpr double kEnoughDamping = 0.05;
   ModelGroups model(tables, 1.0);
   const CableGroups groups = model.groups();

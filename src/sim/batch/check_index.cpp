@@ -1,4 +1,4 @@
-// Messages for wrong indices and counts that callers pass to a WorldBatch.
+// Messages about wrong indices and counts from callers of a WorldBatch.
 #include "sim/batch/check_index.h"
 
 #include <cstdio>

@@ -1,12 +1,12 @@
-/// Bounds checks of the indices that callers pass. A wrong index is a programming error and would
-/// overwrite other data: it is reported and aborts the program, in every build.
+/// Bounds checks of indices from callers. A wrong index is a programming error and would overwrite
+/// other data. Therefore every build reports it and aborts.
 #pragma once
 
 #include <cstddef>
 
 namespace taut::sim {
 
-/// `function` and `what` in the caller's terms: "Cable", "cable".
+/// `function` and `what` are names that the caller knows, such as "Cable" and "cable".
 [[noreturn]] void WrongIndex(const char* function, const char* what, int index, int count) noexcept;
 
 inline void CheckIndex(const char* function, const char* what, int index, int count) noexcept {
@@ -15,13 +15,13 @@ inline void CheckIndex(const char* function, const char* what, int index, int co
   }
 }
 
-/// Reports a cable without a motor.
+/// Reports that a cable has no motor.
 [[noreturn]] void NoMotor(const char* function, int cable) noexcept;
 
 [[noreturn]] void WrongCount(const char* function, const char* what, std::size_t given,
                              std::size_t needed) noexcept;
 
-/// Checks the size of an array with one value per `what`.
+/// Checks the size of an array with one value for each `what`.
 inline void CheckCount(const char* function, const char* what, std::size_t given,
                        std::size_t needed) noexcept {
   if (given != needed) [[unlikely]] {

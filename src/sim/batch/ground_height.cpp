@@ -1,4 +1,4 @@
-// Height of planes, boxes and surfaces of the terrain at a place.
+// Height of the planes, boxes and surfaces of the terrain at a point.
 #include "sim/batch/ground_height.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ double TopOf(const PlaneDef& plane, double x, double y) {
   return beside ? -kInf : kInf;
 }
 
-/// Returns where a vertical line leaves a box: the intersection of three slabs.
+/// Returns the height at which a vertical line leaves a box: intersection of three slabs.
 double TopOf(const TerrainBoxDef& box, double x, double y) {
   const Quat back{box.orientation.w, -box.orientation.x, -box.orientation.y, -box.orientation.z};
   const Vec3 from = Rotate(back, Vec3{x, y, 0} - Vec3{box.center_m.x, box.center_m.y, 0});
@@ -46,10 +46,10 @@ double TopOf(const SurfaceTable& surface, double x, double y) {
   const auto look = [&](const SurfaceTriangle& t) noexcept {
     const Vec3 &a = t.p[0], &b = t.p[1], &c = t.p[2];
     const double area = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-    if (area == 0) return;  // vertical: its sides belong to other triangles, too
+    if (area == 0) return;  // vertical: its edges also belong to other triangles
     const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
     const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
-    constexpr double kRounding = 1e-12;  // a line between two triangles hits one of them
+    constexpr double kRounding = 1e-12;  // a line through an edge must hit one of its triangles
     if (u < -kRounding || v < -kRounding || u + v > 1 + kRounding) return;
     top = std::max(top, a.z + u * (b.z - a.z) + v * (c.z - a.z));
   };

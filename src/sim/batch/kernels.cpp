@@ -28,7 +28,7 @@ constexpr BuiltKernel kBuilt[] = {
 #endif
 };
 
-/// Returns whether this machine can run an instruction set that the program contains.
+/// Returns whether this machine can run an instruction set of this program.
 bool RunsHere([[maybe_unused]] Simd simd) {
 #ifdef TAUT_HAS_AVX512
   if (simd == Simd::kAvx512) {

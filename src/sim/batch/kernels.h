@@ -1,5 +1,5 @@
-/// Instruction sets of the step that the program is linked with: all of TAUT_INSTRUCTION_SETS
-/// (target taut_lanes), or the scalar one alone (target taut_one_lane).
+/// Instruction sets of the step that are linked into the program: all of TAUT_INSTRUCTION_SETS
+/// (target taut_lanes), or only the scalar one (target taut_one_lane).
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@
 
 namespace taut::sim {
 
-/// Returns the kernel of an instruction set; null if the program or the machine has none.
+/// Returns the kernel of an instruction set, or null if the program or the machine lacks it.
 const Kernel* KernelOf(Simd simd);
 /// Returns whether the program contains the instruction set with this name.
 bool IsBuilt(std::string_view name);

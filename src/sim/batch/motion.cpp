@@ -1,4 +1,4 @@
-// Motions of kinematic bodies: tables of a model, and poses between steps.
+// Motions of kinematic bodies: tables of a model, and poses outside of steps.
 #include "sim/batch/motion.h"
 
 #include "sim/batch/batch_impl.h"

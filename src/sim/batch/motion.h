@@ -1,4 +1,4 @@
-/// Pose and velocity of a kinematic body at any time, outside of steps.
+/// Pose and velocity of a kinematic body at any time, for code outside of steps.
 #pragma once
 
 #include "sim/data/view.h"

@@ -1,4 +1,4 @@
-/// DC motors: tables of a model, commands and readings of a batch. Their law is in dc_motor.inl.
+/// DC motors: tables of a model, commands and readings of a batch. dc_motor.inl contains their law.
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace taut {
 namespace sim {
 namespace {
 
-/// Returns the number of a motor's supply; adds a supply for a new name.
+/// Returns the number of the supply of a motor. A new name adds a supply.
 int SupplyOf(const DcMotorDef& def, std::vector<std::string>& names, Tables& tables) {
   const auto known = std::find(names.begin(), names.end(), def.supply);
   if (known != names.end()) return static_cast<int>(known - names.begin());

@@ -1,4 +1,4 @@
-/// Names of shapes and terrain in messages.
+/// Names of shapes and terrain for messages.
 #pragma once
 
 #include <string>

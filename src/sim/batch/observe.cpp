@@ -1,4 +1,4 @@
-/// Readings of a world, and its serialization (snapshots).
+/// Readings of a world, and serialization of its state (snapshots).
 
 #include <algorithm>
 #include <cstring>
@@ -70,7 +70,7 @@ Energy WorldBatch::TotalEnergy(int world) const noexcept {
       const double area_n = cable.stiffness_n_per_m * cable.rest_length_m;
       for (int i = 0; i < d.view.cables[c].span_count; ++i) {
         const CableSpanState span = CableSpan(world, c, i);
-        if (span.rest_length_m == 0) continue;  // its place has no contact now
+        if (span.rest_length_m == 0) continue;  // this bend does not exist at present
         const double longer = std::max(span.length_m - span.rest_length_m, 0.0);
         e.elastic_j += math::CableLaw{area_n / span.rest_length_m}.Energy(longer);
       }
@@ -117,13 +117,13 @@ struct Touching {
   int a, b;
 };
 
-/// Returns the upper end of the keys, which are whole numbers.
+/// Returns the upper limit of contact keys, which are integers.
 double KeyEnd(const sim::Tables& m) {
   return static_cast<double>(m.first_pair_id) +
          static_cast<double>(sim::kMaxPointsPerPair) * static_cast<double>(m.shape_pairs.size());
 }
 
-/// Returns the bodies of a contact, by its key.
+/// Returns the bodies of a contact from its key.
 Touching BodiesOf(const sim::Tables& m, double key) {
   const auto id = static_cast<std::uint32_t>(key);
   if (id < m.first_pair_id) {
@@ -161,14 +161,14 @@ std::vector<ContactState> WorldBatch::Contacts(int world) const {
 
 namespace {
 
-/// Header of a snapshot; the state rows follow, then the memory of the contacts.
+/// Header of a snapshot. The rows of the state follow, then the contact memory.
 struct SnapshotHeader {
   std::uint32_t magic = 0x74736e32;  // "tsn2"
   std::uint32_t rows = 0, contacts = 0, bits = 0;
   double first_time_s = 0;
 };
 
-/// Returns the number of values per contact; its key is first.
+/// Returns the number of values per contact; the key is first.
 constexpr std::size_t MemoryWidth() {
   std::size_t width = 0;
   for (const sim::RowInfo& row : sim::kStateRows) {
@@ -248,14 +248,14 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
   status.bits = header.bits;
   status.first_time_s = header.first_time_s;
 
-  // The snapshot's contacts replace this lane's; contacts of other lanes stay.
+  // The contacts of the snapshot replace those of this lane; other lanes keep their contacts.
   d.ForEachContact(world, [&](int i) { d.at(world, d.layout.contact_key + i) = sim::kNoKey; });
   const sim::Tables& m = *d.model;
   int list = -1, next = 0;
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
     const Touching bodies = BodiesOf(m, Read<double>(at));
     at -= sizeof(double);
-    // The slots of a body, or the touches after all slots.
+    // Slots of a body, or contacts between moving bodies after all slots.
     const bool moves = bodies.b < m.body_count &&
                        (d.at(world, d.layout.mass + bodies.b) > 0 || d.view.HasMotion(bodies.b));
     const int first = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(bodies.a)];
@@ -265,7 +265,7 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
         moves ? m.pair_capacity : m.first_slot[static_cast<std::size_t>(bodies.a) + 1] - first;
     int& used = moves ? g.touches_used : g.slots_used[bodies.a];
     const int i = next++;
-    if (i - first >= room) {  // never for a snapshot from Save
+    if (i - first >= room) {  // impossible for a snapshot from Save
       at += sizeof(double) * MemoryWidth();
       continue;
     }
@@ -275,7 +275,7 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
     }
     d.EachMemory(world, i, [&](double& x) { x = Read<double>(at); });
   }
-  // Derived rows belong to the previous state.
+  // Derived rows belong to the replaced state.
 #define TAUT_ROW(name, type, per, role, halted, start)                    \
   if constexpr (sim::Role::role == sim::Role::kDerived) {                 \
     const int count = sim::kWidth##type * d.view.Count(sim::Per::per);    \
@@ -287,7 +287,7 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
 }
 
 std::uint64_t WorldBatch::Hash(int world) const noexcept {
-  // FNV-1a over the contents of a snapshot without readings, without building one.
+  // FNV-1a hash over the contents of a snapshot without readings, without creating one.
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   std::uint64_t hash = 0xcbf29ce484222325u;

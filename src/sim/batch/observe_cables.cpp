@@ -1,4 +1,4 @@
-// Readings of a world's cables: state, spans, path, bends.
+// Cable readings of a world: state, spans, path, bends.
 #include <algorithm>
 
 #include "math/cable_wheel.h"
@@ -9,7 +9,7 @@ namespace taut {
 
 namespace {
 
-/// Returns the rows of a cable's readings.
+/// Returns the rows with the readings of a cable.
 CableReadings<int> RowsOf(const sim::Layout& l) {
   return {.rest_length_m = l.rest,
           .length_m = l.sense_length,
@@ -51,9 +51,10 @@ CableSpanState WorldBatch::CableSpan(int world, int cable, int span) const noexc
 
 struct WorldBatch::Impl::LaidCable {
   std::vector<PathPoint<Vec3>> points;
-  std::vector<int> bodies;  ///< By point; the world's number follows the last body's.
+  std::vector<int> bodies;  ///< Per point; the index of the world follows the last body.
   std::vector<int>
-      spans;  ///< By point: number of the span that ends there; the next point's span starts there.
+      /// Per point: number of the span that ends there. The next span starts at the next point.
+      spans;
   std::vector<Wheel<Vec3>> wheels;
 };
 
@@ -68,7 +69,7 @@ std::vector<double> WorldBatch::CableSpanTensions(int world, int cable) const {
     }
     return tensions;
   }
-  // Bends that it has left separate no spans.
+  // Bends that the cable has left do not separate spans.
   const Impl::LaidCable laid = d.Lay(world, cable);
   for (const Wheel<Vec3>& wheel : laid.wheels) {
     const int span = laid.spans[static_cast<std::size_t>(wheel.at)];
@@ -153,7 +154,7 @@ WorldBatch::Impl::LaidCable WorldBatch::Impl::Lay(int world, int cable) const {
   }
   LayOnWheels(points.data(), wheel_count, wheels.data(), along.empty() ? nullptr : along.data(),
               begun);
-  // Bends that a cable has left are not part of its path.
+  // Bends that the cable has left are not part of its path.
   for (std::size_t k = wheels.size(); table.touch >= 0 && k-- > 0;) {
     if (wheels[k].theta > 0) continue;
     points.erase(points.begin() + wheels[k].at, points.begin() + wheels[k].at + 2);
@@ -231,7 +232,7 @@ CableRows WorldBatch::Cables(int group) noexcept {
   sim::CheckIndex(__func__, "group", group, groups());
   const int first_world = group * d.lanes();
   d.Sense(first_world);
-  // Without cables the rows are empty, and may start after the last row.
+  // Without cables, the rows are empty and may start after the last row.
   const auto first = [&](int row) { return d.group(first_world).rows + row * d.lanes(); };
   return {MapReadings([&](int row) -> const double* { return first(row); }, RowsOf(d.layout)),
           d.lanes(), first_world, first(d.layout.target)};

@@ -1,4 +1,4 @@
-// Readings of a world's joints: coordinate, rate, gap, force.
+// Joint readings of a world: coordinate, rate, gap, force.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 
 Vec3 At(const double* p) { return {p[0], p[1], p[2]}; }
 
-/// One side of a joint in W.
+/// Joint point and velocities of one body of a joint, in W.
 struct Side {
   Vec3 point_m, velocity_m_per_s, spin_rad_per_s, axes[3];
 };
@@ -71,7 +71,7 @@ JointState WorldBatch::Joint(int world, int joint) const noexcept {
       }
       case M::kTurn1:
       case M::kTurn2:
-      case M::kTurn3:  // no coordinates, and not held
+      case M::kTurn3:  // neither a coordinate nor constrained
       case M::kCone:
         break;
     }
@@ -88,7 +88,7 @@ JointState WorldBatch::Joint(int world, int joint) const noexcept {
   }
   out.rate = 0;
   if (j.has_coordinate) out.coordinate = value(j.coordinate);
-  Vec3 twice_sine;  // of the rotation, along its axis
+  Vec3 twice_sine;  // twice the sine of the rotation, along its axis
   double cosines = 0;
   for (int i = 0; i < 3; ++i) {
     twice_sine = twice_sine + Cross(a.axes[i], b.axes[i]);

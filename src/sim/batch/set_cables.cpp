@@ -1,4 +1,4 @@
-// Setters of a world's cables: rest lengths, targets, bends.
+// Setters for the cables of a world: rest lengths, targets, bends.
 #include "math/cable_wheel.h"
 #include "sim/batch/batch_impl.h"
 

@@ -1,4 +1,4 @@
-// Parameters of single worlds: masses, stiffnesses, friction, gravity, and the limits of their
+// Parameters of single worlds (masses, stiffnesses, friction, gravity) and the limits of their
 // values.
 #include <cmath>
 #include <string>
@@ -9,7 +9,7 @@
 namespace taut {
 namespace {
 
-/// Returns the condition that `value` violates, with the unit; null if there is none.
+/// Returns the condition that `value` violates, with the unit, or null.
 const char* BoundViolatedBy(Parameter parameter, double value) noexcept {
   const bool finite = std::isfinite(value);
   switch (parameter) {
@@ -78,7 +78,7 @@ bool WorldBatch::SetParameter(int world, Parameter parameter, int index, double 
     const BodyState state = Body(world, index);
     d.SetMass(world, index, value);
     d.JudgeStiffness(world);
-    SetBodyState(world, index, state);  // same velocity, other momentum
+    SetBodyState(world, index, state);  // keeps the velocity and updates the momentum
     return true;
   }
   d.at(world, row) = value;

@@ -1,4 +1,4 @@
-// Steps of some worlds of a batch: the other lanes of a group are restored afterwards.
+// Steps of selected worlds: steps whole groups and restores the other lanes.
 #include <algorithm>
 #include <cstring>
 
@@ -7,7 +7,7 @@
 namespace taut {
 namespace {
 
-/// State of the lanes of a group that pause while the others step, for restoring it.
+/// Saved state of the lanes of a group that must not step.
 class Still {
  public:
   Still(sim::Group& g, int row_count, std::vector<int> lanes)
@@ -65,8 +65,8 @@ void WorldBatch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
     const int touches = g.touches_used;
     step();
     held.PutBack();
-    // The lists have the length of the longest lane's: entries after the end of a shorter lane's
-    // list are outdated.
+    // The list length is that of the longest lane. In other lanes, entries after their end are
+    // outdated.
     const auto keep = [&](int& used, int before, int first_slot) {
       const int longer = std::max(used, before);
       for (int lane = 0; lane < n; ++lane) {

@@ -1,4 +1,4 @@
-/// Kinematic bodies in a step: prescribed poses and velocities, and the work of the motion
+/// Kinematic bodies in a step: prescribed poses and velocities, and their work
 /// (docs/theory/motion.md).
 #pragma once
 
@@ -29,8 +29,8 @@ void StageMotionPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, W h) n
   }
 }
 
-/// Replaces the velocities of kinematic bodies, which StageKinematics treats as resting. Their
-/// forces are zero until contacts, cables and joints add theirs.
+/// Sets the velocities of kinematic bodies, which StageKinematics sets to zero. Their forces are
+/// zero until contacts, cables and joints add forces.
 ///   reads   motions[]     writes  bodies[].v0, .w0, .v_mid, .w_mid, .force, .torque
 template <class W>
 void StageMotionStart(const View& m, Scratch<W>& work) noexcept {
@@ -55,8 +55,8 @@ void StageMotionKick(const View& m, Scratch<W>& work) noexcept {
   }
 }
 
-/// Adds the velocity changes of kinematic bodies to the bounds of their displacement: an
-/// accelerating body moves farther than by its velocity before the step.
+/// Adds velocity changes of kinematic bodies to the bounds of their displacement, since an
+/// accelerating body moves farther than its initial velocity implies.
 template <class W>
 void BoundMotions(const View& m, const Rows<W>& s, Scratch<W>& work, W h, W since_last) noexcept {
   for (int i = 0; i < m.motion_count; ++i) {
@@ -69,8 +69,8 @@ void BoundMotions(const View& m, const Rows<W>& s, Scratch<W>& work, W h, W sinc
   }
 }
 
-/// Stage: computes the work of motions against all forces on their bodies at the middle of the
-/// step, and sets the poses at its end, after the second half of the drift.
+/// Stage: computes the work of kinematic bodies against all forces on them at the middle of the
+/// step. Then sets their poses at the end of the step, after the second half of the drift.
 ///   reads   motions[], bodies[], stiff[], joints[]     writes  pos, quat, vel, mom, old_*,
 ///   motion_*
 template <class W>
@@ -107,7 +107,7 @@ void StageMotionEnd(const View& m, const Rows<W>& s, Scratch<W>& work, double st
   }
 }
 
-/// Sets the velocities of kinematic bodies for sensing.
+/// Sets the velocities of kinematic bodies for readings.
 template <class W>
 void SenseMotions(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   for (int i = 0; i < m.motion_count; ++i) {

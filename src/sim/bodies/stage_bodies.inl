@@ -2,27 +2,27 @@
 ///
 ///   state   pos x, quat q_WP, vel v, mom L: angular momentum about the center of mass, in W
 ///
-/// Free rotation conserves L and rotates q. H = L^2 / (2 Ix) + a remainder, which is small for
-/// rods: z is the axis of near symmetry (model.cpp). The remainder rotates the body about its y and
-/// z axes, the first term about L (docs/theory/integrator.md, I5-I6; after Dullweber, Leimkuhler,
-/// McLachlan, J. Chem. Phys. 107, 1997, eq. 2.4). L is conserved to round-off, and so is the energy
-/// of a body with an axis of symmetry, at any spin; for other bodies the energy error stays
-/// bounded.
+/// Free rotation conserves L and rotates q. The Hamiltonian is H = L^2 / (2 Ix) + a remainder. The
+/// remainder is small for rods, because z is the axis of near symmetry (model.cpp). The first term
+/// rotates the body about L, the remainder about its y and z axes (docs/theory/integrator.md,
+/// I5-I6; after Dullweber, Leimkuhler, McLachlan, J. Chem. Phys. 107, 1997, eq. 2.4). L is
+/// conserved up to rounding. So is the energy of an axisymmetric body at any spin; for other
+/// bodies, the energy error stays bounded.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Returns tan(theta / 2) for a rotation by theta; with a vector's squared length as theta2, the
-/// factor of that vector. The series theta/2 (1 + theta^2/12) gives a rotation for any theta, and
-/// its angle is correct to O(theta^5).
+/// Returns tan(theta / 2). For a rotation vector theta L, pass its squared length as `theta2`; the
+/// result is then the factor of L. The series theta/2 (1 + theta^2/12) gives a valid rotation for
+/// any theta, with an angle correct to O(theta^5).
 template <class W>
 TAUT_INLINE W HalfAngle(W theta, W theta2) noexcept {
   return W::Splat(0.5) * theta * (W::Splat(1.0) + W::Splat(1.0 / 12.0) * theta2);
 }
 
-/// Rotation of a body's angular momentum in its frame as the body rotates by theta about one axis.
+/// Rotates the angular momentum in the body frame while the body rotates by theta about one axis.
 template <class W>
 struct AxisTurn {
   W t, c, s;
@@ -41,8 +41,8 @@ struct AxisTurn {
   }
 };
 
-/// Normalizes q. Returns the square of its length; if that is infinite (possible while all of `q`
-/// is finite), the result is not a rotation.
+/// Normalizes q and returns its squared length. If this is infinite (possible for finite
+/// components), the result is not a rotation.
 template <class W>
 TAUT_INLINE W NormalizeQuat(Q4<W>& q) noexcept {
   const W square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
@@ -61,14 +61,14 @@ TAUT_INLINE void TurnZ(Q4<W>& q, W t) noexcept {
   q = {q.w - t * q.z, q.x + t * q.y, q.y - t * q.x, q.z + t * q.w};
 }
 
-/// q <- (1, u) q: a rotation about u, fixed in W, not normalized.
+/// q <- (1, u) q, not normalized: a rotation about u, a fixed direction in W.
 template <class W>
 TAUT_INLINE void TurnAbout(Q4<W>& q, const V3<W>& u) noexcept {
   q = {q.w - (u.x * q.x + u.y * q.y + u.z * q.z), q.x + (u.x * q.w + u.y * q.z - u.z * q.y),
        q.y + (u.y * q.w + u.z * q.x - u.x * q.z), q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
 }
 
-/// Rotate by cosine and sine of half the angle.
+/// Same rotations, from cosine and sine of half the angle.
 template <class W>
 TAUT_INLINE void TurnY(Q4<W>& q, W c, W s) noexcept {
   q = {c * q.w - s * q.y, c * q.x - s * q.z, c * q.y + s * q.w, c * q.z + s * q.x};
@@ -84,11 +84,13 @@ TAUT_INLINE void TurnAbout(Q4<W>& q, W c, const V3<W>& u) noexcept {
        c * q.z + (u.z * q.w + u.x * q.y - u.y * q.x)};
 }
 
-/// Angle per half step above which bodies on hinges, whose turns are counted, use sine and cosine
-/// instead of HalfAngle's series, whose error there is 3e-5 of the angle [rad].
+/// Angle per half step [rad] above which bodies on hinges use sine and cosine. Below it, they use
+/// the series of HalfAngle, with an error of at most 3e-5 of the angle. Hinges need this accuracy,
+/// because their turns are counted.
 inline constexpr double kSeriesTurn = 0.25;
 
-/// Cosine and sine of theta / 2 in the lanes `fast`; 1 and HalfAngle in others, to be normalized.
+/// Cosine and sine of theta / 2 in the lanes `fast`; 1 and HalfAngle in other lanes, to be
+/// normalized.
 template <class W>
 struct HalfTurn {
   W c = W::Splat(1.0), s;
@@ -99,7 +101,7 @@ struct HalfTurn {
     simd::SinCosOfTurns(W::Splat(0.25 / simd::kPi) * theta, sine, cosine);
     c = Select(fast, cosine, c), s = Select(fast, sine, s);
   }
-  /// Rotates as AxisTurn does, with the same bits where c is 1.
+  /// Rotates like AxisTurn::Turn, with the same bits where c is 1.
   void Turn(W& a, W& b) const noexcept {
     const W cc = c * c, ss = s * s, scale = W::Splat(1.0) / (cc + ss);
     const W c2 = (cc - ss) * scale, s2 = (c * s + c * s) * scale;
@@ -109,8 +111,8 @@ struct HalfTurn {
   }
 };
 
-/// Rotates a free body by half a drift; the second half mirrors the first. `R`: rotation matrix of
-/// `q`. Returns the result of NormalizeQuat.
+/// Rotates a free body by half a drift. The second half is the mirror image of the first. `R`:
+/// rotation matrix of `q`. Returns the result of NormalizeQuat.
 enum class Half { kFirst, kSecond };
 template <Half kHalf, class W>
 TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& inv_inertia,
@@ -118,7 +120,7 @@ TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& i
   const W zero = W::Splat(0.0);
   const W y = inv_inertia.y - inv_inertia.x, z = inv_inertia.z - inv_inertia.x;
   V3<W> l = TransposeTimes(R, L);
-  // Skipping the rotation about y gives the same bits as a rotation by zero.
+  // Without the rotation about y, the result has the same bits as with a rotation by zero.
   const bool has_y = Any(!(y == zero));
   if (has_y && kHalf == Half::kFirst) {
     const AxisTurn<W> turn(half_h * l.y * y);
@@ -129,14 +131,14 @@ TAUT_INLINE W DriftTurn(Q4<W>& q, const M3<W>& R, const V3<W>& L, const V3<W>& i
   if (has_y && kHalf == Half::kSecond) turn.Turn(l.x, l.y);
   TurnZ(q, turn.t);
   if (has_y && kHalf == Half::kSecond) TurnY(q, AxisTurn<W>(half_h * l.y * y).t);
-  // A rotation about L does not change l, so its place in the order does not matter.
+  // A rotation about L does not change l, so it may come last in both halves.
   const W theta = half_h * inv_inertia.x;
   TurnAbout(q, HalfAngle(theta, theta * theta * Dot(L, L)) * L);
   return NormalizeQuat(q);
 }
 
-/// DriftTurn of a body on a hinge: exact at any speed, and bit-identical to DriftTurn where the
-/// series is used.
+/// DriftTurn for a body on a hinge: exact at any speed, and bit-identical to DriftTurn where it
+/// uses the series.
 template <Half kHalf, class W>
 [[gnu::noinline]] W DriftTurnOnHinge(Q4<W>& q, const M3<W>& R, const V3<W>& L,
                                      const V3<W>& inv_inertia, W half_h) noexcept {
@@ -172,7 +174,7 @@ template <Half kHalf, class W>
 TAUT_INLINE W DriftTurnOf(const View& m, const Rows<W>& s, int b, Q4<W>& q, const M3<W>& R,
                           W half_h) noexcept {
   if (m.joint_count > 0 && m.hinged[b] != 0) {
-    Q4<W> on_hinge = q;  // a copy, so that q may stay in registers
+    Q4<W> on_hinge = q;  // a copy, so that q can stay in registers
     const W square = DriftTurnOnHinge<kHalf>(on_hinge, R, s.mom[b], s.inv_inertia[b], half_h);
     q = on_hinge;
     return square;
@@ -192,21 +194,22 @@ void StageDriftFirst(const View& m, const Rows<W>& s, W half_h) noexcept {
   }
 }
 
-/// Stage: second half of the drift, which mirrors the first.
+/// Stage: second half of the drift, the mirror image of the first.
 template <class W>
 void StageDriftSecond(const View& m, const Rows<W>& s, const Scratch<W>& work, W half_h) noexcept {
-  const W zero = W::Splat(0.0);  // x + 0 turns -0 into 0: lanes must not differ in the sign of zero
+  // x + 0 turns -0 into 0, so that the sign of zero does not depend on other lanes
+  const W zero = W::Splat(0.0);
   for (int b = 0; b < m.body_count; ++b) {
     Q4<W> q = s.quat[b];
     const W square = DriftTurnOf<Half::kSecond>(m, s, b, q, work.bodies[b].R, half_h);
-    // + 0, or NaN if the rotation was lost: UpdateStatus checks w.
+    // + 0, or NaN if q is not a rotation; UpdateStatus checks w.
     s.quat[b] = {q.w + zero * square, q.x + zero, q.y + zero, q.z + zero};
     s.pos[b] += half_h * s.vel[b];
     s.pos[b] += V3<W>{zero, zero, zero};
   }
 }
 
-/// Computes the points at which cables are attached.
+/// Computes the positions of the cable attachments.
 ///   reads   pos, bodies[].R     writes  spots[]
 template <class W>
 void StageSpots(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
@@ -218,8 +221,9 @@ void StageSpots(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   }
 }
 
-/// Computes frames, inverse inertias and velocities of all bodies; forces start at weight. `ahead`:
-/// time to the predicted velocities, in units of the previous step (0: no prediction).
+/// Computes frames, inverse inertias and velocities of all bodies, and initializes forces with
+/// weights. `ahead`: time for which velocities are predicted, in units of the previous step; 0: no
+/// prediction.
 ///   reads   quat, vel, mom, old_vel, old_spin, mass, gravity, node_force     writes  bodies[]
 template <class W>
 void StageKinematics(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
@@ -252,7 +256,7 @@ void StageKinematics(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
 }
 
 /// Computes frames and velocities of all bodies in the current state, for lengths and rates of
-/// cables, with the same bits as StageKinematics.
+/// cables. The bits are the same as from StageKinematics.
 ///   reads   quat, vel, mom     writes  bodies[].R, .v_mid, .w_mid
 template <class W>
 void StageSenseBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
@@ -269,7 +273,7 @@ void StageSenseBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexcep
   world.v_mid = world.w_mid = none;
 }
 
-/// Stage: converts forces to velocities.
+/// Stage: changes velocities by the accumulated forces (kick).
 ///   reads   bodies[].force, .torque     writes  bodies[].v, .w, mom
 template <class W>
 void StageKick(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {

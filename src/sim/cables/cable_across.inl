@@ -1,5 +1,5 @@
 /// Capstan friction across a cable, along the axis of an edge or rod (docs/theory/cables.md,
-/// section 7): the cable has no mass, so a bend slides at once until friction can hold it.
+/// section 7). The cable has no mass, so a bend slides immediately until friction can hold it.
 #pragma once
 
 #include "sim/cables/cable_rods.inl"
@@ -8,15 +8,15 @@
 
 namespace taut::sim {
 
-/// Returns the pull of both parts of a bend along the axis, per tension: its deviation from the
-/// straight line on the unrolled cylinder. It decreases with `along`.
+/// Returns the axial force of both parts of a bend, divided by the tension. It is zero if the cable
+/// is straight on the unrolled cylinder, and decreases with `along`.
 TAUT_INLINE double AsideAt(const Tangents<Vec3>& way, double along) noexcept {
   const Rises<double> rise = RisesAt(way, along);
   return rise.behind / Sqrt(1.0 + rise.behind * rise.behind) -
          rise.before / Sqrt(1.0 + rise.before * rise.before);
 }
 
-/// Returns the place at which AsideAt is `goal`, which is between zero and its value at `from`.
+/// Returns the position at which AsideAt is `goal`, a value between zero and AsideAt(from).
 TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) noexcept {
   constexpr int kMostRounds = 100;
   constexpr double kFirstWayM = 1e-6, kFarM = 1e3, kEnough = 1e-14;
@@ -32,14 +32,14 @@ TAUT_INLINE double SlideTo(const Tangents<Vec3>& way, double from, double goal) 
     if (fc * fb <= 0.0) {
       a = b, fa = fb;
     } else {
-      fa = 0.5 * fa;  // regula falsi without stagnation (Illinois)
+      fa = 0.5 * fa;  // regula falsi, Illinois variant (no stagnation)
     }
     b = c, fb = fc;
   }
   return b;
 }
 
-/// Returns a unit vector perpendicular to a bend's axis, fixed in the bend's body.
+/// Returns a unit vector normal to the axis of a bend, fixed to the body of the bend.
 template <class W>
 V3<W> MarkOfBend(const View& m, const Scratch<W>& work, const WrapPointNumbers<W>& bend) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
@@ -58,25 +58,26 @@ V3<W> MarkOfBend(const View& m, const Scratch<W>& work, const WrapPointNumbers<W
   return mark;
 }
 
-/// Returns the difference of two angles, from -pi to pi.
+/// Returns the difference of two angles, -pi..pi.
 template <class W>
 TAUT_INLINE W TurnFrom(W from, W to) noexcept {
   const W turned = to - from;
   return turned - W::Splat(2 * kPi) * Round(W::Splat(0.5 / kPi) * turned);
 }
 
-/// Returns the displacement around a wheel, positive along the cable, for a turn about its axis
-/// [m].
+/// Returns the displacement on the surface of a wheel [m] for a rotation about its axis, positive
+/// along the cable.
 template <class W>
 TAUT_INLINE W WayAround(const Wheel<V3<W>>& wheel, W turn) noexcept {
   return Select(wheel.angle < W::Splat(0.0), -turn, turn) * wheel.radius;
 }
 
-/// Derivatives of a held bend's path length with respect to the position of its middle along the
-/// axis.
+/// Derivatives of the path length with respect to the axial position of a held bend's middle.
 struct Lean {
-  double apart;  ///< Half the difference of the derivatives before and behind the middle [1].
-  double walk;   ///< Displacement along the axis per displacement around it without work (eq. 22a).
+  /// Half the difference of the derivatives of the parts before and after the middle [1].
+  double apart;
+  /// Axial displacement per circumferential displacement at which no work is done (eq. 22a).
+  double walk;
 };
 inline Lean LeanOf(const Tangents<Vec3>& way, const Rises<double>& rise) noexcept {
   constexpr double kShortestM = 1e-9, kLeast = 1e-6, kMostTimes = 2.0;
@@ -94,15 +95,16 @@ inline Lean LeanOf(const Tangents<Vec3>& way, const Rises<double>& rise) noexcep
           Max(Min(exact, most), -most)};
 }
 
-/// Slides one lane's bend if friction cannot hold it. `moved`: displacement of the arc's middle on
-/// the wheel since the previous step, about its axis [m]. In the meantime, the bend moves in the
-/// mean direction of the cable, like a rope on a turning drum (eq. 22a). Returns the displacement
-/// across the cable [m].
+/// Slides a bend of one lane if friction cannot hold it. Returns the displacement across the cable
+/// [m]. `moved`: circumferential displacement of the arc's middle on the wheel since the previous
+/// step [m]. During it, the bend moves in the mean direction of the cable, like a rope on a
+/// rotating drum (eq. 22a).
 template <class W>
 double SlideBend(const View& m, const Rows<W>& s, const TouchTable& touch, Scratch<W>& work,
                  const Vec3& p, const Vec3& q, int k, int lane, double moved) noexcept {
-  constexpr double kSteepest = 0.995;  ///< Share of the friction limit that keeps some slip.
-  /// Largest motion along the axis in a step, per length of the shorter straight part (status bit).
+  /// Largest used fraction of the friction limit, so that some slip remains.
+  constexpr double kSteepest = 0.995;
+  /// Largest axial motion in a step, relative to the shorter straight part; more sets a status bit.
   constexpr double kMostWalk = 0.1;
   const CableTable& cable = m.cables[touch.cable];
   W& along = s.slip_along[cable.first_slip + k];
@@ -152,8 +154,8 @@ double SlideBend(const View& m, const Rows<W>& s, const TouchTable& touch, Scrat
   return Abs(now - old);
 }
 
-/// Drift of bends (eq. 23): slip along the cable carries a bend in the direction against which
-/// friction acts, until it is straight.
+/// Drift of bends (eq. 23): slip along the cable moves a bend against the friction force until the
+/// path is straight.
 template <class W, class Tag>
 void DriftAcross(const Rows<W>& s, const Scratch<W>& work, const CableTable& cable,
                  const Capstan<Tag>& found, double area_n, int lane) noexcept {
@@ -170,7 +172,7 @@ void DriftAcross(const Rows<W>& s, const Scratch<W>& work, const CableTable& cab
   }
 }
 
-/// Slides all bends of a laid cable across, and lays the path over their new places.
+/// Slides all bends of a cable across it, and updates the path.
 template <class W>
 [[gnu::noinline]] void SlideAcross(const View& m, const Rows<W>& s, Scratch<W>& work,
                                    const TouchTable& touch, int used,

@@ -1,5 +1,6 @@
-/// Cables with capstan friction (constraint/cable_chain.h, docs/theory/cables.md, section 5): their
-/// spans are measured in lanes and solved together with all other constraints, lane by lane.
+/// Cables with capstan friction (constraint/cable_chain.h, docs/theory/cables.md, section 5). Their
+/// spans are measured in all lanes at once, and solved lane by lane together with all other
+/// constraints.
 #pragma once
 
 #include "sim/cables/cable_across.inl"
@@ -11,11 +12,11 @@
 
 namespace taut::sim {
 
-/// Transfers cable between the two spans of a wheel that has turned since the previous step: the
-/// displacement of the arc's middle on the wheel, along the mean of the cable's directions
-/// before and behind it (docs/theory/cables.md, eq. 15a). `middle`: angle of the arc's middle;
-/// `length`: of the spans; `lean`: Lean::apart of a held bend, or null. `keep`: stores the middle's
-/// new place in `place` and `height`.
+/// Transfers cable material between the two spans of a wheel that has turned since the previous
+/// step (docs/theory/cables.md, eq. 15a). The amount is the displacement of the arc's middle on the
+/// wheel, along the mean direction of the cable. `middle`: angle of the arc's middle; `length`:
+/// lengths of the spans; `lean`: Lean::apart of a held bend, or null. `keep`: stores the new middle
+/// in `place` and `height`.
 template <class W>
 TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, W middle, int span,
                            const AttachmentWork<W>* ends, const W* length, bool keep, const W* lean,
@@ -38,7 +39,7 @@ TAUT_INLINE void CarryOver(const Wheel<V3<W>>& wheel, W middle, int span,
   rest[span + 1] -= moves;
 }
 
-/// Applies CarryOver to all wheels with friction of a cable.
+/// Applies CarryOver to all wheels with friction on a cable.
 template <class W>
 void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   const AttachmentWork<W>* ends, const W* length, bool keep, W* rest) noexcept {
@@ -55,7 +56,7 @@ void CarryOverAll(const View& m, const Rows<W>& s, const CableTable& cable, cons
   }
 }
 
-/// Computes lengths and tension ratios of a cable's spans in the present path.
+/// Computes the lengths of the spans in the current path, and the tension ratios between them.
 template <class W>
 void MeasureSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   const AttachmentWork<W>* ends, W* length, W* ratio) noexcept {
@@ -92,7 +93,7 @@ void MeasureSpans(const View& m, const Rows<W>& s, const CableTable& cable, cons
   ratio[cable.span_count - 1] = W::Splat(1.0);
 }
 
-/// Links the spans to bodies: one link for each span and body. Returns the number of links.
+/// Links the spans to bodies, with one link per span and body. Returns the number of links.
 template <class W>
 int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
               const AttachmentWork<W>* ends, RowLink<W>* links) noexcept {
@@ -140,11 +141,11 @@ int LinkSpans(const View& m, const Rows<W>& s, const CableTable& cable, const Sc
   return count;
 }
 
-/// Takes wound length from the first span, or from the following ones if it is exhausted.
+/// Removes wound length from the first span, and from the next spans if it is too short.
 template <class S>
 TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
   using C = Constant<S>;
-  constexpr double kLeast = 1e-3;  ///< Relative to the mean.
+  constexpr double kLeast = 1e-3;  ///< Smallest rest length of a span, relative to the mean.
   const S zero = C::Of(0.0);
   S all = zero;
   rest[0] += wound;
@@ -155,7 +156,7 @@ TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
     rest[i] += missing;
     rest[i + 1] -= missing;
   }
-  // The last spans may be below the least length, too.
+  // The last spans may be too short, too.
   for (int i = span_count - 1; i > 0; --i) {
     const S missing = Max(least - rest[i], zero);
     rest[i] += missing;
@@ -163,8 +164,8 @@ TAUT_INLINE void WindFirstSpan(int span_count, S wound, S* rest) noexcept {
   }
 }
 
-/// Prepares a cable with friction at the middle of the step: its actuator, and its spans for the
-/// solver.
+/// Prepares a cable with friction at the middle of the step: runs its actuator and sets up its
+/// spans for the solver.
 template <class W>
 [[gnu::noinline]] void MeetChain(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W h,
                                  W inv_h) noexcept {
@@ -184,7 +185,7 @@ template <class W>
   MeasureSpans(m, s, cable, work, ends, length, ratio);
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
   CarryOverAll(m, s, cable, work, ends, length, true, rests);
-  // Spans in series have the stiffness of the cable.
+  // Spans in series have together the stiffness of the cable.
   const W area = k * before;
   if (cable.touch >= 0) {
     WindGrips(m, s, cable, rest - before, rests);
@@ -219,7 +220,7 @@ template <class W>
   row.link_count = 0;
 }
 
-/// Returns a lane's chain without its links. `spans`: memory for its spans.
+/// Returns the chain of a lane without its links. `spans`: memory for its spans.
 template <class L, class W>
 CableChain<L> ChainOfLane(const View& m, const Rows<W>& s, const CableTable& cable,
                           const Scratch<W>& work, ChainSpan<L>* spans, int lane, L h) noexcept {
@@ -239,7 +240,7 @@ CableChain<L> ChainOfLane(const View& m, const Rows<W>& s, const CableTable& cab
   return chain;
 }
 
-/// Applies a lane's slip to `rest` and `loss`, the rest lengths and friction losses of the cable.
+/// Applies the slip of a lane to the rest lengths (`rest`) and friction losses (`loss`) of a cable.
 /// No span loses more than 80 % of its rest length.
 template <class W, class Tag>
 void Slip(const Capstan<Tag>& found, double area_n, int lane, W* rest, W* loss) noexcept {
@@ -261,7 +262,7 @@ void Slip(const Capstan<Tag>& found, double area_n, int lane, W* rest, W* loss) 
   }
 }
 
-/// Computes the readings of the spans, after the pending slip.
+/// Computes the readings of the spans, including slip that is not yet applied.
 template <class W>
 [[gnu::noinline]] void SenseChain(const View& m, const Rows<W>& s, Scratch<W>& work,
                                   int c) noexcept {
@@ -272,7 +273,7 @@ template <class W>
   for (int i = 0; i < cable.span_count; ++i) rests[i] = s.span_rest[cable.first_span + i];
   for (int i = 0; i + 1 < cable.span_count; ++i) loss[i] = s.slip_loss[cable.first_slip + i];
   CarryOverAll(m, s, cable, work, ends, length, false, rests);
-  // Much slip into a short span changes its stiffness, so the rounds repeat with the new one.
+  // Large slip into a short span changes its stiffness, so the computation is repeated.
   constexpr int kRounds = 4;
   W elastic = W::Splat(0.0);
   for (int lane = 0; lane < W::kLanes; ++lane) {
@@ -300,7 +301,7 @@ template <class W>
   s.sense_elastic[c] = elastic;
 }
 
-/// Applies the solved tensions: momenta, slip, and friction losses.
+/// Applies the solved tensions: changes momenta, slip and friction losses.
 template <class W>
 void FinishChains(const View& m, const Rows<W>& s, const Scratch<W>& work, double step_s) noexcept {
   using L = simd::Lane<W>;

@@ -15,7 +15,7 @@ bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcep
 
 namespace {
 
-/// Search for the edge with the deepest penetration by a span.
+/// Search for the terrain edge with the deepest penetration by a span.
 class Search {
  public:
   Search(const View& m, const FreeSpan& span, double radius_m, const double* taken, int taken_count,
@@ -31,7 +31,7 @@ class Search {
   bool found() const noexcept { return is_new_; }
   bool IsTaken(double key) const noexcept { return sim::IsTaken(key, taken_, taken_count_); }
 
-  /// Proposes an edge that is not taken.
+  /// Stores an edge if it is not taken and deeper than the present result.
   void Offer(TerrainEdge& edge, double depth_m) noexcept {
     BendPlace& place = edge.place;
     place.radius_m = radius_m_;
@@ -57,7 +57,7 @@ class Search {
   bool any_, is_new_ = false;
 };
 
-/// Search on the edges of one box that the span cuts.
+/// Search over the edges of one box that intersects the span.
 class BoxSearch {
  public:
   BoxSearch(const BoxShape& box, double first_key, Search& search) noexcept
@@ -73,7 +73,7 @@ class BoxSearch {
       Offer(in, out, CornerDepth(in, out));
       return;
     }
-    // Through opposite faces: over the nearest of the other four faces.
+    // The span passes through opposite faces; lift it over the nearest of the other four faces.
     int over = -1;
     double least = 0.0;
     for (int face = 0; face < 6; ++face) {
@@ -86,13 +86,13 @@ class BoxSearch {
   }
 
  private:
-  /// Returns the depth below the edge between two faces, at which the span cuts off a corner.
+  /// Returns the depth of the span below the edge between two faces whose corner it cuts.
   double CornerDepth(int in, int out) const noexcept {
     const double a = cut_.Below(out, cut_.from), b = cut_.Below(in, cut_.to);
     return a * b / Larger(Sqrt(a * a + b * b), 1e-300);
   }
 
-  /// Proposes the edge between two faces.
+  /// Offers the edge between two faces to the search.
   void Offer(int f, int g, double depth_m) noexcept {
     if (f > g) return Offer(g, f, depth_m);
     const double key = first_key_ + NumberOfEdge<double>(f, g);
@@ -118,7 +118,7 @@ class BoxSearch {
 
 Vec3 Unit(const Vec3& a) noexcept { return (1.0 / Larger(Norm(a), 1e-300)) * a; }
 
-/// Proposes an edge of a surface, with the depth of the span below it.
+/// Offers an edge of a surface to the search, with the depth of the span below it.
 void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& search) noexcept {
   if (edge.sides != 2 || edge.border || search.IsTaken(key)) return;
   const Vec3 along = edge.to - edge.from;
@@ -145,8 +145,8 @@ void OfferEdge(const SurfaceEdge& edge, double key, double reach_m, Search& sear
 void SearchSurface(const SurfaceTable& s, double first_key, Search& search) noexcept {
   const FreeSpan& span = search.span();
   const double radius = search.radius_m();
-  // Height above which edges cannot be touched; for meshes, bounded by the depth that a cable
-  // reaches within a step.
+  // Distance beyond which edges cannot be touched. For meshes, it includes the depth that a cable
+  // can reach within a step.
   double reach = 2.0 * radius;
   if (s.is_field) {
     const Vec3 low{Smaller(span.from.x, span.to.x), Smaller(span.from.y, span.to.y), 0.0};
@@ -184,7 +184,7 @@ RoundShape RoundOf(const FreeSpan& span, double radius_m) noexcept {
   return {{span.from.x, span.from.y, span.from.z}, {span.to.x, span.to.y, span.to.z}, radius_m};
 }
 
-/// Calls `use(shape, number)` for the world's boxes that may be within reach of the span.
+/// Calls `use(shape, number)` for the boxes of the world that the span may reach.
 template <class Use>
 void EachBox(const View& m, const FreeSpan& span, double reach_m, const Use& use) noexcept {
   const auto look = [&](int number) noexcept {

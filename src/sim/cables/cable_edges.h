@@ -1,5 +1,5 @@
-/// Terrain edges that a cable wraps around, for one world (docs/theory/cables.md, section 6). Part
-/// of a step: no standard library.
+/// Terrain edges around which a cable wraps, for one world (docs/theory/cables.md, section 6). Part
+/// of a step, so without the standard library.
 #pragma once
 
 #include "math/cable_wheel.h"
@@ -8,33 +8,34 @@
 
 namespace taut::sim {
 
-/// Edge numbers of a shape are below this value.
+/// Upper limit of the edge numbers of a shape.
 inline constexpr double kEdgesOfShape = 4294967296.0;
 
-/// A cylinder that a cable may wrap around.
+/// Cylinder around which a cable may wrap.
 struct BendPlace {
-  double key;         ///< Identifies the edge or rod of a model.
-  int body;           ///< Body or the world; its frame P is the frame
-  Vec3 center, axis;  ///< of these; the axis is a unit vector [m], [1].
-  double most_rad;    ///< Largest angle about it that does not lead through the solid.
-  double half_m;      ///< Half its length.
-  double radius_m;    ///< To the middle of a cable on it.
+  double key;         ///< Unique key of the edge or rod in a model.
+  int body;           ///< Body or the world; its frame P is the frame of `center` and `axis`.
+  Vec3 center, axis;  ///< Center [m], and unit vector.
+  /// Largest angle about the axis at which the cable does not pass through the solid.
+  double most_rad;
+  double half_m;    ///< Half the length of the cylinder.
+  double radius_m;  ///< Distance from the axis to the center line of a cable on it.
 };
 
-/// A cable slips off an edge at this distance from its end, in radii: cylinders about edges that
-/// meet in a corner overlap there.
+/// Distance from the end of an edge at which a cable slips off, in radii. Closer to a corner, the
+/// cylinders of adjacent edges overlap.
 inline constexpr double kCornerRadii = 3.0;
 
-/// A convex edge.
+/// Convex edge of the terrain.
 struct TerrainEdge {
   BendPlace place;
-  Vec3 out;  ///< Unit vector across it, away from the solid.
+  Vec3 out;  ///< Unit vector normal to the edge, away from the solid.
 };
 
-/// A straight part of a cable.
+/// Straight part of a cable.
 struct FreeSpan {
   Vec3 from, to;
-  bool starts, ends;  ///< Whether they are ends of the cable.
+  bool starts, ends;  ///< Whether they are the ends of the cable.
 };
 
 TAUT_INLINE bool IsTaken(double key, const double* taken, int count) noexcept {
@@ -44,24 +45,24 @@ TAUT_INLINE bool IsTaken(double key, const double* taken, int count) noexcept {
   return false;
 }
 
-/// An edge or rod that a span penetrates. `side`: sign of the wrap angle.
+/// Edge or rod that a span penetrates. `side`: sign of the wrap angle.
 struct BendFound {
   BendPlace place;
   double depth_m, side;
 };
 
-/// Returns whether a span from end to end, on the given side, would wrap around the place within
-/// its length.
+/// Returns whether a span that wraps around `place` on the given side would touch it within its
+/// length.
 bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcept;
 
-/// Finds the edge that penetrates the span most deeply, among edges not in `taken` that can lift
-/// the span out. Returns false if no edge is deeper than the previous result (`any`: there was
-/// one). A box in which the cable ends is passed through.
+/// Finds the edge with the deepest penetration by the span, among edges not in `taken` that can
+/// lift the span out. Returns false if no edge is deeper than the previous result (`any`: there is
+/// one). The span passes through a box that contains an end of the cable.
 bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double* taken,
               int taken_count, bool any, BendFound* found) noexcept;
 
-/// Returns a lower bound, up to `enough_m`, of the distance from the span to any edge [m]; 0 or
-/// less if an edge may be touched.
+/// Returns a lower bound of the distance from the span to any edge [m], at most `enough_m`. If it
+/// is <= 0, the span may touch an edge.
 double FreeDistance(const View& m, const FreeSpan& span, double radius_m, double enough_m) noexcept;
 
 }  // namespace taut::sim

@@ -1,4 +1,4 @@
-/// Update of cable bends between steps (docs/theory/cables.md, section 6): a bend is added where a
+/// Update of cable bends between steps (docs/theory/cables.md, section 6). A bend is added where a
 /// straight part of the path penetrates an edge or rod, and removed where the cable lifts off.
 #pragma once
 
@@ -12,23 +12,24 @@
 
 namespace taut::sim {
 
-/// Edges and rods that one lane's cable has left during an update. They stay excluded until its
-/// end, so that the update terminates.
+/// Edges and rods that the cable of one lane has left during an update. They are excluded from the
+/// rest of the update, so that it terminates.
 struct LeftBehind {
   static constexpr int kMost = 2 * kMostBends;
   double key[kMost];
   int count = 0;
 };
 
-/// Marks a lane whose cable touches more than kMostBends edges and rods (status bit).
+/// Sets the status bit of a lane whose cable touches more than kMostBends edges and rods.
 template <class W>
 TAUT_INLINE void Crowd(Scratch<W>& work, const TouchTable& touch, int lane) noexcept {
   work.no_room |= 1u << lane;
   work.crowded_cable[lane] = touch.cable;
 }
 
-/// Returns a bend to remove in one lane, or -1: on a rod that contains an end of the cable or the
-/// next bend; of two consecutive penetrating rods, the rod with the smaller wrap angle.
+/// Returns a bend of one lane to remove, or -1. Candidates: a bend on a rod that contains an end of
+/// the cable or the next bend, and of two bends on penetrating rods the one with the smaller wrap
+/// angle.
 template <class W>
 int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                 int used, int count, int lane) noexcept {
@@ -40,10 +41,10 @@ int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const T
   return -1;
 }
 
-/// Changes a lane's bends once, by the current path. Removes bends that the cable has left, that
-/// would be beyond an edge's end or inside the ground; adds an edge that a straight part is below.
-/// `resolved`: bodies have moved by at most half a rod's radius since the previous path.
-/// Returns whether the bends changed.
+/// Changes the bends of a lane once, according to the current path. Removes bends that the cable
+/// has left, and bends beyond the end of an edge or inside the ground. Adds a bend at the edge or
+/// rod that a straight part penetrates most. `resolved`: bodies have moved by at most half a rod
+/// radius since the previous path. Returns whether the bends changed.
 template <class W>
 bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch,
                  int used, int lane, bool resolved, LeftBehind& left) noexcept {
@@ -64,7 +65,7 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
     const bool within = Abs(Dot(middle, PlaceOf(wheels[k].axis, lane))) < bends.Half(k) &&
                         Abs(wheels[k].angle[lane]) < bends.Most(k);
     if (lies && within) continue;
-    drop(k, lies);  // the cable is inside the obstacle that it slips off
+    drop(k, lies);  // with contact: the cable is inside the obstacle that it slips off
   }
   if (bends.count() < before) return true;
   const int weaker = BendToLetGo(m, s, work, touch, used, before, lane);
@@ -95,8 +96,8 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   FindRod(m, s, work, touch, parts, lane, taken, taken_count, part >= 0, &deepest, &part);
   if (part < 0) return false;
   if (resolved && deepest.place.body != m.body_count && deepest.depth_m > deepest.place.radius_m) {
-    // The cable has jumped: it is deeper in this rod than a substep allows. A bend around the rod
-    // would lengthen the cable by a jump.
+    // The cable is deeper in this rod than possible after a short substep. A bend would make the
+    // length jump, so the cable passes through the rod.
     ForgetSide(m, s, touch, deepest.place.key, lane);
     Crowd(work, touch, lane);
     return true;
@@ -106,14 +107,14 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   const double share = ShareBefore(m, s, work, deepest.place, parts.span[part], 0.5 * arc_before,
                                    0.5 * arc_behind, lane);
   if (bends.Insert(part, deepest, share)) return true;
-  // The shallowest penetration: the cable passes through it, and its length stays continuous.
+  // No room for this bend: the cable passes through the obstacle, and its length stays continuous.
   ForgetSide(m, s, touch, deepest.place.key, lane);
   Crowd(work, touch, lane);
   return false;
 }
 
-/// Computes the path of a cable. `start`, `end`: its ends at the middle of the step; `ago`: time
-/// before that [s], or null.
+/// Computes the path of a cable. `start`, `end`: its ends at the middle of the step. `ago`: time of
+/// the path before the middle of the step [s]; null: 0.
 template <class W>
 void LayThen(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable& touch, int used,
              const AttachmentWork<W>& start, const AttachmentWork<W>& end, const W* ago) noexcept {
@@ -139,9 +140,9 @@ void LayThen(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchTable
       });
 }
 
-/// Number of substeps in which bends are updated: bodies move by at most half a rod's radius in
-/// each, except very fast ones. So the cable meets rods one by one from outside, and each new bend
-/// is inserted at its place.
+/// Maximum number of substeps for updates of bends. In each substep, bodies move by at most half a
+/// rod radius, except very fast ones. So the cable meets rods one after the other from outside, and
+/// each new bend gets its correct place in the path.
 inline constexpr int kMostParts = 32;
 template <class W>
 [[gnu::noinline]] W PartsOf(const View& m, const Scratch<W>& work, const TouchTable& touch,
@@ -166,7 +167,7 @@ template <class W>
 }
 
 /// Updates the bends of `lanes` to the middle of the step. Returns the number of bends in use.
-/// `time`: since the middle of the previous step [s].
+/// `time`: time since the middle of the previous step [s].
 template <class W>
 [[gnu::noinline]] int ChangeAll(const View& m, const Rows<W>& s, Scratch<W>& work,
                                 const TouchTable& touch, int used, MaskOf<W> lanes,
@@ -200,7 +201,7 @@ template <class W>
   return used;
 }
 
-/// Updates the bends of a cable at the middle of the step. Returns its length.
+/// Updates the bends of a cable to the middle of the step. Returns its length.
 template <class W>
 [[gnu::noinline]] W FollowBends(const View& m, const Rows<W>& s, Scratch<W>& work,
                                 const CableTable& cable, W h) noexcept {
@@ -216,7 +217,7 @@ template <class W>
   auto look = (!free) | MayTouchRods(m, s, work, touch, first, last, free);
   if (touch.terrain) look = look | MayTouch(s, cable.touch, first, last);
   look = look & (s.halted[0] == W::Splat(0.0));
-  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // no bends
+  if (!Any(look)) return MeasureTouching(m, s, cable, work, ends).l;  // without bends
   const W* const now = nullptr;
   LayThen(m, s, work, touch, used, start, end, now);
   const auto busy = look & MayChangeBends(m, s, work, touch, used);
@@ -229,7 +230,7 @@ template <class W>
   KeepAngles(s, work, touch, used, look);
   KeepSides(m, s, work, touch, used, look);
   if (touch.terrain) {
-    // For a free cable: the distance that it may move before the next check.
+    // For a cable without bends: the distance that its ends may move before the next check.
     const auto bent = !(s.bend[touch.first_bend].key == W::Splat(kNoKey));
     W& far = s.touch_free[cable.touch];
     far = Select(look & bent, W::Splat(0.0), far);

@@ -1,4 +1,4 @@
-/// Capstan friction of cables that touch edges or rods (docs/theory/cables.md, section 7): chains
+/// Capstan friction of cables on edges or rods (docs/theory/cables.md, section 7): chains
 /// (cable_chains.inl) with the spans of lane_spans.inl.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// Distributes lengths to equal strain over spans between which the cable has left its bends.
+/// Distributes length among spans whose bend between them is gone, for equal strain.
 template <class W>
 void ShareLengths(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   W* length) noexcept {
@@ -31,7 +31,7 @@ void ShareLengths(const View& m, const Rows<W>& s, const CableTable& cable, cons
   }
 }
 
-/// Computes lengths and tension ratios of a cable's spans in its path over work.wheels.
+/// Computes lengths and tension ratios of the spans of a cable in its path on work.wheels.
 template <class W>
 [[gnu::noinline]] void MeasureGrips(const View& m, const Rows<W>& s, const CableTable& cable,
                                     const Scratch<W>& work, const AttachmentWork<W>* ends,
@@ -61,7 +61,7 @@ template <class W>
   ShareLengths(m, s, cable, work, length);
 }
 
-/// Moves cable material with rotating rods, as in CarryOver.
+/// Transports cable material on rotating rods; see CarryOver.
 template <class W>
 [[gnu::noinline]] void CarryOverGrips(const View& m, const Rows<W>& s, const CableTable& cable,
                                       const Scratch<W>& work, const AttachmentWork<W>* ends,
@@ -78,7 +78,8 @@ template <class W>
     const auto has = HasSpan(m, s, cable, k + 1);
     const W middle = MiddleOf(wheel, MarkOfBend(m, work, bends[k]), ends);
     W place = Select(known < W::Splat(kNotHeld), known, middle), height = known_height;
-    const W* const lean = keep ? &work.across[slip].lean : nullptr;  // readings: of another pose
+    // null for readings, because the values belong to another pose
+    const W* const lean = keep ? &work.across[slip].lean : nullptr;
     CarryOver(wheel, middle, k, ends, length, keep, lean, place, height, rest);
     if (keep) known = Select(has, place, known), known_height = Select(has, height, known_height);
   }
@@ -87,7 +88,7 @@ template <class W>
   }
 }
 
-/// Applies the wound length, lane by lane.
+/// Applies the wound length in each lane.
 template <class W>
 [[gnu::noinline]] void WindGrips(const View& m, const Rows<W>& s, const CableTable& cable, W wound,
                                  W* rest) noexcept {
@@ -100,8 +101,8 @@ template <class W>
   }
 }
 
-/// Links the spans to bodies: one link for each span and body in some lane, ordered by both.
-/// Returns the number of links.
+/// Links the spans to bodies: one link per span and body in any lane, sorted by both. Returns the
+/// number of links.
 template <class W>
 [[gnu::noinline]] int LinkGrips(const View& m, const Rows<W>& s, const CableTable& cable,
                                 const Scratch<W>& work, const AttachmentWork<W>* ends,

@@ -1,8 +1,8 @@
-/// Pulls of a cable on its bodies: links, the mean rate, and the tension of a soft cable by
+/// Pulls of a cable on its bodies: links, mean rate, and the tensions of soft cables by
 /// Gauss-Seidel relaxation over all cables (docs/theory/integrator.md, eq. I7, I8).
 ///
-/// `kTwo`: the cable joins two bodies (CableTable::joins_two). It is known at compile time, so that
-/// the links stay in registers.
+/// `kTwo`: the cable joins two bodies (CableTable::joins_two). A compile-time constant keeps the
+/// links in registers.
 #pragma once
 
 #include "sim/cables/cable_wrapping.inl"
@@ -36,7 +36,7 @@ TAUT_INLINE void AddPull(const View& m, const Rows<W>& s, CableWork<W>& row, int
   }
 }
 
-/// Fills the links of a cable: one per body, with the pulls of all its attachments there.
+/// Sets the links of a cable: one per body, with the sum of all pulls on it.
 template <bool kTwo, class W>
 TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
                            const CableTable& cable, const AttachmentWork<W>* ends,
@@ -63,7 +63,7 @@ TAUT_INLINE void LinkCable(const View& m, const Rows<W>& s, Scratch<W>& work,
   work.link_count += row.link_count;
 }
 
-/// Computes the response of the bodies to an impulse along the cable.
+/// Computes the velocity changes of the bodies per impulse along the cable.
 template <bool kTwo, class W>
 TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept {
   if constexpr (kTwo) {
@@ -81,7 +81,7 @@ TAUT_INLINE void FinishLinks(const Scratch<W>& work, CableWork<W>& row) noexcept
   }
 }
 
-/// Returns the mean rate over the step, from the mean velocities known so far.
+/// Returns the mean rate over the step from the latest mean velocities.
 template <bool kTwo, class W>
 TAUT_INLINE W MeanRate(const Scratch<W>& work, const CableWork<W>& row) noexcept {
   W dl = W::Splat(0.0);
@@ -92,9 +92,9 @@ TAUT_INLINE W MeanRate(const Scratch<W>& work, const CableWork<W>& row) noexcept
   return dl;
 }
 
-/// Updates a soft cable's tension by its law, T = k s + b dl >= 0 with dl the mean rate over the
-/// step (eq. I8): exact if nothing else changes. Updates the bodies' mean velocities, unless
-/// `half_h` is 0.
+/// Updates the tension of a soft cable by its law T = k s + b dl >= 0, where dl is the mean rate
+/// over the step (eq. I8). The result is exact if no other tension changes. Also updates the mean
+/// velocities of the bodies, unless `half_h` is 0.
 template <bool kTwo, class W>
 TAUT_INLINE void RelaxCable(Scratch<W>& work, CableWork<W>& row, W dl, W half_h) noexcept {
   const W zero = W::Splat(0.0);
@@ -123,7 +123,7 @@ TAUT_INLINE void PullCable(const Rows<W>& s, Scratch<W>& work, int c) noexcept {
   }
 }
 
-/// Second pass over the cables, in reverse order.
+/// Second relaxation of all cables, in reverse order.
 template <bool kAllSoft, class W>
 TAUT_INLINE void RelaxBack(const View& m, const Rows<W>& s, Scratch<W>& work, W half_h) noexcept {
   for (int c = m.cable_count - 1; c >= 0; --c) {

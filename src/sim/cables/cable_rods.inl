@@ -1,5 +1,5 @@
-/// Contact of a cable with rods (docs/theory/cables.md, section 6). The straight parts of the path
-/// pass a rod on one side of its axis. A later change of side reveals a crossing at any speed.
+/// Contact of a cable with rods (docs/theory/cables.md, section 6). For each rod, the side of its
+/// axis on which the path passes is stored. A change of side reveals a crossing at any speed.
 #pragma once
 
 #include "sim/cables/cable_edges.h"
@@ -8,7 +8,7 @@
 
 namespace taut::sim {
 
-/// Conjunction and disjunction of masks, or of the bools of a single number.
+/// Conjunction and disjunction of SIMD masks or bools.
 TAUT_INLINE bool Both(bool a, bool b) noexcept { return a && b; }
 TAUT_INLINE bool Either(bool a, bool b) noexcept { return a || b; }
 template <class M>
@@ -25,10 +25,10 @@ TAUT_INLINE Vec3 PlaceOf(const V3<W>& p, int lane) noexcept {
   return {p.x[lane], p.y[lane], p.z[lane]};
 }
 
-/// Pose of a body before the middle of the step, extrapolated backward at constant velocity.
+/// Pose of a body at a time before the middle of the step, extrapolated at constant velocity.
 template <class W>
 struct BodyThen {
-  V3<W> way, half_turn;  ///< Displacement since; half the reverse rotation (tangent).
+  V3<W> way, half_turn;  ///< Displacement since that time, and half the reverse rotation (tangent).
   W scale;
 
   BodyThen(const BodyWork<W>& body, W ago) noexcept
@@ -41,8 +41,8 @@ struct BodyThen {
   }
 };
 
-/// Places the rods of a cable for the following functions. `ago`: time before the middle of the
-/// step [s]; null: 0.
+/// Computes the axes of the rods of a cable for the following functions. `ago`: time before the
+/// middle of the step [s]; null: 0.
 template <class W>
 void PlaceRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
                const W* ago) noexcept {
@@ -58,12 +58,12 @@ void PlaceRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const To
   }
 }
 
-/// Position of a rod relative to the nearest straight part of the path.
+/// Position of a rod relative to the nearest straight part of a path.
 template <class S>
 struct RodPass {
-  S side;  ///< -1 or 1; 0: no part crosses the rod in projection.
-  S part;  ///< Number of that part.
-  S off2;  ///< Squared distance of the axis from it [m^2].
+  S side;  ///< -1 or 1; 0: no part crosses the rod in the projection.
+  S part;  ///< Index of the nearest part.
+  S off2;  ///< Squared distance from the rod's axis to this part [m^2].
 
   static RodPass None() noexcept {
     using C = Constant<S>;
@@ -71,7 +71,7 @@ struct RodPass {
   }
 };
 
-/// Adds a straight part in the lanes `is`.
+/// Compares a straight part with the nearest one so far, in the lanes `is`.
 template <class V, class S, class M>
 TAUT_INLINE void LookAtPart(const V& from, const V& to, const V& center, const V& axis, S half,
                             int part, M is, RodPass<S>& pass) noexcept {
@@ -84,27 +84,28 @@ TAUT_INLINE void LookAtPart(const V& from, const V& to, const V& center, const V
   pass.off2 = Select(nearer, off2, pass.off2);
 }
 
-/// Side of a rod without contact, and part of the path, as one number; 0: unknown (row touch_side).
+/// Returns the side of a rod without contact and the part of the path as one number (row
+/// touch_side). 0: unknown.
 template <class S>
 TAUT_INLINE S SideOfPart(S side, S part) noexcept {
   return side * (part + Constant<S>::Of(1.0));
 }
 
-/// Change of a rod's side against the stored one.
+/// Comparison of a rod's position with its stored side.
 template <class S>
 struct Pressed {
-  decltype(S() < S()) same;     ///< The part is the stored one or its neighbor.
-  decltype(S() < S()) through;  ///< It has changed sides;
-  decltype(S() < S()) inside;   ///< it is inside the rod.
+  decltype(S() < S()) same;     ///< The part is the stored part or its neighbor.
+  decltype(S() < S()) through;  ///< The path has changed to the other side of the axis.
+  decltype(S() < S()) inside;   ///< The path is inside the rod.
 };
 
-/// Parts of a looped path pass a rod on different sides, and the nearest part changes as the rod
-/// moves. So only one part is compared; close to a bend, also the next one, which is on the same
-/// side there.
+/// Compares a rod's position with its stored side. Parts of a looped path pass a rod on different
+/// sides, and the nearest part may change as the rod moves. Therefore only the stored part is
+/// compared. Near a bend, the next part is compared, too, since it is on the same side there.
 template <class S>
 TAUT_INLINE Pressed<S> PressedBy(const RodPass<S>& pass, S known, double radius_m) noexcept {
   using C = Constant<S>;
-  constexpr double kClose = 4.0;  ///< Twice the radius, squared.
+  constexpr double kClose = 4.0;  ///< Square of twice the radius.
   const S zero = C::Of(0.0), one = C::Of(1.0), radius2 = C::Of(radius_m * radius_m);
   const S apart = Abs(pass.part + one - Abs(known));
   const auto follows = Both(apart < C::Of(1.5), pass.off2 < C::Of(kClose) * radius2);
@@ -112,13 +113,13 @@ TAUT_INLINE Pressed<S> PressedBy(const RodPass<S>& pass, S known, double radius_
   return {same, pass.side * known < zero, pass.off2 < radius2};
 }
 
-/// Returns the updated side of a rod without contact. It is stored only outside the rod: a cable
-/// that enters a rod past its end passes through it, because wrapping at once would make its length
-/// jump. It is reset once the cable is deep inside.
+/// Returns the updated side of a rod without contact. A side is stored only while the cable is
+/// outside the rod. A cable that enters over the end of a rod passes through it, because wrapping
+/// would make its length jump. A side is deleted if the cable is deep inside.
 template <class S>
 TAUT_INLINE S SideNext(const RodPass<S>& pass, S known, double radius_m) noexcept {
   using C = Constant<S>;
-  constexpr double kDeep = 0.25;  ///< Half the radius, squared.
+  constexpr double kDeep = 0.25;  ///< Square of half the radius.
   const Pressed<S> pressed = PressedBy(pass, known, radius_m);
   const auto holds =
       pressed.same & !pressed.through & !(pass.off2 < C::Of(kDeep * radius_m * radius_m));
@@ -126,8 +127,8 @@ TAUT_INLINE S SideNext(const RodPass<S>& pass, S known, double radius_m) noexcep
   return Select(pressed.inside & !holds, C::Of(0.0), now);
 }
 
-/// Returns the lanes in which a cable may have come to touch a rod, among lanes where it has been
-/// `free` (straight from end to end). In the other free lanes, updates the sides of the rods.
+/// Returns the lanes in which a cable without bends (`free`) may touch a rod. In the other free
+/// lanes, updates the sides of the rods.
 template <class W>
 MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
                        const TouchTable& touch, const V3<W>& from, const V3<W>& to,
@@ -159,10 +160,10 @@ MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
     const W known = s.touch_side[touch.first_rod + i];
     const Pressed<W> pressed = PressedBy(pass, known, rod.radius_m);
     touches = touches | (near & pressed.same & (pressed.through | pressed.inside));
-    // Unknown for a rod out of reach: the result must not depend on other lanes.
+    // 0 (unknown) if the rod is out of reach, so that the result does not depend on other lanes
     next = Select(near, SideNext(pass, known, rod.radius_m), zero);
   }
-  // The full check starts from the stored sides.
+  // The full check needs the stored sides.
   const auto write = free & !touches;
   for (int i = 0; i < touch.rod_count; ++i) {
     W& side = s.touch_side[touch.first_rod + i];
@@ -171,14 +172,14 @@ MaskOf<W> MayTouchRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return touches;
 }
 
-/// A cable may wind around a rod by any number of turns.
+/// Rods have no largest wrap angle.
 inline constexpr double kAnyTurns = 1e300;
 
-/// Returns the key of a rod, which differs from the keys of all edges.
+/// Returns the key of a rod; it differs from all keys of edges.
 TAUT_INLINE double KeyOf(const TouchRodTable& rod) noexcept { return kEdgesOfShape * rod.shape; }
 
-/// Resets the stored side of the rod with that key (if it is a rod) in one lane: the cable passes
-/// through it until it has left.
+/// Deletes the stored side of the rod with this key (if it is a rod) in one lane. The cable then
+/// passes through the rod until it is outside again.
 template <class W>
 void ForgetSide(const View& m, const Rows<W>& s, const TouchTable& touch, double key,
                 int lane) noexcept {
@@ -195,13 +196,13 @@ TAUT_INLINE Vec3 TurnedBy(const M3<W>& R, const double* p, int lane) noexcept {
   return {row(R.r0), row(R.r1), row(R.r2)};
 }
 
-/// Straight parts of one lane's path; part k is before bend k.
+/// Straight parts of the path of one lane; part k ends at bend k.
 struct StraightParts {
   FreeSpan span[kMostBends + 1];
   int count;
 };
 
-/// Finds the rod with the deepest penetration in one lane, as FindEdge does for edges.
+/// Finds the rod with the deepest penetration in one lane, like FindEdge for edges.
 template <class W>
 bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,
              const StraightParts& parts, int lane, const double* taken, int taken_count, bool any,
@@ -222,7 +223,7 @@ bool FindRod(const View& m, const Rows<W>& s, const Scratch<W>& work, const Touc
     const double off = Sqrt(pass.off2);
     const double depth = rod.radius_m + (pressed.through ? off : -off);
     if ((any || is_new) && !(depth > found->depth_m)) continue;
-    const double around = known < 0.0 ? 1.0 : -1.0;  // towards the previous side
+    const double around = known < 0.0 ? 1.0 : -1.0;  // toward the previous side
     const int nearest = static_cast<int>(pass.part);
     const BendPlace place{KeyOf(rod), 0, center, axis, kAnyTurns, rod.half_m, rod.radius_m};
     if (!CanLieOn(place, parts.span[nearest], around)) continue;

@@ -5,7 +5,7 @@
 
 namespace taut::sim {
 
-/// Sets the wheels of a cable from positions `place(spot)`, with the angles of the previous step.
+/// Sets the wheels of a cable from positions `place(spot)` and the angles of the previous step.
 template <class W, class Place>
 TAUT_INLINE void SetWheels(const View& m, const Rows<W>& s, const CableTable& cable,
                            Wheel<V3<W>>* wheels, const Place& place) noexcept {
@@ -20,8 +20,8 @@ TAUT_INLINE void SetWheels(const View& m, const Rows<W>& s, const CableTable& ca
   }
 }
 
-/// Computes the path points on wheels from the positions of the attachments. They have the
-/// velocities of the wheels' bodies.
+/// Computes the path points on wheels from the positions of the attachments. Their velocities are
+/// those of points fixed to the bodies of the wheels.
 template <class W>
 [[gnu::noinline]] void PutOnWheels(const View& m, const Rows<W>& s, const CableTable& cable,
                                    Scratch<W>& work, const Spot<W>* spots,
@@ -48,14 +48,14 @@ TAUT_INLINE void KeepWheels(const Rows<W>& s, const CableTable& cable,
   }
 }
 
-/// Returns the length at the start of the step, from the positions of the spots at that time.
+/// Returns the length at the start of the step from the attachment positions at that time.
 template <class W>
 [[gnu::noinline]] W StartLengthOnWheels(const View& m, const Rows<W>& s, Scratch<W>& work,
                                         const CableTable& cable) noexcept {
   const AttachmentTable* const tables = m.attachments + cable.first_attachment;
   for (int i = 0; i < cable.attachment_count; ++i) {
     work.attachments[i].p = work.start_spots[tables[i].spot];
-    work.attachments[i].v = work.attachments[i].p;  // the rate is not used
+    work.attachments[i].v = work.attachments[i].p;  // unused
   }
   SetWheels(m, s, cable, work.wheels, [&](int spot) { return work.start_spots[spot]; });
   LayOnWheels(work.attachments, cable.wheel_count, work.wheels);

@@ -1,5 +1,5 @@
-/// Cable wrapping around edges of the terrain (cable_edges.h) and rods (cable_rods.inl;
-/// docs/theory/cables.md, section 6). A bend is a wheel that exists only while the cable lies on
+/// Cable wrapping around terrain edges (cable_edges.h) and rods (cable_rods.inl;
+/// docs/theory/cables.md, section 6). A bend is a wheel that exists only while the cable touches
 /// it.
 #pragma once
 
@@ -18,14 +18,14 @@ TAUT_INLINE void SetPlace(V3<W>& to, const Vec3& p, int lane) noexcept {
   to.z.Set(lane, p.z);
 }
 
-/// Returns the body of a lane's bend; the world if there is no bend.
+/// Returns the body of a bend in one lane; the world if there is no bend.
 template <class W>
 TAUT_INLINE int BodyOfBend(const View& m, const WrapPointNumbers<W>& bend, int lane) noexcept {
   return bend.key[lane] == kNoKey ? m.body_count : static_cast<int>(bend.body[lane]);
 }
 
-/// Calls `use(body, lanes)` for the bodies whose rods a bend is on, each with the lanes of the
-/// bend.
+/// Calls `use(body, lanes)` for each body with a rod at this bend. `lanes`: the lanes with this
+/// body.
 template <class W, class Use>
 TAUT_INLINE void EachBody(const View& m, const WrapPointNumbers<W>& bend, const Use& use) noexcept {
   auto left = IsOnRod(m, bend);
@@ -38,7 +38,7 @@ TAUT_INLINE void EachBody(const View& m, const WrapPointNumbers<W>& bend, const 
   }
 }
 
-/// Returns the number of bends in use in some lane.
+/// Returns the largest number of bends in any lane.
 template <class W>
 TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
   int used = 0;
@@ -48,8 +48,9 @@ TAUT_INLINE int BendsInUse(const Rows<W>& s, const TouchTable& touch) noexcept {
   return used;
 }
 
-/// Lays a path from ends[0] over bends to ends[2 used + 1], on work.wheels. Bends that a lane lacks
-/// are skipped. `pose(body)`: pose of a body. Friction, if any, holds the path along the axes.
+/// Computes a path from ends[0] over bends to ends[2 used + 1] on work.wheels. Bends that do not
+/// exist in a lane are skipped. `pose(body)`: pose of a body. Friction may hold the path along the
+/// axes.
 template <class W, class Pose>
 void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
                   AttachmentWork<W>* ends, Wheel<V3<W>>* wheels, const Pose& pose) noexcept {
@@ -58,7 +59,7 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
     const WrapPointNumbers<W>& bend = s.bend[touch.first_bend + k];
     const auto none = bend.key == W::Splat(kNoKey);
     Wheel<V3<W>>& wheel = wheels[k];
-    // A wheel with neither radius nor angle is never touched.
+    // A wheel with zero radius and angle is never touched.
     wheel.center = Pick(none, ends[0].p, V3<W>{bend.center[0], bend.center[1], bend.center[2]});
     wheel.axis =
         Pick(none, V3<W>{zero, zero, one}, V3<W>{bend.axis[0], bend.axis[1], bend.axis[2]});
@@ -86,7 +87,7 @@ void LayOverBends(const View& m, const Rows<W>& s, const TouchTable& touch, int 
               used > 1);
 }
 
-/// Returns the pose function of LayOverBends for the middle of a step.
+/// Returns the pose function for LayOverBends at the middle of the step.
 template <class W>
 auto PoseNow(const Rows<W>& s, const Scratch<W>& work) noexcept {
   return [&](int body, const V3<W>& center, const V3<W>& axis) {
@@ -95,15 +96,15 @@ auto PoseNow(const Rows<W>& s, const Scratch<W>& work) noexcept {
   };
 }
 
-/// Sets velocities and lever arms of path points on edges, which do not move, to zero.
+/// Sets velocities and lever arms of path points on terrain edges to zero.
 template <class W>
 TAUT_INLINE void StandOnEdges(int used, AttachmentWork<W>* ends) noexcept {
   const W zero = W::Splat(0.0);
   for (int i = 1; i <= 2 * used; ++i) ends[i].v = ends[i].arm = {zero, zero, zero};
 }
 
-/// Returns length and rate, and fills in the directions. At bends that the cable does not touch,
-/// the points get the direction of the whole straight part, so that pulls there vanish.
+/// Returns length and rate, and sets the directions. Points of bends without contact get the
+/// direction of the straight part between the neighbors, so that they exert no force.
 template <class W>
 PathLength<V3<W>> MeasureOverBends(int used, AttachmentWork<W>* ends,
                                    const Wheel<V3<W>>* wheels) noexcept {
@@ -131,7 +132,7 @@ PathLength<V3<W>> MeasureOverBends(int used, AttachmentWork<W>* ends,
   return path;
 }
 
-/// Update of one lane's bends of a cable.
+/// Insertion and removal of the bends of a cable in one lane.
 template <class W>
 class LaneBends {
  public:
@@ -155,8 +156,7 @@ class LaneBends {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
     Put(s_.bend[first_ + --count_], kNoWrapPoint);
   }
-  /// Returns false if there is no room. `share`: part of the cable's span that lies before the
-  /// bend.
+  /// Adds a bend. Returns false if there is no room. `share`: fraction of the span before the bend.
   bool Insert(int k, const BendFound& found, double share) noexcept {
     if (count_ == kMostBends) return false;
     spans_.Split(k, count_, share);
@@ -178,7 +178,7 @@ class LaneBends {
  private:
   static constexpr int kWidth = kWidthWrapPoint;
 
-  /// Shifts the numbers of the straight parts behind part `k` up or down by one.
+  /// Adds `by` (1 or -1) to the stored part numbers after part `k`.
   void MoveSides(int k, double by) const noexcept {
     for (int i = first_rod_; i < first_rod_ + rod_count_; ++i) {
       const double side = s_.touch_side[i][lane_];
@@ -203,8 +203,7 @@ class LaneBends {
   int first_, first_rod_, rod_count_, lane_, count_ = 0;
 };
 
-/// Returns the lanes in which a cable without bends may have touched something since its last
-/// check.
+/// Returns the lanes in which a cable without bends may touch something since its last check.
 template <class W>
 TAUT_INLINE MaskOf<W> MayTouch(const Rows<W>& s, int touch, const V3<W>& p,
                                const V3<W>& q) noexcept {
@@ -228,7 +227,7 @@ void MoveWithRods(const View& m, const Rows<W>& s, const Scratch<W>& work, const
   }
 }
 
-/// Returns length and rate of a laid path.
+/// Returns length and rate of a computed path.
 template <class W>
 PathLength<V3<W>> MeasureLaid(const View& m, const Rows<W>& s, const TouchTable& touch, int used,
                               Scratch<W>& work, AttachmentWork<W>* ends) noexcept {
@@ -239,8 +238,8 @@ PathLength<V3<W>> MeasureLaid(const View& m, const Rows<W>& s, const TouchTable&
   return MeasureOverBends(used, ends, work.wheels);
 }
 
-/// Returns length and rate of a touching cable. `ends` contains its two ends, and afterwards all
-/// points of its path; work.bends_used is set to the number of bends.
+/// Returns length and rate of a cable with wrapping. On entry, `ends` contains its two ends; on
+/// return, all points of its path. Sets work.bends_used to the number of bends.
 template <class W>
 [[gnu::noinline]] PathLength<V3<W>> MeasureTouching(const View& m, const Rows<W>& s,
                                                     const CableTable& cable, Scratch<W>& work,
@@ -254,7 +253,7 @@ template <class W>
   return MeasureLaid(m, s, touch, used, work, ends);
 }
 
-/// Links the tension to rods: one link per body, in the order of body numbers, for the bends of all
+/// Links the tension to bodies with rods: one link per body, sorted by body, for the bends of all
 /// lanes.
 template <class W>
 [[gnu::noinline]] void LinkRods(const View& m, const Rows<W>& s, const Scratch<W>& work,
@@ -286,7 +285,7 @@ template <class W>
   }
 }
 
-/// Returns the length at the start of the step, over the present bends.
+/// Returns the length at the start of the step, over the current bends.
 template <class W>
 [[gnu::noinline]] W StartLengthOverBends(const View& m, const Rows<W>& s, Scratch<W>& work,
                                          const CableTable& cable) noexcept {
@@ -296,7 +295,7 @@ template <class W>
   AttachmentWork<W>* const ends = work.attachments;
   ends[0].p = work.start_spots[tables[0].spot];
   ends[2 * used + 1].p = work.start_spots[tables[1].spot];
-  ends[0].v = ends[2 * used + 1].v = ends[0].p;  // the rate is not used
+  ends[0].v = ends[2 * used + 1].v = ends[0].p;  // unused
   const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
   const auto* const quat = reinterpret_cast<const Q4<W>*>(pos + m.body_count);
   LayOverBends(m, s, touch, used, ends, work.wheels,

@@ -1,12 +1,12 @@
-/// Direct-current motors with gear and spool that wind cables (docs/theory/motor.md). Equations of
-/// the rotor:
+/// DC motors with gear and spool that wind cables (docs/theory/motor.md). Equations of the rotor:
 ///
 ///   J dw/dt = k i - viscous w - friction - way T (1 + gear_loss in the direction of motion)
 ///   i = (duty V - k w) / R,    dL/dt = -way w
 ///
-/// w: speed of the rotor, positive winding in; T: tension of the cable; `way`: radius of the spool
-/// divided by the gear ratio. A step has three parts: the voltage drop of the supplies
-/// (LoadSupplies); before the tension is known, the rotation as a function of the tension, for the
+/// w: rotor speed, positive when winding in; T: cable tension; `way`: spool radius / gear ratio. A
+/// step has three parts: the voltages of the loaded supplies (LoadSupplies); the rotation as a
+/// function of the unknown tension, for the law of the cable (DriveMotor); and the rotation under
+/// the computed tension (StageMotors).
 /// cable's law (DriveMotor); and the rotation under the computed tension (StageMotors).
 #pragma once
 
@@ -15,12 +15,12 @@
 
 namespace taut::sim {
 
-/// Discretization of an exponential decay, z = rate h (motor.md, M.8): exp(-z) ~ 1 / p.
+/// Discretized exponential decay with z = rate * h (motor.md, M.8): exp(-z) ~ 1 / p.
 template <class W>
 struct Decay {
   W z, inv_p;
   W half;       ///< 1 + z / 2.
-  W mean_kick;  ///< (1 + z) / (2 p): the mean speed per kick.
+  W mean_kick;  ///< (1 + z) / (2 p): mean speed per kick.
 
   TAUT_INLINE explicit Decay(W rate_h) noexcept : z(rate_h) {
     const W one = W::Splat(1.0), h = W::Splat(0.5);
@@ -30,10 +30,10 @@ struct Decay {
   }
 };
 
-/// Linear law of a motor's duty within a step.
+/// Duty of a motor within a step, as a linear function of the mean speed.
 template <class W>
 struct DutyLaw {
-  W duty, falls;  ///< duty - falls times the mean speed.
+  W duty, falls;  ///< Duty = `duty` - `falls` * mean speed.
 };
 
 template <class W>
@@ -43,7 +43,7 @@ TAUT_INLINE W WindingOhm(const MotorTable& t, W temperature_c) noexcept {
 }
 
 /// Returns the commanded duty, or the law of the servo (motor.md, M.6). The servo uses the rest
-/// length at the middle of the step, so that its gain may be high.
+/// length at the middle of the step, which allows a high gain.
 template <class W>
 TAUT_INLINE DutyLaw<W> DutyOf(const MotorTable& t, const MotorOrders<W>& orders,
                               const MotorNumbers<W>& motor, W wound, W target, W h) noexcept {
@@ -52,27 +52,28 @@ TAUT_INLINE DutyLaw<W> DutyOf(const MotorTable& t, const MotorOrders<W>& orders,
   const W wish = gain * (wound - target);
   const W falls = way * (W::Splat(0.5) * h * gain + W::Splat(t.servo_damping));
   const auto by_duty = orders.by_duty > zero;
-  // With these orders of arguments, a duty that is NaN stays NaN instead of becoming a bound.
+  // In this order of arguments, a NaN duty stays NaN instead of becoming a bound.
   const W now = Max(-one, Min(one, Select(by_duty, orders.duty, wish - falls * motor.speed)));
   const auto servo = (now < one) & (now > -one) & !by_duty;
   return {Select(servo, wish, now), Select(servo, falls, zero)};
 }
 
-/// Returns the rest length by the gear's angle, without backlash of the spool.
+/// Returns the rest length according to the gear angle, without backlash.
 template <class W>
 TAUT_INLINE W WoundTo(const Rows<W>& s, int c, const MotorNumbers<W>& motor) noexcept {
   return s.rest[c] + motor.gap;
 }
 
-/// Computes the voltage of each supply under its load (motor.md, M.7): V = V0 - R sum of duty i,
-/// with the currents at this voltage and the speeds at the start.
+/// Computes the voltage of each loaded supply (motor.md, M.7): V = V0 - R sum(duty i). The currents
+/// i are computed with this voltage and the speeds at the start of the step.
 template <class W>
 void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
   for (int i = 0; i < m.supply_count; ++i) {
     const SupplyTable& supply = m.supplies[i];
     const W open = W::Splat(supply.voltage_v), sags = W::Splat(supply.resistance_ohm);
-    W per_volt = zero, back = zero;  // of the current: sum of duty^2 / R, of duty k w / R
+    // supply current: per volt, sum of duty^2 / R; from back EMF, sum of duty k w / R
+    W per_volt = zero, back = zero;
     for (int j = 0; j < m.motor_count; ++j) {
       const MotorTable& t = m.motors[j];
       if (t.supply != i) continue;
@@ -89,18 +90,18 @@ void LoadSupplies(const View& m, const Rows<W>& s, Scratch<W>& work, W h) noexce
   }
 }
 
-/// Returns the rest length on the spool: by the gear's angle, or less within the backlash; a taut
-/// cable (length `l`) pulls the spool against the gear.
+/// Returns the rest length on the spool. It equals the value from the gear angle, or is less within
+/// the backlash. A taut cable (length `l`) pulls the spool against the gear.
 template <class W>
 TAUT_INLINE W RestOnSpool(const MotorTable& t, W wound, W before, W l) noexcept {
   if (t.backlash_m == 0.0) return wound;
   return Max(Min(Max(before, l), wound), wound - W::Splat(t.backlash_m));
 }
 
-/// Computes a motor's rotation in this step as a function of its cable's tension: fills its
-/// MotorWork, and the cable's rate without tension. Returns the mean of this rest length over the
-/// step.
-///   k, b    of the cable     l, dl   its length at the middle, its expected mean rate
+/// Computes the rotation of a motor in this step as a function of its cable's tension: sets its
+/// MotorWork and the rate of the cable without tension. Returns the mean rest length over the step
+/// without tension.
+///   k, b    cable stiffness, damping     l, dl   length at the middle, expected mean rate
 template <class W>
 TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W k, W b, W l,
                          W dl, W h) noexcept {
@@ -112,7 +113,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W way = W::Splat(t.way_m), inv_J = W::Splat(t.inv_inertia), constant = W::Splat(t.constant);
   const W speed = motor.speed, wound = WoundTo(s, c, motor);
 
-  // Torques that depend on the speed, and torques at zero speed.
+  // Torques at zero speed, and torques that depend on the speed.
   const DutyLaw<W> law = DutyOf(t, s.orders[number], motor, wound, s.target[c], h);
   out.duty = law.duty;
   out.duty_falls = law.falls;
@@ -124,7 +125,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W drive = inv_J * per_volt * law.duty * volts;
   const Decay<W> decay(rate * h);
 
-  // Does friction hold the rotor? With the tension if it stops (M.9, M.10).
+  // The rotor sticks if friction can hold it under the tension at standstill (M.9, M.10).
   const W stopping = speed / (decay.half + decay.half);
   const W least = W::Splat(t.min_rest_m);
   const W stop_rest = RestOnSpool(t, wound - half_h * way * stopping, s.rest[c], l);
@@ -137,10 +138,10 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   const W friction = inv_J * (W::Splat(t.friction) + W::Splat(t.static_more) / (one + slowness));
   const W loss = W::Splat(t.gear_loss);
   const W holds = friction + pull * loss * tension;
-  const auto held = (Abs(slip) < holds) | (Abs(slip) == holds);  // NaN does not hold
+  const auto held = (Abs(slip) < holds) | (Abs(slip) == holds);  // false for NaN
   out.direction = Select(held, zero, Select(slip < zero, -one, one));
 
-  // Else it slips: speeds without the cable, and their decrease per tension.
+  // Otherwise it slips: speeds without the cable, and their decrease per tension.
   const W kick = h * (drive - out.direction * friction);
   const W lost = h * pull * (one + out.direction * loss);
   out.mean = Select(held, stopping, speed * decay.half * decay.inv_p + kick * decay.mean_kick);
@@ -148,7 +149,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   out.end = Select(held, zero, (speed + kick * decay.half) * decay.inv_p);
   out.end_slows = Select(held, zero, lost * decay.half * decay.inv_p);
 
-  // Stop of the spool: the shortest rest length.
+  // The shortest rest length stops the spool.
   const W room = Max(wound - least, zero) / (way * h);
   const auto stops = out.mean - out.slows * tension > room;
   out.mean = Select(stops, room, out.mean);
@@ -175,7 +176,7 @@ void StageMotors(const View& m, const Rows<W>& s, const Scratch<W>& work, double
     MotorNumbers<W>& motor = s.motor[i];
     const W tension = s.tension[c], way = W::Splat(t.way_m);
 
-    // Friction stops a rotor but does not reverse it.
+    // Friction can stop a rotor but not reverse it.
     const W mean = turn.mean - turn.slows * tension, end = turn.end - turn.end_slows * tension;
     const auto went_on = !(turn.direction * motor.speed < zero);
     const W mean_speed = Select((turn.direction * mean < zero) & went_on, zero, mean);

@@ -1,4 +1,4 @@
-/// Implicitly integrated cables in a step: their selection and the final poses of their bodies
+/// Implicitly integrated cables in a step: selection of the cables, and final poses of their bodies
 /// (cable_groups.h, docs/theory/cables.md, section 3).
 #pragma once
 
@@ -32,7 +32,8 @@ template <class W>
   }
 }
 
-/// Selects the implicit cables. Valid for all steps of this length until a parameter changes.
+/// Selects the implicit cables. The selection is valid for this step length until a parameter
+/// changes.
 template <class W>
 void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double step_s) noexcept {
   const W limit = SoftLimit(W::Splat(step_s));
@@ -46,8 +47,8 @@ void FindImplicit(const View& m, const Rows<W>& s, ImplicitMemory<W>& x, double 
   for (int lane = 0; lane < W::kLanes; ++lane) FindImplicitOf(m, s, x, step_s, lane);
 }
 
-/// Resets the final poses before a solve. Returns the lanes with implicit cables. Contacts of their
-/// bodies do not follow the arc of a free body.
+/// Resets the final poses before a solve. Returns the lanes with implicit cables. In these,
+/// contacts do not follow the arcs of free bodies.
 template <class W>
 [[gnu::noinline, gnu::cold]] MaskOf<W> StartImplicit(const View& m, Scratch<W>& work) noexcept {
   const W zero = W::Splat(0.0);
@@ -59,9 +60,9 @@ template <class W>
   return lanes;
 }
 
-/// Resolves deep penetrations of these bodies by slow velocities, since displacements would ignore
-/// the cables that they stretch. The speed is limited so that no body rises by its penetration
-/// depth. `on`: lanes, or all of the lane.
+/// Resolves deep penetrations of bodies on implicit cables by slow velocities. A position
+/// correction would ignore that it stretches the cables. The speed is limited, so that no body
+/// jumps up by its penetration depth. `on`: affected lanes.
 inline constexpr double kLeavingShare = 0.025, kMostLeavingMPerS = 0.2;
 template <class Num, int kLinks, class M>
 TAUT_INLINE void LeaveSlowly(Contact<Num, kLinks>& c, M on, double step_s) noexcept {
@@ -81,7 +82,7 @@ template <class W>
   }
 }
 
-/// Sets the final poses of implicit islands, which replace the second half of the drift.
+/// Sets the final poses of bodies in implicit islands, instead of the second half of the drift.
 template <class W>
 [[gnu::noinline, gnu::cold]] void PutImplicitEnds(const View& m, const Rows<W>& s,
                                                   const Scratch<W>& work) noexcept {

@@ -1,5 +1,6 @@
-/// Spans of cables that touch with friction (docs/theory/cables.md, section 7): one on each side of
-/// every bend, separately for each lane. Existing spans come first.
+/// Spans of cables with wrapping and friction (docs/theory/cables.md, section 7): one on each side
+/// of every bend, with separate numbers of bends in each lane. Spans that do not exist in a lane
+/// are last.
 #pragma once
 
 #include "sim/cables/cable_edges.h"
@@ -13,7 +14,7 @@ TAUT_INLINE int FirstSlip(const View& m, const TouchTable& touch) noexcept {
   return m.cables[touch.cable].first_slip;
 }
 
-/// Returns the number of spans of a lane's cable.
+/// Returns the number of spans of the cable in one lane.
 template <class W>
 TAUT_INLINE int SpansIn(const View& m, const Rows<W>& s, const CableTable& cable,
                         int lane) noexcept {
@@ -24,7 +25,7 @@ TAUT_INLINE int SpansIn(const View& m, const Rows<W>& s, const CableTable& cable
   return count + 1;
 }
 
-/// Returns the lanes in which a cable has that span.
+/// Returns the lanes in which the cable has this span.
 template <class W>
 TAUT_INLINE MaskOf<W> HasSpan(const View& m, const Rows<W>& s, const CableTable& cable,
                               int span) noexcept {
@@ -32,7 +33,8 @@ TAUT_INLINE MaskOf<W> HasSpan(const View& m, const Rows<W>& s, const CableTable&
   return !(s.bend[m.touches[cable.touch].first_bend + span - 1].key == W::Splat(kNoKey));
 }
 
-/// Returns the lanes in which a link acts: links are shared by all lanes, bends are not.
+/// Returns the lanes in which a link acts. All lanes share the links, but each lane has its own
+/// bends.
 template <class W>
 TAUT_INLINE MaskOf<W> Pulls(const RowLink<W>& link) noexcept {
   return Dot(link.lin[0], link.lin[0]) > W::Splat(0.0);
@@ -43,7 +45,7 @@ TAUT_INLINE bool Pulls(const RowLink<W>& link, int lane) noexcept {
   return way.x[lane] != 0.0 || way.y[lane] != 0.0 || way.z[lane] != 0.0;
 }
 
-/// Returns the same for the link of a whole cable.
+/// Same as above, for a link of a whole cable.
 template <class W>
 TAUT_INLINE bool Acts(const Link<W, 1>& link, int lane) noexcept {
   const V3<W>&way = link.lin[0], &turn = link.ang[0];
@@ -51,7 +53,7 @@ TAUT_INLINE bool Acts(const Link<W, 1>& link, int lane) noexcept {
          turn.y[lane] != 0.0 || turn.z[lane] != 0.0;
 }
 
-/// Returns the tension ratio of a place with the given mu theta.
+/// Returns the tension ratio at a point with the given mu theta.
 template <class S>
 TAUT_INLINE S RatioOf(S mu_theta) noexcept {
   using C = Constant<S>;
@@ -59,7 +61,7 @@ TAUT_INLINE S RatioOf(S mu_theta) noexcept {
   return C::Of(1.0) + ExpLess1(Min(mu_theta, C::Of(kMost)));
 }
 
-/// Updates one lane's spans when bends begin or end.
+/// Updates the spans of one lane when bends begin or end.
 template <class W>
 class LaneSpans {
  public:
@@ -69,8 +71,8 @@ class LaneSpans {
     first_span_ = table.first_span, first_slip_ = table.first_slip;
   }
 
-  /// Removes bend k of `bends` and merges its two spans. The elastic energy that unequal strains
-  /// have beyond an equal one is lost (eq. 21).
+  /// Removes bend k of `bends` and merges its two spans. Afterwards the strain is uniform, so some
+  /// elastic energy is lost (eq. 21).
   void Merge(int k, int bends) const noexcept {
     if (!grips_) return;
     W* const rest = &s_.span_rest[first_span_];
@@ -88,7 +90,7 @@ class LaneSpans {
     ForgetPlace(bends - 1);
   }
 
-  /// Adds bend k to `bends` bends and splits its span, with equal strain on both sides.
+  /// Inserts bend k into `bends` bends and splits its span, with equal strain on both sides.
   void Split(int k, int bends, double share) const noexcept {
     if (!grips_) return;
     W* const rest = &s_.span_rest[first_span_];
@@ -118,8 +120,8 @@ class LaneSpans {
   bool grips_;
 };
 
-/// Returns the share of a span before a new bend: the span is straight along `span`, with half arcs
-/// of lengths `before_m` and `behind_m` at its ends.
+/// Returns the fraction of a span before a new bend. The span consists of the straight part `span`
+/// and half arcs of lengths `before_m` and `behind_m` at its ends.
 template <class W>
 double ShareBefore(const View& m, const Rows<W>& s, const Scratch<W>& work, const BendPlace& place,
                    const FreeSpan& span, double before_m, double behind_m, int lane) noexcept {

@@ -1,17 +1,17 @@
-/// Biases for sticking contacts with the world, of second order in the step
-/// (docs/theory/contact.md, eq. 12a).
+/// Second-order velocity biases for sticking contacts with the world (docs/theory/contact.md, eq.
+/// 12a).
 ///
-/// A row holds the velocity of a point at the middle of the step, but a sticking point moves along
-/// an arc until the middle of the next step. The difference follows from the two half drifts of the
-/// shape's skeleton, with the momentum that the body would have under the torque of contacts and
-/// stiff cables in the previous step.
+/// A contact row constrains the velocity of a point at the middle of the step, but a sticking point
+/// moves along an arc until the middle of the next step. The biases compensate for this difference.
+/// They follow from the two half drifts of the shape's skeleton, with the momentum under the
+/// torques of contacts and stiff cables from the previous step.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Adds the biases of one body's contacts.
+/// Adds the biases to the contacts of one body.
 template <class W, class M>
 void FollowArcs(const Rows<W>& s, const BodyWork<W>& body, int b, Contact<W, 1>* contacts,
                 int count, M lanes, W h) noexcept {
@@ -34,8 +34,9 @@ void FollowArcs(const Rows<W>& s, const BodyWork<W>& body, int b, Contact<W, 1>*
   const V3<W> c1 = Cross(w, c), c2 = Cross(w1, c) + Cross(w, c1);
   const V3<W> twice = Cross(w1, c1);
   const V3<W> c3 = Cross(w2, c) + (twice + twice) + Cross(w, c2);
-  // Until the middle of the next step the mean point moves by h (w x c + ahead), and the body turns
-  // by h (w + spin); the series fail if it turns by about a radian per step.
+  // Until the middle of the next step, the mean point moves by h (w x c + ahead) and the body
+  // rotates by h (w + spin). The series fail for rotations of about a radian per step, where `good`
+  // is small.
   const W w_w = Dot(w, w), radians4 = (h * h * w_w) * (h * h * w_w);
   const W good = Select(lanes, one / (one + radians4), zero);
   const V3<W> spin = good * (half_h * w1 + sixth_h2 * (w2 - W::Splat(0.5) * bend - w_w * w));

@@ -1,4 +1,4 @@
-/// Stage of the cables: actuators, cable forces and cable wrapping (docs/theory/cables.md).
+/// Cable stage of a step: actuators, cable forces and cable wrapping (docs/theory/cables.md).
 ///
 ///   k, b    stiffness [N/m], damping [N s/m]
 ///   l, dl   length along all attachments [m], its rate [m/s]
@@ -22,8 +22,8 @@ struct CableForce {
   W tension, elastic;
 };
 
-/// Tension law of paper eq. (1): T = k (l - L) + b dl while l > L, never negative, otherwise 0. The
-/// clamped law limits the damper's part to +- the spring's part.
+/// Tension law of paper eq. (1): T = k (l - L) + b dl while l > L, never negative; otherwise 0. The
+/// clamped law limits the damper force to +- the spring force.
 template <class W>
 TAUT_INLINE CableForce<W> TensionOf(W k, W b, W l, W dl, W rest, bool clamped) noexcept {
   const W zero = W::Splat(0.0);
@@ -48,8 +48,8 @@ TAUT_INLINE AttachmentWork<W> Attachment(const AttachmentTable& table,
   return here;
 }
 
-/// Returns length and rate of a cable; fills `ends` with its attachments. `kTwo`: it has two, which
-/// must stay in registers, so they are not passed to functions that are not inlined.
+/// Returns length and rate of a cable, and sets `ends` to its path points. `kTwo`: it has two,
+/// which must stay in registers; therefore only inlined functions receive them.
 template <bool kTwo, class W>
 TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, const CableTable& cable,
                                            int attachment_count, Scratch<W>& work,
@@ -66,10 +66,10 @@ TAUT_INLINE PathLength<V3<W>> MeasureCable(const View& m, const Rows<W>& s, cons
   return MeasurePath(attachment_count, ends);
 }
 
-/// Moves a rest length toward its target for one step, within the actuator's limits. Limits are per
-/// second, so nothing depends on the step. The force limit is NTRT's: never wind past the rest
-/// length at which the spring would exceed it. Returns the mean of the rest length over the step: a
-/// motor runs until it arrives, and then stops.
+/// Moves a rest length toward its target for one step, within the limits of the actuator. Limits
+/// are per second, so results do not depend on the step. Force limit as in NTRT: the rest length
+/// never becomes so short that the spring force exceeds the limit. Returns the mean rest length
+/// over the step, since a motor stops when it reaches its target.
 template <class W>
 TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h, W& rest,
                       W& rate) noexcept {
@@ -86,7 +86,7 @@ TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h,
   const W way = goal - rest;
   const W distance = Abs(way);
   const W top = W::Splat(limit.max_speed_m_per_s);
-  const W arriving = distance * inv_h;  // the rate that ends this step at the goal
+  const W arriving = distance * inv_h;  // rate that reaches the goal at the end of this step
   const bool accelerates_at_once = limit.max_acceleration_m_per_s2 > 1e300;
   const W a = W::Splat(limit.max_acceleration_m_per_s2);
   W speed = Min(arriving, top);
@@ -100,22 +100,22 @@ TAUT_INLINE W Actuate(const CableTable& cable, W k, W l, W target, W h, W inv_h,
   const auto arrives = Abs(wish) == arriving;
   rate = wish;
   rest = Max(Select(arrives & !(wish == zero), goal, rest + h * wish), least_rest);
-  // Share of the step in which it runs; with limited acceleration, taken as all of it.
+  // Fraction of the step with motion; with limited acceleration, the whole step.
   const W share = accelerates_at_once ? speed * W::Splat(cable.inv_max_speed) : W::Splat(1.0);
   return rest - W::Splat(0.5) * share * (rest - before);
 }
 
-/// Data shared by all cables of a step.
+/// Data shared by all cables in a step.
 template <class W>
 struct CableStep {
   W h, inv_h;
-  MaskOf<W> goes_on;  ///< There was a previous step, whose tensions are known.
-  W push;             ///< Half a step in lanes with dampers, whose tensions are iterated.
-  W room;             ///< Negative if a cable may become slack or taut [m^2].
+  MaskOf<W> goes_on;  ///< There was a previous step, with known tensions.
+  W push;  ///< Half a step in lanes with dampers, where tensions are iterated; otherwise 0.
+  W room;  ///< Negative if a cable may become slack or taut [m^2].
 };
 
-/// Computes a cable's length, actuator and spring. `damped`: some lane has dampers. `kMotors`, here
-/// and below: some actuators of the model are motors.
+/// Computes length, actuator and spring of a cable. `damped`: there are dampers in some lane.
+/// `kMotors`, here and below: the model has DC motors.
 template <bool kTwo, bool kMotors, class W>
 TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c, bool damped,
                            CableStep<W>& step) noexcept {
@@ -166,10 +166,10 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
     row.damped = MaskOf<W>::Splat(false);
     return;
   }
-  // Before the first step, the spring's tension: then bodies in balance do not move.
+  // In the first step, the spring force, so that bodies in equilibrium do not move.
   row.tension = Select(step.goes_on, s.tension[c], row.spring);
   row.damping = b;
-  // Without damping, or slack: the spring alone, to the bit. Stiff cables keep their tension.
+  // Undamped or slack cables have exactly the spring force. Stiff cables keep their tension.
   row.damped = stiff | ((row.damping > zero) & (row.spring > zero));
   row.share = W::Splat(1.0) / (W::Splat(1.0) + step.push * row.damping * row.A);
   if (any_stiff) row.share = Select(stiff, zero, row.share);
@@ -178,16 +178,16 @@ TAUT_INLINE void MeetCable(const View& m, const Rows<W>& s, Scratch<W>& work, in
   RelaxCable<kTwo>(work, row, dl, step.push);
 }
 
-/// Sets the final tension of soft cables that become slack or taut in this step: the spring's mean
-/// over the step, implicit in the final length (docs/theory/cables.md, eq. 11). Explicit steps
-/// conserve v^2 + w^2 x^2 / (1 - w^2 h^2 / 4) (eq. 11a), so the spring must store this energy;
-/// otherwise each snatch would gain or lose some.
+/// Computes the final tension of soft cables that become slack or taut in this step: the mean
+/// spring force over the step, implicit in the final length (docs/theory/cables.md, eq. 11).
+/// Explicit steps conserve v^2 + w^2 x^2 / (1 - w^2 h^2 / 4) (eq. 11a), so the spring must store
+/// this energy. Otherwise each snatch would gain or lose some.
 template <bool kMotors, class W>
 [[gnu::noinline, gnu::cold]] void SettleKinks(const View& m, const Rows<W>& s, Scratch<W>& work,
                                               CableStep<W> step) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0);
-  // Rates have changed since; only lanes with negative room count, so that the result does not
-  // depend on other lanes.
+  // Rates have changed since `room` was computed. Only lanes with negative `room` count, so that
+  // results do not depend on other lanes.
   const auto asks = step.room < zero;
   for (int c = 0; c < m.cable_count; ++c) {
     CableWork<W>& row = work.cables[c];
@@ -215,7 +215,8 @@ template <bool kMotors, class W>
     law.A = row.A;
     SetCableLaw(m, s, work, c, length, row.stretch, before, step.h, spring / (one - spring * law.A),
                 b, law);
-    // The mean rate includes the latest tension; without dampers, the last step's tension.
+    // The mean rate includes the latest tension or, without dampers, the tension of the previous
+    // step.
     const W last = Select(step.goes_on, s.tension[c], zero);
     const W u = before - (dl + dl), now = step.h * Select(step.push > zero, row.tension, last);
     W l;
@@ -225,15 +226,15 @@ template <bool kMotors, class W>
   }
 }
 
-/// Stage: actuators move the rest lengths, cables pull on bodies.
+/// Stage: actuators change the rest lengths, cables pull on bodies.
 ///   reads   pos, bodies[], target     writes  rest, rest_rate, tension, bodies[].force, .torque
 ///           (adds), cables[], stiff[]
 ///   order   cables ascending, then descending, which fixes the order of all sums
-/// The force belongs to the middle of the step: geometry there, the mean of the rest length, and
-/// the mean of the rates at the start and the end (docs/theory/integrator.md, eq. I7). A warm start
-/// predicts the mean velocities from the previous step, whose tensions they contain; two
-/// Gauss-Seidel passes over the cables insert the new ones. In lanes in which a spring would be
-/// unstable, the solver computes the tension (stiff_cables.inl).
+/// The force belongs to the middle of the step: path at the middle, mean rest length, and mean of
+/// the rates at the start and the end (docs/theory/integrator.md, eq. I7). The warm start predicts
+/// the mean velocities from the previous step, including its tensions. Two Gauss-Seidel passes over
+/// the cables replace these tensions by new ones. In lanes with an unstable explicit spring, the
+/// solver computes the tension (stiff_cables.inl).
 template <bool kMotors, class W>
 void StageCables(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0);

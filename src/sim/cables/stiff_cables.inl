@@ -1,8 +1,8 @@
-/// Stiff cables: implicit tension as the mean of the spring force between the stretch at the start
-/// and at the end of the step (docs/theory/cables.md, eq. 8-11). Its work equals the change of the
-/// spring energy, also through slackness and a snatch.
+/// Stiff cables: the implicit tension is the mean of the spring force over the stretch from the
+/// start to the end of the step (docs/theory/cables.md, eq. 8-11). Its work equals the change of
+/// the spring energy, even if the cable becomes slack or taut.
 ///
-/// Cables that explicit forces would make unstable at this step are solved together with the
+/// Cables that would be unstable with explicit forces at this step are solved together with the
 /// contacts. Soft cables are explicit, except in a step in which they become slack or taut.
 #pragma once
 
@@ -13,14 +13,13 @@
 
 namespace taut::sim {
 
-/// Largest K of an explicit spring at this step [1/s^2].
+/// Returns the largest K of a stable explicit spring at this step [1/s^2].
 template <class W>
 TAUT_INLINE W SoftLimit(W h) noexcept {
   return W::Splat(kSoftSpring) / (h * h);
 }
 
-/// Computes attachment positions at the start of the step, from the poses that SaveStart has
-/// stored.
+/// Computes the attachment positions at the start of the step from the poses stored by SaveStart.
 template <class W>
 void MeasureStart(const View& m, Scratch<W>& work) noexcept {
   const auto* const pos = reinterpret_cast<const V3<W>*>(work.start);
@@ -52,7 +51,7 @@ TAUT_INLINE W StartLength(const View& m, const Rows<W>& s, Scratch<W>& work,
       .l;
 }
 
-/// Returns the rate at which a cable lengthened before the step.
+/// Returns the lengthening rate of a cable from the velocities before the step.
 template <class W>
 TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int count) noexcept {
   W rate = W::Splat(0.0);
@@ -63,9 +62,9 @@ TAUT_INLINE W RateBefore(const Scratch<W>& work, const Link<W, 1>* links, int co
   return rate;
 }
 
-/// Sets a cable's law over the step, from its length and stretch at the middle. The deviation of
-/// its true length at the start from the line through the middle is applied to the end, too (eq.
-/// 10).
+/// Sets the law of a cable over the step from its length and stretch at the middle. Extrapolation
+/// from the middle gives the lengths at start and end. The extrapolation error at the start, where
+/// the true length is known, also corrects the end (eq. 10).
 template <class W>
 TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, int c, W length,
                              W stretch, W rate, W h, W spring, W damping,
@@ -78,12 +77,12 @@ TAUT_INLINE void SetCableLaw(const View& m, const Rows<W>& s, Scratch<W>& work, 
   row.SetLaw(z - (rate - wound), z - wound, spring, half_h * damping, wound + wound);
   row.upper = W::Splat(1e300);
   if (!cable.clamped_damping) return;
-  // Twice the spring part, predicted with the rate before the step.
+  // twice the spring part, predicted with the rate before the step
   const W twice = row.SpringImpulse(row.start + W::Splat(2.0) * (rate - wound));
   row.upper = Select(damping > W::Splat(0.0), twice + twice, row.upper);
 }
 
-/// Adds a stiff cable to the solver's rows. `k`, `b`: effective stiffness and damping within a
+/// Adds a stiff cable to the rows of the solver. `k`, `b`: effective stiffness and damping within a
 /// step.
 template <class W>
 void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
@@ -103,14 +102,14 @@ void AddStiffCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
   row.l[0] = Select(on, Min(h * s.tension[c], row.upper), zero);
 }
 
-/// Returns a stiff cable's tension as a share of the largest stable one (eq. 12). Along its
-/// direction it is stable at any tension; its transverse force is explicit.
+/// Returns the tension of a stiff cable relative to the largest stable one (eq. 12). The limit
+/// comes from the explicit transverse force; along the cable, any tension is stable.
 template <class W>
 W ShareOfStableTension(const Rows<W>& s, const StiffCable<W>& row) noexcept {
   return Select(row.live > W::Splat(0.0), s.tension[row.cable] * row.across, W::Splat(0.0));
 }
 
-/// Sets tensions, their spring parts and angular momenta from the solver's impulses.
+/// Sets tensions, their spring parts and angular momenta from the impulses of the solver.
 template <class W>
 void FinishStiffCables(const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);

@@ -1,5 +1,6 @@
-/// Checks of a cable's bends in all lanes at once (docs/theory/cables.md, section 6): lanes without
-/// changes skip the search lane by lane. Also updates the side of rods on which the cable passes.
+/// Checks of the bends of a cable in all lanes at once (docs/theory/cables.md, section 6). Lanes
+/// without changes skip the search, which runs lane by lane. Also updates the sides of rods on
+/// which the cable passes.
 #pragma once
 
 #include "sim/cables/cable_edges.h"
@@ -9,8 +10,8 @@
 
 namespace taut::sim {
 
-/// Calls `use(from, to, starts, ends, is)` for the straight parts of a cable over bends: in each
-/// lane the parts between its bends, which come first. `is`: lanes that have the part.
+/// Calls `use(from, to, starts, ends, is)` for the straight parts of a cable between bends. `is`:
+/// lanes that have this part.
 template <class W, class Use>
 TAUT_INLINE void EachSpan(const Rows<W>& s, const TouchTable& touch, int used,
                           const AttachmentWork<W>* ends, const Use& use) noexcept {
@@ -28,7 +29,7 @@ TAUT_INLINE void EachSpan(const Rows<W>& s, const TouchTable& touch, int used,
   }
 }
 
-/// Returns the lanes in which the cable has a bend with that key.
+/// Returns the lanes in which the cable has a bend with this key.
 template <class W>
 TAUT_INLINE MaskOf<W> LiesAgainst(const Rows<W>& s, const TouchTable& touch, int used,
                                   W key) noexcept {
@@ -37,17 +38,17 @@ TAUT_INLINE MaskOf<W> LiesAgainst(const Rows<W>& s, const TouchTable& touch, int
   return lies;
 }
 
-/// Returns the lanes in which a bend is on a rod of a body.
+/// Returns the lanes in which a bend is on the rod of a body.
 template <class W>
 TAUT_INLINE MaskOf<W> IsOnRod(const View& m, const WrapPointNumbers<W>& bend) noexcept {
   return !((bend.key == W::Splat(kNoKey)) | (bend.body == W::Splat(m.body_count)));
 }
 
-/// Returns the lanes in which bend `k` and the next are on rods that overlap at the cable. Then no
-/// shortest path over both exists: the path and the energy jump, or drift along the rods. A cable
-/// between the rods needs free space; a cable over both fails only if the rods overlap, which is
-/// possible without contacts between them. Crossings near a rod's end are joints. `anywhere`: not
-/// only at the cable.
+/// Returns the lanes in which bend `k` and the next one are on rods that overlap at the cable. Then
+/// no shortest path over both exists: path and energy jump, or the bends drift along the rods. A
+/// cable that passes between the rods needs free space. A cable over both fails only if the rods
+/// overlap, which is possible if they do not collide. Crossings near the end of a rod are joints
+/// and do not count. `anywhere`: not only at the cable.
 template <class W>
 TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                      const TouchTable& touch, int k, bool anywhere) noexcept {
@@ -67,7 +68,7 @@ TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scra
   const W at_other = Dot(Cross(apart, rod.axis), across) * inverse;
   const auto within =
       parallel | ((Abs(at_rod) < bend->half - reach) & (Abs(at_other) < next->half - reach));
-  // Axes of the cable's rotation, counterclockwise.
+  // rotation axes for which the cable turns counterclockwise
   const auto turn = [&](const Wheel<V3<W>>& x) {
     return Select(x.angle < zero, zero - one, one) * x.axis;
   };
@@ -81,8 +82,8 @@ TAUT_INLINE MaskOf<W> RanIntoNextRod(const View& m, const Rows<W>& s, const Scra
   return IsOnRod(m, *bend) & IsOnRod(m, *next) & within & (distance2 < limit * limit) & looks;
 }
 
-/// Returns the lanes in which the path next to bend `k` starts inside its rod: at the cable's end,
-/// or at another rod. From there the length cannot continue without a jump.
+/// Returns the lanes in which the path next to bend `k` starts inside its rod: at an end of the
+/// cable, or at another rod. The length could then not continue without a jump.
 template <class W>
 TAUT_INLINE MaskOf<W> IsInsideRod(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                   const TouchTable& touch, int used, int k) noexcept {
@@ -100,7 +101,8 @@ TAUT_INLINE MaskOf<W> IsInsideRod(const View& m, const Rows<W>& s, const Scratch
   return IsOnRod(m, *bend) & (inside(ends[2 * k].p) | inside(behind));
 }
 
-/// Lanes in which a bend lifts off, slips off, or overlaps the next rod or the cable's end.
+/// Returns the lanes in which a bend lifts off, slips off, or overlaps the next rod or an end of
+/// the cable.
 template <class W>
 TAUT_INLINE MaskOf<W> MayLeave(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                const TouchTable& touch, int used) noexcept {
@@ -176,7 +178,7 @@ TAUT_INLINE void KeepAngles(const Rows<W>& s, const Scratch<W>& work, const Touc
   }
 }
 
-/// Updates the side of all rods in work.rod_lines relative to a cable's path.
+/// Updates the sides of all rods in work.rod_lines relative to the path of a cable.
 template <class W>
 TAUT_INLINE void KeepSides(const View& m, const Rows<W>& s, const Scratch<W>& work,
                            const TouchTable& touch, int used, MaskOf<W> lanes) noexcept {

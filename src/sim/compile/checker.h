@@ -1,4 +1,4 @@
-/// Shared helpers of the checks of a model definition.
+/// Shared helpers for checks of a model definition.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace taut::sim {
 
-/// Checks values and reports errors by name; there are no file positions at this level.
+/// Checks values and reports errors with the names of elements; file positions are unknown here.
 class Checker {
  public:
   Checker(const ModelDef& def, Diagnostics& out)
@@ -31,7 +31,7 @@ class Checker {
     Require(body >= kWorld && body < static_cast<int>(def.bodies.size()),
             what + " refers to a body that does not exist");
   }
-  /// `has_axis`: the shape itself defines a forward direction.
+  /// Checks surface properties. `has_axis`: the shape itself defines a forward direction.
   void Surface(const Material& m, const std::string& what, bool has_axis = false) {
     NonNegative(m.kinetic_friction, what + ": kinetic friction");
     NonNegative(m.static_friction, what + ": static friction");
@@ -69,13 +69,13 @@ class Checker {
   bool cone_;
 };
 
-/// Height fields and meshes (surface_check.cpp).
+/// Checks height fields and meshes (surface_check.cpp).
 void CheckGround(const ModelDef& def, Checker& check);
 
-/// Joints, and bodies that do not collide with each other (joint_check.cpp).
+/// Checks joints and pairs of bodies that cannot collide (joint_check.cpp).
 void CheckJoints(const ModelDef& def, Checker& check);
 
-/// Motions of kinematic bodies (motion_check.cpp).
+/// Checks motions of kinematic bodies (motion_check.cpp).
 void CheckMotions(const ModelDef& def, Checker& check);
 
 }  // namespace taut::sim

@@ -1,4 +1,4 @@
-/// Coupling of cables through bodies, the Delassus operator of their tensions: determines which
+/// Coupling of cables through bodies: the Delassus operator of their tensions. It determines which
 /// cables are too stiff for explicit forces (docs/theory/cables.md, eq. 7).
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace taut::sim {
 namespace {
 
-/// Force and torque of a unit tension on one body, at the start.
+/// Force and torque on one body from a unit tension, at the start.
 struct Pull {
   int body;
-  Vec3 force, torque;  ///< Torque in the principal frame.
+  Vec3 force, torque;  ///< The torque is in the principal frame.
 };
 
 Vec3 PointInWorld(const Tables& t, const AttachmentTable& a) {
@@ -79,9 +79,9 @@ double Coupling(const Tables& t, const std::vector<Pull>& a, const std::vector<P
   return sum;
 }
 
-/// Returns the greatest possible coupling of a cable with itself by a rod that it may come to
-/// touch: folded back on itself at an end of the rod. Its forces have no torque about the rod's
-/// axis.
+/// Returns the largest possible coupling of a cable with itself through a rod that it may touch.
+/// The worst case is a cable folded back at an end of the rod. Cable forces have no torque about
+/// the rod's axis.
 double RodCoupling(const Tables& t, const TouchTable& touch) {
   double most = 0;
   for (int i = touch.first_rod; i < touch.first_rod + touch.rod_count; ++i) {
@@ -99,7 +99,7 @@ double RodCoupling(const Tables& t, const TouchTable& touch) {
   return most;
 }
 
-/// Row of a symmetric matrix: columns, in ascending order, and entries.
+/// Row of a symmetric matrix: columns in ascending order, with their entries.
 using SparseRow = std::vector<std::pair<std::size_t, double>>;
 
 /// Returns the largest eigenvalue of a symmetric positive semidefinite matrix, by power iteration.
@@ -138,7 +138,7 @@ void CoupleCables(Tables& tables) {
   std::vector<SparseRow> matrix(n);
   tables.coupling.assign(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    std::vector<std::size_t> others;  // only cables that share a body are coupled
+    std::vector<std::size_t> others;  // only cables on a common body are coupled
     for (const Pull& pull : pulls[i]) {
       const auto& here = cables_at[static_cast<std::size_t>(pull.body)];
       others.insert(others.end(), here.begin(), here.end());
@@ -146,7 +146,7 @@ void CoupleCables(Tables& tables) {
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
     for (const std::size_t j : others) {
-      // The same bits for (i, j) and (j, i), whatever the order of the sum.
+      // (i, j) and (j, i) have the same bits, because the sum has the same order.
       const double a = Coupling(tables, pulls[std::min(i, j)], pulls[std::max(i, j)]);
       matrix[i].emplace_back(j, a);
       tables.coupling[i] += std::fabs(a);

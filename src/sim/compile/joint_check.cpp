@@ -1,4 +1,4 @@
-// Checks of joint definitions.
+// Validation of joint definitions.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -84,9 +84,8 @@ void CheckJoints(const ModelDef& def, Checker& check) {
     check.Require(j.body_a != j.body_b, name + ": it connects a body to itself");
     check.Require(!fixed(j.body_a) || !fixed(j.body_b), name + ": both of its bodies are fixed");
     const double gap = JointError(j);
-    check.Require(!(gap > JointDef::kClosed_m),
-                  name + ": its points are " + Metres(gap) +
-                      " apart in a direction that the joint locks");
+    check.Require(!(gap > JointDef::kClosed_m), name + ": its points are " + Metres(gap) +
+                                                    " apart in a direction that the joint locks");
     check.Require(
         !(math::HeldTurn(j) > math::kClosedTurn_rad),
         name + ": its bodies are rotated relative to each other by a turn that it does not allow");

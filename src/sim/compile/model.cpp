@@ -19,7 +19,7 @@ using sim::Length;
 using sim::Tables;
 using sim::ToBody;
 
-/// Radius of the bounding sphere of a surface, which has no center.
+/// Radius of the bounding sphere of surfaces, which have no center.
 constexpr double kEverywhere_m = 1e30;
 
 /// Converts a checked definition into tables.
@@ -58,7 +58,7 @@ class Compiler {
     return body == kWorld ? t_.body_count : body;
   }
 
-  /// Asserts the invariants of the tables on which steps rely.
+  /// Asserts the invariants of the tables that the step requires.
   void Check() const {
     const auto bodies = static_cast<std::size_t>(t_.body_count);
     TAUT_ASSERT(t_.q_WP0.size() == 4 * bodies && t_.inertia.size() == 3 * bodies);
@@ -112,7 +112,7 @@ class Compiler {
     for (const PlaneDef& p : def_.planes) {
       sim::PlaneTable table;
       const double n[3] = {p.normal.x, p.normal.y, p.normal.z};
-      // The first tangent is the axis of W least aligned with the normal, made orthogonal.
+      // The first tangent is the least aligned axis of W, made orthogonal to the normal.
       int axis = 0;
       for (int i = 1; i < 3; ++i) {
         if (std::fabs(n[i]) < std::fabs(n[axis])) axis = i;
@@ -159,7 +159,7 @@ class Compiler {
     ToBody(frame(body), center, out.center);
     std::copy(out.center, out.center + 3, s.center_P);
     double box[9];
-    MatrixOf(q, box);  // columns: the box axes in W
+    MatrixOf(q, box);  // columns: box axes in W
     const Frame& f = frame(body);
     for (int axis = 0; axis < 3; ++axis) {
       for (int i = 0; i < 3; ++i) {
@@ -219,7 +219,7 @@ class Compiler {
     each(List::kBoxes, def_.boxes, [&](const ShapeRef& ref, const BoxDef& b) {
       if (b.collides) Box(ref, b.body, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
-    // No reallocation: shapes contain pointers to the tables.
+    // Shapes contain pointers to this table, so it must not be reallocated.
     t_.hulls.reserve(def_.hulls.size());
     each(List::kHulls, def_.hulls, [&](const ShapeRef& ref, const HullDef& h) {
       if (h.collides) Convex(ref, h);
@@ -227,7 +227,7 @@ class Compiler {
     each(List::kTerrainBoxes, def_.terrain_boxes, [&](const ShapeRef& ref, const TerrainBoxDef& b) {
       Box(ref, kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
-    // No reallocation, likewise.
+    // Same here.
     t_.surfaces.reserve(def_.height_fields.size() + def_.terrain_meshes.size());
     each(List::kHeightFields, def_.height_fields, [&](const ShapeRef& ref, const auto& field) {
       Ground(ref, sim::Surface(field), field.material);
@@ -237,8 +237,8 @@ class Compiler {
     });
   }
 
-  /// Adds ground. Every pair of a shape and ground has a clearance: contact of a body's lowest rod
-  /// must not trigger tests of its other rods.
+  /// Adds a surface of the terrain. Every pair of a shape and a surface has its own clearance, so
+  /// that the contact of a body's lowest rod does not cause tests of its other rods.
   void Ground(const ShapeRef& ref, sim::Surface surface, const Material& material) {
     t_.surfaces.push_back(std::move(surface));
     sim::ShapeTable s;
@@ -252,8 +252,9 @@ class Compiler {
     t_.shape_refs.push_back(ref);
   }
 
-  /// Collects the points that can touch planes. Of several at the same place the thickest is kept,
-  /// spheres first: rods that end in a node's sphere add nothing, nor do they on other ground.
+  /// Collects the points that can touch planes. Of points at the same place, the thickest is kept,
+  /// with spheres first. So ends of rods at the sphere of a node add no points, also not on other
+  /// ground.
   void Points() {
     for (int body = 0; body < t_.body_count; ++body) {
       t_.first_point.push_back(static_cast<int>(t_.points.size()));
@@ -299,7 +300,7 @@ class Compiler {
     }
   }
 
-  /// Returns the number of the point, which may exist already.
+  /// Returns the number of a point; adds it if it does not exist yet.
   int AddPoint(std::size_t first, const double p[3], double radius, const Material& material) {
     for (std::size_t i = first; i < t_.points.size(); ++i) {
       const sim::PointTable& other = t_.points[i];
@@ -323,8 +324,8 @@ class Compiler {
   const ModelDef& def_;
   std::vector<Frame> frames_;
   std::vector<std::vector<std::size_t>>
-      shapes_of_;                    ///< Per body and the world, without the ground.
-  std::vector<std::size_t> ground_;  ///< Surfaces among the shapes.
+      shapes_of_;                    ///< Per body and for the world, without surfaces.
+  std::vector<std::size_t> ground_;  ///< Indices of the surfaces among the shapes.
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// Compilation of a model's cables: path points, wheels, spans separated by friction.
+/// Compilation of the cables of a model: path points, wheels, and spans separated by friction.
 
 #include <algorithm>
 #include <cmath>
@@ -53,7 +53,7 @@ class CableCompiler {
     return a;
   }
 
-  /// Returns the number of the point of a body that attachments at the same place share.
+  /// Returns the number of the point of a body that all attachments at this place share.
   int Spot(const AttachmentTable& a) {
     for (std::size_t i = 0; i < t_.spots.size(); ++i) {
       const AttachmentTable& spot = t_.spots[i];
@@ -63,7 +63,7 @@ class CableCompiler {
     return static_cast<int>(t_.spots.size()) - 1;
   }
 
-  /// Adds the wheel of attachment `i`, which has been added already, and its second path point.
+  /// Adds the wheel of attachment `i`, which already exists, and its second path point.
   void AddWheel(const CableDef& cable, std::size_t i, const CableTable& table) {
     const AttachmentDef& a = cable.attachments[i];
     const AttachmentTable center = t_.attachments.back();
@@ -80,7 +80,7 @@ class CableCompiler {
     t_.wheels.push_back(wheel);
   }
 
-  /// Returns a unit vector perpendicular to another.
+  /// Returns a unit vector normal to `axis`.
   static Vec3 Across(const Vec3& axis) {
     const double x = std::fabs(axis.x), y = std::fabs(axis.y), z = std::fabs(axis.z);
     const Vec3 least = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
@@ -132,8 +132,8 @@ class CableCompiler {
     t_.max_wheels = std::max(t_.max_wheels, kMostBends);
   }
 
-  /// Adds room for the spans of a cable that touches rods or terrain; their number changes with its
-  /// contacts. At the start it is one.
+  /// Allocates spans for a cable that may touch rods or terrain. Their number changes with its
+  /// contacts; at the start there is one.
   void AddOwnSpans(const CableDef& cable, CableTable& table) {
     table.first_slip = static_cast<int>(t_.slips.size());
     table.first_span = t_.span_count;
@@ -192,7 +192,7 @@ void LayOutChainLinks(Tables& t) {
     cable.first_link = t.chain_link_count;
     cable.link_room = 2 * cable.attachment_count;
     if (cable.touch >= 0) {
-      // In each lane at most two for a span, and no more than there are bodies to pull at.
+      // Per lane: at most two for a span, and no more than the number of bodies it can pull.
       const TouchTable& touch = t.touches[static_cast<std::size_t>(cable.touch)];
       std::set<int> bodies;
       for (int i = 0; i < touch.rod_count; ++i) {

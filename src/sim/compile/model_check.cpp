@@ -116,7 +116,7 @@ void CheckMotor(const std::string& name, const DcMotorDef& m, Checker& check) {
   check.NonNegative(m.servo_damping_s_per_m, name + "damping of the servo");
 }
 
-/// Checks that motors with the same supply define it equally.
+/// Checks that motors with the same supply define it in the same way.
 void CheckSupplies(const ModelDef& def, Checker& check) {
   std::map<std::string, const CableDef*> first;
   for (const CableDef& c : def.cables) {
@@ -152,7 +152,7 @@ void CheckRoute(const CableDef& c, const std::string& name, Checker& check) {
     for (const std::size_t k : {i - 1, i + 1}) {
       const Vec3 way = c.attachments[k].position_m - a.position_m;
       const Vec3 across = Cross(a.wheel->axis, way);
-      // A point on the rim may be inside by rounding.
+      // Rounding may move a point on the rim inside.
       check.Require(Dot(across, across) > 0.999 * a.wheel->radius_m * a.wheel->radius_m,
                     wheel + ": the attachment before or after it is inside it or on its axis");
     }
@@ -204,8 +204,8 @@ void CheckCables(const ModelDef& def, Checker& check) {
   }
 }
 
-/// Checks quantities that grow with the square of a model's size: pairs of shapes of different
-/// bodies, and pairs of cables that pull at one body.
+/// Checks numbers that grow with the square of a model's size: pairs of shapes of different bodies,
+/// and pairs of cables on a common body.
 void CheckSizes(const ModelDef& def, Checker& check) {
   std::vector<double> shapes(def.bodies.size()), ends(def.bodies.size());
   double fixed = static_cast<double>(def.terrain_boxes.size() + def.height_fields.size() +

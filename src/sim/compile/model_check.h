@@ -1,4 +1,4 @@
-/// Validation of a model definition: whether it can be simulated.
+/// Validation of a model definition.
 #pragma once
 
 #include "taut/diagnostics.h"
@@ -6,15 +6,15 @@
 
 namespace taut::sim {
 
-/// Limits: more would take hundreds of megabytes and minutes.
+/// Limits of model size; larger models would take hundreds of megabytes and minutes.
 inline constexpr long kMaxShapePairs = 10'000'000;
 inline constexpr long kMaxCouplings = 10'000'000;
 
-/// Reports a diagnostic (without file position) for every wrong number or index; returns false if
+/// Adds a diagnostic without file position for every invalid number or index. Returns false if
 /// there is one.
 bool CheckModel(const ModelDef& def, Diagnostics& out);
 
-/// Reports a TAUT_SIMD that names no instruction set.
+/// Adds an error if TAUT_SIMD does not name an instruction set.
 bool CheckEnvironment(Diagnostics& out);
 
 }  // namespace taut::sim

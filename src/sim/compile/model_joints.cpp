@@ -1,4 +1,4 @@
-// Compilation of a model's joints: their rows, and the elimination order of their linear system.
+// Compilation of the joints of a model: rows, and the elimination order of their linear system.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,7 +17,7 @@ namespace {
 
 using M = JointMeasure;
 
-/// Returns the measures that the rows of a joint kind hold constant.
+/// Returns the measures that a kind of joint constrains.
 std::vector<M> HeldMeasures(JointKind kind) {
   const HeldMotions held = ConstrainedMotions(kind);
   std::vector<M> rows;
@@ -137,7 +137,7 @@ class JointCompiler {
   }
   static bool HasSpring(const JointDef& def) { return def.stiffness > 0 || def.damping > 0; }
 
-  /// Adds friction and spring of a ball joint's rotation, equal about all axes.
+  /// Adds friction and spring to the rotation of a ball joint, equal about all axes.
   void Turns(const JointDef& def, JointTable& j) {
     const auto add = [&](JointRole role) {
       for (const M measure : {M::kTurn1, M::kTurn2, M::kTurn3}) {
@@ -149,8 +149,8 @@ class JointCompiler {
     j.has_turn_spring = def.stiffness > 0;
   }
 
-  /// Detects whether joints close a kinematic loop, of bodies or through static or kinematic
-  /// bodies: rows may be redundant. Collects the chains of bodies that are not connected to these.
+  /// Detects kinematic loops, including loops through static or kinematic bodies, because their
+  /// rows may be redundant. Collects the chains of bodies that are not connected to such bodies.
   void FindChains() {
     base::UnionFind sets(static_cast<std::size_t>(t_.body_count) + 1);
     for (const JointTable& j : t_.joints) {

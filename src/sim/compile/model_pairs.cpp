@@ -1,4 +1,4 @@
-// Pairs of shapes that may collide, and storage of their contacts.
+// Pairs of shapes that may collide, and the storage of their contacts.
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -21,8 +21,8 @@ class PairCompiler {
                const std::vector<std::size_t>& ground)
       : t_(t), shapes_of_(shapes_of), ground_(ground) {}
 
-  /// Pairs with a static body come first, sorted by the moving body: their contacts are stored in
-  /// that body's slots.
+  /// Pairs with a static body are first, sorted by the moving body, whose slots store their
+  /// contacts.
   void Run() {
     std::uint32_t id = t_.first_pair_id;
     std::vector<int> solid;
@@ -66,8 +66,8 @@ class PairCompiler {
   }
 
  private:
-  /// Sizes the slots of a body's contacts with static geometry: every point on every plane, and a
-  /// reasonable number with other shapes.
+  /// Determines the number of slots for contacts of each body with static geometry: one for every
+  /// point on every plane, and a reasonable number for other shapes.
   void Slots() {
     int first = 0;
     for (int body = 0; body < t_.body_count; ++body) {

@@ -1,4 +1,4 @@
-// Detection of adjacent pieces of terrain, when a model is compiled (seams.h).
+// Detection of adjacent pieces of terrain during the compilation of a model (seams.h).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,8 +12,8 @@
 namespace taut::sim {
 namespace {
 
-/// Largest gap between adjacent pieces, as a share of the larger one's extent: three times the
-/// rounding of single-precision coordinates.
+/// Largest gap between adjacent pieces, relative to the extent of the larger one: three times the
+/// rounding error of single-precision coordinates.
 constexpr double kSeamShare = 2e-7;
 constexpr double kAll = 1e300;
 
@@ -21,7 +21,7 @@ double SameM(double extent_m) { return kJoinedM + kSeamShare * extent_m; }
 
 Vec3 BoundOf(const double* p) { return {p[0], p[1], p[2]}; }
 
-/// A piece of terrain with its description and extent.
+/// Piece of terrain with its description and extent.
 struct Piece {
   SeamPiece seam;
   double extent_m = 0;
@@ -59,7 +59,7 @@ Piece PieceOf(const PlaneTable& plane) {
   return piece;
 }
 
-/// Returns the lowest height of a bounding box above a plane.
+/// Returns the smallest height of a bounding box above a plane.
 double LowestOver(const SeamPiece& plane, const Vec3& low, const Vec3& high) {
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
   const Vec3& n = plane.normal;
@@ -77,7 +77,7 @@ bool BoundsMeet(const SeamPiece& a, const SeamPiece& b, double same_m) {
          a.low.z <= b.high.z + same_m && b.low.z <= a.high.z + same_m;
 }
 
-/// Returns whether a convex edge of a surface (borders are convex) is at a box.
+/// Returns whether a convex edge of a surface is at a box. Border edges count as convex.
 bool EndsAtBox(const SurfaceTable& s, const SeamPiece& box, double same_m) {
   const Vec3 reach{same_m, same_m, same_m};
   bool ends = false;
@@ -91,8 +91,8 @@ bool EndsAtBox(const SurfaceTable& s, const SeamPiece& box, double same_m) {
   return ends;
 }
 
-/// Returns whether contacts of `a` may depend on `b`. A box on a plane or in the middle of a field
-/// does not matter; a box that ends there does.
+/// Returns whether contacts on `a` may depend on `b`. A box on a plane or in the middle of a field
+/// has no effect; a box at an edge has.
 bool Meets(const Piece& a, const SeamPiece& b, double same_m) {
   if (b.kind == SeamPiece::kPlane) {
     return a.seam.kind == SeamPiece::kBox ? std::fabs(HighestOver(b, a.seam.box)) <= same_m
@@ -120,7 +120,7 @@ void JoinPieces(Tables& t) {
   }
   std::vector<Piece> planes;
   for (const PlaneTable& plane : t.planes) planes.push_back(PieceOf(plane));
-  // Sweep and prune along x: tests only pieces that may meet.
+  // Sweep and prune along x: tests only pieces with overlapping extents.
   std::vector<std::size_t> order(pieces.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -1,4 +1,4 @@
-// Construction of the bounding volume hierarchy (BVH) of the world's shapes (shape_tree.h).
+// Construction of the bounding volume hierarchy (BVH) of static shapes (shape_tree.h).
 #include <algorithm>
 #include <utility>
 
@@ -18,7 +18,8 @@ Bounds Around(const Bounds& a, const Bounds& b) {
   return both;
 }
 
-/// Appends the tree of some leaves, split at the median along the axis of their largest spread.
+/// Appends the tree of the given leaves, split at the median along the axis of their largest
+/// spread.
 void Append(TreeNode* first, TreeNode* last, std::vector<TreeNode>& tree) {
   const std::size_t at = tree.size();
   tree.push_back(*first);
@@ -78,7 +79,7 @@ void JoinBoxes(Tables& t) {
     boxes.push_back(static_cast<int>(i));
   }
   const auto of = [&](int box) -> ShapeTable& { return t.shapes[static_cast<std::size_t>(box)]; };
-  // Sweep and prune along x: tests only boxes that may meet.
+  // Sweep and prune along x: tests only boxes with overlapping extents.
   std::vector<Bounds> bounds;
   for (const int box : boxes) bounds.push_back(BoundsOf(of(box).shape_P));
   std::vector<std::size_t> order(boxes.size());
@@ -99,7 +100,7 @@ void JoinBoxes(Tables& t) {
   std::size_t all = 0;
   for (const std::vector<int>& list : beside) all += list.size();
   if (all == 0) return;
-  t.beside.reserve(all);  // no reallocation: shapes contain pointers to it
+  t.beside.reserve(all);  // shapes contain pointers to it, so it must not be reallocated
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     std::sort(beside[i].begin(), beside[i].end());
     of(boxes[i]).beside = t.beside.data() + t.beside.size();

@@ -1,4 +1,4 @@
-// Checks of the motions of kinematic bodies.
+// Validation of the motions of kinematic bodies.
 #include <set>
 
 #include "math/vec.h"

@@ -1,4 +1,4 @@
-/// Initial values of a world's rows (state_rows.h): per body, cable or contact, `i`.
+/// Initial values of the rows of a world (state_rows.h). `i`: index of the body, cable or contact.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,8 @@ inline Nothing Zero(const Tables&, int) noexcept { return {}; }
 inline double One(const Tables&, int) noexcept { return 1.0; }
 inline double NoKey(const Tables&, int) noexcept { return kNoKey; }
 inline double SlipUnknown(const Tables&, int) noexcept { return kSlipUnknown; }
-/// WorldBatch::Impl::JudgeStiffness writes it after the masses, stiffnesses and dampings.
+/// Placeholder: WorldBatch::Impl::JudgeStiffness sets this row after masses, stiffnesses and
+/// dampings.
 inline Nothing ByJudgeStiffness(const Tables&, int) noexcept { return {}; }
 
 inline const BodyDef& BodyOf(const Tables& t, int i) noexcept {
@@ -58,8 +59,8 @@ inline Vec3 AngularMomentum(const Tables& t, int i) noexcept {
           j.xz * w.x + j.yz * w.y + j.zz * w.z};
 }
 
-/// Mass properties for a mass other than in the definition: the inertia scales with it. All are
-/// zero for a fixed body.
+/// Mass properties for another mass than in the definition; the inertia is scaled with the mass.
+/// All are zero for a fixed body.
 struct Masses {
   double mass = 0, inv_mass = 0;
   Vec3 inertia, inv_inertia;
@@ -98,7 +99,7 @@ inline double NotHeld(const Tables&, int) noexcept { return kNotHeld; }
 inline double RestLength(const Tables& t, int i) noexcept { return CableOf(t, i).rest_length_m; }
 inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).stiffness_n_per_m; }
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
-/// Start of the solver, and the reading before the first step.
+/// Tension for the first solver start, and the reading before the first step.
 inline double Tension(const Tables& t, int i) noexcept {
   const CableDef& cable = CableOf(t, i);
   const double length = math::DescribedPath(cable).length_m();
@@ -120,7 +121,7 @@ inline Motor MotorAtRest(const Tables& t, int i) noexcept {
   motor.supply = t.supplies[static_cast<std::size_t>(table.supply)].voltage_v;
   return motor;
 }
-/// Side of the described pose.
+/// Side on which the cable passes the rod in the described pose.
 inline double TouchSide(const Tables& t, int i) noexcept {
   const TouchRodTable& rod = t.touch_rods[static_cast<std::size_t>(i)];
   const auto in_W = [&](const double* p_P) {

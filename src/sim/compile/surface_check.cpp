@@ -1,4 +1,4 @@
-// Checks of height fields and terrain meshes.
+// Validation of height fields and terrain meshes.
 #include <string>
 
 #include "math/triangles.h"
@@ -28,7 +28,7 @@ void CheckField(const HeightFieldDef& field, Checker& check) {
   }
 }
 
-/// Returns the message for a mesh fault, with the numbers of triangles and corners.
+/// Returns a message about a mesh fault, with the numbers of triangles and corners.
 std::string Text(const math::MeshFault& fault) {
   using Kind = math::MeshFault::Kind;
   const std::string triangle = ": triangle " + std::to_string(fault.triangle),

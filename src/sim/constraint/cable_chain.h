@@ -1,7 +1,7 @@
-/// Constraint of a cable with capstan friction where it runs over eyelets, wheels, edges or rods
-/// (docs/theory/cables.md, eq. 16-19). One row per span: its velocity u is the rate at which the
-/// span shortens after the step, its impulse the span's mean tension over the step. The impulses
-/// follow from the velocities of all spans together.
+/// Constraint of a cable with capstan friction on eyelets, wheels, edges or rods
+/// (docs/theory/cables.md, eq. 16-19). It has one row per span. The velocity u of a row is the rate
+/// at which the span shortens after the step; its impulse is the mean tension of the span over the
+/// step, times h. The impulses depend on the velocities of all spans together.
 #pragma once
 
 #include "math/cable_law.h"
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// A link of one row.
+/// Link of one row.
 template <class Num>
 struct RowLink : Link<Num, 1> {
   int row;
@@ -25,25 +25,26 @@ TAUT_INLINE void Push(const RowLink<Num>& link, const Num* l, V3<Num>& v, V3<Num
   Push(static_cast<const Link<Num, 1>&>(link), l + link.row, v, w);
 }
 
-/// A span while its tension is computed. Its mean stretch over the step is `stretch` - h / 4 u
-/// before slip, and the mean rate of its length `rate` - u / 2.
+/// Span for the computation of its tension. Mean stretch over the step, before slip: `stretch` - h
+/// / 4 u. Mean rate of its length: `rate` - u / 2.
 template <class Num>
 struct ChainSpan {
-  Num stretch, rate;              ///< [m], [m/s]
-  Num stiffness, slip_stiffness;  ///< Per stretch, per rest length that slips in [N/m].
-  Num damping;                    ///< [N s/m]
-  Num ratio;                      ///< Of the slip place behind it: exp(mu theta).
-  Num l;                          ///< Impulse [N s].
+  Num stretch, rate;  ///< [m], [m/s]
+  /// Per stretch, and per rest length that slips into the span [N/m].
+  Num stiffness, slip_stiffness;
+  Num damping;  ///< [N s/m]
+  Num ratio;    ///< Tension ratio at the slip point after the span: exp(mu theta).
+  Num l;        ///< Impulse [N s].
 };
 
 template <class Num>
 struct CableChain {
   static_assert(Num::kLanes == 1);
   using Number = Num;
-  static constexpr int kRows = kMostSpans;  ///< Largest number of rows:
+  static constexpr int kRows = kMostSpans;  ///< Maximum number of rows.
 
   int rows;
-  Num h;  ///< The step [s].
+  Num h;  ///< Step length [s].
   const ChainSpan<Num>* spans;
   int link_count;
   RowLink<Num>* links;
@@ -51,8 +52,8 @@ struct CableChain {
 
   struct Branch {
     Capstan<Num> law;
-    Num wish[kMostSpans];   ///< Impulses that satisfy the law [N s].
-    Num bends[kMostSpans];  ///< Additional rest length that the span could take, per -u [s].
+    Num wish[kMostSpans];   ///< Impulses of the law [N s].
+    Num bends[kMostSpans];  ///< Rest length that can slip into the span per decrease of u [s].
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     bool same = true;
@@ -69,7 +70,7 @@ struct CableChain {
     for (int i = 0; i < link_count; ++i) AddCoupling(links[i], links[i], &A[links[i].row]);
   }
 
-  /// Solves the law, which is a function of the velocities alone.
+  /// Solves the law, which depends on the velocities only.
   Branch BranchOf(const Num* u, const Num*) const noexcept {
     Branch b;
     const double step = h[0];
@@ -79,8 +80,7 @@ struct CableChain {
       const double k = s.stiffness[0], slips = s.slip_stiffness[0], c = s.damping[0];
       const double stretch = s.stretch[0] - 0.25 * step * u[i][0];
       const double rate = s.rate[0] - 0.5 * u[i][0];
-      // The damper's part is limited to the value that can have built up since the span became
-      // taut.
+      // The damper force is limited to the value that can have built up since the span became taut.
       b.law.spans[i].p = 1.0 / (slips + c / step);
       b.law.spans[i].q = 1.0 / (slips + 2.0 * c / step);
       b.law.spans[i].a = (math::CableLaw{k}.Force(stretch) + c * rate) * b.law.spans[i].p;
@@ -131,7 +131,7 @@ struct CableChain {
     }
     return worst;
   }
-  /// dl = f - g du. Returns whether g is symmetric.
+  /// Linearizes the law: dl = f - g du. Returns whether g is symmetric.
   bool Step(const Branch& b, const Num*, const Num* l_now, Num e, Num* g, Num* f) const noexcept {
     Derivative(b, e, g);
     bool symmetric = true;

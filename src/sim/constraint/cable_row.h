@@ -1,15 +1,15 @@
 /// Constraint of a stiff cable, whose tension is solved together with the contacts
 /// (docs/theory/cables.md, eq. 8-11; docs/theory/contact.md, eq. 14, 17).
 ///
-/// The unknowns are rates: twice the stretch, divided by the step, is z0 at the start (known) and z
-/// = end - u at the end. u is the rate at which the cable shortens after the step.
+/// The unknowns are rates: 2 * stretch / step. z0 is the known value at the start of the step, z =
+/// end - u the value at its end. u is the rate at which the cable shortens after the step.
 ///
 ///   l = phi (spring (p + p0) + damper (z - z0 + winding)),   0 <= l <= upper
 ///   p = max(z, 0),  p0 = max(z0, 0),  phi = (p - p0) / (z - z0): taut share of the way
 ///
-/// The law is a line, l = base - gain u, if the cable is taut at both ends of the step; zero if
-/// slack at both; else a curve that decreases with u. So a row alone has one solution, the root of
-/// a quadratic equation.
+/// If the cable is taut at both ends of the step, the law is a line: l = base - gain u. If it is
+/// slack at both ends, l = 0. Otherwise, the law is a curve that decreases with u. A row alone
+/// therefore has one solution, the root of a quadratic equation.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -21,14 +21,14 @@ struct CableRow {
   using Number = Num;
   using Mask = MaskOf<Num>;
   static constexpr int kRows = 1;
-  /// Curves with a slope below this share of the line's slope count as constant.
+  /// Curves with a slope below this fraction of the line's slope count as constant.
   static constexpr double kFlat = 1e-12;
 
-  Num live;            ///< 1 in lanes in which this cable is stiff, else 0.
-  Num base, gain;      ///< Line: impulse at u = 0 [N s], decrease per u [kg].
-  Num start, end;      ///< z0; the u without stretch at the end of the step [m/s].
+  Num live;            ///< 1 in lanes in which this cable is stiff, otherwise 0.
+  Num base, gain;      ///< Line: impulse at u = 0 [N s], and decrease per u [kg].
+  Num start, end;      ///< z0, and the u at which the stretch at the end of the step is 0 [m/s].
   Num spring, damper;  ///< gain = spring + damper [kg].
-  Num winding;         ///< Twice the rate of its rest length [m/s].
+  Num winding;         ///< Twice the rate of the rest length [m/s].
   Num inv_gain;        ///< [1/kg]
   Num A;               ///< Inverse effective mass along the cable [1/kg].
   Num inverse;         ///< 1 / (1 + gain A).
@@ -38,11 +38,11 @@ struct CableRow {
   Link<Num, 1>* links;
 
   struct Branch {
-    Mask inside;   ///< Neither slack nor at its limit.
-    Mask crosses;  ///< Becomes slack or taut within the step.
-    Num lower;     ///< 1 where it is slack.
-    Num wish;      ///< Impulse before limits [N s].
-    Num slope;     ///< Slope of `wish`, per -u [kg].
+    Mask inside;   ///< Neither slack nor at the limit.
+    Mask crosses;  ///< The cable becomes slack or taut within the step.
+    Num lower;     ///< 1 where the cable is slack.
+    Num wish;      ///< Impulse before the limits [N s].
+    Num slope;     ///< Decrease of `wish` per u [kg].
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     constexpr double kNearly = 1e-6;
@@ -51,8 +51,8 @@ struct CableRow {
            !Any(Abs(a.slope - b.slope) > Num::Splat(kNearly) * (a.slope + b.slope));
   }
 
-  /// Sets the law: stretch `from` at the start of the step, and `to` at its end if the length does
-  /// not change; both, and the rates, in the variables of the file comment.
+  /// Sets the law. `from`: z0; `to`: z at the end of the step if the length does not change. All
+  /// rates are as in the file comment.
   TAUT_INLINE void SetLaw(Num from, Num to, Num spring_kg, Num damper_kg, Num wound) noexcept {
     start = from, end = to;
     spring = spring_kg, damper = damper_kg;
@@ -60,14 +60,14 @@ struct CableRow {
     gain = spring + damper;
     base = spring * (end + start) + damper * ((end - start) + winding);
   }
-  /// Sets the law of a spring and a damper that stay taut at any length.
+  /// Sets the law of a spring and a damper that are always taut.
   void SetLine(Num at_rest, Num slope) noexcept {
     start = Num::Splat(1.0), end = Num::Splat(1e300);
     spring = gain = slope;
     damper = winding = Num::Splat(0.0);
     base = at_rest;
   }
-  /// Copies the law, limit and impulse of another row, each value through `pick`.
+  /// Copies law, limit and impulse of another row, each value through `pick`.
   template <class Other, class F>
   TAUT_INLINE void TakeLaw(const CableRow<Other>& from, const F& pick) noexcept {
     live = pick(from.live);
@@ -95,7 +95,7 @@ struct CableRow {
 
   Branch Project(const Num* u, const Num* center, Num e, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), soft = e * A;
-    const Num free = (end - u[0]) + soft * center[0];  // z without the cable's impulse
+    const Num free = (end - u[0]) + soft * center[0];  // z without the impulse of the cable
     const auto was = start > zero;
     Branch b;
     b.slope = gain;
@@ -170,12 +170,12 @@ struct CableRow {
     return (was & !is) | ((!was) & is);
   }
 
-  /// phi of a crossing; `above`: p + p0, one of which is zero.
+  /// Returns phi for a cable that becomes slack or taut. `above`: p + p0, one of which is 0.
   TAUT_INLINE Num Share(Num z, Num above) const noexcept {
     return above / Max(Abs(z - start), Num::Splat(1e-300));
   }
   /// Returns dl/dz of the curve. A winding motor and the damper may make it negative where l < 0,
-  /// which is outside of the limits.
+  /// which is outside the limits.
   TAUT_INLINE Num SlopeAt(Num z, Mask was) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     const Num way = Max(Abs(z - start), Num::Splat(1e-300));
@@ -185,7 +185,7 @@ struct CableRow {
     const Num of_damper = Select(was, zero, one) + winding * bend;
     return Max(spring * of_spring + damper * of_damper, zero);
   }
-  /// Solves l = curve(free - soft l) for a cable that was taut and becomes slack:
+  /// Solves l = curve(free - soft l) for a taut cable that becomes slack:
   ///   l (z0 - z) = z0 (spring z0 + damper (z - z0 + winding))
   TAUT_INLINE Num Leaving(Num free, Num soft) const noexcept {
     const Num zero = Num::Splat(0.0), tiny = Num::Splat(1e-300);
