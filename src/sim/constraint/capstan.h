@@ -1,58 +1,61 @@
-/// Capstan friction of a cable (docs/theory/cables.md, section 5). Slip places divide the cable
-/// into spans, each with a tension; at a place with the ratio c = exp(mu theta)
+/// Capstan friction of a cable (docs/theory/cables.md, section 5). Slip points divide the cable
+/// into spans with different tensions. At a slip point with the tension ratio c = exp(mu theta):
 ///
-///   T / c <= T' <= c T,   and the cable slips, toward the greater tension, only at equality
+/// T / c <= T' <= c T;  only at equality, the cable slips toward the greater tension
 ///
-/// This is one complementarity problem for all slip places, since solving them one by one would
-/// make the result depend on the order. Numbers of one lane.
+/// All slip points form one complementarity problem, because a solution one by one would depend on
+/// their order. The code is scalar, for one lane.
 #pragma once
 
 #include "math/scalar.h"
 
 namespace taut::sim {
 
-/// Largest number of spans of a cable with friction.
+/// Maximum number of spans of a cable with friction.
 inline constexpr int kMostSpans = 16;
 
-/// Relation between a span's tension T and the rest length x that slips into it:
-///   x = min(a - p T, e - q T)   while T > 0; it is slack with more.
+/// Relation between the tension T of a span and the rest length x that slips into it. A slack span
+/// takes any larger x.
+///   x = min(a - p T, e - q T)   while T > 0
 struct CapstanSpan {
   double a, e;  ///< [m]
   double p, q;  ///< > 0 [m/N]
 };
 
-/// `Tag`: type that differs between instruction sets, so that each gets its own instantiation.
+/// `Tag`: type that differs between instruction sets, so that each has its own instantiation.
 template <class Tag>
 struct Capstan {
   int count;
   CapstanSpan spans[kMostSpans];
-  double ratio[kMostSpans];  ///< >= 1, per place: behind span i.
+  double ratio[kMostSpans];  ///< >= 1, per slip point: point i is after span i.
 
-  // Found:
+  // Results:
   double tension[kMostSpans];  ///< [N]
-  double slip[kMostSpans];     ///< Rest length that moves from span i to span i + 1 [m].
-  double weight[kMostSpans];   ///< Ratios of the tensions of spans that slip together.
-  double slope[kMostSpans];    ///< Rest length lost per T, of the spans that slip together with i.
-  int first[kMostSpans];       ///< First of the spans that slip together with i.
-  bool upper[kMostSpans];      ///< The span is on the branch x = e - q T.
-  int way[kMostSpans];         ///< 1: T' = c T, -1: T = c T', 0: it sticks.
+  double slip[kMostSpans];     ///< Rest length that slips from span i to span i + 1 [m].
+  double weight[kMostSpans];   ///< Tension ratios within a group of spans that slip together.
+  /// Decrease of rest length per T of all spans that slip together with i.
+  double slope[kMostSpans];
+  int first[kMostSpans];   ///< First span of the group that slips together with i.
+  bool upper[kMostSpans];  ///< The span is on the branch x = e - q T.
+  int way[kMostSpans];     ///< 1: T' = c T, -1: T = c T', 0: it sticks.
 
   void Solve() noexcept {
     for (int i = 0; i + 1 < count; ++i) way[i] = ratio[i] > 1.0 ? 0 : 1;
     for (int round = 0; round < kMostRounds; ++round) {
       for (int i = 0; i < count;) i = SlipTogether(i);
-      // Changing all wrong places at once is fast but may cycle; changing the first alone cannot
-      // (Murty's rule).
+      // Changing all wrong states at once is fast but may cycle. Changing only the first one cannot
+      // cycle (Murty's rule).
       if (!Revise(round > 2 * count)) return;
     }
   }
 
  private:
   static constexpr int kMostRounds = 400;
-  /// Differences of this relative size are rounding and do not change the state of a place.
+  /// Relative differences below this value are rounding errors and do not change the state of a
+  /// slip point.
   static constexpr double kRounding = 1e-13;
 
-  /// Returns x of a span with the tension T, without slack.
+  /// Returns x of a taut span with the tension T.
   double RestAt(int i, double T) noexcept {
     const CapstanSpan& s = spans[i];
     const double lower_x = s.a - s.p * T, upper_x = s.e - s.q * T;
@@ -60,7 +63,8 @@ struct Capstan {
     return upper[i] ? upper_x : lower_x;
   }
 
-  /// Solves the spans from `begin` on that slip together. Returns the first span after them.
+  /// Solves the group of spans that slip together, starting with `begin`. Returns the first span
+  /// after it.
   int SlipTogether(int begin) noexcept {
     int end = begin + 1;
     weight[begin] = 1.0;
@@ -69,8 +73,8 @@ struct Capstan {
       weight[end] = way[end - 1] > 0 ? weight[end - 1] * c : weight[end - 1] / c;
       ++end;
     }
-    // The sum of x decreases with T, ever more steeply: one Newton step from the left may go too
-    // far; the following ones come back.
+    // The sum of x decreases with T at an increasing slope. One Newton step from the left may
+    // overshoot; the next ones return.
     double T = 0.0, x[kMostSpans], sum = 0.0, steep = 0.0;
     for (int i = 0;; ++i) {
       sum = steep = 0.0;
@@ -86,7 +90,7 @@ struct Capstan {
     const bool slack = !(T > 0.0);
     double moved = 0.0;
     for (int k = begin; k < end; ++k) {
-      // The total slack is divided equally, since its place is undetermined.
+      // The total slack is distributed equally, since its distribution is indeterminate.
       const double gets = end == begin + 1 ? 0.0 : slack ? x[k] - sum / (end - begin) : x[k];
       moved -= gets;
       tension[k] = slack ? 0.0 : weight[k] * T;
@@ -98,8 +102,8 @@ struct Capstan {
     return end;
   }
 
-  /// Updates the slip places: places that slip against their tension stick; sticking places beyond
-  /// the ratio slip. Returns whether any changed.
+  /// Updates the slip points: a point that slips against its tension difference becomes sticking; a
+  /// sticking point beyond the tension ratio becomes slipping. Returns whether any state changed.
   bool Revise(bool one_only) noexcept {
     bool changed = false;
     for (int i = 0; i + 1 < count && !(changed && one_only); ++i) {

@@ -11,39 +11,41 @@
 
 namespace taut::sim {
 
-/// A contact with up to `kMaxLinks` bodies; one if the other side is static.
+/// Contact with up to `kMaxLinks` bodies; with static geometry, one.
 template <class Num, int kMaxLinks>
 struct ContactPoint {
   using Number = Num;
   static constexpr int kRows = 3;
 
-  Num live;             ///< 1 in lanes that have this contact, else 0.
-  Num wnn, wt;          ///< Inverse effective mass: normal, upper bound of the tangents [1/kg].
+  Num live;             ///< 1 in lanes that have this contact, otherwise 0.
+  Num wnn, wt;          ///< Inverse effective masses: normal; upper bound for the tangents [1/kg].
   Num inv_wnn, inv_wt;  ///< [kg]
   Num w1n, w2n, w11, w12, w22;  ///< Other elements of the inverse effective mass [1/kg].
   Num bias[3];                  ///< Targets: un >= -bias[0], ut = -bias[1..2] [m/s].
   Num mu, restitution;
-  Num before;          ///< Normal velocity at the start of the step [m/s].
-  Num rebound;         ///< Rebound speed if it takes part in an impact in this step [m/s], or 0.
-  Num closing;         ///< bias[0] without an impact [m/s].
-  Num again;           ///< Its restitution if it opens at the start of the step, else 0.
+  Num before;  ///< Normal velocity at the start of the step [m/s].
+  /// Rebound speed if the contact takes part in an impact in this step [m/s], otherwise 0.
+  Num rebound;
+  Num closing;         ///< Value of bias[0] without an impact [m/s].
+  Num again;           ///< Restitution if the contact opens at the start of the step, otherwise 0.
   Num l[3];            ///< Impulses [N s].
-  bool one_direction;  ///< Friction acts along the first tangent only.
+  bool one_direction;  ///< Friction acts only along the first tangent.
   int link_count;
   Link<Num, 3> links[kMaxLinks];
 
   /// Case of the law: open, sticking, or sliding in a direction.
   struct Branch {
     MaskOf<Num> closed, slides;
-    Num s1, s2;  ///< Sliding: direction of friction.
-    Num shrink;  ///< Cone radius / length of the tangential vector outside of it.
+    Num s1, s2;  ///< Direction of friction while sliding.
+    Num shrink;  ///< Radius of the cone / length of the tangential vector outside of it.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     if (Any(a.closed) != Any(b.closed) || Any(a.slides) != Any(b.slides)) return false;
     return !Any(a.slides) || Any(a.s1 * b.s1 + a.s2 * b.s2 > Num::Splat(0.9999));
   }
 
-  /// Copies the law of another contact without its links, as `pick(other's value, own value)`.
+  /// Copies the law of another contact without its links. Each value is `pick(other's value, own
+  /// value)`.
   template <int kOther, class F>
   TAUT_INLINE void TakeLaw(const ContactPoint<Num, kOther>& from, const F& pick) noexcept {
     const auto take = [&pick](const Num& x, Num& mine) { mine = pick(x, mine); };
@@ -91,8 +93,8 @@ struct ContactPoint {
     Friction(u, center, inv_e, mu * l0[0], yn > zero, out);
   }
 
-  /// Computes the 3x3 matrix, row by row. It is not symmetric if the contact slides, since friction
-  /// follows the normal impulse.
+  /// Computes the 3x3 matrix, row by row. It is not symmetric for a sliding contact, since its
+  /// friction depends on the normal impulse.
   void Derivative(const Branch& b, Num e, Num* g) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     const Num inv_e = one / e;
@@ -109,8 +111,9 @@ struct ContactPoint {
     for (int i = 3; i < 9; ++i) g[i] = Select(b.closed, g[i], zero);
   }
 
-  /// Adds `share` of the stiffness along the slip that a law of frozen direction lacks (eq. 27):
-  /// where directions turn a lot within a step, a larger matrix makes smaller steps.
+  /// Adds `share` of the stiffness along the slip direction that a law with frozen friction
+  /// direction lacks (eq. 27). A larger matrix gives smaller steps where directions turn much
+  /// within a step.
   void Stiffen(const Branch& b, Num share, Num* g) const noexcept {
     const auto slides = b.closed & b.slides;
     if (!Any(slides)) return;
@@ -119,7 +122,7 @@ struct ContactPoint {
     g[7] += q * b.s1 * b.s2, g[8] += q * b.s2 * b.s2;
   }
 
-  /// Returns the case of u and l, by the natural map with steps 1 / w (eq. 15).
+  /// Returns the branch for u and l, by the natural map with steps 1 / w (eq. 15).
   TAUT_INLINE Branch BranchOf(const Num* u, const Num* l_now) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     Branch b;
@@ -181,9 +184,9 @@ struct ContactPoint {
     out.r[2] = zero - l_now[2];
   }
 
-  /// Solves this contact alone (eq. 23). Searches along stiffnesses k against the slip: |lt(k)| -
-  /// mu ln(k) changes its sign, so a solution exists for any cone (also for Painleve's rod). One
-  /// lane only.
+  /// Solves this contact alone (eq. 23), in one lane. Searches for the stiffness k against slip at
+  /// which |lt(k)| = mu ln(k). The difference changes its sign, so a solution exists for any cone
+  /// (even for Painleve's rod).
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     static_assert(Num::kLanes == 1);
     const Num zero = Num::Splat(0.0);
@@ -217,9 +220,9 @@ struct ContactPoint {
     Clamp(l_now);
   }
 
-  /// Sets `rebound` (eq. 9-10): for the height that restitution prescribes, at the gap where the
-  /// step finds the contact, under continuing acceleration. `warm`: normal velocity from forces and
-  /// the impulses of the previous step. Returns false if there is no rebound.
+  /// Computes `rebound` (eq. 9-10). It reaches the height that restitution prescribes, from the gap
+  /// at which the step finds the contact, under constant acceleration. `warm`: normal velocity from
+  /// forces and the impulses of the previous step. Returns false without a rebound.
   TAUT_INLINE bool ExpectRebound(Num warm) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(kLeastRebound);
     const Num fastest = zero - restitution * before;
@@ -236,9 +239,9 @@ struct ContactPoint {
     rebound = Select(may & (speed > least), speed, zero);
     return true;
   }
-  /// Applies the rebound bias in the lanes (of `lanes`) in which the contact closed and rebounds,
-  /// and returns them. A contact that other rebounds have closed (`later`) rebounds with its
-  /// restitution times their closing speed.
+  /// Applies the rebound bias in those of `lanes` in which the contact closed and rebounds. Returns
+  /// these lanes. `later`: contacts closed by the rebounds of others; they rebound with restitution
+  /// times this closing speed.
   MaskOf<Num> Rebound(const Num* u, const Num* l_now, MaskOf<Num> lanes, bool later) noexcept {
     const Num zero = Num::Splat(0.0);
     if (later && Any(again > zero)) {
@@ -254,7 +257,7 @@ struct ContactPoint {
   /// Undoes Rebound.
   void ForgetRebound(MaskOf<Num> lanes) noexcept { bias[0] = Select(lanes, closing, bias[0]); }
 
-  /// Computes the error of the velocities that branch `b` prescribes; 0 where it prescribes none.
+  /// Computes the errors of the velocities that branch `b` prescribes; 0 for other velocities.
   void Miss(const Branch& b, const Num* u, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0);
     const auto sticks = b.closed & !b.slides;
@@ -262,30 +265,32 @@ struct ContactPoint {
     out[1] = Select(sticks, u[1] + bias[1], zero);
     out[2] = one_direction ? zero : Select(sticks, u[2] + bias[2], zero);
   }
-  /// Returns the largest t for which l + t dl stays on the branch `b` (eq. 18a); 1e300 if all do.
+  /// Returns the largest t for which l + t dl stays on the branch `b` (eq. 18a); 1e300 without a
+  /// limit.
   Num Reach(const Branch& b, const Num* l_now, const Num* dl) const noexcept {
     const Num zero = Num::Splat(0.0), never = Num::Splat(1e300);
-    // At the cone's edge: |lt + t dlt|^2 = mu^2 (ln + t dln)^2
+    // At the boundary of the cone: |lt + t dlt|^2 = mu^2 (ln + t dln)^2
     const Num dl2 = one_direction ? zero : dl[2], mu2 = mu * mu;
     const Num a = dl[1] * dl[1] + dl2 * dl2 - mu2 * dl[0] * dl[0];
     const Num half = l_now[1] * dl[1] + l_now[2] * dl2 - mu2 * l_now[0] * dl[0];
     const Num inside =
         Max(mu2 * l_now[0] * l_now[0] - l_now[1] * l_now[1] - l_now[2] * l_now[2], zero);
     const Num square = half * half + a * inside;
-    // Form without cancellation; there is a root only if the ray leaves the cone.
+    // This form avoids cancellation. There is a root only if the ray leaves the cone.
     const Num divisor = half + Sqrt(Max(square, zero));
     const Num leaves = Select((square > zero) & (divisor > zero), inside / divisor, never);
     const Num ends = Select(dl[0] < zero, Max(l_now[0], zero) / (zero - dl[0]), never);
     return Select(b.closed, Min(ends, Select(b.slides, never, leaves)), never);
   }
-  /// Inconsistent contacts (eq. 28a): computes the least change of u that solves the law with the
-  /// impulses l on the branch `b`, except ln of open contacts: the error of un = -bias; the slip if
-  /// l is inside the cone; the slip not opposite to friction if l is on its boundary.
+  /// For inconsistent contacts (eq. 28a): computes the smallest change of u that satisfies the law
+  /// with the impulses l on branch `b`; impulses of open contacts are ignored. Its parts: the error
+  /// of un = -bias; the slip, if l is inside the cone; the part of the slip not opposite to
+  /// friction, if l is on the cone's boundary.
   void Disagreement(const Branch& b, const Num* u, const Num* l_now, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num l1 = l_now[1], l2 = one_direction ? zero : l_now[2];
     const Num u1 = u[1] + bias[1], u2 = one_direction ? zero : u[2] + bias[2];
-    // A clamped impulse is on the boundary up to rounding.
+    // Because of rounding, a clamped impulse may be slightly inside the boundary.
     const Num edge = Num::Splat(1.0 - 1e-9) * mu * l_now[0], length2 = l1 * l1 + l2 * l2;
     const Num against = Min(u1 * l1 + u2 * l2, zero) / Max(length2, Num::Splat(1e-300));
     const Num share = Select(length2 > edge * edge, against, zero);
@@ -293,7 +298,7 @@ struct ContactPoint {
     out[1] = Select(b.closed, u1 - share * l1, zero);
     out[2] = Select(b.closed, u2 - share * l2, zero);
   }
-  /// Shifts the velocities that satisfy the law by `change`.
+  /// Changes the velocities that satisfy the law by `change`.
   void Relax(const Num* change) noexcept {
     for (int r = 0; r < kRows; ++r) bias[r] -= change[r];
   }
@@ -316,7 +321,7 @@ struct ContactPoint {
     Num ln, l1, l2;
   };
 
-  /// Computes |lt| - mu ln with the stiffness k against slip.
+  /// Computes |lt| - mu ln for the stiffness k against slip.
   Num Excess(Slip& s, Num k) const noexcept {
     const Num zero = Num::Splat(0.0);
     const Num a = s.s11 + k, c = s.s22 + k;
@@ -327,8 +332,8 @@ struct ContactPoint {
     return Sqrt(s.l1 * s.l1 + s.l2 * s.l2) - mu * s.ln;
   }
 
-  /// Regula falsi (Illinois); every fourth step uses a geometric mean, since k may range over many
-  /// decades.
+  /// Root search by regula falsi (Illinois). Every fourth step uses the geometric mean, because k
+  /// may range over many decades.
   void CloseIn(Slip& s, Num low, Num at_low, Num high, Num at_high) const noexcept {
     const Num half = Num::Splat(0.5), tiny = Num::Splat(1e-15);
     int side = 0;

@@ -5,16 +5,16 @@
 ///
 ///   u: relative velocity of the two bodies along it, after the step
 ///
-/// Held: no limits; the compliance is a tiny share of the inverse effective mass, about the
-/// previous impulse (joints.md, eq. 3). Stop (joint limit): it only pushes. Dry friction: target 0
-/// between the limits. Spring and damper: `give` is their velocity per impulse.
+/// Constrained direction: no limits; the compliance is a tiny fraction of the inverse effective
+/// mass, relative to the previous impulse (joints.md, eq. 3). Joint limit: only pushes. Dry
+/// friction: target 0 between the limits. Spring and damper: `give` is their velocity per impulse.
 #pragma once
 
 #include "sim/constraint/links.h"
 
 namespace taut::sim {
 
-/// Compliance of held rows, as a share of their inverse effective masses.
+/// Compliance of constrained rows, relative to their inverse effective masses.
 inline constexpr double kHeldCompliance = 1e-7;
 
 template <class Num>
@@ -24,21 +24,21 @@ struct JointRow {
   static constexpr int kRows = 1;
   static constexpr double kNoLimit = 1e300;
 
-  Num live;          ///< 1 in lanes in which it acts, else 0.
+  Num live;          ///< 1 in lanes in which the row acts, otherwise 0.
   Num target;        ///< [m/s]
   Num give;          ///< [1/kg], >= 0.
-  Num lower, upper;  ///< Of the impulse [N s], lower <= 0 <= upper.
-  Num A;             ///< Inverse effective mass along it [1/kg].
+  Num lower, upper;  ///< Limits of the impulse [N s], lower <= 0 <= upper.
+  Num A;             ///< Inverse effective mass of the row [1/kg].
   Num l[1];          ///< Impulse [N s].
-  Num rebound;       ///< Rebound speed of an impact at a stop [m/s]; 0: no rebound.
+  Num rebound;       ///< Rebound speed of an impact at a joint limit [m/s]; 0: no rebound.
   bool compliant;    ///< `give` is the compliance of eq. 3, not of a spring.
   int link_count;
   Link<Num, 1> links[2];
 
   struct Branch {
-    Mask inside;  ///< Between its limits.
-    Num beyond;   ///< -1 below, 1 above, 0 between them.
-    Num impulse;  ///< Limit that applies beyond it.
+    Mask inside;  ///< The impulse is between its limits.
+    Num beyond;   ///< -1: below the limits; 1: above; 0: between.
+    Num impulse;  ///< The limit that applies outside.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     return !Any(Abs(a.beyond - b.beyond) > Num::Splat(0.5));
@@ -54,8 +54,8 @@ struct JointRow {
     rebound = pick(from.rebound);
     compliant = from.compliant;
   }
-  /// Converts the row to displacements: held rows stay closed, springs and friction vanish, and the
-  /// free side of a stop stays free.
+  /// Converts the row from velocities to displacements: constrained rows stay closed, springs and
+  /// friction have no effect, and the free side of a joint limit stays free.
   void Hold() noexcept {
     const Num zero = Num::Splat(0.0);
     auto free = upper < Num::Splat(kNoLimit);
@@ -93,7 +93,7 @@ struct JointRow {
   void Linearize(const Branch& b, const Num* u, const Num* l_now, Num e,
                  LinearLaw<Num, 1>& out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
-    // The compliance of a held row serves as e, so the Newton step solves its law.
+    // The compliance of a constrained row serves as e, so the Newton step solves its law.
     const Num soft = e * A;
     out.A[0][0] = Select(b.inside, compliant ? Max(give, soft) : give + soft, one);
     out.S[0][0] = Select(b.inside, one, zero);
@@ -107,7 +107,7 @@ struct JointRow {
   }
   void Clamp(Num* l_now) const noexcept { l_now[0] = Min(Max(l_now[0], lower), upper); }
 
-  /// Returns whether the stop rebounds; its speed is computed beforehand (impacts.inl).
+  /// Returns whether the joint limit rebounds. impacts.inl has computed the speed before.
   bool ExpectRebound(Num) const noexcept { return Any(rebound > Num::Splat(0.0)); }
   Mask Rebound(const Num*, const Num* l_now, Mask lanes, bool) noexcept {
     const Num zero = Num::Splat(0.0);

@@ -1,9 +1,9 @@
 /// Links of constraints to bodies: Jacobians and inverse masses, the factors of the Delassus
 /// operator W = J M^-1 J^T.
 ///
-/// A constraint of R rows has velocities u = sum over its links of J (v, w) and impulses l, one per
-/// row. A link is one body's part of J, together with the inverse mass. The same code serves all
-/// lanes of a group and a single lane (simd::Lane).
+/// A constraint with R rows has velocities u, the sum of J (v, w) over its links, and one impulse l
+/// per row. A link contains the part of J for one body, and the inverse mass. The same code serves
+/// all lanes of a group and a single lane (simd::Lane).
 #pragma once
 
 #include "simd/vec3.h"
@@ -12,7 +12,7 @@ namespace taut::sim {
 
 using simd::V3;
 
-/// Slower rebounds are below the residual of a solve [m/s].
+/// Rebounds below this speed are within the residual of a solve [m/s].
 inline constexpr double kLeastRebound = 1e-9;
 
 template <class Num>
@@ -21,13 +21,14 @@ using MaskOf = decltype(Num() < Num());
 template <class Num, int R>
 struct Link {
   int body;
-  Num inv_mass;     ///< [1/kg]
-  V3<Num> lin[R];   ///< Per row: direction,
-  V3<Num> ang[R];   ///< lever about the center of mass [m],
-  V3<Num> turn[R];  ///< and inverse inertia times lever: spin per impulse [rad/s per N s].
+  Num inv_mass;    ///< [1/kg]
+  V3<Num> lin[R];  ///< Per row: direction.
+  V3<Num> ang[R];  ///< Per row: lever arm about the center of mass [m].
+  /// Per row: inverse inertia * lever arm, the angular velocity per impulse [rad/s per N s].
+  V3<Num> turn[R];
 };
 
-/// Velocity of a body's center of mass, and its spin.
+/// Velocity of the center of mass and angular velocity of a body.
 template <class Num>
 struct Twist {
   V3<Num> v, w;
@@ -49,7 +50,7 @@ TAUT_INLINE void Push(const Link<Num, R>& link, const Num* l, V3<Num>& v, V3<Num
   }
 }
 
-/// c += J_a M^-1 J_b^T, for two links to one body, row by row: a block of the Delassus operator.
+/// c += J_a M^-1 J_b^T for two links to one body: a block of the Delassus operator.
 template <class Num, int A, int B>
 TAUT_INLINE void AddCoupling(const Link<Num, A>& a, const Link<Num, B>& b, Num* c) noexcept {
   for (int i = 0; i < A; ++i) {
@@ -59,15 +60,15 @@ TAUT_INLINE void AddCoupling(const Link<Num, A>& a, const Link<Num, B>& b, Num* 
   }
 }
 
-/// Linearized law near some u and l: Newton's change dl of its impulses satisfies
-/// (docs/theory/contact.md, eq. 18)
-///   A dl + S du = r,   du: change of its velocities.
+/// Law linearized at some u and l. Newton's change dl of the impulses and the change du of the
+/// velocities satisfy (docs/theory/contact.md, eq. 18)
+///   A dl + S du = r
 template <class Num, int R>
 struct LinearLaw {
   Num A[R][R], S[R][R], r[R];
 };
 
-/// Returns the number of rows of a constraint: its `rows` if kRows is only an upper bound, else
+/// Returns the number of rows of a constraint: `rows` if kRows is only an upper bound, otherwise
 /// kRows.
 template <class Law>
 TAUT_INLINE constexpr int RowsOf(const Law& law) noexcept {
@@ -78,7 +79,7 @@ TAUT_INLINE constexpr int RowsOf(const Law& law) noexcept {
   }
 }
 
-/// Functions that the solver requires of a kind of constraint. `u`: velocities, `l`: impulses, one
+/// Functions that the solver needs for each kind of constraint. `u`: velocities, `l`: impulses, one
 /// per row.
 ///
 ///   Project      l' = P(center - u / (e w)): the law with the compliance e (a share of its

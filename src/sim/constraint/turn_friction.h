@@ -5,8 +5,8 @@
 ///
 ///   u: relative angular velocity of the bodies after the step, in the rows' units; l: impulses
 ///
-/// The limit applies to the length of l: it is the same about every axis, for any directions of the
-/// rows.
+/// The limit applies to the length of l. It is the same about every axis, independent of the
+/// directions of the rows.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -18,7 +18,7 @@ struct TurnFriction {
   using Number = Num;
   static constexpr int kRows = 3;
 
-  Num limit;     ///< Of the impulse [N s], > 0.
+  Num limit;     ///< Limit of the impulse [N s], > 0.
   Num w, inv_w;  ///< Upper bound of the inverse effective mass [1/kg], [kg].
   Num A[3][3];   ///< Inverse effective mass [1/kg].
   int link_count;
@@ -26,8 +26,8 @@ struct TurnFriction {
 
   struct Branch {
     MaskOf<Num> slides;
-    Num s[3];    ///< Sliding: direction of its impulse,
-    Num shrink;  ///< and limit / length of the vector outside of it; else 1.
+    Num s[3];    ///< Direction of the impulse while sliding.
+    Num shrink;  ///< While sliding: limit / length of the vector outside the limit; otherwise 1.
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {
     if (Any(a.slides) != Any(b.slides)) return false;
@@ -79,9 +79,9 @@ struct TurnFriction {
     }
   }
 
-  /// Solves this constraint alone: l(k) = -(A + k)^-1 q, with k = 0 if it may stick, else the k at
-  /// which l has the limit's length. Newton's method on 1 / |l(k)| approaches it from below, in a
-  /// few steps.
+  /// Solves this constraint alone: l(k) = -(A + k)^-1 q, with k = 0 if it can stick. Otherwise k is
+  /// such that |l| equals the limit. Newton's method on 1 / |l(k)| approaches this k from below in
+  /// a few steps.
   void SolveAlone(const Num* u, Num* l_now) const noexcept {
     static_assert(Num::kLanes == 1);
     constexpr int kMaxIterations = 40;
@@ -110,7 +110,7 @@ struct TurnFriction {
 
  private:
   static Num Square(const Num* x) noexcept { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; }
-  /// Projects center - step u to the ball of the limit, into `out`.
+  /// Projects center - step u onto the ball whose radius is the limit. Result: `out`.
   Branch Reach(const Num* u, const Num* center, Num step, Num* out) const noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     for (int r = 0; r < 3; ++r) out[r] = center[r] - step * u[r];
@@ -133,8 +133,8 @@ struct TurnFriction {
       out[4 * i] += scale;
     }
   }
-  /// x <- (A + k)^-1 b, by Cholesky's factors: inverse masses about a thin rod's axis and across it
-  /// differ by a factor of a million.
+  /// x <- (A + k)^-1 b, by Cholesky factorization. For a thin rod, inverse masses about its axis
+  /// and normal to it differ by a factor of a million.
   void Solve(Num k, const Num* b, Num* x) const noexcept {
     const Num d0 = A[0][0] + k, l1 = A[1][0] / d0, l2 = A[2][0] / d0;
     const Num d1 = A[1][1] + k - l1 * A[1][0], m = A[2][1] - l2 * A[1][0], l3 = m / d1;

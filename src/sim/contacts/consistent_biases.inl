@@ -1,11 +1,11 @@
 /// Fit of contact biases to a rigid motion (docs/theory/contact.md, eq. 12).
 ///
-/// Sticking points of one body with separate biases contradict each other in second order: closing
-/// different gaps turns the body, and turning moves the points along the surface. No impulses solve
-/// that to the last digit, and half of a heap's work would be spent on trying. So the biases of
-/// nearly closed contacts of one patch (same bodies, same normal) are replaced by the biases of the
-/// motion that fits them best: a lift along the normal and two tilts, with the tilts' motion along
-/// the surface.
+/// Separate biases of the sticking points of one body contradict each other in second order:
+/// closing different gaps rotates the body, and this rotation moves the points along the surface.
+/// No impulses can satisfy them exactly, and the solver would waste half of its time on a heap.
+/// Therefore contacts that are nearly closed are grouped into patches with the same bodies and
+/// normal. The biases of a patch are replaced by the biases of the best-fitting motion: a lift
+/// along the normal and two tilts.
 #pragma once
 
 #include "math/scalar.h"
@@ -17,7 +17,7 @@ namespace taut::sim {
 
 /// Contacts that close or are pushed out faster than this keep their bias [m/s].
 inline constexpr double kFittedMPerS = 0.05;
-/// Cosine above which normals are equal.
+/// Normals count as equal if the cosine of their angle is larger.
 inline constexpr double kSameNormal = 0.999;
 
 /// Computes x <- A^-1 x for a symmetric positive definite A; reads and overwrites its lower
@@ -40,12 +40,12 @@ TAUT_INLINE void SolveSymmetric(Num (&a)[N][N], Num (&x)[N]) noexcept {
 }
 
 /// Fits the biases of one patch: the contacts with `share` 1, all between the same two bodies. `n`,
-/// `t1`, `t2`: the patch's directions; `most`: largest change of a bias [m/s]; if one would change
-/// more, none changes.
+/// `t1`, `t2`: directions of the patch. `most`: largest allowed change of a bias [m/s]; if any bias
+/// would change more, none changes.
 template <class Num, int kLinks, class Share>
 void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const V3<Num>& t1,
               const V3<Num>& t2, const Share& share, double most) noexcept {
-  // Regularization of the least-squares matrix, whose largest entries are about 1: selects the
+  // Regularization of the least-squares matrix, whose largest entries are about 1. It selects the
   // smallest motion.
   constexpr double kTiny = 1e-9;
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -99,8 +99,8 @@ void FitPatch(Contact<Num, kLinks>* contacts, int count, const V3<Num>& n, const
   }
 }
 
-/// Fits the biases of the contacts [0, count), all between the same two bodies, in `lanes`. Patch
-/// by patch, each started by the first contact without a patch. `most`: see FitPatch.
+/// Fits the biases of the contacts [0, count), all between the same two bodies, in `lanes`. The
+/// first contact without a patch starts the next patch. `most`: see FitPatch.
 template <class Num, int kLinks, class M>
 void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes,
                double most = kFittedMPerS) noexcept {
@@ -130,10 +130,10 @@ void FitBiases(Contact<Num, kLinks>* contacts, int count, M lanes,
   }
 }
 
-/// Makes the biases of a body's contacts with static geometry consistent, if they have several
-/// directions: jammed in a groove, a body sticks with more rows than it has degrees of freedom.
-/// Where the best-fitting motion deviates by less than kDisagreementMPerS, its biases replace
-/// theirs (docs/theory/contact.md, eq. 12b).
+/// Makes the biases of a body's contacts with static geometry consistent if they have several
+/// normals. For example, a body jammed in a groove sticks with more rows than it has degrees of
+/// freedom. If the best-fitting motion deviates by less than kDisagreementMPerS, its biases replace
+/// the original ones (docs/theory/contact.md, eq. 12b).
 template <class Num, class M>
 [[gnu::noinline]] void AgreeBiases(Contact<Num, 1>* contacts, int count, M lanes) noexcept {
   constexpr double kTiny = 1e-9, kNearlyClosed = 10 * kDisagreementMPerS;

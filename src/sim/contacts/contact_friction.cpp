@@ -1,4 +1,4 @@
-// Friction by speed, by direction and by the user's law (docs/theory/friction.md).
+// Friction that depends on speed or direction, and custom friction laws (docs/theory/friction.md).
 #include "sim/contacts/contact_friction.h"
 
 #include <cmath>
@@ -29,7 +29,7 @@ void Tangential(const double v[3], const double n[3], double out[3]) {
 struct Sides {
   const FrictionSide *a, *b;
 };
-/// Returns the two surfaces of a contact, by its key.
+/// Returns the two surfaces of a contact from its key.
 Sides SidesOf(const View& m, double key) {
   const FrictionTable& t = *m.friction;
   const auto number = static_cast<std::uint32_t>(key);
@@ -42,7 +42,7 @@ Sides SidesOf(const View& m, double key) {
   return {&t.sides[pair.a], &t.sides[pair.b]};
 }
 
-/// A side's coefficients at a sliding speed (eq. 1, 2).
+/// Coefficients of one surface at a sliding speed (eq. 1, 2).
 struct Both {
   double at_rest, sliding;
 };
@@ -54,7 +54,7 @@ Both AtSpeed(const FrictionSide& side, double speed) {
   return {mu, mu};
 }
 
-/// Computes a side's forward direction in W. Returns false if it has none.
+/// Computes the forward direction of a surface in W. Returns false if it has none.
 bool AxisOf(const FrictionSide& side, const double turn[9], bool turns, double out[3]) {
   for (int i = 0; i < 3; ++i) {
     out[i] = turns ? Dot3(turn + 3 * i, side.axis_P) : side.axis_P[i];
@@ -62,8 +62,8 @@ bool AxisOf(const FrictionSide& side, const double turn[9], bool turns, double o
   return side.directed;
 }
 
-/// Returns a side's factor for friction along the unit vector `t`, for sliding towards `way` (eq.
-/// 3).
+/// Returns the friction factor of a surface along the unit vector `t`, for the sliding direction
+/// `way` (eq. 3).
 double Factor(const FrictionSide& side, const double axis[3], const double t[3],
               const double way[3], double sign) {
   if (!side.directed) return 1.0;
@@ -73,11 +73,11 @@ double Factor(const FrictionSide& side, const double axis[3], const double t[3],
   return std::sqrt(ahead * ahead * c2 + side.sideways * side.sideways * rest);
 }
 
-/// Computes two unit tangents, the first along the projection of the axis on the surface.
+/// Computes two unit tangents; the first is along the projection of the axis onto the surface.
 void Tangents(const double axis[3], const double n[3], double t1[3], double t2[3]) {
   Tangential(axis, n, t1);
   double square = Dot3(t1, t1);
-  if (!(square > 1e-12)) {  // the axis is normal to the surface: all directions are sideways
+  if (!(square > 1e-12)) {  // The axis is normal to the surface, so all directions are sideways.
     const double other[3] = {std::fabs(n[0]) < 0.6 ? 1.0 : 0.0, std::fabs(n[0]) < 0.6 ? 0.0 : 1.0,
                              0.0};
     Tangential(other, n, t1);
@@ -106,8 +106,8 @@ void FrictionOf(const View& m, SlidingContact& c) noexcept {
     const bool by_a = AxisOf(*a, c.turn_a, true, axis_a);
     AxisOf(*b, c.turn_b, c.b_moves, axis_b);
     Tangents(by_a ? axis_a : axis_b, c.normal, t1, t2);
-    // The direction of sliding; for a sticking contact, the direction in which it would slide,
-    // against the friction force.
+    // Sliding direction. For a sticking contact, the direction opposite to the friction force, in
+    // which it would slide.
     const double* const towards = Dot3(before, before) > kSlidingMPerS * kSlidingMPerS ? slip : way;
     if (towards == way) {
       Tangential(c.force, c.normal, way);

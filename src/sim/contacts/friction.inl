@@ -1,6 +1,6 @@
-/// Evaluation of friction laws beyond two coefficients per pair (friction.h): from wide numbers to
-/// scalar code and back, before the contact equations are set up. Not inlined, so that models
-/// without such laws do not pay for it in registers.
+/// Evaluation of friction laws with more than two coefficients per pair (friction.h), before the
+/// contact equations are set up. Converts between SIMD numbers and scalar code. Not inlined, so
+/// that models without such laws keep their registers.
 #pragma once
 
 #include "sim/contacts/contact_friction.h"
@@ -28,8 +28,8 @@ TAUT_INLINE void AddPointVelocity(const V3<W>& v, const V3<W>& w, int lane, cons
   }
 }
 
-/// Computes the coefficients and directions of the contact `c` of a lane. `at`: the contact's lane
-/// in `Num`, or 0 if `Num` is of one lane. `bodies`: of its links.
+/// Computes coefficients and directions of the contact `c` of one lane. `at`: lane of the contact
+/// in `Num`, or 0 if `Num` has one lane. `bodies`: bodies of its links.
 template <class W, class Num, int kLinks>
 [[gnu::noinline]] void AskFriction(const View& m, const Rows<W>& s, const Group& g,
                                    const Scratch<W>& work, const int (&bodies)[kLinks],
@@ -57,7 +57,7 @@ template <class W, class Num, int kLinks>
   Take(c.links[0].lin[0], at, asked.normal);
   Take(memory.force, at, asked.force);
   FrictionOf(m, asked);
-  // A NaN coefficient would go unnoticed, as a cone without limit.
+  // A NaN coefficient would have no effect, since it acts like a cone without limit.
   if (asked.lost) s.mom[bodies[0]].x.Set(lane, __builtin_nan(""));
   c.static_friction.Set(at, asked.static_friction);
   c.kinetic_friction.Set(at, asked.kinetic_friction);
@@ -69,7 +69,7 @@ template <class W, class Num, int kLinks>
   Put(asked.across, at, c.links[0].lin[2]);
 }
 
-/// Evaluates a contact with the world, in all lanes that have it.
+/// Evaluates a contact with the world in all lanes that have it.
 template <class W>
 [[gnu::noinline]] void AskFrictions(const View& m, const Rows<W>& s, const Group& g,
                                     const Scratch<W>& work, int body,
@@ -79,8 +79,8 @@ template <class W>
   }
 }
 
-/// Corrects the inverse masses, where `ContactPoint::FinishMasses` assumes tangents of length 1. A
-/// lane without directions keeps its bits.
+/// Corrects the inverse masses; `ContactPoint::FinishMasses` assumes tangents of length 1. Lanes
+/// without directions keep their bits.
 template <class Num, int kLinks>
 [[gnu::noinline]] void FinishDirected(Contact<Num, kLinks>& c) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -94,7 +94,7 @@ template <class Num, int kLinks>
   }
   c.wt = c.one_direction ? c.w11 : Max(c.w11, c.w22) + Abs(c.w12);
   c.inv_wt = one / c.wt;
-  // The law's impulses are impulses along the tangents divided by their lengths.
+  // The impulses of the law are those along the tangents, divided by the lengths of the tangents.
   c.l[1] = Select(long1 > zero, c.l[1] / Select(long1 > zero, long1, one), zero);
   c.l[2] = Select(long2 > zero, c.l[2] / Select(long2 > zero, long2, one), zero);
 }

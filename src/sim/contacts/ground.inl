@@ -1,5 +1,5 @@
 /// Contacts of shapes with height fields and meshes (docs/theory/ground.md, section 4). Every pair
-/// of a shape and a surface has a clearance; each lane is tested in scalar code.
+/// of a shape and a surface has a clearance. Scalar code tests each lane.
 #pragma once
 
 #include "sim/contacts/shape_pairs.inl"
@@ -8,8 +8,8 @@
 
 namespace taut::sim {
 
-/// Returns the lanes in which a rod is near a place where it had no contact except at ends that
-/// other shapes cover. The slack contains a bound of rounding.
+/// Returns the lanes in which a rod is near its pose of an earlier test without contacts, except at
+/// ends covered by other shapes. The tolerance includes a bound of rounding errors.
 template <class W>
 TAUT_INLINE MaskOf<W> IsQuiet(const Rows<W>& s, const Scratch<W>& work, int kept,
                               const ShapeTable& shape, W slack_m, W margin) noexcept {
@@ -33,7 +33,7 @@ void KeepQuiet(const Rows<W>& s, int number, int lane, const NearParts& kept) no
   s.quiet_limit[number].Set(lane, kept.between.count == 0 ? kept.limit_m : 0.0);
 }
 
-/// Tests a shape against ground, in the lanes in which it may be `near`.
+/// Tests a shape against a surface, in the lanes `near` in which they may be close.
 template <class W, class M>
 void LookAtGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                   double step_s, M near, W margin, SlotFiller<W>* slots,
@@ -71,8 +71,8 @@ void LookAtGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& w
   }
 }
 
-/// Finds contacts of a body's shapes with ground, pairs [first, end), in each lane separately:
-/// touching pairs in each step, others when their clearance may be used up.
+/// Finds contacts of a body's shapes with surfaces, pairs [first, end), in each lane separately.
+/// Touching pairs are tested in each step, other pairs only when their clearance may be used up.
 template <class W>
 void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int first,
                    int end, double step_s, W since_last, SlotFiller<W>* slots,

@@ -6,17 +6,18 @@
 namespace taut::sim {
 namespace {
 
-/// Distance below which a point of one box belongs to its neighbor, too [m].
+/// Distance below which a point of one box also belongs to its neighbor [m].
 constexpr double kSamePlaceM = kJoinedM;
-/// Difference of distance above which another box counts as nearer to a point between the ends of a
-/// rod, and length along which boxes must continue, in radii.
+/// kNearer: another box counts as nearer to a point between the ends of a rod if its distance is
+/// smaller by more than this [m]. kStraightOn: length over which boxes must continue, in radii.
 constexpr double kNearer = 1e-9, kStraightOn = 1e-3;
-/// Cosine above which a normal is the normal of a face.
+/// A normal with a larger cosine counts as a face normal.
 constexpr double kFace = 0.999;
-/// Cosine tolerance of faces in the same plane, 1e-6 rad.
+/// Cosine tolerance for coplanar faces: 1e-6 rad.
 constexpr double kLevelFace = 1.0 - 5e-13;
-/// Lateral tolerance of points where a box's face is clipped by another's side, in sizes of both;
-/// and length along which boxes must continue, in this tolerance.
+/// kCutAside: lateral tolerance of points at which the side of a box cuts a face of another,
+/// relative to both sizes. kSteps: length over which boxes must continue, in units of this
+/// tolerance.
 constexpr double kCutAside = 2e-5, kSteps = 10.0;
 
 double DistanceOf(const BoxShape& box, const Vec3& p) noexcept {
@@ -33,11 +34,11 @@ Vec3 PlaceOf(const TouchPoint& t) noexcept {
   return Load(t.point) - (0.5 * t.gap_m) * Load(t.normal);
 }
 
-/// Sine by which a normal at other ground may point into a box: crossing edges have no exact
-/// normal.
+/// Sine by which a normal at other terrain may point into a box. It is not 0, because crossing
+/// edges have no exact normal.
 constexpr double kIntoGround = 1e-2, kIntoGroundOfRod = 1e-7;
 
-/// Returns whether other ground covers a point of a box and its neighborhood.
+/// Returns whether other terrain covers a point of a box and its neighborhood.
 bool IsUnderGround(const ShapeTable& own, const SeamContact& contact, double same_m) noexcept {
   const SeamSlack slack{0.0, kIntoGround};
   if (!IsCovered(own.seams, contact.place, contact.normal, slack, same_m)) return false;
@@ -56,7 +57,7 @@ bool IsUnderGround(const ShapeTable& own, const SeamContact& contact, double sam
   return true;
 }
 
-/// A point of a rod's centerline.
+/// Point on the centerline of a rod.
 struct Station {
   Vec3 center;
   bool is_end;
@@ -68,10 +69,9 @@ Station StationOf(const RoundShape& round, const TouchPoint& t) noexcept {
   return {Load(t.point) + (0.5 * t.gap_m + round.radius_m) * Load(t.normal), false};
 }
 
-/// Returns whether another box that contains the place is nearer to the rod's point: then the way
-/// from the place to the point is not the shortest. The straight line from there to the nearest
-/// place of that other box lies inside it. Of boxes that are equally near to an end, the first has
-/// the contact.
+/// Returns whether another box that contains the point `place` is nearer to the rod point. Then the
+/// segment from `place` to the rod point is not the shortest, and its start lies inside the other
+/// box. If several boxes are equally near to an end, the first one has the contact.
 bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Station& station,
               double radius_m, bool* shared) noexcept {
   const ShapeTable& own = shapes[number];
@@ -91,8 +91,8 @@ bool IsHidden(const ShapeTable* shapes, int number, const Vec3& place, const Sta
   return hidden;
 }
 
-/// Returns whether boxes continue in the plane of a contact, in a tangential direction; `by_face`:
-/// with one of their faces.
+/// Returns whether boxes continue in the plane of a contact along a tangential direction.
+/// `by_face`: with one of their faces.
 bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& normal,
             const Vec3& way, double same_m = kSamePlaceM, bool by_face = false) noexcept {
   const ShapeTable& own = shapes[number];
@@ -111,7 +111,8 @@ bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3&
   return false;
 }
 
-/// Finds the normal of the face of a box along a direction. Returns false if no face is nearly
+/// Finds the face of a box with a normal along `direction`. Returns false if no face is nearly
+/// normal to it.
 /// normal to it.
 bool FaceAlong(const BoxShape& box, const Vec3& direction, Vec3* normal) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
@@ -122,16 +123,16 @@ bool FaceAlong(const BoxShape& box, const Vec3& direction, Vec3* normal) noexcep
   return false;
 }
 
-/// Marks the contacts of a rod with the union of boxes. Along a rod, too, contacts are local minima
-/// of the distance: a point that both ends of a straight stretch support, over boxes that continue
-/// in one plane, is no contact.
+/// Marks the contacts of a rod with the union of boxes. Contacts are local minima of the distance
+/// along the rod. A point between the ends of a rod that lies on a plane formed by several boxes is
+/// not a contact, since both ends support it.
 void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* points,
                int count) noexcept {
   const double r = round.radius_m;
   const Vec3 along = Load(round.to) - Load(round.from);
   for (int i = 0; i < count; ++i) {
     JoinedPoint& p = points[i];
-    // Deep inside a box, its own way out counts.
+    // Deep inside a box, its own exit direction applies.
     if (p.touch.gap_m <= -r) continue;
     const Station station = StationOf(round, p.touch);
     const Vec3 place = PlaceOf(p.touch), normal = Load(p.touch.normal);
@@ -156,7 +157,7 @@ void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* p
   }
 }
 
-/// Returns whether boxes continue in all directions around a place on a face of one of them.
+/// Returns whether boxes continue in all directions around a point on a face of one of them.
 bool IsFlat(const ShapeTable* shapes, int number, const Vec3& place, const Vec3& up, double step_m,
             double same_m) noexcept {
   const BoxShape& own = shapes[number].shape_P.box;
@@ -178,9 +179,9 @@ bool IsCorner(const Convex& body, const Vec3& p, double same_m) noexcept {
   return false;
 }
 
-/// Marks the contacts of a body with flat faces. Where boxes continue in all directions in one
-/// plane, only its corners touch, along the normal of that plane; and no way out of one box may
-/// lead into another.
+/// Marks the contacts of a body with flat faces. On a plane formed by several boxes, only corners
+/// of the body have contacts, along the normal of the plane. Elsewhere, the exit direction from one
+/// box must not lead into another box.
 void MarkFlat(const Convex& body, double size_m, const ShapeTable* shapes, JoinedPoint* points,
               int count) noexcept {
   for (int i = 0; i < count; ++i) {

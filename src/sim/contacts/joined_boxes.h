@@ -1,5 +1,5 @@
-/// Terrain boxes that touch each other or other ground form one surface: a contact with one of them
-/// may be internal to the surface (docs/theory/ground.md, sections 8 and 9).
+/// Adjacent terrain boxes and other adjacent terrain form one surface. A contact with one of the
+/// boxes may then be inside this surface (docs/theory/ground.md, sections 8 and 9).
 ///
 /// Part of a step: no standard library.
 #pragma once
@@ -11,20 +11,20 @@
 
 namespace taut::sim {
 
-/// A contact point of a shape with a box of the world.
+/// Contact point of a shape with a static box.
 struct JoinedPoint {
   TouchPoint touch;
   int box;  ///< Index among the shapes.
   bool kept;
 };
 
-/// Marks the points of a shape, given in W, that are contacts with the union of the boxes, and
-/// moves them to the shape's surface, like contacts with ground.
+/// Marks the points of a shape, given in W, that are contacts with the union of the boxes. Moves
+/// them to the surface of the shape, like contacts with surfaces.
 void MarkKept(const Shape& shape, const ShapeTable* shapes, JoinedPoint* points,
               int count) noexcept;
 
-/// Returns a bit mask of the closing points (passing.h) that arrive where a box adjacent to `box`,
-/// or other ground, continues.
+/// Returns a bit mask of the closing points (passing.h) that reach an adjacent box or other
+/// adjacent terrain instead of `box`.
 uint32_t ArrivesBeside(const MovingShape& a, const ShapeTable* shapes, int box, uint32_t closing,
                        const TouchPoint* points, int count) noexcept;
 

@@ -1,5 +1,5 @@
-/// Contacts of one shape with adjacent boxes of the world, in one lane: first all points, then the
-/// selection of the contacts with the union of the boxes (joined_boxes.h).
+/// Contacts of one shape with adjacent static boxes, in one lane: computes all points, then selects
+/// the contacts with the union of the boxes (joined_boxes.h).
 #pragma once
 
 #include "sim/contacts/joined_boxes.h"
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// Shapes of the world near a shape, in the order of their pairs.
+/// Static shapes near a shape, in the order of their pairs.
 template <class W>
 class NearPairs {
  public:
@@ -88,7 +88,7 @@ class NearPairs {
   int pair_count_ = 0;
 };
 
-/// Finds the contacts of a body with a world of few shapes, some of which touch each other.
+/// Finds the contacts of a body in a world of few shapes with adjacent boxes.
 template <class W>
 void CollideJoined(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const BodyPairTable& bodies, W margin, double step_s, SlotFiller<W>* slots,

@@ -1,6 +1,6 @@
-/// Broad phase of a body in a world of many shapes: each lane separately searches the bounding
-/// volume hierarchy (BVH) of the world for near shapes, finds their contacts, and stores a
-/// clearance that holds for all others.
+/// Broad phase of a body in a world of many static shapes. Each lane searches the bounding volume
+/// hierarchy (BVH) for near shapes, finds their contacts, and stores a clearance for all other
+/// shapes.
 #pragma once
 
 #include "sim/contacts/joined_boxes.inl"
@@ -11,15 +11,16 @@
 namespace taut::sim {
 
 /// Finds the contacts with the shapes near a body in one lane, in the order of their pairs. Returns
-/// the clearance: no shape of the world is nearer. `kJoined`: some of them touch each other.
+/// the clearance, a lower bound of the distance to all static shapes. `kJoined`: some shapes are
+/// adjacent.
 template <bool kJoined, class W>
 double CollideNear(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const BodyPairTable& bodies, double margin, double step_s, int lane,
                    SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const ShapePose at = LanePose(m, s, work, bodies.a, lane);
   const ShapePose world = LanePose(m, s, work, bodies.b, lane);
-  // Touching shapes have a gap below the margin; a bit more, because the last bits of distance and
-  // gap may differ.
+  // Touching shapes have a gap below the margin. The tolerance is slightly larger, because distance
+  // and gap may differ by rounding.
   const double touch_m = margin + kContactMarginM;
   double clearance = kLookAheadSteps * margin;
   const int words = (m.tree_shapes + 63) / 64;

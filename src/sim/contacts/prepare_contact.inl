@@ -12,16 +12,16 @@
 
 namespace taut::sim {
 
-/// Share of its speed at which a penetrating contact may separate.
+/// Fraction of its speed at which a penetrating contact may separate.
 inline constexpr double kPushOutShare = 1e-3;
 template <class Num>
 TAUT_INLINE V3<Num> PointVelocity(const V3<Num>& v, const V3<Num>& w, const V3<Num>& arm) noexcept {
   return v + Cross(w, arm);
 }
 
-/// Computes two unit tangents. With one friction direction the first lies along the sliding
-/// velocity without contact, as in Bullet. Tangents given by a plane or friction.inl (frame >= 0)
-/// stay.
+/// Computes two unit tangents. With one friction direction, the first tangent is along the sliding
+/// velocity without contact, as in Bullet. Tangents from a plane or friction.inl (frame >= 0)
+/// remain.
 template <class Num, int kLinks>
 TAUT_INLINE void MakeTangents(Contact<Num, kLinks>& c, const V3<Num>& velocity) noexcept {
   const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -40,7 +40,7 @@ TAUT_INLINE void MakeTangents(Contact<Num, kLinks>& c, const V3<Num>& velocity) 
   d[2] = Select3(own, Cross(d[0], t1), d[2]);
 }
 
-/// Computes lever arms and inverse masses of one link, whose directions are known.
+/// Computes lever arms and inverse masses of a link with known directions.
 template <class Num>
 TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3<Num>& inv_inertia,
                             const V3<Num>& arm) noexcept {
@@ -52,7 +52,7 @@ TAUT_INLINE void FinishLink(Link<Num, 3>& link, int body, Num inv_mass, const S3
   }
 }
 
-/// Like FinishLink for the directions z, x, y: the same bits except for signs of zeros.
+/// Like FinishLink for the directions z, x, y; the bits are the same except for signs of zeros.
 template <class Num>
 TAUT_INLINE void FinishUprightLink(Link<Num, 3>& link, int body, Num inv_mass, const S3<Num>& i,
                                    const V3<Num>& arm) noexcept {
@@ -70,7 +70,7 @@ TAUT_INLINE void FinishUprightLink(Link<Num, 3>& link, int body, Num inv_mass, c
                   i.zz * arm.x - i.xz * arm.z};
 }
 
-/// Returns the velocity along one of a contact's directions.
+/// Returns the velocity along one direction of a contact.
 template <class Num, int kLinks>
 TAUT_INLINE Num RowVelocity(const Contact<Num, kLinks>& c, int row, const V3<Num>& va,
                             const V3<Num>& wa, const V3<Num>& vb, const V3<Num>& wb) noexcept {
@@ -83,8 +83,7 @@ TAUT_INLINE Num RowVelocity(const Contact<Num, kLinks>& c, int row, const V3<Num
 }
 
 /// Completes a detected contact: directions, links, biases, coefficients, and the warm start from
-/// `memory`. `a`, `b`: its bodies, with their numbers and inverse masses; `b` only if there are two
-/// links.
+/// `memory`. `a`, `b`: its bodies, with their numbers and inverse masses; `b` only with two links.
 template <class Num, int kLinks>
 TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num>& memory,
                                 const BodyWork<Num>& a, int body_a, Num inv_mass_a,
@@ -111,9 +110,9 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   }
   c.FinishMasses();
 
-  // Approaching: no further than to contact. Penetrating: outwards, but no faster than this step's
-  // forces take back, so that nothing flies off; the rest is left to position projection
-  // (solve/push_out.inl).
+  // An approaching contact may at most close. A penetrating contact is pushed out no faster than
+  // the forces of this step push it back, so that nothing flies off. Position projection
+  // (solve/push_out.inl) removes the remaining penetration.
   const Num before = c.before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
   const Num change = before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), kick = Max(change, zero);
   const Num slowly = Num::Splat(kPushOutShare) * Abs(before);
@@ -139,8 +138,8 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   if (c.directed) FinishDirected(c);
 }
 
-/// Determines whether a contact slid in this step, which selects its coefficient in the next. `u`:
-/// its velocities.
+/// Determines whether a contact slid in this step; this selects its coefficient in the next step.
+/// `u`: velocities of the contact.
 template <class Num, int kLinks>
 TAUT_INLINE void JudgeSlip(Contact<Num, kLinks>& c, const Num* u) noexcept {
   const Num u1 = u[1] + c.bias[1], u2 = u[2] + c.bias[2];

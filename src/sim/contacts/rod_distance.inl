@@ -1,5 +1,5 @@
-/// Lower bound of the distance of spheres and capsules, in all lanes at once. It only decides
-/// whether to compute contacts, so its bits may differ from shape_contacts.cpp.
+/// Lower bound of the distance between spheres and capsules, in all lanes at once. It only
+/// determines whether contacts are computed, so its bits may differ from shape_contacts.cpp.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -13,7 +13,7 @@ V3<W> ShapeCenter(const View& m, const Rows<W>& s, const Scratch<W>& work, int s
   return t.body < m.body_count ? s.pos[t.body] + p : p;
 }
 
-/// The centerline of a round shape in W: center -+ half.
+/// Centerline of a round shape in W: from center - half to center + half.
 template <class W>
 struct CenterLine {
   V3<W> center, half;
@@ -30,8 +30,8 @@ CenterLine<W> CenterLineOf(const View& m, const Rows<W>& s, const Scratch<W>& wo
   return {ShapeCenter(m, s, work, shape), R * simd::Splat3<W>(half)};
 }
 
-/// Returns a lower bound of the distance of two centerlines: the distance of their nearest points
-/// minus the rounding error of nearly parallel lines.
+/// Returns a lower bound of the distance between two centerlines: the distance of their nearest
+/// points minus the rounding error for nearly parallel lines.
 template <class W>
 W LineDistance(const CenterLine<W>& a, const CenterLine<W>& b) noexcept {
   constexpr double kRounding = 1e-7;
@@ -40,8 +40,7 @@ W LineDistance(const CenterLine<W>& a, const CenterLine<W>& b) noexcept {
   const W aa = Max(Dot(a.half, a.half), tiny), bb = Max(Dot(b.half, b.half), tiny);
   const W ab = Dot(a.half, b.half), ad = Dot(a.half, d), bd = Dot(b.half, d);
   const auto clamp = [&](W x) { return Max(Min(x, one), -one); };
-  // Parameters of both lines from -1 to 1: first s without regard to b's ends, then t, then s for
-  // that t.
+  // Line parameters from -1 to 1. First s without the ends of b, then t, then s for this t.
   W s = clamp((ab * bd - ad * bb) / Max(aa * bb - ab * ab, tiny));
   const W t = clamp((ab * s + bd) / bb);
   s = clamp((ab * t - ad) / aa);

@@ -1,4 +1,4 @@
-/// Narrow phase of a pair of shapes in one lane: from wide numbers to the scalar code of
+/// Narrow phase of a pair of shapes in one lane: converts SIMD numbers for the scalar code of
 /// shape_contacts.h.
 #pragma once
 
@@ -24,8 +24,8 @@ ShapePose LanePose(const View& m, const Rows<W>& s, const Scratch<W>& work, int 
   return pose;
 }
 
-/// Finds the points of a pair whose gap is below `margin`. `out` has kMaxPointsPerPair entries.
-/// Returns the number of points.
+/// Finds the contact points of a pair with gaps below `margin`. `out` has kMaxPointsPerPair
+/// entries. Returns the number of points.
 template <class W>
 int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const ShapePairTable& pair,
               int lane, double margin, TouchPoint* out) noexcept {
@@ -43,7 +43,7 @@ double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                           LanePose(m, s, work, b.body, lane), enough_m);
 }
 
-/// Both for a shape and ground; `kept`: cache of near parts, or null.
+/// The same two functions for a shape and a surface. `kept`: cache of near parts, or null.
 template <class W>
 int TouchGroundLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
                     const ShapePairTable& pair, int lane, double margin, NearParts* kept,
@@ -79,8 +79,8 @@ MovingShape LaneMoving(const View& m, const Rows<W>& s, const Scratch<W>& work, 
           table.shape_P.kind == ShapeKind::kSurface || table.IsJoined()};
 }
 
-/// Returns a bit mask of the features of a pair that pressed in the previous step. `first`,
-/// `count`: range of its contacts' memory.
+/// Returns a bit mask of the features of a pair with contact forces in the previous step. `first`,
+/// `count`: range of the memory of its contacts.
 template <class W>
 uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, int lane) noexcept {
   uint32_t features = 0;
@@ -93,9 +93,9 @@ uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, i
   return features;
 }
 
-/// Removes points of shapes that only pass by each other (passing.h). Points that pressed in the
-/// previous step stay: bodies at rest all fall alike before contacts hold them. Returns the number
-/// of points.
+/// Removes contact points of shapes that only pass by each other (passing.h). Points with a contact
+/// force in the previous step remain, because bodies at rest all fall equally until contacts hold
+/// them. Returns the number of points.
 template <class W>
 int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
                  const ShapePairTable& pair, int lane, double step_s, int first, int memory,

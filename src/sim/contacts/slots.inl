@@ -1,6 +1,6 @@
-/// Storage of detected contacts: in the slots of a body if the other body does not move, else in
-/// the lists of touches. Clearances: lower bounds of distances, which delay the next distance query
-/// of two bodies.
+/// Storage of detected contacts: in the slots of a body if the other body is static, otherwise in
+/// the lists of touches. Clearances are lower bounds of distances; they delay the next distance
+/// query of two bodies.
 #pragma once
 
 #include "sim/contacts/shape_pairs.inl"
@@ -8,13 +8,13 @@
 
 namespace taut::sim {
 
-/// Margin of contact detection, in addition to the motion of the bodies in a step [m].
+/// Contact detection margin, in addition to the motion of the bodies in a step [m].
 inline constexpr double kContactMarginM = 1e-5;
 
-/// Distance queries search up to the approach in this many steps like the present one.
+/// Distance queries search up to the approach in this number of steps at the current velocity.
 inline constexpr double kLookAheadSteps = 16.0;
 
-/// A detected contact with the world, per lane.
+/// Detected contact with the world, per lane.
 template <class W>
 struct Found {
   W key, frame, gap, radius, static_friction, kinetic_friction, restitution;
@@ -36,7 +36,7 @@ TAUT_INLINE void PutContact(Contact<W, 1>& slot, const Found<W>& found, M lanes)
   put(slot.restitution, found.restitution);
 }
 
-/// Fills the slots of one body with its contacts with the world.
+/// Stores the contacts of one body with the world in its slots.
 template <class W>
 class SlotFiller {
  public:
@@ -45,8 +45,8 @@ class SlotFiller {
         capacity_(m.first_slot[body + 1] - m.first_slot[body]),
         one_direction_(m.along_slip) {}
 
-  /// Puts `found` into the next free slot of each of `lanes`. There is room for all points
-  /// on all planes.
+  /// Stores `found` in the next free slot of each of `lanes`. There is room for all points on all
+  /// planes.
   template <class M>
   TAUT_INLINE void Add(const Found<W>& found, M lanes) noexcept {
     const int last = count_;
@@ -56,7 +56,7 @@ class SlotFiller {
     }
     used_ += Select(lanes, W::Splat(1.0), W::Splat(0.0));
   }
-  /// Like the function above for one lane. Returns false if the lane has no free slot.
+  /// Same as above for one lane. Returns false if the lane has no free slot.
   bool Add(const Found<W>& found, int lane) noexcept {
     const int k = static_cast<int>(used_[lane]);
     if (k == capacity_) return false;
@@ -73,7 +73,7 @@ class SlotFiller {
   TAUT_INLINE void Put(int k, const Found<W>& found, M here) noexcept {
     Contact<W, 1>& slot = slots_[k];
     if (k == count_) {
-      // Lanes without this contact get valid numbers with `live` = 0.
+      // Lanes without this contact get valid numbers and `live` = 0.
       ++count_;
       slot.one_direction = one_direction_;
       slot.directed = false;
@@ -117,9 +117,9 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return found;
 }
 
-/// Stores the contact points of one pair of shapes in one lane, in the order of their features,
-/// without points that only pass by (passing.h): in the slots of a body if the other body is
-/// static, else in the lists of touches.
+/// Stores the contact points of one pair of shapes in one lane, sorted by feature, except points
+/// that only pass by (passing.h). The storage is a slot of a body if the other body is static,
+/// otherwise the list of touches.
 template <class W>
 TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                            const ShapePairTable& pair, int lane, double step_s, NearParts* kept,
@@ -155,19 +155,19 @@ bool PutTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& wor
   return found > 0;
 }
 
-/// Returns a bound of the approach of two bodies in this step, plus the margin [m].
+/// Returns an upper bound of the approach of two bodies in this step, plus the margin [m].
 template <class W>
 TAUT_INLINE W Reach(const BodyWork<W>& a, const BodyWork<W>& b, W h) noexcept {
   return h * Norm1(a.v - b.v) + (a.turns + b.turns) + W::Splat(kContactMarginM);
 }
-/// Returns a bound of the approach of two bodies since the previous step [m].
+/// Returns an upper bound of the approach of two bodies since the previous step [m].
 template <class W>
 TAUT_INLINE W Used(const BodyWork<W>& a, const BodyWork<W>& b, W since_last) noexcept {
   return since_last * Norm1(a.v0 - b.v0) + (a.turned + b.turned);
 }
 
 /// Returns the lanes in which two bodies may touch according to the last distance query. Sets
-/// `margin` to their `Reach`.
+/// `margin` to `Reach` of the bodies.
 template <class W>
 MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h,
                           W since_last, W& margin) noexcept {
@@ -178,8 +178,8 @@ MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& wor
   return s.clearance[pair] < margin;
 }
 
-/// Resets the clearances of a lane after its bodies moved other than by their velocities, so that
-/// the next step computes their distances again.
+/// Resets the clearances of a lane after its bodies moved other than with their velocities, so that
+/// the next step computes the distances again.
 template <class W>
 void LookAgain(const View& m, const Rows<W>& s, int lane) noexcept {
   for (int pair = 0; pair < m.body_pair_count; ++pair) s.clearance[pair].Set(lane, 0.0);

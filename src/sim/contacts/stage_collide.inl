@@ -1,10 +1,10 @@
-/// Stage: collision detection, with the world and between bodies, at the middle of the step
+/// Stage: collision detection between bodies and with the world, at the middle of the step
 /// (docs/theory/contact.md, section 7).
 ///
-/// Points against planes are tested in all lanes at once. All other pairs pass a broad phase first:
-/// a pair of bodies is tested only when the motion since the last distance query may have used up
-/// its clearance, a pair of shapes only when their bounding spheres meet. The narrow phase then
-/// runs in each lane separately, in scalar code (shape_pairs.inl).
+/// Points on planes are tested in all lanes at once. Other pairs first pass a broad phase. A pair
+/// of bodies is tested only if the motion since the last distance query may have used up its
+/// clearance, a pair of shapes only if their bounding spheres overlap. The narrow phase then runs
+/// in scalar code for each lane (shape_pairs.inl).
 #pragma once
 
 #include "sim/bodies/motion.inl"
@@ -18,8 +18,8 @@
 
 namespace taut::sim {
 
-/// Computes bounds of the displacement of any point of each body by rotation, in this step and
-/// since the middle of the previous step.
+/// Computes upper bounds of the displacement of any body point by rotation, in this step and since
+/// the middle of the previous step.
 template <class W>
 void BoundTurns(const View& m, Scratch<W>& work, W h, W since_last) noexcept {
   for (int body = 0; body <= m.body_count; ++body) {
@@ -105,7 +105,7 @@ W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return least;
 }
 
-/// Finds the contacts of a pair in all lanes in which the bounding spheres meet.
+/// Finds the contacts of a pair in all lanes with overlapping bounding spheres.
 template <class W>
 void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                    const ShapePairTable& pair, W margin, W center_distance2, double step_s,
@@ -120,7 +120,7 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   }
 }
 
-/// Returns whether two bodies may touch in some lane; computes how far each may reach.
+/// Returns whether two bodies may touch in some lane, and computes how far they may approach.
 template <class W>
 bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h, W since_last,
               W& margin) noexcept {
@@ -163,7 +163,7 @@ void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
 /// Stage: collide.
 ///   reads   pos, bodies[]     writes  contacts[], touches[] (geometry and materials), clearance
 ///   order   keys rising, in each body's slots and in each lane's list
-/// Returns a bit for each lane that had more contacts than room.
+/// Returns a bit for each lane with more contacts than room.
 template <class W>
 uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
                       double step_s, W since_last) noexcept {
@@ -179,7 +179,7 @@ uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W
     for (; is_mine() && !m.body_pairs[pair].on_ground; ++pair) {
       CollideBodies(m, s, g, work, pair, step_s, since_last, &slots, &overflow);
     }
-    if (const int first = pair; is_mine()) {  // ground comes last
+    if (const int first = pair; is_mine()) {  // surfaces are last
       while (is_mine()) ++pair;
       CollideGround(m, s, g, work, first, pair, step_s, since_last, &slots, &overflow);
     }

@@ -1,4 +1,4 @@
-/// Body frames during the compilation of a model: pose of each principal frame in W.
+/// Pose of the principal frame of each body in W, during the compilation of a model.
 #pragma once
 
 #include <cmath>

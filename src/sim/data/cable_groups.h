@@ -1,30 +1,30 @@
-/// Groups of cables that are implicit in tension and direction (docs/theory/cables.md, section 3):
-/// all cables of a group of bodies connected by cables, if one of them is stiff at this step. The
-/// selection depends on the model, its parameters and the step, never on the state.
+/// Groups of cables that are implicit in tension and direction (docs/theory/cables.md, section 3).
+/// A group contains all cables of bodies that cables connect. It is implicit if one of its cables
+/// is stiff at this step. The selection depends on the model, its parameters and the step, never on
+/// the state.
 #pragma once
 
 #include "sim/data/view.h"
 
 namespace taut::sim {
 
-/// Limit of explicit springs: h^2 K / m, summed over the cables that a cable is coupled to (the
-/// explicit scheme is stable below 4).
+/// Largest h^2 K / m of explicit springs, where K sums over coupled cables. The explicit scheme is
+/// stable below 4.
 inline constexpr double kSoftSpring = 0.1;
-/// Threshold of (w h)^2 above which a damped stiff cable gets the second stage.
+/// Value of (w h)^2 above which a damped stiff cable gets the second stage.
 inline constexpr double kUnresolvedSpring = 4.0;
-/// Largest number of bodies of a group; its matrix always fits (LaneMemory::kFullBodies in
-/// memory.h).
+/// Maximum number of bodies of a group, so that its matrix always fits in memory
+/// (LaneMemory::kFullBodies in memory.h).
 inline constexpr int kMostInGroup = 128;
 
 enum GroupKind : uint8_t {
   kGroupStiff = 1,   ///< One of its cables is stiff.
   kGroupOther = 2,   ///< It has cables or bodies that the scheme does not support.
-  kGroupDamped = 4,  ///< A stiff cable that the step does not resolve has a damper.
+  kGroupDamped = 4,  ///< It has a damped stiff cable with vibrations too fast for the step.
   kGroupJoints = 8,  ///< It has joints.
 };
 
-/// Returns whether the scheme supports a cable: straight between points of bodies, no
-/// direct-current motor.
+/// Returns whether the scheme supports a cable: straight between body points, without a DC motor.
 TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   if (cable.wheel_count > 0 || cable.touch >= 0 || cable.span_count > 0) return false;
   if (cable.motor >= 0) return false;
@@ -34,7 +34,7 @@ TAUT_INLINE bool IsStraight(const View& m, const CableTable& cable) noexcept {
   return true;
 }
 
-/// Returns whether the scheme supports a joint: it only holds a point, or a distance, of bodies
+/// Returns whether the scheme supports a joint: it only constrains a point or a distance of bodies
 /// that are not kinematic (implicit_joints.inl).
 TAUT_INLINE bool OnlyHolds(const View& m, const JointTable& j) noexcept {
   if (j.a_is_moved || j.b_is_moved) return false;
@@ -46,18 +46,20 @@ TAUT_INLINE bool OnlyHolds(const View& m, const JointTable& j) noexcept {
 
 /// Groups of a world. Each array has one element per body.
 struct CableGroups {
-  int *group, *size;  ///< Lowest body of the group; number of its bodies (stored at the lowest);
-  uint8_t* kind;      ///< bits of GroupKind.
+  int *group, *size;  ///< Lowest body of the group; number of its bodies, stored at this body.
+  uint8_t* kind;      ///< Bits of GroupKind, stored at the lowest body.
 
   /// Returns whether the cables of a body are implicit in tension and direction.
   TAUT_INLINE bool IsImplicit(int body) const noexcept {
     return (kind[group[body]] & (kGroupStiff | kGroupOther)) == kGroupStiff;
   }
-  /// Returns whether one of its unresolved stiff cables has a damper.
+  /// Returns whether a damper acts on a stiff cable of the group with vibrations too fast for the
+  /// step.
   TAUT_INLINE bool HasDamper(int body) const noexcept {
     return (kind[group[body]] & kGroupDamped) != 0;
   }
-  /// With joints there is no second stage: it would extrapolate the bodies away from each other.
+  /// Groups with joints have no second stage, because it would extrapolate the bodies away from
+  /// each other.
   TAUT_INLINE bool HasSecondStage(int body) const noexcept {
     return (kind[group[body]] & (kGroupDamped | kGroupJoints)) == kGroupDamped;
   }
@@ -72,8 +74,8 @@ TAUT_INLINE void ForEachMoved(const View& m, const CableTable& cable, const Move
   }
 }
 
-/// Finds the groups. `moves(body)`: whether impulses move it; `stiffness(cable)`: K of (7) [1/s^2];
-/// `damps(cable)`: whether it has a damper.
+/// Finds the groups. `moves(body)`: whether impulses move a body; `stiffness(cable)`: K of eq. 7
+/// [1/s^2]; `damps(cable)`: whether a cable has a damper.
 template <class Moves, class Stiffness, class Damps>
 TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
                             const Stiffness& stiffness, const Damps& damps,
@@ -121,7 +123,7 @@ TAUT_INLINE void FindGroups(const View& m, double step_s, const Moves& moves,
     if (K > kSoftSpring / (step_s * step_s)) kind |= kGroupStiff;
     if (K > kUnresolvedSpring / (step_s * step_s) && damps(c)) kind |= kGroupDamped;
     if (m.cables[c].touch >= 0) {
-      // The cable may act on any of its rods later.
+      // The cable may touch any of its rods later.
       const TouchTable& touch = m.touches[m.cables[c].touch];
       for (int i = 0; i < touch.rod_count; ++i) {
         mark(m.touch_rods[touch.first_rod + i].body, kGroupOther);

@@ -1,9 +1,9 @@
 /// Contacts during a step, and their memory for the next one: key, force and slip, for warm starts
 /// (docs/theory/contact.md, section 7).
 ///
-/// A contact of a body with static geometry occupies one of the body's slots: slot k of a lane is
-/// the lane's k-th contact of the body, independent of the other lanes. Contacts of two moving
-/// bodies form a separate list for each lane.
+/// A contact of a body with static geometry occupies a slot of the body. In each lane, slot k
+/// contains the k-th contact of the body, independent of other lanes. Contacts between moving
+/// bodies form a separate list per lane.
 #pragma once
 
 #include "sim/constraint/contact_point.h"
@@ -14,24 +14,24 @@ namespace taut::sim {
 
 template <class Num, int kLinks>
 struct Contact : ContactPoint<Num, kLinks> {
-  Num key;     ///< Key of a contact (pair and feature): finds its memory in the next step.
-  Num frame;   ///< Contacts with equal numbers have the same directions.
-  Num gap;     ///< At the middle of the step [m].
-  Num deep;    ///< Depth that remains for position projection (contact.md, eq. 7), < 0 [m]; or 0.
-  Num lands;   ///< 1 if it closes faster than this step's forces explain.
-  Num radius;  ///< From the shape's skeleton to its surface [m].
-  bool directed;        ///< In some lane, tangent lengths differ from 1 (friction.inl).
-  bool upright;         ///< Its directions are z, x and y, in all lanes.
+  Num key;    ///< Key of the contact (pair and feature); identifies its memory in the next step.
+  Num frame;  ///< Contacts with equal numbers have equal directions.
+  Num gap;    ///< At the middle of the step [m].
+  Num deep;  ///< Penetration depth left for position projection (contact.md, eq. 7), < 0 [m]; or 0.
+  Num lands;            ///< 1 if the contact closes faster than the forces of this step explain.
+  Num radius;           ///< Distance from the skeleton of the shape to its surface [m].
+  bool directed;        ///< In some lane, tangents have other lengths than 1 (friction.inl).
+  bool upright;         ///< The directions are z, x and y in all lanes.
   V3<Num> arm[kLinks];  ///< From the center of mass [m].
   Num static_friction, kinetic_friction;
-  Num patch;  ///< Its patch (contact manifold) while biases are fitted.
+  Num patch;  ///< Patch (contact manifold) during the fit of biases.
   Num slip;   ///< 1 if it slides, 0 if it sticks.
 };
 
-/// Data of a contact that the next step uses: warm start of its force, and whether it slid.
+/// Data of a contact for the next step: force for the warm start, and whether it slid.
 template <class Num>
 struct ContactMemory {
-  V3<Num> force;  ///< [N]; 0 if there was none.
+  V3<Num> force;  ///< [N]; 0 without contact force.
   Num slip;
 
   static ContactMemory None() noexcept {

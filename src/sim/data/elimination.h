@@ -1,18 +1,19 @@
-/// Minimum degree elimination order of bodies in a sparse linear system, with fill-in. Scalar code
-/// without the standard library, the same for every instruction set.
+/// Elimination order of bodies by minimum degree in a sparse linear system, with fill-in. Scalar
+/// code without the standard library, shared by all instruction sets.
 #pragma once
 
 #include <stdint.h>
 
 namespace taut::sim {
 
-/// Pattern of the nonzero 6x6 blocks of a matrix over bodies, fill-in included. Bodies are numbered
-/// in the order of elimination.
+/// Pattern of the nonzero 6x6 blocks of a matrix over bodies, including fill-in. Bodies are
+/// numbered in elimination order.
 struct BlockPattern {
   int* slot;         ///< [i * count + j]: number of block (i, j), or -1.
-  int* below;        ///< [first_below[k] ...]: rows under the diagonal of column k, ascending.
+  int* below;        ///< [first_below[k] ...]: rows below the diagonal in column k, ascending.
   int* first_below;  ///< count + 1 elements.
-  int count, lower_count, block_count;  ///< Bodies; blocks of the lower triangle, which come first.
+  /// Bodies; blocks of the lower triangle, which are first; all blocks.
+  int count, lower_count, block_count;
 };
 
 /// Adjacency matrix of bodies that interact: one bit per pair, `words` words per body.
@@ -26,9 +27,9 @@ struct BodyGraph {
   void Join(int i, int j) noexcept;
 };
 
-/// Orders bodies by minimum degree (ties: lowest number first). Fills `order` (the k-th body to
-/// eliminate), `place` (its inverse) and `pattern`; overwrites the graph. Returns false if there
-/// would be more blocks than `block_capacity`.
+/// Orders bodies by minimum degree (ties: smallest number first). Sets `order` (k-th body to
+/// eliminate), `place` (its inverse) and `pattern`; overwrites the graph. Returns false if more
+/// than `block_capacity` blocks would be needed.
 bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
                BlockPattern& pattern) noexcept;
 

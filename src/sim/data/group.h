@@ -20,32 +20,34 @@ struct LaneStatus {
 /// Key of an empty slot or memory. Other keys: see Tables.
 inline constexpr double kNoKey = -1.0;
 inline constexpr WrapPointNumbers<double> kNoWrapPoint{kNoKey, 0, 0, 0, 0, 0, {}, {}};
-/// Slip state (1: slid, 0: stuck) of a contact that did not press.
+/// Slip state (1: slid, 0: stuck) of a contact without force.
 inline constexpr double kSlipUnknown = -1.0;
 
-/// N worlds. `rows` is laid out by `Layout`: row i of lane j is rows[i * lanes + j].
+/// Worlds of a group. `Layout` defines `rows`: row i of lane j is rows[i * lanes + j].
 struct Group {
   int lanes = 1;
   int first_world = 0;
   double* rows = nullptr;
-  int* slots_used = nullptr;    ///< Per body: number of slots that some lane used in the last step.
-  int touches_used = 0;         ///< Length of the longest lane's list of touches in the last step.
-  int* forced_nodes = nullptr;  ///< Nodes that ever had a force, ascending.
+  int* slots_used = nullptr;  ///< Per body: number of slots used in any lane in the last step.
+  int touches_used = 0;       ///< Length of the longest list of touches of a lane in the last step.
+  int* forced_nodes = nullptr;  ///< Nodes that ever had an external force, ascending.
   int forced_count = 0;
   NearParts* kept =
-      nullptr;          ///< Cache of pair `BodyPairTable::kept` in lane j: [kept * lanes + j].
-  bool sensed = false;  ///< The kSensed rows belong to the current state. Const readers share it.
+      /// Cache of near parts for pair `BodyPairTable::kept` in lane j: [kept * lanes + j].
+      nullptr;
+  bool sensed = false;           ///< The kSensed rows are up to date. Shared by const readers.
   LaneStatus* status = nullptr;  ///< Per lane.
 };
 
 struct StepSettings {
-  int max_linear_solves = 1000;  ///< Per island and step.
+  int max_linear_solves = 1000;  ///< Maximum per island and step.
   double tolerance_m_per_s = 1e-10;
-  int substeps = 1;       ///< Equal parts into which a step is divided.
-  int coarse_cable = -1;  ///< Cable for which even the parts are too long (kStatusStepTooLong).
+  int substeps = 1;       ///< Number of equal substeps of a step.
+  int coarse_cable = -1;  ///< Cable for which even the substeps are too long (kStatusStepTooLong).
 };
 
-/// Step functions of one instruction set. Scratch is memory of `scratch_bytes`, aligned to 64.
+/// Step functions of one instruction set. `scratch`: memory of `scratch_bytes` bytes, aligned to
+/// 64.
 struct Kernel {
   int lanes;
   size_t (*scratch_bytes)(const View&);
@@ -54,7 +56,7 @@ struct Kernel {
   void (*sense)(const View&, const Layout&, Group&, void* scratch);
 };
 
-// Kernels that the build contains (cmake/instruction_sets.cmake): TAUT_HAS_AVX2 etc.
+// Kernels in this build (cmake/instruction_sets.cmake): TAUT_HAS_AVX2 etc.
 extern const Kernel kKernelScalar;
 extern const Kernel kKernelNeon;
 extern const Kernel kKernelSimd128;

@@ -1,11 +1,11 @@
-/// Island: bodies coupled by constraints, as one problem of the solver, with the memory that the
-/// solver's stages share (docs/theory/contact.md, section 5 and eq. 11).
+/// Island: bodies coupled by constraints, solved as one problem, with memory shared by the stages
+/// of the solver (docs/theory/contact.md, section 5 and eq. 11).
 ///
 ///   v = v_free + M^-1 J^T l,   u = J v,   every constraint's law between its u and its l
 ///
-/// An unknown is a body, a point mass or a rotor. Unknowns that are solved for are numbered in the
-/// order of elimination; prescribed ones, whose velocity is given, come last. All constraints of a
-/// kind are in one pool; their rows are numbered consecutively, pool after pool.
+/// An unknown is a body, a point mass or a rotor. Unknowns to solve for are numbered in elimination
+/// order; unknowns with prescribed velocities are last. All constraints of a kind are in one pool;
+/// their rows are numbered consecutively, pool after pool.
 #pragma once
 
 #include "sim/constraint/cable_chain.h"
@@ -17,20 +17,21 @@ namespace taut::sim {
 
 using simd::S3;
 
-/// Inconsistent contacts: largest change of a bias that relaxes them [m/s].
+/// Largest change of a bias that relaxes inconsistent contacts [m/s].
 inline constexpr double kDisagreementMPerS = 1e-6;
 
-inline constexpr int kDofs = 6;  ///< Velocities of a body: v, w; the largest number of an unknown.
+/// Largest number of velocities of an unknown; a body has v and w.
+inline constexpr int kDofs = 6;
 
-/// Convergence targets [m/s]: a solve must reach `tolerance`; it continues to `goal` while a step
-/// at least halves the residual, because remaining errors accumulate over steps.
+/// Convergence targets [m/s]. A solve must reach `tolerance`. While each step at least halves the
+/// residual, it continues to `goal`, because remaining errors accumulate over steps.
 struct Target {
   static constexpr double kGoal = 0.01, kPays = 0.5;
   double tolerance;
   double goal() const noexcept { return kGoal * tolerance; }
 };
 
-/// Work counters and limits of an island's solve.
+/// Work counters and limits for the solve of an island.
 struct SolverWork {
   int linear_solves = 0, limit = 0;
   double relaxation = 0;  ///< Largest relaxation of inconsistent biases [m/s].
@@ -41,24 +42,25 @@ inline bool Stays(double now, double before, double bound) noexcept {
   return now - before < bound && before - now < bound;
 }
 
-/// Body of an island, or a smaller unknown. All are stored with six velocities (v, w); entries of
-/// it and of its links beyond its size are zero.
+/// Body of an island, or a smaller unknown. All are stored with six velocities (v, w). Entries
+/// beyond the size of the unknown are zero, also in its links.
 ///
 ///   size 6: a body
 ///        3: a point mass: v, mass; no inertia
-///        1: a rotor: v.x is its spin, mass its moment of inertia; lin.x of a link its lever
-/// Links to a prescribed unknown have no inverse mass and no turn: no impulse moves it.
+/// 1: a rotor: v.x is its angular velocity, mass its moment of inertia, lin.x of a link its lever
+/// arm
+/// Links to a prescribed unknown have zero inverse mass and `turn`, because no impulse moves it.
 template <class Num>
 struct Unknown {
-  int body;          ///< Number in the world.
+  int body;          ///< Index in the world.
   int size = kDofs;  ///< 6, 3 or 1 velocities.
   Num mass, inv_mass;
   S3<Num> inertia, inv_inertia;  ///< In W.
-  Twist<Num> free;               ///< Velocities without the island's constraints,
-  Twist<Num> before;             ///< and at the start of the step.
+  Twist<Num> free;               ///< Velocities without the constraints of the island.
+  Twist<Num> before;             ///< Velocities at the start of the step.
 };
 
-/// All constraints of one kind, each with the current branch of its law.
+/// All constraints of one kind, with the current branches of their laws.
 template <class K>
 struct Pool {
   Row<K> items{nullptr, 0};
@@ -70,7 +72,7 @@ template <class... K>
 struct Pools : Pool<K>... {
   static_assert((ConstraintLaw<K> && ...));
 
-  /// Calls f(law, branch, first row, first cell of its matrix, rows x rows) for each constraint.
+  /// Calls f(law, branch, first row, first entry of its rows x rows matrix) for each constraint.
   template <class F>
   TAUT_INLINE void ForEach(F&& f) const noexcept {
     int row = 0, cell = 0;
@@ -111,18 +113,18 @@ struct Named<T&> {
 template <class T>
 using LawOf = typename Named<T>::Type;
 
-/// Data of impacts, per row: velocities before the step, and the solution without rebounds.
+/// Impact data per row: velocities before the step, and the solution without rebounds.
 template <class Num>
 struct ImpactRows {
   Row<Num> before, u, l;
 };
 
-/// Vectors and matrices of the stages of an island's solve.
+/// Vectors and matrices for the stages of an island's solve.
 template <class Num>
 struct IslandMemory {
   Row<Num> v, rhs, direction, trial_v;             ///< 6 per unknown.
   Row<Num> l, u, best, center, projected, du, u2;  ///< 1 per row.
-  Row<Num> g, f;                                   ///< rows^2, and rows, per constraint.
+  Row<Num> g, f;                                   ///< rows^2 and rows per constraint.
   Row<Num> blocks;                                 ///< 36 per block.
   ImpactRows<Num> impacts;
 };
@@ -130,12 +132,12 @@ struct IslandMemory {
 template <class Num, class P>
 struct Island {
   Row<Unknown<Num>> bodies;
-  int body_count;        ///< Includes prescribed unknowns, numbered from pattern.count on.
-  BlockPattern pattern;  ///< Of the unknowns that are not prescribed.
+  int body_count;        ///< Includes prescribed unknowns, numbered from pattern.count.
+  BlockPattern pattern;  ///< Pattern of the unknowns that are not prescribed.
   P pools;
   IslandMemory<Num> m;
   int rows;
-  bool has_matrix;  ///< There is memory for linear systems.
+  bool has_matrix;  ///< There is memory for the linear systems.
 
   /// v <- v_free + M^-1 J^T l
   void VelocitiesOf(const Num* l, Num* v) const noexcept {
@@ -187,13 +189,14 @@ struct Island {
     });
     return worst;
   }
-  /// Continues from the impulses `from`, made admissible. Returns their residual [m/s].
+  /// Continues from the impulses `from`, clamped to admissible values. Returns their residual
+  /// [m/s].
   double Return(const Num* from) noexcept {
     for (int i = 0; i < rows; ++i) m.l[i] = from[i];
     Clamp(m.l);
     return Judge();
   }
-  /// Computes the velocities of m.l, and returns the residual [m/s].
+  /// Computes the velocities under the impulses m.l. Returns the residual [m/s].
   double Judge() noexcept {
     VelocitiesOf(m.l, m.v);
     Measure(m.v, m.u);

@@ -1,4 +1,4 @@
-/// Conversion of one lane of a SIMD number to a one-lane number (simd::Lane), and back.
+/// Conversion between one lane of a SIMD number and a one-lane number (simd::Lane).
 #pragma once
 
 #include "simd/vec3.h"
@@ -14,7 +14,7 @@ struct OneLane {
   static L Of(W x, int lane) noexcept { return L::Splat(x[lane]); }
   static void Set(W& to, L from, int lane) noexcept { to.Set(lane, from[0]); }
 };
-/// One-lane numbers are kept unchanged, with derivatives (simd/dual.h).
+/// One-lane numbers stay unchanged, including derivatives (simd/dual.h).
 template <class L>
 struct OneLane<L, L> {
   static L Of(L x, int) noexcept { return x; }

@@ -1,19 +1,19 @@
-/// NaN poisoning of memory that a step must not read before it writes it, in builds without NDEBUG:
-/// a stale value shows as a world that is not finite or as a changed golden hash.
+/// NaN poisoning of memory that a step must write before it reads it, in builds without NDEBUG. Use
+/// of a stale value then makes a world not finite or changes a golden hash.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Fills scratch, contact rows that the last step did not use, and the rows of sensing with NaN;
-/// called before a step and before sensing. Lanes behind the last world are worlds, too, and keep
+/// Fills scratch memory, contact rows unused in the last step, and reading rows with NaN, before a
+/// step and before an update of readings. Lanes after the last world contain worlds, too, and keep
 /// their values. Returns whether it has filled them.
 template <class W>
 bool Poison([[maybe_unused]] const View& m, [[maybe_unused]] const Rows<W>& s,
             [[maybe_unused]] const Group& g, [[maybe_unused]] Scratch<W>& work) noexcept {
 #ifndef NDEBUG
-  work.Fill(m, 0xff);  // a NaN as double, -1 as int
+  work.Fill(m, 0xff);  // NaN as double, -1 as int
   const W nan = W::Splat(__builtin_nan(""));
   const auto fill = [nan](void* row, int first, int end) {
     for (int i = first; i < end; ++i) static_cast<W*>(row)[i] = nan;

@@ -1,7 +1,7 @@
-/// Arena allocator for the memory of a step, with bounds-checked pieces.
+/// Arena allocator for the memory of a step, with bounds-checked arrays.
 ///
-/// Index checks: builds with assertions compare each index with the piece's count, and
-/// AddressSanitizer builds have a red zone behind every piece. Other builds use a plain pointer.
+/// Index checks: builds with assertions compare each index with the size of the array, and
+/// AddressSanitizer builds have a red zone after every array. Other builds use a plain pointer.
 #pragma once
 
 #include <stddef.h>
@@ -25,7 +25,7 @@ extern "C" void __asan_unpoison_memory_region(const volatile void* first, size_t
 
 namespace taut::sim {
 
-/// Contiguous elements of one type: a pointer, with its end in builds with assertions.
+/// Array of one type: a pointer; in builds with assertions also its end.
 template <class T>
 class Row {
  public:
@@ -37,7 +37,7 @@ class Row {
   }
   template <ptrdiff_t N>
   TAUT_INLINE Row(T (&all)[N]) noexcept : Row(all, N) {}
-  // A template of the integer type: with one type, pointer indexing would be ambiguous.
+  // A template over the integer type, because with one type, pointer indexing would be ambiguous.
   template <class Index>
   TAUT_INLINE T& operator[](Index i) const noexcept {
 #ifdef TAUT_ASSERTS
@@ -45,7 +45,7 @@ class Row {
 #endif
     return first_[i];
   }
-  /// Returns the rest from element `i` on.
+  /// Returns the rest of the array from element `i`.
   TAUT_INLINE Row From(ptrdiff_t i) const noexcept {
 #ifdef TAUT_ASSERTS
     TAUT_ASSERT(0 <= i && i <= count_);
@@ -68,8 +68,8 @@ class Row {
 #endif
 };
 
-/// Allocates pieces aligned to 64 bytes. Without memory it only counts sizes, since arithmetic on a
-/// null pointer is undefined.
+/// Allocates arrays aligned to 64 bytes. Without memory, it only adds up sizes, because arithmetic
+/// on a null pointer is undefined.
 struct Room {
   char* memory;
   size_t used;
@@ -90,8 +90,8 @@ struct Room {
 #endif
     return {first, static_cast<ptrdiff_t>(count)};
   }
-  /// Overwrites all allocated pieces; they must be allocated again, which is free except under
-  /// AddressSanitizer.
+  /// Overwrites all allocated arrays. They must be allocated again, which costs nothing except
+  /// under AddressSanitizer.
   void Fill(unsigned char byte) const noexcept {
 #ifdef TAUT_ADDRESS_SANITIZER
     __asan_unpoison_memory_region(memory, used);
