@@ -1,10 +1,10 @@
 /// Dual numbers for forward-mode automatic differentiation: a number and its derivative with
-/// respect to one variable, in the place of a wide number. A step compiled for it computes a single
-/// world's step and its derivative with respect to the start (sum, product and chain rule for every
-/// operation).
+/// respect to one variable, in place of a SIMD number. A step compiled for it computes the step of
+/// a single world and its derivative with respect to the start, by the chain rule for every
+/// operation.
 ///
-/// Comparisons and selections depend only on the number: the derivative belongs to the branch
-/// taken. In memory a Dual is two doubles, like a number of two lanes.
+/// Comparisons and selections depend only on the number, so the derivative belongs to the chosen
+/// branch. In memory, a Dual is two doubles, like a SIMD number with two lanes.
 #pragma once
 
 #include "simd/wide_angle.h"
@@ -31,8 +31,8 @@ struct LaneOf<Dual> {
   using Type = Dual;
 };
 
-/// Returns the product, but 0 for a zero derivative even if the factor is infinite: guards like
-/// 1e300 may overflow, and the guarded value is not selected.
+/// Returns the product, but 0 for a zero derivative even if the factor is infinite. Guards such as
+/// 1e300 may overflow, but the guarded values are not selected.
 TAUT_INLINE double DualPart(double derivative, double factor) noexcept {
   return derivative == 0.0 ? 0.0 : derivative * factor;
 }
@@ -58,12 +58,12 @@ TAUT_INLINE bool Any(DualMask m) noexcept { return m.v; }
 TAUT_INLINE Dual Max(Dual a, Dual b) noexcept { return a.v > b.v ? a : b; }
 TAUT_INLINE Dual Min(Dual a, Dual b) noexcept { return a.v < b.v ? a : b; }
 TAUT_INLINE Dual Abs(Dual a) noexcept { return Max(a, -a); }
-/// The derivative at 0, where none exists, is set to 0: such roots are not selected.
+/// At 0, the derivative does not exist and is set to 0. Such roots are not selected.
 TAUT_INLINE Dual Sqrt(Dual a) noexcept {
   const double root = __builtin_sqrt(a.v);
   return {root, a.v > 0.0 ? DualPart(a.d, 0.5 / root) : 0.0};
 }
-/// Constant between its jumps: derivative 0.
+/// Constant between its jumps, so the derivative is 0.
 TAUT_INLINE Dual Round(Dual a) noexcept { return {taut::Round(a.v), 0.0}; }
 TAUT_INLINE Dual& operator+=(Dual& a, Dual b) noexcept { return a = a + b; }
 TAUT_INLINE Dual& operator-=(Dual& a, Dual b) noexcept { return a = a - b; }

@@ -1,4 +1,4 @@
-/// 3-vectors, quaternions and 3x3 matrices of wide numbers (wide.h).
+/// 3-vectors, quaternions and 3x3 matrices of SIMD numbers (wide.h).
 #pragma once
 
 #include "simd/wide.h"
@@ -50,7 +50,7 @@ template <class W, class M>
 TAUT_INLINE V3<W> Select3(M m, const V3<W>& yes, const V3<W>& no) noexcept {
   return {Select(m, yes.x, no.x), Select(m, yes.y, no.y), Select(m, yes.z, no.z)};
 }
-/// Returns |x| + |y| + |z|: an upper bound of the Euclidean norm, without a square root.
+/// Returns |x| + |y| + |z|, an upper bound of the Euclidean norm without a square root.
 template <class W>
 TAUT_INLINE W Norm1(const V3<W>& a) noexcept {
   return Abs(a.x) + Abs(a.y) + Abs(a.z);

@@ -1,18 +1,18 @@
-/// SIMD vectors of N doubles, one lane per world. Lane i never reads lane j, so a batch of N gives
-/// bit for bit the results of N single worlds (docs/determinism.md).
+/// SIMD vectors of N doubles, one lane per world. Lane i never reads lane j, so a batch of N worlds
+/// gives the same bits as N single worlds (docs/determinism.md).
 ///
-/// The storage is a compiler vector and not an array: with arrays, g++ 12 leaves most of the step
-/// scalar. There are no shuffles, no horizontal sums and no fused multiply-adds. Every width is
-/// used in exactly one instruction set, so that no template instance is compiled twice with
-/// different flags. Intrinsics occur only in this folder, in the headers wide_*.h: where the
-/// compiler does not find an instruction.
+/// The storage is a compiler vector, because with arrays g++ 12 leaves most of the step scalar.
+/// There are no shuffles, horizontal sums or fused multiply-adds. Every width is used in exactly
+/// one instruction set, so that no template instance is compiled twice with different flags.
+/// Intrinsics occur only in wide_*.h of this folder, for instructions that the compiler does not
+/// find.
 #pragma once
 
 #include <float.h>
 
 #include "math/scalar.h"
 
-// Excess precision between operations, as on the x87, would change results.
+// Excess precision between operations, as with x87, would change results.
 static_assert(FLT_EVAL_METHOD == 0, "taut needs arithmetic that rounds to double each time");
 
 namespace taut::simd {
@@ -22,7 +22,7 @@ struct VectorOf {
   typedef T Type __attribute__((vector_size(sizeof(T) * N)));
 };
 
-/// `Isa` only distinguishes types that are compiled for several instruction sets: see Lane.
+/// `Isa` only distinguishes types compiled for several instruction sets; see Lane.
 template <int N, class Isa = void>
 struct Wide {
   static constexpr int kLanes = N;
@@ -93,7 +93,7 @@ TAUT_INLINE Wide<N, I> Select(Mask<N, I> m, Wide<N, I> yes, Wide<N, I> no) noexc
   return {m.v ? yes.v : no.v};
 }
 
-// For all widths and machines; wide_*.h overload them with single instructions.
+// For all widths and machines; wide_*.h overloads them with single instructions.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Sqrt(Wide<N, I> a) noexcept {
   for (int i = 0; i < N; ++i) a.v[i] = __builtin_sqrt(a.v[i]);
@@ -105,13 +105,13 @@ TAUT_INLINE bool Any(Mask<N, I> m) noexcept {
   for (int i = 0; i < N; ++i) any |= m.v[i];
   return any != 0;
 }
-/// Returns the greater of two; `b` if either is NaN or both are zero: a > b ? a : b, like x86-64's
-/// instruction. AArch64's FMAX differs in both cases, so only a selection may implement it.
+/// Returns the maximum of two numbers; `b` if either is NaN or both are zero: a > b ? a : b, like
+/// the x86-64 instruction. AArch64's FMAX differs in both cases, so it must not be used.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Max(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v > b.v ? a.v : b.v};
 }
-/// Returns the smaller of two; `b` if either is NaN or both are zero.
+/// Returns the minimum of two numbers; `b` if either is NaN or both are zero.
 template <int N, class I>
 TAUT_INLINE Wide<N, I> Min(Wide<N, I> a, Wide<N, I> b) noexcept {
   return {a.v < b.v ? a.v : b.v};
@@ -166,8 +166,8 @@ TAUT_INLINE bool Any(Mask<1, I> m) noexcept {
   return m.v;
 }
 
-/// A single lane of W, for code where lanes have too little in common to run together. Tagged with
-/// W, so that each instruction set has a separate type; W if W is one lane.
+/// One lane of W, for code in which lanes have too little in common to run together. Tagged with W,
+/// so that each instruction set has its own type. If W has one lane, it is W itself.
 template <class W>
 struct LaneOf {
   using Type = Wide<1, W>;

@@ -1,4 +1,4 @@
-/// Sine and cosine of wide numbers.
+/// Sine and cosine of SIMD numbers.
 #pragma once
 
 #include "math/angle.h"
@@ -10,8 +10,8 @@ using taut::Atan2;
 using taut::kPi;
 using taut::Round;
 
-/// Computes sine and cosine of 2 pi `turns`, for |turns| < 2^48, to about 2 units in the last place
-/// of 1; only with + - *.
+/// Computes sine and cosine of 2 pi `turns` for |turns| < 2^48, with an error of about 2 units in
+/// the last place of 1. Uses only + - *.
 template <class W>
 TAUT_INLINE void SinCosOfTurns(W turns, W& sine, W& cosine) noexcept {
   constexpr int kTerms = 8;  // (pi / 4)^17 / 17! < 1e-16

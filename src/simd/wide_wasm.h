@@ -1,6 +1,6 @@
-/// SIMD instructions that WebAssembly's compiler does not generate from wide.h; included only by
-/// wide.h. `pmax` and `pmin` are x86-64's instructions with swapped operands: pmax(x, y) = x < y ?
-/// y : x.
+/// SIMD instructions that the WebAssembly compiler does not generate from wide.h; included only by
+/// wide.h. `pmax` and `pmin` are the x86-64 instructions with swapped operands: pmax(x, y) = x < y
+/// ? y : x.
 #pragma once
 
 #include <wasm_simd128.h>

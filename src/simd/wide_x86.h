@@ -1,5 +1,5 @@
-/// SSE2, AVX2 and AVX-512 instructions that x86-64's compilers do not generate from wide.h;
-/// included only by wide.h.
+/// SSE2, AVX2 and AVX-512 instructions that x86-64 compilers do not generate from wide.h; included
+/// only by wide.h.
 #pragma once
 
 #include <immintrin.h>

@@ -1,7 +1,7 @@
 /// Capstan friction of a cable (docs/theory/cables.md, section 5). Slip points divide the cable
 /// into spans with different tensions. At a slip point with the tension ratio c = exp(mu theta):
 ///
-/// T / c <= T' <= c T;  only at equality, the cable slips toward the greater tension
+///   T / c <= T' <= c T;  only at equality, the cable slips toward the greater tension
 ///
 /// All slip points form one complementarity problem, because a solution one by one would depend on
 /// their order. The code is scalar, for one lane.

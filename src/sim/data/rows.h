@@ -50,31 +50,31 @@ struct BodyWork {
   M3<W> R;              ///< R_WP at the middle of the step.
   S3<W> inv_inertia;    ///< In W [1/(kg m^2)].
   V3<W> v, w;           ///< Current velocities [m/s], [rad/s].
-  V3<W> v0, w0;         ///< Before this step's forces.
-  V3<W> v_mid, w_mid;   ///< Means over the step, from the velocities known so far: for dampers.
-  V3<W> force, torque;  ///< Of cables, gravity and nodes [N], [N m].
-  V3<W> mom_free;       ///< Angular momentum without contacts and stiff cables.
+  V3<W> v0, w0;         ///< Velocities before the forces of this step.
+  V3<W> v_mid, w_mid;   ///< Means over the step from the latest velocities, for dampers.
+  V3<W> force, torque;  ///< Forces of cables, gravity and nodes [N], [N m].
+  V3<W> mom_free;       ///< Angular momentum without the impulses of contacts and stiff cables.
   W landed;             ///< 1 where a contact of the body landed in this step.
-  W turns;              ///< Bound of the travel of points by rotation in this step [m],
-  W turned;             ///< and since the middle of the previous step.
+  W turns;              ///< Bound of the displacement of body points by rotation in this step [m].
+  W turned;             ///< Bound of this displacement since the middle of the previous step [m].
 };
 
-/// A distinct point of a body to which cables are attached.
+/// Point of a body to which one or more cables are attached.
 template <class W>
 struct Spot {
-  V3<W> p, arm;  ///< In W; from the body's center of mass [m].
+  V3<W> p, arm;  ///< Position in W; vector from the body's center of mass [m].
 };
 
-/// An attachment while its cable's force is computed; its velocity is the expected one.
+/// Attachment during the computation of its cable's force, with its expected velocity.
 template <class W>
 using AttachmentWork = PathPoint<V3<W>>;
 
-/// Deviation of a bend from the straight line on its edge or rod (cable_across.inl).
+/// Position of a bend relative to the straight line on its edge or rod (cable_across.inl).
 template <class W>
 struct AcrossWork {
-  W aside;  ///< Pull along the axis per tension, positive along the axis [1].
-  W drift;  ///< Displacement along the axis per slip along the cable [1].
-  W far;    ///< Distance along the axis to the place where it would be straight [m].
+  W aside;  ///< Axial force per tension, positive along the axis [1].
+  W drift;  ///< Axial displacement per slip along the cable [1].
+  W far;    ///< Axial distance to the straight position [m].
   W lean;   ///< See Lean::apart [1].
 };
 
@@ -84,58 +84,61 @@ struct RodLine {
   V3<W> center, axis;
 };
 
-/// Data of a cable while the tensions of soft cables are computed. Members from `links` on: only in
+/// Data of a cable during the computation of soft tensions. Members from `links` are used only in
 /// worlds with dampers or stiff cables.
 template <class W>
 struct CableWork {
   MaskOf<W> soft;         ///< Lanes in which the cable is soft.
   W spring;               ///< Spring part of the tension [N].
-  W stretch;              ///< At the middle of the step [m].
-  Row<Link<W, 1>> links;  ///< Used: the first link_count; capacity shared by all cables.
+  W stretch;              ///< Stretch at the middle of the step [m].
+  Row<Link<W, 1>> links;  ///< The first `link_count` are used; all cables share the capacity.
   int link_count;
   W A;  ///< Inverse effective mass along the cable [1/kg].
   MaskOf<W> damped;
   W damping;  ///< [N s/m]
-  W share;    ///< Part of the error that corrects the tension (integrator.md, eq. I8).
-  W upper;    ///< Largest tension [N].
-  W tension;  ///< Latest value [N].
+  W share;    ///< Fraction of the error by which the tension is corrected (integrator.md, eq. I8).
+  W upper;    ///< Upper limit of the tension [N].
+  W tension;  ///< Latest tension [N].
 };
 
-/// A stiff cable, whose tension is solved together with the contacts.
+/// Stiff cable, solved together with the contacts.
 template <class W>
 struct StiffCable : CableRow<W> {
   int cable;
-  W across;  ///< Share of the largest stable tension, per tension [1/N] (cables.md, eq. 12).
+  W across;  ///< 1 / (largest stable tension) [1/N] (cables.md, eq. 12).
 };
 
-/// A row of a joint, with its direction in W on the joint's body b.
+/// Row of a joint. Its direction is in W, on body b of the joint.
 template <class W>
 struct HeldRow : JointRow<W> {
   int joint;
   V3<W> lin, turn;
-  W held;   ///< Stops: 1 where held, because it pressed in the previous step (joints.md, eq. 4).
-  W reach;  ///< Stops: largest approach of the bodies in a step [m].
+  /// Joint limits: 1 if the limit is closed, because it had a force in the previous step
+  /// (joints.md, eq. 4).
+  W held;
+  W reach;  ///< Joint limits: largest approach of the bodies in a step [m].
 };
 
-/// Motion of a kinematic body in this step: velocities at the start and the middle, and the end.
+/// Motion of a kinematic body in this step: velocities at the start and the middle, pose and
+/// velocity at the end.
 template <class W>
 struct MotionWork {
   V3<W> v0, w0, v_mid, w_mid;
   Motion<W> end;
 };
 
-/// Data of a motor while its cable's tension T is computed: its mean speed over the step is `mean`
-/// - `slows` T.
+/// Data of a motor during the computation of its cable's tension T. The mean speed over the step is
+/// `mean` - `slows` T.
 template <class W>
 struct MotorWork {
-  W direction;         ///< 1 winding in, -1 out, 0: friction holds it.
-  W mean, slows;       ///< [rad/s], [rad/(s N)]
-  W end, end_slows;    ///< The same for the speed at the end of the step.
-  W share;             ///< Share of the cable's law within this step (motor.md, eq. M.9).
-  W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` times the mean speed. [1], [s/rad]
-  W resistance;        ///< Of winding and driver [ohm].
+  W direction;       ///< 1: winds in; -1: unwinds; 0: friction holds the rotor.
+  W mean, slows;     ///< [rad/s], [rad/(s N)]
+  W end, end_slows;  ///< The speed at the end of the step is `end` - `end_slows` T.
+  W share;  ///< Factor on stiffness and damping of the cable within this step (motor.md, eq. M.9).
+  W duty, duty_falls;  ///< The duty is `duty` - `duty_falls` * mean speed. [1], [s/rad]
+  W resistance;        ///< Resistance of winding and driver [ohm].
   W conducts;          ///< 1, or 0 where the driver is off.
-  W length;            ///< Of its cable at the middle of the step [m].
+  W length;            ///< Length of the cable at the middle of the step [m].
 };
 
 template <class W>
@@ -143,48 +146,49 @@ struct Scratch {
   BodyWork<W>* bodies;
   Spot<W>* spots;
   AttachmentWork<W>* attachments;
-  Wheel<V3<W>>* wheels;       ///< Of one cable.
-  Row<RodLine<W>> rod_lines;  ///< Rods that one cable may touch,
-  Row<W> rod_sides;           ///< and its new side of each (cable_rods.inl).
-  Contact<W, 1>* contacts;    ///< Slots of all bodies; body b: from View::first_slot[b] on.
-  int* contact_count;         ///< Used slots, per body.
-  TouchingPair* touches;      ///< List of a lane: from lane * pair_capacity on.
+  Wheel<V3<W>>* wheels;       ///< Wheels of one cable.
+  Row<RodLine<W>> rod_lines;  ///< Rods around which one cable may wrap.
+  Row<W> rod_sides;           ///< Side of the cable on each of these rods (cable_rods.inl).
+  Contact<W, 1>* contacts;  ///< Slots of all bodies; those of body b start at View::first_slot[b].
+  int* contact_count;       ///< Number of used slots per body.
+  TouchingPair* touches;    ///< Lists of all lanes; each starts at lane * pair_capacity.
   int touch_count[W::kLanes];
-  int bends_used = 0;  ///< By the last cable that was measured (cable_bends.inl).
-  /// Bit mask of the lanes in which a cable exceeds kMostBends, and that cable.
+  int bends_used = 0;  ///< Number of bends of the last measured cable (cable_bends.inl).
+  /// Bit mask of the lanes in which a cable exceeds kMostBends; index of this cable.
   uint32_t no_room = 0;
   int crowded_cable[W::kLanes];
-  /// Bit mask of the lanes in which a turning rod carries a bend too far in a step; the cable.
+  /// Bit mask of the lanes in which a rotating rod moves a bend too far in a step; index of the
+  /// cable.
   uint32_t walked_far = 0;
   int walked_cable[W::kLanes];
   void WalkedFar(int cable, int in_lane) noexcept {
     walked_far |= 1u << in_lane;
     walked_cable[in_lane] = cable;
   }
-  V3<W>* start_spots;  ///< Spots at the start of the step [m], if start_known.
-  W* start;  ///< Rows that return to the start of the step in worlds that become non-finite.
+  V3<W>* start_spots;  ///< Attachment points at the start of the step [m], if start_known.
+  W* start;            ///< Rows at the start of the step, to restore worlds that become non-finite.
   CableWork<W>* cables;
   StiffCable<W>* stiff;
-  Row<Link<W, 1>> links;    ///< Of all cables.
-  ChainSpan<W>* spans;      ///< Of all cables with friction.
-  AcrossWork<W>* across;    ///< Of all their slip places.
-  RowLink<W>* chain_links;  ///< Links of a cable: from its first_link on,
-  int* chain_link_count;    ///< and their number; per cable.
+  Row<Link<W, 1>> links;    ///< Links of all cables.
+  ChainSpan<W>* spans;      ///< Spans of all cables with friction.
+  AcrossWork<W>* across;    ///< Data of all their slip points.
+  RowLink<W>* chain_links;  ///< Links of spans; those of a cable start at its first_link.
+  int* chain_link_count;    ///< Number of these links per cable.
   HeldRow<W>* joints;       ///< Rows of all joints.
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
-  W* supplies;        ///< Voltage under load, per supply [V].
-  uint64_t* near;     ///< One bit for each of the world's shapes, if they are in a BVH.
-  uint32_t* touched;  ///< Per point: bit mask of lanes where its shape is near ground.
-  W* unsolved;        ///< Per body: 1 in lanes left to the lane-by-lane solve.
+  W* supplies;        ///< Loaded voltage per supply [V].
+  uint64_t* near;     ///< One bit per static shape, if they are in a BVH.
+  uint32_t* touched;  ///< Per point: bit mask of lanes where its shape is near a surface.
+  W* unsolved;        ///< Per body: 1 in lanes that the lane-by-lane solver must solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   ImplicitMemory<W> implicit;
   int stiff_count = 0, link_count = 0;
   bool start_known = false;
 
-  /// Overwrites all memory that the pointers refer to.
+  /// Overwrites all memory to which the pointers refer.
   void Fill(const View& m, unsigned char byte) noexcept {
     room_.Fill(byte);
     Scratch(m, room_.memory);
@@ -229,7 +233,7 @@ struct Scratch {
     implicit.Take(m, room_);
   }
 
-  /// Returns false if the lane's list is full.
+  /// Returns false if the list of the lane is full.
   bool AddTouch(const View& m, int lane_number, int pair, const TouchPoint& point) noexcept {
     int& count = touch_count[lane_number];
     if (count == m.pair_capacity) return false;

@@ -1,4 +1,4 @@
-/// Solver memory; its size follows from the model.
+/// Solver memory. The model determines its size.
 #pragma once
 
 #include "sim/constraint/cable_chain.h"
@@ -12,26 +12,27 @@
 
 namespace taut::sim {
 
-/// All kinds of constraints of a step.
+/// All kinds of constraints in a step.
 template <class Num>
 using StepPools =
     Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>, CableChain<Num>>;
 
-/// Memory for solving one lane's islands. Systems with more blocks than fit (over 128 bodies that
-/// all interact) are left to the Gauss-Seidel sweeps.
+/// Memory to solve the islands of one lane. Systems with too many blocks (over 128 bodies that all
+/// interact) are left to Gauss-Seidel sweeps.
 template <class Num>
 struct LaneMemory {
   static constexpr int64_t kFullBodies = 128;
 
-  Row<Contact<Num, 2>> pairs;    ///< Contacts of the lane's list of touches, prepared.
-  Row<int> root, local, bodies;  ///< Per body: its island; its number there; an island's bodies.
-  Row<int> order, place;         ///< Order of elimination.
-  Row<int> source;               ///< Per constraint of an island: its index in the lane.
+  Row<Contact<Num, 2>> pairs;  ///< Prepared contacts from the list of touches of the lane.
+  /// Per body: its island, and its number in it; bodies of an island.
+  Row<int> root, local, bodies;
+  Row<int> order, place;  ///< Elimination order and its inverse.
+  Row<int> source;        ///< Per constraint of an island: its index in the lane.
   BodyGraph graph;
   int block_capacity;
   Island<Num, StepPools<Num>> island;
   Row<Link<Num, 1>> links;
-  Row<RowLink<Num>> chain_links;  ///< Links of a cable: from its first_link on.
+  Row<RowLink<Num>> chain_links;  ///< Links of spans; those of a cable start at its first_link.
   Row<ChainSpan<Num>> spans;
 
   void Take(const View& m, Room& room) noexcept {
@@ -80,16 +81,16 @@ struct LaneMemory {
   }
 };
 
-/// Memory for the system of all held joint rows (joint_system.inl).
+/// Memory for the system of all constrained joint rows (joint_system.inl).
 template <class W>
 struct JointMemory {
   Row<Unknown<W>> bodies;
   Row<JointRow<W>> rows;
-  Row<int> number;         ///< Per held row: its number in the model,
-  Row<W> G, gap, miss, l;  ///< stiffness, gap, error, impulse.
-  Row<W> rhs, change;      ///< 6 per body; rhs: also for kinematic bodies, which do not change.
-  Row<W> moved;            ///< Per body: largest displacement of its points [m],
-  Row<V3<W>> gained;       ///< and the resulting change of angular momentum.
+  Row<int> number;         ///< Per constrained row: its number in the model.
+  Row<W> G, gap, miss, l;  ///< Per constrained row: stiffness, gap, error, impulse.
+  Row<W> rhs, change;      ///< 6 per body. `rhs` includes kinematic bodies, which do not change.
+  Row<W> moved;            ///< Per body: largest displacement of its points [m].
+  Row<V3<W>> gained;       ///< Per body: change of angular momentum due to the displacement.
   Row<W> blocks;           ///< 36 per block.
 
   void Take(const View& m, Room& room) noexcept {
@@ -106,33 +107,33 @@ struct JointMemory {
   }
 };
 
-/// Memory for solving all cables and contacts of a world in lanes (world_dual.inl). Whether a world
-/// is solved this way depends only on the model, by the number of possible contacts, not on other
-/// lanes.
+/// Memory to solve all cables and contacts of a world in lanes (world_dual.inl). The number of
+/// possible contacts in the model determines whether a world is solved this way; other lanes have
+/// no effect.
 template <class W>
 struct DualMemory {
   static constexpr int kMaxRows = 96, kMaxRowsPerBody = 12;
-  /// Packed contacts, for height fields and meshes, where rods have room for many contacts but few
-  /// are active.
+  /// Packed contacts for height fields and meshes. There, rods have room for many contacts, but
+  /// only few are active.
   using Packed = ContactPoint<W, W::kLanes>;
 
-  /// A row of J that acts on a body.
+  /// Row of J that acts on a body.
   struct Column {
     int row;
     const V3<W>*lin, *ang, *turn;
   };
-  int capacity;         ///< Rows; 0: this method is not used.
-  int packed_capacity;  ///< Contacts of a world, if they are packed (packed_contacts.inl).
+  int capacity;         ///< Number of rows; 0: this method is not used.
+  int packed_capacity;  ///< Number of contacts in a world if they are packed (packed_contacts.inl).
   Row<Packed> packed;
-  Row<W> a;                 ///< Delassus operator, then its factors: upper triangle, by rows.
-  Row<W> c;                 ///< System of the contacts.
-  Row<W> u, l, r, q;        ///< Velocities, impulses; right sides, then changes.
-  Row<W> d, now;            ///< Changes and impulses of the contacts alone.
-  Row<W> diagonal, active;  ///< A and S of the cables.
+  Row<W> a;                 ///< Delassus operator, later its factors: upper triangle, by rows.
+  Row<W> c;                 ///< System matrix of the contacts.
+  Row<W> u, l, r, q;        ///< Velocities and impulses; right sides, later changes.
+  Row<W> d, now;            ///< Changes and impulses of the contacts only.
+  Row<W> diagonal, active;  ///< A and S of the linearized cable laws.
   ImpactRows<W> impacts;
   Row<Twist<W>> v;        ///< Per body.
-  Row<Column> columns;    ///< By body:
-  Row<int> first_column;  ///< first column of each body.
+  Row<Column> columns;    ///< Sorted by body.
+  Row<int> first_column;  ///< Index of the first column of each body.
 
   void Take(const View& m, Room& room) noexcept {
     const int of_bodies = kMaxRowsPerBody * m.body_count;

@@ -1,6 +1,6 @@
-/// State rows of a group of worlds: the one list of all data that it keeps, for serialization and
-/// hashes. Memory layout, access in a step, start values, the contents of snapshots and the
-/// treatment of halted worlds follow from it. Without the standard library: the step includes it.
+/// State rows of a group of worlds: the list of all data of a group, for serialization and hashes.
+/// It determines the memory layout, the access in a step, start values, contents of snapshots, and
+/// the treatment of halted worlds. No standard library, because the step includes it.
 #pragma once
 
 namespace taut::sim {
@@ -14,62 +14,63 @@ enum class Per {
   kWheel,
   kSpan,
   kSlip,
-  kTouch,     ///< Cables that touch terrain or rods.
-  kTouchRod,  ///< Pairs of such a cable and a rod that it may touch.
-  kBend,      ///< Places for their contacts with edges and rods: kMostBends per cable.
+  kTouch,     ///< Cables with wrapping around terrain or rods.
+  kTouchRod,  ///< Pairs of such a cable and a rod around which it may wrap.
+  kBend,      ///< Bends on edges and rods: kMostBends per such cable.
   kNode,
   kJoint,
   kJointRow,
   kMotion,
   kBodyPair,
-  kKept,  ///< Pairs with a cache of near parts (near_parts.h).
+  kKept,  ///< Pairs of shapes with a cache of near parts (near_parts.h).
   kContact
 };
 
-/// Purpose of a row, in the order of the rows in memory.
+/// Purpose of a row. Rows are stored in this order.
 enum class Role {
-  kState,      ///< Advances, or is a command; in snapshots and hashes.
-  kParameter,  ///< Changes only by setters; in snapshots and hashes.
-  kReading,    ///< Observed values of the last step; no step reads them. In snapshots.
+  kState,      ///< Evolves or is a command; in snapshots and hashes.
+  kParameter,  ///< Changed only by setters; in snapshots and hashes.
+  kReading,    ///< Readings of the last step, which no step uses; in snapshots.
   kMemory,     ///< Contacts of the last step; snapshots and hashes contain those with a key.
-  kDerived,    ///< Follows from the rest or is only reported; in no snapshot.
-  kSensed,     ///< Derived, and only on request (Group::sensed).
+  kDerived,    ///< Computed from other rows, or only reported; not in snapshots.
+  kSensed,     ///< Derived row that is computed on demand (Group::sensed).
 };
 
-/// Treatment of a row in a world that is not finite after a step.
+/// Treatment of a row if the world is not finite after a step.
 enum class Halted {
   kStays,     ///< Not written by the step, or only with finite values.
-  kGoesBack,  ///< Returns to the start of the step.
+  kGoesBack,  ///< Restored to its value at the start of the step.
   kZero,
-  kForgets,  ///< Becomes kNoKey: the contact memory is dropped.
+  kForgets,  ///< Set to kNoKey, which clears the contact memory.
 };
 
-/// State of a motor from step to step (dc_motor.inl).
+/// State of a motor between steps (dc_motor.inl).
 template <class Num>
 struct MotorNumbers {
-  Num speed;                  ///< Of the rotor, positive winding in [rad/s].
-  Num gap;                    ///< Rest length by the gear's angle, less the actual one [m].
+  Num speed;                  ///< Rotor speed, positive when winding in [rad/s].
+  Num gap;                    ///< Rest length from the gear angle minus actual rest length [m].
   Num winding, housing;       ///< Temperatures [C].
-  Num duty, current, supply;  ///< Of the last step: mean duty [1], current [A], voltage [V].
+  Num duty, current, supply;  ///< Of the last step: mean duty [1], mean current [A], voltage [V].
   Num from_supply, to_cable, in_winding;  ///< Energies [J].
 };
 /// Commands to a motor.
 template <class Num>
 struct MotorOrders {
   Num duty;     ///< [1]
-  Num by_duty;  ///< 1: apply that duty; 0: follow the cable's target.
+  Num by_duty;  ///< 1: use the commanded duty; 0: follow the target of the cable.
   Num on;       ///< 0: the driver is off.
 };
 
-/// Contact of a cable with an edge of the terrain or a rod (cable_bends.inl).
+/// Bend: contact of a cable with a terrain edge or rod (cable_bends.inl).
 template <class Num>
 struct WrapPointNumbers {
-  Num key;    ///< Identifies the edge or rod (cable_edges.h), or kNoKey. Bends in use come first.
-  Num body;   ///< Body number, or the number of the world.
-  Num angle;  ///< Angle of the cable about it, from point to point [rad].
-  Num most;   ///< Largest angle that does not lead through its shape [rad].
-  Num half, radius;        ///< Half its length; distance of the cable's middle from its axis [m].
-  Num center[3], axis[3];  ///< In P [m], [1].
+  Num key;    ///< Key of the edge or rod (cable_edges.h), or kNoKey. Bends in use are first.
+  Num body;   ///< Index of the body or of the world.
+  Num angle;  ///< Angle of the cable about the axis, from the previous to the next point [rad].
+  Num most;   ///< Largest angle at which the cable does not pass through the shape [rad].
+  /// Half the length; distance from the axis to the center line of the cable [m].
+  Num half, radius;
+  Num center[3], axis[3];  ///< In frame P [m], [1].
 };
 
 /// Doubles per element.
@@ -80,8 +81,8 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
 
 }  // namespace taut::sim
 
-/// ROW(name, type, elements per, role, when halted, start): `start` is a function of
-/// start_values.h. Snapshots and hashes have the order of this list.
+/// ROW(name, type, elements per ..., role, treatment when halted, start value). `start` is a
+/// function of start_values.h. Snapshots and hashes follow the order of this list.
 // clang-format off
 #define TAUT_STATE_ROWS(ROW) \
   ROW(time,           Number, kWorld,    kState,     kStays,    Zero)             /* [s] */ \

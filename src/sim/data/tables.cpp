@@ -1,4 +1,4 @@
-// Pointer view of the tables, for the step, and memory layout of a group of worlds.
+// Pointer view of the tables for the step, and memory layout of a group of worlds.
 #include "sim/data/tables.h"
 
 #include <algorithm>
@@ -90,7 +90,7 @@ void LayOutFloor(Tables& t) {
     t.floor_m = std::min(t.floor_m, surface.table().low.z);
   }
   for (const TerrainBoxDef& box : def.terrain_boxes) {
-    const Vec3& h = box.half_extents_m;  // no corner is lower than this
+    const Vec3& h = box.half_extents_m;  // lower bound of all corners
     t.floor_m = std::min(t.floor_m, box.center_m.z - std::sqrt(h.x * h.x + h.y * h.y + h.z * h.z));
   }
 }

@@ -1,8 +1,8 @@
 /// Read-only model data for a step: topology and constants, shared by all worlds.
 ///
-/// Every body has a principal frame P: origin in the center of mass, axes along the principal axes
-/// of inertia. Points of a body are stored in P. The world is body number `body_count`: it has no
-/// mass, does not move, and its frame is W.
+/// Every body has a principal frame P: its origin is the center of mass, its axes are the principal
+/// axes of inertia. Points of a body are stored in P. The world is body number `body_count`; it has
+/// no mass, does not move, and its frame is W.
 #pragma once
 
 #include <cstdint>
@@ -21,20 +21,22 @@
 
 namespace taut::sim {
 
-/// A `DcMotorDef` in the variables of its law (dc_motor.inl; docs/theory/motor.md).
+/// Parameters of a `DcMotorDef` in the form that its law uses (dc_motor.inl; docs/theory/motor.md).
 struct MotorTable {
   int cable = 0, supply = 0;
-  double way_m = 0;        ///< Travel of the rest length per angle of the rotor [m/rad].
-  double inv_inertia = 0;  ///< Of the rotor [1/(kg m^2)].
-  double constant = 0;     ///< Torque per current, back EMF per speed [V s/rad].
+  double way_m = 0;        ///< Change of the rest length per rotor angle [m/rad].
+  double inv_inertia = 0;  ///< 1 / moment of inertia of the rotor [1/(kg m^2)].
+  double constant = 0;     ///< Torque per current, and back EMF per speed [V s/rad].
   double winding_ohm = 0, driver_ohm = 0;
   double rise_per_k = 0, rated_c = 0, ambient_c = 0;
-  double friction = 0, static_more = 0;  ///< Coulomb friction, excess of static friction [N m].
-  double inv_stribeck2 = 0;              ///< 1 / speed^2 [s^2/rad^2].
-  double viscous = 0;                    ///< [N m s/rad]
-  double gear_loss = 0;                  ///< Friction of the gear per torque of the cable [1].
+  /// Coulomb friction; excess of static friction over it [N m].
+  double friction = 0, static_more = 0;
+  double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/rad^2].
+  double viscous = 0;        ///< [N m s/rad]
+  double gear_loss = 0;      ///< Friction of the gear per torque from the cable [1].
   double backlash_m = 0, min_rest_m = 0;
-  double winding_w_per_k = 0, housing_w_per_k = 0;  ///< Conductances to the housing, to the air.
+  /// Thermal conductances from winding to housing, and from housing to air.
+  double winding_w_per_k = 0, housing_w_per_k = 0;
   double winding_k_per_j = 0, housing_k_per_j = 0;  ///< 1 / heat capacity.
   double servo_gain = 0, servo_damping = 0;         ///< [1/m], [s/m]
 };
@@ -46,23 +48,23 @@ struct SupplyTable {
 struct AttachmentTable {
   int body = 0;
   double p_P[3] = {};  ///< [m]
-  int spot = 0;        ///< Cables: index of the point among all distinct ones.
+  int spot = 0;        ///< For cables: index of the point among all attachment points.
 };
 
-/// A shape that may touch another.
+/// Shape that may touch other shapes.
 struct ShapeTable {
   int body = 0;
   Shape shape_P;
   double center_P[3] = {};
-  double bound_m = 0;  ///< Radius of the sphere around `center_P` that contains it.
+  double bound_m = 0;  ///< Radius of the bounding sphere around `center_P`.
   Material material;
-  int point[2] = {};            ///< Round shapes: numbers of the ends among all points;
-  bool elsewhere[2] = {};       ///< whether another shape of the body has the same end.
-  const int* beside = nullptr;  ///< Terrain boxes: other terrain boxes that touch it.
+  int point[2] = {};            ///< For round shapes: indices of both ends among all points.
+  bool elsewhere[2] = {};       ///< Whether another shape of the body has the same end.
+  const int* beside = nullptr;  ///< For terrain boxes: other terrain boxes that touch this one.
   int beside_count = 0;
-  SeamList seams;  ///< Terrain boxes: adjacent pieces.
+  SeamList seams;  ///< For terrain boxes: adjacent pieces.
 
-  /// Returns whether adjacent pieces must be checked with it. Always inline: see View.
+  /// Returns whether adjacent pieces must be checked. Always inline: see View.
   [[gnu::always_inline]] bool IsJoined() const noexcept {
     return beside_count > 0 || seams.count > 0;
   }
@@ -70,22 +72,22 @@ struct ShapeTable {
 
 /// Largest gap between touching terrain boxes [m].
 inline constexpr double kJoinedM = 1e-9;
-/// Largest number of pairs of touching boxes, and of their points, per query.
+/// Maximum numbers of pairs of touching boxes, and of their points, per query.
 inline constexpr int kMostJoinedPairs = 32, kMostJoinedPoints = kMostJoinedPairs * 13;
 
-/// A point that can touch a plane: a sphere's center, a capsule's end, a box's or a hull's corner.
+/// Point that can touch a plane: center of a sphere, end of a capsule, or corner of a box or hull.
 struct PointTable {
   double p_P[3] = {};
   double radius_m = 0;
   double static_friction[8] = {}, kinetic_friction[8] = {}, restitution[8] = {};  ///< Per plane.
 };
 
-/// Surface properties of one side of a contact, for friction.
+/// Friction properties of one surface of a contact.
 struct FrictionSide {
   ShapeRef ref;
-  int body = kWorld;  ///< Body number as in a `ModelDef`.
+  int body = kWorld;  ///< Body index in the `ModelDef`.
   bool directed = false;
-  bool by_slip = false;  ///< Friction other than two constant coefficients.
+  bool by_slip = false;  ///< Friction is not given by two constant coefficients.
   double at_rest = 0, sliding = 0;
   double inv_stribeck2 = 0;  ///< 1 / speed^2 [s^2/m^2], or 0.
   double viscous = 0;        ///< [s/m]
@@ -93,28 +95,28 @@ struct FrictionSide {
   double axis_P[3] = {};  ///< Unit vector, if directed.
 };
 
-/// Friction data beyond two coefficients per pair (friction.h).
+/// Friction data of models with more than two coefficients per pair (friction.h).
 struct FrictionTable {
-  const FrictionSide* sides = nullptr;  ///< Of all shapes, then of all planes.
+  const FrictionSide* sides = nullptr;  ///< For all shapes, then for all planes.
   int shape_count = 0;
   const int* shape_of_point = nullptr;
   CombineRule combine = CombineRule::kGeometricMean;
-  const ContactFriction* law = nullptr;  ///< User-defined law, or null.
+  const ContactFriction* law = nullptr;  ///< Custom law, or null.
 };
 
 struct PlaneTable {
   double normal[3] = {}, tangent1[3] = {}, tangent2[3] = {};
-  double offset_m = 0;   ///< normal . x of its points.
-  bool upright = false;  ///< Normal and tangents are z, x and y.
+  double offset_m = 0;   ///< normal . x for points x of the plane.
+  bool upright = false;  ///< Its normal and tangents are z, x and y.
 };
 
 struct ShapePairTable {
-  int a = 0, b = 0;      ///< Shapes; the body of `a` is not the world.
-  std::uint32_t id = 0;  ///< Id of its first possible contact point.
+  int a = 0, b = 0;      ///< Shape indices; the body of `a` is not the world.
+  std::uint32_t id = 0;  ///< Key of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
-  std::uint32_t elsewhere = 0;  ///< One bit per feature that another pair has, too.
-  /// One shape is round, so that the contact point is fixed to neither body, and one body is
-  /// kinematic or jointed (solve/rolling.inl).
+  std::uint32_t elsewhere = 0;  ///< One bit per feature that another pair also has.
+  /// One shape is round, so the contact point is fixed to neither body, and one body is kinematic
+  /// or has a joint (solve/rolling.inl).
   bool rolls = false;
 };
 
@@ -122,28 +124,29 @@ struct ShapePairTable {
 struct BodyPairTable {
   int a = 0, b = 0;  ///< b may be the world.
   int first_pair = 0, pair_count = 0;
-  bool by_tree = false;    ///< b is the world; its shapes are found by the BVH.
-  bool on_ground = false;  ///< One pair, whose second shape is a surface.
-  int kept = -1;           ///< Index among pairs with a cache of near parts (near_parts.h).
-  bool joined = false;     ///< b is the world, and some of its boxes touch each other.
+  bool by_tree = false;    ///< `b` is the world; the BVH finds its shapes.
+  bool on_ground = false;  ///< A single pair, whose second shape is a surface.
+  int kept = -1;           ///< Index of its cache of near parts (near_parts.h); -1: none.
+  bool joined = false;     ///< `b` is the world, and some of its boxes touch each other.
 };
 
-/// Largest number of the world's shapes that are tested one by one; more are in a BVH.
+/// Largest number of static shapes that are tested one by one; more are in a BVH.
 inline constexpr int kFewShapes = 8;
 
 inline constexpr int kMaxPlanes = 8;
 
-/// Offsets of all rows of a group of worlds, in rows of one double per lane (state_rows.h).
+/// Offsets of all rows of a group of worlds, in units of rows with one double per lane
+/// (state_rows.h).
 struct Layout {
 #define TAUT_ROW(name, ...) int name = 0;
   TAUT_STATE_ROWS(TAUT_ROW)
 #undef TAUT_ROW
-  int hash_rows = 0;      ///< State and parameters, which come first.
-  int snapshot_rows = 0;  ///< State, parameters and the readings, which follow.
+  int hash_rows = 0;      ///< State and parameters, which are first.
+  int snapshot_rows = 0;  ///< State, parameters, and the following readings.
   int rows = 0;
 };
 
-/// A line of state_rows.h, for loops over all rows.
+/// Line of state_rows.h, for loops over all rows.
 struct RowInfo {
   int width;
   Per per;
@@ -159,8 +162,8 @@ inline constexpr RowInfo kStateRows[] = {
 #undef TAUT_ROW
 };
 
-/// Returns whether roles ascend in the list: snapshots and hashes take state and parameters as one
-/// piece.
+/// Returns whether roles ascend in the list. Snapshots and hashes need this, because they copy
+/// state and parameters as one block.
 constexpr bool RolesRise() {
   Role last = Role::kState;
   for (const RowInfo& row : kStateRows) {
@@ -196,21 +199,21 @@ struct View {
   const SlipTable* slips;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
-  int kept_count;   ///< Number of pairs with a cache of near parts (BodyPairTable::kept).
+  int kept_count;   ///< Number of caches of near parts (BodyPairTable::kept).
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;
   int tree_nodes, tree_shapes;
   const TreeNode* tree;
-  int world_shape_count;    ///< Without surfaces;
-  const int* world_shapes;  ///< in the order of their numbers in the BVH.
+  int world_shape_count;    ///< Number of static shapes without surfaces.
+  const int* world_shapes;  ///< Static shapes in BVH order.
   int touch_count;
   const TouchTable* touches;
   int touch_rod_count;
   const TouchRodTable* touch_rods;
-  const FrictionTable* friction;   ///< Null: the coefficients of the pairs apply.
-  double floor_m;                  ///< Bodies below it have fallen off; minus infinity: no limit.
-  int first_ground, ground_count;  ///< Surfaces among the shapes.
+  const FrictionTable* friction;  ///< Null: only the coefficients of the pairs apply.
+  double floor_m;  ///< Height below which a body left the terrain; minus infinity: no limit.
+  int first_ground, ground_count;  ///< Range of the surfaces among the shapes.
   int joint_count, joint_row_count, joint_body_count, turn_friction_count;
   const JointTable* joints;
   const JointRowTable* joint_rows;
@@ -222,14 +225,14 @@ struct View {
   int motion_count;
   const MotionTable* motions;
   const MotionKnot* motion_knots;
-  const int* motion_of_body;  ///< Per body, or -1; null without motions.
+  const int* motion_of_body;  ///< Per body: index of its motion, or -1; null without motions.
 
-  // Always inline: if several instruction sets emit a function, the linker keeps an arbitrary one.
-  /// Returns the largest number of simultaneous contacts in one world.
+  // Always inline: if several instruction sets emit a function, the linker keeps any one of them.
+  /// Returns the maximum number of simultaneous contacts in one world.
   [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
   /// Returns the capacity for links of all cables to bodies in `lanes` lanes: one per attachment,
-  /// and one per rod that the cable may touch. Each lane's cable touches at most kMostBends of the
-  /// rods, possibly different ones.
+  /// and one per rod around which the cable may wrap. In each lane, a cable touches at most
+  /// kMostBends rods, possibly different ones.
   [[gnu::always_inline]] int CableLinkCapacity(int lanes) const noexcept {
     int count = attachment_count;
     for (int i = 0; i < touch_count; ++i) {
@@ -238,7 +241,7 @@ struct View {
     }
     return count;
   }
-  /// Returns the largest number of rods that one cable may touch.
+  /// Returns the largest number of rods around which one cable may wrap.
   [[gnu::always_inline]] int MostTouchRods() const noexcept {
     int most = 0;
     for (int i = 0; i < touch_count; ++i) {
@@ -246,7 +249,7 @@ struct View {
     }
     return most;
   }
-  /// Returns whether the body is kinematic.
+  /// Returns whether a body is kinematic.
   [[gnu::always_inline]] bool HasMotion(int body) const noexcept {
     return motion_count > 0 && body < body_count && motion_of_body[body] >= 0;
   }

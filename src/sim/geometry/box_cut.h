@@ -1,5 +1,5 @@
-/// Entry and exit of a straight cable span through a box of the terrain (docs/theory/cables.md,
-/// section 6), for one world or for all lanes. Part of a step: no standard library.
+/// Entry and exit of a straight cable span through a terrain box (docs/theory/cables.md, section
+/// 6), for one world or for all lanes. Part of a step, so without the standard library.
 #pragma once
 
 #include "math/scalar.h"
@@ -7,14 +7,14 @@
 
 namespace taut::sim {
 
-/// A box, enlarged by the cable's radius, and a span in its frame. Faces are numbers: the outward
-/// normal of face 2 i is -axis i, of face 2 i + 1 +axis i.
+/// Span in the frame of a box that is enlarged by the cable's radius. Faces are numbered: face 2 i
+/// has the outward normal -axis i, face 2 i + 1 has +axis i.
 template <class V>
 struct BoxCut {
   using S = decltype(V::x);
-  S p[3], d[3], h[3];  ///< Start of the span, its vector, and half the box [m].
-  S from, to;          ///< Shares of the span.
-  S in, out;           ///< Faces; negative where the span starts or ends inside.
+  S p[3], d[3], h[3];  ///< Start of the span, its vector, and half the edge lengths of the box [m].
+  S from, to;          ///< Positions on the span, 0..1.
+  S in, out;           ///< Faces; negative if the span starts or ends inside.
 
   TAUT_INLINE S Below(int face, S share) const noexcept {
     const S x = p[face / 2] + share * d[face / 2];
@@ -32,9 +32,9 @@ struct BoxCut {
   }
 };
 
-/// Computes where a span enters and leaves a box. Where a bend of the cable is inside, because the
+/// Computes where a span enters and leaves a box. If a bend of the cable is inside, because the
 /// cable is round, the span passes through the nearest face. `through`: false if the span misses
-/// the box, stays at one face, or is inside with an end of the whole cable (`starts`, `ends`).
+/// the box, stays at one face, or an end of the whole cable (`starts`, `ends`) is inside.
 template <class V, class M>
 TAUT_INLINE BoxCut<V> CutBox(const BoxShape& box, const V& from, const V& to, double radius_m,
                              M starts, M ends, M* through) noexcept {
@@ -51,7 +51,7 @@ TAUT_INLINE BoxCut<V> CutBox(const BoxShape& box, const V& from, const V& to, do
     const V axis{C::Of(a[0]), C::Of(a[1]), C::Of(a[2])};
     const S p = cut.p[i] = Dot(axis, start), d = cut.d[i] = Dot(axis, way);
     const S h = cut.h[i] = C::Of(box.half_m[i] + radius_m);
-    const M along = d == zero;  // parallel to the faces: between them, or outside
+    const M along = d == zero;  // parallel to the faces: between them or outside
     hits = hits & ((!along) | (Abs(p) < h));
     const S low = C::Of(2 * i), high = C::Of(2 * i + 1);
     const M rises = d > zero;

@@ -37,10 +37,10 @@ Bounds BoundsOf(const HullShape& shape) noexcept {
   return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
 }
 
-/// Terrain surfaces have their own lookup and are in no tree.
+/// Surfaces have their own search structure and are in no tree.
 Bounds BoundsOf(const SurfaceShape&) noexcept { return {}; }
 
-/// Returns the squared distance of a point from a centerline, or from a box.
+/// Returns the squared distance of a point from a centerline or a box.
 double SkeletonDistance2(const RoundShape& shape, const double* p) noexcept {
   double line[3], to_p[3], length2 = 0, along = 0;
   for (int i = 0; i < 3; ++i) {
@@ -70,7 +70,7 @@ double SkeletonDistance2(const BoxShape& shape, const double* p) noexcept {
   return sum;
 }
 
-/// Returns a lower bound, from the ball around the hull.
+/// Returns a lower bound from the bounding ball of the hull.
 double SkeletonDistance2(const HullShape& shape, const double* p) noexcept {
   const Vec3 own = shape.table->center;
   const double center[3] = {own.x, own.y, own.z};

@@ -1,7 +1,7 @@
-/// Bounding volume hierarchy (BVH) around the world's shapes, for the broad phase.
+/// Bounding volume hierarchy (BVH) of the static shapes, for the broad phase.
 ///
-/// A tree and not a grid of cells: terrain has stones next to walls of many meters, for which no
-/// cell size fits.
+/// A tree instead of a uniform grid, because no cell size suits terrain with stones next to walls
+/// of many meters.
 #pragma once
 
 #include <stdint.h>
@@ -15,21 +15,21 @@ struct Bounds {
   double low[3], high[3];
 };
 
-/// Node of the tree in depth-first order: the nodes after this one up to `next` lie inside of it.
+/// Node of the tree in depth-first order. All nodes after this one, up to `next`, are inside it.
 struct TreeNode {
   Bounds bounds;
-  int next = 0;    ///< First node that is not inside.
-  int shape = -1;  ///< Of a leaf: its number among the world's shapes.
+  int next = 0;    ///< First node after the subtree.
+  int shape = -1;  ///< Leaf: index of a static shape; otherwise -1.
 };
 
 Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept;
 Bounds BoundsOf(const Shape& shape) noexcept;
 
-/// Returns false only if a shape is further than `reach_m` from a ball.
+/// Returns false only if a shape is farther than `reach_m` from a ball.
 bool MayReach(const Shape& shape, const double* center, double radius_m, double reach_m) noexcept;
 
-/// Returns whether two boxes are at most `reach_m` apart along every axis. False also where a
-/// number is not finite: nothing is near such a shape.
+/// Returns whether two boxes are at most `reach_m` apart along every axis. False if a number is not
+/// finite, since nothing is near such a shape.
 inline bool Near(const Bounds& a, const Bounds& b, double reach_m) noexcept {
   for (int i = 0; i < 3; ++i) {
     if (!(a.low[i] - b.high[i] <= reach_m && b.low[i] - a.high[i] <= reach_m)) return false;
@@ -37,8 +37,7 @@ inline bool Near(const Bounds& a, const Bounds& b, double reach_m) noexcept {
   return true;
 }
 
-/// Calls `use(number)` for each shape whose bounds are, along every axis, at most `reach_m` from
-/// `bounds`.
+/// Calls `use(index)` for each shape with bounds at most `reach_m` from `bounds` along every axis.
 template <class Use>
 void EachNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,
               const Use& use) noexcept {

@@ -1,4 +1,4 @@
-/// Reduction of a contact manifold to the points that a pair may have (kMaxPointsPerPair).
+/// Reduction of a contact manifold to the maximum number of points of a pair (kMaxPointsPerPair).
 #pragma once
 
 #include "sim/geometry/touch_list.h"
@@ -7,11 +7,11 @@ namespace taut::sim {
 
 class ManyTouches {
  public:
-  /// Points with the same normal at a distance of at most `same_m` are merged.
+  /// Merges points with equal normals at a distance of at most `same_m`.
   ManyTouches(double same_m, double margin_m) noexcept
       : same2_(same_m * same_m), margin_m_(margin_m) {}
 
-  /// Adds a point. `id` identifies its place, so that most points find their impulses for a warm
+  /// Adds a point. `id` identifies its place, so that most points find their impulses for the warm
   /// start.
   void Add(const Vec3& point, const Vec3& normal, double gap_m, int id) noexcept {
     if (!(gap_m < margin_m_)) return;
@@ -34,12 +34,13 @@ class ManyTouches {
 
   double least_gap_m() const noexcept { return least_gap_m_; }
 
-  /// Adds the points to a list. If there are too many: the nearest, and among points of equal gap
-  /// the outermost in twelve directions, which support the same loads as all of them.
+  /// Adds the points to a list. If there are too many, it selects the nearest point, then among
+  /// points of equal gap the outermost ones in twelve directions. They support the same loads as
+  /// all points.
   void AddTo(TouchList& list) noexcept {
     if (count_ > kMaxPointsPerPair) Choose();
     bool taken[kMaxPointsPerPair] = {};
-    // Points whose id is a feature keep it.
+    // Points whose id is a valid feature keep it.
     for (int round = 0; round < 2; ++round) {
       for (int i = 0; i < count_; ++i) {
         const One& one = all_[i];
@@ -53,9 +54,9 @@ class ManyTouches {
   }
 
  private:
-  /// Cosine above which normals belong to one plane.
+  /// Normals with a larger cosine belong to one plane.
   static constexpr double kSamePlane = 1.0 - 1e-9;
-  /// Gaps that differ by less than this share of the margin are equal.
+  /// Gaps that differ by less than this fraction of the margin count as equal.
   static constexpr double kSameGap = 1e-2;
   static constexpr int kRoom = 96;
 
@@ -66,7 +67,7 @@ class ManyTouches {
   };
 
   void Choose() noexcept {
-    // Sort by gap, stable.
+    // stable sort by gap
     for (int i = 1; i < count_; ++i) {
       for (int k = i; k > 0 && all_[k].gap_m < all_[k - 1].gap_m; --k) {
         const One swapped = all_[k];
@@ -79,7 +80,7 @@ class ManyTouches {
     while (all_[nearer].gap_m < last_m - same_m) ++nearer;
     while (end < count_ && all_[end].gap_m <= last_m + same_m) ++end;
     count_ = nearer;
-    // Directions: the corners of an icosahedron.
+    // directions: corners of an icosahedron
     constexpr double kGolden = 1.618033988749895;
     for (int axis = 0; axis < 3; ++axis) {
       for (int signs = 0; signs < 4; ++signs) {

@@ -1,4 +1,4 @@
-// Convex polyhedra of boxes and hulls, and their nearest point to a given point.
+// Convex polyhedra from boxes and hulls, and their nearest point to a given point.
 #include "sim/geometry/convex.h"
 
 namespace taut::sim {
@@ -7,7 +7,7 @@ namespace {
 /// Distance below which the direction from the surface to a point is undefined [m].
 constexpr double kOnSurfaceM = 1e-12;
 
-/// Topology of a box. Corner c has + along axis k where bit k of c is set; face 2 k + 1 is at + of
+/// Topology of a box. Corner c is at + along axis k if bit k of c is set. Face 2 k + 1 is at + of
 /// axis k, face 2 k at -.
 struct BoxParts {
   int first_in_face[7] = {0, 4, 8, 12, 16, 20, 24};
@@ -25,7 +25,7 @@ constexpr BoxParts MakeBoxParts() {
       parts.in_face[4 * (2 * k + 1) + i] = around[i] | (1 << k);
       parts.in_face[4 * (2 * k) + i] = around[3 - i];
     }
-    // Edges along axis k, between face -u or +u and face -v or +v; left and right alternate around
+    // Edges along axis k, between face -u or +u and face -v or +v. Left and right alternate around
     // the axis.
     for (int i = 0; i < 4; ++i) {
       const int beside_u = 2 * u + (i & 1), beside_v = 2 * v + (i >> 1);

@@ -1,6 +1,5 @@
-/// A convex polyhedron in W: a hull or a box, for shared narrow-phase code.
-///
-/// Part of a step: no standard library.
+/// Convex polyhedron in W (a hull or a box), so that both share narrow-phase code. Part of a step,
+/// so without the standard library.
 #pragma once
 
 #include "sim/geometry/hull.h"
@@ -9,11 +8,11 @@
 namespace taut::sim {
 
 struct Convex {
-  const HullTable* table;  ///< Indices; its coordinates are in the hull's frame.
+  const HullTable* table;  ///< Topology; its coordinates are in the frame of the hull.
   Vec3 corners[kMaxHullCorners], normals[kMaxHullFaces];
   double offsets_m[kMaxHullFaces];
   Vec3 center;
-  double thin_m;  ///< Distance of the center from the nearest face.
+  double thin_m;  ///< Distance from the center to the nearest face.
 
   explicit Convex(const HullShape& hull) noexcept;
   explicit Convex(const BoxShape& box) noexcept;
@@ -30,7 +29,7 @@ struct Convex {
     }
     return lowest - offset_m;
   }
-  /// Computes the least and greatest coordinates of the corners.
+  /// Computes the smallest and largest coordinates of the corners.
   void Bounds(Vec3* low, Vec3* high) const noexcept {
     *low = *high = corners[0];
     for (int i = 1; i < table->corner_count; ++i) {
@@ -44,7 +43,7 @@ struct Convex {
     return corners[edge.to] - corners[edge.from];
   }
 
-  /// Calls `use` with the two ends of every side of a face, counter-clockwise seen from outside.
+  /// Calls `use` with both ends of every edge of a face, counterclockwise seen from outside.
   template <class Use>
   void EachSide(int face, const Use& use) const noexcept {
     const int first = table->first_in_face[face], last = table->first_in_face[face + 1];
@@ -54,10 +53,10 @@ struct Convex {
   }
 };
 
-/// The point of a convex body's surface nearest to a given point; for a point inside, on the
-/// nearest face.
+/// Point on the surface of a convex body nearest to a given point. If the given point is inside, it
+/// is on the nearest face.
 struct NearestOfConvex {
-  Vec3 at, normal;    ///< The normal points outwards: to the given point if that is outside.
+  Vec3 at, normal;    ///< Outward unit normal; toward the given point if that is outside.
   double distance_m;  ///< Negative: inside.
 };
 NearestOfConvex NearestTo(const Convex& convex, const Vec3& point) noexcept;

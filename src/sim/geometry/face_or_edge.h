@@ -5,14 +5,14 @@
 
 namespace taut::sim {
 
-/// Another axis must be better by this share of the depth, and of the bodies' size, to be
-/// preferred: `b`'s faces over `a`'s, edges over faces. This hysteresis keeps the choice from
-/// flickering.
+/// Advantage that another axis needs to be selected, as a fraction of the depth and of the size of
+/// the bodies. Order of preference: faces of `a`, faces of `b`, edges. This hysteresis avoids
+/// frequent changes.
 inline constexpr double kBetterShare = 0.05, kBetterSize = 1e-4;
-/// Relative enlargement of a face before the other face is clipped against it, so that corners on
+/// Relative enlargement of a face before the other face is clipped against it, so that coincident
 /// corners remain.
 inline constexpr double kCutSlack = 1e-5;
-/// Edges at a smaller angle (as a sine) are parallel: faces are the better axes.
+/// Edges with a smaller sine of their angle count as parallel; faces are better axes for them.
 inline constexpr double kParallelSin = 1e-3;
 
 inline bool ClearlyBetter(double apart_m, double than_m, double size_m) noexcept {

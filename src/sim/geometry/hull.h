@@ -1,6 +1,6 @@
 /// Tables of a convex hull (corners, faces, edges) for contacts.
 ///
-/// Part of a step: no standard library. hull_build.h fills them in.
+/// Part of a step, so without the standard library. hull_build.h fills them in.
 #pragma once
 
 #include "math/vec.h"
@@ -8,11 +8,11 @@
 namespace taut::sim {
 
 inline constexpr int kMaxHullCorners = 64;  // HullDef::kMostCorners
-/// By Euler's formula, if all faces are triangles.
+/// Maximum number of faces, by Euler's formula for triangles.
 inline constexpr int kMaxHullFaces = 2 * kMaxHullCorners - 4;
 inline constexpr int kMaxHullEdges = 3 * kMaxHullCorners - 6;
 
-/// Two corners, and the faces on both sides: in `left`, `to` follows `from`.
+/// Two corners, and the faces on both sides. In the corner list of `left`, `to` follows `from`.
 struct HullEdge {
   int from, to, left, right;
 };
@@ -20,10 +20,10 @@ struct HullEdge {
 struct HullTable {
   int corner_count = 0, face_count = 0, edge_count = 0;
   const Vec3* corners = nullptr;       ///< In the hull's frame [m].
-  const Vec3* normals = nullptr;       ///< Of the faces: unit vectors, outwards.
-  const double* offsets_m = nullptr;   ///< normal . x on each face; no corner has more.
-  const int* first_in_face = nullptr;  ///< Index into in_face; one more entry than faces.
-  const int* in_face = nullptr;        ///< Corners, counter-clockwise seen from outside.
+  const Vec3* normals = nullptr;       ///< Outward unit normals of the faces.
+  const double* offsets_m = nullptr;   ///< normal . x on each face, the maximum over all corners.
+  const int* first_in_face = nullptr;  ///< Index in in_face; one more entry than faces.
+  const int* in_face = nullptr;  ///< Corners of the faces, counterclockwise seen from outside.
   const HullEdge* edges = nullptr;
   Vec3 center;           ///< Mean of the corners.
   double bound_m = 0.0;  ///< Largest distance of a corner from the center.

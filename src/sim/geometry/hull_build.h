@@ -11,10 +11,10 @@ namespace taut::sim {
 
 class Hull {
  public:
-  /// At most kMaxHullCorners corners.
+  /// `hull` has at most kMaxHullCorners corners.
   explicit Hull(math::ConvexHull hull);
 
-  /// The address stays the same if the hull is moved.
+  /// Moving the hull does not change this address.
   const HullTable& table() const { return *table_; }
 
  private:

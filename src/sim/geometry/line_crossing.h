@@ -1,19 +1,21 @@
-/// Crossing of a cable's straight span and a rod's axis, seen along their common perpendicular.
-/// Part of a step: no standard library.
+/// Crossing of a straight cable span and a rod's axis, seen along their common normal. Part of a
+/// step, so without the standard library.
 #pragma once
 
 #include "math/scalar.h"
 
 namespace taut::sim {
 
-/// Crossing of two lines, seen along their common perpendicular of length `norm` before
-/// normalization. `V`: vector of one lane or of all.
+/// Crossing of two lines, seen along their common normal, which has length `norm` before
+/// normalization. `V`: vector of one lane or of all lanes.
 template <class V>
 struct Crossing {
   using S = decltype(V::x);
-  S across;   ///< Distance of the axis from the span, times `norm` [m].
-  S norm2;    ///< `norm`^2.
-  S along_p;  ///< Places on the span, 0 to 1, and on the axis from its middle [m], times norm2.
+  S across;  ///< Distance of the axis from the span * `norm` [m].
+  S norm2;   ///< `norm`^2.
+  /// Positions of the crossing, each times norm2: on the span, 0 to 1, and on the axis from its
+  /// middle [m].
+  S along_p;
   S along_a;
 };
 template <class V>
@@ -23,14 +25,14 @@ TAUT_INLINE Crossing<V> CrossingOf(const V& from, const V& to, const V& center,
   return {Dot(n, w), Dot(n, n), Dot(Cross(w, axis), n), Dot(Cross(w, d), n)};
 }
 
-/// Returns whether they cross within the span and the rod.
+/// Returns whether the lines cross within the span and the rod.
 template <class V, class S>
 TAUT_INLINE auto CrossWithin(const Crossing<V>& x, S half) noexcept {
   const auto zero = Constant<S>::Of(0.0);
   return (x.along_p > zero) & (x.along_p < x.norm2) & (Abs(x.along_a) < half * x.norm2);
 }
 
-/// Returns the side of the axis on which the span is: -1 or 1, or 0 where they do not cross.
+/// Returns the side of the axis on which the span passes: -1 or 1; 0 without a crossing.
 template <class V, class S>
 TAUT_INLINE S SideOf(const Crossing<V>& x, S half) noexcept {
   using C = Constant<S>;

@@ -1,14 +1,14 @@
-/// Stretch of a line, clipped by half spaces.
+/// Segment of a line, clipped by half spaces.
 #pragma once
 
 #include "sim/geometry/touch_list.h"
 
 namespace taut::sim {
 
-/// Part of a line, between two shares of it.
+/// Segment of a line, between two positions from 0 to 1.
 struct LineStretch {
   double low, high;
-  /// Keeps the part where `at + share * slope` <= 0.
+  /// Keeps the part with `at + position * slope` <= 0.
   void CutAbove(double at, double slope) noexcept {
     if (slope > 0.0) {
       high = Smaller(high, -at / slope);

@@ -1,4 +1,4 @@
-// Rejection of contacts internal to adjacent pieces of terrain (seams.h).
+// Rejection of contacts inside the joint surface of adjacent terrain pieces (seams.h).
 #include "sim/geometry/seams.h"
 
 #include "sim/geometry/surface_near.h"
@@ -9,13 +9,14 @@ namespace {
 
 /// Rounding tolerance of sines and cosines.
 constexpr double kLevel = 1e-6;
-/// Sine above which a direction is not tangential, for all lengths.
+/// A direction with a larger sine is not tangential, at any length.
 constexpr double kSteep = 0.5;
-/// Search radius around a point, in units of the meeting distance; and distance from a covered
-/// point to open surface, beyond the penetration of pressed bodies.
+/// kSteps: search radius around a point, in units of the tolerance `same_m`. kOpenSteps: distance
+/// from a covered point to open surface, in the same units; larger than the penetration of pressed
+/// bodies.
 constexpr double kSteps = 16.0, kOpenSteps = 500.0;
 
-/// Returns whether a vector of a given length rises by more than the tolerance.
+/// Returns whether a vector of this length rises by more than the tolerance.
 bool Rises(double up_m, double length_m, const SeamSlack& slack) noexcept {
   return up_m > slack.length_m + slack.sine * length_m || up_m > kSteep * length_m;
 }
@@ -26,7 +27,7 @@ bool IsWithin(const SeamPiece& piece, const Vec3& p, double more_m) noexcept {
          p.z >= piece.low.z - more_m && p.z <= piece.high.z + more_m;
 }
 
-/// Calls `use(triangle, nearest)` for the triangles at a point, with their nearest points.
+/// Calls `use(triangle, nearest)` for the triangles at a point. `nearest`: their nearest points.
 template <class Use>
 void EachAt(const SurfaceTable& s, const Vec3& place, double same_m, const Use& use) noexcept {
   const Vec3 reach{same_m, same_m, same_m};
@@ -44,8 +45,8 @@ bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, 
   return !(out > 0.0) || Norm(normal - out * plane.normal) > sine;
 }
 
-/// All directions are tangential to a box or point into it, except those between the normals of the
-/// faces at the point.
+/// A box covers a normal, except between the normals of its faces at the point: all other
+/// directions are tangential to the box or point into it.
 bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, double same_m,
                const SeamSlack& slack) noexcept {
   if (!IsIn(box, place, same_m)) return false;
@@ -61,7 +62,7 @@ bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, doubl
   return !on_face;
 }
 
-/// Below a field's surface at its border: a vertical wall.
+/// Below the surface of a field at its border there is a vertical wall.
 bool WallCovers(const SurfaceTable& s, const Vec3& place, const Vec3& normal, double same_m,
                 double sine) noexcept {
   const double depth = HeightAt(s, place.x, place.y) - place.z;
@@ -117,7 +118,7 @@ bool BoxGoesOn(const BoxShape& box, const Vec3& place, const Vec3& way, double s
   return false;
 }
 
-/// Returns whether an open sheet at the point separates the direction from the middle of the body.
+/// Returns whether an open sheet at the point separates the direction from the center of the body.
 bool IsBehindSheet(const SeamList& seams, const Vec3& place, const Vec3& way, const Vec3& middle,
                    double more_m) noexcept {
   bool behind = false;
@@ -183,7 +184,7 @@ bool IsExposed(const SeamList& seams, const Vec3& end, const SeamContact& contac
   const double length_m = Norm(way);
   if (middle == nullptr || !(length_m > 2.0 * (seams.same_m + more_m))) return false;
   if (Abs(Dot(normal, way)) > kLevel * length_m || !(Dot(way, *middle - place) > 0.0)) return false;
-  // With inexact points: not tangential to the covering piece beyond its end.
+  // For inexact points: not tangential to the covering piece beyond its end.
   const double near_m = 3.0 * (seams.same_m + more_m);
   if (more_m > 0.0 && IsOnSeam(seams, place + Smaller(near_m / length_m, 1.0) * way, more_m)) {
     return false;

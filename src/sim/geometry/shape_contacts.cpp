@@ -6,11 +6,12 @@
 namespace taut::sim {
 namespace {
 
-/// Distance of centerline points below which its direction is undefined [m].
+/// Distance between centerline points below which its direction is undefined [m].
 constexpr double kCoincidentM = 1e-10;
-/// sin^2 of the angle below which two capsules may share a stretch, not just a point.
+/// sin^2 of the angle below which two capsules may touch along a line instead of at a point.
 constexpr double kAlongsideSin2 = 0.25;
-/// A point is redundant if its neighbors imply the same gap there, up to this share of the radius.
+/// A point is redundant if its neighbors imply the same gap there, to within this fraction of the
+/// radius.
 constexpr double kSameGap = 1e-6;
 
 struct Segment {
@@ -42,9 +43,8 @@ void KeepCloser(CenterPair& best, const CenterPair& other) noexcept {
   if (other.distance_m < best.distance_m) best = other;
 }
 
-/// Returns the closest points of two centerlines. They lie either between interiors, where the
-/// lines are closest, or at an end. All of these are tried, so that near-parallel lines cost no
-/// accuracy.
+/// Returns the closest points of two centerlines. They are interior points where the lines are
+/// closest, or ends. All candidates are tried, so nearly parallel lines lose no accuracy.
 CenterPair ClosestPair(const Segment& a, const Segment& b) noexcept {
   CenterPair best = FromA(a.from, b);
   KeepCloser(best, FromA(a.to, b));
@@ -60,7 +60,7 @@ CenterPair ClosestPair(const Segment& a, const Segment& b) noexcept {
   return best;
 }
 
-/// Returns a unit vector perpendicular to `a`, which is not zero.
+/// Returns a unit vector normal to `a`, which is not zero.
 Vec3 Perpendicular(const Vec3& a) noexcept {
   const double x = Abs(a.x), y = Abs(a.y), z = Abs(a.z);
   const Vec3 axis = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
@@ -68,8 +68,8 @@ Vec3 Perpendicular(const Vec3& a) noexcept {
   return (1.0 / Norm(p)) * p;
 }
 
-/// Returns a normal for centerlines that meet: perpendicular to both if they cross, to the line if
-/// they coincide, up for two points. Both signs are equally good.
+/// Returns a normal for centerlines that intersect: normal to both if they cross, normal to the
+/// line if they coincide, up for two points. The sign is arbitrary.
 Vec3 NormalOfMeeting(const Segment& a, const Segment& b) noexcept {
   const double a2 = Dot(a.along, a.along), b2 = Dot(b.along, b.along);
   const Vec3 c = Cross(a.along, b.along);
@@ -78,7 +78,7 @@ Vec3 NormalOfMeeting(const Segment& a, const Segment& b) noexcept {
   return Perpendicular(a2 > b2 ? a.along : b.along);
 }
 
-/// Two round shapes, and the contact points found between them.
+/// Two round shapes and their contact points.
 struct RoundPair {
   Segment a, b;
   double radius_a_m, radius_b_m;
@@ -95,11 +95,11 @@ struct RoundPair {
   double SameGapM() const noexcept { return kSameGap * (radius_a_m + radius_b_m); }
 };
 
-/// Ends of the stretch along which two capsules overlap, in the direction of `a`.
+/// Segment along which two capsules overlap, in the direction of `a`.
 struct Overlap {
   bool exists = false;
   CenterPair low = {}, high = {};
-  double low_at_m = 0, high_at_m = 0;  ///< Along `direction`.
+  double low_at_m = 0, high_at_m = 0;  ///< Positions along `direction`.
   Vec3 direction = {};
 };
 
@@ -111,7 +111,7 @@ Overlap FindOverlap(const RoundPair& pair) noexcept {
   if (a2 == 0.0 || b2 == 0.0 || Dot(c, c) > kAlongsideSin2 * a2 * b2) return overlap;
   const bool same_way = Dot(a.along, b.along) > 0.0;
   const Vec3 &b_low = same_way ? b.from : b.to, &b_high = same_way ? b.to : b.from;
-  // The bisector of both directions, so that the result does not depend on which one is `a`.
+  // The bisector of both directions, so that exchanging the shapes does not change the result.
   const Vec3 both = (1.0 / Sqrt(a2)) * a.along + (1.0 / Sqrt(b2)) * (b_high - b_low);
   overlap.direction = (1.0 / Norm(both)) * both;
   const double a_from = Dot(overlap.direction, a.from), b_from = Dot(overlap.direction, b_low);
@@ -126,7 +126,7 @@ Overlap FindOverlap(const RoundPair& pair) noexcept {
   return overlap;
 }
 
-/// A capsule in the frame of a box.
+/// Capsule in the frame of a box.
 struct CapsuleAtBox {
   double from[3], along[3];
   double length_m, radius_m;
@@ -143,7 +143,7 @@ struct CapsuleAtBox {
   }
   double At(int axis, double t) const noexcept { return from[axis] + t * along[axis]; }
 
-  /// Returns the vector from the box to the point at `t`; zero inside.
+  /// Returns the vector from the box to the centerline point at `t`; zero inside.
   Vec3 Beyond(double t) const noexcept {
     double out[3];
     for (int i = 0; i < 3; ++i) {
@@ -152,17 +152,18 @@ struct CapsuleAtBox {
     }
     return Load(out);
   }
-  /// Returns half the derivative of the squared distance: piecewise linear and nondecreasing.
+  /// Returns half the derivative of the squared distance, which is piecewise linear and
+  /// nondecreasing.
   double Slope(double t) const noexcept { return Dot(Beyond(t), Load(along)); }
 };
 
-/// A point of the centerline.
+/// Point of the centerline.
 struct Station {
   double t;
   int feature;
 };
 
-/// The ends, and the crossings with the planes of the box's faces.
+/// Ends of the centerline, and its intersections with the planes of the box faces.
 struct Stations {
   Station all[8];
   int count = 0;
@@ -183,7 +184,7 @@ struct Stations {
   }
 };
 
-/// Returns where the centerline is nearest to the box: the root of the slope, which is linear
+/// Returns the point of the centerline nearest to the box: the root of the slope, which is linear
 /// between stations.
 double NearestToBox(const CapsuleAtBox& c, const Stations& stations) noexcept {
   double low = 0.0, high = 1.0;
@@ -200,13 +201,14 @@ double NearestToBox(const CapsuleAtBox& c, const Stations& stations) noexcept {
   return Clamp(low + (high - low) * (slope_low / (slope_low - slope_high)), low, high);
 }
 
-/// A capsule next to a box, and the contact points found between them.
+/// Capsule near a box, and their contact points.
 struct RoundBoxPair {
   CapsuleAtBox capsule;
   const BoxShape& box;
   TouchList list;
 
-  /// `out`: unit normal in the box's frame; `distance_m`: distance of the centerline point outside.
+  /// `out`: unit normal in the frame of the box; `distance_m`: distance of the centerline point
+  /// from the box.
   void Add(double t, const Vec3& out, double distance_m, int feature) noexcept {
     const Vec3 n = out.x * AxisOf(box, 0) + out.y * AxisOf(box, 1) + out.z * AxisOf(box, 2);
     Vec3 point = Load(box.center) - 0.5 * (capsule.radius_m + distance_m) * n;
@@ -220,8 +222,8 @@ struct RoundBoxPair {
   }
 };
 
-/// Adds the contacts of a centerline outside of the box: each station has its nearest point of the
-/// box.
+/// Adds the contacts of a centerline outside of the box: one per station, at its nearest point of
+/// the box.
 void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) noexcept {
   const CapsuleAtBox& c = pair.capsule;
   const double margin = pair.list.margin_m();
@@ -241,8 +243,8 @@ void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) 
     pair.AddOutside(t, stations.all[i].feature);
   }
   if (c.length_m == 0.0) return;
-  // The distance is convex along the line: if the nearest point is no closer than the chord between
-  // its neighbors, these can carry every load that it could.
+  // The distance is convex along the line. If the nearest point is not below the chord between its
+  // neighbors, these can carry all of its loads.
   const double d_before = Norm(c.Beyond(before)), d_after = Norm(c.Beyond(after));
   const double d_nearest = Norm(c.Beyond(nearest));
   const double share = after > before ? (nearest - before) / (after - before) : 0.0;
@@ -252,12 +254,12 @@ void TouchOutside(RoundBoxPair& pair, const Stations& stations, double nearest) 
   pair.AddOutside(nearest, 2);
 }
 
-/// A stretch of the centerline.
+/// Segment of the centerline.
 struct Stretch {
   Station low, high;
 };
 
-/// Returns the stretch that lies between the four faces adjacent to the two of `face_axis`.
+/// Returns the segment between the four faces adjacent to the two faces normal to `face_axis`.
 Stretch BetweenSides(const CapsuleAtBox& c, const Stations& stations, int face_axis) noexcept {
   Stretch s{{0.0, 0}, {1.0, 1}};
   for (int i = 2; i < stations.count; ++i) {
@@ -275,13 +277,13 @@ Vec3 UnitAxis(int axis, double sign) noexcept {
   return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0};
 }
 
-/// Shortest way out of a box for a centerline that passes through it: through a face, or
-/// perpendicular to the line and an edge.
+/// Shortest exit from a box for a centerline that passes through it: through a face, or normal to
+/// the line and an edge.
 struct WayOut {
-  int axis = 0;  ///< Axis across the face or along the edge.
+  int axis = 0;  ///< Axis normal to the face, or along the edge.
   bool through_face = true;
   Vec3 normal = {};
-  double distance_m = -1e300;  ///< Distance of the line from the outside: negative.
+  double distance_m = -1e300;  ///< Minus the distance to move the line out of the box.
 };
 
 WayOut ThroughFace(const CapsuleAtBox& c, const Stations& stations) noexcept {
@@ -312,7 +314,7 @@ WayOut AcrossEdge(const CapsuleAtBox& c) noexcept {
   return way;
 }
 
-/// Returns where the centerline is nearest to the edge across which it leaves.
+/// Returns the point of the centerline nearest to the edge over which it exits.
 double NearestToEdge(const CapsuleAtBox& c, const WayOut& way) noexcept {
   const double n[3] = {way.normal.x, way.normal.y, way.normal.z};
   double dot = 0.0, norm2 = 0.0;
@@ -325,7 +327,7 @@ double NearestToEdge(const CapsuleAtBox& c, const WayOut& way) noexcept {
   return Clamp(dot / norm2, 0.0, 1.0);
 }
 
-/// Adds the contacts of a centerline deep inside: all points leave in the same direction, because
+/// Adds the contacts of a centerline deep inside. All points exit in the same direction, because
 /// separate directions could contradict each other.
 void TouchInside(RoundBoxPair& pair, const Stations& stations) noexcept {
   const CapsuleAtBox& c = pair.capsule;
@@ -354,8 +356,8 @@ int Touch(const RoundShape& a, const RoundShape& b, double margin_m, TouchPoint*
   if (overlap.exists) {
     pair.Add(overlap.low, 1);
     pair.Add(overlap.high, 2);
-    // A twisted rod bulges between the ends; a parallel one does not, and its closest point is
-    // anywhere. The point is omitted while it adds nothing to the chord between the ends.
+    // The closest point of a twisted rod is below the chord between the ends of the overlap. For
+    // parallel rods, its place is arbitrary; the point is omitted if it adds nothing to this chord.
     const double at = Dot(overlap.direction, 0.5 * (closest.a + closest.b));
     const double share =
         Clamp((at - overlap.low_at_m) / (overlap.high_at_m - overlap.low_at_m), 0.0, 1.0);

@@ -34,8 +34,8 @@ FaceAxis BestFace(const BoxShape& a, const BoxShape& b) noexcept {
 
 struct EdgeAxis {
   bool exists = false;
-  int a = 0, b = 0;     ///< Box axes along the two edges.
-  Vec3 direction = {};  ///< Unit, from `a` to `b`.
+  int a = 0, b = 0;     ///< Box axes along both edges.
+  Vec3 direction = {};  ///< Unit vector from `a` to `b`.
   double apart_m = -1e300;
 };
 
@@ -56,7 +56,7 @@ EdgeAxis BestEdges(const BoxShape& a, const BoxShape& b) noexcept {
   return best;
 }
 
-/// Returns the middle of the edge along `axis` that is foremost in a direction.
+/// Returns the middle of the edge along `axis` that is farthest in a direction.
 Vec3 ForemostEdge(const BoxShape& box, int axis, const Vec3& direction) noexcept {
   Vec3 p = Load(box.center);
   for (int i = 0; i < 3; ++i) {
@@ -66,7 +66,7 @@ Vec3 ForemostEdge(const BoxShape& box, int axis, const Vec3& direction) noexcept
   return p;
 }
 
-/// Adds the contact of two edges: one point, if they cross.
+/// Adds the contact point of two edges, if they cross.
 void TouchEdges(const BoxShape& a, const BoxShape& b, const EdgeAxis& edges,
                 TouchList& list) noexcept {
   const Vec3 along_a = AxisOf(a, edges.a), along_b = AxisOf(b, edges.b);
@@ -83,19 +83,20 @@ void TouchEdges(const BoxShape& a, const BoxShape& b, const EdgeAxis& edges,
   list.Add(0.5 * (on_a + on_b), -1.0 * edges.direction, edges.apart_m, kMeetingFeature);
 }
 
-/// A corner of the clipped face: place in the clipping face, height above it.
+/// Corner of the clipped face: position in the clipping face, and height above it.
 struct Corner {
   double x[2], height_m;
   int feature;
 };
 
-/// Four corners, and one more for each cut.
+/// Four corners, and one more per cut.
 struct Polygon {
   static constexpr int kMax = 8;
   Corner corners[kMax];
   int count = 0;
   void Add(const Corner& corner) noexcept {
-    if (count < kMax) corners[count++] = corner;  // rounding could make a convex rim wavy
+    // rounding may make a convex outline slightly concave
+    if (count < kMax) corners[count++] = corner;
   }
 };
 
@@ -105,8 +106,8 @@ Corner Between(const Corner& p, const Corner& q, double share, int feature) noex
           feature};
 }
 
-/// Removes the part beyond `limit` along sign * x[axis]. `feature` and the next number denote the
-/// two places where the rim crosses the cut: leaving, entering.
+/// Removes the part beyond `limit` along sign * x[axis]. `feature` and the next number identify the
+/// two points at which the outline leaves and enters.
 Polygon Cut(const Polygon& polygon, int axis, double sign, double limit, int feature) noexcept {
   Polygon kept;
   for (int i = 0; i < polygon.count; ++i) {
@@ -120,8 +121,8 @@ Polygon Cut(const Polygon& polygon, int axis, double sign, double limit, int fea
   return kept;
 }
 
-/// Returns the face of `box` that faces most against `direction`, in the frame of the clipping
-/// face: origin, two axes, and `direction` up.
+/// Returns the face of `box` most opposite to `direction`, in the frame of the clipping face:
+/// origin, two axes, and `direction` as up.
 Polygon FacingFace(const BoxShape& box, const Vec3& direction, const Vec3& origin,
                    const Vec3& axis0, const Vec3& axis1) noexcept {
   int face = 0;
@@ -145,7 +146,7 @@ Polygon FacingFace(const BoxShape& box, const Vec3& direction, const Vec3& origi
   return polygon;
 }
 
-/// Adds a face contact: the facing face of `other`, clipped to `box`'s face.
+/// Adds a face contact: the opposite face of `other`, clipped to the face of `box`.
 void TouchFace(const BoxShape& box, int axis, const BoxShape& other, bool box_is_a,
                TouchList& list) noexcept {
   const double side = Sign(Dot(AxisOf(box, axis), Load(other.center) - Load(box.center)));
@@ -168,7 +169,7 @@ void TouchFace(const BoxShape& box, int axis, const BoxShape& other, bool box_is
   }
 }
 
-/// A corner and the point of the other box nearest to it.
+/// Corner, and the nearest point of the other box.
 struct CornerPair {
   Vec3 corner, other;
   double distance_m = 1e300;
@@ -193,7 +194,7 @@ CornerPair NearestCorner(const BoxShape& box, const BoxShape& other) noexcept {
   return best;
 }
 
-/// Adds a corner that is nearest outside of the other's face: separate boxes that are diagonal
+/// Adds a corner that is nearest outside of the other box's face: separate boxes that are diagonal
 /// neighbors.
 void TouchCorner(const BoxShape& a, const BoxShape& b, double slack_m, TouchList& list) noexcept {
   const CornerPair from_a = NearestCorner(a, b), from_b = NearestCorner(b, a);
@@ -208,7 +209,7 @@ double SizeOf(const BoxShape& box) noexcept {
   return Smaller(box.half_m[0], Smaller(box.half_m[1], box.half_m[2]));
 }
 
-/// Returns the distance of `a` from the bounding box of `b` along the axes of `a`.
+/// Returns the distance from `a` to the bounding box of `b` along the axes of `a`.
 double DistanceAlongAxes(const BoxShape& a, const BoxShape& b) noexcept {
   double sum2 = 0.0;
   for (int i = 0; i < 3; ++i) {

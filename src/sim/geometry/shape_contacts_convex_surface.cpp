@@ -1,6 +1,6 @@
-// Narrow phase of a box or a hull on ground (docs/theory/ground.md, section 3): its corners against
-// faces, its edges against sharp edges, and its faces against sharp corners of the ground. Between
-// sharp bodies there are no other contacts.
+// Narrow phase of a box or a hull on a surface (docs/theory/ground.md, section 3): corners of the
+// body on faces, edges on sharp edges, and faces on sharp corners of the surface. Sharp bodies have
+// no other contacts.
 #include "sim/geometry/contact_reduction.h"
 #include "sim/geometry/convex.h"
 #include "sim/geometry/surface_near.h"
@@ -8,27 +8,28 @@
 namespace taut::sim {
 namespace {
 
-/// Numbers of points by place: corners, their further planes, edges, faces.
+/// First ids of points by place: corners, their further planes, edges, faces.
 constexpr int kFirstPlane = kMaxHullCorners, kFirstEdge = 2 * kMaxHullCorners;
 constexpr int kFirstFace = kFirstEdge + kMaxHullEdges;
-/// Maximum of places of a corner, and of its planes.
+/// Maximum number of places of a corner, and of its planes.
 constexpr int kPlacesOfCorner = 3, kPlanesOfCorner = 4;
-/// Rounding tolerance of sines and cosines, within which directions are level.
+/// Rounding tolerance of sines and cosines.
 constexpr double kLevel = 1e-6;
-/// Angle below which edges are parallel and other pairs support them [rad].
+/// Angle below which edges count as parallel, since other pairs support them [rad].
 constexpr double kParallel = 1e-6;
-/// Cosine above which normals belong to one plane; distance below which contacts are merged, in
-/// sizes of the body.
+/// Normals with a larger cosine belong to one plane. Contacts at a smaller distance are merged,
+/// relative to the size of the body.
 constexpr double kSamePlane = 1.0 - 1e-9, kSamePlace = 1e-6;
-/// Largest penetration of edges, and of corners through a sheet, in smallest half thicknesses.
+/// Maximum penetration of edges, and of corners through a sheet, in units of the smallest half
+/// thickness.
 constexpr double kDeepestEdge = 0.5, kDeepestSheet = 0.25;
-/// Planes that rise next to a corner count up to the search distance plus this many times its
+/// Planes that rise next to a corner count up to the search distance plus this factor times its
 /// depth.
 constexpr double kBesideDepths = 4.0;
-/// Search distance around a body in its sizes; the part of it that is searched exactly; and the
-/// factor of each further search, by bounds.
+/// Search distance around a body in units of its size; fraction of it that is searched exactly;
+/// factor between further searches, which use bounds.
 constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
-/// Possible reduction of the gap by contacts that were merged, as a share and [m].
+/// Possible reduction of the gap by merged contacts, as a fraction and in [m].
 constexpr double kSameGap = 1e-5, kSameGapM = 1e-9;
 
 struct Plane {
@@ -36,7 +37,7 @@ struct Plane {
   double gap_m;
 };
 
-/// Order that stays while shapes slide.
+/// Returns whether `a` precedes `b`, in an order that remains while shapes slide.
 bool Before(const Vec3& a, const Vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
@@ -56,7 +57,7 @@ class ConvexSearch {
     if (!IsClear(limit_m_)) Look();
     touches_.AddTo(list);
   }
-  /// Returns whether the bounds exclude that anything of the surface is within `reach_m`.
+  /// Returns whether bounds show that no part of the surface is within `reach_m`.
   bool IsClear(double reach_m) const noexcept {
     const LineReach line = Reach(reach_m);
     return line.low > line.high;
@@ -75,7 +76,8 @@ class ConvexSearch {
         },
         [&](const Vec3& p, const auto& each_beside) noexcept { Peak(p, each_beside); });
   }
-  /// Returns the reach around the body, as a line through its center and its farthest corner.
+  /// Returns the search region around the body, as a line through its center and its farthest
+  /// corner.
   LineReach Reach(double more_m) const noexcept {
     int farthest = 0;
     double most2 = 0.0;
@@ -93,16 +95,16 @@ class ConvexSearch {
     }
     return ReachOfLine(s_, center_ + low * along, center_ + high * along, Sqrt(aside2) + more_m);
   }
-  /// Returns the normal of a triangle, away from the ground; of a sheet, towards the body.
+  /// Returns the outward normal of a triangle; for a sheet, toward the body.
   Vec3 NormalOf(const SurfaceTable& s, const SurfaceTriangle& t) const noexcept {
     const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
     const bool turned = !s.solid && Dot(n, center_ - t.p[0]) < 0.0;
     return ((turned ? -1.0 : 1.0) / Norm(n)) * n;
   }
 
-  /// Returns whether a corner has passed through a sheet at its nearest place, and not past its
-  /// border or over a ridge: the way from the corner to the middle of the body crosses the sheet,
-  /// too.
+  /// Returns whether a corner has passed through a sheet at its nearest place, instead of around
+  /// its border or over a ridge. Then the segment from the corner to the center of the body also
+  /// crosses the sheet.
   bool IsThrough(const Vec3& corner, const SurfacePlace& place) const noexcept {
     const double depth_m = place.distance_m, side = Dot(place.normal, center_ - place.at);
     if (depth_m > kDeepestSheet * thinnest_m_) return false;
@@ -130,7 +132,7 @@ class ConvexSearch {
     const double look_m = s_.solid ? limit_m_ : Larger(limit_m_, kDeepestSheet * thinnest_m_);
     const int found =
         NearestPlaces(s_, p, look_m, places, kPlacesOfCorner, nullptr, false, &center_);
-    // The first plane with its place.
+    // the first plane with its place
     Plane planes[kPlanesOfCorner];
     Vec3 base;
     int count = 0;
@@ -159,9 +161,9 @@ class ConvexSearch {
     }
   }
 
-  /// Adds planes of triangles that rise next to the nearest place `base` of a corner, above which
-  /// the corner is not yet or below which it is. The nearest place of a corner under a valley is in
-  /// the valley's edge; it is replaced by the planes on both sides. Returns the number of planes.
+  /// Adds planes of triangles that rise next to the nearest place `base` of a corner, if the corner
+  /// is not yet above or already below them. If the nearest place is in the edge of a valley, the
+  /// planes on both sides replace it. Returns the number of planes.
   int AddRising(const Vec3& p, const Vec3& base, Plane* planes, int count) const noexcept {
     const Plane first = planes[0];
     const double beside_m = limit_m_ + kBesideDepths * Larger(-first.gap_m, 0.0);
@@ -172,7 +174,7 @@ class ConvexSearch {
       const Vec3 normal = NormalOf(s, t);
       const double gap_m = Dot(normal, p - t.p[0]);
       if (!(gap_m < limit_m_) || !(Dot(normal, center_ - t.p[0]) > 0.0)) return;
-      // At most a right angle, as at the corner.
+      // at most a right angle, as at the corner
       if (!(Dot(first.normal, normal) > -kLevel)) return;
       const Vec3 down = base - t.p[0];
       if (&s == &s_) {
@@ -211,8 +213,8 @@ class ConvexSearch {
     return count - 1;
   }
 
-  /// Adds contacts of a sharp edge of the ground with edges of the body, along their common
-  /// perpendicular, if that leads out of both.
+  /// Adds contacts of a sharp edge of the surface with edges of the body, along their common
+  /// normal, if this direction leads out of both.
   template <class EdgeOf>
   void Edges(const Vec3& start, const Vec3& end, const EdgeOf& edge_of) noexcept {
     for (int face = 0; face < body_.table->face_count; ++face) {
@@ -242,8 +244,8 @@ class ConvexSearch {
                    kFirstEdge + i + static_cast<int>(on_own > 0.5));
     }
   }
-  /// Returns whether the edge is convex at a point, considering all pieces that meet there: not
-  /// where one of them continues straight from one of its sides.
+  /// Returns whether the edge is convex at a point, considering all pieces there. It is not if a
+  /// piece continues straight from one of its sides.
   bool IsEdgeOpen(const SurfaceEdge& edge, const Vec3& at, const Vec3& normal) const noexcept {
     if (!IsOnSeam(s_.seams, at)) return true;
     if (IsEdgeCovered(s_.seams, edge.from, edge.to, {at, normal, &center_}, {limit_m_, kLevel}))
@@ -281,8 +283,8 @@ class ConvexSearch {
     return true;
   }
 
-  /// Adds the contact of a sharp corner of the ground near the body, or inside it and nearest to a
-  /// face through which it can have come.
+  /// Adds the contact of a sharp corner of the surface near the body. If the corner is inside the
+  /// body, the contact is with the nearest face through which it can have entered.
   template <class EachBeside>
   void Peak(const Vec3& p, const EachBeside& each_beside) noexcept {
     const int faces = body_.table->face_count;

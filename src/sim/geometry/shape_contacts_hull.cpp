@@ -7,10 +7,10 @@
 namespace taut::sim {
 namespace {
 
-/// Distance below which points are merged, in sizes of the thinner body.
+/// Distance below which points are merged, relative to the size of the thinner body.
 constexpr double kSamePlace = 1e-6;
-/// Numbers of points by place: corners of the clipped face, then two for each cut, then meeting
-/// edges or corners.
+/// First ids of points: corners of the clipped face, two per cut, crossing edges or nearest
+/// corners.
 constexpr int kFirstCut = kMaxHullCorners, kMeeting = 3 * kMaxHullCorners;
 
 struct FaceAxis {
@@ -18,11 +18,11 @@ struct FaceAxis {
   double apart_m = -1e300;
 };
 
-/// Returns the face of `a` above which `b` is farthest.
+/// Returns the face of `a` with the largest distance to `b`.
 FaceAxis BestFace(const Convex& a, const Convex& b) noexcept {
   FaceAxis best;
   for (int face = 0; face < a.table->face_count; ++face) {
-    // No corner is higher than the center minus the thinnest half.
+    // no corner is lower than the center minus thin_m
     if (a.Above(face, b.center) - b.thin_m <= best.apart_m) continue;
     const double apart = b.Lowest(a.normals[face], a.offsets_m[face]);
     if (apart > best.apart_m) best = {face, apart};
@@ -30,7 +30,7 @@ FaceAxis BestFace(const Convex& a, const Convex& b) noexcept {
   return best;
 }
 
-/// Edges of a body near another's bounds, which may meet its edges.
+/// Edges of a body near the bounds of another one.
 struct NearEdges {
   int all[kMaxHullEdges];
   int count = 0;
@@ -51,9 +51,9 @@ struct NearEdges {
   }
 };
 
-/// Returns whether two edges are foremost on both bodies in some direction, so that they form a
-/// face of the Minkowski difference: the arcs between their faces' normals, with those for `b`
-/// negated, cross.
+/// Returns whether two edges are farthest on both bodies in some direction, so that they form a
+/// face of the Minkowski difference. Test: the arc between the normals of one edge's faces crosses
+/// the negated arc of the other edge.
 bool AreForemost(const Convex& a, const HullEdge& edge_a, const Convex& b,
                  const HullEdge& edge_b) noexcept {
   const Vec3 along_a = a.AlongOf(edge_a), along_b = b.AlongOf(edge_b);
@@ -68,12 +68,12 @@ bool AreForemost(const Convex& a, const HullEdge& edge_a, const Convex& b,
 
 struct EdgeAxis {
   bool exists = false;
-  int a = 0, b = 0;     ///< Edges.
-  Vec3 direction = {};  ///< Unit, from `a` to `b`.
+  int a = 0, b = 0;     ///< Edge indices.
+  Vec3 direction = {};  ///< Unit vector from `a` to `b`.
   double apart_m = -1e300;
 };
 
-/// Returns the best axis of the edges that are at most `reach_m` apart, and perhaps of some more.
+/// Returns the best edge axis among edges at most `reach_m` apart; may include further edges.
 EdgeAxis BestEdges(const Convex& a, const Convex& b, double reach_m) noexcept {
   EdgeAxis best;
   const NearEdges near_a(a, b, reach_m), near_b(b, a, reach_m);
@@ -95,7 +95,7 @@ EdgeAxis BestEdges(const Convex& a, const Convex& b, double reach_m) noexcept {
   return best;
 }
 
-/// Adds the contact of two edges: one point, if they cross. Returns whether they do.
+/// Adds the contact point of two edges if they cross. Returns whether they do.
 bool TouchEdges(const Convex& a, const Convex& b, const EdgeAxis& edges,
                 ManyTouches& touches) noexcept {
   const HullEdge &edge_a = a.table->edges[edges.a], &edge_b = b.table->edges[edges.b];
@@ -117,18 +117,19 @@ struct Corner {
   int id;
 };
 
-/// As many corners as a face has, and one more for each cut.
+/// As many corners as a face has, and one more per cut.
 struct Polygon {
   static constexpr int kMax = 2 * kMaxHullCorners;
   Corner corners[kMax];
   int count = 0;
   void Add(const Corner& corner) noexcept {
-    if (count < kMax) corners[count++] = corner;  // rounding could make a convex rim wavy
+    // rounding may make a convex outline slightly concave
+    if (count < kMax) corners[count++] = corner;
   }
 };
 
-/// Removes the part beyond a plane. `id` and the next number denote the two places where the rim
-/// crosses it: leaving, entering.
+/// Removes the part beyond a plane. `id` and the next number identify the two points at which the
+/// outline leaves and enters.
 void Cut(const Polygon& polygon, const Vec3& out, double offset_m, int id, Polygon* kept) noexcept {
   kept->count = 0;
   for (int i = 0; i < polygon.count; ++i) {
@@ -142,7 +143,7 @@ void Cut(const Polygon& polygon, const Vec3& out, double offset_m, int id, Polyg
   }
 }
 
-/// Adds a face contact: the face of `other` that faces most against it, clipped to the face.
+/// Adds a face contact: the most opposite face of `other`, clipped to this face.
 void TouchFace(const Convex& convex, int face, const Convex& other, bool convex_is_a,
                ManyTouches& touches) noexcept {
   const Vec3 up = convex.normals[face];
@@ -176,7 +177,7 @@ void TouchFace(const Convex& convex, int face, const Convex& other, bool convex_
   }
 }
 
-/// A corner and the nearest point of the other body.
+/// Corner, and the nearest point of the other body.
 struct CornerPair {
   Vec3 corner;
   NearestOfConvex other;
@@ -209,7 +210,7 @@ NearestOfBoth NearestCorners(const Convex& a, const Convex& b) noexcept {
   return {of_b ? from_b : from_a, of_b};
 }
 
-/// Adds a corner that is nearest outside of the other's face, for separate bodies.
+/// Adds a corner that is nearest outside of the other body's face, for separate bodies.
 void TouchCorner(const Convex& a, const Convex& b, double below_m, ManyTouches& touches) noexcept {
   const auto [pair, of_b] = NearestCorners(a, b);
   const NearestOfConvex& place = pair.other;
@@ -247,15 +248,14 @@ int TouchConvex(const Convex& a, const Convex& b, double margin_m, TouchPoint* o
   return list.count();
 }
 
-/// Returns a lower bound of the distance, exact except where two corners are nearest to each other.
+/// Returns a lower bound of the distance. Exact except if two corners are nearest to each other.
 double DistanceOfConvex(const Convex& a, const Convex& b, double enough_m) noexcept {
   const double face_m = Larger(BestFace(a, b).apart_m, BestFace(b, a).apart_m);
   if (face_m >= enough_m) return face_m;
   const auto [pair, of_b] = NearestCorners(a, b);
   const double nearest_m = pair.other.distance_m;
   if (nearest_m <= 0.0) return 0.0;
-  // The direction between a corner and its nearest point may separate the bodies by their full
-  // distance.
+  // The direction from a corner to its nearest point may separate the bodies by the full distance.
   const Convex &one = of_b ? b : a, &other = of_b ? a : b;
   const Vec3 way = pair.other.normal;
   const double at = Dot(way, pair.other.at);

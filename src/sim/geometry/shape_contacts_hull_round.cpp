@@ -8,12 +8,13 @@ namespace taut::sim {
 namespace {
 
 constexpr int kNearestFeature = 2, kFirstStation = 3;
-/// Distance below which places of the centerline are merged, in radii.
+/// Distance below which points of the centerline are merged, in radii.
 constexpr double kSamePlace = 1e-3;
-/// A point is redundant if its neighbors imply the same gap there, up to this share of the radius.
+/// A point is redundant if its neighbors imply the same gap there, to within this fraction of the
+/// radius.
 constexpr double kSameGap = 1e-6;
 
-/// Search for the contacts of a capsule with a convex body.
+/// Search for contacts of a capsule with a convex body.
 class RoundSearch {
  public:
   RoundSearch(const RoundShape& round, const HullShape& hull) noexcept
@@ -23,7 +24,7 @@ class RoundSearch {
         length_m_(Norm(along_)),
         radius_m_(round.radius_m) {}
 
-  /// Returns the distance of the centerline; 0 if it passes through the body.
+  /// Returns the distance of the centerline from the body; 0 if it passes through.
   double Distance() noexcept {
     FindNearest();
     return Larger(nearest_.distance_m, 0.0);
@@ -53,7 +54,7 @@ class RoundSearch {
     if (place.distance_m < nearest_.distance_m) nearest_ = place, nearest_at_ = t;
   }
 
-  /// Finds the nearest place: at an end, against an edge, or inside.
+  /// Finds the nearest point of the centerline: at an end, at an edge, or inside.
   void FindNearest() noexcept {
     ends_[0] = NearestTo(convex_, At(0.0));
     nearest_ = ends_[0], nearest_at_ = 0.0;
@@ -71,12 +72,12 @@ class RoundSearch {
     for (int i = 0; i < convex_.table->edge_count; ++i) AgainstEdge(convex_.table->edges[i]);
   }
 
-  /// Tests where the interior of the line is nearest to an edge.
+  /// Tests the interior point of the line nearest to an edge.
   void AgainstEdge(const HullEdge& edge) noexcept {
     const Vec3 start = convex_.FromOf(edge), side = convex_.AlongOf(edge);
     const Vec3 c = Cross(along_, side), between = start - from_;
     const double c2 = Dot(c, c);
-    if (!(c2 > 0.0)) return;  // as near at an end of one of them
+    if (!(c2 > 0.0)) return;  // an end is as near
     const double on_edge = Clamp(Dot(Cross(between, along_), c) / c2, 0.0, 1.0);
     const Vec3 place = start + on_edge * side;
     const double t = Dot(place - from_, along_) / (length_m_ * length_m_);
@@ -95,15 +96,15 @@ class RoundSearch {
     Add(list, nearest_at_, nearest_, kNearestFeature);
   }
 
-  /// Adds the points where the line enters and leaves the Voronoi region of an edge, between the
-  /// two faces: there it comes from above a face, or goes above one.
+  /// Adds the points at which the line enters and leaves the Voronoi region of an edge, which lies
+  /// between the regions of its two faces.
   void AlongEdge(int which, TouchList& list) noexcept {
     const HullEdge& edge = convex_.table->edges[which];
     const Vec3 start = convex_.FromOf(edge), side = convex_.AlongOf(edge), to_line = from_ - start;
     LineStretch beside{0.0, 1.0};
     beside.CutAbove(-Dot(to_line, side), -Dot(along_, side));
     beside.CutAbove(Dot(to_line, side) - Dot(side, side), Dot(along_, side));
-    // In the plane of each face, into the face.
+    // in the plane of each face, into the face
     const Vec3 left = Cross(convex_.normals[edge.left], side);
     const Vec3 right = Cross(side, convex_.normals[edge.right]);
     beside.CutAbove(Dot(to_line, left), Dot(along_, left));
@@ -119,7 +120,7 @@ class RoundSearch {
     }
   }
 
-  /// Adds a place unless one is already there.
+  /// Adds a point unless one is already at this place.
   void AddPlace(TouchList& list, double t, const NearestOfConvex& place, int id) noexcept {
     if (!(place.distance_m - radius_m_ < list.margin_m()) || station_count_ == kStations) return;
     for (int i = 0; i < station_count_; ++i) {
@@ -135,8 +136,8 @@ class RoundSearch {
     Add(list, t, place, feature);
   }
 
-  /// Returns whether the neighbors of the nearest place can carry every load that it could: the
-  /// distance is convex along the line, and the place is no closer than the chord between them.
+  /// Returns whether the neighbors of the nearest point can carry all of its loads: the distance is
+  /// convex along the line, and the point is not below the chord between them.
   bool IsHeld(double reach_m) const noexcept {
     Station before = stations_[0], after = stations_[1];
     for (int i = 2; i < station_count_; ++i) {
@@ -152,8 +153,8 @@ class RoundSearch {
     return chord - nearest_.distance_m <= kSameGap * radius_m_;
   }
 
-  /// Adds the contacts of a centerline deep inside: all points leave through the face with the
-  /// shortest way out.
+  /// Adds the contacts of a centerline deep inside. All points exit through the face with the
+  /// shortest exit.
   void TouchInside(TouchList& list) const noexcept {
     int best = 0;
     double best_m = -1e300;
@@ -172,18 +173,18 @@ class RoundSearch {
     }
   }
 
-  /// A place of the centerline.
+  /// Point of the centerline.
   struct Station {
     double t, distance_m;
   };
-  static constexpr int kStations = kMaxPointsPerPair - kFirstStation + 2;  ///< With both ends.
+  static constexpr int kStations = kMaxPointsPerPair - kFirstStation + 2;  ///< Includes both ends.
 
   Convex convex_;
   Vec3 from_, along_;
   double length_m_, radius_m_;
   NearestOfConvex ends_[2], nearest_;
   double nearest_at_ = 0.0;
-  LineStretch inside_{1.0, 0.0};  ///< Part of the line inside the body.
+  LineStretch inside_{1.0, 0.0};  ///< Segment of the line inside the body.
   Station stations_[kStations];
   bool taken_[kStations - 2] = {};
   int station_count_ = 0;

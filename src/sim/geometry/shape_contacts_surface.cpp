@@ -7,29 +7,29 @@ namespace taut::sim {
 namespace {
 
 constexpr int kPlacesOfEnd = 3, kPlacesBetween = 4;
-/// Places between the ends are numbered by their position on the rod.
+/// Contacts between the ends are numbered by their position on the rod.
 static_assert(FeaturesOfEnd(1) == 7u << kPlacesOfEnd && FeaturesOfEnd(0) == 7u);
 constexpr int kStretches = kMaxPointsPerPair - 2 * kPlacesOfEnd;
 static_assert(kPlacesBetween <= kStretches);
-/// Search distance of a shape for ground below it, in its sizes; the part of it that is searched
-/// exactly; and the factor of each further search, by bounds.
+/// Search distance below a shape in units of its size; fraction of it that is searched exactly;
+/// factor between further searches, which use bounds.
 constexpr double kFarthestLook = 4.0, kNearestLook = 1.0 / 64, kFurther = 4.0;
-/// Places closer to each other than a thousandth of the radius are merged, so that the least gap
-/// may jump by at least that when the rod moves by nothing; bound of this jump, in radii.
+/// Points closer than a thousandth of the radius are merged. Therefore the smallest gap may jump
+/// when the rod hardly moves. This is the bound of the jump, in radii.
 constexpr double kSameContact = 0.01;
 
-/// A point of a rod is redundant if a chord between its neighbors lies below it: tolerance in
+/// A point of a rod is redundant if a chord between its neighbors lies below it. Tolerance in
 /// radii, and cosine above which all three normals agree.
 constexpr double kSameGap = 1e-6, kSameWay = 0.999;
 
-/// A place found along a rod.
+/// Contact found along a rod.
 struct Found {
   double share;
   SurfacePlace place;
   int feature;
 };
 
-/// Returns whether two others, one on each side, keep the rod off a place.
+/// Returns whether two other points, one on each side, keep the rod off this place.
 bool IsHeld(const Found* all, int count, int which, double tolerance_m) noexcept {
   const Found& f = all[which];
   for (int i = 0; i < count; ++i) {
@@ -47,7 +47,7 @@ bool IsHeld(const Found* all, int count, int which, double tolerance_m) noexcept
   return false;
 }
 
-/// Returns whether one direction precedes another: an order that stays while shapes slide.
+/// Returns whether one direction precedes another, in an order that remains while shapes slide.
 bool Before(const Vec3& a, const Vec3& b) noexcept {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
@@ -67,7 +67,7 @@ int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, uns
   bool known = kept != nullptr && Serves(s, from, to, limit_m, *kept);
   LineReach line{from, to - from, 0.0, 1.0, limit_m};
   if (known && kept->looks < NearParts::kFewLooks) ++kept->looks;
-  // If the line is over all edges, parts beyond its reach change nothing.
+  // If the line is above all edges, omitted parts have no effect.
   if (!known || !kept->over || kept->between.count > NearParts::kMostBetween) {
     const LineReach reach = ReachOfLine(s, from, to, WiderLook(s) * limit_m);
     if (reach.low > reach.high) return 0;
@@ -83,7 +83,7 @@ int TouchGround(const RoundShape& a, const SurfaceShape& b, double margin_m, uns
            : NearestAlong(s, line, r, between, kPlacesBetween, known ? &kept->between : nullptr);
   for (int end = 0; end < (ball ? 1 : 2); ++end) {
     if (end == 0 ? line.low > 0.0 : line.high < 1.0) continue;
-    // An end that another shape covers counts only as support for places between.
+    // An end covered by another shape counts only as support for points between the ends.
     if ((elsewhere & FeaturesOfEnd(end)) != 0 && places_between == 0) continue;
     SurfacePlace places[kPlacesOfEnd];
     const int ways = NearestPlaces(s, end == 0 ? from : to, limit_m, places, kPlacesOfEnd,
@@ -127,7 +127,7 @@ double DistanceToGround(const RoundShape& a, const SurfaceShape& surface, double
   const double most_m = kFarthestLook * (Norm(to - from) + a.radius_m);
   double look_m = Smaller(enough_m, kNearestLook * most_m);
   TouchPoint points[kMaxPointsPerPair];
-  // This search reaches further than contacts do, so it must not refill the cache.
+  // This search is wider than a contact search, so it must not refill the cache.
   const bool serves = kept != nullptr && Serves(*b.table, from, to, a.radius_m + look_m, *kept);
   const int count = TouchGround(a, b, look_m, 0, serves ? kept : nullptr, points);
   if (count > 0) {

@@ -1,11 +1,10 @@
-// Dispatch of the narrow phase for two shapes of any kinds; a direct call, resolved at compile
-// time.
+// Dispatch of the narrow phase to the function for two kinds of shapes, resolved at compile time.
 #include "sim/geometry/shape_contacts.h"
 
 namespace taut::sim {
 namespace {
 
-/// Calls `use` with both shapes in W, ordered by kind, and with whether they were swapped.
+/// Calls `use` with both shapes in W, sorted by kind, and whether they were exchanged.
 template <class Use>
 auto WithPair(const Shape& a, const ShapePose& at_a, const Shape& b, const ShapePose& at_b,
               const Use& use) noexcept {

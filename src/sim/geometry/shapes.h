@@ -1,25 +1,24 @@
 /// Collision shapes: capsules and spheres, boxes, convex hulls, terrain surfaces.
 ///
-/// A new kind needs: a value of `ShapeKind`; a struct with its `kKind` and a function `Moved`; a
-/// member of `Shape` and a line in `WithShape`; a file with its `Touch` and `Distance`, one line
-/// each in shape_contacts.h for every kind that it may meet. A missing pair does not compile. All
+/// A new kind needs a value of `ShapeKind`; a struct with `kKind` and a function `Moved`; a member
+/// of `Shape` and a line in `WithShape`; a file with `Touch` and `Distance`; and declarations of
+/// both in shape_contacts.h for every kind that it may meet. A missing pair does not compile. All
 /// of this is part of a step: no standard library, no heap, no function pointers.
 #pragma once
 
 namespace taut::sim {
 
-/// Pairs are written in this order: `Touch(a, b)` where the kind of `a` is not after the kind of
-/// `b`.
+/// In `Touch(a, b)`, the kind of `a` is not after the kind of `b` in this order.
 enum class ShapeKind { kRound, kBox, kHull, kSurface };
 
-/// A sphere (from = to) or capsule.
+/// Sphere (from = to) or capsule.
 struct RoundShape {
   static constexpr ShapeKind kKind = ShapeKind::kRound;
   double from[3], to[3];
   double radius_m;
 };
 
-/// A box; the rows of `axes` are its unit axes.
+/// Box; the rows of `axes` are its unit axes.
 struct BoxShape {
   static constexpr ShapeKind kKind = ShapeKind::kBox;
   double center[3], axes[9], half_m[3];
@@ -30,15 +29,15 @@ struct SurfaceTable;
 
 /// Pose of a frame: x -> r x + origin.
 struct ShapePose {
-  double r[9];  ///< Row major.
+  double r[9];  ///< Row-major.
   double origin[3];
 };
 
-/// A convex body with flat faces (hull.h).
+/// Convex body with flat faces (hull.h).
 struct HullShape {
   static constexpr ShapeKind kKind = ShapeKind::kHull;
   const HullTable* table;
-  ShapePose at;  ///< Pose of the table's frame.
+  ShapePose at;  ///< Pose of the frame of the table.
 };
 
 /// Static triangles (surface.h).
@@ -91,7 +90,7 @@ inline HullShape Moved(const HullShape& shape, const ShapePose& pose) noexcept {
 
 inline SurfaceShape Moved(const SurfaceShape& shape, const ShapePose&) noexcept { return shape; }
 
-/// A shape of any kind; only the member of its `kind` is filled in.
+/// Shape of any kind; only the member of its `kind` is valid.
 struct Shape {
   ShapeKind kind = ShapeKind::kRound;
   RoundShape round = {};
@@ -100,12 +99,12 @@ struct Shape {
   SurfaceShape surface = {};
 };
 
-/// Returns the distance of the surface from the skeleton of points and lines.
+/// Returns the distance of the surface from the skeleton (points and lines).
 inline double RadiusOf(const Shape& shape) noexcept {
   return shape.kind == ShapeKind::kRound ? shape.round.radius_m : 0.0;
 }
 
-/// Calls `use` with the struct of the shape's kind.
+/// Calls `use` with the struct of the kind of the shape.
 template <class Use>
 auto WithShape(const Shape& shape, const Use& use) noexcept {
   switch (shape.kind) {

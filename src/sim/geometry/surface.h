@@ -1,7 +1,7 @@
-/// Terrain surfaces: static triangles of a height field or a mesh, laid out so that the triangles
-/// near a place are found in a time that does not grow with their number.
+/// Terrain surfaces: static triangles of a height field or a mesh. The time to find the triangles
+/// near a point does not grow with their number.
 ///
-/// Part of a step: no standard library. surface_build.h fills the tables in.
+/// Part of a step, so without the standard library. surface_build.h fills in the tables.
 #pragma once
 
 #include "math/vec.h"
@@ -11,60 +11,60 @@ namespace taut::sim {
 
 inline constexpr int kMaxTopLevels = 32;
 
-/// Marks of corner (i, j) of a field: about the cell between it and (i + 1, j + 1), two of that
-/// cell's sides, and the corner.
+/// Marks of corner (i, j) of a field. They describe the cell between it and (i + 1, j + 1), two
+/// sides of this cell, and the corner.
 enum FieldMark : unsigned char {
-  kRising = 1,       ///< The cell's diagonal starts at (i, j).
-  kSharpAlongX = 2,  ///< The edge to (i + 1, j) is sharp: it sticks out, so that the flank of a rod
-                     ///< may touch it.
+  kRising = 1,  ///< The diagonal of the cell starts at (i, j).
+  /// The edge to (i + 1, j) is sharp (convex), so the flank of a rod may touch it.
+  kSharpAlongX = 2,
   kSharpAlongY = 4,  ///< The edge to (i, j + 1) is sharp.
   kSharpDiagonal = 8,
   kSharpCorner = 16,
 };
 
-/// An edge of a mesh, and the third corners of its triangles: `count` entries of SurfaceTable's
-/// array of adjacent corners, from `first` on.
+/// Edge of a mesh, and the third corners of its triangles: `count` entries of SurfaceTable's array
+/// of adjacent corners, starting at `first`.
 struct MeshEdge {
   int from, to, first, count;
 };
-/// A corner of a mesh, and the other ends of its edges.
+/// Corner of a mesh, and the other ends of its edges.
 struct MeshCorner {
   int corner, first, count;
 };
 
 struct SurfaceTable {
-  bool is_field = false;  ///< Else a mesh.
-  bool solid = false;     ///< Has an inside; for a field, the space below it.
+  bool is_field = false;  ///< False: a mesh.
+  bool solid = false;     ///< Has an inside; for a field, everything below it.
   Vec3 low, high;         ///< Bounds of all corners, in W [m].
 
-  // A field: corner (i, j) is at low + (i, j) cells; columns along x, rows along y.
+  // For a field: corner (i, j) is at low + (i, j) cells; columns along x, rows along y.
   int columns = 0, rows = 0;
   double cell_m = 0, inv_cell = 0;
   const double* height_m = nullptr;      ///< In W, row by row.
-  const unsigned char* marks = nullptr;  ///< Per corner (i, j): `FieldMark`s.
+  const unsigned char* marks = nullptr;  ///< `FieldMark`s per corner (i, j).
   int levels = 0;
-  const double* tops[kMaxTopLevels] = {};  ///< Greatest height of 2^level by 2^level cells [m].
+  const double* tops[kMaxTopLevels] = {};  ///< Largest height of 2^level by 2^level cells [m].
 
-  // A mesh: triangles counter-clockwise seen from outside; buckets of a uniform grid.
+  // For a mesh: triangles, counterclockwise seen from outside, and buckets of a uniform grid.
   const Vec3* corners = nullptr;
-  const int* triangles = nullptr;  ///< Three corners each.
+  const int* triangles = nullptr;  ///< Three corners per triangle.
   int buckets[3] = {};
   double bucket_m = 0, inv_bucket = 0;
   const int* first_in_bucket = nullptr;
-  const int* in_bucket = nullptr;  ///< Triangles, in ascending order.
-  // Sharp edges and corners of the mesh, each with one of its triangles: the entries of triangle k
+  const int* in_bucket = nullptr;  ///< Triangles in ascending order.
+  // Sharp edges and corners of the mesh, each assigned to one of its triangles. Those of triangle k
   // start at first_edge[k] and first_corner[k].
   const int *first_edge = nullptr, *first_corner = nullptr;
   const MeshEdge* edges = nullptr;
   const MeshCorner* sharp_corners = nullptr;
-  const int* beside = nullptr;  ///< Corners adjacent to these.
+  const int* beside = nullptr;  ///< Adjacent corners.
 
   SeamList seams;                       ///< Adjacent pieces of terrain.
   const SurfaceTable* alone = nullptr;  ///< The same table without seams; null if there are none.
 };
 
-/// Returns a surface without adjacent pieces. Distances ignore covers: covered parts count as near,
-/// so that no contact is missed where they emerge.
+/// Returns the surface without adjacent pieces. Distances use it: covered parts then count as near,
+/// so no contact is missed where they emerge.
 inline const SurfaceTable& Alone(const SurfaceTable& s) noexcept {
   return s.alone == nullptr ? s : *s.alone;
 }
@@ -72,25 +72,26 @@ inline const SurfaceTable& Alone(const SurfaceTable& s) noexcept {
 /// A triangle of a surface.
 struct SurfaceTriangle {
   Vec3 p[3];
-  int corner[3];  ///< Equal numbers are the same corner.
+  int corner[3];  ///< Equal numbers denote the same corner.
 };
 
-/// Returns the cell of a coordinate `x`, in cells from the first side; clamped to the grid.
+/// Returns the index of the cell at `x`, in cells from the first side; clamped to the grid.
 inline int CellAt(double x, int count) noexcept {
   if (!(x > 0.0)) return 0;
   return x < count ? static_cast<int>(x) : count - 1;
 }
 
-/// Returns the height of a field above a place within it.
+/// Returns the height of a field at a point within it.
 double HeightAt(const SurfaceTable& s, double x, double y) noexcept;
-/// Returns the depth of a point below a field's surface, within its rectangle; else 0 or less.
+/// Returns the depth of a point below the surface of a field, within its rectangle; otherwise 0 or
+/// less.
 double DepthBelow(const SurfaceTable& s, const Vec3& p) noexcept;
-/// Returns an upper bound of the heights of a field between these.
+/// Returns an upper bound of the heights of a field between `low` and `high`.
 double TopOver(const SurfaceTable& s, const Vec3& low, const Vec3& high) noexcept;
 
 namespace detail {
 
-/// Calls `use(i, j)` for the cells of a field that reach between `low` and `high`.
+/// Calls `use(i, j)` for the cells of a field between `low` and `high`.
 template <class Use>
 void EachCell(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Use& use) noexcept {
   const int i0 = CellAt((low.x - s.low.x) * s.inv_cell, s.columns - 1);
@@ -110,7 +111,7 @@ void EachCell(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Us
   }
 }
 
-/// Returns one of a cell's two triangles.
+/// Returns one of the two triangles of a cell.
 inline SurfaceTriangle TriangleOfField(const SurfaceTable& s, int i, int j, bool second) noexcept {
   const int at = j * s.columns + i;
   const double* const z = s.height_m + at;
@@ -145,7 +146,7 @@ inline double Most(double a, double b, double c) noexcept {
   return ab > c ? ab : c;
 }
 
-/// Calls `use` with the numbers of triangles.
+/// Calls `use` with triangle numbers.
 template <class Use>
 void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const Use& use) noexcept {
   const double from[3] = {low.x - s.low.x, low.y - s.low.y, low.z - s.low.z};
@@ -168,7 +169,7 @@ void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const 
               Most(a.z, b.z, c.z) < low.z) {
             continue;
           }
-          // A triangle lies in several buckets; only the first one visited counts.
+          // A triangle is in several buckets; only the first visited one counts.
           const int bx = CellAt((least.x - s.low.x) * s.inv_bucket, s.buckets[0]);
           const int by = CellAt((least.y - s.low.y) * s.inv_bucket, s.buckets[1]);
           const int bz = CellAt((least.z - s.low.z) * s.inv_bucket, s.buckets[2]);
@@ -185,8 +186,7 @@ void EachOfMesh(const SurfaceTable& s, const Vec3& low, const Vec3& high, const 
 
 }  // namespace detail
 
-/// Calls `use` with every triangle that reaches between `low` and `high`, and perhaps with some
-/// nearby.
+/// Calls `use` with every triangle between `low` and `high`, and possibly some nearby ones.
 template <class Use>
 void EachTriangle(const SurfaceTable& s, const Vec3& low, const Vec3& high,
                   const Use& use) noexcept {

@@ -8,11 +8,12 @@
 namespace taut::sim {
 namespace {
 
-/// Size of the grid: a triangle lies in few buckets, and a bucket contains few triangles.
+/// Number of grid buckets per triangle: a compromise between buckets per triangle and triangles per
+/// bucket.
 constexpr double kBucketsPerTriangle = 2.0;
 constexpr double kMostBuckets = 4e6;
-/// Maximum of the entries of all buckets. Each triangle is in all buckets of its bounding box, so
-/// that long triangles across the mesh could be in millions.
+/// Maximum number of entries in all buckets. Each triangle is in all buckets of its bounding box,
+/// so long diagonal triangles could be in millions.
 constexpr double kEntriesPerTriangle = 16.0, kMostFurtherEntries = 1e6;
 
 bool Rises(const HeightFieldDef& field, int i, int j) {
@@ -91,7 +92,7 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
   }
   const Vec3 size = t.high - t.low;
   const double longest = std::max({size.x, size.y, size.z});
-  // About as many buckets as triangles where the surface is bent; fewer where it is thin.
+  // About as many buckets as triangles for bent surfaces; fewer for thin ones.
   const double count = static_cast<double>(mesh.triangles.size());
   t.bucket_m = longest / std::clamp(std::sqrt(kBucketsPerTriangle * count), 1.0, 1024.0);
   const auto buckets = [&](double extent) {
@@ -112,7 +113,7 @@ Surface::Surface(const TerrainMeshDef& mesh) : corners_(mesh.corners_m) {
       high[axis] = CellAt(std::max({at(v[0]), at(v[1]), at(v[2])}), t.buckets[axis]);
     }
   };
-  // In doubles: the sum may exceed an int by far.
+  // in doubles, because the sum may exceed an int by far
   const auto entries = [&] {
     double sum = 0;
     for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {

@@ -1,4 +1,4 @@
-/// Construction of a terrain surface's tables from a height field or a mesh.
+/// Construction of the tables of a terrain surface from a height field or a mesh.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,10 @@ class Surface {
   explicit Surface(const HeightFieldDef& field);
   explicit Surface(const TerrainMeshDef& mesh);
 
-  /// The address stays the same if the surface is moved.
+  /// Moving the surface does not change this address.
   const SurfaceTable& table() const { return *table_; }
 
-  /// Adjacent pieces; they must outlive the surface.
+  /// Sets the adjacent pieces, which must outlive the surface.
   void Join(const SeamList& seams);
 
  private:

@@ -7,14 +7,14 @@
 namespace taut::sim {
 namespace {
 
-/// A shorter stretch of a line, as a share of the radius, has no separate contact.
+/// A shorter segment, relative to the radius, has no contact of its own.
 constexpr double kShortStretch = 1e-6;
-/// sin^2 of the angle below which rod and edge are parallel and have no separate contact.
+/// sin^2 of the angle below which rod and edge count as parallel, without a contact of their own.
 constexpr double kParallel = 1e-24;
-/// Sine above which a piece that rises from a point of another one is nearer.
+/// Sine above which a piece that rises from a point of another one counts as nearer.
 constexpr double kCovers = 1e-7;
 
-/// Search for the contacts of a line with edges and corners.
+/// Search for contacts of a line with edges and corners.
 class LineSearch {
  public:
   LineSearch(const SurfaceTable& s, const LineReach& line, double radius_m, LinePlace* out,
@@ -36,8 +36,8 @@ class LineSearch {
     const Vec3 edge = end - start, a = from_ - start, c = Cross(along_, edge);
     const double edge2 = Dot(edge, edge), c2 = Dot(c, c), apart = Dot(a, c);
     if (!(c2 > kParallel * along2_ * edge2)) return;
-    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // distance of the two straight lines
-    // Within the edge's length, and beyond all of its triangles.
+    if (apart * apart > limit_m_ * limit_m_ * c2) return;  // distance of the two infinite lines
+    // within the length of the edge, and outside of all its triangles
     LineStretch outside = reach_;
     const double from_edge = Dot(a, edge), along_edge = Dot(along_, edge);
     outside.CutAbove(-from_edge, -along_edge);
@@ -59,14 +59,14 @@ class LineSearch {
       Take(piece, share, at, false);
       return;
     }
-    // Under a ridge: the line has passed through it, and leaves across it.
+    // Below a ridge: the line has passed through it, and exits over it.
     if (!s_.solid || e.sides != 2) return;
     const double beside = from_edge + crossing * along_edge;
     if (!(beside > 0.0 && beside < edge2)) return;
     const Vec3 under = a + crossing * along_;
     const auto inside = [&](int side, int other) noexcept {
       Vec3 n = Cross(edge, e.apex[side] - e.from);
-      if (Dot(n, e.apex[other] - e.from) > 0.0) n = -1.0 * n;  // outwards
+      if (Dot(n, e.apex[other] - e.from) > 0.0) n = -1.0 * n;  // outward
       return Dot(n, under) < 0.0;
     };
     if (inside(0, 1) && inside(1, 0) && IsUnder(under + e.from)) {
@@ -95,9 +95,9 @@ class LineSearch {
   int count() const noexcept { return count_; }
 
  private:
-  /// Returns whether a point on an edge, or a corner, belongs to the joint surface of all pieces
-  /// that meet there: no piece is nearer to the line, and they do not continue straight on both
-  /// sides along it, where the ends of the line support it.
+  /// Returns whether an edge point or a corner belongs to the joint surface of all adjacent pieces.
+  /// Conditions: no piece is nearer to the line, and the pieces do not continue straight on both
+  /// sides along it, since then the ends of the line support it.
   bool IsOpen(const Vec3& start, const Vec3& end, double share, const Vec3& at,
               bool inside) const noexcept {
     const Vec3 away = from_ + share * along_ - at;
@@ -112,12 +112,12 @@ class LineSearch {
     return !GoesStraightOn(&s_, s_.seams, at, way, true) ||
            !GoesStraightOn(&s_, s_.seams, at, -1.0 * way, true);
   }
-  /// Tests it for a field; for a mesh both triangles have already shown it.
+  /// Tests a field; for a mesh, both triangles have already shown it.
   bool IsUnder(const Vec3& p) const noexcept { return !s_.is_field || DepthBelow(s_, p) > 0.0; }
 
   void Take(const LineStretch& piece, double share, const Vec3& at, bool inside) noexcept {
     if (!(share >= piece.low && share < piece.high)) return;
-    if (share <= apart_ || share >= 1.0 - apart_) return;  // the ends have this contact
+    if (share <= apart_ || share >= 1.0 - apart_) return;  // contact of an end
     const Vec3 away = from_ + share * along_ - at;
     const double distance = Norm(away);
     if (!(distance <= limit_m_ && distance > 0.0)) return;
@@ -125,7 +125,7 @@ class LineSearch {
     while (place > 0 && share < out_[place - 1].share) --place;
     const double sign = inside ? -1.0 : 1.0;
     const LinePlace found{share, {at, (sign / distance) * away, sign * distance}};
-    // Of two at the same place the nearer one is kept.
+    // Of two contacts at the same place, the nearer one is kept.
     const bool repeats_before = place > 0 && share - out_[place - 1].share < apart_;
     const bool repeats_after = place < count_ && out_[place].share - share < apart_;
     if (repeats_before || repeats_after) {
@@ -134,7 +134,7 @@ class LineSearch {
       return;
     }
     if (count_ == most_) {
-      // Drop the farthest.
+      // remove the farthest
       int farthest = 0;
       for (int i = 1; i < count_; ++i) {
         if (out_[i].place.distance_m > out_[farthest].place.distance_m) farthest = i;
@@ -151,7 +151,7 @@ class LineSearch {
 
   const SurfaceTable& s_;
   Vec3 from_, along_;
-  LineStretch reach_;  ///< Beyond it nothing is within the limit.
+  LineStretch reach_;  ///< Outside of this part, nothing is within the limit.
   double along2_, limit_m_, short_, apart_;
   LinePlace* out_;
   int most_, count_ = 0;
@@ -163,7 +163,7 @@ LineReach ReachOfLine(const SurfaceTable& s, const Vec3& from, const Vec3& to,
                       double limit_m) noexcept {
   LineReach line{from, to - from, 0.0, 1.0, limit_m};
   const Vec3 reach{limit_m, limit_m, limit_m};
-  // After each large cut, the ground below the rest may be lower.
+  // After each large cut, the terrain below the rest may be lower.
   for (double before = 4.0; line.low <= line.high && line.high - line.low < 0.5 * before;) {
     before = line.high - line.low;
     const Vec3 a = line.At(line.low), b = line.At(line.high);

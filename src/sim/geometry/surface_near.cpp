@@ -1,6 +1,6 @@
-// Contacts of a point with a surface are the local minima of its distance over the whole surface: a
-// place in a triangle, or on a sharp edge or corner that is the nearest place of every adjacent
-// triangle. So edges within a plane do not disturb bodies that roll over them.
+// Contacts of a point with a surface are local minima of its distance: points in triangles, or on
+// sharp edges and corners that are the nearest point of every adjacent triangle. So edges within a
+// plane do not disturb bodies that roll over them.
 #include "sim/geometry/surface_near.h"
 
 #include "math/scalar.h"
@@ -9,25 +9,25 @@
 namespace taut::sim {
 namespace {
 
-/// Distance below which the direction from a place to a point is undefined [m].
+/// Distance below which the direction from a surface point to a point is undefined [m].
 constexpr double kCoincidentM = 1e-10;
-/// Relative difference of the distances that two triangles may compute for a common place.
+/// Relative difference of the distances computed from two triangles for a common point.
 constexpr double kSameDistance = 1e-12;
-/// The same for the rounding of coordinates [m].
+/// The same tolerance for rounding of coordinates [m].
 constexpr double kSameDistanceM = 1e-13;
-/// The same for the distance of the places, as the root.
+/// The same tolerance for the distance between surface points (square root of kSameDistance).
 constexpr double kSamePlace = 4e-6;
-/// Sine of the height above a triangle's plane, seen from its edge, below which a point counts as
-/// above the plane: then a place over an edge within a plane has the plane's normal, whichever
-/// triangle rounding selects.
+/// Sine of the elevation above the plane of a triangle, seen from its edge, below which a point
+/// counts as above the plane. A surface point on an edge within a plane then has the normal of the
+/// plane, whichever triangle rounding selects.
 constexpr double kAbovePlane = 1e-7;
 constexpr int kMaxPlaces = 16;
-/// Margin by which a border wall must be nearer than the surface to be the way out of a field: a
-/// point beyond the border by rounding stays on the surface.
+/// Factor and margin by which a border wall must be nearer than the surface to be the exit from a
+/// field. Rounding beyond the border then does not move a point to the wall.
 constexpr double kWallNearer = 0.9, kWallNearerM = 1e-6;
-/// Cosine above which directions are parallel.
+/// Directions with a larger cosine count as parallel.
 constexpr double kAlongNormal = 1.0 - 1e-9;
-/// Distances are compared without tolerance.
+/// No tolerance in comparisons of distances.
 constexpr SeamSlack kExactly{0.0, kAbovePlane};
 
 /// Returns the point of a triangle nearest to a given point. Source: C. Ericson, Real-Time
@@ -65,15 +65,14 @@ Vec3 NormalOf(const SurfaceTriangle& t) noexcept {
   return (1.0 / Norm(n)) * n;
 }
 
-/// The triangle nearest to a point.
+/// Triangle nearest to a point.
 struct NearestOfAll {
   double limit_m, distance_m;
   bool found = false;
   SurfaceTriangle triangle;
   Vec3 at;
 
-  /// `seams`: pieces whose covered points are no way out, with ways out perpendicular to a
-  /// triangle; or null.
+  /// `seams`: pieces whose covered points are no exits, with exits normal to a triangle; or null.
   NearestOfAll(const SurfaceTable& s, const Vec3& p, double limit, const SeamList* seams,
                const Vec3* middle) noexcept
       : limit_m(limit), distance_m(limit) {
@@ -93,8 +92,8 @@ struct NearestOfAll {
   }
 };
 
-/// Returns whether a point is inside a closed mesh, by the triangles at its nearest place: at an
-/// edge or a corner, by the triangle that faces the point most directly.
+/// Returns whether a point is inside a closed mesh, from the triangles at its nearest surface
+/// point. At an edge or corner, the triangle that faces the point most directly decides.
 bool IsInsideOfMesh(const SurfaceTable& s, const Vec3& p, const NearestOfAll& near) noexcept {
   if (!near.found) return false;
   const double same = near.distance_m * (1.0 + kSameDistance) + kSameDistanceM;
@@ -109,7 +108,7 @@ bool IsInsideOfMesh(const SurfaceTable& s, const Vec3& p, const NearestOfAll& ne
   return side < 0.0;
 }
 
-/// Returns the nearest place.
+/// Returns the nearest surface point.
 SurfacePlace PlaceOf(const NearestOfAll& near, const Vec3& p, bool inside) noexcept {
   const Vec3 away = p - near.at, normal = NormalOf(near.triangle);
   const double sign = inside ? -1.0 : 1.0;
@@ -123,7 +122,7 @@ SurfacePlace PlaceOf(const NearestOfAll& near, const Vec3& p, bool inside) noexc
   return {near.at, (sign / near.distance_m) * away, sign * near.distance_m};
 }
 
-/// Search for the local minima of a point's distance; keeps the nearest, in order of distance.
+/// Search for the local minima of a point's distance; keeps the nearest ones, sorted by distance.
 class PlaceSearch {
  public:
   PlaceSearch(const SurfaceTable& s, const Vec3* middle, const Vec3& point, double limit_m,
@@ -136,12 +135,12 @@ class PlaceSearch {
         out_(out),
         most_(most) {}
 
-  /// Adds a place within a triangle.
+  /// Adds a minimum within a triangle.
   void Face(const SurfaceTriangle& t) noexcept {
     const Vec3 n = Cross(t.p[1] - t.p[0], t.p[2] - t.p[0]);
     const double n2 = Dot(n, n), at = Dot(n, point_ - t.p[0]);
     if (at * at > limit_m_ * limit_m_ * n2) return;
-    // Pieces may have a gap where they meet.
+    // Adjacent pieces may have a gap between them.
     const double beside_m = seams_.count > 0 ? seams_.same_m : kCoincidentM;
     const double slack2 = kAbovePlane * kAbovePlane * (at * at) + beside_m * beside_m * n2;
     for (int k = 0; k < 3; ++k) {
@@ -152,7 +151,7 @@ class PlaceSearch {
     }
     // From the plane, not from a corner: the direction is then as accurate as the normal.
     const double length = Sqrt(n2), height = at / length;
-    // The solid lies behind its faces.
+    // The solid is behind its faces.
     if (solid_ && height < -kCoincidentM) return;
     const SurfacePlace place{point_ - (at / n2) * n,
                              (height < 0.0 ? -1.0 / length : 1.0 / length) * n, Abs(height)};
@@ -160,7 +159,7 @@ class PlaceSearch {
       return;
     Add(place);
   }
-  /// Adds a place on a sharp edge.
+  /// Adds a minimum on a sharp edge.
   template <class EdgeOf>
   void Edge(const Vec3& start, const Vec3& end, const EdgeOf& edge_of) noexcept {
     const Vec3 edge = end - start, a = point_ - start;
@@ -168,7 +167,7 @@ class PlaceSearch {
     const Vec3 away = a - (along / edge2) * edge;
     const double away2 = Dot(away, away);
     if (away2 > limit_m_ * limit_m_) return;
-    // A ridge that continues straight past a corner has no corner there.
+    // A straight ridge has no corner at its corners.
     const double beyond = Larger(-along, along - edge2);
     const double slack2 = kAbovePlane * kAbovePlane * away2 + kCoincidentM * kCoincidentM;
     if (beyond > 0.0 && beyond * beyond > slack2 * edge2) return;
@@ -183,7 +182,7 @@ class PlaceSearch {
     }
     AddAway(point_ - away, away);
   }
-  /// Adds a sharp corner.
+  /// Adds a minimum at a sharp corner.
   template <class EachBeside>
   void Corner(const Vec3& p, const EachBeside& each_beside) noexcept {
     const Vec3 away = point_ - p;
@@ -199,7 +198,7 @@ class PlaceSearch {
     }
     AddAway(p, away);
   }
-  /// Adds a place. The first of equal places is kept: a face's direction is exact.
+  /// Adds a minimum. The first of equal ones is kept, because the direction of a face is exact.
   void Add(const SurfacePlace& place) noexcept {
     const double same = kSamePlace * place.distance_m + kCoincidentM;
     for (int i = 0; i < kept_count_; ++i) {
@@ -232,15 +231,15 @@ class PlaceSearch {
   Vec3 kept_[kMaxPlaces];
 };
 
-/// Returns whether another piece covers a point of a wall and all points above it. Fields end in
-/// vertical walls below their border.
+/// Returns whether another piece covers a wall point and all points above it. Fields end at their
+/// border in vertical walls.
 bool IsWallCovered(const SurfaceTable& s, const SurfacePlace& place, const Vec3* middle) noexcept {
   if (s.seams.count == 0 || !IsCovered(s.seams, place.at, place.normal, kExactly)) return false;
   const Vec3 top{place.at.x, place.at.y, HeightAt(s, place.at.x, place.at.y)};
   return !IsExposed(s.seams, top, {place.at, place.normal, middle}, kExactly);
 }
 
-/// Finds the nearest point of the border walls to a point outside a field and below its border.
+/// Finds the nearest point on the border walls to a point outside a field and below its border.
 bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec3* middle,
                  SurfacePlace* out) noexcept {
   const Vec3 foot{Clamp(p.x, s.low.x, s.high.x), Clamp(p.y, s.low.y, s.high.y), p.z};
@@ -252,7 +251,7 @@ bool PlaceOnWall(const SurfaceTable& s, const Vec3& p, double limit_m, const Vec
   return !IsWallCovered(s, *out, middle);
 }
 
-/// Returns whether other pieces cover the shortest way out.
+/// Returns whether other pieces cover the shortest exit.
 bool IsWayCovered(const SurfaceTable& s, const NearestOfAll& near, const Vec3& p,
                   const Vec3* middle) noexcept {
   if (s.seams.count == 0) return false;
@@ -261,7 +260,7 @@ bool IsWayCovered(const SurfaceTable& s, const NearestOfAll& near, const Vec3& p
   return IsFaceCovered(s.seams, near.triangle, {near.at, out, middle}, kExactly);
 }
 
-/// Finds the shortest way out of a field, to its surface or through a wall.
+/// Finds the shortest exit from a field: to its surface or through a wall.
 bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double depth,
                    const Vec3* middle, SurfacePlace* out) noexcept {
   const SurfacePlace walls[] = {{{s.low.x, p.y, p.z}, {-1.0, 0.0, 0.0}, s.low.x - p.x},
@@ -292,8 +291,9 @@ bool WayOutOfField(const SurfaceTable& s, const Vec3& p, double limit_m, double 
   return best != nullptr;
 }
 
-/// Finds the shortest way out of a closed mesh. Returns false if the point is outside, or other
-/// pieces cover all ways. A point in a gap below the meeting distance is inside both pieces.
+/// Finds the shortest exit from a closed mesh. Returns false if the point is outside, or other
+/// pieces cover all exits. A point in a gap smaller than the tolerance `same_m` is inside both
+/// pieces.
 bool WayOutOfMesh(const SurfaceTable& s, const Vec3& p, double reach_m, const Vec3* middle,
                   bool* inside, SurfacePlace* out) noexcept {
   const NearestOfAll near(s, p, reach_m, nullptr, nullptr);
@@ -334,7 +334,7 @@ int NearestPlaces(const SurfaceTable& s, const Vec3& point, double limit_m, Surf
   if (above && known != nullptr && known->count == 0) return 0;
   PlaceSearch search(s, middle, point, limit_m, out, most);
   if (s.is_field && !above) {
-    // Inside: the depth limits the search.
+    // inside: the depth limits the search
     const double depth = DepthBelow(s, point);
     if (depth > 0.0) return WayOutOfField(s, point, limit_m, depth, middle, out) ? 1 : 0;
     if (PlaceOnWall(s, point, limit_m, middle, out)) search.Add(SurfacePlace(*out));

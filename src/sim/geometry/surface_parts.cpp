@@ -1,6 +1,7 @@
-// Selection of the parts of a field that could have a contact with a rod that has moved by less
-// than a slack. The conditions are those in surface_near.cpp and surface_line.cpp, each as a
-// distance and relaxed by the slack: none of these distances changes by more than the rod's points
+// Selection of the parts of a field that may have a contact with a rod after it has moved by less
+// than a slack. The conditions are the same as in surface_near.cpp and surface_line.cpp, written as
+// distances and relaxed by the slack. No such distance changes by more than the points of the rod
+// move.
 // move.
 #include "sim/geometry/surface_parts.h"
 
@@ -10,16 +11,16 @@
 namespace taut::sim {
 namespace {
 
-/// More than the tolerances of the conditions for rounding: of the limit, and [m].
+/// Larger than the rounding tolerances of the conditions: relative to the limit, and in [m].
 constexpr double kRounding = 1e-6, kRoundingM = 1e-9;
 
-/// Search around the place of a point or a rod: largest distance of relevant parts, and slack of
-/// all other conditions.
+/// Search around a point or a rod: largest distance of relevant parts, and slack of all other
+/// conditions.
 struct Around {
   const SurfaceTable& s;
   double reach_m, slack_m;
 
-  /// Returns whether `x`, a length times the root of `unit2`, is at most the slack.
+  /// Returns whether the length `x` * sqrt(`unit2`) is at most the slack.
   bool Below(double x, double unit2) const noexcept {
     return x <= 0.0 || x * x <= slack_m * slack_m * unit2;
   }
@@ -79,7 +80,7 @@ class LineFilter {
     beside.CutAbove(-from_edge - slack, -along_edge);
     beside.CutAbove(from_edge - edge2 - slack, along_edge);
     if (beside.low > beside.high) return false;
-    // Least distance from the edge's straight line on a stretch.
+    // smallest distance from the infinite line of the edge on a segment
     const Vec3 apart = a - (from_edge / edge2) * edge;
     const Vec3 parting = along_ - (along_edge / edge2) * edge;
     const auto in_reach = [&](const LineStretch& stretch) noexcept {
@@ -118,7 +119,7 @@ class LineFilter {
     const Vec3 there = a + least * along_;
     return Dot(there, there) <= a_.reach_m * a_.reach_m;
   }
-  /// Returns whether the line may be under a tested edge.
+  /// Returns whether the line may be below a tested edge.
   bool under() const noexcept { return under_; }
 
  private:
@@ -163,8 +164,8 @@ void AddSharp(const Around& around, const LineReach& line, const Filter& filter,
   });
 }
 
-/// Returns whether a point that has moved by less than the slack is above a field's rectangle and
-/// above the whole field there.
+/// Returns whether a point that has moved by less than the slack is above the rectangle of a field
+/// and above the whole field there.
 bool IsAbove(const Around& around, const Vec3& point) noexcept {
   const SurfaceTable& s = around.s;
   const Vec3 slack{around.slack_m, around.slack_m, around.slack_m};
@@ -214,7 +215,7 @@ bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double l
   kept.looks = 0;
   kept.from = from, kept.to = to, kept.by_x = detail::GoesByX(to - from);
   kept.limit_m = limit_m + slack_m;
-  // The third slack absorbs rounding.
+  // The third slack allows for rounding.
   const LineReach line = ReachOfLine(s, from, to, limit_m + 3.0 * slack_m);
   const Around around{s, line.limit_m, slack_m + kRounding * line.limit_m + kRoundingM};
   const bool ball = from.x == to.x && from.y == to.y && from.z == to.z;

@@ -1,6 +1,6 @@
 /// Searches near a height field that cache the parts found (near_parts.h).
 ///
-/// Part of a step: no standard library.
+/// Part of a step, so without the standard library.
 #pragma once
 
 #include "sim/geometry/contact_cache.h"
@@ -8,16 +8,16 @@
 
 namespace taut::sim {
 
-/// Returns the factor on the limit with which a field is searched. Above 1, so that the bounds
-/// exclude nothing that the contact conditions accept: cached parts come from other bounds.
+/// Returns the factor on the limit for searches in a field. It is above 1, so that bounds exclude
+/// nothing that the contact conditions accept, since cached parts come from other bounds.
 inline double WiderLook(const SurfaceTable& s) noexcept { return s.is_field ? 1.001 : 1.0; }
 
-/// Returns whether the cache of a rod or a ball is valid for its present place.
+/// Returns whether the cache of a rod or a ball is valid for its current position.
 bool Serves(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
             const NearParts& kept) noexcept;
 
-/// Fills the cache if that is worth it, which it is not while the rod keeps moving out of it.
-/// Returns whether it did.
+/// Fills the cache if this is worthwhile, which is not so while the rod keeps leaving it. Returns
+/// whether the cache was filled.
 bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
                NearParts& kept) noexcept;
 

@@ -1,4 +1,4 @@
-// Detection of the sharp edges and corners of a surface, when it is laid out.
+// Detection of sharp edges and corners during the construction of a surface.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -9,18 +9,19 @@
 namespace taut::sim {
 namespace {
 
-/// Angle of two triangles' planes below which they continue straight [rad]: a rod would touch the
-/// edge between them on a stretch of less than a millionth of its radius, which is omitted
-/// (surface_line.cpp).
+/// Angle between the planes of two triangles below which they continue straight [rad]. A rod would
+/// touch the edge between them over less than a millionth of its radius, which surface_line.cpp
+/// ignores.
 constexpr double kStraight = 1e-8;
-/// Least number of sharp edges at a sharp corner: fewer do not span a cone.
+/// Minimum number of sharp edges at a sharp corner; fewer do not span a cone.
 constexpr int kEdgesOfSharpCorner = 3;
 
 /// Returns 1 if the sides of an edge fall away from each other by more than kStraight, -1 if they
-/// rise, else 0; seen from the side where the corners of the first triangle run counter-clockwise.
+/// rise, otherwise 0. Seen from the side where the corners of the first triangle are
+/// counterclockwise.
 int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other) {
   const Vec3 along = to - from, n = Cross(along, apex - from), m = Cross(along, other - from);
-  // This is the sine of the angle times the lengths of n and m, per length of the edge.
+  // sine of the angle times the lengths of n and m, divided by the length of the edge
   const double sine = -Dot(n, other - from);
   if (sine * sine * Dot(along, along) <= kStraight * kStraight * Dot(n, n) * Dot(m, m)) return 0;
   return sine > 0.0 ? 1 : -1;
@@ -28,7 +29,7 @@ int Falls(const Vec3& from, const Vec3& to, const Vec3& apex, const Vec3& other)
 
 bool IsSharp(const SurfaceEdge& edge) {
   if (edge.border) return true;
-  // Counter-clockwise seen from above.
+  // counterclockwise seen from above
   const Vec3 up = Cross(edge.to - edge.from, edge.apex[0] - edge.from);
   return (up.z < 0.0 ? Falls(edge.to, edge.from, edge.apex[0], edge.apex[1])
                      : Falls(edge.from, edge.to, edge.apex[0], edge.apex[1])) > 0;
@@ -76,7 +77,7 @@ void Surface::MarkField() {
 void Surface::FindSharp() {
   SurfaceTable& t = *table_;
   const int triangles = static_cast<int>(triangles_.size()) / 3;
-  /// An edge: its first triangle, in which `to` follows `from`, and the third corners of all its
+  /// Edge: its first triangle, in which `to` follows `from`, and the third corners of all its
   /// triangles.
   struct Edge {
     int owner, from, to;

@@ -1,9 +1,9 @@
-/// Sharp edges and corners of a surface: they stick out, so that the flank of a rod may touch them.
+/// Sharp (convex) edges and corners of a surface, which the flank of a rod may touch.
 ///
-/// They are found once, when a surface is laid out (surface_build.h). A step tests only these, each
-/// once, with its neighbors at hand.
+/// They are found once, during the construction of a surface (surface_build.h). A step tests only
+/// these, each with its neighbors.
 ///
-/// Part of a step: no standard library.
+/// Part of a step, so without the standard library.
 #pragma once
 
 #include "sim/geometry/line_stretch.h"
@@ -11,27 +11,27 @@
 
 namespace taut::sim {
 
-/// An edge, with the third corners of its triangles: one at a border, else two; a mesh that is not
-/// solid may have more, of which kMaxSides count. At the border of a field the second one is a
-/// point straight below: there the ground ends in a wall.
+/// Edge with the third corners of its triangles: one at a border, otherwise two. A mesh that is not
+/// solid may have more, of which kMaxSides count. At the border of a field, the second one is a
+/// point straight below, where the terrain ends in a wall.
 struct SurfaceEdge {
   static constexpr int kMaxSides = 4;
   Vec3 from, to;
   Vec3 apex[kMaxSides];
   int sides;
-  bool border;  ///< At the border of a field.
+  bool border;  ///< Whether it is at the border of a field.
 };
 
 /// Part of a straight line, and the search distance around it.
 struct LineReach {
   Vec3 from, along;
-  double low, high;  ///< Shares.
+  double low, high;  ///< Positions on the line, 0 to 1.
   double limit_m;
   Vec3 At(double share) const noexcept { return from + share * along; }
 };
 
-/// Calls `use(stretch, low, high)` for a line piece by piece, with the bounds of its surroundings
-/// within reach.
+/// Calls `use(stretch, low, high)` for a line, segment by segment. `low`, `high`: bounds of the
+/// search region around the segment.
 template <class Use>
 void EachPiece(const SurfaceTable& s, const LineReach& line, const Use& use) noexcept {
   constexpr int kMaxPieces = 4096;
@@ -58,7 +58,7 @@ inline bool Rises(const SurfaceTable& s, int i, int j) noexcept {
   return (s.marks[j * s.columns + i] & kRising) != 0;
 }
 
-/// Returns the edge to which a mark of corner (i, j) refers.
+/// Returns the edge of a mark of corner (i, j).
 inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark mark) noexcept {
   const auto at = [&](int ci, int cj) noexcept { return CornerOf(s, ci, cj); };
   SurfaceEdge edge;
@@ -74,7 +74,8 @@ inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark ma
   const bool x = mark == kSharpAlongX;
   edge.from = at(i, j);
   edge.to = x ? at(i + 1, j) : at(i, j + 1);
-  // The third corner of a triangle lies above the end of the edge where the cell's diagonal ends.
+  // The third corner of a triangle is above the end of the edge at which the diagonal of the cell
+  // ends.
   if (x ? j + 1 < s.rows : i + 1 < s.columns) {
     const bool rises = Rises(s, i, j);
     edge.apex[edge.sides++] = x ? at(rises ? i + 1 : i, j + 1) : at(i + 1, rises ? j + 1 : j);
@@ -90,8 +91,8 @@ inline SurfaceEdge EdgeOfField(const SurfaceTable& s, int i, int j, FieldMark ma
   return edge;
 }
 
-/// Calls `use` with the other end of every edge at a corner of a field; at the border one of them
-/// leads down.
+/// Calls `use` with the other end of every edge at a corner of a field. At the border, one of these
+/// edges leads down.
 template <class Use>
 void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noexcept {
   const bool west = i > 0, east = i + 1 < s.columns, south = j > 0, north = j + 1 < s.rows;
@@ -109,8 +110,8 @@ void EachBesideOfField(const SurfaceTable& s, int i, int j, const Use& use) noex
   if (east && south && !Rises(s, i, j - 1)) use(CornerOf(s, i + 1, j - 1));
 }
 
-/// Visits the sharp edges and the sharp corner that belong to corner (i, j) of a field and reach
-/// above `floor`.
+/// Visits the sharp edges and the sharp corner of corner (i, j) of a field that reach above
+/// `floor`.
 template <class UseEdge, class UseCorner>
 void EachSharpOfCell(const SurfaceTable& s, int i, int j, double floor, const UseEdge& use_edge,
                      const UseCorner& use_corner) noexcept {
@@ -141,12 +142,11 @@ void EachSharpOfCell(const SurfaceTable& s, int i, int j, double floor, const Us
   }
 }
 
-/// Returns whether a line is followed along x, else along y.
+/// Returns whether a line is traversed along x; otherwise along y.
 inline bool GoesByX(const Vec3& along) noexcept { return Abs(along.x) >= Abs(along.y); }
 
-/// Visits the cells near a line, slab by slab across the axis along which the line extends
-/// furthest: the part of the line near a slab limits its cells and their least height. `use(i, j,
-/// floor)`.
+/// Visits the cells near a line with `use(i, j, floor)`, slab by slab along the dominant axis of
+/// the line. The part of the line near a slab limits its cells and their smallest height.
 template <class Use>
 void EachCellOfField(const SurfaceTable& s, const LineReach& line, const Use& use) noexcept {
   const Vec3 a = line.At(line.low), b = line.At(line.high);
@@ -213,7 +213,7 @@ void EachSharpOfBounds(const SurfaceTable& s, const Vec3& low, const Vec3& high,
   });
 }
 
-/// Visits them piece by piece of the line; pieces share the edges and corners near both.
+/// Visits them for each segment of the line. Segments share edges and corners that are near both.
 template <class UseEdge, class UseCorner>
 void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                      const UseCorner& use_corner) noexcept {
@@ -231,10 +231,10 @@ void EachSharpOfMesh(const SurfaceTable& s, const LineReach& line, const UseEdge
 
 }  // namespace detail
 
-/// Visits all sharp edges and corners within reach of a line, and perhaps some nearby:
+/// Visits all sharp edges and corners within reach of a line, and possibly some nearby ones:
 /// `use_edge(stretch, from, to, edge)`, where edge() returns the complete edge, and
-/// `use_corner(stretch, corner, each_beside)`. Whatever is within reach of a stretch is passed once
-/// with that stretch, and perhaps again with others.
+/// `use_corner(stretch, corner, each_beside)`. Each one within reach of a segment is visited once
+/// with this segment, and possibly again with others.
 template <class UseEdge, class UseCorner>
 void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_edge,
                const UseCorner& use_corner) noexcept {
@@ -250,13 +250,13 @@ void EachSharp(const SurfaceTable& s, const LineReach& line, const UseEdge& use_
       });
 }
 
-/// Visits them between bounds, each once: `use_edge(from, to, edge)` and `use_corner(corner,
-/// each_beside)`.
+/// Visits the sharp edges and corners between bounds, each once: `use_edge(from, to, edge)` and
+/// `use_corner(corner, each_beside)`.
 template <class UseEdge, class UseCorner>
 void EachSharpWithin(const SurfaceTable& s, const Vec3& low, const Vec3& high,
                      const UseEdge& use_edge, const UseCorner& use_corner) noexcept {
   if (!s.is_field) return detail::EachSharpOfBounds(s, low, high, use_edge, use_corner);
-  // One cell more: an edge belongs to its first corner.
+  // one cell more, because an edge belongs to its first corner
   const int i0 = CellAt((low.x - s.low.x) * s.inv_cell - 1.0, s.columns);
   const int i1 = CellAt((high.x - s.low.x) * s.inv_cell, s.columns);
   const int j0 = CellAt((low.y - s.low.y) * s.inv_cell - 1.0, s.rows);

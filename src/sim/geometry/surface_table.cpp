@@ -1,4 +1,4 @@
-// Heights of a field: at a place, and the maximum over a rectangle.
+// Heights of a field: at a point, and the maximum over a rectangle.
 #include "sim/geometry/surface.h"
 
 #include "sim/geometry/touch_list.h"
@@ -7,7 +7,7 @@ namespace taut::sim {
 
 namespace {
 
-/// Tolerance at a field's border within which a point counts as inside its rectangle [m].
+/// Tolerance at the border of a field within which a point counts as inside its rectangle [m].
 constexpr double kNoDistanceM = 1e-10;
 
 }  // namespace

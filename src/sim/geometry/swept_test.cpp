@@ -10,7 +10,7 @@ ShapePose PoseAfter(const MovingShape& s, double t) noexcept {
   ShapePose pose = s.at;
   const Vec3 turn = t * Load(s.w);
   const double angle2 = Dot(turn, turn);
-  const Vec3 half = (0.5 * (1.0 + angle2 / 12.0)) * turn;  // tan(angle / 2) like in a drift
+  const Vec3 half = (0.5 * (1.0 + angle2 / 12.0)) * turn;  // tan(angle / 2), as in a drift
   const double scale = 2.0 / (1.0 + Dot(half, half));
   for (int k = 0; k < 3; ++k) {
     const Vec3 column{s.at.r[k], s.at.r[3 + k], s.at.r[6 + k]};
@@ -27,7 +27,7 @@ Vec3 VelocityAt(const MovingShape& s, const Vec3& point, double t) noexcept {
   return Load(s.v) + Cross(Load(s.w), point - origin);
 }
 
-/// Returns the rate of the gap at a point, `t` from now [m/s].
+/// Returns the rate of the gap at a point at time `t` from now [m/s].
 double Rate(const MovingShape& a, const MovingShape& b, const TouchPoint& p, double t) noexcept {
   const Vec3 point = Load(p.point);
   return Dot(Load(p.normal), VelocityAt(a, point, t) - VelocityAt(b, point, t));
@@ -37,8 +37,8 @@ double FastestApproach(const MovingShape& a, const MovingShape& b) noexcept {
   return Norm(Load(a.v) - Load(b.v)) + Norm(Load(a.w)) * a.bound_m + Norm(Load(b.w)) * b.bound_m;
 }
 
-/// Returns the point of `later`, found at the moment of contact, that is the same as `point`; null
-/// if there is none.
+/// Returns the point in `later`, computed at the time of contact, that corresponds to `point`, or
+/// null.
 const TouchPoint* Same(const TouchPoint& point, bool only_one, const TouchPoint* later,
                        int later_count) noexcept {
   for (int i = 0; i < later_count; ++i) {
@@ -47,8 +47,8 @@ const TouchPoint* Same(const TouchPoint& point, bool only_one, const TouchPoint*
   return only_one && later_count > 0 ? later : nullptr;
 }
 
-/// Like Same on ground, whose features are numbered in the order found: returns the nearest point,
-/// if the shape may have moved so far.
+/// Like Same for surfaces, whose features are numbered in the order of detection: returns the
+/// nearest point, if the shape can have moved that far.
 const TouchPoint* SameOfGround(const TouchPoint& point, double travel_m, const TouchPoint* later,
                                int later_count) noexcept {
   const TouchPoint* same = nullptr;
@@ -73,7 +73,7 @@ uint32_t ClosingPoints(const MovingShape& a, const MovingShape& b, double step_s
 
 int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint32_t closing,
                 TouchPoint* points, int count) noexcept {
-  // Distances that count as contact: shares of the distance travelled and of the size.
+  // Distances that count as contact, relative to the displacement and to the size.
   constexpr double kNearTravel = 1e-3, kNearSize = 1e-9;
   constexpr int kMaxLooks = 1000;
   constexpr double kSamePlane = 1.0 - 1e-12;
@@ -103,7 +103,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
     meet = t < step_s;
     if (!meet) break;
   }
-  if (meet && !(t > 0.0)) return count;  // in contact already
+  if (meet && !(t > 0.0)) return count;  // already in contact
   TouchPoint later[kMaxPointsPerPair];
   const int later_count = meet ? touch_after(t, 2.0 * near_m, later) : 0;
   int kept = 0;
@@ -115,7 +115,7 @@ int KeepMeeting(const MovingShape& a, const MovingShape& b, double step_s, uint3
                 ? SameOfGround(points[i], speed * step_s + near_m, later, later_count)
                 : Same(points[i], count == 1, later, later_count);
     }
-    // On ground that continues straight, both places are on the same plane.
+    // On straight terrain, both points are in the same plane.
     if (met != nullptr && b.goes_on &&
         Dot(Load(met->normal), Load(points[i].normal)) > kSamePlane) {
       met = nullptr;

@@ -1,4 +1,4 @@
-/// Projection onto joint constraints (docs/theory/joints.md, eq. 7, 7a): at the end of a step it
+/// Projection onto joint constraints (docs/theory/joints.md, eq. 7, 7a). At the end of a step, it
 /// projects velocities and closes gaps (position projection).
 #pragma once
 
@@ -9,16 +9,17 @@
 
 namespace taut::sim {
 
-/// Returns the error of a held row: its measure, or for a distance the difference from its length.
+/// Returns the error of a constrained row: its measure; for a distance, the difference from its
+/// length.
 template <class W>
 TAUT_INLINE W MissOf(JointMeasure measure, const JointTable& j, W value) noexcept {
   return measure == JointMeasure::kDistance ? value - W::Splat(j.rest) : value;
 }
 
-/// Projects velocities onto the joint constraints, or by a share (eq. 7a). It applies impulses, so
-/// energy can only fall and momenta are conserved. `given(body)`: velocities of a kinematic body;
-/// `skip(joint)`: lanes in which a joint keeps its velocities. Calls took(number of the row in the
-/// model, impulse, row) for each.
+/// Projects velocities onto the joint constraints, completely or by a fraction (eq. 7a). It applies
+/// impulses, so momenta are conserved and energy never increases. `given(body)`: velocities of a
+/// kinematic body; `skip(joint)`: lanes in which a joint keeps its velocities. Calls took(number of
+/// the row in the model, impulse, row) for each row.
 template <class W, class F, class S, class G>
 void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
                        W share, const F& given, const S& skip, const G& took) noexcept {
@@ -60,7 +61,7 @@ void ProjectVelocities(const View& m, const Rows<W>& s, Scratch<W>& work, JointS
   }
 }
 
-/// Computes the displacements that close all joints to first order, into joint_memory.change.
+/// Computes the displacements that close all joints to first order. Result: joint_memory.change.
 template <class W>
 void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   JointSystem<W> system(m, s, work);
@@ -68,8 +69,8 @@ void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
   system.Solve([&](int r) { return system.gap(r); });
 }
 
-/// Conserves the angular momentum of a chain without a support: a common rotation compensates for
-/// the change (`gained`).
+/// Conserves the angular momentum of an unsupported chain: a common rotation compensates for the
+/// change (`gained`).
 template <class W>
 void KeepMomentumOf(const View& m, const Rows<W>& s, Scratch<W>& work, const int* bodies,
                     int count) noexcept {
@@ -89,8 +90,8 @@ void KeepMomentumOf(const View& m, const Rows<W>& s, Scratch<W>& work, const int
   }
 }
 
-/// Returns the largest gap of held rows and closed stops [m], per lane. `skip(joint)`: lanes in
-/// which a joint does not count.
+/// Returns the largest gap of constrained rows and closed joint limits [m], per lane.
+/// `skip(joint)`: lanes in which a joint is ignored.
 template <class W, class F>
 W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work, const F& skip) noexcept {
   W worst = W::Splat(0.0);
@@ -114,7 +115,7 @@ W WorstGap(const View& m, const Rows<W>& s, const Scratch<W>& work, const F& ski
   return worst;
 }
 
-/// Returns whether a stop presses without being held: bodies may have passed it.
+/// Returns whether an open joint limit has a contact force; bodies may have passed it.
 template <class W>
 bool StopsCatch(const View& m, const Scratch<W>& work) noexcept {
   const W zero = W::Splat(0.0);
@@ -135,8 +136,8 @@ void TurnJointedBodies(const View& m, const Rows<W>& s, Scratch<W>& work) noexce
   }
 }
 
-/// Displaces the bodies of `lanes` by the least amount that closes all gaps to first order.
-/// `closed(body)`: lanes in which a body stays in place.
+/// Displaces the bodies of `lanes` by the smallest amount that closes all gaps to first order.
+/// `closed(body)`: lanes in which a body keeps its position.
 template <class W, class F>
 void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>& system,
                MaskOf<W> in_lanes, const F& closed) noexcept {
@@ -173,7 +174,7 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>
   }
 }
 
-/// Adds the reaction and the work of a motion under an impulse on its body at the end of the step.
+/// Adds the force and work of a kinematic body's motion under an impulse at the end of the step.
 template <class W>
 void AddToMotion(const View& m, const Rows<W>& s, const Scratch<W>& work, const Link<W, 1>& link,
                  W impulse, W inv_h) noexcept {
@@ -186,8 +187,8 @@ void AddToMotion(const View& m, const Rows<W>& s, const Scratch<W>& work, const 
   s.motion_work[i] -= Select(s.halted[0] > W::Splat(0.0), W::Splat(0.0), work_done);
 }
 
-/// Stage: projects the initial velocities, as set by a file or a program, at the start of a world's
-/// first step.
+/// Stage: projects the initial velocities from a file or program, at the start of a world's first
+/// step.
 ///   reads   pos, quat     writes  vel, mom, bodies[].R
 template <class W>
 void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
@@ -208,7 +209,7 @@ void StageJointStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept
                     InNoLane<W>(), [](int, const W&, const JointRow<W>&) {});
 }
 
-/// Updates hinge angles to the current pose, `t` after the last reading.
+/// Updates hinge angles to the current pose, at time `t` after the last update.
 template <class W>
 void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) noexcept {
   for (int i = 0; i < m.joint_count; ++i) {
@@ -222,17 +223,17 @@ void FollowHinges(const View& m, const Rows<W>& s, const Scratch<W>& work, W t) 
 }
 
 /// Stage: projects half of the velocity error and closes the gaps left by the drifts. Angular
-/// momenta rotate with their bodies: otherwise a thin rod would spin about its axis.
+/// momenta rotate with their bodies; otherwise a thin rod would spin about its axis.
 ///   reads   pos, quat, joints[]     writes  pos, quat, vel, mom, bodies[].R, clearance,
 ///   joint_angle, joint_force, joint_torque, motion_force, motion_torque, motion_work
 template <class W>
 void StageJointPlaces(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
-  // A full projection would lose three times as much energy; without projection the error would
-  // change sign at every step.
+  // A full projection would lose three times as much energy. Without projection, the error would
+  // change its sign at every step.
   constexpr double kShare = 0.5;
   constexpr double kClosed_m = 1e-10;
-  // Between bodies with stiff cables, a gap is the compliance of the joint. Closing it would
-  // stretch the cables; wider gaps were set by a program.
+  // Between bodies with stiff cables, a small gap is due to the compliance of the joint, and
+  // closing it would stretch the cables. Wider gaps were set by a program.
   constexpr double kCompliant_m = 1e-5;
   constexpr int kRounds = 3;
   const W inv_h = W::Splat(1.0 / step_s);

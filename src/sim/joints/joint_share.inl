@@ -1,10 +1,10 @@
-/// Stability limit of joint forces: joint load as a share of the largest stable one
+/// Stability limit of joint forces: ratio of joint load to the largest stable load
 /// (docs/theory/joints.md, eq. 8).
 ///
-/// A joint's force is implicit along its direction and explicit across it, where it acts as a
-/// spring with a stiffness proportional to the load; the step must resolve its oscillation. A cheap
-/// bound per body suffices for most worlds. If it is exceeded, power iteration finds the highest
-/// natural frequency that the joints allow. Joints that were integrated together with stiff cables
+/// A joint force is implicit along its direction. Across it, the force is explicit and acts as a
+/// spring with a stiffness proportional to the load; the step must resolve its oscillation. For
+/// most worlds a cheap bound per body suffices. If it is exceeded, power iteration finds the
+/// highest natural frequency that the joints allow. Joints integrated together with stiff cables
 /// are implicit in all directions and have no such limit.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace taut::sim {
 
-/// Largest share of all bodies and its body, per lane.
+/// Largest ratio over all bodies, and the body with it, per lane.
 template <class W>
 struct JointShare {
   W share;
@@ -29,16 +29,17 @@ struct JointShare {
   }
 };
 
-/// Returns the tension of a distance joint per length [N/m]: its transverse stiffness.
+/// Returns tension / length of a distance joint [N/m], its transverse stiffness.
 template <class W>
 TAUT_INLINE W StiffnessAcross(const V3<W>& force, const V3<W>& gap) noexcept {
   return (W::Splat(0.0) - Dot(force, gap)) / Max(Dot(gap, gap), W::Splat(1e-300));
 }
 
-/// Bounds every body's share by its inertia alone. Rotation about the principal axes has the matrix
-/// I^-1 N, N = (F . r) 1 - F r^T per joint, whose eigenvalues are at most the largest row sum of
-/// absolute values. A distance joint has the transverse stiffness T = tension / length, and a
-/// body's part of T |d_b - d_a|^2 / 2 is at most T |d|^2, d = v + w x r: 4 T / m and 4 T |r|^2 / I.
+/// Computes an upper bound of every body's ratio from its inertia. Rotation about the principal
+/// axes has the matrix I^-1 N with N = (F . r) 1 - F r^T per joint. Its eigenvalues are at most the
+/// largest row sum of absolute values. A distance joint has the transverse stiffness T = tension /
+/// length. A body's part of T |d_b - d_a|^2 / 2 is at most T |d|^2, d = v + w x r: 4 T / m and 4 T
+/// |r|^2 / I.
 template <class W>
 JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
                             W quarter_h2) noexcept {
@@ -80,9 +81,9 @@ JointShare<W> BoundOfShares(const View& m, const Rows<W>& s, Scratch<W>& work,
   return bound;
 }
 
-/// Adds the restoring joint forces for displacements `x` to `forces` (6 numbers per body). A
-/// rotation t under a force F at the lever arm r has the restoring torque t (F . r) - F (r . t):
-/// the change of torque in the body frame.
+/// Adds the restoring joint forces for displacements `x` to `forces` (6 numbers per body). For a
+/// rotation t and a force F at the lever arm r, the restoring torque is t (F . r) - F (r . t): the
+/// change of the torque in the body frame.
 template <class W>
 void PushBack(const View& m, const Rows<W>& s, const Scratch<W>& work, const Row<W>& x,
               const Row<W>& forces) noexcept {
@@ -124,8 +125,9 @@ W Vigour(const Unknown<W>& body, const W* x) noexcept {
   return sum;
 }
 
-/// Returns h^2 w^2 / 4 for the highest natural frequency w compatible with the held rows, and the
-/// body with the largest amplitude: power iteration x <- A^-1 N x with the system A of eq. 7.
+/// Returns h^2 w^2 / 4 for the highest natural frequency w that the constrained rows allow, and the
+/// body with the largest amplitude. Method: power iteration x <- A^-1 N x with the system A of eq.
+/// 7.
 template <class W>
 JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
                              W quarter_h2) noexcept {
@@ -136,7 +138,7 @@ JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
   system.IncludeStops();
   system.Assemble();
   const int size = kDofs * m.joint_body_count;
-  // Start vector with all bodies; rotation scaled by the radius of gyration.
+  // Start vector with all bodies. Rotations are scaled by the radius of gyration.
   for (int k = 0; k < m.joint_body_count; ++k) {
     const int b = m.joint_bodies[k];
     const V3<W>& moments = s.inertia[b];
@@ -168,8 +170,9 @@ JointShare<W> ShareOfFastest(const View& m, const Rows<W>& s, Scratch<W>& work,
   return fastest;
 }
 
-/// Raises `worst` to (w h)^2 for rotation about a hinge whose distance from the center of mass
-/// exceeds 1e-3 of the radius of gyration, since the path along the arc is of second order.
+/// Increases `worst` to at least (w h)^2 for rotation about a hinge whose distance from the center
+/// of mass exceeds 1e-3 of the radius of gyration. The motion along the arc is accurate to second
+/// order only.
 template <class W>
 void RaiseByRotors(const View& m, const Rows<W>& s, const Scratch<W>& work, W h2,
                    JointShare<W>& worst) noexcept {
@@ -192,7 +195,7 @@ void RaiseByRotors(const View& m, const Rows<W>& s, const Scratch<W>& work, W h2
   }
 }
 
-/// Returns the share per lane; above 1 the step is too long.
+/// Returns the ratio per lane; above 1, the step is too long.
 template <class W>
 JointShare<W> ShareOfStableJoints(const View& m, const Rows<W>& s, Scratch<W>& work,
                                   double step_s) noexcept {

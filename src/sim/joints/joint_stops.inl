@@ -1,4 +1,4 @@
-/// Joint limits (stops; docs/theory/joints.md, section 3): approach, holding and rebound.
+/// Joint limits (stops; docs/theory/joints.md, section 3): approach, closed state and rebound.
 #pragma once
 
 #include "sim/contacts/prepare_contact.inl"
@@ -8,13 +8,15 @@
 
 namespace taut::sim {
 
-/// Largest gap, besides the arc's sagitta, at which a stop that pressed stays held [m].
+/// Largest gap, in addition to the sagitta of the arc, at which a limit with a contact force stays
+/// closed [m].
 inline constexpr double kStopClosedM = 1e-7;
 
-/// A held stop reverses a residual velocity up to this share of the change in the step.
+/// A closed limit reverses a residual velocity up to this fraction of the velocity change in the
+/// step.
 inline constexpr double kStopTurned = 0.1;
 
-/// Predicts the joint after `t` at the velocities a and b.
+/// Predicts the pose of a joint after time `t` at the velocities a and b.
 template <class W>
 JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<W>& b,
                          W t) noexcept {
@@ -29,15 +31,15 @@ JointPlace<W> PlaceAfter(const JointPlace<W>& p, const Twist<W>& a, const Twist<
   return q;
 }
 
-/// Returns the angle of a hinge near `last`; 0 for other joints.
+/// Returns the angle of a hinge, unwrapped near `last`; 0 for other joints.
 template <class W>
 TAUT_INLINE W AngleAt(const JointTable& j, const JointPlace<W>& p, W last) noexcept {
   return j.has_angle ? HingeAngle(p, last) : W::Splat(0.0);
 }
 
-/// Free motion of a body in the second half of the step: mean and final velocities. Its spin w
-/// changes by w1 = I^-1 (L x w), reduced where the body rotates by about 1 rad per step and the
-/// series fails.
+/// Free motion of a body in the second half of the step: mean and final velocities. The angular
+/// velocity w changes by w1 = I^-1 (L x w). Near rotations of 1 rad per step, where this series
+/// fails, the change is reduced.
 template <class W>
 struct FreeHalf {
   Twist<W> mean, end;
@@ -54,8 +56,8 @@ struct FreeHalf {
   }
 };
 
-/// Returns the change of a row's velocity over half a step along the arcs of its bodies: free
-/// motion at the velocities before the step.
+/// Returns the change of a row's velocity over half a step of free motion: its bodies move on arcs
+/// at their velocities before the step.
 template <class W>
 W BendOf(const Scratch<W>& work, const JointTable& j, const JointRowTable& table,
          const JointPlace<W>& place, const JointDirection<W>& d, W angle, W half_h) noexcept {
@@ -66,8 +68,9 @@ W BendOf(const Scratch<W>& work, const JointTable& j, const JointRowTable& table
          RateOf(place, d, Before(a), Before(b));
 }
 
-/// Predicts the velocities of a body after the step under the forces of the previous step: its last
-/// change of velocity, or in the first step the applied forces. Torques keep their lever arms.
+/// Predicts the velocities of a body after the step under the forces of the previous step: adds its
+/// last velocity change; in the first step, the effect of the applied forces. Torques keep their
+/// lever arms.
 template <class W>
 Twist<W> Ahead(const Rows<W>& s, const BodyWork<W>& body, int b, bool moves, W h) noexcept {
   Twist<W> t = Free(body);
@@ -78,10 +81,10 @@ Twist<W> Ahead(const Rows<W>& s, const BodyWork<W>& body, int b, bool moves, W h
   return t;
 }
 
-/// Returns the rebound speed at a stop with restitution e (eq. 15), or 0. `before`: row velocity;
+/// Returns the rebound speed at a limit with restitution e (eq. 15), or 0. `before`: row velocity;
 /// `kick`: its decrease by forces in the step; `gap`: at the middle of the step. The impact is
-/// evaluated at the stop and extrapolated back under the acceleration of forces and arc. A bounce
-/// that ends within the step does not count.
+/// evaluated at the limit and extrapolated back under the acceleration of forces and arc. A bounce
+/// that ends within the step is ignored.
 template <class W>
 W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
   const W zero = W::Splat(0.0), half = W::Splat(0.5), one = W::Splat(1.0);
@@ -94,13 +97,13 @@ W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
   return Select(bounces, speed, zero);
 }
 
-/// Sets the law of a stop (eq. 4). `load`: its force in the previous step [N].
+/// Sets the law of a joint limit (eq. 4). `load`: its force in the previous step [N].
 ///
-/// A stop that pressed and is closed is held: it reverses the small residual velocity of the
-/// previous step (eq. 3), so that it does no work. A larger one, as after a snatch, would return;
-/// then the bodies end the step at rest on their arc. Other stops let their bodies approach until
-/// they touch. From beyond a stop bodies return no faster than this step's forces would move them
-/// further, as from inside a contact (contact.md, eq. 2); StageJointPlaces closes the remaining
+/// A limit that had a force and is closed reverses the small residual velocity of the previous step
+/// (eq. 3), so that it does no work. A larger velocity, for example after a snatch, would return;
+/// then the bodies end the step at rest on their arc. Other limits let their bodies approach until
+/// contact. Beyond a limit, bodies return no faster than the forces of this step would move them
+/// further, as in a penetrating contact (contact.md, eq. 2). StageJointPlaces closes the remaining
 /// distance of about a step.
 template <class W>
 void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
@@ -111,7 +114,7 @@ void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
   const W before = RateOf(place, d, Before(a), Before(b)), speed = Abs(before);
   const W free = RateOf(place, d, Free(a), Free(b)), gap = d.value;
   const W bend = BendOf(work, j, table, place, d, angle, half * h);
-  // Distance between chord and arc at the middle of the step (sagitta).
+  // distance between chord and arc at the middle of the step (sagitta)
   const W sagitta = W::Splat(0.25) * h * bend, off = gap - sagitta;
   row.reach = h * (speed + Abs(free)) + W::Splat(kContactMarginM);
   row.live = Select(gap < row.reach, row.live, zero);
@@ -124,7 +127,7 @@ void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
   const auto small = Abs(before - bend) < W::Splat(kStopTurned) * (Abs(bend) + Abs(before - free));
   const W at_rest = zero - Max(bend, before), turned = zero - before;
   row.target = Select(held, Select(small, turned, at_rest), zero - (bend + back));
-  // The previous force does not measure the forces that pull bodies away from the stop.
+  // The previous force is no measure of forces that pull bodies away from the limit.
   const W kick =
       before - RateOf(place, d, Ahead(s, a, j.a, j.a_moves, h), Ahead(s, b, j.b, j.b_moves, h));
   const W least_kick = Select(pressed, zero, zero - speed);
@@ -138,9 +141,9 @@ TAUT_INLINE MaskOf<W> Presses(const HeldRow<W>& row) noexcept {
   return (row.live > zero) & (row.l[0] > zero);
 }
 
-/// Returns the lanes in which displacements close a stop: it pressed in this step, and is held or
-/// was passed. A stop passed by more than one step's motion (initial or set state) is left to eq.
-/// 4.
+/// Returns the lanes in which displacements close a limit. It had a force in this step, and is
+/// closed or was passed. If it was passed by more than the motion of one step (initial or set
+/// state), eq. 4 returns the bodies instead.
 template <class W>
 MaskOf<W> IsClosedAtEnd(const HeldRow<W>& row, W gap) noexcept {
   const W zero = W::Splat(0.0);

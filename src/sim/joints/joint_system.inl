@@ -1,8 +1,9 @@
-/// Linear system of all held joint rows over the jointed bodies in all lanes: the mass-weighted
-/// least change that brings the rows to their targets (docs/theory/joints.md, eq. 7).
+/// Linear system of all constrained joint rows over the bodies with joints, in all lanes: the
+/// smallest mass-weighted change that brings the rows to their targets (docs/theory/joints.md, eq.
+/// 7).
 ///
-/// Bodies, rows and blocks follow from the model. Redundant rows share their load: each row gets a
-/// compliance proportional to its inverse effective mass, and a second pass removes the remaining
+/// The model determines bodies, rows and blocks. Redundant rows share their load: each row has a
+/// compliance proportional to its inverse effective mass. A second pass removes the remaining
 /// error.
 #pragma once
 
@@ -24,8 +25,8 @@ class JointSystem {
         mem_(work.joint_memory),
         matrix_(*m.joint_pattern, mem_.blocks) {}
 
-  /// Adds pressing stops (joint limits) to the held rows: held stops, or all that are closed at the
-  /// end.
+  /// Adds joint limits with contact forces to the constrained rows: closed limits, or all that are
+  /// closed at the end.
   void IncludeHeldStops() noexcept { held_stops_ = true; }
   void IncludeStops() noexcept { held_stops_ = passed_stops_ = true; }
 
@@ -60,8 +61,8 @@ class JointSystem {
   int number(int r) const noexcept { return mem_.number[r]; }  ///< Number among the model's rows.
   W gap(int r) const noexcept { return mem_.gap[r]; }
 
-  /// Solves for the impulses that cancel the row velocities `miss(row)` (or for displacements, the
-  /// gaps), and for the velocity changes: impulse(row), change(k) by the number of the body.
+  /// Solves for the impulses that cancel the row velocities `miss(row)`, or for the displacements
+  /// that cancel gaps. Results: impulse(row), and the velocity changes change(k) of body k.
   template <class F>
   void Solve(const F& miss) noexcept {
     const W zero = W::Splat(0.0);
@@ -87,7 +88,7 @@ class JointSystem {
   }
   W impulse(int r) const noexcept { return mem_.l[r]; }
 
-  /// Computes the response to the generalized forces `x` (6 per body) with all held rows fixed.
+  /// Computes the response to generalized forces `x` (6 per body) with all constrained rows fixed.
   void GiveWay(W* x) const noexcept { matrix_.Solve(x); }
 
   Twist<W> change(int k) const noexcept {
@@ -95,8 +96,7 @@ class JointSystem {
   }
 
  private:
-  /// Adds row `r` of the model. `stiffness(A)`: stiffness as a function of the inverse effective
-  /// mass.
+  /// Adds row `r` of the model. `stiffness(A)`: stiffness for the inverse effective mass A.
   template <class F>
   void Add(int r, const JointTable& j, const JointPlace<W>& p, const JointDirection<W>& d, W gap,
            const F& stiffness) noexcept {
@@ -111,7 +111,8 @@ class JointSystem {
     matrix_.Add(row, &mem_.G[rows_]);
     ++rows_;
   }
-  /// Appends stops to the held rows. In lanes where a stop is open its row has zero weight.
+  /// Appends joint limits to the constrained rows. In lanes with an open limit, its row has zero
+  /// weight.
   void AddStops() noexcept {
     const W zero = W::Splat(0.0), one = W::Splat(1.0), least = W::Splat(1e-300);
     for (int r = 0; r < m_.joint_row_count; ++r) {

@@ -1,23 +1,24 @@
-/// Joints (docs/theory/joints.md): rows for the solver at the middle of the step, kinematic loops
-/// included, and loads from their impulses.
+/// Joints (docs/theory/joints.md): rows for the solver at the middle of the step, including
+/// kinematic loops, and loads from their impulses.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Pose of a joint: its points and axes in W, the points relative to their bodies' centers of mass.
+/// Pose of a joint: points and axes in W. Points are relative to the centers of mass of their
+/// bodies.
 template <class W>
 struct JointPlace {
   V3<W> own_a, own_b;  ///< [m]
-  V3<W> gap;           ///< From a's point to b's [m].
+  V3<W> gap;           ///< From a's point to b's point [m].
   M3<W> axes_a, axes_b;
 
-  V3<W> arm_a() const noexcept { return own_a + gap; }  ///< To b's point.
+  V3<W> arm_a() const noexcept { return own_a + gap; }  ///< Lever arm to b's point.
 };
 
-/// A row's direction for b's velocity at its point and for b's rotation, with the value of the
-/// row's coordinate, whose rate it determines; the directions for a are opposite.
+/// Directions of a row for b's velocity at its point and for b's rotation; the directions for a are
+/// opposite. Also the coordinate of the row, whose rate is the row velocity.
 template <class W>
 struct JointDirection {
   V3<W> lin, turn;
@@ -30,7 +31,7 @@ TAUT_INLINE M3<W> AxesOf(const M3<W>& R, const double* axes_P) noexcept {
           R * simd::Splat3<W>(axes_P + 6)};
 }
 
-/// Returns the pose of a joint, with the frames in `work`.
+/// Returns the pose of a joint from the frames in `work`.
 template <class W>
 JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const Scratch<W>& work,
                       const JointTable& j) noexcept {
@@ -44,8 +45,8 @@ JointPlace<W> PlaceOf(const View& m, const Rows<W>& s, const Scratch<W>& work,
   return p;
 }
 
-/// Returns the unwrapped angle of a hinge closest to `expected`. The two may differ by half a turn
-/// at most, so `expected` has to follow the hinge's rate.
+/// Returns the unwrapped angle of a hinge nearest to `expected`, which must be accurate to half a
+/// turn. Therefore `expected` must follow the rate of the hinge.
 template <class W>
 TAUT_INLINE W HingeAngle(const JointPlace<W>& p, W expected) noexcept {
   const W turn = W::Splat(2 * simd::kPi), inv_turn = W::Splat(0.5 / simd::kPi);
@@ -53,8 +54,8 @@ TAUT_INLINE W HingeAngle(const JointPlace<W>& p, W expected) noexcept {
   return angle + turn * simd::Round(inv_turn * (expected - angle));
 }
 
-/// Returns the rotation from a's axes to b's as a vector in W: axis times angle, 0..pi. At a half
-/// turn, one of the two possible vectors.
+/// Returns the rotation from a's axes to b's axes as a vector in W: axis * angle, 0..pi. At half a
+/// turn, it is one of the two possible vectors.
 template <class W>
 V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   const W zero = W::Splat(0.0), one = W::Splat(1.0), tiny = W::Splat(1e-300);
@@ -63,7 +64,7 @@ V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   const W ab = Dot(p.axes_a.r0, p.axes_b.r1), ba = Dot(p.axes_a.r1, p.axes_b.r0),
           ac = Dot(p.axes_a.r0, p.axes_b.r2), ca = Dot(p.axes_a.r2, p.axes_b.r0),
           bc = Dot(p.axes_a.r1, p.axes_b.r2), cb = Dot(p.axes_a.r2, p.axes_b.r1);
-  // Quaternion times its transpose, 4 q q^T; each row is parallel to q, and the largest one is well
+  // Quaternion times its transpose, 4 q q^T. Each row is parallel to q, and the largest one is well
   // conditioned.
   const W w[4] = {one + aa + bb + cc, cb - bc, ac - ca, ba - ab};
   const W x[4] = {w[1], one + aa - bb - cc, ab + ba, ac + ca};
@@ -80,8 +81,8 @@ V3<W> TurnOf(const JointPlace<W>& p) noexcept {
   return (scale * q[1]) * p.axes_a.r0 + (scale * q[2]) * p.axes_a.r1 + (scale * q[3]) * p.axes_a.r2;
 }
 
-/// Returns direction and value of a measure. `angle`: of a hinge, with whole turns. The value of a
-/// ball's rotation is TurnOf.
+/// Returns direction and value of a measure. `angle`: angle of a hinge, including whole turns. For
+/// the rotation of a ball joint, TurnOf returns the value.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -127,8 +128,8 @@ JointDirection<W> DirectionOf(const JointTable& j, JointMeasure measure, const J
           reach * simd::Atan2(sine, Dot(p.axes_a.r0, p.axes_b.r0))};
 }
 
-/// Returns the same with the sign of the row's role. A stop's value is the remaining distance, so
-/// that its impulse pushes.
+/// Returns the same with the sign of the row's role. The value of a joint limit is the remaining
+/// distance, so its impulse pushes.
 template <class W>
 JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, const JointPlace<W>& p,
                               W angle) noexcept {
@@ -141,7 +142,7 @@ JointDirection<W> DirectionOf(const JointTable& j, const JointRowTable& row, con
   return d;
 }
 
-/// Returns the velocity of a row at (va, wa), (vb, wb).
+/// Returns the velocity of a row for the body velocities (va, wa) and (vb, wb).
 template <class W>
 TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const Twist<W>& a,
                      const Twist<W>& b) noexcept {
@@ -149,12 +150,12 @@ TAUT_INLINE W RateOf(const JointPlace<W>& p, const JointDirection<W>& d, const T
   return Dot(d.lin, apart) + Dot(d.turn, b.w - a.w);
 }
 
-/// Computes links and inverse effective mass of a row in direction `d`; the first link is to a body
+/// Computes links and inverse effective mass of a row in direction `d`. The first link is to a body
 /// that impulses move.
 ///
-/// A joint that holds a point pushes each body at the body's own point (joints.md, section 2). At
-/// the other body's point, which is off by the gap, it would spin a thin rod about its axis, and
-/// redundant rows would become independent.
+/// A joint that constrains a point pushes each body at the body's own joint point (joints.md,
+/// section 2). At the point of the other body, which differs by the gap, it would spin a thin rod
+/// about its axis, and redundant rows would become independent.
 template <class W>
 void SetJointLinks(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
                    const JointPlace<W>& p, const JointDirection<W>& d, JointRow<W>& row) noexcept {
@@ -191,7 +192,7 @@ TAUT_INLINE Twist<W> Free(const BodyWork<W>& body) noexcept {
   return {body.v, body.w};
 }
 
-/// Sets the law of a spring and damper: a line through the mean of the step's start and end (eq.
+/// Sets the law of a spring and damper: a line through the mean of start and end of the step (eq.
 /// 6).
 template <class W>
 void SetSpring(const JointTable& j, W stretch, W before, W h, JointRow<W>& row) noexcept {
@@ -202,9 +203,9 @@ void SetSpring(const JointTable& j, W stretch, W before, W h, JointRow<W>& row) 
   row.target = (quarter * h * k * before - half * b * before - k * stretch) / gain;
 }
 
-/// Sets the law of a held row (eq. 3), which reverses its velocity, so that its impulse does no
-/// work. A tiny compliance about the previous impulse, if there is one, makes nearly dependent rows
-/// solvable.
+/// Sets the law of a constrained row (eq. 3), which reverses its velocity, so that its impulse does
+/// no work. A tiny compliance relative to the previous impulse, if there is one, makes nearly
+/// dependent rows solvable.
 template <class W>
 void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<W>& row) noexcept {
   const W zero = W::Splat(0.0);
@@ -218,7 +219,7 @@ void SetHeld(const Rows<W>& s, const Scratch<W>& work, W last_impulse, JointRow<
   row.target = row.give * last_impulse - before;
 }
 
-/// Returns the displacement of a body by FindClosing.
+/// Returns the displacement of a body from FindClosing.
 template <class W>
 Twist<W> ClosingOf(const View& m, const Scratch<W>& work, int body) noexcept {
   const W zero = W::Splat(0.0);
@@ -242,8 +243,8 @@ void TurnLinksBack(const View& m, const Scratch<W>& work, JointRow<W>& row) noex
 template <class W>
 void FindClosing(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept;
 
-/// Assembles the rows of all joints. In models with kinematic loops the held rows are evaluated at
-/// the nearest closed pose: redundant rows are exactly dependent only there.
+/// Assembles the rows of all joints. With kinematic loops, the constrained rows are evaluated at
+/// the nearest closed pose, because redundant rows are exactly dependent only there.
 ///   reads   pos, bodies[]     writes  joints[], joint_angle
 template <class W>
 void PrepareJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
@@ -311,7 +312,7 @@ void ForgetGains(const View& m, Scratch<W>& work) noexcept {
   }
 }
 
-/// Returns the total angular momentum of a unit impulse on both bodies of a row, whose points are
+/// Returns the total angular momentum from a unit impulse of a row on both bodies, whose points are
 /// separated by the gap (eq. 9).
 template <class W>
 TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
@@ -320,7 +321,7 @@ TAUT_INLINE V3<W> GainOf(const JointRow<W>& row, const V3<W>& pos_first,
          (row.links[0].ang[0] + row.links[1].ang[0]);
 }
 
-/// For functions with a `skip` or `closed`: no lane.
+/// Argument `skip` or `closed` for no lanes.
 template <class W>
 struct InNoLane {
   template <class T>
@@ -329,21 +330,21 @@ struct InNoLane {
   }
 };
 
-/// Returns the lanes in which a body was integrated together with stiff cables: its joints are
-/// closed, and their momenta are balanced (implicit_joints.inl).
+/// Returns the lanes in which a body was integrated together with stiff cables. The joints of such
+/// bodies are closed, and their momenta are balanced (implicit_joints.inl).
 template <class W>
 TAUT_INLINE MaskOf<W> EndedImplicitly(const View& m, const Scratch<W>& work, int body) noexcept {
   if (!work.implicit.any || body >= m.body_count) return MaskOf<W>::Splat(false);
   return work.implicit.ended[body] > W::Splat(0.0);
 }
-/// The same for the bodies of a joint.
+/// Same as above for the bodies of a joint.
 template <class W>
 TAUT_INLINE MaskOf<W> EndedImplicitly(const View& m, const Scratch<W>& work,
                                       const JointTable& j) noexcept {
   return EndedImplicitly(m, work, j.moved_body());
 }
 
-/// Returns the lanes in which stiff cables at the bodies of a joint have dampers.
+/// Returns the lanes in which dampers act on stiff cables at the bodies of a joint.
 template <class W>
 TAUT_INLINE MaskOf<W> EndedDamped(const View& m, const Scratch<W>& work,
                                   const JointTable& j) noexcept {
@@ -352,7 +353,7 @@ TAUT_INLINE MaskOf<W> EndedDamped(const View& m, const Scratch<W>& work,
   return work.implicit.bodies[body] > W::Splat(1.0);
 }
 
-/// Computes loads and angular momenta from the solver's impulses.
+/// Computes loads and angular momenta from the impulses of the solver.
 template <class W>
 void FinishJoints(const View& m, const Rows<W>& s, Scratch<W>& work, double step_s) noexcept {
   const W zero = W::Splat(0.0), inv_h = W::Splat(1.0 / step_s);

@@ -1,6 +1,6 @@
 /// Newton's method in the impulses of a body with up to four contacts with the world, in all lanes
-/// at once, on its Delassus operator (docs/theory/contact.md, eq. 20). The contacts are an island,
-/// e.g. of a spine segment that stands on its feet.
+/// at once, on its Delassus operator (docs/theory/contact.md, eq. 20). These contacts are an
+/// island, for example of a spine segment on its feet.
 #pragma once
 
 #include "math/scalar.h"
@@ -21,16 +21,16 @@ template <class W, int kContacts>
 class BodyDual {
   static constexpr int kSize = 3 * kContacts;
   static constexpr int kMaxIterations = 8;
-  /// Redundant friction (two contacts along one rod) makes the system singular; this compliance
-  /// selects the smallest change. It has no effect on the converged result.
+  /// Redundant friction (two contacts along one rod) makes the system singular. This compliance
+  /// selects the smallest change. It does not affect the converged result.
   static constexpr double kCompliance = 1e-9;
   using Law = ContactPoint<W, 1>;
 
  public:
   BodyDual(BodyWork<W>& body, Contact<W, 1>* rows) noexcept : body_(body), rows_(rows) {}
 
-  /// Solves the contacts in `lanes`, and writes their impulses and velocities. Returns the lanes
-  /// that did not converge; those stay unchanged.
+  /// Solves the contacts in `lanes` and stores their impulses and velocities. Returns the lanes
+  /// that did not converge, which stay unchanged.
   template <class M>
   M Solve(Target target, M lanes, W& residual, W& solves) noexcept {
     const W zero = W::Splat(0.0);
@@ -124,7 +124,7 @@ class BodyDual {
     return worst;
   }
 
-  /// Assembles the Delassus operator W = J M^-1 J^T. Contacts with one plane share their
+  /// Assembles the Delassus operator W = J M^-1 J^T. Contacts with the same plane have common
   /// directions, whose products are 0 and 1.
   void BuildMatrix() noexcept {
     for (int i = 0; i < kContacts; ++i) {
@@ -186,8 +186,8 @@ class BodyDual {
     }
   }
 
-  /// Gaussian elimination without pivots, which the dominant diagonal makes unnecessary; a lane
-  /// where it fails does not converge.
+  /// Gaussian elimination without pivots, which the dominant diagonal makes unnecessary. Lanes
+  /// where it fails do not converge.
   void Eliminate() noexcept {
     TAUT_UNROLL for (int k = 0; k < kSize; ++k) {
       const W inverse = W::Splat(1.0) / a_[k][k];

@@ -1,11 +1,11 @@
-/// Sparse linear system of Newton's method in the velocities of bodies: 6x6 blocks, one for each
-/// pair of interacting bodies, factored in the order of the bodies (docs/theory/contact.md, eq. 21,
-/// 25). No pivots: M + J^T G J is positive definite except for the coupling of friction to the
-/// normal impulse; line search or residual reject a step that a bad pivot spoils.
+/// Sparse linear system of Newton's method in the velocities of bodies (docs/theory/contact.md, eq.
+/// 21, 25). It has a 6x6 block for each pair of interacting bodies and is factored in the order of
+/// the bodies, without pivoting. M + J^T G J is positive definite except for the coupling of
+/// friction to the normal impulse. Line search or residual reject a step that a bad pivot spoils.
 ///
-/// Blocks of smaller unknowns are padded with zeros. Only an unknown's own velocities are
-/// eliminated; coupling to neighbors is six by six, so that loops have fixed lengths. Prescribed
-/// unknowns have no column.
+/// Blocks of smaller unknowns are padded with zeros. Only the velocities of an unknown are
+/// eliminated; couplings are always 6x6, so that loops have fixed lengths. Prescribed unknowns have
+/// no column.
 #pragma once
 
 #include "base/assert.h"
@@ -24,8 +24,8 @@ class BodyMatrix {
  public:
   BodyMatrix(const BlockPattern& pattern, Num* blocks) noexcept : p_(pattern), a_(blocks) {}
 
-  /// Sets M on the diagonal, 0 elsewhere. `symmetric`: stores only the lower triangle. `bodies`
-  /// must stay valid until the last solve.
+  /// Sets the diagonal to M and all other entries to 0. `symmetric`: stores only the lower
+  /// triangle. `bodies` must stay valid until the last solve.
   void Start(const Unknown<Num>* bodies, bool symmetric) noexcept {
     Clear(bodies, symmetric);
     for (int b = 0; b < p_.count; ++b) {
@@ -48,26 +48,26 @@ class BodyMatrix {
     const int used = symmetric ? p_.lower_count : p_.block_count;
     for (int i = 0; i < kBlock * used; ++i) a_[i] = zero;
   }
-  /// Adds a block given by its four 3x3 parts for velocities and spins.
+  /// Adds a block from its four 3x3 parts for velocities and angular velocities.
   TAUT_INLINE void AddBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
                             const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
     Combine(At(i, j), vv, vw, wv, ww, [](Num& to, const Num& x) { to += x; });
   }
 
-  /// Adds a block of spins alone.
+  /// Adds a block for angular velocities only.
   TAUT_INLINE void AddSpins(int i, int j, const simd::M3<Num>& ww) noexcept {
     Num* const to = At(i, j) + 21;
     const auto add = [](Num* at, const V3<Num>& b) { at[0] += b.x, at[1] += b.y, at[2] += b.z; };
     add(to, ww.r0), add(to + 6, ww.r1), add(to + 12, ww.r2);
   }
-  /// Subtracts a block given by its four parts.
+  /// Subtracts a block from its four parts.
   TAUT_INLINE void SubtractBlock(int i, int j, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
                                  const simd::M3<Num>& wv, const simd::M3<Num>& ww) noexcept {
     Combine(At(i, j), vv, vw, wv, ww, [](Num& to, const Num& x) { to -= x; });
   }
 
-  /// Adds J^T G J of one constraint, without prescribed unknowns; G: R x R, row by row. Not
-  /// inlined: among other code g++ took up to a fifth more instructions for the same loops.
+  /// Adds J^T G J of a constraint, without prescribed unknowns. G: R x R, row by row. Not inlined:
+  /// inlined, g++ needs up to a fifth more instructions for the same loops.
   template <class Law>
   [[gnu::noinline]] void Add(const Law& law, const Num* G) noexcept {
     constexpr int R = Law::kRows;
@@ -100,13 +100,13 @@ class BodyMatrix {
     }
   }
 
-  /// Factors A = L D L^T, or L U. Returns false if a pivot is not positive, or zero.
+  /// Factors A = L D L^T or L U. Returns false if a pivot is not positive (L D L^T) or zero (L U).
   bool Factor() noexcept {
     if (bodies_only_) return symmetric_ ? FactorSymmetric<true>() : FactorGeneral<true>();
     return symmetric_ ? FactorSymmetric<false>() : FactorGeneral<false>();
   }
 
-  /// x <- A^-1 x; 6 numbers per unknown; entries beyond its size are unchanged.
+  /// x <- A^-1 x, 6 numbers per unknown. Entries beyond the size of an unknown do not change.
   void Solve(Num* x) const noexcept { bodies_only_ ? SolveAs<true>(x) : SolveAs<false>(x); }
 
   /// x <- A^-T x.
@@ -117,7 +117,7 @@ class BodyMatrix {
   }
 
  private:
-  /// Calls op(entry, number) for all entries of a block given by its four 3x3 parts.
+  /// Calls op(entry, number) for all entries of a block, with numbers from its four 3x3 parts.
   template <class Op>
   TAUT_INLINE static void Combine(Num* to, const simd::M3<Num>& vv, const simd::M3<Num>& vw,
                                   const simd::M3<Num>& wv, const simd::M3<Num>& ww,
@@ -129,7 +129,7 @@ class BodyMatrix {
     row(to, vv.r0, vw.r0), row(to + 6, vv.r1, vw.r1), row(to + 12, vv.r2, vw.r2);
     row(to + 18, wv.r0, ww.r0), row(to + 24, wv.r1, ww.r1), row(to + 30, wv.r2, ww.r2);
   }
-  /// Adds J^T G J of a constraint whose links have one row each.
+  /// Adds J^T G J of a constraint with one row per link.
   template <class Law>
   void AddByRows(const Law& law, const Num* G) noexcept {
     for (int k = 0; k < law.link_count; ++k) {
@@ -236,7 +236,7 @@ class BodyMatrix {
       d[7 * p] = inverse;
     }
     const int first = p_.first_below[k], last = p_.first_below[k + 1];
-    // B L^-T = (L D)_ik; its transpose serves the updates, B becomes L_ik.
+    // B L^-T = (L D)_ik; the updates need its transpose, and B becomes L_ik.
     for (int q = first; q < last; ++q) {
       Num* const b = At(p_.below[q], k);
       for (int r = 0; r < kDofs; ++r) {
@@ -255,7 +255,7 @@ class BodyMatrix {
       for (int r = 0; r < kDofs; ++r) {
         for (int c = 0; c < N; ++c) bj[kDofs * r + c] *= d[7 * c];
       }
-      // Column j of the update: rows from j on. Later rows still contain (L D).
+      // Column j of the update, rows from j. Later rows still contain (L D).
       Subtract<N>(At(j, j), bj, transposed);
       for (int s = q + 1; s < last; ++s) {
         const int i = p_.below[s];

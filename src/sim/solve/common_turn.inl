@@ -1,5 +1,5 @@
-/// Common rigid rotation of several bodies about their center of mass, for a correction of the
-/// total angular momentum.
+/// Common rigid rotation of several bodies about their center of mass, to correct the total angular
+/// momentum.
 #pragma once
 
 #include "sim/contacts/consistent_biases.inl"
@@ -9,7 +9,7 @@ namespace taut::sim {
 
 template <class Num>
 struct Solid {
-  V3<Num> x;        ///< Center of mass in W [m].
+  V3<Num> x;        ///< Center of mass of the body in W [m].
   Num mass;         ///< [kg]
   S3<Num> inertia;  ///< In W [kg m^2].
 };

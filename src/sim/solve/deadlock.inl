@@ -1,12 +1,12 @@
-/// Deadlocks and inconsistent contacts: escape of Newton's method from contradictory rows
+/// Deadlocks and inconsistent contacts: how Newton's method recovers from contradictory rows
 /// (docs/theory/contact.md, section 5).
 ///
 /// Contacts that stick along a kinematic loop (a rod jammed across a groove, a slab on rollers)
-/// have more rows than the bodies have degrees of freedom, and biases that differ in the last
-/// digits of gaps and arcs. No velocities satisfy them all, and each step adds the same impulses
-/// along the loop. If these eventually open a contact or make it slide, the solver jumps there at
-/// once. Otherwise the equations are inconsistent: proximal rounds (proximal.inl) find the
-/// velocities with the least error, and the laws of the loop are relaxed by this error.
+/// have more rows than the bodies have degrees of freedom. Their biases differ in the last digits
+/// of gaps and arcs. No velocities satisfy all rows, and each Newton step adds the same impulses
+/// along the loop. If these impulses eventually open a contact or make it slide, the solver jumps
+/// directly to this point. Otherwise the equations are inconsistent: proximal rounds (proximal.inl)
+/// find the velocities with the smallest error, and the laws of the loop are relaxed by this error.
 #pragma once
 
 #include "sim/data/island.h"
@@ -19,8 +19,8 @@ inline constexpr bool kRelaxes = requires(Law& law) {
 };
 
 /// Relaxes inconsistent laws at m.l, m.u and the branches of their residual: changes their biases
-/// to satisfy the laws, if no bias changes by more than kDisagreementMPerS and this solves the
-/// island. Returns false if nothing has changed.
+/// so that the laws are satisfied. This is done only if no bias changes by more than
+/// kDisagreementMPerS and the island is then solved. Returns false if nothing has changed.
 template <class Num, class P>
 bool Relax(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept {
   auto& m = island.m;
@@ -55,18 +55,19 @@ bool Relax(Island<Num, P>& island, double tolerance, SolverWork& work) noexcept 
 /// m.projected to m.u and m.l.
 template <class Num, class P>
 class DeadlockBreaker {
-  static constexpr double kStays = 1e-2;  ///< Relative change of the error that counts as none.
-  /// Steps of more than this multiple of the largest impulse are rejected.
+  /// A smaller relative change of the error counts as no change.
+  static constexpr double kStays = 1e-2;
+  /// Larger steps, relative to the largest impulse, are rejected.
   static constexpr double kFar = 1e3;
 
  public:
   explicit DeadlockBreaker(Island<Num, P>& island) noexcept : island_(island), m_(island.m) {}
 
-  /// Moves m.l to the first place where a law leaves its branch, and returns true. Returns false
-  /// without a deadlock, or if there is no such place.
+  /// Moves m.l to the first point at which a law leaves its branch, and returns true. Returns false
+  /// if there is no deadlock or no such point.
   bool Break() noexcept {
     if (!IsDeadlock()) return false;
-    // m.projected <- impulses that a step adds
+    // m.projected <- impulses that each step adds
     for (int i = 0; i < island_.rows; ++i) m_.projected[i] = m_.l[i] - m_.projected[i];
     Num reach = Num::Splat(1e300), size = Num::Splat(0.0), added = size;
     ForEach([&](auto& law, auto& branch, int row) {
@@ -90,7 +91,7 @@ class DeadlockBreaker {
     });
   }
 
-  /// Returns whether the laws have a small error that the step has not changed.
+  /// Returns whether the laws have a small error that the step did not change.
   bool IsDeadlock() noexcept {
     Num most = Num::Splat(0.0), changed = most;
     ForEach([&](auto& law, auto& branch, int row) {

@@ -1,4 +1,4 @@
-/// Gather of one lane's island into the solver's memory, and scatter of the solution (LaneSolve).
+/// Copies an island of one lane to the memory of the solver, and the solution back (LaneSolve).
 #pragma once
 
 #include "sim/data/rows.h"
@@ -85,7 +85,7 @@ void LaneSolve<W>::GatherLink(const Link<W, R>& from, Link<L, S>& to, int first)
   }
 }
 
-/// Copies the inverse masses that were computed for all lanes at once (prepare_contact.inl).
+/// Copies inverse masses computed for all lanes at once (prepare_contact.inl).
 template <class W>
 void LaneSolve<W>::GatherMasses(const Contact<W, 1>& from, ContactPoint<L, 2>& to) const noexcept {
   to.wnn = OfLane<L>(from.wnn, lane_), to.wt = OfLane<L>(from.wt, lane_);
@@ -182,7 +182,7 @@ void LaneSolve<W>::GatherJoints(Pool<JointRow<L>>& pool,
   chain_source_ = friction_source_.From(frictions.count);
 }
 
-/// Gathers the friction of ball joints: three rows form one law, except in displacement solves.
+/// Copies the friction of ball joints. Three rows form one law, except in displacement solves.
 template <class W>
 void LaneSolve<W>::GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept {
   pool.count = 0;

@@ -1,6 +1,6 @@
 /// Second stage of an island's solve: Gauss-Seidel sweeps, which solve one constraint after the
-/// other exactly (docs/theory/contact.md, eq. 23). They converge slowly where loads pass through
-/// many bodies, but need no good start.
+/// other exactly (docs/theory/contact.md, eq. 23). They converge slowly if loads pass through many
+/// bodies, but need no good initial guess.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -8,7 +8,8 @@
 
 namespace taut::sim {
 
-/// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
+/// Improves m.l. On entry and return, m.v and m.u are the velocities of m.l. Returns the residual
+/// [m/s].
 template <class Num, class P>
 double Sweep(Island<Num, P>& island, int count) noexcept {
   auto& m = island.m;

@@ -1,8 +1,9 @@
 /// Impacts: restitution of contacts and joint limits, all together in the step of the impact
 /// (docs/theory/contact.md, section 3). The problem is solved without rebounds, then again with the
-/// rebounds of the contacts that took part; contacts that newly press join. If the result has too
-/// much energy (friction at several contacts can cause this), it is interpolated toward the first
-/// solution as far as necessary: the problem is linear between two solutions, and cones are convex.
+/// rebounds of the contacts that took part. Contacts that get a force by this join. Friction at
+/// several contacts may cause too much energy. Then the result is interpolated toward the first
+/// solution as far as necessary, which is admissible, because the problem is linear between two
+/// solutions and cones are convex.
 ///
 /// A Problem is a solver with this interface:
 ///   ForEach(f)       f(law, first row) for all constraints
@@ -22,8 +23,8 @@ inline constexpr bool kRebounds = requires(Law& law) {
   law.rebound;
 };
 
-/// Work of the constraints at a share x of the way from the first solution to the second: c0 + c1 x
-/// + c2 x^2.
+/// Work of the constraints at a fraction x of the way from the first to the second solution: c0 +
+/// c1 x + c2 x^2.
 template <class Num>
 struct WorkOfImpacts {
   Num c0 = Num::Splat(0.0), c1 = Num::Splat(0.0), c2 = Num::Splat(0.0);
@@ -34,7 +35,7 @@ struct WorkOfImpacts {
     c1 += l * sum + l1 * u;
     c2 += l * u;
   }
-  /// Returns the largest admissible share; 1 if the second solution is admissible.
+  /// Returns the largest admissible fraction; 1 if the second solution is admissible.
   Num Share() const noexcept {
     constexpr double kRounding = 1e-12;
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
@@ -47,8 +48,8 @@ struct WorkOfImpacts {
   }
 };
 
-/// Computes the rebound speed of each contact if it took part in an impact, from the velocities
-/// under the previous step's impulses. Returns false if no contact would rebound in any lane.
+/// Computes the rebound speed of each contact in case of an impact, from the velocities under the
+/// impulses of the previous step. Returns false if no contact would rebound in any lane.
 template <class Problem>
 bool ExpectImpacts(Problem& p) noexcept {
   bool any = false;
@@ -60,7 +61,7 @@ bool ExpectImpacts(Problem& p) noexcept {
   return any;
 }
 
-/// Applies impacts after a solve. `lanes`: solved lanes. Returns the lanes with an impact.
+/// Applies impacts after a solve in `lanes`. Returns the lanes with an impact.
 template <class Num, class Problem, class M>
 M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   constexpr int kMaxRounds = 4;
@@ -68,7 +69,7 @@ M SolveImpacts(Problem& p, int rows, M lanes) noexcept {
   auto hit = M::Splat(false);
   for (int round = 0; round < kMaxRounds; ++round) {
     auto fresh = M::Splat(false);
-    // Later rounds apply only to lanes with an earlier impact, not to their neighbors.
+    // Later rounds apply only to lanes with an earlier impact.
     const auto may = round > 0 ? lanes & hit : lanes;
     p.ForEach([&](auto& law, int row) {
       if constexpr (kRebounds<decltype(law)>)

@@ -1,9 +1,9 @@
-/// Forces and stiffness matrix of stiff cables in one implicit stage, with changing directions
-/// (docs/theory/cables.md, section 3).
+/// Forces and stiffness matrix of stiff cables with changing directions, in one stage of the
+/// implicit integration (docs/theory/cables.md, section 3).
 ///
 /// First stage: the force is a discrete gradient in the lengths, and bodies rotate by the Cayley
-/// map of their mean spin. So energy and momenta are conserved to rounding at any stiffness. Second
-/// stage: the force at the end.
+/// map of their mean angular velocity. So energy and momenta are conserved up to rounding at any
+/// stiffness. Second stage: the force is evaluated at the end.
 #pragma once
 
 #include "math/scalar.h"
@@ -65,14 +65,15 @@ TAUT_INLINE M3<Num> CayleyInverse(const V3<Num>& h, Num scale) noexcept {
                                {h.z * h.x - h.y, h.z * h.y + h.x, one + h.z * h.z}});
 }
 
-/// One stage of a step.
+/// Stage of a step.
 template <class Num>
 struct ImplicitStage {
   Num h;        ///< [s]
-  bool at_end;  ///< Forces at the end of the stage: implicit Euler.
+  bool at_end;  ///< Forces at the end of the stage (implicit Euler).
 };
 
-/// Sets place and lever arm of a point of `body` at the end of the stage, and the mean arm.
+/// Computes position and lever arm of a point of `body` at the end of the stage, and the mean lever
+/// arm.
 template <class Num>
 TAUT_INLINE void MovePoint(const ImplicitStage<Num>& stage, const ImplicitBody<Num>& body,
                            ImplicitPoint<Num>& p) noexcept {
@@ -81,15 +82,15 @@ TAUT_INLINE void MovePoint(const ImplicitStage<Num>& stage, const ImplicitBody<N
   p.arm = stage.at_end ? p.arm1 : Num::Splat(0.5) * (p.arm0 + p.arm1);
 }
 
-/// Derivative of a vector that rotates with `body` by its spin.
+/// Returns the derivative of a vector fixed to `body` with respect to its angular velocity.
 template <class Num>
 TAUT_INLINE M3<Num> TurnOf(const ImplicitStage<Num>& stage, const ImplicitBody<Num>& body,
                            const V3<Num>& from, const V3<Num>& to) noexcept {
   return TimesCross(body.undo, (Num::Splat(-0.5) * stage.h) * (from + to));
 }
 
-/// Adds h C D B of the pulls at both ends of a straight part, which are opposite, with their
-/// derivative D by the end `a`; by `b` it is -D.
+/// Adds h C D B of the opposite pulls at both ends of a straight part. D: derivative with respect
+/// to the end `a`; the derivative with respect to `b` is -D.
 template <class Num>
 TAUT_INLINE void AddPart(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
                          const ImplicitPoint<Num>& b, const M3<Num>& D,
@@ -112,7 +113,7 @@ TAUT_INLINE void AddPart(const ImplicitStage<Num>& stage, const ImplicitPoint<Nu
   add(b, on_b, a.body, by_a, true);
 }
 
-/// Adds h C D B of a pull at `a` with the derivative D by the point `b`.
+/// Adds h C D B of a pull at `a`. D: its derivative with respect to the point `b`.
 template <class Num>
 TAUT_INLINE void AddPair(const ImplicitStage<Num>& stage, const ImplicitPoint<Num>& a,
                          const ImplicitPoint<Num>& b, const M3<Num>& D,
@@ -121,7 +122,7 @@ TAUT_INLINE void AddPair(const ImplicitStage<Num>& stage, const ImplicitPoint<Nu
   matrix.AddBlock(a.body, b.body, vv, vw, CrossTimes(a.arm, vv), CrossTimes(a.arm, vw));
 }
 
-/// The cables and bodies of an island for Newton's method. Unknowns: mean velocities of the stage
+/// Cables and bodies of an island for Newton's method. Unknowns: mean velocities of the stage
 /// (implicit Euler: final velocities), 6 numbers per body.
 template <class W>
 class ImplicitCables {
@@ -132,7 +133,7 @@ class ImplicitCables {
       : mem_(mem), unknowns_(unknowns), count_(count) {}
 
   int cable_count = 0, point_count = 0;
-  Num most_tension = Num::Splat(0.0);  ///< Of the last evaluation [N].
+  Num most_tension = Num::Splat(0.0);  ///< Largest tension in the last evaluation [N].
 
   /// Computes arms, lengths and inertias at the start of a stage.
   void Begin() noexcept {
@@ -202,9 +203,10 @@ class ImplicitCables {
   }
 
   /// Adds the derivative of the last Evaluate. `missing`: minus the residual, including contacts.
-  /// Torque balances are multiplied by (1 - [half]), the frame halfway through the rotation: there
-  /// a force on the axis of a slender body causes only transverse rotation, at any angle. Otherwise
-  /// Newton's first steps would spin it about its axis, whose moment of inertia is nearly 0.
+  /// Torque balances are multiplied by (1 - [half]), which transforms them to the frame halfway
+  /// through the rotation. There, a force on the axis of a slender body causes only transverse
+  /// rotation, at any angle. Otherwise the first Newton steps would spin the body about its axis,
+  /// where its moment of inertia is nearly 0.
   void AddTo(const ImplicitStage<Num>& stage, const Num* missing,
              BodyMatrix<Num>& matrix) noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
@@ -215,7 +217,7 @@ class ImplicitCables {
       const S3<Num>& I = b.inertia;
       M3<Num> spin{{I.xx, I.xy, I.xz}, {I.xy, I.yy, I.yz}, {I.xz, I.yz, I.zz}};
       if (b.turns) {
-        // The rotated columns of I, and their derivative by the rotation.
+        // rotated columns of I, and their derivatives with respect to the rotation
         const auto column = [&](const V3<Num>& i) { return CayleyTurn(b.half, b.scale, i); };
         const V3<Num> c0 = column(spin.r0), c1 = column(spin.r1), c2 = column(spin.r2);
         spin = {{c0.x, c1.x, c2.x}, {c0.y, c1.y, c2.y}, {c0.z, c1.z, c2.z}};
@@ -235,8 +237,8 @@ class ImplicitCables {
     for (int c = 0; c < cable_count; ++c) AddCable(stage, mem_.list[c], matrix);
   }
 
-  /// Transforms `missing` of the last Evaluate to its halfway frame, for a matrix that AddTo
-  /// computed at another state.
+  /// Transforms `missing` of the last Evaluate to its halfway frame, for use with a matrix that
+  /// AddTo computed at another state.
   void SeenThere(Num* missing) const noexcept {
     for (int k = 0; k < count_; ++k) {
       const ImplicitBody<Num>& b = mem_.body[k];
@@ -253,14 +255,15 @@ class ImplicitCables {
     for (int i = 0; i < 6; ++i) to[i] = set ? part[i] : to[i] + part[i];
   }
 
-  /// Computes tension and its slope from the final length (eq. 8; second stage: the final tension).
+  /// Computes tension and its slope from the final length (eq. 8; in the second stage, the final
+  /// tension).
   static void SetTension(const ImplicitStage<Num>& stage, Num l1, ImplicitCable<Num>& c) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), half = Num::Splat(0.5);
     const Num longer = l1 - c.l0;
     const Num s0 = c.l0 - c.rest, s1 = (l1 - c.rest) - stage.h * c.rate;
     const Num p0 = Max(s0, zero), p1 = Max(s1, zero), damper = c.b / stage.h;
     const bool was = Any(s0 > zero), is = Any(s1 > zero);
-    Num phi = one, bend = zero;  // taut share of the length change, and its slope
+    Num phi = one, bend = zero;  // taut fraction of the length change, and its slope
     if (was != is) {
       const Num way = one / (s1 - s0);
       phi = (p1 - p0) * way;
@@ -307,7 +310,7 @@ class ImplicitCables {
     }
   }
 
-  /// Pull direction of a cable at a point.
+  /// Returns the pull direction of a cable at a point.
   static V3<Num> Along(const ImplicitPoint<Num>* p, int count, int i,
                        V3<Num> ImplicitPoint<Num>::*which) noexcept {
     if (i == 0) return p[0].*which;
@@ -332,7 +335,7 @@ class ImplicitCables {
     for (int i = 0; i < count; ++i) {
       if (p[i].body < 0) continue;
       const V3<Num> g = Along(p, count, i, &ImplicitPoint<Num>::u);
-      // Derivative of the rotating lever arm.
+      // derivative of the rotating lever arm
       const Num f = stage.at_end ? pull : half * pull;
       matrix.AddSpins(p[i].body, p[i].body, CrossTimes(f * g, p[i].turn));
       for (int j = 0; count > 2 && j < count; ++j) {

@@ -1,4 +1,4 @@
-/// Cables and joints that an implicitly integrated island consists of.
+/// Collection of the cables and joints of an implicitly integrated island.
 #pragma once
 
 #include "sim/data/implicit_memory.h"
@@ -60,7 +60,7 @@ void ImplicitIsland<W>::AddJoint(int i, const Number& number) noexcept {
     row.source = r;
     row.along = OfLane<Num>(from.lin, lane_);
     row.reach = Num::Splat(table.reach_m);
-    // The mean of (3) over the step has half its compliance.
+    // The mean of eq. 3 over the step has half its compliance.
     row.stiffness = Num::Splat(2.0) / (Num::Splat(kHeldCompliance) * OfLane<Num>(from.A, lane_));
     row.last_force = OfLane<Num>(s_.joint_load[r], lane_);
     const MeasuredAxes axes = AxesOf(m_.joint_rows[r].measure);

@@ -1,8 +1,9 @@
-/// Implicit integration of one lane's island with stiff cables: Newton's method on the true lengths
-/// and directions at the end of the step, with contacts inside (docs/theory/cables.md, section 3).
+/// Implicit integration of an island of one lane with stiff cables: Newton's method on the exact
+/// lengths and directions at the end of the step, with contacts inside (docs/theory/cables.md,
+/// section 3).
 ///
 /// A step has one stage, or two if a stiff cable has a damper. If Newton's method fails, the step
-/// is divided into 2, 4, ... 128 substeps, within the bound of linear systems of a step.
+/// is divided into 2, 4, ... 128 substeps, up to the limit of linear systems per step.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -18,11 +19,12 @@ template <class W>
 class ImplicitIsland {
   using Num = simd::Lane<W>;
   using Problem = Island<Num, StepPools<Num>>;
-  /// Stage boundary of steps with dampers: TR-BDF2 with a moved middle, L-stable for all values.
+  /// End of the first stage in steps with dampers: TR-BDF2 with a shifted middle, which is L-stable
+  /// for all values.
   static constexpr double kMiddle = 0.9;
   static constexpr double kTolerance = 1e-9, kLeastSpeedMPerS = 1e-3;
   static constexpr int kMostSteps = 40, kMostHalvings = 7;
-  /// Bound of work: contact systems allowed per linear system of bodies.
+  /// Work limit: contact systems per linear system of bodies.
   static constexpr int kContactSystems = 5;
 
  public:
@@ -43,26 +45,27 @@ class ImplicitIsland {
         lane_(lane),
         step_s_(step_s) {}
 
-  /// After Solve: returns whether the velocities do not satisfy the laws, not even to 1e-6 m/s.
+  /// Returns whether the velocities after Solve violate the laws by more than 1e-6 m/s.
   bool failed() const noexcept { return failed_; }
 
-  /// Adds the stiff cable `row`, or the held rows of joint `i`, to the island
-  /// (implicit_gather.inl). `number`: index of a body in it, or -1.
+  /// Adds the stiff cable `row`, or the constrained rows of joint `i`, to the island
+  /// (implicit_gather.inl). `number`: index of a body in the island, or -1.
   template <class Number>
   void AddCable(int row, const Number& number) noexcept;
   template <class Number>
   void AddJoint(int i, const Number& number) noexcept;
   bool has_cables() const noexcept { return cables_.cable_count > 0; }
 
-  /// Solves the step: impulses and velocities in island.m.l and .v, and final poses. Returns the
-  /// residual [m/s].
+  /// Solves the step. Results: impulses and velocities in island.m.l and .v, and final poses.
+  /// Returns the residual [m/s].
   double Solve() noexcept {
     Gather();
     double residual = Integrate();
     KeepMomentum();
     if (damped_) {
       cables_.Begin();
-      // After a snatch the extrapolation of the second stage may add energy; the first never does.
+      // After a snatch, the extrapolation of the second stage may add energy; the first stage never
+      // does.
       if (Gains()) {
         damped_ = false;
         residual = Integrate();
@@ -77,7 +80,7 @@ class ImplicitIsland {
     return residual;
   }
 
-  /// After the impulses are written back: stores momenta without the later contact impulses
+  /// Call it after the impulses are stored. Stores momenta without the later contact impulses
   /// (`pending`), and final poses.
   template <class Pending>
   void Finish(const Pending& pending) noexcept {
@@ -136,7 +139,7 @@ class ImplicitIsland {
     const ImplicitBody<Num>& b = mem_.body[k];
     return {b.ahead * at.v + b.behind * b.v, b.ahead * at.w + b.behind * b.w};
   }
-  /// to <- velocities of all bodies: own(k) of integrated ones, `prescribed` of others.
+  /// to <- velocities of all bodies: own(k) for integrated ones, `prescribed` for others
   template <class Own>
   void StoreVelocities(Num* to, Twist<Num> Unknown<Num>::*prescribed,
                        const Own& own) const noexcept {
@@ -145,7 +148,7 @@ class ImplicitIsland {
     }
   }
 
-  /// Solves the whole step in as many substeps as necessary. Returns the residual [m/s].
+  /// Solves the whole step with as many substeps as necessary. Returns the residual [m/s].
   double Integrate() noexcept {
     double residual = 0;
     for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
@@ -170,17 +173,18 @@ class ImplicitIsland {
   /// Loads the state at the start of the step.
   void LoadStart(int body, ImplicitBody<Num>& b) const noexcept;
 
-  /// Free islands: the second stage conserves angular momentum to second order only, the first to
-  /// the residual of Newton's method. A common rotation of all bodies corrects the error.
+  /// For free islands. The second stage conserves angular momentum only to second order, the first
+  /// stage up to the residual of Newton's method. A common rotation of all bodies corrects the
+  /// error.
   void KeepMomentum() noexcept;
 
-  /// Stores kinetic and elastic energy of the state after Begin [J].
+  /// Stores kinetic and elastic energy [J] of the state after Begin.
   void Energy(Num& kinetic, Num& elastic) const noexcept;
 
-  /// Returns whether the step gains energy beyond the work of all forces except contacts.
+  /// Returns whether the step gains energy in addition to the work of all forces except contacts.
   bool Gains() const noexcept;
 
-  /// Sets data shared by all attempts. SaveStart has stored pos, quat, vel, mom.
+  /// Sets the data that all attempts share. SaveStart has stored pos, quat, vel, mom.
   void Gather() noexcept {
     const auto* const mom = reinterpret_cast<const V3<W>*>(work_.start + 10 * m_.body_count);
     for (int k = 0; k < count(); ++k) {
@@ -194,7 +198,7 @@ class ImplicitIsland {
       b.force = b.mass * OfLane<Num>(from.v - from.v0, lane_);
       b.torque = OfLane<Num>(from.mom_free, lane_) - OfLane<Num>(mom[body], lane_);
     }
-    // Laws of a whole step do not apply to substeps.
+    // Laws of a whole step are not valid for substeps.
     const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
     alone_ = island_.rows == 3 * contacts.count;
     damped_ = damped_ && alone_;
@@ -203,7 +207,7 @@ class ImplicitIsland {
     for (int i = 0; i < island_.rows; ++i) mem_.start[i] = island_.m.l[i];
   }
 
-  /// Restores the start of the step.
+  /// Restores the state at the start of the step.
   void Restart() noexcept {
     for (int k = 0; k < count(); ++k) {
       LoadStart(island_.bodies[k].body, mem_.body[k]);
@@ -223,7 +227,7 @@ class ImplicitIsland {
       island_.m.l[i] = mem_.start[i];
     }
     if (island_.rows == 0) return;
-    // From the middle of the step, where gaps are measured, back to its start.
+    // from the middle of the step, where gaps are measured, to its start
     MeasureBefore();
     const Pool<ContactPoint<Num, 2>>& contacts = island_.pools;
     for (int i = 0; i < contacts.count; ++i) {
@@ -232,7 +236,7 @@ class ImplicitIsland {
     }
   }
 
-  /// Solves a substep of one or two stages. `share`: its share of all other impulses.
+  /// Solves a substep of one or two stages. `share`: its fraction of all other impulses.
   bool Part(double h, double share, double& residual) noexcept {
     const Num half = Num::Splat(0.5);
     const double first = damped_ ? kMiddle : 1.0;
@@ -300,7 +304,7 @@ class ImplicitIsland {
     return good_;
   }
 
-  /// Sets biases of the stage from gaps and velocities at its start.
+  /// Sets the biases of a stage from gaps and velocities at its start.
   void PrepareContacts() noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);
     MeasureBefore();
@@ -315,7 +319,7 @@ class ImplicitIsland {
     }
   }
 
-  /// Computes velocities under all forces except cables; rebounds use them.
+  /// Computes velocities under all forces except cables, for rebounds.
   void MeasureFree() noexcept {
     StoreVelocities(mem_.ends, &Unknown<Num>::free, [&](int k) {
       const ImplicitBody<Num>& b = mem_.body[k];
@@ -329,7 +333,7 @@ class ImplicitIsland {
   void Impacts() noexcept {
     const auto hit = SolveImpacts<Num>(*this, island_.rows, MaskOf<Num>::Splat(true));
     if (!Any(hit) || (good_ && laws_.residual <= target_.tolerance)) return;
-    // Friction prevents these rebounds.
+    // friction prevents these rebounds
     for (int i = 0; i < island_.rows; ++i) island_.m.l[i] = island_.m.impacts.l[i];
     good_ = true;
     Update();
@@ -341,17 +345,17 @@ class ImplicitIsland {
 
   // Newton's method of one stage (implicit_newton.inl).
 
-  /// Returns the norm of a change of the unknowns as a velocity, weighted by mass.
+  /// Returns the mass-weighted norm of a change of the unknowns, as a velocity.
   double Norm(const Num* d) const noexcept;
-  /// Returns the effect of rounding on the unknowns of a stage [m/s].
+  /// Returns the effect of rounding errors on the unknowns of a stage [m/s].
   double Noise() const noexcept;
-  /// step <- change of the unknowns for the residual `res`. `given`: keeps the impulses; else
-  /// solves for them, too.
+  /// step <- change of the unknowns for the residual `res`. `given`: impulses are given; otherwise
+  /// they are solved for, too.
   bool Step(const Num* res, bool given, Num* step) noexcept;
   void AddImpulses(Num* f) noexcept;
-  /// `given`: keeps the impulses.
+  /// Solves a stage. `given`: impulses are given.
   bool Newton(bool given) noexcept;
-  /// Pose of a body at the start of the step.
+  /// Returns the position of a body at the start of the step.
   V3<Num> StartPosition(int body) const noexcept {
     return OfLane<Num>(reinterpret_cast<const V3<W>*>(work_.start)[body], lane_);
   }
@@ -359,10 +363,10 @@ class ImplicitIsland {
     const auto* const quat = reinterpret_cast<const Q4<W>*>(work_.start + 3 * m_.body_count);
     return OfLane<Num>(quat[body], lane_);
   }
-  /// Sets a point of `body`, whose index in the island is `number`; of a body outside (-1), at the
-  /// start of the step.
+  /// Sets a point of `body`, whose index in the island is `number`. If the body is not in the
+  /// island (-1), the point is at the start of the step.
   void SetPoint(int body, int number, const double* own_P, ImplicitPoint<Num>& p) noexcept;
-  /// res <- residual at the velocities U and at `way` times the joints' last Newton step.
+  /// res <- residual at the velocities U and at the fraction `way` of the joints' last Newton step
   void Evaluate(const Num* U, double way, Num* res) noexcept {
     cables_.Evaluate(stage_, U, res);
     joints_.Evaluate(stage_, way, res);
@@ -374,7 +378,7 @@ class ImplicitIsland {
   ImplicitMemory<W>& mem_;
   Problem& island_;
   SolverWork& work_done_;
-  SolverWork contact_work_;  ///< Of the contact laws, whose systems are smaller.
+  SolverWork contact_work_;  ///< Work of the contact laws, whose systems are smaller.
   ImplicitLaws<W> laws_;
   ImplicitCables<W> cables_;
   ImplicitJoints<W> joints_;

@@ -1,8 +1,8 @@
-/// Held joints in an implicit stage with stiff cables: constraint forces whose work is zero over a
-/// step of any length (docs/theory/cables.md, eq. 12g, 12h).
+/// Constrained joint rows in an implicit stage with stiff cables: constraint forces that do no work
+/// over a step of any length (docs/theory/cables.md, eq. 12g, 12h).
 ///
 /// The rows are discrete gradients of their coordinates: mean lever arms, mean axes, and for a
-/// distance the mean direction. With the Cayley rotation their product with the mean velocities is
+/// distance the mean direction. With the Cayley rotation, their product with the mean velocities is
 /// exactly the change of the coordinate. So joints neither create energy nor drift apart, and
 /// linear and angular momentum are conserved.
 #pragma once
@@ -23,7 +23,7 @@ class ImplicitJoints {
 
   int joint_count = 0, row_count = 0;
 
-  /// Returns whether a joint holds one of the bodies to the world.
+  /// Returns whether a joint connects one of the bodies to the world.
   bool HasSupport() const noexcept {
     bool any = false;
     for (int i = 0; i < joint_count; ++i) {
@@ -32,7 +32,7 @@ class ImplicitJoints {
     return any;
   }
 
-  /// Returns the largest force of a row in the last evaluation [N], or torque per radius.
+  /// Returns the largest row force in the last evaluation [N]; torques are divided by the radius.
   Num MostForce(const ImplicitStage<Num>& stage) const noexcept {
     Num most = Num::Splat(0.0);
     for (int r = 0; r < row_count; ++r) most = Max(Abs(mem_.joint_rows[r].trial), most);
@@ -48,8 +48,8 @@ class ImplicitJoints {
     }
   }
 
-  /// Computes arms, axes and coordinates at the start of a stage. `goes_on`: changes of
-  /// coordinates count from the previous stage's final values, else from those at this start.
+  /// Computes arms, axes and coordinates at the start of a stage. `goes_on`: coordinate changes
+  /// count from the final values of the previous stage, otherwise from the values at this start.
   void Begin(const ImplicitStage<Num>& stage, bool goes_on) noexcept {
     for (int i = 0; i < joint_count; ++i) {
       ImplicitJoint<Num>& j = mem_.joints[i];
@@ -66,8 +66,8 @@ class ImplicitJoints {
     }
   }
 
-  /// After ImplicitCables::Evaluate at the same velocities: subtracts the joints' impulses, l + way
-  /// times their last Newton step, from the residual.
+  /// Call it after ImplicitCables::Evaluate at the same velocities. Subtracts the joint impulses
+  /// from the residual: l + `way` times their last Newton step.
   void Evaluate(const ImplicitStage<Num>& stage, double way, Num* res) noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5), one = Num::Splat(1.0);
     for (int i = 0; i < joint_count; ++i) {
@@ -100,8 +100,8 @@ class ImplicitJoints {
     }
   }
 
-  /// Adds the impulses by which the laws of the rows (12h) exceed the present ones, with the
-  /// directions of the last AddTo.
+  /// Adds the differences between the impulses of the row laws (12h) and the present impulses, with
+  /// the directions of the last AddTo.
   void AddGaps(const ImplicitStage<Num>& stage, Num* f) noexcept {
     for (int i = 0; i < joint_count; ++i) {
       const ImplicitJoint<Num>& j = mem_.joints[i];
@@ -113,7 +113,7 @@ class ImplicitJoints {
     }
   }
 
-  /// Sets the Newton steps of the impulses from the velocities' step.
+  /// Computes the Newton steps of the impulses from the step of the velocities.
   void TakeStep(const ImplicitStage<Num>& stage, const Num* d) noexcept {
     for (int i = 0; i < joint_count; ++i) {
       const ImplicitJoint<Num>& j = mem_.joints[i];
@@ -129,15 +129,15 @@ class ImplicitJoints {
     for (int r = 0; r < row_count; ++r) mem_.joint_rows[r].l = mem_.joint_rows[r].trial;
   }
 
-  /// After ImplicitCables::AddTo: adds the derivative of the last Evaluate, with the impulses
-  /// eliminated.
+  /// Call it after ImplicitCables::AddTo. Adds the derivative of the last Evaluate with eliminated
+  /// impulses.
   void AddTo(const ImplicitStage<Num>& stage, BodyMatrix<Num>& matrix) noexcept {
     const Num share = Num::Splat(stage.at_end ? 1.0 : 0.5);
     for (int i = 0; i < joint_count; ++i) {
       ImplicitJoint<Num>& j = mem_.joints[i];
       ImplicitPoint<Num>&a = j.a, &b = j.b;
       SetTurn(stage, a), SetTurn(stage, b);
-      // Rotating lever arms.
+      // rotating lever arms
       const auto on_arm = [&](const ImplicitPoint<Num>& p, const V3<Num>& push) {
         if (p.body < 0) return;
         matrix.AddSpins(p.body, p.body, CrossTimes(share * push, p.turn));
@@ -195,8 +195,8 @@ class ImplicitJoints {
     if (p.body >= 0) p.turn = TurnOf(stage, mem_.body[p.body], p.arm0, p.arm1);
   }
 
-  /// Coordinate of a row: offset along a fixed direction, length, or r times the product of an axis
-  /// of a and an axis of b.
+  /// Returns the coordinate of a row: an offset along a fixed direction, a length, or r times the
+  /// product of an axis of a and an axis of b.
   static Num Value(const ImplicitJoint<Num>& j, const ImplicitJointRow<Num>& row, const V3<Num>& d,
                    Num length, const V3<Num>& x, const V3<Num>& y) noexcept {
     if (row.turns) return row.reach * Dot(x, y);
@@ -208,7 +208,7 @@ class ImplicitJoints {
   static V3<Num> Twisting(const ImplicitJointRow<Num>& row) noexcept {
     return row.reach * Cross(row.y, row.x);
   }
-  /// Returns the impulse by which the row's law exceeds the present one.
+  /// Returns the impulse of the row's law minus the present impulse.
   Num Excess(const ImplicitStage<Num>& stage, const ImplicitJointRow<Num>& row) const noexcept {
     return row.center - row.stiffness * ((row.value - row.target) / stage.h) - row.trial;
   }
@@ -234,7 +234,7 @@ class ImplicitJoints {
     return Dot(of.v, V3<Num>{t[0], t[1], t[2]}) + Dot(of.w, V3<Num>{t[3], t[4], t[5]});
   }
 
-  /// Force of a unit impulse on b or a.
+  /// Returns the force of a unit impulse on b or a.
   static Sides ForceOn(const ImplicitJoint<Num>& j, const ImplicitJointRow<Num>& row,
                        bool on_b) noexcept {
     const Num zero = Num::Splat(0.0);
@@ -245,7 +245,7 @@ class ImplicitJoints {
     }
     return on_b ? s : Sides{-s.v, -s.w};
   }
-  /// Derivative of the row's value by the velocities of b or a.
+  /// Returns the derivative of the row's value with respect to the velocities of b or a.
   Sides ChangeBy(const ImplicitStage<Num>& stage, const ImplicitJoint<Num>& j,
                  const ImplicitJointRow<Num>& row, bool by_b) const noexcept {
     const Num zero = Num::Splat(0.0);
@@ -263,7 +263,7 @@ class ImplicitJoints {
     return by_b ? s : Sides{-s.v, -s.w};
   }
 
-  /// Adds the derivative of the torque l r (y x x) by the rotations of its axes.
+  /// Adds the derivative of the torque l r (y x x) with respect to the rotations of its axes.
   void AddTwist(const ImplicitStage<Num>& stage, Num share, const ImplicitJoint<Num>& j,
                 const ImplicitJointRow<Num>& row, BodyMatrix<Num>& matrix) noexcept {
     const Num f = share * row.trial * row.reach;

@@ -1,6 +1,6 @@
 /// Contact and joint impulses with implicit cables: the laws of an island on the Delassus operator
-/// W = J A^-1 J^T, A the cables' matrix. W is dense and not symmetric (docs/theory/contact.md, eq.
-/// 20). Open contacts have no row.
+/// W = J A^-1 J^T, where A is the matrix of the cables. W is dense and not symmetric
+/// (docs/theory/contact.md, eq. 20). Open contacts have no row.
 #pragma once
 
 #include "sim/constraint/contact_point.h"
@@ -17,8 +17,8 @@
 
 namespace taut::sim {
 
-// Inverse effective masses for natural maps and single solutions: a block of W, row by row. Laws
-// without a block keep the values of the bodies.
+// Inverse effective masses for natural maps and solutions of single laws: a block of W, row by row.
+// Laws without a block keep the values from the bodies.
 template <class Num, int N>
 void SetMasses(ContactPoint<Num, N>& c, const Num* w, int stride) noexcept {
   const Num half = Num::Splat(0.5), one = Num::Splat(1.0), least = Num::Splat(1e-300);
@@ -36,7 +36,7 @@ void SetMasses(JointRow<Num>& row, const Num* w, int) noexcept {
 template <class Law, class Num>
 void SetMasses(Law&, const Num*, int) noexcept {}
 
-/// Whether a law is a contact, which has no row while it is open.
+/// Whether a law is a contact. Open contacts have no row.
 template <class Law>
 inline constexpr bool kOpens = requires(Law& law) {
   law.mu;
@@ -53,10 +53,10 @@ class ImplicitLaws {
       : mem_(mem), island_(island), target_(target), work_(work) {}
 
   double residual = 0;
-  /// Whether bodies are jammed: contacts press with impulses whose rounding exceeds the tolerance.
+  /// Whether bodies are jammed: rounding errors of contact impulses exceed the tolerance.
   bool is_jammed = false;
 
-  /// Starts a stage: only contacts that pressed have a row.
+  /// Starts a stage. Only contacts with impulses have a row.
   void Begin() noexcept {
     is_jammed = false;
     residual = 0;
@@ -102,7 +102,7 @@ class ImplicitLaws {
       if (count_ == before) break;
       Respond(matrix, before);
       Iterate();
-      // Contacts that close under these impulses get rows, too.
+      // Contacts that close under these impulses also get rows.
       island_.Measure(ends, m.u2);
       for (int b = 0; b < kDofs * island_.body_count; ++b) mem_.ends[b] = zero;
       for (int c = 0; c < count_; ++c) {
@@ -124,7 +124,7 @@ class ImplicitLaws {
  private:
   int size() const noexcept { return kDofs * island_.pattern.count; }
 
-  /// Computes the columns of A^-1 J^T from `first` on, W, and the laws' masses.
+  /// Computes the columns of A^-1 J^T from `first`, W, and the effective masses of the laws.
   void Respond(const BodyMatrix<Num>& matrix, int first) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0);
     auto& m = island_.m;
@@ -166,7 +166,7 @@ class ImplicitLaws {
         if (at >= first) mem_.l[at + r] = m.l[row + r];
       }
     });
-    // y: velocities without any impulses.
+    // y: velocities without impulses
     if (first == 0) return;
     for (int a = 0; a < count_; ++a) {
       Num sum = zero;

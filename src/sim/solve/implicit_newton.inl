@@ -1,5 +1,5 @@
-/// Newton's method for the final velocities of an implicit stage. It starts at rest, where cable
-/// lengths and tensions are exact (docs/theory/cables.md, section 3).
+/// Newton's method for the final velocities of an implicit stage. Its initial guess is rest, for
+/// which cable lengths and tensions are exact (docs/theory/cables.md, section 3).
 #pragma once
 
 #include "sim/constraint/links.h"

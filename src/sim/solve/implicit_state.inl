@@ -1,5 +1,5 @@
 /// States of an implicitly integrated island: start, ends of its stages, conserved quantities
-/// (docs/theory/cables.md, 12e).
+/// (docs/theory/cables.md, eq. 12e).
 #pragma once
 
 #include "sim/bodies/stage_bodies.inl"

@@ -1,5 +1,5 @@
-/// Solve of one island in stages, from fast to robust: plain Newton, Gauss-Seidel sweeps, proximal
-/// rounds (docs/theory/contact.md, section 5).
+/// Solve of one island in three stages, from fast to robust: plain Newton, Gauss-Seidel sweeps,
+/// proximal rounds (docs/theory/contact.md, section 5).
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -11,7 +11,7 @@
 
 namespace taut::sim {
 
-/// Solves from arbitrary m.l. Leaves the best admissible impulses found in m.l, with their
+/// Solves from any impulses m.l. Results: the best admissible impulses in m.l, with their
 /// velocities in m.v and m.u. Returns their residual [m/s].
 template <class Num, class P>
 double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
@@ -68,8 +68,8 @@ class IslandImpacts {
   SolverWork& work_;
 };
 
-/// Solves an island, with impacts. Rebounds that friction prevents (one contact point under a steep
-/// rod that slides) are left out: the solution without them is valid, too.
+/// Solves an island with impacts. If friction prevents rebounds (one contact point below a steep,
+/// sliding rod), the solution without rebounds is used, which is also valid.
 template <class Num, class P>
 double SolveIsland(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   IslandImpacts<Num, P> problem(island, target, work);

@@ -1,4 +1,4 @@
-/// Cables with capstan friction in a lane's islands (lane_solve.inl).
+/// Cables with capstan friction in the islands of a lane (lane_solve.inl).
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
@@ -34,7 +34,7 @@ void LaneSolve<W>::EachChain(const F& f) const noexcept {
   }
 }
 
-/// Gathers the cables that pull at bodies of the island.
+/// Collects the cables that pull at bodies of the island.
 template <class W>
 void LaneSolve<W>::GatherChains(Pool<CableChain<L>>& pool) noexcept {
   pool.count = 0;

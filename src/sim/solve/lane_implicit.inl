@@ -1,4 +1,4 @@
-/// Data transfer between a lane's islands with stiff cables and the implicit integration.
+/// Data transfer between islands of a lane with stiff cables and the implicit integration.
 #pragma once
 
 #include "sim/bodies/stage_bodies.inl"
@@ -13,7 +13,7 @@ namespace taut::sim {
 template <class W>
 double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   Island<L, StepPools<L>>& island = mem_.island;
-  // If the matrix does not fit into memory, nothing is solved, and the status bit is set.
+  // If the matrix does not fit into memory, nothing is solved and the status bit is set.
   if (!island.has_matrix) return 1.0;
   ImplicitIsland<W> implicit(m_, s_, work_, island, Target{settings_.tolerance_m_per_s}, lane_,
                              h_[0], work);
@@ -40,8 +40,8 @@ double LaneSolve<W>::SolveImplicit(SolverWork& work) noexcept {
   return residual;
 }
 
-/// Solves an island whose implicit integration failed, with fixed directions of its cables for this
-/// step. The residual stays above the tolerance, so that the status reports the step.
+/// Solves an island after a failure of its implicit integration, with fixed directions of its
+/// cables in this step. The residual stays above the tolerance, so the status reports the step.
 template <class W>
 double LaneSolve<W>::SolveWithFixedDirections(SolverWork& work) noexcept {
   fixed_directions_ = true;
@@ -55,7 +55,7 @@ double LaneSolve<W>::SolveWithFixedDirections(SolverWork& work) noexcept {
   return residual > least || !(residual - residual == 0) ? residual : least;
 }
 
-/// Stores the final pose of a body from an implicit solve: displaced and rotated by twice `half`.
+/// Stores the final pose of a body from an implicit solve: displaced, and rotated by twice `half`.
 template <class W>
 void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noexcept {
   if (!(work_.implicit.ended[body][lane_] > 0)) return;
@@ -67,7 +67,7 @@ void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noe
   SetLane(work_.implicit.end_quat[body], q, lane_);
 }
 
-/// Returns the angular momentum that contacts between moving bodies will add later.
+/// Returns the angular momentum that contacts between moving bodies will add.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::PendingOfTouches(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};

@@ -1,4 +1,5 @@
-/// Fixed-point rounds of LaneSolve for rolling on kinematic or jointed bodies (rolling.inl).
+/// Fixed-point rounds of LaneSolve for rolling on kinematic bodies or on bodies with joints
+/// (rolling.inl).
 #pragma once
 
 #include "sim/data/rows.h"
@@ -7,7 +8,7 @@
 
 namespace taut::sim {
 
-/// Returns one side of a rolling contact, with the velocities in the island's memory.
+/// Returns one body of a rolling contact, with the velocities in the memory of the island.
 template <class W>
 RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
                                                 const Shape& shape) const noexcept {
@@ -31,7 +32,7 @@ RollingSide<simd::Lane<W>> LaneSolve<W>::SideOf(const Contact<L, 2>& c, int k,
   return side;
 }
 
-/// Calls f(point, touch, pair) for the island's rolling contacts.
+/// Calls f(point, touch, pair) for the rolling contacts of the island.
 template <class W>
 template <class F>
 void LaneSolve<W>::EachRolling(const F& f) noexcept {
@@ -53,7 +54,7 @@ bool LaneSolve<W>::FindRolling() noexcept {
   return any;
 }
 
-/// Predicts the final velocities from their change in the previous step.
+/// Predicts the final velocities from the velocity changes in the previous step.
 template <class W>
 void LaneSolve<W>::ExpectVelocities() noexcept {
   for (int k = 0; k < count_; ++k) {
@@ -63,7 +64,7 @@ void LaneSolve<W>::ExpectVelocities() noexcept {
   }
 }
 
-/// Sets the biases of the island's rolling contacts by the velocities in its memory. Returns the
+/// Sets the biases of the island's rolling contacts from the velocities in its memory. Returns the
 /// largest change [m/s].
 template <class W>
 double LaneSolve<W>::FollowRolling() noexcept {
@@ -72,8 +73,8 @@ double LaneSolve<W>::FollowRolling() noexcept {
   EachRolling([&](ContactPoint<L, 2>& point, const Contact<L, 2>& c, const ShapePairTable& pair) {
     const RollingSide<L> a = SideOf(c, 0, m_.shapes[pair.a].shape_P);
     const RollingSide<L> b = SideOf(c, 1, m_.shapes[pair.b].shape_P);
-    // Both points from a's origin at the middle of the step; the arms differ by the bodies'
-    // positions.
+    // Both points are relative to a's origin at the middle of the step. The arms differ by the
+    // vector between the bodies.
     const V3<L> b_from_a = a.arm - b.arm;
     const V3<L> p = PointAtEnd(a, b, b_from_a, c.links[0].lin[0], half_h);
     const V3<L> slip =

@@ -1,6 +1,6 @@
-/// Lane-by-lane solve of islands, where lanes have too little in common to be solved together:
-/// contacts of moving bodies, many contacts, islands that the solvers in lanes left unsolved. Each
-/// island is gathered in one-lane numbers, solved (island_solver.inl), and written back.
+/// Lane-by-lane solve of islands in which lanes differ too much to be solved together: contacts of
+/// moving bodies, many contacts, and islands that the solvers in lanes left unsolved. Each island
+/// is copied to one-lane numbers, solved (island_solver.inl), and copied back.
 #pragma once
 
 #include "sim/cables/lane_spans.inl"
@@ -32,8 +32,8 @@ class LaneSolve {
         lane_(lane),
         h_(L::Splat(step_s)) {}
 
-  /// Solves the lane's islands that have touches, or bodies marked as unsolved. The touches must be
-  /// prepared (PrepareTouches).
+  /// Solves the islands of the lane with touches or with bodies marked as unsolved. Call
+  /// PrepareTouches before.
   LaneResult Solve() noexcept {
     LaneResult result;
     FindIslands([&](int body) { return work_.unsolved[body][lane_] > 0; });
@@ -61,7 +61,7 @@ class LaneSolve {
   int PushOut() noexcept;
 
  private:
-  /// Solves the gathered island. Rolling on a rotating body takes fixed-point rounds (rolling.inl).
+  /// Solves the copied island. Rolling on a rotating body needs fixed-point rounds (rolling.inl).
   double SolveGathered(SolverWork& work) noexcept {
     constexpr int kMostRounds = 8;
     const Target target{settings_.tolerance_m_per_s};
@@ -108,22 +108,22 @@ class LaneSolve {
   bool IsOn(const StiffCable<W>& cable) const noexcept {
     return !displaces_ && cable.live[lane_] > 0;
   }
-  /// Returns whether the link belongs to this lane: a touching cable has links to the contacts of
-  /// all lanes, and a lane's result must not depend on other lanes.
+  /// Returns whether a link acts in this lane. A cable with wrapping has links for the contacts of
+  /// all lanes, but the result of a lane must not depend on other lanes.
   bool IsOn(const StiffCable<W>& cable, int link) const noexcept {
     return m_.cables[cable.cable].touch < 0 || Acts(cable.links[link], lane_);
   }
 
-  /// Returns whether the cable's group is integrated implicitly (implicit_groups.inl).
+  /// Returns whether the group of a cable is integrated implicitly (implicit_groups.inl).
   bool IsImplicit(const StiffCable<W>& cable) const noexcept {
     return work_.implicit.any && !fixed_directions_ && work_.implicit.limit[cable.cable][lane_] < 0;
   }
-  /// Returns whether joint `i` is integrated implicitly, with the cables of its group.
+  /// Returns whether joint `i` is integrated implicitly, together with the cables of its group.
   bool IsImplicitJoint(int i) const noexcept {
     if (!work_.implicit.any || fixed_directions_ || displaces_) return false;
     return work_.implicit.bodies[m_.joints[i].moved_body()][lane_] > 0;
   }
-  /// Returns whether the gathered island is integrated implicitly.
+  /// Returns whether the copied island is integrated implicitly.
   bool IsImplicit() const noexcept {
     bool any = false;
     for (int k = 0; k < count_ && !displaces_; ++k) {
@@ -131,8 +131,8 @@ class LaneSolve {
     }
     return any;
   }
-  /// Returns whether the island's bodies have finite velocities without constraints. Other islands
-  /// are not solved: the world's status has kStatusNonFinite.
+  /// Returns whether the bodies of the island have finite velocities without constraints. Otherwise
+  /// it is not solved, and the world gets the status kStatusNonFinite.
   bool IsFinite() const noexcept {
     const L zero = L::Splat(0.0);
     L sum = zero;
@@ -150,8 +150,8 @@ class LaneSolve {
   template <class F>
   void EachChain(const F& f) const noexcept;
 
-  /// Sets root[b] to the lowest body of b's island, for islands with a body that `asks` for it;
-  /// else -1.
+  /// Sets root[b] to the lowest body in the island of b, for islands with a body for which `asks`
+  /// is true; otherwise to -1.
   template <class Asks>
   void FindIslands(const Asks& asks) noexcept {
     for (int b = 0; b < m_.body_count; ++b) mem_.root[b] = b;
@@ -184,8 +184,8 @@ class LaneSolve {
     }
   }
 
-  /// Computes the order of elimination: place[local number]. If the blocks do not fit into memory,
-  /// the solver has no linear systems, only Gauss-Seidel sweeps.
+  /// Computes the elimination order: place[local number]. If the blocks do not fit into memory, the
+  /// solver uses only Gauss-Seidel sweeps, without linear systems.
   void Order() noexcept {
     BodyGraph& graph = mem_.graph;
     graph.count = count_;
@@ -220,11 +220,11 @@ class LaneSolve {
   }
   int Number(int body) const noexcept { return mem_.place[mem_.local[body]]; }
 
-  /// Sets the law of a displacement: outward, or inward to the point of touching.
+  /// Sets the law of a displacement: outward, or inward up to contact.
   void Displacing(ContactPoint<L, 2>& c, double deep, double gap) const noexcept;
 
-  // Gather and scatter between the lanes and the solver's memory (gather_island.inl).
-  /// Gathers the island of `root`. Returns false if no constraint acts on it.
+  // Copies between the lanes and the memory of the solver (gather_island.inl).
+  /// Copies the island of `root`. Returns false if no constraint acts on it.
   bool Gather(int root) noexcept;
   void GatherBody(int body, Unknown<L>& out) const noexcept;
   /// `first`: first row in `to`.
@@ -236,9 +236,9 @@ class LaneSolve {
   void GatherJoints(Pool<JointRow<L>>& pool, Pool<TurnFriction<L>>& frictions) noexcept;
   void GatherFrictions(Pool<TurnFriction<L>>& pool) noexcept;
   void GatherChains(Pool<CableChain<L>>& pool) noexcept;
-  /// Gathers the impulses of the warm start.
+  /// Copies the impulses for the warm start.
   void GatherImpulses() noexcept;
-  /// Writes impulses and velocities back into the lane.
+  /// Copies impulses and velocities back to the lane.
   void Scatter() noexcept;
 
   const View& m_;

@@ -1,17 +1,17 @@
-/// Contacts of a whole world in as few rows as its lanes need: row k contains, in each lane, the
-/// lane's k-th contact on any body. Slots are packed body by body (stage_collide.inl): on a plane
-/// all lanes' robots stand on the same feet, on hills on different ones, so rows by bodies would be
-/// as many as the contacts of all lanes.
+/// Contacts of a whole world in the smallest number of rows: in each lane, row k contains the k-th
+/// contact of the lane, on any body. In contrast, slots are assigned per body (stage_collide.inl).
+/// On a plane, the robots of all lanes have contacts at the same bodies. On hills they differ, so
+/// rows per body would be as many as the contacts of all lanes together.
 ///
-/// A packed contact has a link to each body that some lane needs, with zeros in the other lanes,
-/// which add exactly nothing.
+/// A packed contact has a link to each body that any lane needs. In other lanes, the link is zero
+/// and adds exactly nothing.
 #pragma once
 
 #include "sim/data/rows.h"
 
 namespace taut::sim {
 
-/// Contacts in the bodies' slots, unpacked.
+/// Contacts in the slots of the bodies, not packed.
 template <class W>
 class ContactsInSlots {
  public:
@@ -40,7 +40,7 @@ class PackedContacts {
 
  public:
   static constexpr bool kPacked = true;
-  /// Packs the contacts of `lanes`; each lane's contacts must fit into memory.
+  /// Packs the contacts of `lanes`. The contacts of each lane must fit into memory.
   PackedContacts(const View& m, Scratch<W>& work, M lanes) noexcept
       : m_(m), work_(work), packed_(work.dual.packed), lanes_(lanes) {
     ForEachPlace([&](const Contact<W, 1>& from, int row, M here) {
@@ -52,7 +52,7 @@ class PackedContacts {
   TAUT_INLINE void ForEach(F&& f) noexcept {
     for (int k = 0; k < count_; ++k) f(packed_[k]);
   }
-  /// Writes impulses back to the slots, in the lanes that are `solved`.
+  /// Copies impulses back to the slots in the lanes `solved`.
   void Finish(M solved) noexcept {
     ForEachPlace([&](Contact<W, 1>& to, int row, M here) {
       for (int r = 0; r < 3; ++r) to.l[r] = Select(here & solved, packed_[row].l[r], to.l[r]);
@@ -60,7 +60,7 @@ class PackedContacts {
   }
 
  private:
-  /// Calls f(contact, row, lanes that have it there), in the order of the slots.
+  /// Calls f(contact, row, lanes with the contact in this row), in the order of the slots.
   template <class F>
   TAUT_INLINE void ForEachPlace(F&& f) noexcept {
     const W one = W::Splat(1.0), zero = W::Splat(0.0);
@@ -87,7 +87,7 @@ class PackedContacts {
     const W zero = W::Splat(0.0);
     const V3<W> none{zero, zero, zero};
     if (first) {
-      // Harmless values for lanes without such a contact.
+      // harmless values for lanes without this contact
       to.TakeLaw(from, [](const W& x, const W&) { return x; });
       to.live = zero;
       for (W& l : to.l) l = zero;

@@ -1,5 +1,5 @@
-/// First stage of an island's solve: plain Newton's method on all laws, without globalization.
-/// Mostly two steps (docs/theory/contact.md, eq. 18, 21-22).
+/// First stage of an island's solve: plain Newton's method on all laws, without globalization. It
+/// usually takes two steps (docs/theory/contact.md, eq. 18, 21-22).
 #pragma once
 
 #include "math/scalar.h"
@@ -10,7 +10,7 @@
 
 namespace taut::sim {
 
-/// Inverts a small matrix without pivots: matrices of laws have large diagonals.
+/// Inverts a small matrix without pivoting, because matrices of laws have large diagonals.
 template <class Num, int R>
 TAUT_INLINE void InvertSmall(const Num (&a)[R][R], Num (&out)[R][R]) noexcept {
   const Num one = Num::Splat(1.0);
@@ -68,8 +68,8 @@ TAUT_INLINE bool StepOf(const Law& law, const typename Law::Branch& branch, cons
   }
 }
 
-/// Takes one step of Newton's method from m.l, m.u and the laws' current branches. Leaves m.l with
-/// its velocities in m.v and m.u; returns false if there is no step.
+/// Takes one step of Newton's method from m.l, m.u and the current branches of the laws. Results:
+/// m.l with its velocities in m.v and m.u. Returns false if there is no step.
 template <class Num, class P>
 bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
   constexpr double kCompliance = 1e-7;
@@ -103,8 +103,8 @@ bool NewtonStep(Island<Num, P>& island, SolverWork& work) noexcept {
   return true;
 }
 
-/// Solves from m.l. Leaves the best impulses found, made admissible, in m.l; m.v and m.u belong to
-/// it before and after. Returns the residual [m/s].
+/// Solves from m.l. Result: the best impulses found, made admissible, in m.l. On entry and return,
+/// m.v and m.u are the velocities of m.l. Returns the residual [m/s].
 template <class Num, class P>
 double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kMaxIterations = 12, kMaxDeadlocks = 8;
@@ -139,7 +139,7 @@ double PlainNewton(Island<Num, P>& island, Target target, SolverWork& work) noex
       break;
     }
   }
-  // Impulses slightly outside of the cone are moved back into it.
+  // Impulses slightly outside of the cone are moved into it.
   return island.Return(residual <= best ? m.l : m.best);
 }
 

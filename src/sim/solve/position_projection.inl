@@ -1,7 +1,7 @@
-/// Position projection: least displacements that remove penetration at once, as velocities times
-/// the step, without friction and cables (docs/theory/contact.md, eq. 8). Bodies move and rotate
-/// with their spin: velocities stay, and only potential energy changes. Lane by lane, since it is
-/// rare.
+/// Position projection: smallest displacements that remove penetration immediately, as velocities
+/// times the step, without friction and cables (docs/theory/contact.md, eq. 8). Velocities do not
+/// change, only potential energy; angular momenta rotate with their bodies. Runs lane by lane,
+/// because it is rarely needed.
 #pragma once
 
 #include "sim/bodies/stage_bodies.inl"
@@ -55,7 +55,7 @@ void LaneSolve<W>::Displacing(ContactPoint<L, 2>& c, double deep, double gap) co
   for (L& l : c.l) l = zero;
 }
 
-/// Returns whether only contacts and joints between its own moving bodies pushed the island.
+/// Returns whether only contacts and joints between moving bodies of the island displaced it.
 template <class W>
 bool LaneSolve<W>::IsAlone() const noexcept {
   const Pool<ContactPoint<L, 2>>& contacts = mem_.island.pools;
@@ -73,8 +73,8 @@ bool LaneSolve<W>::IsAlone() const noexcept {
   return alone;
 }
 
-/// Returns the angular momentum that this step's contacts with the world, stiff cables and joints
-/// will still add to a body.
+/// Returns the angular momentum that contacts with the world, stiff cables and joints will still
+/// add to a body in this step.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
@@ -108,8 +108,8 @@ V3<simd::Lane<W>> LaneSolve<W>::Pending(int body) const noexcept {
   return sum;
 }
 
-/// Moves a body of the island; its angular momentum rotates with it. Returns the resulting change
-/// of the total angular momentum.
+/// Displaces a body of the island; its angular momentum rotates with it. Returns the resulting
+/// change of the total angular momentum.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::Displace(int number) noexcept {
   const Unknown<L>& unknown = mem_.island.bodies[number];

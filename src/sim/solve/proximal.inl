@@ -1,12 +1,12 @@
-/// Third stage of an island's solve: proximal rounds, each a Newton solve of regularized laws
-/// centered at the impulses of the previous round, with a line search (docs/theory/contact.md, eq.
+/// Third stage of an island's solve: proximal rounds. Each round is a Newton solve with line search
+/// of regularized laws, centered at the impulses of the previous round (docs/theory/contact.md, eq.
 /// 24-28).
 ///
-/// In a round every law has a compliance, a share `e` of its inverse mass, so that its impulses are
-/// a function of the bodies' velocities: l(v) = Project(u, center, e). The round solves
+/// In a round, every law has a compliance: a fraction `e` of its inverse mass. Its impulses are
+/// then a function of the body velocities: l(v) = Project(u, center, e). The round solves
 ///   F(v) = M (v - v_free) - J^T l(v) = 0.
-/// With frozen friction radii, F is the gradient of a convex function, which judges the steps. As
-/// the rounds' centers converge, the compliance loses its effect.
+/// With fixed friction radii, F is the gradient of a convex function, which controls the step
+/// length. As the centers converge, the effect of the compliance vanishes.
 #pragma once
 
 #include "math/angle.h"
@@ -23,8 +23,8 @@ class Proximal {
   static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
   static constexpr double kLeastSoftness = 1e-8, kStays = 1e-3;
   static constexpr int kMaxStays = 4;
-  /// Stagnation of the residual is the certificate of inconsistent contacts: number of rounds
-  /// without halving it, once rounds are this stiff or fail.
+  /// Criteria for inconsistent contacts: the residual is not reduced by the factor kFalls in
+  /// several rounds, although rounds have a compliance of at most kStiff or fail.
   static constexpr double kFalls = 0.5, kSmallMPerS = 1e-8, kStiff = 1e-8;
   static constexpr int kRoundsIfSmall = 4, kRounds = 6;
 
@@ -37,22 +37,23 @@ class Proximal {
         work_(work),
         size_(kDofs * island.body_count) {}
 
-  /// Improves m.l; m.v and m.u belong to it before and after. Returns the residual [m/s].
+  /// Improves m.l. On entry and return, m.v and m.u are the velocities of m.l. Returns the residual
+  /// [m/s].
   double Solve(double first_softness) noexcept {
     double e = first_softness, failed_at = 0, best_at_failure = 0;
     double residual = island_.Judge(), best = residual;
     Keep(m_.best, m_.l, island_.rows);
-    bool carried = false;  // m.trial_v is the end of the last round
+    bool carried = false;  // m.trial_v is the result of the last round
     int stayed = 0;
-    int stale = 0;         // rounds at this softness or less since the residual was last halved:
-    double e_at_fall = e;  // the softness of that round
+    int stale = 0;         // rounds at this compliance or less since the residual was last halved
+    double e_at_fall = e;  // compliance in that round
     for (int round = 0; round < kMaxRounds && residual > tolerance_ && !Exhausted(); ++round) {
       Keep(m_.center, m_.l, island_.rows);
       if (!carried) Keep(m_.trial_v, m_.v, size_);
       const bool ended_well = Round(e);
       const double before = residual;
       residual = island_.Judge();
-      // Inconsistent contacts: see deadlock.inl
+      // inconsistent contacts: see deadlock.inl
       stayed = ended_well && Stays(residual, before, kStays * residual) ? stayed + 1 : 0;
       if (residual < kFalls * best) {
         stale = 0, e_at_fall = e;
@@ -68,7 +69,7 @@ class Proximal {
       if (stays) break;
       carried = ended_well && residual - residual == 0;
       if (ended_well) {
-        // Approach a softness where a round failed before in smaller steps.
+        // Approach a compliance at which a round failed before in smaller steps.
         const bool near_failure = failed_at > 0 && 0.1 * e <= 1.01 * failed_at;
         e *= near_failure ? 0.3 : 0.1;
         if (e < kLeastSoftness) e = kLeastSoftness;
@@ -101,9 +102,9 @@ class Proximal {
     Keep(m_.best, m_.l, island_.rows);
   }
 
-  /// Relaxes the laws that m.l violates: with m.l the next step starts from the impulses grown
-  /// along the loop, until a contact slides. If that fails, tries the best impulses; else restores
-  /// m.l.
+  /// Relaxes the laws that m.l violates. With m.l, the next step starts from the impulses
+  /// accumulated along the loop, until a contact slides. If this fails, tries the best impulses,
+  /// and otherwise restores m.l.
   bool RelaxBest(double best) noexcept {
     if (!(best > tolerance_ && best <= kDisagreementMPerS)) return false;
     if (Relax(island_, tolerance_, work_)) return true;
@@ -115,13 +116,13 @@ class Proximal {
     return false;
   }
 
-  /// Runs one round with the softness e from m.trial_v. Leaves impulses in m.l, velocities in
-  /// m.trial_v. Returns true if it converged: then the impulses come from the linear equations of
+  /// Runs one round with compliance e from m.trial_v. Results: impulses in m.l, velocities in
+  /// m.trial_v. Returns true if it converged. Then the impulses come from the linear equations of
   /// the last step, which are free of the noise that a small e amplifies.
   bool Round(double softness) noexcept {
     const Num e = Num::Splat(softness);
     island_.Measure(m_.trial_v, m_.u);
-    double theta = 1;  // share of the true curvature along the sliding direction, see Stiffen
+    double theta = 1;  // fraction of the true curvature along the sliding direction, see Stiffen
     for (int iteration = 0; iteration < kMaxIterations && !Exhausted(); ++iteration) {
       Evaluate(e, theta);
       bool symmetric = false;
@@ -133,7 +134,7 @@ class Proximal {
         if (!(slope < 0)) break;
       }
       island_.Measure(m_.direction, m_.du);
-      // If its end is on the same branches, the step solves the equations and bypasses the line
+      // If all branches are the same at its end, the step solves the equations and needs no line
       // search.
       StepTo(1);
       if (theta == 1 && !symmetric && SameBranches(e)) {
@@ -184,7 +185,7 @@ class Proximal {
     }
   }
 
-  /// direction <- -(M + J^T G J)^-1 F. Returns its slope, direction . F; 0 if the matrix is
+  /// direction <- -(M + J^T G J)^-1 F. Returns the slope direction . F, or 0 if the matrix is
   /// singular.
   double Direction(bool symmetric) noexcept {
     matrix_.Start(island_.bodies, symmetric);
@@ -198,7 +199,7 @@ class Proximal {
     return slope[0];
   }
 
-  /// Removes the dependence of friction on the normal impulse, which makes the matrix positive
+  /// Removes the dependence of friction on the normal impulse, so that the matrix is positive
   /// definite.
   void DropCoupling() noexcept {
     island_.pools.ForEach([&](auto& law, auto&, int, int cell) {
@@ -212,8 +213,8 @@ class Proximal {
     });
   }
 
-  /// Returns the slope of the convex function along the direction, at `alpha`; `at_zero` and
-  /// `per_alpha` are the part of M.
+  /// Returns the slope of the convex function along the direction at `alpha`. `at_zero` and
+  /// `per_alpha`: contribution of M.
   double SlopeAt(Num e, double alpha, double at_zero, double per_alpha) noexcept {
     Num sum = Num::Splat(at_zero + per_alpha * alpha);
     const Num step = Num::Splat(alpha);
@@ -228,8 +229,8 @@ class Proximal {
     return sum[0];
   }
 
-  /// Returns the step length: 1 unless the slope at its end has become clearly positive, else the
-  /// place where the slope is a tenth of its initial size.
+  /// Returns the step length: 1 unless the slope at the end of the step is clearly positive,
+  /// otherwise the point at which the slope is a tenth of its initial value.
   double LineSearch(Num e, double slope) noexcept {
     Num straight = Num::Splat(0.0), bent = Num::Splat(0.0);  // d . M (v - v_free), d . M d
     Num x[kDofs], md[kDofs], free[kDofs];
@@ -263,7 +264,7 @@ class Proximal {
     return alpha;
   }
 
-  /// Returns whether every law has the same branch at m.u2 as at m.u.
+  /// Returns whether every law has the same branch at m.u2 and m.u.
   bool SameBranches(Num e) noexcept {
     bool same = true;
     island_.pools.ForEach([&](auto& law, auto& branch, int row, int) {

@@ -1,5 +1,6 @@
-/// Derivatives of an island's solution by its inputs: Newton's linear system at the solution, and
-/// its transpose for gradients (docs/theory/contact.md, eq. 29-31). Steps do not use it.
+/// Derivatives of an island's solution with respect to its inputs: Newton's linear system at the
+/// solution, and its transpose for gradients (docs/theory/contact.md, eq. 29-31). Not used in
+/// steps.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -9,8 +10,8 @@
 
 namespace taut::sim {
 
-/// Tangent of an island after its solve. Borrows the memory of the stages; velocities and impulses
-/// stay.
+/// Tangent of an island after its solve. Uses the memory of the solver stages; velocities and
+/// impulses do not change.
 ///
 /// Inputs and results:
 ///   p   6 per unknown: added momentum, M times the change of its free velocity [N s; N m s];
@@ -18,8 +19,8 @@ namespace taut::sim {
 ///   b   one per row: added to the velocity in the row's law, like a bias [m/s]
 ///   dv, dl   changes of velocities and impulses; dv = p for prescribed unknowns
 /// The laws keep their branches. At the boundary of two branches (a contact that just touches or
-/// just slips) the result is a one-sided derivative. It does not apply where impulses were
-/// interpolated to limit the energy (impacts.inl), since they satisfy no law.
+/// just slips), the result is a one-sided derivative. It is invalid if impulses were interpolated
+/// to limit the energy (impacts.inl), because these satisfy no law.
 template <class Num, class P>
 class IslandTangent {
  public:
@@ -27,7 +28,7 @@ class IslandTangent {
       : island_(island), m_(island.m), matrix_(island.pattern, island.m.blocks) {}
 
   /// Factors the matrix. Returns false if it is singular or does not fit into memory. The error is
-  /// of the order of the compliance, by which loads that may be shared in many ways are shared.
+  /// of the order of the compliance, which distributes indeterminate loads.
   bool Factor(double compliance = 1e-7) noexcept {
     if (!island_.has_matrix) return false;
     bool symmetric = true;
@@ -42,7 +43,7 @@ class IslandTangent {
     return matrix_.Factor();
   }
 
-  /// Returns M + J^T G J of the unknowns that are not prescribed, factored.
+  /// Returns the factored M + J^T G J of the unknowns that are not prescribed.
   const BodyMatrix<Num>& matrix() const noexcept { return matrix_; }
 
   /// dv, dl <- effect of p and b (eq. 29). dv may be p.
@@ -62,8 +63,8 @@ class IslandTangent {
     TimesMinusG(m_.du, dl, false);
   }
 
-  /// Adjoint (eq. 31): from the derivatives `by_v`, `by_l` of a number by velocities and impulses,
-  /// computes its derivatives by p and b. by_p may be by_v.
+  /// Adjoint (eq. 31). From the derivatives `by_v`, `by_l` of a number with respect to velocities
+  /// and impulses, computes its derivatives with respect to p and b. by_p may be by_v.
   void ApplyTransposed(const Num* by_v, const Num* by_l, Num* by_p, Num* by_b) noexcept {
     const Num zero = Num::Splat(0.0);
     TimesMinusG(by_l, by_b, true);

@@ -1,11 +1,13 @@
-/// World of bodies connected by stiff cables that touch only static geometry: Newton's method in
-/// all impulses on the Delassus operator, in all lanes at once (docs/theory/contact.md, section 5).
+/// Solver for a world of bodies connected by stiff cables that touch only static geometry: Newton's
+/// method in all impulses on the Delassus operator, in all lanes at once (docs/theory/contact.md,
+/// section 5).
 ///
-/// Cables are eliminated first, by a symmetric factorization that stays valid while the same cables
-/// are taut and none bends. The rest is a system of the contacts alone, as small as one body's,
-/// with separate Newton iterations. The rows are the union of all lanes' rows; a row of other lanes
-/// stands in a lane's system as 1 x = 0. A lane's result does not depend on other lanes: its rows
-/// have the same order alone.
+/// Cables are eliminated first by a symmetric factorization. It stays valid while the set of taut
+/// cables is the same and no cable becomes slack or taut in the step. The remaining system contains
+/// only the contacts; it is as small as for one body and has its own Newton iterations. The rows
+/// are the union of the rows of all lanes; in lanes without a row, its equation is 1 x = 0. The
+/// result of a lane does not depend on other lanes, because the order of its rows is always the
+/// same.
 #pragma once
 
 #include "sim/data/rows.h"
@@ -17,8 +19,8 @@ namespace taut::sim {
 template <class W, class Contacts>
 class WorldDual {
   static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
-  /// Contacts in many directions may cycle, and all lanes would wait for them: worlds that cycled
-  /// this often are left to the lane-by-lane solve.
+  /// Contacts in many directions may cycle, and all lanes would wait for them. Worlds with this
+  /// number of cycles are left to the lane-by-lane solver.
   static constexpr int kMaxCircles = Contacts::kPacked ? 3 : kMaxIterations;
   static constexpr double kCompliance = 1e-9;
   using M = MaskOf<W>;
@@ -74,7 +76,7 @@ class WorldDual {
     const W tolerance = W::Splat(target_.tolerance), goal = W::Splat(target_.goal()),
             pays = W::Splat(Target::kPays);
     now_ = Select(lanes, Residual(), now_);
-    // At least one step: residuals of cables would persist as oscillations and accumulate.
+    // At least one step, because residuals of cables would persist as oscillations and accumulate.
     M busy = lanes;
     [[maybe_unused]] W circles = W::Splat(0.0);
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
@@ -97,12 +99,12 @@ class WorldDual {
     }
   }
 
-  /// Calls f(law, first row) for all stiff cables,
+  /// Calls f(law, first row) for all stiff cables.
   template <class F>
   TAUT_INLINE void ForEachCable(F&& f) noexcept {
     for (int i = 0; i < work_.stiff_count; ++i) f(work_.stiff[i], i);
   }
-  /// and for all contacts with the world.
+  /// Calls f(law, first row) for all contacts with the world.
   template <class F>
   TAUT_INLINE void ForEachContact(F&& f) noexcept {
     int row = work_.stiff_count;
@@ -154,11 +156,11 @@ class WorldDual {
     return worst;
   }
 
-  /// Returns row i of an upper triangle, from the diagonal on: Row(i)[j], j >= i.
+  /// Returns row i of the upper triangle: Row(i)[j], j >= i.
   TAUT_INLINE W* Row(int i) const noexcept { return mem_.a + i * (2 * rows_ - i - 1) / 2; }
 
-  /// a <- upper triangle of the Delassus operator W = J M^-1 J^T, body by body from the rows that
-  /// share it.
+  /// a <- upper triangle of the Delassus operator W = J M^-1 J^T, assembled body by body from the
+  /// rows on the same body.
   void BuildMatrix() noexcept {
     const int n = rows_;
     for (int i = 0; i < n; ++i) {
@@ -203,8 +205,8 @@ class WorldDual {
     next[0] = 0;
   }
 
-  /// Computes Newton's equations of the cables. Returns true if other cables are taut than before,
-  /// or one has another stiffness: cables that become slack or taut in this step are curves.
+  /// Computes Newton's equations of the cables. Returns true if a coefficient has changed: another
+  /// cable is taut, or a cable that becomes slack or taut in this step has another stiffness.
   bool LinearizeCables(bool first) noexcept {
     bool changed = first;
     ForEachCable([&](auto& law, int row) {
@@ -220,8 +222,8 @@ class WorldDual {
     return changed;
   }
 
-  /// a: rows of the cables, eliminated (D L^T, the inverse of D on the diagonal), followed by the
-  /// rest for the contacts, W'.
+  /// a: eliminated rows of the cables (D L^T, with the inverse of D on the diagonal), followed by
+  /// the remaining matrix W' for the contacts.
   void Factor() noexcept {
     BuildMatrix();
     const W one = W::Splat(1.0), zero = W::Splat(0.0);
@@ -242,8 +244,8 @@ class WorldDual {
     for (; k < cables_; ++k) EliminatePivots<1>(k);
   }
 
-  /// Eliminates pivots k to k + P - 1: first among themselves, then from all rows below at once,
-  /// each entry by one pivot after the other.
+  /// Eliminates the pivots k to k + P - 1: first among themselves, then from all rows below at
+  /// once. Each entry receives one pivot after the other.
   template <int P>
   void EliminatePivots(int k) noexcept {
     const int n = rows_;
@@ -275,8 +277,8 @@ class WorldDual {
     TAUT_NO_OVERLAP for (int i = 0; i < count; ++i) y[i] += f * x[i];
   }
 
-  /// Forward substitution of the right sides through the cables; their effect on the contacts'
-  /// velocities is added to q.
+  /// Forward substitution of the right sides through the cables. Adds their effect on the contact
+  /// velocities to q.
   void Forward() noexcept {
     const W zero = W::Splat(0.0);
     for (int i = cables_; i < rows_; ++i) mem_.q[i] = zero;
@@ -325,10 +327,10 @@ class WorldDual {
   M SolveContacts(M lanes, W goal) noexcept;
   void LinearizeContacts(int size) noexcept;
   void EliminateContacts(int size) noexcept;
-  /// Returns an element of W', of which a contains the upper triangle.
+  /// Returns an element of W'; a contains the upper triangle.
   TAUT_INLINE W Left(int i, int j) const noexcept { return i < j ? Row(i)[j] : Row(j)[i]; }
 
-  /// Back substitution of the cables' changes, from the contacts' changes.
+  /// Back substitution: computes the changes of the cables from the changes of the contacts.
   void Back() noexcept {
     for (int k = cables_ - 1; k >= 0; --k) {
       const W* const a = Row(k);
@@ -349,7 +351,7 @@ class WorldDual {
     });
   }
 
-  /// Writes the results to the laws and the bodies in the lanes `solved`.
+  /// Copies the results to the laws and bodies in the lanes `solved`.
   void Finish(M solved) noexcept {
     if (!Any(solved)) return;
     ForEach([&](auto& law, int row) {

@@ -1,5 +1,5 @@
 /// Contacts of a world of bodies connected by stiff cables, after elimination of the cables: a
-/// small system with separate Newton iterations.
+/// small system with its own Newton iterations.
 #pragma once
 
 #include "sim/constraint/links.h"
@@ -7,7 +7,7 @@
 
 namespace taut::sim {
 
-/// Newton's method for the contacts, with yielding cables: u = u* + W' dl, u* = u + q. Leaves dl in
+/// Newton's method for the contacts with yielding cables: u = u* + W' dl, u* = u + q. Result: dl in
 /// r. Returns the lanes that did not converge.
 template <class W, class Contacts>
 MaskOf<W> WorldDual<W, Contacts>::SolveContacts(M lanes, W goal) noexcept {
@@ -60,7 +60,7 @@ void WorldDual<W, Contacts>::LinearizeContacts(int size) noexcept {
   });
 }
 
-/// d <- c^-1 d, without pivots; a lane where this fails does not converge.
+/// d <- c^-1 d without pivoting; lanes where this fails do not converge.
 template <class W, class Contacts>
 void WorldDual<W, Contacts>::EliminateContacts(int size) noexcept {
   W* const x = mem_.d;

@@ -1,10 +1,10 @@
-/// Simulation step: the sequence of its stages (docs/theory/integrator.md). Included once per
-/// instruction set, by step_*.cpp, with the width of its registers.
+/// Simulation step: the sequence of its stages (docs/theory/integrator.md). Each step_*.cpp
+/// includes it for one instruction set, with its register width.
 ///
-/// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift. Nothing
-/// here or below uses the standard library, so that no shared template is compiled with
-/// instructions that some machines lack. For the same reason every function is a template of W or
-/// TAUT_INLINE: if several of step_*.cpp emit a function, the linker keeps an arbitrary one.
+/// Moreau's midpoint scheme: half a drift, forces and contacts at the middle, half a drift. This
+/// code uses no standard library, so that no shared template is compiled with instructions that
+/// some machines lack. For the same reason, every function is a template of W or TAUT_INLINE: if
+/// several step_*.cpp emit a function, the linker keeps any one of them.
 #pragma once
 
 #include "sim/bodies/motion.inl"
@@ -26,7 +26,7 @@ namespace taut::sim {
 
 template <class W>
 void SaveStart(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {
-  // Consecutive rows are copied in one piece.
+  // Consecutive rows are copied as one block.
   const W* from = s.time.data();
   W* to = work.start;
   size_t count = 0;
@@ -66,8 +66,8 @@ void KeepStart(const View& m, const Rows<W>& s, const Scratch<W>& work, M halted
 #undef TAUT_ROW
 }
 
-/// Stores velocities in the state, with the data for the next step's predictions: forces as in this
-/// step, without impacts.
+/// Stores velocities in the state, and data for the predictions of the next step: the forces of
+/// this step without impacts.
 template <class W>
 TAUT_INLINE void StoreBody(const Rows<W>& s, const BodyWork<W>& body, int b,
                            double step_s) noexcept {
@@ -111,7 +111,7 @@ void StoreResults(const View& m, const Rows<W>& s, Group& g, const Scratch<W>& w
   }
 }
 
-/// Returns the lanes in which a body is below all ground (kStatusFellOff).
+/// Returns the lanes in which a body is below all terrain (kStatusFellOff).
 template <class W>
 [[gnu::noinline]] MaskOf<W> FellOff(const View& m, const Rows<W>& s) noexcept {
   const W zero = W::Splat(0.0);
@@ -122,7 +122,7 @@ template <class W>
   return fallen & (s.gravity[0].z < zero) & (s.halted[0] == zero);
 }
 
-/// Stores the body of a lane that fell off, and the surface nearest to it.
+/// Stores the body of a lane that left the terrain, and the nearest surface.
 template <class W>
 [[gnu::noinline]] void NameFallen(const View& m, const Rows<W>& s, int lane,
                                   LaneStatus& status) noexcept {
@@ -221,7 +221,7 @@ void UpdateStatus(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
   }
 }
 
-/// The stages of a step, in their order.
+/// Stages of a step, in their order.
 enum class Stage {
   kStart,       ///< Saves the state at the start.
   kKinematics,  ///< Half a drift, rotations, inertias in W.
@@ -230,11 +230,11 @@ enum class Stage {
   kCollide,     ///< Collision detection.
   kSolve,       ///< Contacts, stiff cables and joints.
   kIntegrate,   ///< Stores the contacts; half a drift.
-  kJudge,       ///< Checks the result.
+  kJudge,       ///< Checks the result and updates the status.
   kCount
 };
 
-/// Receives the end of each stage. This class does nothing and costs nothing; benchmarks/ has one
+/// Receives the end of each stage. This class does nothing and has no cost; benchmarks/ has one
 /// with a clock.
 struct NoWatch {
   TAUT_INLINE void Begin() noexcept {}
@@ -248,7 +248,7 @@ void StepOnce(const View& m, const Rows<W>& s, Group& g, const StepSettings& set
   const W zero = W::Splat(0.0);
   const W h = W::Splat(step_s), half_h = W::Splat(0.5 * step_s);
 
-  // Dampers act on mean velocities over the step, predicted by the change in the previous step.
+  // Dampers use mean velocities over the step, predicted from the change in the previous step.
   const W last = s.last_step[0];
   const W ahead = Select(last > zero, half_h / Max(last, W::Splat(1e-300)), zero);
 

@@ -1,4 +1,4 @@
-/// Stage: sensor readings of cables.
+/// Stage: cable readings.
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
@@ -8,8 +8,8 @@
 
 namespace taut::sim {
 
-/// Reads one cable at the end of the step. `ends`: buffer for its attachments; with two at compile
-/// time they stay in registers.
+/// Computes the readings of one cable at the end of the step. `ends`: buffer for its attachments.
+/// With a compile-time number of two, they stay in registers.
 template <bool kTwo, class W>
 TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, int c,
                             int attachment_count, AttachmentWork<W>* ends) noexcept {
@@ -22,10 +22,10 @@ TAUT_INLINE void SenseCable(const View& m, const Rows<W>& s, Scratch<W>& work, i
   s.sense_elastic[c] = f.elastic;
 }
 
-/// Sets the forces of stiff cables to the means over the last step, as solved
-/// (docs/theory/cables.md, eq. 8). Instantaneous forces may alternate between zero and twice the
-/// mean: the implicit midpoint rule conserves the energy of vibrations shorter than the step, and
-/// only their mean acts on bodies.
+/// Replaces the forces of stiff cables by their averages over the last step (docs/theory/cables.md,
+/// eq. 8). Instantaneous forces may alternate between zero and twice the average: the implicit
+/// midpoint rule conserves the energy of vibrations shorter than the step, and only their mean acts
+/// on bodies.
 template <class W>
 [[gnu::noinline]] void SenseMeans(const View& m, const Rows<W>& s) noexcept {
   const auto known = (s.mean_step[0] > W::Splat(0.0)) & (s.mean_step[0] == s.last_step[0]);
@@ -39,7 +39,7 @@ template <class W>
   }
 }
 
-/// Stage: lengths and rates of cables at the end of the step, and forces.
+/// Stage: lengths, rates and forces of cables at the end of the step.
 ///   reads   pos, bodies[] (of the current state), tension, mean_*     writes  sense_*
 template <class W>
 void StageSense(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept {

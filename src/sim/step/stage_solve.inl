@@ -1,7 +1,7 @@
 /// Stage: solve for the impulses of contacts, stiff cables and joints, with warm starts
 /// (docs/theory/contact.md, sections 4 and 5). Bodies that touch only the world, and worlds of
-/// bodies connected by stiff cables, are solved in all lanes at once; all other constraints, and
-/// those left unsolved, lane by lane.
+/// bodies connected by stiff cables, are solved in all lanes at once. All other or unsolved
+/// constraints are solved lane by lane.
 #pragma once
 
 #include "sim/cables/cable_chains.inl"
@@ -23,14 +23,14 @@ namespace taut::sim {
 
 template <class W>
 struct SolveResult {
-  W residual;  ///< Residual of a lane [m/s].
+  W residual;  ///< Residual per lane [m/s].
   W linear_solves;
   W relaxation;         ///< Largest relaxation of inconsistent contacts [m/s].
   int body[W::kLanes];  ///< Body with the largest residual.
 };
 
-/// Returns the memory of a contact in a body's slot, by the key of the contact. Keys ascend on both
-/// sides in every lane; the cursor skips the slots that no lane needs any more.
+/// Returns the memory of a contact in a slot of a body, by its key. Keys ascend in the slots and in
+/// the memory of every lane; the cursor skips slots that no lane needs any more.
 template <class W>
 TAUT_INLINE ContactMemory<W> Recall(const Rows<W>& s, const Contact<W, 1>& c, int first, int used,
                                     int& cursor) noexcept {
@@ -65,13 +65,13 @@ void PrepareContacts(const View& m, const Rows<W>& s, const Group& g, Scratch<W>
   }
 }
 
-/// Fits biases of bodies with more than two contacts, or in larger islands. The two contacts of a
-/// separate body are solved to the last digit without it.
+/// Fits biases of bodies with more than two contacts or in larger islands. The two contacts of a
+/// separate body are solved to the last digit without this.
 template <class W, class M>
 void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
   constexpr int kFewest = 3;
   const W zero = W::Splat(0.0);
-  // Over facets and ridges the gaps of one body may not fit any rigid motion.
+  // On facets and ridges, the gaps of a body may not match any rigid motion.
   const double most = m.has_ground ? kDisagreementMPerS : kFittedMPerS;
   for (int b = 0; b < m.body_count; ++b) {
     const int count = work.contact_count[b];
@@ -84,8 +84,8 @@ void FitWorldBiases(const View& m, Scratch<W>& work, M tied) noexcept {
 }
 
 /// Applies arcs (12a) and common motions (12b) to biases of contacts with the world. Bodies that
-/// touch moving bodies are exempt: such biases would be inconsistent around a loop of bodies and
-/// leave heaps unsolved.
+/// touch moving bodies are excluded, because such biases would be inconsistent around a loop of
+/// bodies and leave heaps unsolved.
 template <class W, class M>
 void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied,
                        double step_s) noexcept {
@@ -102,9 +102,8 @@ void FinishWorldBiases(const View& m, const Rows<W>& s, Scratch<W>& work, M tied
   }
 }
 
-/// Marks bodies for the lane-by-lane solve from the start: bodies with joints or contacts with
-/// moving bodies, and all bodies of a world with stiff cables that is not solved in lanes
-/// (`alone`).
+/// Marks bodies for the lane-by-lane solver: bodies with joints or contacts with moving bodies, and
+/// all bodies of a world with stiff cables that is not solved in lanes (`alone`).
 template <class W, class M>
 void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
   const W mark = Select(alone, W::Splat(1.0), W::Splat(0.0));
@@ -136,7 +135,7 @@ MaskOf<W> MayGoToDual(const View& m, const Scratch<W>& work, W touches) noexcept
   return (touches == zero) & !(contacts > W::Splat(work.dual.packed_capacity));
 }
 
-/// Solves bodies whose contacts with the world are islands.
+/// Solves bodies whose contacts with the world form islands.
 template <class W, class M>
 void SolveBodies(const View& m, Scratch<W>& work, Target target, M lanes,
                  SolveResult<W>& result) noexcept {
@@ -169,7 +168,7 @@ bool AnyDeep(const Scratch<W>& work, int lane, double deepest_m) noexcept {
   return deep;
 }
 
-/// Solves lanes with unsolved bodies, one after the other, and applies position projection.
+/// Solves lanes with unsolved bodies one after the other, and applies position projection.
 template <class W>
 void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
                 const StepSettings& settings, double step_s, SolveResult<W>& result) noexcept {
@@ -200,7 +199,7 @@ void SolveLanes(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work,
       result.linear_solves.Set(lane, result.linear_solves[lane] + linear_solves);
     }
   }
-  // Terminates every lane's list.
+  // ends the list of every lane
   if (g.touches_used == 0 && touches == 0) return;
   g.touches_used = touches;
   for (int lane = 0; lane < W::kLanes; ++lane) {

@@ -9,9 +9,9 @@
 
 namespace taut::sim {
 
-/// Returns the contact point of two bodies in their present poses. Levers belong to the moment of
-/// touch; for two moving bodies a mean is used: a pair needs one point, since two points would
-/// change the angular momentum.
+/// Returns the contact point of two bodies in their present poses. The lever arms are from the time
+/// of contact. For two moving bodies, a mean is used, because two different points would change the
+/// angular momentum.
 template <class W, class L>
 V3<L> MeetingPoint(const Rows<W>& s, const TouchPoint& point, const int* bodies,
                    const BodyWork<L>* at, int lane) noexcept {
@@ -23,9 +23,9 @@ V3<L> MeetingPoint(const Rows<W>& s, const TouchPoint& point, const int* bodies,
   return p - L::Splat(point.when_s) * way;
 }
 
-/// Adds biases for sticking to a kinematic body: its points move along an arc until the middle of
-/// the next step, like points of the other body (contact.md, eq. 12a), and both must agree along
-/// the surface (motion.md, eq. 4).
+/// Adds biases for sticking to a kinematic body. Its points move along an arc until the middle of
+/// the next step, like points of the other body (contact.md, eq. 12a). Both must agree along the
+/// surface (motion.md, eq. 4).
 template <class W, class L>
 void FollowMotion(const Scratch<W>& work, int lane, Contact<L, 2>& c, L h) noexcept {
   const L half_h = L::Splat(0.5) * h, sixth_h2 = L::Splat(1.0 / 6.0) * h * h;
@@ -41,7 +41,7 @@ void FollowMotion(const Scratch<W>& work, int lane, Contact<L, 2>& c, L h) noexc
   }
 }
 
-/// Prepares a lane's touches as contacts, with warm starts by their keys.
+/// Prepares the touches of a lane as contacts, with warm starts identified by their keys.
 template <class W>
 void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int lane,
                     double step_s) noexcept {
@@ -74,7 +74,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     c.one_direction = m.along_slip;
     c.directed = false;
     c.links[0].lin[0] = simd::Splat3<L>(point.normal);
-    c.links[0].lin[1] = c.links[0].lin[2] = c.links[0].lin[0];  // set by PrepareContact
+    c.links[0].lin[1] = c.links[0].lin[2] = c.links[0].lin[0];  // PrepareContact sets these
     ContactMemory<L> memory = ContactMemory<L>::None();
     while (memory_at < memory_end && s.contact_key[memory_at][lane] >= 0 &&
            s.contact_key[memory_at][lane] < key) {
@@ -107,7 +107,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
   }
 }
 
-/// Applies the impulses of a lane's touches to momenta, and stores them in the contact memory.
+/// Applies the impulses of the touches of a lane to momenta, and stores them in the contact memory.
 template <class W>
 void FinishTouches(const View& m, const Rows<W>& s, Scratch<W>& work, int lane,
                    double step_s) noexcept {
