@@ -110,7 +110,7 @@ struct Tangent {
   /// rotations of bodies whose forces all act at the center of mass, and rotations of rods about
   /// their axis.
   Matrix effective;
-  int free_turns = 0;                 ///< Number of excluded rotations.
+  int free_turns = 0;                 ///< Number of rotations that `effective` excludes.
   std::vector<int> slack_cables;      ///< Slack cables; they contribute nothing.
   std::vector<std::string> left_out;  ///< Descriptions of ignored parts of the model.
 };
@@ -198,8 +198,8 @@ struct ClassicalCount {
 struct ForceAnalysis {
   std::vector<StaticMember> members;
   /// Equilibrium matrix: one row per motion of `Tangent::effective`, one column per member; matrix
-  /// * member forces = loads. Its transpose maps motions to elongation rates of members. Units:
-  /// [1], [m].
+  /// * member forces = loads. Its transpose maps motions to elongation rates of members. Units: [1]
+  /// for translations, [m] for rotations.
   Matrix matrix;
   RankGap rank;
   int unknowns = 0;    ///< Number of rows.

@@ -2,8 +2,8 @@
 /// actions, observations and rewards (docs/environments.md). Each world has its own episode and
 /// clock. Worlds are SIMD lanes; a thread pool steps groups of lanes. The bits of a world depend
 /// only on its seed and its actions. Other worlds, the number of threads, the instruction set, and
-/// `float` or `double` arrays do not change them. With zero actions they equal the bits of
-/// `RunExperiment` of `Env::Experiment`.
+/// `float` or `double` arrays do not change them. With zero actions, a world has the same bits as
+/// `RunExperiment` of its `Env::Experiment`.
 ///
 /// Arrays are row-major, with one row per world. `action_channels()` and `observation_channels()`
 /// describe the columns.

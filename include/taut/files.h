@@ -1,4 +1,4 @@
-/// Atomic file replacement, and locks of folders between processes.
+/// Atomic file replacement, and folder locks between processes.
 ///
 /// Threads: any number may call these functions concurrently. If two processes write the same file,
 /// it contains the complete text of one of them.

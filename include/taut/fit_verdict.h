@@ -39,8 +39,8 @@ struct ParameterVerdict {
   /// Jackknife standard error: leaves out one group at a time (eq. F.14). Absent with fewer than
   /// three groups, or if only one group determines the parameter, such as an offset of that group.
   std::optional<double> se_jackknife;
-  /// Residuals within groups are correlated: `se_jackknife` exceeds 2 `se`, and by more than chance
-  /// explains in one of 1000 cases with this number of groups.
+  /// Residuals within groups are correlated: `se_jackknife` exceeds 2 `se`, with a significance of
+  /// 0.1 % for this number of groups.
   bool groups_apart = false;
   double se_alone = 0;  ///< Standard error from J^T J if all other parameters were known.
   double sd_ratio = 0;  ///< se / prior sd; without a prior, se / scale.
@@ -66,7 +66,7 @@ struct FitDirection {
 
 struct Identifiability {
   std::vector<ParameterVerdict> parameters;
-  /// Strongest first; as many as parameters that are not at a bound.
+  /// One per parameter that is not at a bound, strongest first.
   std::vector<FitDirection> directions;
   double condition = 0;  ///< Largest / smallest singular value; infinite with a null direction.
   int fixed = 0;         ///< Number of directions with `fixed`.

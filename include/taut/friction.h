@@ -19,8 +19,8 @@ struct FrictionContact {
   /// from the previous step.
   Vec3 slip_m_per_s;
   double normal_force_n = 0;  ///< Force in the previous step; 0 for a new contact.
-  // Coefficients of these surfaces by the model's own law at this slip velocity, in the direction
-  // of largest friction.
+  // Coefficients of these surfaces according to the model's law at this slip velocity, in the
+  // direction of largest friction.
   double static_friction = 0;
   double kinetic_friction = 0;
 };

@@ -112,7 +112,7 @@ struct ForceIntervals {
   std::string why;                   ///< Reason, if not found.
   int undetermined = 0;              ///< Degree of static indeterminacy (dimension of y in eq. 2).
   std::vector<ForceInterval> touch;  ///< Normal forces, one per contact point.
-  std::vector<ForceInterval> cable;  ///< Tensions; equal ends for known tensions.
+  std::vector<ForceInterval> cable;  ///< Tensions; both ends are equal for known tensions.
   /// Forces of the joints on their body b, in W.
   std::vector<ForceInterval> joint_x, joint_y, joint_z;
   std::vector<Unbalanced> left;  ///< As `HoldingForces::left`.

@@ -1,5 +1,5 @@
 /// Interactive run: steps an experiment while a user adds forces and drags and changes parameters.
-/// Without interaction, it is bit-identical to `RunExperiment`.
+/// Without interaction, its results are bit-identical to `RunExperiment`.
 #pragma once
 
 #include <functional>

@@ -178,7 +178,7 @@ enum class CableTouches {
 /// everywhere. Friction at attachments divides it into spans with different tensions
 /// (docs/theory/cables.md, section 5); the actuator then winds at the first attachment.
 struct CableDef {
-  static constexpr int kMostSpans = 16;  ///< Maximum number of spans divided by friction.
+  static constexpr int kMostSpans = 16;  ///< Maximum number of spans separated by friction.
   /// Maximum number of edges and rods that bend the cable at one time.
   static constexpr int kMostBends = 8;
   std::string name;
@@ -190,7 +190,7 @@ struct CableDef {
   ActuatorDef actuator;
   /// Except kNone: needs two attachments without wheels and `radius_m` > 0.
   CableTouches touches = CableTouches::kNone;
-  double radius_m = 0.0;  ///< Needed by `touches`.
+  double radius_m = 0.0;  ///< > 0 unless `touches` is kNone.
   /// Friction coefficient mu at obstacles, along and across the cable, >= 0. Not with a `dc_motor`.
   double touch_friction = 0.0;
   MemberDef member = {};

@@ -141,8 +141,8 @@ struct RunOptions {
 std::vector<ChannelInfo> RunChannels(const ExperimentSpec& experiment, Plant* plant = nullptr);
 
 /// Returns the longest step of a run [s], at most `step_s`. Steps end at the ticks of controllers,
-/// gaits, sensors and the goal. Therefore the longest step is at most the shortest of their
-/// periods, divided into equal steps.
+/// gaits, sensors and the goal. The time between ticks is divided into equal steps of at most
+/// `step_s`.
 double LongestStep(const ExperimentSpec& experiment);
 
 /// Adds a warning if `step_s` is longer than the shortest of these periods.

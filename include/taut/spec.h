@@ -40,7 +40,7 @@ struct SolidMass {
   double value = 0.0;
 };
 
-/// Solids of which rigid bodies consist. `ModelDef` contains only the mass properties of whole
+/// Solids that make up the rigid bodies. `ModelDef` contains only the mass properties of whole
 /// bodies.
 struct SolidsSpec {
   struct PointMass {

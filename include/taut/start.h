@@ -1,5 +1,5 @@
 /// Start of an experiment: check for overlaps, settling to static equilibrium, comparison with the
-/// described pose, and poses as models.
+/// described pose, and models in other poses.
 ///
 /// Threads: see taut/run.h.
 #pragma once

@@ -41,8 +41,8 @@ class TraceWriter {
  public:
   virtual ~TraceWriter() = default;
 
-  /// Appends a row. `values`: one per channel, in the order at creation. Returns false after a
-  /// failure (disk full, ...); `error()` then contains the reason.
+  /// Appends a row. `values`: one per channel, in the order given when the writer was created.
+  /// Returns false after a failure (disk full, ...); `error()` then contains the reason.
   virtual bool Append(double time_s, const double* values) = 0;
 
   /// Writes the first row immediately, and later rows after half a second in memory. `Append` does
@@ -88,8 +88,8 @@ struct Trace {
 };
 
 /// Reads `.h5`, `.csv` or `.csv.gz`. On failure, returns nothing and adds an error. From a
-/// truncated `.h5` or `.csv`, it returns the rows that are complete in every channel. Rejected are
-/// a truncated `.csv.gz`, links to other files, and files that unpack to far more than their size
+/// truncated `.h5` or `.csv`, it returns the rows that are complete in every channel. It rejects a
+/// truncated `.csv.gz`, links to other files, and files that unpack to far more than their size
 /// (docs/formats/trace.md).
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
 

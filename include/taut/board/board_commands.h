@@ -14,8 +14,7 @@ namespace board {
 
 constexpr uint8_t kProtocolVersion = 1;
 constexpr uint8_t kBoards = 6;
-/// Motors per board. Motor m of board b winds the cable with index 2 b + m, counted over the cables
-/// with an actuator.
+/// Motors per board. Motor m of board b winds the actuated cable number 2 b + m, starting at 0.
 constexpr uint8_t kMotors = 2;
 constexpr uint8_t kCables = kBoards * kMotors;
 

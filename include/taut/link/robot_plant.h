@@ -3,8 +3,7 @@
 /// parameters, and the signal of a gait becomes V0 in broadcasts. Rest lengths become motor
 /// positions.
 ///
-/// Motor m of board b winds the cable with index 2 b + m, counted over the cables with an actuator
-/// in model order.
+/// Motor m of board b winds the actuated cable number 2 b + m, in model order, starting at 0.
 #pragma once
 
 #include <functional>

@@ -27,8 +27,8 @@ TAUT_INLINE void Crowd(Scratch<W>& work, const TouchTable& touch, int lane) noex
   work.crowded_cable[lane] = touch.cable;
 }
 
-/// Returns a bend of one lane to remove, or -1. Candidates: a bend on a rod that contains an end of
-/// the cable or the next bend, and of two bends on penetrating rods the one with the smaller wrap
+/// Returns a bend of one lane to remove, or -1. It is a bend whose rod contains an end of the cable
+/// or the next path point. If two consecutive rods overlap, it is the bend with the smaller wrap
 /// angle.
 template <class W>
 int BendToLetGo(const View& m, const Rows<W>& s, const Scratch<W>& work, const TouchTable& touch,

@@ -52,7 +52,7 @@ struct CableChain {
 
   struct Branch {
     Capstan<Num> law;
-    Num wish[kMostSpans];   ///< Impulses of the law [N s].
+    Num wish[kMostSpans];   ///< Impulses that satisfy the law [N s].
     Num bends[kMostSpans];  ///< Rest length that can slip into the span per decrease of u [s].
   };
   static bool Same(const Branch& a, const Branch& b) noexcept {

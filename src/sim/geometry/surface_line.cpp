@@ -117,7 +117,7 @@ class LineSearch {
 
   void Take(const LineStretch& piece, double share, const Vec3& at, bool inside) noexcept {
     if (!(share >= piece.low && share < piece.high)) return;
-    if (share <= apart_ || share >= 1.0 - apart_) return;  // contact of an end
+    if (share <= apart_ || share >= 1.0 - apart_) return;  // the ends have this contact
     const Vec3 away = from_ + share * along_ - at;
     const double distance = Norm(away);
     if (!(distance <= limit_m_ && distance > 0.0)) return;

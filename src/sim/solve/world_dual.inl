@@ -185,7 +185,8 @@ class WorldDual {
 
   /// Lists the rows that act on each body.
   void SortColumns() noexcept {
-    const sim::Row<int> next = mem_.first_column;  // shifted by one until the end
+    const sim::Row<int> next =
+        mem_.first_column;  // entries are shifted by one until they are complete
     for (int b = 0; b <= m_.body_count; ++b) next[b] = 0;
     ForEach([&](auto& law, int) {
       for (int i = 0; i < law.link_count; ++i) {
