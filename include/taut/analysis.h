@@ -154,8 +154,8 @@ struct Modes {
 /// described pose should be an equilibrium: apply `ModelAt` to the pose from `FindEquilibrium`.
 Modes FindModes(const ModelDef& def, const LoadCaseSpec& loads = {});
 
-/// Column of the equilibrium matrix: a cable (or one span between points with friction), a bar, one
-/// constraint direction of a joint, or a contact point on a plane.
+/// Member, with a column in the equilibrium matrix: a cable (or one span between points with
+/// friction), a bar, one constraint direction of a joint, or a contact point on a plane.
 struct StaticMember {
   enum class Kind { kCable, kBar, kHeld, kContact };
   Kind kind = Kind::kCable;
@@ -204,8 +204,8 @@ struct ForceAnalysis {
   RankGap rank;
   int unknowns = 0;    ///< Number of rows.
   int free_turns = 0;  ///< Number of excluded rotations, which no force could resist.
-  /// Number of rigid motions that no member resists, of parts without members to other parts. These
-  /// motions move no point at which a member ends in the world.
+  /// Number of rigid motions that no member resists: motions of parts that no member connects to
+  /// other parts. These motions move no point at which a member ends in the world.
   int rigid = 0;
   /// Independent states. The first one is feasible if any feasible state exists. Scale: the largest
   /// force density of a cable is 1 N/m.

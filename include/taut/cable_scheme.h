@@ -16,7 +16,8 @@ enum class CableScheme {
   kAlong,
   /// Stiff cable, implicit in tension and direction. Any stiffness and tension; conserves energy.
   kImplicit,
-  /// kImplicit with a second stage that damps vibrations too fast for the step. Without joints.
+  /// kImplicit with a second stage that damps vibrations too fast for the step. Not used in groups
+  /// with joints.
   kImplicitDamped
 };
 

@@ -140,7 +140,8 @@ struct FitOptions {
 };
 
 struct FitResult {
-  FitEnd end = FitEnd::kRefused;  ///< End of the best search; if there is no best search, of all.
+  FitEnd end =
+      FitEnd::kRefused;  ///< Why the best search ended; without a best search, why all ended.
   std::string why;
   FitState state;
   std::optional<std::size_t> best;  ///< Track with the lowest cost; the first one if equal.

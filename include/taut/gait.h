@@ -91,7 +91,7 @@ struct CpgGait {
   CpgSymmetry symmetry = CpgSymmetry::kSegments;
   /// Cable names; empty: all cables with an actuator, in model order.
   std::vector<std::string> order;
-  CableMatch inverted;  ///< Cables with the negative of their oscillator's output as signal.
+  CableMatch inverted;  ///< Cables whose signal is the negative output of their oscillator.
   std::optional<CpgFeedback> feedback;
   std::vector<CouplingGroup> groups;  ///< All groups of the robot, in the order of `FindCouplings`.
   SourceRef at;

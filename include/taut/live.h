@@ -79,7 +79,7 @@ class LiveRun {
 
   // --- recording ---------------------------------------------------------------------------
   /// Returns the default channels of the experiment and, if it records contacts, contact channels.
-  /// Then follow hand/drag/... and hand/push/...: node (-1: none) and force on it.
+  /// The last channels are hand/drag/... and hand/push/...: node (-1: none) and force on it.
   virtual const std::vector<ChannelInfo>& channels() const = 0;
   /// Returns the present row; valid until the next call.
   virtual const std::vector<double>& Row() = 0;

@@ -1,7 +1,7 @@
 /// Interface between controllers and plants. A plant provides observations and a clock, and
 /// receives commands. It is a simulated world, several worlds that share a SIMD register, a
 /// recording, or a real robot. Controllers, recorders, learners and displays work with all of them.
-/// The lanes of a plant are its equal robots, one or more.
+/// A plant contains one or more equal robots, its lanes.
 ///
 /// Rows are arrays of a plant with cable c of lane j at index [c * lanes + j].
 ///

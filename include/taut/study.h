@@ -23,7 +23,7 @@ struct Tunable {
 };
 
 /// Returns the factors on the model that studies can vary: friction, masses, stiffnesses and
-/// dampings, for all elements together and for each single one. All factors are 1.
+/// dampings, for all elements together and for each element. All factors are 1.
 std::vector<ScaleSpec> TunableScales(const RobotSpec& robot);
 
 /// Returns all parameters that can be varied. `scales`: see TunableScales. The result contains

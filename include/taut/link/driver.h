@@ -49,7 +49,6 @@ class Driver {
   /// or parameter versions, rejected values. A repeated call restarts the driver. Meanwhile, motors
   /// with power are turned off, or with kHold keep holding the robot on boards without faults until
   /// they time out.
-  /// keep holding the robot, and time out meanwhile.
   enum class Meanwhile { kOff, kHold };
   bool Configure(std::span<const Setting> settings, Diagnostics& out,
                  Meanwhile meanwhile = Meanwhile::kOff);

@@ -7,7 +7,6 @@
 /// step has three parts: the voltages of the loaded supplies (LoadSupplies); the rotation as a
 /// function of the unknown tension, for the law of the cable (DriveMotor); and the rotation under
 /// the computed tension (StageMotors).
-/// cable's law (DriveMotor); and the rotation under the computed tension (StageMotors).
 #pragma once
 
 #include "math/cable_law.h"

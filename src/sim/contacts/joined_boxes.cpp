@@ -113,7 +113,6 @@ bool GoesOn(const ShapeTable* shapes, int number, const Vec3& place, const Vec3&
 
 /// Finds the face of a box with a normal along `direction`. Returns false if no face is nearly
 /// normal to it.
-/// normal to it.
 bool FaceAlong(const BoxShape& box, const Vec3& direction, Vec3* normal) noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     const double along = Dot(direction, AxisOf(box, axis));

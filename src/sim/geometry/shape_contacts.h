@@ -74,7 +74,6 @@ inline int Touch(const SurfaceShape&, const SurfaceShape&, double, TouchPoint*) 
 
 /// Returns a lower bound of the distance between two shapes; 0 if they may touch. Exact if one
 /// shape is round.
-/// is round.
 double Distance(const RoundShape& a, const RoundShape& b) noexcept;
 double Distance(const RoundShape& a, const BoxShape& b) noexcept;
 double Distance(const BoxShape& a, const BoxShape& b) noexcept;

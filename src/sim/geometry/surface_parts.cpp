@@ -2,7 +2,6 @@
 // than a slack. The conditions are the same as in surface_near.cpp and surface_line.cpp, written as
 // distances and relaxed by the slack. No such distance changes by more than the points of the rod
 // move.
-// move.
 #include "sim/geometry/surface_parts.h"
 
 #include "math/scalar.h"
