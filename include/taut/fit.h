@@ -140,8 +140,8 @@ struct FitOptions {
 };
 
 struct FitResult {
-  FitEnd end =
-      FitEnd::kRefused;  ///< Why the best search ended; without a best search, why all ended.
+  /// Why the best search ended; without a best search, why all ended.
+  FitEnd end = FitEnd::kRefused;
   std::string why;
   FitState state;
   std::optional<std::size_t> best;  ///< Track with the lowest cost; the first one if equal.

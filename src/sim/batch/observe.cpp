@@ -287,7 +287,7 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
 }
 
 std::uint64_t WorldBatch::Hash(int world) const noexcept {
-  // FNV-1a hash over the contents of a snapshot without readings, without creating one.
+  // FNV-1a hash over the contents of a snapshot except readings; no snapshot is created.
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
   std::uint64_t hash = 0xcbf29ce484222325u;

@@ -65,8 +65,8 @@ void WorldBatch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
     const int touches = g.touches_used;
     step();
     held.PutBack();
-    // The list length is that of the longest lane. In other lanes, entries after their end are
-    // outdated.
+    // All lanes have lists of the same length, the longest one. Entries after the end of a lane's
+    // own list are outdated.
     const auto keep = [&](int& used, int before, int first_slot) {
       const int longer = std::max(used, before);
       for (int lane = 0; lane < n; ++lane) {

@@ -28,7 +28,7 @@ TAUT_INLINE Vec3 PlaceOf(const V3<W>& p, int lane) noexcept {
 /// Pose of a body at a time before the middle of the step, extrapolated at constant velocity.
 template <class W>
 struct BodyThen {
-  V3<W> way, half_turn;  ///< Displacement since that time, and half the reverse rotation (tangent).
+  V3<W> way, half_turn;  ///< Displacement since that time, and half the rotation vector back to it.
   W scale;
 
   BodyThen(const BodyWork<W>& body, W ago) noexcept

@@ -148,7 +148,7 @@ TAUT_INLINE W DriveMotor(const View& m, const Rows<W>& s, Scratch<W>& work, int 
   out.end = Select(held, zero, (speed + kick * decay.half) * decay.inv_p);
   out.end_slows = Select(held, zero, lost * decay.half * decay.inv_p);
 
-  // The shortest rest length stops the spool.
+  // The spool stops at the shortest rest length.
   const W room = Max(wound - least, zero) / (way * h);
   const auto stops = out.mean - out.slows * tension > room;
   out.mean = Select(stops, room, out.mean);

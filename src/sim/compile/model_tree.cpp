@@ -1,4 +1,4 @@
-// Construction of the bounding volume hierarchy (BVH) of static shapes (shape_tree.h).
+// Construction of the bounding volume hierarchy (BVH) of static shapes (bvh.h).
 #include <algorithm>
 #include <utility>
 

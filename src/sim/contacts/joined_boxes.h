@@ -23,7 +23,7 @@ struct JoinedPoint {
 void MarkKept(const Shape& shape, const ShapeTable* shapes, JoinedPoint* points,
               int count) noexcept;
 
-/// Returns a bit mask of the closing points (passing.h) that reach an adjacent box or other
+/// Returns a bit mask of the closing points (swept_test.h) that reach an adjacent box or other
 /// adjacent terrain instead of `box`.
 uint32_t ArrivesBeside(const MovingShape& a, const ShapeTable* shapes, int box, uint32_t closing,
                        const TouchPoint* points, int count) noexcept;

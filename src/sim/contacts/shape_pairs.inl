@@ -93,9 +93,9 @@ uint32_t PressingFeatures(const Rows<W>& s, uint32_t id, int first, int count, i
   return features;
 }
 
-/// Removes contact points of shapes that only pass by each other (passing.h). Points with a contact
-/// force in the previous step remain, because bodies at rest all fall equally until contacts hold
-/// them. Returns the number of points.
+/// Removes contact points of shapes that only pass by each other (swept_test.h). Points with a
+/// contact force in the previous step remain, because bodies at rest all fall equally until
+/// contacts hold them. Returns the number of points.
 template <class W>
 int KeepTouching(const View& m, const Rows<W>& s, const Scratch<W>& work,
                  const ShapePairTable& pair, int lane, double step_s, int first, int memory,

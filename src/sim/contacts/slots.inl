@@ -118,7 +118,7 @@ Found<W> FoundTouch(const View& m, const Rows<W>& s, const Scratch<W>& work,
 }
 
 /// Stores the contact points of one pair of shapes in one lane, sorted by feature, except points
-/// that only pass by (passing.h). The storage is a slot of a body if the other body is static,
+/// that only pass by (swept_test.h). The storage is a slot of a body if the other body is static,
 /// otherwise the list of touches.
 template <class W>
 TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,

@@ -14,7 +14,7 @@ inline constexpr double kSoftSpring = 0.1;
 /// Value of (w h)^2 above which a damped stiff cable gets the second stage.
 inline constexpr double kUnresolvedSpring = 4.0;
 /// Maximum number of bodies of a group, so that its matrix always fits in memory
-/// (LaneMemory::kFullBodies in memory.h).
+/// (LaneMemory::kFullBodies in scratch_memory.h).
 inline constexpr int kMostInGroup = 128;
 
 enum GroupKind : uint8_t {

@@ -47,7 +47,7 @@ struct SlipTable {
   double start_place = kNotHeld;  ///< See cable_chains.inl [rad]; bends: kNotHeld.
 };
 
-/// Cable with wrapping around terrain edges or rods (cable_bends.inl). It has two attachments.
+/// Cable with wrapping around terrain edges or rods (cable_wrapping.inl). It has two attachments.
 struct TouchTable {
   int cable = 0;
   int first_bend = 0;  ///< Index of the first of its kMostBends bends.

@@ -13,7 +13,7 @@ template <class Num>
 struct ImplicitBody {
   bool turns;           ///< Implicit cables act on the body; otherwise it keeps the explicit step.
   Num mass;             ///< [kg]
-  V3<Num> moments;      ///< Principal moments [kg m^2],
+  V3<Num> moments;      ///< Principal moments [kg m^2].
   V3<Num> inv_moments;  ///< Inverse principal moments.
   V3<Num> force, torque;  ///< All other impulses of the whole step [N s], [N m s].
   V3<Num> x, v, w, L;     ///< State at the start of the stage; w and L are in W.

@@ -153,7 +153,7 @@ struct Scratch {
   int* contact_count;       ///< Number of used slots per body.
   TouchingPair* touches;    ///< Lists of all lanes; each starts at lane * pair_capacity.
   int touch_count[W::kLanes];
-  int bends_used = 0;  ///< Number of bends of the last measured cable (cable_bends.inl).
+  int bends_used = 0;  ///< Number of bends of the last measured cable (cable_wrapping.inl).
   /// Bit mask of the lanes in which a cable exceeds kMostBends; index of this cable.
   uint32_t no_room = 0;
   int crowded_cable[W::kLanes];

@@ -22,7 +22,7 @@ enum class Per {
   kJointRow,
   kMotion,
   kBodyPair,
-  kKept,  ///< Pairs of shapes with a cache of near parts (near_parts.h).
+  kKept,  ///< Pairs of shapes with a cache of near parts (contact_cache.h).
   kContact
 };
 
@@ -61,7 +61,7 @@ struct MotorOrders {
   Num on;       ///< 0: the driver is off.
 };
 
-/// Bend: contact of a cable with a terrain edge or rod (cable_bends.inl).
+/// Bend: contact of a cable with a terrain edge or rod (cable_wrapping.inl).
 template <class Num>
 struct WrapPointNumbers {
   Num key;    ///< Key of the edge or rod (cable_edges.h), or kNoKey. Bends in use are first.

@@ -126,7 +126,7 @@ struct BodyPairTable {
   int first_pair = 0, pair_count = 0;
   bool by_tree = false;    ///< `b` is the world; the BVH finds its shapes.
   bool on_ground = false;  ///< A single pair, whose second shape is a surface.
-  int kept = -1;           ///< Index of its cache of near parts (near_parts.h); -1: none.
+  int kept = -1;           ///< Index of its cache of near parts (contact_cache.h); -1: none.
   bool joined = false;     ///< `b` is the world, and some of its boxes touch each other.
 };
 

@@ -37,7 +37,8 @@ void EachAt(const SurfaceTable& s, const Vec3& place, double same_m, const Use& 
   });
 }
 
-/// A half space continues in all directions that do not leave it.
+/// Returns whether a half space covers a normal at a point: the point is in it, and the normal is
+/// not parallel to the outward normal of the plane.
 bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, double same_m,
                  double sine) noexcept {
   if (Dot(plane.normal, place) - plane.offset_m > same_m) return false;

@@ -21,7 +21,7 @@ struct TouchPoint {
   double normal[3];
   double gap_m;   ///< Negative: penetration.
   int feature;    ///< Less than kMaxPointsPerPair; stable while the shapes slide.
-  double when_s;  ///< Time from now at which point and normal are valid; 0 except for passing.h.
+  double when_s;  ///< Time from now at which point and normal are valid; 0 except for swept_test.h.
 };
 
 /// Maximum size of the contact manifold of a pair, sufficient for the features below.
@@ -46,7 +46,7 @@ int Touch(const BoxShape& a, const BoxShape& b, double margin_m, TouchPoint* out
 /// where the centerline enters and leaves the Voronoi region of an edge.
 int Touch(const RoundShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
 
-/// Features: 0..12, by place. Larger manifolds are reduced (many_touches.h).
+/// Features: 0..12, by place. Larger manifolds are reduced (contact_reduction.h).
 int Touch(const BoxShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
 int Touch(const HullShape& a, const HullShape& b, double margin_m, TouchPoint* out) noexcept;
 

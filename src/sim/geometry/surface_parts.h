@@ -1,4 +1,4 @@
-/// Searches near a height field that cache the parts found (near_parts.h).
+/// Searches near a height field that cache the parts found (contact_cache.h).
 ///
 /// Part of a step, so without the standard library.
 #pragma once

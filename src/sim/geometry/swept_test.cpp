@@ -1,4 +1,4 @@
-// Continuous collision detection by conservative advancement (passing.h).
+// Continuous collision detection by conservative advancement (swept_test.h).
 #include "sim/geometry/swept_test.h"
 
 #include "sim/geometry/touch_list.h"

@@ -57,7 +57,7 @@ class LaneSolve {
     return result;
   }
 
-  /// Position projection (push_out.inl). Returns the number of linear systems.
+  /// Position projection (position_projection.inl). Returns the number of linear systems.
   int PushOut() noexcept;
 
  private:
