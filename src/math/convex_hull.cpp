@@ -16,8 +16,9 @@ namespace {
 /// Tolerance for coplanar or coincident points, relative to the size of the body. While faces do
 /// not close, it increases by the factor kWider, up to kWidest.
 constexpr double kSame = 1e-7, kWidest = 1e-3, kWider = 10.0;
-/// Maximum number of added points without a gain of corners. In a body with a thickness near the
-/// tolerance, an added corner may disappear later, or remove another one.
+/// Maximum number of successive points that may be added without an increase of the number of
+/// corners. In a body with a thickness near the tolerance, an added corner may disappear later, or
+/// remove another one.
 constexpr int kMostFruitless = 16;
 
 using Face = std::vector<int>;

@@ -84,8 +84,8 @@ TAUT_INLINE void LookAtPart(const V& from, const V& to, const V& center, const V
   pass.off2 = Select(nearer, off2, pass.off2);
 }
 
-/// Returns the side of a rod without contact and the part of the path as one number (row
-/// touch_side). 0: unknown.
+/// Returns the side of a rod without contact and the index of the path part, encoded in one number
+/// (row touch_side). 0: unknown.
 template <class S>
 TAUT_INLINE S SideOfPart(S side, S part) noexcept {
   return side * (part + Constant<S>::Of(1.0));

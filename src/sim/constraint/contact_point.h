@@ -11,7 +11,7 @@
 
 namespace taut::sim {
 
-/// Contact with up to `kMaxLinks` bodies; with static geometry, one.
+/// Contact with up to `kMaxLinks` moving bodies; one body if the other side is static.
 template <class Num, int kMaxLinks>
 struct ContactPoint {
   using Number = Num;

@@ -194,8 +194,7 @@ CornerPair NearestCorner(const BoxShape& box, const BoxShape& other) noexcept {
   return best;
 }
 
-/// Adds a corner that is nearest outside of the other box's face: separate boxes that are diagonal
-/// neighbors.
+/// Adds the contact of the nearest corner of two separate boxes that are diagonal neighbors.
 void TouchCorner(const BoxShape& a, const BoxShape& b, double slack_m, TouchList& list) noexcept {
   const CornerPair from_a = NearestCorner(a, b), from_b = NearestCorner(b, a);
   const bool use_b = from_b.distance_m < from_a.distance_m;

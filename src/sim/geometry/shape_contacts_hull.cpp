@@ -210,7 +210,7 @@ NearestOfBoth NearestCorners(const Convex& a, const Convex& b) noexcept {
   return {of_b ? from_b : from_a, of_b};
 }
 
-/// Adds a corner that is nearest outside of the other body's face, for separate bodies.
+/// Adds the contact of the nearest corner of both bodies if its distance is below `below_m`.
 void TouchCorner(const Convex& a, const Convex& b, double below_m, ManyTouches& touches) noexcept {
   const auto [pair, of_b] = NearestCorners(a, b);
   const NearestOfConvex& place = pair.other;

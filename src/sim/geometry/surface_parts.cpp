@@ -10,7 +10,8 @@
 namespace taut::sim {
 namespace {
 
-/// Larger than the rounding tolerances of the conditions: relative to the limit, and in [m].
+/// Tolerances for rounding, relative to the limit and in [m]; larger than those in the contact
+/// conditions.
 constexpr double kRounding = 1e-6, kRoundingM = 1e-9;
 
 /// Search around a point or a rod: largest distance of relevant parts, and slack of all other

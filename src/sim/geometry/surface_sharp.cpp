@@ -110,7 +110,7 @@ void Surface::FindSharp() {
     }
     if (!sticks_out) continue;
     found.push_back(&edge);
-    // Corners of a border have fewer edges.
+    // A corner at a border has fewer edges, so a border edge counts as enough for a sharp corner.
     const int counts = edge.apexes.size() == 2 ? 1 : kEdgesOfSharpCorner;
     for (const int end : {edge.from, edge.to}) sharp[static_cast<std::size_t>(end)] += counts;
   }
