@@ -10,7 +10,8 @@
 
 namespace taut::sim {
 
-/// Distributes length among spans whose bend between them is gone, for equal strain.
+/// Distributes length among the spans on both sides of vanished bends, so that their strain is
+/// equal.
 template <class W>
 void ShareLengths(const View& m, const Rows<W>& s, const CableTable& cable, const Scratch<W>& work,
                   W* length) noexcept {

@@ -21,7 +21,7 @@ using simd::Q4;
 using simd::S3;
 using simd::V3;
 
-/// A group's rows as wide numbers: row `pos` of body b is pos[b] (state_rows.h).
+/// A group's rows as SIMD numbers: row `pos` of body b is pos[b] (state_rows.h).
 template <class W>
 struct Rows {
   using Number = W;

@@ -46,8 +46,8 @@ bool PlaneCovers(const SeamPiece& plane, const Vec3& place, const Vec3& normal, 
   return !(out > 0.0) || Norm(normal - out * plane.normal) > sine;
 }
 
-/// A box covers a normal, except between the normals of its faces at the point: all other
-/// directions are tangential to the box or point into it.
+/// Returns whether a box covers a normal at a point. It does, unless the normal lies between the
+/// normals of the box's faces there; all other directions are tangential or point into the box.
 bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, double same_m,
                const SeamSlack& slack) noexcept {
   if (!IsIn(box, place, same_m)) return false;
@@ -63,7 +63,7 @@ bool BoxCovers(const BoxShape& box, const Vec3& place, const Vec3& normal, doubl
   return !on_face;
 }
 
-/// Below the surface of a field at its border there is a vertical wall.
+/// Returns whether the vertical wall below the border of a field covers a normal at a point.
 bool WallCovers(const SurfaceTable& s, const Vec3& place, const Vec3& normal, double same_m,
                 double sine) noexcept {
   const double depth = HeightAt(s, place.x, place.y) - place.z;

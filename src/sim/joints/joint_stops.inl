@@ -100,11 +100,11 @@ W ReboundOf(W e, W before, W kick, W bend, W gap, W h) noexcept {
 /// Sets the law of a joint limit (eq. 4). `load`: its force in the previous step [N].
 ///
 /// A limit that had a force and is closed reverses the small residual velocity of the previous step
-/// (eq. 3), so that it does no work. A larger velocity, for example after a snatch, would return;
-/// then the bodies end the step at rest on their arc. Other limits let their bodies approach until
-/// contact. Beyond a limit, bodies return no faster than the forces of this step would move them
-/// further, as in a penetrating contact (contact.md, eq. 2). StageJointPlaces closes the remaining
-/// distance of about a step.
+/// (eq. 3), so that it does no work. The reversal of a larger velocity, for example after a snatch,
+/// would repeat in every step; then the bodies end the step at rest on their arc. Other limits let
+/// their bodies approach until contact. Beyond a limit, bodies return no faster than the forces of
+/// this step would move them further, as in a penetrating contact (contact.md, eq. 2).
+/// StageJointPlaces closes the remaining distance of about a step.
 template <class W>
 void SetStop(const Rows<W>& s, const Scratch<W>& work, const JointTable& j,
              const JointRowTable& table, const JointPlace<W>& place, const JointDirection<W>& d,
