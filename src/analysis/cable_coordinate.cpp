@@ -39,7 +39,8 @@ CableCoordinate::Path CableCoordinate::Lay(const Placement& at) const {
   const int count = static_cast<int>(path.points.size());
   const int wheel_count = static_cast<int>(wheels.size());
   LayOnWheels(path.points.data(), wheel_count, wheels.data());
-  for (int w = 0; w < wheel_count; ++w) {  // arms to where the cable arrives and leaves
+  for (int w = 0; w < wheel_count; ++w) {  // arms to the points at which the cable reaches and
+                                           // leaves the wheel
     for (int i = wheels[static_cast<std::size_t>(w)].at;
          i < wheels[static_cast<std::size_t>(w)].at + 2; ++i) {
       const std::size_t point = static_cast<std::size_t>(i);
@@ -66,10 +67,9 @@ Eigen::VectorXd CableCoordinate::Gradient(const Path& path) const {
   return gradient;
 }
 
-// Eq. 9: for each span the part perpendicular to it, and for each point the part due to rotations
-// of its body. Different spans have no mixed second derivatives. All spans carry one tension, so
-// their first derivatives are summed before they are squared: this yields the cross terms of
-// clustered cables (eq. 10).
+// Eq. 9 adds, for each span, the change of length by motions perpendicular to the span, and for
+// each point the curvature due to rotations of its body. Clustered cables (eq. 10) need no further
+// terms here: the tension is the same in all spans, so the gradient is summed over the spans.
 Eigen::MatrixXd CableCoordinate::ExactHessian(const Path& path) const {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(bodies_.size());
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
@@ -99,9 +99,9 @@ Eigen::MatrixXd CableCoordinate::ExactHessian(const Path& path) const {
   return hessian;
 }
 
-// Central differences with an error of about 1e-10 of the whole. Symmetrizing removes the
-// antisymmetric half, which comes from the rotation of the axes and does not exist in the chart
-// exp(theta) (eq. 3).
+// Central differences with a relative error of about 1e-10. The differences have an antisymmetric
+// part, because the axes rotate with the body; the Hessian in the chart exp(theta) has none (eq.
+// 3). Symmetrizing removes this part.
 Eigen::MatrixXd CableCoordinate::DifferenceHessian(const Placement& at) const {
   constexpr double kStep = 1e-5;
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(bodies_.size());

@@ -15,15 +15,15 @@ class CableCoordinate {
   /// `anchors`: one per attachment of the cable.
   CableCoordinate(const CableDef& cable, std::vector<Anchor> anchors);
 
-  /// Returns the path length [m] and its derivatives. Second derivatives of cables with wheels are
-  /// central differences of the exact first ones.
+  /// Returns the path length [m] and its derivatives. For cables with wheels, the second
+  /// derivatives are central differences of the exact first derivatives.
   Coordinate At(const Placement& at, bool with_hessian) const;
   bool has_wheels() const { return !wheels_.empty(); }
   /// Returns the straight distances between successive attachments, without arcs on wheels [m].
   std::vector<double> SpansAt(const Placement& at) const;
 
  private:
-  /// Wheel of the path; its axis in the described pose.
+  /// Wheel of the path, with its axis in the described pose.
   struct WheelAt {
     std::size_t attachment;
     Vec3 axis;
@@ -42,8 +42,8 @@ class CableCoordinate {
 
   std::vector<Anchor> anchors_;
   std::vector<WheelAt> wheels_;
-  std::vector<int> bodies_;  ///< Moving bodies that the cable is attached to.
-  std::vector<int> local_;   ///< Index into `bodies_` per attachment, or -1.
+  std::vector<int> bodies_;  ///< Moving bodies to which the cable is attached.
+  std::vector<int> local_;   ///< Per attachment: index into `bodies_`, or -1.
 };
 
 }  // namespace taut::analysis

@@ -1,5 +1,5 @@
-// Pin-jointed count of mechanisms and self-stresses with rods as members between points (Pellegrino
-// and Calladine, 1986).
+// Counts of mechanisms and self-stresses of a pin-jointed structure: rods are members between
+// points (Pellegrino and Calladine, 1986).
 #include <cmath>
 
 #include "analysis/structure_members.h"
@@ -48,7 +48,7 @@ class Counter {
     return true;
   }
 
-  /// Returns the index of an anchor's place; nothing if the anchor does not move.
+  /// Returns the index of an anchor's point; nothing if the anchor is static.
   std::optional<std::size_t> PlaceAt(const Anchor& at) const {
     for (std::size_t p = 0; p < places_.size(); ++p) {
       const Vec3 apart = places_[p].at_m - at.at_m;

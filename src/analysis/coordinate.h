@@ -1,5 +1,5 @@
-/// Scalar coordinates of a structure (lengths, joint rows, gaps, work of loads) with first and
-/// second derivatives with respect to the motions of the bodies that they depend on.
+/// Scalar coordinates of a structure (lengths, constraint rows of joints, gaps, work of loads).
+/// First and second derivatives are with respect to the motions of the bodies involved.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace taut::analysis {
 
-/// Pose of the moving bodies, in their order.
+/// Poses of the moving bodies, in the order of `Structure::bodies`.
 struct Placement {
   std::vector<Vec3> center_m;  ///< Center of mass, in W.
   std::vector<Quat> turn;      ///< Rotation from the described orientation, in W.
@@ -22,15 +22,15 @@ Placement Moved(const Placement& from, const Eigen::VectorXd& motions);
 /// Point of a body or of the static world.
 struct Anchor {
   int body = -1;  ///< Index among the moving bodies, or -1.
-  Vec3 at_m;  ///< From the center of mass in the described pose; for static points the position in
-              ///< W.
+  Vec3 at_m;      ///< Vector from the center of mass, in the described pose; of a static point:
+                  ///< position in W.
 };
-/// Vector from the center of mass to the point, in W; for static points the position in W.
+/// Vector from the center of mass to the point, in W; of a static point: its position in W.
 Vec3 ArmOf(const Anchor& anchor, const Placement& at);
 Vec3 PlaceOf(const Anchor& anchor, const Placement& at);
 
-/// Scalar function of the motions of some bodies, with derivatives. Rotations are exp(theta), a
-/// chart, so second derivatives are symmetric (eq. 4).
+/// Scalar function of the motions of some bodies, with derivatives. Rotation vectors theta are a
+/// chart of rotations (exp(theta)), so second derivatives are symmetric (eq. 4).
 struct Coordinate {
   double value = 0;
   std::vector<int> bodies;   ///< Indices among the moving bodies; six motions each.
@@ -43,8 +43,8 @@ Eigen::Matrix3d CrossMatrix(const Vec3& a);
 inline Eigen::Vector3d Of(const Vec3& a) { return {a.x, a.y, a.z}; }
 inline Vec3 To(const Eigen::Vector3d& a) { return {a[0], a[1], a[2]}; }
 
-/// Returns the second derivative of `along` . p with respect to the rotations of the body, for a
-/// point p at the arm `arm` (eq. 5).
+/// Returns the second derivative of the scalar product `along` . p with respect to rotations of the
+/// body. Point p is at the arm `arm` (eq. 5).
 Eigen::Matrix3d TurnCurvature(const Vec3& along, const Vec3& arm);
 
 /// Returns direction . position - offset: the gap of a point above a plane, or the work of a force.

@@ -1,4 +1,4 @@
-// Static equilibrium: converts the result of Minimise to the types of taut/analysis.h.
+// Static equilibrium: checks inputs, searches in up to three ways and returns an `Equilibrium`.
 #include <algorithm>
 #include <cmath>
 
@@ -101,7 +101,8 @@ class Finder {
     Lower();
   }
 
-  /// Lowers an unsupported robot onto the plane: statics does not depend on the height of its fall.
+  /// Lowers an unsupported robot onto the plane. The equilibrium does not depend on the initial
+  /// height.
   void Lower() {
     if (structure_.held_by_world || def_.planes.size() != 1 || structure_.touches.empty()) return;
     double least_m = structure_.GapAt(0, search_.at).value;
@@ -163,14 +164,15 @@ class Finder {
     search_ = first;
   }
 
-  /// Repeats the search with as many linear systems as the first one.
+  /// Runs `Minimise` from the current state, with the full iteration limit in addition to the
+  /// iterations already used.
   void Again() {
     SearchLimits limits = limits_;
     limits.most_iterations += search_.iterations;
     Minimise(structure_, limits, search_);
   }
 
-  /// Adds loads, settlements and lengthenings in steps, halved where one fails.
+  /// Adds loads, settlements and lengthenings in steps. A failed step is halved.
   void InSteps() {
     double done = 0, by = 0.1;
     Search last = search_;
@@ -216,8 +218,8 @@ class Finder {
     return e;
   }
 
-  /// Returns an error message if shapes overlap in the found pose by more than in the described
-  /// one. Contacts other than with planes exert no forces here, so such a pose is invalid.
+  /// Returns an error message if shapes overlap in the equilibrium more than in the described pose.
+  /// Such a pose is invalid: statics has contact forces only between bodies and planes.
   std::string Entered(const Pose& pose) const {
     if (!options_.contact) return "";
     constexpr double kDeeper_m = 1e-6;

@@ -32,7 +32,7 @@ class Analysis {
 
     const Eigen::MatrixXd full = FullMatrix();
     out_.matrix = PlainOf(effective_.transpose() * full);
-    // The rank is determined where all motions are lengths, so that it does not depend on the unit.
+    // Motions in `scaled` are all lengths, so the rank does not depend on the unit of length.
     const Eigen::MatrixXd scaled = s_.Effective(s_.start, true);
     const Split split = SplitOf(scaled.transpose() * full);
     out_.rank = split.rank;
@@ -55,11 +55,10 @@ class Analysis {
     return full;
   }
 
-  /// Computes the motions that change no member length: rigid motions and mechanisms. The left null
-  /// space of `matrix` consists of forces, the dual of motions; with motions scaled to lengths both
-  /// have the same columns.
+  /// Computes the motions that change no member length: rigid motions and mechanisms. They are the
+  /// left null space of the matrix whose motions are all scaled to lengths.
   void FindMotions(const Split& split, const Eigen::MatrixXd& scaled) {
-    // Rigid motions in the coordinates of `scaled`, whose columns are mutually orthogonal.
+    // Rigid motions in the coordinates of `scaled`, which has orthogonal columns.
     const Eigen::MatrixXd to_scaled =
         (scaled.transpose() * scaled).diagonal().cwiseInverse().asDiagonal() * scaled.transpose();
     const Eigen::MatrixXd rigid = to_scaled * WholeMotions(def_, s_);
@@ -73,7 +72,7 @@ class Analysis {
     }
   }
 
-  /// Returns forces divided by member length, where the member has one.
+  /// Divides each force by the length of its member, if the member has a length.
   Eigen::VectorXd ByLength(const Eigen::VectorXd& forces) const {
     Eigen::VectorXd density = forces;
     for (std::size_t m = 0; m < members_.size(); ++m) {
@@ -159,8 +158,8 @@ class Analysis {
     out_.self_stress.push_back(out);
   }
 
-  /// Adds the force densities of rods: the state of self-stress of the pin-jointed count that has
-  /// the same forces in all other members.
+  /// Adds the force densities of rods: they follow from the self-stress of the pin-jointed
+  /// structure with the same forces in all other members.
   void AddRods(const Eigen::VectorXd& state, SelfStress& out) const {
     if (!classical_) return;
     const Eigen::MatrixXd& null = classical_->null;
@@ -180,12 +179,12 @@ class Analysis {
     for (std::size_t m = 0; m < members_.size(); ++m) {
       Add(members_[m].at, feasible_[Index(m)], 0, unused, &stiffness);
     }
-    // A mechanism may contain a rigid motion; only the displacement of the points counts.
+    // Rigid parts of mechanisms are removed, since they do not deform the structure.
     const Eigen::VectorXd values = EigenvaluesOver(stiffness, metric_, AcrossRigid(mechanisms_));
     out_.mechanism_stiffness.assign(values.data(), values.data() + values.size());
   }
 
-  /// Removes the rigid part of motions, orthogonally in the metric.
+  /// Removes the rigid part of motions by orthogonal projection in the metric.
   Eigen::MatrixXd AcrossRigid(const Eigen::MatrixXd& motions) const {
     if (rigid_.cols() == 0 || motions.cols() == 0) return motions;
     const Eigen::MatrixXd weight = rigid_.transpose() * metric_ * rigid_;

@@ -16,8 +16,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = HoldingUnknown::Kind;
 
-/// Returns the model with unknown forces removed: unknown cables have no tension, unknown bars hold
-/// their length.
+/// Returns the model without unknown forces: unknown cables have no tension, unknown bars become
+/// distance joints.
 ModelDef Freed(const ModelDef& def, bool known_tensions) {
   ModelDef freed = def;
   if (known_tensions) return freed;
@@ -206,7 +206,7 @@ ForceBalance::Solutions ForceBalance::Solve() const {
       all.free = svd.matrixV().rightCols(n - rank);
     };
     constexpr unsigned kParts = Eigen::ComputeThinU | Eigen::ComputeFullV;
-    constexpr Index kFewColumns = 16;  // below, BDCSVD is a JacobiSVD
+    constexpr Index kFewColumns = 16;  // below this number of columns, BDCSVD uses JacobiSVD
     if (n < kFewColumns) {
       use(analysis::Svd(columns, kParts));
     } else {

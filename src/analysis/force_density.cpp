@@ -59,8 +59,8 @@ std::vector<Vec3> ToPlaces(const MatrixXd& x) {
   return places;
 }
 
-/// Form finding without fixed nodes: minimizes |D(a) X| alternately over the groups' force
-/// densities a, |a| = 1, and over the coordinates X, orthonormal and orthogonal to (1, ..., 1).
+/// Form finding without fixed nodes. Minimizes |D(a) X| alternately over the force densities a of
+/// the groups (|a| = 1) and over the coordinates X (orthonormal and orthogonal to (1, ..., 1)).
 class FreeSearch {
  public:
   FreeSearch(const FormNet& net, const std::vector<int>& group, int groups)
@@ -108,8 +108,8 @@ class FreeSearch {
     return DensityMatrix(net_, q);
   }
 
-  /// Returns the densities with the least imbalance for nodes at x; member m contributes a (x_a -
-  /// x_b).
+  /// Returns the force densities with the least imbalance for nodes at x. Member m contributes the
+  /// force a (x_a - x_b).
   VectorXd Densities(const MatrixXd& x) const {
     const Index n = x.rows();
     MatrixXd forces = MatrixXd::Zero(3 * n, groups_);
@@ -141,7 +141,7 @@ class FreeSearch {
       form.why = "the members of the first group carry no force";
       return form;
     }
-    a /= Matrix(a).trace() < 0 ? -std::fabs(a[0]) : std::fabs(a[0]);  // tension is positive
+    a /= Matrix(a).trace() < 0 ? -std::fabs(a[0]) : std::fabs(a[0]);  // sign: tensions are positive
     const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(Matrix(a));
     const VectorXd& values = modes.eigenvalues();
     const double largest = values.cwiseAbs().maxCoeff();

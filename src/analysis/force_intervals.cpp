@@ -1,5 +1,5 @@
-// Intervals of forces that friction and redundant supports leave indeterminate, by linear programs
-// with cutting planes (docs/theory/inverse_statics.md, section 4).
+// Bounds of forces that are indeterminate because of friction or redundant supports, by linear
+// programs with cutting planes (docs/theory/inverse_statics.md, section 4).
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -26,12 +26,12 @@ using Eigen::VectorXd;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kFirstPlanes = 8;
 constexpr int kMostCuts = 40;
-/// Largest excess of friction beyond its cone, as a share of the largest load.
+/// Tolerance of the friction cone, as a share of the largest load.
 constexpr double kOnCone = 1e-8;
 
 class Intervals {
  public:
-  /// `largest_n`: reference for tolerances, if larger than the largest load to be balanced [N].
+  /// `largest_n`: reference force of tolerances [N], used if it exceeds the largest load.
   Intervals(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options,
             double largest_n)
       : def_(def),
@@ -71,7 +71,8 @@ class Intervals {
     return limits;
   }
 
-  /// Minimizes goal . x, with forces in units of the largest load, within planes at the cones.
+  /// Minimizes goal . x within the planes of the friction cones. Forces are in units of the largest
+  /// load.
   analysis::QuadraticAnswer Least(const VectorXd& goal, const Angles& angles, ConeSide side) const {
     const ForceLimits limits = Limits(angles, side);
     analysis::QuadraticProgram program;
@@ -81,7 +82,7 @@ class Intervals {
     if (program.gradient.norm() < 1e-12 * goal.norm()) program.gradient.setZero();
     if (limits.rows.rows() > 0) {
       program.inequalities = limits.rows * all_.free;
-      // An imbalance up to the tolerance allows a limit to be missed by as much.
+      // Tolerance of the limits: the residual of the balance plus rounding.
       program.at_least = (limits.at_least - limits.rows * all_.particular) / load_ -
                          VectorXd::Constant(limits.at_least.size(), Slack());
     }
@@ -90,8 +91,8 @@ class Intervals {
   double Slack() const { return 2 * all_.left_n / load_ + 1e-12; }
   VectorXd Forces(const VectorXd& y) const { return all_.particular + load_ * (all_.free * y); }
 
-  /// Adds cutting planes where these forces exceed their cones, or, if `all`, wherever there is
-  /// friction. Returns false if there is nothing to cut.
+  /// Adds cutting planes at contacts whose friction exceeds its cone. If `all`, adds them at all
+  /// contacts with a friction force. Returns false if no plane was added.
   bool Cut(const VectorXd& x, Angles& angles, bool all = false) const {
     bool cut = false;
     for (std::size_t t = 0; t < options_.touches.size(); ++t) {
@@ -108,8 +109,8 @@ class Intervals {
     return cut;
   }
 
-  /// Returns the least value of a force from the outer cones, -infinity if unbounded; `inner`
-  /// receives the least value from the inner cones. Nothing if no forces balance.
+  /// Returns the least value of a force for the outer cones, -infinity if unbounded, or nothing if
+  /// the loads cannot be balanced. `inner` receives the least value for the inner cones.
   std::optional<double> LeastOf(const VectorXd& goal, double* inner) {
     double value = 0;
     VectorXd x = VectorXd::Zero(balance_.size());
@@ -117,7 +118,7 @@ class Intervals {
       const analysis::QuadraticAnswer answer = Least(goal, angles_, ConeSide::kOuter);
       if (answer.outcome == QuadraticOutcome::kInfeasible) return std::nullopt;
       if (answer.outcome == QuadraticOutcome::kUnbounded) {
-        value = -kInfinity;  // a ray beyond a cone is cut off like a force
+        value = -kInfinity;  // also cut a ray that leaves a cone
         if (!Cut(all_.free * answer.ray * load_, angles_)) break;
         continue;
       }
@@ -130,7 +131,7 @@ class Intervals {
       *inner = value;
       if (std::isfinite(value)) {
         Angles angles = angles_;
-        Cut(x, angles, true);  // inner planes meet at these forces
+        Cut(x, angles, true);  // planes of the inner cones meet at these forces
         const analysis::QuadraticAnswer answer = Least(goal, angles, ConeSide::kInner);
         *inner =
             answer.outcome == QuadraticOutcome::kSolved ? goal.dot(Forces(answer.x)) : kInfinity;
@@ -171,7 +172,7 @@ class Intervals {
 
   void Joints(ForceIntervals& out) {
     const std::size_t joints = def_.joints.size();
-    // A joint's force is linear in x: its value without unknowns, plus the part of each unknown.
+    // A joint's force is linear in x: constant part, plus a contribution of each unknown.
     const std::vector<JointLoad> known = balance_.JointLoads(VectorXd::Zero(balance_.size()));
     std::vector<VectorXd> x(joints, VectorXd::Zero(balance_.size())), y = x, z = x;
     for (Index i = 0; i < balance_.size(); ++i) {
@@ -197,8 +198,8 @@ class Intervals {
   Angles angles_;
 };
 
-/// Islands of bodies that unknown forces connect: per body the first body of its island, -1 for
-/// static bodies.
+/// Islands: sets of bodies connected by unknown forces. Stores for each body the first body of its
+/// island; -1 for static bodies.
 class Islands {
  public:
   Islands(const ModelDef& def, const IntervalOptions& options) {
@@ -236,8 +237,7 @@ class Islands {
   std::vector<int> first_;
 };
 
-/// Returns the largest known force [N]. Where known forces balance, the residual is rounding
-/// relative to it.
+/// Returns the largest known force [N], the reference for rounding errors of the residual.
 double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
   double largest_n = 0;
   const auto note = [&](double force_n) { largest_n = std::max(largest_n, std::fabs(force_n)); };
@@ -253,8 +253,8 @@ double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
   return largest_n;
 }
 
-/// Solves island by island with all other bodies fixed: the cost of a program grows faster than its
-/// size.
+/// Solves one island at a time with all other bodies fixed, since the cost of a program grows
+/// faster than its size.
 class InParts {
  public:
   InParts(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options)

@@ -155,7 +155,7 @@ std::vector<TouchDef> FindTouches(const ModelDef& def, double within_m) {
       const double friction = sim::Combined(def, material, plane.material).static_friction;
       const TouchDef touch{body, kWorld, place - (radius + gap) * plane.normal, plane.normal,
                            friction};
-      // Rods of a body that end in the same point have one contact there.
+      // Rods of a body that end at the same point share one contact.
       constexpr double kSamePlaceM = 1e-9;
       const auto same = [&touch](const TouchDef& t) {
         const Vec3 away = t.point_m - touch.point_m, turned = t.normal - touch.normal;

@@ -106,7 +106,7 @@ class FormSearch {
     return density;
   }
 
-  /// Returns whether a cable has pulled its ends into one point; `why` receives the message.
+  /// Returns whether a cable has length zero. `why` receives the error message.
   bool Collapsed(const Pose& pose, std::string& why) const {
     const ModelDef there = ModelAt(robot_.def, pose);
     double longest = 0;

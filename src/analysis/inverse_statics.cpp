@@ -1,5 +1,5 @@
-// Inverse statics: forces that hold a pose at the least cost (docs/theory/inverse_statics.md,
-// section 2).
+// Inverse statics: forces of least cost that hold a pose (docs/theory/inverse_statics.md, section
+// 2).
 #include "taut/inverse_statics.h"
 
 #include <Eigen/Core>
@@ -19,9 +19,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Number of planes per friction cone. With 32 inner planes, up to 0.5 % of the friction is lost.
+/// Number of planes per friction cone. With 32 inner planes, the usable friction is up to 0.5 % too
+/// small.
 constexpr int kPlanes = 32;
-/// Largest imbalance, as a share of the largest load.
+/// Tolerance of the balance, as a share of the largest load.
 constexpr double kBalanced = 1e-9;
 
 /// Returns the weight of T^2 in the objective.
@@ -70,8 +71,8 @@ class Holding {
   }
 
  private:
-  /// Solves the program for the free coordinates, in units of the largest load and the largest
-  /// weight.
+  /// Solves the program for the coordinates y of the null space (eq. 2), in units of the largest
+  /// load and the largest weight.
   bool Least(VectorXd& x, std::string& why) {
     const ForceBalance::Solutions all = balance_.Solve();
     const double load = balance_.LargestLoad();
@@ -124,7 +125,7 @@ class Holding {
     for (const LoadCaseSpec::Lengthening& longer : loads_.cables) {
       warmth[static_cast<std::size_t>(longer.index)] += longer.by_m;
     }
-    for (std::size_t i = 0; i < def_.cables.size(); ++i) {  // cables are the first unknowns
+    for (std::size_t i = 0; i < def_.cables.size(); ++i) {  // cable tensions are the first unknowns
       const CableDef& cable = def_.cables[i];
       const double tension = std::fmax(0.0, x[static_cast<Index>(i)]);
       const double length = balance_.cable_length_m[i];

@@ -9,7 +9,8 @@
 
 namespace taut::analysis {
 
-/// Number with derivatives with respect to twelve motions: six of one body, then six of the other.
+/// Number with derivatives with respect to twelve motions: six of the first body, six of the second
+/// body.
 struct Jet {
   static constexpr int kMotions = 12;
   using Gradient = Eigen::Matrix<double, kMotions, 1>;
@@ -44,7 +45,7 @@ inline Jet operator*(const Jet& a, const Jet& b) {
   return {a.value * b.value, a.value * b.gradient + b.value * a.gradient,
           a.value * b.hessian + b.value * a.hessian + cross + cross.transpose()};
 }
-/// Returns f(a), given f and its first and second derivative at a.
+/// Returns f(a). `f`, `first` and `second` are the function and its first two derivatives at a.
 inline Jet Apply(const Jet& a, double f, double first, double second) {
   return {f, first * a.gradient,
           first * a.hessian + second * (a.gradient * a.gradient.transpose())};
@@ -53,7 +54,7 @@ inline Jet Sqrt(const Jet& a) {
   const double root = std::sqrt(a.value);
   return Apply(a, root, 0.5 / root, -0.25 / (root * a.value));
 }
-/// Returns the angle of (x, y) from the x axis.
+/// Returns the angle of the vector (x, y) from the x axis [rad].
 inline Jet Atan2(const Jet& y, const Jet& x) {
   const double r2 = x.value * x.value + y.value * y.value;
   const double fx = -y.value / r2, fy = x.value / r2;

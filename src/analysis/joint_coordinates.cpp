@@ -8,7 +8,7 @@
 namespace taut::analysis {
 namespace {
 
-/// One of the two bodies of a joint; its six motions start at index `first`.
+/// One of the two bodies of a joint. `first`: index of the first of its six motions.
 struct Side {
   Anchor anchor;
   const Placement* at;
@@ -19,8 +19,8 @@ struct Side {
     if (!moves()) return JetVec::Of({});
     return {Jet::Motion(first + 3), Jet::Motion(first + 4), Jet::Motion(first + 5)};
   }
-  /// Returns a direction of the body, given in the described pose, in W, rotated by exp(theta) to
-  /// second order.
+  /// Rotates a direction by exp(theta), to second order. `described`: the direction in the
+  /// described pose, in W.
   JetVec Direction(const Vec3& described) const {
     JetVec now = JetVec::Of(ArmOf({anchor.body, described}, *at));
     if (!moves()) return now;
@@ -45,7 +45,7 @@ struct Sides {
     return Sqrt(Dot(apart, apart));
   }
 
-  /// Returns the coordinate over the moving bodies only.
+  /// Converts a jet to a coordinate that depends on the moving bodies only.
   Coordinate Local(const Jet& jet) const {
     Coordinate c;
     c.value = jet.value;
@@ -83,9 +83,9 @@ JetQuat operator*(const JetQuat& p, const JetQuat& q) {
   return {p.w * q.w - Dot(p.v, q.v), p.w * q.v + q.w * p.v + Cross(p.v, q.v)};
 }
 
-/// Returns the square of the angle between the bodies of a ball joint: (2 asin(s))^2 as a function
-/// of s^2, the square of the vector part of their relative rotation. Smooth at 0, where a series
-/// replaces it.
+/// Returns the square of the relative rotation angle of a ball joint, (2 asin(s))^2, as a function
+/// of s^2. s is the vector part of the relative quaternion. A series near s = 0 keeps the function
+/// smooth.
 Jet SquaredTurn(const PlacedJoint& joint, const Sides& sides) {
   const Quat now = sides.b.turn() * joint.def.turned * Conjugate(sides.a.turn());
   const JetQuat turn = SmallTurn(sides.b, 1) *
@@ -129,7 +129,7 @@ Jet Held(const PlacedJoint& joint, HeldRow row, const Sides& sides) {
   return sides.Distance() - Jet::Of(std::sqrt(Dot(described, described)));
 }
 
-/// Returns the angle of a hinge, up to half a turn from the described pose.
+/// Returns the angle of a hinge relative to the described pose, between -pi and pi [rad].
 Jet HingeAngle(const PlacedJoint& joint, const Sides& sides) {
   const JointAxes axes = AxesOf(joint.def);
   const Quat& turned = joint.def.turned;

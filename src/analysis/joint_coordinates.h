@@ -7,7 +7,7 @@
 
 namespace taut::analysis {
 
-/// Joint with its two points.
+/// Joint with its attachment points on both bodies.
 struct PlacedJoint {
   JointDef def;
   Anchor a, b;  ///< `body` of each: index among the moving bodies, or -1.
@@ -22,8 +22,8 @@ Coordinate DistanceAt(const PlacedJoint& joint, const Placement& at);
 /// Returns the energy of a joint's spring, or of a bar [J].
 Coordinate SpringEnergyAt(const PlacedJoint& joint, const Placement& at);
 
-/// Returns the load on the joint's body b due to a change of `c` with `force` per unit; the force
-/// acts at point b. For supports and for joints whose body b moves, this is the whole load.
+/// Returns the load on body b of the joint, acting at point b. `force`: generalized force along
+/// coordinate `c`. For supports and for joints whose body b moves, this is the whole load.
 Wrench LoadOf(const PlacedJoint& joint, const Coordinate& c, double force, const Placement& at);
 
 }  // namespace taut::analysis

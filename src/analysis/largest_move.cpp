@@ -37,8 +37,8 @@ Move LargestMove(const ModelDef& def, const Pose& pose) {
   Vec3 middle, moved;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   if (!s.held_by_world) {
-    // Statics leaves the rigid motion open: subtract the best fit, which maps centroid to centroid
-    // and rotates by the rotation nearest to sum(after before^T) (Kabsch).
+    // Statics does not determine the rigid motion of an unsupported structure. Subtract the best
+    // fit (Kabsch): centroid to centroid, and the rotation nearest to sum(after before^T).
     const double share = 1.0 / static_cast<double>(before.size());
     for (const Vec3& p : before) middle = middle + share * p;
     for (const Vec3& p : after) moved = moved + share * p;

@@ -14,7 +14,7 @@ namespace taut {
 namespace analysis {
 namespace {
 
-constexpr double kUnmeasured = 1e-9;  ///< Share of the largest eigenvalue of a body's metric.
+constexpr double kUnmeasured = 1e-9;  ///< Eigenvalues below this share of the largest count as 0.
 
 /// Returns the columns of `effective` that move body `b`, restricted to its six motions.
 Eigen::MatrixXd MotionsOfBody(const Eigen::MatrixXd& effective, Eigen::Index b) {
@@ -28,7 +28,7 @@ Eigen::MatrixXd MotionsOfBody(const Eigen::MatrixXd& effective, Eigen::Index b) 
   return own;
 }
 
-/// Returns the directions within `own` whose eigenvalue of `metric` is negligible.
+/// Returns the combinations of the columns of `own` with a negligible eigenvalue of `metric`.
 Eigen::MatrixXd Unmeasured(const Eigen::MatrixXd& metric, const Eigen::MatrixXd& own) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own.transpose() * metric * own);
   const Eigen::VectorXd& values = solver.eigenvalues();
@@ -54,7 +54,7 @@ Eigen::MatrixXd PointMetric(const ModelDef& def, const Structure& s) {
     block.topLeftCorner(3, 3) += Eigen::Matrix3d::Identity();
     const Eigen::MatrixXd left = Unmeasured(block, own);
     if (left.cols() == 0) continue;
-    // Maps motions to coordinates of `own`, which are all lengths.
+    // Maps motions to coordinates in `own`, all scaled to lengths.
     const Eigen::MatrixXd measured =
         left.transpose() * (own.transpose() * own).ldlt().solve(own.transpose());
     block += measured.transpose() * measured;
@@ -79,7 +79,7 @@ Eigen::VectorXd EigenvaluesOver(const Eigen::MatrixXd& stiffness, const Eigen::M
 
 std::optional<double> LeastStiffness(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;        // NOLINT(google-build-using-namespace): this function alone
-  constexpr double kZero = 1e-12;  // of the largest eigenvalue: rounding
+  constexpr double kZero = 1e-12;  // share of the largest eigenvalue that counts as rounding
   const Structure s(def, loads, true);
   if (s.bodies.empty()) return std::nullopt;
   const auto [holding, stiffness] = StiffnessAsDescribed(s);

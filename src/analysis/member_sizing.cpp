@@ -1,4 +1,4 @@
-// Sizing of rods and cables of least mass for yield, buckling and slenderness
+// Sizing of rods and cables: least mass for given yield, buckling and slenderness limits
 // (docs/theory/inverse_statics.md, section 6).
 #include "taut/member_sizing.h"
 

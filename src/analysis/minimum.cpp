@@ -9,8 +9,8 @@
 namespace taut::analysis {
 namespace {
 
-/// Augmented Lagrangian: energy of the structure plus constraints as springs, which are shifted
-/// until the constraints hold (eq. 13).
+/// Augmented Lagrangian: the structure's energy plus springs for constraints. Shifting the springs
+/// until the constraints hold yields the reactions (eq. 13).
 class Augmented {
  public:
   Augmented(const Structure& structure, Reactions& holding)
@@ -39,7 +39,8 @@ class Augmented {
     return energy;
   }
 
-  /// Sets the reactions to the springs' forces. Returns the largest violation before the shift [m].
+  /// Sets the reactions to the forces of the constraint springs. Returns the largest constraint
+  /// violation [m] before this update.
   double Shift(const Placement& at) {
     double apart = 0;
     for (std::size_t r = 0; r < s_.rows.size(); ++r) {
@@ -67,7 +68,8 @@ class Augmented {
   }
 
  private:
-  static constexpr double kStiffer = 100;  ///< Ratio to the stiffest member.
+  static constexpr double kStiffer = 100;  ///< Penalty stiffness divided by the largest member
+                                           ///< stiffness.
   static Eigen::Index Index(std::size_t i) { return static_cast<Eigen::Index>(i); }
   bool Turns(std::size_t row) const {
     const HeldRow r = s_.rows[row].row;
@@ -84,7 +86,7 @@ class Augmented {
   double penalty_, reach2_;
 };
 
-/// Returns the largest force that takes part, the reference for residuals [N].
+/// Returns the largest tension, spring force, weight or load [N], the reference for residuals.
 double LargestForce(const Structure& s, const Placement& at) {
   double largest = 0;
   for (const Structure::Cable& cable : s.cables) {
@@ -102,8 +104,8 @@ double LargestForce(const Structure& s, const Placement& at) {
   return largest;
 }
 
-/// Trust-region step in the eigenvectors of the Hessian; negative curvature is treated like
-/// positive, so the step goes down along it (eq. 14).
+/// Trust-region step in the eigenvectors of the Hessian. The absolute values of eigenvalues are
+/// used, so that the step decreases the energy along negative curvature, too (eq. 14).
 struct Spectrum {
   Eigen::VectorXd values, slopes;
   Eigen::MatrixXd vectors;
@@ -133,14 +135,14 @@ struct Spectrum {
   }
 };
 
-/// Minimization of the energy at the present shift of the springs.
+/// Minimization of the energy with fixed reactions.
 class Inner {
  public:
   Inner(const Structure& s, const Augmented& energy, const SearchLimits& limits, Search& search)
       : s_(s), energy_(energy), limits_(limits), search_(search), radius_(0.1 * s.size_m) {}
 
-  /// Runs until the residual is below `goal_n`, there is no more progress, or `most` linear systems
-  /// are used up.
+  /// Iterates until the residual is below `goal_n`, progress stops, or `most` linear systems were
+  /// solved.
   void Run(double goal_n, int most) {
     most = std::min(limits_.most_iterations, search_.iterations + most);
     Eigen::VectorXd gradient;
@@ -152,7 +154,7 @@ class Inner {
       const Eigen::VectorXd slope = basis.transpose() * gradient;
       search_.left_n = slope.size() == 0 ? 0 : slope.cwiseAbs().maxCoeff();
       if (search_.left_n <= kFine * goal_n || (search_.left_n <= goal_n && last)) return;
-      // Converged; one more step reaches the precision of rounding.
+      // Converged: one more step reduces the residual to rounding.
       last = search_.left_n <= goal_n;
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(basis.transpose() * hessian *
                                                                   basis);
@@ -180,7 +182,7 @@ class Inner {
       Eigen::VectorXd gradient_to;
       Eigen::MatrixXd hessian_to;
       const double then = energy_.Energy(to, gradient_to, &hessian_to);
-      // Where energies differ by rounding only, the residual decides.
+      // If the energies differ only by rounding, accept the step if it decreases the residual.
       const double noise =
           kRounding * (std::fabs(now) + std::fabs(then)) +
           kRounding * spectrum.values.cwiseAbs().maxCoeff() * s_.size_m * s_.size_m;
@@ -201,7 +203,7 @@ class Inner {
     return false;
   }
 
-  /// Returns whether a body has moved farther than any structure can (1000 times the size).
+  /// Returns whether a body has moved by more than 1000 times the structure's size.
   bool Left() {
     for (std::size_t b = 0; b < search_.at.center_m.size(); ++b) {
       const Vec3 way = search_.at.center_m[b] - s_.start.center_m[b];
@@ -221,7 +223,8 @@ class Inner {
 
 void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
   constexpr int kMostInVain = 60;
-  // Robots that roll or slide far converge faster if the reactions are updated in between.
+  // Robots that roll or slide far converge faster if reactions are updated after at most 25 linear
+  // systems.
   constexpr int kLong = 25;
   constexpr double kClosed = 1e-12;  ///< Share of the structure's size.
   Augmented energy(s, search.holding);
@@ -246,7 +249,7 @@ void Minimise(const Structure& s, const SearchLimits& limits, Search& search) {
 
 void Relax(const Structure& s, int steps, Search& search) {
   Augmented energy(s, search.holding);
-  // Including the constraints' springs; unit time step.
+  // Includes the stiffness of the constraint springs; the time step is 1.
   const double stiffness = 400 * s.stiffness_n_per_m;
   Eigen::VectorXd gradient, velocity = Eigen::VectorXd::Zero(0);
   double before = 0;

@@ -10,12 +10,14 @@ namespace taut::analysis {
 struct Search {
   Placement at;
   Reactions holding;
-  double left_n = 0;     ///< Largest force on any motion; torques divided by the body's reach.
-  double apart_m = 0;    ///< Largest violation of a constraint or a contact.
-  double largest_n = 0;  ///< Largest force that takes part.
-  int iterations = 0;    ///< Linear systems so far.
+  double left_n = 0;     ///< Largest component of the unbalanced force; torques are divided by the
+                         ///< body's reach.
+  double apart_m = 0;    ///< Largest violation of a constraint or contact.
+  double largest_n = 0;  ///< Largest member force, load or reaction.
+  int iterations = 0;    ///< Number of linear systems solved.
   bool balanced = false;
-  bool runs_away = false;  ///< The structure moves away without end.
+  bool runs_away = false;  ///< Whether a body has moved by more than 1000 times the structure's
+                           ///< size.
 };
 
 struct SearchLimits {
@@ -27,9 +29,9 @@ struct SearchLimits {
 /// contacts, starting at `search.at` and `search.holding`, by Newton's method in a trust region.
 void Minimise(const Structure& structure, const SearchLimits& limits, Search& search);
 
-/// Approaches the equilibrium by dynamic relaxation: starts at rest, with masses that suit the
-/// stiffness, and zeroes velocities at each peak of the kinetic energy. Crude but robust; finish
-/// with `Minimise`.
+/// Approaches the equilibrium by dynamic relaxation: starts at rest and zeroes velocities at each
+/// peak of the kinetic energy. All masses are scaled to the stiffness. Converges from poor starts,
+/// but with low accuracy; call `Minimise` afterwards.
 void Relax(const Structure& structure, int steps, Search& search);
 
 }  // namespace taut::analysis

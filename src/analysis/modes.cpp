@@ -36,8 +36,8 @@ Mode ShapeOf(const ModelDef& def, const Structure& s, Eigen::VectorXd shape) {
 
 namespace {
 
-/// Adds all modes that are not rigid. Eigenvalues up to kZero of the largest count as zero:
-/// mechanisms.
+/// Adds all modes except rigid motions. Eigenvalues up to kZero of the largest count as zero: these
+/// modes are mechanisms.
 void AddVibrations(const ModelDef& def, const Structure& s, const Eigen::MatrixXd& basis,
                    const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& mass, Modes& out) {
   constexpr double kZero = 1e-12;  ///< Share of the largest eigenvalue.

@@ -1,4 +1,4 @@
-// Rigid body as a truss: its rods, and braces that keep its points apart.
+// Rigid body as a truss: bars along its rods, and braces that make its points rigid.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace taut::analysis {
 namespace {
 
-// Share of the body's size: points nearer to a line or plane count as on it.
+// Tolerance for points on a line or plane, as a share of the body's size.
 constexpr double kFlat = 1e-7;
 
 class Builder {
@@ -23,7 +23,7 @@ class Builder {
     for (const CapsuleDef& rod : def_.capsules) {
       if (rod.body == body_) AddRod(rod);
     }
-    if (IsPinned(def_, body_)) return out_;  // a static body needs no masses or braces
+    if (IsPinned(def_, body_)) return out_;  // a static body needs no masses and no braces
     SpreadMass();
     Brace();
     return out_;
@@ -42,8 +42,8 @@ class Builder {
     return reach;
   }
 
-  /// Returns the position of a place along a line, as a share; nothing if it is not between the
-  /// line's ends.
+  /// Returns the position of a point along a line segment, from 0 to 1. Returns nothing if the
+  /// point is not on the segment.
   std::optional<double> Along(int place, const Vec3& from, const Vec3& to) const {
     const Vec3 way = to - from, there = At(place) - from;
     const double length2 = Dot(way, way), share = Dot(there, way) / length2;
@@ -52,7 +52,7 @@ class Builder {
     return share;
   }
 
-  /// Adds a bar between each two successive places.
+  /// Adds bars between successive places.
   void Chain(PinMember::Kind kind, const std::string& name, const std::vector<int>& all,
              const MemberDef& section) {
     for (std::size_t i = 1; i < all.size(); ++i) {
@@ -61,7 +61,7 @@ class Builder {
                            all[i - 1], all[i], section});
     }
   }
-  /// Returns false if the two places have a connection already.
+  /// Returns false if the two places are already connected.
   bool Tie(int a, int b) { return tied_.insert({std::min(a, b), std::max(a, b)}).second; }
 
   void AddRod(const CapsuleDef& rod) {
@@ -77,8 +77,8 @@ class Builder {
     Chain(PinMember::Kind::kRod, rod.name, chain, rod.member);
   }
 
-  /// Distributes the body's mass over its places, with the same center of mass and least squared
-  /// masses. If that is impossible, the center of mass becomes a place.
+  /// Distributes the body's mass over its places, with the same center of mass and least sum of
+  /// squared masses. If this is impossible, adds the center of mass as a place.
   void SpreadMass() {
     if (places_.OfBody(body_).empty()) return;
     for (int round = 0; round < 2; ++round) {
@@ -103,7 +103,8 @@ class Builder {
     }
   }
 
-  /// Returns the place farthest from the span of `spanned`; nothing if all are within it.
+  /// Returns the place farthest from the line or plane through `spanned`. Returns nothing if it
+  /// contains all places.
   std::optional<int> Farthest(const std::vector<int>& all, const std::vector<int>& spanned,
                               double reach) const {
     const Eigen::Vector3d origin = Of(At(spanned.front()));
@@ -123,7 +124,7 @@ class Builder {
     return farthest;
   }
 
-  /// Adds points outside of a line or plane to complete the four corners of a tetrahedron.
+  /// Adds places off the line or plane of `corners`, so that four places form a tetrahedron.
   void AddBeside(std::vector<int>& corners, double reach) {
     const Eigen::Vector3d origin = Of(At(corners.front()));
     while (corners.size() < 4) {
@@ -152,7 +153,7 @@ class Builder {
       if (!next) break;
       corners.push_back(*next);
     }
-    // The distances between two points, three in a plane or four in space make them rigid.
+    // All other places are braced to the corners, so the corners must form a tetrahedron.
     if (all.size() > corners.size()) AddBeside(corners, reach);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) AddBrace(corners[j], corners[i]);

@@ -20,11 +20,11 @@ namespace {
 using analysis::Of;
 using analysis::To;
 
-constexpr double kTouch_m = 1e-3;    // ground contact up to this gap
-constexpr double kBalanced = 1e-6;   // share of the largest force
-constexpr double kNoLength = 1e-12;  // length of a string that counts as zero [m]
+constexpr double kTouch_m = 1e-3;    // largest gap of a ground contact [m]
+constexpr double kBalanced = 1e-6;   // tolerance of the balance, as a share of the largest force
+constexpr double kNoLength = 1e-12;  // strings up to this length count as having length zero [m]
 
-/// Member between places; its length is their distance.
+/// Member between two places; its length is their distance.
 struct Draft {
   PinMember member;
   bool known = true;  ///< Whether its force is known.
@@ -63,7 +63,7 @@ class Maker {
       const bool on_wheel = cable.attachments[at].wheel.has_value();
       const bool arc = on_wheel && path.attachment(i - 1) == at;
       if (on_wheel && ArcAt(path, arc ? i - 1 : i) <= 0)
-        continue;  // the cable does not touch this wheel
+        continue;  // the cable passes this wheel without contact
       if (!arc) {
         if (starts.empty() || cable.attachments[path.attachment(before)].friction > 0) {
           starts.push_back(static_cast<int>(ends.size() / 2));
@@ -93,7 +93,8 @@ class Maker {
     return places_.At(cable.attachments[path.attachment(point)].body, path.points()[point].p);
   }
 
-  /// Divides `rest_m` and the compliance of the cable among its strings by length.
+  /// Divides `rest_m` and the compliance of the cable among its strings, in proportion to their
+  /// lengths.
   void AddStrings(const CableDef& cable, const std::vector<int>& ends,
                   const std::vector<int>& starts, double rest_m, double share, double tension_n) {
     double all_m = 0;
@@ -176,7 +177,8 @@ class Maker {
     bars_.push_back(draft);
   }
 
-  /// Adds contacts with planes: at the place on the line of the contact force, else at a new one.
+  /// Adds contacts with planes. Uses the place on the line of the contact force if there is one;
+  /// otherwise adds a place.
   void AddGround() {
     for (const TouchDef& touch : FindTouches(def_, kTouch_m)) {
       int at = -1;
@@ -256,8 +258,7 @@ class Maker {
     return m.length_m > kNoLength ? Of((1 / m.length_m) * Way(m)) : Eigen::Vector3d::Zero().eval();
   }
 
-  /// Computes unknown member forces in least squares from the imbalance of loads and known forces
-  /// and from the effect of unit forces [N].
+  /// Computes the unknown member forces [N] by least squares of the imbalance at the nodes.
   void Solve() {
     const Eigen::Index rows = 3 * static_cast<Eigen::Index>(out_.nodes.size());
     Eigen::VectorXd left = Eigen::VectorXd::Zero(rows);
@@ -294,7 +295,7 @@ class Maker {
     at_nodes.segment<3>(3 * member.from) += pull;
     at_nodes.segment<3>(3 * member.to) -= pull;
   }
-  /// Removes the components that supports and the ground bear.
+  /// Removes the force components that supports and the ground carry.
   Eigen::MatrixXd Unheld(Eigen::MatrixXd at_nodes) const {
     for (std::size_t n = 0; n < out_.nodes.size(); ++n) {
       auto rows = at_nodes.middleRows<3>(3 * static_cast<Eigen::Index>(n));
@@ -318,7 +319,7 @@ class Maker {
       cluster.length_m += member.length_m;
       cluster.rest_length_m += member.rest_length_m;
       cluster.force_n = member.force_n;
-      // Springs in series.
+      // The strings of a cluster are springs in series.
       const double k = member.stiffness_n_per_m, sum = cluster.stiffness_n_per_m;
       if (k > 0) cluster.stiffness_n_per_m = sum > 0 ? sum * k / (sum + k) : k;
       out_.members.push_back(member);

@@ -12,7 +12,7 @@
 namespace taut::analysis {
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // share of the size
+constexpr double kSamePlace = 1e-9;  // share of the structure's size
 constexpr double kAligned = 1e-9;
 
 double SizeOf(const ModelDef& def) {
@@ -92,7 +92,7 @@ std::string PinPlaces::NameOf(int place) const {
 }
 
 PinPlaces::Nodes PinPlaces::Number() const {
-  // In the order of the model's nodes, then all others.
+  // First the nodes of the model, in their order, then all other places.
   std::vector<int> order;
   for (const NodeDef& node : def_.nodes) {
     for (std::size_t p = 0; p < places_.size(); ++p) {
@@ -124,7 +124,7 @@ PinPlaces::Nodes PinPlaces::Number() const {
     out.held[Index(node)] += held_[p];
   }
   for (std::size_t n = 0; n < out.nodes.size(); ++n) {
-    // Projector onto the held directions, independent of how often each is held.
+    // Projector onto the supported directions, whatever the number of supports per direction.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(out.held[n]);
     Eigen::Matrix3d onto = Eigen::Matrix3d::Zero();
     for (int i = 0; i < 3; ++i) {

@@ -16,11 +16,11 @@ class PinPlaces {
  public:
   explicit PinPlaces(const ModelDef& def);
 
-  /// Returns the place of a body at this point; creates it if missing.
+  /// Returns the place of a body at this point; adds it if missing.
   int At(int body, const Vec3& point_m);
   /// Merges two places into one node.
   void Join(int a, int b);
-  /// Adds a support at a place: along `axis`, or in the two directions across it.
+  /// Adds a support at a place: along `axis`, or in the two directions perpendicular to it.
   void Hold(int place, const Vec3& axis, bool along);
 
   const Vec3& point_m(int place) const { return places_[Index(place)].point_m; }
@@ -29,11 +29,11 @@ class PinPlaces {
   double size_m() const { return size_m_; }
   void Call(int place, std::string name) { places_[Index(place)].name = std::move(name); }
 
-  /// Result of `Number`, to be called once all places exist and are joined.
+  /// Result of `Number`. Call `Number` after all places were added and joined.
   struct Nodes {
     std::vector<PinNode> nodes;
     std::vector<int> of_place;
-    std::vector<Eigen::Matrix3d> held;  ///< Per node: projector onto the held directions.
+    std::vector<Eigen::Matrix3d> held;  ///< Per node: projector onto the supported directions.
   };
   Nodes Number() const;
 
@@ -41,7 +41,7 @@ class PinPlaces {
   struct Place {
     int body;
     Vec3 point_m;
-    std::string name;  ///< Name of a place that is not a node of the model.
+    std::string name;  ///< Name of a place; empty if it is a node of the model.
   };
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
   int Root(int place) const;
@@ -55,7 +55,7 @@ class PinPlaces {
   std::vector<Eigen::Matrix3d> held_;
 };
 
-/// Returns whether a body is static or kinematic; its points are pinned.
+/// Returns whether a body is static or kinematic, so that its points are pinned.
 bool IsPinned(const ModelDef& def, int body);
 
 /// Bars and masses that represent a body.
@@ -63,15 +63,15 @@ struct PinBody {
   struct Bar {
     PinMember::Kind kind;
     std::string name;
-    int from, to;  ///< Places.
+    int from, to;  ///< Indices of places.
     MemberDef section;
   };
   std::vector<Bar> bars;
-  std::vector<std::pair<int, double>> mass_kg;  ///< By place.
+  std::vector<std::pair<int, double>> mass_kg;  ///< Pairs of place and mass.
 };
 
-/// Represents a body by bars and masses. Adds places to `places` where the body has too few to be
-/// rigid or to have its mass.
+/// Represents a body by bars and masses. Adds places if the existing ones are too few to make the
+/// body rigid or to reproduce its mass and center of mass.
 PinBody PinBodyOf(const ModelDef& def, int body, PinPlaces& places);
 
 }  // namespace taut::analysis

@@ -4,11 +4,9 @@
 // multipliers would become negative are removed. Every step ends at the minimum under its active
 // constraints. It needs no feasible start and never cycles, also on degenerate programs.
 // Differences here: rows are scaled to length one, redundant equations are left out, and the result
-// is refined with the final active set.
-//
-// Programs that are not strictly convex are solved by R. T. Rockafellar's proximal point method
-// ("Monotone operators and the proximal point algorithm", SIAM J. Control Optim. 14 (1976)
-// 877-898), which ends after finitely many steps on linear programs.
+// is refined with the final active set. Programs that are not strictly convex are solved by R. T.
+// Rockafellar's proximal point method ("Monotone operators and the proximal point algorithm", SIAM
+// J. Control Optim. 14 (1976) 877-898), which ends after finitely many steps on linear programs.
 #include "analysis/quadratic_program.h"
 
 #include <Eigen/Cholesky>
@@ -24,9 +22,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Least share of a row that is independent of the active constraints.
+/// A row counts as linearly dependent if less than this share of it is independent of the active
+/// rows.
 constexpr double kIndependent = 1e-10;
-/// Least reciprocal condition number of a Hessian that counts as strictly convex.
+/// Reciprocal condition number above which a Hessian counts as strictly convex.
 constexpr double kWellConditioned = 1e-11;
 
 /// Equations first, then inequalities, each scaled to length one.
@@ -95,8 +94,8 @@ class DualActiveSet {
     return QuadraticOutcome::kFailed;
   }
 
-  /// Returns the multipliers of the solution, or of the proof of infeasibility, for rows without
-  /// scaling.
+  /// Returns the multipliers of the solution, or of the proof of infeasibility. They refer to the
+  /// rows before scaling.
   VectorXd Multipliers() const {
     VectorXd all = VectorXd::Zero(rows_.count());
     for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -112,7 +111,8 @@ class DualActiveSet {
  private:
   int size() const { return static_cast<int>(active_.size()); }
   double Slack(int row) const { return rows_.normals.col(row).dot(x_) - rows_.offsets[row]; }
-  /// Returns the rounding error of a slack, which grows with the largest x on the way.
+  /// Returns the rounding error of a slack, proportional to the largest component of x in all
+  /// steps.
   double Tolerance(int row) const {
     return 1e-11 * (rows_.normals.col(row).cwiseAbs().dot(x_.cwiseAbs()) +
                     std::fabs(rows_.offsets[row])) +
@@ -135,7 +135,7 @@ class DualActiveSet {
     return worst;
   }
 
-  /// Rates of change of x and of the active multipliers per unit of a row's own multiplier.
+  /// Change of x and of the active multipliers per unit of the multiplier of the row to be added.
   struct Direction {
     VectorXd d, z, r;
     bool independent = false;
@@ -156,7 +156,7 @@ class DualActiveSet {
     const Direction to = Toward(row);
     const double slack = Slack(row);
     if (!to.independent) {
-      if (std::fabs(slack) <= 100 * Tolerance(row)) return true;  // depends on the others
+      if (std::fabs(slack) <= 100 * Tolerance(row)) return true;  // redundant with the active rows
       Refute(row, slack < 0 ? 1.0 : -1.0, to.r);
       return false;
     }
@@ -167,7 +167,7 @@ class DualActiveSet {
     return true;
   }
 
-  /// Makes a violated inequality hold. Returns false if that is impossible.
+  /// Adds a violated inequality to the active set. Returns false if the program is infeasible.
   bool Include(int row) {
     double own = 0;
     while (steps < most_steps_) {
@@ -183,7 +183,7 @@ class DualActiveSet {
           to.independent ? -Slack(row) / to.z.dot(rows_.normals.col(row)) : kInfinity;
       if (first < 0 && !to.independent) {
         if (!Contradicts(row, to.r)) {
-          implied_[static_cast<std::size_t>(row)] = true;  // violated by rounding only
+          implied_[static_cast<std::size_t>(row)] = true;  // the violation is rounding
           return true;
         }
         Refute(row, 1.0, to.r);
@@ -202,8 +202,8 @@ class DualActiveSet {
     return false;
   }
 
-  /// Returns whether a row that is a linear combination of the active ones contradicts them by more
-  /// than rounding.
+  /// Returns whether a row that depends linearly on the active rows contradicts them by more than
+  /// rounding.
   bool Contradicts(int row, const VectorXd& r) const {
     double gain = rows_.offsets[row], largest = std::fabs(gain);
     for (int k = 0; k < size(); ++k) {
@@ -213,8 +213,8 @@ class DualActiveSet {
     return gain > 1e-12 * largest;
   }
 
-  /// Stores the multipliers of the proof of infeasibility: the row is a linear combination of the
-  /// active ones, which forbid it.
+  /// Stores the multipliers that prove infeasibility (Farkas): the row is a linear combination of
+  /// the active rows and contradicts them.
   void Refute(int row, double sign, const VectorXd& r) {
     refuted_ = row, refuted_sign_ = sign;
     for (int k = 0; k < size(); ++k) multipliers_[static_cast<std::size_t>(k)] = -sign * r[k];
@@ -250,8 +250,7 @@ class DualActiveSet {
     ++steps;
   }
 
-  /// Recomputes x and the multipliers from the active set, which removes the accumulated rounding
-  /// errors.
+  /// Recomputes x and the multipliers from the active set to remove accumulated rounding errors.
   void Refine() {
     const int q = size();
     const Eigen::Index n = x_.size();
@@ -270,14 +269,14 @@ class DualActiveSet {
   const MatrixXd& hessian_;
   const VectorXd& gradient_;
   const Rows& rows_;
-  MatrixXd j_, r_;  ///< J' H J = 1, J' N = (R, 0): N the active normals.
+  MatrixXd j_, r_;  ///< J' H J = 1 and J' N = (R, 0), with the active normals N.
   VectorXd x_;
   std::vector<int> active_;
   std::vector<double> multipliers_;
   std::vector<bool> is_active_;
-  /// Rows that follow from the active ones; skipped until one of those is removed.
+  /// Rows implied by the active ones. They are skipped until an active row is removed.
   std::vector<bool> implied_;
-  double farthest_ = 0;  ///< Largest component that x has had.
+  double farthest_ = 0;  ///< Largest component of x in all steps.
   int refuted_ = -1, most_steps_ = 0;
   double refuted_sign_ = 0;
 };
@@ -296,7 +295,8 @@ QuadraticAnswer SolveStrictly(const MatrixXd& hessian, const Eigen::LLT<MatrixXd
   return answer;
 }
 
-/// Returns whether the objective decreases without bound along `d` within all constraints.
+/// Returns whether the objective decreases without bound along `d` and all constraints remain
+/// satisfied.
 bool IsRay(const QuadraticProgram& p, const Rows& rows, const VectorXd& d) {
   constexpr double kRounding = 1e-8;
   const double curvature = (p.hessian * d).norm(), largest = p.hessian.norm();

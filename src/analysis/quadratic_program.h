@@ -1,5 +1,6 @@
 /// Solver for convex quadratic programs (QP) and linear programs with equality and inequality
-/// constraints. Dense, for some hundred unknowns (docs/theory/inverse_statics.md, section 3).
+/// constraints. Matrices are dense, for up to some hundred unknowns
+/// (docs/theory/inverse_statics.md, section 3).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +11,9 @@ namespace taut::analysis {
 struct QuadraticProgram {
   Eigen::MatrixXd hessian;       ///< H, symmetric, positive semidefinite; may be zero.
   Eigen::VectorXd gradient;      ///< g
-  Eigen::MatrixXd equalities;    ///< E; rows may depend on each other. Empty: none.
+  Eigen::MatrixXd equalities;    ///< E. Rows may be linearly dependent. Empty: no equations.
   Eigen::VectorXd equal_to;      ///< e
-  Eigen::MatrixXd inequalities;  ///< A. Empty: none.
+  Eigen::MatrixXd inequalities;  ///< A. Empty: no inequalities.
   Eigen::VectorXd at_least;      ///< b
 };
 
@@ -20,20 +21,20 @@ enum class QuadraticOutcome {
   kSolved,
   kInfeasible,  ///< No x satisfies all constraints.
   kUnbounded,   ///< The objective has no minimum.
-  kFailed,      ///< Step limit reached, or numbers are not finite.
+  kFailed,      ///< Step limit reached, or values not finite.
 };
 
 struct QuadraticAnswer {
   QuadraticOutcome outcome = QuadraticOutcome::kFailed;
   Eigen::VectorXd x;
-  /// If solved, the multipliers y and z >= 0: H x + g = E' y + A' z and z' (A x - b) = 0. If
-  /// infeasible, the proof (Farkas): E' y + A' z = 0, z >= 0 and e' y + b' z > 0.
+  /// If solved, the multipliers y and z >= 0 satisfy H x + g = E' y + A' z and z' (A x - b) = 0. If
+  /// infeasible, they are the proof (Farkas): E' y + A' z = 0, z >= 0 and e' y + b' z > 0.
   Eigen::VectorXd equality, inequality;
-  Eigen::VectorXd ray;  ///< If unbounded: H d = 0, g' d < 0, E d = 0, A d >= 0.
+  Eigen::VectorXd ray;  ///< Direction d if unbounded: H d = 0, g' d < 0, E d = 0, A d >= 0.
   int steps = 0;        ///< Number of constraints added and removed.
 };
 
-/// Returns the solution of a program; one of several if it is not strictly convex. Thread-safe.
+/// Solves a program. If several x are optimal, returns one of them. Thread-safe.
 QuadraticAnswer Solve(const QuadraticProgram& program);
 
 }  // namespace taut::analysis

@@ -82,7 +82,7 @@ void Structure::AddJoints(const LoadCaseSpec& load_case) {
                        AnchorAt(joint.body_b, joint.to_m)};
     const std::size_t number = joints.size();
     for (const HeldRow row : HeldRowsOf(joint)) rows.push_back({number, row});
-    // Forces along a's axes act on body a at the position of point b.
+    // Body a receives the joint's force, which is along the axes of a, at the position of point b.
     Acts(joint.kind == JointKind::kDistance ? placed.a : AnchorAt(joint.body_a, joint.to_m));
     Acts(placed.b);
     const bool all = held.twist || (joint.stiffness > 0 && IsAngle(joint.kind));

@@ -30,7 +30,7 @@ class Structure {
     std::size_t joint;
     HeldRow row;
   };
-  /// Point with a sphere around it that may touch a plane.
+  /// Center of a sphere that may touch a plane.
   struct Touch {
     Anchor point;
     int plane;
@@ -43,17 +43,17 @@ class Structure {
     Vec3 force_n;
   };
 
-  /// `contact`: whether points may touch planes.
+  /// `contact`: whether to add contacts with planes.
   Structure(const ModelDef& def, const LoadCaseSpec& loads, bool contact);
 
   int motions() const { return 6 * static_cast<int>(bodies.size()); }
-  /// Returns the index of a model's body among the moving ones, or -1.
+  /// Returns the index of a model's body among the moving bodies, or -1.
   int Moving(int body) const { return body < 0 ? -1 : moving_[static_cast<std::size_t>(body)]; }
   Anchor AnchorAt(int body, const Vec3& place_m) const;
 
   double Tension(const Cable& cable, double length_m) const;
-  /// Returns the potential energy of members and loads [J], with its gradient (minus their forces)
-  /// and, unless null, its Hessian.
+  /// Returns the potential energy of members and loads [J]. `gradient`: its first derivatives
+  /// (minus the forces). `hessian`: its second derivatives; may be null.
   double Energy(const Placement& at, Eigen::VectorXd& gradient, Eigen::MatrixXd* hessian) const;
   Coordinate RowAt(std::size_t row, const Placement& at) const;
   Coordinate GapAt(std::size_t touch, const Placement& at) const;
@@ -61,11 +61,11 @@ class Structure {
   void AddReactions(const Placement& at, const Reactions& holding, Eigen::VectorXd& gradient,
                     Eigen::MatrixXd* hessian) const;
 
-  /// Returns the rotations of body `b` that nothing resists, as columns in W, from geometry: of
-  /// bodies on which all forces act at the center of mass, and of rods about their axis.
+  /// Returns the rotations of body `b` that nothing resists, as columns in W. Examples: rotation of
+  /// a rod about its axis, and of a body whose forces all act at its center of mass.
   Eigen::MatrixXd FreeTurns(std::size_t b, const Placement& at) const;
-  /// Returns a basis of all other motions, orthonormal unless `scaled`: then coordinates of
-  /// rotations are angles times the reach of the body, so that all are lengths [m].
+  /// Returns a basis of all other motions, orthonormal if not `scaled`. If `scaled`, rotations are
+  /// multiplied by the reach of the body, so that all coordinates are lengths [m].
   Eigen::MatrixXd Effective(const Placement& at, bool scaled) const;
 
   std::vector<int> bodies;  ///< Indices of the moving bodies in the model.
@@ -76,7 +76,8 @@ class Structure {
   std::vector<Touch> touches;
   std::vector<Load> loads;
   std::vector<Vec3> weight_n;    ///< Per moving body.
-  std::vector<double> reach_m;   ///< Largest distance at which something acts on a moving body.
+  std::vector<double> reach_m;   ///< Largest distance from the center of mass at which a force
+                                 ///< acts, per moving body.
   double size_m = 0;             ///< Diagonal of the structure's bounding box.
   double stiffness_n_per_m = 0;  ///< Largest stiffness of any member.
   bool held_by_world = false;    ///< Whether a member or a joint ends at a static point.
@@ -91,18 +92,19 @@ class Structure {
   void Measure();
   /// Records that something acts on a body at this point.
   void Acts(const Anchor& anchor);
-  /// Records that rotations of a direction fixed in the body are resisted; all rotations if it is
-  /// zero.
+  /// Records that rotations of a direction fixed in the body are resisted. A zero direction stands
+  /// for all rotations.
   void ResistsTurns(const Anchor& anchor, const Vec3& direction);
 
   const ModelDef& def_;
   std::vector<int> moving_;
-  std::vector<Eigen::Matrix3d> arms_;      ///< Sum of |a|^2 - a a^T, per moving body.
-  std::vector<Eigen::Matrix3d> resisted_;  ///< The same sum for directions.
+  std::vector<Eigen::Matrix3d> arms_;      ///< Per moving body: sum of |a|^2 - a a^T over the arms
+                                           ///< a.
+  std::vector<Eigen::Matrix3d> resisted_;  ///< The same sum over directions.
   std::vector<Eigen::MatrixXd> free_;      ///< Free rotations in the described pose.
 };
 
-/// Returns the parts of a model that statics ignores, one line per kind.
+/// Returns the parts of a model that statics ignores, as one line per kind.
 std::vector<std::string> WhatIsLeftOut(const ModelDef& def);
 
 }  // namespace taut::analysis

@@ -9,8 +9,8 @@
 namespace taut::analysis {
 namespace {
 
-/// Returns the spans of a cable between attachments with friction, each as a separate cable. A
-/// wheel with friction does not divide the cable, since the division of its arc is unknown here.
+/// Divides a cable at attachments with friction and returns each part as a separate cable. Wheels
+/// with friction do not divide the cable, since the division of the arc is unknown here.
 std::vector<CableDef> SpansOf(const CableDef& cable) {
   std::vector<CableDef> spans;
   CableDef span = cable;
@@ -26,8 +26,7 @@ std::vector<CableDef> SpansOf(const CableDef& cable) {
   return spans;
 }
 
-/// Returns the coordinate with the opposite sign of its derivatives: positive forces of contact
-/// points push, which opens the gap.
+/// Changes the sign of the derivatives, so that positive contact forces push (open the gap).
 Coordinate Opposite(Coordinate c) {
   c.gradient = -c.gradient;
   c.hessian = -c.hessian;
@@ -118,7 +117,7 @@ Parts PartsOf(const Eigen::MatrixXd& space, const Eigen::MatrixXd& part) {
   const Eigen::MatrixXd span = SpanOf(part);
   if (space.cols() == 0 || span.cols() == 0) return {space.leftCols(0), space};
   const analysis::Svd svd(space.transpose() * span, Eigen::ComputeFullU);
-  // Cosines of the principal angles: 1 where the spaces share a direction.
+  // Singular values are cosines of the principal angles; 1 means a common direction.
   const Eigen::Index in = analysis::RankAbove(svd.singularValues(), 1 - 1e-9);
   const Eigen::MatrixXd turned = space * svd.matrixU();
   return {turned.leftCols(in), turned.rightCols(space.cols() - in)};

@@ -10,36 +10,37 @@ namespace taut::analysis {
 
 struct MemberTerm {
   StaticMember member;
-  Coordinate at;  ///< Length of the member, or violation of its constraint.
+  Coordinate at;  ///< Length of the member, or violation of the constraint.
 };
 
-/// Returns cables and bars, then joint rows and contacts of points within `near_m` of planes. The
-/// coordinate of a contact is minus its gap, so that a positive force pushes.
+/// Returns cables, bars, joint rows and contacts of points within `near_m` of planes, in this
+/// order. The coordinate of a contact is minus its gap, so that a positive force pushes.
 std::vector<MemberTerm> MembersOf(const ModelDef& def, const Structure& structure, double near_m);
 
-/// Returns the 3 x motions Jacobian of a point's position.
+/// Returns the Jacobian of a point's position (3 rows, one column per motion).
 Eigen::MatrixXd MovesOf(const Structure& structure, const Anchor& point);
 
-/// Returns the distinct points of moving bodies at which something acts.
+/// Returns the distinct points of moving bodies at which members, joints or loads act.
 std::vector<Anchor> PlacesOf(const ModelDef& def, const Structure& structure);
 
-/// Rank of a matrix, cut at 1e-9 of its largest singular value, and its two null spaces.
+/// Rank of a matrix and its two null spaces. Singular values up to 1e-9 of the largest count as 0.
 struct Split {
   RankGap rank;
-  Eigen::MatrixXd null;  ///< Null space of the columns, orthonormal.
-  Eigen::MatrixXd left;  ///< Null space of the rows (left null space), orthonormal.
+  Eigen::MatrixXd null;  ///< Right null space, orthonormal.
+  Eigen::MatrixXd left;  ///< Left null space, orthonormal.
 };
 Split SplitOf(const Eigen::MatrixXd& matrix);
 
-/// Division of `space` (orthonormal columns) into directions within the span of `part` and
-/// directions orthogonal to it.
+/// Splits `space` (orthonormal columns) into directions within the span of `part` and directions
+/// orthogonal to it.
 struct Parts {
   Eigen::MatrixXd in, across;
 };
 Parts PartsOf(const Eigen::MatrixXd& space, const Eigen::MatrixXd& part);
 
-/// Pin-jointed count. Nothing if a body is neither a point nor a rod, a cable passes over wheels,
-/// or joints constrain rotations. The null space refers to `members` in their order, then rods.
+/// Counts of the pin-jointed structure. Nothing if a body is neither a point nor a rod, a cable
+/// passes over wheels, or joints constrain rotations. Rows of the null space: `members` in their
+/// order, then rods.
 struct Classical {
   ClassicalCount count;
   Eigen::MatrixXd null;
@@ -48,7 +49,7 @@ struct Classical {
 std::optional<Classical> ClassicalOf(const ModelDef& def, const Structure& structure,
                                      const std::vector<MemberTerm>& members);
 
-/// Returns the shape of a motion of all bodies, scaled as described at `Mode`.
+/// Converts a motion of all bodies to a mode shape, with the scale defined at `Mode`.
 Mode ShapeOf(const ModelDef& def, const Structure& structure, Eigen::VectorXd motions);
 
 }  // namespace taut::analysis

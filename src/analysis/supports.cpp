@@ -21,7 +21,7 @@ using base::Brief;
 
 constexpr double kSmall = 1e-9;
 
-/// Formats a vector; components that are rounding errors relative to `size` print as 0.
+/// Formats a vector; components that are rounding errors relative to `size` become 0.
 std::string Text(const Vec3& a, double size) {
   const auto part = [&](double x) { return Brief(std::fabs(x) < kSmall * size ? 0 : x); };
   return "(" + part(a.x) + ", " + part(a.y) + ", " + part(a.z) + ")";
@@ -37,7 +37,8 @@ std::string Joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// Returns an orthonormal basis of the columns' span with as many coordinate axes as possible.
+/// Returns an orthonormal basis of the span of the columns that uses coordinate axes where
+/// possible.
 std::vector<Vec3> AxesIn(const Eigen::MatrixXd& span) {
   std::vector<Vec3> axes;
   Eigen::MatrixXd rest = span;
@@ -95,7 +96,7 @@ class Words {
       line = " through " + Text(*held, s_.size_m);
     } else {
       const Eigen::VectorXd share = turns.completeOrthogonalDecomposition().solve(Of(axis));
-      // Per 1 rad; the rotational part of a twist is multiplied by the size.
+      // Slide per radian. The rotational part of a twist contains the factor `size_m`.
       const Vec3 slide = s_.size_m * To(twists_.topRows(3) * share);
       const double pitch = Dot(axis, slide);
       line = " through " + Text(component_.middle_m + Cross(axis, slide), s_.size_m);
@@ -112,7 +113,8 @@ class Words {
     }
   }
 
-  /// Returns a held point of the component about which rotation along `axis` is free; else null.
+  /// Returns a fixed point of the component about which it can rotate freely along `axis`; null if
+  /// none.
   const Vec3* HeldPointOn(const Vec3& axis) const {
     for (const auto* points : {&component_.held_points_m, &component_.joints_m}) {
       for (const Vec3& held : *points) {
@@ -132,15 +134,15 @@ class Words {
   std::vector<std::string> out_;
 };
 
-/// Generalized force and stiffness of the loads along rigid motions: weight and loads of fixed
-/// direction, joint springs, and reactions of joints with the world.
+/// Generalized force and stiffness of the loads along rigid motions. Includes weight and loads of
+/// constant direction, joint springs, and reactions of joints with the world.
 struct LoadWork {
   Eigen::VectorXd force;
   Eigen::MatrixXd stiffness;
   double scale_n = 0;  ///< Sum of the loads' magnitudes.
 };
 
-/// Computes the part due to weight and loads.
+/// Computes the contribution of weight and loads.
 LoadWork WorkOfLoads(const Structure& s, const Component& component,
                      const Eigen::MatrixXd& twists) {
   const Eigen::Index count = twists.cols();
@@ -150,7 +152,7 @@ LoadWork WorkOfLoads(const Structure& s, const Component& component,
     const Eigen::MatrixXd moves =
         twists.topRows(3) - CrossMatrix(place - component.middle_m) * turns;
     work.force += moves.transpose() * Of(force);
-    // A point's position along exp(t (v, w)) has the second derivative w x (v + w x r).
+    // Second derivative of a point's position along exp(t (v, w)): w x (v + w x r).
     for (Eigen::Index i = 0; i < count; ++i) {
       for (Eigen::Index j = 0; j < count; ++j) {
         const Vec3 bends =
@@ -180,8 +182,8 @@ LoadWork WorkOf(const Structure& s, const Component& component, const Eigen::Mat
   work.force -= motions.transpose() * gradient;
   work.stiffness += motions.transpose() * springs * motions;
 
-  // The path of a twist violates the constraints of sliding and rotating joints to second order;
-  // the reaction forces do work there.
+  // Along a twist, the constraints of sliding and rotating joints are violated at second order.
+  // Their reaction forces do work there.
   const std::vector<Coordinate> held = RowsWithWorld(s, component);
   if (held.empty()) return work;
   const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(6, 6);
@@ -198,10 +200,10 @@ LoadWork WorkOf(const Structure& s, const Component& component, const Eigen::Mat
   return work;
 }
 
-/// Effect of the loads along free motions.
+/// Effect of the loads along free motions of a component.
 enum class Effect { kNone, kPushes, kTopples };
 
-/// Whether a force acts along a motion without positive stiffness.
+/// Returns whether a force acts along a motion that has no positive stiffness.
 bool Pushes(const Eigen::VectorXd& force, const Eigen::MatrixXd& stiffness, double least_n,
             double least_n_per_m) {
   if (force.size() == 0) return false;
@@ -216,7 +218,8 @@ bool Pushes(const Eigen::VectorXd& force, const Eigen::MatrixXd& stiffness, doub
 Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size_m, bool held) {
   const double least_n = kSmall * work.scale_n, least_n_per_m = least_n / size_m;
   if (!(least_n > 0)) return Effect::kNone;
-  // Translations first: forces along them make the rotational stiffness depend on the axes.
+  // Check translations first, since with a net force the rotational stiffness depends on the
+  // reference point.
   const Eigen::MatrixXd still = Nothing(twists.bottomRows(3), kSmall);
   const Eigen::MatrixXd springs = still.transpose() * work.stiffness * still;
   if (Pushes(still.transpose() * work.force, springs, least_n, least_n_per_m)) {
@@ -233,7 +236,7 @@ Effect EffectOf(const LoadWork& work, const Eigen::MatrixXd& twists, double size
 
 SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
   using namespace analysis;  // NOLINT(google-build-using-namespace): this function alone
-  // In the described pose: a settling support moves the structure with it.
+  // Use the described pose: a support settlement moves the structure with the support.
   LoadCaseSpec dead = loads;
   dead.settlements.clear(), dead.cables.clear(), dead.bars.clear();
   const Structure s(def, dead, true);
@@ -251,7 +254,7 @@ SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
     twists = twists * Nothing(changes, kSmall);
     const Eigen::MatrixXd motions = EffectivePart(effective, MotionsOf(s, component, twists));
     if (twists.cols() == 0) continue;
-    // Drops twists that only rotate points and rods about themselves.
+    // Drop twists that only rotate points or rods about themselves.
     const analysis::Svd svd(motions, Eigen::ComputeFullV);
     const Eigen::Index rank = analysis::RankAbove(svd.singularValues(), kSmall);
     if (rank == 0) continue;
@@ -264,7 +267,7 @@ SupportCheck CheckSupports(const ModelDef& def, const LoadCaseSpec& loads) {
     const std::string moves = part + " can still " + Joined(Words(s, component, twists).Run());
     out.free += static_cast<int>(rank);
     out.free_motions.push_back(moves);
-    const bool ground = !s.touches.empty();  // contact may support the structure
+    const bool ground = !s.touches.empty();  // ground contact may support the structure
     const Effect effect =
         EffectOf(WorkOf(s, component, twists), twists, s.size_m, component.IsHeld());
     if (ground || effect == Effect::kNone || !out.missing.empty()) continue;

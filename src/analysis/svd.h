@@ -1,4 +1,4 @@
-/// Singular value decomposition (Jacobi) that tolerates failed allocations, and ranks.
+/// Singular value decomposition (Jacobi) that survives failed allocations, and numerical rank.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,16 +6,16 @@
 
 namespace taut::analysis {
 
-/// Returns the number of singular values above a limit; they are in descending order.
+/// Returns the number of singular values above `limit`. `values` must be in descending order.
 inline Eigen::Index RankAbove(const Eigen::VectorXd& values, double limit) {
   Eigen::Index rank = 0;
   while (rank < values.size() && values[rank] > limit) ++rank;
   return rank;
 }
 
-/// Eigen's `JacobiSVD` destroys one of its members and constructs it again in place. If the
-/// construction throws for lack of memory, the destructor of `JacobiSVD` frees the memory of this
-/// member a second time. `Svd` leaks the decomposition in this case.
+/// Wrapper of Eigen's `JacobiSVD` without its double free. `JacobiSVD` destroys one of its members
+/// and constructs it again in place. If this construction throws for lack of memory, the destructor
+/// frees the member's memory a second time. `Svd` leaks the decomposition in this case.
 class Svd {
  public:
   using Decomposition = Eigen::JacobiSVD<Eigen::MatrixXd>;

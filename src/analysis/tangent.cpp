@@ -126,7 +126,8 @@ Eigen::MatrixXd MovesOf(const Structure& s, const Anchor& point) {
 
 namespace {
 
-/// Eq. 12: removes half of a bar's mass from each end and adds its consistent mass along the spans.
+/// Eq. 12: removes half of a bar's mass from the body at each end and adds its consistent mass
+/// along the spans.
 void Spread(const Structure& s, double mass_kg, const std::vector<Anchor>& points,
             Eigen::MatrixXd& mass) {
   std::vector<Eigen::MatrixXd> moves;

@@ -7,32 +7,32 @@
 
 namespace taut::analysis {
 
-/// Returns the reactions that minimize the imbalance in the described pose: of joint rows, and of
-/// points within `near_m` of planes, none of which pulls.
+/// Returns the reactions with the least imbalance in the described pose: of joint rows, and of
+/// contact points within `near_m` of planes. Contact forces are >= 0.
 Reactions ReactionsAsDescribed(const Structure& structure, double near_m);
 
-/// Tangent stiffness in the described pose, including the geometric part of the reactions.
+/// Tangent stiffness in the described pose, including the geometric stiffness of the reactions.
 struct HeldStiffness {
   Reactions holding;
   Eigen::MatrixXd stiffness;
 };
 HeldStiffness StiffnessAsDescribed(const Structure& structure);
 
-/// Returns the mass matrix in the described pose, with consistent mass of members that have one.
+/// Returns the mass matrix in the described pose. Members with a consistent mass contribute it.
 Eigen::MatrixXd MassMatrix(const ModelDef& def, const Structure& structure);
 
-/// Returns the directions that joint rows and bearing points hold, as orthonormal columns over all
-/// motions.
+/// Returns the directions that joint rows and loaded contact points block, as orthonormal columns
+/// over all motions.
 Eigen::MatrixXd HeldDirections(const Structure& structure, const Reactions& holding);
 
-/// Returns the geometric stiffness: the part that depends on member forces, loads and reactions.
+/// Returns the geometric stiffness: the contribution of member forces, loads and reactions.
 Eigen::MatrixXd GeometricStiffness(const Structure& structure, const Reactions& holding);
 
-/// Largest gap of a touching point, as a share of the structure's size.
+/// Largest gap of a point in contact, as a share of the structure's size.
 inline constexpr double kNearPlane = 1e-7;
 
-/// Returns an orthonormal basis of the span of the columns; singular values above 1e-9 of the
-/// largest count.
+/// Returns an orthonormal basis of the span of the columns. Singular values up to 1e-9 of the
+/// largest count as 0.
 Eigen::MatrixXd SpanOf(const Eigen::MatrixXd& columns);
 Matrix PlainOf(const Eigen::MatrixXd& m);
 Eigen::MatrixXd EigenOf(const Matrix& m);

@@ -9,10 +9,11 @@
 
 namespace taut::analysis {
 
-// A rotation w moves a point at a by w x a, with the sum of squares w (sum of |a|^2 - a a^T) w over
-// all points: nothing resists rotations in the null space of this matrix.
+// A rotation w moves a point with arm a by w x a. The sum of squares over all points is w^T (sum of
+// |a|^2 - a a^T) w, so unresisted rotations are the null space of this matrix.
 Eigen::MatrixXd Structure::FreeTurns(std::size_t b, const Placement& at) const {
-  constexpr double kOnAxis = 1e-7;  ///< Share of the structure's size; its square is near rounding.
+  constexpr double kOnAxis = 1e-7;  ///< Share of the structure's size. Its square is close to
+                                    ///< rounding.
   const Eigen::Matrix3d all = arms_[b] + size_m * size_m * resisted_[b];
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(all);
   Eigen::MatrixXd turns(3, 0);
@@ -34,7 +35,7 @@ Eigen::MatrixXd Structure::Effective(const Placement& at, bool scaled) const {
     columns += 3;
     const Eigen::MatrixXd free = FreeTurns(b, at);
     const Eigen::Matrix3d kept = Eigen::Matrix3d::Identity() - free * free.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(kept);  // eigenvalues 0 and 1
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(kept);  // eigenvalues are 0 or 1
     const double reach = reach_m[b] > 1e-8 * size_m ? reach_m[b] : size_m;
     for (Eigen::Index i = free.cols(); i < 3; ++i) {
       Eigen::Vector3d turn = solver.eigenvectors().col(i);

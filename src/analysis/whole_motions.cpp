@@ -20,9 +20,9 @@ int MovingOf(const Structure& s, const CableDef& cable) {
   return -1;
 }
 
-/// Returns the part of `twists` that joints with the world allow beyond first order. If their rows
-/// are dependent, forces among them (`loads`, a self-stress of the frozen component) may resist at
-/// second order, as two parallel guides resist the rotation of a rod between them.
+/// Returns the part of `twists` that joints with the world permit beyond first order. If constraint
+/// rows are dependent, a self-stress among them (`loads`) may resist at second order. Example: two
+/// parallel guides resist the rotation of a rod between them.
 Eigen::MatrixXd AllowedByJoints(const Structure& s, const Component& component,
                                 const Eigen::MatrixXd& twists) {
   constexpr double kFirst = 1e-9, kSecond = 1e-6;
@@ -145,8 +145,7 @@ Eigen::MatrixXd SecondAlong(const Coordinate& c, const Structure& s, const Compo
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(s.motions(), s.motions());
   Add(c, 1, 0, gradient, &hessian);
   Eigen::MatrixXd second = motions.transpose() * hessian * motions;
-  // Centers of mass deviate from the straight line by w x (v + w x r) / 2; rotations are exp(t w)
-  // in the chart.
+  // Along exp(t w), the center of mass deviates from a straight line by w x (v + w x r) / 2.
   for (const std::size_t b : component.bodies) {
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(b);
     const Vec3 slope = To(gradient.segment<3>(at));
@@ -208,12 +207,12 @@ FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& s, const Eigen::
       effective * Nothing(held.transpose() * effective, 1e-9 / std::max(1.0, s.size_m));
   FreeMotions out{unheld, 0};
   if (unheld.cols() == 0) return out;
-  // Ineffective rotations are left out of rigid motions, too: collinear points or a single point
-  // have some.
+  // Drop rotations that nothing resists from the rigid motions, too: a single point or collinear
+  // points allow such rotations.
   const Eigen::MatrixXd rigid = SpanOf(EffectivePart(effective, WholeMotions(def, s)));
   if (rigid.cols() == 0) return out;
   const double most = (unheld.transpose() * stiffness * unheld).cwiseAbs().maxCoeff();
-  // Without stiffness only round-off of the reactions is left.
+  // Without stiffness, `most` is the rounding error of the reactions.
   const bool resists = most > 1e-12 * stiffness.cwiseAbs().maxCoeff();
   Eigen::MatrixXd resisted(held.cols() + s.motions(), rigid.cols());
   resisted << held.transpose() * rigid,
@@ -221,7 +220,7 @@ FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& s, const Eigen::
   const Eigen::MatrixXd whole = rigid * Nothing(resisted, 1e-11);
   out.rigid = whole.cols();
   if (out.rigid == 0) return out;
-  // The weighted orthogonal complement: motions of `unheld` without momentum along `whole`.
+  // Orthogonal complement in `weight`: motions of `unheld` without momentum along `whole`.
   const Eigen::MatrixXd momenta = whole.transpose() * weight * unheld;
   const Eigen::MatrixXd rest = unheld * Nothing(momenta, 1e-12 * momenta.norm());
   out.basis.resize(s.motions(), whole.cols() + rest.cols());

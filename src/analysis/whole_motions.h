@@ -7,11 +7,12 @@
 
 namespace taut::analysis {
 
-/// Connected component: moving bodies that members and joints connect, with their world points.
+/// Connected component: moving bodies connected by members and joints, and its connections to the
+/// world.
 struct Component {
-  std::vector<std::size_t> bodies;  ///< Indices among moving bodies.
+  std::vector<std::size_t> bodies;  ///< Indices among the moving bodies.
   Vec3 middle_m;                    ///< Mean of their centers of mass.
-  std::vector<Vec3> held_points_m;  ///< Ends of cables, bars and distances in the world.
+  std::vector<Vec3> held_points_m;  ///< Ends of cables, bars and distance joints in the world.
   std::vector<Vec3> held_axes;      ///< Axes of wheels in the world.
   std::vector<Vec3> joints_m;       ///< Points of other joints with the world.
 
@@ -22,12 +23,12 @@ struct Component {
 /// Returns the connected components in the order of their first bodies.
 std::vector<Component> ComponentsOf(const ModelDef& def, const Structure& structure);
 
-/// Returns the rigid motions of a component that move no held point or axis and that its joints
-/// with the world allow. 6 x k, orthonormal: translation of `middle_m`, then rotation about it
-/// times the structure's size [m].
+/// Returns the rigid motions of a component that its fixed points and axes and its joints with the
+/// world permit. Shape 6 x k, orthonormal: translation of `middle_m`, then rotation about it times
+/// the structure's size [m].
 Eigen::MatrixXd TwistsOf(const Structure& structure, const Component& component);
 
-/// Returns the constraint rows of held points and axes over all six twists.
+/// Returns the constraint rows of fixed points and axes, with six columns for the twists.
 Eigen::MatrixXd AnchorRows(const Structure& structure, const Component& component);
 
 /// Returns the rows of the joints between a component and the world.
@@ -37,31 +38,32 @@ std::vector<Coordinate> RowsWithWorld(const Structure& structure, const Componen
 Eigen::MatrixXd SlopesAlong(const std::vector<Coordinate>& coordinates, const Structure& structure,
                             const Component& component, const Eigen::MatrixXd& twists);
 
-/// Returns the second derivative of a coordinate along exp(t xi) as a symmetric form of twists xi.
+/// Returns the second derivative of a coordinate along exp(t xi) as a symmetric 6 x 6 form of the
+/// twist xi.
 Eigen::MatrixXd SecondAlong(const Coordinate& coordinate, const Structure& structure,
                             const Component& component, const Eigen::MatrixXd& twists);
 
-/// Returns motions of all bodies, one column per twist; zero for other components.
+/// Converts twists of a component to motions of all bodies (columns). Other components do not move.
 Eigen::MatrixXd MotionsOf(const Structure& structure, const Component& component,
                           const Eigen::MatrixXd& twists);
 
 /// Returns the rigid motions (`TwistsOf`) of all components as columns.
 Eigen::MatrixXd WholeMotions(const ModelDef& def, const Structure& structure);
 
-/// Returns the part of motions that counts (`Structure::Effective`).
+/// Projects motions onto the effective ones (`Structure::Effective`).
 Eigen::MatrixXd EffectivePart(const Eigen::MatrixXd& effective, const Eigen::MatrixXd& motions);
 
 /// Returns an orthonormal basis of the null space of `rows`; singular values <= `limit` count as 0.
 Eigen::MatrixXd Nothing(const Eigen::MatrixXd& rows, double limit);
 
-/// Basis of the free motions.
+/// Basis of the motions that constraints leave free.
 struct FreeMotions {
-  Eigen::MatrixXd basis;   ///< Unresisted rigid motions first, then all others.
+  Eigen::MatrixXd basis;   ///< Rigid motions without stiffness first, then all others.
   Eigen::Index rigid = 0;  ///< Number of rigid motions.
 };
 
-/// Splits the motions that leave `held` (columns) at rest into rigid motions without stiffness and
-/// the rest. The two parts are orthogonal by `weight`: the mass, or a metric.
+/// Splits the motions orthogonal to `held` (columns) into rigid motions without stiffness and the
+/// rest. The two parts are orthogonal in `weight` (mass matrix or metric).
 FreeMotions FreeMotionsOf(const ModelDef& def, const Structure& structure,
                           const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& weight,
                           const Eigen::MatrixXd& held);
