@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kMostTableBytes = std::size_t{1} << 30;
 
-/// Appends the numbers of a line to `row`. Returns the position of the first wrong one, if any.
+/// Appends the numbers of a line to `row`. Returns the character position of the first invalid
+/// number, if any.
 std::optional<std::size_t> AddRow(std::string_view line, std::vector<double>& row) {
   std::size_t at = 0;
   for (std::size_t number = 1;; ++number) {
@@ -49,7 +50,7 @@ std::optional<HeightTable> ReadHeightCsv(const std::string& path, trace::TableBu
     ++line_number;
     if (line.empty() || line == "\r" || line.front() == '#') continue;
     const SourceRef place{path, line_number, 0};
-    // Before the row is read: a line may have as many numbers as a file.
+    // Check the budget before reading the row: one line may contain millions of numbers.
     const auto count = static_cast<double>(1 + std::count(line.begin(), line.end(), ','));
     const double with_line = static_cast<double>(table.height_m.size()) + count;
     if (with_line > budget.left()) {

@@ -1,4 +1,4 @@
-/// Heights as a CSV file without a header.
+/// Reader of terrain heights from a CSV file without a header.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@ namespace taut::description {
 
 struct HeightTable {
   int columns = 0, rows = 0;
-  std::vector<double> height_m;  ///< Row by row, from the first line.
+  std::vector<double> height_m;  ///< Row by row, in the order of the file's lines.
 };
 
-/// Reads one row per line; empty lines and lines that begin with # do not count. Returns nothing
-/// after an error: numbers that are not finite, rows of unequal length, more numbers than the
-/// budget has left. Adds them to the budget.
+/// Reads one row of heights per line. Ignores empty lines and lines that begin with #. Adds the
+/// number of values to `budget`. Returns nothing after an error: values that are not finite, rows
+/// of unequal length, or an exceeded budget.
 std::optional<HeightTable> ReadHeightCsv(const std::string& path, trace::TableBudget& budget,
                                          Diagnostics& out);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostImageBytes = std::size_t{1} << 30;
 
-/// Input of libpng, and its error message.
+/// Input bytes and error message of libpng.
 struct Source {
   std::string_view bytes;
   std::size_t at = 0;
@@ -40,8 +40,8 @@ struct PngHeader {
   int bits = 0, colour = 0;
 };
 
-/// Reader of one image. libpng leaves functions by longjmp, which skips destructors: objects with
-/// destructors must live outside of the functions that call it.
+/// Reader of one image. libpng reports errors by longjmp, which skips destructors. So functions
+/// that call libpng must not contain objects with destructors.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) {

@@ -1,4 +1,4 @@
-/// Heights from gray-scale PNG images; dark is low.
+/// Reader of terrain heights from gray-scale PNG images; dark pixels are low.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,14 @@ namespace taut::description {
 
 struct HeightImage {
   int columns = 0, rows = 0;
-  int bits = 0;                ///< Per sample, 1 to 16.
-  std::vector<double> shares;  ///< 0 black, 1 white; row by row, from the lowest row up.
+  int bits = 0;                ///< Bits per sample, 1 to 16.
+  std::vector<double> shares;  ///< 0 black to 1 white; row by row, starting with the bottom row of
+                               ///< the image.
 };
 
-/// Reads a PNG of gray samples as stored: no gamma, no color profile. Returns nothing and reports
-/// an error for other files, for colors, or for samples beyond the budget, to which they are added
-/// before memory is allocated.
+/// Reads a gray-scale PNG without gamma correction or color profile. Adds the number of samples to
+/// `budget` before memory is allocated. Returns nothing and reports an error for other files, color
+/// images, or an exceeded budget.
 std::optional<HeightImage> ReadHeightImage(const std::string& path, trace::TableBudget& budget,
                                            Diagnostics& out);
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kMostMeshBytes = std::size_t{1} << 30, kMostErrors = 10;
 
-/// Corners with merged duplicates; without the merge, no mesh would be closed.
+/// Corners without duplicates. STL files repeat corners for every triangle, so a mesh is closed
+/// only after the merge.
 class Corners {
  public:
   explicit Corners(MeshFile& mesh) : mesh_(mesh) {}
@@ -33,7 +34,7 @@ class Corners {
   std::map<std::tuple<double, double, double>, int> known_;
 };
 
-/// Removes and returns the next word of a line; empty at its end.
+/// Removes and returns the next word of a line. Returns an empty text at the end of the line.
 std::string_view NextWord(std::string_view& line) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
   while (!line.empty() && blank(line.front())) line.remove_prefix(1);
@@ -59,7 +60,7 @@ std::optional<Vec3> ReadPoint(std::string_view& line) {
   return Vec3{x[0], x[1], x[2]};
 }
 
-/// Calls `use(line, number)` for every line.
+/// Calls `use(line, number)` for every line, until it returns false.
 template <class Use>
 void EachLine(std::string_view text, const Use& use) {
   int number = 0;
@@ -123,7 +124,7 @@ class ObjReader {
   Corners corners_;
   Diagnostics& out_;
   SourceRef at_;
-  std::vector<int> points_;  ///< Indices of the file's corners.
+  std::vector<int> points_;  ///< Indices into the mesh's corners, per corner of the file.
 };
 
 void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh, Diagnostics& out) {
@@ -155,8 +156,8 @@ void ReadStlText(const std::string& path, std::string_view text, MeshFile& mesh,
   });
 }
 
-/// Binary STL: 80 arbitrary bytes, a count, 50 bytes per triangle: normal, three corners, two
-/// bytes.
+/// Binary STL: 80 arbitrary bytes, a count, then 50 bytes per triangle (normal, three corners, two
+/// unused bytes).
 constexpr std::size_t kStlHead = 84, kStlTriangle = 50;
 
 std::uint32_t Word(std::string_view bytes, std::size_t at) {
@@ -271,7 +272,8 @@ std::optional<MeshFile> ReadMeshFile(const std::string& path, Diagnostics& out) 
   const std::size_t errors_before = out.items().size();
   MeshFile mesh;
   mesh.BeginPart({});
-  // Some programs begin binary files with "solid", too; the size distinguishes them.
+  // Some programs write "solid" at the start of binary files, too; the file size distinguishes the
+  // two formats.
   const bool binary = !obj && text->size() >= kStlHead &&
                       text->size() == kStlHead + kStlTriangle * std::size_t{Word(*text, 80)};
   if (obj) {

@@ -129,7 +129,7 @@ void Keys(Io& io, Change& c) {
   }
 }
 
-/// Keys common to both kinds of gait inputs.
+/// Keys that velocity inputs and rest length inputs share.
 template <class Io, class Input>
 void GaitInputKeys(Io& io, Input& v, const char* example = nullptr) {
   io("period_s", v.clock.period_s, Bound::kPositive,

@@ -10,7 +10,7 @@
 namespace taut::description {
 namespace {
 
-/// Controller that drives a cable, and whether by impedance; null: none.
+/// Controller that drives a cable (null if none), and whether it is an impedance controller.
 struct Driver {
   const ControllerSpec* controller = nullptr;
   bool by_impedance = false;
@@ -34,8 +34,8 @@ std::vector<Driver> DriversOf(const ExperimentSpec& experiment, const RobotSpec&
   return drivers;
 }
 
-/// Returns the reason why an action cannot move a cable; empty if it can, or if the action is
-/// invalid.
+/// Returns the reason why an action cannot change a cable. Returns an empty text if it can, or if
+/// the action is invalid for another reason.
 std::string Obstacle(const EnvironmentAction& action, const CableDef& cable, const Driver& driver) {
   const bool by_length = action.rest_length_m || action.rest_length_rate_m_per_s;
   if (by_length == action.velocity_input_m_per_s.has_value()) return {};
@@ -69,7 +69,7 @@ class Actions {
 
   std::vector<EnvironmentAction> Take() {
     std::sort(of_cables_.begin(), of_cables_.end(), [](const auto& a, const auto& b) {
-      return a.cable < b.cable;  // duplicates are already reported
+      return a.cable < b.cable;  // equal cables were already reported
     });
     of_cables_.insert(of_cables_.end(), of_numbers_.begin(), of_numbers_.end());
     return std::move(of_cables_);
@@ -77,7 +77,7 @@ class Actions {
 
  private:
   void AddCables(const EnvironmentActionText& text, const Value& selector) {
-    std::map<std::string, std::string> refused;  // reason -> names: one error per reason
+    std::map<std::string, std::string> refused;  // reason -> names of cables: one error per reason
     for (const int cable : SelectCables(selector, "environment.actions.cables", &robot_, scope_)) {
       const auto index = static_cast<std::size_t>(cable);
       const CableDef& def = robot_.def.cables[index];
@@ -138,14 +138,14 @@ class Actions {
   bool drivers_known_;
   std::vector<Driver> drivers_;
   std::vector<ControllerSpec> controllers_;
-  std::vector<Tunable> tunables_;  ///< Of `controllers_`.
+  std::vector<Tunable> tunables_;  ///< Tunables of `controllers_`.
   const Scope& scope_;
   std::vector<EnvironmentAction> of_cables_, of_numbers_;
-  std::map<int, int> given_;          ///< Cable -> line.
-  std::map<std::string, int> taken_;  ///< Name of a number -> line.
+  std::map<int, int> given_;          ///< Line of the action, per cable.
+  std::map<std::string, int> taken_;  ///< Line of the action, per tunable name.
 };
 
-/// Returns the position of a key in a part of the block.
+/// Returns the position of a key in a part of the environment block.
 SourceRef PlaceOf(const Value& block, std::string_view part, std::string_view key) {
   const Value* const inner = block.Find(part);
   return inner ? KeyAt(*inner, key) : block.at;

@@ -1,4 +1,4 @@
-// Loading of experiment files, with their models and overrides.
+// Loader of experiment files, including their models and overrides.
 #include <cmath>
 #include <functional>
 
@@ -18,13 +18,13 @@ namespace taut {
 namespace description {
 namespace {
 
-/// Adds `set:` as overrides with positions. Values are evaluated here, with the parameters of the
-/// experiment.
+/// Adds the entries of `set:` as overrides with file positions. Evaluates their expressions with
+/// the parameters of the experiment.
 void AddSet(const Value* value, const Scope& scope, OverrideSet& overrides) {
   for (const Entry& entry : Entries(value, "set", scope)) {
     const double number = ReadNumber(*entry.value, "set." + entry.key, Bound::kAny, scope);
     const bool good = !std::isnan(number);
-    // An empty file name marks a parameter whose error is already reported.
+    // An empty file name marks an invalid value that is already reported.
     overrides.Add({entry.key, good ? Shown(number) : "", good ? entry.key_at : SourceRef{}});
   }
 }
@@ -41,13 +41,13 @@ LoadedModel LoadItsModel(const ExperimentText& text, const OverrideSet& of_user,
   for (const auto& parameter : scope.names) all.push_back(parameter.first);
   for (const ParameterText& parameter : overrides.Unused()) {
     if (parameter.at.file.empty()) continue;
-    const bool from_file = parameter.at.line > 0;  // from `set:`, which addresses the model only
+    const bool from_file = parameter.at.line > 0;  // entries of `set:` address the model only
     ReportUnknownParameter(parameter, from_file ? model.parameter_names : all, scope.out);
   }
   return model;
 }
 
-/// Reports random turns of the start pose that would break a joint with the world.
+/// Reports random rotations of the start pose that would break a joint with the world.
 void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const Scope& scope) {
   for (const JointDef& joint : def.joints) {
     if (!base::IsFixed(def, joint.body_a) && !base::IsFixed(def, joint.body_b)) continue;
@@ -60,7 +60,7 @@ void CheckTurns(const ModelDef& def, const char* key, const Value* noise, const 
   }
 }
 
-/// Returns all that could be read; the caller checks the diagnostics.
+/// Returns the experiment as far as it could be read. The caller must check the diagnostics.
 ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, const Scope& scope,
                               const std::function<void(const ExperimentSpec&)>& look) {
   const std::size_t errors_before = scope.out.items().size();

@@ -21,15 +21,15 @@ std::string CableNames(const RobotSpec& robot, const std::vector<int>& cables) {
   return out;
 }
 
-/// Settings (gains, set points ...) per cable with their positions; reports cables with two of
-/// them.
+/// Settings (gains, set points, programs) per cable, with file positions. Reports cables with two
+/// settings.
 template <class T>
 class PerCable {
  public:
   PerCable(const RobotSpec* robot, std::string what, const Scope& scope)
       : robot_(robot), what_(std::move(what)), scope_(scope) {}
 
-  /// Adds a setting for the cables of a selector; null after an error.
+  /// Adds a setting for the cables of a selector. `selector` is null if it had an error.
   void Add(const Value* selector, const std::string& path, const T& given) {
     if (!selector) {
       complete_ = false;
@@ -56,10 +56,10 @@ class PerCable {
     return found == given_.end() ? nullptr : &found->second.value;
   }
 
-  /// Reports every selector here that matches a cable without a setting in `other`.
+  /// Reports every selector that matches a cable without a setting in `other`.
   template <class U>
   void Require(const PerCable<U>& other, const std::string& hint) const {
-    if (!other.complete()) return;  // a selector with an error may include the missing cables
+    if (!other.complete()) return;  // its invalid selector may include the missing cables
     std::map<std::pair<int, int>, std::pair<SourceRef, std::vector<int>>> missing;
     for (const auto& [cable, given] : given_) {
       if (other.Find(cable)) continue;
@@ -74,7 +74,7 @@ class PerCable {
     }
   }
 
-  /// Returns false if a selector had an error: it may include more cables.
+  /// Returns false if a selector had an error and may include more cables.
   bool complete() const { return complete_; }
   void SetIncomplete() { complete_ = false; }
   const std::string& what() const { return what_; }
@@ -98,7 +98,7 @@ class PerCable {
 
 using Points = std::vector<std::pair<double, double>>;
 
-/// Reads a number (constant in time) or points.
+/// Reads a constant, or points [[time_s, value], ...].
 Points ReadCourse(const Value& value, const std::string& what, const Bound& bound,
                   const Scope& scope) {
   if (value.kind == Value::Kind::kSequence) return ReadPoints(value, what, bound, scope);
@@ -113,11 +113,13 @@ Points ReadCourse(const Value& value, const std::string& what, const Bound& boun
 
 struct Course {
   Points points;
-  bool relative = false;  ///< To the cable's rest length in the described pose.
+  bool relative = false;  ///< Whether values are added to the cable's rest length in the described
+                          ///< pose.
   SourceRef at;
 };
 
-/// Returns the program of one cable. Errors are reported once per course, not for each cable.
+/// Returns the rest length program of one cable. Reports errors once per course, not once per
+/// cable.
 PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& course,
                            std::set<std::pair<int, int>>& reported, const Scope& scope) {
   PositionProgram program{cable, course.points};
@@ -135,7 +137,7 @@ PositionProgram ProgramFor(const RobotSpec& robot, int cable, const Course& cour
   return program;
 }
 
-/// Returns the cables that a controller drives, ascending: by control law or gait.
+/// Returns the cables that a controller drives by control law or gait, in ascending order.
 std::set<int> DrivenCables(const ControllerSpec& controller, const std::vector<int>& of_gait) {
   std::set<int> cables(of_gait.begin(), of_gait.end());
   if (controller.impedance) {

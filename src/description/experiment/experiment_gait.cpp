@@ -1,4 +1,4 @@
-// Gait inputs of controllers: reading of gait files, checks against the robot.
+// Gait inputs of controllers: loading of gait files, and checks against the robot.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -17,19 +17,19 @@ std::string NamesOf(const std::vector<int>& cables, const RobotSpec& robot) {
   return names;
 }
 
-/// Returns the elements of `a` that are not in `b`; both ascending.
+/// Returns the elements of `a` that are not in `b`; both are in ascending order.
 std::vector<int> Without(const std::vector<int>& a, const std::vector<int>& b) {
   std::vector<int> rest;
   std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
   return rest;
 }
 
-/// Gait files of an input; each file is read once, under any path.
+/// Gait files of an input. A file with several paths is read once.
 class GaitFiles {
  public:
   GaitFiles(std::string what, const Scope& scope) : what_(std::move(what)), scope_(scope) {}
 
-  /// Adds a file and returns its number; -1 after an error.
+  /// Loads a gait file and returns its index; -1 after an error.
   int Add(const Value* file, const char* key) {
     const auto path = FindFile(file, what_ + "." + key, scope_);
     if (!path) return -1;

@@ -26,8 +26,9 @@ namespace {
 constexpr const char* kSayWhere =
     "add its position and the tracked body: `goal: {at_m: [3.5, 0, 0], body: ...}`";
 
-/// Reports a missing goal of the experiment. A network accepts it in any frame; the rolling gait
-/// combines its direction with the vertical and the struts' directions and needs it in frame W.
+/// Reports a gait that needs a goal if the experiment has none. Neural networks accept a goal in
+/// any frame. The rolling gait needs it in frame W, because it combines the goal's direction with
+/// the directions of the struts.
 void CheckGoalIsSensed(const ExperimentSpec& experiment, const GaitSpec& gait, Diagnostics& out) {
   if (gait.feedback_cpg && gait.feedback_cpg->goal_network && !experiment.goal) {
     out.Error("gait.goal_network_without_goal", gait.feedback_cpg->goal_network->at,

@@ -10,8 +10,8 @@
 namespace taut::description {
 namespace {
 
-/// Returns the index of the item of this name; -1 after an error. `counts`: items that are
-/// eligible.
+/// Returns the index of the item with this name; -1 after an error. `counts` returns whether an
+/// item is eligible.
 template <class Named>
 int Find(const Placed& name, const char* kind, const std::vector<Named>& all,
          const std::vector<bool>& counts, const Scope& scope) {
@@ -86,7 +86,7 @@ class CaseReader {
   };
   struct Gain {
     double by_m = 0;
-    SourceRef at;  ///< Of the last contribution.
+    SourceRef at;  ///< Position of the last contribution in the file.
   };
 
   Member MemberAt(const Key& key) const {
@@ -99,7 +99,7 @@ class CaseReader {
     return {cable.name, cable.rest_length_m, cable.member.expansion_per_k};
   }
 
-  /// Adds `gain` [m] of each selected member to its change of rest length.
+  /// Adds `gain` [m] to the change of rest length of each selected member.
   template <class F>
   void ForEach(const Value& selector, const char* what, const F& gain) {
     for (const Key& key : Select(selector, what)) {

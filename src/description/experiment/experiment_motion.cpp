@@ -12,7 +12,7 @@
 namespace taut::description {
 namespace {
 
-/// Converts a terrain box to a fixed body. Returns the body's index.
+/// Converts a terrain box to a fixed body and returns its index.
 int BodyOfBox(std::size_t box, RobotSpec& robot) {
   ModelDef& def = robot.def;
   const TerrainBoxDef& from = def.terrain_boxes[box];

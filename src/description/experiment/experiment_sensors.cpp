@@ -6,8 +6,8 @@
 namespace taut::description {
 namespace {
 
-/// Checks that a delay is a whole number of periods, so that it does not depend on the times of
-/// reading. `what` is the sensor, a key of `map`.
+/// Checks that a delay is a whole number of sensor periods, so that it does not depend on the times
+/// of reading. `what`: the sensor's key in `map`.
 void CheckDelay(const MapReader& map, const char* what, double delay_s, double period_s) {
   constexpr double kLongest = 10000;  // number of buffered samples
   const Value* sensor = map.Find(what);

@@ -14,7 +14,7 @@ namespace taut::description {
 namespace {
 
 Inertia Rotated(const Quat& q, const Inertia& inertia) {
-  // The columns of R I R^T, one axis after the other.
+  // Rows of the rotation matrix of q, as vectors.
   const Vec3 axes[] = {Rotate(Conjugate(q), {1, 0, 0}), Rotate(Conjugate(q), {0, 1, 0}),
                        Rotate(Conjugate(q), {0, 0, 1})};
   const auto product = [&](int a, int b) {
@@ -27,8 +27,8 @@ Inertia Rotated(const Quat& q, const Inertia& inertia) {
   return {product(0, 0), product(1, 1), product(2, 2), product(0, 1), product(0, 2), product(1, 2)};
 }
 
-/// Rigid displacement of all bodies and of parts fixed in the world: rotation by `q` about the
-/// origin, then translation by `at_m`.
+/// Rigid displacement of the robot, including its points fixed in the world: rotation `q` about the
+/// origin, then translation `at_m`.
 struct Placing {
   Vec3 at_m;
   Quat q;
@@ -52,7 +52,8 @@ void Move(const Placing& placing, RobotSpec& robot) {
   }
 }
 
-/// Adds a rigid motion of the whole robot: velocity of its center of mass, and rotation about it.
+/// Adds a rigid motion of the whole robot. `v`: velocity of its center of mass; `w`: angular
+/// velocity about the center of mass.
 void AddVelocity(const Vec3& v, const Vec3& w, ModelDef& def) {
   Vec3 sum;
   double mass_kg = 0.0;
@@ -159,7 +160,7 @@ void AddTerrain(const std::vector<TerrainText>& texts, const Scope& scope, Robot
                       "the terrain has " + std::to_string(all) +
                           " boxes up to this element, more than " + std::to_string(kMostBoxes),
                       "use a height field or a mesh");
-      return;  // before the boxes are made: thousands of entries would exhaust memory
+      return;  // Return before allocation: thousands of entries would exhaust memory.
     }
     std::vector<TerrainBoxDef> boxes;
     if (text.scatter) boxes = Boxes(*text.scatter);
@@ -190,7 +191,7 @@ void Place(const PlaceText& place, StartKind start, const Scope& scope, RobotSpe
   };
   check(moving, place.velocity_at, "velocity_m_per_s");
   check(turning, place.angular_velocity_at, "angular_velocity_rad_per_s");
-  // A robot without a new place keeps its numbers bit for bit.
+  // Without a new place, keep the robot's numbers unchanged to the last bit.
   if (place.moved) Move({place.at_m, place.rotate}, robot);
   if (moving || turning) {
     AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, robot.def);

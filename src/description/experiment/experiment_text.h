@@ -1,5 +1,5 @@
-/// Contents of an experiment file after reading. References to the robot are resolved later, when
-/// the model is known.
+/// Contents of an experiment file after parsing. References to the robot are resolved later, after
+/// the model has been loaded.
 #pragma once
 
 #include <cmath>
@@ -63,7 +63,8 @@ struct PlaceText {
   Vec3 at_m;
   Quat rotate;
   Vec3 velocity_m_per_s, angular_velocity_rad_per_s;
-  SourceRef velocity_at, angular_velocity_at;  ///< Of the keys; line 0 if absent.
+  SourceRef velocity_at, angular_velocity_at;  ///< Positions of the keys in the file; line 0 if
+                                               ///< absent.
   bool moved = false;
 };
 
@@ -83,7 +84,7 @@ struct ImpedanceText : ImpedanceSpec {
   RateSource rate = RateSource::kExact;
   std::vector<GainsText> gains;
   std::vector<SetPointText> set_points;
-  bool gains_complete = true, set_points_complete = true;  ///< False: not lists.
+  bool gains_complete = true, set_points_complete = true;  ///< False: the value is not a list.
 };
 struct ProgramText {
   Raw<SelectorForm> cables;
@@ -113,7 +114,7 @@ struct ControllerText : ControllerSpec {
   std::optional<PositionText> position_text;
   std::optional<VelocityInputText> velocity_input_text;
   std::optional<RestLengthInputText> rest_length_input_text;
-  SourceRef name_at;  ///< Of the key.
+  SourceRef name_at;  ///< Position of the key.
 };
 
 // timeline
@@ -201,7 +202,7 @@ struct LoadCaseText {
 struct EnvironmentActionText : EnvironmentAction {
   Raw<SelectorForm> cables;
   Raw<PatternsForm> each, all;
-  SourceRef name_at;  ///< Of the key.
+  SourceRef name_at;  ///< Position of the key.
 };
 struct EnvironmentText : EnvironmentSpec {
   std::vector<EnvironmentActionText> action_texts;

@@ -8,7 +8,7 @@
 namespace taut::description {
 namespace {
 
-/// Returns the bodies that match patterns of names.
+/// Returns the bodies whose names match one of the patterns.
 std::vector<int> SelectBodies(const Value& value, const std::string& what, const RobotSpec* robot,
                               const Scope& scope) {
   std::vector<std::string> patterns;
@@ -35,7 +35,7 @@ std::vector<int> SelectBodies(const Value& value, const std::string& what, const
 }  // namespace
 
 void Check(const MapReader& map, ScaleText& scale) {
-  std::string key;  // at most one: of several, none was read
+  std::string key;  // if several are present, the reader has reported an error and set none
   const std::optional<double> factors[] = {scale.friction, scale.mass, scale.stiffness,
                                            scale.damping};
   for (std::size_t i = 0; i < kScaledQuantities.size(); ++i) {

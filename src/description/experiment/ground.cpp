@@ -18,10 +18,10 @@ namespace taut::description {
 namespace {
 
 constexpr double kMostByFormula = 4e6;
-/// Limit of the steps of a formula over all corners; a step takes 5 to 50 ns.
+/// Limit of evaluation steps of a formula, summed over all corners. One step takes 5 to 50 ns.
 constexpr double kMostSteps = 4e8;
 
-/// Fills the heights by a formula, evaluated at each corner.
+/// Computes the heights by a formula at each corner.
 bool FillByFormula(const HeightFieldText& text, const Scope& scope, trace::TableBudget& budget,
                    HeightFieldDef& field) {
   const Value& formula = *text.formula.value;
@@ -106,12 +106,13 @@ bool ReadImage(const HeightFieldText& text, const std::string& path, const Scope
   }
   field.columns = image->columns;
   field.rows = image->rows;
-  field.height_m = std::move(image->shares);  // a copy would double the memory
+  field.height_m = std::move(image->shares);  // a copy would double the memory use
   for (double& height : field.height_m) height = low + (high - low) * height;
   return true;
 }
 
-/// Returns the position of the data set's name in `hills.h5:/z`; npos for other files.
+/// Returns the position of the data set's name in a path such as `hills.h5:/z`; npos for other
+/// files.
 std::size_t SetIn(const std::string& file) {
   for (const char* end : {".h5:", ".hdf5:"}) {
     const std::size_t at = file.find(end);

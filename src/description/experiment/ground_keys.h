@@ -11,7 +11,7 @@
 
 namespace taut::description {
 
-/// Expression with more names than other numbers have.
+/// Expression of the height, which may also refer to x and y.
 struct FormulaForm {
   static constexpr const char* kSchema =
       R"("$ref": "#/$defs/number", "title": "formula", "unit": "m")";
@@ -42,7 +42,7 @@ inline const Choices<HeightFieldDef::Split> kSplits{
     {"shortest", HeightFieldDef::Split::kShortest}};
 inline const Choices<bool> kMeshKinds{{"closed", true}, {"surface", false}};
 
-/// More would take gigabytes.
+/// Larger height fields would take gigabytes of memory.
 inline constexpr Bound kCorners{.least = 2, .most = 100'000};
 
 template <class Io, Either<HeightFieldDef, HeightFieldText> Field>
@@ -127,16 +127,16 @@ void Keys(Io& io, Mesh& m) {
 }
 void Check(const MapReader& map, TerrainMeshText& mesh);
 
-/// Return the path of the file, if any.
+/// Returns the path of the file, if any.
 std::string PathOf(const HeightFieldText& text);
 std::string PathOf(const TerrainMeshText& text);
-/// Limit of the heights in all height fields of an experiment together.
+/// Limit of the number of heights, summed over all height fields of an experiment.
 inline constexpr double kMostHeights = 1e8;
-/// Returns a height field with heights from the file or formula; nothing after an error. Adds the
-/// heights to the budget of the experiment.
+/// Returns a height field with heights from a file or a formula. Adds the number of heights to the
+/// budget of the experiment. Returns nothing after an error.
 std::optional<HeightFieldDef> ReadHeightField(const HeightFieldText& text, const Scope& scope,
                                               trace::TableBudget& budget);
-/// Returns a mesh with corners and triangles from the file, in place; nothing after an error.
+/// Returns a terrain mesh from a file, transformed to W. Returns nothing after an error.
 std::optional<TerrainMeshDef> ReadTerrainMesh(const TerrainMeshText& text, const Scope& scope);
 
 }  // namespace taut::description

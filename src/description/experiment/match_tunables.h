@@ -10,7 +10,7 @@
 
 namespace taut::description {
 
-/// Returns the indices of the tunables that match patterns. Empty after an error.
+/// Returns the indices of the tunables whose names match. Returns an empty list after an error.
 std::vector<std::size_t> MatchTunables(const Value& value, const std::string& what,
                                        const std::vector<Tunable>& tunables, const Scope& scope);
 

@@ -22,7 +22,7 @@ struct MotionText {
   std::optional<TurnText> turn;
 };
 
-/// Keys of a law of time; `speed` and `amplitude` are the names with units.
+/// Keys of a motion over time. `speed` and `amplitude`: names of these keys, with units.
 template <class Io, class Law>
 void TimeLawKeys(Io& io, Law& law, const char* speed, const char* amplitude) {
   io(speed, law.speed,

@@ -1,4 +1,4 @@
-/// Keys of objectives and perturbations: the quantity to maximize and the variation of worlds.
+/// Keys of objectives and perturbations.
 #pragma once
 
 #include "description/yaml/keys.h"
@@ -48,7 +48,7 @@ void ObjectiveKeys(Io& io, auto& o) {
   io("max_speed_m_per_s", o.max_speed_m_per_s, Bound::kPositive,
      "Speed of a body above which a world counts as diverged and fails.");
 }
-/// Reports a missing key that the measure of an objective in `map` needs.
+/// Reports a missing key in `map` that the objective's measure needs.
 void CheckObjective(const MapReader& map, const ObjectiveSpec& objective);
 
 inline constexpr Bound kShare{

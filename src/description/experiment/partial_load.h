@@ -1,4 +1,4 @@
-/// Loading of experiments with a callback, so that other layers can add errors about the file.
+/// Loader of experiments with a callback that lets other layers add errors about the file.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace taut::description {
 
-/// Loads like `LoadExperiment`. On failure calls `look` with the readable part, if the model and
-/// the controllers are valid: names of bodies, cables and controllers are known, numbers may be
-/// missing (NaN).
+/// Loads like `LoadExperiment`. If loading fails, but model and controllers are valid, calls `look`
+/// with the readable part. There, the names of bodies, cables and controllers are known; numbers
+/// may be missing (NaN).
 std::optional<ExperimentSpec> LoadPartial(const std::string& path, const Overrides& overrides,
                                           Diagnostics& out,
                                           const std::function<void(const ExperimentSpec&)>& look);

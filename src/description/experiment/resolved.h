@@ -1,4 +1,4 @@
-/// Reader of resolved experiments, which `ResolvedYaml` writes.
+/// Reader of resolved experiments, the format that `ResolvedYaml` writes.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace taut::description {
 
-/// Reads `root`, the content of a file of kind `resolved_experiment`, without its input hash. It
-/// has no parameters, so every override is an error. Returns nothing after any error.
+/// Reads `root`, the content of a file of kind `resolved_experiment`. Does not set the input hash.
+/// The format has no parameters, so every override is an error. Returns nothing after any error.
 std::optional<ExperimentSpec> ReadResolved(const std::string& path, const Value& root,
                                            const Overrides& overrides, Diagnostics& out);
 

@@ -1,4 +1,4 @@
-/// Keys that only resolved experiments contain: the robot, in numbers.
+/// Keys that only resolved experiments contain: the robot with all numbers evaluated.
 #pragma once
 
 #include "description/experiment/experiment_keys.h"

@@ -86,7 +86,7 @@ void Read(const Value& value, const std::string& what, const Scope& scope, std::
 }
 
 /// Reader of resolved experiments. All keys are required, except optional fields, limits and keys
-/// that earlier versions of taut did not write. Ranges are checked by `Model::Compile`.
+/// that earlier versions of taut did not write. `Model::Compile` checks the ranges.
 class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
  public:
   explicit ResolvedReader(MapReader& map) : map_(map) { spelling = map.scope().spelling; }
@@ -107,7 +107,7 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     scope.spelling = spelling;
     Read(*value, map_.Path(key.name), scope, out);
   }
-  /// The kind of a joint selects the names of its keys.
+  /// Checks alternative names of a key; the kind of a joint determines the valid one.
   template <class OfName>
   void Spell(const Spellings& spellings, const OfName& of_name) {
     const char* const right = spellings.names[std::max(0, spelling.index)];
@@ -158,7 +158,7 @@ void CheckGait(const GaitSpec& gait, const SourceRef& at, Diagnostics& out) {
   });
 }
 
-/// Returns the cables that the gaits drive.
+/// Returns the cables that the gaits of an input drive.
 std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kind,
                             const RobotSpec& robot, const SourceRef& at, Diagnostics& out) {
   const std::size_t errors_before = out.items().size();
@@ -180,7 +180,7 @@ std::vector<int> CheckInput(const GaitInputSpec& input, const GaitInputKind& kin
   return CheckGaits(input, kind, std::vector<SourceRef>(input.others.size() + 1, at), &robot, out);
 }
 
-/// Checks names by the rules of the original files.
+/// Checks names by the rules of the files that people write.
 void CheckNames(const ExperimentSpec& experiment, const SourceRef& at, Diagnostics& out) {
   const auto check = [&](const std::string& name, bool good) {
     if (!good)
@@ -275,7 +275,7 @@ void CheckIndices(const ExperimentSpec& experiment, const SourceRef& at, Diagnos
       robot.cable_tags.size() != robot.def.cables.size()) {
     out.Error("resolved.tags_missing", at, "every node and every cable needs its tags");
   }
-  const std::size_t joint_tags = robot.joint_tags.size();  // absent in files of earlier versions
+  const std::size_t joint_tags = robot.joint_tags.size();  // files of earlier versions have none
   if (joint_tags != 0 && joint_tags != robot.def.joints.size()) {
     out.Error("resolved.joint_tags_missing", at, "every joint needs its tags");
   }

@@ -23,7 +23,8 @@ std::string ResolvedYaml(const ExperimentSpec& experiment) {
   out += description::kResolvedKind;
   out += '\n';
   ExperimentSpec portable = experiment;
-  if (portable.compare_with) {  // absolute path, because the text may be stored in any folder
+  if (portable.compare_with) {  // make the path absolute, because the text may be stored in another
+                                // folder
     std::error_code failed;
     const auto path = std::filesystem::absolute(*portable.compare_with, failed);
     if (!failed) portable.compare_with = path.string();

@@ -1,5 +1,4 @@
-/// Keys of the interface between the robot and its controllers: sensors, delays, noise
-/// (docs/theory/sensors.md).
+/// Keys of sensors, delays and noise (docs/theory/sensors.md).
 #pragma once
 
 #include "description/experiment/experiment_text.h"

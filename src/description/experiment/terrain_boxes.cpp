@@ -10,7 +10,8 @@
 namespace taut::description {
 namespace {
 
-/// Random number stream of scattered blocks; other uses of a seed are in plant/random_streams.h.
+/// Random number stream of scattered blocks. The streams of other modules are in
+/// plant/random_streams.h.
 constexpr std::uint32_t kScatterStream = 100;
 
 }  // namespace

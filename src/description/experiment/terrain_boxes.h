@@ -1,4 +1,4 @@
-/// Terrain elements made of many boxes: scattered blocks and stairs.
+/// Terrain elements that consist of many boxes: scattered blocks and stairs.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct RegionForm {
 struct ScatterText {
   int count = 0, seed = 1;
   Raw<RegionForm> within;
-  Vec3 low_m, high_m;  ///< Of `within`.
+  Vec3 low_m, high_m;  ///< Corners of the region `within`.
   Vec3 box_m;
   SurfaceText surface;
   Material material;
@@ -30,7 +30,7 @@ struct StairsText {
   Material material;
 };
 
-/// Limit over the whole terrain. A resolved experiment with more boxes could not be read back.
+/// Limit of boxes in the whole terrain, the same as for reading resolved experiments.
 inline constexpr int kMostBoxes = 5000;
 
 template <class Io>
@@ -73,7 +73,7 @@ void Keys(Io& io, Like<StairsText> auto& s) {
 }
 void Check(const MapReader& map, StairsText& stairs);
 
-/// Return the boxes, without names.
+/// Return the boxes without names.
 std::vector<TerrainBoxDef> Boxes(const ScatterText& scatter);
 std::vector<TerrainBoxDef> Boxes(const StairsText& stairs);
 

@@ -1,5 +1,5 @@
-// Coupling graph of a CPG, derived from the model: coupled oscillators and groups of equal
-// couplings (docs/theory/gaits.md, eq. G.8 to G.10).
+// Coupling graph of a CPG, derived from the model: couplings between oscillators, and groups of
+// couplings with equal parameters (docs/theory/gaits.md, eq. G.8 to G.10).
 #include <algorithm>
 #include <map>
 #include <set>
@@ -22,7 +22,7 @@ bool HasActuator(const RobotSpec& robot, int cable) {
   return def.actuator.kind != ActuatorDef::Kind::kNone;
 }
 
-/// Returns the cables that get an oscillator, in order. Empty after an error.
+/// Returns the cables that have an oscillator, in order. Returns an empty list after an error.
 std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::string>& order,
                              const SourceRef& at, Diagnostics& out) {
   std::vector<int> cables;
@@ -61,7 +61,7 @@ std::vector<int> Oscillators(const RobotSpec& robot, const std::vector<std::stri
   return out.items().size() == errors_before ? cables : std::vector<int>();
 }
 
-/// Returns the bodies that each cable is attached to.
+/// Returns, for each cable, the bodies to which it is attached.
 std::vector<std::set<int>> BodiesOf(const RobotSpec& robot, const std::vector<int>& cables) {
   std::vector<std::set<int>> bodies;
   for (const int cable : cables) {
@@ -77,10 +77,10 @@ bool ShareABody(const std::set<int>& a, const std::set<int>& b) {
   return std::any_of(a.begin(), a.end(), [&](int body) { return b.count(body) > 0; });
 }
 
-/// Roles in the order of their first cable, with the role and number of each oscillator.
+/// Roles of cables in a chain, and the role and number of each oscillator.
 struct Chain {
   std::vector<std::string> roles;
-  std::vector<std::size_t> role;  ///< Per oscillator.
+  std::vector<std::size_t> role;  ///< Index into `roles`, per oscillator.
   std::vector<int> number;
 };
 
@@ -104,15 +104,15 @@ std::optional<Chain> FindChain(const RobotSpec& robot, const std::vector<int>& c
   return chain;
 }
 
-/// Returns the index of {j, k}, j <= k, among all such pairs of `count`: (0,0), (0,1), ..., (1,1),
-/// ...
+/// Returns the index of the unordered pair {j, k} in the list (0,0), (0,1), ..., (1,1), ... of
+/// `count` elements.
 std::size_t PairIndex(std::size_t j, std::size_t k, std::size_t count) {
   const std::size_t low = std::min(j, k), high = std::max(j, k);
   return low * count - low * (low + 1) / 2 + high;
 }
 
-/// Adds a group for each relation and each unordered pair of `names`; relation `same` excludes
-/// pairs of a name with itself.
+/// Adds a group for each relation and each unordered pair of `names`. The relation with index
+/// `same` excludes pairs of equal names.
 void NameGroups(const std::vector<std::string>& relations, std::size_t same,
                 const std::vector<std::string>& names, std::vector<std::string>& groups,
                 std::vector<std::vector<int>>& index) {
@@ -128,8 +128,8 @@ void NameGroups(const std::vector<std::string>& relations, std::size_t same,
   }
 }
 
-/// Groups couplings by roles and by position along the chain: `a` is coupled to a `b` at a joint
-/// nearer to the front, at the same joint, or behind.
+/// Groups couplings by the roles of their two cables, and by the position of the second cable along
+/// the chain: in front of, beside or behind the first.
 void GroupBySegments(const Chain& chain, CouplingGraph& graph) {
   std::vector<std::vector<int>> index;
   NameGroups({"front", "same", "behind"}, 1, chain.roles, graph.groups, index);
@@ -149,7 +149,7 @@ bool GroupByIndex(const RobotSpec& robot, const Chain& chain, CouplingGraph& gra
   std::vector<std::vector<int>> index;
   NameGroups({"rp0", "rp1", "rp2"}, 1, names, graph.groups, index);
   for (CouplingGraph::Coupling& link : graph.couplings) {
-    const int relation = (link.to - link.from) / count + 1;  // integer division rounds toward zero
+    const int relation = (link.to - link.from) / count + 1;  // integer division, rounds toward zero
     if (relation < 0 || relation > 2) {
       out.Error("gait.index_too_far", at,
                 "symmetry: index couples oscillators up to " + std::to_string(2 * count - 1) +

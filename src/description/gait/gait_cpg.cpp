@@ -65,7 +65,9 @@ std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry,
                                    GaitDrives drives) {
   CpgGait cpg;
   cpg.symmetry = symmetry;
-  if (drives == GaitDrives::kRestLength) cpg.amplitude = 0.01;  // 5 cm would be too large
+  if (drives == GaitDrives::kRestLength)
+    cpg.amplitude = 0.01;  // the default of 0.05 is too large
+                           // for rest lengths [m]
   const auto graph = FindCouplings(robot, symmetry, {}, {}, out);
   if (!graph) return std::nullopt;
   for (const std::string& name : graph->groups) cpg.groups.push_back({name, 0.0, 0.0, {}});

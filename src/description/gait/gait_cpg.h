@@ -1,4 +1,5 @@
-/// Keys of central pattern generators (CPG) in gait files. Coupling graph: gait_couplings.cpp.
+/// Keys of central pattern generators (CPG) in gait files. The coupling graph is in
+/// gait_couplings.cpp.
 #pragma once
 
 #include "description/gait/gait_parts.h"

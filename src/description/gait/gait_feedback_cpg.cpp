@@ -72,7 +72,7 @@ void CheckNetworks(const FeedbackCpgGait& cpg, const SourceRef& at, Diagnostics&
   }
 }
 
-/// Returns the oscillator of each cable, as an index into the list; cables ascending.
+/// Returns the oscillator index of each cable, in ascending order of cables.
 std::map<int, int> RolesOf(const FeedbackCpgGait& cpg, const RobotSpec& robot, Diagnostics& out) {
   std::map<int, int> roles;
   for (std::size_t i = 0; i < cpg.oscillators.size(); ++i) {
@@ -92,7 +92,7 @@ std::map<int, int> RolesOf(const FeedbackCpgGait& cpg, const RobotSpec& robot, D
   return roles;
 }
 
-/// Keeps the couplings of the given groups, in the order of `cpg.groups`; removes all others.
+/// Keeps the couplings of the groups in `cpg.groups`, in this order; removes all others.
 bool KeepGroups(const FeedbackCpgGait& cpg, const std::string& robot, CouplingGraph& graph,
                 Diagnostics& out) {
   std::map<std::string, int> given;
@@ -162,14 +162,14 @@ void Resolve(const FeedbackCpgGait& cpg, const RobotSpec& robot, ResolvedGait& r
     order.push_back(robot.def.cables[static_cast<std::size_t>(cable)].name);
   }
   CouplingGraph graph;
-  if (cpg.groups.empty()) {  // then names need no number at the end
+  if (cpg.groups.empty()) {  // without groups, cable names need no number at the end
     for (const auto& [cable, role] : roles) graph.cables.push_back(cable);
   } else {
     auto found = FindCouplings(robot, cpg.symmetry, order, cpg.at, out);
     if (!found || !KeepGroups(cpg, robot.def.name, *found, out)) return;
     graph = std::move(*found);
   }
-  std::map<int, int> joint_of;  // by the number at the end of the name
+  std::map<int, int> joint_of;  // by the number at the end of the cable's name
   std::vector<int> number;
   for (const int cable : graph.cables) {
     const auto place = PlaceInChain(robot.def.cables[static_cast<std::size_t>(cable)].name);

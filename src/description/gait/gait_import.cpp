@@ -1,5 +1,5 @@
-// Import of NTRT gaits: learned parameters (.nnw) and hand-tuned ones (controlVars.json). The
-// formats are defined only by NTRT's code; each place cites the facts that it uses.
+// Importer of NTRT gaits: learned parameters (.nnw) and hand-tuned ones (controlVars.json). NTRT's
+// code is the only definition of these formats; comments below cite it.
 #include <algorithm>
 #include <filesystem>
 #include <numbers>
@@ -16,17 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// BaseSpineCPGControl::Config of LearningSpineJSON: the learned numbers in 0..1 map to 0..30 Hz,
-// 0..30 cm/s, weights 0..1 per cm/s and second, and phases -pi..pi.
+// BaseSpineCPGControl::Config of LearningSpineJSON. Learned numbers from 0 to 1 map to: frequencies
+// 0 to 30 Hz, amplitudes 0 to 30 cm/s, weights 0 to 1 per cm/s and second, phases -pi to pi.
 constexpr double kHighestHz = 30.0, kHighestAmplitude = 30.0;
-// With the descending command 2, frequency and amplitude are offset + 2 scale, with offset = scale.
+// NTRT's descending command is 2. Frequency and amplitude are offset + 2 scale with offset = scale.
 constexpr double kCommandFactor = 3.0;
 constexpr double kConvergencePerS = 20.0;
-/// Follows NTRT's integration within 2e-6 m/s over a minute. Steps of 2 ms would suffice for
-/// walking: error 4e-3 m/s (docs/theory/gaits.md).
+/// Reproduces NTRT's integration within 2e-6 m/s over a minute. For walking, steps of 2 ms would
+/// suffice: their error is 4e-3 m/s (docs/theory/gaits.md).
 constexpr double kIntegratorStepS = 0.00025;
 constexpr int kEdges = 57;
-/// Nodes whose sign LearningSpineJSON changes "for hardware comparison".
+/// Nodes whose sign LearningSpineJSON inverts "for hardware comparison".
 constexpr int kInverted[] = {2, 4, 5, 6, 7, 8};
 
 /// Cables of three segments in the order of NTRT's nodes: at the commit of the paper, and since
@@ -39,7 +39,7 @@ const std::vector<std::string> kOrder2016{
     "outer_right_1", "outer_left_1", "outer_top_1", "inner_right_1", "inner_left_1", "inner_top_1",
     "outer_right_2", "outer_left_2", "outer_top_2", "inner_right_2", "inner_left_2", "inner_top_2"};
 
-/// Reads two numbers within 0..1: "0.5036,0.9295".
+/// Reads two numbers from 0 to 1: "0.5036,0.9295".
 std::pair<double, double> ReadNnw(const fs::path& path, Diagnostics& out) {
   auto text = base::ReadInputFile(path.string(), kMaxFileBytes, "", out);
   if (!text) return {};
@@ -98,7 +98,7 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
   }
   const std::vector<std::string> names = IndexGroups(6);
   for (int i = 0; i < kEdges; ++i) {
-    // actions are taken from the back: the last file fills the first entry
+    // NTRT takes actions from the end of the list, so the last file contains the first group.
     const std::string file = *set + "_edge-" + std::to_string(kEdges - 1 - i) + ".nnw";
     const auto [weight, phase] = ReadNnw(fs::path(folder) / file, out);
     cpg.groups.push_back({names[static_cast<std::size_t>(i)], weight / kMetre,
@@ -112,8 +112,8 @@ std::optional<GaitSpec> ImportLearned(const std::string& folder, NtrtCableOrder 
   return gait;
 }
 
-/// Imports a .json: the parameters of htSpineSine, or a controller with feedback. htSpineSine has
-/// V0 = A cos(2 pi f t + phi) - A, with one A for left and right.
+/// Imports a .json file: the parameters of htSpineSine, or a controller with feedback. In
+/// htSpineSine, V0 = A cos(2 pi f t + phi) - A, with the same A for left and right cables.
 std::optional<GaitSpec> ImportJson(const std::string& path, Diagnostics& out) {
   auto text = base::ReadInputFile(path, kMaxFileBytes, "", out);
   if (!text) return std::nullopt;

@@ -1,4 +1,4 @@
-/// Shared parts of the importers of NTRT gaits.
+/// Functions shared by the importers of NTRT gaits.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@ namespace taut::description {
 
 inline constexpr double kMetre = 0.01;  // NTRT's spines are in centimeters
 
-/// Returns the names of `FindCouplings` for the index groups of `roles` roles, in the order of the
-/// table of NTRT's scaleEdgeActions.
+/// Returns the names of the coupling groups for `roles` roles, as in `FindCouplings`, in the order
+/// of NTRT's scaleEdgeActions.
 std::vector<std::string> IndexGroups(int roles);
 
-/// Imports a controller with feedback; `path` is the file of the text, its networks are in the same
-/// folder.
+/// Imports a controller with feedback. `path`: the JSON file. Its neural networks must be in the
+/// same folder.
 std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& path,
                                        Diagnostics& out);
 

@@ -1,7 +1,7 @@
-// Import of controllers with feedback of NTRT's tetrahedral complex: a .json and the networks
-// (.nnw) that it names. The formats are defined only by NTRT's code (JSONFeedbackControl,
-// JSONGoalControl and tgCPGCableControl at commit f0c52e93); each place cites the facts that it
-// uses.
+// Importer of controllers with feedback of NTRT's tetrahedral complex: a JSON file and the networks
+// (.nnw) to which it refers. NTRT's code is the only definition of these formats
+// (JSONFeedbackControl, JSONGoalControl and tgCPGCableControl at commit f0c52e93); comments below
+// cite it.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kRoles = 8;  // cables per joint
-/// The rates of amplitudes reach 600 per second.
+/// Small step, since amplitudes converge at rates up to 600 1/s.
 constexpr double kFeedbackStepS = 0.001;
 /// Cables of a joint in the order of NTRT's nodes.
 const std::vector<std::string> kOscillators{"outer_front", "outer_right", "outer_back",
@@ -26,7 +26,8 @@ const std::vector<std::string> kOscillators{"outer_front", "outer_right", "outer
                                             "inner_left",  "inner_back"};
 const std::vector<std::string> kSaid{"frequency", "amplitude", "phase"};
 
-/// Reads the numbers of `KEY: {params: [[...], ...]}`, each within 0..1; a row has `columns`.
+/// Reads the numbers of `KEY: {params: [[...], ...]}`, each from 0 to 1, with `columns` numbers per
+/// row.
 std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, std::size_t rows,
                                             std::size_t columns, const Scope& scope) {
   const Value* of = root.Find(key);
@@ -56,9 +57,10 @@ std::vector<std::vector<double>> ReadParams(const Value& root, const char* key, 
   return {};
 }
 
-/// Reads the network of `KEY: {params: {neuralFilename: ..., numStates: ...}}`. Its file contains,
-/// for each input and then the bias, one weight per hidden neuron; then, for each hidden neuron and
-/// the bias, one weight per output. The bias neuron has the constant output -1.
+/// Reads the network of `KEY: {params: {neuralFilename: ..., numStates: ...}}`. Its file contains
+/// for each input, then for the bias, one weight per hidden neuron. Then it contains for each
+/// hidden neuron, then for the bias, one weight per output. The bias neuron has the constant output
+/// -1.
 std::optional<NetworkSpec> ReadNetwork(const Value& root, const char* key, const fs::path& folder,
                                        const std::vector<std::string>& outputs,
                                        const Scope& scope) {
@@ -135,11 +137,12 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   }
   cpg.goal_network = ReadNetwork(root, "goalVals", folder, of_joint, scope);
   if (out.items().size() != errors_before) return std::nullopt;
-  if (cpg.goal_network) {  // NTRT's x is our y, its z our x
+  if (cpg.goal_network) {  // NTRT's x is taut's y, NTRT's z is taut's x
     for (Neuron& neuron : cpg.goal_network->hidden) std::swap(neuron.weights[0], neuron.weights[1]);
   }
-  // Ranges: 0..30 rad/s; squares of amplitudes 0..300 (cm/s)^2; effect of a feedback of 1: -0.5..10
-  // rad/s^2, 0..200 (cm/s)^2, -0.5..6.28 rad/s. The squared amplitude is also its convergence rate.
+  // Ranges of the learned numbers: frequency 0 to 30 rad/s, squared amplitude 0 to 300 (cm/s)^2.
+  // Effects of a feedback of 1: -0.5 to 10 rad/s^2, 0 to 200 (cm/s)^2, -0.5 to 6.28 rad/s. NTRT
+  // uses the squared amplitude as convergence rate, too.
   const std::vector<double>& node = nodes[0];
   const double square = 300.0 * node[1];
   cpg.frequency_hz = 30.0 * node[0] / (2.0 * std::numbers::pi);
@@ -162,7 +165,8 @@ std::optional<GaitSpec> ImportFeedback(const Value& root, const std::string& pat
   }
   const std::vector<std::string> names = IndexGroups(kRoles);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::vector<double>& edge = edges[edges.size() - 1 - i];  // taken from the back
+    const std::vector<double>& edge = edges[edges.size() - 1 - i];  // NTRT takes actions from the
+                                                                    // end of the list
     cpg.groups.push_back({names[i], edge[0] / kMetre,
                           -std::numbers::pi + 2.0 * std::numbers::pi * edge[1], SourceRef{}});
   }

@@ -26,7 +26,7 @@
 
 namespace taut::description {
 
-/// Kind of gait. `OfFile`: contents of a file, an `OfGait` or derived from it.
+/// Kind of gait. `OfFile`: struct with the contents of a file, either `OfGait` or derived from it.
 template <class OfGait, class OfFile = OfGait>
 struct GaitKind {
   using Spec = OfGait;
@@ -43,7 +43,7 @@ inline constexpr std::tuple kGaitKinds{
     GaitKind<TowardGoalGait>{"toward_goal", &GaitSpec::toward_goal},
 };
 
-/// Calls visit(kind, index as a constant) in the order of the list.
+/// Calls visit(kind, index) for each kind, with the index as a compile-time constant.
 template <class Visit>
 void ForEachGaitKind(const Visit& visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -52,7 +52,7 @@ void ForEachGaitKind(const Visit& visit) {
   (std::make_index_sequence<std::tuple_size_v<std::remove_const_t<decltype(kGaitKinds)>>>());
 }
 
-/// Contents of a file for each kind.
+/// Contents of a gait file: one optional struct per kind.
 template <class... Kinds>
 std::tuple<std::optional<typename Kinds::Text>...> TextsOf(const std::tuple<Kinds...>&);
 using GaitKindTexts = decltype(TextsOf(kGaitKinds));
@@ -63,13 +63,13 @@ inline std::vector<std::string> GaitKindNames() {
   return names;
 }
 
-/// Returns the lines of a written gait below the lines of its keys.
+/// Returns the lines of a written gait that are not in its table of keys, such as rows of numbers.
 template <class Spec>
 std::string LinesBesideKeys(const Spec&) {
   return {};
 }
 
-/// Returns the number of kinds that a gait has; it must be one.
+/// Returns the number of kinds that are set in a gait. A valid gait has one.
 inline int CountKinds(const GaitSpec& gait) {
   int count = 0;
   ForEachGaitKind([&](const auto& kind, auto) { count += (gait.*kind.gait).has_value(); });

@@ -1,4 +1,4 @@
-/// Shared parts of reading and resolving gaits.
+/// Functions for reading and resolving gaits of all kinds.
 #pragma once
 
 #include <map>
@@ -14,35 +14,36 @@
 
 namespace taut::description {
 
-/// Returns the names of a key whose unit depends on the driven quantity.
+/// Returns the two spellings of a key, which have the unit of the driven quantity.
 constexpr Spellings Driven(const char* of_velocity, const char* of_rest_length) {
   return {{of_velocity, of_rest_length},
           {"gaits with `drives: velocity`", "gaits with `drives: rest_length`"}};
 }
 
-/// Role and number of a cable in a chain: "outer_top_2" has the role outer_top and is the second
-/// from the front.
+/// Role and number of a cable in a chain. Example: "outer_top_2" has the role outer_top and is the
+/// second cable from the front.
 struct CablePlace {
   std::string role;
-  int number = 0;  ///< From 1.
+  int number = 0;  ///< Counts from 1.
 };
 
-/// Returns nothing if the name does not end in _1, _2, ...
+/// Splits a cable name. Returns nothing if it does not end in _1, _2, ...
 std::optional<CablePlace> PlaceInChain(const std::string& cable_name);
 
-/// Returns false unless the whole text is one finite number. Correctly rounded on all machines.
+/// Converts a text to a number, correctly rounded. Returns false unless the whole text is one
+/// finite number.
 bool ToNumber(const std::string& text, double& number);
 
-/// Returns the suffix of the names of the gait's signals: "_m_per_s" or "_m".
+/// Returns the unit suffix of the gait's signals: "_m_per_s" or "_m".
 const char* UnitOfName(GaitDrives drives);
-/// Returns "a gait that drives rest lengths" or the like.
+/// Returns a phrase such as "a gait that drives rest lengths".
 const char* WhoDrives(GaitDrives drives);
 
-/// Returns the cables of a robot that match; none after an error.
+/// Returns the cables of a robot that match. Returns an empty list after an error.
 std::vector<int> FindCables(const CableMatch& match, const std::string& what, const SourceRef& at,
                             const RobotSpec& robot, Diagnostics& out);
 
-/// Reports duplicate names of the parts of a gait.
+/// Reports duplicate names in a list of parts of a gait.
 template <class Part>
 void CheckTwice(const std::vector<Part>& parts, const std::string& what, const Scope& scope) {
   std::map<std::string, SourceRef> seen;

@@ -1,4 +1,4 @@
-// Cables of a gait in a robot, and the numbers of a gait that may be varied.
+// Mapping of a gait to the cables of a robot, and the tunable numbers of a gait.
 #include "description/gait/gait_keys.h"
 #include "description/yaml/number_list.h"
 

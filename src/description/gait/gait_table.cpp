@@ -26,7 +26,8 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
-/// Returns "outer_top_1" for "outer_top_1_m". Empty if the name lacks the unit of the quantity.
+/// Returns "outer_top_1" for "outer_top_1_m". Returns an empty text if the unit of the quantity is
+/// missing.
 std::string CableOf(const std::string& cell, GaitDrives drives) {
   const std::string unit = UnitOfName(drives);
   const bool good = cell.size() > unit.size() && cell.ends_with(unit);
@@ -81,7 +82,7 @@ bool ReadRow(const std::vector<std::string>& cells, const SourceRef& at, TableGa
   return true;
 }
 
-/// Checks a table of any source.
+/// Checks a table from a file or from keys.
 void CheckTable(const TableGait& table, const SourceRef& at, Diagnostics& out) {
   if (table.cables.empty() || table.rows.empty()) {
     out.Error("gait_table.empty", at, "a table needs at least one column for a cable and one row");
@@ -105,7 +106,7 @@ void CheckTable(const TableGait& table, const SourceRef& at, Diagnostics& out) {
   }
 }
 
-/// Reads a table from a CSV file: "time_s,outer_top_1_m_per_s,...", then rows. Lines that begin
+/// Reads a table from a CSV file with the header "time_s,outer_top_1_m_per_s,...". Lines that begin
 /// with # are comments. Returns nothing after an error.
 std::optional<TableGait> ReadGaitTable(const std::string& path, GaitDrives drives,
                                        Diagnostics& out) {

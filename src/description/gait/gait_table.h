@@ -51,7 +51,7 @@ void Check(const MapReader& map, TableText& table);
 void CheckNumbers(const TableGait& table, const SourceRef& at, Diagnostics& out);
 void Resolve(const TableGait& table, const RobotSpec& robot, ResolvedGait& resolved,
              Diagnostics& out);
-/// Returns the rows, which are not in the table of keys.
+/// Returns the rows of the table as lines of YAML.
 std::string LinesBesideKeys(const TableGait& table);
 
 }  // namespace taut::description

@@ -7,8 +7,8 @@
 namespace taut::description {
 namespace {
 
-/// Returns the directions of bodies that are a single rod, in the described pose. Fixed rods are
-/// left out: they do not show the orientation of the robot.
+/// Returns the directions of all bodies that are a single rod, in the described pose. Fixed rods
+/// are excluded, since they do not rotate with the robot.
 std::vector<ResolvedGait::Strut> StrutsOf(const ModelDef& def) {
   std::vector<int> rods(def.bodies.size());
   for (const CapsuleDef& rod : def.capsules) {
@@ -25,8 +25,8 @@ std::vector<ResolvedGait::Strut> StrutsOf(const ModelDef& def) {
   return struts;
 }
 
-/// Returns the spread of directions over space, 0 to 1: the determinant of sum u u^T, divided by
-/// its value for equally many evenly distributed directions.
+/// Returns how evenly directions are distributed in space, from 0 (in one plane) to 1: the
+/// determinant of sum u u^T, divided by its largest possible value.
 double Spread(const std::vector<ResolvedGait::Strut>& struts) {
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, xz = 0;
   for (const ResolvedGait::Strut& strut : struts) {

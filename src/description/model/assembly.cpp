@@ -14,7 +14,7 @@ void AddTag(Tags& tags, const std::string& tag) {
   if (!tag.empty() && std::find(tags.begin(), tags.end(), tag) == tags.end()) tags.push_back(tag);
 }
 
-/// Adds the tags of copy `i` of `count`: its number, and first, middle or last.
+/// Adds the tags of copy `i` of `count` copies: its number, and first, middle or last.
 void AddPositionTags(Tags& tags, int i, int count, int number) {
   if (i == 0) AddTag(tags, "first");
   if (i == count - 1) AddTag(tags, "last");
@@ -54,8 +54,8 @@ class Assembler {
     return nullptr;
   }
 
-  /// Checks the limits before anything is allocated, so that `copies: 10000` of a large part costs
-  /// nothing.
+  /// Checks the limits before any allocation, so that a huge model such as `copies: 10000` of a
+  /// large part fails at once.
   bool FitsLimits() {
     const auto ends = [](const std::vector<PairText>& pairs) {
       long long count = 0;
@@ -129,7 +129,7 @@ class Assembler {
       node_of_.emplace(node.name, static_cast<int>(assembly_.nodes.size()));
       assembly_.nodes.push_back(std::move(node));
     }
-    for (const NodeText& text : part.nodes) {  // after all nodes of the copy are known
+    for (const NodeText& text : part.nodes) {  // only now are all nodes of the copy known
       if (text.fixed_to.text.empty()) continue;
       const auto other = node_of_.find(FullName(instance, text.fixed_to.text));
       if (other == node_of_.end()) continue;
@@ -163,7 +163,8 @@ class Assembler {
     }
   }
 
-  /// Adds the `connect` pairs, copy after copy: all cables from 0 to 1, then all from 1 to 2, ...
+  /// Adds the `connect` pairs in the order of copies: all pairs from copy 0 to 1, then from 1 to 2,
+  /// ...
   void Connect(const PlacementText& placement, int first_instance) {
     for (int i = 0; i < placement.copies; ++i) {
       for (const PairText& text : placement.connect) {
@@ -219,7 +220,7 @@ class Assembler {
     return true;
   }
 
-  /// Keeps a pair whose nodes all exist (missing ones are already reported).
+  /// Adds a pair if all its nodes exist. Missing nodes are already reported.
   void Add(PlacedPair pair, const PairText& text, std::size_t node_count) {
     if (pair.nodes.size() != node_count) return;
     pair.route = text.route;
@@ -230,7 +231,7 @@ class Assembler {
       }
     }
     AddTag(pair.tags, pair.name);
-    // Two unnamed pairs between the same nodes are the same pair, in either direction.
+    // Two unnamed pairs between the same nodes count as duplicates, in either direction.
     std::string key = pair.name;
     if (text.name.empty() && pair.nodes.size() == 2 && pair.nodes[0] > pair.nodes[1]) {
       key = assembly_.nodes[pair.nodes[1]].name + "-" + assembly_.nodes[pair.nodes[0]].name;

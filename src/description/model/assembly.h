@@ -1,5 +1,5 @@
-/// Assembly of a model: nodes and pairs placed in W, with full names and all their tags, before
-/// bodies and cables are built.
+/// Assembly of a model: places all nodes and pairs in W, with full names and all tags. Bodies and
+/// cables are built later.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace taut::description {
 
-/// Copy of a part, or (instance 0) the nodes and pairs at the top of the file.
+/// Copy of a part. Instance 0 contains the nodes and pairs at the top level of the file.
 struct Instance {
-  std::string name;  ///< Empty for the top of the file.
+  std::string name;  ///< Empty for the top level of the file.
   SourceRef at;
   Quat q_WPart;
   Vec3 velocity_m_per_s, angular_velocity_rad_per_s;
 };
 
 struct PlacedNode {
-  std::string name;  ///< "segment_0.tip"
+  std::string name;  ///< Full name, such as "segment_0.tip".
   SourceRef at;
   int instance = 0;
   Vec3 position_m;
@@ -27,16 +27,16 @@ struct PlacedNode {
 };
 
 struct PlacedPair {
-  std::string name;  ///< "outer_top_1", "segment_0.right-left"
+  std::string name;  ///< Full name, such as "outer_top_1" or "segment_0.right-left".
   SourceRef at;
-  int instance = -1;  ///< -1: several instances.
+  int instance = -1;  ///< -1: the nodes are in several instances.
   std::vector<int> nodes;
   Tags tags;
   std::vector<RouteText> route = {};  ///< Empty, or one element per node.
 };
 
-/// Tags of one node or pair of the file, for the check of selectors. `copied`: its copies also have
-/// first, middle or last and a number.
+/// Tags of one node or pair in the file, to check selectors. `copied`: its copies also have a
+/// number and the tag first, middle or last.
 struct TagsInFile {
   Tags tags;
   bool copied = false;
@@ -50,7 +50,7 @@ struct Assembly {
   bool complete = true;  ///< False: some nodes or pairs of the file are missing.
 };
 
-/// Places all parts. Reports unknown and duplicate names and models that are too large.
+/// Places all parts. Reports unknown names, duplicate names and models that are too large.
 Assembly Assemble(const ModelText& model, Diagnostics& out);
 
 }  // namespace taut::description

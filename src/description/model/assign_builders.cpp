@@ -7,7 +7,7 @@
 namespace taut::description {
 namespace {
 
-/// Returns whether copies get this tag automatically: position or number.
+/// Returns whether copies get this tag automatically: first, middle, last or a number.
 bool IsCopyTag(const std::string& tag) {
   return tag == "first" || tag == "middle" || tag == "last" ||
          std::all_of(tag.begin(), tag.end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -48,8 +48,8 @@ std::string TagHint(const std::vector<std::string>& set, const std::vector<TagsI
   return "no single element has all of these tags";
 }
 
-/// Reports selectors that no number of copies could match. A selector that matches nothing at
-/// present is valid: a spine of two segments has no middle one.
+/// Reports selectors that match nothing for any number of copies. A selector may match nothing for
+/// the present number: a spine of two segments has no middle segment.
 void CheckMatches(const BuilderText& builder, const Assembly& assembly, Diagnostics& out) {
   const auto& mine = builder.on_pairs() ? assembly.pair_tags : assembly.node_tags;
   const auto& others = builder.on_pairs() ? assembly.node_tags : assembly.pair_tags;
@@ -59,7 +59,7 @@ void CheckMatches(const BuilderText& builder, const Assembly& assembly, Diagnost
     if (CouldMatch(set, mine)) continue;
     const bool placed =
         builder.on_pairs() ? MatchesAny(set, assembly.pairs) : MatchesAny(set, assembly.nodes);
-    if (placed) continue;  // a full name such as segment_0.tip
+    if (placed) continue;  // matched by a full name such as segment_0.tip
     out.Error("builder.matches_nothing", builder.match_at,
               std::string("no ") + what + " matches " + ShownTags(set),
               CouldMatch(set, others) ? "a " + builder.kind + " is made from " + what +
@@ -75,7 +75,7 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
   assignment.of_pair.assign(assembly.pairs.size(), -1);
   assignment.of_node.resize(assembly.nodes.size());
   assignment.lump_kg.assign(assembly.nodes.size(), 0.0);
-  std::set<std::pair<int, int>> clashes;  // one error for two builders, not one per node
+  std::set<std::pair<int, int>> clashes;  // report each pair of builders once, not once per node
   const auto clash = [&](int first, int second, const std::string& name) {
     if (!clashes.insert({first, second}).second) return;
     const BuilderText& a = model.builders[first];
@@ -115,7 +115,7 @@ Assignment AssignBuilders(const ModelText& model, const Assembly& assembly, Diag
   }
 
   if (!model.builders_complete) return assignment;
-  std::set<std::pair<int, int>> reported;  // once per place in the file, not once per copy
+  std::set<std::pair<int, int>> reported;  // report each place in the file once, not once per copy
   for (std::size_t pair = 0; pair < assembly.pairs.size(); ++pair) {
     const PlacedPair& placed = assembly.pairs[pair];
     if (assignment.of_pair[pair] >= 0 ||

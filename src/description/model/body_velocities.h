@@ -1,4 +1,4 @@
-/// Initial velocities of bodies from the velocities of their placements.
+/// Initial velocities of bodies from the velocities of placements.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,17 @@
 
 namespace taut::description {
 
-/// Bodies of a model by the placements (instances of parts) that they come from.
+/// Bodies of a model and the instances of parts that they belong to.
 struct BodyInstances {
   const Assembly& assembly;
   const std::vector<const Weld*>& weld_of_body;
-  const std::vector<int>& instance_of_body;    ///< -1: its nodes are in several instances.
-  const std::vector<int>& bodies_in_instance;  ///< Number of bodies.
+  const std::vector<int>& instance_of_body;    ///< -1: the body's nodes are in several instances.
+  const std::vector<int>& bodies_in_instance;  ///< Number of bodies per instance.
 };
 
-/// Sets the initial velocities. A copy moves as one rigid body: the given velocity is at its center
-/// of mass, the angular velocity about it. Reports bodies that join moving placements.
+/// Sets the initial velocities. Each copy moves as one rigid body, with the given velocity of its
+/// center of mass and the given angular velocity. Reports bodies that belong to several moving
+/// placements.
 void SetBodyVelocities(const BodyInstances& in, ModelDef& model, Diagnostics& out);
 
 }  // namespace taut::description

@@ -9,9 +9,9 @@
 
 namespace taut::description {
 
-/// Builders of each pair and node. Indices into `ModelText::builders`.
+/// Builders of each pair and node, as indices into `ModelText::builders`.
 struct Assignment {
-  std::vector<int> of_pair;               ///< Per pair; -1: none.
+  std::vector<int> of_pair;               ///< Per pair; -1: no builder.
   std::vector<std::vector<int>> of_node;  ///< Per node: at most one of each kind.
   std::vector<double>
       lump_kg;  ///< Per node [kg]: half the mass of the bars and cables that end there.
@@ -32,12 +32,12 @@ BodyOfNode BuildBodies(const ModelText& model, const Assembly& assembly,
 void BuildCables(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out);
 
-/// Adds the joints of pairs and the supports of nodes, after the pins of class-k rods
-/// (BuildBodies); and the pairs of bodies that do not collide (`apart`).
+/// Adds the joints of pairs, the supports of nodes and the pairs of bodies that do not collide
+/// (`apart`). Joints of class-k rods come first (`BuildBodies`).
 void BuildJoints(const ModelText& model, const Assembly& assembly, const Assignment& assignment,
                  const BodyOfNode& body_of_node, RobotSpec& robot, Diagnostics& out);
 
-/// Reports bodies that no chain of cables and joints connects to the others or to the world.
+/// Reports bodies that are not connected to the others or to the world by cables or joints.
 void CheckConnected(const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::description

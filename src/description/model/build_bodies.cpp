@@ -17,16 +17,16 @@
 namespace taut::description {
 namespace {
 
-constexpr double kShortest_m = 1e-9;  ///< Least length that has a direction.
-/// Radius for the inertia of a lone point mass. All forces act at its center and it has no shape,
-/// so it never rotates: the value has no effect, but has to be a number.
+constexpr double kShortest_m = 1e-9;  ///< Shortest length that defines a direction [m].
+/// Radius that defines the inertia of a single point mass. The value has no effect, since all
+/// forces act at its center, but the inertia must be positive.
 constexpr double kPointRadius_m = 0.01;
 
-/// Solid parts of a weld.
+/// Solid elements of a weld.
 struct Solids {
   std::vector<MassProperties> parts;
   Bounds bounds;
-  bool complete = true;  ///< False: a rod with an error is missing in `parts`.
+  bool complete = true;  ///< False: a rod with an error is missing.
 };
 
 class BodyBuilder {
@@ -224,7 +224,7 @@ class BodyBuilder {
     return instance < 0 ? Quat{} : assembly_.instances[instance].q_WPart;
   }
 
-  /// Adds a shape of a builder to a body. Directions of its surface rotate with the part.
+  /// Adds a shape to a body. Directions of its surface are rotated with the part.
   template <class Def, class Text>
   static Def& Add(std::vector<Def>& shapes, const Text& text, const std::string& name, int body,
                   const Quat& q_WPart) {
@@ -315,7 +315,7 @@ class BodyBuilder {
     return weld.nodes.empty() ? assembly_.pairs[weld.pairs[0]].instance
                               : assembly_.nodes[weld.nodes[0]].instance;
   }
-  /// Returns the instance of all nodes of the body, or -1 if they are in several.
+  /// Returns the instance of all nodes of the body, or -1 if the nodes are in several instances.
   int InstanceOf(const Weld& weld) const {
     const int instance = FirstInstance(weld);
     const bool same = std::all_of(weld.nodes.begin(), weld.nodes.end(), [&](int node) {
@@ -324,7 +324,8 @@ class BodyBuilder {
     return same ? instance : -1;
   }
 
-  /// Returns the name of the placement if it is one body, else of the first rod or node.
+  /// Returns the name of the placement if the body is all of it; otherwise the name of the body's
+  /// first rod or node.
   std::string Name(const Weld& weld) const {
     const int instance = InstanceOf(weld);
     if (instance >= 0 && bodies_in_instance_[instance] == 1) {
@@ -353,7 +354,7 @@ class BodyBuilder {
   std::vector<const Weld*> welds_with_body_;  ///< Per body.
   std::vector<int> instance_of_body_, bodies_in_instance_;
   BodyOfNode body_of_node_;
-  std::vector<int> body_of_pair_;  ///< Of solid pairs.
+  std::vector<int> body_of_pair_;  ///< Body of each pair that is a rod or beam.
   std::set<std::string> names_;
   OncePerPlace bodiless_, short_;
 };

@@ -62,8 +62,8 @@ class CableMaker {
     robot_.cable_sources.push_back(pair.at);
   }
 
-  /// Rejects friction in a cable with a DC motor: a cable whose spans have different tensions needs
-  /// an actuator without dynamics.
+  /// Rejects friction in a cable with a DC motor. Friction divides a cable into spans with
+  /// different tensions, which the motor model does not support.
   void CheckMotor(const PlacedPair& pair, const CableDef& cable) {
     if (cable.actuator.kind != ActuatorDef::Kind::kDcMotor) return;
     for (const RouteText& element : pair.route) {
@@ -94,8 +94,8 @@ class CableMaker {
     }
   }
 
-  /// Returns whether the cable has a valid length; reports legs of zero length and cables whose
-  /// ends are on one body.
+  /// Returns whether the cable has a valid length. Reports legs of zero length and cables with both
+  /// ends on one body.
   bool CheckPath(const PlacedPair& pair, const CableText&, const CableDef& cable) {
     for (std::size_t i = 1; i < pair.nodes.size(); ++i) {
       const PlacedNode &from = assembly_.nodes[pair.nodes[i - 1]],
@@ -128,7 +128,8 @@ class CableMaker {
     return true;
   }
 
-  /// Returns the length wound by the given turns [m], a lower bound of the length in any pose.
+  /// Returns the length of the whole turns around wheels [m], a lower bound of the cable's length
+  /// in any pose.
   static double WoundLength(const PlacedPair& pair) {
     double wound = 0.0;
     for (const RouteText& element : pair.route) {
@@ -185,7 +186,7 @@ void BuildCables(const ModelText& model, const Assembly& assembly, const Assignm
 
 void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   const std::vector<BodyDef>& bodies = robot.def.bodies;
-  const int world = static_cast<int>(bodies.size());  // includes all bodies fixed in the world
+  const int world = static_cast<int>(bodies.size());  // stands for all bodies fixed in the world
   base::UnionFind sets(bodies.size() + 1);
   const auto index = [&](int body) { return base::IsFixed(robot.def, body) ? world : body; };
   for (const CableDef& cable : robot.def.cables) {
@@ -196,7 +197,7 @@ void CheckConnected(const RobotSpec& robot, Diagnostics& out) {
   for (const JointDef& joint : robot.def.joints) {
     sets.Join(index(joint.body_a), index(joint.body_b));
   }
-  // The set of the first body is the robot. The world alone is not a set.
+  // The set that contains the first moving body is the robot.
   int robot_set = -1;
   std::set<int> reported;
   for (int body = 0; body < world; ++body) {

@@ -16,8 +16,8 @@
 namespace taut::description {
 namespace {
 
-/// Tolerance of joint limits in the described pose [rad, m]: a robot at rest on a stop is slightly
-/// beyond it.
+/// Tolerance of joint limits in the described pose [rad or m]: a robot at rest against a limit
+/// exceeds it slightly.
 constexpr double kPassed = 1e-3;
 
 class JointMaker {
@@ -67,7 +67,8 @@ class JointMaker {
   }
   bool IsFixed(int body) const { return base::IsFixed(robot_.def, body); }
 
-  /// Adds a bar as a distance joint with a spring. Its two bodies still collide with each other.
+  /// Adds a bar: a distance joint with a spring. Unlike other joints, it does not disable
+  /// collisions between its bodies.
   void Bar(const PlacedPair& pair, const BarText& text) {
     const auto at = [&](int node) { return assembly_.nodes[node].position_m; };
     const Vec3 along = at(pair.nodes.back()) - at(pair.nodes.front());
@@ -189,7 +190,7 @@ class JointMaker {
     robot_.def.joints.push_back(std::move(joint));
   }
 
-  /// Visits the joints of builders, without the pins of `class_k` rods.
+  /// Calls `use` for all joints of builders, but not for the pins of `class_k` rods.
   template <class F>
   void EachJoint(const F& use) const {
     const std::vector<JointDef>& joints = robot_.def.joints;
@@ -197,8 +198,8 @@ class JointMaker {
     for (std::size_t i = 0; i < sources_.size(); ++i) use(joints[first + i], sources_[i]);
   }
 
-  /// Returns the coordinate of a joint in the described pose, for a hinge without whole turns [rad,
-  /// m].
+  /// Returns the coordinate of a joint in the described pose [rad or m]; of a hinge, within one
+  /// turn.
   static double Coordinate(const JointDef& j) {
     const Vec3 d = j.to_m - j.from_m;
     switch (j.kind) {
@@ -213,7 +214,7 @@ class JointMaker {
     }
   }
 
-  /// Reports joints beyond a limit: the limit would hold them there, not push them back.
+  /// Reports joints beyond a limit in the described pose. The limit would not push them back.
   void RefusePassedStops() {
     if (!out_.ok()) return;  // invalid limits are already reported
     EachJoint([&](const JointDef& j, const SourceRef& at) {
@@ -291,7 +292,8 @@ class JointMaker {
   Diagnostics& out_;
   OncePerPlace once_;
   std::set<std::string> names_;
-  std::vector<SourceRef> sources_;  ///< Of the joints of builders, which are the last ones.
+  std::vector<SourceRef> sources_;  ///< Source positions of the joints of builders, the last
+                                    ///< elements of `joints`.
 };
 
 }  // namespace

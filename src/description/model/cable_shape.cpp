@@ -37,9 +37,9 @@ class CableShaper {
     return nullptr;
   }
 
-  /// Returns the point on a rod's surface at which the cable leaves node `node`: perpendicular to
-  /// the rod, toward `next`; the node if `next` is along the rod. Of several rods, takes the
-  /// shortest (with the nearest center), of equal ones the first.
+  /// Returns the point on a rod's surface at which the cable leaves `node`: beside the node, in the
+  /// direction perpendicular to the rod, toward `next`. Returns the node itself if `next` is along
+  /// the rod. If several rods end at the node, the shortest one counts; of equal ones, the first.
   std::optional<Vec3> OnRod(int node, const Vec3& next) const {
     std::optional<Vec3> on_rod;
     double nearest = std::numeric_limits<double>::infinity();
@@ -75,7 +75,7 @@ class CableShaper {
             nodes[end].position_m + (sphere->radius_m / length) * leg;
       } else if (const auto on_rod = OnRod(node, nodes[next].position_m)) {
         cable.attachments[end].position_m = *on_rod;
-      } else if (BodyOf(node) != kWorld) {  // no surface there
+      } else if (BodyOf(node) != kWorld) {  // this node has no surface
         once_("cable.end_without_solid", builder.ends_at,
               "cable.ends: the node \"" + in_.assembly.nodes[node].name + "\" of the cable \"" +
                   pair.name + "\" has no sphere, and no rod ends there",

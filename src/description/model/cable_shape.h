@@ -6,9 +6,9 @@
 
 namespace taut::description {
 
-inline constexpr double kShortestLeg_m = 1e-9;  ///< Least length of a leg that has a direction.
+inline constexpr double kShortestLeg_m = 1e-9;  ///< Shortest leg that defines a direction [m].
 
-/// Inputs of the path. `body_of_node`: null while it is unknown; ends are then in the world.
+/// Inputs of a cable's path. If `body_of_node` is null (not known yet), all ends are in the world.
 struct CableSurroundings {
   const ModelText& model;
   const Assembly& assembly;
@@ -16,8 +16,8 @@ struct CableSurroundings {
   const BodyOfNode* body_of_node;
 };
 
-/// Sets the attachments of `cable`: at its nodes or on the surfaces there, and along its route.
-/// Reports ends without a solid, and invalid routes.
+/// Sets the attachments of `cable`: at its nodes or on their surfaces, and along its route. Reports
+/// ends without a surface, and invalid routes.
 void ShapeCable(const CableSurroundings& in, const PlacedPair& pair, const CableText& builder,
                 CableDef& cable, OncePerPlace& complain);
 

@@ -33,8 +33,8 @@ Quat ReadQuaternion(const Value& value, const std::string& path, const Scope& sc
     return {};
   }
   const Quat read{(*q)[0], (*q)[1], (*q)[2], (*q)[3]};
-  // A quaternion of length 1 up to rounding, as taut writes it, is read back without a change of
-  // bits.
+  // Keep a quaternion of length 1 (up to rounding) unchanged, so that files written by taut are
+  // read back bit for bit.
   return std::fabs(square - 1.0) < 1e-15 ? read : Normalized(read);
 }
 

@@ -22,7 +22,7 @@ struct RotationText {
   Raw<AxisForm> axis;
   std::optional<double> angle_rad;
   Raw<QuaternionForm> quaternion;
-  Quat q;  ///< The rotation; identity after an error.
+  Quat q;  ///< Identity after an error.
 };
 template <class Io>
 void Keys(Io& io, Like<RotationText> auto& r) {

@@ -9,11 +9,12 @@
 namespace taut::description {
 namespace {
 
-constexpr double kSameDirection = 1e-6;  ///< Sine of the angle below which directions count as
-                                         ///< parallel; about the precision of numbers in files.
+constexpr double kSameDirection = 1e-6;  ///< Directions count as parallel if the sine of their
+                                         ///< angle is below this value, about the precision of
+                                         ///< numbers in files.
 
-/// Returns the point of a drum's rim at which the cable ends, `wound_rad` beyond the point of
-/// tangency of the cable from `from`. `center`: of the drum.
+/// Returns the point on a drum's rim at which the cable ends. The cable comes from `from`, touches
+/// the rim tangentially and continues along it by `wound_rad`. `center`: center of the drum.
 Vec3 RimPoint(const Vec3& center, const WheelDef& wheel, const Vec3& from, double wound_rad) {
   const Vec3 way = from - center;
   const Vec3 along = Dot(way, wheel.axis) * wheel.axis, out = way - along;
@@ -24,7 +25,8 @@ Vec3 RimPoint(const Vec3& center, const WheelDef& wheel, const Vec3& from, doubl
   return center + along + wheel.radius_m * (math::Cos(turn) * x + math::Sin(turn) * y);
 }
 
-/// Returns the whole turns that bring the angle at attachment `i` nearest to `angle_rad`.
+/// Returns the number of whole turns for which the angle of wrap at attachment `i` is nearest to
+/// `angle_rad`.
 int TurnsFor(const CableDef& cable, std::size_t i, double angle_rad) {
   const double least = std::fabs(math::StartAngle(cable, i));
   return static_cast<int>(std::lround((angle_rad - least) / (2 * kPi)));
@@ -49,7 +51,7 @@ class RouteFollower {
                     std::to_string(CableDef::kMostSpans - 1) + " elements of its route");
     }
     if (!good) return;
-    // The last end first, so that the indices of the others stay valid.
+    // Start with the last end, so that indices of the first end remain valid.
     const std::size_t last = pair_.route.size() - 1;
     if (pair_.route[last].is_drum()) EndOnDrum(last, last - 1, last + 1);
     if (pair_.route[0].is_drum()) EndOnDrum(0, 1, 0);
@@ -98,13 +100,13 @@ class RouteFollower {
     return good && HasASide(i);
   }
 
-  /// Returns whether `left` and `right` are defined: seen along the axis, the cable comes from one
-  /// direction and leaves in another. With whole turns they always are.
+  /// Returns whether the wheel is on one side of the cable, left or right. It is not if the axis is
+  /// parallel to the line between the neighboring points. Wheels with whole turns always qualify.
   bool HasASide(std::size_t i) {
     const RouteText& element = pair_.route[i];
     if (i == 0 || i + 1 == pair_.route.size() || element.turns > 0) return true;
     for (const std::size_t k : {i - 1, i + 1}) {
-      // The point at which the cable leaves another wheel is not known yet.
+      // If a neighbor is a wheel, its tangent point is not known yet.
       if (pair_.route[k].is_pulley() || pair_.route[k].is_drum()) return true;
     }
     const Vec3 from = cable_.attachments[i - 1].position_m;
@@ -120,11 +122,11 @@ class RouteFollower {
     return false;
   }
 
-  /// Adds the attachment on the rim at index `end`.
+  /// Inserts the attachment on the drum's rim at index `end`.
   void EndOnDrum(std::size_t drum, std::size_t next, std::size_t end) {
     const AttachmentDef at = cable_.attachments[drum];
     WheelDef wheel = *at.wheel;
-    // Seen from the other end, a cable runs around in the opposite sense.
+    // Seen from the other end of the cable, the sense of rotation is opposite.
     const Vec3 from = cable_.attachments[next].position_m;
     const bool arrives = end > drum;
     if (!arrives) wheel.counterclockwise = !wheel.counterclockwise;

@@ -7,8 +7,8 @@
 
 namespace taut::description {
 
-/// Sets the attachments of `cable`, one per node of the pair, with friction and wheels; a drum adds
-/// one attachment on its rim. Reports wheels that the cable cannot run around.
+/// Sets the attachments of `cable`: one per node of the pair, with friction and wheels, plus one on
+/// the rim of each drum. Reports wheels around which the cable cannot run.
 void FollowRoute(const PlacedPair& pair, const Assembly& assembly, CableDef& cable,
                  OncePerPlace& complain);
 

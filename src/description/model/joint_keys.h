@@ -7,7 +7,8 @@
 
 namespace taut::description {
 
-/// Returns the names of a key whose unit depends on the coordinate of the joint: angle or length.
+/// Returns the two spellings of a key, which have the unit of the joint's coordinate: angle or
+/// length.
 constexpr Spellings Coordinate(const char* of_angle, const char* of_length) {
   return {{of_angle, of_length},
           {"hinge and ball joints", "prismatic, cylindrical, line and distance joints"}};

@@ -12,7 +12,7 @@
 namespace taut::description {
 namespace {
 
-/// Reports overflows: finite numbers can have infinite sums and products.
+/// Reports overflows: sums and products of finite numbers may be infinite.
 void CheckFinite(const RobotSpec& robot, Diagnostics& out) {
   for (std::size_t i = 0; i < robot.def.bodies.size(); ++i) {
     const BodyDef& body = robot.def.bodies[i];
@@ -34,7 +34,7 @@ void CheckFinite(const RobotSpec& robot, Diagnostics& out) {
   }
 }
 
-/// Applies the laws of an experiment on top of the model. Errors in them are already reported.
+/// Replaces laws of the model by laws of an experiment. Errors in these laws are already reported.
 void Replace(const Value& value, ModelText& model) {
   Diagnostics unheard;
   const NameTable no_names;
@@ -49,14 +49,14 @@ void Replace(const Value& value, ModelText& model) {
   }
 }
 
-/// Builds the robot of a file. `errors_before`: number of errors before the file was read.
+/// Builds the robot of a model file. `errors_before`: number of errors before the file was read.
 LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagnostics& out,
                        const Overlay<ModelOptions>& options) {
   const auto errors = [&out] { return out.items().size(); };
   LoadedModel result;
   const NameTable values = ResolveParameters(file.parameters, out);
-  bool numbers_known = true;  // NaN: an experiment overrides a parameter with an invalid value,
-                              // which is already reported
+  bool numbers_known = true;  // false if a parameter is NaN because the experiment overrides it
+                              // with an invalid value
   for (const auto& [name, value] : values) {
     result.parameter_names.push_back(name);
     numbers_known = numbers_known && !std::isnan(value);
@@ -80,7 +80,7 @@ LoadedModel BuildModel(const MergedFile& file, std::size_t errors_before, Diagno
   BuildCables(model, assembly, assignment, body_of_node, robot, out);
   BuildJoints(model, assembly, assignment, body_of_node, robot, out);
 
-  // Only without other errors: a cable with an error is missing and would connect bodies.
+  // Skip this check after any other error: if a cable is missing, bodies seem disconnected.
   if (errors() == errors_before && !model.allow_disconnected) CheckConnected(robot, out);
   if (errors() == errors_before && numbers_known) {
     CheckPositions(robot, out);

@@ -8,11 +8,11 @@ namespace taut::description {
 
 enum class MemberOf { kRod, kCable, kBar };
 
-/// A stiffness is given, or follows from the section.
+/// Requires a stiffness, or a section from which it follows.
 inline constexpr const char* kStiffnessRule =
     R"("anyOf": [{"required": ["stiffness_n_per_m"]}, {"required": ["young_pa", "area_m2"]}])";
 
-/// Keys in the map of the member. 0, the default of all of them, means unknown.
+/// Keys of a member. All of them default to 0, which means unknown.
 template <class Io>
 void MemberKeys(Io& io, Like<MemberDef> auto& m, MemberOf of) {
   const bool bends = of != MemberOf::kCable, has_own_mass = of != MemberOf::kRod;
@@ -72,9 +72,9 @@ void Keys(Io& io, Like<BarText> auto& b) {
 }
 void Check(const MapReader& map, BarText& bar);
 
-/// Reports a member without a stiffness.
+/// Reports a member without stiffness.
 void CheckStiffness(const MapReader& map);
-/// Report conflicting keys of the section, and of the member's mass.
+/// Report conflicting keys of the section, or of the member's mass.
 void CheckSection(const MapReader& map, MemberOf of);
 void CheckOwnMass(const MapReader& map, const MemberDef& member,
                   const std::optional<double>& density_kg_per_m3);

@@ -10,11 +10,11 @@
 namespace taut::description {
 namespace {
 
-/// Data that determine the unstressed length and the stiffness of a member.
+/// Inputs for the rest length and stiffness of a member.
 struct Given {
   const MemberDef& member;
-  double stiffness_n_per_m;  ///< NaN: from the section.
-  double rest_length_m;      ///< NaN: from `ratio` or `prestress_n`.
+  double stiffness_n_per_m;  ///< NaN: computed from the section.
+  double rest_length_m;      ///< NaN: computed from `ratio` or `prestress_n`.
   const std::optional<double>&ratio, prestress_n, density_kg_per_m3;
 };
 
@@ -64,7 +64,7 @@ Elastic ElasticOf(const CableText& cable, double length_m) {
 }
 
 void LumpMembers(const ModelText& model, const Assembly& assembly, Assignment& assignment) {
-  Diagnostics unheard;  // `BuildCables` and `BuildJoints` report the errors
+  Diagnostics unheard;  // ignored: `BuildCables` and `BuildJoints` report the same errors
   OncePerPlace complain(unheard);
   for (std::size_t pair = 0; pair < assembly.pairs.size(); ++pair) {
     const int b = assignment.of_pair[pair];

@@ -1,4 +1,4 @@
-/// Loading of model files, alone or for an experiment, which shares its overrides.
+/// Loader of model files, with the overrides of an experiment.
 #pragma once
 
 #include <optional>
@@ -13,20 +13,20 @@ namespace taut::description {
 
 /// Result of loading a model file, possibly with errors.
 struct LoadedModel {
-  /// Present if all nodes and cables of the file are: then an experiment can be checked against the
-  /// robot even if some of its numbers are invalid.
+  /// Set if all nodes and cables of the file could be read. Then the experiment is checked against
+  /// the robot, even if some numbers are invalid.
   std::optional<RobotSpec> robot;
   bool good = false;                         ///< No errors.
   std::vector<std::string> parameter_names;  ///< Known if the file is valid YAML.
 };
 
-/// Loads a model like `LoadRobot`, but leaves the report of overrides that the model does not have
-/// to the caller (`OverrideSet::ReportUnused`). If the file is unreadable, marks all overrides as
-/// used. `options`, if given, replace the laws of the file.
+/// Loads a model like `LoadRobot`, but does not report overrides of unknown parameters: call
+/// `OverrideSet::ReportUnused`. If the file is unreadable, marks all overrides as used. `options`,
+/// if set, replace the laws of the file.
 LoadedModel LoadModel(const std::string& path, OverrideSet& overrides, Diagnostics& out,
                       const Overlay<ModelOptions>& options = {});
 
-/// Returns the robot of a model given as a text, without bases and parameters. Returns nothing
+/// Returns the robot of a model given as text, without base files and parameters. Returns nothing
 /// after any error.
 std::optional<RobotSpec> ModelOfText(const std::string& text, Diagnostics& out);
 

@@ -82,7 +82,7 @@ void Check(const MapReader& map, DcMotorDef& motor) {
             "static friction must be at least the friction of a turning rotor");
 }
 
-/// Checks an actuator with a DC motor, which has no other limits than the motor's data.
+/// Checks an actuator with a DC motor. Its only limits are the motor's data.
 void CheckMotor(const MapReader& map, ActuatorText& actuator) {
   actuator.kind = ActuatorDef::Kind::kDcMotor;
   for (const char* other :

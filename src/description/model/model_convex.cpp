@@ -14,7 +14,7 @@ namespace {
 
 using base::Brief;
 
-/// Ratio of the volumes of a hull and its object above which a warning is given.
+/// Warn if the convex hull's volume exceeds the object's volume by this factor.
 constexpr double kMuchLarger = 1.05;
 constexpr std::size_t kMostParts = 256;
 
@@ -55,7 +55,7 @@ math::ConvexHull HullOrComplaint(const SourceRef& at, const std::string& what,
   return hull;
 }
 
-/// Adds an object of a file as a part. Returns false after an error.
+/// Adds an object of a mesh file as a part. Returns false after an error.
 bool AddObject(const MapReader& map, const std::string& path, const MeshFile& mesh,
                std::size_t number, ConvexText& convex) {
   Diagnostics& out = map.scope().out;

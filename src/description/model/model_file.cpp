@@ -1,4 +1,4 @@
-// Reading of the top level of model files.
+// Reader of the top level of model files.
 #include <cmath>
 #include <map>
 #include <string>
@@ -9,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-/// Checks supplies that motors of different builders share: voltage and resistance must agree.
+/// Checks that motors with the same supply give the same voltage and resistance.
 void CheckSupplies(const ModelText& model, Diagnostics& out) {
   std::map<std::string, const BuilderText*> first;
   for (const BuilderText& builder : model.builders) {

@@ -10,7 +10,8 @@
 
 namespace taut::description {
 
-/// Keys of contact laws: in `contact`, and in `model_options` of an experiment.
+/// Keys of contact laws. They occur in `contact` of a model and in `model_options` of an
+/// experiment.
 template <class Io>
 void ContactKeys(Io& io, Like<ModelDef> auto& m) {
   io("friction_combine", m.friction_combine, kCombineRules,
@@ -152,8 +153,7 @@ void Keys(Io& io, Like<PlacementText> auto& p) {
 }
 void Check(const MapReader& map, PlacementText& placement);
 
-/// Whether an element with a mass has a length: never, always (along a pair), or in one of its
-/// forms.
+/// Whether an element with mass has a length: never, always (along a pair), or in one of its forms.
 enum class Along { kNothing, kPair, kEither };
 template <class Io>
 void MassKeys(Io& io, Like<MassText> auto& m, Along along) {

@@ -1,4 +1,4 @@
-// Reading of nodes, pairs, routes, parts and placements.
+// Reader of nodes, pairs, routes, parts and placements.
 #include <algorithm>
 #include <cmath>
 #include <unordered_set>
@@ -19,7 +19,8 @@ void CheckTags(const MapReader& map, Tags& tags) {
   tags.clear();
 }
 
-/// Reads `[a, b]`, or more nodes for a cable with via points, and adds `pair` with them to `pairs`.
+/// Reads the nodes of a pair: `[a, b]`, or more for a cable with via points. Appends `pair` with
+/// these nodes to `pairs`.
 void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_names,
                    const Scope& scope, PairText pair, std::vector<PairText>& pairs) {
   if (nodes.kind != Value::Kind::kSequence) {
@@ -32,7 +33,7 @@ void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_name
     return;
   }
   for (const ValuePtr& node : nodes.items) {
-    // The full name of a placed node contains a dot: segment_0.tip.
+    // Full names of placed nodes contain a dot: segment_0.tip.
     std::string name = placed_names ? ReadText(*node, what, scope) : ReadName(*node, what, scope);
     if (name.empty()) return;
     pair.nodes.push_back({std::move(name), node->at});
@@ -40,8 +41,8 @@ void ReadPairNodes(const Value& nodes, const std::string& what, bool placed_name
   pairs.push_back(std::move(pair));
 }
 
-/// Returns the pairs of the entries of a list. `placed_names`: full names such as segment_0.tip are
-/// allowed.
+/// Converts the entries of a list to pairs. `placed_names`: whether full names such as
+/// segment_0.tip are permitted.
 std::vector<PairText> ToPairs(const MapReader& map, std::string_view key,
                               const std::vector<PairsText>& entries, bool placed_names) {
   const Scope& scope = map.scope();
@@ -72,7 +73,7 @@ std::vector<PairText> ToPairs(const MapReader& map, std::string_view key,
   return pairs;
 }
 
-/// Returns false if the key is present, but is not a list.
+/// Returns false if the key is present and its value is not a list.
 bool IsListOrAbsent(const MapReader& map, std::string_view key) {
   const Value* value = map.Find(key);
   return !value || value->kind == Value::Kind::kSequence;
@@ -82,7 +83,7 @@ bool AllGood(const std::vector<PairsText>& entries) {
   return std::all_of(entries.begin(), entries.end(), [](const PairsText& p) { return p.good; });
 }
 
-/// Checks that only ends are drums and that pulleys and friction are between the ends.
+/// Checks that drums are at the ends of a route, and pulleys and friction between the ends.
 void CheckRoute(const MapReader& map, const PairsText& pairs) {
   const Scope& scope = map.scope();
   const Value* const value = map.Find("route");
@@ -207,7 +208,7 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
   }
   for (const PairText& pair : part.pairs) {
     for (const Placed& node : pair.nodes) {
-      // A loose pair may join placed nodes, which are known later.
+      // Nodes of loose pairs may belong to placements, which are known later.
       if (loose || known.count(node.text) > 0 || !part.nodes_complete) continue;
       scope.out.Error("node.unknown", node.at,
                       "there is no node \"" + node.text + "\" in part \"" + part.name + "\"",
@@ -274,7 +275,7 @@ void FinishStructure(const MapReader& map, ModelText& model) {
         model.pairs_complete = false;
       }
     }
-    // A wrong number of copies would cause false errors, such as of cables between them.
+    // With an unknown number of copies, later checks would report errors that do not exist.
     if (placement.copies_known) placed.push_back(std::move(placement));
   }
   model.structure = std::move(placed);

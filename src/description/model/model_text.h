@@ -1,5 +1,5 @@
-/// Contents of a model file after reading, before placement and building: names, tags and numbers
-/// with their positions in the file.
+/// Contents of a model file after parsing: names, tags and numbers with file positions. Nothing is
+/// placed or built yet.
 #pragma once
 
 #include <cmath>
@@ -19,27 +19,29 @@
 namespace taut::description {
 
 inline constexpr int kMaxModelNodes = 100'000;
-inline constexpr int kMaxModelEnds = 400'000;  ///< Nodes of all pairs together.
-inline constexpr int kMaxTags = 32;            ///< Of one node, pair or placement.
+inline constexpr int kMaxModelEnds = 400'000;  ///< Limit of the number of nodes, summed over all
+                                               ///< pairs.
+inline constexpr int kMaxTags = 32;            ///< Limit of tags of one node, pair or placement.
 inline constexpr int kMaxCopies = 10'000;
 inline constexpr int kMaxBuilders = 1'000;
 
 struct NodeText {
   std::string name;
-  SourceRef at;  ///< Of its name.
-  Vec3 at_m;     ///< In the part's frame.
+  SourceRef at;  ///< Position of the name in the file.
+  Vec3 at_m;     ///< Position in the part's frame.
   Tags tags;
-  Placed fixed_to;  ///< Another node of the part; this node belongs to its body. May be empty.
+  Placed fixed_to;  ///< Another node of the part, whose body includes this node. May be empty.
 };
 
-/// Element of a pair's `route:`: eyelet, pulley or drum of a routed cable.
+/// Element of a pair's `route:`, which belongs to a routed cable: eyelet, pulley or drum.
 struct RouteText {
   SourceRef at;
-  Placed eyelet, pulley, drum;  ///< Its node; exactly one is set.
+  Placed eyelet, pulley, drum;  ///< Name of the node; exactly one of the three is set.
   double friction = 0;
   Vec3 axis;  ///< In the part's frame.
   double radius_m = NAN;
-  bool left = false;  ///< The wheel is on the left of the cable, seen with the axis upward.
+  bool left = false;  ///< Whether the wheel is on the left of the cable, seen with the axis
+                      ///< pointing up.
   double turns = 0;
 
   const Placed& node() const {
@@ -49,11 +51,11 @@ struct RouteText {
   bool is_drum() const { return !drum.text.empty(); }
 };
 
-/// One pair; an entry of `pairs:` may define several.
+/// One pair. An entry of `pairs:` may define several.
 struct PairText {
-  std::string name;  ///< Empty: made from the nodes' names.
+  std::string name;  ///< Empty: composed of the node names.
   SourceRef at;
-  std::vector<Placed> nodes;  ///< 2 or more.
+  std::vector<Placed> nodes;  ///< At least two.
   Tags tags;
   std::vector<RouteText> route = {};  ///< Empty, or one element per node.
 };
@@ -76,10 +78,10 @@ struct PairsText {
   Raw<NodeListsForm> each;
   std::vector<RouteText> route;
   Tags tags;
-  bool good = true;  ///< No errors.
+  bool good = true;  ///< Whether the entry has no errors.
 };
 
-/// Nodes and pairs of a part, or of the top of the file.
+/// Nodes and pairs of a part, or of the top level of the file.
 struct PartText {
   std::string name;
   Named<NodeText> nodes_text;
@@ -95,22 +97,23 @@ struct PlacementText {
   SourceRef at;
   Placed part;
   int copies = 1;
-  bool copies_known = true;         ///< Whether `copies` is absent or valid.
-  bool numbered = false;            ///< `copies` was given: the copies are name_0, name_1, ...
+  bool copies_known = true;         ///< False: `copies` is invalid.
+  bool numbered = false;            ///< True if `copies` is given: copies are named name_0, name_1,
+                                    ///< ...
   Vec3 at_m;                        ///< Origin of copy 0 in W.
   Quat rotate;                      ///< q_WPart of copy 0.
-  Vec3 step_m;                      ///< Translation from one copy's origin to the next, in W.
-  Quat step_rotate;                 ///< Rotation from one copy to the next, about axes of W.
-  Vec3 velocity_m_per_s;            ///< Of a copy's center of mass, in W.
-  Vec3 angular_velocity_rad_per_s;  ///< Of a whole copy about its center of mass, in W.
+  Vec3 step_m;                      ///< Translation from each copy's origin to the next, in W.
+  Quat step_rotate;                 ///< Rotation from each copy to the next, about axes of W.
+  Vec3 velocity_m_per_s;            ///< Velocity of a copy's center of mass, in W.
+  Vec3 angular_velocity_rad_per_s;  ///< Angular velocity of a copy about its center of mass, in W.
   Tags tags;
   std::vector<PairsText> connect_text;
-  std::vector<PairText> connect;  ///< Node k of a pair is on copy i + k.
-  bool ring = false;              ///< The last copy is also connected to copy 0.
+  std::vector<PairText> connect;  ///< Node k of each pair belongs to copy i + k.
+  bool ring = false;              ///< Whether the last copy is also connected to copy 0.
   bool nodes_complete = true, pairs_complete = true;
 };
 
-/// Mass as given in a file: exactly one is set, none after an error.
+/// Mass as given in the file. Exactly one field is set; none after an error.
 struct MassText {
   std::optional<double> mass_kg, density_kg_per_m3, mass_kg_per_m;
 
@@ -126,10 +129,10 @@ struct MassText {
   }
 };
 
-// Parameters of builders. Their base structs are the results, which lack only the data of each
-// copy: name, body and positions.
+// Parameters of builders. Each struct extends its base, the result. The fields name, body and
+// positions differ for each copy and are set later.
 
-/// Pins of a class-k rod; units as for a ball joint in `JointDef`.
+/// Ball joint of a class-k rod, with the units of `JointDef`.
 struct PinText {
   double friction = 0.0, stiffness = 0.0, damping = 0.0;
 };
@@ -145,40 +148,42 @@ struct SphereText : SphereDef {
 };
 struct PointMassText {
   double mass_kg = 0.0;
-  double radius_m = 0.0;  ///< Of the solid sphere that defines the inertia; no contact shape.
-  /// Instead of the sphere's inertia: about the node, in the part's axes. Empty, or xx, yy, zz, and
-  /// optionally xy, xz, yz (default 0).
+  double radius_m = 0.0;  ///< Radius of the solid sphere that defines the inertia. It does not
+                          ///< collide.
+  /// Alternative to the sphere's inertia: about the node, in the part's axes. Empty, or xx, yy, zz
+  /// and optionally xy, xz, yz (default 0).
   std::vector<double> inertia_kg_m2;
 };
 /// Box at a node, or along a pair.
 struct BoxText : BoxDef {
   Vec3 size_m;
-  double width_m = NAN, height_m = NAN;  ///< Along a pair.
-  Quat rotate;                           ///< q_PartBox, at a node.
+  double width_m = NAN, height_m = NAN;  ///< Cross section of a box along a pair.
+  Quat rotate;                           ///< q_PartBox of a box at a node.
   MassText mass;
   SurfaceText surface;
   bool along_pair = false;
 };
-/// Convex solid at a node. Its parts are the objects of the file, or the hull of the given corners.
+/// Convex solid at a node, made of the objects of a mesh file or of the hull of given corners.
 struct ConvexText : HullDef {
   struct Part {
-    std::vector<Vec3> hull_m;  ///< Corners of the contact shape.
+    std::vector<Vec3> hull_m;  ///< Corners of the collision shape.
     std::vector<Vec3> corners_m;
-    math::Triangles triangles;  ///< Surface of the mass, by `corners_m`.
+    math::Triangles triangles;  ///< Surface of the solid that defines mass and inertia, as indices
+                                ///< into `corners_m`.
   };
   Placed file;
   double scale_m = 1.0;
   MassText mass;
   SurfaceText surface;
-  std::vector<Part> parts;  ///< In the part's frame, relative to the node; none after an error.
-  std::string read_file;    ///< File of the parts.
+  std::vector<Part> parts;  ///< In the part's frame, relative to the node. Empty after an error.
+  std::string read_file;    ///< Path of the mesh file.
 };
 struct ActuatorText : ActuatorDef {
   ActuatorText();  ///< Sets infinite limits.
   bool ideal = false;
 };
 /// Cable. One of three keys determines the rest length; none is set after an error. NaN marks an
-/// invalid value, and a stiffness that follows from the section.
+/// invalid value, or a stiffness to be computed from the section.
 struct CableText : CableDef {
   CableText() { rest_length_m = stiffness_n_per_m = NAN; }
   std::optional<double> prestress_n, rest_length_ratio, density_kg_per_m3;
@@ -188,7 +193,8 @@ struct CableText : CableDef {
   SourceRef ends_at;
   std::optional<ActuatorText> actuator_text;
 };
-/// Bar. At most one of three keys determines the unstressed length; default: the described length.
+/// Bar. At most one of three keys determines the rest length, which defaults to the described
+/// length.
 struct BarText {
   std::optional<double> stiffness_n_per_m;
   double damping_n_s_per_m = 0.0;
@@ -198,19 +204,19 @@ struct BarText {
   SourceRef rest_at;
 };
 struct AnchorText {};
-/// Joint between the bodies of a pair's nodes, with the axis in the part's frame; or, as a support,
-/// between the world and a node's body.
+/// Joint between the bodies of a pair's nodes, or support between the world and a node's body. The
+/// axis is in the part's frame.
 struct JointText : JointDef {};
 
 using Match = std::vector<std::vector<std::string>>;
 
-/// Entry of `builders:`: the element made of the pairs or nodes that the selector matches. Exactly
-/// one of the kinds is set.
+/// Entry of `builders:`. Builds one element per pair or node that matches the selector. Exactly one
+/// of the optional fields is set.
 struct BuilderText {
   SourceRef at;
   Match match;
   SourceRef match_at;
-  std::string kind;  ///< As written: "rod", "cable" ... Empty after an error.
+  std::string kind;  ///< Key in the file: "rod", "cable", ... Empty after an error.
   std::optional<RodText> rod;
   std::optional<SphereText> sphere;
   std::optional<PointMassText> point_mass;
@@ -221,11 +227,11 @@ struct BuilderText {
   std::optional<AnchorText> anchor;
   std::optional<JointText> joint, support;
 
-  /// Returns true for builders of pairs, false for builders of nodes.
+  /// Returns whether the builder uses pairs (true) or nodes (false).
   bool on_pairs() const { return rod || cable || bar || joint || (box && box->along_pair); }
 };
 
-/// Laws of the model that an experiment may replace.
+/// Laws of a model that an experiment may replace.
 struct ModelOptions {
   InertiaLaw inertia = InertiaLaw::kExact;
   DampingLaw damping_law = DampingLaw::kExact;
@@ -243,24 +249,24 @@ struct ModelText {
   ModelDef def;  ///< Laws and gravity of the whole model.
   InertiaLaw inertia = InertiaLaw::kExact;
   DampingLaw damping_law = DampingLaw::kExact;  ///< Default for cables without `damping_law`.
-  std::optional<ActuatorText> actuator_text;    ///< Replaces all actuators of cables.
+  std::optional<ActuatorText> actuator_text;    ///< Replaces the actuators of all cables.
   bool allow_disconnected = false;
-  PartText loose;  ///< Nodes and pairs at the top of the file.
+  PartText loose;  ///< Nodes and pairs at the top level of the file.
   Named<PartText> parts_text;
   std::vector<PartText> parts;
   std::vector<PlacementText> structure;
   std::vector<BuilderText> builders;
   std::vector<std::vector<std::string>> apart;
   SourceRef apart_at;
-  bool builders_complete = true;  ///< False: at least one could not be read.
+  bool builders_complete = true;  ///< False: at least one builder could not be read.
   bool nodes_complete = true;  ///< False: at least one node, part or placement could not be read.
   bool pairs_complete = true;  ///< False: at least one pair could not be read.
 };
 
-/// Reads the top of a model file with merged bases (`ReadMergedFile(path, "model", out)`).
+/// Reads a model file with merged bases (`ReadMergedFile(path, "model", out)`).
 ModelText ReadModelText(const Value& root, const Scope& scope);
 
-// Final checks after the keys of a block have been read, each implemented in the file of its block.
+// Final checks after all keys of a block have been read.
 void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part);
 void FinishStructure(const MapReader& map, ModelText& model);
 void FinishBuilders(const MapReader& map, ModelText& model);

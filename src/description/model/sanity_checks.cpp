@@ -20,12 +20,13 @@ using base::Brief;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// Largest rounding error of a position, relative to the smallest size of a robot.
+/// Largest permitted rounding error of a position, relative to the robot's smallest part.
 constexpr double kFinest = 1e-6;
-/// Largest ratios between the largest and the smallest of a model. Generous, since large structures
-/// have small parts, too.
+/// Largest plausible ratios between the largest and smallest element of a model. The values are
+/// generous, since large structures have small parts, too.
 constexpr double kMaxSizeRatio = 1e3, kMaxMassRatio = 1e6, kMaxStiffnessRatio = 1e6;
-/// Air has 1.2 kg/m^3, osmium 22 600. Thin rods often represent thicker and heavier parts.
+/// Air has 1.2 kg/m^3, osmium 22 600 kg/m^3. The range is wider, since thin rods often represent
+/// thicker and heavier parts.
 constexpr double kLeastDensity = 0.1, kGreatestDensity = 1e6;  // [kg/m^3]
 
 /// Returns the spacing of floating-point numbers at x.
@@ -40,7 +41,7 @@ double Length(const CapsuleDef& rod) {
   return std::sqrt(Dot(d, d));
 }
 
-/// Returns whether a body index is valid. Resolved files may contain invalid ones, which
+/// Returns whether a body index is valid. Resolved experiments may contain invalid ones, which
 /// `Model::Compile` reports.
 bool IsBody(const RobotSpec& robot, int body) {
   return body >= 0 && static_cast<std::size_t>(body) < robot.body_sources.size();
@@ -50,7 +51,7 @@ SourceRef SourceOf(const RobotSpec& robot, int body) {
   return IsBody(robot, body) ? robot.body_sources[static_cast<std::size_t>(body)] : SourceRef{};
 }
 
-/// Number of a part of the model, with its name and place.
+/// Value of an element of the model, with the element's name and position in the file.
 struct Item {
   double value;
   std::string name;
@@ -94,7 +95,8 @@ ItemList Stiffnesses(const RobotSpec& robot) {
   return stiffnesses;
 }
 
-/// Warns at the larger item, the usual mistake.
+/// Warns of a large ratio at the larger item, since a number that is too large is the usual
+/// mistake.
 void WarnOfRatio(const ItemList& items, double most, const char* what, const char* unit,
                  Diagnostics& out) {
   if (items.empty()) return;
@@ -108,7 +110,7 @@ void WarnOfRatio(const ItemList& items, double most, const char* what, const cha
 }
 
 void WarnOfThickRods(const RobotSpec& robot, Diagnostics& out) {
-  std::set<std::pair<int, int>> seen;  // copies of one rod are one mistake
+  std::set<std::pair<int, int>> seen;  // copies of one rod count as one mistake
   for (const CapsuleDef& rod : robot.def.capsules) {
     const SourceRef at = SourceOf(robot, rod.body);
     const double length_m = Length(rod);
@@ -148,7 +150,7 @@ void WarnOfDensities(const RobotSpec& robot, Diagnostics& out) {
 
 namespace {
 
-/// Returns the smallest size of a robot: of a shape; without shapes, of a cable; without both, 1 m.
+/// Returns the smallest shape of a robot. Without shapes, returns its shortest cable, else 1 m.
 Item Smallest(const RobotSpec& robot) {
   ItemList sizes = Sizes(robot);
   if (sizes.empty()) {
@@ -185,10 +187,11 @@ void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* p
     if (!too_far(far_m)) continue;
     complain(place ? *place : robot.node_sources[n], "the node \"" + def.nodes[n].name + "\"",
              far_m);
-    break;  // the others are probably as far away
+    break;  // report the first node only; the others are probably as far away
   }
   for (std::size_t p = 0; p < def.planes.size(); ++p) {
-    // The rounded quantity is the distance of the plane from the origin.
+    // The engine stores the plane's distance from the origin, so this distance determines the
+    // rounding error.
     const Vec3 &n = def.planes[p].normal, &at = def.planes[p].point_m;
     const double far_m = Farthest({n.x * at.x, n.y * at.y, n.z * at.z});
     if (too_far(far_m)) {

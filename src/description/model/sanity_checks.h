@@ -1,4 +1,4 @@
-/// Plausibility checks: numbers that are valid separately but not together
+/// Plausibility checks: combinations of numbers that are valid individually
 /// (docs/formats/checks.md).
 #pragma once
 
@@ -7,13 +7,15 @@
 namespace taut::description {
 
 /// Reports objects so far from the origin that the rounding of positions is too coarse for the
-/// robot. `place`: place of an experiment's start pose, reported instead of the model's nodes.
+/// robot. `place`: position of the start pose in an experiment file; replaces the model's nodes in
+/// messages.
 void CheckPositions(const RobotSpec& robot, Diagnostics& out, const SourceRef* place = nullptr);
 
-/// Returns whether the rounding of positions at this distance is too coarse for the robot.
+/// Returns whether positions at this distance from the origin are rounded too coarsely for the
+/// robot.
 bool IsTooFar(const RobotSpec& robot, double far_m);
 
-/// Warns of implausible numbers, such as mixed units or an additional zero.
+/// Warns of implausible numbers, such as mixed units or an additional zero digit.
 void WarnImplausible(const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::description

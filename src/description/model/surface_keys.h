@@ -42,7 +42,7 @@ void Keys(Io& io, Like<Material> auto& m) {
   io("friction_directions", m.directions);
 }
 
-/// Surface as given in a file: `friction`, or `static_friction` and `kinetic_friction`.
+/// Surface as given in the file: `friction`, or both `static_friction` and `kinetic_friction`.
 struct SurfaceText {
   double friction = Material{}.static_friction;
   std::optional<double> static_friction, kinetic_friction;
@@ -58,8 +58,8 @@ void SurfaceKeys(Io& io, Like<SurfaceText> auto& s) {
   io("kinetic_friction", s.kinetic_friction, Bound::kNonNegative, "Kinetic Coulomb coefficient.");
   Keys(io, s.material);
 }
-/// Returns the material; reports conflicting keys. `has_axis`: the shape has a direction, the
-/// default axis of anisotropic friction.
+/// Returns the material and reports conflicting keys. `has_axis`: whether the shape has a
+/// direction, which is the default axis of anisotropic friction.
 Material ToMaterial(const MapReader& map, const SurfaceText& surface, bool has_axis = false);
 
 }  // namespace taut::description

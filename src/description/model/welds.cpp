@@ -5,7 +5,7 @@
 namespace taut::description {
 namespace {
 
-/// Union-find over nodes, followed by pairs.
+/// Union-find over all nodes, then all pairs.
 class WeldFinder {
  public:
   WeldFinder(const ModelText& model, const Assembly& assembly, const Assignment& assignment)
@@ -45,10 +45,11 @@ class WeldFinder {
     }
   }
 
-  /// Assigns the nodes of class-k rods. A node that a stiff solid or an anchor holds stays with it,
-  /// else it goes to the first of its rods; the other rods are pinned there.
+  /// Assigns the nodes of class-k rods to bodies. A node held by another solid or an anchor stays
+  /// with it. Otherwise it joins the first of its class-k rods. All other rods are pinned to it.
   void JoinTurning() {
-    std::vector<bool> taken(assembly_.nodes.size() + assembly_.pairs.size(), false);  // per root
+    std::vector<bool> taken(assembly_.nodes.size() + assembly_.pairs.size(), false);  // per root of
+                                                                                      // a set
     for (std::size_t pair = 0; pair < assembly_.pairs.size(); ++pair) {
       if (IsSolid(pair) && !TurnsInNodes(pair)) taken[sets_.Root(Element(pair))] = true;
     }
@@ -100,7 +101,7 @@ class WeldFinder {
       if (!Builder(pair) || !Builder(pair)->bar) continue;
       for (const int node : assembly_.pairs[pair].nodes) weld_of(node).ends_bar = true;
     }
-    // At a node that is only an anchor, the world takes half the mass of a member.
+    // Half the mass of a member at a node that is only an anchor belongs to the world.
     for (Weld& weld : out_.welds) {
       for (const int node : weld.nodes) {
         const double lump_kg = assignment_.lump_kg[static_cast<std::size_t>(node)];
