@@ -30,7 +30,8 @@ struct StairsText {
   Material material;
 };
 
-/// Limit of boxes in the whole terrain, the same as for reading resolved experiments.
+/// Limit of boxes in the whole terrain. A resolved experiment with more boxes would be too large to
+/// read back.
 inline constexpr int kMostBoxes = 5000;
 
 template <class Io>

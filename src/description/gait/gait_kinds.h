@@ -1,13 +1,12 @@
-/// Registry of the kinds of gaits. Each kind has a file NAME.h in this folder with the table of its
-/// keys and the functions
+/// Registry of the kinds of gaits. Each kind has an entry in `kGaitKinds`, with its member of
+/// `GaitSpec`, and a file NAME.h in this folder. The file contains the table of keys and three
+/// functions:
 ///
 ///   void Check(const MapReader&, Text&);   checks conditions on several keys of a file
 ///   void CheckNumbers(const Spec&, const SourceRef&, Diagnostics&);
-///                                          repeats checks for a resolved experiment
+///                                          checks the numbers, also of a resolved experiment
 ///   void Resolve(const Spec&, const RobotSpec&, ResolvedGait&, Diagnostics&);
-///                                          finds its cables in a robot
-///
-/// and a line in `kGaitKinds`, with its member of `GaitSpec`.
+///                                          finds the gait's cables in a robot
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Loading of calibration files.
+// Loader of calibration files.
 #include "taut/calibration.h"
 
 #include <set>

@@ -1,4 +1,4 @@
-// Loading of catalogue files.
+// Loader of catalogue files.
 #include "taut/catalogue.h"
 
 #include "description/robot/catalogue_keys.h"

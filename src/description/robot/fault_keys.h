@@ -26,14 +26,14 @@ inline const Choices<FaultKind> kFaultKinds{{"clock_drift", FaultKind::kClockDri
                                             {"host_killed", FaultKind::kHostKilled}};
 inline const Choices<BusLine> kBusLines{{"data", BusLine::kData}, {"clock", BusLine::kClock}};
 
-/// Entry of `faults:`, with the keys of all kinds.
+/// Entry of `faults:`, with the keys of all kinds of faults.
 struct FaultText {
   SourceRef at;
   bool good = true;
   FaultSpec spec;
   std::optional<int> board;
   Placed cable;
-  SourceRef board_at;  ///< Of the key.
+  SourceRef board_at;  ///< Position of the key.
 };
 template <class Io>
 void Keys(Io& io, Like<FaultText> auto& f) {

@@ -1,4 +1,4 @@
-// Loading of fault scripts.
+// Loader of fault scripts.
 #include "taut/faults.h"
 
 #include <algorithm>
@@ -16,11 +16,11 @@ namespace taut {
 namespace description {
 namespace {
 
-/// Keys of a kind in addition to `at_s` and `for_s`.
+/// Keys of a kind of fault, in addition to `at_s` and `for_s`.
 struct KindKeys {
   FaultKind kind;
   std::initializer_list<const char*> needed, allowed;
-  bool lasts = true;  ///< Whether `for_s` is allowed.
+  bool lasts = true;  ///< Whether `for_s` is permitted.
 };
 const KindKeys kKindKeys[] = {
     {FaultKind::kClockDrift, {"board", "drift_ppm"}, {}},
@@ -79,7 +79,7 @@ FaultScript ReadScript(const Value& root, const std::vector<std::string>& cables
 void Check(const MapReader& map, FaultText& fault) {
   if (map.Has("board")) fault.board_at = map.Find("board")->at;
   const Value* kind = map.Find("kind");
-  // After an error in the kind the allowed keys are unknown.
+  // If the kind is invalid, the permitted keys are unknown.
   if (!kind || kind->text != FaultName(fault.spec.kind)) return;
   const auto* keys = std::find_if(std::begin(kKindKeys), std::end(kKindKeys),
                                   [&](const KindKeys& one) { return one.kind == fault.spec.kind; });

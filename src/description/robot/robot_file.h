@@ -1,4 +1,4 @@
-/// Files that refer to a robot of another file: fault scripts and calibrations.
+/// Loading of files that refer to a robot defined in another file: fault scripts and calibrations.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace taut::description {
 
-/// Returns the index of the cable; -1 after an error.
+/// Returns the index of an actuated cable; -1 after an error.
 inline int FindActuatedCable(const Placed& name, const std::vector<std::string>& cables,
                              const Scope& scope) {
   const auto found = std::find(cables.begin(), cables.end(), name.text);
@@ -23,8 +23,8 @@ inline int FindActuatedCable(const Placed& name, const std::vector<std::string>&
   return -1;
 }
 
-/// Loads a file of this kind with `read(root, scope)`, and the names of its files; returns nothing
-/// after an error.
+/// Loads a file of kind `kind` with `read(root, scope)` and stores the paths of its files. Returns
+/// nothing after an error.
 template <class Read>
 auto LoadRobotFile(const std::string& path, const char* kind, Diagnostics& out, Read&& read)
     -> std::optional<decltype(read(std::declval<const Value&>(), std::declval<const Scope&>()))> {

@@ -1,4 +1,4 @@
-// Loads carried by measured forces (`carried:` of a fit).
+// Loads equilibrated by measured forces (`carried:` of a fit).
 #include <algorithm>
 #include <cmath>
 

@@ -10,7 +10,7 @@
 namespace taut::description {
 namespace {
 
-/// Returns the value of a parameter in an experiment or its model; null if absent.
+/// Returns the value of a parameter of an experiment or its model; null if absent.
 const double* FindParameter(const FitExperiment& one, const std::string& name) {
   const auto in = [&](const std::map<std::string, double>& map) -> const double* {
     const auto at = map.find(name);
@@ -29,7 +29,7 @@ std::vector<std::string> ParameterNames(const std::vector<FitExperiment>& experi
   return {names.begin(), names.end()};
 }
 
-/// Checks that bounds, prior and start are consistent, and reports errors. Sets a default scale.
+/// Checks that bounds, prior and start are consistent. Sets a default scale.
 void CheckRange(const std::string& what, const SourceRef& at, bool starts, FitRange& range,
                 const Scope& scope) {
   const auto wrong = [&](const std::string& text, const std::string& hint = {}) {
@@ -91,7 +91,7 @@ FitEstimate OfNuisance(const Made& made, FitEstimate::Kind kind, double neutral,
                     std::string("estimate.") + made.word + ".mean needs an `sd`");
   }
   double start = n.mean.value_or(neutral);
-  // A delay with bounds starts in the middle of them.
+  // Start a delay in the middle of its bounds.
   if (kind == FitEstimate::Kind::kDelay && !n.sd && n.low && n.high)
     start = 0.5 * (*n.low + *n.high);
   range.start = n.start.value_or(start);
@@ -142,7 +142,7 @@ std::optional<FitEstimate> OfParameter(const FitEstimateText& text,
   return out;
 }
 
-/// Returns the identity of a quantity, for the detection of duplicates.
+/// Returns a text that identifies a quantity, to detect duplicates.
 std::string Identity(const FitEstimate& e) {
   return std::to_string(static_cast<int>(e.kind)) + " " + e.parameter + " " + e.channels;
 }

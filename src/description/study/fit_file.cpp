@@ -1,4 +1,4 @@
-// Loading of fit files.
+// Loader of fit files.
 #include <filesystem>
 #include <map>
 
@@ -38,7 +38,7 @@ bool LoadItsExperiment(const FitExperimentText& text, const OverrideSet& of_user
   return true;
 }
 
-/// Reports data that occur twice, in particular in both training and test.
+/// Reports measurements that are listed twice, especially in both training and test data.
 void CheckFiles(const std::vector<FitExperiment>& experiments, const Scope& scope) {
   std::map<std::string, const FitExperiment*> seen;
   for (const FitExperiment& one : experiments) {

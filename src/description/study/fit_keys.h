@@ -27,7 +27,7 @@ inline const Choices<FitGroups> kGroupings{{"experiment", FitGroups::kExperiment
                                            {"channel", FitGroups::kChannel},
                                            {"window", FitGroups::kWindow}};
 inline const Choices<bool> kSharing{{"experiment", true}, {"all", false}};
-/// nullopt: all statistics.
+/// nullopt stands for all statistics.
 using ReferenceChoice = std::optional<ReferenceSpec::Statistic>;
 inline const Choices<ReferenceChoice> kFitReferences{{"maxima", ReferenceSpec::Statistic::kMax},
                                                      {"means", ReferenceSpec::Statistic::kMean},
@@ -42,7 +42,7 @@ struct FitExperimentText {
   bool train = true;
   FitForward forward = FitForward::kDynamic;
   Raw<ParametersForm> set;
-  SourceRef name_at, data_at, setpoints_at;  ///< Of keys.
+  SourceRef name_at, data_at, setpoints_at;  ///< Positions of the keys.
 };
 template <class Io>
 void Keys(Io& io, Like<FitExperimentText> auto& e) {
@@ -94,7 +94,7 @@ void Keys(Io& io, Like<FitPriorText> auto& p) {
      "Mean. Default: the experiment's value; 0 for offsets and delays, 1 for gains.");
   io("sd", p.sd, kNeeded, Bound::kPositive, "Standard deviation.");
 }
-/// Offset, gain or delay of a channel or clock, with the prior among its bounds.
+/// Offset, gain or delay of a channel or clock. Bounds and prior are in the same map.
 struct FitNuisanceText {
   std::optional<double> low, high, start, mean, sd, scale;
 };

@@ -8,11 +8,12 @@
 
 namespace taut::description {
 
-/// Converts estimates. `known`: per experiment, whether it could be read; others are not checked.
+/// Converts estimates. `known`: per experiment, whether it could be read; otherwise its names are
+/// not checked.
 std::vector<FitEstimate> ToEstimates(const std::vector<FitEstimateText>& texts,
                                      const std::vector<FitExperiment>& experiments,
                                      const std::vector<bool>& known, const Scope& scope);
-/// Converts residuals. `of_design`: without data.
+/// Converts residuals. `of_design`: for experimental design, without data.
 std::vector<FitResidual> ToResiduals(const std::vector<FitResidualText>& texts,
                                      const std::vector<FitExperiment>& experiments,
                                      const std::vector<bool>& known, bool of_design,

@@ -1,4 +1,4 @@
-// Text that identifies a fit.
+// Text that identifies a fit, to detect changes of its file.
 #include <cmath>
 
 #include "description/study/key_line.h"

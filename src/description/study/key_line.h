@@ -1,4 +1,4 @@
-/// Lines of the texts that identify a study or a fit.
+/// Lines of texts that identify a study or a fit.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Loading of study files.
+// Loader of study files.
 #include "taut/study.h"
 
 #include "description/study/study_parts.h"
@@ -30,7 +30,7 @@ bool LoadItsExperiment(const StudyFileText& text, const OverrideSet& of_user, co
   return true;
 }
 
-/// Checks the requirements of an objective on its experiment.
+/// Checks that the experiment has all that an objective needs.
 void CheckAgainst(const ExperimentSpec& experiment, const ObjectiveText& objective,
                   Diagnostics& out) {
   if (objective.from_s >= experiment.duration_s) {
@@ -44,7 +44,7 @@ void CheckAgainst(const ExperimentSpec& experiment, const ObjectiveText& objecti
   }
 }
 
-/// Returns all that could be read; the caller checks the diagnostics.
+/// Returns the study as far as it could be read. The caller must check the diagnostics.
 StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope& scope) {
   StudyFileText text;
   ReadMapping(root, "", scope, text);
@@ -65,7 +65,7 @@ StudySpec ReadStudy(const Value& root, const OverrideSet& overrides, const Scope
     scope.out.Error("study.start_needs_goal", root.Find("worlds")->at,
                     "worlds.start.goal_rad: the experiment has no `goal`");
   }
-  // After an error in `vary` the number of parameters is unknown.
+  // If `vary` has an error, the number of parameters is unknown.
   const std::size_t dimensions = scope.out.ok() ? study.parameters.size() : 0;
   study.searches = ToSearches(root.Find("search"), text.search, dimensions, scope);
   return study;

@@ -11,7 +11,7 @@ namespace taut::description {
 
 inline const Choices<bool> kScales{{"linear", false}, {"log", true}};
 inline const Choices<bool> kJudges{{"mean", false}, {"worst", true}};
-/// Returns `NloptAlgorithms` as choices.
+/// Returns `NloptAlgorithms` as choices of a key.
 const Choices<std::string>& NloptChoices();
 enum class Method { kMonteCarlo, kHillClimbing, kNlopt, kCmaEs };
 inline const Choices<Method> kMethods{{"monte_carlo", Method::kMonteCarlo},
@@ -26,7 +26,7 @@ struct VaryText {
   Raw<PatternsForm> each, all;
   double low = NAN, high = NAN;
   bool log = false;
-  SourceRef low_at, name_at, pattern_at;  ///< Of keys.
+  SourceRef low_at, name_at, pattern_at;  ///< Positions of the keys.
 };
 template <class Io>
 void Keys(Io& io, Like<VaryText> auto& v) {
@@ -50,7 +50,7 @@ void Keys(Io& io, Like<VaryText> auto& v) {
 void Check(const MapReader& map, VaryText& vary);
 
 struct ObjectiveText : ObjectiveSpec {
-  SourceRef from_at, measure_at;  ///< Of the keys.
+  SourceRef from_at, measure_at;  ///< Positions of the keys.
 };
 template <class Io>
 void Keys(Io& io, Like<ObjectiveText> auto& o) {
@@ -79,7 +79,7 @@ void Keys(Io& io, Like<PerturbationSpec> auto& w) {
   io("score", w.worst, kJudges, "Combination of the worlds' scores.");
 }
 
-/// Entry of `search:`, with the keys of all methods.
+/// Entry of `search:`, with the keys of all search methods.
 struct SearchText {
   SourceRef at, algorithm_at;
   Method method = Method::kMonteCarlo;

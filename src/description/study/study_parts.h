@@ -8,8 +8,8 @@
 
 namespace taut::description {
 
-/// Converts parameters. `list` is the value with the entries. `tunables` is null if the experiment
-/// could not be read: then names are not checked.
+/// Converts parameters. `list`: value with the entries. `tunables`: null if the experiment could
+/// not be read; then names are not checked.
 std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<VaryText>& texts,
                                          const std::vector<Tunable>* tunables, const Scope& scope);
 std::vector<SearchSpec> ToSearches(const Value* list, const std::vector<SearchText>& texts,

@@ -11,7 +11,7 @@ const std::vector<std::string>& NloptAlgorithms() {
 namespace description {
 namespace {
 
-/// Returns the search method with its settings.
+/// Returns the search method and its settings.
 SearchSpec ToSearch(const SearchText& text) {
   SearchSpec search{MonteCarloSpec{}, text.evaluations, text.batch};
   if (text.method == Method::kHillClimbing) {

@@ -1,4 +1,4 @@
-// Text that identifies a study.
+// Text that identifies a study, to detect changes of its file.
 #include "description/study/key_line.h"
 #include "description/yaml/reader.h"
 #include "taut/study.h"
@@ -74,7 +74,7 @@ std::string StudyText(const StudySpec& study) {
           (w.start.place_m > 0 ? ", anywhere within " + Shown(w.start.place_m) + " m" : ""));
   for (std::size_t i = 0; i < study.searches.size(); ++i) {
     out += KeyLine("search " + std::to_string(i), SearchLine(study.searches[i]));
-    // Evaluations of all searches but the last, because they affect the following ones.
+    // The evaluations of the last search are excluded, because they affect no other search.
     if (i + 1 < study.searches.size()) {
       out += KeyLine("search " + std::to_string(i) + " evaluations",
                      std::to_string(study.searches[i].evaluations));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostParameters = 1000;
 
-/// Returns whether the bounds are a valid range; reports an error if not.
+/// Reports invalid bounds. Returns whether they are a valid range.
 bool HasRoom(const VaryText& vary, const Scope& scope) {
   if (std::isnan(vary.low) || std::isnan(vary.high)) return false;
   bool good = true;
@@ -46,7 +46,7 @@ std::vector<StudyParameter> ToParameters(const Value* list, const std::vector<Va
   std::map<std::size_t, SourceRef> taken;
   std::set<std::string> names;
   for (const VaryText& vary : texts) {
-    if (out.size() > kMostParameters) break;  // further entries would repeat the errors
+    if (out.size() > kMostParameters) break;  // further entries would repeat the error
     const bool each = vary.each.value, good = HasRoom(vary, scope);
     if (each == (vary.all.value != nullptr) || !tunables) continue;
     const auto found = MatchTunables(each ? *vary.each.value : *vary.all.value,

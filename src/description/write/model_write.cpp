@@ -1,5 +1,5 @@
-// Serialization of a robot as a model file. Robots that the format cannot express are rejected:
-// known cases with a specific error, others by reading the text back.
+// Serialization of a robot as a model file. Robots that the format cannot express are rejected.
+// Known cases have a specific error; other cases are detected by reading the text back.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -63,8 +63,8 @@ class Writer {
     RefuseModel(out_, what, hint);
   }
 
-  /// Adds one tag to the pairs of each builder, instead of lists of names: `rod`, or `rod_1`,
-  /// `rod_2`.
+  /// Adds a tag to the pairs of each builder, so that it needs no list of names: `rod`, or `rod_1`,
+  /// `rod_2`, ...
   void TagSolids() {
     int number = 0;
     for (const WrittenBuilder& builder : m_.on_pairs) {
@@ -80,7 +80,7 @@ class Writer {
     }
   }
 
-  /// Assigns a pair to its placement if its name has that prefix, else to the whole model.
+  /// Assigns a pair to a placement if the pair's name begins with the placement's name.
   void NamePair(WrittenPair& pair) {
     const auto [placement, given] = NameOf(m_, pair);
     const bool inside = !placement.empty();
@@ -96,7 +96,7 @@ class Writer {
       pair.line += (i == 0 ? "" : ", ") + Name(inside ? ShortName(name) : name);
     }
     pair.line += "]" + TagsText(pair.tags, {given, pair.name}) + "}";
-    for (const std::string& name : {given, pair.name}) {  // tags that reading adds
+    for (const std::string& name : {given, pair.name}) {  // the reader adds these tags, too
       if (!name.empty()) pair.tags.push_back(name);
     }
   }
@@ -165,7 +165,8 @@ class Writer {
     return parts + structure;
   }
 
-  /// Returns the selector of a builder: a tag that exactly its elements have, or their names.
+  /// Returns the selector of a builder: a tag that all its elements and no others have, or their
+  /// names.
   template <class Items>
   std::string MatchText(const std::vector<int>& on, const Items& items) {
     const auto has = [&](int i, const std::string& tag) {
@@ -204,8 +205,8 @@ class Writer {
     return text + CableBuilders();
   }
 
-  /// Returns one builder per cable: rest lengths differ, the other numbers are mostly equal and
-  /// shared by a YAML anchor.
+  /// Writes one builder per cable, because rest lengths differ. A YAML anchor contains the other
+  /// keys, which are usually the same.
   std::string CableBuilders() {
     const auto kind_of = [&](std::size_t i) {
       const CableDef& cable = def_.cables[static_cast<std::size_t>(m_.cables[i])];

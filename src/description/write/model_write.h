@@ -21,11 +21,12 @@ struct WrittenPair {
   std::string name;  ///< Full name.
   Tags tags;
   std::vector<int> nodes;
-  std::string line;       ///< Of `pairs:`, set when its name is known.
-  std::string placement;  ///< Placement of the pair; empty: none.
-  bool turns = false;     ///< Rod of `class_k` that is pinned to a node of another body.
+  std::string line;       ///< Line in `pairs:`; set as soon as the name is known.
+  std::string placement;  ///< Name of the placement; empty: none.
+  bool turns = false;     ///< Whether it is a `class_k` rod that is pinned to a node of another
+                          ///< body.
 };
-/// Builder text and the indices of its nodes or pairs.
+/// Text of a builder, and indices of its nodes or pairs.
 struct WrittenBuilder {
   std::string text;
   std::vector<int> on;
@@ -33,54 +34,55 @@ struct WrittenBuilder {
 
 /// Robot decomposed into the elements of a model file.
 struct WrittenModel {
-  std::vector<WrittenNode> nodes;  ///< Nodes of the robot first, in its order.
-  std::vector<WrittenPair> pairs;  ///< Solids first.
+  std::vector<WrittenNode> nodes;  ///< First the nodes of the robot, in its order.
+  std::vector<WrittenPair> pairs;  ///< First the solids.
   std::size_t solid_pairs = 0;
-  std::vector<int> cables;                      ///< Robot's cables: the pairs after the solids.
-  std::set<int> pins;                           ///< Joints that rods of `class_k` imply.
-  std::vector<std::vector<std::string>> apart;  ///< Names of bodies.
+  std::vector<int> cables;                      ///< Index of the robot's cable, for each pair after
+                                                ///< the solids.
+  std::set<int> pins;                           ///< Joints that follow from `class_k` rods.
+  std::vector<std::vector<std::string>> apart;  ///< Names of the bodies.
   std::vector<WrittenBuilder> on_pairs, on_nodes;
-  std::map<std::string, Quat> turns;  ///< Orientation of each placement with boxes.
+  std::map<std::string, Quat> turns;  ///< Orientation of each placement that contains boxes.
 };
 
-/// Returns whether the body is a terrain box that an experiment moves, not a part of the robot.
+/// Returns whether the body is a terrain box that an experiment moves.
 bool IsTerrain(const ModelDef& def, int body);
-/// Returns whether the body is anchored by the model, as opposed to moved by an experiment.
+/// Returns whether the model anchors the body. Bodies that an experiment moves do not count.
 bool IsAnchored(const ModelDef& def, int body);
 
-/// Returns the node of the body, or of the world, at exactly this point; -1: none.
+/// Returns the node of the body (or world) at exactly this point; -1 if there is none.
 int NodeAt(const WrittenModel& model, int body, const Vec3& p);
-/// Adds an element to the builder with this text.
+/// Adds an element to the builder with this text. Creates the builder if needed.
 void Build(std::vector<WrittenBuilder>& list, const std::string& text, int on);
 
-/// Name of a pair in the file: `given` is its `name:`, empty if the name follows from the nodes.
+/// Name of a pair in the file. `given` is the key `name`; empty if the name follows from the nodes.
 struct PairName {
   std::string placement, given;
 };
 PairName NameOf(const WrittenModel& model, const WrittenPair& pair);
 
-/// Returns the keys of a member that differ from the default, each after ", ".
+/// Returns the keys of a member that differ from the default, each preceded by ", ".
 std::string MemberText(const MemberDef& member);
-/// Returns the share of the body's mass that comes from bars and cables at its nodes [kg].
+/// Returns the mass [kg] that bars and cables at the body's nodes contribute to it.
 double LumpedOn(const ModelDef& def, int body);
 
-/// Adds joints, bars, supports and `apart` as the last pairs and builders, without the joints that
-/// rods of `class_k` imply.
+/// Adds joints, bars, supports and `apart` as the last pairs and builders. Excludes joints that
+/// follow from `class_k` rods.
 void TakeJoints(const RobotSpec& robot, WrittenModel& model, Diagnostics& out);
 
-/// Decomposes a robot. Reports features that a model file cannot express; the result is complete if
-/// there are none.
+/// Decomposes a robot and reports features that a model file cannot express. The result is complete
+/// if there are none.
 WrittenModel TakeApart(const RobotSpec& robot, Diagnostics& out);
 std::string TextOf(const RobotSpec& robot, WrittenModel model, Diagnostics& out);
 
-/// Reports the first difference, beyond rounding, between a robot and its copy after reading back,
+/// Compares a robot with its copy after reading back. Reports the first difference beyond rounding
 /// and returns false. `read` may have more nodes.
 bool CheckReadBack(const RobotSpec& robot, const RobotSpec& read, Diagnostics& out);
 
-/// Reports an error with the common beginning of all these messages.
+/// Reports an error that begins like all errors of this writer.
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint = {});
 
-/// Returns the text before the last dot: the placement of a node; empty for none.
+/// Returns the text before the last dot, which is the placement of a node; empty if there is none.
 inline std::string PlacementOf(const std::string& full_name) {
   const std::size_t dot = full_name.rfind('.');
   return dot == full_name.npos ? "" : full_name.substr(0, dot);

@@ -9,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-/// Relative rounding tolerance, of the size of a number and of the distances it is computed from.
+/// Tolerance of rounding, relative to the number or to the distances from which it is computed.
 constexpr double kRounding = 1e-12;
 
 struct Nearness {
@@ -22,7 +22,7 @@ struct Nearness {
     const double size = std::max({1.0, std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
     return (*this)(a.x, b.x, size) && (*this)(a.y, b.y, size) && (*this)(a.z, b.z, size);
   }
-  /// The tolerance grows with the distance of the body from the origin, where digits cancel.
+  /// The tolerance grows with the body's distance from the origin because of cancellation.
   bool operator()(const Inertia& a, const Inertia& b, const BodyDef& body) const {
     const Vec3& c = body.com_m;
     const double size = a.xx + a.yy + a.zz + 1e-3 * body.mass_kg * std::sqrt(Dot(c, c));
@@ -37,17 +37,17 @@ struct Nearness {
   }
 };
 
-/// Tolerance for a robot with joints: the points that a joint holds together become one node, which
-/// moves them by up to the gap. For parts of a centimeter and more, this is a relative change of at
-/// most gap / 1 cm.
+/// Tolerance for a robot with joints. The writer merges the two points of a joint into one node,
+/// which moves them by up to the gap. For parts of at least 1 cm, the relative change is at most
+/// gap / 1 cm.
 Nearness NearnessFor(const ModelDef& def) {
   double gap_m = 0;
   for (const JointDef& joint : def.joints) gap_m = std::max(gap_m, JointError(joint));
   return {std::max(kRounding, 100 * gap_m)};
 }
 
-// Each `Same` treats the fields that rounding may change, or that have no effect, separately. It
-// compares all other fields exactly with operator==, including fields that are added later.
+// Each `Same` first handles fields that rounding may change or that have no effect. Then operator==
+// compares all other fields exactly, including fields added in future.
 bool Same(const Material& a, Material b, const Nearness& near) {
   if (a.directions && b.directions && near(a.directions->axis, b.directions->axis)) {
     b.directions->axis = a.directions->axis;
@@ -57,7 +57,8 @@ bool Same(const Material& a, Material b, const Nearness& near) {
 bool Same(const ActuatorDef& a, ActuatorDef b) {
   if (a.kind != b.kind) return false;
   if (a.kind == ActuatorDef::Kind::kNone || a.kind == ActuatorDef::Kind::kIdeal) return true;
-  if (a.kind == ActuatorDef::Kind::kDcMotor) {  // of the limits, only min_rest_length_m applies
+  if (a.kind == ActuatorDef::Kind::kDcMotor) {  // `min_rest_length_m` is the only limit of a DC
+                                                // motor
     b.max_speed_m_per_s = a.max_speed_m_per_s;
     b.max_acceleration_m_per_s2 = a.max_acceleration_m_per_s2;
     b.max_force_n = a.max_force_n;
@@ -66,11 +67,11 @@ bool Same(const ActuatorDef& a, ActuatorDef b) {
   return a == b;
 }
 bool Same(const JointDef& a, JointDef b, const Nearness& near) {
-  // The axis of a ball joint without a stop has no effect, also with rods of `class_k`.
+  // The axis of a ball joint without a limit has no effect.
   const bool free = a.kind == JointKind::kBall && !a.most;
   if (free || near(a.axis, b.axis)) b.axis = a.axis;
   if (free || near(a.turned, b.turned)) b.turned = a.turned;
-  // Already compared by the caller; bodies are compared by name.
+  // The caller has compared these fields; bodies are compared by name.
   b.body_a = a.body_a, b.body_b = a.body_b, b.from_m = a.from_m, b.to_m = a.to_m;
   b.member = a.member;
   return a == b;
@@ -112,7 +113,8 @@ class Comparison {
   }
 
  private:
-  /// Returns whether a and b are near. If so, sets b to a, so that operator== can compare the rest.
+  /// Returns whether a and b are equal up to rounding. If so, sets b to a, so that operator==
+  /// compares the other fields only.
   template <class T>
   bool Settle(const T& a, T& b) const {
     if (!near_(a, b)) return false;
@@ -142,7 +144,7 @@ class Comparison {
   }
 
   void Bodies() {
-    std::vector<int> bodies;  // without terrain
+    std::vector<int> bodies;  // without boxes of the terrain
     for (int i = 0; i < static_cast<int>(a_.bodies.size()); ++i) {
       if (!IsTerrain(a_, i)) bodies.push_back(i);
     }
@@ -158,14 +160,14 @@ class Comparison {
       if (!Settle(x.com_m, y.com_m)) Differs("body", x.name, "center of mass");
       if (!near_(x.inertia_kg_m2, y.inertia_kg_m2, x)) Differs("body", x.name, "inertia");
       y.inertia_kg_m2 = x.inertia_kg_m2;
-      // Model files have no velocities.
+      // Model files contain no velocities.
       y.velocity_m_per_s = x.velocity_m_per_s;
       y.angular_velocity_rad_per_s = x.angular_velocity_rad_per_s;
       if (x != y) Differs("body", x.name, "value");
     }
   }
 
-  /// Calls `compare(i, k)` for every part a[i] and the part b[k] of the same name.
+  /// Calls `compare(i, k)` for every part a[i] and the part b[k] with the same name.
   template <class Part, class F>
   void ByName(const char* kind, const std::vector<Part>& a, const std::vector<Part>& b, F compare) {
     std::map<std::string, std::size_t> read;

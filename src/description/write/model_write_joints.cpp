@@ -10,7 +10,8 @@
 namespace taut::description {
 namespace {
 
-/// Greatest distance of a support's points that are one node; beyond it, the support has slid.
+/// Largest distance at which both points of a support count as one node. A larger distance means
+/// that the support has moved.
 constexpr double kTogether_m = 1e-9;
 
 bool IsOne(const Quat& q) { return q.w == 1 && q.x == 0 && q.y == 0 && q.z == 0; }
@@ -60,8 +61,8 @@ class JointTaker {
           static_cast<int>(m_.pairs.size()) - 1);
   }
 
-  /// Adds a node of the world at the original point of a support that has slid. Returns -1 after an
-  /// error.
+  /// Adds a node of the world at the initial position of a support that has moved. Returns -1 after
+  /// an error.
   int GroundOf(const JointDef& support) {
     const std::string name = support.name + "_from";
     const auto taken = std::find_if(m_.nodes.begin(), m_.nodes.end(),
@@ -77,8 +78,8 @@ class JointTaker {
     return node;
   }
 
-  /// Returns the keys that differ from the defaults, with the names for the joint's kind and
-  /// directions in the part's frame.
+  /// Returns the keys of a joint that differ from the defaults. Uses the names of keys for the
+  /// joint's kind, and directions in the part's frame.
   std::string Text(const JointDef& joint, const std::string& placement) const {
     const auto found = m_.turns.find(placement);
     const Quat turn = found == m_.turns.end() ? Quat{} : found->second;
@@ -114,7 +115,7 @@ class JointTaker {
     return text + "}";
   }
 
-  /// Adds `apart`, without pairs of rods that are pinned to the same node, which never collide.
+  /// Adds `apart`. Rods pinned to the same node are excluded, since they never collide.
   void Apart() {
     std::set<std::pair<int, int>> told;
     for (const int pin : m_.pins) {

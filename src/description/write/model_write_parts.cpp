@@ -84,8 +84,8 @@ class ModelDecomposer {
   }
   std::string BodyName(int body) const { return def_.bodies[static_cast<std::size_t>(body)].name; }
 
-  /// Returns the mass of a shape as given in its builder; if unknown, the mass of the body,
-  /// provided that it has no other shape.
+  /// Returns the mass of a shape as its builder gives it. If this is unknown, returns the mass of
+  /// the body, if the shape is its only one.
   SolidMass MassOf(const std::vector<SolidMass> SolidsSpec::*list, std::size_t index, int body) {
     if (robot_.solids) return ((*robot_.solids).*list)[index];
     int shapes = 0;
@@ -101,7 +101,7 @@ class ModelDecomposer {
             def_.bodies[static_cast<std::size_t>(body)].mass_kg - LumpedOn(def_, body)};
   }
 
-  /// Adds the pair of a solid, without tags, which are lost when the solid is built.
+  /// Adds the pair of a solid. It has no tags, because solids do not store them.
   int AddSolidPair(const std::string& name, int a, int b) {
     m_.pairs.push_back({name, {}, {a, b}, {}, {}, false});
     return static_cast<int>(m_.pairs.size()) - 1;
@@ -127,8 +127,8 @@ class ModelDecomposer {
     }
   }
 
-  /// Returns the order of the rods. Pinned rods are ordered by their joints, which follow the
-  /// pairs.
+  /// Returns the order in which to write the rods. Pinned rods are in the order of their joints,
+  /// because the reader creates these joints in the order of the rods.
   std::vector<std::size_t> InOrder() const {
     std::vector<std::size_t> order, places;
     std::vector<std::pair<std::size_t, std::size_t>> pinned;  // joint, rod
@@ -146,7 +146,7 @@ class ModelDecomposer {
     return order;
   }
 
-  /// Returns whether a rod of `class_k` implies the joint.
+  /// Returns whether the joint follows from a `class_k` rod.
   bool IsPin(const JointDef& joint, const CapsuleDef& rod) const {
     if (joint.kind != JointKind::kBall || joint.body_b != rod.body) return false;
     const int node = NodeAt(joint.body_a, joint.from_m);
@@ -154,7 +154,8 @@ class ModelDecomposer {
            joint.name == rod.name + "." + m_.nodes[static_cast<std::size_t>(node)].name;
   }
 
-  /// Returns the node at an end of a rod: a node of its body, or the node that it is pinned to.
+  /// Returns the node at an end of a rod: a node of its body, or the node to which the rod is
+  /// pinned.
   int RodEnd(const CapsuleDef& rod, const Vec3& p) {
     const int own = NodeAt(rod.body, p);
     if (own >= 0) return own;
@@ -208,8 +209,8 @@ class ModelDecomposer {
     }
   }
 
-  /// Returns the orientation of the part of a box: the orientation of its first box. Nodes outside
-  /// of parts have none.
+  /// Returns the orientation of a part, which is the orientation of its first box; identity for
+  /// nodes outside of parts.
   Quat TurnFor(const std::string& placement, const Quat& box) {
     if (placement.empty()) return {};
     return m_.turns.emplace(placement, box).first->second;
@@ -242,7 +243,8 @@ class ModelDecomposer {
     }
   }
 
-  /// Returns the inertia in the axes of the node's part; three numbers if the products are 0.
+  /// Returns the inertia in the axes of the node's part, as three numbers if the products of
+  /// inertia are 0.
   std::string InertiaText(const Inertia& in_world, int node) const {
     const auto turn = m_.turns.find(PlacementOf(m_.nodes[static_cast<std::size_t>(node)].name));
     const Inertia i = turn == m_.turns.end() ? in_world : Turned(Conjugate(turn->second), in_world);
@@ -277,7 +279,9 @@ class ModelDecomposer {
         continue;
       }
       const double own_kg = body.mass_kg - LumpedOn(def_, static_cast<int>(b));
-      if (own_kg < 1e-12 * body.mass_kg) continue;  // the mass is from bars and cables alone
+      if (own_kg < 1e-12 * body.mass_kg)
+        continue;  // all mass of the body comes from bars and
+                   // cables
       add(node, own_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg), {});
     }
   }
@@ -306,8 +310,8 @@ class ModelDecomposer {
     }
   }
 
-  /// Returns the node at which a cable is attached. A point on a surface becomes a new node,
-  /// because the cable stays there in every pose.
+  /// Returns the node at which a cable is attached. Adds a node if the cable is attached to a
+  /// surface, because this attachment point is fixed in the body.
   int EndNode(const CableDef& cable, std::size_t i) {
     const AttachmentDef& at = cable.attachments[i];
     const int there = NodeAt(at.body, at.position_m);
@@ -334,7 +338,7 @@ class ModelDecomposer {
     return static_cast<int>(m_.nodes.size()) - 1;
   }
 
-  /// Sets `fixed_to` for nodes that no rod or box welds to the rest of their body.
+  /// Sets `fixed_to` of nodes that no rod or box connects to the rest of their body.
   void FixNodes() {
     base::UnionFind welds(m_.nodes.size());
     for (std::size_t p = 0; p < m_.solid_pairs; ++p) {

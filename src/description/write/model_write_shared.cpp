@@ -1,4 +1,4 @@
-// Shared queries and messages of the serialization of model files.
+// Queries and messages that the steps of the model writer share.
 #include <algorithm>
 
 #include "description/write/model_write.h"

@@ -67,10 +67,10 @@ const std::vector<std::pair<std::string, std::string>> kSpellings{
      R"({"title": "selector", "oneOf": [{"$ref": "#/$defs/tag"}, {"$ref": "#/$defs/tags"}, {"type": "array", "items": {"oneOf": [{"$ref": "#/$defs/tag"}, {"$ref": "#/$defs/tags"}]}, "minItems": 1, "contains": {"type": "array"}}], "description": "`a`: all with the tag a. `[a, b]`: all with both tags. `[[a, b], [c]]`: all with any of these sets."})"},
 };
 
-/// Definitions of one schema, in the order of reading.
+/// Definitions of one schema, in the order in which `Begin` adds them.
 class Definitions {
  public:
-  /// Registers a definition. Returns whether the caller has to write it.
+  /// Adds a definition. Returns true if it is new, so that the caller must write it.
   bool Begin(const std::string& name) {
     if (!seen_.insert({name, order_.size()}).second) return false;
     order_.emplace_back(name, "");
@@ -79,7 +79,7 @@ class Definitions {
   void End(const std::string& name, std::string json) {
     order_[seen_.at(name)].second = std::move(json);
   }
-  /// Returns all definitions, and the entries of `kSpellings` to which they or `top` refer.
+  /// Returns all definitions, plus the entries of `kSpellings` that they or `top` refer to.
   std::string Text(const std::string& top) const {
     std::string out;
     for (const auto& [name, json] : order_) out += Line(name, json);
@@ -94,7 +94,7 @@ class Definitions {
       }
     }
     out += spellings;
-    return out.substr(0, out.size() - 2);  // without the last comma
+    return out.substr(0, out.size() - 2);  // without the last comma and line break
   }
 
  private:
@@ -107,7 +107,7 @@ class Definitions {
 
 std::string Reference(const std::string& name) { return R"("$ref": "#/$defs/)" + name + '"'; }
 
-/// Returns the schema members for the range of a number. Expressions are not checked.
+/// Returns the schema of a number's range. Expressions are not checked.
 std::string Range(const Bound& bound) {
   std::string out;
   const auto end = [&](double value, bool open, const char* closed_word, const char* open_word) {
@@ -119,7 +119,8 @@ std::string Range(const Bound& bound) {
   return out;
 }
 
-/// Returns the default of a key: the initial value of its field. Empty if it cannot be written.
+/// Returns the default of a key (the initial value of its field). Returns an empty text if it has
+/// no JSON form.
 template <class T>
 std::string Default(const T& field) {
   if constexpr (std::same_as<T, bool>) {
@@ -135,7 +136,7 @@ std::string Default(const T& field) {
   }
 }
 
-/// `replaces`: absent keys keep the model's values, so the schema has no defaults.
+/// `replaces`: absent keys keep the values of a model, so the schema contains no defaults.
 template <class T>
 std::string MappingReference(Definitions& definitions, bool replaces = false);
 
@@ -240,7 +241,7 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
     rules_.push_back(R"("oneOf": [)" + any(one) + ", " + any(other) + "]");
   }
   void Rule(const char* json) { rules_.push_back(json); }
-  /// Adds all alternative names; the reader checks which one is valid.
+  /// Adds all alternative names of a key. Only the reader checks which name is valid.
   template <class OfName>
   void Spell(const Spellings& spellings, const OfName& of_name) {
     spellings_ = &spellings;
@@ -251,8 +252,8 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
     spellings_ = nullptr;
   }
 
-  /// Returns the schema of the map, with `indent` before each line. In a whole file, `base` may
-  /// provide the required keys.
+  /// Returns the schema of a map, with `indent` before each line. `whole_file`: the required keys
+  /// may come from `base`.
   std::string Text(const std::string& indent, bool whole_file) const {
     std::string needed = Joined(needed_, Json), rules;
     if (rules_.size() == 1) rules = rules_[0];
@@ -294,14 +295,15 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
 
   Definitions& definitions_;
   bool replaces_;
-  const Spellings* spellings_ = nullptr;  ///< Key with alternative names that is being visited.
+  const Spellings* spellings_ = nullptr;  ///< Alternative names of the present key; null if it has
+                                          ///< only one name.
   int spelt_ = 0;
   bool spelt_needed_ = false;
   std::string about_;
   std::vector<std::string> needed_, rules_, properties_;
 };
 
-/// Finds the heading of a table.
+/// Finds the heading of a key table.
 class TitleFinder : public KeyVisitor<TitleFinder, false> {
  public:
   template <class T, class... Choices>

@@ -12,13 +12,14 @@
 namespace taut::description {
 namespace {
 
-constexpr int kMaxNesting = 100;  ///< Depth of parentheses, signs and powers; bounds recursion.
-constexpr std::size_t kMaxLength = 10'000;  ///< Bounds the time of the search for names.
+constexpr int kMaxNesting = 100;  ///< Limit of nested parentheses, signs and powers, which limits
+                                  ///< the recursion depth.
+constexpr std::size_t kMaxLength = 10'000;  ///< Limits the time to find names.
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Function {
   std::string_view name;
-  int arguments;  ///< -2: two or more.
+  int arguments;  ///< Number of arguments; -2: two or more.
 };
 constexpr std::array kFunctions{Function{"sqrt", 1},  Function{"sin", 1},   Function{"cos", 1},
                                 Function{"tan", 1},   Function{"asin", 1},  Function{"acos", 1},
@@ -34,12 +35,12 @@ const Function* FindFunction(std::string_view name) {
   return nullptr;
 }
 
-// Not <cctype>: letters must not depend on the locale.
+// Letters must not depend on the locale, so <cctype> is not used.
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Returns the length of the identifier that begins at `start`; 0 if none does.
+/// Returns the length of the identifier at `start`; 0 if there is none.
 std::size_t IdentifierLength(std::string_view text, std::size_t start) {
   if (start >= text.size() || !IsLetter(text[start])) return 0;
   std::size_t end = start + 1;
@@ -168,7 +169,7 @@ class Parser {
 
   const double& Named(std::string_view name) {
     const auto found = names_.find(name);
-    if (found != names_.end()) return found->second;  // NaN propagates silently
+    if (found != names_.end()) return found->second;  // may be NaN, which propagates
     if (FindFunction(name)) {
       throw Failure{std::string(name) + " is a function and needs arguments",
                     "write " + std::string(name) + "(...)"};
@@ -178,7 +179,9 @@ class Parser {
 
   std::string NameHint(std::string_view name) const {
     if (names_.empty()) return "no parameters are defined";
-    if (names_.size() > 300 || name.size() > 60) return {};  // bounds the time of the search
+    if (names_.size() > 300 || name.size() > 60)
+      return {};  // limits the time to find similar
+                  // names
     std::vector<std::string> known;
     for (const auto& entry : names_) known.push_back(entry.first);
     return DidYouMean(name, known);
@@ -224,7 +227,7 @@ class Parser {
 
   [[noreturn]] void Unexpected() const {
     if (at_ >= text_.size()) throw Failure{"the expression is incomplete", ""};
-    // The whole UTF-8 character, not its first byte.
+    // Include all bytes of a UTF-8 character.
     std::size_t length = 1;
     while (at_ + length < text_.size() && (text_[at_ + length] & 0xC0) == 0x80) ++length;
     const std::string found(text_.substr(at_, length));
@@ -282,7 +285,7 @@ std::vector<std::string> NamesIn(std::string_view expression) {
     const std::size_t length = IdentifierLength(expression, at);
     if (length == 0) {
       ++at;
-      // The e of 1e-3 is not a name: a number is skipped with all its letters.
+      // In 1e-3, the e is not a name: skip all letters and digits of a number.
       if (IsDigit(expression[at - 1])) {
         while (at < expression.size() && (IsLetter(expression[at]) || IsDigit(expression[at])))
           ++at;

@@ -15,26 +15,27 @@
 
 namespace taut::description {
 
-/// Named numbers. NaN marks a name that exists but whose definition had an error, which is already
-/// reported: expressions that use the name evaluate to NaN without a second message.
+/// Values of named parameters. NaN means that the name exists, but its definition had an error.
+/// Expressions that use such a name evaluate to NaN without another error message.
 using NameTable = std::map<std::string, double, std::less<>>;
 
 using NameSet = std::set<std::string, std::less<>>;
 
 struct Evaluated {
-  double value = 0.0;       ///< Finite on success, else NaN.
-  std::string error, hint;  ///< Empty error and NaN: uses a name with a reported error.
+  double value = 0.0;       ///< Finite on success, otherwise NaN.
+  std::string error, hint;  ///< Empty on success, and for NaN that follows from an earlier error.
 };
 
 Evaluated Evaluate(std::string_view expression, const NameTable& names);
 
-/// Expression that is parsed once and evaluated for many values of its names.
+/// Parsed expression that can be evaluated repeatedly for different values of its names.
 class Formula {
  public:
-  /// Refers to the values in `names`, which must outlive it and keep its names.
+  /// Keeps references to the values in `names`. `names` must outlive the formula and keep all its
+  /// entries.
   Formula(std::string_view expression, const NameTable& names);
 
-  /// Evaluates with the present values of `names`; same bits and errors as `Evaluate`.
+  /// Evaluates with the current values of `names`. Same results and errors as `Evaluate`.
   Evaluated Value() const;
   /// Returns the number of steps of one evaluation.
   std::size_t size() const { return steps_.size(); }
@@ -53,14 +54,14 @@ class Formula {
   Evaluated wrong_;          ///< Syntax error, if any.
 };
 
-/// Returns the parameters that an expression refers to, each once. Never fails: for an invalid
-/// expression, returns all names in the text.
+/// Returns the parameters that an expression contains, each once. For an invalid expression,
+/// returns all names in the text.
 std::vector<std::string> NamesIn(std::string_view expression);
 
 /// Returns whether `text` consists of letters, digits and `_` and does not start with a digit.
 bool IsIdentifier(std::string_view text);
 
-/// Returns whether `text` is `pi` or a function, which no parameter may be named after.
+/// Returns whether `text` is `pi` or the name of a function. Parameters must not have such a name.
 bool IsReservedName(std::string_view text);
 
 }  // namespace taut::description

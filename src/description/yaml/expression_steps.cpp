@@ -56,7 +56,7 @@ double Apply(std::string_view name, std::span<const double> arguments) {
   if (name == "ceil") return std::ceil(x);
   if (name == "round") return std::round(x);
   if (name == "noise") return NoiseAt(x, arguments[1], arguments[2]);
-  double best = x;  // min and max
+  double best = x;  // min or max
   for (const double other : arguments) {
     if (name == "min" ? other < best : other > best) best = other;
   }
@@ -80,7 +80,7 @@ double CallOf(std::string_view name, std::span<const double> arguments) {
   return Checked(Apply(name, arguments), name);
 }
 
-/// Returns the result of an operation with two operands.
+/// Returns the result of a binary operation.
 double Combined(Formula::Kind kind, double a, double b) {
   switch (kind) {
     case Formula::Kind::kAdd:

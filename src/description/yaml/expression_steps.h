@@ -1,4 +1,4 @@
-/// Stack machine that evaluates the postfix steps of a parsed expression.
+/// Stack machine that evaluates an expression in postfix order.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace taut::description {
 
-/// Thrown at the first error of parsing or evaluation; `Formula` catches it.
+/// Thrown at the first parsing or evaluation error; caught by `Formula`.
 struct ExpressionFailure {
   std::string error, hint;
 };

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Finds a cycle of parameters, such as a -> b -> a, from a parameter that cannot be evaluated.
-/// `waits_for[i]` is one unevaluated parameter that `i` refers to.
+/// Finds a cycle of parameters, such as a -> b -> a, among parameters that cannot be evaluated.
+/// `waits_for[i]`: an unevaluated parameter to which `i` refers.
 std::vector<std::size_t> FindCircle(const std::unordered_map<std::size_t, std::size_t>& waits_for,
                                     std::size_t start) {
   std::vector<std::size_t> path;
@@ -136,7 +136,8 @@ void WarnOfUnused(const std::vector<ParameterText>& parameters, NameSet used,
 }
 
 NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagnostics& out) {
-  // In topological order (Kahn), not by recursion: a chain may have any length.
+  // Topological order (Kahn's algorithm). Recursion could overflow the stack, since chains may have
+  // any length.
   std::unordered_map<std::string, std::size_t> places;
   for (std::size_t i = 0; i < parameters.size(); ++i) places[parameters[i].name] = i;
   std::vector<std::vector<std::size_t>> users(parameters.size()), needs(parameters.size());
@@ -144,7 +145,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     for (const std::string& name : NamesIn(parameters[i].expression)) {
       const auto found = places.find(name);
-      if (found == places.end()) continue;  // the evaluation reports it
+      if (found == places.end()) continue;  // the evaluation reports this name
       needs[i].push_back(found->second);
       users[found->second].push_back(i);
     }
@@ -152,14 +153,14 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     if (open[i] == 0) ready.push_back(i);
   }
 
-  // During the evaluation all names exist, so that hints can suggest them.
+  // Already contains all names, so that hints can suggest them.
   NameTable values;
   for (const ParameterText& parameter : parameters) values[parameter.name] = kUnknown;
   std::vector<bool> done(parameters.size(), false);
   const auto evaluate = [&](std::size_t i) {
     const ParameterText& parameter = parameters[i];
     done[i] = true;
-    if (parameter.at.file.empty()) return;  // already reported when it was read
+    if (parameter.at.file.empty()) return;  // the reader has reported this parameter
     Evaluated result = Evaluate(parameter.expression, values);
     if (!result.error.empty()) {
       out.Error("parameter.bad_expression", parameter.at,
@@ -175,7 +176,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     }
   }
 
-  // The remaining parameters are in a cycle or depend on one.
+  // All remaining parameters belong to a cycle or depend on one.
   std::unordered_map<std::size_t, std::size_t> waits_for;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     for (const std::size_t need : needs[i]) {

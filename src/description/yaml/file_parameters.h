@@ -10,33 +10,33 @@
 
 namespace taut::description {
 
-/// Parameter as written in the file.
+/// Parameter as in the file.
 struct ParameterText {
   std::string name;
   std::string expression;
   SourceRef at;
 };
 
-/// `--set` overrides and whether they have been used. An experiment and its model share one set; a
-/// name that neither of them has is an error.
+/// `--set` overrides and their use. An experiment and its model share one set. An override is an
+/// error if neither of them has the parameter.
 class OverrideSet {
  public:
   explicit OverrideSet(const Overrides& overrides);
 
-  /// Adds an override that comes from a file; `parameter.at` is its place there.
+  /// Adds an override from a file. `parameter.at`: its position in that file.
   void Add(ParameterText parameter);
 
-  /// Replaces the expressions of overridden parameters. The last of several overrides of one name
-  /// wins.
+  /// Replaces the expressions of overridden parameters. If a name has several overrides, the last
+  /// one counts.
   void Apply(std::vector<ParameterText>& parameters);
 
-  /// Marks all overrides as used: after a read error the parameters of a file are not all known.
+  /// Marks all overrides as used. For files with read errors, whose parameters are not fully known.
   void Silence();
 
   /// Returns the overrides that no `Apply` has used.
   std::vector<ParameterText> Unused() const;
 
-  /// Reports an error for every override that no `Apply` has used; `known` are the names for hints.
+  /// Reports an error for every override that no `Apply` has used. `known`: names for hints.
   void ReportUnused(const std::vector<std::string>& known, Diagnostics& out) const;
 
  private:
@@ -54,15 +54,15 @@ void ReportUnknownParameter(const ParameterText& parameter, const std::vector<st
 /// Reads a `parameters:` map. `block` may be null: no parameters.
 std::vector<ParameterText> ReadParameters(const Value* block, Diagnostics& out);
 
-/// Merges `changes` into `base`: the same name replaces, a new name is added.
+/// Merges `changes` into `base`: replaces parameters with the same name and adds the others.
 void MergeParameters(std::vector<ParameterText>& base, const std::vector<ParameterText>& changes);
 
-/// Evaluates parameters, which may refer to each other in any order. A parameter that cannot be
-/// evaluated is reported once and is NaN in the result.
+/// Evaluates parameters, which may refer to each other in any order. Reports each parameter that
+/// cannot be evaluated and sets it to NaN.
 NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagnostics& out);
 
-/// Warns of each parameter to which neither the file (`used`) nor another parameter in use refers,
-/// because a change of it has no effect. Parameters that only a base file defines are left out.
+/// Warns of parameters without effect: neither the file (`used`) nor a used parameter refers to
+/// them. Parameters of base files are excluded.
 void WarnOfUnused(const std::vector<ParameterText>& parameters, NameSet used,
                   const std::vector<std::string>& files, Diagnostics& out);
 

@@ -13,15 +13,15 @@ struct VersionForm {
 struct FileForm {
   static constexpr const char* kSchema = R"("type": "string")";
 };
-/// Map from names of parameters to numbers.
+/// Map of parameter names to numbers.
 struct ParametersForm {
   static constexpr const char* kSchema =
       R"("type": "object", "additionalProperties": {"$ref": "#/$defs/number"}, )"
       R"("propertyNames": {"$ref": "#/$defs/identifier"})";
 };
 
-/// Header keys, which `ReadMergedFile` reads before the rest. `Kind::kSchema` is the format's own
-/// schema of `kind`.
+/// Header keys, which `ReadMergedFile` reads first. `Kind::kSchema`: schema of the key `kind` of
+/// this format.
 template <class Kind>
 struct Head {
   Raw<VersionForm> taut;
@@ -30,7 +30,7 @@ struct Head {
   Raw<ParametersForm> parameters;
 };
 
-/// Descriptions of the header keys for one format; the examples are JSON.
+/// Descriptions of the header keys of one format. Examples are in JSON.
 struct HeadTexts {
   const char *name_is, *description_is, *base_is, *base_example, *parameters_are,
       *parameters_example;

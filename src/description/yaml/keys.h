@@ -1,7 +1,6 @@
-/// Declarative tables of the keys of the YAML formats. Each map of a format has one function
-/// `Keys`, which defines each key in one line: its name, the field that it fills, its range,
-/// whether it is required, and its description. The suffix of the name gives the unit; the
-/// initializer of the field is the default.
+/// Declarative tables of the keys of the YAML formats. Each map of a format has a function `Keys`
+/// with one line per key: its name, field, range and description, and whether it is required. The
+/// suffix of the name is the unit. The initializer of the field is the default.
 ///
 ///   struct Spring { double stiffness_n_per_m = 0, damping_n_s_per_m = 1; };
 ///   template <class Io>
@@ -11,16 +10,20 @@
 ///     io("damping_n_s_per_m", s.damping_n_s_per_m, Bound::kNonNegative, "Of the damper.");
 ///   }
 ///
-/// Visitors walk these tables: `FileReader` (read_keys.h) fills the fields from a file,
-/// `SchemaMaker` (schema.cpp) writes the JSON schema for editors and docs/formats/, `BlockWriter`
-/// (write_keys.h) and `ResolvedReader` (resolved_read.cpp) write and read resolved experiments,
-/// `NumberList` (number_list.h) lists the numbers that studies may vary. Conditions on several keys
-/// are code: a function `Check(map, struct)` next to the table, which the reader calls after it has
-/// read all keys.
+/// Visitors of these tables:
 ///
-/// A struct that occurs in files and in resolved experiments has one table for both: `cable:` of a
-/// model is a `CableText`, which extends `CableDef` by the keys that only files have;
-/// `Io::kResolved` distinguishes the two.
+/// - `FileReader` (read_keys.h) fills the fields from a file.
+/// - `SchemaMaker` (schema.cpp) writes the JSON schema for editors and docs/formats/.
+/// - `BlockWriter` (write_keys.h) writes resolved experiments.
+/// - `ResolvedReader` (resolved_read.cpp) reads resolved experiments.
+/// - `NumberList` (number_list.h) lists the numbers that studies may vary.
+///
+/// Conditions on several keys are in a function `Check(map, struct)` next to the table. The reader
+/// calls it after it has read all keys.
+///
+/// A struct that occurs in files and in resolved experiments has one table for both, and
+/// `Io::kResolved` distinguishes them. Example: `cable:` of a model is a `CableText`, which extends
+/// `CableDef` by keys that only files have.
 #pragma once
 
 #include <algorithm>
@@ -40,11 +43,11 @@ namespace taut::description {
 
 template <class T, class U>
 concept Like = std::same_as<std::remove_const_t<T>, U>;
-/// Matches a struct of a resolved experiment or its counterpart in files.
+/// Matches a struct of resolved experiments (`Spec`) or its counterpart in files (`Text`).
 template <class T, class Spec, class Text>
 concept Either = Like<T, Spec> || Like<T, Text>;
 
-// Notes on a key, in addition to its `Bound`, its description and the choices of an enumeration.
+// Attributes of a key. A key may also have a `Bound`, a description and choices.
 
 namespace note {
 struct Needed {};
@@ -58,7 +61,7 @@ struct Fixed {};
 struct Varied {};
 struct AtStart {};
 }  // namespace note
-/// The key was added to the format later; a file without it means this number.
+/// The key was added in a later version of the format. Files without the key have this value.
 struct LaterThan {
   double value;
 };
@@ -67,19 +70,20 @@ struct Example {
   const char* json;
 };
 
-inline constexpr note::Needed kNeeded;              ///< Required key.
+inline constexpr note::Needed kNeeded;              ///< The key is required.
 inline constexpr note::ResolvedOnly kResolvedOnly;  ///< Only in resolved experiments.
 inline constexpr note::Later kLater;            ///< Absent from files of earlier versions of taut.
-inline constexpr note::IsName kName;            ///< A text of letters, digits, _ and -.
-inline constexpr note::IsDirection kDirection;  ///< A nonzero vector; stored with length 1.
-inline constexpr note::Inherited kInherited;    ///< If absent, the value comes from elsewhere.
-inline constexpr note::Limit kLimit;            ///< If absent, infinite.
-inline constexpr note::Fixed kFixed;            ///< A number that studies do not vary.
-inline constexpr note::Varied kVaried;    ///< A list whose numbers studies vary, as key_1, key_2.
-inline constexpr note::AtStart kAtStart;  ///< A number that describes the start of something.
+inline constexpr note::IsName kName;            ///< Text of letters, digits, _ and -.
+inline constexpr note::IsDirection kDirection;  ///< Nonzero vector; stored with length 1.
+inline constexpr note::Inherited kInherited;    ///< Without this key, another map determines the
+                                                ///< value.
+inline constexpr note::Limit kLimit;            ///< Infinite if absent.
+inline constexpr note::Fixed kFixed;            ///< Number that studies do not vary.
+inline constexpr note::Varied kVaried;    ///< List whose numbers studies vary, as key_1, key_2, ...
+inline constexpr note::AtStart kAtStart;  ///< Number that describes an initial state.
 
-/// Alternative names of a key; another key of the file selects the valid one: the amplitude of a
-/// gait is amplitude_m_per_s or amplitude_m. `when` gives the condition of each name, for the
+/// Alternative names of a key, of which another key selects the valid one. Example: the amplitude
+/// of a gait is amplitude_m_per_s or amplitude_m. `when`: condition of each name, for the
 /// reference.
 struct Spellings {
   static constexpr int kCount = 2;
@@ -87,11 +91,11 @@ struct Spellings {
   const char* when[kCount];
 };
 
-/// Line of a table without the field, reduced to the data that readers need, because they visit
+/// Line of a table without its field. Contains only the data for readers, since each of them visits
 /// hundreds of lines.
 struct Key {
   const char* name = "";
-  const Bound* bound = &Bound::kAny;  ///< Part of the table; valid during the visit of the line.
+  const Bound* bound = &Bound::kAny;  ///< Bound in the table; valid during the visit of the line.
   bool needed : 1 = false, later : 1 = false, is_name : 1 = false, is_direction : 1 = false;
   bool inherited : 1 = false, limit : 1 = false, fixed : 1 = false, varied : 1 = false;
   bool at_start : 1 = false;
@@ -114,12 +118,12 @@ struct Key {
   void Note(const Choices<E>&) {}
 };
 
-/// Line of a table with the texts for people, for visitors that write.
+/// Line of a table with descriptions, for writers of files and schemas.
 struct KeyText : Key {
   const char* meaning = "";  ///< Description in sentences, without range and unit.
   const char* example = nullptr;
   double before =
-      std::numeric_limits<double>::quiet_NaN();  ///< `LaterThan`: this value is not written.
+      std::numeric_limits<double>::quiet_NaN();  ///< `LaterThan`: value that writers omit.
 
   using Key::Note;
   void Note(const char* text) { meaning = text; }
@@ -132,16 +136,16 @@ inline constexpr bool kIsChoices = false;
 template <class E>
 inline constexpr bool kIsChoices<Choices<E>> = true;
 
-/// Base class of the visitors of tables. Calls `Derived::On(key, field)`, for an enumeration with
-/// its choices. The type of `key` is `Derived::Line`: `Key` or `KeyText`. `kOfResolved`: for
-/// resolved experiments.
+/// Base class of visitors of key tables. Calls `Derived::On(key, field)`, or `On(key, field,
+/// choices)` for enumerations. `key` has the type `Derived::Line`, which is `Key` or `KeyText`.
+/// `kOfResolved`: whether the tables are of resolved experiments.
 template <class Derived, bool kOfResolved>
 class KeyVisitor {
  public:
   static constexpr bool kResolved = kOfResolved;
   using Line = Key;
 
-  // Inline, so that notes that no visitor uses cost nothing.
+  // Inlined, so that unused attributes have no cost.
   template <class T, class... Notes>
   [[gnu::always_inline]] void operator()(const char* name, T& field, const Notes&... notes) {
     if constexpr (kResolved || !(std::same_as<Notes, note::ResolvedOnly> || ...)) {
@@ -157,7 +161,7 @@ class KeyVisitor {
     }
   }
 
-  /// Visits a key with alternative names, under each name that `Derived::Spell` selects.
+  /// Visits a key with alternative names. `Derived::Spell` selects the names.
   template <class T, class... Notes>
   void operator()(const Spellings& spellings, T& field, const Notes&... notes) {
     static_cast<Derived&>(*this).Spell(spellings,
@@ -167,21 +171,21 @@ class KeyVisitor {
   void Spell(const Spellings& spellings, const OfName& of_name) {
     of_name(spellings.names[std::max(0, spelling.index)]);
   }
-  /// Selects the valid alternative name for all following keys and nested maps; `key` is the key
-  /// that made the choice.
+  /// Selects the valid alternative name of all following keys and nested maps. `key`: the key that
+  /// determines it.
   void SpeltBy(const char* /*key*/, const Spelling& now) { spelling = now; }
 
   Spelling spelling;
 
-  // Further declarations of a table. `what` is the name of the map in messages (if empty, its path
-  // in the file); `title` is its heading in the reference.
+  // Further declarations of a table. `what`: name of the map in messages; if empty, its path in the
+  // file. `title`: heading in the reference.
   void Map(const char* /*what*/, const char* /*title*/, const char* /*meaning*/,
            const char* /*example*/ = nullptr) {}
-  void OneOf(const std::vector<std::string>& /*keys*/) {}  ///< Exactly one of these keys.
-  /// Keys of one side or of the other, at least one.
+  void OneOf(const std::vector<std::string>& /*keys*/) {}  ///< Requires exactly one of these keys.
+  /// Requires keys of one of the two sides, and none of the other side.
   void EitherSide(const std::vector<std::string>& /*one*/,
                   const std::vector<std::string>& /*other*/) {}
-  void Rule(const char* /*json*/) {}  ///< For the schema only: a condition that `Check` reports
+  void Rule(const char* /*json*/) {}  ///< Condition in the schema only; `Check` reports violations
                                       ///< with a better message.
 
  private:
@@ -191,7 +195,7 @@ class KeyVisitor {
   }
 };
 
-// Field types of structs that represent the contents of files.
+// Field types of structs that contain parsed files.
 
 /// Text with its position in the file.
 struct Placed {
@@ -199,8 +203,8 @@ struct Placed {
   SourceRef at;
 };
 
-/// Map with free keys, which name the values. An item with an error is kept, so that valid
-/// references to it cause no further errors.
+/// Map whose keys are free names of its items. Items with errors are kept, so that references to
+/// them cause no further errors.
 template <class T>
 struct Named {
   struct Item {
@@ -212,15 +216,14 @@ struct Named {
   std::vector<Item> items;
 };
 
-/// Value that code reads later, when more than the file is known. `Form::kSchema` describes the
-/// allowed values as members of a JSON schema.
+/// Value that other code converts later. `Form::kSchema`: JSON schema of the permitted values.
 template <class Form>
 struct Raw {
   using FormType = Form;
   const Value* value = nullptr;
 };
 
-/// List of a resolved experiment, written as one text of numbers because it may be too long for a
+/// List of numbers in a resolved experiment, written as one text, since it may be too long for a
 /// YAML list.
 template <class List>
 struct Packed {
@@ -244,7 +247,7 @@ void EachNumber(Number& number, const Use& use) {
   }
 }
 
-/// Map that is checked when it is read, and later applied on top of the values of a model.
+/// Map that is checked when the file is read, and later replaces values of a model.
 template <class T>
 struct Overlay {
   using Mapping = T;

@@ -1,4 +1,4 @@
-/// Kinds of files, for hints in messages.
+/// Kinds of files, with hints for messages.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace taut::description {
 
-/// Kind of a file in which `ResolvedYaml` recorded an experiment.
+/// Kind of the files that `ResolvedYaml` writes.
 inline constexpr const char* kResolvedKind = "resolved_experiment";
 
-/// Returns a hint for a file of an unexpected kind: the command that reads files of this kind, or,
-/// for an unknown kind, the list of kinds.
+/// Returns a hint for a file of an unexpected kind: the command for this kind. For an unknown kind,
+/// returns the list of kinds.
 std::string HintOfKind(std::string_view kind);
 
 }  // namespace taut::description

@@ -1,4 +1,4 @@
-/// Names of laws and enumerations that model files set and experiments may override.
+/// Laws and enumerations that model files contain and experiments may override.
 #pragma once
 
 #include <string>
@@ -20,10 +20,10 @@ inline const Choices<FrictionLaw> kFrictionLaws{{"cone", FrictionLaw::kCone},
                                                 {"along_slip", FrictionLaw::kAlongSlip}};
 inline const Choices<DampingLaw> kDampingLaws{{"exact", DampingLaw::kExact},
                                               {"clamped", DampingLaw::kClamped}};
-/// Computation of the inertia of a body from its parts.
+/// Method to compute the inertia of a body.
 enum class InertiaLaw {
   kExact,        ///< Sum of the inertias of the parts.
-  kBoundingBox,  ///< Solid box of the body's size and mass, like Bullet's compound shapes.
+  kBoundingBox,  ///< Solid box with the body's size and mass, like Bullet's compound shapes.
 };
 inline const Choices<InertiaLaw> kInertiaLaws{{"exact", InertiaLaw::kExact},
                                               {"bounding_box", InertiaLaw::kBoundingBox}};

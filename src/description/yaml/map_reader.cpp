@@ -1,4 +1,5 @@
-// Keys of a map: required keys, unknown keys with their remedies, conditions on several keys.
+// Checks of the keys of a map: required keys, unknown keys with suggested fixes, conditions on
+// several keys.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -14,7 +15,7 @@ std::string Joined(const std::vector<std::string>& words, std::string_view betwe
   return out;
 }
 
-/// Remedy for an unknown key, and the known keys that it suggests.
+/// Fix for an unknown key, and the known keys that the fix mentions.
 struct KeyFix {
   std::string hint;
   std::vector<std::string> meant;
@@ -38,8 +39,8 @@ KeyFix SimilarKeys(std::string_view key, const std::vector<std::string>& known) 
   return fix;
 }
 
-/// Returns the fix for an unknown key: the same quantity in taut's unit (`_mm`: `_m`), a synonym,
-/// or the key with the most similar name.
+/// Returns the fix for an unknown key: the key with taut's unit (`_m` for `_mm`), a synonym, or the
+/// most similar key.
 KeyFix FixOf(const std::string& key, const std::vector<std::string>& known) {
   struct Unit {
     std::string_view theirs, ours, factor;

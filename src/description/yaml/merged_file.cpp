@@ -9,7 +9,7 @@
 namespace taut::description {
 namespace {
 
-/// Returns the canonical path, so that two paths to one file compare equal.
+/// Returns the canonical path, so that different paths to one file compare equal.
 std::string Canonical(const std::string& path) {
   std::error_code failed;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, failed);

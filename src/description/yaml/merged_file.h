@@ -1,4 +1,4 @@
-/// File inheritance: files with `base: other.yaml` that contain only the differences.
+/// File inheritance: a file with `base: other.yaml` contains only the differences from its base.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace taut::description {
 
-/// File with its `base` files merged in: every top-level key of the file replaces the key of the
-/// base, except that `parameters` and `set` are merged by name.
+/// File after merging its `base` files. Every top-level key of the file replaces the same key of
+/// the base. `parameters` and `set` are merged by name.
 struct MergedFile {
   ValuePtr root;
   std::vector<ParameterText> parameters;
-  std::vector<std::string> files;  ///< The file first, then its bases.
+  std::vector<std::string> files;  ///< First the file, then its bases.
 };
 
 /// Reads a file and its bases, which must all be of kind `kind` ("model", "experiment", ...). The
 /// root is null after an error.
 MergedFile ReadMergedFile(const std::string& path, std::string_view kind, Diagnostics& out);
 
-/// Same for a file that `ReadYaml` has read already as `root`, which is not null.
+/// Same as `ReadMergedFile`, for a file already parsed by `ReadYaml`. `root` must not be null.
 MergedFile MergeBases(const std::string& path, ValuePtr root, std::string_view kind,
                       Diagnostics& out);
 

@@ -1,5 +1,4 @@
-/// List of the numbers of a struct, collected from its table of keys (keys.h), for searches and
-/// studies.
+/// List of all numbers of a struct, collected from its table of keys (keys.h), for studies.
 #pragma once
 
 #include <limits>
@@ -12,9 +11,9 @@
 
 namespace taut::description {
 
-/// Collects every number that is present and not `kFixed`, as "prefix.key"; items of lists are
-/// addressed by their names. `Number` is an aggregate of name, unit, pointer to the field, least
-/// and most. An angle without bounds gets the range -pi..pi.
+/// Collects every number that is present and not `kFixed`. Its name is "prefix.key"; items of lists
+/// are identified by their names. `Number` is an aggregate of name, unit, pointer to the field,
+/// lower and upper bound. Angles without bounds have the range -pi to pi.
 template <class Number>
 class NumberList : public KeyVisitor<NumberList<Number>, true> {
  public:

@@ -1,5 +1,5 @@
-/// Errors that are reported once for each place in a file, because copies of a part would repeat
-/// them.
+/// Errors that are reported once per position in a file, since every copy of a part has the same
+/// error.
 #pragma once
 
 #include <set>

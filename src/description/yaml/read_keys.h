@@ -14,10 +14,10 @@
 
 namespace taut::description {
 
-/// Fills `out` from a map. Reports unknown and missing keys and wrong values, then violated
-/// conditions on several keys (`Check`). `path` is the path of the map in the file. A field whose
-/// key is absent keeps its value, but a required number becomes NaN. Sets `out.at` to the position
-/// and `out.good` to whether no error occurred, if these members exist.
+/// Fills `out` from a map. Reports unknown and missing keys and invalid values, then violated
+/// conditions on several keys (`Check`). `path`: path of the map in the file. Fields of absent keys
+/// keep their values, but required numbers become NaN. Sets the members `out.at` (position) and
+/// `out.good` (no errors) if they exist.
 template <class T>
 void ReadMapping(const Value& value, const std::string& path, const Scope& scope, T& out);
 
@@ -166,7 +166,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
       not_chosen_.emplace_back(key.name);
     }
   }
-  /// Reports a name that is not the valid alternative, with the valid one.
+  /// Reports a name that is not the valid alternative; the message contains the valid one.
   template <class OfName>
   void Spell(const Spellings& spellings, const OfName& of_name) {
     const char* right = spellings.names[std::max(0, spelling.index)];
@@ -189,7 +189,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
     const bool chosen = std::find(not_chosen_.begin(), not_chosen_.end(), key) == not_chosen_.end();
     if (!chosen) spelling.index = -1;
   }
-  /// If several of the keys are present, all are ignored, because the intended one is unknown.
+  /// If several of these keys are present, ignores all, because the intended one is unknown.
   void OneOf(const std::vector<std::string>& keys) {
     const bool clear = !map_.ExactlyOne(keys).empty();
     if (!clear) ignored_.insert(ignored_.end(), keys.begin(), keys.end());
@@ -210,8 +210,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
   }
 
  private:
-  /// Type-erased reader of a field; it keeps the code that each table compiles to small: a list of
-  /// calls.
+  /// Type-erased reader of a field. It keeps the compiled code of each table small.
   using FieldReader = void (*)(const Value&, const std::string& path, const Key&, const Scope&,
                                void* field);
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns whether some commas of a list are followed by a space and others by a digit, as in
+/// Returns whether a list has commas followed by a space and commas followed by a digit, as in
 /// `[0,5, 0, 0]`.
 bool HasDecimalComma(const Value& list) {
   bool tight = false, wide = false;
@@ -26,7 +26,8 @@ bool HasDecimalComma(const Value& list) {
   return tight && wide;
 }
 
-/// Returns the violated bound, such as " must be positive"; empty for a number in range or NaN.
+/// Returns the violated bound as text, such as " must be positive". Returns an empty text for valid
+/// numbers and NaN.
 std::string Beyond(double number, const Bound& bound) {
   const bool low = number < bound.least || (bound.above_least && number == bound.least);
   const bool high = number > bound.most || (bound.below_most && number == bound.most);
@@ -148,14 +149,15 @@ Vec3 ReadVec3(const Value& value, std::string_view what, const Scope& scope) {
 
 Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope) {
   const Vec3 v = ReadVec3(value, what, scope);
-  // Scaled first, so that the squares of 1e200 and 1e-200 neither overflow nor underflow.
+  // Scale first to avoid overflow and underflow of the squares, such as of 1e200 and 1e-200.
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (largest == 0.0) {
     scope.out.Error("value.zero", value.at, std::string(what) + " must not be zero",
                     "it is a direction");
     return {kMissing, kMissing, kMissing};
   }
-  // A vector of length 1 up to rounding, as taut writes it, is read back without a change of bits.
+  // Keep a vector of length 1 (up to rounding) unchanged, so that files written by taut are read
+  // back bit for bit.
   if (std::fabs(v.x * v.x + v.y * v.y + v.z * v.z - 1.0) < 1e-15) return v;
   const Vec3 s{v.x / largest, v.y / largest, v.z / largest};
   const double length = std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z);

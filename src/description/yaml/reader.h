@@ -1,7 +1,6 @@
-/// Strict access to a YAML tree: every key is either known or an error, every value has the
-/// expected type and range. All functions report errors to `Scope::out` and continue, so that a
-/// user sees all errors of a file at once. After an error they return a harmless value (NaN, an
-/// empty text); later checks ignore NaN.
+/// Strict access to a YAML tree: unknown keys, wrong types and values out of range are errors. All
+/// functions add errors to `Scope::out` and continue, so that users see all errors of a file at
+/// once. After an error, they return NaN or an empty value, which later checks ignore.
 #pragma once
 
 #include <functional>
@@ -22,12 +21,12 @@ namespace taut::description {
 
 /// Valid alternative of keys with several names (`Spellings` in keys.h).
 struct Spelling {
-  int index = 0;         ///< -1: unknown because of an error; any name is accepted.
+  int index = 0;         ///< -1: unknown because of an error; then any name is valid.
   const char* who = "";  ///< Subject of messages: "a gait that drives rest lengths".
 };
 
-/// Context of all reading functions: parameters for expressions, destination of errors, optionally
-/// the set of parameters that were used, and the valid alternative names of keys.
+/// Context of all reading functions: parameters for expressions, destination of errors, set of used
+/// parameters (may be null), and valid alternative names.
 struct Scope {
   const NameTable& names;
   Diagnostics& out;
@@ -35,13 +34,13 @@ struct Scope {
   Spelling spelling{};
 };
 
-/// Range of a number, in addition to finite: least..most.
+/// Range of a number, from `least` to `most`. Numbers must also be finite.
 struct Bound {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  bool above_least = false, below_most = false;  ///< Open interval at this end.
-  const char* least_text = nullptr;              ///< `least` as people write it.
-  const char* most_text = nullptr;               ///< `most` as people write it.
+  bool above_least = false, below_most = false;  ///< Whether the bound itself is excluded.
+  const char* least_text = nullptr;              ///< Text of `least` in messages.
+  const char* most_text = nullptr;               ///< Text of `most` in messages.
   const char* hint = "";                         ///< For numbers out of range.
 
   static const Bound kAny, kPositive, kNonNegative, kFraction;
@@ -51,57 +50,58 @@ inline constexpr Bound Bound::kPositive{.least = 0.0, .above_least = true};
 inline constexpr Bound Bound::kNonNegative{.least = 0.0};
 inline constexpr Bound Bound::kFraction{.least = 0.0, .most = 1.0};
 
-// In all of these functions, `what` names the value in messages: "rod.radius_m must be positive,
-// got -1".
+// In all functions below, `what` is the name of the value in messages: "rod.radius_m must be
+// positive, got -1".
 
 double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
                   const Scope& scope);
 std::optional<int> ReadInteger(const Value& value, std::string_view what, int least, int most,
                                const Scope& scope);
 std::optional<bool> ReadBool(const Value& value, std::string_view what, const Scope& scope);
-/// Reads [x, y, z]. The components are NaN after an error.
+/// Reads [x, y, z]. All components are NaN after an error.
 Vec3 ReadVec3(const Value& value, std::string_view what, const Scope& scope);
-/// Reads a vector that must not be zero; returns it with length 1.
+/// Reads a nonzero vector and returns it with length 1.
 Vec3 ReadDirection(const Value& value, std::string_view what, const Scope& scope);
 /// Reads `count` numbers; returns nothing after an error.
 std::optional<std::vector<double>> ReadNumbers(const Value& value, std::string_view what,
                                                std::size_t count, const Scope& scope);
-/// Reads one rotation `{axis: z, angle_rad: pi / 2}` (axis also [x, y, z]) or `{quaternion: [w, x,
-/// y, z]}`, or a list of rotations, applied in order about the fixed axes of W.
+/// Reads a rotation, `{axis: z, angle_rad: pi / 2}` or `{quaternion: [w, x, y, z]}`. The axis may
+/// also be [x, y, z]. A list of rotations is applied in order about the fixed axes of W.
 Quat ReadRotation(const Value& value, std::string_view what, const Scope& scope);
 std::string ReadText(const Value& value, std::string_view what, const Scope& scope);
-inline constexpr std::size_t kMaxNameLength = 200;  ///< A model has many copies of each.
-/// Reads a text for which `IsName` holds, of at most `kMaxNameLength` characters.
+inline constexpr std::size_t kMaxNameLength = 200;  ///< Limited, because a model contains many
+                                                    ///< copies of each name.
+/// Reads a text that satisfies `IsName`, with at most `kMaxNameLength` characters.
 std::string ReadName(const Value& value, std::string_view what, const Scope& scope);
-/// Reads a free key of a map as such a name.
+/// Reads a free key of a map, with the same rules as `ReadName`.
 std::string ReadKey(const Entry& entry, std::string_view what, const Scope& scope);
-/// Returns whether `text` consists of names separated by dots, such as segment_0.tip: the full name
-/// of a node of a placed part.
+/// Returns whether `text` consists of names separated by dots. Example: segment_0.tip, the full
+/// name of a node of a placed part.
 bool IsFullName(std::string_view text);
-/// Reads a list of names; a single name is a list of one.
+/// Reads a list of names. A single name counts as a list with one item.
 std::vector<std::string> ReadNames(const Value& value, std::string_view what, const Scope& scope);
 /// Reads a selector of tags: `a` (has tag a), `[a, b]` (has both), `[[a, b], [c]]` (has a and b, or
-/// c). A full name such as segment_0.tip is a tag, too. Empty after an error.
+/// c). Full names such as segment_0.tip are also tags. Returns an empty list after an error.
 std::vector<std::vector<std::string>> ReadMatch(const Value& value, std::string_view what,
                                                 const Scope& scope);
-/// Reads [[time_s, value], ...] with increasing times. Empty after an error.
+/// Reads [[time_s, value], ...] with increasing times. Returns an empty list after an error.
 std::vector<std::pair<double, double>> ReadPoints(const Value& value, std::string_view what,
                                                   const Bound& bound, const Scope& scope);
 /// Returns whether `tags` match a selector read by `ReadMatch`.
 bool Matches(const std::vector<std::vector<std::string>>& match,
              const std::vector<std::string>& tags);
 
-/// Returns the shortest text that reads back as the same number.
+/// Returns the shortest text from which the same number is read back.
 std::string Shown(double number);
 
-/// Reports a wrong type: "<what> must be <wanted>, got <kind>".
+/// Reports a value of the wrong type: "<what> must be <wanted>, got <kind>".
 void WrongType(const Value& value, std::string_view what, std::string_view wanted,
                const Scope& scope);
 
-/// Returns the hint for an unknown key: the most similar key, or a key that only lacks its unit.
+/// Returns the hint for an unknown key: the most similar key, or the same key with a unit.
 std::string KeyHint(std::string_view key, const std::vector<std::string>& known);
 
-/// Returns `DidYouMean`, or nothing if there are too many names to compare in a short time.
+/// Returns `DidYouMean`. Returns an empty text if there are too many names to compare quickly.
 std::string NameHint(std::string_view name, const std::vector<std::string>& known);
 
 template <class E>
@@ -123,84 +123,89 @@ std::optional<E> ReadChoice(const Value& value, std::string_view what,
   return std::nullopt;
 }
 
-/// Reader of a map whose keys are all known beforehand. If the value is not a map, reports one
-/// error and then behaves like an empty map without reporting missing keys.
+/// Reader of a map with a fixed set of keys. If the value is not a map, reports one error. Then it
+/// acts like an empty map and reports no missing keys.
 class MapReader {
  public:
-  /// `what` is the name of the map in messages: "rod", "terrain".
+  /// `what`: name of the map in messages, such as "rod" or "terrain".
   MapReader(const Value& value, std::string what, const Scope& scope);
   void Call(const char* what) { what_ = what; }
   void Know(std::string_view key);
-  /// Reports every key that is not known by now, then the keys that were missing so far. A missing
-  /// key that the remedy of an unknown key suggests is no error: it is the same mistake.
+  /// Reports every unknown key, then the missing keys. A missing key is not reported if the fix of
+  /// an unknown key suggests it, because both have the same cause.
   void RefuseOthers();
-  /// Calls `check` for conditions on several keys. If keys are misspelled, errors that it reports
-  /// at this map or its keys are dropped, because they may follow from the misspelling.
+  /// Calls `check` for conditions on several keys. If the map has misspelled keys, discards errors
+  /// at this map and its keys, because they may follow from the misspelling.
   void CheckWith(const std::function<void(const MapReader&)>& check) const;
 
   bool is_map() const { return value_.kind == Value::Kind::kMap; }
   const std::string& what() const { return what_; }
   const SourceRef& at() const { return value_.at; }
   const Scope& scope() const { return scope_; }
-  /// Returns the path of a key, such as "rod.radius_m"; at the top of a file, the key alone.
+  /// Returns the path of a key, such as "rod.radius_m". At the top level of a file, this is the key
+  /// alone.
   std::string Path(std::string_view key) const;
 
   bool Has(std::string_view key) const { return Find(key) != nullptr; }
-  bool HasAnyBut(std::string_view key) const;        ///< Among the keys known by now.
-  const Value* Find(std::string_view key) const;     ///< Null if absent.
-  const Value* Require(std::string_view key) const;  ///< Null and an error if absent.
-  SourceRef KeyAt(std::string_view key) const;       ///< Place of the key; of the map if absent.
+  bool HasAnyBut(std::string_view key) const;        ///< Considers only keys known so far.
+  const Value* Find(std::string_view key) const;     ///< Returns null if absent.
+  const Value* Require(std::string_view key) const;  ///< Returns null and reports an error if
+                                                     ///< absent.
+  SourceRef KeyAt(std::string_view key) const;       ///< Position of the key; if absent, of the
+                                                     ///< map.
   /// Adds an error at a key.
   void Error(MessageId id, std::string_view key, std::string what, std::string hint = {}) const;
 
-  /// Returns the one key of `keys` that is present. Reports an error and returns "" if none or
-  /// several are.
+  /// Returns the only key of `keys` that is present. Reports an error and returns "" if none or
+  /// several are present.
   std::string ExactlyOne(const std::vector<std::string>& keys) const;
 
-  double Number(std::string_view key, const Bound& bound) const;  ///< Required.
+  double Number(std::string_view key, const Bound& bound) const;  ///< The key is required.
   double NumberOr(std::string_view key, double fallback, const Bound& bound) const;
 
  private:
-  /// A copy that reports to `out`.
+  /// Copies a reader; the copy reports errors to `out`.
   MapReader(const MapReader& other, Diagnostics& out);
 
-  /// Required keys of which none is present.
+  /// Required keys that are absent.
   struct Missing {
     std::vector<std::string> keys;
-    bool one_of = false;  ///< From `ExactlyOne`.
+    bool one_of = false;  ///< Whether only one of the keys is required (`ExactlyOne`).
   };
 
-  /// Reports missing keys, at the latest in `RefuseOthers`.
+  /// Reports missing keys, now or at the latest in `RefuseOthers`.
   void ReportMissing(const Missing& missing) const;
 
   const Value& value_;
   std::string what_;
   std::vector<std::string> known_;
-  std::vector<std::string> meant_;        ///< Keys that remedies of unknown keys suggest.
-  mutable std::vector<Missing> missing_;  ///< Not yet reported.
+  std::vector<std::string> meant_;        ///< Keys that fixes of unknown keys suggest.
+  mutable std::vector<Missing> missing_;  ///< Missing keys that are not reported yet.
   bool knows_all_ = false;                ///< Whether all keys have been read.
   Scope scope_;
 };
 
-/// Returns the place of a key of a map, or of the map if the key is absent.
+/// Returns the position of a key of a map. If the key is absent, returns the position of the map.
 SourceRef KeyAt(const Value& map, std::string_view key);
 
-/// Returns the items of a list; reports an error and returns no items for another type. `value` may
+/// Returns the items of a list. For other types, reports an error and returns no items. `value` may
 /// be null.
 const std::vector<ValuePtr>& Items(const Value* value, std::string_view what, const Scope& scope);
-/// Returns the entries of a map with free keys (names); reports an error and returns no entries for
-/// another type. `value` may be null.
+/// Returns the entries of a map with free keys (names). For other types, reports an error and
+/// returns no entries. `value` may be null.
 const std::vector<Entry>& Entries(const Value* value, std::string_view what, const Scope& scope);
 
-/// Checks `taut: 1` and `kind: <kind>`. Returns false if the rest of the file should not be read.
+/// Checks `taut: 1` and `kind: <kind>`. Returns false if the caller should not read the rest of the
+/// file.
 bool CheckHeader(const Value& root, std::string_view kind, Diagnostics& out);
 
-/// Returns the path of an existing file that a value names, relative to the folder of the file that
-/// contains the value (possibly a base file). Reports a missing file. `value` may be null.
+/// Returns the path of the file that a value contains; reports an error if there is no such file.
+/// The path is relative to the folder of the file with this value, which may be a base file.
+/// `value` may be null.
 std::optional<std::string> FindFile(const Value* value, const std::string& what,
                                     const Scope& scope);
 
-/// Resolves `path` relative to the folder of `file`, unless it is absolute.
+/// Resolves `path` relative to the folder of `file`. Absolute paths remain unchanged.
 std::string PathBeside(const std::string& file, const std::string& path);
 
 }  // namespace taut::description

@@ -1,4 +1,4 @@
-/// Writers of YAML by tables of keys (keys.h): resolved experiments, and files that people can
+/// Writers of YAML with tables of keys (keys.h), for resolved experiments and for files that people
 /// edit.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace taut::description {
 
 /// Returns the text in double quotes, valid in JSON and YAML.
 std::string Quoted(const std::string& text);
-/// Returns the text without quotes where YAML allows it, else in quotes.
+/// Returns the text without quotes if YAML permits this, otherwise in quotes.
 std::string PlainOrQuoted(const std::string& text);
 
 /// Returns all numbers of a long list as one quoted text.
@@ -29,8 +29,8 @@ std::string PackedText(const Packed<List>& packed) {
   return text + '"';
 }
 
-/// Writer of one line: a map `{name: "ground", point_m: [0, 0, 0]}`, or a single `key: value` of
-/// it. Files for people omit empty texts and lists and values that code reads (`Raw`).
+/// Writer of one line: a map `{name: "ground", point_m: [0, 0, 0]}`, or one `key: value` of it. In
+/// files that people edit, omits empty texts and lists, and `Raw` values.
 template <bool kOfResolved>
 class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
  public:
@@ -74,7 +74,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
     return "[" + out + "]";
   }
 
-  /// An infinite limit is omitted, since files cannot contain infinity.
+  /// Omits infinite limits, since files cannot contain infinity.
   template <class T>
   void On(const KeyText& key, const T& value) {
     if constexpr (std::same_as<T, double>) {
@@ -82,7 +82,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       if (value == key.before) return;
     }
     if constexpr (std::same_as<T, bool>) {
-      if (key.later && !value) return;  // a later key is written only if true
+      if (key.later && !value) return;  // write a key of a later version only if it is true
     }
     if constexpr (requires { value.empty(); }) {
       if ((!kOfResolved || key.later) && value.empty()) return;
@@ -93,7 +93,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
       Put(key.name, Text(value, this->spelling));
     }
   }
-  /// A later key is omitted if it has its first choice, the default.
+  /// Omits a key of a later version if it has the default value, its first choice.
   template <class E>
   void On(const KeyText& key, E value, const Choices<E>& choices) {
     if (key.later && choices.front().second == value) return;
@@ -113,7 +113,7 @@ class FlowWriter : public KeyVisitor<FlowWriter<kOfResolved>, kOfResolved> {
   std::string text_;
 };
 
-/// Whether a map is written as a block of lines, not in one line.
+/// Whether a map is written as a block of lines (true) or in one line (false).
 template <bool kOfResolved, class T>
 inline constexpr bool kIsBlock = requires(FlowWriter<kOfResolved>& io, const T& mapping) {
   Keys(io, mapping);
@@ -121,7 +121,7 @@ inline constexpr bool kIsBlock = requires(FlowWriter<kOfResolved>& io, const T& 
 template <class T>
 inline constexpr bool kIsBlock<true, T> = std::same_as<T, RobotSpec>;
 
-/// Writer of a block with a line for each key and each item of a list.
+/// Writer of a block, with one line per key and per list item.
 template <bool kOfResolved>
 class BlockWriter : public KeyVisitor<BlockWriter<kOfResolved>, kOfResolved> {
  public:

@@ -1,4 +1,4 @@
-/// Fingerprint (hash) of the input files and overrides of a run.
+/// Hash of the input files and overrides of a run.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace taut::description {
 
-/// Returns the 64-bit FNV-1a hash of the bytes of the files and of the overrides, in order. Names
-/// and folders of the files are not included. A file that is gone, or a pipe that has been read,
-/// counts as empty. Returns nothing and reports an error if reading fails.
+/// Returns the 64-bit FNV-1a hash of the contents of the files and the overrides, in order. Paths
+/// do not affect the hash. Deleted files and pipes that were already read count as empty. Returns
+/// nothing and reports an error if reading fails.
 std::optional<std::uint64_t> HashInputs(const std::vector<std::string>& files,
                                         const Overrides& overrides, Diagnostics& out);
 

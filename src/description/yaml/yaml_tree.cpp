@@ -23,11 +23,11 @@ std::string ControlText(char c) {
 constexpr const char* kControlHint =
     "expected UTF-8 without control characters except tabs and line ends";
 
-/// Thrown at the first error after which parsing cannot continue; caught in this file.
+/// Thrown at the first error that ends parsing; caught in this file.
 struct StopReading {};
 
-/// Builds the tree from yaml-cpp's events. Events (rather than YAML::Node) because they give every
-/// position, show duplicate keys and aliases, and allow to stop at a limit while reading.
+/// Builds the tree from parser events. Unlike YAML::Node, events give every position and show
+/// duplicate keys and aliases. They also permit limits during reading.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(std::string file, Diagnostics& out) : file_(std::move(file)), out_(out) {}
@@ -55,7 +55,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& text) override {
     CheckTag(mark, tag);
-    // From an escape in quotes; `ParseYaml` has already rejected raw control characters.
+    // Control characters from an escape sequence in quotes. `ParseYaml` has already rejected raw
+    // ones.
     if (const auto bad = std::find_if(text.begin(), text.end(), base::IsControl);
         bad != text.end()) {
       out_.Error("yaml.control_character", At(mark), ControlText(*bad), kControlHint);
@@ -85,7 +86,7 @@ class TreeBuilder : public YAML::EventHandler {
   struct Frame {
     std::shared_ptr<Value> value;
     YAML::anchor_t anchor;
-    std::optional<Entry> entry;  ///< Of a map: a key without its value so far.
+    std::optional<Entry> entry;  ///< Key of a map that still has no value.
   };
 
   SourceRef At(const YAML::Mark& mark) const { return {file_, mark.line + 1, mark.column + 1}; }
@@ -130,7 +131,7 @@ class TreeBuilder : public YAML::EventHandler {
     Place(std::move(value), at);
   }
 
-  /// Refuses `radius_m: 0,1` in a flow map, where `1` is a key without a value.
+  /// Rejects `radius_m: 0,1` in a flow map: YAML parses `1` as a key without a value.
   void RefuseDecimalComma(const Value& map, const Entry& entry, const Value& value) {
     const bool is_number = entry.key.find_first_not_of("0123456789") == std::string::npos;
     if (!is_number || value.kind != Value::Kind::kNull || map.entries.empty()) return;
@@ -142,7 +143,7 @@ class TreeBuilder : public YAML::EventHandler {
     throw StopReading{};
   }
 
-  /// Adds a complete value to the innermost open one.
+  /// Adds a complete value to the innermost list or map that is still open.
   void Place(ValuePtr value, const SourceRef& at) {
     if (open_.empty()) {
       root_ = std::move(value);
@@ -167,7 +168,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  /// Returns whether only a comma without a space is between a number and a place, as in `0,5`.
+  /// Returns whether there is only a comma between a number and a position, as in `0,5`.
   static bool IsRightAfter(const Value& number, const SourceRef& at) {
     return number.kind == Value::Kind::kScalar && !number.text.empty() &&
            number.text.back() >= '0' && number.text.back() <= '9' && number.at.line == at.line &&
@@ -183,7 +184,7 @@ class TreeBuilder : public YAML::EventHandler {
     throw StopReading{};
   }
 
-  /// Reports duplicate keys and replaces each `<<` by the entries of its map.
+  /// Reports duplicate keys. Replaces each merge key `<<` by the entries of its map.
   void ResolveMerges(Value& map) {
     std::vector<Entry> own, merges;
     std::unordered_map<std::string, SourceRef> seen;
@@ -216,7 +217,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  /// Existing keys win, as YAML's merge key requires.
+  /// Existing keys take precedence, as YAML specifies for merge keys.
   static void MergeInto(Value& map, const Value& other,
                         std::unordered_map<std::string, SourceRef>& seen) {
     for (const Entry& entry : other.entries) {
@@ -279,8 +280,8 @@ ValuePtr ParseYaml(const std::string& text, const std::string& file, Diagnostics
               "the file is not valid YAML: " + error.msg);
     return nullptr;
   } catch (const std::bad_alloc&) {
-    throw;                                 // not an error of the file
-  } catch (const std::exception& error) {  // a fault of yaml-cpp
+    throw;                                 // not caused by the file
+  } catch (const std::exception& error) {  // an error inside yaml-cpp
     out.Error("yaml.unreadable", {file, 0, 0},
               std::string("the file cannot be read as YAML: ") + error.what());
     return nullptr;
