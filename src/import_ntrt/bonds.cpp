@@ -1,4 +1,4 @@
-// `bond_groups:`: pairs between substructures, and substructures that are attached to each other.
+// Reader of `bond_groups:`: pairs between substructures, and substructures attached to each other.
 #include <cmath>
 #include <utility>
 
@@ -9,11 +9,12 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// A bond that puts a node of one structure at the middle of an edge, a cable, of the other.
+/// Bond that attaches a node of one structure to the middle of an edge (a cable) of the other.
 struct NodeOnEdge {
   int node = -1;
   int edge_from = -1, edge_to = -1;
-  Vec3 in_first, in_second;  ///< Points that coincide: the node, and the middle of the edge.
+  Vec3 in_first, in_second;  ///< Coincident points in both structures: the node and the middle of
+                             ///< the edge.
   SourceRef at;
 };
 
@@ -21,7 +22,7 @@ Vec3 MiddleOf(const Reading& in, int a, int b) {
   return 0.5 * (in.node(a).place + in.node(b).place);
 }
 
-/// Reads one half of a line `[top1, bottom1/bottom2]`. Returns its point; nothing after an error.
+/// Reads one side of a bond `[top1, bottom1/bottom2]`. Returns its point; nothing after an error.
 std::optional<Vec3> ReadHalf(const Reading& in, int structure, const std::string& text,
                              NodeOnEdge& bond) {
   const std::vector<std::string> names = AtSlashes(text);
@@ -56,8 +57,9 @@ std::optional<NodeOnEdge> ReadNodeOnEdge(const Reading& in, int first, int secon
   return bond;
 }
 
-/// Rotates and shifts `second` to fit the bonds' points to the points in the first: their planes
-/// (of the first three) parallel, their centers coincident, the first ones in one direction.
+/// Rotates and shifts structure `second` to match the bonds' points in the first structure. The
+/// planes through the first three points become parallel, the centers coincide, and the first
+/// points have the same direction from the center.
 void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   Vec3 centre_1, centre_2;
   for (const NodeOnEdge& bond : bonds) {
@@ -89,7 +91,7 @@ void Fit(const Reading& in, int second, const std::vector<NodeOnEdge>& bonds) {
   in.model.Turn(second, centre_1, Between(first_2, first_1, normal_1));
 }
 
-/// Warns of pairs that are attached to a structure which is moved afterwards.
+/// Warns of pairs attached to a structure that a later bond moves.
 void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
   const auto below = [&](int structure) {
     while (structure >= 0 && structure != second) structure = in.structure(structure).parent;
@@ -108,7 +110,8 @@ void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
   }
 }
 
-/// Removes the cable between two nodes in `structure`. Returns false if it is a solid, which stays.
+/// Removes the cable between two nodes in `structure`. Returns false, without removal, if the pair
+/// is a solid.
 bool Remove(const Reading& in, int structure, int a, int b, bool& found) {
   const int i = in.model.FindPair(structure, in.node(a).place, in.node(b).place);
   if (i < 0) return true;
@@ -166,7 +169,7 @@ void BondNodesAndEdges(const Reading& in, int parent, int first, int second,
 
 void BondNodes(const Reading& in, int parent, int first, int second, const std::string& first_name,
                const std::string& second_name, const std::string& tags, const Value& lines) {
-  // Controllers find cables by the structures that they join.
+  // The names of both structures are tags, because controllers find cables by them.
   const std::string all =
       tags + " " + first_name + " " + second_name + " " + first_name + "/" + second_name;
   for (const ValuePtr& line : ListOf(&lines, "a node_node bond", in.out)) {
@@ -178,7 +181,7 @@ void BondNodes(const Reading& in, int parent, int first, int second, const std::
   }
 }
 
-/// Reads `bonds`, such as "a/b/c/node_node": from each structure to the next.
+/// Reads a key such as "a/b/c/node_node": bonds between each structure and the next.
 void ReadChain(const Reading& in, int parent, const std::string& bonds, const std::string& tags,
                const Entry& entry) {
   if (entry.value->kind == Value::Kind::kNull) return;

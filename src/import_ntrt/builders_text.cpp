@@ -8,7 +8,7 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// Returns a name that is valid in an expression.
+/// Converts a tag to a name that is valid in an expression.
 std::string Identifier(const std::string& tag) {
   std::string name = tag;
   for (char& c : name) {
@@ -98,7 +98,8 @@ std::string BuildersText(const Draft& draft) {
   std::string text = "\nbuilders:\n";
   std::map<std::string, int> uses;
   for (const Group& group : draft.groups) ++uses[FlowText(group.actuator)];
-  std::map<std::string, std::string> motors;  // actuators written once, by their YAML anchor
+  std::map<std::string, std::string> motors;  // actuator text -> YAML anchor: each actuator is
+                                              // written once
   for (const Group& group : draft.groups) {
     const std::string match = MatchText(group.keys);
     if (group.kind != "cable") {

@@ -41,7 +41,7 @@ class Drafter {
     return model_.structures[static_cast<std::size_t>(i)];
   }
 
-  /// Names placements by their path from the topmost structure: leg_knee.
+  /// Names each placement by its path from the top-level structure: leg_knee.
   void NamePlacements() {
     base::UniqueNames taken;
     for (const Structure& structure : model_.structures) {
@@ -72,7 +72,7 @@ class Drafter {
       draft.at_m = u_ * ZUp(node.in_file);
       draft_.nodes.push_back(std::move(draft));
     }
-    // A sphere on another node at the same place.
+    // If the sphere's node coincides with another node, that node receives its tags.
     for (const Solid& solid : built_.solids) {
       if (solid.node < 0 || solid.node == solid.from) continue;
       DraftNode& at = draft_.nodes[static_cast<std::size_t>(solid.from)];
@@ -100,8 +100,8 @@ class Drafter {
     }
   }
 
-  /// In taut a pair is named after its nodes, in either order, so a second one needs a separate
-  /// name.
+  /// taut names a pair after its nodes, in either order. So a second pair between the same nodes
+  /// needs a separate name.
   void NameDuplicates(const std::vector<bool>& is_built) {
     std::map<std::pair<int, int>, int> count;
     for (std::size_t i = 0; i < draft_.pairs.size(); ++i) {

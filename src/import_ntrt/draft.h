@@ -1,4 +1,4 @@
-/// Draft of a model file: names and tags of taut, in SI, z up.
+/// Draft of a model file: taut's names and tags, SI units, z up.
 #pragma once
 
 #include <map>
@@ -12,61 +12,63 @@ namespace taut::import_ntrt {
 
 struct DraftNode {
   std::string name, full_name;
-  Words tags;         ///< Besides its name.
-  int structure = 0;  ///< -1: not used, left out.
-  Vec3 at_m;          ///< In the frame of its structure's file.
+  Words tags;         ///< Without the node's name.
+  int structure = 0;  ///< -1: unused; not written.
+  Vec3 at_m;          ///< Position in the frame of its structure's file.
   std::string fixed_to;
 };
 
 struct DraftPair {
-  int from = 0, to = 0;  ///< Draft nodes.
+  int from = 0, to = 0;  ///< Indices of draft nodes.
   Words tags;
-  std::string name;   ///< Empty: named after its nodes.
+  std::string name;   ///< Empty: taut names the pair after its nodes.
   int structure = 0;  ///< NTRT structure that contains it.
-  int number = 0;     ///< In the order of that structure's file.
+  int number = 0;     ///< Position in that structure's file.
 };
 
-/// A key of a builder: a number or a text.
+/// Key of a builder, with a number or a text.
 struct Field {
   std::string key;
   double number = 0.0;
-  std::string text = {};  ///< If not empty, instead of the number.
+  std::string text = {};  ///< If not empty, replaces the number.
 };
 
-/// Pairs or nodes that one builder of a model builds.
+/// Pairs or nodes of one builder of the model.
 struct Group {
-  std::string kind;  ///< rod, cable ...
+  std::string kind;  ///< "rod", "cable", ...
   std::vector<Field> fields, actuator;
   std::string comment;
   bool on_nodes = false;
   std::vector<int> items;
-  std::vector<Words> keys;  ///< Per item: the tags by which NTRT's builder found it.
+  std::vector<Words> keys;  ///< Per item: tags by which NTRT's builder selected it.
 
-  std::string Text() const;  ///< Text without the items: groups with equal texts share a builder.
+  std::string Text() const;  ///< Text of the builder without its items. Groups with equal texts are
+                             ///< merged.
 };
 
 struct Draft {
-  std::vector<std::string> placements;  ///< Per structure: its name; empty for the topmost.
-  std::vector<DraftNode> nodes;         ///< NTRT's nodes by their numbers, then added ones.
+  std::vector<std::string> placements;  ///< Name of each structure; empty for the top-level
+                                        ///< structure.
+  std::vector<DraftNode> nodes;         ///< NTRT's nodes in their order, then additional ones.
   std::vector<DraftPair> pairs;
   std::vector<Group> groups;
 };
 
 Draft MakeDraft(const Model& model, const Built& built, double length_unit_m);
 
-/// Adds the groups to the draft, and tags where NTRT's tags do not distinguish them. Features of
-/// NTRT that the model lacks are listed in `import`.
+/// Adds groups to the draft. Adds tags if NTRT's tags do not distinguish groups. Lists features in
+/// `import` that taut's models lack.
 void AddGroups(const Model& model, const Built& built, const NtrtOptions& options, Draft& draft,
                NtrtImport& import, Diagnostics& out);
 
-/// Named parameters: numbers that occur several times, or that users will want to change.
+/// Named parameter: a number that occurs several times, or that users may want to change.
 struct Parameter {
   std::string name;
   double value = 0.0;
 };
 std::vector<Parameter> TakeOutParameters(std::vector<Group>& groups);
 
-// Blocks of the file.
+// Blocks of the model file.
 std::string BuildersText(const Draft& draft);
 std::string PartsText(const Model& model, const Draft& draft, double length_unit_m);
 

@@ -1,5 +1,5 @@
-// Conversion of NTRT's builders to builders of a model: in SI, merged where equal, and only if they
-// build anything.
+// Conversion of NTRT's builders to builders of a model, in SI units. Equal builders are merged,
+// unused ones are omitted.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,7 +11,7 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// Returns the largest number with three digits that is not above this one.
+/// Returns the largest number with three digits that is not above `number`.
 double RoundedDown(double number) {
   if (!(number > 0.0)) return 0.0;
   const double step = std::pow(10.0, std::floor(std::log10(number)) - 2);
@@ -42,7 +42,7 @@ class Grouper {
     draft_.groups[same->second].keys.push_back(key);
   }
 
-  /// Returns the tags that the builder searches for, apart from the structure's tags.
+  /// Returns the tags in the builder's search that are not tags of the structure.
   Words KeyOf(const Builder& builder, int structure) const {
     Words key;
     const Words& own = model_.structures[static_cast<std::size_t>(structure)].tags;
@@ -80,8 +80,9 @@ class Grouper {
     Add(std::move(group), solid.pair, KeyOf(builder, structure));
   }
 
-  /// NTRT rotates a box from y to its pair's direction by the shortest way; taut's box is level. If
-  /// the two differ by more than an exchange of width and height, the box is given by its corners.
+  /// NTRT rotates a box from y to its pair's direction by the shortest rotation. taut's boxes have
+  /// a horizontal y axis. If the orientations differ by more than a swap of width and height,
+  /// writes a convex solid with the box's corners.
   void AddBox(const Solid& solid, const Builder& builder, Group group, int structure) {
     const Vec3 from = PlaceOf(solid.from), along = PlaceOf(solid.to) - from;
     const Quat q = Between({0, 1, 0}, along, {});
@@ -142,7 +143,7 @@ class Grouper {
     Add(std::move(group), solid.from, {from.full_name});
   }
 
-  /// taut's motors stop at the least rest length from the start on; NTRT's cables go there at the
+  /// taut's motors respect the minimum rest length from the start. NTRT's cables jump to it at the
   /// first command.
   void FindShortestRest() {
     shortest_.assign(model_.builders.size(), INFINITY);
@@ -201,7 +202,8 @@ class Grouper {
     Add(std::move(group), cable.pair, KeyOf(builder, structure));
   }
 
-  /// Returns a new node for an end that a model cannot express otherwise.
+  /// Returns the node of a cable end. Adds a node if the end is at a point that models cannot
+  /// express otherwise.
   int NodeFor(const CableEnd& end, const CableEnd& other) {
     if (end.kind == End::kNode) return end.node;
     const DraftNode& at = draft_.nodes[static_cast<std::size_t>(end.node)];
@@ -223,7 +225,7 @@ class Grouper {
     return static_cast<int>(draft_.nodes.size()) - 1;
   }
 
-  /// A body without mass does not move in Bullet.
+  /// Adds an anchor to each body without mass, because Bullet does not move such bodies.
   void AddAnchors() {
     std::vector<bool> done(built_.mass_kg.size(), false);
     for (const Solid& solid : built_.solids) {
@@ -248,8 +250,8 @@ class Grouper {
   std::vector<double> shortest_;
 };
 
-/// Ensures that each group's match selects no other items of its kind; if tags cannot distinguish
-/// the group, adds a new tag.
+/// Ensures that each group's selector matches only its items. If existing tags cannot do this, adds
+/// a new tag.
 class ReportWriter {
  public:
   explicit ReportWriter(Draft& draft) : draft_(draft) {}
@@ -297,7 +299,7 @@ class ReportWriter {
     for (const int item : group.items) {
       if (!matches(group, item)) return false;
     }
-    if (group.on_nodes) {  // all nodes, as most have no builder
+    if (group.on_nodes) {  // compare with all nodes, since most have no builder
       for (std::size_t i = 0; i < draft_.nodes.size(); ++i) {
         const int item = static_cast<int>(i);
         if (draft_.nodes[i].structure < 0) continue;
@@ -326,7 +328,7 @@ class ReportWriter {
   int number_ = 1;
 };
 
-/// Lists parameters of used builders that a model does not have, one sentence each.
+/// Lists parameters of used builders that models lack, one sentence per parameter.
 void ReportDropped(const Model& model, const Built& built, NtrtImport& import) {
   std::vector<bool> used(model.builders.size(), false);
   for (const Solid& solid : built.solids) used[static_cast<std::size_t>(solid.builder)] = true;

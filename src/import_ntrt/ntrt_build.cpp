@@ -1,5 +1,5 @@
-// Construction of a structure by the rules of NTRT's tgStructureInfo, tgConnectorInfo, tgRodInfo,
-// tgBoxInfo and tgSphereInfo at f0c52e93.
+// Construction of a structure by the rules of NTRT (tgStructureInfo, tgConnectorInfo, tgRodInfo,
+// tgBoxInfo and tgSphereInfo at f0c52e93).
 #include "import_ntrt/ntrt_build.h"
 
 #include <algorithm>
@@ -53,8 +53,8 @@ class Maker {
     for (std::size_t i = 0; i < count; ++i) built_.same.push_back(sets.Root(static_cast<int>(i)));
   }
 
-  /// Returns the last builder of a kind that matches; the tags need not include the structure's
-  /// name.
+  /// Returns the last builder of a kind whose search matches. Tags of the structure count as tags
+  /// of the item.
   template <class Kind>
   int FindBuilder(const Words& tags, int structure, const Kind& is_kind) const {
     for (int b = static_cast<int>(model_.builders.size()) - 1; b >= 0; --b) {
@@ -149,8 +149,8 @@ class Maker {
     }
   }
 
-  /// Returns the solid at a node with the nearest center. If several are equally near, NTRT uses
-  /// the first in its heap; this function returns the first declared.
+  /// Returns the solid at a node whose center is nearest. If several are equally near, NTRT uses
+  /// the first in its heap, taut the first in the file.
   const Solid* ChooseSolid(int node) {
     const Solid* chosen = nullptr;
     double nearest = INFINITY;
@@ -178,8 +178,8 @@ class Maker {
     return chosen;
   }
 
-  /// Returns the point of the rod's or box's "surface" towards `other`; a box counts as round, with
-  /// `width` as its radius.
+  /// Returns the point on the surface of a rod or box, in the direction of `other`. Boxes count as
+  /// round, with `width` as radius.
   Vec3 PointOnBeam(const Solid& solid, double radius, double rotation, const Vec3& at,
                    const Vec3& other, bool& special) const {
     const Vec3 axis = Unit(NodeOf(solid.to).place - NodeOf(solid.from).place);
@@ -272,7 +272,7 @@ class Maker {
   Diagnostics& out_;
   Built built_;
   std::vector<Connector> connectors_;
-  std::vector<std::vector<int>> at_node_;  ///< Solids.
+  std::vector<std::vector<int>> at_node_;  ///< Indices of the solids at each node.
   std::set<std::pair<int, std::pair<int, int>>> joined_;
 };
 

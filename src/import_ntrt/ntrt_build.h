@@ -1,5 +1,5 @@
-/// Result of NTRT's builder for a structure: solids, bodies, cables and cable ends. NTRT's frame
-/// and the files' units.
+/// Result of NTRT's builder for a structure: solids, bodies, cables and cable ends. In NTRT's frame
+/// and the units of the files.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,19 @@ namespace taut::import_ntrt {
 
 struct Solid {
   int builder = 0;
-  int pair = -1;           ///< Of a rod or box; -1 for a sphere.
-  int node = -1;           ///< Of a sphere: the node with its tag.
-  int from = -1, to = -1;  ///< Nodes, as in `Built::same`; for a sphere both are its center.
+  int pair = -1;           ///< Pair of a rod or box; -1 for a sphere.
+  int node = -1;           ///< Node of a sphere, which has the builder's tag; -1 for others.
+  int from = -1, to = -1;  ///< Nodes, as represented in `Built::same`. For a sphere, both are its
+                           ///< center.
   int body = 0;
   double mass_kg = 0.0;
 };
 
-/// Representation of a cable's end in a model.
+/// Location of a cable's end in a model.
 enum class End {
-  kNode,     ///< At its node.
-  kSurface,  ///< On the sphere there, or else on the rod with the nearest center.
-  kPoint,    ///< Elsewhere on its solid, by a rule that models do not have.
+  kNode,     ///< At the node.
+  kSurface,  ///< On the sphere at the node, or else on the rod with the nearest center.
+  kPoint,    ///< At another point of the solid, by a rule that models lack.
 };
 struct CableEnd {
   int node = 0;
@@ -36,14 +37,15 @@ struct Cable {
 };
 
 struct Built {
-  std::vector<int> same;  ///< Per node: the first at the same place, which represents all there.
+  std::vector<int> same;  ///< Per node: the first node at the same position, which represents all
+                          ///< of them.
   std::vector<Solid> solids;
   std::vector<Cable> cables;
   std::vector<int> bodies_solids;  ///< Per body: number of solids.
-  std::vector<double> mass_kg;     ///< Per body; 0: it is fixed.
+  std::vector<double> mass_kg;     ///< Per body; 0: fixed.
 };
 
-/// Reports errors for structures that NTRT would not build.
+/// Builds the structure. Reports errors for structures that NTRT would not build.
 Built BuildStructure(Model& model, Diagnostics& out);
 
 }  // namespace taut::import_ntrt

@@ -1,5 +1,5 @@
-// Import of NTRT's structure files as a model file: reads, builds as NTRT does, and writes taut's
-// YAML.
+// Importer of NTRT's structure files: reads them, builds the structure like NTRT, and writes a taut
+// model file.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace taut {
 namespace import_ntrt {
 namespace {
 
-/// Returns true if cables leave some moving bodies unconnected to the others.
+/// Returns whether some moving bodies are not connected to the others by cables.
 bool IsDisconnected(const Built& built) {
   const auto world = built.mass_kg.size();
   base::UnionFind sets(world + 1);

@@ -24,7 +24,7 @@ const char* NameOf(Class kind) {
   return "";
 }
 
-/// Visits the structure and all below it, level by level. Ends when `visit` returns true.
+/// Calls `visit` for a structure and all its descendants, level by level, until it returns true.
 template <class F>
 void Model::ForEachBelow(int structure, const F& visit) const {
   std::deque<int> open{structure};

@@ -1,5 +1,5 @@
-// YAML text of nodes, pairs, parts and placements. A file that is used several times is one part;
-// pairs that only some of its copies have are outside of it.
+// YAML text of nodes, pairs, parts and placements. A file with several copies becomes one part.
+// Pairs that only some copies have are written outside of it.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -10,11 +10,11 @@
 namespace taut::import_ntrt {
 namespace {
 
-/// Copies of a file that have the same nodes.
+/// Copies of a file with the same nodes.
 struct Part {
   std::string name, file, nodes;
   std::vector<int> structures;
-  std::set<std::string> pairs;  ///< Pairs of all copies, by their number and text.
+  std::set<std::string> pairs;  ///< Pairs that all copies have, by number and text.
 };
 
 class YamlText {
@@ -146,7 +146,7 @@ class YamlText {
     return pairs;
   }
 
-  /// Writes neighbors with the same tags as one entry.
+  /// Writes pairs; consecutive pairs with the same tags are one entry.
   std::string PairsText(const std::vector<int>& pairs, bool inside,
                         const std::string& indent) const {
     std::string text;
@@ -195,9 +195,10 @@ class YamlText {
   const Draft& draft_;
   const double u_;
   const Grid grid_;
-  std::set<int> is_built_;  ///< Pairs.
+  std::set<int> is_built_;  ///< Pairs that have a builder.
   std::vector<Part> parts_;
-  std::vector<int> part_of_;  ///< Per structure, from 1 on; 0: it has no nodes, or is the topmost.
+  std::vector<int> part_of_;  ///< Per structure: number of its part, starting at 1; 0 if it has no
+                              ///< nodes or is the top level.
 };
 
 }  // namespace

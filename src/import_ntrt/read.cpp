@@ -1,4 +1,4 @@
-// Reader of NTRT's structure files and their includes, with the rules of NTRT's TensegrityModel.cpp
+// Reader of NTRT's structure files and their includes, by the rules of NTRT's TensegrityModel.cpp
 // at f0c52e93.
 #include "import_ntrt/read.h"
 
@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepest = 32;  // files in files
+constexpr int kDeepest = 32;  // nesting depth of included files
 constexpr std::size_t kMostStructures = 2000;
-constexpr std::size_t kMostHinted = 300;  // names from which a hint is chosen
+constexpr std::size_t kMostHinted = 300;  // limit of names to compare for a hint
 
 const description::NameTable kNoNames;
 
@@ -41,7 +41,7 @@ class Reader {
     int percent_lines = 0;
   };
 
-  /// Returns null after an error.
+  /// Opens and parses a file once. The root is null after an error.
   const File& Open(const std::string& path) {
     const auto [found, fresh] = files_.emplace(path, File{});
     File& file = found->second;
@@ -65,8 +65,8 @@ class Reader {
     return file;
   }
 
-  /// In YAML a line that begins with `%` is a directive. It may be one at the head of a file; later
-  /// it ends the document before it.
+  /// Handles lines that begin with `%`, which are directives in YAML. They are valid at the head of
+  /// a file. Elsewhere, they end the document.
   int TreatPercent(const std::string& path, std::string& text) const {
     int count = 0, line = 1;
     bool at_head = true;
@@ -104,7 +104,7 @@ class Reader {
     AddChildren(structure, path, root.Find("substructures"));
     ReadBuilders(in_, root.Find("builders"));
     if (!model_.full) AddNodes(structure, root.Find("nodes"));
-    if (model_.full) return;  // else thousands of files or lines would repeat the error
+    if (model_.full) return;  // stop, otherwise thousands of files or lines would repeat the error
     for (const Entry& group : MapOf(root.Find("pair_groups"), "pair_groups", out_)) {
       for (const ValuePtr& item : ListOf(group.value.get(), group.key, out_)) {
         std::string a, b;
@@ -152,7 +152,8 @@ class Reader {
       }
     }
     if (model_.full) return;
-    // First all rotations, then each key's scale, offset and translation.
+    // NTRT's order: first the rotations of all keys, then scale, offset and translation of each
+    // key.
     for (const Entry& entry : entries) {
       ForNamed(structure, entry, [&](int child, int) {
         if (const Value* turn = entry.value->Find("rotation")) Rotate(child, *turn);
@@ -212,7 +213,7 @@ class Reader {
     open_.push_back(real);
     Build(index, *file);
     open_.pop_back();
-    // Only now: NTRT adds a child to its parent when the child is complete.
+    // Only now, because NTRT adds a child to its parent when the child is complete.
     in_.structure(parent).children.push_back(index);
   }
 
@@ -224,7 +225,7 @@ class Reader {
       if (child >= 0) {
         visit(child, index);
       } else if (model_.ComparedTooMuch()) {
-        return;                                 // one error at the end
+        return;                                 // the limit is reported once, at the end
       } else if (!entry.value->Find("path")) {  // a missing file has been reported
         out_.Error("ntrt.unknown_substructure", entry.key_at,
                    "there is no substructure \"" + name + "\"",
@@ -271,7 +272,7 @@ int NodeAt(const Reading& in, int structure, const std::string& path, const Sour
     const std::string name = left.substr(0, dot);
     structure = in.model.FindChild(structure, name);
     if (structure >= 0) continue;
-    if (in.model.ComparedTooMuch()) return -1;  // one error at the end
+    if (in.model.ComparedTooMuch()) return -1;  // the limit is reported once, at the end
     in.out.Error("ntrt.unknown_substructure", at,
                  "there is no substructure \"" + name + "\" for the node \"" + path + "\"");
     return -1;

@@ -1,4 +1,4 @@
-/// Functions shared by the readers of the parts of a file.
+/// Functions that the readers of parts of a file share.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ using description::Entry;
 using description::Value;
 using description::ValuePtr;
 
-/// Largest magnitude of numbers and positions, in the files' unit.
+/// Largest absolute value of numbers and coordinates, in the file's unit.
 inline constexpr double kFarthest = 1e12;
 
 struct Reading {
@@ -26,27 +26,29 @@ struct Reading {
   Pair& pair(int i) const { return model.pairs[static_cast<std::size_t>(i)]; }
 };
 
-/// Reads a plain number as yaml-cpp does for NTRT; NaN after an error.
+/// Reads a number by the rules of yaml-cpp, without expressions. Returns NaN after an error.
 double ReadPlain(const Value& value, std::string_view what, Diagnostics& out);
-/// Reads [x, y, z]; NaN after an error.
+/// Reads [x, y, z]. All are NaN after an error.
 Vec3 ReadPoint(const Value& value, std::string_view what, Diagnostics& out);
-/// Returns the entries of a map; none, and an error, if it is not a map. `value` may be null.
+/// Returns the entries of a map. For other types, reports an error and returns no entries. `value`
+/// may be null.
 const std::vector<Entry>& MapOf(const Value* value, std::string_view what, Diagnostics& out);
-/// Returns the items of a list, likewise.
+/// Returns the items of a list. For other types, reports an error and returns no items. `value` may
+/// be null.
 const std::vector<ValuePtr>& ListOf(const Value* value, std::string_view what, Diagnostics& out);
-/// Reports errors for keys that are not among these.
+/// Reports keys that are not in `known`.
 void OnlyKeys(const Value& map, const std::vector<std::string>& known, Diagnostics& out);
 
-/// Returns the three words of "a/b/c".
+/// Splits "a/b/c" into its words.
 std::vector<std::string> AtSlashes(const std::string& text);
-/// Reads two texts, such as [bottom, top]; returns false after an error.
+/// Reads a list of two texts, such as [bottom, top]. Returns false after an error.
 bool ReadTwo(const Value& value, std::string& a, std::string& b, Diagnostics& out);
-/// Returns the node that `path` names from the structure on: leg.hip.top. -1 after an error at
-/// `at`.
+/// Returns the node with a path relative to the structure: leg.hip.top. Returns -1 after an error
+/// at `at`.
 int NodeAt(const Reading& in, int structure, const std::string& path, const SourceRef& at);
 void AddPair(const Reading& in, int structure, int from, int to, Words tags, const SourceRef& at);
 
-/// Reads `builders:` of a file. Later ones precede earlier ones.
+/// Reads `builders:` of a file. If several match an item, the last one applies.
 void ReadBuilders(const Reading& in, const Value* builders);
 /// Adds NTRT's four builders for the tags rod, string, box and sphere.
 void AddDefaultBuilders(Model& model);

@@ -1,4 +1,4 @@
-// `builders:`: the class that builds items with a tag, and its parameters by NTRT's names.
+// Reader of `builders:`, which assigns a class and its parameters to items with a tag.
 #include <cmath>
 
 #include "description/yaml/yaml_tree.h"
@@ -58,7 +58,7 @@ const std::vector<Table> kTables{
     {Class::kKinematicContact, {&kCable, &kMotor}},
 };
 
-/// Reads a Boolean value in the notations of yaml-cpp.
+/// Reads a Boolean value by the rules of yaml-cpp.
 bool ReadTruth(const Value& value, std::string_view what, Diagnostics& out) {
   for (const char* yes :
        {"true", "True", "TRUE", "yes", "Yes", "YES", "on", "On", "ON", "y", "Y"}) {
@@ -127,7 +127,7 @@ void ReadBuilders(const Reading& in, const Value* builders) {
       continue;
     }
     MapOf(entry.value.get(), entry.key, in.out);
-    // NTRT ignores other keys; a misspelled `parameters` would leave the defaults.
+    // NTRT ignores unknown keys, so a misspelled `parameters` would silently select the defaults.
     OnlyKeys(*entry.value, {"class", "parameters"}, in.out);
     const Value* const kind = entry.value->Find("class");
     if (!kind) {

@@ -1,4 +1,4 @@
-// Readers of single values of NTRT's structure files: numbers, points, maps, lists, pairs of names.
+// Readers of single values in NTRT's structure files: numbers, points, maps, lists, pairs of names.
 #include <cmath>
 
 #include "description/gait/gait_parts.h"

@@ -17,10 +17,11 @@ double Reread(const char* format, int precision, double number) {
   char text[400];
   std::snprintf(text, sizeof text, format, precision, number);
   const double read = std::strtod(text, nullptr);
-  return read == 0.0 ? 0.0 : read;  // no -0
+  return read == 0.0 ? 0.0 : read;  // avoid -0
 }
 
-/// Returns text such as "2 * pi / 3"; empty if the angle is no such fraction.
+/// Returns a text such as "2 * pi / 3". Returns an empty text if the angle is not a simple fraction
+/// of pi.
 std::string ShareOfPi(double angle_rad) {
   for (const int part : {1, 2, 3, 4, 5, 6, 8, 9, 10, 12, 18, 36}) {
     const double times = angle_rad / kPi * part;

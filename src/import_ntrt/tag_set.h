@@ -1,4 +1,4 @@
-/// NTRT's tags: texts of words separated by blanks, matched as sets of words.
+/// NTRT's tags: texts with words separated by blanks, compared as sets of words.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// Rotations between vectors as NTRT computes them, in its frame (y up).
+/// Rotations between vectors as NTRT computes them, in NTRT's frame (y up).
 #pragma once
 
 #include <cmath>
@@ -9,15 +9,15 @@ namespace taut::import_ntrt {
 
 inline Vec3 Unit(const Vec3& v) { return (1.0 / Length(v)) * v; }
 
-/// Returns the rotation about an axis of any nonzero length.
+/// Returns the rotation about an axis, which may have any nonzero length.
 inline Quat About(const Vec3& axis, double angle_rad) {
   const Vec3 v = (std::sin(0.5 * angle_rad) / Length(axis)) * axis;
   return {std::cos(0.5 * angle_rad), v.x, v.y, v.z};
 }
 
-/// Returns the shortest rotation from a to b. As in NTRT's tgUtil, directions within 1e-5 of each
-/// other are equal and give no rotation; opposite ones give a half turn about `fallback`, or about
-/// x if that is zero.
+/// Returns the shortest rotation from a to b. As in NTRT's tgUtil, directions within 1e-5 count as
+/// equal, which gives the identity. Opposite directions give a half turn about `fallback`, or about
+/// x if `fallback` is zero.
 inline Quat Between(const Vec3& a, const Vec3& b, const Vec3& fallback) {
   constexpr double kSame = 1e-5;
   const Vec3 from = Unit(a), to = Unit(b);

@@ -1,4 +1,4 @@
-/// XML file as a tree of elements, with included files in place.
+/// XML file as a tree of elements, with the contents of included files inserted.
 #pragma once
 
 #include <optional>
@@ -27,15 +27,15 @@ struct Element {
     }
     return nullptr;
   }
-  /// Returns the element with its name, if it has one, for messages: `geom "foot"`.
+  /// Returns the element and its name, if it has one, for messages: `geom "foot"`.
   std::string Called() const {
     const Attribute* const its = Find("name");
     return its ? name + " \"" + its->value + "\"" : name;
   }
 };
 
-/// Returns the file's root element. `files` is set to all files read, the file itself first.
-/// Returns nothing and reports an error if one of them is not XML.
+/// Returns the file's root element. `files`: set to all files read, the main file first. Returns
+/// nothing and reports an error if one of them is not valid XML.
 std::optional<Element> ReadXml(const std::string& path, std::vector<std::string>& files,
                                Diagnostics& out);
 

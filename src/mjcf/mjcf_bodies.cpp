@@ -17,8 +17,8 @@ bool IsTerrain(const Scene& scene, const Shape& s) {
   return !scene.Moves(s.body) && (s.kind == Shape::Kind::kPlane || s.kind == Shape::Kind::kBox);
 }
 
-/// Returns the common prefix of the body's site names: "segment_0" if all are called
-/// segment_0.something, as in taut's export.
+/// Returns the common prefix of the body's site names, as in taut's export: "segment_0" if all
+/// names begin with "segment_0.".
 std::string CommonPrefix(const Scene& scene, const Rigid& rigid) {
   std::string prefix;
   for (const int site : rigid.sites) {
@@ -75,7 +75,7 @@ class BodyBuilder {
     robot_.node_sources.push_back(at);
     return static_cast<int>(def_.nodes.size()) - 1;
   }
-  /// Returns a node of the body at this point up to rounding; -1: none.
+  /// Returns the body's node at this point, up to rounding; -1 if there is none.
   int NodeNear(const Vec3& p) const {
     for (std::size_t n = first_node_; n < def_.nodes.size(); ++n) {
       const Vec3 off = def_.nodes[n].position_m - p;
@@ -83,13 +83,13 @@ class BodyBuilder {
     }
     return -1;
   }
-  /// Returns the node at this point, or a new one.
+  /// Returns the node at this point; adds it if missing.
   const NodeDef& NodeFor(const Vec3& p, const std::string& raw, const SourceRef& at) {
     int node = NodeNear(p);
     if (node < 0) node = AddNode(raw, p, at);
     return def_.nodes[Scene::Index(node)];
   }
-  /// As `NodeFor`, but never a node in `taken`, which has such a shape already.
+  /// Like `NodeFor`, but returns no node in `taken`: these nodes already have a shape of this kind.
   const NodeDef& FreeNodeFor(std::set<int>& taken, const Shape& s, const std::string& raw) {
     int node = NodeNear(s.pose.p);
     if (node < 0 || taken.contains(node)) node = AddNode(raw, s.pose.p, s.at);
@@ -141,7 +141,7 @@ class BodyBuilder {
   }
 
  public:
-  /// Finds whether masses of taut's solids equal MuJoCo's.
+  /// Determines whether the masses that taut computes for the solids are equal to MuJoCo's masses.
   void FindOwnMasses() {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const Body& body = scene_.bodies[i];
@@ -237,13 +237,13 @@ void FindRigids(Building& b) {
   });
   for (auto& [root, rigid] : by_root) {
     if (!rigid.placement.empty() || (!rigid.moves && rigid.shapes.empty())) continue;
-    // The only body of a robot may have the robot's name.
+    // If the robot has only one body, this body may have the robot's name.
     rigid.called_as_robot = bodies == 1 && scene.bodies[Scene::Index(root)].name == b.def().name;
     if (rigid.called_as_robot) continue;
     const auto rods = std::count_if(rigid.shapes.begin(), rigid.shapes.end(), [&](int shape) {
       return IsRod(scene.shapes[Scene::Index(shape)]);
     });
-    // A body's name is its placement, or without one the name of its rod or first node.
+    // taut names a body after its placement, or else after its rod or first node.
     const std::string& name = scene.bodies[Scene::Index(root)].name;
     const bool by_node =
         rods == 0 && rigid.shapes.size() <= 1 &&
@@ -251,7 +251,7 @@ void FindRigids(Building& b) {
          (rigid.sites.size() == 1 && scene.sites[Scene::Index(rigid.sites[0])].name == name));
     if (rods != 1 && !by_node) rigid.placement = placements.Take(ToName(name, "body"));
   }
-  // In the order of a model file: bodies outside of parts first, then part by part.
+  // The order in a model file: first bodies outside of parts, then bodies of each part.
   std::vector<std::vector<const Rigid*>> parts(1);
   std::map<std::string, std::size_t> part_of{{"", 0}};
   for (const auto& [root, rigid] : by_root) {
@@ -263,7 +263,7 @@ void FindRigids(Building& b) {
   for (const auto& part : parts) {
     for (const Rigid* const rigid : part) b.rigids.push_back(*rigid);
   }
-  for (auto& [root, rigid] : by_root) {  // static bodies without shapes, which have nodes only
+  for (auto& [root, rigid] : by_root) {  // static bodies without shapes: they have only nodes
     if (rigid.moves || !rigid.shapes.empty()) continue;
     rigid.placement.clear();
     b.rigids.push_back(rigid);

@@ -1,5 +1,5 @@
-/// Conversion of an MJCF scene to a robot: data shared by its steps. All quantities are in the
-/// file's units until the last step.
+/// Conversion of an MJCF scene to a robot: data that its steps share. All quantities are in the
+/// file's units until `ScaleUnits`.
 #pragma once
 
 #include <map>
@@ -12,13 +12,13 @@
 
 namespace taut::mjcf {
 
-/// A rigid body of the robot, or the world with static parts that are not terrain.
+/// Rigid body of the robot, or the world with all static parts that are not terrain.
 struct Rigid {
-  int root = 0;           ///< Body of the scene.
-  std::string placement;  ///< Placement of its nodes; empty: none.
+  int root = 0;           ///< Index of its root body in the scene.
+  std::string placement;  ///< Name of the placement of its nodes; empty: none.
   bool moves = false, called_as_robot = false;
-  std::vector<int> sites, shapes;  ///< Of the scene; without shapes that are terrain.
-  int body = kWorld;               ///< Of the robot.
+  std::vector<int> sites, shapes;  ///< Indices in the scene. Shapes of the terrain are excluded.
+  int body = kWorld;               ///< Index of the body in the robot.
 };
 
 struct Building {
@@ -26,10 +26,11 @@ struct Building {
   const MjcfImport& options;
   ImportedMjcf& made;
   Diagnostics& out;
-  std::vector<Rigid> rigids;  ///< In the order of the robot's bodies; the world's last.
-  std::vector<std::size_t> rigid_of_body;  ///< Per body of the scene, its index in `rigids`.
+  std::vector<Rigid> rigids;  ///< In the order of the robot's bodies; the world is last.
+  std::vector<std::size_t> rigid_of_body;  ///< Index into `rigids`, per body of the scene.
   std::vector<int> node_of_site;
-  /// Per shape of the scene: a sphere, capsule or box of the robot, or a part of its terrain.
+  /// Result of a shape of the scene: a sphere, capsule or box of the robot, or an element of the
+  /// terrain.
   struct Made {
     const char* list = "";
     std::size_t index = 0;
@@ -42,22 +43,22 @@ struct Building {
   const Rigid& RigidOf(int body) const;
 };
 
-/// Finds rigidly connected bodies, terrain, and the placements of nodes.
+/// Determines rigid bodies, terrain, and the placements of nodes.
 void FindRigids(Building& b);
 /// Adds bodies, nodes and shapes.
 void BuildBodies(Building& b);
 void NameBodies(Building& b);
-/// Finds the shapes that collide with anything. Call it before shapes are built.
+/// Determines the shapes that collide. Call this before `BuildBodies`.
 void FindWhatCollides(Building& b);
-/// Sets pairs of bodies without contact, and the friction of materials.
+/// Sets pairs of bodies that do not collide, and the friction of materials.
 void BuildContacts(Building& b);
-/// Moves the scene's bodies to the poses of the key; null: as described.
+/// Moves the scene's bodies to the poses of a keyframe. Null: described poses.
 void PutAt(const Key* key, Building& b);
 void BuildCables(const Key* key, Building& b);
-/// Converts to SI units; warns if the result is implausible.
+/// Converts all quantities to SI units. Warns if the results are implausible.
 void ScaleUnits(Building& b);
 
-/// Returns a valid name of taut: other characters become `_`.
+/// Returns a valid name of taut: all other characters become `_`.
 std::string ToName(const std::string& text, const std::string& if_empty);
 /// Returns text such as "3 geoms" or "1 geom".
 std::string Count(std::size_t count, const std::string& what);

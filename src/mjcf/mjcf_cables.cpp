@@ -9,13 +9,13 @@
 namespace taut::mjcf {
 namespace {
 
-/// T = k l - c + b dl/dt: springs, dampers and actuators of a tendon together.
+/// Tension of a tendon by its springs, dampers and actuators: T = k l - c + b dl/dt.
 struct Law {
   double k = 0, b = 0, c = 0;
-  double gain = 0;       ///< Decrease of c per unit of control; of the only actuator.
-  double c_at_zero = 0;  ///< c with all controls 0.
+  double gain = 0;       ///< Decrease of c per unit of control, for a tendon with one actuator.
+  double c_at_zero = 0;  ///< c if all controls are 0.
   int actuators = 0;
-  double lag_s = 0;  ///< The longest of its actuators.
+  double lag_s = 0;  ///< Largest lag of the tendon's actuators.
   bool pushes = false, damps_slack = false, has_most = false, has_least = false;
 };
 
@@ -29,8 +29,8 @@ class CableBuilder {
   }
 
  private:
-  /// Returns the control at the start; for an actuator with a lag its activation, if the key
-  /// contains one.
+  /// Returns the initial control. For an actuator with a lag, returns its activation if the
+  /// keyframe contains it.
   double Control(std::size_t actuator) const {
     const auto& state = scene_.actuators[actuator].state;
     if (state && key_ && !key_->act.empty()) return key_->act[*state];
@@ -40,7 +40,7 @@ class CableBuilder {
     return u;
   }
 
-  /// Returns the length at qpos0.
+  /// Returns the tendon's length at qpos0.
   double Length(const Tendon& tendon) const {
     double length = 0;
     for (std::size_t i = 0; i + 1 < tendon.sites.size(); ++i) {
@@ -78,7 +78,7 @@ class CableBuilder {
     return law;
   }
 
-  /// Returns the tension at the start as MuJoCo computes it, for this length of the tendon.
+  /// Returns the initial tension by MuJoCo's equations, for a given length of the tendon.
   double TensionInMujoco(int index, double length) const {
     const Tendon& tendon = scene_.tendons[Scene::Index(index)];
     double shortest = tendon.springlength[0], longest = tendon.springlength[1];
@@ -97,9 +97,9 @@ class CableBuilder {
     return tension;
   }
 
-  /// Reports an error if the cable's tension at the start differs from MuJoCo's: a limit of an
-  /// actuator's force is active there, or the spring is slack while an actuator pulls. Tendons that
-  /// push in MuJoCo have a separate warning.
+  /// Reports an error if the cable's initial tension differs from MuJoCo's. Causes: an actuator is
+  /// at its force limit, or the spring is slack while an actuator pulls. Another warning covers
+  /// tendons that push in MuJoCo.
   void CheckStart(int index, const Law& law, double length) {
     const Tendon& tendon = scene_.tendons[Scene::Index(index)];
     const double theirs = TensionInMujoco(index, length);
@@ -218,8 +218,7 @@ class CableBuilder {
     b_.made.robot.cable_sources.push_back(tendon.at);
   }
 
-  /// Returns the tendon's name if it is valid for a pair of a model, else a valid name made from
-  /// it.
+  /// Returns the tendon's name, or a similar one if it is not a valid name of a pair.
   std::string NameOf(const Tendon& tendon) const {
     std::string by_nodes, shorter, placement;
     bool inside = true;

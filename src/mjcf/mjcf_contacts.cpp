@@ -1,5 +1,5 @@
-// Contact pairs and friction. MuJoCo selects contacts by masks of geoms, by pairs of bodies and by
-// pairs of geoms; taut by shapes as a whole and by pairs of bodies.
+// Contact pairs and friction. MuJoCo selects contacts by masks of geoms, pairs of bodies and pairs
+// of geoms. taut excludes whole shapes or pairs of bodies.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -35,8 +35,9 @@ class ContactBuilder {
   }
 
   void Apart() {
-    // Pairs of bodies with shapes that pass through each other; true: others of their shapes meet.
-    // Pairs that only meet, which are most, have no entry.
+    // Pairs of bodies with at least one pair of shapes that do not collide in MuJoCo. True: other
+    // shapes of the same bodies collide. Most pairs of bodies have no entry, since all their shapes
+    // collide.
     std::map<std::pair<int, int>, bool> pass;
     const int count = static_cast<int>(scene_.shapes.size());
     const std::vector<int> body = Bodies();
@@ -103,7 +104,7 @@ class ContactBuilder {
     ModelDef& def = b_.def();
     def.friction_combine = CombineRule::kMaximum;
     const bool one_kind = of_shapes.size() == 1 && *of_shapes.begin() > 0;
-    if (priorities && one_kind) {  // then a geometric mean can reproduce the ground's friction
+    if (priorities && one_kind) {  // a geometric mean can then reproduce the friction of the ground
       const double shape = *of_shapes.begin();
       def.friction_combine = CombineRule::kGeometricMean;
       for (int i = 0; i < count; ++i) {
@@ -122,7 +123,7 @@ class ContactBuilder {
  private:
   Shape& At(int i) { return scene_.shapes[Scene::Index(i)]; }
   int Root(int body) const { return scene_.bodies[Scene::Index(body)].root; }
-  /// Returns the body of the robot; the world for terrain.
+  /// Returns the robot's body of a shape; the world for terrain.
   int Body(int i) {
     const Building::Made& made = b_.made_of_shape[Scene::Index(i)];
     const std::string list = made.list;
@@ -143,7 +144,7 @@ class ContactBuilder {
     return least;
   }
 
-  /// Returns true for shapes of different bodies of which one moves.
+  /// Returns whether two shapes belong to different bodies, at least one of which moves.
   bool MayMeet(int i, int j) {
     const Shape &one = At(i), &two = At(j);
     return Root(one.body) != Root(two.body) && (scene_.Moves(one.body) || scene_.Moves(two.body));
@@ -156,7 +157,7 @@ class ContactBuilder {
            !excluded_.contains(std::minmax(Root(one.body), Root(two.body)));
   }
 
-  /// Returns true if taut leaves the pair out, too.
+  /// Returns whether taut also excludes this pair.
   bool Covered(int i, int j) {
     if (!roles_) roles_ = mechanics::ContactRolesOf(b_.def());
     const auto role = [&](int k) {
@@ -187,7 +188,7 @@ class ContactBuilder {
       return m->kinetic_friction;
     };
     const int count = static_cast<int>(scene_.shapes.size());
-    std::vector<double> friction(scene_.shapes.size(), -1);  // -1: not yet known
+    std::vector<double> friction(scene_.shapes.size(), -1);  // -1: not computed yet
     const auto friction_of = [&](int i) {
       double& its = friction[Scene::Index(i)];
       if (its < 0) its = material(i);

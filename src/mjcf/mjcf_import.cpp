@@ -1,4 +1,4 @@
-// Import of an MJCF file as a robot with an experiment.
+// Importer of an MJCF file as a robot with an experiment.
 #include "mjcf/mjcf_scene.h"
 
 #include "description/yaml/reader.h"

@@ -1,4 +1,4 @@
-// Masses of MJCF bodies: sums over geoms, and MuJoCo's lower bounds.
+// Masses of MJCF bodies: sums over geoms, and the lower bounds in MuJoCo's compiler settings.
 #include "mjcf/mjcf_mass.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Robot from an MJCF scene: start, units, and a report of omitted elements.
+// Conversion of an MJCF scene to a robot: initial state, units, and a report of omitted elements.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -11,10 +11,10 @@
 namespace taut::mjcf {
 namespace {
 
-/// Motion of bodies from qpos0 to the key's poses.
+/// Motion of bodies from qpos0 to the poses of the keyframe.
 struct ToKey {
   std::vector<Pose> motions;  ///< Per body of the robot.
-  std::vector<Vec3> coms;     ///< Centers of mass as described.
+  std::vector<Vec3> coms;     ///< Centers of mass in the described pose.
   bool Moves(int body) const { return body != kWorld; }
   Vec3 Moved(int body, const Vec3& p) const {
     return (motions[Scene::Index(body)] * Pose{p, {}}).p;
@@ -22,7 +22,7 @@ struct ToKey {
   const Quat& Turned(int body) const { return motions[Scene::Index(body)].q; }
 };
 
-/// Returns the requested key; null, without an error, if none was requested.
+/// Returns the requested keyframe. Null without an error if none was requested.
 const Key* FindKey(const Scene& scene, const std::string& asked, const std::string& path,
                    Diagnostics& out) {
   if (asked.empty()) return nullptr;
@@ -95,7 +95,7 @@ void PutAt(const Key* key, Building& b) {
     if (!body.is_free) continue;
     const std::size_t q = 7 * free, v = 6 * free;
     ++free;
-    if (body.root != static_cast<int>(i)) continue;  // moves with the body that it is welded to
+    if (body.root != static_cast<int>(i)) continue;  // moves with the body to which it is welded
     if (body.aligned) {
       b.out.Error("mjcf.aligned_free_joint", body.at,
                   "the free joint of body \"" + body.name +
@@ -119,7 +119,7 @@ void PutAt(const Key* key, Building& b) {
     const Quat turn = now.q * Conjugate(body.frame.q);
     to.motions[Scene::Index(made)] = {now.p - Rotate(turn, body.frame.p), turn};
     if (key->qvel.empty()) continue;
-    // Velocity of the body's origin in W, angular velocity in the body's axes.
+    // MuJoCo's qvel: velocity of the body's origin in W, angular velocity in the body's axes.
     const double* n = key->qvel.data() + v;
     BodyDef& its = def.bodies[Scene::Index(made)];
     const Vec3 w = Rotate(now.q, {n[3], n[4], n[5]});
@@ -182,7 +182,7 @@ void ScaleUnits(Building& b) {
     if (mass.inertia_kg_m2) scale_inertia(*mass.inertia_kg_m2);
   }
 
-  // Typical robots are smaller and lighter; a file in other units seems huge.
+  // Above these values, the file probably uses other units.
   constexpr double kLong_m = 2, kHeavy_kg = 50, kEarth = 9.81;
   double longest = 0, heaviest = 0;
   for (const CapsuleDef& rod : def.capsules)

@@ -1,5 +1,5 @@
-/// Scene of an MJCF file, in the file's units, with all poses in W at qpos0. Frames, default
-/// classes and the notations of orientations are resolved.
+/// Scene of an MJCF file in the file's units, with all poses in W at qpos0. Frames, default classes
+/// and orientations are already resolved.
 #pragma once
 
 #include <map>
@@ -21,13 +21,14 @@ struct Shape {
   SourceRef at;
   int body = 0;
   Pose pose = {};
-  Vec3 from = {}, to = {};  ///< Of a capsule or cylinder.
-  Vec3 half = {};           ///< Of a box.
+  Vec3 from = {}, to = {};  ///< End points of a capsule or cylinder.
+  Vec3 half = {};           ///< Half extents of a box.
   double radius = 0;
   double mass = 0;
   double friction = 1;
   int contype = 1, conaffinity = 1, condim = 3, priority = 0;
-  bool collides = true;  ///< With anything; known after all is read.
+  bool collides = true;  ///< Whether it collides with any shape; known after the whole file has
+                         ///< been read.
 };
 
 struct Site {
@@ -37,43 +38,50 @@ struct Site {
   Vec3 p;
 };
 
-/// A body of the file. The first is the world.
+/// Body of the file. The first is the world.
 struct Body {
   std::string name;
   SourceRef at;
-  bool is_free = false;  ///< Has a free joint.
-  int root = 0;          ///< Body of the same rigid body: itself, its parent or the weld's.
+  bool is_free = false;  ///< Whether it has a free joint.
+  int root = 0;          ///< Body that represents its rigid body: itself, its parent, or a body to
+                         ///< which it is welded.
   Pose frame = {};
   MassProperties mass = {};
-  bool aligned = false;  ///< MuJoCo aligns its frame with its principal axes: poses of keys differ.
-  bool own_masses = true;  ///< Each of its shapes has the mass of the same solid in taut.
+  bool aligned = false;  ///< Whether MuJoCo aligns its frame with its principal axes, which changes
+                         ///< poses of keyframes.
+  bool own_masses = true;  ///< Whether each of its shapes has the mass that taut computes for the
+                           ///< same solid.
 };
 
 struct Tendon {
-  std::string name = {}, tag = {};  ///< The tag: its default class, if it names one.
+  std::string name = {}, tag = {};  ///< `tag`: its default class, if any.
   SourceRef at;
   std::vector<int> sites = {};
   double stiffness = 0, damping = 0, friction = 0;
-  /// Below the first it pushes, above the second it pulls. Both -1: the length at qpos0.
+  /// Below the first length, the tendon pushes; above the second, it pulls. Both -1: length at
+  /// qpos0.
   double springlength[2] = {-1, -1};
-  std::optional<std::pair<double, double>> range = {};  ///< Limits of its length.
+  std::optional<std::pair<double, double>> range = {};  ///< Limits of the tendon's length.
 };
 
-/// p = gain ctrl + bias0 + bias1 l + bias2 dl/dt along a tendon, where positive pushes.
+/// Push of an actuator along a tendon: p = gain ctrl + bias0 + bias1 l + bias2 dl/dt.
 struct Actuator {
   std::string name;
   SourceRef at;
   int tendon = 0;
-  double gain = 0, bias[3] = {0, 0, 0};  ///< With the gear: for the tendon's l.
-  std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of p.
-  double lag_s = 0;                       ///< Lag behind its control.
-  std::optional<std::size_t> state = {};  ///< With a lag: its index in keys' `act`.
+  double gain = 0, bias[3] = {0, 0, 0};  ///< Include the gear: they apply to the tendon's length.
+  std::optional<std::pair<double, double>> control_range = {},
+                                           force_range = {};  ///< `force_range`:
+                                                              ///< limits of p.
+  double lag_s = 0;                       ///< Time constant of the response to the control, plus
+                                          ///< the delay.
+  std::optional<std::size_t> state = {};  ///< If there is a lag: index into `act` of keyframes.
 };
 
 struct Key {
   std::string name;
   SourceRef at;
-  std::vector<double> qpos, qvel, ctrl, act;  ///< Empty if not given.
+  std::vector<double> qpos, qvel, ctrl, act;  ///< Empty if absent from the file.
 };
 
 struct ContactPair {
@@ -89,39 +97,40 @@ struct Scene {
   double timestep = 0.002;
   bool clamps_controls = true, has_contacts = true, only_pairs = false, has_dry_friction = true,
        has_limits = true;
-  std::vector<int> disabled_groups;  ///< Of actuators.
+  std::vector<int> disabled_groups;  ///< Disabled groups of actuators.
   std::vector<Body> bodies;
   std::vector<Shape> shapes;
   std::vector<Site> sites;
   std::vector<Tendon> tendons;
   std::vector<Actuator> actuators;
-  std::size_t states = 0;        ///< Of actuators.
-  bool lacks_actuators = false;  ///< Some are refused: numbers of keys cannot be checked.
+  std::size_t states = 0;        ///< Number of actuators with a state.
+  bool lacks_actuators = false;  ///< Whether actuators were rejected, so that the lengths of
+                                 ///< keyframe vectors cannot be checked.
   std::vector<Key> keys;
   std::vector<ContactPair> pairs;
-  std::vector<std::pair<int, int>> excludes;  ///< Of bodies.
+  std::vector<std::pair<int, int>> excludes;  ///< Pairs of bodies that do not collide.
   std::map<std::string, int> site_by_name, body_by_name, shape_by_name, tendon_by_name;
-  /// Indices of geoms that are no shapes: refused with an error, or of an unsupported type without
-  /// contacts and mass.
+  /// Special indices of geoms that are not in `shapes`. kRefused: rejected with an error. kLeftOut:
+  /// an unsupported type without contacts and mass.
   static constexpr int kRefused = -1, kLeftOut = -2;
   LeftOut left_out;
   std::vector<SourceRef> twisting;  ///< Geoms and pairs with torsional or rolling friction.
-  int pictures = 0;                 ///< Tendons without effect.
+  int pictures = 0;                 ///< Number of tendons without effect.
 
   bool Moves(int body) const { return bodies[Index(bodies[Index(body)].root)].is_free; }
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 };
 
-/// Registers a name, unique per kind: an entry of the list that `by_name` indexes. Reports an error
-/// for a duplicate.
+/// Registers the name of an element. Names are unique per kind of element; `by_name` maps them to
+/// indices. Reports duplicates.
 void Register(std::map<std::string, int>& by_name, const Element& element, int index,
               Diagnostics& out);
-/// Returns the index of the item that the attribute names; -1 after an error, also after an earlier
-/// one about the item.
+/// Returns the index of the item to which an attribute refers. Returns -1 after an error, including
+/// an earlier error about the item.
 int Find(const std::map<std::string, int>& by_name, const Element& element,
          std::string_view attribute, const char* kind, Diagnostics& out);
 
-// Each function reads its section. Members of `Scene` that are declared earlier have been read.
+// Each function reads its section. Call them in this order.
 void ReadSettings(const Element& root, Scene& scene, Diagnostics& out);
 void ReadBodies(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
 void ReadTendons(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
@@ -130,7 +139,7 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
 void ReadEqualities(const Element& root, const Defaults& defaults, Scene& scene, Diagnostics& out);
 void ReadKeys(const Element& root, Scene& scene, Diagnostics& out);
 
-/// Returns all sections of that name, in order.
+/// Returns all sections with this name, in order.
 std::vector<const Element*> Sections(const Element& root, std::string_view name);
 
 /// Returns the robot of the scene, in SI units.

@@ -38,11 +38,11 @@ const std::string kActuator =
     "ctrlrange forcelimited forcerange gear group actlimited actrange delay damping armature ";
 const std::string kActuatorLeftOut = "user lengthrange cranklength actdim actearly nsample interp";
 
-/// Attributes of `left_out` that change a force or a place. With the neutral number, or numbers
-/// that begin the neutral ones, they change nothing and nothing is reported.
+/// Attributes in `left_out` that affect forces or positions. An attribute is ignored silently if it
+/// has its neutral value. The file may give only the first numbers of this value.
 struct Change {
   const char *elements, *attributes, *neutral;
-  const char* consequence;  ///< Of leaving it out, for a warning; null: it is refused.
+  const char* consequence;  ///< Text of the warning. Null: the attribute is rejected.
 };
 constexpr const char* kSoft = "contacts are rigid in taut; in MuJoCo these values make them soft";
 constexpr const char* kWelded =
@@ -112,7 +112,7 @@ class Checker {
   }
 
  private:
-  /// `site` within a tendon, and `joint` within equality, have other meanings than in a body.
+  /// `site` in a tendon, and `joint` in `equality`, have a different schema than in a body.
   static std::string KindOf(const std::string& in, const std::string& name) {
     if (in == "spatial") return "spatial/" + name;
     if (in == "equality" && (name == "joint" || name == "tendon")) return "equality/" + name;
@@ -146,7 +146,7 @@ class Checker {
   };
   LeftOut& left_out_;
   Diagnostics& out_;
-  std::map<std::string, Changed> changes_;  ///< By consequence.
+  std::map<std::string, Changed> changes_;  ///< Changes by `consequence`.
 
  public:
   void Warn() const {

@@ -1,4 +1,4 @@
-/// Schema of supported MJCF: elements and attributes that are read, left out or refused.
+/// Schema of supported MJCF: elements and attributes that are read, omitted or rejected.
 #pragma once
 
 #include <map>
@@ -11,20 +11,20 @@ namespace taut::mjcf {
 
 struct Rule {
   const char* element;
-  /// Attributes, separated by blanks.
+  /// Names of attributes, separated by blanks.
   const char *read, *left_out;
-  /// Child elements; `...`: any, without a check.
+  /// Names of child elements; `...`: any, unchecked.
   const char *children, *children_left_out, *children_refused;
 };
 const std::vector<Rule>& Rules();
 
 bool IsActuator(const std::string& element);
 
-/// Number of occurrences of each omitted item, by its name: `geom.rgba`.
+/// Number of occurrences of each omitted item, by name: `geom.rgba`.
 using LeftOut = std::map<std::string, int>;
 
-/// Reports errors for all refused or unknown elements and attributes below `root`, counts omitted
-/// items, and warns if an omitted item changes a force or a place.
+/// Reports an error for each rejected or unknown element and attribute below `root`. Counts omitted
+/// items. Warns if an omitted item affects a force or a position.
 void CheckSchema(const Element& root, LeftOut& left_out, Diagnostics& out);
 
 }  // namespace taut::mjcf

@@ -9,15 +9,14 @@
 namespace taut::mjcf {
 namespace {
 
-/// Parameters of an actuator while elements are applied to it: the elements of its default classes
-/// from the outermost one inwards, then the actuator element. All kinds of element write the same
-/// parameters.
+/// Parameters of an actuator while elements are applied: first the elements of its default classes,
+/// outermost first, then the actuator element. Elements of all kinds write the same parameters.
 struct ActuatorSettings {
   std::string dyntype = "none", gaintype = "fixed", biastype = "none";
   double gain = 1, bias[3] = {0, 0, 0}, lag_s = 1, inherited_range = 0;
 
   bool Lags() const { return dyntype == "filter" || dyntype == "filterexact"; }
-  /// Returns true if both give the same force.
+  /// Returns whether both have the same force law.
   bool Equals(const ActuatorSettings& other) const {
     const bool same_bias = biastype != "affine" || std::equal(bias, bias + 3, other.bias);
     return dyntype == other.dyntype && gaintype == other.gaintype && biastype == other.biastype &&
@@ -26,8 +25,8 @@ struct ActuatorSettings {
   }
 };
 
-/// Applies one element as MuJoCo's reader does: a parameter that the element neither gives nor
-/// implies keeps its value. `kv` of a `position` is such a parameter, and so is its `bias[0]`.
+/// Applies one element like MuJoCo's reader: parameters that the element neither sets nor implies
+/// keep their values. Examples: `kv` and `bias[0]` of a `position` element.
 void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   const Layers layers({&e}, out);
   const auto number = [&](const char* name, double if_absent) {
@@ -51,7 +50,8 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   } else if (e.name == "position" || e.name == "intvelocity") {
     s.gain = layers.Number("kp", s.gain), s.bias[1] = -s.gain;
     if (layers.Has("kv")) s.bias[2] = -number("kv", 0);
-    // Here a positive number is a damping ratio, which MuJoCo converts once it knows the masses.
+    // MuJoCo stores a damping ratio as a positive number and converts it after it has computed the
+    // masses.
     if (layers.Has("dampratio")) s.bias[2] = number("dampratio", 0);
     if (layers.Has("kv") && layers.Has("dampratio")) {
       layers.Error("mjcf.kv_and_dampratio", "dampratio", "kv and dampratio are both given",
@@ -79,24 +79,27 @@ void Apply(const Element& e, ActuatorSettings& s, Diagnostics& out) {
   }
 }
 
-/// Up to MuJoCo 3.15 each element changes the result of all elements before it.
+/// Merges elements like MuJoCo up to 3.15: each element modifies the result of all previous
+/// elements.
 ActuatorSettings MergedUntil315(const std::vector<const Element*>& layers, Diagnostics& out) {
   ActuatorSettings s;
   for (const Element* const layer : layers) Apply(*layer, s, out);
   return s;
 }
 
-/// Since MuJoCo 3.16 an element of another kind than `general` inherits from the latest element
-/// before it that is `general` or of its own kind, and takes less from `general`. Found with random
-/// files of up to four elements: 10,000 with 4.0.0 and 1,500 with 3.16.0 compile so.
+/// Merges elements like MuJoCo since 3.16. An element of another kind than `general` inherits from
+/// the latest previous element that is `general` or of the same kind, and inherits fewer parameters
+/// from `general`. Verified with random files of up to four elements: 10,000 with 4.0.0 and 1,500
+/// with 3.16.0.
 ///
-/// `one_per_class`: a class keeps only its last element, as MuJoCo 4.0.0 does if a class has
+/// `one_per_class`: each class keeps only its last element, like MuJoCo 4.0.0 for classes with
 /// elements of several kinds.
 ActuatorSettings MergedSince316(const std::vector<const Element*>& layers, const Defaults& defaults,
                                 bool one_per_class) {
   struct Made {
     std::string kind;
-    const void* of = nullptr;  ///< Default class.
+    const void* of = nullptr;  ///< Default class that contains the element; null for the actuator
+                               ///< element.
     ActuatorSettings settings = {};
   };
   Diagnostics ignored;
@@ -197,8 +200,8 @@ class ActuatorReader {
     if (affine && s.bias[2] > 0 && s.gain == -s.bias[1]) {
       layers.Error("mjcf.dampratio", "dampratio", "dampratio is not supported", "use kv");
     }
-    // The actuator's length is the tendon's times the gear; its force on the tendon is also scaled
-    // by the gear.
+    // The actuator's length is the tendon's length times the gear. Its force on the tendon is also
+    // multiplied by the gear.
     const double gear = layers.Numbers("gear", {1}, 1, 6)[0];
     actuator.gain = gear * s.gain;
     actuator.bias[0] = affine ? gear * s.bias[0] : 0;
@@ -232,7 +235,8 @@ class ActuatorReader {
     }
   }
 
-  /// Applies `inheritrange`: a fraction of the tendon's range about its middle.
+  /// Applies `inheritrange`: sets the control range to this fraction of the tendon's range, about
+  /// the same center.
   void InheritRange(const Layers& layers, const ActuatorSettings& s, Actuator& actuator) {
     const auto& range = scene_.tendons[Scene::Index(actuator.tendon)].range;
     if (s.dyntype == "filter") {
@@ -254,7 +258,7 @@ class ActuatorReader {
     }
   }
 
-  /// Reads attributes that would change the force and are not part of taut's cables.
+  /// Reads the delay. Rejects attributes that affect the force and that taut's cables do not have.
   void ReadRest(const Layers& layers, Actuator& actuator) {
     for (const char* key : {"damping", "armature"}) {
       const auto n = layers.Numbers(key, {0, 0, 0}, 1, 3);

@@ -1,4 +1,4 @@
-// Tree of bodies, with poses in W.
+// Reader of the tree of bodies, with poses in W.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@
 namespace taut::mjcf {
 namespace {
 
-/// Limit of geoms: time grows with the number of their pairs.
+/// Limit of geoms, since contact checks take time proportional to the number of pairs.
 constexpr std::size_t kMostGeoms = 5000;
 
 class BodyReader {
@@ -32,7 +32,7 @@ class BodyReader {
   Layers Over(const Element& element, const std::string& cls) const {
     return defaults_.Over(element, cls, out_);
   }
-  /// Returns the pose in W of a pose given in `frame`.
+  /// Converts a pose in `frame` to W.
   Pose InWorld(const Pose& frame, const Pose& given) const {
     return scene_.settings.global ? given : frame * given;
   }
@@ -59,7 +59,7 @@ class BodyReader {
     if (of.name == "frame") return;
     Mass(body);
     const std::size_t first_shape = scene_.shapes.size();
-    // Geoms of child bodies were removed, so the last ones belong to this body.
+    // Geoms of child bodies have been removed, so the last ones belong to this body.
     std::size_t own = geoms_.size();
     while (own > 0 && geoms_[own - 1].body == body) --own;
     for (std::size_t i = own; i < geoms_.size(); ++i) ReadGeom(geoms_[i], has_mass_);
@@ -85,7 +85,7 @@ class BodyReader {
           "mjcf.mocap", element.at,
           element.Called() + " is a mocap body, which a program moves; it is imported as fixed");
     }
-    // A body without a joint is part of its parent; in the world it is a static body.
+    // A body without a joint belongs to its parent. If the parent is static, it is a static body.
     its.root = scene_.Moves(parent) ? scene_.bodies[Scene::Index(parent)].root : body;
     const auto inertial_outside = inertial_;
     const bool had_mass = has_mass_;
@@ -99,7 +99,7 @@ class BodyReader {
     has_mass_ = had_mass;
   }
 
-  /// Finds the free joint before the children are read, which are part of the body only if it
+  /// Finds the free joint before the children are read: children belong to this body only if it
   /// moves.
   void FindFreeJoint(const Element& element, int body, const std::string& cls) {
     for (const Element& child : element.children) {
@@ -178,7 +178,7 @@ class BodyReader {
     if (geom_count_ <= kMostGeoms) geoms_.push_back(std::move(geom));
   }
 
-  /// Reads the inertial element if it takes effect.
+  /// Reads the inertial element if the compiler settings use it.
   void Mass(int body) {
     using FromGeoms = CompilerSettings::FromGeoms;
     const FromGeoms from_geoms = scene_.settings.from_geoms;
@@ -214,7 +214,7 @@ class BodyReader {
   const Defaults& defaults_;
   Scene& scene_;
   Diagnostics& out_;
-  std::vector<GeomAt> geoms_;  ///< Geoms of the bodies that are being read.
+  std::vector<GeomAt> geoms_;  ///< Geoms of the bodies being read.
   std::size_t geom_count_ = 0;
   std::pair<const Element*, Pose> inertial_{};
   std::vector<int> parents_;
@@ -290,8 +290,8 @@ void BodyReader::ReadSize(const Layers& layers, const Pose& frame, const std::st
     shape.from = from, shape.to = to;
     const double length = std::sqrt(Dot(to - from, to - from));
     shape.half = {size[0], size[0], 0.5 * length};
-    // As in MuJoCo, the other axes follow from the direction from `to` to `from`, in the body's
-    // frame.
+    // As in MuJoCo, z is the direction from `to` to `from`; x and y follow by the shortest rotation
+    // from the body's z axis.
     shape.pose =
         InWorld(frame, {0.5 * (line->first + line->second), FromZ(line->first - line->second)});
   } else {

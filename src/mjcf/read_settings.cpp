@@ -1,4 +1,4 @@
-// Compiler settings, options, contacts, equalities and keyframes.
+// Reader of compiler settings, options, contacts, equalities and keyframes.
 #include <algorithm>
 #include <cmath>
 
@@ -159,7 +159,7 @@ void ReadContacts(const Element& root, const Defaults& defaults, Scene& scene, D
                        "use sphere, capsule, cylinder, box or plane");
         }
         if (a < 0 || b < 0) continue;
-        // MuJoCo ignores the friction and condim of the geoms here.
+        // A pair does not inherit friction and condim of its geoms, as in MuJoCo.
         const auto friction = layers.Numbers("friction", {1, 1, 0.005, 0.0001, 0.0001}, 1, 5);
         const int condim = layers.Whole("condim", 3);
         if (friction[0] < 0)

@@ -1,4 +1,4 @@
-// Spatial tendons.
+// Reader of spatial tendons.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace taut::mjcf {
 namespace {
 
-/// Reads `springlength` of all layers. An element with one number sets both, as in MuJoCo.
+/// Reads `springlength` of all layers. One number sets both lengths, as in MuJoCo.
 void ReadSpringLength(const Layers& layers, Tendon& tendon, Diagnostics& out) {
   double* const l = tendon.springlength;
   for (const Element* const layer : layers.all()) {

@@ -170,7 +170,8 @@ Quat Layers::ReadTurn(const CompilerSettings& settings) const {
     Quat q;
     for (std::size_t i = 0; i < 3; ++i) {
       const char letter = settings.eulerseq[i];
-      const bool fixed_axes = letter < 'a';  // capitals: about the axes of the parent
+      const bool fixed_axes = letter < 'a';  // capital letters: rotation about the axes of the
+                                             // parent
       const char axis = static_cast<char>(fixed_axes ? letter - 'A' + 'a' : letter);
       const Quat turn = AboutAxis(
           {axis == 'x' ? 1.0 : 0, axis == 'y' ? 1.0 : 0, axis == 'z' ? 1.0 : 0}, angle * n[i]);
@@ -247,7 +248,7 @@ Layers Defaults::Over(const Element& element, const std::string& child_class,
   const std::string& called = own ? own->value : child_class.empty() ? main_ : child_class;
   std::vector<const Element*> layers;
   const auto found = classes_.find(called);
-  // A freejoint has no defaults.
+  // A freejoint does not use defaults.
   if (found != classes_.end() && element.name != "freejoint") {
     Collect(found->second, found->second.settings.size(), KindOf(element.name), layers);
   }

@@ -1,4 +1,4 @@
-/// Values of an element's attributes, including the defaults of its classes.
+/// Values of an element's attributes, including default classes.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace taut::mjcf {
 
-/// Number of errors with a "did you mean" hint. Each hint compares a name with all known names,
-/// which would take quadratic time in a file with many wrong names.
+/// Limit of errors with a "did you mean" hint. A hint compares a name with all known names, so a
+/// file with many wrong names would take quadratic time.
 inline constexpr std::size_t kMostHints = 10;
 
 struct Pose {
@@ -32,7 +32,7 @@ struct CompilerSettings {
   std::vector<double> inertia_groups{0, 5};
 };
 
-/// An element and the defaults that apply to it; later items of the list override earlier ones.
+/// Element and the defaults that apply to it. Later items override earlier ones.
 class Layers {
  public:
   Layers(std::vector<const Element*> layers, Diagnostics& out)
@@ -42,19 +42,19 @@ class Layers {
   const std::vector<const Element*>& all() const { return layers_; }
   const Attribute* Find(std::string_view name) const;
   bool Has(std::string_view name) const { return Find(name) != nullptr; }
-  /// Returns the text as written; empty if the attribute is missing.
+  /// Returns the text in the file, or `if_absent` if the attribute is missing.
   std::string Text(std::string_view name, const std::string& if_absent = "") const;
 
-  /// Returns for each number the value of the last layer that contains that many: `size="0.1"` over
+  /// Returns each number from the last layer that contains it. Example: `size="0.1"` on top of
   /// `size="0.2 0.3"` is 0.1 0.3.
   std::vector<double> Numbers(std::string_view name, std::vector<double> if_absent,
                               std::size_t least, std::size_t most) const;
   double Number(std::string_view name, double if_absent) const;
   int Whole(std::string_view name, int if_absent) const;
   bool Flag(std::string_view name, bool if_absent) const;
-  /// Returns the range if it is in effect: `flag` is "true", or it is `auto` or absent, the
-  /// compiler's autolimits are on and the range is not empty. Reports an error if the range does
-  /// not rise.
+  /// Returns the range if it is enabled. It is enabled if `flag` is "true". If `flag` is "auto" or
+  /// absent, it is enabled if the compiler's autolimits are on and the range is not empty. Reports
+  /// an error for a range with a lower bound >= its upper bound.
   std::optional<std::pair<double, double>> Range(std::string_view flag, std::string_view range,
                                                  const CompilerSettings& settings) const;
   Pose ReadPose(const CompilerSettings& settings) const;
@@ -69,26 +69,26 @@ class Layers {
   Diagnostics* out_;
 };
 
-/// Default classes, nested: each inherits the settings of the class around it.
+/// Tree of default classes. Each class inherits from the class that encloses it.
 class Defaults {
  public:
   void Add(const Element& element, Diagnostics& out) { Add(element, nullptr, out); }
-  /// Returns the element with the defaults of its kind (one kind, `actuator`, for all actuators),
-  /// from the element's class, else from `child_class`.
+  /// Returns the element with the defaults of its kind. They are from the element's class, or else
+  /// from `child_class`. All actuators share one kind, `actuator`.
   Layers Over(const Element& element, const std::string& child_class, Diagnostics& out) const;
-  /// Identifies the class that contains the setting; null for other elements.
+  /// Returns an identifier of the class that contains the setting; null for other elements.
   const void* ClassOf(const Element& setting) const {
     const auto found = class_of_.find(&setting);
     return found == class_of_.end() ? nullptr : found->second;
   }
-  /// Reports an error for a class that does not exist.
+  /// Reports a reference to a class that does not exist.
   void CheckClass(const Element& element, std::string_view attribute, Diagnostics& out) const;
 
  private:
   struct Class {
     const Class* in = nullptr;
-    /// Number of settings of `in` that it inherits: only the settings before it. As in MuJoCo,
-    /// settings that a later section adds to the outermost class have no effect on it.
+    /// Number of settings inherited from `in`: those before this class in the file. As in MuJoCo,
+    /// the class does not inherit settings that a later section adds to the outermost class.
     std::size_t inherited = 0;
     std::vector<const Element*> settings;
   };
@@ -100,11 +100,11 @@ class Defaults {
   std::string main_ = "main";
 };
 
-/// Returns the shortest rotation from z to v.
+/// Returns the shortest rotation from the z axis to v.
 Quat FromZ(const Vec3& v);
 Quat AboutAxis(const Vec3& axis, double angle_rad);
 
-/// Returns the numbers of `text`; nothing if any item is not a finite number.
+/// Returns the numbers in `text`. Returns nothing if an item is not a finite number.
 std::optional<std::vector<double>> ToNumbers(const std::string& text);
 
 }  // namespace taut::mjcf

@@ -1,4 +1,4 @@
-// MJCF text of a model. docs/from_mujoco.md describes the conversion of quantities.
+// Writer of a model as MJCF text. docs/from_mujoco.md describes the conversion of quantities.
 #include "mjcf/write.h"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ class Writer {
   void Settings() {
     xml_ << "<option" << (options_.elliptic ? Key("cone", "elliptic") : Key("cone", "pyramidal"))
          << Key("gravity", Numbers(def_.gravity_m_per_s2));
-    if (options_.as_peer) {  // the defaults of MuJoCo 2, for versions with other defaults
+    if (options_.as_peer) {  // defaults of MuJoCo 2; later versions have other defaults
       xml_ << Key("solver", "Newton") << Key("iterations", "100") << Key("tolerance", "1e-8")
            << Key("integrator", "Euler");
     } else {
@@ -80,7 +80,8 @@ class Writer {
     }
     xml_ << "/>\n";
     if (options_.as_peer) {
-      // Bodies of many shapes, such as a disc on feet, need more; but memory grows with the square.
+      // Bodies with many shapes, such as a disc on feet, need more contacts. A larger default would
+      // waste memory, which grows with the square of this number.
       const std::size_t usual = 12 * def_.bodies.size(),
                         shapes = def_.capsules.size() + def_.spheres.size() + def_.boxes.size(),
                         contacts = 100 + usual + 8 * (shapes > usual ? shapes - usual : 0);
@@ -154,7 +155,7 @@ class Writer {
     }
   }
 
-  /// Uses a node's name for cables that end there, else adds a site for the cable.
+  /// Defines sites: the nodes, plus one site for each cable attachment that is not at a node.
   void NameSites() {
     base::UniqueNames names;
     for (const NodeDef& node : def_.nodes) {
@@ -292,7 +293,8 @@ class Writer {
     xml_ << "</tendon>\n";
   }
 
-  /// Writes the force k u - k l - b dl/dt, where positive pushes, with the upper limit 0.
+  /// Writes actuators with the push k u - k l - b dl/dt, limited to values <= 0. u is the rest
+  /// length.
   void Actuators() {
     if (def_.cables.empty()) return;
     xml_ << "<actuator>\n";
@@ -308,8 +310,8 @@ class Writer {
     xml_ << "</actuator>\n";
   }
 
-  /// Writes speeds and rest lengths of the start. Poses, which are not given, are the bodies'
-  /// poses.
+  /// Writes initial velocities and rest lengths. Without poses in the keyframe, MuJoCo uses the
+  /// bodies' poses.
   void Start() {
     std::vector<double> speeds, controls;
     for (const BodyDef& body : def_.bodies) {
@@ -333,8 +335,9 @@ class Writer {
   const Friction friction_;
   std::ostringstream xml_;
   std::vector<Site> sites_;
-  std::vector<std::vector<std::size_t>> site_of_;  ///< Per attachment of a cable.
-  std::vector<std::size_t> bar_sites_;             ///< The first of two, per joint.
+  std::vector<std::vector<std::size_t>> site_of_;  ///< Site of each attachment, per cable.
+  std::vector<std::size_t> bar_sites_;             ///< Index of the first of a bar's two sites, per
+                                                   ///< joint.
   std::vector<std::string> tendons_, body_names_;
   base::UniqueNames unique_bodies_;
 };

@@ -10,34 +10,36 @@
 namespace taut::mjcf {
 
 struct WriteOptions : MjcfExport {
-  bool elliptic = true;  ///< Elliptic friction cones; else pyramidal.
-  /// Writes the model as the peer is measured: MuJoCo 2's solver settings, memory for all its
-  /// possible contacts, and height fields without heights, which are set when the model is loaded.
+  bool elliptic = true;  ///< Elliptic friction cones (true) or pyramidal ones.
+  /// Writes the variant of the model for comparisons of speed with MuJoCo: MuJoCo 2's solver
+  /// settings, memory for all possible contacts, and height fields without data. The program sets
+  /// the heights after it has loaded the model.
   bool as_peer = false;
 };
 
-/// Reports errors, with names, for features that MJCF lacks.
+/// Reports errors for features that MJCF lacks.
 void RefuseWhatMjcfLacks(const ModelDef& def, const WriteOptions& options, Diagnostics& out);
-/// Warns of features that are left out.
+/// Warns of features that the export omits.
 void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagnostics& out);
 
-/// Returns the MJCF text of a model without refused features.
+/// Returns the MJCF text of a model. `RefuseWhatMjcfLacks` must have reported no errors.
 std::string Text(const ModelDef& def, const WriteOptions& options);
 
-/// Friction values for MuJoCo, which uses the larger friction of two geoms, or the friction of the
-/// geom with higher priority.
+/// Friction coefficients for MuJoCo. MuJoCo uses the larger coefficient of two geoms, or the
+/// coefficient of the geom with higher priority.
 struct Friction {
-  /// Two shapes, or a shape and a ground, whose friction does not follow from their values.
+  /// Two geoms that need a pair element, because their friction does not follow from this rule.
   struct Pair {
     std::string geom1, geom2;
     double friction = 0;
   };
-  double shape = 0;           ///< Of the first shape that collides: usual value.
-  bool grounds_rule = false;  ///< Grounds have a higher priority.
+  double shape = 0;           ///< Friction of the first shape that collides, written as the
+                              ///< default.
+  bool grounds_rule = false;  ///< Whether grounds have a higher priority than shapes.
   std::vector<Pair> pairs;
 };
 
-/// Geoms of the model by unique names.
+/// Geoms of the model with unique names.
 struct Geoms {
   struct Geom {
     std::string name;
@@ -52,10 +54,10 @@ struct Geoms {
 Geoms GeomsOf(const ModelDef& def);
 double FrictionOf(const ModelDef& def, const Material& a, const Material& b);
 Friction FrictionsOf(const ModelDef& def, const Geoms& geoms);
-/// Returns the friction value of the geom element.
+/// Returns the friction coefficient to write in the geom element.
 double OwnFriction(const ModelDef& def, const Friction& all, const Geoms::Geom& geom);
 
-/// Returns the height of a height field in MuJoCo, which requires more than 0 [m].
+/// Returns the height range of a height field for MuJoCo [m], which must be positive.
 double RiseOf(const mechanics::HeightRange& range);
 
 }  // namespace taut::mjcf

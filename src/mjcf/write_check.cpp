@@ -1,4 +1,4 @@
-// Model features that MJCF cannot express, or that the export leaves out.
+// Checks for model features that MJCF cannot express or that the export omits.
 #include <algorithm>
 
 #include "mjcf/write.h"

@@ -1,4 +1,4 @@
-// Unique names of geoms, and their friction values for MuJoCo.
+// Unique names of geoms, and their friction coefficients for MuJoCo.
 #include <cmath>
 
 #include "base/unique_names.h"
@@ -10,7 +10,7 @@
 namespace taut::mjcf {
 namespace {
 
-/// Returns the friction of two geoms by MuJoCo's rule, without a pair element.
+/// Returns the friction of two geoms by MuJoCo's rule if there is no pair element.
 double Given(const ModelDef& def, const Friction& all, const Geoms::Geom& shape,
              const Geoms::Geom& other) {
   const double a = OwnFriction(def, all, shape), b = OwnFriction(def, all, other);

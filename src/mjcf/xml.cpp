@@ -1,4 +1,4 @@
-// XML reader; the only user of the XML library.
+// XML reader, a wrapper of tinyxml2.
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -14,18 +14,17 @@ namespace {
 constexpr std::size_t kMostBytes = 64 << 20;
 constexpr std::size_t kMostElements = 50'000;
 constexpr int kMostFiles = 100;
-/// Nesting over all files together. The library limits each file, but the innermost element may
-/// include another file, and reading is recursive.
+/// Limit of the nesting depth, summed over included files, because the reader is recursive. The
+/// library limits the depth of each file only.
 constexpr int kDeepest = 500;
-/// The library compares each attribute with all before it.
-constexpr std::size_t kMostAttributes = 200;  // of an element
+/// Limited, since the library compares each attribute of an element with all previous ones.
+constexpr std::size_t kMostAttributes = 200;  // per element
 
-/// Number of elements, comments and declarations of a text, and of the attributes of the element
-/// with the most, without parsing. The counts are exact for XML. An unclosed quote does no harm,
-/// because the text is then not XML.
+/// Number of elements, comments and declarations of a text, and the largest number of attributes of
+/// an element. Counted without parsing; exact for valid XML.
 struct MarkupCount {
   std::size_t nodes = 0, attributes = 0;
-  std::size_t crowded_at = 0;  ///< Position of that element.
+  std::size_t crowded_at = 0;  ///< Position of the element with the most attributes.
 };
 
 MarkupCount CountMarkup(std::string_view text) {
@@ -102,9 +101,9 @@ class XmlReader {
   }
 
  private:
-  /// Returns true if the text, with all texts before it, is within the limits. Called before the
-  /// library parses the text: parsing takes 20 times the memory of the text, and time grows with
-  /// the square of an element's attributes.
+  /// Returns whether the number of elements, in this text and all texts before it, and of
+  /// attributes is within the limits. Called before the library parses the text. Parsing takes 20
+  /// times the memory of the text, and time proportional to the square of an element's attributes.
   bool Fits(std::string_view text, const std::string& path) {
     const MarkupCount count = CountMarkup(text);
     elements_ += count.nodes;
@@ -134,7 +133,7 @@ class XmlReader {
     if (document.ErrorID() == tinyxml2::XML_ERROR_PARSING_ATTRIBUTE) {
       return "an attribute is not key=\"value\", or occurs twice";
     }
-    std::string words;  // XML_ERROR_PARSING_ELEMENT: "parsing element"
+    std::string words;  // XML_ERROR_PARSING_ELEMENT becomes "parsing element"
     for (const char c : id.substr(id.rfind("ERROR_") == id.npos ? 0 : id.rfind("ERROR_") + 6)) {
       words += c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
@@ -172,7 +171,7 @@ class XmlReader {
     return true;
   }
 
-  /// Inserts the children of the included file's root here.
+  /// Inserts the children of the included file's root into `to`.
   bool Include(const tinyxml2::XMLElement& include, const std::string& path, Element& to) {
     const SourceRef at{path, include.GetLineNum(), 0};
     const char* const name = include.Attribute("file");
@@ -200,7 +199,7 @@ class XmlReader {
   }
 
   const std::filesystem::path
-      folder_;  ///< Folder of the first file; paths of all others are relative to it.
+      folder_;  ///< Folder of the main file; all included paths are relative to it.
   std::vector<std::string>& files_;
   Diagnostics& out_;
   std::size_t elements_ = 0;
