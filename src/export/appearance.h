@@ -1,4 +1,4 @@
-/// Colors of shapes in exported files: the colors of the viewer's pages.
+/// Colors of shapes in exported files, the same as in the viewer.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,9 @@ struct Appearance {
   const char* name;
   int rgb;  ///< sRGB color.
 
-  /// Returns red, green or blue in sRGB: 0..1.
+  /// Returns the red, green or blue component (`which` = 0, 1, 2) in sRGB, from 0 to 1.
   double Screen(int which) const { return (rgb >> (16 - 8 * which) & 0xff) / 255.0; }
-  /// Returns the linear intensity of an sRGB component (IEC 61966-2-1).
+  /// Returns a component as linear intensity (IEC 61966-2-1).
   double Light(int which) const {
     const double x = Screen(which);
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);

@@ -7,7 +7,7 @@
 
 namespace taut::exporting {
 
-/// Returns the points in W, with arcs on wheels in steps of ten degrees.
+/// Returns the points of a cable's path in W. Arcs on wheels have steps of ten degrees.
 std::vector<Vec3> CablePoints(const CableDef& cable);
 
 }  // namespace taut::exporting

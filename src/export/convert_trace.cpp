@@ -15,17 +15,17 @@
 namespace taut {
 namespace {
 
-constexpr std::size_t kAskEvery = 256;   // rows
-constexpr double kMostSeconds = 1.8e10;  // in 64 bits of nanoseconds
+constexpr std::size_t kAskEvery = 256;   // number of rows between calls of `go_on`
+constexpr double kMostSeconds = 1.8e10;  // limit of 64-bit nanoseconds
 constexpr char kNoGroup[] = "values";    // the topic of names without a slash
 
-/// Calls `go_on` at every 256th row, where its cost is negligible.
+/// Calls `go_on` at every 256th row. Returns false if it asks to stop.
 bool GoesOn(const GoOn& go_on, std::size_t row, std::size_t rows) {
   return !go_on || row % kAskEvery != 0 ||
          go_on(static_cast<double>(row) / static_cast<double>(rows));
 }
 
-/// Channels of one topic.
+/// Channels of one MCAP topic.
 struct Group {
   std::string name;
   exporting::MessageTree messages;
@@ -107,7 +107,7 @@ class ToMcap {
   trace::McapWriter file_;
   std::vector<exporting::BodyChannels> bodies_;
   std::optional<exporting::CableLines> cables_;
-  std::uint16_t frames_ = 0, shapes_ = 0, lines_ = 0;  ///< 0: none.
+  std::uint16_t frames_ = 0, shapes_ = 0, lines_ = 0;  ///< MCAP channel ids; 0: none.
   std::vector<Group> groups_;
   std::string json_;
 };
@@ -121,7 +121,7 @@ std::optional<Trace> SelectFrom(Trace trace, const std::vector<std::string>& cha
   const double first_s = next_s;
   for (std::size_t row = 0; row < trace.time_s.size(); ++row) {
     const double time_s = trace.time_s[row];
-    // Accept rows on the grid despite rounding of their times.
+    // The tolerance accepts rows whose times are rounded slightly below the period's grid.
     if (period_s > 0 && time_s < next_s - 1e-6 * period_s) continue;
     rows.push_back(row);
     if (period_s > 0) {

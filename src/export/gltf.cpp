@@ -1,6 +1,5 @@
-// glTF 2.0 in one binary file (GLB), after the specification of the Khronos Group
-// (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html): a header, a JSON chunk, a binary
-// chunk.
+// Writer of glTF 2.0 in one binary file (GLB): a header, a JSON chunk and a binary chunk.
+// Specification of the Khronos Group: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,11 +21,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Constants of the specification.
+// Constants in the specification.
 constexpr std::uint32_t kMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 constexpr int kFloat = 5126, kShort = 5123, kWord = 5125;
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;
-constexpr std::size_t kMostShorts = 65535;  // the last number is reserved
+constexpr std::size_t kMostShorts = 65535;  // 65535 is reserved in glTF
 
 class Glb {
  public:
@@ -37,7 +36,7 @@ class Glb {
     gltf_["asset"] = {{"version", "2.0"}, {"generator", std::string("taut ") + kVersion}};
     gltf_["scene"] = 0;
     gltf_["scenes"] = List({{"name", def_.name}, {"nodes", ordered_json::array({0})}});
-    // A quarter turn about x rotates z to y.
+    // glTF has y up: rotate a quarter turn about x, so that z becomes y.
     const double half = std::sqrt(0.5);
     ordered_json root{{"name", def_.name}, {"rotation", {-half, 0.0, 0.0, half}}};
     if (scale_ != 1) root["scale"] = {scale_, scale_, scale_};
@@ -55,8 +54,8 @@ class Glb {
   }
 
  private:
-  /// Adds a node with the shapes of a body, relative to `origin_m`. Returns nothing if there are
-  /// none.
+  /// Adds a node with the shapes of a body, relative to `origin_m`. Returns nothing if the body has
+  /// no shapes.
   std::optional<int> Group(int body, const std::string& name, const Vec3& origin_m) {
     std::vector<int> children;
     for (const ShapeMesh& mesh : shapes_) {
@@ -128,7 +127,8 @@ class Glb {
                               {"type", "SCALAR"}});
   }
 
-  /// Adds a buffer view of the bytes since `start`, and pads to whole words.
+  /// Adds a buffer view of the bytes from `start` to the end. Pads the buffer to multiples of 4
+  /// bytes.
   int View(std::size_t start, int target) {
     const std::size_t size = binary_.size() - start;
     binary_.resize((binary_.size() + 3) / 4 * 4, '\0');

@@ -1,4 +1,4 @@
-/// Little-endian numbers in binary files.
+/// Writers of little-endian numbers for binary files.
 #pragma once
 
 #include <bit>

@@ -13,12 +13,12 @@ namespace taut::exporting {
 
 class MessageTree {
  public:
-  /// `path`: remaining part of the name of channel `channel`.
+  /// Adds a channel. `path`: part of its name that is not consumed yet.
   void Add(std::string_view path, std::size_t channel);
 
-  /// Writes a row; values that are not finite, which JSON cannot represent, are left out.
+  /// Writes a row as JSON. Omits values that are not finite, which JSON cannot represent.
   void Write(const Trace& trace, std::size_t row, std::string& json) const;
-  /// Returns the JSON schema of all possible content, with units.
+  /// Returns the JSON schema of the messages, with units.
   std::string Schema(const Trace& trace) const;
 
  private:
@@ -28,12 +28,12 @@ class MessageTree {
 
 struct MessageTree::Field {
   std::string name;
-  std::string key;  ///< As JSON, with the colon.
+  std::string key;  ///< JSON text of the key, including the colon.
   std::size_t channel = 0;
-  std::unique_ptr<MessageTree> inner;  ///< Null: a channel.
+  std::unique_ptr<MessageTree> inner;  ///< Null for a channel.
 };
 
-/// Writes the shortest digits that read back as the same number.
+/// Writes a number with the fewest digits from which the same number is read back.
 void PutNumber(std::string& json, double x);
 
 }  // namespace taut::exporting

@@ -1,4 +1,4 @@
-// Messages after the schemas that Foxglove publishes (https://docs.foxglove.dev/docs/sdk/schemas).
+// Messages in the schemas that Foxglove publishes (https://docs.foxglove.dev/docs/sdk/schemas).
 #include "export/robot_scene.h"
 
 #include <cmath>
@@ -37,7 +37,7 @@ ordered_json ColourOf(ShapeMesh::Kind kind) {
   return {{"r", look.Screen(0)}, {"g", look.Screen(1)}, {"b", look.Screen(2)}, {"a", 1.0}};
 }
 
-/// Returns the shortest rotation from z to a direction.
+/// Returns the shortest rotation from the z axis to the direction of `way`.
 Quat FromZ(const Vec3& way) {
   const double length = std::sqrt(Dot(way, way));
   if (!(length > 0)) return {};
@@ -48,7 +48,7 @@ Quat FromZ(const Vec3& way) {
   return {q.w / size, q.x / size, q.y / size, 0};
 }
 
-/// Returns an entity with a frame and empty lists of all its possible primitives.
+/// Returns a scene entity with a frame and empty lists of all primitives.
 ordered_json Entity(const std::string& id, const std::string& frame, std::uint64_t time_ns) {
   ordered_json entity{{"timestamp", Time(time_ns)},
                       {"frame_id", frame},
@@ -217,7 +217,7 @@ CableDef CableLines::CableAt(const CableDef& cable, const Trace& trace, std::siz
   CableDef now = cable;
   for (AttachmentDef& at : now.attachments) {
     if (at.wheel) {
-      // The axis as the difference of two points that move with the body.
+      // The wheel's axis is the difference of two points of the body.
       const Vec3 tip = Moved(at.body, at.position_m + at.wheel->axis, trace, row);
       at.wheel->axis = tip - Moved(at.body, at.position_m, trace, row);
     }

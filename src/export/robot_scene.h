@@ -1,4 +1,4 @@
-/// Recorded robot in Foxglove messages: frames of its bodies, shapes, cables.
+/// Recorded robot as Foxglove messages: frames of its bodies, shapes, cables.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace taut::exporting {
 
-/// A body's channels: position in x, y, z, orientation in w, x, y, z.
+/// Channels of a body's pose: position x, y, z and orientation w, x, y, z.
 struct BodyChannels {
   std::string name;
   std::array<std::size_t, 3> place;
@@ -23,21 +23,21 @@ struct BodyChannels {
   Quat TurnAt(const Trace& trace, std::size_t row) const;
   bool IsFiniteAt(const Trace& trace, std::size_t row) const;
 };
-/// Returns the channels of all bodies with such channels, in the order of the trace.
+/// Returns the pose channels of all recorded bodies, in the order of the trace.
 std::vector<BodyChannels> BodiesOf(const Trace& trace);
 
-/// Returns foxglove.FrameTransforms from the world's frame to the bodies' frames, whose axes
-/// coincide with W in the described pose and whose origins are centers of mass.
+/// Returns foxglove.FrameTransforms from the world frame to the body frames. Body frames have their
+/// origin at the center of mass and are parallel to W in the described pose.
 std::string FramesAt(const Trace& trace, const std::vector<BodyChannels>& bodies, std::size_t row,
                      std::uint64_t time_ns);
 
-/// Returns foxglove.SceneUpdate, for each body its shapes in its frame.
+/// Returns foxglove.SceneUpdate with the shapes of each body in the body's frame.
 std::string RobotShapes(const ModelDef& def, std::uint64_t time_ns);
 
-/// Cables at the poses of bodies.
+/// Cable lines that follow the recorded poses of bodies.
 class CableLines {
  public:
-  /// Returns nothing if a body that moves has no channels, or there are no cables.
+  /// Returns nothing if a moving body has no channels, or if there are no cables.
   static std::optional<CableLines> Of(const ModelDef& def, const Trace& trace,
                                       const std::vector<BodyChannels>& bodies);
   /// Returns foxglove.SceneUpdate with all cables as lines in W.
@@ -49,11 +49,13 @@ class CableLines {
   CableDef CableAt(const CableDef& cable, const Trace& trace, std::size_t row) const;
 
   const ModelDef* def_;
-  std::vector<std::optional<BodyChannels>> bodies_;  ///< Per body of the model.
-  std::vector<std::optional<std::size_t>> tension_;  ///< Per cable, its channel.
+  std::vector<std::optional<BodyChannels>> bodies_;  ///< Per body of the model; nothing if it was
+                                                     ///< not recorded.
+  std::vector<std::optional<std::size_t>> tension_;  ///< Tension channel of each cable; nothing if
+                                                     ///< it was not recorded.
 };
 
-/// Return the JSON schemas of the used parts of the two messages.
+/// Return the JSON schemas of both messages, limited to the used fields.
 std::string FramesSchema();
 std::string SceneSchema();
 

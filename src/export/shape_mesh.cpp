@@ -1,4 +1,4 @@
-// Closed triangle meshes of shapes, with the same volume as the shapes.
+// Closed triangle meshes of shapes, scaled to have the volume of the exact shapes.
 #include "taut/shape_mesh.h"
 
 #include <cmath>
@@ -13,13 +13,13 @@ namespace taut {
 namespace {
 
 constexpr int kSides = 24, kCableSides = 8;
-constexpr int kRings = 6;                    // from the equator to a pole
-constexpr double kTurnByShape = 2.39996323;  // see Axes
+constexpr int kRings = 6;                    // rings between the equator and a pole
+constexpr double kTurnByShape = 2.39996323;  // rotation per shape, see Axes [rad]
 constexpr double kNoLength_m = 1e-12;
 
-/// A direction and two axes across it. Each shape has a different rotation about the direction:
-/// else consecutive rods would have common edges, which programs that merge equal corners report as
-/// a fault.
+/// Direction of a shape and two perpendicular axes. Each shape is rotated differently about its
+/// direction. Otherwise, consecutive rods would share edges, and programs that merge equal corners
+/// would report a fault.
 struct Axes {
   Vec3 along, u, v;
   Axes(const Vec3& way, std::size_t shape) {
@@ -36,16 +36,16 @@ struct Axes {
   Vec3 Around(double angle) const { return std::cos(angle) * u + std::sin(angle) * v; }
 };
 
-/// Returns the ratio of a polygon's outer radius to the radius of a circle of the same area.
+/// Returns the circumradius of a regular polygon, divided by the radius of a circle of equal area.
 double Wider(int sides) {
   const double step = 2 * std::numbers::pi / sides;
   return std::sqrt(step / std::sin(step));
 }
 
-/// Returns the ratio of the height of a half sphere made of rings to the radius of a half sphere of
-/// the same volume.
+/// Returns the height of a half sphere made of rings, divided by the radius of an exact half sphere
+/// of equal volume.
 double Higher() {
-  double volume = 0;  // of frusta, in units of pi r^3
+  double volume = 0;  // sum over frusta, in units of pi r^3
   for (int k = 0; k < kRings; ++k) {
     const double low = 0.5 * std::numbers::pi * k / kRings,
                  high = 0.5 * std::numbers::pi * (k + 1) / kRings;
@@ -55,7 +55,7 @@ double Higher() {
   return 2.0 / 3.0 / volume;
 }
 
-/// Corners in rings, from one pole to the other.
+/// Surface of rings of corners, from one pole to the other.
 class Round {
  public:
   Round(ShapeMesh& mesh, const Axes& axes, int sides) : mesh_(mesh), axes_(axes), sides_(sides) {}
@@ -97,7 +97,7 @@ class Round {
   std::vector<Row> rings_;
 };
 
-/// Adds all points within `radius` of a segment, which may be a point.
+/// Adds the surface at distance `radius` from a segment, whose length may be zero.
 void AddCapsule(ShapeMesh& mesh, const Vec3& from, const Vec3& to, double radius,
                 std::size_t shape) {
   const Axes axes(to - from, shape);
@@ -130,7 +130,7 @@ void AddBox(ShapeMesh& mesh, const BoxDef& box) {
   }
 }
 
-/// Adds a straight piece with flat ends.
+/// Adds a cylinder with flat ends.
 void AddPiece(ShapeMesh& mesh, const Vec3& from, const Vec3& to, double radius, std::size_t piece) {
   const Axes axes(to - from, piece);
   const int first = static_cast<int>(mesh.corners_m.size());

@@ -1,5 +1,5 @@
-// Binary STL: 80 bytes of text, number of triangles, and for each triangle its normal and three
-// corners in single precision and two zero bytes; all little-endian.
+// Writer of binary STL, little-endian: 80 bytes of text, then the number of triangles. Each
+// triangle has its normal and three corners in single precision, and two zero bytes.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -21,7 +21,7 @@ void Put(std::string& file, const Vec3& v) {
 }  // namespace
 
 std::string StlOf(const ModelDef& def, const std::vector<ShapeMesh>& shapes, double scale) {
-  // Text files begin with "solid", so the header must not.
+  // The header must not begin with "solid", which marks text files.
   std::string file = std::string("taut ") + kVersion + ": " + def.name;
   file.resize(kHeadBytes, ' ');
   std::uint32_t count = 0;

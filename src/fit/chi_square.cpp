@@ -8,8 +8,9 @@
 namespace taut {
 namespace {
 
-/// log Gamma(x), x > 0: Stirling's series for x + n >= 16, Abramowitz and Stegun 6.1.41, whose
-/// first omitted term is below 1e-16 there; smaller x by Gamma(x + 1) = x Gamma(x).
+/// log Gamma(x) for x > 0. Uses Stirling's series (Abramowitz and Stegun 6.1.41) for arguments >=
+/// 16, where its first omitted term is below 1e-16. Smaller x are increased by Gamma(x + 1) = x
+/// Gamma(x).
 double LogGamma(double x) {
   double product = 1;
   for (; x < 16; x += 1) product *= x;
@@ -20,8 +21,8 @@ double LogGamma(double x) {
   return (x - 0.5) * math::Log(x) - x + half_log_two_pi + series - math::Log(product);
 }
 
-/// Regularized incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a): by the series of 1 - Q
-/// where x < a + 1 (6.5.29), else by the continued fraction (6.5.31) with Lentz's method.
+/// Regularized incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a). For x < a + 1 it uses
+/// the series of 1 - Q (6.5.29), otherwise the continued fraction (6.5.31) with Lentz's method.
 double UpperGamma(double a, double x) {
   if (x <= 0) return 1;
   const double front = math::Exp(a * math::Log(x) - x - LogGamma(a));

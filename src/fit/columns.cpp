@@ -1,5 +1,5 @@
-// Derivative columns by differences whose steps are checked by halving, and shortened if that
-// removes the disagreement.
+// Columns of the Jacobian by finite differences. Each step is checked against half the step, and
+// shortened if the results disagree.
 #include <cmath>
 
 #include "fit/differences.h"
@@ -8,7 +8,7 @@ namespace taut::fit {
 namespace {
 
 constexpr double kShorter = 0.25;
-constexpr int kRounds = 5;  ///< Down to a thousandth of the step.
+constexpr int kRounds = 5;  ///< Shortens the step to a thousandth at most.
 
 double SizeOf(const std::vector<double>& v) {
   double sum = 0;
@@ -16,8 +16,8 @@ double SizeOf(const std::vector<double>& v) {
   return std::sqrt(sum);
 }
 
-/// Returns whether a shorter step is valid: its two sizes agree, and the standard error that its
-/// slope implies lies within the step.
+/// Returns whether a shortened step is valid: no kink is left, and the step is at least the
+/// standard error that the slope implies.
 bool Serves(const FitColumn& column) {
   return column.failed.empty() && !column.kink && column.step * SizeOf(column.slope) >= 1.0;
 }
@@ -83,7 +83,7 @@ FitDerivatives Differentiate(const FitProblem& problem, const std::vector<double
   FitDerivatives result;
   const auto compute = [&](const std::vector<std::vector<double>>& points,
                            const std::vector<std::size_t>&, std::vector<Residuals>& answers) {
-    // The point itself is part of the first call.
+    // The first call also computes the point itself.
     std::vector<std::vector<double>> all = points;
     if (!result.done) all.push_back(values);
     auto computed = fit::Compute(problem, all);

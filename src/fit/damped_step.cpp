@@ -7,7 +7,7 @@
 namespace taut::fit {
 namespace {
 
-/// Computes the unconstrained minimum over the parameters that are not pinned; pinned ones keep
+/// Computes the unconstrained minimum over the parameters that are not pinned. Pinned ones keep
 /// their values in `d`.
 void SolveFree(const Quadratic& quadratic, const Vector& weight, double damping,
                const std::vector<bool>& pinned, Vector& d) {
@@ -34,7 +34,7 @@ void SolveFree(const Quadratic& quadratic, const Vector& weight, double damping,
   for (Eigen::Index k = 0; k < count; ++k) d[free[static_cast<std::size_t>(k)]] = solved[k];
 }
 
-/// Returns the distance of d_j from the box.
+/// Returns the distance of d_j from its bounds.
 double Outside(const StepBox& box, const Vector& d, Eigen::Index j) {
   return std::max({box.low[j] - d[j], d[j] - box.high[j], 0.0});
 }
@@ -72,7 +72,7 @@ Vector DampedStep(const Quadratic& quadratic, const Vector& weight, double dampi
     return quadratic.Reduction(step) - 0.5 * damping * weight.cwiseProduct(step).squaredNorm();
   };
   if (damped(d) > 0) return d;
-  // If pinning fails, the free step up to the first bound certainly lowers the quadratic.
+  // If pinning fails, cut the free step at the first bound. This step always lowers the quadratic.
   double share = 1.0;
   for (Eigen::Index j = 0; j < n; ++j) {
     if (first[j] > box.high[j]) share = std::min(share, box.high[j] / first[j]);

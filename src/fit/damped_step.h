@@ -1,4 +1,4 @@
-/// One step of the Levenberg-Marquardt method within a box (eq. F.3 to F.5 of
+/// One step of the Levenberg-Marquardt method within bounds (eq. F.3 to F.5 of
 /// docs/theory/identification.md).
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace taut::fit {
 
-/// R d + q|^2 / 2, up to a constant: a reduced system with no more rows than columns.
+/// Quadratic |R d + q|^2 / 2, up to a constant. R has no more rows than columns.
 struct Quadratic {
   Matrix R;
   Vector q;
@@ -19,18 +19,19 @@ struct Quadratic {
   }
 };
 
-/// Reduces a system by orthogonal transformation, which preserves the angles of columns up to
-/// rounding (normal equations square the condition).
+/// Reduces a system by an orthogonal transformation (QR). Unlike normal equations, it does not
+/// square the condition number.
 Quadratic Reduce(const System& system);
 
-/// Bounds of a step in scales, and parameters that do not move.
+/// Bounds of a step in scales, and parameters to keep fixed.
 struct StepBox {
   Vector low, high;
   std::vector<bool> held;
 };
 
-/// Returns argmin |R d + q|^2 + damping |D d|^2 with D = diag(weight) and d in the box. Parameters
-/// whose free minimum is beyond a bound are set to it one after the other, the worst first.
+/// Minimizes |R d + q|^2 + damping |D d|^2 with D = diag(weight) within the bounds. Parameters
+/// whose unconstrained minimum is beyond a bound are set to this bound, one at a time, the worst
+/// first.
 Vector DampedStep(const Quadratic& quadratic, const Vector& weight, double damping,
                   const StepBox& box);
 

@@ -1,4 +1,4 @@
-// Optimal design of the next measurement: Bayesian D-optimality with a greedy ranking
+// Optimal design of the next measurement: Bayesian D-optimality with greedy selection
 // (docs/theory/identification.md, section 7).
 #include "taut/fit_design.h"
 
@@ -30,8 +30,7 @@ std::vector<std::string> Wrong(const std::vector<FitParameter>& parameters,
 
 double PriorIn(const FitParameter& p) { return fit::HasPrior(p) ? p.prior_sd : FitScale(p); }
 
-/// Returns J^T J of a candidate in units of the priors; rows that could not be computed are left
-/// out.
+/// Returns J^T J of a candidate in units of the priors. Omits rows that could not be computed.
 Matrix Information(const std::vector<FitParameter>& parameters, const DesignCandidate& candidate) {
   const auto n = static_cast<Eigen::Index>(parameters.size());
   Matrix sum = Matrix::Zero(n, n);
@@ -46,12 +45,14 @@ Matrix Information(const std::vector<FitParameter>& parameters, const DesignCand
   return sum;
 }
 
-/// Eigenvalues of J^T J are s^2: s >= sqrt(3) halves a prior sd, 1 / sqrt(1 + s^2) <= 1 / 2.
+/// Computes the value of a candidate. Eigenvalues of J^T J are s^2. A direction counts as fixed if
+/// s >= sqrt(3), which reduces a prior sd by the factor 1 / sqrt(1 + s^2) <= 1 / 2.
 DesignWorth Worth(const std::string& name, const Matrix& information) {
   const Eigen::Index n = information.rows();
   DesignWorth worth;
   worth.name = name;
-  const fit::Singular svd = fit::Decompose(information);  // symmetric: its eigenvalues
+  const fit::Singular svd = fit::Decompose(information);  // symmetric matrix: singular values are
+                                                          // its eigenvalues
   Matrix covariance = Matrix::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double square = svd.value[k];

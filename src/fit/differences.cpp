@@ -6,7 +6,8 @@
 namespace taut::fit {
 namespace {
 
-/// Thresholds of a kink: disagreement as a share of the slope, and in residuals per scale.
+/// Thresholds of a kink: disagreement divided by the slope, and disagreement in residuals per
+/// scale.
 constexpr double kKinkShare = 0.05, kKinkLeast = 0.05;
 
 bool Usable(const Residuals& answer) { return answer.failed.empty(); }
@@ -36,13 +37,13 @@ double Distance(const std::vector<double>& a, const std::vector<double>& b, doub
   return std::sqrt(sum);
 }
 
-/// Slopes with both step sizes, each of second order, and the change of the slope over each step.
+/// Slopes for both step sizes, each of second order, and the second differences.
 struct TwoSizes {
   std::vector<double> wide, narrow;
   std::vector<double> bend_wide, bend_narrow;  ///< h f''; empty for one-sided stencils.
 };
 
-/// Computes (f(+h) - f(-h)) / 2h and (f(+h) - 2 f + f(-h)) / h from f at +h and -h.
+/// Computes the slope (f(+h) - f(-h)) / 2h and the bend (f(+h) - 2 f + f(-h)) / h.
 void Central(double up, const std::vector<double>& f_up, double down,
              const std::vector<double>& f_down, const std::vector<double>& f,
              std::vector<double>& slope, std::vector<double>& bend) {
@@ -116,15 +117,15 @@ FitColumn CheckedColumn(const Stencil& s, double value, double scale,
     if (!Usable(answer) && column.failed.empty()) column.failed = answer.failed;
   }
   if (!column.failed.empty()) {
-    // Without all points there is no check; the slope is then the narrow size if available.
+    // If points are missing, skip the check. Use the slope of the narrow stencil if possible.
     const bool narrow = s.central && Usable(answers[2]) && Usable(answers[3]);
     column.slope = narrow ? Secant(s.at[2], answers[2].value, s.at[3], answers[3].value)
                           : Slope(s, value, residual, answers);
     return column;
   }
   const TwoSizes sizes = Both(s, value, residual, answers);
-  // Both are of second order, so extrapolation by a third of their difference raises the narrow one
-  // to fourth order (one-sided: third).
+  // Richardson extrapolation of two second-order slopes: order four for central stencils, three for
+  // one-sided ones.
   column.slope = Beyond(sizes.narrow, sizes.wide, 1.0 / 3.0);
   column.error = scale * Distance(sizes.narrow, sizes.wide);
   double odd = column.error, even = 0;

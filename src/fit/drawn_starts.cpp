@@ -8,16 +8,16 @@
 namespace taut {
 namespace {
 
-constexpr std::uint32_t kStream = 0x0066'6974;  // "fit": this stream is used for starts only
+constexpr std::uint32_t kStream = 0x0066'6974;  // "fit": random number stream of starts
 
-/// Draws from a normal distribution truncated to the bounds, by rejection.
+/// Draws from a normal distribution truncated to the bounds, by rejection sampling.
 double DrawNormal(const FitParameter& p, math::Random& random) {
   double value = fit::PriorMean(p);
   for (int attempt = 0; attempt < 64; ++attempt) {
     value = fit::PriorMean(p) + p.prior_sd * random.Normal();
     if (value >= p.low && value <= p.high) return value;
   }
-  return std::clamp(value, p.low, p.high);  // prior far outside of its bounds
+  return std::clamp(value, p.low, p.high);  // the prior is far outside of its bounds
 }
 
 }  // namespace

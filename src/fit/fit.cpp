@@ -14,7 +14,8 @@ std::string Joined(const std::vector<std::string>& sentences) {
   return all;
 }
 
-/// Returns the track with the lowest cost, the first of equal ones; nothing if none has a cost.
+/// Returns the track with the lowest cost; the first if several are equal. Returns nothing if all
+/// failed.
 std::optional<std::size_t> BestTrack(const FitState& state) {
   std::optional<std::size_t> best;
   for (std::size_t t = 0; t < state.tracks.size(); ++t) {
@@ -51,14 +52,14 @@ FitResult Fit(const FitProblem& problem, const FitOptions& options, const FitSta
   }
   std::vector<FitJob> jobs(starts);
   for (std::size_t t = 0; t < starts; ++t) jobs[t].start = DrawFitStart(problem, options.seed, t);
-  // The given start is not replaced by a drawn one: its failure is reported.
+  // The first start is given by the user: if it fails, report this instead of drawing another one.
   const fit::Again again = [&](std::size_t job, int attempt) -> std::optional<std::vector<double>> {
     if (job == 0 || attempt > kDrawnAgain) return {};
     return DrawFitStart(problem, options.seed, job + starts * static_cast<std::size_t>(attempt));
   };
   result.state = fit::Search(problem, jobs, options, from, again).Run();
   const auto& tracks = result.state.tracks;
-  if (tracks.empty()) {  // stopped before the starts were computed
+  if (tracks.empty()) {  // stopped before the residuals of the starts were computed
     result.end = FitEnd::kInterrupted;
     result.why = "stopped";
     return result;

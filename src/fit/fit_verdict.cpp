@@ -12,17 +12,17 @@ namespace {
 
 using fit::Brief;
 
-/// Least pull, in sds of the prior, that is named when a fit is rejected.
+/// If a fit is rejected, parameters at least this far from their prior mean are named [prior sd].
 constexpr double kStrongPull = 3;
-/// Relative difference of costs up to which starts count as converged to the same minimum.
+/// Largest relative difference of costs of starts that converged to the same minimum.
 constexpr double kSameCost = 1e-3;
-/// Errors by groups are reported if they exceed those by J^T J by this factor and chance explains
-/// it with a probability below kByChance.
+/// The report recommends jackknife errors over errors by J^T J if they are larger by the factor
+/// kSeveral, and if the probability of this by chance is below kByChance.
 constexpr double kSeveral = 2, kByChance = 1e-3;
 
-/// Approximates a sum of squares of normal numbers, given the traces of their covariance and of its
-/// square, by a multiple of a chi-square with the same mean and variance (Satterthwaite; exact if
-/// all eigenvalues are equal or 0).
+/// Approximates the distribution of a sum of squares of normal numbers by a multiple of a
+/// chi-square with the same mean and variance (Satterthwaite). The traces are those of the
+/// covariance and of its square. Exact if all eigenvalues are equal or 0.
 ChiSquare MakeChiSquare(double value, double trace, double trace_of_square) {
   ChiSquare chi{value, trace, 1};
   if (trace > 1e-6 && trace_of_square > 0) {
@@ -32,8 +32,8 @@ ChiSquare MakeChiSquare(double value, double trace, double trace_of_square) {
   return chi;
 }
 
-/// Uses the traces of I - D C D and of its square, D = diag(1 / prior sd): the covariance of the
-/// pulls (F.15).
+/// Chi-square of the priors. The covariance of the pulls is I - D C D with D = diag(1 / prior sd)
+/// (F.15).
 ChiSquare PriorsOf(const FitProblem& problem, const Identifiability& found) {
   const std::size_t n = problem.parameters.size();
   double value = 0, trace = 0, square = 0;
@@ -53,8 +53,8 @@ ChiSquare PriorsOf(const FitProblem& problem, const Identifiability& found) {
   return MakeChiSquare(value, trace, square);
 }
 
-/// Chi-squares of the data with their losses, of the priors, and of both. For a linear model with
-/// normal errors the sum is a chi-square.
+/// Chi-squares of the data (with robust losses), of the priors, and of their sum. For a linear
+/// model with normal errors, the sum has a chi-square distribution.
 void ChiSquares(const FitProblem& problem, FitVerdict& verdict) {
   double data = 0;
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
@@ -108,8 +108,8 @@ std::string UnidentifiableSentence(const FitProblem& problem, const FitVerdict& 
          Brief(verdict.identifiability.condition) + ").";
 }
 
-/// Compares errors by groups with those by J^T J. For independent residuals, (G - 1) times the
-/// square of their ratio is a chi-square with G - 1 degrees of freedom. Errors by groups: eq. F.14.
+/// Compares jackknife errors (eq. F.14) with errors by J^T J. For G independent groups, (G - 1)
+/// times the square of their ratio has a chi-square distribution with G - 1 degrees of freedom.
 void CompareErrors(const FitProblem& problem, FitVerdict& verdict) {
   const double freedom = static_cast<double>(verdict.jackknife.groups.size()) - 1;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {

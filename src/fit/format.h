@@ -1,4 +1,4 @@
-/// Numbers and lists as text for messages.
+/// Texts of numbers and lists for messages.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace taut::fit {
 
-/// Returns four significant digits, with the unit if there is one.
+/// Returns a number with four significant digits, and its unit if there is one.
 std::string Brief(double x, const std::string& unit = {});
-/// Returns a change with its sign and unit.
+/// Returns a change with sign and unit.
 std::string Change(double x, const std::string& unit);
 /// Returns "a", "a and b", or "a, b and c".
 std::string List(const std::vector<std::string>& names);

@@ -17,29 +17,29 @@ using fit::kInfinite;
 using fit::Matrix;
 using fit::Vector;
 
-/// A column below this, in residuals per scale, is dead.
+/// Columns of the Jacobian below this norm count as zero [residuals per scale].
 constexpr double kDead = 1e-6;
-/// Correlation above which two estimates are reported together.
+/// Correlation above which a report names both estimates.
 constexpr double kTogether = 0.95;
-/// Least share of the largest part of a trade for a parameter to be named.
+/// Parameters with less than this share of the largest change in a trade are not named.
 constexpr double kNamed = 0.2;
 
-/// Free parameters (not at a bound) in scales, with the Jacobian and its decompositions.
+/// Free parameters (not at a bound), with the Jacobian and its decompositions in scales.
 struct Local {
   const FitProblem& problem;
   const FitDerivatives& derivatives;
   std::vector<Eigen::Index> free;
   Matrix data;             ///< Jacobian of the data.
-  std::vector<bool> null;  ///< Whether a direction of `svd` is null.
+  std::vector<bool> null;  ///< Whether a direction of `svd` belongs to the null space.
   fit::Singular svd;       ///< Decomposition of `data`.
-  fit::Spread spread;      ///< With the priors, without null directions.
+  fit::Spread spread;      ///< Covariance of the data and priors, without null directions.
 
   const FitParameter& parameter(std::size_t k) const {
     return problem.parameters[static_cast<std::size_t>(free[k])];
   }
 };
 
-/// Returns the effect of the derivatives' errors on a direction's singular value (eq. F.12).
+/// Returns the error of a direction's singular value due to errors of the derivatives (eq. F.12).
 double DirectionError(const Local& local, Eigen::Index direction) {
   double sum = 0;
   for (std::size_t k = 0; k < local.free.size(); ++k) {
@@ -58,7 +58,7 @@ Local MakeLocal(const FitProblem& problem, const std::vector<double>& values,
   const auto n = static_cast<Eigen::Index>(local.free.size());
   if (n == 0) return local;
   local.svd = fit::Decompose(local.data);
-  // The data without null directions are diag(s) V^T.
+  // Equivalent of the data without null directions: diag(s) V^T.
   Matrix stacked = Matrix::Zero(n + all.rows() - system.data_rows, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double s = local.svd.value[k];
@@ -88,8 +88,9 @@ std::vector<FitDirection> Directions(const Local& local) {
   return directions;
 }
 
-/// Returns the changes of the others if free parameter k moves by a scale and all are refitted:
-/// along the null directions, else by the covariance (eq. F.13).
+/// Returns the changes of all free parameters if parameter k moves by one scale and the others are
+/// refitted. They are in the null space if k belongs to it, otherwise from the covariance (eq.
+/// F.13).
 Vector Trade(const Local& local, std::size_t k) {
   const auto i = static_cast<Eigen::Index>(k);
   Vector d = local.spread.covariance.col(i);
@@ -151,7 +152,7 @@ std::string Against(const FitProblem& problem,
   return fit::List(names);
 }
 
-/// Returns the names of the parameters correlated with an estimate.
+/// Returns a text that names the parameters correlated with an estimate.
 std::string Together(const FitProblem& problem, const Identifiability& all, std::size_t j) {
   const std::size_t n = problem.parameters.size();
   std::vector<std::string> names;
@@ -164,7 +165,7 @@ std::string Together(const FitProblem& problem, const Identifiability& all, std:
   return names.empty() ? "" : "; it is correlated with " + fit::List(names);
 }
 
-/// Returns whether a standard error exceeds a step that had to be shortened.
+/// Returns whether the step was shortened to less than the standard error.
 bool Bends(const FitColumn& column, double se) {
   return column.step_share < 1.0 && se > column.step;
 }

@@ -10,10 +10,10 @@ namespace {
 using fit::Matrix;
 using fit::Vector;
 
-/// Least number of groups for a meaningful scatter.
+/// Minimum number of groups.
 constexpr std::size_t kLeastGroups = 3;
-/// A group alone determines a parameter if less than this share of the squared column remains
-/// without the group.
+/// If less than this share of a squared column remains without a group, only this group determines
+/// the parameter.
 constexpr double kOwn = 0.01;
 
 std::vector<bool> Without(int group) {
@@ -22,7 +22,7 @@ std::vector<bool> Without(int group) {
   return left_out;
 }
 
-/// Returns the parameters that the data without a group still determine.
+/// Returns, per parameter, whether the data without a group determine it.
 std::vector<bool> Seen(const fit::System& whole, const fit::System& part,
                        const std::vector<Eigen::Index>& free) {
   std::vector<bool> seen(static_cast<std::size_t>(whole.jacobian.cols()), false);
@@ -35,7 +35,7 @@ std::vector<bool> Seen(const fit::System& whole, const fit::System& part,
   return seen;
 }
 
-/// Returns the result of one Gauss-Newton step from `values` over the free parameters.
+/// Returns `values` after one Gauss-Newton step of the free parameters.
 std::vector<double> OneStep(const FitProblem& problem, const fit::System& part,
                             const std::vector<double>& values,
                             const std::vector<Eigen::Index>& free) {

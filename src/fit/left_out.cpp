@@ -29,8 +29,7 @@ struct Squares {
   }
 };
 
-/// Returns the residuals at the start values, then at each point; `why` receives the reason if they
-/// are missing.
+/// Returns the residuals at the start values, then at each point. `why` receives an error message.
 std::vector<Residuals> Evaluate(const FitProblem& problem,
                                 const std::vector<std::vector<double>>& points, std::string& why) {
   std::vector<std::vector<double>> all = {Starts(problem)};
@@ -46,7 +45,7 @@ std::vector<Residuals> Evaluate(const FitProblem& problem,
   return std::move(*answers);
 }
 
-/// Returns the lower of two searches, from the fit and from the start; null if both failed.
+/// Returns the better of two searches, from the fit and from the start; null if both failed.
 const FitTrack* Lower(const FitState& state, std::size_t first) {
   const FitTrack* best = nullptr;
   for (std::size_t t = first; t < first + 2; ++t) {

@@ -16,8 +16,7 @@ Singular Decompose(const Matrix& jacobian) {
     const Eigen::HouseholderQR<Matrix> qr(jacobian);
     square = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
   }
-  // Jacobi's method yields small singular values to their own relative precision, not only to the
-  // largest one's.
+  // Jacobi's method computes small singular values with high relative accuracy.
   const Eigen::JacobiSVD<Matrix> svd(square, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
 }

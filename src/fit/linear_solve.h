@@ -8,41 +8,42 @@
 
 namespace taut::fit {
 
-/// J = U S V^T of a matrix with any number of rows, completed to as many singular values as
-/// columns.
+/// Singular value decomposition J = U S V^T, with one singular value per column (zeros if J has
+/// fewer rows).
 struct Singular {
-  Vector value;  ///< Descending.
-  Matrix V;      ///< Columns are directions.
+  Vector value;  ///< In descending order.
+  Matrix V;      ///< Columns are the right singular vectors.
 };
 Singular Decompose(const Matrix& jacobian);
 
-/// Inverse of J^T J without its null directions, and the parameters in those: their variance is
-/// infinite, although a pseudo-inverse yields a finite one.
+/// Pseudo-inverse of J^T J, and the parameters in its null space. Their variance is infinite, but
+/// finite in the pseudo-inverse.
 struct Spread {
   Matrix covariance;          ///< Without null directions.
-  std::vector<bool> endless;  ///< Whether a parameter is part of a null direction.
-  Matrix null;                ///< Null directions, columns.
+  std::vector<bool> endless;  ///< Whether a parameter belongs to a null direction.
+  Matrix null;                ///< Null directions as columns.
 };
 
-/// Least component of a parameter that is part of a null direction. Smaller components are errors
-/// of singular vectors, since Jacobians are differences.
+/// A parameter belongs to a null direction if its component is at least this large. Smaller
+/// components are errors of finite differences.
 inline constexpr double kPartOfNull = 1e-3;
-/// Singular values below this share of the largest are null.
+/// Singular values below this share of the largest count as zero.
 inline constexpr double kNullShare = 1e-9;
 
 Spread SpreadOf(const Matrix& jacobian);
 
-/// Returns the minimum-norm d of |J d + r| without null directions: a Gauss-Newton step.
+/// Minimizes |J d + r| by the d of least norm, without null directions: a Gauss-Newton step.
 Vector LeastSquares(const Matrix& jacobian, const Vector& residual);
 
-/// Returns the given columns.
+/// Returns the matrix of the listed columns.
 Matrix Columns(const Matrix& matrix, const std::vector<Eigen::Index>& columns);
 
-/// Returns the parameters that are not at a bound, or whose gradient points away from it.
+/// Returns the parameters that are not at a bound, or whose descent direction points away from the
+/// bound.
 std::vector<Eigen::Index> FreeOf(const FitProblem& problem, const std::vector<double>& values,
                                  const System& system);
 
-/// Assembles the system at `values` from checked derivatives.
+/// Assembles the linear system at `values` from checked derivatives.
 System SystemOf(const FitProblem& problem, const std::vector<bool>& left_out,
                 const std::vector<double>& values, const FitDerivatives& derivatives);
 

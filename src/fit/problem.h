@@ -1,4 +1,4 @@
-/// Fit problem for the solvers: validated residuals, losses, and linear systems in scales.
+/// Fit problem for the solvers: validated residuals, losses, and linear systems in units of scales.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@ namespace taut::fit {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// A parameter counts as estimated if its sd is at most this share of its prior sd or scale; for a
-/// direction, the singular value is then at least sqrt(1 / share^2 - 1).
+/// A parameter counts as estimated if its sd is at most this share of its prior sd (or scale). A
+/// direction counts as fixed if its singular value is at least sqrt(1 / share^2 - 1).
 inline constexpr double kEstimatedShare = 0.5;
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -27,17 +27,17 @@ inline double PriorMean(const FitParameter& parameter) {
   return parameter.prior_mean.value_or(parameter.start);
 }
 
-/// Returns the residuals of `problem.forward` after validation; errors are in `failed`. Nothing if
-/// it was stopped.
+/// Returns the validated residuals of `problem.forward`. `failed` contains errors. Returns nothing
+/// if it was stopped.
 std::optional<std::vector<Residuals>> Compute(const FitProblem& problem,
                                               std::span<const std::vector<double>> points);
 
-/// Returns the loss of a residual; its square if the row has no loss.
+/// Returns the robust loss of a residual; its square if the row has no loss.
 double Loss(const FitRow& row, double residual);
-/// Returns d loss / d r^2: the factor of the square with the same derivative at this residual.
+/// Returns d loss / d(r^2), the weight in iteratively reweighted least squares.
 double LossWeight(const FitRow& row, double residual);
 
-/// Rows whose groups count. Holds a reference: `left_out` must outlive it.
+/// Selects rows by group. Holds a reference to `left_out`, which must outlive it.
 class Rows {
  public:
   Rows(const FitProblem& problem, const std::vector<bool>& left_out)
@@ -52,27 +52,27 @@ class Rows {
   const std::vector<bool>* left_out_;
 };
 
-/// Returns half of the sum of losses of counting rows and of squared priors.
+/// Returns half the sum of losses of the selected rows and of squared prior pulls.
 double Cost(const FitProblem& problem, const Rows& rows, const std::vector<double>& values,
             const std::vector<double>& residual);
 
-/// Linear system r + J d with d in scales: weighted rows of the data, then one row per prior.
+/// Linear system r + J d, with d in units of scales. Rows: weighted data, then one row per prior.
 struct System {
   Matrix jacobian;
   Vector residual;
   Eigen::Index data_rows = 0;
 };
 
-/// `slopes`: one column per parameter, in residuals per unit of the parameter; an empty one is
-/// zero.
+/// Assembles the linear system. `slopes`: one column per parameter, in residuals per unit of the
+/// parameter; an empty column counts as zero.
 System MakeSystem(const FitProblem& problem, const Rows& rows, const std::vector<double>& values,
                   const std::vector<double>& residual,
                   std::span<const std::vector<double>* const> slopes);
 
-/// Returns "group 3" or the group's name.
+/// Returns the name of a group, or "group 3" if it has none.
 std::string GroupName(const FitProblem& problem, int group);
 
-/// Returns the occurring groups, ascending.
+/// Returns all groups of the rows, in ascending order.
 std::vector<int> Groups(const FitProblem& problem);
 
 }  // namespace taut::fit

@@ -11,12 +11,12 @@
 namespace taut {
 namespace {
 
-/// Number of extensions of a side that does not reach the level; each doubles the spacing.
+/// Limit of extensions of a side that does not reach the level. Each one doubles the spacing.
 constexpr int kExtensions = 4;
-constexpr double kLower = 1e-6;   ///< Smaller differences are within the tolerance of the searches.
-constexpr double kBetter = 0.01;  ///< Decrease of chi-square that indicates another, better fit.
+constexpr double kLower = 1e-6;   ///< Smaller differences are within the tolerance of searches.
+constexpr double kBetter = 0.01;  ///< Decrease of chi-square that indicates a better fit.
 
-/// Profile likelihood in progress: `points` grow outwards on both sides of the fit.
+/// Profile likelihood in progress. `points` are added on both sides of the fit.
 class Profile {
  public:
   Profile(const FitProblem& problem, std::size_t parameter, const ProfileOptions& options)
@@ -25,8 +25,7 @@ class Profile {
     held_[parameter] = true;
   }
 
-  /// Computes the central point. Returns false if it was stopped or the fit itself cannot be
-  /// computed.
+  /// Computes the central point. Returns false if it was stopped or if the fit cannot be computed.
   bool Centre(const std::vector<double>& values) {
     std::vector<bool> all(values.size(), true);
     const std::vector<FitJob> jobs = {{values, all, {}}};
@@ -42,8 +41,8 @@ class Profile {
     return true;
   }
 
-  /// Adds points with spacing `step` on the chosen sides; each starts at the result of the
-  /// outermost point of its side.
+  /// Adds points with spacing `step` on the selected sides. Their searches start from the outermost
+  /// point of each side.
   bool Extend(bool down, bool up, double step) {
     std::vector<FitJob> jobs;
     if (down) AddSide(Computed(true), -step, jobs);
@@ -51,14 +50,14 @@ class Profile {
     return Run(jobs);
   }
 
-  /// Repeats the searches from the results of both neighbors, then around each point that this
-  /// lowered. Another minimum, which a kink may hide, thus propagates from point to point.
+  /// Repeats each search from the results of both neighbors, until no point improves. A better
+  /// minimum, which a kink may hide, thus propagates from point to point.
   bool Again() {
     for (const ProfilePoint& point : points_) lowered_.insert(point.value);
     for (std::size_t pass = 0; pass < points_.size() && !lowered_.empty(); ++pass) {
       std::vector<FitJob> jobs;
       for (std::size_t k = 0; k < points_.size(); ++k) {
-        for (const std::size_t other : {k - 1, k + 1}) {  // k - 1 wraps at 0
+        for (const std::size_t other : {k - 1, k + 1}) {  // k - 1 overflows at 0
           if (other >= points_.size() || lowered_.count(points_[other].value) == 0) continue;
           if (!points_[other].failed.empty()) continue;
           jobs.push_back({points_[other].values, held_, {}});
@@ -94,7 +93,7 @@ class Profile {
     return points_[k];
   }
 
-  /// Adds points up to the bound, which is the last one.
+  /// Adds points on one side, at most up to the bound.
   void AddSide(const ProfilePoint& from, double step, std::vector<FitJob>& jobs) const {
     const FitParameter& p = problem_.parameters[parameter_];
     double before = from.value;
@@ -123,7 +122,7 @@ class Profile {
     return true;
   }
 
-  /// Inserts a point by its value; of two with the same value the lower one is kept.
+  /// Inserts a point by its value. If the value exists, keeps the point with the lower cost.
   void Put(const FitTrack& track) {
     ProfilePoint point;
     point.value = track.start[parameter_];
@@ -147,15 +146,15 @@ class Profile {
   std::size_t parameter_;
   std::vector<bool> held_;
   double cost_ = 0;
-  std::set<double> lowered_;  ///< Values whose points the last run lowered.
+  std::set<double> lowered_;  ///< Values of the points that the last run improved.
   std::vector<ProfilePoint> points_;
   std::string why_;
 };
 
-/// Returns the parameter value at which the rise crosses the level between two points: linear in
-/// the square root, exact for a parabola with its minimum at the fit.
+/// Returns the parameter value between two points at which the rise crosses the level. Interpolates
+/// the square root of the rise linearly, which is exact for a parabola with its minimum at the fit.
 double Crossing(const ProfilePoint& below, const ProfilePoint& above, double lowest, double level) {
-  if (std::isinf(above.rise)) return below.value;  // not computable beyond
+  if (std::isinf(above.rise)) return below.value;  // points beyond cannot be computed
   const double a = std::sqrt(std::max(below.rise - lowest, 0.0));
   const double b = std::sqrt(above.rise - lowest);
   return below.value + (above.value - below.value) * (std::sqrt(level) - a) / (b - a);

@@ -1,4 +1,4 @@
-// Consistency check of proportional measurements: slope through 0 and its error.
+// Consistency check of proportional measurements: regression slope through 0 and its error.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,7 +9,7 @@
 namespace taut {
 namespace {
 
-/// Sums of weighted products for a slope through 0.
+/// Weighted sums for a regression line through 0.
 struct Sums {
   double xx = 0, xy = 0;
   void Add(const ProportionPoint& p) {
@@ -19,7 +19,8 @@ struct Sums {
   }
 };
 
-/// Returns the delete-one-group jackknife error of the slope; 0 with fewer than three groups.
+/// Returns the jackknife error of the slope, leaving out one group at a time. Returns 0 for fewer
+/// than three groups.
 double GroupError(const Sums& all, const std::map<int, Sums>& groups) {
   std::vector<double> slopes;
   for (const auto& [group, part] : groups) {

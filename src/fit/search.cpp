@@ -9,7 +9,7 @@ namespace taut::fit {
 namespace {
 
 constexpr double kLeastDamping = 1e-12, kMostDamping = 1e12;
-/// Slopes are checked again if the gain is below this share of the predicted gain.
+/// If the actual gain is below this share of the predicted gain, the slopes are checked again.
 constexpr double kPoorRatio = 0.25;
 
 /// Returns the cosine of the angle between the residuals and column j.
@@ -189,8 +189,8 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
   const Vector gradient = quadratic.gradient();
   const StepBox box = BoxOf(t, gradient);
 
-  // Moré's rule: D is the largest norm that a column has had, which makes the method independent of
-  // scales (F.4).
+  // Moré's rule (F.4): D_j is the largest norm of column j so far. It makes the method independent
+  // of the parameters' scales.
   Vector weight(gradient.size());
   for (Eigen::Index j = 0; j < weight.size(); ++j) {
     double& kept = track.weight[static_cast<std::size_t>(j)];
@@ -225,8 +225,7 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
       const FitParameter& p = problem_.parameters[j];
       const auto i = static_cast<Eigen::Index>(j);
       point[j] = std::clamp(point[j] + FitScale(p) * step[i], p.low, p.high);
-      if (!box.held[j] && step[i] == box.low[i])
-        point[j] = p.low;  // exactly, regardless of rounding
+      if (!box.held[j] && step[i] == box.low[i]) point[j] = p.low;  // exactly, despite rounding
       if (!box.held[j] && step[i] == box.high[i]) point[j] = p.high;
     }
     points.push_back(std::move(point));
@@ -260,7 +259,7 @@ void Search::Choose(std::size_t t, std::span<Trial> trials,
     track.check = ratio < kPoorRatio || small || vanished;
     return;
   }
-  // The trial with the least damping is the longest and predicts the largest gain.
+  // The first trial has the least damping, so it predicts the largest gain.
   const double promised = trials.front().predicted;
   const bool vanished = trials.front().length <= options_.step_tolerance;
   const bool nothing = promised <= options_.cost_tolerance * track.cost;

@@ -1,4 +1,5 @@
-/// Levenberg-Marquardt searches in lockstep: the points of all searches are computed in one call.
+/// Levenberg-Marquardt searches in lockstep. Each iteration computes the points of all searches in
+/// one call.
 #pragma once
 
 #include <functional>
@@ -11,11 +12,11 @@
 
 namespace taut::fit {
 
-/// Returns a replacement for the start of job `job` that could not be computed, at the given
-/// attempt; nothing: no more attempts.
+/// Returns another start if the start of a job could not be computed. `attempt` counts from 1.
+/// Returns nothing if no more attempts are permitted.
 using Again = std::function<std::optional<std::vector<double>>(std::size_t job, int attempt)>;
 
-/// All searches of one call. The state changes at the end of an iteration only, so that a stopped
+/// Searches of all jobs. The state changes only at the end of an iteration, so that a stopped
 /// search resumes with identical results.
 class Search {
  public:
@@ -25,11 +26,13 @@ class Search {
   FitState Run();
 
  private:
-  /// Data that can be recomputed from a track's values.
+  /// Data that follow from a track's values and are not part of the state.
   struct Work {
     std::vector<double> residual;
-    std::vector<std::vector<double>> slopes;  ///< One per parameter; empty if it is held.
-    /// Best point of the differences if it is better than the track's; else empty.
+    std::vector<std::vector<double>> slopes;  ///< One per parameter; empty if the parameter is
+                                              ///< held.
+    /// Best point of the finite differences if it is better than the track's point; otherwise
+    /// empty.
     std::vector<double> nearby;
     std::vector<double> nearby_residual;
     double nearby_cost = 0;
@@ -39,19 +42,18 @@ class Search {
     std::size_t track = 0;
     double damping = 0, predicted = 0, length = 0;
     Residuals answer;
-    double cost = 0;  ///< Infinite if it failed (penalty).
+    double cost = 0;  ///< Infinite if the point could not be computed.
   };
 
-  bool Begin();   ///< Computes the residuals of all starts. False: stopped.
-  bool Derive();  ///< Computes the slopes of the searches that moved. False: stopped.
-  /// Requests a check of the differences before a search ends, if they were not checked. Returns
-  /// whether it did.
+  bool Begin();   ///< Computes the residuals of all starts. Returns false if stopped.
+  bool Derive();  ///< Computes the slopes of searches with new values. Returns false if stopped.
+  /// Requests a check of unchecked slopes before a search ends. Returns whether a check was needed.
   bool CheckFirst(std::size_t track);
-  /// Counts points of differences and keeps the best of each track.
+  /// Counts a point of the finite differences and keeps it if it is the track's best.
   void TakeNearby(std::size_t track, const std::vector<double>& point, const Residuals& answer);
-  bool Try();  ///< Performs an iteration. False: stopped.
+  bool Try();  ///< Performs an iteration. Returns false if stopped.
 
-  FitState Stopped();  ///< Returns the kept state with running searches marked as interrupted.
+  FitState Stopped();  ///< Returns the state, with running searches marked as interrupted.
   bool Compute(const std::vector<std::vector<double>>& points, std::vector<Residuals>& answers);
   double CostAt(std::size_t track, const std::vector<double>& values,
                 const std::vector<double>& residual) const;
@@ -61,7 +63,7 @@ class Search {
   void Choose(std::size_t track, std::span<Trial> trials,
               std::span<const std::vector<double>> points);
   void MoveTo(std::size_t track, const std::vector<double>& values, double cost);
-  /// Moves to the best point of the differences, if it lowers the cost by more than rounding.
+  /// Moves to the best point of the finite differences if it lowers the cost by more than rounding.
   bool Jump(std::size_t track);
   void End(std::size_t track, FitEnd end, const std::string& why);
   void CountFailure(std::size_t track, const std::string& why);

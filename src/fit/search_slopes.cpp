@@ -1,5 +1,5 @@
-// Slopes of searches. Their steps are checked by halving at the start of a search, before its end,
-// and where steps gain far less than predicted.
+// Slopes of searches. Step sizes are checked at the start and the end of a search, and if an
+// iteration gains far less than predicted.
 #include "fit/search.h"
 
 namespace taut::fit {
@@ -36,7 +36,7 @@ bool Search::Derive() {
 }
 
 void Search::TakeNearby(std::size_t t, const std::vector<double>& point, const Residuals& answer) {
-  // Points that a resumed search repeats were counted before.
+  // A resumed search repeats points that were already counted.
   const bool counts = !resumed_ || state_.tracks[t].rejected == 0;
   if (counts) ++state_.points;
   if (!answer.failed.empty()) {

@@ -12,8 +12,8 @@
 namespace taut::identify {
 namespace {
 
-/// Largest relative difference between computed member forces and applied loads if nothing else
-/// holds the bodies.
+/// Largest relative difference between computed member forces and applied loads. A larger one means
+/// that something else holds the bodies.
 constexpr double kClosed = 1e-6;
 
 Vec3 PlaceOf(const ModelDef& def, const Pose& pose, int body, const Vec3& described_m) {
@@ -23,8 +23,7 @@ Vec3 PlaceOf(const ModelDef& def, const Pose& pose, int body, const Vec3& descri
   return s.position_m + Rotate(s.orientation, described_m - def.bodies[b].com_m);
 }
 
-/// Returns the component along `direction` of the force on the bodies inside, per unit of tension
-/// in a member.
+/// Returns the force on the inner bodies along `direction`, per unit of tension in a member.
 double PullAlong(const ModelDef& def, const Pose& pose, const CutMember& member,
                  const Vec3& direction) {
   const Vec3 way = PlaceOf(def, pose, member.outside, member.to_m) -
@@ -110,11 +109,11 @@ double ComputedForce(const ModelDef& def, const Equilibrium& rest, const CutMemb
   return 0;
 }
 
-/// Returns the comparison at one rest; nothing if a member was not measured there.
+/// Returns the comparison at one equilibrium. Returns nothing if a member was not measured there.
 std::optional<CarriedLoad::Row> RowOf(const ModelDef& def, const Cut& cut, const Pose& pose,
                                       const Vec3& direction, const MeasuredForces& measured) {
   CarriedLoad::Row row{measured.where, 0, 0, 0};
-  // Summed per channel: all crossings of one cable share one measurement error.
+  // Sum per channel, since all crossings of a cable share one measurement error.
   std::map<std::string, double> pulls;
   for (const CutMember& member : cut.members) {
     const std::string channel = ChannelOf(member, measured);

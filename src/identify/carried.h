@@ -1,5 +1,5 @@
-/// Check of measured forces against the applied load: a cut around bodies whose crossing members
-/// are measured (docs/theory/identification.md, section 6).
+/// Check of measured forces against the applied load. It cuts the robot around some bodies; all
+/// members that cross the cut must be measured (docs/theory/identification.md, section 6).
 #pragma once
 
 #include <map>
@@ -12,27 +12,28 @@
 
 namespace taut::identify {
 
-/// Member that crosses the cut, with its force along a line from a body inside to one outside.
+/// Member that crosses the cut. Its force acts along the line from the inner body to the outer
+/// body.
 struct CutMember {
-  /// Channels of its force, tension > 0; any one of them suffices.
+  /// Channels of its force (tension is positive). One of them must be measured.
   std::vector<std::string> channels;
   int inside = 0, outside = kWorld;  ///< Bodies at its ends.
-  Vec3 from_m, to_m;                 ///< Its ends there, in the described pose.
+  Vec3 from_m, to_m;                 ///< Its ends on these bodies, in the described pose.
 };
 
 struct Cut {
   std::set<int> bodies;
   std::vector<CutMember> members;
-  std::vector<std::string> wrong;  ///< Other connections of the bodies, one sentence each.
+  std::vector<std::string> wrong;  ///< Connections that the check does not support, one sentence
+                                   ///< each.
 };
 
 Cut CutAbout(const ModelDef& def, const std::vector<std::string>& bodies);
 
-/// Forces of an experiment that are compared at one rest, by channel: force and standard deviation
-/// [N].
+/// Measured forces at one equilibrium. Map from channel to force and standard deviation [N].
 struct MeasuredForces {
   std::string where;
-  double time = 0;  ///< Time of the rest, as in `EachRest`.
+  double time = 0;  ///< Time of the equilibrium, as in `EachRest`.
   std::map<std::string, std::pair<double, double>> by_channel;
 };
 

@@ -10,7 +10,8 @@ Vec3 TurnOf(const Quat& q) {
   const double sign = q.w < 0 ? -1.0 : 1.0;
   const double s = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
   const double angle_rad = 2.0 * std::atan2(s, sign * q.w);
-  const double share = s > 1e-12 ? sign * angle_rad / s : sign * 2.0;  // limit of small rotations
+  const double share = s > 1e-12 ? sign * angle_rad / s : sign * 2.0;  // the limit for small
+                                                                       // rotations is 2
   return {share * q.x, share * q.y, share * q.z};
 }
 

@@ -1,4 +1,4 @@
-/// Computed channels of an experiment for system identification: against time, or at static
+/// Computed channels of an experiment for system identification, by simulation or at static
 /// equilibria.
 #pragma once
 
@@ -16,47 +16,49 @@
 namespace taut::identify {
 
 struct Computed {
-  std::string failed;      ///< Reason for the missing result; else empty.
-  std::string unreadable;  ///< Reason why its files cannot be read; then the trial is undecided.
+  std::string failed;      ///< Reason for a missing result; otherwise empty.
+  std::string unreadable;  ///< Reason why files cannot be read. Then the parameters are not to
+                           ///< blame, and the result is unknown.
   bool stopped = false;
-  std::vector<double> time_s;  ///< For rests: times of the set points; for load cases 1, 2, ...
+  std::vector<double> time_s;  ///< Times of set points for static equilibria; 1, 2, ... for load
+                               ///< cases.
   std::vector<std::vector<double>> values;  ///< [requested channel][row].
-  /// For runs: value of each number of each reference of the experiment [N]; NaN if the run ended
-  /// before it.
+  /// For simulations: each value of each reference of the experiment [N]. NaN if the simulation
+  /// ended before it.
   std::vector<std::vector<double>> references;
 };
 
-/// Serializes all values bit for bit, for other processes of the same build.
+/// Serializes all values bit for bit, for processes of the same build.
 std::string Pack(const Computed& computed);
 Computed UnpackComputed(const std::string& bytes);
 
-/// Simulates the experiment. `channels`: names from `DynamicChannels`.
+/// Simulates the experiment. `channels`: names in `DynamicChannels`.
 Computed Run(const ExperimentSpec& experiment, const std::vector<std::string>& channels,
              const std::atomic<bool>* stop);
-/// Returns the channels that a run can provide: every recordable channel, and
+/// Returns the channels that a simulation can provide. These are all channels of a trace, and
 /// `body/<name>/rotation_{x,y,z}_rad`, the rotation vector from the described orientation.
 std::vector<ChannelInfo> DynamicChannels(const ExperimentSpec& experiment);
 
-/// Computes static equilibria one after another: at increasing moments, each starting from the one
-/// before, or of load cases, whose time is their number from 1. `take` receives each one with its
-/// loads and returns false to stop. Returns the reason if one was not found; else an empty string.
+/// Computes static equilibria, at increasing times or for all load cases. Each search starts from
+/// the previous equilibrium. The `time` of a load case is its number, starting at 1. Calls `take`
+/// for each equilibrium, until it returns false. Returns an error message if one was not found,
+/// otherwise an empty text.
 using RestTaker = std::function<bool(double time, const LoadCaseSpec&, const Equilibrium&)>;
 std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
                      const std::vector<double>& moments_s, const RestTaker& take);
-/// Computes the requested channels at these rests.
+/// Computes the requested channels at these equilibria.
 Computed Rest(const ExperimentSpec& experiment, FitForward forward,
               const std::vector<double>& moments_s, const std::vector<std::string>& channels,
               const std::atomic<bool>* stop);
 std::vector<ChannelInfo> RestChannels(const ExperimentSpec& experiment);
-/// Returns the reason why the set points of an experiment do not determine static equilibria; empty
-/// if they do.
+/// Returns the reason why the experiment does not determine static equilibria. Returns an empty
+/// text if it does.
 std::string WhyNoRest(const ExperimentSpec& experiment);
 
-/// Returns the times at which programs of rest lengths and pushes have reached a new value: the
-/// ends of their ramps [s].
+/// Returns the ends of all ramps of rest length programs and pushes [s].
 std::vector<double> SetPoints(const ExperimentSpec& experiment);
 
-/// Returns the rotation vector of a unit quaternion, with length <= pi [rad].
+/// Returns the rotation vector of a unit quaternion [rad], with a length of at most pi.
 Vec3 TurnOf(const Quat& q);
 
 }  // namespace taut::identify

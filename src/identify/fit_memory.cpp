@@ -112,7 +112,7 @@ bool PointMemory::Begin(const std::string& path, const std::map<std::string, std
   return true;
 }
 
-/// Writes all facts or none: a part of them would belong to another fit.
+/// Writes the facts in one transaction, since an incomplete set would identify another fit.
 bool PointMemory::WriteFacts(const std::map<std::string, std::string>& facts) {
   bool good = database_->Execute("BEGIN IMMEDIATE");
   for (const auto& [name, value] : facts) {

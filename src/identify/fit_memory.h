@@ -1,5 +1,5 @@
-/// Persistent cache of the points that a fit has computed (SQLite), so that a killed fit resumes
-/// there.
+/// Persistent cache of computed points of a fit (SQLite), to resume a fit after the process was
+/// killed.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,22 @@
 
 namespace taut::identify {
 
-/// Cache of points; not thread-safe. Without a file it exists in memory only.
+/// Cache of points. Not thread-safe. Without a file, it is in memory only.
 class PointMemory {
  public:
   PointMemory() = default;
-  /// Opens the file. `facts` identify the fit: a file with other facts belongs to another fit.
-  /// Returns null with errors in that case, or if the file cannot be read or written, or contains
-  /// points without facts. Points that were computed under other facts count as damaged.
+  /// Opens the file. `facts` identify the fit. Returns null with errors if the file has other
+  /// facts, has points without facts, or cannot be read or written. Points that were computed under
+  /// other facts count as damaged.
   static std::unique_ptr<PointMemory> Open(const std::string& path,
                                            const std::map<std::string, std::string>& facts,
                                            Diagnostics& out);
 
-  /// Returns the key of a point: the problem's name and the bits of its values.
+  /// Returns the key of a point: the problem's name and the binary values.
   static std::string Key(const std::string& problem, const std::vector<double>& values);
 
   const Residuals* Find(const std::string& key) const;
-  /// Adds all points to the file in one transaction. Returns false if writing fails; see `error`.
+  /// Adds points to the file in one transaction. Returns false if writing fails; see `error`.
   bool Add(const std::vector<std::pair<std::string, Residuals>>& points);
 
   const std::string& error() const { return error_; }
@@ -45,7 +45,7 @@ class PointMemory {
 
   std::unique_ptr<learn::Database> database_;
   std::map<std::string, Residuals> points_;
-  std::string facts_sum_;  ///< Part of the checksum of every point.
+  std::string facts_sum_;  ///< Checksum of the facts, which is part of every point's checksum.
   std::string error_;
   std::int64_t remembered_ = 0, damaged_ = 0;
 };

@@ -1,4 +1,4 @@
-// Simulation of an experiment for system identification, with its channels in memory.
+// Simulation of an experiment for system identification. Its channels stay in memory.
 #include <algorithm>
 #include <optional>
 
@@ -14,8 +14,8 @@ constexpr const char* kTurns[] = {"rotation_x_rad", "rotation_y_rad", "rotation_
 constexpr const char* kQuaternion[] = {"orientation_w", "orientation_x", "orientation_y",
                                        "orientation_z"};
 
-/// Parses a channel such as body/<name>/rotation_y_rad: returns the axis (here 1) and the name up
-/// to the last slash.
+/// Parses a channel such as body/<name>/rotation_y_rad. Returns the axis (here 1) and the text
+/// before the last slash.
 std::optional<std::pair<int, std::string>> TurnAxis(const std::string& channel) {
   const std::size_t slash = channel.rfind('/');
   if (!channel.starts_with("body/") || slash == channel.npos) return std::nullopt;
@@ -85,7 +85,7 @@ Computed Run(const ExperimentSpec& given, const std::vector<std::string>& channe
       experiment.record.channels.push_back(turn->second + kQuaternion[i]);
     }
   }
-  if (experiment.record.channels.empty()) {  // a run without rows has to record something
+  if (experiment.record.channels.empty()) {  // rows are recorded only if there is a channel
     experiment.record.channels = {"system/kinetic_j"};
   }
   Computed out;
@@ -111,7 +111,7 @@ Computed Run(const ExperimentSpec& given, const std::vector<std::string>& channe
       values.push_back(report::OurValue(*summary, reference, value.cable));
     }
   }
-  compare::MakeOrientationsContinuous(memory.trace);  // precedes interpolation between rows
+  compare::MakeOrientationsContinuous(memory.trace);  // must precede interpolation between rows
   out.time_s = memory.trace.time_s;
   for (const std::string& channel : channels) {
     const auto at = memory.trace.Find(channel);

@@ -1,4 +1,4 @@
-// Experiment files with fitted parameters, and run folders of their static equilibria.
+// Writer of experiment files with fitted parameters, and of run folders with static equilibria.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// System identification: builds a fit problem from experiments, their models and measured data.
+// System identification: creates a fit problem from experiments, models and measured data.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,15 +17,16 @@ namespace taut {
 namespace identify {
 namespace {
 
-/// Row with its model, channels and the estimates that affect it.
+/// Residual row with its model, channels and estimates.
 struct Tied {
   Row row;
   std::size_t model = 0;
   RowChannels channels;
-  std::vector<std::size_t> gains, offsets, delays;  ///< Indices of estimates of the fit.
+  std::vector<std::size_t> gains, offsets, delays;  ///< Estimates that affect it, as indices into
+                                                    ///< `FitSpec::estimates`.
 };
 
-/// Rows of a problem, in its order.
+/// Rows of a problem, in the problem's order.
 struct Set {
   std::string name;
   std::vector<Tied> rows;
@@ -86,7 +87,7 @@ class Made : public Identification {
   Residuals Compose(const Set& set, const std::vector<double>& all,
                     const std::map<std::size_t, Models::Answer>& computed) const;
   std::vector<double> All(const std::vector<double>& values) const;
-  /// Returns the facts that must match for stored points to be reused.
+  /// Returns the facts that identify this fit. Stored points are reused only if they match.
   std::map<std::string, std::string> Facts() const;
   bool OpenMemory(Diagnostics& out);
 
@@ -95,7 +96,7 @@ class Made : public Identification {
   Models models_;
   int processes_ = 1;
   std::unique_ptr<PointMemory> memory_;
-  /// Per experiment: channels that can be computed.
+  /// Channels that can be computed, per experiment.
   std::vector<std::vector<ChannelInfo>> channels_;
   std::vector<std::size_t> estimates_;
   Set train_, test_;
@@ -130,7 +131,7 @@ void Made::AddRows(const FitResidual& residual, std::size_t experiment, const Me
   }
 }
 
-/// Reports offsets, gains and delays of channels that are not compared as errors.
+/// Reports offsets, gains and delays that affect no compared channel.
 void Made::CheckActing(Diagnostics& out) {
   std::vector<bool> acts(spec_.estimates.size());
   std::set<std::string> names;
@@ -151,7 +152,7 @@ void Made::CheckActing(Diagnostics& out) {
   }
 }
 
-/// Returns the compared measurements of an experiment at its rests, row by row.
+/// Returns the measurements that are compared at each equilibrium of an experiment.
 std::vector<MeasuredForces> Made::ForcesOf(std::size_t experiment) const {
   std::vector<MeasuredForces> out;
   for (const Set* set : {&train_, &test_}) {
@@ -181,7 +182,7 @@ std::vector<CarriedLoad> Made::Carried() const {
   return out;
 }
 
-/// Selects the estimates that affect training data; the others keep their start values.
+/// Selects the estimates that affect training data. The others keep their start values.
 void Made::ChooseEstimates() {
   for (std::size_t i = 0; i < spec_.estimates.size(); ++i) {
     const auto& on = spec_.estimates[i].experiments;
@@ -267,7 +268,7 @@ std::vector<Residuals> Made::Answer(const Set& set, std::span<const std::vector<
     missing.push_back(All(point));
     missing_keys.push_back(keys.back());
   }
-  // In parts, so that little is lost if the process is stopped or killed.
+  // Compute and store in parts, so that little is lost if the process is killed.
   const std::size_t part =
       4 * static_cast<std::size_t>(models_.threads()) * static_cast<std::size_t>(processes_);
   for (std::size_t from = 0; from < missing.size(); from += part) {

@@ -1,4 +1,4 @@
-/// Names of results of a fit, shared by all output formats.
+/// Names of results of a fit, used by all output formats.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@ namespace taut::identify {
 
 const char* WordOf(Determined kind);
 const char* WordOf(FitJudgement judgement);
-/// Returns "push_n [N]" for a name and a unit.
+/// Returns name and unit as text, such as "push_n [N]".
 std::string WithUnit(const std::string& name, const std::string& unit);
-/// Returns the result of a check of carried loads as a sentence.
+/// Returns the result of the check of carried loads as a sentence.
 std::string CarriedText(const Identification& fit, const CarriedLoad& carried);
 /// Returns a standard error as text; "any" if it is infinite.
 std::string ErrorText(double se);

@@ -11,7 +11,7 @@
 namespace taut::identify {
 namespace {
 
-/// Optional column of a file of set points: the experiment's moment of each row.
+/// Optional column of a set point file: time of each row on the experiment's clock.
 constexpr const char* kOurClock = "experiment_s";
 
 bool Rises(const std::vector<double>& times) {

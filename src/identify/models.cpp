@@ -8,8 +8,8 @@
 namespace taut::identify {
 namespace {
 
-/// Largest number of cached simulation results. Jacobian columns of parameters that change only
-/// offsets of measurements then need no new simulation.
+/// Limit of cached results. With the cache, Jacobian columns of parameters that affect only
+/// measurement offsets need no simulation.
 constexpr std::size_t kMostKept = 256;
 
 bool ActsOn(const FitEstimate& e, std::size_t experiment) {
@@ -96,7 +96,7 @@ Models::Answer Models::ComputeOne(const Job& job) const {
   const auto experiment = LoadExperiment(one.experiment_file, job.second, found);
   if (!experiment) {
     Computed out;
-    // Every file was read when the fit began, so the trial's numbers are not the cause.
+    // All files were readable when the fit began, so the parameter values are not the cause.
     const auto& errors = found.items();
     const auto unreadable = std::find_if(errors.begin(), errors.end(),
                                          [](const Diagnostic& error) { return error.unreadable; });

@@ -1,4 +1,4 @@
-// Run of a fit with its verdict, profile likelihoods and design of measurements.
+// Run of a fit with its verdict, profile likelihoods and design of further measurements.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace taut {
 namespace {
 
-/// Returns the residuals at one point; empty if it could not be computed.
+/// Returns the residuals at one point. Returns an empty list if it could not be computed.
 std::vector<double> At(const FitProblem& problem, const std::vector<double>& values) {
   const std::vector<std::vector<double>> points{values};
   const auto answers = problem.forward(points);
@@ -41,7 +41,7 @@ DesignCandidate CandidateOf(const std::string& name, const FitProblem& problem,
   const FitDerivatives d = Differentiate(problem, values);
   if (!d.done) return out;
   for (std::size_t row = 0; row < points.size(); ++row) {
-    // Residuals are in standard deviations: slope times sd is the slope of the channel.
+    // Residuals are in standard deviations, so the slope of the channel is slope times sd.
     out.sd.push_back(scaled ? points[row].sd : 1.0);
     for (const FitColumn& column : d.columns) {
       const double slope = column.failed.empty() ? column.slope[row] : NAN;

@@ -1,4 +1,4 @@
-// Result of a fit as one self-contained HTML page.
+// Result of a fit as a self-contained HTML page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,7 +71,7 @@ std::string Errors(const char* title, const std::vector<FitPoint>& points,
   return Table(rows);
 }
 
-/// Returns the list of viewer links of the experiments before and after the fit.
+/// Returns a list of links to the viewer, which show the experiments before and after the fit.
 std::string Looks(const Identification& fit, const std::vector<std::string>& looks) {
   std::string list;
   for (std::size_t e = 0; e < looks.size(); ++e) {
@@ -109,7 +109,7 @@ std::string Carried(const Identification& fit, const FitOutcome& outcome) {
   return out;
 }
 
-/// Returns the plots of computed minus measured values, by channel, in its unit.
+/// Returns plots of computed minus measured values, one plot per channel and unit.
 std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) {
   std::vector<std::string> order;
   std::map<std::string, Plot> plots;

@@ -13,7 +13,7 @@ constexpr double kLeft = 62, kRight = 12, kTop = 28, kBottom = 42;
 
 struct Axis {
   double low = INFINITY, high = -INFINITY;
-  double from = 0, to = 1;  ///< In page coordinates.
+  double from = 0, to = 1;  ///< Range of the axis on the page.
 
   void Take(double x) { low = std::min(low, x), high = std::max(high, x); }
   void Widen(double share) {
@@ -61,7 +61,7 @@ std::vector<double> Ticks(double low, double high) {
   }
   std::vector<double> out;
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
-    out.push_back(k * step + 0.0);  // removes the sign of -0
+    out.push_back(k * step + 0.0);  // converts -0 to 0
   }
   return out;
 }

@@ -1,4 +1,4 @@
-/// Plots for HTML pages, as self-contained SVG.
+/// Plots for HTML pages as self-contained SVG.
 #pragma once
 
 #include <string>
@@ -7,26 +7,27 @@
 
 namespace taut::identify {
 
-/// Returns the text with < > & " as entities.
+/// Escapes < > & " as HTML entities.
 std::string Escaped(const std::string& text);
 
 struct Series {
-  std::string style;  ///< CSS class of its marks: "untuned", "fitted", "held".
+  std::string style;  ///< CSS class of the marks: "untuned", "fitted" or "held".
   std::vector<std::pair<double, double>> points;
-  bool line = false;  ///< Connected by lines; else dots.
+  bool line = false;  ///< Connect the points by lines (true) or draw dots.
 };
 
 struct Plot {
-  std::string title, x, y;  ///< Plain text.
+  std::string title, x, y;  ///< Texts without markup.
   std::vector<Series> series;
-  std::vector<double> levels;  ///< Horizontal lines.
-  std::vector<double> marks;   ///< Vertical lines.
+  std::vector<double> levels;  ///< Values of horizontal lines.
+  std::vector<double> marks;   ///< Values of vertical lines.
 };
 
-/// Returns a figure without non-finite points; an empty string if no points are left.
+/// Returns the figure as SVG. Omits points that are not finite. Returns an empty text if no points
+/// are left.
 std::string Svg(const Plot& plot);
 
-/// Returns about five round numbers within low..high.
+/// Returns about five round numbers between low and high.
 std::vector<double> Ticks(double low, double high);
 
 }  // namespace taut::identify

@@ -16,13 +16,13 @@
 namespace taut::identify {
 namespace {
 
-/// Time window on the clocks of data and experiment.
+/// Time window on both clocks, of the data and of the experiment.
 struct Window {
   std::string where;
   double data_from_s = 0, data_to_s = 0;
-  double from_s = 0, to_s = 0;  ///< On the experiment's clock, for data without delay.
+  double from_s = 0, to_s = 0;  ///< Times on the experiment's clock if the data had no delay.
   std::size_t number = 0;
-  double moment_s = 0;  ///< Time of its set point, on the experiment's clock.
+  double moment_s = 0;  ///< Time of the window's set point on the experiment's clock.
 };
 
 std::vector<Window> Windows(const FitSpec& spec, const FitResidual& residual,
@@ -61,10 +61,10 @@ std::vector<Window> Windows(const FitSpec& spec, const FitResidual& residual,
   return {window};
 }
 
-/// Channel of the data.
+/// Data of one channel.
 struct Column {
   const std::vector<double>* values = nullptr;
-  /// All four components if the channel is part of a quaternion; else null.
+  /// All four components if the channel belongs to a quaternion, otherwise null.
   std::array<const std::vector<double>*, 4> quaternion{};
 
   bool HasQuaternion() const { return quaternion[0] != nullptr; }
@@ -72,7 +72,7 @@ struct Column {
     return {(*quaternion[0])[row], (*quaternion[1])[row], (*quaternion[2])[row],
             (*quaternion[3])[row]};
   }
-  /// Returns whether a row has a number; for quaternions all four components.
+  /// Returns whether a row is finite, including all components of its quaternion.
   bool Finite(std::size_t row) const {
     if (!std::isfinite((*values)[row])) return false;
     if (!HasQuaternion()) return true;
@@ -81,7 +81,7 @@ struct Column {
   }
 };
 
-/// Returns the indices of the data rows in a window.
+/// Returns the indices of the finite data rows in a window.
 std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
                                 const Column& column) {
   std::vector<std::size_t> out;
@@ -94,7 +94,7 @@ std::vector<std::size_t> Inside(const Measured& measured, const Window& window,
   return out;
 }
 
-/// Returns the statistic of the rows; means are weighted by the duration of each row.
+/// Returns the statistic of the rows. The mean is weighted by the duration of each row.
 double Of(FitStatistic statistic, const std::vector<double>& values,
           const std::vector<std::size_t>& rows, const std::vector<double>& weights) {
   std::vector<double> inside;
@@ -109,7 +109,7 @@ Row::How HowOf(FitStatistic statistic) {
   return statistic == FitStatistic::kMin ? Row::How::kMin : Row::How::kMean;
 }
 
-/// Builds the rows of one residual and one experiment.
+/// Builds the rows of one residual for one experiment.
 class Maker {
  public:
   Maker(const FitSpec& spec, const FitResidual& residual, std::size_t experiment,
@@ -121,7 +121,7 @@ class Maker {
         windows_(Windows(spec, residual, experiment, measured)),
         late_s_(StartDelay(spec, experiment)) {}
 
-  /// `column` null: no measurement (design).
+  /// Adds the rows of a channel. `column`: measured data; null for a design.
   void Channel(const ChannelInfo& channel, const Column* column) {
     if (one_.forward == FitForward::kLoadCases) {
       for (std::size_t i = 0; i < one_.experiment.load_cases.size(); ++i) {
@@ -147,7 +147,7 @@ class Maker {
     }
   }
   std::vector<Row> rows;
-  std::size_t asked = 0, met = 0;  ///< Numbers of windows.
+  std::size_t asked = 0, met = 0;  ///< Number of windows, and of those with data.
 
  private:
   bool Beyond(const Window& window) const {
@@ -169,7 +169,7 @@ class Maker {
     row.point.sd = std::max(residual_.sd, residual_.relative_sd * std::fabs(measured));
     rows.push_back(std::move(row));
   }
-  /// Returns the time of a data row on the experiment's clock, for data without delay [s].
+  /// Returns the time of a data row on the experiment's clock if the data had no delay [s].
   double TimeOf(const Window& window, std::size_t row) const {
     return measured_->trace.time_s[row] - window.data_from_s + window.from_s;
   }
@@ -277,7 +277,8 @@ std::vector<std::string> Names(const std::vector<ChannelInfo>& channels) {
   return out;
 }
 
-/// Suggests the closest name, else the first four: channels are too many for a full list.
+/// Suggests the closest name. Otherwise lists the first four, since the full list would be too
+/// long.
 std::string Hint(const std::string& name, const std::vector<ChannelInfo>& channels) {
   const auto names = Names(channels);
   const std::string_view close = ClosestMatch(name, names);

@@ -1,4 +1,4 @@
-// Computed values of residuals: at moments, or as statistics of windows.
+// Computed values of residuals, at times or as statistics of windows.
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace taut::identify {
 namespace {
 
-/// Channel of a run against time, interpolated linearly between rows, so that a value is a
-/// continuous function of the shift of its window.
+/// Channel of a simulation, interpolated linearly between rows. So values depend continuously on
+/// the delay of the window.
 class Course {
  public:
   Course(const Row& row, const Computed& computed, const RowChannels& channels)
@@ -23,7 +23,7 @@ class Course {
 
   double Clamped(double time_s) const { return std::clamp(time_s, times_.front(), times_.back()); }
   double At(double time_s) const { return At(time_s, values_, period_); }
-  /// Returns the value with the sign that brings the quaternion nearer to `measured`.
+  /// Returns the value, negated if -q is nearer to `measured` than the computed quaternion q.
   double At(double time_s, const std::array<double, 4>& measured) const {
     if (quaternion_[0] == nullptr) return At(time_s);
     std::array<double, 4> q{};
@@ -48,7 +48,7 @@ class Course {
     if (after == times_.end()) return values.back();
     const auto i = static_cast<std::size_t>(after - times_.begin());
     const double share = (time_s - times_[i - 1]) / (times_[i] - times_[i - 1]);
-    // The run's rotation vectors wrap, too.
+    // Rotation vectors of the simulation also wrap.
     const double next = compare::NearestTurn(values[i], values[i - 1], period);
     return values[i - 1] + share * (next - values[i - 1]);
   }
@@ -59,7 +59,7 @@ class Course {
   std::array<const std::vector<double>*, 4> quaternion_{};
 };
 
-/// Accumulates values of a window.
+/// Accumulator of a window's mean, minimum and maximum.
 struct Total {
   double area = 0, time = 0, least = INFINITY, most = -INFINITY;
 
@@ -70,7 +70,7 @@ struct Total {
   }
 };
 
-/// Returns the statistic at the sample times of the data.
+/// Returns the statistic of the simulation at the sample times of the data.
 double OfSamples(const Row& row, const Course& course, double delay_s) {
   const Samples& samples = *row.samples;
   Total total;
@@ -86,7 +86,7 @@ double OfSamples(const Row& row, const Course& course, double delay_s) {
   return total.Of(row.how);
 }
 
-/// Returns the statistic over a whole window.
+/// Returns the statistic of the simulation over the whole window.
 double OfWhole(const Row& row, const Course& course, double delay_s) {
   const double from_s = course.Clamped(row.from_s - delay_s);
   const double to_s = course.Clamped(row.to_s - delay_s);

@@ -11,7 +11,7 @@
 namespace taut::identify {
 namespace {
 
-/// Interpolates linearly between points, constant before the first and after the last.
+/// Interpolates linearly between points; constant before the first and after the last point.
 double At(const std::vector<std::pair<double, double>>& course, double time_s) {
   const auto after = std::upper_bound(
       course.begin(), course.end(), time_s,
@@ -23,7 +23,7 @@ double At(const std::vector<std::pair<double, double>>& course, double time_s) {
   return before->second + share * (after->second - before->second);
 }
 
-/// Sets forces and rest lengths of a moment; rest lengths without a program stay.
+/// Sets loads and rest lengths at a time. Rest lengths without a program remain unchanged.
 void SetMoment(const ExperimentSpec& experiment, double time_s, std::vector<double>& rest_lengths_m,
                LoadCaseSpec& loads) {
   for (const ControllerSpec& controller : experiment.controllers) {
@@ -44,7 +44,7 @@ void Put(const Vec3& v, std::vector<double>& out) {
   out.push_back(v.x), out.push_back(v.y), out.push_back(v.z);
 }
 
-/// Returns the values in the order of `RestChannels`.
+/// Returns the values of all channels, in the order of `RestChannels`.
 std::vector<double> Values(const ModelDef& def, const Equilibrium& rest) {
   std::vector<double> out;
   for (const BodyState& body : rest.pose.bodies) {
@@ -94,7 +94,7 @@ class Picker {
       out.values[i].push_back(values[at_[i]]);
     }
   }
-  std::string missing;  ///< Name of a channel that does not exist; else empty.
+  std::string missing;  ///< Name of an unknown channel; empty if there is none.
 
  private:
   const std::vector<std::string>& channels_;
@@ -166,7 +166,7 @@ std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
   if (forward == FitForward::kLoadCases) {
     double number = 0;
     for (const LoadCaseSpec& loads : experiment.load_cases) {
-      if (options.from) {  // rest lengths of the model and of the load case
+      if (options.from) {  // use the model's rest lengths, not those of the previous case
         for (std::size_t i = 0; i < def.cables.size(); ++i) {
           options.from->rest_lengths_m[i] = def.cables[i].rest_length_m;
         }
