@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
 
-/// Finite rows of a trace in a range, at times that the other trace's channel covers.
+/// Finite rows of a trace in a range, limited to times that the other trace's channel covers.
 struct SharedRows {
   std::vector<double> time_s, values;
 };
@@ -47,8 +47,8 @@ WindowStatistics StatisticsOf(const SharedRows& rows) {
   return result;
 }
 
-/// Sets the results that depend on differences at the times of the common clock, whose usual row
-/// distance is `usual_s`.
+/// Sets all results that depend on differences at the times of the common clock. `usual_s`: usual
+/// step of the clock.
 void CompareRows(const CommonClock& clock, double usual_s, const std::vector<double>& a,
                  const std::vector<double>& b, ChannelComparison& result) {
   std::vector<double> time_s, differences;
@@ -73,16 +73,16 @@ void CompareRows(const CommonClock& clock, double usual_s, const std::vector<dou
   result.rmse = std::sqrt(WeightedMean(differences, weights));
   result.missing_s = 0;
   for (const auto& [from_s, to_s] : GapSpans(time_s, gaps)) result.missing_s += to_s - from_s;
-  // Time before the first and after the last finite row; less than two steps may come from the
-  // clocks.
+  // Add the time before the first and after the last finite row. Less than two steps may be due to
+  // the clocks, so ignore it.
   const double least_s = 2 * usual_s;
   for (const double end_s : {time_s.front() - clock.from_s, clock.to_s - time_s.back()}) {
     if (end_s > least_s) result.missing_s += end_s;
   }
 }
 
-/// Returns evenly spaced times over the clock's span, because a lag in rows requires even spacing.
-/// The distance is the clock's usual row distance, so that gaps do not make rows sparse.
+/// Returns evenly spaced times over the clock's span, since a lag in rows requires even spacing.
+/// The spacing is the usual step of the clock, so that gaps do not make it coarser.
 std::vector<double> EvenTimes(const CommonClock& clock, double usual_s) {
   const double first = clock.time_s.front(), last = clock.time_s.back();
   const std::size_t rows = clock.time_s.size();
@@ -144,11 +144,11 @@ std::vector<double> ChannelComparer::OnClock(const std::vector<double>& time_s,
 ChannelComparer::Columns ChannelComparer::SingleColumns(std::size_t in_a, std::size_t in_b) const {
   Columns of{a_.values[in_a], b_.values[in_b], {}, {}};
   const double period_a = a_.channels[in_a].period, period_b = b_.channels[in_b].period;
-  if (period_a > 0) Unwrap(of.a, period_a);  // before rows are interpolated
+  if (period_a > 0) Unwrap(of.a, period_a);  // must precede interpolation between rows
   if (period_b > 0) Unwrap(of.b, period_b);
   of.clock_a = OnClock(a_.time_s, of.a, gaps_a_, clock_.resample_a, rows_a_);
   of.clock_b = OnClock(b_.time_s, of.b, gaps_b_, clock_.resample_b, rows_b_);
-  // The number of turns, which the wrapped trace lacks, is taken from the other trace.
+  // A wrapped channel lacks the number of turns: take it from the other trace.
   if (period_b > 0) {
     AlignTurns(of.clock_a, period_b, of.clock_b);
     AlignTurns(Interpolate(a_.time_s, of.a, gaps_a_, b_.time_s), period_b, of.b);
@@ -176,7 +176,7 @@ const ChannelComparer::Columns& ChannelComparer::ColumnsOf(std::size_t in_a, std
       b[i] = b_.values[pair->in_b[i]];
     }
     MakeContinuous(a);
-    MakeContinuous(b);  // before rows are interpolated
+    MakeContinuous(b);  // must precede interpolation between rows
     for (std::size_t i = 0; i < 4; ++i) {
       clock_a[i] = OnClock(a_.time_s, a[i], gaps_a_, clock_.resample_a, rows_a_);
       clock_b[i] = OnClock(b_.time_s, b[i], gaps_b_, clock_.resample_b, rows_b_);

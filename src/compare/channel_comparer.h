@@ -12,28 +12,29 @@ namespace taut::compare {
 /// Returns 100 (a - b) / |b| in percent; NaN if b is 0.
 double Percent(double a, double b);
 
-/// Compares channels one by one. Stores references to the constructor's arguments, which must
-/// outlive it.
+/// Compares two traces channel by channel. Holds references to the constructor's arguments, which
+/// must outlive it.
 class ChannelComparer {
  public:
   ChannelComparer(const Trace& a, const Trace& b, const CompareOptions& options,
                   const CommonClock& clock);
 
-  /// Compares channel `in_a` of a with channel `in_b` of b.
+  /// Compares channel `in_a` of trace a with channel `in_b` of trace b.
   ChannelComparison Compare(std::size_t in_a, std::size_t in_b);
 
  private:
-  /// A channel of both, on the rows of each trace and on the clock.
+  /// Values of a channel in both traces, in the rows of each trace and on the common clock.
   struct Columns {
     std::vector<double> a, b, clock_a, clock_b;
   };
-  /// A quaternion of both traces, by its channels.
+  /// Channels of a quaternion in both traces.
   struct Pair {
     QuaternionChannels in_a{}, in_b{};
   };
   std::vector<double> OnClock(const std::vector<double>& time_s, const std::vector<double>& values,
                               const std::vector<bool>& gaps, bool resample, RowRange rows) const;
-  /// Returns the columns. Signs of quaternions and turns of channels with a period are aligned.
+  /// Returns the values of a channel. Signs of quaternions and turns of periodic channels are
+  /// aligned.
   const Columns& ColumnsOf(std::size_t in_a, std::size_t in_b);
   Columns SingleColumns(std::size_t in_a, std::size_t in_b) const;
   void SetLag(const Columns& columns, ChannelComparison& result) const;
@@ -43,13 +44,13 @@ class ChannelComparer {
   const CompareOptions& options_;
   const CommonClock& clock_;
   std::vector<bool> gaps_a_, gaps_b_, gaps_clock_;
-  double usual_s_;  ///< Usual distance of the clock's rows.
+  double usual_s_;  ///< Usual step of the common clock.
   std::vector<double> even_s_;
   bool uneven_ = false;
   double step_s_ = 0.0;
   RowRange rows_a_, rows_b_;
   std::vector<Pair> quaternions_;
-  std::optional<std::size_t> turned_;  ///< Quaternion whose columns are in `columns_`.
+  std::optional<std::size_t> turned_;  ///< Index of the quaternion whose values are in `columns_`.
   std::array<Columns, 4> columns_;
   Columns single_;
 };

@@ -1,4 +1,4 @@
-/// Channels whose names differ only in the middle, as one group of a comparison's text.
+/// Groups of channels whose names differ only in the middle, for compact tables.
 #pragma once
 
 #include <cstddef>
@@ -16,27 +16,27 @@ struct Group {
   std::size_t name_width = 8;
 };
 
-/// Splits a name: "cable/a/tension_n" is row "a" under heading "cable/*/tension_n";
-/// "system/com_x_m" has no middle and is row "com_x_m" under "system/*".
+/// Splits a name into heading and row. Examples: "cable/a/tension_n" is row "a" under the heading
+/// "cable/*/tension_n"; "system/com_x_m" is row "com_x_m" under "system/*".
 std::pair<std::string, std::string> HeadingAndRow(const std::string& name);
 
 /// Groups channels by heading, in the order of the channels.
 std::vector<Group> GroupsOf(const std::vector<ChannelComparison>& channels);
 
-/// Returns the heading, with the unit if all channels have the same.
+/// Returns the heading. Includes the unit if all channels have the same one.
 std::string GroupTitle(const Group& group);
 
-/// Merges names that differ in the middle only, with their number: "cable/*/damping_n (12)".
+/// Merges names that differ only in the middle and appends their number: "cable/*/damping_n (12)".
 std::vector<std::string> Abridged(const std::vector<std::string>& names);
 
-/// Angles of one trace that jump by a turn: a warning about `channels`, and its remedy.
+/// Warning about angles of one trace that jump by a full turn, with its fix.
 struct WrapWarning {
   std::string title, remedy;
   std::vector<std::string> channels;
 };
 std::vector<WrapWarning> WrapWarnings(const std::vector<WrappedAngle>& angles);
 
-/// Returns the value, without a sign if that many decimals show a zero: no "-0.000".
+/// Rounds a value to zero if it prints as zero with this many decimals, to avoid "-0.000".
 double Shown(double value, int decimals);
 
 }  // namespace taut::compare

@@ -9,7 +9,7 @@
 namespace taut::compare {
 namespace {
 
-/// Compares times up to a tolerance, because CSV files may round them.
+/// Compares times with a tolerance, since CSV files may round them.
 bool SameTimes(const std::vector<double>& a, RowRange rows_a, const std::vector<double>& b,
                RowRange rows_b) {
   if (rows_a.end - rows_a.begin != rows_b.end - rows_b.begin) return false;
@@ -59,7 +59,7 @@ std::vector<double> Interpolate(const std::vector<double>& time_s,
                                 const std::vector<double>& at_s) {
   std::vector<double> result;
   result.reserve(at_s.size());
-  std::size_t next = 0;  // the first row after `at`
+  std::size_t next = 0;  // index of the first row after `at`
   for (const double at : at_s) {
     while (next < time_s.size() && time_s[next] <= at) ++next;
     if (next == 0) {
@@ -67,7 +67,8 @@ std::vector<double> Interpolate(const std::vector<double>& time_s,
     } else if (next == time_s.size() || time_s[next - 1] == at) {
       result.push_back(values[next - 1]);
     } else if (gaps[next - 1]) {
-      // CSV files may round times: a time within the tolerance of a row is on it.
+      // CSV files may round times, so a time within the tolerance counts as equal to the row's
+      // time.
       const bool on_next = time_s[next] - at <= TimeTolerance(at);
       const bool on_last = at - time_s[next - 1] <= TimeTolerance(at);
       result.push_back(on_next   ? values[next]

@@ -8,14 +8,14 @@
 
 namespace taut::compare {
 
-/// The rows of one trace in a span of time: begin .. end - 1.
+/// Rows of a trace in a time span: begin to end - 1.
 struct RowRange {
   std::size_t begin = 0, end = 0;
 };
 RowRange RowsBetween(const std::vector<double>& time_s, double from_s, double to_s);
 
 /// Times at which two traces are compared: the rows of the trace with the longer usual step. The
-/// other is interpolated linearly between its rows.
+/// other trace is interpolated linearly.
 struct CommonClock {
   double from_s = 0.0, to_s = -1.0;
   std::vector<double> time_s;
@@ -24,8 +24,8 @@ struct CommonClock {
 CommonClock MakeCommonClock(const std::vector<double>& time_a_s,
                             const std::vector<double>& time_b_s, const CompareOptions& options);
 
-/// Returns the values of a channel at `at_s`, which rises; held before the first row and after the
-/// last. NaN next to NaN and inside of gaps (`FindGaps`).
+/// Interpolates a channel at the times `at_s`, which must increase. Constant before the first and
+/// after the last row. Returns NaN next to NaN and inside gaps (`FindGaps`).
 std::vector<double> Interpolate(const std::vector<double>& time_s,
                                 const std::vector<double>& values, const std::vector<bool>& gaps,
                                 const std::vector<double>& at_s);

@@ -51,7 +51,7 @@ std::unordered_map<std::string, std::size_t> IndexOf(const Trace& trace) {
   return index;
 }
 
-/// Returns true if a component of the channel's quaternion is missing in one of the traces.
+/// Returns whether one of the traces lacks a component of the channel's quaternion.
 bool SignUnknown(const std::string& channel, const std::unordered_map<std::string, std::size_t>& a,
                  const std::unordered_map<std::string, std::size_t>& b) {
   const std::vector<std::string> names = compare::QuaternionNames(channel);

@@ -5,7 +5,7 @@
 namespace taut {
 namespace {
 
-using Json = nlohmann::ordered_json;  // insertion order of keys; NaN becomes null
+using Json = nlohmann::ordered_json;  // keeps the order of keys; writes NaN as null
 
 Json ToJson(const Extreme& extreme) {
   return {{"value", extreme.value}, {"time_s", extreme.time_s}};

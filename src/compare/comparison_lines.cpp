@@ -1,4 +1,4 @@
-// A comparison in a few lines: the verdict, then one line for each group of channels.
+// Comparison as a short text: the verdict, then one line per group of channels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string Verdict(const Comparison& comparison, const std::string& name_a,
                      all);
 }
 
-/// Returns the channel with the largest `size`; undefined sizes count as 0.
+/// Returns the channel with the largest `size`. Undefined sizes count as 0.
 template <class Measure>
 const std::pair<std::string, const ChannelComparison*>& Largest(const compare::Group& group,
                                                                 const Measure& size) {
@@ -57,7 +57,7 @@ std::string GroupLine(const compare::Group& group) {
                      Size(error->error.value), error_name, error->error.time_s);
 }
 
-/// Returns the largest difference of the means of a phase.
+/// Returns a line with the largest difference of the means in a phase.
 std::string PhaseLine(const compare::Group& group, const TimeWindow& phase, std::size_t index) {
   const auto difference = [&](const ChannelComparison& c) {
     return c.phases[index].a.mean - c.phases[index].b.mean;

@@ -1,5 +1,5 @@
-// A comparison for the terminal. Channels that differ only in the middle of their names share a
-// heading, so that the rows fit into 100 columns:
+// Comparison as a table for a terminal. Channels whose names differ only in the middle share a
+// heading, so that the rows fit into 100 characters:
 //
 //   cable/*/elastic_n [N]
 //                     rmse      bias  max error     at s   lag s   corr     max a     max b   err %
@@ -24,7 +24,7 @@ using compare::GroupTitle;
 using compare::HeadingAndRow;
 using compare::Shown;
 
-/// Returns a number in `width` columns with its significant digits.
+/// Formats a number with its significant digits, in a cell of `width` characters.
 std::string Cell(double value, int width) {
   if (!std::isfinite(value)) return fmt::format("{:>{}}", "-", width);
   const double size = std::abs(value);
@@ -38,7 +38,8 @@ std::string Fixed(double value, int width, int decimals) {
   return fmt::format("{:>{}.{}f}", Shown(value, decimals), width, decimals);
 }
 
-/// Returns ">0.5" if the search ended there: the delay may be longer.
+/// Formats the lag. Returns ">0.5" if it is at the limit of the search, since the delay may be
+/// longer.
 std::string LagCell(const ChannelComparison& channel, int width) {
   if (!channel.lag_at_limit) return Fixed(channel.lag_s, width, 3);
   const char* beyond = channel.lag_s < 0.0 ? "<" : ">";
@@ -59,7 +60,7 @@ void AppendGroup(const Group& group, std::string& out) {
   }
 }
 
-/// Appends mean, min and max of both and their differences, for one phase.
+/// Appends mean, minimum and maximum of both traces in one phase, and their differences.
 void AppendPhase(const Group& group, const TimeWindow& phase, std::size_t index, std::string& out) {
   out += fmt::format("\n{}, {}: {:g} .. {:g} s\n", GroupTitle(group), phase.name, phase.from_s,
                      phase.to_s);
@@ -83,7 +84,7 @@ std::string SpanText(const TraceSpan& span) {
                      span.last_s, span.step_s);
 }
 
-/// Appends the times at which only one of the two has rows.
+/// Appends the time spans in which only one of the traces has rows.
 void AppendAlone(const TraceSpan& one, const TraceSpan& other, const char* which,
                  std::string& out) {
   if (one.rows == 0 || other.rows == 0) return;
@@ -118,7 +119,7 @@ void AppendGaps(const TraceSpan& span, const char* which, std::string& out) {
   out += fmt::format("gaps of {}, not compared: {}{}\n", which, spans, more);
 }
 
-/// Appends the channels whose missing part of the common time exceeds the gaps of the traces.
+/// Appends channels that lack more time than the gaps of both traces explain.
 void AppendMissing(const Comparison& comparison, std::string& out) {
   double known_s = 0;
   for (const TraceSpan* span : {&comparison.a, &comparison.b}) {

@@ -13,7 +13,7 @@ struct ForeignUnit {
   std::string name, si;
   double factor;
 };
-/// Returns nothing for an unknown unit.
+/// Returns the unit with this name; nothing if unknown.
 std::optional<ForeignUnit> FindUnit(std::string_view name);
 std::vector<std::string> UnitNames();
 

@@ -7,7 +7,7 @@ namespace taut::compare {
 namespace {
 
 constexpr double kGapFactor = 5.0;
-constexpr std::size_t kNeighbors = 8;  ///< Number of distances considered on either side.
+constexpr std::size_t kNeighbors = 8;  ///< Number of steps considered on each side.
 
 std::vector<double> DistancesOf(const std::vector<double>& time_s, std::size_t begin,
                                 std::size_t end) {
@@ -16,7 +16,7 @@ std::vector<double> DistancesOf(const std::vector<double>& time_s, std::size_t b
   return distances;
 }
 
-/// Returns the upper median of distances begin .. end - 1; 0 if there are none.
+/// Returns the upper median of steps begin to end - 1; 0 if there are none.
 double MedianOf(const std::vector<double>& distances, std::size_t begin, std::size_t end) {
   if (begin >= end) return 0.0;
   std::vector<double> some(distances.begin() + static_cast<std::ptrdiff_t>(begin),

@@ -1,8 +1,8 @@
 /// Gaps in recordings, and statistics weighted by time.
 ///
-/// A distance of two rows is a gap if it is more than five times the usual distance around it: the
-/// larger of two medians, of up to eight distances before it and after it. A logger that changes
-/// from 100 Hz to 10 Hz has no gap, a logger that drops out for seconds has one.
+/// The step between two rows is a gap if it exceeds five times the usual step nearby. The usual
+/// step is the larger of two medians, of up to eight steps before and after it. So a logger that
+/// changes from 100 Hz to 10 Hz has no gap, but one that drops out for seconds has.
 #pragma once
 
 #include <cstddef>
@@ -11,30 +11,30 @@
 
 namespace taut::compare {
 
-/// Returns the largest difference of equal times [s], because CSV files may round times.
+/// Returns the tolerance for equal times [s], since CSV files may round times.
 double TimeTolerance(double time_s);
 
-/// Returns true at i if rows i and i + 1 have a gap between them; one entry fewer than rows.
-/// `time_s` rises.
+/// Returns, for each i, whether there is a gap between rows i and i + 1 (one entry fewer than
+/// rows). `time_s` must increase.
 std::vector<bool> FindGaps(const std::vector<double>& time_s);
 
-/// Returns the gaps as spans of time [s].
+/// Returns the time spans of the gaps [s].
 std::vector<std::pair<double, double>> GapSpans(const std::vector<double>& time_s,
                                                 const std::vector<bool>& gaps);
 
-/// Returns the time that each row represents: half of the distances to both neighbors. On a side
-/// without a neighbor (an end, a gap) it is as long as on the other; a row without neighbors
-/// represents the usual step. All are 1 if rows are evenly spaced, so that sums equal plain means
-/// to the bit. `gaps`: from `FindGaps`.
+/// Returns the duration that each row represents: half of the steps to both neighbors. At an end or
+/// a gap, the missing half equals the other one; a row without neighbors represents the usual step.
+/// If rows are evenly spaced, all weights are 1, so that sums equal unweighted ones to the last
+/// bit. `gaps`: result of `FindGaps`.
 std::vector<double> TimeWeights(const std::vector<double>& time_s, const std::vector<bool>& gaps);
 
-/// Returns the mean of values with such weights; NaN without values.
+/// Returns the weighted mean; NaN without values.
 double WeightedMean(const std::vector<double>& values, const std::vector<double>& weights);
 
-/// Returns the median distance of rows; 0 for fewer than two.
+/// Returns the median step between rows begin to end - 1 [s]; 0 for fewer than two rows.
 double UsualStep(const std::vector<double>& time_s, std::size_t begin, std::size_t end);
 
-/// Spans of time without gaps, ends included, of the rows at which `values` is finite.
+/// Time spans without gaps, between rows with finite `values`. The ends are included.
 class CoveredTime {
  public:
   CoveredTime(const std::vector<double>& time_s, const std::vector<double>& values);

@@ -10,12 +10,12 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Sums over pairs of rows, of differences from the means.
+/// Sums over pairs of rows of products of deviations from the means.
 struct Moments {
   double count = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
-  double size_a = 0.0, size_b = 0.0;  ///< Largest magnitudes.
+  double size_a = 0.0, size_b = 0.0;  ///< Largest absolute values.
 
-  /// Returns Pearson's correlation; NaN if either signal is constant up to round-off.
+  /// Returns Pearson's correlation. Returns NaN if a signal is constant up to rounding.
   double Correlation() const {
     constexpr double kRoundOff = 1e-12;
     const double least_a = kRoundOff * size_a, least_b = kRoundOff * size_b;
@@ -24,7 +24,7 @@ struct Moments {
   }
 };
 
-/// Returns the moments of `count` rows, without rows at which either value is not finite.
+/// Returns the moments of `count` pairs of rows. Skips pairs with values that are not finite.
 Moments FiniteMoments(const double* a, const double* b, std::size_t count) {
   Moments m;
   double mean_a = 0.0, mean_b = 0.0;
@@ -48,8 +48,8 @@ Moments FiniteMoments(const double* a, const double* b, std::size_t count) {
   return m;
 }
 
-/// Correlations of a fixed range of a with shifted b. If every row is finite, a's part is computed
-/// once and the sums have four accumulators, which compilers vectorize.
+/// Computes correlations of a fixed range of a with shifted b. If all rows are finite, it computes
+/// the part of a once, and sums with four accumulators, which compilers vectorize.
 class Correlator {
  public:
   Correlator(const std::vector<double>& a, const std::vector<double>& b, std::size_t begin,
@@ -110,7 +110,7 @@ Lag FindLag(const std::vector<double>& a, const std::vector<double>& b, int max_
       std::min(static_cast<std::ptrdiff_t>(max_rows), static_cast<std::ptrdiff_t>(rows / 4));
   const std::size_t begin = static_cast<std::size_t>(margin);
   const Correlator correlator(a, b, begin, rows - 2 * begin);
-  std::vector<double> at;  // the correlation at -margin, ..., margin
+  std::vector<double> at;  // correlations at lags -margin to margin
   for (std::ptrdiff_t lag = -margin; lag <= margin; ++lag) at.push_back(correlator.At(lag));
 
   std::ptrdiff_t best = -1;
@@ -126,13 +126,14 @@ Lag FindLag(const std::vector<double>& a, const std::vector<double>& b, int max_
     const double before = at[static_cast<std::size_t>(best) - 1];
     const double after = at[static_cast<std::size_t>(best) + 1];
     const double bend = before - 2.0 * result.correlation + after;
-    if (bend < 0.0) {  // false for NaN, too
+    if (bend < 0.0) {  // also false for NaN
       const double part = 0.5 * (before - after) / bend;
       result.rows += part;
       result.correlation -= 0.25 * (before - after) * part;
     }
   }
-  result.correlation = std::clamp(result.correlation, -1.0, 1.0);  // round-off, parabola
+  result.correlation = std::clamp(result.correlation, -1.0, 1.0);  // rounding and the parabola may
+                                                                   // exceed 1
   return result;
 }
 

@@ -6,16 +6,16 @@
 namespace taut::compare {
 
 struct Lag {
-  double rows = 0.0;         ///< Positive: b comes later. NaN if undefined.
-  bool at_limit = false;     ///< The best lag is the longest searched.
-  double correlation = 0.0;  ///< Pearson's, at that lag. NaN likewise.
+  double rows = 0.0;         ///< Positive: b is delayed. NaN if undefined.
+  bool at_limit = false;     ///< Whether the best lag is the longest one searched.
+  double correlation = 0.0;  ///< Pearson's correlation at this lag; NaN if undefined.
 };
 
-/// Finds the lag of at most `max_rows` rows at which a[i] and b[i + lag] correlate best; a parabola
-/// through the best and its neighbors gives the fraction of a row. Rows at which either is not
-/// finite are left out. All lags use the same middle rows of a, so that a signal with a trend does
-/// not favor the lag that leaves its largest part out; the search removes at most half of the rows
-/// at the ends.
+/// Finds the lag, of at most `max_rows` rows, at which a[i] and b[i + lag] correlate best. A
+/// parabola through the best value and its neighbors yields the fraction of a row. Rows with values
+/// that are not finite are skipped. All lags use the same middle rows of a; otherwise a signal with
+/// a trend would favor the lag that excludes its largest part. At most half of the rows are
+/// excluded at the ends.
 Lag FindLag(const std::vector<double>& a, const std::vector<double>& b, int max_rows);
 
 }  // namespace taut::compare

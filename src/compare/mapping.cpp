@@ -1,5 +1,5 @@
-// Mapping files: JSON, read strictly. Vectors and quaternions become rules for their components, so
-// that a mapping consists of rules only.
+// Strict reader of mapping files (JSON). Splits vectors and quaternions into rules for their
+// components.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ using Axes = std::array<Axis, 3>;
 /// Returns +1 for a rotation, -1 for a reflection, 0 if an axis is missing.
 double Handedness(const Axes& axes) {
   const int i = axes[0].of_file, j = axes[1].of_file, k = axes[2].of_file;
-  const double order = 0.5 * ((j - i) * (k - i) * (k - j));  // 1 or -1 for a permutation
+  const double order = 0.5 * ((j - i) * (k - i) * (k - j));  // sign of the permutation
   return order * axes[0].sign * axes[1].sign * axes[2].sign;
 }
 
@@ -56,7 +56,7 @@ class MappingReader {
   }
 
  private:
-  /// Parses the text. Duplicate keys, which JSON allows, are an error here.
+  /// Parses the text. Rejects duplicate keys, which JSON permits.
   Json Parse(const std::string& text) {
     std::vector<std::set<std::string>> keys;
     const auto watch = [&](int, Json::parse_event_t event, Json& value) {
@@ -71,7 +71,8 @@ class MappingReader {
     try {
       return Json::parse(text, watch);
     } catch (const Json::exception& failure) {
-      const std::string what = failure.what();  // "[json...] parse error at line 1, ...: ..."
+      const std::string what = failure.what();  // such as "[json...] parse error at line 1, ...:
+                                                // ..."
       Error("mapping.not_json", "", "the mapping is not JSON: " + what.substr(what.find("] ") + 2));
       return {};
     }
@@ -132,7 +133,7 @@ class MappingReader {
     mapping_.rules.push_back(std::move(result));
   }
 
-  /// Returns the period of wrapped values, in the unit of the result.
+  /// Returns the period of wrapped values, in the result's unit.
   double Period(const Json& wrap, const Mapping::Rule& whole, const std::string& at) {
     if (wrap == "turn") {
       const std::string unit = whole.unit.empty() ? UnitOfName(whole.to) : whole.unit;
@@ -165,7 +166,7 @@ class MappingReader {
     if (good_) AddComponents(whole, scale, offset);
   }
 
-  /// Returns the factor from `from_unit` to the result's unit.
+  /// Returns the conversion factor from `from_unit` to the result's unit.
   double FromUnit(const Json& rule, const Mapping::Rule& whole, const std::string& at) {
     if (!rule.contains("from_unit")) return 1.0;
     const std::string name = Text(rule, "from_unit", at);
@@ -278,7 +279,7 @@ class MappingReader {
     }
   }
 
-  /// A rotation's vector part changes with the axes, its scalar part does not.
+  /// Converts the vector part of a quaternion to the other axes. The scalar part remains unchanged.
   void Quaternion(const Json& rule, const std::string& at) {
     const Mapping::Rule whole = AxisRule(rule, at);
     if (!good_) return;

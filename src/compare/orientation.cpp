@@ -21,7 +21,7 @@ bool Complete(const std::array<double, 4>& q) {
   return std::isfinite(q[0]) && std::isfinite(q[1]) && std::isfinite(q[2]) && std::isfinite(q[3]);
 }
 
-/// Returns true if every complete row has unit length to 1 %, and there is one.
+/// Returns whether there are complete rows and all of them have unit length within 1 %.
 bool HasUnitLength(const Trace& trace, const QuaternionChannels& at) {
   bool any = false;
   for (std::size_t row = 0; row < trace.time_s.size(); ++row) {

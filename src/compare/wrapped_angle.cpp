@@ -7,12 +7,12 @@
 namespace taut::compare {
 namespace {
 
-/// Least jump that counts as a wrap, in turns. The rest is the motion between two rows.
+/// Smallest jump that counts as a wrap [turns]. The rest of a turn is motion between two rows.
 constexpr double kLeastJump = 0.75;
-/// Largest range of a wrapped angle, in turns: text files round -180 and 180 degrees outwards.
+/// Largest range of a wrapped angle [turns]. Text files may round -180 and 180 degrees outward.
 constexpr double kMostRange = 1.01;
 
-/// Returns a full turn in the unit of a channel; 0 if it is not an angle.
+/// Returns a full turn in the unit of a channel; 0 if the channel is not an angle.
 double TurnIn(const ChannelInfo& channel) {
   if (channel.unit == "rad") return 2.0 * std::numbers::pi;
   return channel.unit == "deg" || channel.name.ends_with("_deg") ? 360.0 : 0.0;

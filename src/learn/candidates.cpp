@@ -1,4 +1,4 @@
-// Evaluation of a study's candidates by rollouts in varied worlds.
+// Evaluation of a study's candidates by rollouts in randomized worlds.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 enum Stream : std::uint32_t { kWorldSeed = 1, kWorldScales = 2 };
 
-/// Sets the numbers that the parameters represent.
+/// Writes the values of the parameters to the numbers that they represent.
 void SetValues(const std::vector<StudyParameter>& parameters, const std::vector<double>& values,
                const RobotSpec& robot, RolloutWorld& world) {
   std::vector<ScaleSpec> scales = TunableScales(robot);
@@ -34,8 +34,8 @@ void SetValues(const std::vector<StudyParameter>& parameters, const std::vector<
   }
 }
 
-/// Returns the random numbers of world `world` of an evaluation. Without `redraw` all evaluations
-/// share the same worlds.
+/// Returns the random numbers of one world of an evaluation. Without `redraw`, all evaluations use
+/// the same numbers.
 math::Random RandomOf(const StudySpec& study, Stream stream, std::int64_t evaluation, int world) {
   const std::uint64_t of =
       study.perturbation.redraw ? static_cast<std::uint64_t>(evaluation) + 1 : 0;
@@ -49,7 +49,8 @@ class LocalEvaluator final : public Evaluator {
 
   bool Evaluate(std::span<const Candidate> candidates, const Done& done) override {
     std::vector<RolloutWorld> worlds;
-    std::vector<std::pair<std::size_t, std::size_t>> owner;  // candidate, index of its world
+    std::vector<std::pair<std::size_t, std::size_t>> owner;  // index of the candidate, index of its
+                                                             // world
     std::vector<Trial> trials(candidates.size());
     std::vector<std::size_t> missing(candidates.size());
     for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -99,7 +100,7 @@ class LocalEvaluator final : public Evaluator {
 }  // namespace
 
 double ParameterValue(const StudyParameter& p, double x) {
-  // Exact ends: rounding of a logarithm must not exceed the bounds.
+  // Exact at the ends: rounding of the logarithm must not exceed the bounds.
   if (x <= 0) return p.low;
   if (x >= 1) return p.high;
   if (!p.log) return p.low + x * (p.high - p.low);

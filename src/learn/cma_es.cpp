@@ -16,8 +16,9 @@ using Matrix = Eigen::MatrixXd;
 
 /// Covariance matrix adaptation evolution strategy, (mu / mu_w, lambda), with default settings.
 /// Source: N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, figure 6 and
-/// table 1, without negative weights. Differences: points beyond a bound are mirrored (the path and
-/// the covariance use the step as drawn), and sigma stays at or below 1, the whole width.
+/// table 1, without negative weights. Differences: points beyond a bound are mirrored, while the
+/// path and the covariance use the step before mirroring. Sigma is at most 1, the full width of the
+/// bounds.
 class CmaEs final : public Optimizer {
  public:
   CmaEs(const CmaEsSpec& spec, int lambda, OptimizerStart start)
@@ -55,7 +56,7 @@ class CmaEs final : public Optimizer {
       math::Random random = DrawOf(start_, drawn_++);
       Vector z(n_);
       for (Eigen::Index i = 0; i < n_; ++i) z[i] = D_[i] * random.Normal();
-      step = B_ * z;  // ~ N(0, C)
+      step = B_ * z;  // distributed as N(0, C)
       UnitPoint& point = points.emplace_back(start_.point.size());
       for (Eigen::Index i = 0; i < n_; ++i) {
         point[static_cast<std::size_t>(i)] = Reflect(mean_[i] + sigma_ * step[i]);
@@ -92,7 +93,8 @@ class CmaEs final : public Optimizer {
     }
     sigma_ *= math::Exp(std::fmin(1.0, c_sigma_ / d_sigma_ * (norm / expected_norm_ - 1.0)));
     sigma_ = std::fmin(sigma_, 1.0);
-    // The decomposition costs n^3. At this interval it costs no more than the rest of a generation.
+    // The decomposition costs O(n^3). With this interval, it takes at most half of the time of all
+    // updates.
     if (static_cast<double>(generation_ - decomposed_) > 0.1 / ((c_1_ + c_mu_) * n)) Decompose();
   }
 
@@ -101,8 +103,8 @@ class CmaEs final : public Optimizer {
     decomposed_ = generation_;
     C_ = (0.5 * (C_ + C_.transpose())).eval();
     const Eigen::SelfAdjointEigenSolver<Matrix> solver(C_);
-    if (solver.info() != Eigen::Success) return;  // keeps the previous decomposition
-    // A direction that has shrunk to rounding errors stays finite.
+    if (solver.info() != Eigen::Success) return;  // keep the previous decomposition
+    // Keeps directions finite that have shrunk to rounding errors.
     const double least = 1e-20 * std::fmax(solver.eigenvalues()[n_ - 1], 1e-300);
     D_ = solver.eigenvalues().cwiseMax(least).cwiseSqrt();
     B_ = solver.eigenvectors();
@@ -119,7 +121,7 @@ class CmaEs final : public Optimizer {
   double mu_eff_ = 0, c_sigma_ = 0, d_sigma_ = 0, c_c_ = 0, c_1_ = 0, c_mu_ = 0, expected_norm_ = 0;
   double decay_ = 1;  ///< (1 - c_sigma)^(2 generations).
   std::int64_t generation_ = 0, decomposed_ = 0;
-  std::vector<Vector> steps_;  ///< As drawn, before mirroring.
+  std::vector<Vector> steps_;  ///< Steps before mirroring.
   std::uint64_t drawn_ = 0;
 };
 

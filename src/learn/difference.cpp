@@ -16,7 +16,7 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-/// Returns a line, or the part of it around `at`.
+/// Returns a line, cut to `kWidth` characters around position `at` if it is longer.
 std::string Shortened(const std::string& line, std::size_t at) {
   if (line.size() <= kWidth) return line;
   const std::size_t from = at < kWidth / 2 ? 0 : std::min(at - kWidth / 2, line.size() - kWidth);
@@ -28,7 +28,7 @@ std::string Shortened(const std::string& line, std::size_t at) {
 
 std::string Difference(const std::string& old_text, const std::string& new_text) {
   const auto a = Lines(old_text), b = Lines(new_text);
-  // The longest common subsequence, from the end.
+  // Longest common subsequence, computed from the end.
   std::vector<std::vector<std::size_t>> common(a.size() + 1,
                                                std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = a.size(); i-- > 0;) {
@@ -47,7 +47,7 @@ std::string Difference(const std::string& old_text, const std::string& new_text)
     if (i < a.size() && j < b.size() && a[i] == b[j]) {
       ++i, ++j;
     } else if (i < a.size() && (j == b.size() || common[i + 1][j] >= common[i][j + 1])) {
-      // changed lines are cut around the first difference
+      // cut changed lines around their first difference
       const std::string& other = j < b.size() ? b[j] : std::string();
       const auto at = std::mismatch(a[i].begin(), a[i].end(), other.begin(), other.end()).first;
       const auto where = static_cast<std::size_t>(at - a[i].begin());

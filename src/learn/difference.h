@@ -5,8 +5,8 @@
 
 namespace taut::learn {
 
-/// Returns "  - old line" and "  + new line" for each line that is in one text only: at most
-/// twenty, long lines cut around the first difference.
+/// Returns "  - old line" and "  + new line" for lines that are in one text only. Shows at most
+/// twenty lines and cuts long ones around the first difference.
 std::string Difference(const std::string& old_text, const std::string& new_text);
 
 }  // namespace taut::learn

@@ -9,17 +9,16 @@
 namespace taut::learn {
 namespace {
 
-/// Hill climbing with Gaussian steps around the best point so far, which the best of a batch
-/// replaces if it is better. NTRT (AnnealEvolution) makes one step at a time with a constant sigma
-/// of 0.005 of the bounds, and stops at the bounds. `adapt: false`, `batch: 1`, `deviation: 0.005`
-/// is equivalent, except that bounds mirror here.
+/// Hill climbing: each step adds Gaussian noise to the best point so far. The best point of a batch
+/// replaces it if its score is higher. With `adapt: false`, `batch: 1` and `deviation: 0.005`, this
+/// is NTRT's AnnealEvolution, except at bounds: taut mirrors points there, NTRT clamps them.
 ///
 /// With `adapt`, sigma follows the share p of successful steps:
 ///   p' = (1 - c) p' + c p,   sigma <- sigma exp((p' - p*) / (d (1 - p*)))
-/// with lambda steps per batch, n dimensions, p* = 1 / (5 + sqrt(lambda) / 2), c = p* lambda / (2 +
-/// p* lambda), d = 1 + n / (2 lambda). Source: C. Igel, N. Hansen, S. Roth, "Covariance matrix
-/// adaptation for multi-objective optimization", Evolutionary Computation 15(1), 2007, section 2.1:
-/// (1 + lambda).
+/// with lambda steps per batch, n dimensions, p* = 1 / (5 + sqrt(lambda) / 2),
+/// c = p* lambda / (2 + p* lambda), d = 1 + n / (2 lambda). Source: the (1 + lambda) strategy of
+/// C. Igel, N. Hansen, S. Roth, "Covariance matrix adaptation for multi-objective optimization",
+/// Evolutionary Computation 15(1), 2007, section 2.1.
 class HillClimbing final : public Optimizer {
  public:
   HillClimbing(const HillClimbingSpec& spec, int batch, OptimizerStart start)
@@ -38,7 +37,7 @@ class HillClimbing final : public Optimizer {
     while (asked_.size() < static_cast<std::size_t>(batch_)) {
       math::Random random = DrawOf(start_, drawn_++);
       if (std::isnan(best_score_) &&
-          start_.score) {  // all points failed so far: draw a uniform one
+          start_.score) {  // all points failed so far, so draw a uniform one
         asked_.push_back(UniformPoint(best_.size(), random));
         continue;
       }
@@ -60,7 +59,7 @@ class HillClimbing final : public Optimizer {
     }
     const bool first = !start_.score;
     start_.score = best_score_;
-    if (!spec_.adapt || first) return;  // the first batch has no reference score
+    if (!spec_.adapt || first) return;  // the first batch has no previous score
     const double lambda = batch_, n = static_cast<double>(best_.size());
     const double c = target_ * lambda / (2.0 + target_ * lambda);
     success_ = (1.0 - c) * success_ + c * (successes / lambda);

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Parses a JSON list of numbers, which preserves their bits.
+/// Parses a JSON list of numbers, bit for bit.
 std::vector<double> Numbers(Row& row, int column) {
   std::vector<double> out;
   const json list = json::parse(row.Text(column), nullptr, false);
@@ -37,8 +37,8 @@ std::vector<std::string> Texts(Row& row, int column) {
   return out;
 }
 
-/// Returns a description of invalid data in an evaluation; empty if there are none. Conditions are
-/// written so that NaN fails.
+/// Returns a description of invalid data in an evaluation; empty if all are valid. Comparisons are
+/// written so that NaN is invalid.
 std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& parameters) {
   if (e.id < 0 || e.search < 0) return "its id or search is negative";
   if (e.values.size() != parameters.size()) {
@@ -54,7 +54,7 @@ std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& 
   if (e.worlds.empty()) return "its worlds are missing";
   for (std::size_t w = 0; w < e.worlds.size(); ++w) {
     const RolloutResult& r = e.worlds[w];
-    if (!r.failed.empty()) continue;  // numbers of a failed world are arbitrary
+    if (!r.failed.empty()) continue;  // the numbers of a failed world are undefined
     for (const double x : {r.score, r.distance_m, r.along_m, r.energy_j, r.max_tension_n,
                            r.tracking_n, r.fell_s.value_or(0)}) {
       if (!std::isfinite(x)) return "a number of world " + std::to_string(w) + " is not finite";
@@ -63,8 +63,8 @@ std::string WhatIsWrong(const Evaluation& e, const std::vector<StudyParameter>& 
   return {};
 }
 
-/// Reads the worlds of an evaluation. Returns a description of invalid data; empty if there are
-/// none.
+/// Reads the worlds of an evaluation. Returns a description of invalid data; empty if all are
+/// valid.
 std::string ReadWorlds(Database& database, Statement& get, Evaluation& e) {
   std::string wrong;
   const bool good = get.Bind(e.id).Run([&](Row& row) {
@@ -91,7 +91,7 @@ std::string ReadWorlds(Database& database, Statement& get, Evaluation& e) {
   return wrong;
 }
 
-/// Row of the table `evaluation`, with the description of invalid data found so far.
+/// Row of the table `evaluation`, and a description of its invalid data.
 struct Found {
   Evaluation evaluation;
   std::string checksum, wrong;
@@ -102,7 +102,7 @@ std::map<std::int64_t, Found> ReadEvaluations(Database& database, int version,
   const std::string select =
       std::string("SELECT id, search, score, failed, parameter_values, elapsed_s") +
       (version > 1 ? ", checksum" : "") + " FROM evaluation ORDER BY id";
-  // Rows behind an unreadable page can be read in descending order.
+  // After an unreadable page, read the rows behind it in descending order.
   for (const char* order : {" ASC", " DESC"}) {
     const bool whole = Statement(database, select + order).Run([&](Row& row) {
       Found f;
@@ -124,7 +124,7 @@ std::map<std::int64_t, Found> ReadEvaluations(Database& database, int version,
   return found;
 }
 
-/// Version 1 had no checksums: only missing worlds can be detected.
+/// Version 1 has no checksums, so only missing worlds can be detected.
 void CheckCountsOfWorlds(std::map<std::int64_t, Found>& found) {
   std::size_t most = 0;
   for (const auto& item : found) most = std::max(most, item.second.evaluation.worlds.size());
@@ -164,7 +164,7 @@ void ReadParameters(Database& database, LogContents& contents, std::string& erro
   if (!good) error = "parameters: " + database.TakeError();
 }
 
-/// Removes a fact from the map and returns it; empty if it is missing.
+/// Removes a fact from the map and returns it. Returns an empty text if it is missing.
 std::string Take(std::map<std::string, std::string>& facts, const char* name) {
   const auto node = facts.extract(name);
   return node.empty() ? std::string() : node.mapped();

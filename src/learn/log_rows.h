@@ -1,4 +1,4 @@
-/// Tables and checksums of a study's log.
+/// Tables and checksums of a study's log file.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,21 @@ inline constexpr std::int64_t kApplicationId = 0x74617574;
 std::string Schema(int version);
 
 std::uint64_t Checksum(const Evaluation& evaluation);
-/// Checksum of facts and parameters.
+/// Returns the checksum of facts and parameters.
 std::uint64_t Checksum(const LogContents& contents);
 
-/// Returns the fact "evaluations": their number and the sum of their checksums.
+/// Returns the text of the fact "evaluations": the number of evaluations and the sum of their
+/// checksums.
 std::string Tally(std::uint64_t count, std::uint64_t sum);
 
-/// Creates the tables and inserts `contents`. Returns false on failure; see the database's error.
+/// Creates the tables and inserts `contents`. Returns false after an error; see
+/// `Database::TakeError`.
 bool Insert(Database& database, const LogContents& contents);
 /// Inserts an evaluation with its worlds, and updates the tally.
 bool Insert(Database& database, const Evaluation& evaluation, const std::string& tally);
 
-/// Returns the contents of a file with the tables of `version`. Invalid evaluations are listed in
-/// `damage`; invalid facts or parameters set `error`.
+/// Reads a file with the tables of `version`. Invalid evaluations are listed in `damage`. Invalid
+/// facts or parameters set `error`.
 LogContents ReadRows(Database& database, int version, std::string& error);
 
 }  // namespace taut::learn

@@ -5,7 +5,7 @@
 namespace taut::learn {
 namespace {
 
-/// Random search: the start, then uniform points, independent of scores.
+/// Random search: evaluates the start, then uniform random points. Ignores scores.
 class MonteCarlo final : public Optimizer {
  public:
   MonteCarlo(int batch, OptimizerStart start) : batch_(batch), start_(std::move(start)) {}
@@ -25,7 +25,8 @@ class MonteCarlo final : public Optimizer {
   int batch_;
   OptimizerStart start_;
   std::uint64_t drawn_ = 0;
-  bool begun_ = false;  ///< A batch of one consists of the start: nothing is drawn for it.
+  bool begun_ = false;  ///< Whether the start was evaluated. In a batch of size one, the start uses
+                        ///< no random number.
 };
 
 }  // namespace

@@ -19,9 +19,9 @@ nlopt_algorithm AlgorithmOf(const std::string& name) {
   return NLOPT_LN_NELDERMEAD;
 }
 
-/// Repeated runs of NLopt, each from another point. NLopt requests one value at a time by a
-/// callback and cannot be suspended, so each start has a thread that waits in the callback for the
-/// score.
+/// Repeated runs of NLopt, each from another point. NLopt requests values one at a time by a
+/// callback and cannot be suspended. So each start has a thread, which waits for the score in the
+/// callback.
 class Start {
  public:
   Start(const NloptSpec& spec, const OptimizerStart& start, int number)
@@ -37,7 +37,7 @@ class Start {
   Start(const Start&) = delete;
   Start& operator=(const Start&) = delete;
 
-  /// Returns the point that this start wants evaluated.
+  /// Waits for the next point to evaluate.
   UnitPoint Ask() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return asks_; });
@@ -53,8 +53,8 @@ class Start {
   }
 
  private:
-  /// Publishes a point and waits for its score, in the thread. Returns nothing when the search is
-  /// over.
+  /// Publishes a point and waits for its score; called in the thread. Returns nothing if the search
+  /// was ended.
   std::optional<double> Evaluate(UnitPoint point) {
     std::unique_lock lock(mutex_);
     point_ = std::move(point);
@@ -67,8 +67,8 @@ class Start {
       most_ = std::isnan(most_) ? score_ : std::fmax(most_, score_);
       return score_;
     }
-    // NLopt needs a number: a failure scores lower than all points of this start so far, but only
-    // slightly, to preserve a model of the scores.
+    // NLopt needs a number for a failure: slightly below all scores of this start so far. A much
+    // lower number would distort NLopt's model of the scores.
     if (std::isnan(worst_)) return -1.0;
     return worst_ - 0.1 * std::fmax(most_ - worst_, 1e-3);
   }
@@ -103,14 +103,15 @@ class Start {
       nlopt_set_upper_bounds1(optimizer_, 1.0);
       nlopt_set_initial_step1(optimizer_, spec_.initial_step);
       nlopt_set_max_objective(optimizer_, Call, this);
-      nlopt_set_xtol_abs1(optimizer_, 1e-5);  // share of the bounds; then the next run begins
+      nlopt_set_xtol_abs1(optimizer_, 1e-5);  // share of the bounds; the next run begins at
+                                              // convergence
       nlopt_set_maxeval(optimizer_, 100'000);
       calls_ = 0;
       UnitPoint end = from;
       double score = 0;
       nlopt_optimize(optimizer_, end.data(), &score);
       nlopt_destroy(optimizer_);
-      // Prevents an endless loop if an algorithm rejects its start.
+      // Prevents an endless loop if an algorithm rejects its start point.
       if (calls_ == 0 && !IsOver() && !Evaluate(from)) return;
     }
   }

@@ -1,4 +1,4 @@
-/// Constructors of the optimizers; `MakeOptimizer` chooses among them.
+/// Constructors of the optimizers, used by `MakeOptimizer`.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-/// Random points of the unit cube, shared by all optimizers.
+/// Random points in the unit cube, used by all optimizers.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace taut::learn {
 
-/// Returns the random numbers of draw number `index` of an optimizer.
+/// Returns the random numbers for draw `index` of an optimizer.
 inline math::Random DrawOf(const OptimizerStart& start, std::uint64_t index) {
   return {start.seed, 0x100u + start.stream, index};
 }
@@ -20,14 +20,14 @@ inline UnitPoint UniformPoint(std::size_t dimensions, math::Random random) {
   return point;
 }
 
-/// Mirrors a number at 0 and 1 until it lies between them, so that points do not accumulate at the
-/// bounds as they would by clamping.
+/// Mirrors a number at 0 and 1 until it is between them. Clamping would accumulate points at the
+/// bounds.
 inline double Reflect(double x) {
   const double period = x - 2.0 * std::floor(0.5 * x);  // in [0, 2)
   return period <= 1.0 ? period : 2.0 - period;
 }
 
-/// Returns whether a is better than b. NaN is the worst; equal scores are not better.
+/// Returns whether score a is better than b. NaN is the worst score; equal scores are not better.
 inline bool Better(double a, double b) { return !std::isnan(a) && (std::isnan(b) || a > b); }
 
 }  // namespace taut::learn

@@ -1,4 +1,4 @@
-// Run and resumption of a study: optimizers, evaluations and log.
+// Runs and resumes a study: optimizers, evaluations and log.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -28,15 +28,15 @@ std::string LogPath(const std::string& folder) {
   return (fs::path(folder) / "study.sqlite").string();
 }
 
-/// Returns the experiment as text, without the comment about its origin.
+/// Returns the experiment as text, without the comment about its source file.
 std::string ExperimentText(const ExperimentSpec& experiment) {
   ExperimentSpec portable = experiment;
-  portable.compare_with.reset();  // a path, which may differ between machines
+  portable.compare_with.reset();  // contains a path, which may differ between machines
   const std::string text = ResolvedYaml(portable);
   return text.substr(text.find("taut: 1"));
 }
 
-/// Returns the start of the search: the experiment's values, clamped to the bounds.
+/// Returns the start of the search: the values in the experiment, clamped to the bounds.
 UnitPoint FirstPoint(const StudySpec& study) {
   std::vector<ControllerSpec> controllers = study.experiment.controllers;
   std::vector<ScaleSpec> scales = TunableScales(study.experiment.robot);
@@ -47,7 +47,7 @@ UnitPoint FirstPoint(const StudySpec& study) {
   UnitPoint point;
   for (const StudyParameter& p : study.parameters) {
     const double value = std::min(p.high, std::max(p.low, present[p.targets[0]]));
-    double low = 0, high = 1;  // bisection: the inverse of ParameterValue to the last bit
+    double low = 0, high = 1;  // bisection: inverts ParameterValue to the last bit
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
       (ParameterValue(p, middle) < value ? low : high) = middle;
@@ -94,12 +94,13 @@ class StudyRun {
   }
   bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Checks that this build of taut reproduces the numbers of the log, by repeating one evaluation.
+  /// Checks that this build of taut reproduces the log: repeats one evaluation and compares the
+  /// final states.
   bool SameNumbers(Diagnostics& out) {
     for (const auto& known : known_) {
       const auto id = known.first;
       const auto& logged = known.second;
-      if (!logged.failed.empty()) continue;  // has no state to compare
+      if (!logged.failed.empty()) continue;  // has no final state to compare
       const Evaluator::Candidate again{id, logged.values};
       bool same = true;
       evaluator_.Evaluate({&again, 1}, [&](std::size_t, const Evaluator::Trial& trial) {
@@ -119,15 +120,15 @@ class StudyRun {
     return true;
   }
 
-  /// Runs one of the study's searches; `start` becomes the best point so far. Returns false if the
-  /// study stops.
+  /// Runs one of the study's searches. `start`: set to the best point so far. Returns false if the
+  /// study must stop.
   bool Search(int number, OptimizerStart& start, Diagnostics& out) {
     const SearchSpec& search = study_.searches[static_cast<std::size_t>(number)];
     const auto optimizer = MakeOptimizer(search, start);
     for (std::int64_t left = search.evaluations; left > 0;) {
       std::vector<UnitPoint> points = optimizer->Ask();
-      // The budget may end within a batch: the rest is not evaluated, and the optimizer is not
-      // updated.
+      // The budget may end within a batch. Then the remaining points are not evaluated, and the
+      // optimizer is not updated.
       const auto count = std::min(left, static_cast<std::int64_t>(points.size()));
       points.resize(static_cast<std::size_t>(count));
       std::vector<double> scores;
@@ -140,7 +141,7 @@ class StudyRun {
       left -= count;
       if (left > 0) optimizer->Tell(scores);
     }
-    if (!start.score) start.score = kNothing;  // it was evaluated and failed
+    if (!start.score) start.score = kNothing;  // all points were evaluated and failed
     return true;
   }
 
@@ -203,7 +204,7 @@ class StudyRun {
     ++summary_.evaluations;
     if (!evaluation.failed.empty()) ++summary_.failed;
     if (std::isnan(evaluation.score) || !evaluation.failed.empty()) return;
-    // Of equal scores the lowest id is the best, independent of the order of completion.
+    // For equal scores, the lowest id is the best, independent of the order of completion.
     const bool better =
         !summary_.best || evaluation.score > summary_.best->score ||
         (evaluation.score == summary_.best->score && evaluation.id < summary_.best->id);
@@ -237,7 +238,7 @@ class StudyRun {
   Clock::time_point started_;
 };
 
-/// Reads the experiment text of a log, by way of a file.
+/// Loads the experiment text of a log by writing it to a file.
 std::optional<ExperimentSpec> LoggedExperiment(const std::string& folder, const std::string& text,
                                                Diagnostics& out) {
   const fs::path file = fs::path(folder) / "experiment.yaml";
@@ -245,16 +246,16 @@ std::optional<ExperimentSpec> LoggedExperiment(const std::string& folder, const 
   return LoadExperiment(file.string(), {}, out);
 }
 
-/// Returns whether two texts are the same experiment. A text of an earlier version lacks newer
-/// keys; reading and writing it adds them.
+/// Returns whether two texts define the same experiment. Texts of earlier versions lack newer keys,
+/// so the logged text is read and written again.
 bool SameExperiment(const std::string& folder, const std::string& logged, const std::string& text) {
   Diagnostics unread;
   const auto experiment = LoggedExperiment(folder, logged, unread);
   return experiment && ExperimentText(*experiment) == text;
 }
 
-/// Checks that the log belongs to this study; an empty log is initialized. It may be from another
-/// version of taut: `SameNumbers` compares its numbers.
+/// Checks that the log belongs to this study. Initializes an empty log. Logs of other versions of
+/// taut are accepted here; `SameNumbers` compares their results.
 bool Claim(const StudySpec& study, const std::string& folder, LogContents& log, Diagnostics& out) {
   log.facts.emplace("name", study.name);
   if (log.facts.emplace("taut_version", kVersion).second) log.version = 0;
@@ -262,7 +263,7 @@ bool Claim(const StudySpec& study, const std::string& folder, LogContents& log, 
       {"study", StudyText(study)}, {"experiment", ExperimentText(study.experiment)}};
   for (const auto& [name, text] : facts) {
     const auto [fact, is_new] = log.facts.emplace(name, text);
-    if (is_new) log.version = 0;  // empty, or its process was killed immediately
+    if (is_new) log.version = 0;  // empty, or the process was killed before it wrote the facts
     if (is_new || fact->second == text) continue;
     if (fact->first == "experiment" && SameExperiment(folder, fact->second, text)) continue;
     out.Error(

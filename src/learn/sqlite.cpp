@@ -19,13 +19,13 @@ Database::Database(const std::string& path, Open how) {
 
 void Database::Protect() {
   sqlite3_busy_timeout(db_, 10'000);
-  // https://sqlite.org/security.html: a file may contain more than data.
+  // Settings for untrusted files (https://sqlite.org/security.html): they may contain SQL code.
   sqlite3_db_config(db_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(db_, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   Execute("PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0;");
-  TakeError();  // errors of unreadable files are reported when they are read
+  TakeError();  // if the file is unreadable, the first read reports it
 }
 
 void Database::OpenWithoutFolder(const std::string& path) {
@@ -44,7 +44,7 @@ void Database::OpenWithoutFolder(const std::string& path) {
   }
   sqlite3_close(std::exchange(db_, nullptr));
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
-  // Immutable: without locks and without the accompanying WAL files.
+  // Immutable mode needs no locks and no WAL files.
   if (Check(sqlite3_open_v2((uri + "?immutable=1").c_str(), &db_, kFlags, nullptr))) Protect();
 }
 
@@ -71,7 +71,7 @@ bool Database::CopyTo(Database& to) {
   sqlite3_backup* const backup = sqlite3_backup_init(to.db_, "main", db_, "main");
   if (backup == nullptr) return to.Check(sqlite3_errcode(to.db_));
   sqlite3_backup_step(backup, -1);
-  return to.Check(sqlite3_backup_finish(backup));  // includes errors of the step
+  return to.Check(sqlite3_backup_finish(backup));  // includes the errors of the backup step
 }
 
 bool Database::IsGone() {
@@ -111,7 +111,7 @@ bool Statement::Run(const std::function<void(Row&)>& use) {
     Row row(statement_);
     use(row);
   }
-  sqlite3_reset(statement_);  // repeats the error of the step
+  sqlite3_reset(statement_);  // returns the same error as the step
   bound_ = 0;
   return good;
 }

@@ -1,5 +1,5 @@
-/// SQLite wrapper for a study's log. Every result code is checked in `Database::Check` only, so
-/// that an error is never mistaken for the end of the rows.
+/// Wrapper of SQLite for a study's log. Only `Database::Check` examines result codes, so that an
+/// error is never mistaken for the end of the rows.
 #pragma once
 
 #include <cstdint>
@@ -11,38 +11,38 @@ struct sqlite3_stmt;
 
 namespace taut::learn {
 
-/// Connection. It keeps the first error until `TakeError`.
+/// Database connection. Keeps the first error until `TakeError` is called.
 class Database {
  public:
   enum class Open { kThatIsThere, kOrMake };
-  /// Opens the file without reading its contents. Nothing in it is trusted as code. An existing
-  /// file also opens in a folder without write permission (a read-only medium, another user's
-  /// folder), if its write-ahead log contains no rows.
+  /// Opens the file without reading its contents. Does not execute code stored in it. An existing
+  /// file can also be opened in a folder without write permission, if its write-ahead log contains
+  /// no rows.
   Database(const std::string& path, Open how);
-  /// In memory.
+  /// Opens a database in memory.
   Database() : Database(":memory:", Open::kOrMake) {}
   ~Database();
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
 
-  /// Executes statements and discards their rows.
+  /// Executes SQL statements and ignores their rows.
   bool Execute(const std::string& sql);
-  /// Replaces the contents of `to` by this database, in one transaction.
+  /// Replaces the contents of `to` by those of this database, in one transaction.
   bool CopyTo(Database& to);
-  /// Returns whether the file, or its folder, was deleted or moved since it was opened.
+  /// Returns whether the file or its folder was deleted or moved after it was opened.
   bool IsGone();
 
-  /// Returns whether there was no error since the last `TakeError`.
+  /// Returns whether no error occurred since the last `TakeError`.
   bool good() const { return error_.empty(); }
   /// Returns and clears the first error, such as "database or disk is full".
   std::string TakeError();
 
  private:
   friend class Statement;
-  /// Returns whether a call succeeded.
+  /// Checks a result code. Returns false and stores the message of an error.
   bool Check(int result);
-  /// Reopens a file in WAL mode whose folder cannot be written, where SQLite cannot create the
-  /// accompanying files that it needs.
+  /// Reopens a file in WAL mode if its folder is not writable, because SQLite cannot create the WAL
+  /// files there.
   void OpenWithoutFolder(const std::string& path);
   void Protect();
 
@@ -50,19 +50,20 @@ class Database {
   std::string error_;
 };
 
-/// Row of a result. `wrong` describes the first value of an unexpected type.
+/// Row of a result. `wrong` describes the first value with an unexpected type.
 class Row {
  public:
   explicit Row(sqlite3_stmt* statement) : statement_(statement) {}
 
   std::int64_t Integer(int column);
-  double Number(int column);  ///< NULL: NaN.
+  double Number(int column);  ///< Returns NaN for NULL.
   std::string Text(int column);
-  /// Returns a 64-bit unsigned integer stored as text.
+  /// Returns a 64-bit unsigned integer, which is stored as text.
   std::uint64_t Whole(int column);
 
   void Wrong(int column, const std::string& what);
-  /// Returns a description such as "score is not a number"; empty if all values are valid.
+  /// Returns a description such as "score is not a number". Returns an empty text if all values are
+  /// valid.
   const std::string& wrong() const { return wrong_; }
 
  private:
@@ -72,7 +73,7 @@ class Row {
   std::string wrong_;
 };
 
-/// Prepared statement with its values. Must not outlive its database.
+/// Prepared statement with bound values. The database must outlive it.
 class Statement {
  public:
   Statement(Database& database, const std::string& sql);
@@ -82,11 +83,11 @@ class Statement {
 
   /// Binds the next value.
   Statement& Bind(std::int64_t x);
-  Statement& Bind(double x);  ///< NaN becomes NULL.
+  Statement& Bind(double x);  ///< Binds a number; NaN as NULL.
   Statement& Bind(const std::string& x);
 
-  /// Executes the statement; `use` receives each row. Returns false on any error, also after some
-  /// rows. The statement may be bound and executed again.
+  /// Executes the statement and passes each row to `use`. Returns false after an error, also if it
+  /// occurs after some rows. The statement may then be bound and executed again.
   [[nodiscard]] bool Run(const std::function<void(Row&)>& use = {});
 
  private:

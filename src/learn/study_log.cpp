@@ -10,15 +10,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Largest number of errors reported about one file.
+/// Limit of errors reported per file.
 constexpr std::size_t kMostComplaints = 20;
 
-/// Largest size of a database without tables (one page). In a larger one damage hides the tables.
+/// Size of a database without tables (one page). If a larger file seems to have no tables, it is
+/// damaged.
 constexpr std::uintmax_t kEmptyBytes = 4096;
 
 constexpr const char* kYours = "check the permissions of the folder and the free disk space";
 
-/// Reads the schema of the file: the SQL text of each table, as SQLite stores it.
+/// Reads the schema of the file: the SQL text of each table.
 bool ReadSchema(Database& database, std::string& schema) {
   Statement get(database, "SELECT type, name, sql FROM sqlite_schema ORDER BY name, type");
   return get.Run([&](Row& row) {
@@ -26,7 +27,7 @@ bool ReadSchema(Database& database, std::string& schema) {
   });
 }
 
-/// Returns the log version with these tables; nothing if there is none.
+/// Returns the log version with these tables. Returns nothing if they are not those of a log.
 std::optional<int> VersionOf(const std::string& schema) {
   for (int version = 0; version <= kLogVersion; ++version) {
     Database empty;
@@ -38,7 +39,8 @@ std::optional<int> VersionOf(const std::string& schema) {
   return std::nullopt;
 }
 
-/// Returns the version that a file of a later version contains; empty if it contains none.
+/// Returns the version in a file of a later version of the log. Returns an empty text if there is
+/// none.
 std::string OtherVersion(Database& database) {
   std::string version;
   Statement get(database, "SELECT value FROM fact WHERE name = 'log_version'");
@@ -109,7 +111,7 @@ std::optional<LogContents> Log::Read(Diagnostics& out) {
     return std::nullopt;
   };
   std::string schema;
-  // A transaction, for a consistent view of a file that another process may be writing.
+  // Read in a transaction, since another process may be writing to the file.
   const bool readable = database_.Execute("BEGIN") && ReadSchema(database_, schema);
   if (!readable)
     return refuse("study.not_a_log",
@@ -136,7 +138,7 @@ std::optional<LogContents> Log::Read(Diagnostics& out) {
   LogContents contents;
   if (*version > 0) contents = ReadRows(database_, *version, error);
   database_.Execute("COMMIT");
-  database_.TakeError();  // read only: an error here has no effect
+  database_.TakeError();  // ignore errors: the file is open for reading only
   if (!error.empty()) {
     return refuse("study.log_damaged", "the log is damaged: " + error,
                   "its evaluations are unusable; choose another folder with `--out`");
@@ -150,7 +152,7 @@ bool Log::Begin(const LogContents& contents, Diagnostics& out) {
   for (const Evaluation& evaluation : contents.evaluations) sum_ += Checksum(evaluation);
   if (!contents.damage.empty()) {
     database_.Execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    database_.TakeError();  // best effort
+    database_.TakeError();  // ignore errors: this is a best effort
     const std::string kept = path_ + ".damaged";
     std::error_code error;
     fs::remove(kept, error);

@@ -32,7 +32,8 @@ V3<Num> SpinOf(const World<Num>& world, int body) {
          GetV3(world, l.mom + 3 * body);
 }
 
-/// Returns the small rotation vector from `from` to `to` [rad], in W; exact to second order.
+/// Returns the rotation vector from `from` to `to` [rad], in W, for small rotations (exact to
+/// second order).
 template <class Num>
 V3<Num> TurnFrom(const Quat& from, const Q4<Num>& to) {
   const V3<Num> u{to.x, to.y, to.z}, s = Splat<Num>({from.x, from.y, from.z});
@@ -52,7 +53,8 @@ Coordinate& Coordinates::State(std::string name, std::string unit, SignalKind ki
 
 void Coordinates::AddBodies(const World<Plain>& at) {
   const sim::Layout& l = at.layout();
-  const bool touches = at.touches();  // changes must be smaller than the lift off the ground
+  const bool touches = at.touches();  // with contacts, changes must be smaller than the lift off
+                                      // the ground
   const std::vector<BodyDef>& bodies = at.def().bodies;
   for (int b = 0; b < at.view().body_count; ++b) {
     if (!(at.Get(l.mass + b).v > 0.0) || at.view().HasMotion(b)) continue;
@@ -93,7 +95,7 @@ void Coordinates::AddBodies(const World<Plain>& at) {
   first_row_state_ = states_.size();
 }
 
-/// Adds the other stored values of a step, one state per row.
+/// Adds all other stored values of a step, one state per row.
 void Coordinates::AddRows(const World<Plain>& at) {
   const sim::Layout& l = at.layout();
   const auto add = [&](const std::string& name, const char* unit, SignalKind kind, int row,

@@ -1,4 +1,4 @@
-/// States, inputs and outputs of the linearized system, and their places in a world.
+/// States, inputs and outputs of the linearized system, and their rows in a world.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +14,29 @@
 
 namespace taut::linear {
 
-/// Signals of one kind are compared with each other.
+/// Kind of a signal. Only signals of one kind are compared with each other.
 enum class SignalKind { kPlace, kTurn, kVelocity, kSpin, kLength, kRate, kForce, kOther };
 
-/// State, input or output; states and inputs can be changed by small amounts.
+/// State, input or output of the linear system.
 struct Coordinate {
   enum class Of { kRows, kMemory, kTarget, kVelocityInput };
   LinearSignal signal;
   SignalKind kind = SignalKind::kOther;
   Of of = Of::kRows;
-  std::vector<std::pair<int, double>> rows;  ///< Affected rows, with the change of each per unit.
-  int index = 0;                             ///< Index within its kind if it is not in a row.
-  int quat_row = -1;                         ///< Quaternion to normalize after a change, or -1.
-  double small = 1e-6;                       ///< Size of a change for differences [its unit].
-  bool may_go = false;                       ///< Left out if nothing depends on it.
+  std::vector<std::pair<int, double>> rows;  ///< Affected rows, with the change of each row per
+                                             ///< unit.
+  int index = 0;                             ///< Index within its kind if it is not stored in a
+                                             ///< row.
+  int quat_row = -1;                         ///< Row of the quaternion to normalize after a change,
+                                             ///< or -1.
+  double small = 1e-6;                       ///< Step size of finite differences, in the unit of
+                                             ///< the coordinate.
+  bool may_go = false;                       ///< Whether to drop the state if nothing depends on
+                                             ///< it.
 };
 
-/// All coordinates: motions of bodies, and the memory of a world and its controllers from tick to
-/// tick.
+/// All coordinates: motions of bodies, and the memory that a world and its controllers keep between
+/// ticks.
 class Coordinates {
  public:
   Coordinates(const World<Plain>& at, const Tick<Plain>& tick);
@@ -40,10 +45,10 @@ class Coordinates {
   const std::vector<Coordinate>& inputs() const noexcept { return inputs_; }
   const std::vector<Coordinate>& outputs() const noexcept { return outputs_; }
 
-  /// Returns the states of a world, in order; motions of bodies as small changes from the start.
+  /// Returns the states of a world. Poses of bodies are small changes relative to the start.
   template <class Num>
   std::vector<Num> States(const World<Num>& world, const TickMemory<Num>& memory) const;
-  /// Returns the outputs of a world after `Sense`.
+  /// Returns the outputs of a world. Call after `Sense`.
   template <class Num>
   std::vector<Num> Outputs(const World<Num>& world) const;
 
@@ -60,10 +65,10 @@ class Coordinates {
   void AddOutputs(const World<Plain>& at);
   Coordinate& State(std::string name, std::string unit, SignalKind kind, double small);
 
-  /// Limits changes of lengths [m] and rotations [rad] so that no cable becomes slack.
+  /// Limits the step size of lengths [m] and rotations [rad] so that no cable becomes slack.
   double Less(double small) const { return std::min(small, std::max(1e-8, 0.1 * stretch_m_)); }
 
-  double stretch_m_ = 1.0;  ///< Least stretch of any taut cable.
+  double stretch_m_ = 1.0;  ///< Smallest stretch of any taut cable [m].
   std::vector<Mover> movers_;
   std::vector<int> nodes_;  ///< Nodes of moving bodies.
   std::size_t first_row_state_ = 0;

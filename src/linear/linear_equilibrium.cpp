@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kAtRestMPerS = 1e-9;
 
-/// Returns the experiment without its time-dependent parts; `remarks` receives a list of them.
+/// Returns the experiment without its time-dependent parts. `remarks` receives a list of these
+/// parts.
 ExperimentSpec Unmoved(const ExperimentSpec& experiment, std::vector<std::string>& remarks) {
   ExperimentSpec e = experiment;
   if (!e.pushes.empty() || !e.drags.empty()) remarks.push_back("pushes and drags are left out");
@@ -32,8 +33,8 @@ ExperimentSpec Unmoved(const ExperimentSpec& experiment, std::vector<std::string
   return e;
 }
 
-/// Collects the cables under impedance control and the simulation steps in a control period.
-/// Returns false and sets `why` if the controllers do not share one period and phase.
+/// Collects the cables under impedance control and the steps of one control period. Returns false
+/// and sets `why` if the controllers have different periods or phases.
 bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
   double period_s = 0;
   for (const ControllerSpec& c : e.controllers) {
@@ -67,7 +68,7 @@ bool DescribeTick(const ExperimentSpec& e, Rest& rest) {
     rest.step_s = {e.step_s};
     return true;
   }
-  // As in runs (plant/schedule.h).
+  // Same rule as in simulations (plant/schedule.h).
   const double count = std::max(1.0, std::ceil(period_s / e.step_s - 1e-6));
   double step_s = period_s / count;
   if (std::fabs(step_s - e.step_s) < 1e-9 * e.step_s) step_s = e.step_s;
@@ -99,7 +100,7 @@ double LastPoint(const ExperimentSpec& e) {
   return last_s;
 }
 
-/// Runs whole ticks under the controllers until the robot has been at rest for kStillTicks.
+/// Simulates whole ticks with the controllers until the robot has been at rest for kStillTicks.
 bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest) {
   constexpr int kStillTicks = 20;
   const auto plant = PlantOf(*rest.batch);
@@ -132,7 +133,7 @@ bool RunToRest(const ExperimentSpec& e, const LinearOptions& options, Rest& rest
   return true;
 }
 
-/// Sets rest lengths to the end values of their programs.
+/// Sets rest lengths to the last values of their programs.
 void WindToTheEnd(const ExperimentSpec& e, WorldBatch& batch) {
   for (const ControllerSpec& c : e.controllers) {
     for (const PositionProgram& p : c.position) {
@@ -155,7 +156,7 @@ void Place(const Pose& pose, WorldBatch& batch) {
   }
 }
 
-/// A cable at the limit between taut and slack has two different one-sided derivatives.
+/// Rejects cables at the limit between taut and slack, where the two one-sided derivatives differ.
 bool CheckKinks(Rest& rest) {
   constexpr double kShare = 1e-7;
   const std::vector<CableDef>& cables = rest.model->def().cables;
@@ -172,7 +173,7 @@ bool CheckKinks(Rest& rest) {
   return true;
 }
 
-/// Returns the coefficient of friction that a step used for a contact, by the contact's key
+/// Returns the friction coefficient of a contact in the last step, by the contact's key
 /// (sim/data/tables.h).
 double FrictionOf(const sim::View& m, double key, bool slides) {
   const auto id = static_cast<std::uint32_t>(key);
@@ -186,7 +187,7 @@ double FrictionOf(const sim::View& m, double key, bool slides) {
   return slides ? pair.kinetic_friction : pair.static_friction;
 }
 
-/// Contacts that slip, or are about to, have no derivative either.
+/// Rejects contacts that slip or are about to slip, because they have no derivative.
 bool CheckContacts(Rest& rest) {
   constexpr double kShare = 1e-3;
   const BatchInside::Impl& inside = BatchInside::Of(*rest.batch);

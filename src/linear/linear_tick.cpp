@@ -30,7 +30,7 @@ control::Impedance<Num> GainsOf(const ImpedanceGains& gains) {
 
 }  // namespace
 
-// At rest, a PID that winds has zero error if it integrates, and a zero integral.
+// In equilibrium, a PID controller that integrates has zero error, and its integral is zero.
 template <class Num>
 TickMemory<Num> Tick<Num>::MemoryAtRest(const World<Num>& world) const {
   TickMemory<Num> memory;
@@ -68,8 +68,8 @@ void Tick<Num>::Run(World<Num>& world, TickMemory<Num>& memory,
   for (std::size_t c = 0; c < inputs.target.size(); ++c) {
     const int row = target + static_cast<int>(c);
     Num to = world.Get(row) + inputs.target[c];
-    // A limited actuator at its target has a zero path without a direction: the effect of a change
-    // is evaluated slightly off the target.
+    // A limited actuator at its target has no direction of motion. So evaluate the effect of a
+    // change slightly off the target.
     if (to[0] == world.Get(world.layout().rest + static_cast<int>(c))[0]) {
       to += Num::Splat(kSlackHairM);
     }

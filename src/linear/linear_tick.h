@@ -1,5 +1,5 @@
-/// One tick of the controllers: sensing, control laws, and the steps up to the next tick. The laws
-/// are templates of include/taut/control/, instantiated for the world's number type.
+/// One tick of the controllers: sensing, control laws, and simulation steps up to the next tick.
+/// The laws are templates of include/taut/control/, instantiated for the world's number type.
 #pragma once
 
 #include <string>
@@ -26,8 +26,8 @@ using TickMemory = std::vector<control::ImpedanceMemory<Num>>;
 /// Changes of the commands.
 template <class Num>
 struct TickInputs {
-  std::vector<Num> target;          ///< Per cable: added to the commanded rest length.
-  std::vector<Num> velocity_input;  ///< Per driven cable: added to V0.
+  std::vector<Num> target;          ///< Per cable: change of the commanded rest length.
+  std::vector<Num> velocity_input;  ///< Per driven cable: change of the velocity offset V0.
 };
 
 template <class Num>
@@ -39,17 +39,17 @@ class Tick {
   const std::vector<DrivenCable>& driven() const noexcept { return driven_; }
   const std::vector<double>& step_s() const noexcept { return step_s_; }
 
-  /// Returns the controllers' internal state at an equilibrium. Call after `Sense`.
+  /// Returns the internal state of the controllers in equilibrium. Call after `Sense`.
   TickMemory<Num> MemoryAtRest(const World<Num>& world) const;
   TickInputs<Num> NoInputs(const World<Num>& world) const;
 
-  /// Runs a tick. Call after `Sense`.
+  /// Performs a tick. Call after `Sense`.
   void Run(World<Num>& world, TickMemory<Num>& memory, const TickInputs<Num>& inputs) const;
 
  private:
   static CableReadings<Num> Read(const World<Num>& world, int cable);
   std::vector<DrivenCable> driven_;
-  std::vector<double> step_s_;  ///< Steps of a tick.
+  std::vector<double> step_s_;  ///< Lengths of the steps in one tick.
 };
 
 extern template class Tick<Plain>;

@@ -16,7 +16,7 @@ WorldBatchOptions OptionsOf(int worlds, Simd simd, double tolerance_m_per_s) {
   return options;
 }
 
-/// Copy of all data that a group's step reads and writes.
+/// Copy of all data that a step of a group reads and writes.
 struct Kept {
   std::vector<double> rows;
   std::vector<int> slots_used;
@@ -38,7 +38,8 @@ World<Plain>::World(std::shared_ptr<const Model> model, const WorldBatch& at, do
   Reset();
 }
 
-// The interleaved rows of two worlds are the rows of one world whose numbers are twice as wide.
+// The interleaved rows of two worlds hold the rows of one world with dual numbers: value,
+// derivative.
 template <>
 World<Dual>::World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance)
     : batch_(std::move(model), OptionsOf(2, Simd::kSse2, tolerance)),
@@ -57,7 +58,7 @@ void World<Num>::Reset() {
   batch_.ClearStatus(0);
   sim::Group& g = inside_->groups[0];
   for (int row = 0; g.lanes == 2 && row < layout().rows; ++row) g.rows[2 * row + 1] = 0.0;
-  // Forces may act on any node.
+  // Inputs may apply forces to any node.
   for (int node = 0; node < view().node_count; ++node) inside_->ForceNode(0, node);
 }
 
@@ -90,11 +91,11 @@ void World<Plain>::Step(double step_s) {
   batch_.Step(step_s);
 }
 
-/// The solver stops once the laws hold to its tolerance, regardless of their derivatives. One step
-/// of Newton's method from impulses near the solution makes both exact where laws are linear:
-/// always for cables and joints, and for contacts because bodies are lifted slightly off them
-/// (state_space.cpp). At least one step is taken. The solver's compliances leave an error in the
-/// derivatives; a second step from the impulses of the first removes it (L3).
+/// Steps with accurate derivatives. The solver stops when the laws hold to its tolerance,
+/// regardless of derivatives. So the step is repeated with one Newton step from the impulses found.
+/// This makes derivatives exact for linear laws: cables, joints, and contacts because bodies are
+/// lifted slightly off them (state_space.cpp). The solver's compliances leave a small error, which
+/// a second repetition removes (L3).
 template <>
 void World<Dual>::Step(double step_s) {
   sim::Group& g = inside_->groups[0];
@@ -111,7 +112,7 @@ void World<Dual>::Step(double step_s) {
   batch_.Step(step_s);
   const Kept after(g, l.rows, inside_->slots_used);
   std::copy(before.rows.begin(), before.rows.end(), g.rows);
-  // Keys, forces and slip state of the contact memory must stay consistent.
+  // Keep keys, forces and slip state of the contact memory consistent.
   inside_->slots_used = after.slots_used;
   g.slots_used = inside_->slots_used.data();
   g.touches_used = after.touches_used;

@@ -1,4 +1,4 @@
-/// World that repeatedly starts from a given state, in plain or dual numbers.
+/// World that restarts repeatedly from a given state, in plain or dual numbers.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace taut::linear {
 
-/// Gives numbers without derivatives (`Plain`) a separate type, so that their template
-/// instances differ from the step's, which are compiled with other options.
+/// Tag that makes `Plain` a separate type. Its template instances thus differ from those of the
+/// step, which is compiled with other options.
 struct OutsideOfSteps {};
 using Plain = simd::Wide<1, OutsideOfSteps>;
 using simd::Dual;
@@ -19,17 +19,17 @@ using simd::Dual;
 template <class Num>
 class World {
  public:
-  /// `at`: its world 0 is the start; a batch of the same model.
+  /// `at`: batch of the same model. Its world 0 is the start.
   World(std::shared_ptr<const Model> model, const WorldBatch& at, double tolerance_m_per_s = 1e-10);
 
-  /// Returns to the start, with zero derivatives.
+  /// Returns to the start and clears all derivatives.
   void Reset();
-  /// Makes the present state the start.
+  /// Makes the current state the start.
   void StartHere() { snapshot_ = batch_.Save(0); }
   Num Get(int row) const noexcept;
   void Set(int row, Num x) noexcept;
-  /// Adds a change of a row: `amount` * `unit` in plain numbers, a derivative of `unit` in dual
-  /// ones.
+  /// Adds `amount` * `unit` to a row of plain numbers, or `unit` to the derivative of a row of dual
+  /// numbers.
   void Add(int row, double amount, double unit) noexcept;
 
   void Step(double step_s);
@@ -41,7 +41,7 @@ class World {
   const ModelDef& def() const noexcept { return batch_.model().def(); }
   /// Returns whether there is any contact.
   bool touches() const { return !batch_.Contacts(0).empty(); }
-  /// False if the build or machine has no lanes for derivatives.
+  /// Returns false if this build or machine does not support derivatives.
   bool good() const noexcept { return good_; }
   std::uint32_t status_bits() const { return batch_.Status(0).bits; }
 

@@ -25,7 +25,7 @@ Eigen::MatrixXd MatrixOf(const Matrix& m) {
 
 std::vector<LinearMode> ModesOf(const StateSpace& system) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(MatrixOf(system.A), false);
-  constexpr double kNothing = 1e-9;  // log |z| and angle of a motion without oscillation and decay
+  constexpr double kNothing = 1e-9;  // |log z| or angle of a motion without oscillation and decay
   std::vector<LinearMode> modes;
   for (const Complex& z : solver.eigenvalues()) {
     if (z.imag() < 0) continue;
@@ -63,9 +63,9 @@ FrequencyResponse ResponseOf(const StateSpace& system, int input, int output,
     double condition = 0, ignored = 0;
     Complex x = at(z, condition);
     bool finite = true;
-    // Free positions or rotations (a weight that turns about its rope) make the matrix singular at
-    // 0 Hz. If the input does not excite them or the output does not contain them, the values on
-    // both sides agree.
+    // Free positions or rotations (such as a weight that rotates about its rope) make the matrix
+    // singular at 0 Hz. If the input does not excite them, or the output does not contain them, the
+    // response is finite. Then the values at neighboring frequencies agree.
     if (!(condition > kSingular)) {
       const Complex more = at(z * (1 + kBeside), ignored), less = at(z * (1 - kBeside), ignored);
       x = 0.5 * (more + less);

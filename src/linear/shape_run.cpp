@@ -24,7 +24,7 @@ Quat TurnBy(const Vec3& turn) {
   return {std::cos(angle / 2), v.x, v.y, v.z};
 }
 
-/// Returns the largest displacement of any node or center of mass, per amplitude [m].
+/// Returns the largest displacement of any node or center of mass per unit of amplitude [m].
 double GreatestWay(const ModelDef& def, const Shape& shape) {
   double most = 0;
   for (const Vec3& t : shape.translation_m) most = std::max(most, Length(t));
@@ -37,8 +37,8 @@ double GreatestWay(const ModelDef& def, const Shape& shape) {
   return most;
 }
 
-/// Converts to percent of the largest: the magnitude of a self-stress is arbitrary, and the
-/// viewer's color scale starts at a threshold. Rounding removes differences between equal cables.
+/// Converts to percent of the largest tension, since the magnitude of a self-stress is arbitrary.
+/// Rounding removes differences between equal cables.
 void ToPerCent(std::vector<double>& tension_n) {
   double largest = 0;
   for (const double t : tension_n) largest = std::max(largest, std::fabs(t));
@@ -82,7 +82,7 @@ std::vector<double> RowAt(WorldBatch& batch, const Pose& pose, const Shape& shap
   return row;
 }
 
-/// Updates the cables' summary by a row.
+/// Updates the summary of the cables with a row.
 void Note(const std::vector<double>& row, std::size_t cables, RunSummary& summary) {
   for (std::size_t c = 0; c < cables; ++c) {
     CableSummary& cable = summary.cables[c];

@@ -1,5 +1,5 @@
 // Linearization: state-space matrices A, B, C, D by automatic differentiation of the step, checked
-// against differences (docs/theory/linear.md).
+// against finite differences (docs/theory/linear.md).
 #include "taut/state_space.h"
 
 #include <algorithm>
@@ -15,21 +15,21 @@ namespace taut {
 namespace linear {
 namespace {
 
-/// Distances by which bodies are lifted off their contacts, for differences and for exact
-/// derivatives. A step closes positive gaps by its velocity law, but pushes penetrating bodies out
-/// by another rule; a zero gap is the limit between both.
+/// Distances by which bodies are lifted off their contacts, for finite differences and for exact
+/// derivatives. A step treats positive gaps by its velocity law, but penetrations by another rule.
+/// A zero gap is the limit between both, so it has no derivative.
 constexpr double kLiftM = 2e-8, kHairM = 1e-10;
 
 constexpr int kKinds = static_cast<int>(SignalKind::kOther) + 1;
 
-/// States after a tick, then outputs before it.
+/// States after a tick, then outputs before the tick.
 using Column = std::vector<double>;
 
 struct Columns {
   std::vector<Column> of_states, of_inputs;
 };
 
-/// Returns states and outputs of a tick from `world`'s start, with one coordinate changed.
+/// Returns states and outputs of a tick from the start, with one coordinate changed.
 template <class Num>
 std::vector<Num> RunWith(World<Num>& world, const Tick<Num>& tick, const Coordinates& coordinates,
                          const Coordinate* changed, double amount) {
@@ -95,9 +95,9 @@ class Finder {
     return column;
   }
 
-  /// Returns central differences at a step, half of it and a quarter of it, combined so that errors
-  /// of first order (motors with limits: x |x|) and of second order cancel (L4). `apart` receives
-  /// the differences between one-sided slopes.
+  /// Returns central differences for a step size, its half and its quarter, combined to cancel
+  /// errors of first order (motors with limits: x |x|) and second order (L4). `apart` receives the
+  /// difference between the one-sided slopes.
   Column Differences(const Coordinate& c, const Column& at_rest, Column& apart) {
     std::array<Column, 3> of;
     double d = c.small;
@@ -119,7 +119,7 @@ class Finder {
   }
 
  private:
-  /// Differences of steps require small residuals of the solver.
+  /// Finite differences require small residuals of the solver.
   static constexpr double kTolerance = 1e-12;
 
   template <class Num>
@@ -151,7 +151,7 @@ class Finder {
   Coordinates coordinates_;
 };
 
-/// Returns changes of similar relevance for all kinds.
+/// Returns a small change of a kind of signal. Changes of different kinds have similar relevance.
 double SmallOf(SignalKind kind) {
   switch (kind) {
     case SignalKind::kPlace:
@@ -167,7 +167,7 @@ double SmallOf(SignalKind kind) {
   }
 }
 
-/// Largest entry for each pair of kinds.
+/// Largest matrix entry for each pair of kinds.
 class Sizes {
  public:
   Sizes(const std::vector<SignalKind>& rows) : rows_(rows) {}
@@ -177,10 +177,11 @@ class Sizes {
       most = std::max(most, std::fabs(column[i]));
     }
   }
-  /// Returns the largest ratio of an entry of `column` to the largest of its kinds; `which`
-  /// receives its index.
+  /// Returns the largest entry of `column`, relative to the largest entry of its pair of kinds.
+  /// `which` receives its index.
   double Share(SignalKind of, const Column& column, std::size_t& which) const {
-    // Effect of a small change of one kind, as a share of a small change of the other.
+    // Lower limit of the reference: effect of a small change, relative to a small change of the
+    // result.
     constexpr double kNothing = 1e-4;
     double most = 0;
     for (std::size_t i = 0; i < column.size(); ++i) {
@@ -209,8 +210,8 @@ Column Less(const Column& a, const Column& b) {
   return out;
 }
 
-/// Returns the states that matter. A state is dropped if it affects nothing but itself, and then
-/// others that affect dropped states only.
+/// Returns the states to keep. A state is dropped if it affects only itself and other dropped
+/// states.
 std::vector<std::size_t> KeptStates(const std::vector<Coordinate>& states,
                                     const std::vector<Column>& columns) {
   constexpr double kNothing = 1e-10;
@@ -256,7 +257,8 @@ void Fill(const Coordinates& c, const Columns& columns, StateSpace& out) {
   for (const Coordinate& output : c.outputs()) out.outputs.push_back(output.signal);
 }
 
-/// Computes exact columns and differences and compares them. Returns false, with `why`, at a kink.
+/// Computes exact and finite-difference columns and compares them. Returns false and sets `why` at
+/// a kink.
 bool FindColumns(Finder& finder, const LinearOptions& options, StateSpace& out, Columns& columns) {
   constexpr double kAgrees = 1e-5, kKink = 1e-2;
   const Coordinates& c = finder.coordinates();

@@ -1,4 +1,4 @@
-// State-space matrices in an HDF5 file.
+// Writer of state-space matrices in an HDF5 file.
 #include <utility>
 
 #include "taut/state_space.h"
@@ -20,7 +20,7 @@ void AddSignals(const std::string& kind, const std::vector<LinearSignal>& signal
   content.lists.emplace_back("/" + kind + "/at", std::move(at));
 }
 
-/// Adds the pose at rest: positions, and rotations from the described orientations.
+/// Adds the equilibrium pose: positions, and rotations from the described orientations.
 void AddPose(const StateSpace& system, Matrix& position, Matrix& orientation,
              trace::Hdf5Content& content) {
   const int count = static_cast<int>(system.pose.bodies.size());

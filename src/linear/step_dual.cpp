@@ -1,7 +1,7 @@
 #include "linear/step_dual.h"
 
 #include "simd/dual.h"
-// The simulation's source code; it must find the dual numbers above.
+// Source code of the step; include it after simd/dual.h.
 #include "sim/step/kernel.inl"
 
 namespace taut::linear {

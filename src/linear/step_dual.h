@@ -5,10 +5,12 @@
 
 namespace taut::linear {
 
-/// Kernel for groups of two lanes: the values of one world and their derivatives.
+/// Kernel for groups of two lanes: the first holds the values of one world, the second their
+/// derivatives.
 extern const sim::Kernel kKernelDual;
 
-/// Least h^2 K for which the solver computes a cable's tension.
+/// Smallest h^2 K (time step h, stiffness K over mass) for which the solver computes a cable's
+/// tension.
 extern const double kStiffFrom;
 
 }  // namespace taut::linear

@@ -1,4 +1,4 @@
-/// Derived quantities that both forms of the run summary share.
+/// Quantities that all forms of the run summary contain.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ inline bool Complete(const RunSummary& summary, const PhaseSpec& phase) {
   return phase.to_s <= summary.simulated_s * (1.0 + 1e-9);
 }
 
-/// Returns simulated over wall-clock time; 0 if no time passed.
+/// Returns the ratio of simulated to wall-clock time; 0 if no time has passed.
 inline double RealTimeFactor(const RunSummary& summary) {
   return summary.wall_s > 0.0 ? summary.simulated_s / summary.wall_s : 0.0;
 }
@@ -25,7 +25,7 @@ inline std::string StatusText(const RunSummary& summary) {
                                      : summary.status_text;
 }
 
-/// Returns a description of contacts missing in the trace; empty if there are none.
+/// Returns a description of contacts that the trace lacks; empty if there are none.
 inline std::string LeftOutText(const RunSummary& summary) {
   const LeftOutContacts& left = summary.left_out;
   if (left.contacts == 0) return {};

@@ -71,7 +71,7 @@ std::string LargestDifference(const RunSummary& run, const ReferenceSpec& refere
                      OurValue(run, reference, worst->cable), worst->force_n);
 }
 
-/// Returns source, quantity and phase of a comparison.
+/// Returns the source, quantity and phase of a comparison as text.
 std::string SubjectOf(const ReferenceSpec& reference) {
   return fmt::format("compared with {}: {} {} of {} cables, {}", reference.source,
                      StatisticName(reference), QuantityName(reference), reference.values.size(),

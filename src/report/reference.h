@@ -1,4 +1,4 @@
-/// Comparison of a run with the reference values that an experiment contains.
+/// Comparison of a run with the reference values in its experiment.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace taut::report {
 std::string StatisticName(const ReferenceSpec& reference);  ///< "mean", "min" or "max".
 std::string QuantityName(const ReferenceSpec& reference);   ///< "tension" or "elastic".
 
-/// Returns the run's value for a cable of the reference [N]; NaN if the run ended before.
+/// Returns the value of the run for a cable of the reference [N]. NaN if the run ended too early.
 double OurValue(const RunSummary& run, const ReferenceSpec& reference, int cable);
 
-/// Returns one line per reference, without a line end: its source and the largest difference.
+/// Returns one line per reference, without line end: its source and the largest difference.
 std::vector<std::string> ReferenceDifferences(const RunSummary& run);
 
-/// Returns, for each reference, its description and largest difference; empty without any.
+/// Returns the description and largest difference of each reference. Empty without references.
 std::string ReferenceLines(const RunSummary& run);
 
 }  // namespace taut::report

@@ -1,4 +1,4 @@
-// Actuator sizing: demand of a run's cables, and margins of catalogue motors and springs.
+// Actuator sizing: demand of the cables in a run, and margins of motors and springs of a catalogue.
 #include "taut/sizing.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace taut {
 namespace {
 
-/// Returns the rows of a cable's channel; null after an error.
+/// Returns the values of a cable's channel; null after an error.
 const std::vector<double>* Rows(const Trace& trace, const std::string& channel,
                                 const std::string& path, Diagnostics& out) {
   const auto found = trace.Find(channel);
@@ -32,7 +32,7 @@ const std::vector<double>* Rows(const Trace& trace, const std::string& channel,
   return nullptr;
 }
 
-/// Computes a cable's demand, with linear interpolation between rows.
+/// Computes the demand of a cable by linear interpolation between rows.
 CableDemand OfRows(const std::vector<double>& time_s, const std::vector<double>& tension_n,
                    const std::vector<double>& rest_length_m) {
   CableDemand d;
@@ -60,8 +60,8 @@ CableDemand OfRows(const std::vector<double>& time_s, const std::vector<double>&
   return d;
 }
 
-/// Takes the extremes over all steps from the summary. Returns false for a file that is not such a
-/// summary.
+/// Replaces extremes by those in the summary, which covers all steps. Returns false if the file is
+/// not a summary of this run.
 bool TakeSummary(const nlohmann::json& summary, std::vector<CableDemand>& cables) {
   const auto list = summary.find("cables");
   if (list == summary.end() || !list->is_array() || list->size() != cables.size()) return false;
@@ -133,7 +133,8 @@ std::optional<RunDemand> DemandOf(const Trace& trace, const ExperimentSpec& expe
 std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out) {
   const std::filesystem::path place(folder);
   const std::string path = (place / "trace.h5").string();
-  const auto trace = ReadTraceOfRun(path, out);  // first: it may complete a killed run
+  const auto trace = ReadTraceOfRun(path, out);  // read first, since this may complete the files of
+                                                 // a killed run
   const auto experiment = LoadExperiment((place / "inputs.yaml").string(), {}, out);
   if (!experiment || !trace) return std::nullopt;
   auto demand = DemandOf(*trace, *experiment, path, out);
@@ -150,8 +151,7 @@ std::optional<RunDemand> DemandOfRun(const std::string& folder, Diagnostics& out
 
 SizingMargins SizingMarginsOf(const CatalogueMotor& motor, double spool_radius_m, double factor,
                               const CableDemand& cable) {
-  // Conversion to the motor's shaft: torque per newton of tension, speed per meter per second of
-  // the cable.
+  // Conversion to the motor's shaft: torque per newton of tension, speed per m/s of the cable.
   const double arm_m = spool_radius_m / (motor.gear_ratio * motor.gear_efficiency);
   const double turn_per_m = motor.gear_ratio / spool_radius_m;
   SizingMargins fit;

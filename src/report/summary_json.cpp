@@ -13,13 +13,13 @@
 namespace taut {
 namespace {
 
-using Json = nlohmann::ordered_json;  // keys in the order in which they are set; NaN prints as null
+using Json = nlohmann::ordered_json;  // keeps the order of keys; writes NaN as null
 
 Json ToJson(const Range& range) {
   return {{"mean_n", range.mean}, {"min_n", range.min}, {"max_n", range.max}};
 }
 
-/// Returns the largest value from 5 s on; null for runs that ended before.
+/// Returns the largest value after the first 5 s. Null if the run ended before.
 Json AfterStart(double value, const RunSummary& run) {
   return run.simulated_s > 5 ? Json(value) : Json();
 }

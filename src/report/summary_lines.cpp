@@ -1,4 +1,4 @@
-// Short summary of a run: the verdict, then one line for each kind of load.
+// Short summary of a run: the verdict, then one line per kind of load.
 #include "report/summary_lines.h"
 
 #include <fmt/format.h>

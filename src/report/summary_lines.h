@@ -8,7 +8,7 @@
 
 namespace taut::report {
 
-/// Returns the verdict on a run, then the effect of settling, and problems.
+/// Returns lines with the verdict, the effect of settling, and problems.
 std::vector<std::string> HeadLines(const RunSummary& run);
 
 }  // namespace taut::report

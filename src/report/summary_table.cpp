@@ -12,10 +12,10 @@
 namespace taut {
 namespace {
 
-constexpr int kCell = 8;                   ///< Columns of a number.
-constexpr std::size_t kPhasesAbreast = 3;  ///< Phases that fit into 100 columns.
+constexpr int kCell = 8;                   ///< Width of a number in characters.
+constexpr std::size_t kPhasesAbreast = 3;  ///< Number of phases that fit into 100 characters.
 
-/// Returns the decimals that show about four digits of a quantity of this size.
+/// Returns the number of decimals that shows about four digits.
 int DecimalsFor(double size) { return size >= 1000.0 ? 1 : size >= 10.0 ? 2 : size >= 1.0 ? 3 : 4; }
 
 std::string Cell(double value, int decimals, int width = kCell) {
@@ -38,7 +38,7 @@ std::size_t NameWidth(const Items& items) {
   return width;
 }
 
-/// Table of cables by phases first .. last - 1, and the largest of the whole run.
+/// Returns the table of cables for phases first to last - 1, with the maxima of the whole run.
 std::string PhaseTable(const RunSummary& run, std::size_t first, std::size_t last) {
   const std::size_t name_width = NameWidth(run.cables);
   const int decimals = DecimalsFor(run.system_max_tension_n);
@@ -76,7 +76,7 @@ std::string SystemLines(const RunSummary& run) {
   return out + "\n";
 }
 
-/// Tables of rod loads and of the reactions of anchored bodies.
+/// Returns tables of rod loads and of reactions of anchored bodies.
 std::string LoadTables(const RunSummary& run) {
   std::string out;
   if (!run.struts.empty()) {
@@ -105,7 +105,7 @@ std::string LoadTables(const RunSummary& run) {
   return out;
 }
 
-/// Table with one row per exceeded limit of a member.
+/// Returns a table with one row per exceeded limit of a member.
 std::string OverloadTable(const RunSummary& run) {
   if (run.overloads.empty()) return {};
   const std::size_t name_width = NameWidth(run.overloads);
@@ -133,7 +133,7 @@ std::string DragTable(const RunSummary& run) {
   return out;
 }
 
-/// Table of cables whose rest length moved or was held by a motor; those without one are left out.
+/// Returns the table of cables with a moving rest length or a motor. Other cables are omitted.
 std::string ActuatorTable(const RunSummary& run) {
   std::string rows;
   const std::size_t name_width = NameWidth(run.cables);
@@ -149,7 +149,7 @@ std::string ActuatorTable(const RunSummary& run) {
          rows;
 }
 
-/// Table of the motors' power and energy.
+/// Returns the table of power and energy of motors.
 std::string MotorTable(const RunSummary& run) {
   std::string rows;
   const std::size_t name_width = NameWidth(run.cables);

@@ -1,4 +1,5 @@
-// Rollouts: many variants of an experiment in parallel, one per SIMD lane, on several threads.
+// Rollouts: simulates many variants of an experiment in parallel, one per SIMD lane, on several
+// threads.
 #include "taut/rollout.h"
 
 #include <algorithm>
@@ -58,8 +59,8 @@ class LaneRollouts final : public Rollouts {
  private:
   bool Stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Batches of a thread, reused from group to group: creating one costs as much as simulating its
-  /// worlds for seconds.
+  /// Batches of a thread, used for one group after the other. To create a batch costs as much as
+  /// seconds of simulation.
   struct Workplace {
     Workplace(const std::shared_ptr<const Model>& model, Simd simd, int lanes)
         : starts(model), group(model, {.worlds = lanes, .simd = simd}) {}
@@ -67,7 +68,7 @@ class LaneRollouts final : public Rollouts {
     WorldBatch group;
   };
 
-  /// Restores a lane to its start. Returns false, with the reason, if there is no start.
+  /// Restores a lane to its start. Returns false and sets `failed` if the start cannot be found.
   bool Prepare(const RolloutWorld& world, Workplace& place, int lane, std::string& failed) const {
     Diagnostics found;
     const auto start = place.starts.Find(ExperimentOf(experiment_, world), found);
@@ -83,7 +84,7 @@ class LaneRollouts final : public Rollouts {
     WorldBatch& batch = place.group;
     const int count = static_cast<int>(worlds.size());
     std::vector<std::string> no_start(worlds.size());
-    std::vector<const RolloutWorld*> lanes;  // surplus lanes repeat the first world
+    std::vector<const RolloutWorld*> lanes;  // unused lanes repeat the first world
     for (int j = 0; j < lanes_; ++j) {
       const int world = j < count ? j : 0;
       lanes.push_back(&worlds[static_cast<std::size_t>(world)]);

@@ -136,7 +136,7 @@ RolloutResult Scorer::Result(int j) const {
   RolloutResult out;
   out.done = true;
   out.failed = failed_[lane];
-  if (!out.failed.empty()) {  // the time of its end depends on the other lanes
+  if (!out.failed.empty()) {  // the time of its end depends on other lanes, so do not report it
     out.score = std::numeric_limits<double>::quiet_NaN();
     return out;
   }

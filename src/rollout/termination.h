@@ -1,5 +1,5 @@
-/// Conditions and measures of an episode, evaluated at intervals: fall, failure by excessive speed,
-/// distance, tension penalty.
+/// Conditions and measures of an episode, evaluated at intervals: falls, failure by excessive
+/// speed, distance, tension penalty.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,8 @@
 
 namespace taut::rollout {
 
-/// Returns whether the angle between any body's vertical axis and the world's exceeds the limit.
+/// Returns whether the tilt of any body (angle between its vertical axis and the world's) exceeds
+/// the limit.
 template <class OrientationOf>
 bool AnyTilted(std::size_t count, const OrientationOf& orientation_of, double cos_max_tilt) {
   bool tilted = false;
@@ -27,13 +28,13 @@ inline bool AnyTilted(std::span<const BodyState> bodies, double cos_max_tilt) {
       bodies.size(), [&](std::size_t b) { return bodies[b].orientation; }, cos_max_tilt);
 }
 
-/// Returns whether the height of the center of mass is outside of its limits.
+/// Returns whether the height of the center of mass is outside its limits.
 inline bool BeyondHeights(const FallSpec& fall, double height_m) {
   return (fall.min_height_m && height_m < *fall.min_height_m) ||
          (fall.max_height_m && height_m > *fall.max_height_m);
 }
 
-/// Returns the last body with a speed above the limit or not a number; kWorld if there is none.
+/// Returns the last body whose speed exceeds the limit or is NaN; kWorld if there is none.
 template <class VelocityOf>
 int TooFast(std::size_t count, const VelocityOf& velocity_of, double max_speed_m_per_s) {
   int found = kWorld;
@@ -51,7 +52,8 @@ inline int TooFast(std::span<const BodyState> bodies, double max_speed_m_per_s) 
 /// Returns the horizontal distance of a displacement [m].
 inline double DistanceOf(const Vec3& way) { return std::sqrt(way.x * way.x + way.y * way.y); }
 
-/// Returns the penalty of exceeding the limit; `max_tension_n`: largest of any cable so far.
+/// Returns the penalty for exceeding the limit. `max_tension_n`: largest tension of any cable so
+/// far.
 inline double TensionPenalty(const TensionLimit& limit, double max_tension_n) {
   const double above_n = max_tension_n - limit.limit_n;
   return limit.penalty_per_n * (above_n > 0.0 ? above_n : 0.0);

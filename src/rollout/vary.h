@@ -6,7 +6,7 @@
 
 namespace taut::rollout {
 
-/// Draws factors within the given shares and adds them, and the noise of the start, to a world.
+/// Draws random factors of parameters and random start noise, and adds them to a world.
 void Vary(const VariationSpec& by, math::Random random, RolloutWorld& world);
 
 }  // namespace taut::rollout
