@@ -1,5 +1,5 @@
-/// Serialization of candidates, trials and other work between processes of the same build on the
-/// same kind of machine.
+/// Serialization of candidates, trials and other work, for exchange between processes of the same
+/// build on machines of the same kind.
 #pragma once
 
 #include <span>

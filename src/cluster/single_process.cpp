@@ -14,7 +14,7 @@ bool StartedByLauncher() {
 
 namespace {
 
-/// Passes all candidates to the local evaluator.
+/// Evaluator that passes all candidates to the local evaluator.
 class Same final : public Evaluator {
  public:
   explicit Same(Evaluator& local) : local_(local) {}

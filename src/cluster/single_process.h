@@ -1,4 +1,4 @@
-/// Cluster of a single process.
+/// Cluster that consists of a single process.
 #pragma once
 
 #include <memory>

@@ -1,9 +1,10 @@
-/// Detection of processes that MPI launchers started.
+/// Detection of MPI launchers.
 #pragma once
 
 namespace taut::cluster {
 
-/// Returns whether mpirun of Open MPI or MPICH, or srun with PMIx or PMI-2, started this process.
+/// Returns whether this process was started by mpirun of Open MPI or MPICH, or by srun with PMIx or
+/// PMI-2.
 bool StartedByLauncher();
 
 }  // namespace taut::cluster

@@ -1,4 +1,4 @@
-// Cluster of MPI processes: rank 0 distributes candidates and work, all ranks evaluate.
+// Cluster of MPI processes. Rank 0 distributes candidates and work; all ranks evaluate them.
 #define OMPI_SKIP_MPICXX 1
 #include <mpi.h>
 
@@ -16,7 +16,7 @@ namespace {
 using cluster::Bytes;
 
 constexpr int kAnswersTag = 1;
-/// Time that rank 0 waits for the others after a request to stop.
+/// Time that rank 0 waits for other ranks after a request to stop.
 constexpr auto kPatience = std::chrono::seconds(5);
 
 /// Broadcasts bytes from rank 0 to all ranks.
@@ -27,7 +27,8 @@ void Broadcast(Bytes& bytes) {
   MPI_Bcast(bytes.data(), static_cast<int>(size), MPI_CHAR, 0, MPI_COMM_WORLD);
 }
 
-/// Returns a rank's share of candidates or pieces: even and contiguous, so that lanes are filled.
+/// Returns a rank's range of candidates or jobs. Ranges are even and contiguous, to fill SIMD
+/// lanes.
 std::pair<std::size_t, std::size_t> Share(std::size_t count, int rank, int size) {
   const auto at = [&](int r) {
     return count * static_cast<std::size_t>(r) / static_cast<std::size_t>(size);
@@ -45,8 +46,8 @@ std::vector<Evaluator::Trial> TryAll(std::span<const Evaluator::Candidate> candi
   return trials;
 }
 
-/// Connection of rank 0 to the other ranks: distributes work, collects results, and releases the
-/// ranks at the end.
+/// Connection of rank 0 to the other ranks. Distributes work and collects results. Its destructor
+/// ends the other ranks' service.
 class Others {
  public:
   Others(const std::atomic<bool>* stop, int size) : stop_(stop), size_(size) {}
@@ -58,8 +59,8 @@ class Others {
   Others& operator=(const Others&) = delete;
 
   void HandOut(Bytes work) const { Broadcast(work); }
-  /// Receives from the next rank that is ready. Polls instead of blocking, so that it can be
-  /// stopped: an error follows after kPatience.
+  /// Receives the results of the next rank that has finished. Polls, so that it can be stopped.
+  /// Sets an error kPatience after a request to stop.
   Bytes Take(int& rank) {
     MPI_Status status;
     std::chrono::steady_clock::time_point told{};

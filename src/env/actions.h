@@ -1,4 +1,4 @@
-/// Conversion of actions to commands, for the lanes of a group.
+/// Conversion of actions to commands for all lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -14,19 +14,19 @@ class Actions {
  public:
   explicit Actions(const Plan& plan);
 
-  /// Begins an episode of a lane from the commands of the start. Actions take effect `delay`
-  /// periods later; until then they are 0.
+  /// Begins an episode of a lane. `commands`: initial commands. Actions take effect `delay` periods
+  /// later; until then, they are 0.
   void Begin(int lane, const Commands& commands, int delay);
 
-  /// Stores the next action of a lane; null: zeros. Returns false if a number is not finite; it is
-  /// replaced by 0.
+  /// Stores the next action of a lane; null stands for zeros. Replaces values that are not finite
+  /// by 0. Returns false if there were any.
   template <class T>
   bool Read(int lane, const T* action);
-  /// Applies the actions of all lanes to commands and controllers, once all have been read.
+  /// Applies the actions of all lanes to commands and controllers. Call after `Read` for all lanes.
   void Apply(plant::Loop& loop);
 
-  /// Serializes a lane's actions, like a controller's `Serialize`. On reading, which requires
-  /// `Begin`, it also restores the numbers of the loop's controllers.
+  /// Serializes a lane's actions, like a controller's `Serialize`. To restore, call `Begin` first;
+  /// this also restores the tuned numbers of the loop's controllers.
   void Serialize(plant::LaneState& state, plant::Loop& loop);
 
  private:
@@ -39,12 +39,12 @@ class Actions {
 
   const Plan& plan_;
   std::size_t count_, lanes_, slots_;
-  std::size_t next_ = 0;            ///< Slot of the next actions.
+  std::size_t next_ = 0;            ///< Slot in `ring_` for the next actions.
   std::vector<double> ring_;        ///< Clamped actions of the last periods, one row per action.
-  std::vector<std::size_t> delay_;  ///< Per lane.
-  std::vector<double> command_m_;   ///< One row per action: rest length without the action, or
-                                    ///< accumulated by a rate.
-  std::vector<double> now_;         ///< Actions in effect, if actions may be delayed.
+  std::vector<std::size_t> delay_;  ///< Delay per lane, in periods.
+  std::vector<double> command_m_;   ///< One row per action: rest length for action 0, or rest
+                                    ///< length accumulated by a rate.
+  std::vector<double> now_;         ///< Actions in effect if actions may be delayed.
   Tuning tuning_;
 };
 

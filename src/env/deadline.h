@@ -1,4 +1,4 @@
-/// Time at which the threads of an environment pause in a long period, so that its caller can poll
+/// Time at which the threads of an environment pause in a long period, so that the caller can poll
 /// `EnvOptions::keep_going`.
 #pragma once
 
@@ -8,7 +8,7 @@ namespace taut::env {
 
 class Deadline {
  public:
-  /// `polls` false: never reached.
+  /// `polls`: false for a deadline that is never reached.
   explicit Deadline(bool polls) : polls_(polls) {
     if (polls) end_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
   }

@@ -65,7 +65,7 @@ class LaneEnv final : public Env {
     }
     const int worlds = plan_->options.worlds, lanes = plan_->lanes;
     groups_.resize(static_cast<std::size_t>((worlds + lanes - 1) / lanes));
-    auto make = [&](int, std::size_t g) {  // allocates memory near the thread that uses it
+    auto make = [&](int, std::size_t g) {  // allocates memory on the thread that uses it
       const int count = std::min(lanes, worlds - static_cast<int>(g) * lanes);
       groups_[g] = std::make_unique<Group>(*plan_, observed_, of_channels, count);
     };
@@ -156,7 +156,7 @@ class LaneEnv final : public Env {
     sim::CheckIndex(function, "world", world, worlds());
     return *groups_[static_cast<std::size_t>(world / plan_->lanes)];
   }
-  /// Returns the seal of snapshots, which are compatible if these properties are equal.
+  /// Returns the seal of snapshots. Snapshots are compatible if the properties below are equal.
   plant::Sealing Seal() {
     if (kind_ == 0) {
       base::Fnv1a kind;
@@ -226,8 +226,8 @@ class LaneEnv final : public Env {
     return good;
   }
 
-  /// Performs the period of all groups, in rounds between which `keep_going` is polled. Returns
-  /// false if it stopped the step.
+  /// Simulates one period of all groups. Polls `keep_going` between rounds. Returns false if it
+  /// stopped the step.
   template <class Work>
   bool StepGroups(const Work& work) {
     const auto& keep_going = plan_->options.keep_going;
@@ -340,8 +340,8 @@ class LaneEnv final : public Env {
     if (plan_->options.observe) plan_->options.observe(ViewOf(rows, observations));
   }
 
-  /// Writes the observations of episodes that have just begun; changes by callbacks are not checked
-  /// again after this.
+  /// Calls the `observe` callback for episodes that have just begun. Replaces values that are not
+  /// finite by 0.
   template <class T>
   void ObserveBegun(std::span<T> observations) const {
     if (!plan_->options.observe) return;
@@ -359,11 +359,13 @@ class LaneEnv final : public Env {
   std::uint64_t kind_ = 0;  ///< 0: not computed yet.
   env::Starts starts_;
   base::ThreadPool pool_;
-  std::vector<env::Place> places_;  ///< Per thread.
+  std::vector<env::Place> places_;  ///< Working memory per thread.
   std::vector<std::unique_ptr<Group>> groups_;
   std::vector<std::uint8_t> stepped_, begun_, all_;  ///< Per world.
-  std::vector<std::uint8_t> paused_;                 ///< Per group: its period is not complete.
-  bool stopped_ = false;                             ///< `keep_going` stopped the last step.
+  std::vector<std::uint8_t> paused_;                 ///< Per group: whether its period is
+                                                     ///< incomplete.
+  bool stopped_ = false;                             ///< Whether `keep_going` stopped the last
+                                                     ///< step.
 };
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace taut {
 namespace {
 
-/// All lanes take the same steps, at any time of their episodes, only if all times are multiples of
-/// the step (src/plant/schedule.h).
+/// Tolerance for multiples of the step. All times must be multiples of the step, so that all lanes
+/// take the same steps at any time of their episodes (src/plant/schedule.h).
 constexpr double kRounding = 1e-9;
 
 bool IsWhole(double ratio) {
@@ -88,7 +88,7 @@ class Clocks {
   Diagnostics& out_;
 };
 
-/// Checks actions of experiments from programs, which no file reader has checked.
+/// Checks actions of experiments that a program has created, since no file reader has checked them.
 void CheckNumbers(const ExperimentSpec& experiment, Diagnostics& out) {
   const EnvironmentSpec& spec = *experiment.environment;
   std::vector<ControllerSpec> controllers = experiment.controllers;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
 
-/// Returns gravity rotated about a random horizontal axis by an angle up to `slope_rad`, equivalent
-/// to sloped terrain.
+/// Returns gravity rotated about a random horizontal axis by an angle of at most `slope_rad`, which
+/// is equivalent to sloped terrain.
 Vec3 Sloped(const Vec3& gravity, double slope_rad, std::uint64_t seed) {
   if (!(slope_rad > 0)) return gravity;
   math::Random random(seed, plant::kEpisodeSlope, 0);
@@ -24,7 +24,7 @@ Vec3 Sloped(const Vec3& gravity, double slope_rad, std::uint64_t seed) {
   return Rotate(turn, gravity);
 }
 
-/// Returns a uniform integer in 0..most.
+/// Returns a uniformly distributed integer from 0 to `most`.
 int Drawn(int most, math::Random& random) {
   return static_cast<int>(random.Uniform() * (most + 1));
 }

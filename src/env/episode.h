@@ -1,4 +1,4 @@
-/// Random draw of an episode (domain randomization): seed, model variation, slope of gravity and
+/// Random variables of an episode (domain randomization): seed, model parameters, slope of gravity,
 /// delays.
 #pragma once
 
@@ -9,8 +9,8 @@
 namespace taut::env {
 
 struct Episode {
-  std::uint64_t raw_seed = 0;  ///< The next episode's seed follows from it.
-  std::uint64_t seed = 0;      ///< Effective seed.
+  std::uint64_t raw_seed = 0;  ///< Determines the seed of the next episode.
+  std::uint64_t seed = 0;      ///< Seed of this episode.
   RolloutWorld world;
   Vec3 gravity_m_per_s2;                        ///< In W.
   int action_delay = 0, observation_delay = 0;  ///< In periods.
@@ -21,8 +21,8 @@ Episode DrawEpisode(const Plan& plan, std::uint64_t raw_seed);
 /// Returns the default seed of a world's next episode.
 std::uint64_t FollowingSeed(std::uint64_t raw_seed) noexcept;
 
-/// Changes an experiment so that it runs the episode alone. `experiment`: the plan's, or one set
-/// for another episode.
+/// Changes an experiment to that of an episode. `experiment`: the experiment of the plan, or the
+/// result of an earlier call.
 void SetEpisode(const Episode& episode, ExperimentSpec& experiment);
 
 }  // namespace taut::env

@@ -30,7 +30,7 @@ class LaneBodies {
     }
   }
 
-  /// Reads the present states.
+  /// Reads the current states.
   void Read() {
     kernel_.bodies(from_, rows_.data());
     for (const int body : moved_) {
@@ -47,8 +47,8 @@ class LaneBodies {
   Vec3 velocity_m_per_s(std::size_t lane, std::size_t body) const noexcept {
     return At(lane, body, 7);
   }
-  /// Returns the values of a channel for all lanes, by its index in `BodyChannels`. The pointer
-  /// stays valid.
+  /// Returns the values of a channel for all lanes. `channel`: index in `BodyChannels`. The pointer
+  /// remains valid.
   const double* Row(std::size_t body, std::size_t channel) const noexcept {
     return rows_.data() + (kNumbers * body + channel) * lanes_;
   }
@@ -73,7 +73,7 @@ class LaneBodies {
   std::size_t lanes_, count_;
   std::vector<double> rows_;
   plant::BodyRows from_;
-  std::vector<int> moved_;  ///< Kinematic bodies.
+  std::vector<int> moved_;  ///< Indices of kinematic bodies.
 };
 
 }  // namespace taut::env

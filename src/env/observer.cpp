@@ -10,7 +10,7 @@
 namespace taut::env {
 namespace {
 
-/// Returns the rows of the cable quantities that traces contain for every cable.
+/// Returns the rows of the cable channels that traces contain for every cable.
 std::map<std::string, const double*> CableRowsOf(const plant::Loop& loop) {
   std::map<std::string, const double*> rows;
   for (const plant::CableChannel& channel : plant::kCableChannels) {
@@ -83,8 +83,7 @@ Observer::Observer(const Plan& plan, const ExperimentSpec& observed,
 void Observer::Next() { now_ = (now_ + 1) % slots_; }
 
 void Observer::Take(Lanes lanes, int count) {
-  const Observation* const exact =
-      senses_ ? &loop_.exact() : nullptr;  // updates the rows of cables
+  const Observation* const exact = senses_ ? &loop_.exact() : nullptr;  // updates the cable rows
   for (int j = 0; recorder_ && j < count; ++j) {
     if (!Has(lanes, j)) continue;
     const std::vector<double>& row = recorder_->Row(
@@ -94,7 +93,7 @@ void Observer::Take(Lanes lanes, int count) {
     }
   }
   double* const now = &ring_[now_ * count_ * lanes_];
-  const bool all = lanes == AllLanes(count);  // including lanes behind the last world
+  const bool all = lanes == AllLanes(count);  // all worlds: unused lanes may be overwritten, too
   double* const to = all ? now : fresh_.data();
   const bool in_float = kernel_.collect(rows_.data(), static_cast<int>(count_), to);
   in_float_[now_] = in_float && (all || in_float_[now_] != 0) ? 1 : 0;
@@ -119,12 +118,14 @@ void Observer::Serialize(plant::LaneState& state) {
       state.Value(At((now_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));
     }
   }
-  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);  // range not known
+  if (state.reads())
+    std::fill(in_float_.begin(), in_float_.end(), 0);  // unknown whether they fit
+                                                       // into a float
 }
 
 namespace {
 
-/// Clamps a number to the range of T; a double may be too large for a float.
+/// Clamps a number to the range of T, since a double may be too large for a float.
 template <class T>
 T Number(double x) {
   constexpr double kMost = std::numeric_limits<T>::max();

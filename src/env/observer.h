@@ -1,4 +1,4 @@
-/// Observations of the lanes of a group: channels selected by name, gathered over lanes.
+/// Observations of all lanes of a group, selected by channel names.
 #pragma once
 
 #include <cstddef>
@@ -14,29 +14,29 @@
 
 namespace taut::env {
 
-/// Returns an experiment whose traces contain exactly the observed channels.
+/// Returns an experiment whose trace contains exactly the observed channels.
 ExperimentSpec Observed(const ExperimentSpec& experiment);
 
 class Observer {
  public:
-  /// `channels`: from a recorder of `observed`. Both must outlive this object, as must the loop and
-  /// `bodies`. Call `bodies.Read` before `Take`.
+  /// `channels`: channels of a recorder for `observed`. `loop` and `bodies` must outlive this
+  /// object. Call `bodies.Read` before `Take`.
   Observer(const Plan& plan, const ExperimentSpec& observed,
            const std::vector<ChannelInfo>& channels, plant::Loop& loop, const LaneBodies& bodies);
 
-  void Next();  ///< Advances to the next period; call `Take` for all lanes after it.
-  /// Returns whether `Take` reads present cable values, which are best computed while the step's
-  /// memory is still in the cache.
+  void Next();  ///< Advances to the next period. Then call `Take` for all lanes.
+  /// Returns whether `Take` needs current cable readings. These are fastest to compute while the
+  /// step's memory is in the cache.
   bool senses() const noexcept { return senses_; }
-  /// Observes some of the first `count` lanes. Values that are not finite, such as the position of
-  /// a missing contact, become 0.
+  /// Stores the observations of the selected lanes among the first `count`. Values that are not
+  /// finite, such as the position of a missing contact, become 0.
   void Take(Lanes lanes, int count);
-  /// Begins an episode with the values of the last `Take`; observations are delayed by `delay`
+  /// Begins an episode with the values of the last `Take`. Observations are delayed by `delay`
   /// periods.
   void Begin(int lane, int delay);
 
-  /// Serializes the observations of the last periods, like a controller's `Serialize`. Reading
-  /// requires `Begin`.
+  /// Serializes the observations of the last periods, like a controller's `Serialize`. To restore,
+  /// call `Begin` first.
   void Serialize(plant::LaneState& state);
 
   template <class T>
@@ -50,15 +50,17 @@ class Observer {
   plant::Loop& loop_;
   std::size_t count_, lanes_, slots_, now_ = 0;
   const plant::LaneKernel& kernel_;
-  /// Per column: its row in the plant, the bodies or `others_`.
+  /// Per observation: row in the plant, the bodies or `others_`.
   std::vector<const double*> rows_;
-  std::vector<std::size_t> other_columns_;     ///< Columns from `recorder_`.
-  std::vector<double> others_;                 ///< Their rows.
-  std::unique_ptr<plant::Recorder> recorder_;  ///< Null if there are no other channels.
-  bool senses_ = false;  ///< Whether an observed quantity needs an explicit update to the present.
+  std::vector<std::size_t> other_columns_;     ///< Observations computed by `recorder_`.
+  std::vector<double> others_;                 ///< Rows of these observations.
+  std::unique_ptr<plant::Recorder> recorder_;  ///< Null if all observations have rows in the plant
+                                               ///< or the bodies.
+  bool senses_ = false;  ///< Whether an observation needs updated cable readings.
   std::vector<double> ring_, fresh_;
-  std::vector<std::uint8_t> in_float_;  ///< Per slot: all numbers fit into a float.
-  std::vector<std::size_t> delay_;      ///< Per lane.
+  std::vector<std::uint8_t> in_float_;  ///< Per slot of `ring_`: whether all numbers fit into a
+                                        ///< float.
+  std::vector<std::size_t> delay_;      ///< Delay per lane, in periods.
 };
 
 }  // namespace taut::env

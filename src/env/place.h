@@ -1,4 +1,4 @@
-/// Working memory of a thread, shared by all groups it processes.
+/// Working memory of a thread, for all groups that it processes.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 namespace taut::env {
 
 struct Place {
-  std::unique_ptr<Workplace> starts;  ///< Created when the thread first prepares a start.
-  Aligned<char> scratch;              ///< For a step of any group's batch.
+  std::unique_ptr<Workplace> starts;  ///< Created when the thread prepares its first start.
+  Aligned<char> scratch;              ///< Scratch memory for a step of any group's batch.
 };
 
 inline Aligned<char> ScratchFor(WorldBatch& batch) {
@@ -20,8 +20,8 @@ inline Aligned<char> ScratchFor(WorldBatch& batch) {
   return AllocateAligned<char>(of.kernel->scratch_bytes(of.view));
 }
 
-/// Lends the thread's scratch memory, still in the core's cache from the previous group, to a
-/// group's batch for its lifetime. The batch's memory remains for readers.
+/// Lends the thread's scratch memory to a group's batch for the lifetime of this object. The memory
+/// is still in the core's cache from the previous group. Readers use the batch's memory.
 class BorrowedScratch {
  public:
   BorrowedScratch(Place& place, WorldBatch& batch)

@@ -1,4 +1,4 @@
-/// Common settings of all worlds of an environment.
+/// Settings that all worlds of an environment share.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@ namespace taut::env {
 
 struct Plan {
   ExperimentSpec experiment;
-  EnvironmentSpec spec;         ///< From the experiment.
-  EnvironmentVariation varied;  ///< Empty if the caller wants no randomization.
+  EnvironmentSpec spec;         ///< Environment of the experiment.
+  EnvironmentVariation varied;  ///< Empty without randomization.
   EnvOptions options;
   std::shared_ptr<const Model> model;
   Simd simd = Simd::kScalar;

@@ -114,7 +114,7 @@ RewardAndTermination::Verdict RewardAndTermination::Evaluate(int lane, std::int6
   const Vec3 center_m = needs_center_ ? Center(j) : Vec3{};
   Verdict verdict;
   verdict.end = EndOf(j, number, good_action, center_m);
-  if (Failed(verdict.end)) {  // the distance of a robot whose simulation failed does not count
+  if (Failed(verdict.end)) {  // ignore the distance of a failed simulation
     verdict.reward = -reward_.failure_penalty;
     return verdict;
   }

@@ -1,4 +1,4 @@
-/// Rewards and terminations of episodes, for the lanes of a group.
+/// Rewards and terminations of episodes for all lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +13,14 @@ namespace taut::env {
 
 class RewardAndTermination {
  public:
-  /// `bodies`: call its `Read` before `Begin` and before `Evaluate`.
+  /// Call `bodies.Read` before `Begin` and before `Evaluate`.
   RewardAndTermination(const Plan& plan, const plant::Loop& loop, const LaneBodies& bodies);
 
-  /// Begins an episode; the lane's world is at its start.
+  /// Begins an episode. The lane's world must be at its start.
   void Begin(int lane, const RolloutWorld& world);
 
-  /// Serializes an episode's accumulated values, like a controller's `Serialize`. Reading requires
-  /// `Begin`.
+  /// Serializes the accumulated values of an episode, like a controller's `Serialize`. To restore,
+  /// call `Begin` first.
   void Serialize(plant::LaneState& state);
 
   /// Returns whether `Measure` must be called after each step of all lanes.
@@ -31,7 +31,8 @@ class RewardAndTermination {
     double reward = 0;
     EpisodeEnd end = EpisodeEnd::kNone;
   };
-  /// Returns the reward and end of the period with this number, from 1, of a lane.
+  /// Returns the reward of a period and whether the episode ends. `number`: period of the episode,
+  /// starting at 1.
   Verdict Evaluate(int lane, std::int64_t number, bool good_action);
 
  private:
@@ -42,10 +43,11 @@ class RewardAndTermination {
 
   /// Accumulated values of a lane's episode.
   struct RewardTotals {
-    bool started = false;  ///< Whether its motion counts already.
+    bool started = false;  ///< Whether its progress already counts.
     Vec3 start_m, goal_m;
     double start_to_goal_m = 0;
-    double progress_m = 0, tension_penalty = 0, work_j = 0;  ///< Already included in rewards.
+    double progress_m = 0, tension_penalty = 0, work_j = 0;  ///< Values already included in
+                                                             ///< rewards.
   };
 
   const Plan& plan_;
@@ -57,7 +59,7 @@ class RewardAndTermination {
   bool measures_, needs_center_;
   double cos_max_tilt_;
   std::vector<double> motor_;  ///< Per cable: 1 if it has a motor.
-  std::vector<double> rest_before_m_, wound_j_, max_tension_n_, unused_;  ///< Rows of the kernel.
+  std::vector<double> rest_before_m_, wound_j_, max_tension_n_, unused_;  ///< Rows for the kernel.
   std::vector<double> mass_kg_;                                           ///< [lane][body]
   std::vector<RewardTotals> totals_;
 };

@@ -1,4 +1,4 @@
-/// Cache of episode starts, prepared when they are first needed.
+/// Cache of episode starts, filled on demand.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@
 
 namespace taut::env {
 
-/// Workspace of a thread for preparing starts: one world, and its experiment.
+/// Workspace of a thread to prepare starts: one world and its experiment.
 class Workplace {
  public:
   explicit Workplace(const Plan& plan);
-  /// Returns the snapshot of a start; nothing, with the reason in `failed`, if it does not exist.
+  /// Returns the snapshot of a start. Returns nothing and sets `failed` if there is no such start.
   std::shared_ptr<const std::vector<std::uint8_t>> Prepare(const Episode& episode,
                                                            std::string& failed);
 
@@ -26,13 +26,13 @@ class Workplace {
   ExperimentSpec experiment_;
 };
 
-/// Snapshots of starts, kept if seeds recur (`EnvironmentVariation::starts`, or starts independent
-/// of the seed). Thread-safe, with one workspace per thread.
+/// Snapshots of starts. They are cached if seeds recur (`EnvironmentVariation::starts`) or if
+/// starts do not depend on the seed. Thread-safe if each thread has its workspace.
 class Starts {
  public:
   explicit Starts(const Plan& plan) : plan_(plan) {}
 
-  /// `place`: the thread's workspace, created when needed.
+  /// `place`: workspace of the thread, created on demand.
   std::shared_ptr<const std::vector<std::uint8_t>> Of(const Episode& episode,
                                                       std::unique_ptr<Workplace>& place,
                                                       std::string& failed);

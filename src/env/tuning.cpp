@@ -28,7 +28,7 @@ Tuning::Tuning(const Plan& plan) {
         TAUT_ASSERT(found != by_name.end());  // checked by `CheckEnvironment`
         const Tunable& tunable = found->second;
         if (&lane == &lanes_[0]) {
-          // Not clamped: action 0 must reproduce the experiment.
+          // Not clamped, since action 0 must reproduce the experiment.
           const double base = *tunable.value;
           moved_.push_back({i, lane.numbers.size(), base, *actions[i].by,
                             std::min(tunable.min, base), std::max(tunable.max, base)});

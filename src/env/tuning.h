@@ -1,4 +1,4 @@
-/// Numbers of controllers and gaits that actions change, for the lanes of a group.
+/// Numbers of controllers and gaits that actions change, for all lanes of a group.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,17 @@ class Tuning {
  public:
   explicit Tuning(const Plan& plan);
 
-  /// Begins an episode of a lane whose controllers were restarted with the experiment's numbers.
+  /// Begins an episode of a lane. Its controllers must have been restarted with the experiment's
+  /// numbers.
   void Begin(int lane);
-  /// Sets a lane's numbers from an action with one element per action of the plan, `stride` apart.
-  /// Only changed controllers are passed to the loop. Allocates no memory.
+  /// Sets a lane's numbers from an action. `stride`: distance between two elements of `action`.
+  /// Passes controllers to the loop only if numbers changed. Allocates no memory.
   void Set(int lane, const double* action, std::size_t stride, plant::Loop& loop);
   bool none() const noexcept { return moved_.empty(); }
 
  private:
   struct Moved {
-    std::size_t action, number;  ///< Index among the plan's actions; index in `Lane::numbers`.
+    std::size_t action, number;  ///< Index of the action in the plan; index in `Lane::numbers`.
     double base, by, least, most;
   };
   struct Lane {

@@ -8,14 +8,15 @@
 namespace taut::env {
 namespace {
 
-/// Returns one pointer per lane to the experiment's world, until episodes begin.
+/// Returns one pointer per lane to the experiment's unchanged variant, for use before episodes
+/// begin.
 std::vector<const RolloutWorld*> AllAs(const RolloutWorld& world, int lanes) {
   return std::vector<const RolloutWorld*>(static_cast<std::size_t>(lanes), &world);
 }
 
 constexpr int kMostTries = 8;
 
-/// Steps between two looks at the deadline: a few milliseconds for most models.
+/// Number of steps between two checks of the deadline, a few milliseconds for most models.
 constexpr std::int64_t kStepsBetweenLooks = 16;
 
 }  // namespace
@@ -46,8 +47,7 @@ bool Group::Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place
     worlds_[Index(j)].begins = true;
   };
   put(lane);
-  // Surplus lanes behind the last world restart with the first one, so that they do not fall
-  // without end.
+  // Unused lanes restart with the first world, so that they do not fall forever.
   for (int j = count_; lane == 0 && j < plan_.lanes; ++j) put(j);
   Slot& own = worlds_[Index(lane)];
   own.last = own.now;
@@ -84,7 +84,7 @@ void Group::Serialize(plant::LaneState& state) {
     state.Values(episode->seed, episode->steps, episode->reward, episode->end);
   }
   actions_.Serialize(state,
-                     loop_);  // restores the controllers' numbers before their internal state
+                     loop_);  // restores the controllers' numbers before their state
   loop_.Serialize(state);
   reward_and_termination_.Serialize(state);
   observer_.Serialize(state);
@@ -133,7 +133,7 @@ void Group::BeginNext(int lane, Starts& starts, Place& place) {
     if (Begin(lane, seed, starts, place, failed)) return;
   }
   const bool good = Begin(lane, present, starts, place, failed);
-  TAUT_ASSERT(good);  // this start has succeeded before
+  TAUT_ASSERT(good);  // this start was found before
 }
 
 void Group::Advance(Place& place, const Deadline& deadline) {
@@ -207,7 +207,7 @@ bool Group::Finish(const GroupRows<T>& rows, Starts& starts, Place& place) {
     for (int i = 0; plan_.options.observe && i < width_; ++i) {
       if (!std::isfinite(row[i])) row[i] = 0;
     }
-    if (rows.stepped[j] == 0) {  // callbacks do not apply here
+    if (rows.stepped[j] == 0) {  // ignore changes by callbacks
       rows.rewards[j] = 0;
       rows.terminated[j] = own.now.end > EpisodeEnd::kTime ? 1 : 0;
       continue;

@@ -1,4 +1,4 @@
-/// Worlds of an environment that share a SIMD register, with their episodes, rewards and resets.
+/// Worlds of an environment that share a SIMD register, with episodes, rewards and resets.
 #pragma once
 
 #include <atomic>
@@ -18,41 +18,41 @@
 
 namespace taut::env {
 
-/// Rows of one group in the arrays passed to `Step`.
+/// Rows of a group in the arrays passed to `Step`.
 template <class T>
 struct GroupRows {
   const T* actions = nullptr;
   T* observations = nullptr;
-  T* final_observations = nullptr;  ///< Null: not requested.
+  T* final_observations = nullptr;  ///< Null if not requested.
   double* rewards = nullptr;
   std::uint8_t *terminated = nullptr, *truncated = nullptr;
-  std::uint8_t* stepped = nullptr;  ///< Whether the world took its action.
-  /// Whether `Finish` began an episode, so that the observation is its first.
+  std::uint8_t* stepped = nullptr;  ///< Whether the world performed its action.
+  /// Whether `Finish` began an episode, so that the observation belongs to the new episode.
   std::uint8_t* begun = nullptr;
 };
 
 class Group {
  public:
-  /// The first `count` lanes are worlds; surplus lanes repeat the first one.
+  /// `count`: number of worlds. Unused lanes repeat the first world.
   Group(const Plan& plan, const ExperimentSpec& observed, const std::vector<ChannelInfo>& channels,
         int count);
 
   int count() const noexcept { return count_; }
   int width() const noexcept { return width_; }
 
-  /// Resets a world to the start of an episode. If there is no such start, returns false with the
-  /// reason in `failed` and leaves the world unchanged. Call `Settle` after one or several resets.
+  /// Resets a world to the start of an episode. If there is no such start, returns false, sets
+  /// `failed` and leaves the world unchanged. Call `Settle` after one or several resets.
   bool Begin(int lane, std::uint64_t raw_seed, Starts& starts, Place& place, std::string& failed);
   void Settle();
 
-  /// Performs a period: actions, steps, rewards, termination, observations. Returns false if it
-  /// paused at the deadline; the next call continues it.
+  /// Simulates a period: actions, steps, rewards, termination, observations. Returns false if it
+  /// paused at the deadline. The next call then continues the period.
   template <class T>
   bool Step(const GroupRows<T>& rows, Starts& starts, Place& place, const Deadline& deadline);
-  /// Abandons a paused period. Call it before a reset of all worlds.
+  /// Abandons a paused period. Call this before resetting all worlds.
   void Abandon() noexcept { steps_left_ = 0; }
-  /// Books rewards and ends of episodes, including changes by callbacks, and begins new episodes.
-  /// Returns whether any episode began in this step.
+  /// Adds up rewards and ends episodes, including changes by callbacks, and begins new episodes.
+  /// Returns whether an episode began.
   template <class T>
   bool Finish(const GroupRows<T>& rows, Starts& starts, Place& place);
   template <class T>
@@ -60,9 +60,9 @@ class Group {
     observer_.Emit(lane, row);
   }
 
-  /// Serializes a world with its episode.
+  /// Serializes a world and its episode.
   std::vector<std::uint8_t> Save(int lane);
-  /// Restores a world. Returns false, without changes, if the state does not belong to the model.
+  /// Restores a world. Returns false and changes nothing if the state does not fit the model.
   bool Restore(int lane, std::span<const std::uint8_t> saved);
 
   const EpisodeState& state(int lane) const { return worlds_[Index(lane)].now; }
@@ -76,16 +76,16 @@ class Group {
   struct Slot {
     Episode episode;
     EpisodeState now, last;
-    bool waits = false;       ///< Its episode is over; the next one begins in the next step.
-    bool good_action = true;  ///< Whether all numbers of this step's action were finite.
-    bool begins = false;      ///< `Settle` has to initialize it.
+    bool waits = false;       ///< Whether its episode has ended and the next step begins a new one.
+    bool good_action = true;  ///< Whether all values of this step's action were finite.
+    bool begins = false;      ///< Whether `Settle` must initialize it.
   };
 
-  /// Serializes everything except the state of the batch.
+  /// Serializes all data except the state of the batch.
   void Serialize(plant::LaneState& state);
 
   static std::size_t Index(int lane) noexcept { return static_cast<std::size_t>(lane); }
-  /// Steps until the period's end or the deadline.
+  /// Steps until the end of the period or the deadline.
   void Advance(Place& place, const Deadline& deadline);
   void BeginNext(int lane, Starts& starts, Place& place);
 
@@ -99,7 +99,7 @@ class Group {
   RewardAndTermination reward_and_termination_;
   Observer observer_;
   std::vector<Slot> worlds_;
-  std::int64_t steps_left_ = 0;  ///< Of a paused period.
+  std::int64_t steps_left_ = 0;  ///< Remaining steps of a paused period.
 };
 
 }  // namespace taut::env

@@ -9,8 +9,8 @@ namespace taut::linear {
 /// derivatives.
 extern const sim::Kernel kKernelDual;
 
-/// Smallest h^2 K (time step h, stiffness K over mass) for which the solver computes a cable's
-/// tension.
+/// Smallest h^2 K (h: time step; K: stiffness over mass, row `stiff_k`) for which the solver
+/// computes a cable's tension.
 extern const double kStiffFrom;
 
 }  // namespace taut::linear

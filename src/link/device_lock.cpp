@@ -12,7 +12,7 @@ namespace taut::link {
 std::optional<pid_t> DriverOf(const std::string& device) {
   struct stat is {};
   if (stat(device.c_str(), &is) != 0) return std::nullopt;
-  // 1: FLOCK  ADVISORY  WRITE 4711 00:18:5 0 EOF
+  // Example line: "1: FLOCK  ADVISORY  WRITE 4711 00:18:5 0 EOF".
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     int process = 0;

@@ -12,11 +12,11 @@ namespace {
 
 using board::Mode;
 
-/// Cycles within which a board must obey.
+/// Number of cycles after which a board must have obeyed a command.
 constexpr int kObey = 10;
-/// First adapter firmware that always ends a transfer with a stop on the bus.
+/// First adapter firmware that ends all transfers with an I2C stop condition.
 constexpr int kGoodAdapter = 8;
-/// Timeout of the stop that the destructor sends.
+/// Timeout of the stop command that the destructor sends.
 constexpr double kLastWords_s = 0.1;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -41,11 +41,11 @@ Driver::Driver(Port& port, DriverOptions options)
 }
 
 Driver::~Driver() {
-  on_cycle = {};  // the listeners may no longer exist
+  on_cycle = {};  // the objects that these callbacks use may no longer exist
   on_event = {};
   if (state_.stage == Stage::kUnconfigured || !port_.is_open()) return;
   if (state_.stage == Stage::kActive) Stop("the driver ends");
-  // A stop may have been requested but not sent yet.
+  // Send a stop that was requested but not sent yet.
   const double until_s = port_.now_s() + kLastWords_s;
   for (int i = 0; state_.stopping && i < 2; ++i) CycleBy(until_s);
 }
@@ -131,7 +131,8 @@ void Driver::Watch() {
     armed = armed ||
             (board.there && board.status.mode != Mode::kOff && board.status.mode != Mode::kStopped);
   }
-  // A board that holds since it lost its PC continues to hold and sends its readings.
+  // A board that holds because it lost the connection must continue to hold. This mode makes it
+  // send its readings.
   say_.mode = armed ? Mode::kHold : Mode::kOff;
   say_.arm = armed ? board::Arm::kGo : board::Arm::kNot;
 }
@@ -166,7 +167,7 @@ bool Driver::Configure(std::span<const Setting> settings, Diagnostics& out, Mean
     if (!requests_.Set(setting, out)) return false;
   }
   if (!ReadFigures(out)) return false;
-  // Boards send readings after a broadcast, which must neither apply nor remove power.
+  // Boards send readings only after a broadcast. This broadcast must not change their power state.
   for (int b = 0; b < board_count(); ++b) {
     const auto faults = requests_.Faults(b, out);
     if (!faults) return false;
@@ -178,7 +179,7 @@ bool Driver::Configure(std::span<const Setting> settings, Diagnostics& out, Mean
       const std::size_t motor = static_cast<std::size_t>(b * board::kMotors + m);
       if (motor < state_.motors.size()) state_.motors[motor].faults = faults->motor[m];
     }
-    // Boards ignore a broadcast whose sequence number they know already.
+    // Boards ignore a broadcast if they have already seen its sequence number.
     if (const auto status = requests_.ReadStatus(b)) say_.sequence = status->sequence;
   }
   say_.sequence = static_cast<std::uint8_t>(say_.sequence + 32);
@@ -190,7 +191,7 @@ bool Driver::Configure(std::span<const Setting> settings, Diagnostics& out, Mean
   std::fill(missed_.begin(), missed_.end(), 0);
   std::fill(deaf_.begin(), deaf_.end(), 0);
   before_ = state_.boards;
-  for (BoardView& board : before_) board.status.was_reset = true;  // its cause has just been read
+  for (BoardView& board : before_) board.status.was_reset = true;  // the reset cause was just read
   return true;
 }
 
@@ -284,7 +285,7 @@ void Driver::Cycle(int count) {
       --count;
       continue;
     }
-    if (!state_.link.connected) return;  // the time of the reconnection is unknown
+    if (!state_.link.connected) return;  // the time of reconnection is unknown
     port_.Wait(due_s());
   }
 }

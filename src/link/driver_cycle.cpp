@@ -11,14 +11,14 @@ namespace {
 
 using board::Mode;
 
-constexpr std::size_t kBoardsPerReply = 3;  // maximum of one reply of the adapter
-constexpr int kReadTries = 2;               // of a frame, within a cycle
+constexpr std::size_t kBoardsPerReply = 3;  // limit of the adapter
+constexpr int kReadTries = 2;               // per frame, within a cycle
 constexpr int kLookForLost = 10;            // cycles between two attempts to reach a lost board
-// A board processes a request within 2 ms: its answer may come in the next cycle.
+// A board processes a request within 2 ms, so its answer may be available in the next cycle.
 constexpr int kAnswerCycles = 2;
 constexpr double kReconnect_s = 0.25;
-/// A busy computer delays replies, which is no fault of the boards. They do not time out within
-/// this time either.
+/// Time for which missing replies are excused: a busy computer delays them, which is not a fault of
+/// the boards. Boards do not time out within this time either.
 constexpr double kAdapterPatience_s = 0.001 * board::kTimeoutTicks;
 
 }  // namespace
@@ -29,7 +29,7 @@ std::int16_t Driver::OnWire(int motor) const {
   switch (say_.mode) {
     case Mode::kPosition:
       units = (figures.rest_length_at_reference_m - values_[At(motor)]) / figures.m_per_count;
-      // 0 would be a position command, possibly far away.
+      // 0 would command a position that may be far away.
       if (!std::isfinite(units)) {
         units = static_cast<double>(state_.motors[At(motor)].encoder_counts);
       }
@@ -54,7 +54,7 @@ void Driver::BeginCycle() {
   link.longest_lateness_s = std::max(link.longest_lateness_s, link.lateness_s);
   cycle_begun_s_ = now_s;
   next_cycle_s_ += options_.period_s;
-  // A cycle missed as a whole is not made up for.
+  // Skip cycles that were missed completely.
   if (now_s >= next_cycle_s_) {
     ++link.late_cycles;
     next_cycle_s_ = now_s + options_.period_s;
@@ -88,7 +88,7 @@ void Driver::BeginCycle() {
 void Driver::AddRequest() {
   for (Waiting& waiting : waiting_) waiting.rest = std::max(0, waiting.rest - 1);
   for (Waiting& waiting : waiting_) {
-    // A board answers the last request only.
+    // A board answers only its last request.
     const bool first = &*std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& one) {
       return one.board == waiting.board;
     }) == &waiting;
@@ -99,7 +99,7 @@ void Driver::AddRequest() {
     steps_.push_back({Step::Kind::kRequest, UsbIss::WriteFrame(address, {request, size}), {1}});
     waiting.rest = kAnswerCycles;
     ++waiting.tries;
-    return;  // one request per cycle: fault requests to six boards would make a cycle late
+    return;  // one request per cycle, since requests to six boards would make a cycle late
   }
 }
 
@@ -117,7 +117,7 @@ void Driver::AddReads() {
     group.clear();
   };
   for (int b = 0; b < board_count(); ++b) {
-    // A group read fails as a whole if a board in it is absent.
+    // Exclude absent boards: one of them makes the whole group read fail.
     if (state_.boards[static_cast<std::size_t>(b)].there) {
       group.push_back(b);
     } else if (state_.link.cycles % kLookForLost == 0) {
@@ -176,7 +176,7 @@ double Driver::due_s() const {
 }
 
 void Driver::EndStep(UsbIss::State how) {
-  const Step step = steps_[step_];  // a copy, since the code below may add steps
+  const Step step = steps_[step_];  // copy, since the code below may add steps
   const Bytes& reply = adapter_.reply();
   const bool silent = how == UsbIss::State::kSilent;
   if (silent) {
@@ -195,7 +195,7 @@ void Driver::EndStep(UsbIss::State how) {
       if (heard) break;
       ++state_.link.unheard_broadcasts;
       if (step.tries + 1 < kReadTries && !silent) {
-        Step again = step;  // boards that received it recognize its sequence number
+        Step again = step;  // boards that have received it ignore the repeated sequence number
         ++again.tries;
         steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(step_) + 1, again);
       }
@@ -210,7 +210,7 @@ void Driver::EndStep(UsbIss::State how) {
           TakeFrame(step.boards[i],
                     std::span(reply).subspan(2 + i * board::kFrameSize, board::kFrameSize), 0);
         } else if (!silent) {
-          ReadAgain(step.boards[i], 1);  // one of them is absent; read each separately
+          ReadAgain(step.boards[i], 1);  // a board may be absent, so read each one separately
         } else {
           ++state_.boards[static_cast<std::size_t>(step.boards[i])].bad_frames;
         }
@@ -228,7 +228,8 @@ void Driver::EndStep(UsbIss::State how) {
   }
 }
 
-/// The last read of a lost board is expected to fail, so it does not count.
+/// Counts a bad frame. The last attempt to read a lost board does not count, since it usually
+/// fails.
 void Driver::CountBad(int board, int tries) {
   BoardView& view = state_.boards[static_cast<std::size_t>(board)];
   if (view.there || tries < kReadTries) ++view.bad_frames;
@@ -242,7 +243,7 @@ void Driver::TakeFrame(int board, std::span<const std::uint8_t> bytes, int tries
   } else {
     CountBad(board, tries);
   }
-  // The status is still missing; the number of tries is limited.
+  // Read again until the status arrives, up to the limit of tries.
   if (tries < kReadTries) ReadAgain(board, tries + 1);
 }
 
@@ -266,7 +267,8 @@ void Driver::TakeStatus(int board, const board::Status& status) {
     to.tension_n = newtons(from.tension_quarters);
     to.set_point_n = status.mode == Mode::kImpedance ? newtons(from.set_point_quarters)
                                                      : std::numeric_limits<double>::quiet_NaN();
-    // The frame contains 16 bits of the count, which never changes by half their range in a cycle.
+    // The frame contains the lowest 16 bits of the count. Within a cycle, the count changes by less
+    // than half of their range.
     to.encoder_counts += static_cast<std::int16_t>(from.encoder_counts -
                                                    static_cast<std::uint16_t>(to.encoder_counts));
     to.rest_length_m = figures.rest_length_at_reference_m -
@@ -312,7 +314,7 @@ void Driver::TakeReply(int board, const board::Reply& reply) {
     return one.tries > 0 && one.board == board && one.asking.what == reply.what &&
            one.asking.index == reply.index;
   });
-  if (found == waiting_.end()) return;  // to an earlier request
+  if (found == waiting_.end()) return;  // answer to an earlier request
   const auto done = std::move(found->done);
   waiting_.erase(found);
   if (done) done(reply);
@@ -334,7 +336,7 @@ bool Driver::TryReconnect() {
   ++state_.link.reconnections;
   next_cycle_s_ = port_.now_s();
   Event("the adapter is back");
-  // Meanwhile the boards have timed out: they hold or are off, until their faults are cleared.
+  // The boards have timed out meanwhile: they hold or are off until their faults are cleared.
   if (state_.stage == Stage::kActive) say_.mode = Mode::kHold;
   return true;
 }

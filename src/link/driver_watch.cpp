@@ -1,4 +1,4 @@
-// Supervision of boards and cables after each cycle, and reactions to faults.
+// Monitoring of boards and cables after each cycle, and reactions to faults.
 #include <algorithm>
 #include <cstdlib>
 
@@ -10,14 +10,15 @@ namespace {
 using board::Mode;
 
 constexpr int kRequestTries = 3;
-constexpr int kResetAfter = 3;  // consecutive broadcasts without an acknowledgment
+constexpr int kResetAfter = 3;  // consecutive broadcasts without acknowledgment
 
 constexpr double kSlack_n = 0.5, kTaut_n = 2;
 constexpr int kSlackCycles = 20;
-// Change of rest length that must change a load cell's reading despite its noise: 0.7 N of a
-// spring.
+// A change of rest length by this distance must change the load cell reading despite its noise: 0.7
+// N of a spring.
 constexpr double kShowing_m = 0.003;
-// Fewer equal readings occur by chance: one in three pairs of consecutive readings is equal.
+// Fewer equal readings may occur by chance, since one in three pairs of consecutive readings is
+// equal.
 constexpr int kSameCycles = 20;
 
 board::Asking AskForFaults() {
@@ -49,7 +50,7 @@ void Driver::React(const std::string& why) {
   }
 }
 
-/// Reports new faults only: a board is faulty already when its second motor fails.
+/// Reports only new faults, since a board may already be faulty when its second motor fails.
 void Driver::TakeFaults(int board, int index, std::uint8_t bits) {
   const int motor = board * board::kMotors + index;
   const bool of_motor = index < board::kMotors;
@@ -114,8 +115,8 @@ void Driver::LookAt(int board, const BoardView& before) {
   }
 }
 
-/// Detects cut cables and load cells whose reading does not change. They cause no motion, and
-/// boards detect them only after winding in a long way.
+/// Detects cut cables and load cells with a constant reading. Boards detect these only after they
+/// have wound in a long distance.
 void Driver::LookAtCable(int motor) {
   CableWatch& watch = cable_watches_[At(motor)];
   const MotorView& now = state_.motors[At(motor)];
@@ -158,7 +159,7 @@ void Driver::EndCycle() {
   link.mean_cycle_s += (link.cycle_s - link.mean_cycle_s) * share;
   link.mean_lateness_s += (link.lateness_s - link.mean_lateness_s) * share;
 
-  // Requests without an answer.
+  // End requests that received no answer.
   for (std::size_t i = 0; i < waiting_.size();) {
     if (waiting_[i].tries < kRequestTries || waiting_[i].rest > 1) {
       ++i;

@@ -1,4 +1,4 @@
-/// Frames from and to boards, as bytes of the adapter.
+/// Decoding of frames that boards send through the adapter.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace taut::link {
 
-/// Copies a complete frame of this board, of either kind; returns false for other bytes.
+/// Copies a complete frame of this board (status or reply). Returns false for other bytes.
 inline bool CopyFrame(std::span<const std::uint8_t> bytes, std::uint8_t board,
                       std::uint8_t (&frame)[board::kFrameSize]) {
   if (bytes.size() != sizeof frame) return false;

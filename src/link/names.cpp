@@ -21,7 +21,7 @@ constexpr struct {
               {board::Mode::kDuty, "duty"},         {board::Mode::kReply, "reply"},
               {board::Mode::kStopped, "stopped"}};
 
-/// In order of the bits, least significant first.
+/// In the order of the bits, least significant bit first.
 constexpr const char* kMotorFaults[] = {"over_tension", "sensor",  "slack", "stall",
                                         "polarity",     "runaway", "hot"};
 constexpr const char* kBoardFaults[] = {"driver",       "overruns",  "parameters_lost",

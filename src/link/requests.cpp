@@ -9,10 +9,10 @@ namespace taut::link {
 namespace {
 
 constexpr int kTries = 3;
-/// Boards process messages between two ticks. The time of a board emulated on a busy machine may
-/// stand still meanwhile, so each attempt waits longer.
+/// Time to wait for an answer. Boards process messages between two ticks. Emulated boards may be
+/// slow on a busy machine, so each further attempt waits longer by the factor kLonger.
 constexpr double kAnswer_s = 0.003, kLonger = 4;
-/// 250 bytes of EEPROM at 3.4 ms each, and a margin of more than as much.
+/// 250 bytes of EEPROM at 3.4 ms each take 0.85 s; the rest is a safety margin.
 constexpr double kMemory_s = 2.0;
 
 board::Asking AskFor(board::Asked what) {

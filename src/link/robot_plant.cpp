@@ -10,7 +10,7 @@ namespace {
 
 using board::Mode;
 
-/// Rows of `rows_`.
+/// Rows in `rows_`.
 enum Row { kRestLength, kLength, kRate, kTension, kElastic, kStiffness, kCommanded, kRows };
 
 }  // namespace
@@ -55,7 +55,7 @@ bool RobotPlant::Hold(Diagnostics& out) {
 }
 
 void RobotPlant::Begin() {
-  // In position control, a motor's first set point is its current position.
+  // In position control, the first set point of a motor is its current position.
   for (std::size_t m = 0; m < cables_.size(); ++m) {
     const double here_m = driver_.state().motors[m].rest_length_m;
     driver_.SetValue(static_cast<int>(m), mode_ == Mode::kPosition ? here_m : 0.0);
@@ -98,8 +98,8 @@ void RobotPlant::Read() {
     const int c = cables_[m];
     const MotorView& motor = state.motors[m];
     const BoardView& board = state.boards[m / board::kMotors];
-    // Rate of the spool, as the boards use it. The spring's rate is below the resolution of the
-    // load cell.
+    // Rate of the spool, as in the boards' control law. The load cell is too coarse to measure the
+    // rate of the spring.
     at(kRate, c) = since_s > 0 ? (motor.rest_length_m - at(kRestLength, c)) / since_s : 0.0;
     at(kRestLength, c) = motor.rest_length_m;
     at(kLength, c) = motor.length_m;
@@ -123,7 +123,9 @@ const Observation& RobotPlant::Observe() {
 void RobotPlant::Advance(const double* /*step_s*/, const double* to_s) {
   if (before_first_step) {
     std::exchange(before_first_step, {})();
-    if (driver_.state().stage != Stage::kActive) return;  // the start failed: time does not run
+    if (driver_.state().stage != Stage::kActive)
+      return;  // the start failed, so time does not
+               // advance
   }
   const std::size_t count = faults_.size();
   for (std::size_t m = 0; m < cables_.size(); ++m) {

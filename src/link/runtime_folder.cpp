@@ -18,7 +18,7 @@ std::string RuntimeFolder(Diagnostics& out) {
               std::string("cannot create the folder: ") + std::strerror(errno));
     return {};
   }
-  // Any user may have made a folder of that name in /tmp.
+  // Another user may have created a folder with this name in /tmp.
   struct stat is {};
   if (lstat(folder.c_str(), &is) != 0 || !S_ISDIR(is.st_mode) || is.st_uid != getuid() ||
       (is.st_mode & 077) != 0) {

@@ -1,4 +1,4 @@
-/// Folder of sockets and files by which programs that use the same robot find each other.
+/// Folder with sockets and files that connect programs using the same robot.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace taut::link {
 
-/// Returns $XDG_RUNTIME_DIR/taut, or /tmp/taut-UID without that variable; accessible to this user
-/// only. Returns an empty string and reports an error if it cannot be created.
+/// Returns $XDG_RUNTIME_DIR/taut, or /tmp/taut-UID if this variable is not set. Only this user can
+/// access the folder. Returns an empty text and reports an error if it cannot be created.
 std::string RuntimeFolder(Diagnostics& out);
 
 }  // namespace taut::link

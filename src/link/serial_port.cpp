@@ -24,21 +24,23 @@ class SerialPort final : public Port {
  public:
   SerialPort(std::string device, PortUse use) : device_(std::move(device)), use_(use) {}
 
-  /// Returns an empty string on success, else the error.
+  /// Opens the device. Returns an empty text on success, otherwise an error message.
   std::string Open() {
     boost::system::error_code error;
     port_.emplace(context_);
-    port_->open(device_, error);  // raw mode, set by Asio
+    port_->open(device_, error);  // Asio sets raw mode
     if (!error && use_ == PortUse::kDrive) {
-      // A replugged adapter is a new device: lock it at each opening.
+      // An adapter that was unplugged and plugged in again is a new device, so lock it at every
+      // opening.
       const int handle = port_->native_handle();
       if (flock(handle, LOCK_EX | LOCK_NB) != 0) {
         port_.reset();
         return kDriven;
       }
-      ioctl(handle, TIOCEXCL);  // also excludes programs that do not use flock, except root's
+      ioctl(handle, TIOCEXCL);  // also excludes programs that do not use flock, except those of
+                                // root
     }
-    // The adapter ignores the rate, but some drivers require one.
+    // The adapter ignores the baud rate, but some drivers require one.
     if (!error) port_->set_option(asio::serial_port_base::baud_rate(115'200), error);
     if (!error) port_->set_option(asio::serial_port_base::flow_control(), error);
     if (error) {
@@ -68,7 +70,7 @@ class SerialPort final : public Port {
   void Wait(double until_s) override {
     const auto until = Clock::time_point(
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(until_s)));
-    // Without a port, the wait would end at once.
+    // Without a port, Asio would return from the wait at once.
     std::optional<asio::executor_work_guard<asio::io_context::executor_type>> guard;
     guard.emplace(context_.get_executor());
     context_.restart();
@@ -101,7 +103,7 @@ class SerialPort final : public Port {
   std::string device_;
   PortUse use_;
   asio::io_context context_;
-  std::optional<asio::serial_port> port_;  ///< Nothing: lost.
+  std::optional<asio::serial_port> port_;  ///< Empty if the connection is lost.
   std::array<std::uint8_t, 256> chunk_{};
   Bytes arrived_;
 };

@@ -18,7 +18,8 @@ namespace {
 
 constexpr char kStop[] = "stop", kStopped[] = "stopped", kTried[] = "unconfirmed";
 
-/// Builds a Linux abstract socket address (independent of folder and user). Returns its size, or 0.
+/// Builds an abstract socket address of Linux, which is independent of folder and user. Returns its
+/// size; 0 on failure.
 socklen_t AddressOf(const std::string& device, sockaddr_un* to) {
   const std::string key = DeviceKey(device);
   if (key.empty()) return 0;
@@ -85,7 +86,7 @@ StopAnswer AskToStop(const std::string& device, double patience_s) {
   if (size == 0) return StopAnswer::kNobody;
   const int asking = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (asking < 0) return StopAnswer::kNobody;
-  // An address that the kernel chooses, for the answer.
+  // The kernel chooses an address to which the answer is sent.
   sockaddr_un own{};
   own.sun_family = AF_UNIX;
   const bool named =

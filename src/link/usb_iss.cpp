@@ -6,13 +6,13 @@
 namespace taut::link {
 namespace {
 
-// Commands, and the elements of I2C_DIRECT.
+// Commands of the adapter, and elements of I2C_DIRECT.
 constexpr std::uint8_t kIss = 0x5a, kAd0 = 0x54, kDirect = 0x57, kTest = 0x58;
 constexpr std::uint8_t kI2cStart = 0x01, kI2cStop = 0x03, kNack = 0x04, kRead1 = 0x20,
                        kWrite1 = 0x30;
 constexpr std::uint8_t kI2cHardware400kHz = 0x70, kUnusedPinsAreInputs = 0x04;
 
-/// Time that the manufacturer specifies for a reply.
+/// Reply time that the manufacturer specifies.
 constexpr double kPatience_s = 0.5;
 constexpr int kVersionTries = 3;
 
@@ -25,7 +25,7 @@ std::size_t SizeOf(const Bytes& reply, ReplyShape shape) {
 }  // namespace
 
 void UsbIss::Begin(std::span<const std::uint8_t> frame, ReplyShape shape, double patience_s) {
-  port_.Read();  // discard late bytes
+  port_.Read();  // discard delayed bytes
   reply_.clear();
   shape_ = shape;
   begun_s_ = port_.now_s();
@@ -57,7 +57,8 @@ std::optional<Bytes> UsbIss::Transfer(std::span<const std::uint8_t> frame, Reply
 }
 
 std::optional<AdapterInfo> UsbIss::Identify() {
-  // Incomplete data of a previous program corrupt the first frame.
+  // The first frame may fail because of incomplete data of a previous program, so try several
+  // times.
   std::optional<Bytes> version;
   for (int i = 0; i < kVersionTries && !version && port_.is_open(); ++i) {
     version = Transfer(std::array{kIss, std::uint8_t{1}}, {3});
@@ -106,7 +107,7 @@ Bytes UsbIss::ReadsFrame(std::span<const std::uint8_t> addresses, std::size_t si
   for (const std::uint8_t address : addresses) {
     const std::uint8_t begin[] = {kI2cStart, kWrite1, static_cast<std::uint8_t>(address << 1 | 1)};
     frame.insert(frame.end(), std::begin(begin), std::end(begin));
-    // All but the last byte are acknowledged, so that the slave releases the bus.
+    // Acknowledge all bytes except the last, so that the board releases the bus.
     if (size > 1) frame.push_back(static_cast<std::uint8_t>(kRead1 + size - 2));
     frame.insert(frame.end(), {kNack, kRead1, kI2cStop});
   }

@@ -24,11 +24,11 @@ namespace taut::link {
 namespace {
 
 constexpr char kProgram[] = "taut_virtual_robot";
-/// Time to read the model and start six boards on a busy machine.
+/// Limit of the start-up time: read the model and start six boards on a busy machine.
 constexpr int kStart_ms = 30'000;
 
-/// Returns $TAUT_VIRTUAL_ROBOT, or the program in this program's folder, or the program on the
-/// search path.
+/// Returns $TAUT_VIRTUAL_ROBOT if it is set. Otherwise returns the program in the folder of this
+/// program, or its name, to be found on the search path.
 std::string ProgramPath() {
   if (const char* const given = std::getenv("TAUT_VIRTUAL_ROBOT"); given && *given != '\0') {
     return given;
@@ -46,7 +46,8 @@ std::string FolderOfIt(Diagnostics& out) {
   return {};
 }
 
-/// Returns true if a process listens there. A leftover link may lead to another terminal.
+/// Returns whether a process listens on this socket. A link may be left over from an earlier
+/// process, and may lead to another terminal.
 bool Lives(const std::string& truth) {
   sockaddr_un address;
   if (!UnixAddress(truth, &address)) return false;
@@ -58,7 +59,7 @@ bool Lives(const std::string& truth) {
   return lives;
 }
 
-/// Returns the first line received, without its end; nothing if none comes in time.
+/// Returns the first line received, without its line end. Returns nothing after a timeout.
 std::optional<std::string> FirstLine(int from) {
   std::string line;
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStart_ms);
@@ -118,7 +119,8 @@ std::unique_ptr<VirtualRobot> VirtualRobot::Start(const std::vector<std::string>
   }
   const pid_t child = fork();
   if (child == 0) {
-    setpgid(0, 0);  // Ctrl-C is for the driving program: the robot stays until its motors are off
+    setpgid(0, 0);  // Ctrl-C must not end the robot before the driving program has switched off its
+                    // motors
     dup2(says[1], STDOUT_FILENO);
     execvp(argv[0], argv.data());
     _exit(127);

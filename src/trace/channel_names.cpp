@@ -10,7 +10,7 @@
 namespace taut::trace {
 namespace {
 
-/// Returns the flaw of a channel name; empty if there is none. `taken`: all names.
+/// Returns the defect of a channel name; empty if there is none. `taken`: all names.
 std::string_view Flaw(std::string_view name, const std::set<std::string_view>& taken) {
   if (name == "time_s") return "is reserved for the clock of the trace";
   for (const char c : name) {
@@ -57,7 +57,7 @@ namespace taut {
 std::string UnitOfName(std::string_view name) {
   name.remove_prefix(name.rfind('/') + 1);  // npos + 1 is 0
   const base::NameUnit unit = base::UnitAtEnd(name);
-  // The unit before "per" may be unknown, as in turns_per_s.
+  // The unit before "per" may be unknown, such as in turns_per_s.
   return unit.over.empty() ? "1" : unit.Text();
 }
 

@@ -1,4 +1,4 @@
-/// Rules for the names of channels, the same for every format of trace files.
+/// Rules for channel names, which all trace formats share.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace taut::trace {
 
-/// Reports names that a trace cannot contain: empty, duplicate, `time_s`, or with characters that a
-/// CSV header or an HDF5 path cannot contain. Returns false if there are any.
+/// Reports names that a trace cannot contain: empty, duplicate, `time_s`, or with characters that
+/// CSV headers or HDF5 paths do not permit. Returns false if there are any.
 bool CheckChannelNames(const std::string& path, const std::vector<ChannelInfo>& channels,
                        Diagnostics& out);
 

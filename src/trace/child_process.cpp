@@ -18,7 +18,7 @@
 namespace taut::trace {
 namespace {
 
-/// Returns the address space of this process, or 0 if the system does not report it.
+/// Returns the size of this process's address space. Returns 0 if the system does not report it.
 std::size_t AddressSpaceBytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
@@ -40,7 +40,7 @@ ProcessorUse UseOf(pid_t pid) {
   char text[1024] = {};
   const std::size_t size = std::fread(text, 1, sizeof text - 1, file);
   std::fclose(file);
-  // After the name, which may contain any character: state, ten numbers, user and system time.
+  // The name may contain any character. After it: state, ten numbers, user time and system time.
   const std::string_view all(text, size);
   const std::size_t name_end = all.rfind(')');
   char state = 0;
@@ -55,8 +55,8 @@ ProcessorUse UseOf(pid_t pid) {
   return use;
 }
 
-/// Prepares for a crash of the child, which is expected: removes signal handlers of the surrounding
-/// program, core file and terminal output. An interrupt (SIGINT) is handled by the parent.
+/// Prepares the child for a possible crash: resets signal handlers, disables core files and
+/// redirects error output to /dev/null. Ignores SIGINT, which the parent handles.
 void PrepareForTheWorst(std::size_t more_memory_bytes) {
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGPIPE}) {
     signal(number, SIG_DFL);
@@ -101,7 +101,7 @@ ChildProcess::ChildProcess(const std::function<void(const ChildOutput&)>& work,
     } catch (const std::exception&) {
       _exit(1);
     }
-    _exit(0);  // not exit(), which would flush and close files of the parent
+    _exit(0);  // unlike exit(), does not flush and close the parent's files
   }
   if (pid_ < 0) trouble_ = fmt::format("could not be started: {}", std::strerror(errno));
   close(ends[1]);

@@ -1,4 +1,4 @@
-/// Forked child process that isolates a library that may crash and sends its result through a pipe.
+/// Forked child process for a library that may crash. The child sends its result through a pipe.
 #pragma once
 
 #include <sys/types.h>
@@ -10,10 +10,10 @@
 
 namespace taut::trace {
 
-/// Limit of processor time for a child that reads an HDF5 file.
+/// Limit of CPU time for a child that reads an HDF5 file.
 inline constexpr std::chrono::seconds kChildPatience{30};
 
-/// The child's end of the pipe. Ends the child when the parent has ended.
+/// The child's end of the pipe. Ends the child if the parent has ended.
 class ChildOutput {
  public:
   explicit ChildOutput(int descriptor) : descriptor_(descriptor) {}
@@ -23,25 +23,24 @@ class ChildOutput {
   int descriptor_;
 };
 
-/// The parent survives any failure of the child: a crash, a hang, unbounded memory.
+/// Child process whose failures do not affect the parent: crashes, hangs, excessive memory.
 class ChildProcess {
  public:
-  /// Forks and runs `work` in the child, which ends with it. `more_memory_bytes`: memory limit of
-  /// the child beyond the parent's size. `patience`: limit of CPU time, and of sleep, after which
-  /// `Read` gives up without bytes. Time spent waiting for a CPU does not count, so that a busy
-  /// machine does not look like a damaged file.
+  /// Forks and runs `work` in the child. `more_memory_bytes`: memory limit of the child in addition
+  /// to the parent's size. `patience`: limit of CPU time, and of sleep. When it is exceeded, `Read`
+  /// returns false. Waiting for a CPU does not count, so that a file does not seem damaged on a
+  /// busy machine.
   ChildProcess(const std::function<void(const ChildOutput&)>& work, std::size_t more_memory_bytes,
                std::chrono::milliseconds patience);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Receives exactly `size` bytes. Returns false if they do not arrive.
+  /// Receives exactly `size` bytes. Returns false if fewer arrive.
   bool Read(void* to, std::size_t size);
 
-  /// Ends the child if it still runs. Returns an empty string if it exited normally, else the
-  /// failure: "crashed (Segmentation fault)", "used 30 s of processor time without a result", "did
-  /// not respond for 30 s".
+  /// Ends the child if it still runs. Returns an empty text if it exited normally, otherwise the
+  /// failure, such as "crashed (Segmentation fault)" or "did not respond for 30 s".
   std::string End();
 
  private:

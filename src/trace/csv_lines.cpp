@@ -1,4 +1,4 @@
-// zlib also reads uncompressed files, so one code path serves both.
+// Reader of lines. zlib reads compressed and uncompressed files.
 #include "trace/csv_lines.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxLineBytes = 8 << 20;
 
-/// Returns the reason why no more can be unpacked; empty at the end of the file.
+/// Returns the reason why reading ended; empty at the end of the file.
 std::string WhyItEnds(gzFile file, const std::string& path) {
   int code = 0;
   std::string_view why = gzerror(file, &code);

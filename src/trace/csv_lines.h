@@ -1,4 +1,4 @@
-/// Lines of a text file, compressed with gzip or not.
+/// Lines of a text file, with or without gzip compression.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,15 @@
 
 namespace taut::trace {
 
-/// Meaning of text after the last line end: a line that was cut off, or the last line.
+/// Meaning of text after the last line end: an incomplete line, or the last line.
 enum class CsvTail { kCutOff, kLine };
 
-/// Passes every line, without its end, to `use`, until that returns false. Returns false and
-/// reports a diagnostic if the file cannot be opened or read to its end.
+/// Passes each line, without its line end, to `use` until it returns false. Returns false and
+/// reports an error if the file cannot be opened or read to its end.
 bool ReadCsvLines(const std::string& path, CsvTail tail,
                   const std::function<bool(std::string_view)>& use, Diagnostics& out);
 
-/// Returns `text` without blanks and tabs before and after it.
+/// Removes blanks and tabs at both ends of `text`.
 std::string_view Trim(std::string_view text);
 
 }  // namespace taut::trace

@@ -20,7 +20,7 @@ class CsvParser {
  public:
   CsvParser(const std::string& path, Diagnostics& out) : path_(path), out_(out) {}
 
-  /// Returns false after too many errors.
+  /// Processes a line. Returns false after too many errors.
   bool Line(std::string_view line) {
     ++line_;
     if (line.ends_with('\r')) line.remove_suffix(1);
@@ -62,7 +62,8 @@ class CsvParser {
     row_.clear();
     bool good = true;
     const std::size_t columns = trace_.channels.size() + 1;
-    // Each number is cut in two: all other rows have the same error.
+    // Decimal commas split each number in two. Report this once, since all rows have the same
+    // error.
     if (trace_.time_s.empty() &&
         static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1 == 2 * columns) {
       Error("csv.decimal_comma", line_, 0,
@@ -103,7 +104,7 @@ class CsvParser {
     }
   }
 
-  /// Calls `use(cell, column)`; `column` counts bytes from 1.
+  /// Calls `use(cell, column)` for each cell. `column`: byte position, starting at 1.
   template <class Use>
   void ForEachCell(std::string_view line, const Use& use) {
     for (std::size_t from = 0; from <= line.size();) {
@@ -113,7 +114,7 @@ class CsvParser {
     }
   }
 
-  /// Always returns false.
+  /// Reports an error and returns false.
   bool Error(MessageId id, int line, int column, std::string what, std::string hint = {}) {
     if (++error_count_ <= kMaxErrors) {
       out_.Error(id, {path_, line, column}, std::move(what), std::move(hint));
@@ -126,7 +127,7 @@ class CsvParser {
   Trace trace_;
   std::vector<double> row_;
   int line_ = 0;
-  int empty_line_ = 0;  ///< First of the empty lines that are allowed at the end of the file only.
+  int empty_line_ = 0;  ///< First empty line; such lines may occur only at the end of the file.
   std::size_t error_count_ = 0;
 };
 

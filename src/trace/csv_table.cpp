@@ -1,4 +1,4 @@
-// Tables of other programs, in the layout that a mapping defines.
+// Reader of tables of other programs, with the layout that a mapping defines.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ constexpr double kDay_s = 86400.0;
 
 struct Cell {
   std::string text;
-  int column;  ///< Byte of the line, from 1.
+  int column;  ///< Byte position in the line, starting at 1.
 };
 
 class TableParser {
@@ -121,7 +121,7 @@ class TableParser {
     return errors_ == 0;
   }
 
-  /// Returns whether a text is a number with a comma in place of its decimal point.
+  /// Returns whether a text is a number with a decimal comma.
   static bool HasDecimalComma(std::string_view text) {
     const std::size_t comma = text.find(',');
     if (comma == text.npos) return false;
@@ -133,7 +133,7 @@ class TableParser {
     return failure == std::errc() && end == number.data() + number.size();
   }
 
-  /// Stops reading, since all other cells have the same error.
+  /// Reports decimal commas and stops reading, since all other cells have the same error.
   void RefuseDecimalCommas(const Cell& cell) {
     Error("csv.decimal_comma", line_, cell.column,
           fmt::format("numbers have a decimal comma, such as \"{}\"", cell.text),
@@ -141,7 +141,7 @@ class TableParser {
     errors_ = kMaxTableErrors;
   }
 
-  /// Returns NaN for a gap.
+  /// Converts a cell to a number; empty cells and "NA" become NaN.
   double Number(const Cell& cell) {
     std::string_view text = cell.text;
     if (text.empty() || text == "NA" || text == "NaN" || text == "nan") return kNan;
@@ -218,7 +218,7 @@ class TableParser {
     last = {time_s, line_};
   }
 
-  /// Converts one value per line to one row for each time of any channel.
+  /// Converts a table with one value per line to a trace with one row per time.
   void Spread() {
     std::map<double, std::size_t> rows;
     for (const auto& [name, points] : long_) {
@@ -249,7 +249,7 @@ class TableParser {
   const TableLayout& layout_;
   Diagnostics& out_;
   std::vector<Use> columns_;
-  std::map<std::string, Before> last_;  ///< Per channel, in tables with one value per row.
+  std::map<std::string, Before> last_;  ///< Per channel, for tables with one value per line.
   std::map<std::string, std::vector<std::pair<double, double>>> long_;
   double zero_ = 0;
   std::size_t rows_ = 0;

@@ -1,5 +1,5 @@
-// CSV writer for traces: one line per row, with the shortest digits that read back as the same
-// number.
+// CSV writer for traces: one line per row. Numbers have the fewest digits from which the same
+// number is read back.
 #include <fmt/format.h>
 
 #include <utility>
@@ -18,7 +18,7 @@ constexpr std::size_t kBlockBytes = 1 << 18;
 
 class CsvWriter final : public TraceWriter {
  public:
-  /// `whole`: publish the file when it is finished, not from its first row on.
+  /// `whole`: publish the file when it is finished. Otherwise, publish it with its first row.
   CsvWriter(const std::string& path, std::size_t channel_count, bool whole)
       : path_(path), channel_count_(channel_count), whole_(whole), file_(path) {}
 
@@ -88,7 +88,7 @@ class CsvWriter final : public TraceWriter {
   bool whole_;
   NewFile file_;
   bool finished_ = false;
-  std::string text_;  ///< Complete lines, not yet written.
+  std::string text_;  ///< Complete lines that are not written yet.
   FlushClock clock_;
 };
 

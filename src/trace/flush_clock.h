@@ -1,4 +1,4 @@
-/// Timer that determines when a writer must write the rows in its memory.
+/// Timer that determines when a writer must write buffered rows to the file.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +6,9 @@
 
 namespace taut::trace {
 
-/// The first row is due at once, so that a run that is killed early leaves some data. The waits
-/// then double up to half a second: half of the interface's guarantee, because the clock is checked
-/// again only at the next row. The content of the file does not depend on the clock.
+/// Writes the first row at once, so that a run leaves data even if it is killed early. The interval
+/// then doubles up to half a second. This is half of the guarantee of `TraceWriter`, because the
+/// clock is checked only at rows. The content of the file does not depend on the clock.
 class FlushClock {
  public:
   bool due() const { return Clock::now() - flushed_ >= wait_; }

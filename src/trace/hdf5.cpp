@@ -11,7 +11,7 @@ herr_t TakeInnermost(unsigned depth, const H5E_error2_t* error, void* out) {
   return 0;
 }
 
-/// HDF5 calls this when a call has failed, before the reason can be overwritten.
+/// Callback of HDF5 after a failed call. Stores the reason before later calls overwrite it.
 herr_t Remember(hid_t stack, void* out) {
   Hdf5Failure& first = *static_cast<Hdf5Failure*>(out);
   if (!first.why.empty()) return 0;
@@ -27,8 +27,8 @@ herr_t Remember(hid_t stack, void* out) {
 }  // namespace
 
 QuietHdf5::QuietHdf5() {
-  // A trace that could not be finished stays open inside the library, which must not try again when
-  // the program exits.
+  // A trace that could not be finished remains open inside the library. Prevent the library from
+  // closing it again when the program exits.
   static const herr_t once = H5dont_atexit();
   static_cast<void>(once);
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
@@ -52,7 +52,7 @@ std::string WhyElsewhere(hid_t plan) {
 }
 
 Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error) {
-  // Checks each part of the path: a soft link may lead to an external link.
+  // Check each part of the path, since a soft link may lead to an external link.
   for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
     const std::string part = name.substr(0, end);
     H5L_info_t link{};

@@ -1,4 +1,4 @@
-/// Wrappers of HDF5's C interface, shared by reader and writer.
+/// Wrappers of HDF5's C interface for reader and writer.
 #pragma once
 
 #include <hdf5.h>
@@ -11,7 +11,7 @@ namespace taut::trace {
 inline constexpr char kFormatName[] = "taut trace";
 inline constexpr int kFormatVersion = 1;
 
-/// An HDF5 identifier that closes itself.
+/// HDF5 identifier that is closed by its destructor.
 class Hdf5Id {
  public:
   using Close = herr_t (*)(hid_t);
@@ -27,7 +27,7 @@ class Hdf5Id {
   }
   ~Hdf5Id() { Reset(); }
 
-  /// Closes. Returns false if that failed (HDF5 writes its buffers when it closes).
+  /// Closes the identifier. Returns false if this failed (HDF5 writes its buffers when it closes).
   bool Reset() noexcept {
     const hid_t id = std::exchange(id_, H5I_INVALID_HID);
     return id < 0 || close_(id) >= 0;
@@ -43,12 +43,12 @@ class Hdf5Id {
 };
 
 struct Hdf5Failure {
-  std::string why;         ///< The system's message if a call to the system failed.
-  bool of_system = false;  ///< A call to the system failed ("No space left on device").
+  std::string why;         ///< Message; from the operating system if a system call failed.
+  bool of_system = false;  ///< Whether a system call failed ("No space left on device").
 };
 
-/// Suppresses HDF5's error output during its lifetime and stores the first error. The destructor
-/// restores the setting of the surrounding program.
+/// Suppresses HDF5's error output and stores the first error. The destructor restores the previous
+/// output setting.
 class QuietHdf5 {
  public:
   QuietHdf5();
@@ -68,17 +68,16 @@ class QuietHdf5 {
   Hdf5Failure first_;
 };
 
-/// Returns the reason why a dataset with this creation property list makes HDF5 open another file:
-/// "is a virtual dataset", "stores its numbers in another file"; empty if all of it is in the file
-/// itself. To be called before anything is read.
+/// Returns the reason why HDF5 would open another file for a dataset with this creation property
+/// list: "is a virtual dataset", "stores its numbers in another file". Returns an empty text if all
+/// data are in the file. Call this before reading any data.
 std::string WhyElsewhere(hid_t plan);
 
-/// Opens the dataset of that name if the file itself contains all its numbers. Returns nothing and
-/// a sentence in `error` if it is missing or a link, external storage or a virtual layout leads to
-/// another file.
+/// Opens a dataset. Returns nothing and sets `error` if it is missing, or if a link, external
+/// storage or a virtual layout leads to another file.
 Hdf5Id OpenDataset(hid_t file, const std::string& name, std::string& error);
 
-/// A fixed-length string type for `size` characters.
+/// Returns a fixed-length string type for `size` characters.
 Hdf5Id StringType(std::size_t size);
 
 }  // namespace taut::trace

@@ -13,18 +13,19 @@
 namespace taut::trace {
 namespace {
 
-/// Longest text of an attribute; longer ones are left out. The parent process accepts no more
-/// (hdf5_reader.cpp).
+/// Longest text of an attribute, the limit of the parent process (hdf5_reader.cpp). Longer texts
+/// are omitted.
 constexpr std::size_t kMaxTextBytes = 64 << 20;
 
-/// Size of the widest number type of a machine.
+/// Size of the widest number type of any machine.
 constexpr std::size_t kMostNumberBytes = 16;
 
-/// Number of attempts of HDF5 to read consistent metadata of a live file. The wait doubles each
-/// time, from 1 ns: about 30 ms in total (HDF5's default of 100 attempts takes more than a minute).
+/// Number of attempts to read consistent metadata while the file is being written. The wait between
+/// attempts doubles, from 1 ns to about 30 ms in total. HDF5's default of 100 attempts takes more
+/// than a minute.
 constexpr unsigned kReadAttempts = 25;
 
-/// Returns the attribute as text; nothing if there is none or it is not text.
+/// Returns an attribute as text. Returns nothing if it is missing or not a text.
 std::optional<std::string> TextAttribute(hid_t object, const std::string& name) {
   if (H5Aexists(object, name.c_str()) <= 0) return std::nullopt;
   const Hdf5Id attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose);
@@ -33,7 +34,7 @@ std::optional<std::string> TextAttribute(hid_t object, const std::string& name) 
   if (!type || H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) {
     return std::nullopt;
   }
-  if (H5Tis_variable_str(type) > 0) {  // as other programs write them
+  if (H5Tis_variable_str(type) > 0) {  // variable-length strings, as written by other programs
     char* text = nullptr;
     const Hdf5Id memory(H5Tcopy(type), H5Tclose);
     if (H5Aread(attribute, memory, &text) < 0 || text == nullptr) return std::nullopt;
@@ -70,7 +71,7 @@ herr_t AddMetadata(hid_t object, const char* name, const H5A_info_t*, void* out)
   return 0;
 }
 
-/// Returns the attributes in order of creation if the file stores it, else by name.
+/// Returns the attributes in order of creation if the file stores this order, otherwise by name.
 TraceMetadata ReadMetadata(hid_t file) {
   TraceMetadata metadata;
   if (H5Aiterate2(file, H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, AddMetadata, &metadata) < 0) {
@@ -86,7 +87,8 @@ struct Walk {
 };
 
 /// Returns the reason why a dataset is not a column of a trace; empty if it is one. Checks its
-/// layout before any call that could make HDF5 open another file: a trace is one file.
+/// layout first, since other calls could make HDF5 open another file. A trace must be a single
+/// file.
 std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   const H5D_layout_t layout = plan ? H5Pget_layout(plan) : H5D_LAYOUT_ERROR;
@@ -116,7 +118,7 @@ std::string WhyNoColumn(hid_t dataset, Hdf5Column& column) {
   return {};
 }
 
-/// Adds the dataset behind a link. A soft link is a second name of a dataset that has a hard link.
+/// Adds the dataset of a link. Skips soft links, since the dataset also has a hard link.
 herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* context) {
   const Walk& walk = *static_cast<Walk*>(context);
   if (link->type == H5L_TYPE_SOFT) return 0;
@@ -138,7 +140,7 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   }
   const std::optional<std::string> unit = TextAttribute(object, "unit");
   const std::optional<int> place = NumberAttribute(object, "column");
-  // An attribute that exists but cannot be read is an error, unlike a missing one.
+  // A missing attribute is valid, but an attribute that cannot be read is an error.
   if ((!unit && H5Aexists(object, "unit") != 0) || (!place && H5Aexists(object, "column") != 0)) {
     walk.error = fmt::format(
         "the trace is damaged: the unit or the column number of /{} cannot be read", name);
@@ -155,15 +157,15 @@ herr_t AddColumn(hid_t group, const char* name, const H5L_info_t* link, void* co
   return 0;
 }
 
-/// Returns every column, time first.
+/// Returns all columns, time first.
 std::vector<const Hdf5Column*> AllColumns(const Hdf5File& trace) {
   std::vector<const Hdf5Column*> all{&trace.time};
   for (const Hdf5Column& channel : trace.channels) all.push_back(&channel);
   return all;
 }
 
-/// Checks that the data to be read, as the machine's numbers in whole chunks, fit in memory. A
-/// damaged extent may claim more than any file of this size can contain.
+/// Checks that the data fit in memory: whole chunks, converted to native numbers. A damaged size
+/// may exceed all data that the file can contain.
 bool FitsInMemory(double file_bytes, const Hdf5File& trace, std::string& error) {
   double bytes = 0;
   for (const Hdf5Column* column : AllColumns(trace)) {
@@ -179,8 +181,8 @@ bool FitsInMemory(double file_bytes, const Hdf5File& trace, std::string& error) 
   return false;
 }
 
-/// Checks that all rows were written, to storage that columns do not share. Only for finished
-/// files: a file that was cut off has space beyond its rows.
+/// Checks that all rows were written and that columns do not share storage. For finished files
+/// only: unfinished files may have space for more rows.
 bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
   double stored_bytes = 0;
   for (const Hdf5Column* column : AllColumns(trace)) {
@@ -214,11 +216,11 @@ bool IsComplete(double file_bytes, const Hdf5File& trace, std::string& error) {
 std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& error) {
   QuietHdf5 quiet;
   Hdf5File trace;
-  // Two attempts, so that one failed read does not classify a trace as unfinished.
+  // Try twice, so that a single failed read does not mark the trace as unfinished.
   for (int attempt = 0; attempt < 2 && !trace.file; ++attempt) {
     trace.file = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   }
-  if (!trace.file) {  // open as a concurrent reader (SWMR); the writer may have ended
+  if (!trace.file) {  // open as SWMR reader: the file is being written, or its writer was killed
     const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_metadata_read_attempts(access, kReadAttempts);
     trace.file =

@@ -8,7 +8,7 @@
 namespace taut::trace {
 namespace {
 
-/// Creates a dataset at `path` and its groups; null on failure.
+/// Creates a dataset at `path`, including its groups. Returns null on failure.
 Hdf5Id Create(hid_t file, const std::string& path, hid_t type, hid_t space) {
   const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
@@ -24,7 +24,7 @@ bool Put(hid_t file, const std::string& path, std::vector<hsize_t> size, const d
   return empty || H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
 }
 
-/// Strings of variable length: h5py and MATLAB read these as text.
+/// Variable-length strings, which h5py and MATLAB read as text.
 bool Put(hid_t file, const std::string& path, const std::vector<std::string>& texts) {
   const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) return false;

@@ -29,7 +29,7 @@ void SendText(const ChildOutput& to, const std::string& text) {
 }
 
 void SendColumn(const ChildOutput& to, const Hdf5Column& column, std::uint64_t rows) {
-  // Whole chunks: HDF5 would unpack a chunk again for every block that begins in it.
+  // Read whole chunks, since HDF5 unpacks a chunk for every block that contains a part of it.
   const std::uint64_t chunk = std::max<std::uint64_t>(column.chunk_rows, 1);
   const std::uint64_t most = std::min(rows, std::max<std::uint64_t>(kBlockRows / chunk, 1) * chunk);
   std::vector<double> block(most);
@@ -44,7 +44,7 @@ void SendColumn(const ChildOutput& to, const Hdf5Column& column, std::uint64_t r
   }
 }
 
-/// The child's part: reads the file and sends its content.
+/// Child process: reads the file and sends its content.
 void SendTrace(const std::string& path, const ChildOutput& to) {
   std::string error;
   const std::optional<Hdf5File> trace = OpenHdf5Trace(path, error);
@@ -66,7 +66,7 @@ void SendTrace(const std::string& path, const ChildOutput& to) {
   for (const Hdf5Column& channel : trace->channels) SendColumn(to, channel, trace->rows);
 }
 
-/// The parent's part. Validates all received data: each member returns false at the first
+/// Parent process: receives and validates the content. Each function returns false at the first
 /// inconsistency.
 class Receiver {
  public:
@@ -103,7 +103,8 @@ class Receiver {
     return true;
   }
 
-  /// Returns false with the reason in `error`, which is empty if the child ended early.
+  /// Receives a trace. Returns false and sets `error` on failure; `error` is empty if the child
+  /// ended early.
   bool All(Trace& trace) {
     std::uint64_t flag = 0, rows = 0;
     std::vector<std::pair<std::string, std::string>> channels;
@@ -127,7 +128,7 @@ class Receiver {
   ChildProcess& child_;
 };
 
-/// Returns the number of rows up to which time rises and is finite.
+/// Returns the number of leading rows with finite, increasing times.
 std::size_t RisingRows(const std::vector<double>& time_s) {
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     if (!std::isfinite(time_s[i]) || (i > 0 && !(time_s[i] > time_s[i - 1]))) return i;
@@ -157,7 +158,7 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out) {
               fmt::format("the trace is damaged: time does not increase at row {}", rows));
     return std::nullopt;
   }
-  // If the writer was cut off between allocating rows and writing them, these rows are not data.
+  // Drop rows that an interrupted writer allocated but did not write.
   trace.time_s.resize(rows);
   for (std::vector<double>& column : trace.values) column.resize(rows);
   return trace;

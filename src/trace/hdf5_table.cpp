@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kMostErrorBytes = 1 << 16;
 
-/// Opens the dataset; returns a sentence if it is not a table.
+/// Opens the dataset. Returns an error message if it is not a table.
 std::string OpenTable(const std::string& path, const std::string& name, const TableBudget& budget,
                       double file_bytes, Hdf5Id& file, Hdf5Id& set, hsize_t size[2]) {
   const QuietHdf5 quiet;
@@ -49,7 +49,7 @@ std::string OpenTable(const std::string& path, const std::string& name, const Ta
   return "";
 }
 
-/// The child's part: reads the file and sends its content.
+/// Child process: reads the file and sends its content.
 void SendTable(const std::string& path, const std::string& name, const TableBudget& budget,
                double file_bytes, const ChildOutput& to) {
   Hdf5Id file, set;
@@ -73,7 +73,7 @@ void SendTable(const std::string& path, const std::string& name, const TableBudg
 
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
                                        TableBudget& budget, Diagnostics& out) {
-  // Reports in the system's words if the file cannot be opened.
+  // Read the file first: this reports the operating system's message if it cannot be opened.
   constexpr std::size_t kMostBytes = std::size_t{1} << 30;
   const auto bytes = base::ReadInputFile(path, kMostBytes, "use fewer numbers", out);
   if (!bytes) return std::nullopt;

@@ -1,4 +1,4 @@
-/// Tables of numbers in HDF5 files of other programs.
+/// Reader of tables of numbers in HDF5 files of other programs.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ struct Hdf5Table {
   std::vector<double> values;  ///< Row by row.
 };
 
-/// Reads a two-dimensional dataset of any number type. Returns nothing and reports an error if
-/// there is none called `name`, or it exceeds the budget, to which it is added. A child process
+/// Reads a two-dimensional dataset of any number type, and adds the number of values to `budget`.
+/// Returns nothing and reports an error if it is missing or exceeds the budget. A child process
 /// opens the file, as for traces (readers.h).
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& name,
                                        TableBudget& budget, Diagnostics& out);

@@ -1,8 +1,8 @@
-// HDF5 writer for traces that are readable at any moment (docs/formats/trace.md).
+// HDF5 writer for traces that are readable at any time (docs/formats/trace.md).
 //
-// All groups, datasets and attributes exist before the first row; from then on the file is in
-// HDF5's single-writer mode (SWMR), in which the library orders its writes such that a reader, or
-// the next program after a kill -9, never sees a broken structure.
+// All groups, datasets and attributes are created before the first row. Then the file is switched
+// to HDF5's single-writer mode (SWMR), which orders writes so that readers always see a valid
+// structure, even after the writer was killed.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -19,8 +19,8 @@
 namespace taut::trace {
 namespace {
 
-/// Rows of a chunk. 8 kB: a short run wastes little on its last chunk, and an hour at 1 kHz has
-/// only 3500 chunks per channel.
+/// Rows per chunk. Chunks of 8 kB waste little space in short runs, and an hour at 1 kHz has only
+/// 3500 chunks per channel.
 constexpr hsize_t kChunkRows = 1024;
 
 bool WriteText(hid_t object, const std::string& name, const std::string& text) {
@@ -38,7 +38,7 @@ bool WriteNumber(hid_t object, const char* name, int number) {
   return attribute && H5Awrite(attribute, H5T_NATIVE_INT, &number) >= 0;
 }
 
-/// Creates an empty column of unlimited length at `path`. `column`: its place in a row.
+/// Creates an empty column of unlimited length at `path`. `column`: its position in a row.
 Hdf5Id CreateColumn(hid_t file, const std::string& path, const std::string& unit, int column) {
   const hsize_t none = 0, unlimited = H5S_UNLIMITED;
   const Hdf5Id space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
@@ -63,12 +63,12 @@ class Hdf5Writer final : public TraceWriter {
 
   ~Hdf5Writer() override {
     if (new_.published()) Finish();
-    const QuietHdf5 quiet;  // an unpublished file is closed, too, and then removed
+    const QuietHdf5 quiet;  // closes an unpublished file, which is then removed
     columns_.clear();
     file_.Reset();
   }
 
-  /// Creates the file with its entire content except the rows.
+  /// Creates the file with all its content except the rows.
   bool Start(const std::vector<ChannelInfo>& channels, const TraceMetadata& metadata);
 
   bool Append(double time_s, const double* values) override {
@@ -78,7 +78,7 @@ class Hdf5Writer final : public TraceWriter {
     row[0] = time_s;
     std::copy(values, values + (width_ - 1), row + 1);
     ++row_count_;
-    // Whole chunks are cheapest, so a block ends at the end of a chunk.
+    // Whole chunks are cheapest to write, so write at the end of each chunk.
     if ((written_ + row_count_) % kChunkRows == 0 && !WriteRows()) return false;
     return FlushOld();
   }
@@ -111,7 +111,7 @@ class Hdf5Writer final : public TraceWriter {
     return new_.Publish() || Fail(new_.why());
   }
 
-  /// Writes time last: a row with a time is complete.
+  /// Writes buffered rows. Writes time last, so that a row with a time is complete.
   bool WriteRows() {
     if (row_count_ == 0) return true;
     const QuietHdf5 quiet;
@@ -138,10 +138,10 @@ class Hdf5Writer final : public TraceWriter {
 
   bool Fail(std::string why) { return Fail(Hdf5Failure{std::move(why), true}); }
 
-  /// The library cannot close a file that it cannot write: the file stays unchanged, readable up to
-  /// the last successful flush. If the system refused to write, remaining writes are redirected to
-  /// /dev/null, so that neither memory nor, after removal of the file, its disk space is held.
-  /// After an internal failure of the library its identifiers are abandoned.
+  /// Closes the file after a failed write. The file on disk remains readable up to the last flush.
+  /// HDF5 cannot close a file that it cannot write. After a system error, its remaining writes are
+  /// redirected to /dev/null, which frees memory and disk space. After an internal error of the
+  /// library, its identifiers are abandoned.
   bool Fail(const Hdf5Failure& failure) {
     if (error_.empty()) error_ = fmt::format("{}: cannot write: {}", path_, failure.why);
     const bool nowhere = failure.of_system && WriteNowhere();
@@ -155,7 +155,7 @@ class Hdf5Writer final : public TraceWriter {
     return false;
   }
 
-  /// Redirects the remaining writes of the library to /dev/null.
+  /// Redirects all further writes of the library to /dev/null.
   bool WriteNowhere() {
     const QuietHdf5 quiet;
     void* handle = nullptr;
@@ -169,12 +169,12 @@ class Hdf5Writer final : public TraceWriter {
 
   std::string path_, error_;
   NewFile new_;
-  std::size_t width_;  ///< Numbers of a row: time and channels.
+  std::size_t width_;  ///< Number of values per row: time and channels.
   Hdf5Id file_;
-  std::vector<Hdf5Id> columns_;  ///< Time, then the channels.
-  std::vector<double> rows_;     ///< Not yet written, row by row: one chunk at most.
-  std::size_t row_count_ = 0;    ///< In `rows_`.
-  hsize_t written_ = 0;          ///< Rows in the file.
+  std::vector<Hdf5Id> columns_;  ///< Columns: time first, then the channels.
+  std::vector<double> rows_;     ///< Rows not written yet, row by row; at most one chunk.
+  std::size_t row_count_ = 0;    ///< Number of rows in `rows_`.
+  hsize_t written_ = 0;          ///< Number of rows in the file.
   double block_[kChunkRows] = {};
   FlushClock clock_;
 };
@@ -183,13 +183,13 @@ bool Hdf5Writer::Start(const std::vector<ChannelInfo>& channels, const TraceMeta
   const QuietHdf5 quiet;
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
-  // No chunk cache: data leave the process at once, and memory stays small. (A setting for a single
-  // dataset is lost when the single-writer mode starts.)
+  // Disable the chunk cache, so that data leave the process at once and memory stays small. (The
+  // setting of a single dataset is lost when single-writer mode starts.)
   H5Pset_cache(access, 0, 1, 0, 1.0);
   const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
 
-  // `NewFile` has created the file; HDF5 opens and truncates it.
+  // `NewFile` creates the file; HDF5 opens and truncates it.
   if (!new_.Create()) return Fail(new_.why());
   file_ = Hdf5Id(H5Fcreate(new_.made_at().c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
   if (!file_) return Fail(quiet.first());

@@ -28,7 +28,7 @@ enum class Op : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
-/// Content of a record: little-endian numbers, texts after their lengths.
+/// Builder of a record: little-endian numbers, and texts preceded by their lengths.
 class Content {
  public:
   Content& U8(std::uint8_t x) { return Int(x, 1); }
@@ -40,7 +40,7 @@ class Content {
     bytes_ += bytes;
     return *this;
   }
-  /// Appends the length of all pairs, then the pairs.
+  /// Appends a map: its size in bytes, then its pairs.
   template <class Map, class Each>
   Content& Pairs(const Map& map, const Each& each) {
     Content all;
@@ -160,7 +160,7 @@ bool McapWriter::CloseChunk() {
   return true;
 }
 
-/// Returns all records after the data, with the offsets of their groups.
+/// Returns all records of the summary section, followed by the offsets of their groups.
 std::string McapWriter::Summary(std::uint64_t start) const {
   std::string all, offsets;
   const auto group = [&](Op op, const std::string& records) {
@@ -216,7 +216,7 @@ std::string McapWriter::Summary(std::uint64_t start) const {
                                 .Record(Op::kMetadataIndex));
   const std::uint64_t offsets_start = start + all.size();
   all += offsets;
-  // The checksum of the summary covers everything before it, including most of the footer.
+  // The checksum of the summary section includes most of the footer.
   std::string footer = Content().U64(start).U64(offsets_start).U32(0).Record(Op::kFooter);
   footer.resize(footer.size() - 4);
   all += footer;

@@ -1,4 +1,4 @@
-/// MCAP files: messages of many topics against time, with indexes for seeking
+/// Writer of MCAP files: timestamped messages of many topics, with indexes for seeking
 /// (https://mcap.dev/spec, version 0). Chunks are not compressed.
 #pragma once
 
@@ -15,34 +15,34 @@
 
 namespace taut::trace {
 
-/// Threads: one at a time. The file gets its name when it is finished; until then, and forever if
-/// it never is, an existing file of that name stays. After a function has returned false, `why()`
-/// returns the reason.
+/// Use one thread at a time. Replaces an existing file only in `Finish`. If a function returns
+/// false, `why()` returns the reason.
 class McapWriter {
  public:
   explicit McapWriter(std::string path) : file_(std::move(path)) {}
 
-  /// `metadata`: pairs for readers, as one record called `taut`.
+  /// `metadata`: pairs of key and value, written as one record with the name `taut`.
   bool Start(const std::string& library, const TraceMetadata& metadata);
 
-  /// Adds a schema, which describes the content of messages, and a channel with that schema.
-  /// Returns the channel's number, from 1 on. To be called before the first message.
+  /// Adds a JSON schema of messages and a channel with this schema. Returns the channel's number,
+  /// starting at 1. Call this before the first message.
   std::uint16_t AddChannel(const std::string& topic, const std::string& schema_name,
                            const std::string& json_schema);
 
-  /// Times must not fall.
+  /// Writes a message. Times must not decrease.
   bool Write(std::uint16_t channel, std::uint64_t time_ns, std::string_view json);
   bool Finish();
 
   const std::string& why() const { return file_.why(); }
 
  private:
-  using Times = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  ///< Times and offsets.
+  using Times = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  ///< Pairs of time and
+                                                                       ///< offset.
   struct Channel {
-    std::string schema, record;  ///< The records as written in the file.
+    std::string schema, record;  ///< Records as written in the file.
     std::uint32_t messages = 0;
-    bool said = false;  ///< Whether both are in a chunk.
-    Times index;        ///< Of the current chunk.
+    bool said = false;  ///< Whether both records were written.
+    Times index;        ///< Index of the current chunk.
   };
   struct Chunk {
     std::uint64_t first_ns = 0, last_ns = 0, offset = 0, size = 0, records_size = 0;
@@ -56,9 +56,9 @@ class McapWriter {
 
   NewFile file_;
   std::uint64_t written_ = 0;
-  std::uint32_t crc_ = 0;  ///< Of all that was written.
+  std::uint32_t crc_ = 0;  ///< Checksum of all bytes written.
   std::vector<Channel> channels_;
-  std::string chunk_;  ///< Records of the current chunk.
+  std::string chunk_;  ///< Records in the current chunk.
   std::uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0;
   std::vector<Chunk> chunks_;
   std::uint64_t metadata_offset_ = 0, metadata_size_ = 0;

@@ -1,4 +1,4 @@
-/// Trace readers behind `ReadTrace`, one per file format.
+/// Trace readers used by `ReadTrace`, one per file format.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace taut::trace {
 
-/// Reads a trace in HDF5. The library is known to crash on damaged files, so a child process opens
-/// the file and sends its content.
+/// Reads a trace in HDF5. A child process opens the file and sends its content, because the library
+/// may crash on damaged files.
 std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out);
 
-/// Reads a trace in CSV, compressed with gzip or not.
+/// Reads a trace in CSV, with or without gzip compression.
 std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out);
 
 }  // namespace taut::trace

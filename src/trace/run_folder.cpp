@@ -22,18 +22,19 @@ namespace fs = std::filesystem;
 
 constexpr const char* kInputs = "inputs.yaml";
 constexpr const char* kSummary = "summary.json";
-/// In the order of their removal when a new run begins.
+/// In the order in which a new run removes them.
 constexpr const char* kPieces[] = {kSummary,    "report.html", "events.jsonl",
                                    "trace.csv", "trace.h5",    kInputs};
 constexpr std::string_view kIdLine = "# run ";
 
-/// Returns `text` without the given beginning; nothing if it begins otherwise.
+/// Removes a prefix from `text`. Returns nothing if `text` does not begin with it.
 std::optional<std::string_view> After(std::string_view text, std::string_view beginning) {
   if (!text.starts_with(beginning)) return std::nullopt;
   return text.substr(beginning.size());
 }
 
-/// Matches names such as `trace.h5.77.part`, or `trace_2.h5.77.part` of a live run that was reset.
+/// Returns whether a name belongs to an unfinished file: `trace.h5.77.part`, or
+/// `trace_2.h5.77.part` of a live run that was reset.
 bool IsLeftover(std::string_view name) {
   if (!name.ends_with(".part")) return false;
   return std::any_of(std::begin(kPieces), std::end(kPieces), [&](std::string_view piece) {
@@ -82,14 +83,14 @@ std::string IdOfTrace(const Trace& trace) {
 }
 
 struct Piece {
-  std::string path, id;  ///< The id is empty for runs of earlier versions.
+  std::string path, id;  ///< `id` is empty for runs of earlier versions.
 };
 
-/// Returns the existing files of the run that a trace belongs to.
+/// Returns the existing files of the run to which a trace belongs.
 std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   std::vector<Piece> pieces;
   const std::string id = IdOfTrace(trace);
-  // A measured trace in a run's folder does not belong to the run, and CSV contains no id.
+  // A measured trace in a run's folder does not belong to the run, and CSV files contain no id.
   const bool named = fs::path(path).filename().string().starts_with("trace");
   if (path.ends_with(".h5") && (named || !id.empty())) {
     pieces.push_back({path, id});
@@ -103,8 +104,8 @@ std::vector<Piece> PiecesOfRun(const std::string& path, const Trace& trace) {
   return pieces;
 }
 
-/// Returns unpublished inputs in the folder of this trace. A run that replaces another has some
-/// from the first row of its trace on, until the old files are removed.
+/// Returns unpublished input files in the trace's folder. They exist while a run replaces another
+/// one: from the first row of its trace until the old files are removed.
 std::vector<Piece> UnnamedInputs(const std::string& trace) {
   const fs::path inputs = BesideTrace(trace, "inputs", ".yaml");
   const std::string name = inputs.filename().string() + ".";
@@ -119,14 +120,15 @@ std::vector<Piece> UnnamedInputs(const std::string& trace) {
   return found;
 }
 
-/// Returns the path of the piece of this run, if there is one.
+/// Returns the path of the file with this run id; nothing if there is none.
 std::optional<std::string> PathOfRun(const std::vector<Piece>& pieces, const std::string& id) {
   const auto at = std::find_if(pieces.begin(), pieces.end(),
                                [&](const Piece& piece) { return !id.empty() && piece.id == id; });
   return at == pieces.end() ? std::nullopt : std::optional(at->path);
 }
 
-/// Completes a replacement that the writer of this trace began. The caller is the folder's writer.
+/// Completes the replacement of a run, if the writer of this trace began one. The caller must hold
+/// the folder's lock.
 bool FinishReplacement(const std::string& trace, const std::string& unnamed) {
   const fs::path path(trace);
   Diagnostics ignored;
@@ -142,8 +144,8 @@ bool AreOfOneRun(const std::vector<Piece>& pieces) {
                      [&](const Piece& piece) { return piece.id == pieces.front().id; });
 }
 
-/// Returns the pieces of the run of a trace. If its writer was killed while it replaced another
-/// run, the remains of the other run are removed first. Waits for a writer that is still alive.
+/// Returns the files of a trace's run. If its writer was killed while it replaced another run,
+/// first removes the remains of the other run. If the writer is still alive, waits for it.
 std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace) {
   constexpr int kLooks = 50;
   constexpr std::chrono::milliseconds kBetween{20};
@@ -156,12 +158,12 @@ std::vector<Piece> WholePiecesOfRun(const std::string& path, const Trace& trace)
       if (!lock || !FinishReplacement(path, *unnamed)) std::this_thread::sleep_for(kBetween);
     }
     pieces = PiecesOfRun(path, trace);
-    if (!unnamed) break;  // or a writer has just finished
+    if (!unnamed) break;  // no interrupted replacement, or a writer has just completed it
   }
   return pieces;
 }
 
-/// Completes a replacement in a folder. The caller is the folder's writer.
+/// Completes an interrupted replacement in a folder. The caller must hold the folder's lock.
 void FinishReplacementIn(const std::string& folder) {
   const std::string path = (fs::path(folder) / "trace.h5").string();
   const std::vector<Piece> all = UnnamedInputs(path);
@@ -172,8 +174,8 @@ void FinishReplacementIn(const std::string& folder) {
   if (unnamed) FinishReplacement(path, *unnamed);
 }
 
-/// Writes the last of a run's traces, and removes the previous run once every trace has its first
-/// row on the disk.
+/// Writer of the last of a run's traces. Removes the previous run as soon as all traces have their
+/// first row on disk.
 class BeginningTrace final : public TraceWriter {
  public:
   BeginningTrace(RunFolder& folder, std::unique_ptr<TraceWriter> writer,
@@ -181,7 +183,7 @@ class BeginningTrace final : public TraceWriter {
       : folder_(folder), writer_(std::move(writer)), traces_(std::move(traces)) {
     for (const std::string& name : traces_) before_.push_back(IdentityOf(folder_.Path(name)));
   }
-  /// This trace may have failed after another one has replaced its predecessor.
+  /// Another trace may have replaced its predecessor although this trace failed.
   ~BeginningTrace() override { Begin(); }
 
   bool Append(double time_s, const double* values) override {
@@ -189,7 +191,7 @@ class BeginningTrace final : public TraceWriter {
   }
   bool FlushOld() override { return error_.empty() && writer_->FlushOld(); }
   bool Finish() override {
-    // Another trace has failed before its first row: the previous run stays.
+    // All traces failed before their first row, so keep the previous run.
     if (!begun_ && traces_.size() > 1 && Replaced().empty()) return true;
     return error_.empty() && writer_->Finish() && Begin();
   }
@@ -277,7 +279,9 @@ std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> l
 }
 
 bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
-  if (inputs_) inputs_->Leave();  // if a step below fails, the next reader completes it
+  if (inputs_)
+    inputs_->Leave();  // if a step below fails, the next reader completes the
+                       // replacement
   std::vector<std::string> replaced = traces;
   if (inputs_) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;
@@ -297,7 +301,7 @@ bool RunFolder::Finish(const std::string& summary_json, Diagnostics& out) {
 }
 
 std::string NewRunId() {
-  std::random_device device;  // the kernel's generator
+  std::random_device device;  // random numbers of the kernel
   return fmt::format("{:08x}{:08x}", device(), device());
 }
 

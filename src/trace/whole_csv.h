@@ -1,4 +1,4 @@
-/// CSV traces that are published only when complete.
+/// Writer of CSV traces that are published only when complete.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace taut::trace {
 
-/// As `CreateCsvTrace`, but the file gets its name when it is finished, and never otherwise.
+/// Like `CreateCsvTrace`, but publishes the file only in `Finish`.
 std::unique_ptr<TraceWriter> CreateWholeCsvTrace(const std::string& path,
                                                  const std::vector<ChannelInfo>& channels,
                                                  Diagnostics& out);

@@ -1,4 +1,4 @@
-// Stubs for builds that cannot read trace files: in a browser.
+// Stubs for builds that cannot read trace files (browser).
 #include <utility>
 
 #include "trace/hdf5_table.h"

@@ -10,7 +10,7 @@
 namespace taut {
 namespace {
 
-/// Longest time between flushes of rows to the disk.
+/// Longest time between two flushes of rows.
 constexpr auto kFlush = std::chrono::milliseconds(250);
 
 class WriterBehind final : public TraceWriter {
@@ -66,14 +66,14 @@ class WriterBehind final : public TraceWriter {
   }
 
   using Row = std::pair<double, std::vector<double>>;
-  std::unique_ptr<TraceWriter> writer_;  ///< Used by the thread until it has ended.
+  std::unique_ptr<TraceWriter> writer_;  ///< Used by the thread until the thread ends.
   const std::size_t channels_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Row> rows_;
   bool end_ = false, good_ = true, finished_ = false;
   std::string error_;
-  std::thread thread_;  ///< Last, because it uses the other members.
+  std::thread thread_;  ///< Last member, because the thread uses all others.
 };
 
 }  // namespace
