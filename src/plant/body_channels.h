@@ -1,4 +1,5 @@
-/// Channels of a body's state in a trace, `body/NAME/...`: conversion to and from `BodyState`.
+/// Channels of a body's state in a trace, `body/NAME/...`, and their conversion to and from
+/// `BodyState`.
 #pragma once
 
 #include <array>

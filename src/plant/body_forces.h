@@ -1,5 +1,4 @@
-/// Forces on the bodies of a simulated plant, except their weights, with their points of
-/// application.
+/// Forces on the bodies of a simulated plant, without weights, and their points of application.
 #pragma once
 
 #include <vector>
@@ -12,8 +11,8 @@
 
 namespace taut::plant {
 
-/// Point of a body, given by its arm from the center of mass at t = 0 (in W), or point of the
-/// world.
+/// Point of a body or of the world. `arm_m`: vector from the center of mass at t = 0, in W; for the
+/// world, the position.
 struct BodyPoint {
   int body = kWorld;
   Vec3 arm_m;
@@ -30,20 +29,22 @@ inline mechanics::BodyMoment MomentOf(const World& world, int body, int lane = 0
 /// Returns the joints of a model with `from_m` and `to_m` relative to the centers of mass.
 std::vector<JointDef> JointsByArms(const ModelDef& def);
 
-/// Gathers the forces on the bodies of a lane: of cables from the tensions read
-/// (docs/theory/loads.md, eq. 1); of contacts, joints and at nodes as means over the last step.
+/// Gathers the forces on the bodies of a lane. Cable forces are computed from tension readings
+/// (docs/theory/loads.md, eq. 1). Forces of contacts and joints and at nodes are means over the
+/// last step.
 class BodyForces {
  public:
   explicit BodyForces(const ModelDef& def);
 
-  /// Returns the forces in a fixed order; valid until the next call.
+  /// Returns the forces in a fixed order. The result is valid until the next call.
   const std::vector<BodyForce>& Gather(const Observation& exact, const World& world, int lane = 0);
 
  private:
   std::vector<std::vector<BodyPoint>>
-      cables_;  ///< Empty: the path is read from the world (wheels, friction, wrapping).
+      cables_;  ///< Points of each cable. Empty if its path must be read from the world (wheels,
+                ///< friction, wrapping).
   std::vector<int> bodies_of_nodes_;
-  std::vector<JointDef> joints_;  ///< From `JointsByArms`.
+  std::vector<JointDef> joints_;  ///< Result of `JointsByArms`.
   std::size_t body_count_;
   std::vector<BodyState> states_;
   std::vector<PathPoint<Vec3>> path_;

@@ -1,5 +1,5 @@
-/// Table of the channels of a cable in a trace, `cable/NAME/...`, for recorder, sensors,
-/// environments and replays: names, units and rows. To add a channel, add a line here and in
+/// Table of a cable's channels in a trace, `cable/NAME/...`, with units and rows. Recorder,
+/// sensors, environments and replays use it. To add a channel, add a line here and in
 /// docs/formats/trace.md.
 #pragma once
 
@@ -12,11 +12,11 @@ namespace taut::plant {
 struct CableChannel {
   const char* name;
   const char* unit;
-  // Row with the values, cable c of lane j at [c * lanes + j]; the other pointer is null.
+  // Row with the values: cable c of lane j is at [c * lanes + j]. One of the two pointers is null.
   const double* ReadingRows::*reading;
   double* Commands::*command;
-  bool sensed = false;  ///< Also measured by a robot's sensors: channel `sensor/NAME/...`.
-  /// Recorded only for cables whose controller has a tension set point.
+  bool sensed = false;  ///< Whether sensors also measure it (channel `sensor/NAME/...`).
+  /// Whether it is recorded only for cables with a tension set point.
   bool with_set_point = false;
 
   const double* Row(const ReadingRows& readings, const Commands& commands) const noexcept {

@@ -1,5 +1,5 @@
-/// Optional groups of channels of a trace (docs/formats/trace.md). Each is recorded on request
-/// only; the check of channel names and its suggestions include all of them.
+/// Optional groups of channels of a trace (docs/formats/trace.md). Each group is recorded only on
+/// request. Checks of channel names consider all groups.
 #pragma once
 
 #include "plant/recorder.h"
@@ -9,8 +9,8 @@ namespace taut::plant {
 void AddNodeChannels(const ExperimentSpec& experiment, Recorder& recorder);
 /// Adds the axial forces of struts and the reactions of anchored bodies.
 void AddLoadChannels(const ExperimentSpec& experiment, Recorder& recorder);
-/// Adds span tensions, friction losses, wheel angles, wrap angles and bends of routed cables with
-/// friction or wheels and of wrapping cables.
+/// Adds channels of routed cables with friction or wheels, and of wrapping cables: span tensions,
+/// friction losses, wheel angles, wrap angles and bends.
 void AddSpanChannels(const ExperimentSpec& experiment, Recorder& recorder);
 /// Adds forces, torques and coordinates of joints.
 void AddJointChannels(const ExperimentSpec& experiment, Recorder& recorder);

@@ -24,7 +24,7 @@ std::vector<ChannelInfo> NamesOf(int slots) {
   return names;
 }
 
-/// Keeps the `room` contacts with the largest forces, in their original order.
+/// Reduces `contacts` to the `room` contacts with the largest forces, in their original order.
 void LeaveLargest(std::vector<ContactState>& contacts, std::size_t room) {
   if (contacts.size() <= room) return;
   std::vector<std::size_t> order(contacts.size());

@@ -12,7 +12,7 @@ struct Anchor {
 
 }  // namespace
 
-/// One block for all loads, so that the forces on bodies are gathered once per row.
+/// All loads are in one block, so that the forces on bodies are gathered once per row.
 void AddLoadChannels(const ExperimentSpec& experiment, Recorder& recorder) {
   const ModelDef& def = experiment.robot.def;
   std::vector<mechanics::Strut> struts;

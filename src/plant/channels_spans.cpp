@@ -7,7 +7,7 @@
 namespace taut::plant {
 namespace {
 
-/// Adds the points at which a wrapping cable bends: the middle of each arc.
+/// Adds the bend points of a wrapping cable (the middle of each arc).
 void AddBendChannels(const std::string& prefix, int cable, Recorder& recorder) {
   std::vector<ChannelInfo> names{{"bends", "1"}};
   for (int i = 1; i <= CableDef::kMostBends; ++i) {

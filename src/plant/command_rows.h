@@ -1,4 +1,4 @@
-/// Storage for the rows that `Commands` points to, for plants without other storage for them.
+/// Memory for the rows of `Commands`, for plants that do not store them elsewhere.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ class CommandRows {
         mode_(cables * lanes, CommandMode::kRestLength),
         gait_(lanes, -1) {}
 
-  /// Returns commands with `rest_length_m` as the row of rest lengths. Valid while this object is
-  /// neither moved nor destroyed.
+  /// Returns commands that use `rest_length_m` as the row of rest lengths. Valid until this object
+  /// is moved or destroyed.
   Commands With(double* rest_length_m) {
     return {static_cast<int>(lanes_),
             rest_length_m,

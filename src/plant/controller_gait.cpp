@@ -8,14 +8,14 @@
 namespace taut::plant {
 namespace {
 
-/// Returns the weight of a new gait at a fraction of the blend, 0 to 1. Its first two derivatives
-/// are continuous (docs/theory/gaits.md).
+/// Returns the weight of the new gait during a blend. `part`: elapsed fraction of the blend. First
+/// and second derivatives are continuous (docs/theory/gaits.md).
 double ShareAt(double part) {
   const double x = std::clamp(part, 0.0, 1.0);
   return x * x * x * (10.0 + x * (-15.0 + 6.0 * x));
 }
 
-/// Plays the gaits of a controller's input, one at a time, and blends from one to the next.
+/// Controller that plays the gaits of an input one at a time, with blends between them.
 class GaitController final : public Controller {
  public:
   GaitController(const ControlSetup& setup, std::size_t index)
@@ -79,14 +79,14 @@ class GaitController final : public Controller {
   }
 
  private:
-  /// A gait that plays in a lane.
+  /// Gait that is playing in a lane.
   struct Part {
     int gait = -1;
     std::int64_t from_tick = 0;
   };
   struct Lane {
     std::vector<GaitChange> changes;
-    Part now, before;  ///< `before`: the gait that is being blended out.
+    Part now, before;  ///< `before`: the previous gait during a blend.
     double blend_from_s = 0;
   };
 
@@ -94,8 +94,8 @@ class GaitController final : public Controller {
     return control::TickTime(control::Clock<double>{clock_.period_s, clock_.phase_s}, tick);
   }
 
-  /// Selects the gait of a lane from this tick on. A change waits until the previous blend has
-  /// ended.
+  /// Selects the gait of a lane, starting with this tick. A change waits until the previous blend
+  /// has ended.
   void Choose(std::size_t j, std::int64_t tick, int commanded) {
     Lane& lane = lanes_[j];
     const double time_s = TimeOf(tick);
@@ -135,7 +135,7 @@ class GaitController final : public Controller {
         {playing, number_.data(), time_s_.data(), since_s_.data()}, seen);
   }
 
-  /// Returns true if all lanes play the same gait and none is blending.
+  /// Returns whether all lanes play the same gait without blending.
   bool InUnison(Lanes due) const {
     bool same = due == AllLanes(static_cast<int>(lanes_.size()));
     for (const Lane& lane : lanes_) {
@@ -175,7 +175,7 @@ class GaitController final : public Controller {
   std::size_t index_;
   ClockSpec clock_;
   double blend_s_ = 0;
-  std::vector<std::unique_ptr<GaitPlayer>> players_;  ///< Per gait of the input.
+  std::vector<std::unique_ptr<GaitPlayer>> players_;  ///< One player per gait of the input.
   std::vector<Lane> lanes_;
   std::vector<std::int64_t> number_;
   std::vector<double> time_s_, since_s_;

@@ -20,7 +20,7 @@ control::ImpedanceLaw LawOf(const ImpedanceSpec& spec, const ClockSpec& clock) {
   return law;
 }
 
-/// Impedance control of a controller's cables (paper eq. 3). Gains may differ between worlds.
+/// Impedance control of the cables of a controller (paper eq. 3). Gains may differ between worlds.
 class ImpedanceController final : public Controller {
  public:
   ImpedanceController(const ControlSetup& setup, std::size_t index)
@@ -117,7 +117,7 @@ class ImpedanceController final : public Controller {
     others.PutBack();
   }
 
-  /// Keeps every row that a tick writes.
+  /// Backs up all rows that a tick writes.
   void KeepAll(OtherLanes& others, const Commands& commands) {
     for (std::vector<double>* memory : {&error_before_, &integral_, &length_before_m_}) {
       others.Keep(memory->data(), cables_.size());

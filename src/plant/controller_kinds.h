@@ -1,5 +1,4 @@
-/// Registry of the controllers of an experiment: one file per kind (controller_*.cpp) and one entry
-/// here.
+/// Registry of controllers. Each kind has a file controller_*.cpp and an entry in kControllerKinds.
 #pragma once
 
 #include <memory>
@@ -9,19 +8,19 @@
 
 namespace taut::plant {
 
-/// Each creates the controller of its kind for controller `index` of the experiment; null if that
-/// has none.
+/// Creates one kind of controller for controller `index` of the experiment. Returns null if the
+/// experiment's controller does not have this kind.
 using MakeController = std::unique_ptr<Controller> (*)(const ControlSetup&, std::size_t index);
 
 std::unique_ptr<Controller> MakeGait(const ControlSetup&, std::size_t index);
 std::unique_ptr<Controller> MakeImpedance(const ControlSetup&, std::size_t index);
 std::unique_ptr<Controller> MakePosition(const ControlSetup&, std::size_t index);
 
-/// In the order in which they act at the same time: a gait before the law that it feeds.
+/// Order in which they act at a common tick: gaits precede the control laws that use their signals.
 inline constexpr MakeController kControllerKinds[] = {MakeGait, MakeImpedance, MakePosition};
 
-/// Returns the controllers of an experiment, each with its kinds in order, then the controllers
-/// that the calling program adds.
+/// Returns all controllers: for each controller of the experiment its kinds, then the custom
+/// controllers of the calling program.
 inline std::vector<std::unique_ptr<Controller>> MakeControllers(const ControlSetup& setup,
                                                                 const Extensions& extensions) {
   std::vector<std::unique_ptr<Controller>> made;

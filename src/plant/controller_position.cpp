@@ -8,7 +8,7 @@
 namespace taut::plant {
 namespace {
 
-/// Position control: rest lengths from a program in time, a gait's signal, or the sum of both.
+/// Position control: rest lengths follow a program in time, a gait's signal, or the sum of both.
 class PositionController final : public Controller {
  public:
   PositionController(const ControlSetup& setup, std::size_t index, const std::vector<int>& of_gait)
@@ -71,9 +71,10 @@ class PositionController final : public Controller {
 
  private:
   struct Lane {
-    std::vector<std::vector<control::ProgramPoint<double>>> programs;  ///< Of the first cables.
-    std::vector<double> start_m;  ///< Of the others: rest length at their first tick.
-    std::vector<double> held_m;   ///< Set by `Hold`; replaces either.
+    std::vector<std::vector<control::ProgramPoint<double>>> programs;  ///< Programs of the first
+                                                                       ///< cables in `cables_`.
+    std::vector<double> start_m;  ///< Of all other cables: rest length at their first tick.
+    std::vector<double> held_m;   ///< Set by `Hold`; overrides the program.
     std::vector<std::uint8_t> is_held;
   };
 
@@ -96,8 +97,9 @@ class PositionController final : public Controller {
 
   std::size_t index_;
   ClockSpec clock_;
-  std::vector<int> cables_;  ///< Cables with a program, then cables that only a gait moves.
-  bool moved_ = false;       ///< A gait moves the cables.
+  std::vector<int> cables_;  ///< First the cables with a program, then those that only a gait
+                             ///< drives.
+  bool moved_ = false;       ///< Whether a gait drives the cables.
   std::vector<Lane> lanes_;
 };
 

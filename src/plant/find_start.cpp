@@ -57,8 +57,8 @@ bool FindStart(const ExperimentSpec& experiment, WorldBatch& batch, Diagnostics&
   return true;
 }
 
-/// Returns for each body the first body of its group of jointed bodies, which the start noise moves
-/// together; kWorld if joints connect the group to a fixed body or the world.
+/// Returns, for each body, the first body of its group of jointed bodies, which start noise moves
+/// together. Returns kWorld if joints connect the group to a fixed body or the world.
 std::vector<int> JointedTo(const ModelDef& def) {
   const int world = static_cast<int>(def.bodies.size());
   base::UnionFind sets(def.bodies.size() + 1);
@@ -71,9 +71,9 @@ std::vector<int> JointedTo(const ModelDef& def) {
   return first;
 }
 
-/// Returns the random rotation of the whole robot. It is uniform over all rotations: normal numbers
-/// have no preferred direction in any dimension, so the unit quaternions are uniform on their
-/// sphere.
+/// Returns the random rotation of the whole robot. With `any_pose`, it is uniform over all
+/// rotations: a vector of four normal random numbers has no preferred direction, so normalized it
+/// is a uniform unit quaternion.
 Quat TurnOf(const StartNoise& noise, std::uint64_t seed) {
   Quat turn;
   if (noise.any_pose) {
@@ -92,8 +92,8 @@ Quat TurnOf(const StartNoise& noise, std::uint64_t seed) {
   return turn;
 }
 
-/// Returns points of the robot as described that determine its clearance over the ground; along
-/// rods their spacing is at most the radius (up to 100 parts).
+/// Returns points of the robot, as described, that determine its clearance above the ground. Along
+/// rods, their spacing is at most the radius (with a limit of 100 parts).
 std::vector<Vec3> PointsOf(const ModelDef& def) {
   constexpr double kMostOfARod = 100;
   std::vector<Vec3> points;
@@ -115,8 +115,8 @@ std::vector<Vec3> PointsOf(const ModelDef& def) {
   return points;
 }
 
-/// Returns the displacement by the start noise; it keeps every point's clearance over the ground
-/// below it. Reports an error and returns nothing where there is no ground.
+/// Returns the horizontal displacement by start noise, plus a vertical one so that no point comes
+/// closer to the ground. Returns nothing and reports an error if a point would leave the terrain.
 std::optional<Vec3> PlacedBy(const ExperimentSpec& experiment, const Model& model,
                              Diagnostics& out) {
   Vec3 by = PlaceOf(experiment.start_noise, experiment.seed);
@@ -145,7 +145,8 @@ void MoveBy(const Vec3& by, const ModelDef& def, WorldBatch& batch) {
   }
 }
 
-/// Displaces bodies at random, upwards rather than into the ground; then rotates the whole robot.
+/// Displaces bodies at random, with vertical displacements upward only. Then rotates the whole
+/// robot.
 void Disturb(const ExperimentSpec& experiment, WorldBatch& batch) {
   const StartNoise& noise = experiment.start_noise;
   const ModelDef& def = experiment.robot.def;

@@ -1,4 +1,4 @@
-/// Start of an experiment: scales, settling to equilibrium, start noise.
+/// Initial state of an experiment: scale factors, settling to equilibrium, start noise.
 #pragma once
 
 #include <functional>
@@ -13,36 +13,36 @@
 
 namespace taut::plant {
 
-/// The only world of a run.
+/// Index of the only world of a run.
 inline constexpr int kTheWorld = 0;
 
-/// Multiplies parameters of a world.
+/// Multiplies parameters of a world by scale factors.
 void ApplyScales(const std::vector<ScaleSpec>& scales, WorldBatch& batch, int world);
 
-/// Sets a new batch of one world to the start of the experiment: scales, equilibrium, noise.
-/// Returns false and reports a diagnostic if there is no such state, if bodies overlap deeply there
-/// or where settling begins, or if `go_on` returns false before it is found. `settled`, if given,
-/// receives the result of settling without the noise; it stays empty if the experiment does not
-/// settle.
+/// Sets a new batch of one world to the start of the experiment: scale factors, equilibrium, noise.
+/// Returns false and reports an error if there is no such state, or if bodies overlap deeply at the
+/// start or before settling. Also returns false if `go_on` returns false. `settled`: receives the
+/// result of settling without noise; empty if the experiment does not settle.
 bool PrepareStart(const ExperimentSpec& experiment, WorldBatch& batch, Diagnostics& out,
                   const std::function<bool()>& go_on = {},
                   std::optional<SettledStart>* settled = nullptr);
 
-/// Returns the pose of the only world, with its commanded rest lengths.
+/// Returns the pose of the only world, including its commanded rest lengths.
 Pose PoseOf(const WorldBatch& batch);
 
-/// State of a world before it settles, for the comparison with the settled state.
+/// State of a world before it settles, to compare with the settled state.
 struct Unsettled {
   std::vector<double> elastic_n;           ///< Per cable.
-  std::set<std::pair<int, int>> touching;  ///< Bodies, the lower index first.
+  std::set<std::pair<int, int>> touching;  ///< Pairs of bodies in contact, the lower index first.
 };
-/// Does not change the world.
+/// Records the current state. Does not change the world.
 Unsettled NoteUnsettled(WorldBatch& batch, double step_s);
-/// Requires that the only world of `batch` has settled: its last step was a step of `Settle`.
+/// Compares with the settled state. The last step of `batch` must be a step of `Settle`.
 StartChange ChangeOf(const Unsettled& before, const WorldBatch& batch);
 
-/// Reports overlaps in the current state of the only world, as `CheckStart`. `terrain`: whether
-/// terrain is included; `warn`: whether overlaps of less than half the thickness give warnings.
+/// Reports overlaps in the current state of the only world, like `CheckStart`. `terrain`: whether
+/// to check overlaps with terrain. `warn`: whether to warn of overlaps of less than half the
+/// thickness.
 bool CheckOverlaps(const RobotSpec& robot, const WorldBatch& batch, bool terrain, bool warn,
                    Diagnostics& out);
 

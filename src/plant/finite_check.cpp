@@ -9,7 +9,7 @@
 namespace taut::plant {
 namespace {
 
-/// Rows of commands that are numbers, by name.
+/// Returns the numeric rows of commands, with names.
 std::array<std::pair<const char*, double*>, 4> RowsOf(const Commands& commands) {
   return {{{"rest_length_m", commands.rest_length_m},
            {"set_point_n", commands.set_point_n},
@@ -17,7 +17,7 @@ std::array<std::pair<const char*, double*>, 4> RowsOf(const Commands& commands) 
            {"signal", commands.signal}}};
 }
 
-/// Integers, because the compiler does not change the order of sums of floating-point numbers.
+/// Uses integers, so that the compiler can vectorize the loop.
 bool AllFinite(const double* row, std::size_t count) {
   if (row == nullptr) return true;
   constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000;

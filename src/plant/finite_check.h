@@ -1,5 +1,5 @@
-/// Refusal of commands and readings that are not finite, with the name of the cable. Such a number
-/// would halt a simulated world without a reason, and must not reach a motor.
+/// Rejection of commands and readings that are not finite, with the cable's name in the message.
+/// Such a value would stop a simulated world without explanation, and must not reach a real motor.
 #pragma once
 
 #include <cstddef>
@@ -16,26 +16,27 @@ namespace taut::plant {
 
 class FiniteCheck {
  public:
-  /// A number with its name.
+  /// Name and value of a number.
   using Named = std::pair<const char*, double>;
 
   FiniteCheck(const std::vector<CableDef>& cables, int lanes);
 
-  /// Copies the commands of all lanes, for `PutBack`.
+  /// Copies the commands of all lanes, for use by `PutBack`.
   void Keep(const Commands& commands);
-  /// Refuses commands that are not finite in the lanes `among`: puts the copies back. `who` sets
-  /// them: subject and verb of the message. `time_s` returns the time of a lane.
+  /// Replaces commands that are not finite, in the lanes `among`, by the copies and reports errors.
+  /// `who`: subject and verb of the message. `time_s`: returns the time of a lane.
   void PutBack(const Commands& commands, Lanes among, const std::function<double(int)>& time_s,
                std::string_view who);
-  /// Reports an error for each reading that is not finite, unless its fault bit is set. Returns the
-  /// lanes of `among` in which no reading was refused.
+  /// Reports an error for each reading that is not finite and has no fault bit. Returns the lanes
+  /// of `among` in which all readings are valid.
   Lanes WithReadings(const Observation& seen, Lanes among);
-  /// Refuses numbers that a program sets for an element ("node", "tip") if one of them is not
-  /// finite. Returns whether all are finite.
+  /// Checks numbers that a program sets for an element, such as node "tip". Reports an error and
+  /// returns false if one of them is not finite.
   bool Accepts(int lane, double time_s, const char* kind, const std::string& name,
                std::span<const Named> numbers);
 
-  /// Returns a sentence about the first refused number of a lane since its start; empty: none.
+  /// Returns a message about the first rejected number of a lane since its start; empty if there is
+  /// none.
   const std::string& refused(int lane) const noexcept {
     return refused_[static_cast<std::size_t>(lane)];
   }
@@ -44,14 +45,14 @@ class FiniteCheck {
  private:
   void Refuse(int lane, double time_s, std::string_view who, const char* kind,
               const std::string& name, const Named& number);
-  /// Returns the name of the cable with the entry `i` of a row.
+  /// Returns the name of the cable of entry `i` in a row.
   const std::string& CableAt(std::size_t i) const {
     return cables_[i / static_cast<std::size_t>(lanes_)].name;
   }
 
   const std::vector<CableDef>& cables_;
   int lanes_;
-  std::vector<double> kept_;  ///< Rows of commands, one after the other.
+  std::vector<double> kept_;  ///< Copied rows of commands, one after the other.
   std::vector<std::string> refused_;
 };
 

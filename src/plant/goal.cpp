@@ -14,7 +14,7 @@ struct Horizontal {
   double x = 0, y = 0;
 };
 
-/// Returns the unit vector; (0, 0) where there is no direction.
+/// Returns the unit vector of (x, y); (0, 0) if its length is almost 0.
 Horizontal Direction(double x, double y) {
   const double length = std::sqrt(x * x + y * y);
   return length > 1e-9 ? Horizontal{x / length, y / length} : Horizontal{};
@@ -56,7 +56,7 @@ void GoalSensor::Restart(int lane, const RolloutWorld& world) {
   at_m_[static_cast<std::size_t>(lane)] = GoalOf(goal_, world.start_noise, world.seed);
 }
 
-/// docs/theory/sensors.md, S.8 and S.9.
+/// Samples the direction of the goal (docs/theory/sensors.md, S.8 and S.9).
 void GoalSensor::Sample(const Tick& tick, const Observation& exact) {
   shown_ = exact;
   if (exact.goal != nullptr) return;

@@ -1,4 +1,4 @@
-/// Goal of an experiment, and the sensor of its direction.
+/// Goal of an experiment, and sensor of its direction.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace taut::plant {
 /// Returns the random horizontal offset of the start for a seed [m].
 Vec3 PlaceOf(const StartNoise& noise, std::uint64_t seed);
 
-/// Returns the goal in W, with the start noise of a seed.
+/// Returns the goal in W, including the start noise of a seed.
 Vec3 GoalOf(const GoalSpec& goal, const StartNoise& noise, std::uint64_t seed);
 
 /// Returns the horizontal distance of a body's center of mass from the goal [m].
 double DistanceToGoal(const Vec3& goal_m, const Vec3& body_m);
 
-/// Compass, or camera that sees a beacon, at the goal of each lane (docs/theory/sensors.md). If the
-/// plant observes the goal's direction, as a robot with such a sensor does, that direction is used.
-/// Returns (0, 0) where neither bodies nor the goal are observed.
+/// Sensor of the direction to the goal of each lane: a compass, or a camera that sees a beacon
+/// (docs/theory/sensors.md). If the plant observes the direction itself, the sensor returns that
+/// value. Returns (0, 0) if neither the bodies nor the direction are observed.
 class GoalSensor final : public SensorModel {
  public:
   explicit GoalSensor(const ControlSetup& setup);
@@ -33,7 +33,7 @@ class GoalSensor final : public SensorModel {
 
  private:
   GoalSpec goal_;
-  std::vector<Vec3> at_m_;  ///< Per lane.
+  std::vector<Vec3> at_m_;  ///< Position of the goal, per lane.
   std::vector<double> rows_;
   Observation shown_;
 };

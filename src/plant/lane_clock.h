@@ -1,4 +1,4 @@
-/// Clock of a sensor or controller with one tick counter per lane, since lanes restart
+/// Clock of a sensor or controller. It has one tick counter per lane, since lanes restart
 /// independently.
 #pragma once
 
@@ -16,7 +16,7 @@ class LaneClock {
   LaneClock(const ClockSpec& spec, int lanes)
       : clock_{spec.period_s, spec.phase_s}, ticks_(static_cast<std::size_t>(lanes)) {}
 
-  /// Returns the lanes of `among` whose tick is due.
+  /// Returns the lanes of `among` in which a tick is due.
   Tick Due(const double* time_s, Lanes among) const noexcept {
     if (together_) {
       const bool due = control::IsDue(clock_, ticks_[0], time_s[0]);
@@ -29,7 +29,7 @@ class LaneClock {
     return {due & among, ticks_.data()};
   }
 
-  /// Counts the tick of lanes that have acted.
+  /// Increments the tick counter of `lanes`.
   void Advance(Lanes lanes) noexcept {
     for (std::size_t j = 0; j < ticks_.size(); ++j) ticks_[j] += lanes >> j & 1u;
   }
@@ -42,13 +42,13 @@ class LaneClock {
     ticks_[static_cast<std::size_t>(lane)] = 0;
     together_ = ticks_.size() == 1;
   }
-  /// Serializes the counter of a lane; restores into a lane that was restarted.
+  /// Serializes the counter of a lane. To restore, restart the lane first.
   void Serialize(LaneState& state) { state.Row(ticks_); }
 
  private:
   control::Clock<double> clock_;
   std::vector<std::int64_t> ticks_;
-  bool together_ = true;  ///< No lane has been restarted: all counters are equal.
+  bool together_ = true;  ///< No lane was restarted, so all counters are equal.
 };
 
 }  // namespace taut::plant

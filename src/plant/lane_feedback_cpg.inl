@@ -1,4 +1,5 @@
-/// SIMD kernels of neural networks and of the central pattern generator (CPG) that they modulate.
+/// SIMD kernels of neural networks and of central pattern generators (CPG) that these networks
+/// modulate.
 #pragma once
 
 #include "plant/lane_kernel.h"
@@ -17,7 +18,7 @@ void SayNetwork(const NetworkRows& rows, const double* inputs, double* outputs) 
       [outputs](int k, W y) { Store(outputs, k, y); });
 }
 
-/// Views of a network of oscillators in memory that the caller owns.
+/// Network of oscillators in memory owned by the caller.
 template <class W>
 struct LaneFeedbackCpg {
   control::FeedbackCpgLaw<W>* laws;

@@ -1,4 +1,4 @@
-/// Observations of bodies in all lanes at once, as rows of numbers.
+/// Observations of bodies as rows of numbers, for all lanes at once.
 #pragma once
 
 #include "plant/lane_kernel.h"
@@ -34,8 +34,8 @@ TAUT_INLINE simd::Q4<W> Back(const simd::Q4<W>& q) noexcept {
   return {q.w, -q.x, -q.y, -q.z};
 }
 
-/// Writes 13 rows per body (position, orientation, velocity, angular velocity), bit-identical to
-/// `WorldBatch::Body` for bodies without motions.
+/// Writes 13 rows per body: position, orientation, velocity, angular velocity. Results are
+/// bit-identical to `WorldBatch::Body`, except for kinematic bodies.
 template <class W>
 void SeeBodies(const BodyRows& rows, double* out) {
   for (int b = 0; b < rows.count; ++b) {

@@ -1,6 +1,6 @@
-/// Implementation of the lane kernels, included by lane_*.cpp once per instruction set with the
-/// register width W. As in the step, nothing here uses the standard library, and every function is
-/// a template of W.
+/// Implementation of the lane kernels. lane_*.cpp include it once per instruction set, with the
+/// register type W. As in the step, the code does not use the standard library, and all functions
+/// are templates of W.
 #pragma once
 
 #include "plant/lane_feedback_cpg.inl"
@@ -13,7 +13,7 @@
 
 namespace taut::plant {
 
-/// Options that are equal for all cables are compile-time constants: `by_pid`, `differenced`.
+/// Options that are the same for all cables are template parameters: kByPid, kDifferenced.
 template <class W, bool kByPid, bool kDifferenced>
 void ActCables(control::ImpedanceLaw law, const ImpedanceRows rows, const ReadingRows sensed,
                const ImpedanceOut out) noexcept {
@@ -90,7 +90,7 @@ void TickSine(const SineRows& rows, const double* time_s, double* velocity_m_per
   }
 }
 
-/// Views of a network of oscillators in memory that the caller owns.
+/// Network of oscillators in memory owned by the caller.
 template <class W>
 struct LaneCpg {
   control::CpgLaw<W>* laws;

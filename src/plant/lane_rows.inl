@@ -1,4 +1,5 @@
-/// Loads and stores of rows of numbers, one per lane, as SIMD registers; allocation from a block.
+/// Loads and stores of rows (one number per lane) as SIMD registers, and allocation from a memory
+/// block.
 #pragma once
 
 #include "simd/wide.h"
@@ -16,7 +17,7 @@ TAUT_INLINE void Store(double* row, int i, W x) noexcept {
   __builtin_memcpy(row + i * W::kLanes, &x, sizeof(double) * W::kLanes);
 }
 
-/// Returns the next `count` objects of the caller's memory block and advances `end`.
+/// Allocates `count` objects from the caller's memory block and advances `end`.
 template <class T>
 T* Take(char*& end, int count) noexcept {
   T* const first = reinterpret_cast<T*>(end);

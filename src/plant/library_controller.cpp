@@ -6,7 +6,7 @@
 namespace taut {
 namespace {
 
-/// Controller of the library whose numbers come from a specification instead of the variants.
+/// Controller of the library, with parameters from a specification instead of the worlds' variants.
 class LibraryController final : public Controller {
  public:
   LibraryController(const ControlSetup& setup, ControllerSpec spec, plant::MakeController make)

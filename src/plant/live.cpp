@@ -126,13 +126,13 @@ class Live final : public LiveRun {
   }
 
   void Watch() {
-    if (watch_.empty()) return;  // building the observation costs more than the check
+    if (watch_.empty()) return;  // avoids the observation, which costs more than the check
     watch_.Take(time_s(), simulation_->Observe(), world());
   }
 
-  /// Returns the force of a spring and damper between node and hand. Both are explicit and limited,
-  /// so that they are stable at the end of a rod, whose effective mass is a quarter of the rod's
-  /// mass.
+  /// Returns the force of a spring and damper between node and hand. Stiffness and damping are
+  /// limited so that explicit integration is stable, even at the end of a rod, where the effective
+  /// mass is a quarter of the rod's mass.
   Vec3 HandForce() const {
     const NodeDef& node = simulation_->def().nodes[static_cast<std::size_t>(hand_->node)];
     if (node.body == kWorld) return {};

@@ -9,9 +9,9 @@
 namespace taut {
 namespace {
 
-/// The clock with the shortest period, whose ticks end steps most often.
+/// Clock with the shortest period.
 struct Ticks {
-  std::string of;  ///< Its name and a verb, for the message.
+  std::string of;  ///< Name of the clock's owner and a verb, for the message.
   double period_s = INFINITY;
 };
 

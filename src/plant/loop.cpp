@@ -47,7 +47,7 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   for (std::size_t i = own; i < laws_.size(); ++i) {
     laws_[i].custom = "custom controller " + std::to_string(i - own) + " sets";
   }
-  if (own < laws_.size()) check_.Keep(plant_.commands());  // allocates memory
+  if (own < laws_.size()) check_.Keep(plant_.commands());  // allocate memory now
 }
 
 Lanes Loop::AtBoundary() const {
@@ -210,7 +210,7 @@ void Loop::Serialize(LaneState& state) {
   plant_.Serialize(state);
 }
 
-/// Returns the time of the next tick or corner.
+/// Returns the time of the next tick or of the next corner of the timeline.
 double Loop::NextBoundary(int lane) const {
   const auto timeline = static_cast<std::size_t>(lane < count_ ? lane : 0);
   double next = timelines_[timeline].NextCorner(time_s(lane));

@@ -1,6 +1,6 @@
-/// Base of gaits made of oscillators (CPG): memory of the kernel, and integration from tick to tick
-/// in the lanes that are due. Each kind computes the feedback (gait_cpg.cpp,
-/// gait_feedback_cpg.cpp).
+/// Base class of gait players made of oscillators (CPG): kernel memory, and integration between
+/// ticks in the lanes that are due. Subclasses compute the feedback (play_cpg.cpp,
+/// play_feedback_cpg.cpp).
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,8 @@ class OscillatorPlayer : public GaitPlayer {
     state.Row(States(), state_count());
   }
 
-  /// Starts the oscillators at the first tick; later ticks integrate with the feedback of the tick
-  /// before.
+  /// Starts the oscillators at the first tick. Later ticks integrate them with the feedback of the
+  /// previous tick.
   void Tick(const GaitTick& tick, const Observation& seen) final {
     if (retuned_) Start(0);
     Lanes first = 0;
@@ -61,8 +61,8 @@ class OscillatorPlayer : public GaitPlayer {
     }
   }
 
-  /// Allocates the kernel's memory and sets all lanes to their start. Kinds call it at the end of
-  /// their constructors.
+  /// Allocates the kernel's memory and sets all lanes to their start. Subclasses call it at the end
+  /// of their constructors.
   void Prepare(const GaitSetup& setup, std::size_t bytes) {
     memory_.reset(std::aligned_alloc(64, (bytes + 63) / 64 * 64));
     if (!memory_) base::OutOfMemory();
@@ -72,17 +72,17 @@ class OscillatorPlayer : public GaitPlayer {
   }
 
   virtual void SetNumbers(int lane, const GaitSpec& gait) = 0;
-  /// Returns the states: three rows per oscillator, in all lanes.
+  /// Returns the oscillators' state: three rows per oscillator.
   virtual double* States() const = 0;
-  /// Passes the parameters of all lanes to the kernel and sets all oscillators to their start.
+  /// Passes the parameters of all lanes to the kernel and restarts all oscillators.
   virtual void StartKernel() = 0;
-  /// Integrates all oscillators by `steps` steps of `integrator_step_s` and writes their signals.
+  /// Integrates `steps` steps of length `integrator_step_s` and writes the signals.
   virtual void TickKernel(int steps) = 0;
   /// Clears the feedback of a lane.
   virtual void Forget(int lane) = 0;
-  /// Stores the reference values at the first tick.
+  /// Stores reference values at the first tick.
   virtual void Begin(Lanes first, const Observation& seen) { (void)first, (void)seen; }
-  /// Sets the feedback to the oscillators until the next tick.
+  /// Computes the feedback to the oscillators, which is used until the next tick.
   virtual void Hear(Lanes due, const Observation& seen) = 0;
 
   const LaneKernel& kernel() const noexcept { return kernel_; }
@@ -99,7 +99,7 @@ class OscillatorPlayer : public GaitPlayer {
     void operator()(void* p) const noexcept { std::free(p); }
   };
 
-  /// Passes the parameters to the kernel; oscillators of the lanes `begin` restart, others keep
+  /// Passes the parameters to the kernel. Oscillators of the lanes `begin` restart; others keep
   /// their state.
   void Start(Lanes begin) {
     retuned_ = false;
@@ -121,7 +121,7 @@ class OscillatorPlayer : public GaitPlayer {
   std::vector<unsigned short> to_, from_;
   int steps_a_tick_;
   double integrator_step_s_;
-  bool retuned_ = false;  ///< Changed parameters have not been passed to the kernel yet.
+  bool retuned_ = false;  ///< Whether changed parameters must still be passed to the kernel.
   KeptRows kept_;
   std::unique_ptr<void, Free> memory_;
 };

@@ -1,4 +1,4 @@
-/// Backup of lanes that are not due: kernels change rows of all lanes at once, and `OtherLanes`
+/// Backup of lanes that are not due. Kernels change the rows of all lanes; `OtherLanes` then
 /// restores the lanes that must not change.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace taut::plant {
 
-/// Preallocated memory for the backup, so that controllers allocate nothing while they act.
+/// Preallocated memory for the backup, so that controllers allocate no memory at ticks.
 class KeptRows {
  public:
-  /// Reserves space for `rows` rows with `numbers` numbers in total, in all lanes.
+  /// Reserves memory for `rows` rows with a total of `numbers` values over all lanes.
   void Reserve(std::size_t rows, std::size_t numbers) {
     rows_.reserve(rows);
     was_.reserve(numbers);
@@ -31,7 +31,7 @@ class KeptRows {
 
 class OtherLanes {
  public:
-  /// Keeps nothing if all lanes are due. Only one object at a time may use a `memory`, which must
+  /// If all lanes are due, stores nothing. Only one object at a time may use `memory`, which must
   /// outlive it.
   OtherLanes(Lanes due, int lanes, KeptRows& memory)
       : due_(due), lanes_(lanes), all_(due == AllLanes(lanes)), kept_(memory) {
@@ -39,10 +39,10 @@ class OtherLanes {
     kept_.was_.clear();
   }
 
-  /// Returns true if there is nothing to keep.
+  /// Returns whether there is nothing to store.
   bool none() const noexcept { return all_; }
 
-  /// Keeps `count` elements of a row.
+  /// Stores `count` elements of a row, in all lanes.
   void Keep(double* row, std::size_t count) {
     if (all_) return;
     const std::size_t size = count * static_cast<std::size_t>(lanes_);

@@ -13,10 +13,10 @@ namespace {
 using base::Brief;
 using List = ShapeRef::List;
 
-/// Smaller depths, relative to the half thickness, count as touching.
+/// Overlaps up to this depth count as contact, as a share of the half thickness.
 constexpr double kTouching = 0.01;
 
-/// Returns the place in the file of the terrain involved, else of the body.
+/// Returns the file position of the terrain involved, or else of the body.
 SourceRef PlaceOf(const RobotSpec& robot, const Overlap& overlap) {
   const auto at = [](const std::vector<SourceRef>& sources, int index) {
     const auto i = static_cast<std::size_t>(index);

@@ -29,7 +29,7 @@ class CpgPlayer final : public OscillatorPlayer {
     state.Row(signal_rad_per_s_);
   }
 
-  /// Keeps phases and amplitudes; only their targets change.
+  /// Takes over phases and amplitudes; only their targets change.
   bool GoOnFrom(const GaitPlayer& before, int lane) override {
     const auto* const other = dynamic_cast<const CpgPlayer*>(&before);
     if (other == nullptr || other->cables() != cables() || other->sign_ != sign_) return false;

@@ -5,14 +5,15 @@
 namespace taut::plant {
 namespace {
 
-constexpr std::size_t kSaid = 3;  ///< Feedback per oscillator: frequency, amplitude, phase.
+constexpr std::size_t kSaid = 3;  ///< Number of feedback values per oscillator: frequency,
+                                  ///< amplitude, phase.
 static_assert(NetworkSpec::kMostHidden == kMostHidden);
 constexpr const char* kSaidNames[kSaid] = {"frequency", "amplitude", "phase"};
 
-/// Neural network, evaluated in all lanes; without one, all outputs are 0.
+/// Neural network, evaluated in all lanes. Without a network, all outputs are 0.
 class LaneNetwork {
  public:
-  /// Sets the shape from the first lane's network; `outputs` are the names of all possible outputs.
+  /// Sets the size from the first lane's network. `outputs`: names of all possible outputs.
   void Shape(const std::optional<NetworkSpec>& spec, std::vector<std::string> outputs,
              std::size_t lanes) {
     lanes_ = lanes;
@@ -59,7 +60,7 @@ class LaneNetwork {
   std::vector<double> weights_, inputs_, said_;
 };
 
-/// Central pattern generator with feedback from cables and from the direction of the goal
+/// Central pattern generator with feedback from cables and from the goal's direction
 /// (docs/theory/gaits.md).
 class FeedbackCpgPlayer final : public OscillatorPlayer {
  public:
@@ -163,7 +164,7 @@ class FeedbackCpgPlayer final : public OscillatorPlayer {
     }
   }
 
-  /// Sets the feedback of all oscillators until the next tick from the outputs of the networks.
+  /// Computes the feedback of all oscillators from the network outputs.
   void Hear(Lanes due, const Observation& seen) override {
     if (!of_cable_.there() && !of_goal_.there()) return;
     for (int j = 0; j < lanes(); ++j) {
@@ -190,8 +191,8 @@ class FeedbackCpgPlayer final : public OscillatorPlayer {
     }
   }
 
-  /// Evaluates the goal network, one joint at a time. Without a goal sensor its goal inputs are (0,
-  /// 0).
+  /// Evaluates the goal network for one joint after the other. Without a goal sensor, the goal
+  /// inputs are (0, 0).
   void HearGoal(Lanes due, const Observation& seen) {
     for (std::size_t joint = 0; joint < found_.place.size(); ++joint) {
       for (int j = 0; j < lanes(); ++j) {

@@ -64,7 +64,7 @@ class SinePlayer final : public GaitPlayer {
   }
 
  private:
-  /// Keeps a wave's phase continuous when its frequency changes at a time t: f' t + shift' = f t +
+  /// Keeps the phases of waves continuous when a frequency changes at time t: f' t + shift' = f t +
   /// shift.
   void Shift(const GaitTick& tick) {
     const Lanes shifted = retuned_ & tick.due;
@@ -89,8 +89,7 @@ class SinePlayer final : public GaitPlayer {
   std::vector<ResolvedGait::Wave> waves_;
   Lanes retuned_ = 0;  ///< Lanes retuned since their last tick.
   std::vector<double> frequency_hz_, wanted_hz_, amplitude_, offset_;
-  /// Of a wave's phase: the gait's value, the sum of shifts by changes of frequency, and their
-  /// total.
+  /// Phase of each wave: value in the gait, sum of shifts by frequency changes, and their sum.
   std::vector<double> given_turns_, shift_turns_, phase_turns_;
   KeptRows kept_;
 };

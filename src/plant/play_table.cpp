@@ -7,13 +7,13 @@
 namespace taut::plant {
 namespace {
 
-/// Returns the row in force at `time_s`, which is not before the first row.
+/// Returns the last row at or before `time_s`. `time_s` must not be before the first row.
 std::size_t RowAt(const std::vector<double>& times_s, double time_s) {
   const auto after = std::upper_bound(times_s.begin(), times_s.end(), time_s + kTimeToleranceS);
   return static_cast<std::size_t>(after - times_s.begin()) - 1;
 }
 
-/// Plays the rows of a table, held or interpolated linearly.
+/// Player of a table's rows, held or interpolated linearly.
 class TablePlayer final : public GaitPlayer {
  public:
   explicit TablePlayer(const GaitSetup& setup) : GaitPlayer(setup) {
@@ -42,7 +42,7 @@ class TablePlayer final : public GaitPlayer {
   void Restart(int lane, const GaitSpec& gait) override {
     tables_[static_cast<std::size_t>(lane)] = *gait.table;
   }
-  void Retune(int, const GaitSpec&) override {}  // a table has no tunable parameter
+  void Retune(int, const GaitSpec&) override {}  // tables have no tunable parameters
 
  private:
   static double TimeIn(const TableGait& table, double time_s) {

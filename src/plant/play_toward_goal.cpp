@@ -23,8 +23,9 @@ control::StrutFrame<double> FrameOf(const std::vector<Axis>& struts) {
           one * b, one * (xy * xz - xx * yz), one * c};
 }
 
-/// Rolling gait towards the goal (docs/theory/gaits.md, eq. G.22 to G.24). Computed lane by lane:
-/// the cost is small compared to a step, and the result is bit-identical for every number of lanes.
+/// Player of a rolling gait toward the goal (docs/theory/gaits.md, eq. G.22 to G.24). Computes one
+/// lane at a time, so that results are bit-identical for any number of lanes. The cost is small
+/// compared to a step.
 class TowardGoalPlayer final : public GaitPlayer {
  public:
   explicit TowardGoalPlayer(const GaitSetup& setup) : GaitPlayer(setup), laws_(setup.gaits.size()) {
@@ -72,12 +73,12 @@ class TowardGoalPlayer final : public GaitPlayer {
   struct Law {
     control::TowardGoal<double> gains{};
     double beat = 0, beat_hz = 0;
-    /// The frequency changes at a tick, and the beat continues from its phase there.
+    /// If the frequency changes at a tick, the beat continues with the same phase.
     double wanted_hz = 0, shift_turns = 0;
   };
 
-  /// Without known poses of bodies the signal is the offset; without a goal sensor the goal is (0,
-  /// 0).
+  /// Computes the signals of a lane. Without known body poses, they equal the offset. Without a
+  /// goal sensor, the goal direction is (0, 0).
   void TickLane(int lane, double since_s, const Observation& seen) {
     Axis ahead{0, 0, 0}, up{0, 0, 0};
     if (seen.bodies != nullptr) {

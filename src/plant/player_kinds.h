@@ -1,5 +1,5 @@
-/// Gait players: gaits in all lanes of a plant. One file per kind (gait_*.cpp) and one entry in the
-/// list of makers.
+/// Gait players, which play gaits in all lanes of a plant. Each kind has a file play_*.cpp and an
+/// entry in the list of makers.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 
 namespace taut::plant {
 
-/// The lanes' gaits. They differ in numbers only, so `ResolveGait` returns the same for all.
+/// Gaits of all lanes. They differ only in numbers, so `ResolveGait` returns the same for all.
 struct GaitSetup {
   std::vector<const GaitSpec*> gaits;
   ResolvedGait resolved;
   double period_s = 0.01;
 };
 
-/// Lanes in which this gait plays now. Per lane: time of the run, and time and number of ticks
-/// since this gait began there.
+/// Lanes in which this gait is due. Per lane: time of the run, and number of ticks and time since
+/// this gait began.
 struct GaitTick {
   Lanes due = 0;
   const std::int64_t* number = nullptr;
@@ -37,21 +37,21 @@ class GaitPlayer {
         signal_(cables_.size() * setup.gaits.size()) {}
   virtual ~GaitPlayer() = default;
 
-  /// Per output, index of the robot's cable.
+  /// Index of the robot's cable, per output.
   const std::vector<int>& cables() const noexcept { return cables_; }
-  /// Output i in lane j since the last tick, at [i * lanes + j]; 0 before the first.
+  /// Output i of lane j at the last tick is at [i * lanes + j]; 0 before the first tick.
   const std::vector<double>& signal() const noexcept { return signal_; }
 
-  /// Advances to the next tick in the lanes that are due.
+  /// Computes the next tick in the lanes that are due.
   virtual void Tick(const GaitTick& tick, const Observation& seen) = 0;
-  /// Sets the parameters of a lane and plays from the beginning.
+  /// Sets the parameters of a lane and restarts the gait there.
   virtual void Restart(int lane, const GaitSpec& gait) = 0;
-  /// Sets the parameters of a lane while it plays on: from its next tick, without a jump of a
-  /// phase. Allocates nothing.
+  /// Sets the parameters of a lane from its next tick, without restart and without a jump in phase.
+  /// Allocates no memory.
   virtual void Retune(int lane, const GaitSpec& gait) = 0;
-  /// Serializes the state of a lane: all that its next ticks depend on.
+  /// Serializes all data of a lane that affect its next ticks.
   virtual void Serialize(LaneState& state) { state.Row(signal_); }
-  /// Continues in a lane from the state of another gait, without a jump. Returns false if that is
+  /// Continues in a lane with the state of another gait's player. Returns false if this is
   /// impossible.
   virtual bool GoOnFrom(const GaitPlayer& before, int lane) {
     return (void)before, (void)lane, false;
@@ -71,7 +71,7 @@ class GaitPlayer {
   std::vector<double> signal_;
 };
 
-/// Each returns a player if the gaits are of its kind, else null.
+/// Creates a player if the gaits are of its kind, otherwise returns null.
 using MakeGaitPlayer = std::unique_ptr<GaitPlayer> (*)(const GaitSetup&);
 
 std::unique_ptr<GaitPlayer> MakeSine(const GaitSetup&);

@@ -1,4 +1,4 @@
-// Poses of a simulated robot, and the robot's model redefined in a pose.
+// Poses of a simulated robot, and conversion of a model to another described pose.
 #include <algorithm>
 #include <cmath>
 
@@ -12,13 +12,13 @@
 namespace taut {
 namespace {
 
-/// Returns `q` scaled to unit length; integration over many steps leaves a small error.
+/// Scales `q` to unit length, to remove the integration error of many steps.
 Quat Normalized(const Quat& q) {
   const double scale = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {scale * q.w, scale * q.x, scale * q.y, scale * q.z};
 }
 
-/// Motion of each body from its described to its current pose.
+/// Motion of each body from its described pose to its current pose.
 class ToPose {
  public:
   ToPose(const ModelDef& from, const Pose& to) : from_(from.bodies), to_(to.bodies) {
@@ -38,7 +38,7 @@ class ToPose {
   const std::vector<BodyDef>& from_;
   const std::vector<BodyState>& to_;
   std::vector<Quat> turns_;
-  std::vector<bool> moves_;  ///< By forces or as a kinematic body.
+  std::vector<bool> moves_;  ///< Whether each body moves: free or kinematic.
 };
 
 }  // namespace
@@ -78,8 +78,9 @@ Pose PoseOf(const WorldBatch& batch) {
     pose.bodies.push_back(batch.Body(kTheWorld, static_cast<int>(b)));
   }
   for (std::size_t c = 0; c < def.cables.size(); ++c) {
-    // Without an actuator a cable does not follow commands, and no command goes below the least
-    // rest length. A motor's servo may be short of its target, where friction holds it.
+    // Without an actuator, a cable ignores commands. A motor may stop short of its target because
+    // of friction. For both, use the actual rest length. For other actuators, use the target,
+    // limited to the least rest length.
     const ActuatorDef& actuator = def.cables[c].actuator;
     const int cable = static_cast<int>(c);
     pose.rest_lengths_m.push_back(

@@ -1,4 +1,5 @@
-/// Streams of random numbers of an experiment's seed, one per use.
+/// Random number streams of an experiment's seed, one per use. Comments give the index within a
+/// stream.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +18,13 @@ enum Stream : std::uint32_t {
   kEncoderGain = 9,    ///< Index: cable.
   kGoal = 10,          ///< Index: 0.
   kStartPose = 11,     ///< Index: 0.
-  // Of an environment (src/env/):
+  // Used by environments (src/env/):
   kEpisodeScales = 12,  ///< Index: 0.
   kEpisodeSlope = 13,   ///< Index: 0.
   kEpisodeDelays = 14,  ///< Index: 0.
   kFollowingSeed = 15,  ///< Index: 0; the seed of the next episode.
   kStartPlace = 16,     ///< Index: 0.
-  // 100: scattered blocks of terrain, with a separate seed
+  // Stream 100 is used by scattered blocks of terrain, which have a separate seed
   // (description/experiment/terrain_boxes.cpp).
 };
 

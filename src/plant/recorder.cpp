@@ -90,7 +90,7 @@ void Recorder::AddSensor(const SensorSpec& sensors, const std::string& prefix, i
       *out++ = channel.Value(s.seen->cables, *s.commands, static_cast<std::size_t>(cable), s.lane);
     }
   });
-  // Record integer counts where the values are quantized.
+  // Also record integer counts if the sensor is quantized.
   if (sensors.load_cell && sensors.load_cell->counts) {
     const LoadCellCounts& counts = *sensors.load_cell->counts;
     Add(prefix, {{"tension_count", "1"}},
@@ -132,7 +132,7 @@ void Recorder::AddMotor(const std::string& prefix, int cable) {
 }
 
 void Recorder::AddSystem(const ModelDef& def) {
-  // Separate blocks: an observation of the center of mass must not gather all contacts.
+  // In separate blocks, so that observing the center of mass does not gather all contacts.
   Add("system/", {{"kinetic_j", "J"}, {"gravity_j", "J"}, {"elastic_j", "J"}}, FillEnergies);
   Add("system/", {{"contact_count", "1"}}, [](const RecordSource& s, double* out) {
     *out = static_cast<double>(s.world->Contacts(s.lane).size());

@@ -16,7 +16,8 @@ using plant::kTimeToleranceS;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-/// Channels that are readings; the commanded rest length is a row behind the stiffness.
+/// Number of channels that are readings. Their rows are followed by stiffness and commanded rest
+/// length.
 constexpr std::size_t kReadings = [] {
   std::size_t count = 0;
   for (const plant::CableChannel& channel : plant::kCableChannels) {
@@ -27,7 +28,7 @@ constexpr std::size_t kReadings = [] {
 
 constexpr std::size_t kBodyNumbers = std::tuple_size_v<plant::BodyNumbers>;
 
-/// Plant that replays a recorded trace: readings come from the trace, commands have no effect.
+/// Plant that replays a recorded trace. Commands have no effect.
 class ReplayPlant final : public Plant, public Bodies {
  public:
   ReplayPlant(const Trace& trace, const RobotSpec& robot)
@@ -66,7 +67,7 @@ class ReplayPlant final : public Plant, public Bodies {
     Restart(0);
   }
 
-  /// Returns false if the trace has no channel of any cable of the robot.
+  /// Returns whether the trace has at least one channel of the robot's cables.
   bool HasCables() const {
     return std::any_of(columns_.begin(), columns_.end(), [](std::size_t c) { return c != kNone; });
   }
@@ -125,7 +126,7 @@ class ReplayPlant final : public Plant, public Bodies {
     return Rotate(body.orientation, node.position_m - def.com_m);
   }
 
-  /// Reads the current row. Missing values keep the last reading, with a fault.
+  /// Reads the current row. For missing values, keeps the last reading and sets a fault.
   void Read() {
     std::fill(faults_.begin(), faults_.end(), kFaultNone);
     for (std::size_t c = 0; c < cables_; ++c) {
@@ -145,7 +146,7 @@ class ReplayPlant final : public Plant, public Bodies {
   const Trace& trace_;
   const RobotSpec& robot_;
   std::size_t cables_;
-  std::vector<double> rows_;  ///< Six rows of readings, and the row of commanded rest lengths.
+  std::vector<double> rows_;  ///< Rows of readings, then stiffness, then commanded rest length.
   std::vector<std::size_t> columns_, body_columns_;
   std::vector<std::uint32_t> faults_;
   plant::CommandRows command_rows_;

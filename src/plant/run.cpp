@@ -38,7 +38,7 @@ class Runner {
       loop_.Prepare();
       if (recording_.rows() == 0) {
         if (!Record(out)) break;
-        start = Clock::now();  // the wall time excludes the creation of files
+        start = Clock::now();  // exclude the creation of files from the wall-clock time
       }
       loop_.Step();
       const double time_s = loop_.time_s();

@@ -1,7 +1,7 @@
-/// Schedule of the steps of an experiment: none is longer than the requested step, and steps end at
-/// every boundary (tick of a controller or sensor, corner of the timeline, end). One world and the
-/// worlds of a batch use the same schedule: it does not depend on anything that differs between
-/// worlds.
+/// Schedule of the steps of an experiment. Steps are not longer than requested and end at every
+/// boundary: tick of a controller or sensor, corner of the timeline, end of the experiment. The
+/// schedule depends on nothing that differs between worlds, so one world and a batch use the same
+/// schedule.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace taut::plant {
 
-/// Times are sums of steps: times with a difference up to this are equal.
+/// Tolerance for equal times, since times are sums of steps.
 inline constexpr double kTimeToleranceS = 1e-9;
 
 class Schedule {
@@ -20,12 +20,18 @@ class Schedule {
   Schedule(double step_s, double duration_s) : wanted_s_(step_s), duration_s_(duration_s) {}
 
   double time_s() const noexcept { return time_s_; }
-  double step_s() const noexcept { return step_s_; }  ///< Step length up to the next boundary.
+  double step_s() const noexcept {
+    return step_s_;
+  }  ///< Length of the steps up to the next
+     ///< boundary.
   bool AtBoundary() const noexcept { return done_ >= steps_; }
-  std::int64_t left() const noexcept { return steps_ - done_; }  ///< Steps up to the next boundary.
+  std::int64_t left() const noexcept {
+    return steps_ - done_;
+  }  ///< Number of steps up to the next
+     ///< boundary.
 
-  /// Plans the steps to the next boundary; call it at a boundary. `next_s`: the next of all ticks
-  /// and corners; infinity if there is none.
+  /// Plans the steps to the next boundary. Call it at a boundary. `next_s`: time of the next tick
+  /// or corner; infinity if there is none.
   void Aim(double next_s) {
     from_s_ = time_s_;
     const bool over = time_s_ >= duration_s_;
@@ -37,7 +43,7 @@ class Schedule {
         std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(span / wanted_s_ - 1e-6)));
     done_ = 0;
     step_s_ = span / static_cast<double>(steps_);
-    // A step that differs from the requested one only by rounding is set to the requested one.
+    // Remove a rounding difference from the requested step.
     if (std::fabs(step_s_ - wanted_s_) < 1e-9 * wanted_s_) step_s_ = wanted_s_;
   }
 
@@ -52,12 +58,12 @@ class Schedule {
   }
 
  private:
-  /// Length of a span after the experiment's end, where there may be no boundary.
+  /// Length of a span after the end of the experiment, if there is no other boundary.
   static constexpr double kSpanAfterEndS = 1.0;
 
   double wanted_s_, duration_s_;
   double time_s_ = 0, step_s_ = 0;
-  // The span between two boundaries: `steps_` steps, of which `done_` are done.
+  // Span between two boundaries: `steps_` steps, of which `done_` are done.
   double from_s_ = 0, until_s_ = 0;
   std::int64_t steps_ = 0, done_ = 0;
 };

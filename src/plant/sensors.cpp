@@ -54,7 +54,8 @@ void Sensors::Restart(int lane, const RolloutWorld& world) {
   DrawErrors(j);
 }
 
-/// Slots are counted from the lane's first tick, so their meaning is the same in every lane.
+/// Slots of the delay line count from the lane's first tick, so their order is the same in every
+/// lane.
 void Sensors::Serialize(LaneState& state) {
   tension_delay_.Serialize(state);
   rest_delay_.Serialize(state);
@@ -88,7 +89,7 @@ void Sensors::Sample(const Tick& tick, const Observation& exact) {
       seen_.length_m[i] = exact.cables.length_m[i];
       seen_.rate_m_per_s[i] = exact.cables.rate_m_per_s[i];
     }
-    // A load cell measures the sum of spring and damper.
+    // A load cell measures the forces of spring and damper together.
     seen_.elastic_n[i] = spec_.load_cell ? seen_.tension_n[i] : exact.cables.elastic_n[i];
   }
 }
@@ -100,7 +101,7 @@ double Sensors::Normal(std::size_t i, std::int64_t tick, std::uint32_t stream) c
   return math::Random(seeds_[i % lanes], stream, sample).Normal();
 }
 
-/// docs/theory/sensors.md, S.1 to S.3.
+/// Returns the measured tension (docs/theory/sensors.md, S.1 to S.3).
 double Sensors::Tension(std::size_t i, std::int64_t tick, double exact) {
   if (!spec_.load_cell) return exact;
   const LoadCellSpec& cell = *spec_.load_cell;
@@ -122,7 +123,7 @@ double Sensors::Tension(std::size_t i, std::int64_t tick, double exact) {
   return tension_delay_.Oldest(i, tick);
 }
 
-/// docs/theory/sensors.md, S.4: the force that the board computes from a count.
+/// Returns the tension that the board computes from an integer count (docs/theory/sensors.md, S.4).
 double Sensors::Counted(const LoadCellCounts& counts, std::size_t i, std::int64_t tick,
                         double x) const {
   double u = (x - counts.offset_n) / counts.gain_n_per_count;
@@ -133,7 +134,7 @@ double Sensors::Counted(const LoadCellCounts& counts, std::size_t i, std::int64_
   return counts.gain_n_per_count * count + counts.offset_n;
 }
 
-/// docs/theory/sensors.md, S.5 and S.6.
+/// Returns the measured rest length (docs/theory/sensors.md, S.5 and S.6).
 double Sensors::RestLength(std::size_t i, std::int64_t tick, double exact) {
   if (!spec_.encoder) return exact;
   const EncoderSpec& encoder = *spec_.encoder;

@@ -1,5 +1,5 @@
-/// Sensor models between plant and controllers: load cells and encoders (docs/theory/sensors.md),
-/// for all lanes together.
+/// Sensor models between plant and controllers: load cells and encoders of all lanes
+/// (docs/theory/sensors.md).
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@ namespace taut::plant {
 
 class Sensors final : public SensorModel {
  public:
-  /// `seeds`: one per lane; noise is a function of seed, sample and cable only.
+  /// `seeds`: one per lane. Noise depends only on seed, sample and cable.
   Sensors(const SensorSpec& spec, std::size_t cable_count, std::vector<std::uint64_t> seeds);
 
   ClockSpec clock() const override { return {spec_.period_s, 0.0}; }
   void Sample(const Tick& tick, const Observation& exact) override;
-  /// Returns the last sample, delayed by the sensors' delay.
+  /// Returns the last sample, with the sensors' delay.
   const Observation& seen() const override { return shown_; }
   void Restart(int lane, const RolloutWorld& world) override;
   void Serialize(LaneState& state) override;
 
  private:
-  /// Delay line: returns the sample of d ticks ago; before that, the first sample. Ticks are
-  /// counted per lane.
+  /// Delay line. Returns the sample of `delay` ticks ago, or the first sample. Ticks are counted
+  /// per lane.
   class Delay {
    public:
     Delay(double delay_s, double period_s, std::size_t cables, std::size_t lanes);
@@ -43,16 +43,17 @@ class Sensors final : public SensorModel {
     std::vector<double> ring_;
   };
 
-  /// Errors of one cable's load cell and encoder, constant for a run.
+  /// Errors of a cable's load cell and encoder, constant during a run.
   struct Errors {
     double bias_n = 0, gain = 1, drift_n_per_s = 0;
     double zero_m = 0, encoder_gain = 1;
     double start_m = 0;         ///< Rest length at the first sample.
-    bool index_passed = false;  ///< A mark was passed: `zero_m` is a multiple of `index_m`.
+    bool index_passed = false;  ///< Whether an index mark was passed, so that `zero_m` is a
+                                ///< multiple of `index_m`.
   };
 
   void DrawErrors(std::size_t lane);
-  // Argument i: cable i / lanes in lane i % lanes, at the lane's tick.
+  // Argument `i`: cable i / lanes of lane i % lanes. `tick`: tick of the lane.
   double Tension(std::size_t i, std::int64_t tick, double exact);
   double Counted(const LoadCellCounts& counts, std::size_t i, std::int64_t tick, double x) const;
   double Normal(std::size_t i, std::int64_t tick, std::uint32_t stream) const;

@@ -1,4 +1,4 @@
-/// Cables with set points of their tension.
+/// Cables with tension set points.
 #pragma once
 
 #include <algorithm>

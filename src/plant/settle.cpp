@@ -14,7 +14,7 @@ void Stop(WorldBatch& batch, int world) {
   }
 }
 
-/// Returns the greatest speed of any node or center of mass.
+/// Returns the largest speed of any node or center of mass.
 double GreatestSpeed(const WorldBatch& batch, int world) {
   double greatest = 0;
   for (std::size_t n = 0; n < batch.model().def().nodes.size(); ++n) {
@@ -34,7 +34,7 @@ bool Settle(WorldBatch& batch, int world, double step_s, const std::function<boo
             int max_steps) {
   constexpr double kAtRestMPerS = 1e-9;
   const double time_s = batch.Time(world);
-  // Before t = 0, kinematic bodies have not begun to move.
+  // Settle before t = 0, where kinematic bodies do not move yet.
   if (!batch.model().def().motions.empty()) batch.SetTime(world, -(max_steps + 1) * step_s);
   Stop(batch, world);
   double energy_before = 0;
@@ -44,7 +44,7 @@ bool Settle(WorldBatch& batch, int world, double step_s, const std::function<boo
     batch.Step(step_s);
     if (batch.Status(world).bits & kStatusNonFinite) break;
     const double energy = batch.TotalEnergy(world).kinetic_j;
-    // One step after a stop, the speed is the effect of the unbalanced forces in that step.
+    // One step after a stop, the speed is the effect of unbalanced forces in this step only.
     settled = first_after_stop && GreatestSpeed(batch, world) < kAtRestMPerS;
     first_after_stop = energy < energy_before;
     if (first_after_stop || settled) {

@@ -36,7 +36,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   }
 
   const Observation& Observe() override {
-    batch_.Sense(0);  // the rows stay in place
+    batch_.Sense(0);  // sets the rows once; their addresses do not change
     if (!shaft_m_.empty()) ReadShafts();
     return seen_;
   }
@@ -66,7 +66,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     rows_.Restart(lane);
   }
 
-  /// Rest lengths and the motors' enable states are part of the batch's snapshots.
+  /// Rest lengths and motor states are in the batch's snapshots.
   void Serialize(plant::LaneState& state) override {
     state.Row(time_s_);
     rows_.Serialize(state);
@@ -124,7 +124,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     seen_.shaft_m = shaft_m_.data();
   }
 
-  /// Switches motors off and on where commands change; other callers' switching is not overruled.
+  /// Switches motors if commands have changed. Keeps switching by other callers.
   void Switch() {
     for (const int c : motors_) {
       for (std::size_t j = 0; j < goes_.size(); ++j) {
@@ -137,7 +137,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     }
   }
 
-  /// Sets the target of actuators in hold mode to their current rest length.
+  /// Sets the targets of actuators in hold mode to their current rest lengths.
   void Hold() {
     const std::vector<CommandMode>& modes = rows_.mode();
     CommandMode most = CommandMode::kRestLength;
@@ -149,7 +149,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     }
   }
 
-  /// Steps lanes with different step lengths, one length after the other.
+  /// Steps lanes with different step lengths: all lanes with one length, then those with the next.
   void StepByLength(const double* step_s) {
     std::vector<double> lengths(step_s, step_s + goes_.size());
     std::sort(lengths.begin(), lengths.end());
@@ -168,9 +168,9 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   plant::CommandRows rows_;
   Commands commands_;
   Observation seen_;
-  std::vector<int> motors_;        ///< Cables with motors.
-  std::vector<std::uint8_t> off_;  ///< A row: motors that commands have switched off.
-  std::vector<double> shaft_m_;    ///< A row; empty where no gear has backlash.
+  std::vector<int> motors_;        ///< Cables with DC motors.
+  std::vector<std::uint8_t> off_;  ///< Row: whether a command has switched the motor off.
+  std::vector<double> shaft_m_;    ///< Row; empty if no gear has backlash.
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ std::unique_ptr<Simulation> Simulation::Create(const ExperimentSpec& experiment,
   if (!impl->model) return nullptr;
   impl->MakeSlots(options);
   const std::span<plant::WorldSlot> all(impl->slots);
-  // Equal worlds have one start.
+  // Without variants, all worlds have the same start.
   const auto distinct = options.variants.empty() ? all.first(1) : all;
   if (!impl->FindStarts(distinct, options.keep_going, out)) return nullptr;
   impl->MakeGroups(options.simd);

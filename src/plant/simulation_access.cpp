@@ -5,7 +5,7 @@
 namespace taut {
 namespace {
 
-/// Returns a reading of an element in a world. `function`: the caller's name, for messages.
+/// Reads an element in a world. `function`: name of the caller, for messages.
 template <class Impl, class State>
 State Read(const Impl& impl, const char* function, const plant::Names& names,
            const ElementRef& element, int world, State (WorldBatch::*read)(int, int) const) {
@@ -13,7 +13,7 @@ State Read(const Impl& impl, const char* function, const plant::Names& names,
   return (impl.GroupOf(function, world).batch.*read)(impl.LaneOf(world), index);
 }
 
-/// Refuses a vector that is not finite.
+/// Rejects a vector that is not finite.
 bool Accepts(plant::SimulationGroup& group, int lane, const char* kind, const std::string& name,
              const char* what, const Vec3& v) {
   const plant::FiniteCheck::Named numbers[] = {{what, v.x}, {what, v.y}, {what, v.z}};

@@ -102,7 +102,8 @@ void Simulation::Impl::PutToStart(int world) {
 
 void Simulation::Impl::StepLanes(std::size_t g, Lanes active) {
   plant::SimulationGroup& group = *groups[g];
-  // Unused lanes of the last group step with its first world, so that all lanes can step at once.
+  // Unused lanes of the last group step with its first world, so that all lanes can be stepped at
+  // once.
   if (Has(active, 0)) active |= AllLanes(lanes) & ~AllLanes(CountIn(g));
   group.loop.Step(active);
   for (int j = 0; j < CountIn(g); ++j) {

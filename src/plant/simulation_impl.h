@@ -21,11 +21,12 @@ namespace taut::plant {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Variant of an experiment; shared by equal worlds.
+/// Variant of an experiment. Equal worlds share it.
 struct Variant {
   RolloutWorld world;
   std::shared_ptr<const Bytes> start;
-  std::uint64_t hash = 0;  ///< Of the resolved experiment and `world.numbers`; 0: not computed yet.
+  std::uint64_t hash = 0;  ///< Hash of the resolved experiment and `world.numbers`; 0: not computed
+                           ///< yet.
 };
 
 struct WorldSlot {
@@ -50,7 +51,7 @@ struct SimulationGroup {
   Recorder recorder;
 };
 
-/// Elements of one kind by name.
+/// Index of elements of one kind by name.
 class Names {
  public:
   using Find = std::optional<int> (*)(const ModelDef&, std::string_view, Diagnostics*);
@@ -98,7 +99,7 @@ struct Simulation::Impl {
   int LaneOf(int world) const noexcept { return world % lanes; }
   plant::WorldSlot& SlotOf(int world) { return slots[static_cast<std::size_t>(world)]; }
   const ModelDef& def() const noexcept { return experiment.robot.def; }
-  /// Returns the number of worlds in a group; further lanes of the last group repeat its first
+  /// Returns the number of worlds in a group. Unused lanes of the last group repeat its first
   /// world.
   int CountIn(std::size_t group) const noexcept {
     return std::min(lanes, static_cast<int>(slots.size()) - static_cast<int>(group) * lanes);
@@ -121,8 +122,8 @@ struct Simulation::Impl {
   }
 
   void MakeSlots(const SimulationOptions& options);
-  /// Finds the start of each slot's variant, on all threads. Returns false, with an error for each
-  /// variant without a start, if there is any, or if `keep_going` returned false.
+  /// Finds the start of each slot's variant, on all threads. Returns false if a variant has no
+  /// start (with an error for each) or if `keep_going` returned false.
   bool FindStarts(std::span<plant::WorldSlot> of, const std::function<bool()>& keep_going,
                   Diagnostics& out);
   void MakeGroups(std::optional<Simd> simd);
@@ -131,13 +132,13 @@ struct Simulation::Impl {
   void RecordRow(int world);
   plant::Sealing Seal();
   std::uint64_t HashOf(plant::Variant& variant) const;
-  /// Returns the bytes of a world, without a seal.
+  /// Serializes a world, without a seal.
   plant::Bytes StateOf(int world);
-  /// Restores the bytes of `StateOf` into a world. Returns false if they do not fit; the state of
-  /// the world is then invalid.
+  /// Restores a world from the bytes of `StateOf`. Returns false if they do not fit; the world's
+  /// state is then invalid.
   bool Put(int world, std::span<const std::uint8_t> saved, std::shared_ptr<plant::Variant> variant);
-  /// Returns the variant with this hash, of any world, of `world` first, or of the creation of the
-  /// simulation; null if there is none.
+  /// Returns the variant with this hash. Searches `world` first, then all worlds, then the variants
+  /// at creation. Returns null if there is none.
   std::shared_ptr<plant::Variant> VariantWith(std::uint64_t hash, int world);
 
   const ExperimentSpec experiment;
@@ -147,9 +148,9 @@ struct Simulation::Impl {
   base::ThreadPool pool;
   int lanes = 1;
   std::vector<plant::WorldSlot> slots;
-  std::vector<std::shared_ptr<plant::Variant>> created;  ///< Variants at the creation.
+  std::vector<std::shared_ptr<plant::Variant>> created;  ///< Variants at creation.
   std::vector<std::unique_ptr<plant::SimulationGroup>> groups;
-  std::uint64_t kind = 0;  ///< Of snapshots (`Sealing`); 0: not computed yet.
+  std::uint64_t kind = 0;  ///< Kind of snapshots (`Sealing`); 0: not computed yet.
   plant::Names bodies{"body", experiment.robot.def.bodies, FindBody};
   plant::Names nodes{"node", experiment.robot.def.nodes, FindNode};
   plant::Names cables{"cable", experiment.robot.def.cables, FindCable};

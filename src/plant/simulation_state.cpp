@@ -1,5 +1,5 @@
-// Snapshots of a simulation's worlds. Not part of the browser build, which cannot write the
-// resolved experiment that a snapshot's hash needs.
+// Snapshots of a simulation's worlds. The browser build excludes this file, since it cannot write
+// the resolved experiment, from which the snapshots' hash is computed.
 #include "base/hash.h"
 #include "plant/simulation_impl.h"
 
@@ -43,14 +43,15 @@ std::shared_ptr<plant::Variant> Simulation::Impl::VariantWith(std::uint64_t hash
 
 namespace {
 
-/// Numbers before a world's bytes.
+/// Header of a world's bytes.
 struct Head {
   std::uint64_t variant = 0, size = 0, forces = 0;
   void Serialize(plant::LaneState& state) { state.Values(variant, size, forces); }
   static constexpr std::size_t kBytes = 3 * sizeof(std::uint64_t);
 };
 
-/// Bytes of an `ExternalForce`, which are fewer than those of the type.
+/// Serialized size of an `ExternalForce`, which is smaller than its size in memory because of
+/// padding.
 constexpr std::size_t kForceBytes = sizeof(int) + sizeof(Vec3);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Change of a robot by settling, and warnings about probably unintended changes
+// Change of a robot by settling, with warnings of changes that are probably unintended
 // (docs/formats/checks.md).
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace taut {
 namespace plant {
 namespace {
 
-/// A cable with less than this fraction of the largest tension as described is slack.
+/// A cable is slack if its tension is below this share of the largest described tension.
 constexpr double kSlack = 1e-6;
 
 std::pair<int, int> PairOf(const ContactState& contact) {
@@ -29,7 +29,7 @@ Unsettled NoteUnsettled(WorldBatch& batch, double step_s) {
     before.elastic_n.push_back(batch.Cable(kTheWorld, static_cast<int>(c)).elastic_n);
   }
   const std::vector<std::uint8_t> as_described = batch.Save(kTheWorld);
-  batch.Step(step_s);  // only a step detects contacts
+  batch.Step(step_s);  // contacts are detected in a step only
   for (const ContactState& contact : batch.Contacts(kTheWorld)) {
     before.touching.insert(PairOf(contact));
   }
@@ -84,11 +84,11 @@ namespace {
 
 using base::Brief;
 
-/// A larger displacement of a node, relative to the robot's size, means another shape.
+/// If a node moves farther, relative to the robot's size, the robot has another shape.
 constexpr double kFar = 0.25;
 constexpr std::size_t kMostNames = 3;
 
-/// Returns text like "a, b, c and 4 more".
+/// Returns a text such as "a, b, c and 4 more".
 template <class Items, class F>
 std::string SomeOf(const Items& items, F name) {
   std::string text;

@@ -1,4 +1,4 @@
-/// Starts of many variants of an experiment, as snapshots of a world.
+/// Finds the starts of many variants of an experiment, as snapshots of a world.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@
 
 namespace taut::plant {
 
-/// Workspace of a thread: one world in which it computes one start after another.
+/// Workspace of a thread. It computes one start after the other in a single world.
 class StartFinder {
  public:
   explicit StartFinder(const std::shared_ptr<const Model>& model,
                        const WorldBatchOptions& options = {})
       : alone_(model, options), fresh_(alone_.Save(kTheWorld)) {}
 
-  /// Returns the snapshot of the experiment's start, or nothing, with an error, if there is none.
-  /// `gravity_m_per_s2`, if given, replaces the model's gravity. `settled`: as in `PrepareStart`.
+  /// Returns the snapshot of the experiment's start. Returns nothing and reports an error if there
+  /// is none. `gravity_m_per_s2`: replaces the model's gravity if not null. `settled`: as in
+  /// `PrepareStart`.
   std::optional<std::vector<std::uint8_t>> Find(const ExperimentSpec& experiment, Diagnostics& out,
                                                 const Vec3* gravity_m_per_s2 = nullptr,
                                                 const std::function<bool()>& go_on = {},
@@ -40,7 +41,7 @@ class StartFinder {
   std::vector<std::uint8_t> fresh_;
 };
 
-/// Returns the first error of a start that was not found.
+/// Returns the first error about a start that was not found.
 inline std::string ReasonOf(const Diagnostics& found) {
   return found.items().empty() ? "the start failed" : found.items()[0].what;
 }

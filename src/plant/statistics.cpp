@@ -8,10 +8,10 @@
 namespace taut::plant {
 namespace {
 
-/// End of the start-up transient, as in the figures of NTRT.
+/// End of the start-up phase, as in NTRT's figures.
 constexpr double kStartIsOverS = 5.0;
 
-/// A phase that ends at 30 s includes the step that ends there.
+/// Includes both ends, so that a phase includes the step that ends with it.
 bool Within(double time_s, double from_s, double to_s) {
   return time_s >= from_s - kTimeToleranceS && time_s <= to_s + kTimeToleranceS;
 }
@@ -21,7 +21,7 @@ bool Within(double time_s, double from_s, double to_s) {
 void Statistics::Sum::Take(double x, double step_s) {
   min = any ? std::min(min, x) : x;
   max = any ? std::max(max, x) : x;
-  // No step ends at the start of a run: its value has no weight if there are other values.
+  // The value at the start of a run has no weight, since no step ends there.
   if (step_s > 0) integral += x * step_s, time_s += step_s;
   any = true;
 }
@@ -105,7 +105,8 @@ void Statistics::Take(double time_s, double step_s, const Observation& now,
       cable.max_force_n = std::max(cable.max_force_n, r.tension_n);
       cable.since_s += step_s;
       const double wound_m = cable.rest_length_m - r.rest_length_m;
-      // Rest lengths of a real robot are constant between two readings.
+      // A real robot's rest length is constant between readings, so divide by the time since its
+      // last change.
       const double over_s = world != nullptr ? step_s : cable.since_s;
       if (wound_m != 0) cable.since_s = 0;
       if (step_s > 0) {

@@ -1,4 +1,4 @@
-/// Statistics for the summary of a run, accumulated at every step.
+/// Statistics for the summary of a run, updated at every step.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,21 @@ class Statistics {
  public:
   explicit Statistics(const ExperimentSpec& experiment);
 
-  /// Adds the state after a step of length `step_s` (0 at the start). `world` contains the motors;
-  /// null without a simulation.
+  /// Adds the state after a step of length `step_s` (0 at the start). `world`: null if the plant is
+  /// not a simulation; contains the motors.
   void Take(double time_s, double step_s, const Observation& now, const std::vector<double>& drag_n,
             const World* world);
 
-  /// Adds the loads of struts and anchors at the time of a recorded row. At every step, this would
+  /// Adds the loads of struts and anchors. Call it for recorded rows only: at every step, it would
   /// take half of the time of a run.
   void TakeLoads(const Observation& now, const World& world);
 
-  /// Sets phases, cables, struts, anchors, drags, overloads and maxima; the runner sets the rest.
+  /// Sets phases, cables, struts, anchors, drags, overloads and maxima. The runner sets all other
+  /// fields.
   void Fill(RunSummary& summary) const;
 
  private:
-  /// Time-weighted mean: a value has the weight of the step that ends with it.
+  /// Time-weighted mean. The weight of a value is the step that ends with it.
   struct Sum {
     double integral = 0, time_s = 0, min = 0, max = 0;
     bool any = false;
@@ -43,7 +44,7 @@ class Statistics {
     Quantity tension, elastic;
     double rest_length_m = 0, max_force_n = 0, max_speed = 0, max_power_w = 0, energy_j = 0,
            net_energy_j = 0;
-    double since_s = 0;  ///< Time since the rest length changed.
+    double since_s = 0;  ///< Time since the last change of the rest length.
     std::optional<MotorSummary> motor;
   };
   void Take(Quantity& quantity, double time_s, double step_s, double force_n) const;

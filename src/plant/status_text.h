@@ -1,4 +1,4 @@
-/// Description of a world's status.
+/// Description of a world's status as text.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace taut::plant {
 
-/// Describes a status with the names of body, cable and terrain; empty if there is no problem.
+/// Describes a status, with the names of body, cable and terrain. Empty if there is no problem.
 std::string StatusText(const ModelDef& def, const WorldStatus& status);
 
 }  // namespace taut::plant

@@ -104,7 +104,7 @@ void Timeline::Serialize(LaneState& state) {
     for (auto& x : list) state.Value(x);
   };
   all(push_n_), all(drag_n_), all(drag_start_m_), all(dragging_);
-  // Nodes that a program has ever pushed, so that their forces are set, to zero if need be.
+  // Includes all nodes that a program has pushed, so that their forces are reset to zero.
   std::uint64_t count = nodes_.size();
   state.Value(count);
   if (!state.reads()) return all(nodes_);
@@ -113,8 +113,8 @@ void Timeline::Serialize(LaneState& state) {
     state.Value(node);
     AddNode(node);
   }
-  // The world's forces are part of its own snapshot, but not the forces that a lane's timeline has
-  // yet to set or to clear: all are set anew.
+  // Set all forces again: the world's snapshot contains its forces, but not those that the timeline
+  // must still set or reset.
   set_n_.assign(nodes_.size(), kNothingYet);
 }
 
@@ -144,7 +144,7 @@ std::vector<ExternalForce> Timeline::EventForces() const {
 
 void Timeline::SetHandForces(std::vector<ExternalForce> forces) {
   hand_ = std::move(forces);
-  // A node stays in the list after its release, so that its force is set to zero.
+  // Nodes remain in the list after release, so that their forces are reset to zero.
   for (const ExternalForce& hand : hand_) AddNode(hand.node);
 }
 

@@ -1,4 +1,4 @@
-// Pose of a robot in a row of a trace.
+// Reader of a robot's pose in a row of a trace.
 #include <array>
 #include <cmath>
 
@@ -9,8 +9,8 @@
 namespace taut {
 namespace {
 
-constexpr double kUnit = 1e-3;        // tolerance of a quaternion's length
-constexpr double kSameLength = 1e-3;  // tolerance of a cable's recorded length, relative
+constexpr double kUnit = 1e-3;        // tolerance for the length of a quaternion
+constexpr double kSameLength = 1e-3;  // relative tolerance for a cable's recorded length
 
 class RowOfTrace {
  public:
@@ -18,7 +18,7 @@ class RowOfTrace {
       : trace_(trace), row_(row), at_(at), out_(out) {}
 
   bool Has(const std::string& name) const { return trace_.Find(name).has_value(); }
-  /// Reads channels that are all present and finite; reports errors about the others.
+  /// Reads channels that must all be present and finite. Reports an error for each other channel.
   template <std::size_t kCount>
   bool Read(const std::string& before, const std::array<const char*, kCount>& names,
             std::array<double, kCount>& values) const {
@@ -76,8 +76,8 @@ class RowOfTrace {
     }
   }
 
-  /// Warns if recorded lengths of cables differ from the lengths in this pose: then the trace is of
-  /// another robot, or of one with another initial state.
+  /// Warns if recorded cable lengths differ from those in this pose. Then the trace belongs to
+  /// another robot, or to one with another described pose.
   void CompareLengths(const ModelDef& there) const {
     for (const CableDef& cable : there.cables) {
       if (cable.touches != CableTouches::kNone) continue;  // wrapping cables bend at contacts
@@ -115,7 +115,7 @@ std::optional<Pose> PoseOfTrace(const RobotSpec& robot, const Trace& trace, std:
   for (const BodyDef& body : def.bodies) {
     BodyState& state = pose.bodies.emplace_back();
     state.position_m = body.com_m;
-    // The state of a fixed body need not be recorded.
+    // A trace may omit the state of a fixed body.
     if (body.fixed && !from.Has("body/" + body.name + "/position_x_m")) continue;
     from.ReadBody(body.name, state);
   }
