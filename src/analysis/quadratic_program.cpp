@@ -1,12 +1,14 @@
-// Dual active-set method of D. Goldfarb, A. Idnani, "A numerically stable dual method for solving
-// strictly convex quadratic programs", Mathematical Programming 27 (1983) 1-33. It starts at the
-// unconstrained minimum and adds the most violated constraint in each step; constraints whose
-// multipliers would become negative are removed. Every step ends at the minimum under its active
-// constraints. It needs no feasible start and never cycles, also on degenerate programs.
-// Differences here: rows are scaled to length one, redundant equations are left out, and the result
-// is refined with the final active set. Programs that are not strictly convex are solved by R. T.
-// Rockafellar's proximal point method ("Monotone operators and the proximal point algorithm", SIAM
-// J. Control Optim. 14 (1976) 877-898), which ends after finitely many steps on linear programs.
+// Dual active-set method for strictly convex quadratic programs: D. Goldfarb, A. Idnani, "A
+// numerically stable dual method for solving strictly convex quadratic programs", Mathematical
+// Programming 27 (1983) 1-33. It starts at the unconstrained minimum and adds the most violated
+// constraint in each step. Constraints whose multipliers would become negative are removed. Every
+// step ends at the minimum for its active constraints. The method needs no feasible start and does
+// not cycle, even for degenerate programs. Differences here: rows are scaled to length one,
+// redundant equations are omitted, and the result is refined with the final active set.
+//
+// Proximal point method for other programs: R. T. Rockafellar, "Monotone operators and the proximal
+// point algorithm", SIAM J. Control Optim. 14 (1976) 877-898. It ends after finitely many steps for
+// linear programs.
 #include "analysis/quadratic_program.h"
 
 #include <Eigen/Cholesky>

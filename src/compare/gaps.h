@@ -1,8 +1,8 @@
 /// Gaps in recordings, and statistics weighted by time.
 ///
 /// The step between two rows is a gap if it exceeds five times the usual step nearby. The usual
-/// step is the larger of two medians, of up to eight steps before and after it. So a logger that
-/// changes from 100 Hz to 10 Hz has no gap, but one that drops out for seconds has.
+/// step is the larger of two medians, of up to eight steps before and after it. So a change from
+/// 100 Hz to 10 Hz is no gap, but a dropout of seconds is one.
 #pragma once
 
 #include <cstddef>

@@ -21,8 +21,8 @@ Episode DrawEpisode(const Plan& plan, std::uint64_t raw_seed);
 /// Returns the default seed of a world's next episode.
 std::uint64_t FollowingSeed(std::uint64_t raw_seed) noexcept;
 
-/// Changes an experiment to that of an episode. `experiment`: the experiment of the plan, or the
-/// result of an earlier call.
+/// Converts an experiment to the episode's experiment. `experiment`: the experiment of the plan, or
+/// the result of an earlier call.
 void SetEpisode(const Episode& episode, ExperimentSpec& experiment);
 
 }  // namespace taut::env

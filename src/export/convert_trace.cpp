@@ -19,7 +19,7 @@ constexpr std::size_t kAskEvery = 256;   // number of rows between calls of `go_
 constexpr double kMostSeconds = 1.8e10;  // limit of 64-bit nanoseconds
 constexpr char kNoGroup[] = "values";    // the topic of names without a slash
 
-/// Calls `go_on` at every 256th row. Returns false if it asks to stop.
+/// Calls `go_on` at every 256th row. Returns false if the caller wants to stop.
 bool GoesOn(const GoOn& go_on, std::size_t row, std::size_t rows) {
   return !go_on || row % kAskEvery != 0 ||
          go_on(static_cast<double>(row) / static_cast<double>(rows));

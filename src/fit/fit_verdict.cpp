@@ -21,8 +21,8 @@ constexpr double kSameCost = 1e-3;
 constexpr double kSeveral = 2, kByChance = 1e-3;
 
 /// Approximates the distribution of a sum of squares of normal numbers by a multiple of a
-/// chi-square with the same mean and variance (Satterthwaite). The traces are those of the
-/// covariance and of its square. Exact if all eigenvalues are equal or 0.
+/// chi-square with the same mean and variance (Satterthwaite). `trace`, `trace_of_square`: traces
+/// of the covariance and of its square. Exact if all eigenvalues are equal or 0.
 ChiSquare MakeChiSquare(double value, double trace, double trace_of_square) {
   ChiSquare chi{value, trace, 1};
   if (trace > 1e-6 && trace_of_square > 0) {

@@ -166,7 +166,7 @@ std::string EachRest(const ExperimentSpec& experiment, FitForward forward,
   if (forward == FitForward::kLoadCases) {
     double number = 0;
     for (const LoadCaseSpec& loads : experiment.load_cases) {
-      if (options.from) {  // use the model's rest lengths, not those of the previous case
+      if (options.from) {  // do not use rest lengths of the previous case
         for (std::size_t i = 0; i < def.cables.size(); ++i) {
           options.from->rest_lengths_m[i] = def.cables[i].rest_length_m;
         }

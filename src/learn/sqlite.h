@@ -27,7 +27,7 @@ class Database {
 
   /// Executes SQL statements and ignores their rows.
   bool Execute(const std::string& sql);
-  /// Replaces the contents of `to` by those of this database, in one transaction.
+  /// Copies this database to `to` in one transaction, which replaces its contents.
   bool CopyTo(Database& to);
   /// Returns whether the file or its folder was deleted or moved after it was opened.
   bool IsGone();

@@ -27,7 +27,7 @@ bool ReadSchema(Database& database, std::string& schema) {
   });
 }
 
-/// Returns the log version with these tables. Returns nothing if they are not those of a log.
+/// Returns the log version with these tables. Returns nothing if no version has them.
 std::optional<int> VersionOf(const std::string& schema) {
   for (int version = 0; version <= kLogVersion; ++version) {
     Database empty;

@@ -10,8 +10,8 @@
 
 namespace taut::linear {
 
-/// Tag that makes `Plain` a separate type. Its template instances thus differ from those of the
-/// step, which is compiled with other options.
+/// Tag that makes `Plain` a separate type. The step has other instances of the same templates,
+/// compiled with other options.
 struct OutsideOfSteps {};
 using Plain = simd::Wide<1, OutsideOfSteps>;
 using simd::Dual;

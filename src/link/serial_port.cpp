@@ -37,8 +37,8 @@ class SerialPort final : public Port {
         port_.reset();
         return kDriven;
       }
-      ioctl(handle, TIOCEXCL);  // also excludes programs that do not use flock, except those of
-                                // root
+      ioctl(handle, TIOCEXCL);  // also excludes programs that do not use flock, except root's
+                                // programs
     }
     // The adapter ignores the baud rate, but some drivers require one.
     if (!error) port_->set_option(asio::serial_port_base::baud_rate(115'200), error);

@@ -97,7 +97,7 @@ class PositionController final : public Controller {
 
   std::size_t index_;
   ClockSpec clock_;
-  std::vector<int> cables_;  ///< First the cables with a program, then those that only a gait
+  std::vector<int> cables_;  ///< First the cables with a program, then cables that only a gait
                              ///< drives.
   bool moved_ = false;       ///< Whether a gait drives the cables.
   std::vector<Lane> lanes_;

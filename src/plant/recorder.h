@@ -46,8 +46,8 @@ class Recorder {
   const LeftOutContacts& left_out() const noexcept { return left_out_; }
 
   // --- for the functions of plant/channels.h, during construction --------------------------------
-  /// Adds channels `prefix + names[i]` that `fill` computes together. Ignores channels that were not
-  /// requested.
+  /// Adds channels `prefix + names[i]` that `fill` computes together. Ignores channels that were
+  /// not requested.
   void Add(const std::string& prefix, const std::vector<ChannelInfo>& names, Fill fill);
   /// Adds channels that a separate key of `record` requests. If the key `channels` lists some of
   /// them, adds only these.

@@ -113,8 +113,8 @@ void Timeline::Serialize(LaneState& state) {
     state.Value(node);
     AddNode(node);
   }
-  // Set all forces again: the world's snapshot contains its forces, but not those that the timeline
-  // must still set or reset.
+  // Set all forces again. The world's snapshot contains its current forces, but not the changes
+  // that the timeline still has to make.
   set_n_.assign(nodes_.size(), kNothingYet);
 }
 

@@ -8,8 +8,8 @@ namespace taut::trace {
 
 /// Traces up to this size [bytes] are read at any compression ratio.
 inline constexpr double kAlwaysUnpackedBytes = 256.0 * (1 << 20);
-/// Larger traces may be larger than their file by this factor. Typical traces compress to a half or
-/// a tenth, those of a robot at rest to a fiftieth. The limit of deflate is 1032.
+/// Larger traces may be larger than their file by this factor. Typical compression ratios are 2 to
+/// 10, or 50 for a robot at rest. The limit of deflate is 1032.
 inline constexpr double kMostUnpackedPerByte = 100.0;
 
 inline constexpr char kUnpackLimit[] = "more than 256 MiB and more than 100 times its size";

@@ -129,7 +129,7 @@ void NameGroups(const std::vector<std::string>& relations, std::size_t same,
 }
 
 /// Groups couplings by the roles of their two cables, and by the position of the second cable along
-/// the chain: in front of, beside or behind the first.
+/// the chain: in front of, next to or behind the first.
 void GroupBySegments(const Chain& chain, CouplingGraph& graph) {
   std::vector<std::vector<int>> index;
   NameGroups({"front", "same", "behind"}, 1, chain.roles, graph.groups, index);

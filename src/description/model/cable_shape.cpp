@@ -37,9 +37,10 @@ class CableShaper {
     return nullptr;
   }
 
-  /// Returns the point on a rod's surface at which the cable leaves `node`: beside the node, in the
-  /// direction perpendicular to the rod, toward `next`. Returns the node itself if `next` is along
-  /// the rod. If several rods end at the node, the shortest one counts; of equal ones, the first.
+  /// Returns the point on a rod's surface at which the cable leaves `node`. It is next to the node,
+  /// in the direction perpendicular to the rod, toward `next`. Returns the node itself if `next` is
+  /// along the rod. If several rods end at the node, the shortest one counts; of equal ones, the
+  /// first.
   std::optional<Vec3> OnRod(int node, const Vec3& next) const {
     std::optional<Vec3> on_rod;
     double nearest = std::numeric_limits<double>::infinity();
