@@ -67,9 +67,10 @@ Eigen::VectorXd CableCoordinate::Gradient(const Path& path) const {
   return gradient;
 }
 
-// Eq. 9 adds, for each span, the change of length by motions perpendicular to the span, and for
-// each point the curvature due to rotations of its body. Clustered cables (eq. 10) need no further
-// terms here: the tension is the same in all spans, so the gradient is summed over the spans.
+// Second derivatives of the length (eq. 9): for each span, a term of the motions perpendicular to
+// it; for each point, a term of the rotations of its body. Clustered cables (eq. 10) need no
+// further terms here: the tension is the same in all spans, so the gradient is summed over the
+// spans.
 Eigen::MatrixXd CableCoordinate::ExactHessian(const Path& path) const {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(bodies_.size());
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);

@@ -131,7 +131,7 @@ class Intervals {
       *inner = value;
       if (std::isfinite(value)) {
         Angles angles = angles_;
-        Cut(x, angles, true);  // planes of the inner cones meet at these forces
+        Cut(x, angles, true);  // adds edges of the inner cones at these forces
         const analysis::QuadraticAnswer answer = Least(goal, angles, ConeSide::kInner);
         *inner =
             answer.outcome == QuadraticOutcome::kSolved ? goal.dot(Forces(answer.x)) : kInfinity;

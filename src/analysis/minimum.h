@@ -25,8 +25,8 @@ struct SearchLimits {
   int most_iterations = 500;
 };
 
-/// Minimizes the energy of members and loads plus an augmented Lagrangian of constraints and
-/// contacts, starting at `search.at` and `search.holding`, by Newton's method in a trust region.
+/// Minimizes the augmented Lagrangian of energy, constraints and contacts by Newton's method in a
+/// trust region. Starts at `search.at` and `search.holding`.
 void Minimise(const Structure& structure, const SearchLimits& limits, Search& search);
 
 /// Approaches the equilibrium by dynamic relaxation: starts at rest and zeroes velocities at each

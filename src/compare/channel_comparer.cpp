@@ -73,8 +73,8 @@ void CompareRows(const CommonClock& clock, double usual_s, const std::vector<dou
   result.rmse = std::sqrt(WeightedMean(differences, weights));
   result.missing_s = 0;
   for (const auto& [from_s, to_s] : GapSpans(time_s, gaps)) result.missing_s += to_s - from_s;
-  // Add the time before the first and after the last finite row. Less than two steps may be due to
-  // the clocks, so ignore it.
+  // Add the time before the first and after the last finite row. Ignore less than two steps, which
+  // may be due to different clocks.
   const double least_s = 2 * usual_s;
   for (const double end_s : {time_s.front() - clock.from_s, clock.to_s - time_s.back()}) {
     if (end_s > least_s) result.missing_s += end_s;

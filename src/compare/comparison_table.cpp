@@ -119,7 +119,7 @@ void AppendGaps(const TraceSpan& span, const char* which, std::string& out) {
   out += fmt::format("gaps of {}, not compared: {}{}\n", which, spans, more);
 }
 
-/// Appends channels that lack more time than the gaps of both traces explain.
+/// Appends channels whose missing time exceeds the gaps of both traces.
 void AppendMissing(const Comparison& comparison, std::string& out) {
   double known_s = 0;
   for (const TraceSpan* span : {&comparison.a, &comparison.b}) {

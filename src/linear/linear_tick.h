@@ -23,7 +23,7 @@ struct DrivenCable {
 template <class Num>
 using TickMemory = std::vector<control::ImpedanceMemory<Num>>;
 
-/// Changes of the commands.
+/// Inputs of the linear system: changes of the commands.
 template <class Num>
 struct TickInputs {
   std::vector<Num> target;          ///< Per cable: change of the commanded rest length.

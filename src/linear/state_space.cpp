@@ -180,8 +180,7 @@ class Sizes {
   /// Returns the largest entry of `column`, relative to the largest entry of its pair of kinds.
   /// `which` receives its index.
   double Share(SignalKind of, const Column& column, std::size_t& which) const {
-    // Lower limit of the reference: effect of a small change, relative to a small change of the
-    // result.
+    // Lower limit of the reference size, in units of SmallOf(result) / SmallOf(changed quantity).
     constexpr double kNothing = 1e-4;
     double most = 0;
     for (std::size_t i = 0; i < column.size(); ++i) {

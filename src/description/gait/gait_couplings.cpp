@@ -128,8 +128,8 @@ void NameGroups(const std::vector<std::string>& relations, std::size_t same,
   }
 }
 
-/// Groups couplings by the roles of their two cables, and by the position of the second cable along
-/// the chain: in front of, next to or behind the first.
+/// Groups couplings by the roles of their two cables, and by relative position along the chain. The
+/// second cable is in front of, next to or behind the first.
 void GroupBySegments(const Chain& chain, CouplingGraph& graph) {
   std::vector<std::vector<int>> index;
   NameGroups({"front", "same", "behind"}, 1, chain.roles, graph.groups, index);

@@ -79,7 +79,7 @@ std::string TextOf(const RobotSpec& robot, WrittenModel model, Diagnostics& out)
 /// and returns false. `read` may have more nodes.
 bool CheckReadBack(const RobotSpec& robot, const RobotSpec& read, Diagnostics& out);
 
-/// Reports an error that begins like all errors of this writer.
+/// Reports an error of this writer. All of them begin with the same words.
 void RefuseModel(Diagnostics& out, const std::string& what, const std::string& hint = {});
 
 /// Returns the text before the last dot, which is the placement of a node; empty if there is none.

@@ -145,7 +145,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     for (const std::string& name : NamesIn(parameters[i].expression)) {
       const auto found = places.find(name);
-      if (found == places.end()) continue;  // the evaluation reports this name
+      if (found == places.end()) continue;  // reported later, by the evaluation
       needs[i].push_back(found->second);
       users[found->second].push_back(i);
     }
