@@ -10,9 +10,7 @@ std::vector<std::string> ExceededLimits(const Comparison& comparison, const Comp
   std::vector<std::string> exceeded;
   if (const auto most = limits.max_error_percent) {
     for (const SystemMaximum& system : comparison.system) {
-      if (std::abs(system.error_percent) <= *most)
-        continue;  // written so that NaN exceeds the
-                   // limit
+      if (std::abs(system.error_percent) <= *most) continue;  // NaN exceeds the limit
       exceeded.push_back(fmt::format("the largest {} differs by {:+.2f} %, more than {:g} %",
                                      system.pattern, system.error_percent, *most));
     }

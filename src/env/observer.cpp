@@ -83,7 +83,8 @@ Observer::Observer(const Plan& plan, const ExperimentSpec& observed,
 void Observer::Next() { now_ = (now_ + 1) % slots_; }
 
 void Observer::Take(Lanes lanes, int count) {
-  const Observation* const exact = senses_ ? &loop_.exact() : nullptr;  // updates the cable rows
+  const Observation* const exact =
+      senses_ ? &loop_.exact() : nullptr;  // `exact()` updates the rows of cables
   for (int j = 0; recorder_ && j < count; ++j) {
     if (!Has(lanes, j)) continue;
     const std::vector<double>& row = recorder_->Row(
@@ -118,9 +119,7 @@ void Observer::Serialize(plant::LaneState& state) {
       state.Value(At((now_ + slots_ - age) % slots_, i, static_cast<std::size_t>(state.lane())));
     }
   }
-  if (state.reads())
-    std::fill(in_float_.begin(), in_float_.end(), 0);  // unknown whether they fit
-                                                       // into a float
+  if (state.reads()) std::fill(in_float_.begin(), in_float_.end(), 0);  // range is unknown
 }
 
 namespace {

@@ -225,7 +225,8 @@ void Search::Propose(std::size_t t, std::vector<Trial>& trials,
       const FitParameter& p = problem_.parameters[j];
       const auto i = static_cast<Eigen::Index>(j);
       point[j] = std::clamp(point[j] + FitScale(p) * step[i], p.low, p.high);
-      if (!box.held[j] && step[i] == box.low[i]) point[j] = p.low;  // exactly, despite rounding
+      if (!box.held[j] && step[i] == box.low[i])
+        point[j] = p.low;  // set exactly to the bound, despite rounding
       if (!box.held[j] && step[i] == box.high[i]) point[j] = p.high;
     }
     points.push_back(std::move(point));

@@ -123,9 +123,7 @@ const Observation& RobotPlant::Observe() {
 void RobotPlant::Advance(const double* /*step_s*/, const double* to_s) {
   if (before_first_step) {
     std::exchange(before_first_step, {})();
-    if (driver_.state().stage != Stage::kActive)
-      return;  // the start failed, so time does not
-               // advance
+    if (driver_.state().stage != Stage::kActive) return;  // start failed: keep the time
   }
   const std::size_t count = faults_.size();
   for (std::size_t m = 0; m < cables_.size(); ++m) {

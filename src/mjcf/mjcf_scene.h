@@ -70,9 +70,7 @@ struct Actuator {
   SourceRef at;
   int tendon = 0;
   double gain = 0, bias[3] = {0, 0, 0};  ///< Include the gear: they apply to the tendon's length.
-  std::optional<std::pair<double, double>> control_range = {},
-                                           force_range = {};  ///< `force_range`:
-                                                              ///< limits of p.
+  std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of ctrl, p.
   double lag_s = 0;                       ///< Time constant of the response to the control, plus
                                           ///< the delay.
   std::optional<std::size_t> state = {};  ///< If there is a lag: index into `act` of keyframes.

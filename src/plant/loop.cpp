@@ -47,9 +47,7 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   for (std::size_t i = own; i < laws_.size(); ++i) {
     laws_[i].custom = "custom controller " + std::to_string(i - own) + " sets";
   }
-  if (own < laws_.size())
-    check_.Keep(plant_.commands());  // allocates the memory of the copies
-                                     // before the first step
+  if (own < laws_.size()) check_.Keep(plant_.commands());  // allocates memory in advance
 }
 
 Lanes Loop::AtBoundary() const {

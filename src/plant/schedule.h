@@ -20,15 +20,9 @@ class Schedule {
   Schedule(double step_s, double duration_s) : wanted_s_(step_s), duration_s_(duration_s) {}
 
   double time_s() const noexcept { return time_s_; }
-  double step_s() const noexcept {
-    return step_s_;
-  }  ///< Length of the steps up to the next
-     ///< boundary.
+  double step_s() const noexcept { return step_s_; }  ///< Step length up to the boundary.
   bool AtBoundary() const noexcept { return done_ >= steps_; }
-  std::int64_t left() const noexcept {
-    return steps_ - done_;
-  }  ///< Number of steps up to the next
-     ///< boundary.
+  std::int64_t left() const noexcept { return steps_ - done_; }  ///< Steps up to the boundary.
 
   /// Plans the steps to the next boundary. Call it at a boundary. `next_s`: time of the next tick
   /// or corner; infinity if there is none.

@@ -279,9 +279,7 @@ std::unique_ptr<TraceWriter> RunFolder::BeginWith(std::unique_ptr<TraceWriter> l
 }
 
 bool RunFolder::Begin(Diagnostics& out, const std::vector<std::string>& traces) {
-  if (inputs_)
-    inputs_->Leave();  // if a step below fails, the next reader completes the
-                       // replacement
+  if (inputs_) inputs_->Leave();  // after an error below, the next reader completes it
   std::vector<std::string> replaced = traces;
   if (inputs_) replaced.push_back(kInputs);
   if (!RemoveRunBefore(folder_, replaced, out)) return false;

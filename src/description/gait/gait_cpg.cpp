@@ -65,9 +65,7 @@ std::optional<GaitSpec> NewCpgGait(const RobotSpec& robot, CpgSymmetry symmetry,
                                    GaitDrives drives) {
   CpgGait cpg;
   cpg.symmetry = symmetry;
-  if (drives == GaitDrives::kRestLength)
-    cpg.amplitude = 0.01;  // the default of 0.05 is too large
-                           // for rest lengths [m]
+  if (drives == GaitDrives::kRestLength) cpg.amplitude = 0.01;  // [m]; 0.05 is too large
   const auto graph = FindCouplings(robot, symmetry, {}, {}, out);
   if (!graph) return std::nullopt;
   for (const std::string& name : graph->groups) cpg.groups.push_back({name, 0.0, 0.0, {}});

@@ -279,9 +279,7 @@ class ModelDecomposer {
         continue;
       }
       const double own_kg = body.mass_kg - LumpedOn(def_, static_cast<int>(b));
-      if (own_kg < 1e-12 * body.mass_kg)
-        continue;  // all mass of the body comes from bars and
-                   // cables
+      if (own_kg < 1e-12 * body.mass_kg) continue;  // only bars and cables have mass
       add(node, own_kg, std::sqrt(2.5 * body.inertia_kg_m2.xx / body.mass_kg), {});
     }
   }

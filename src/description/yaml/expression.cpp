@@ -179,9 +179,7 @@ class Parser {
 
   std::string NameHint(std::string_view name) const {
     if (names_.empty()) return "no parameters are defined";
-    if (names_.size() > 300 || name.size() > 60)
-      return {};  // limits the time to find similar
-                  // names
+    if (names_.size() > 300 || name.size() > 60) return {};  // limits the search time
     std::vector<std::string> known;
     for (const auto& entry : names_) known.push_back(entry.first);
     return DidYouMean(name, known);
