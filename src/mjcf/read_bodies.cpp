@@ -85,7 +85,8 @@ class BodyReader {
           "mjcf.mocap", element.at,
           element.Called() + " is a mocap body, which a program moves; it is imported as fixed");
     }
-    // A body without a joint belongs to its parent. If the parent is static, it is a static body.
+    // A body without a joint belongs to its parent's rigid body. If the parent is static, the body
+    // is a separate static body.
     its.root = scene_.Moves(parent) ? scene_.bodies[Scene::Index(parent)].root : body;
     const auto inertial_outside = inertial_;
     const bool had_mass = has_mass_;

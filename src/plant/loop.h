@@ -52,8 +52,8 @@ class Loop {
   /// Changes the parameters of the controllers in a lane and continues.
   void Retune(int lane, const std::vector<ControllerSpec>& controllers);
 
-  /// Serializes the state of a lane: controllers, sensors, clocks, timeline and commands. To
-  /// restore, restart the lane, retune it if it was retuned, and restore the plant's state before.
+  /// Serializes the state of a lane: controllers, sensors, clocks, timeline and commands. Before
+  /// restoring, restart the lane, retune it if it was retuned, and restore the plant's state.
   void Serialize(LaneState& state);
 
   double time_s(int lane = 0) const noexcept { return ScheduleOf(lane).time_s(); }
