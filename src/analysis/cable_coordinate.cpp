@@ -68,8 +68,8 @@ Eigen::VectorXd CableCoordinate::Gradient(const Path& path) const {
 }
 
 // Second derivatives of the length (eq. 9): for each span, a term of the motions perpendicular to
-// it; for each point, a term of the rotations of its body. Clustered cables (eq. 10) need no
-// further terms here: the tension is the same in all spans, so the gradient is summed over the
+// it; for each point, a term of the rotations of its body. The cross terms of clustered cables (eq.
+// 10) are not added here. They follow from the square of the gradient, which is summed over all
 // spans.
 Eigen::MatrixXd CableCoordinate::ExactHessian(const Path& path) const {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(bodies_.size());
