@@ -22,8 +22,7 @@ struct Tied {
   Row row;
   std::size_t model = 0;
   RowChannels channels;
-  std::vector<std::size_t> gains, offsets, delays;  ///< Estimates that affect it, as indices into
-                                                    ///< `FitSpec::estimates`.
+  std::vector<std::size_t> gains, offsets, delays;  ///< Indices of its estimates.
 };
 
 /// Rows of a problem, in the problem's order.
