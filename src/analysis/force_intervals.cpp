@@ -31,7 +31,7 @@ constexpr double kOnCone = 1e-8;
 
 class Intervals {
  public:
-  /// `largest_n`: reference force of tolerances [N], used if it exceeds the largest load.
+  /// `largest_n`: reference force for tolerances [N]. The largest load is used if it is larger.
   Intervals(const ModelDef& def, const LoadCaseSpec& loads, const IntervalOptions& options,
             double largest_n)
       : def_(def),

@@ -10,9 +10,9 @@ namespace taut::description {
 /// Returns q_PartBeam of a beam along the unit vector u, in the part's frame: x along the beam, y
 /// horizontal, z upward. A beam along z has its y along the part's y.
 inline Quat BeamOrientation(const Vec3& u) {
-  // Yaw about z to the horizontal direction of u, then pitch about the new y. Of cos and sin of the
-  // half angle, the larger is a square root, the smaller a quotient. This avoids cancellation at
-  // small angles.
+  // Yaw about z to the horizontal direction of u, then pitch about the new y. The larger of cos and
+  // sin of the half angle is computed by a square root, the smaller one by a quotient. This avoids
+  // cancellation at small angles.
   const double level = std::sqrt(u.x * u.x + u.y * u.y);
   const double c = level > 1e-12 ? u.x / level : 1.0, s = level > 1e-12 ? u.y / level : 0.0;
   const double larger = std::sqrt(0.5 * (1.0 + std::fabs(c))),
