@@ -276,7 +276,7 @@ void AddLinear(CLI::App& analyze, AnalyzeArguments& args) {
       analyze
           .add_option_function<std::string>(
               "--linear", file,
-              "Linearization about the equilibrium: HDF5 file to write with A, B, C and D")
+              "HDF5 file to write with the linearization about the equilibrium: A, B, C, D")
           ->option_text("FILE");
   using Pairs = std::vector<std::pair<std::string, std::string>>;
   const auto pairs = [&args](const Pairs& all) {

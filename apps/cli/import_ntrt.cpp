@@ -107,7 +107,7 @@ void AddImportNtrt(CLI::App& import, int& exit_code) {
   ntrt->add_option("--out", args->out, "Output file (default: standard output)")
       ->option_text("FILE");
   ntrt->add_flag("--tables", args->tables,
-                 "With --out: also list the laws that are the same as NTRT's, and everything else");
+                 "With --out: full report, also of laws that equal NTRT's");
   ntrt->add_flag("--strict", args->strict, kStrictHelp);
   ntrt->footer(
       "Examples:\n"

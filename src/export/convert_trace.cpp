@@ -140,9 +140,11 @@ std::optional<Trace> SelectFrom(Trace trace, const std::vector<std::string>& cha
     thin(kept.values.back());
   }
   if (kept.channels.empty()) {
-    out.Error("trace.no_matching_channel", {path, 0, 0}, "the trace has no channel that matches",
-              trace.channels.empty() ? "it has no channels"
-                                     : "such as \"" + trace.channels.front().name + "\"");
+    out.Error("trace.no_matching_channel", {path, 0, 0},
+              "no channel of the trace matches the patterns",
+              trace.channels.empty()
+                  ? "the trace has no channels"
+                  : "the trace has channels such as \"" + trace.channels.front().name + "\"");
     return std::nullopt;
   }
   kept.time_s = std::move(trace.time_s);

@@ -271,8 +271,8 @@ class ActuatorReader {
     const std::vector<int>& off = scene_.disabled_groups;
     if (std::find(off.begin(), off.end(), layers.Whole("group", 0)) != off.end()) {
       Refuse("mjcf.disabled_group", layers.element(),
-             "its group is disabled (option actuatorgroupdisable)",
-             "remove the actuator, or its group from the option");
+             "its group is disabled by actuatorgroupdisable",
+             "remove the actuator, or its group from actuatorgroupdisable");
     }
   }
 

@@ -134,7 +134,8 @@ void WarnOfWhatIsLeftOut(const ModelDef& def, const WriteOptions& options, Diagn
     }
   }
   if (def.friction_law != FrictionLaw::kCone)
-    out.Warning("mjcf.friction_along_slip", {}, "left out: the friction law along the slip");
+    out.Warning("mjcf.friction_along_slip", {}, "left out: `friction_law: along_slip`",
+                "MuJoCo's friction acts in both tangential directions");
 }
 
 }  // namespace taut::mjcf

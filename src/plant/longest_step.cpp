@@ -47,8 +47,8 @@ void WarnOfStep(const ExperimentSpec& experiment, Diagnostics& out) {
   if (experiment.step_s <= fastest.period_s * (1 + 1e-9)) return;
   out.Warning("experiment.step_without_effect",
               {experiment.files.empty() ? "" : experiment.files[0]},
-              fmt::format("step_s {:g} has no effect: {} the period {:g} s, and a step ends at "
-                          "each tick",
+              fmt::format("step_s {:g} has no effect: {} a period of {:g} s, and steps are "
+                          "shortened to end at every tick",
                           experiment.step_s, fastest.of, fastest.period_s),
               fmt::format("set step_s to {:g} or less, or use a longer period", fastest.period_s));
 }

@@ -216,7 +216,7 @@ bool CheckChannels(const ExperimentSpec& experiment, const std::vector<std::stri
     const bool contact = experiment.record.contacts == 0 && pattern.starts_with("contact/");
     out.Error("record.no_channel", i < places.size() ? places[i] : SourceRef{},
               what + ": no channel matches \"" + pattern + "\"",
-              contact ? "set record.contacts, the number of contacts with channels, which is 0"
+              contact ? "record.contacts is 0: set it to the number of contacts to record"
                       : DidYouMean(pattern, known));
   }
   return good;

@@ -313,7 +313,7 @@ def WhatIsWrongIsSaid(taut, folder):
     assert "unknown format" in run.taut(taut, folder, "trace", "convert", "run", "--out", "x.h5", status=2)
     assert "--out" in run.taut(taut, folder, "trace", "convert", "run", status=2)
     assert "cannot open" in run.taut(taut, folder, "trace", "convert", "no.h5", "--out", "x.csv", status=3)
-    assert "no channel that matches" in run.taut(taut, folder, "trace", "convert", "run", "--channels", "cables/*", "--out", "x.csv", status=3)
+    assert "no channel of the trace matches" in run.taut(taut, folder, "trace", "convert", "run", "--channels", "cables/*", "--out", "x.csv", status=3)
     run.taut(taut, folder, "trace", "convert", "run", "--period_s=-1", "--out", "x.csv", status=2)
     run.taut(taut, folder, "trace", "convert", "run", "--period_s=nan", "--out", "x.csv", status=2)
     run.taut(taut, folder, "trace", "convert", "run", "--out", "no/x.mcap", status=1)

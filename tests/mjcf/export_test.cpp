@@ -363,14 +363,16 @@ TEST(MjcfExport, WhatIsLeftOutIsAWarning) {
   def.friction_law = FrictionLaw::kAlongSlip;
   Diagnostics out;
   ASSERT_TRUE(ExportMjcf(def, {}, out));
-  EXPECT_EQ(out.Format(),
-            "warning: left out: restitution of \"ba\"\n"
-            "warning: left out: static friction other than kinetic friction, of \"ba\"\n"
-            "warning: left out: the friction law along the slip\n"
-            "warning: left out: the initial velocity (export a keyframe to keep it) of \"a\"\n"
-            "warning: left out: the limit of the damper force to the spring force (`damping_law: "
-            "clamped`) of \"c\"\n"
-            "warning: left out: the motor's limits of \"c\"\n");
+  EXPECT_EQ(
+      out.Format(),
+      "warning: left out: restitution of \"ba\"\n"
+      "warning: left out: static friction other than kinetic friction, of \"ba\"\n"
+      "warning: left out: `friction_law: along_slip` (MuJoCo's friction acts in both tangential "
+      "directions)\n"
+      "warning: left out: the initial velocity (export a keyframe to keep it) of \"a\"\n"
+      "warning: left out: the limit of the damper force to the spring force (`damping_law: "
+      "clamped`) of \"c\"\n"
+      "warning: left out: the motor's limits of \"c\"\n");
 }
 
 }  // namespace

@@ -64,8 +64,9 @@ class CaseReader {
       const Member m = MemberAt(member);
       if (m.rest_m + gain.by_m <= 0) {
         scope_.out.Error("load_case.no_rest_length", gain.at,
-                         "the load case \"" + out.name + "\" leaves no positive rest length of \"" +
-                             m.name + "\", which has " + Shown(m.rest_m) + " m without it");
+                         "the load case \"" + out.name + "\" makes the rest length of \"" + m.name +
+                             "\" zero or negative",
+                         "it is " + Shown(m.rest_m) + " m without the load case");
       }
       (member.is_bar ? out.bars : out.cables).push_back({member.index, gain.by_m});
     }

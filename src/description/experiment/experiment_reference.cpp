@@ -24,7 +24,7 @@ void Check(const MapReader& map, ReferenceText& reference) {
   if (!map.Has("phase") && reference.statistic != ReferenceSpec::Statistic::kMax) {
     map.Error("reference.statistic_only_max", "statistic",
               "reference.statistic must be max for the whole run",
-              "for another statistic name a phase of the timeline, such as `phase: before`");
+              "for another statistic, name a phase of the timeline, such as `phase: before`");
   }
   const Value* cables = map.Find("cables_n");
   if (cables && cables->kind == Value::Kind::kMap && cables->entries.empty()) {

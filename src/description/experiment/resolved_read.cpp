@@ -114,7 +114,7 @@ class ResolvedReader : public KeyVisitor<ResolvedReader, true> {
     for (const char* name : spellings.names) {
       if (name != right && map_.Has(name)) {
         map_.Know(name);
-        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is for another quantity");
+        map_.Error("key.wrong_quantity", name, map_.Path(name) + " has the wrong unit");
       }
     }
     of_name(right);

@@ -26,7 +26,7 @@ bool HasRoom(const VaryText& vary, const Scope& scope) {
   }
   if (vary.log && !(vary.low > 0)) {
     scope.out.Error("vary.log_not_positive", vary.low_at,
-                    "vary: scale: log needs bounds above 0, got " + Shown(vary.low));
+                    "vary: `scale: log` needs bounds above 0, got " + Shown(vary.low));
     good = false;
   }
   return good;

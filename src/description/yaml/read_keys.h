@@ -177,7 +177,7 @@ class FileReader : public KeyVisitor<FileReader, false> {
       if (spelling.index < 0) {
         right = name;
       } else {
-        map_.Error("key.wrong_quantity", name, map_.Path(name) + " is for another quantity",
+        map_.Error("key.wrong_quantity", name, map_.Path(name) + " has the wrong unit",
                    std::string(spelling.who) + " needs " + right);
         wrong = true;
       }

@@ -94,10 +94,10 @@ TEST_F(LoadCases, MistakesAreNamed) {
             "16:19: error: rest_lengths.members: no cable or bar matches stray (no cable or bar is "
             "called or tagged \"stray\"; did you mean \"stay\"?)\n");
   EXPECT_EQ(After("by_ratio: 0.01", "by_ratio: -1"),
-            "16:19: error: the load case \"winter\" leaves no positive rest length of \"line\", "
-            "which has 1.5 m without it\n"
-            "18:19: error: the load case \"winter\" leaves no positive rest length of \"rope\", "
-            "which has 1.5 m without it\n");
+            "16:19: error: the load case \"winter\" makes the rest length of \"line\" zero or "
+            "negative (it is 1.5 m without the load case)\n"
+            "18:19: error: the load case \"winter\" makes the rest length of \"rope\" zero or "
+            "negative (it is 1.5 m without the load case)\n");
   EXPECT_EQ(After("by_ratio: 0.01", "by_ratio: 0.01, by_m: 1"),
             "16:25: error: rest_lengths has both by_m and by_ratio (give only one of them)\n");
   EXPECT_EQ(After("[[leg], [rope]]", "bar"),
@@ -125,7 +125,7 @@ TEST_F(LoadCases, OfResolvedExperimentsReferToWhatIsThere) {
   EXPECT_THAT(with("{index: 1, by_m", "{index: 9, by_m"),
               testing::HasSubstr("there is no cable 9"));
   const std::string other = with("rest_m: ", "rest_rad: ");
-  EXPECT_THAT(other, testing::HasSubstr("rest_rad is for another quantity"));
+  EXPECT_THAT(other, testing::HasSubstr("rest_rad has the wrong unit"));
   EXPECT_THAT(other, testing::Not(testing::HasSubstr("unknown key")));  // reported once only
 }
 

@@ -80,8 +80,8 @@ TEST_F(ExperimentErrors, ReferencesNameWhatThereIs) {
   expect("phase: befor, cables_n: {left: 1}",
          "22:29: error: there is no phase \"befor\" (did you mean \"before\"?)");
   expect("statistic: mean, cables_n: {left: 1}",
-         "22:22: error: reference.statistic must be max for the whole run (for another statistic "
-         "name a phase of the timeline, such as `phase: before`)");
+         "22:22: error: reference.statistic must be max for the whole run (for another "
+         "statistic, name a phase of the timeline, such as `phase: before`)");
   expect("cables_n: {}",
          "22:32: error: reference.cables_n has no values (such as `inner_top_1: 34.4`)");
   expect("cables_n: {left: much}",

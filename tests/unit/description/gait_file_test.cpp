@@ -176,16 +176,16 @@ TEST_F(Gait, ValuesHaveTheNamesAndUnitsOfWhatIsDriven) {
 
 TEST_F(Gait, AKeyOfTheOtherQuantityIsAnsweredWithTheRightOne) {
   Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude_m_per_s: -0.08",
-         "9:31: error: waves.amplitude_m_per_s is for another quantity (a gait that drives rest "
+         "9:31: error: waves.amplitude_m_per_s has the wrong unit (a gait that drives rest "
          "lengths needs amplitude_m)");
   Expect(kSine, "offset_m_per_s: 0.01", "offset_m: 0.01",
-         "8:76: error: waves.offset_m is for another quantity (a gait that drives velocities needs "
+         "8:76: error: waves.offset_m has the wrong unit (a gait that drives velocities needs "
          "offset_m_per_s)");
   Expect(WithLengths(kCpg), "amplitude_m: 0.1", "amplitude_m_per_s: 0.1\n  amplitude_m: 0.1",
-         "7:3: error: cpg.amplitude_m_per_s is for another quantity (a gait that drives rest "
+         "7:3: error: cpg.amplitude_m_per_s has the wrong unit (a gait that drives rest "
          "lengths needs amplitude_m)");
   Expect(kCpg, "weight_per_m: 20", "weight_per_m_s: 20",
-         "9:26: error: groups.weight_per_m_s is for another quantity (a gait that drives "
+         "9:26: error: groups.weight_per_m_s has the wrong unit (a gait that drives "
          "velocities needs weight_per_m)");
   Expect(WithLengths(kSine), "amplitude_m: -0.08", "amplitude: -0.08",
          "9:31: error: unknown key \"amplitude\" in waves (did you mean \"amplitude_m\"?)");

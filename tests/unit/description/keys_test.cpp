@@ -198,10 +198,9 @@ TEST_F(Tables, AKeyIsSpeltAsAnotherSays) {
   EXPECT_EQ(list.numbers.back().unit, "rad");
 
   Read<Drive>("{moves: turn, pull_n: 1, strokes: [{name: a, reach_m: 2}, {name: b, reach: 1}]}");
-  EXPECT_EQ(
-      errors_,
-      "f.yaml:1:46: error: strokes.reach_m is for another quantity (what turns needs reach_rad)\n"
-      "f.yaml:1:69: error: unknown key \"reach\" in strokes (did you mean \"reach_rad\"?)\n");
+  EXPECT_EQ(errors_,
+            "f.yaml:1:46: error: strokes.reach_m has the wrong unit (what turns needs reach_rad)\n"
+            "f.yaml:1:69: error: unknown key \"reach\" in strokes (did you mean \"reach_rad\"?)\n");
   // if the kind of motion is unknown, both keys are accepted
   Read<Drive>(
       "{moves: trun, pull_n: 1, strokes: [{name: a, reach_m: 2}, {name: b, reach_rad: 1}]}");

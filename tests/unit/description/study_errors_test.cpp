@@ -110,7 +110,7 @@ TEST_F(StudyFile, BoundsMustLeaveRoom) {
             "experiment)\n");
   EXPECT_EQ(Wrong("low: 1, high: 20", "low: .nan, high: 20").substr(0, 12), "7: vary.low ");
   EXPECT_EQ(Wrong("low: 0.5, high: 2", "low: 0, high: 2"),
-            "8: vary: scale: log needs bounds above 0, got 0\n");
+            "8: vary: `scale: log` needs bounds above 0, got 0\n");
   EXPECT_EQ(Wrong("low: 1, high: 20", "low: -1, high: 20"),
             "7: vary: impedance.outer_right_1.tension_offset_n must stay within 0..inf N\n");
 }

@@ -72,13 +72,14 @@ TEST(LongestStepTest, OfAStepWithoutEffectThereIsAWarning) {
   experiment.step_s = 0.004;
   EXPECT_EQ(WarningOf(experiment), "step_s 0.004 has no effect: controller \"" +
                                        experiment.controllers[0].name +
-                                       "\" has the period 0.001 s, and a step ends at each tick");
+                                       "\" has a period of 0.001 s, and steps are shortened to end "
+                                       "at every tick");
   experiment.sensors.emplace();
   experiment.sensors->period_s = 0.0005;
   experiment.step_s = 0.001;
   EXPECT_EQ(WarningOf(experiment),
-            "step_s 0.001 has no effect: the sensors have the period 0.0005 s, and a step ends at "
-            "each tick");
+            "step_s 0.001 has no effect: the sensors have a period of 0.0005 s, and steps are "
+            "shortened to end at every tick");
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ TEST_F(RecordedChannels, HintsKnowThoseOnRequest) {
   EXPECT_NE(complaint("node/*/positon_x_m").find("(did you mean \"node/*/position_x_m\"?)"),
             std::string::npos);
   EXPECT_NE(complaint("contact/0/gap_m")
-                .find("set record.contacts, the number of contacts with channels, which is 0"),
+                .find("record.contacts is 0: set it to the number of contacts to record"),
             std::string::npos);
   EXPECT_NE(complaint("contact/1/gap_m", 1).find("did you mean"), std::string::npos);
 }
