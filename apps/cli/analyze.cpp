@@ -42,7 +42,7 @@ struct Loaded {
   ExperimentSpec experiment;  ///< For a model: default experiment with its robot.
   std::vector<LoadCaseSpec> cases;
   bool model = false;
-  /// Pose from `--pose`, which `robot` then has, and the rest lengths in the file.
+  /// Pose from `--pose`, also set in `robot`.
   std::optional<Pose> pose;
   std::vector<double> file_rest_m;
 };
@@ -83,8 +83,8 @@ std::optional<Loaded> Load(const AnalyzeArguments& args, const Overrides& overri
   return loaded;
 }
 
-/// Selects the load cases on the command line, or else all of the file; in a file without load
-/// cases the weight, or no load if nothing holds the robot in the world.
+/// Selects the load cases named on the command line; otherwise all cases of the file. A file
+/// without load cases gets one: the weight, or no load if nothing supports the robot in the world.
 bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::string>& notes,
                  Diagnostics& out) {
   if (loaded.cases.empty() && args.load_cases.empty()) {
@@ -109,8 +109,8 @@ bool ChooseCases(const AnalyzeArguments& args, Loaded& loaded, std::vector<std::
   return out.ok();
 }
 
-/// Reports an error for load cases that act along motions which the supports leave free, and a note
-/// for free motions without load.
+/// Reports an error for load cases that act along a motion that the supports allow, and a note for
+/// each other motion that they allow.
 bool CheckSupportsOf(const std::string& file, const ModelDef& def,
                      const std::vector<LoadCaseSpec>& cases, std::vector<std::string>& notes,
                      Diagnostics& out) {
@@ -130,7 +130,7 @@ bool CheckSupportsOf(const std::string& file, const ModelDef& def,
   return out.ok();
 }
 
-/// Returns the words of this command for the same structure, with other flags.
+/// Returns the words of a `taut analyze` command for the same structure with other flags.
 std::vector<std::string> Again(const AnalyzeArguments& args,
                                const std::vector<std::string>& flags) {
   std::vector<std::string> words = WithOverrides({"analyze", args.path}, args.set);

@@ -30,7 +30,7 @@ MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equili
   return {at.cable_tension_n, at.bar_force_n, StrutForces(weighed, forces)};
 }
 
-/// Returns the forces that hold the cables that end in the world, one per point.
+/// Returns the forces of the world on the cables that end in it, one force per point.
 std::vector<CaseResult::End> Ends(const ModelDef& def, const Equilibrium& at) {
   const auto same = [](const Vec3& a, const Vec3& b) {
     return std::fabs(a.x - b.x) + std::fabs(a.y - b.y) + std::fabs(a.z - b.z) < 1e-9;

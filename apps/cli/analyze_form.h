@@ -15,7 +15,7 @@ struct FormArguments {
   std::optional<double> tension_n, force_density_n_per_m;
   std::string out;  ///< Model file to write; empty: none.
   bool tables = false;
-  std::vector<std::string> again;  ///< Words of this command, for the next one.
+  std::vector<std::string> again;  ///< Words of this command, for the suggested next command.
 };
 
 /// Prints the equilibrium shape under the given cable forces. Returns the exit status.

@@ -17,7 +17,7 @@ struct InverseArguments {
   HoldingCost minimise = HoldingCost::kForceDensity;
   CableBounds bounds;  ///< Limits for every cable.
   bool json = false, tables = false;
-  std::vector<std::string> again;          ///< Words of this command, for the next one.
+  std::vector<std::string> again;  ///< Words of this command, for the suggested next command.
   std::vector<double> calibration_rest_m;  ///< Per cable; empty: as in the file.
 };
 

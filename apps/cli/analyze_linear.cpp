@@ -65,7 +65,8 @@ bool Respond(const LinearArguments& args, double to_hz, LinearResult& result, Di
   return out.ok();
 }
 
-/// Returns the usual next command: a response after the system, all its rows after a response.
+/// Returns the suggested next command: after the system a response, after a response its complete
+/// table.
 std::vector<std::string> NextOf(const LinearResult& result, const LinearArguments& args) {
   std::vector<std::string> next = args.again;
   const StateSpace& system = result.system;

@@ -20,7 +20,7 @@ struct LinearArguments {
   std::optional<double> to_hz;  ///< Nothing: half the tick frequency.
   int points = 40;
   bool csv = false, json = false, tables = false;
-  std::vector<std::string> again;  ///< Words of this command, for the next one.
+  std::vector<std::string> again;  ///< Words of this command, for the suggested next command.
 };
 
 struct LinearResult {

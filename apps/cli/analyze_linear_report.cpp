@@ -55,10 +55,10 @@ std::string Signals(const StateSpace& system) {
 /// Returns whether a mode neither decays nor grows, as a translation of a free robot. Round-off
 /// splits z = 1, 1 into pairs that look like oscillations.
 bool IsNeutral(const LinearMode& mode) { return std::abs(mode.z - 1.0) < 1e-6; }
-/// Returns whether a mode oscillates; others creep back or decay at once.
+/// Returns whether a mode oscillates visibly, with a damping ratio below 0.99.
 bool Swings(const LinearMode& mode) { return mode.frequency_hz > 0 && mode.damping < 0.99; }
 
-/// Numbers of modes by their kind; of a conjugate pair one is counted as an oscillation.
+/// Numbers of modes by kind; a conjugate pair counts as one oscillation.
 struct ModeCounts {
   int neutral = 0, swings = 0, grow = 0;
 };

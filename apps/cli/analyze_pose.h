@@ -14,8 +14,8 @@ struct PoseArguments {
   std::optional<double> at_s;  ///< Time of the row; nothing: the last row.
 };
 
-/// Returns the pose in the recording's row that is nearest to the requested time. Nothing, with
-/// errors in `out`, if it has none.
+/// Returns the pose in the recording's row that is nearest to the requested time. Returns nothing,
+/// with errors in `out`, if the recording has no pose.
 std::optional<Pose> ReadPose(const PoseArguments& args, const RobotSpec& robot, Diagnostics& out);
 
 }  // namespace taut::cli

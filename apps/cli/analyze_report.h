@@ -19,7 +19,7 @@ struct CaseResult {
   ModelDef def;  ///< In the equilibrium pose.
   std::vector<MemberLoad> members;
   std::vector<Reaction> anchors;
-  /// Force that holds cables that end in the world, one per point.
+  /// Force of the world on the cables that end at a point of it.
   struct End {
     std::string name;  ///< Name of the node at this point.
     Vec3 point_m, force_n;
@@ -60,11 +60,11 @@ std::string AnalysisSummary(const AnalysisResult& result);
 /// Returns a safety factor as text.
 std::string SafetyFactorText(double factor);
 
-/// Returns whether no state of self-stress has all cables in tension, although the structure has
-/// cables.
+/// Returns whether the structure has cables, but no state of self-stress with tension in all of
+/// them.
 bool LacksPrestress(const ForceAnalysis& forces);
 
-/// Returns whether form finding may find a shape of such a structure that has such a state.
+/// Returns whether form finding may find a shape that has a self-stress with tension in all cables.
 bool FormFindingMayHelp(const ForceAnalysis& forces);
 
 /// Formats the states of self-stress and the mechanisms.

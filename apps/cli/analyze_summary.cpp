@@ -23,7 +23,8 @@ Standing StandingOf(const CaseResult& result) {
   return Standing::kStands;
 }
 
-/// Returns the worst load case; of equal ones the one with the least stiffness.
+/// Returns the load case with the worst result; among equal results, the one with the least
+/// stiffness.
 const CaseResult& WorstOf(const std::vector<CaseResult>& cases) {
   const auto stiffness = [](const CaseResult& one) {
     return one.least_stiffness_n_per_m.value_or(INFINITY);

@@ -40,8 +40,8 @@ void AddPlacedRobot(CLI::App& command, PlacedRobotArguments& args) {
 
 namespace {
 
-/// Returns the start pose of an experiment's robot; nothing with errors in `out`, or with `exit`
-/// alone if interrupted.
+/// Returns the start pose of an experiment's robot. Returns nothing after an error (in `out`) or an
+/// interrupt (sets only `exit`).
 std::optional<Pose> StartOf(const ExperimentSpec& experiment, Diagnostics& out, int& exit) {
   CatchInterrupts();
   const auto settled = FindSettledStart(experiment, out, [] { return !interrupt_asked.load(); });

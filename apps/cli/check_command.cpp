@@ -61,7 +61,7 @@ int Couplings(const CheckArguments& args, const RobotSpec& robot,
   return WriteNamed(args.svg, CouplingSvg(robot, *graph));
 }
 
-/// Checks a gait file; its experiment determines whether it fits a robot.
+/// Checks a gait file alone; whether the gait fits a robot is checked with an experiment.
 int CheckGait(const CheckArguments& args, Diagnostics& found) {
   auto gait = LoadGait(args.path, found);
   if (!gait || !Pass(found, args.strict)) return Bad(args, found);
@@ -77,8 +77,8 @@ int CheckGait(const CheckArguments& args, Diagnostics& found) {
   return kOk;
 }
 
-/// Returns the experiment for settling: with an experiment's options, or on its ground if it has
-/// none; a model is settled without weight.
+/// Returns the experiment in which to settle the robot: the given one, or for a model one without
+/// weight and terrain.
 ExperimentSpec ToSettle(const RobotSpec& robot, const ExperimentSpec* experiment) {
   ExperimentSpec to_settle;
   if (experiment) {

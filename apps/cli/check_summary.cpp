@@ -56,8 +56,8 @@ std::string RodLine(const ModelDef& def, const std::vector<JointLoad>& joints) {
                      force.Text(3, "N"));
 }
 
-/// Returns the largest net force of cables, weight and joints on a body; the ground, which may
-/// carry it, is unknown to a model.
+/// Returns the largest net force of cables, weight and joints on a body. In a model, no ground can
+/// balance this force.
 std::string NetLine(const ModelDef& def, const std::vector<JointLoad>& joints) {
   const std::vector<LeftLoad> left = LeftAtStart(def, joints);
   double most_n = -1;

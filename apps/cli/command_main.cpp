@@ -33,7 +33,7 @@ struct CommandGroup {
   std::vector<void (*)(CLI::App& app, int& exit_code)> commands;
 };
 
-/// Commands in the order of the help texts: the first group is the path of a beginner.
+/// Commands in the order of the help texts; the first group contains a beginner's first steps.
 const std::vector<CommandGroup> kGroups{
     {"First steps", {AddNew, AddCheck, AddView, AddRun, AddReport}},
     {"Analysis and optimization", {AddCompare, AddFit, AddAnalyze, AddLearn, AddSize}},

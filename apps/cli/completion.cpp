@@ -31,7 +31,7 @@ void ForEach(const CommandText& command, const std::function<void(const CommandT
   for (const CommandText& one : command.commands) ForEach(one, act);
 }
 
-// bash: tables of the values of flags, of flags, and of the words that may follow a command.
+// bash: tables of flag values, of flags, and of the words that may follow a command.
 
 std::string BashValue(const WordText& word) {
   if (!word.Choices().empty()) return "_taut_words " + Sh(Spaced(word.Choices()));
@@ -153,7 +153,7 @@ std::string Zsh(const CommandText& taut) {
          functions + "_taut \"$@\"\n";
 }
 
-// fish: one line per word, with the condition under which it is offered.
+// fish: one line per word, with the condition under which the shell offers it.
 
 /// Returns the condition that all words of the command's name are present.
 std::string FishCondition(const CommandText& command) {

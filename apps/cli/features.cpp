@@ -1,5 +1,5 @@
-// Optional features of a build: MPI, the viewer's pages, instruction sets, static linking,
-// assertions. A bug report or an installation on a cluster needs them.
+// Optional features of a build, for bug reports and installations on clusters: MPI, the viewer's
+// pages, instruction sets, static linking, assertions.
 #include "features.h"
 
 #include <fmt/format.h>

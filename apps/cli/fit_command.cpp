@@ -122,7 +122,7 @@ int FailOfInput(const Identification& fit) {
   return kFailed;
 }
 
-/// Runs a fit that is ready: rank 0's part.
+/// Runs a prepared fit on rank 0 and writes its results.
 int Search(const FitArguments& args, const Identification& fit, const std::string& folder) {
   Diagnostics found;
   const bool depends = CheckDependence(fit, found);
@@ -167,11 +167,11 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
   return Judge(outcome.verdict);
 }
 
-/// Preparations of rank 0: the folder, its files in memory, and validated options.
+/// Result of the preparations on rank 0: locked folder and validated fit.
 struct Ready {
   std::unique_ptr<FolderLock> lock;
   std::unique_ptr<Identification> fit;
-  int exit = kOk;  ///< Exit status if it is not ready.
+  int exit = kOk;  ///< Exit status if preparation failed.
 };
 
 Ready Begin(const FitArguments& args, const FitSpec& spec, const std::string& folder, int threads,

@@ -13,8 +13,8 @@ void AddImportNtrt(CLI::App& group, int& exit_code);
 
 /// File name of the model to which the experiment of `WarnOfRefusal` refers.
 inline constexpr const char* kCheckedModel = "model.yaml";
-/// Reports, at the imported file, each reason for which `taut check` would refuse the imported
-/// model, as a warning; with a text of an experiment, each reason for the experiment.
+/// Checks the imported model, and the experiment if its text is not empty, as `taut check` does.
+/// Reports each error as a warning at the imported file.
 void WarnOfRefusal(const std::string& model_yaml, const std::string& experiment_yaml,
                    const std::string& imported_file, Diagnostics& out);
 

@@ -62,7 +62,7 @@ void WarnOfRefusal(const std::string& model_yaml, const std::string& experiment_
     }
   }
   for (const Diagnostic& reason : found.items()) {
-    // Errors in a file have a line. This one concerns a temporary file, not its contents.
+    // An error without a line concerns the temporary file itself, not its contents.
     if ((reason.at.file == path || reason.at.file == model) && reason.at.line == 0) {
       not_checked("temporary file: " + reason.what);
       continue;

@@ -22,8 +22,8 @@ struct ImportNtrtArguments {
   bool like_ntrt = false, tables = false, strict = false;
 };
 
-/// Returns the verdict and a summary: what differs from NTRT and what is left out. `tables`: also
-/// what is the same.
+/// Returns the verdict and a summary: differences from NTRT and omissions. `tables`: also the laws
+/// that equal NTRT's.
 std::string Report(const NtrtImport& import, const std::string& out, bool tables) {
   const NtrtCounts& c = import.counts;
   const std::string verdict =
@@ -47,8 +47,8 @@ std::string Report(const NtrtImport& import, const std::string& out, bool tables
   return text + "\n";
 }
 
-/// Prints the robot's size in each unit of length, because the files have no unit and a person can
-/// recognize the right one.
+/// Prints the robot's size for common units of length, so that the user can recognize the unit: the
+/// files do not contain it.
 int AskForUnit(const ImportNtrtArguments& args) {
   Diagnostics found;
   const auto import = ImportNtrt(args.path, {1.0, args.like_ntrt, ""}, found);

@@ -8,7 +8,7 @@ namespace taut::cli {
 
 extern std::atomic<bool> interrupt_asked;
 
-/// Installs handlers: such a signal sets `interrupt_asked` and terminates nothing.
+/// Installs handlers: such a signal only sets `interrupt_asked`.
 void CatchInterrupts();
 
 }  // namespace taut::cli

@@ -12,7 +12,7 @@
 namespace taut::cli {
 namespace {
 
-/// Returns whether a tag only tells the copies of a part apart: first, middle, last or a number.
+/// Returns whether a tag only distinguishes copies of a part: first, middle, last or a number.
 bool IsPosition(const std::string& tag) {
   return tag == "first" || tag == "middle" || tag == "last" ||
          std::all_of(tag.begin(), tag.end(), [](char c) { return c >= '0' && c <= '9'; });

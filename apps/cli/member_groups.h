@@ -18,9 +18,9 @@ struct CableGroup {
   std::vector<std::size_t> cables;  ///< Indices, ascending.
 };
 
-/// Groups the cables by their tags, without tags that are names of single cables. If this gives
-/// more than `most` groups, groups them by their first tag, and then all together. In the order of
-/// the cables.
+/// Groups the cables by their tags, except tags that are names of single cables. More than `most`
+/// groups are replaced by groups of equal first tags, or else by one group. Groups are in the order
+/// of the cables.
 std::vector<CableGroup> GroupCables(const RobotSpec& robot, std::size_t most);
 
 /// Range of a quantity.
@@ -44,7 +44,7 @@ Range RangeOver(const CableGroup& group, const Quantity& quantity) {
 /// Returns "1 cable", "3 cables", "2 boxes", "2 bodies".
 std::string Counted(long long count, const std::string& one);
 
-/// Lines of a summary, at most ten including the verdict; further ones are counted.
+/// Lines of a summary: at most ten with the verdict; further lines are only counted.
 class CappedLines {
  public:
   static constexpr std::size_t kMost = 9, kAll = std::numeric_limits<std::size_t>::max();
@@ -54,7 +54,7 @@ class CappedLines {
   /// All lines but the first, the verdict.
   explicit CappedLines(const std::vector<std::string>& all) : lines_(all.begin() + 1, all.end()) {}
 
-  /// Adds a line, which is indented. Empty text adds none.
+  /// Adds an indented line; an empty text adds none.
   void Add(const std::string& line);
   /// Returns the verdict and the lines, as printable text with line ends.
   std::string Text(const std::string& verdict) const;

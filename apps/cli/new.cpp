@@ -23,8 +23,8 @@ struct NewArguments {
   std::string kind, name, model;
 };
 
-/// Returns the path of a file that comes with taut; reading the new file reports it if it is
-/// missing.
+/// Returns the path of a shipped file without checking it: a missing file is reported when the new
+/// file is read.
 std::string Shipped(const std::string& folder, const std::string& file) {
   return ShippedFolderOf(folder).value_or(folder) + "/" + file;
 }

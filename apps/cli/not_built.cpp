@@ -1,4 +1,4 @@
-// Commands that the target taut_first lacks: each names the way to build it.
+// Stubs of commands that the target taut_first lacks: each prints how to build the command.
 #include <fmt/format.h>
 
 #include <string>

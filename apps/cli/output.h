@@ -34,17 +34,17 @@ int WriteNamed(const std::string& path, const std::string& text);
 /// Same as `WriteNamed`, but prints to standard output if the path is empty.
 int WriteOrPrint(const std::string& path, const std::string& text);
 
-/// Prints the usual next command, as the last line of a command's output:
-/// `next: taut view runs/hang`.
+/// Prints the suggested next command as the last line of a command's output: `next: taut view
+/// runs/hang`.
 void SayNext(std::vector<std::string> words);
 
-/// Same as `SayNext` for another program, the first word.
+/// Same as `SayNext` for another program, whose name is the first word.
 void SayNextProgram(const std::vector<std::string>& words);
 
-/// Runs an experiment into a folder: traces, inputs.yaml, summary.json. `options` contain no
-/// traces; their `begin` may refuse the run before warnings about the start are printed. `more`:
-/// additional metadata of the trace. Returns nothing, with an error, if the experiment did not run;
-/// a file that could not be written is an error, too, and then there is no summary.json.
+/// Runs an experiment and writes traces, inputs.yaml and summary.json into a folder. `options`
+/// contain no traces; their `begin` may refuse the run before warnings about the start are printed.
+/// `more`: additional metadata of the trace. Returns nothing, with an error, if the experiment did
+/// not run. A file that cannot be written is an error, too; then summary.json is not written.
 std::optional<RunSummary> RunInto(RunFolder& folder, const ExperimentSpec& experiment,
                                   RunOptions options, bool csv, Diagnostics& out,
                                   const TraceMetadata& more = {});

@@ -13,15 +13,15 @@
 
 namespace taut::cli {
 
-/// Parses `--set name=value`. Returns nothing, after a message on stderr, if one is not
-/// `name=value`.
+/// Parses `--set name=value`. Returns nothing, after a message on stderr, if an argument has
+/// another form.
 std::optional<Overrides> ParseOverrides(const std::vector<std::string>& set);
 
 /// Returns the words of a command, with `--set` for each of `set`.
 std::vector<std::string> WithOverrides(std::vector<std::string> words,
                                        const std::vector<std::string>& set);
 
-/// Returns a validator for numbers. CLI11's own accepts NaN and prints 1e-9 as 0.000000.
+/// Returns a validator for numbers. The validator of CLI11 accepts NaN and prints 1e-9 as 0.000000.
 std::function<std::string(const std::string&)> NumberWithin(double least, double most);
 
 /// Same as `NumberWithin` for integers.

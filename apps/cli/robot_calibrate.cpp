@@ -41,7 +41,7 @@ bool WaitForPerson(const std::string& text) {
   return static_cast<bool>(std::getline(std::cin, line)) && !interrupt_asked;
 }
 
-/// Reads the load cell [counts]. Returns false after an interrupt or if the board is gone.
+/// Reads the load cell [counts]. Returns false after an interrupt or if the board does not answer.
 bool ReadLoadCell(RobotConsole& desk, int motor, Mean& out) {
   const link::MotorFigures& figures = desk.driver().figures(motor);
   std::vector<double> counts;

@@ -145,7 +145,7 @@ bool RobotConsole::SetUp(const RobotArguments& args, const ExperimentSpec* exper
   options.motors = static_cast<int>(cables_.size());
   options.cables = cables_;
   options.on_fault = kOnFault.at(args.on_fault);
-  // A virtual robot runs on the same machine, so that a missing reply is only late.
+  // A virtual robot runs on the same machine: a reply may be late, but is never lost.
   if (virtual_robot() != nullptr) options.patience_s = 0.5;
   driver_ = std::make_unique<link::Driver>(*line_->port, options);
   driver_->on_cycle = [this](const link::State& state) { AfterCycle(state); };

@@ -59,7 +59,7 @@ class RobotConsole {
  public:
   /// Reads model and calibration, opens the port, queries the boards and sends them their settings.
   /// `experiment`: replaces the model. Returns null after messages on stderr; then `exit` is the
-  /// status. A virtual robot that was started for this command begins ready: settings from its
+  /// status. If this command starts a virtual robot, the robot is ready at once: settings from its
   /// model, references set, no faults.
   static std::unique_ptr<RobotConsole> Open(const RobotArguments& args,
                                             const ExperimentSpec* experiment, int& exit);
@@ -69,7 +69,7 @@ class RobotConsole {
   const RobotSpec& robot() const { return robot_; }
   const std::vector<std::string>& cables() const { return cables_; }
   std::optional<int> MotorOf(const std::string& cable) const;
-  /// Same, with an error in `out` if no motor has this cable.
+  /// Returns the motor of a cable; nothing, with an error in `out`, if no motor has this cable.
   std::optional<int> MotorOf(const std::string& cable, Diagnostics& out) const;
   const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
   /// Returns whether an interrupt or a stop request has arrived; the motors stop.
@@ -113,8 +113,8 @@ class RobotConsole {
   std::optional<link::PowerReport> power_;
 };
 
-/// Returns the device of `--port` for commands that only stop it, even if another program drives
-/// it. Empty, with an error in `out`, if there is none.
+/// Returns the device of `--port` for commands that only stop the robot, even while another program
+/// drives it. Empty, with an error in `out`, if there is none.
 std::string DeviceOf(const RobotArguments& args, Diagnostics& out);
 
 /// Returns the path of the model of `--model`.

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 struct Found {
   int address = 0;
-  std::optional<board::Info> info;  ///< If it answers as a board.
+  std::optional<board::Info> info;  ///< Set if the device answers as a board.
 };
 
 Json InfoJson(const board::Info& info) {
@@ -122,7 +122,7 @@ int Status(const RobotArguments& args) {
   const auto desk = RobotConsole::Open(args, nullptr, exit);
   if (!desk) return exit;
   link::Driver& driver = desk->driver();
-  // The status byte with faults and temperatures is multiplexed: its turn is every sixteenth cycle.
+  // The status byte is multiplexed: faults and temperatures are sent in every sixteenth cycle.
   driver.Cycle(board::kMores + 2);
   const link::State state = driver.state();
   Diagnostics found;

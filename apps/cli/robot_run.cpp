@@ -84,8 +84,8 @@ int RunOn(RobotConsole& desk, const RunArguments& args, const ExperimentSpec& ex
   metadata.emplace_back(kRunIdKey, folder.id());
   metadata.emplace_back("plant", "robot at " + args.port);
   if (!args.calibration.empty()) metadata.emplace_back("calibration", args.calibration);
-  // All slow work comes before the motors have power, or in another thread: boards time out after
-  // 0.1 s without a command. Therefore power comes with the first step.
+  // Boards time out after 0.1 s without a command. Slow work therefore precedes the first step,
+  // which powers the motors, or runs in another thread.
   const std::vector<ChannelInfo> channels = RunChannels(experiment, &plant);
   auto trace = CreateHdf5Trace(folder.Path("trace.h5"), channels, metadata, found);
   if (!trace || !folder.Prepare(ResolvedYaml(experiment), found) || !folder.Begin(found)) {

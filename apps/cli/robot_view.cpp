@@ -25,7 +25,7 @@ constexpr double kObey_s = 0.5;
 /// Limit of queued gains; one is sent per cycle.
 constexpr int kMaxGainsUnderWay = 200;
 
-/// Returns the reason why the boards cannot be powered; empty if they can.
+/// Returns the reason why the motors cannot be powered; empty if they can.
 std::string WhyNotWell(const link::State& state) {
   if (!state.link.connected) return "the adapter is gone";
   if (state.stopping) return "an emergency stop has not been cleared";
@@ -207,7 +207,8 @@ void RobotView::AskForGain() {
   const auto [motor, gain] = unknown_gains_->back();
   unknown_gains_->pop_back();
   if (!desk_.driver().state().boards[static_cast<std::size_t>(motor / board::kMotors)].there) {
-    unknown_gains_->insert(unknown_gains_->begin(), {motor, gain});  // once it is back
+    unknown_gains_->insert(unknown_gains_->begin(), {motor, gain});  // retried later, when the
+                                                                     // board may answer again
     return;
   }
   desk_.driver().Request(motor / board::kMotors, AskingFor(board::Request::kAsk, motor, gain, 0),

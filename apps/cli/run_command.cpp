@@ -132,7 +132,7 @@ int Run(const RunArguments& args) {
   if (args.duration_s >= 0) experiment->duration_s = args.duration_s;
   if (args.has_seed) experiment->seed = args.seed;
 
-  // Before any file of an earlier run is overwritten.
+  // All inputs are checked before any file of an earlier run is overwritten.
   std::optional<Trace> log;
   std::unique_ptr<Plant> plant;
   if (!args.replay.empty()) {
@@ -147,7 +147,8 @@ int Run(const RunArguments& args) {
   CheckFinalPose(args, experiment->robot, found);
   if (!Pass(found, args.strict)) return Fail(found, kBadInput);
   if (args.strict && !plant && experiment->start != StartKind::kAsDescribed) {
-    // The run computes it again, but would have changed its folder before an error.
+    // Finds the start once more in advance, so that an error leaves the folder of the run
+    // unchanged.
     if (!FindSettledStart(*experiment, found)) return Fail(found, kFailed);
     if (!Pass(found, true)) return Fail(found, kBadInput);
   }

@@ -41,7 +41,8 @@ ssize_t Put(void* cookie, const char* text, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
-/// `mode`: as of setvbuf. Without memory for a new stream, the old one stays.
+/// Replaces a stream by a guarded one. `mode`: as of setvbuf. If memory is short, the old stream
+/// stays.
 void Guard(std::FILE*& file, Stream& stream, int mode) {
   std::FILE* const guarded = fopencookie(&stream, "w", {nullptr, Put, nullptr, nullptr});
   if (guarded == nullptr) return;
@@ -52,8 +53,9 @@ void Guard(std::FILE*& file, Stream& stream, int mode) {
 }  // namespace
 
 void GuardStreams() {
-  // The next file that is opened, perhaps a trace, would get a closed descriptor, and printing
-  // would write into it. A descriptor that cannot be written to takes its place.
+  // The next opened file, perhaps a trace, would get the number of a closed descriptor, and
+  // printing would write into it. A descriptor that cannot be written to therefore takes the
+  // number.
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0) continue;
     open("/dev/null",

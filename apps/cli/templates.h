@@ -5,8 +5,8 @@
 
 namespace taut::cli {
 
-/// `schema`: path of the format's JSON schema, for editors; empty: none. `from`: the model of an
-/// experiment, the experiment of a study.
+/// Each function returns the text of a template. `schema`: path of the format's JSON schema, for
+/// editors; empty: none. `from`: the model of an experiment, the experiment of a study.
 std::string NewModel(const std::string& name, const std::string& schema);
 std::string NewExperiment(const std::string& name, const std::string& schema,
                           const std::string& from);

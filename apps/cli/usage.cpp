@@ -44,7 +44,7 @@ bool IsFlag(const std::string& word) {
          !CLI::detail::lexical_cast(word, number);
 }
 
-/// Returns the command for a word that other programs use for it; empty if there is none.
+/// Returns the command of taut for a name that other programs use; empty if there is none.
 std::string CommandMeant(const std::string& word) {
   static const std::map<std::string, std::string> kSynonyms{
       {"convert", "trace convert"}, {"create", "new"}, {"diff", "compare"},

@@ -24,8 +24,8 @@ volatile uint8_t ticks_due;
 bool asked_anew;  // a request after the last publication may have changed the reply
 uint8_t reset_cause __attribute__((section(".noinit")));
 
-// After a reset by the watchdog, it stays on with a timeout shorter than the initialization of
-// memory; hence disabled in .init3.
+// After a watchdog reset, the watchdog stays on with a timeout shorter than the initialization of
+// memory. It is therefore disabled in .init3.
 void KeepCause() __attribute__((naked, used, section(".init3")));
 void KeepCause() {
   reset_cause = MCUSR;
@@ -61,8 +61,8 @@ void RunTick(uint8_t elapsed) {
   Tick(inputs, board);
   for (uint8_t m = 0; m < kMotors; ++m) SetWidth(m, board.loops[m].width);
   SetPower(IsPowered(board));
-  // loop time in units of 8 us: the timer counts 4 us each since the tick was due; 125 more if the
-  // next tick is already due
+  // loop time in units of 8 us: half of the timer's count since the tick was due (4 us each), plus
+  // 125 if the next tick is already due
   const uint8_t eighths =
       ticks_due == 0 ? static_cast<uint8_t>(TCNT2 / 2) : static_cast<uint8_t>(125 + TCNT2 / 2);
   if (eighths > board.loop_8us) board.loop_8us = eighths;

@@ -20,7 +20,7 @@ struct Command {
   std::string type;  ///< A key of "client" in messages.json.
   std::string name;  ///< node, name, cable or channel.
   std::string gain;
-  std::string mode;       ///< mode of robot_mode, as of start.
+  std::string mode;       ///< `mode` of robot_mode, `as` of start.
   Vec3 vector;            ///< target_m or force_n.
   double value = 0;       ///< value, factor, time_s, duration_s.
   double t0 = 0, t1 = 0;  ///< For want_series [s].

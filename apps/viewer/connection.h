@@ -1,5 +1,5 @@
-/// WebSocket connection of one client. All texts are sent in order; of frames and robot statuses,
-/// only the newest.
+/// WebSocket connection of one client. Texts are sent in order; only the newest frame and the
+/// newest robot status are sent.
 #pragma once
 
 #include <deque>
@@ -15,8 +15,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
  public:
   struct Handlers {
     std::function<void(Connection&)> opened;
-    /// Handles a text from the client. If it returns false with a reason, the connection is closed
-    /// with it.
+    /// Handles a text from the client. If it returns false, the connection is closed with the
+    /// reason that it sets.
     std::function<bool(Connection&, const std::string&, std::string&)> received;
     std::function<void(Connection&)> closed;
   };

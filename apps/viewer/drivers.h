@@ -10,7 +10,7 @@ class Drivers {
   int driver() const noexcept { return driver_; }  ///< 0: no client.
 
   /// Returns whether a command of this type from this client is accepted. If no client drives, the
-  /// first that sends one drives.
+  /// first client that sends a command becomes the driver.
   bool Allow(int client, const std::string& type) {
     // An emergency stop is accepted from every client and does not change the driver.
     if (type == "want_series" || type == "stop") return true;

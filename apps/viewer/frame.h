@@ -26,7 +26,7 @@ struct Frame {
     Vec3 point_m, force_n;
   };
   struct Bend {
-    int cable = -1;  ///< Ghosts' cables follow the cables of the scene.
+    int cable = -1;  ///< Numbered after the cables of the scene.
     Vec3 point_m{kUnknown, kUnknown, kUnknown};
   };
 

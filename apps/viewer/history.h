@@ -1,4 +1,4 @@
-/// Past states of a live run, for plots of the time before a page was opened, and for looking back.
+/// Past states of a live run, for pages opened later and for looking back.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 namespace taut::viewer {
 
 /// Rows at equal intervals of simulated time. When memory is full, every second row is removed and
-/// the interval doubles: the whole run stays, with decreasing resolution.
+/// the interval doubles: all times stay covered, at a lower resolution.
 class History {
  public:
   static constexpr std::size_t kMaxBytes = 128u << 20;
@@ -36,10 +36,10 @@ class History {
   std::size_t RowAt(double time_s) const;
   /// Returns the row for a past time; nothing if the time is the present, `now_s`.
   std::optional<std::size_t> PastRow(double time_s, double now_s) const;
-  /// Returns the row `count` rows after `row`, or after the present (nothing); nothing for the
+  /// Returns the row `count` rows after `row`. As argument and result, nothing stands for the
   /// present.
   std::optional<std::size_t> Step(std::optional<std::size_t> row, int count, double now_s) const;
-  /// Sets the state of `frame` to a row; speed, pause and driver stay.
+  /// Sets the state of `frame` to a row, but not its speed, pause and driver.
   void Show(std::size_t row, Frame& frame) const;
   /// Returns the recorded channels of a row, as passed to `Take`.
   std::vector<double> Row(std::size_t row) const;

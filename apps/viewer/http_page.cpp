@@ -156,7 +156,7 @@ HttpResponse Answer(const HttpRequest& request, const WebFiles& files,
                "blob:; media-src 'self' blob:; "
                "style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; base-uri 'none'; "
                "form-action 'none'; frame-ancestors 'none'");
-  // Lets a reload without the query, and the requests of the page, pass.
+  // The cookie authorizes the page's other requests, and reloads without the query.
   response.set(http::field::set_cookie,
                fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/", CookieName(options),
                            access == Access::kDrive ? options.drive_token : options.watch_token));

@@ -54,7 +54,7 @@ class HttpSockets::Socket : public std::enable_shared_from_this<Socket> {
                       });
   }
 
-  /// Moves the socket to the end of a list: after progress it waits from the start.
+  /// Moves the socket to the end of a list: progress restarts its waiting time.
   void MoveTo(List& list) {
     if (list_ == nullptr) return;
     list.splice(list.end(), *std::exchange(list_, &list), place_);

@@ -1,5 +1,5 @@
-/// Sockets with plain HTTP, each until it closes or becomes a WebSocket. Their number is limited;
-/// unfinished requests do not block others, because new requests replace them.
+/// Sockets for plain HTTP, until they close or become WebSockets. Their number is limited: a new
+/// socket replaces the one with the longest unfinished request, so that none is blocked for long.
 #pragma once
 
 #include <functional>

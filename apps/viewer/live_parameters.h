@@ -14,8 +14,8 @@ namespace taut::viewer {
 struct LiveParameter {
   std::string name, unit;
   double value = 0, min = 0, max = 0;
-  /// A parameter of the files, whose change restarts the experiment. Otherwise `kind` and `index`
-  /// apply.
+  /// Whether it is a parameter of the files, which restarts the experiment when changed. Otherwise
+  /// `kind` and `index` identify it.
   bool restarts = false;
   Parameter kind = Parameter::kFrictionScale;
   int index = 0;

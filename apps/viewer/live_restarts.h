@@ -46,9 +46,9 @@ class Restarts {
   bool pending() const { return !asked_.empty() || !groups_.empty(); }
 
   /// Computes the start that results from all pending changes; the last value of a parameter
-  /// counts. Invalid changes are refused, and the earlier value stays. The deadline limits the
-  /// processing of many such changes; computing a single start is not limited, except by `go_on`
-  /// returning false. Returns a start only once nothing is pending.
+  /// counts. An invalid change is refused and leaves the earlier value. The deadline limits the
+  /// number of changes per call; the computation of a single start ends early only if `go_on`
+  /// returns false. Returns a start once nothing is pending.
   std::optional<Start> Make(const ExperimentSpec& present, Clock::time_point deadline,
                             const std::function<bool()>& go_on);
   std::vector<Refusal> TakeRefusals() { return std::exchange(refused_, {}); }

@@ -94,7 +94,7 @@ void LiveSession::Handle(int client, const Command& command) {
 
 bool LiveSession::Drive(int client, const Command& command, std::string& error) {
   const std::string& type = command.type;
-  // These accumulate; any other command refers to the run that results from them.
+  // Changes of parameters accumulate. Any other command refers to the run that results from them.
   if (type == "set_parameter") return SetParameter(client, command, error);
   if (type == "reset") {
     restarts_.Reset(client);
@@ -271,7 +271,7 @@ void LiveSession::StepUntil(double time_s, Clock::time_point deadline) {
 
 Session::Clock::time_point LiveSession::Work() {
   const Clock::time_point start = Clock::now();
-  // At most one restart per picture, for any number of requests.
+  // At most one restart per displayed frame, for any number of requests.
   if (idle() && start - shown_wall_ >= kFramePeriod) Restart(start + kFramePeriod);
   if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
   if (!pace_.paused()) {

@@ -1,4 +1,4 @@
-// Runs that a live session begins: again with changed files, and a model's with another start.
+// New runs of a live session: restarts with changed files, and other starts of a model.
 #include <utility>
 
 #include "live_inputs.h"

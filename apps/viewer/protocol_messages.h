@@ -1,11 +1,11 @@
-/// Made of web/protocol/messages.json by script/protocol. Do not edit.
+/// Generated from web/protocol/messages.json by script/protocol. Do not edit.
 #pragma once
 
 namespace taut::viewer {
 
 inline constexpr int kProtocolVersion = 10;
 
-/// How a field of a message is written in JSON.
+/// JSON type of a message's field.
 enum class FieldKind { kString, kNumber, kInteger, kBoolean, kVec3, kChoice };
 
 struct MessageField {
@@ -16,7 +16,7 @@ struct MessageField {
   const char* choices;  ///< kChoice: "a|b".
 };
 
-/// What a client may say: every field of every message.
+/// Fields of all messages from clients.
 // clang-format off
 inline constexpr MessageField kClientFields[] = {
     {"take_control", "", FieldKind::kString, true, ""},

@@ -50,8 +50,7 @@ bool Recording::BeginFiles(LiveRun& run, const ExperimentSpec& experiment, Diagn
   const std::string id = NewRunId();
   TraceMetadata metadata = RunMetadata(experiment);
   metadata.emplace_back(kRunIdKey, id);
-  // Files that need space are first created without a name: if there is none, existing files of
-  // these names stay.
+  // Files are first created without a name: on a full disk, existing files of these names stay.
   NewFile inputs(Path("inputs", ".yaml"));
   if (!inputs.Create() || !inputs.Write(InputsOfRun(id, ResolvedYaml(experiment))) ||
       !inputs.Sync()) {

@@ -18,11 +18,11 @@ namespace taut::viewer {
 /// inputs.yaml, then trace_2.h5, events_2.jsonl, inputs_2.yaml ... A part without any event is
 /// replaced by the next.
 ///
-/// If a file cannot be written, recording stops and existing files stay; the next restart begins
-/// the next part if writing is possible again. Each of the two is reported once.
+/// If a file cannot be written, recording stops and existing files stay. The next restart begins a
+/// new part if writing is possible again. The stop and the resumption are each reported once.
 class Recording final : public LiveRecorder {
  public:
-  /// Limit for many restarts: the last of these parts is replaced by each later one.
+  /// Maximum number of parts; each further part replaces the last one.
   static constexpr int kMaxParts = 16;
 
   /// Starts the first part, in an existing folder. `say` receives notices for the user: recording

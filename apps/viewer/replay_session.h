@@ -17,7 +17,7 @@ class ReplaySession final : public Session {
   void Handle(int client, const Command& command) override;
   Clock::time_point Work() override;
   Json MakeScene() const;
-  /// Replaces the trace by that of another shape from the same analysis.
+  /// Opens the trace of another shape of the same analysis.
   void OpenShape(int client, int number);
   void Anchor(double time_s);
   double PlayedTo(Clock::time_point now) const;
@@ -27,7 +27,7 @@ class ReplaySession final : public Session {
   bool paused_ = true, changed_ = true;
   std::size_t row_ = 0;
   int run_ = 1;
-  // The displayed time is the last member plus speed times the wall-clock time since the first.
+  // The displayed time is `anchor_s_` plus `speed_` times the wall-clock time since `anchor_wall_`.
   Clock::time_point anchor_wall_, shown_wall_;
   double anchor_s_ = 0;
 };

@@ -9,8 +9,8 @@
 
 namespace taut::viewer {
 
-/// Limit of the numbers from traces in a report, besides its frames: 24 MB, in base64 32 MB.
-/// Compared runs share it.
+/// Limit on the numbers from traces in a report, frames excluded: 24 MB, 32 MB in base64. All
+/// compared runs share this limit.
 inline constexpr std::size_t kMaxReportNumbers = 3'000'000;
 
 /// Returns the Report of web/protocol/messages.json. A trace with more numbers than its share of

@@ -35,9 +35,9 @@ AvrCore::AvrCore(const AvrProgram& program)
   avr_loadcode(avr_, flash.data(), static_cast<std::uint32_t>(flash.size()), 0);
   avr_->codeend = AvrProgram::kFlashBytes;
   LoadEeprom(0, program.eeprom);
-  // The library's function really sleeps; after it, simavr wakes one cycle after the due time. A
-  // core that falls asleep with the last instruction of a run finds the stop in the past, and would
-  // jump to the next timer.
+  // simavr's sleep function suspends the thread and wakes the core one cycle late. A core that
+  // falls asleep with the last instruction of a run finds the stop in the past, and would jump to
+  // the next timer.
   avr_->sleep = [](avr_t* avr, avr_cycle_count_t most) {
     const std::uint64_t stop = std::max(avr->cycle, Hooks::Self(avr).stop_cycle_);
     if (avr->cycle + most > stop) avr->cycle = stop - most;
@@ -131,7 +131,7 @@ void AvrCore::Hang() {
 void AvrCore::SetPin(char port, int bit, bool high) {
   avr_ioport_t& p = port == 'B' ? *port_b_ : *port_d_;
   const std::uint8_t mask = Bit(bit);
-  // Otherwise every write to the port would raise pins with a pull-up to high.
+  // Without the mask, every write to the port would set pins with a pull-up to high.
   p.external.pull_mask |= mask;
   if (high) {
     p.external.pull_value |= mask;
@@ -143,7 +143,7 @@ void AvrCore::SetPin(char port, int bit, bool high) {
 
 void AvrCore::SchedulePins(const std::vector<PinLevel>& levels) {
   for (const PinLevel& level : levels) {
-    // Two encoders are scheduled one after the other, each in order.
+    // The lists of the two encoders arrive one after the other, each sorted by time.
     const auto later = [](const PinLevel& a, const PinLevel& b) { return a.cycle < b.cycle; };
     levels_.insert(std::upper_bound(levels_.begin(), levels_.end(), level, later), level);
   }

@@ -36,8 +36,8 @@ void AvrCore::Hooks::Install(AvrCore& core) {
   OnWrite(avr, kMcusr, WriteCauses, &core);
   OnRead(avr, kAdcl, ReadResultLow, &core);
   OnRead(avr, kAdch, ReadResultHigh, &core);
-  // Timer 1 generates the PWM only. simavr's timer would fire three times per period of 50 us, and
-  // counts this period wrong; only the registers matter.
+  // Timer 1 only generates the PWM, so that its registers suffice. simavr's timer would fire three
+  // times per period of 50 us and counts this period wrong.
   for (const std::uint16_t address : {kTccr1a, kTccr1b, kTccr1c}) {
     OnWrite(avr, address, WritePlain, &core);
   }

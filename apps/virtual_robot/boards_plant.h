@@ -54,7 +54,8 @@ class BoardsPlant final : public taut::Plant {
   double started_s() const { return plant_.started_s(); }
   /// Returns the number of late ticks of all boards since the experiment began; queries the boards.
   int LateTicks();
-  /// Returns the number of frames since then that were missing or had a wrong checksum.
+  /// Returns the number of frames since the experiment began that were missing or had a wrong
+  /// checksum.
   std::int64_t bad_frames() const { return link::BadFrames(heard()); }
   Robot& robot() { return robot_; }
   /// Returns the largest tension of any cable with a motor, over all steps of the plant.
@@ -78,7 +79,7 @@ class BoardsPlant final : public taut::Plant {
   link::RobotPlant plant_;
   Observation seen_;
   double time_s_ = 0;
-  int late_before_ = 0;  ///< Ticks during the setup of the boards.
+  int late_before_ = 0;  ///< Late ticks during the setup of the boards.
   double most_n_ = 0;
   bool asked_to_recover_ = false, recovered_ = false;
   Diagnostics recovery_;

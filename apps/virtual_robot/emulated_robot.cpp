@@ -10,7 +10,7 @@ namespace taut::virtual_robot {
 namespace {
 
 constexpr std::uint32_t kLoadCellStream =
-    0x4C43'0000;  // stream of the seed, plus the motor's number
+    0x4C43'0000;  // random stream of a motor, plus the motor's number
 
 std::string Who(int board) { return "board " + std::to_string(board); }
 
@@ -94,7 +94,7 @@ void Robot::StepPlant() {
   plant_.Advance(ToSeconds(options_.plant_period), drives_);
   for (int motor = 0; motor < motors; ++motor) {
     const auto index = static_cast<std::size_t>(motor);
-    // Boards see a rotation of the past period in the next one.
+    // Boards see the rotation of a period one period later.
     const auto edges = encoders_[index].Turn(plant_.RotorAngle(motor), options_.plant_period, now_);
     if (edges.empty() || state_.motors[index].stuck_encoder) continue;
     boards_[index / 2]->SetEncoderEdges(motor % 2, edges);

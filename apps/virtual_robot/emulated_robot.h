@@ -30,7 +30,7 @@ struct RobotOptions {
   EncoderOptions encoder{};
   UsbIssOptions usb{};
   /// Step of the plant and of its exchange with the boards: 20 to 100 us. Encoders show the
-  /// rotation of a period in the next one.
+  /// rotation of a period one period later.
   Time plant_period = 100 * kMicrosecond;
   std::vector<FaultSpec> faults{};
   LogSink log{};            ///< May be empty.

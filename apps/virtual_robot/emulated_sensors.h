@@ -15,7 +15,7 @@ struct LoadCellOptions {
   double zero_counts = 4.9363 / 0.1567;  ///< 31.5
   /// Limit of the amplifier with its 5 V supply, below the converter's range: 111.2 N.
   double saturation_counts = 741;
-  double noise_counts = 0.7;  ///< Standard deviation of a conversion [?].
+  double noise_counts = 0.7;  ///< Standard deviation of the noise of a conversion (assumed).
 };
 
 /// Returns the converter's code for a force, with a noise of `noise` standard deviations.
@@ -30,8 +30,8 @@ class Encoder {
  public:
   Encoder(const EncoderOptions& options, double angle_rad);
 
-  /// Advances the shaft to `angle_rad` at a constant rate; returns the edges with their delays in
-  /// `duration`, shifted to begin at `at`.
+  /// Turns the shaft to `angle_rad` at a constant rate within `duration`. Returns the edges with
+  /// their times, counted from `at`.
   std::vector<EncoderEdge> Turn(double angle_rad, Time duration, Time at);
   /// Returns the present levels of the lines.
   EncoderEdge Now(Time at) const { return Edge(state_, at); }

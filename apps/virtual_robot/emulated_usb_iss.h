@@ -20,10 +20,10 @@ struct UsbIssOptions {
   /// a stop in I2C_DIRECT.
   int firmware_version = 8;
   std::string serial_number{"00000001"};  ///< Eight characters.
-  // From the host's write to the adapter's program, and back [?]: no published values.
+  // From the host's write to the adapter's program, and back: assumed, no published values.
   Time request_latency = 250 * kMicrosecond;
   Time reply_latency = 250 * kMicrosecond;
-  Time byte_gap = 0;  ///< Between two bytes on the bus [?].
+  Time byte_gap = 0;  ///< Between two bytes on the bus (assumed).
 };
 
 /// The adapter. Not thread-safe.

@@ -10,7 +10,7 @@ namespace taut::virtual_robot {
 namespace {
 
 constexpr std::uint32_t kNoiseStream =
-    0x4932'4300;  // stream of the robot's seed; different for each use
+    0x4932'4300;  // random stream, different for each use of the robot's seed
 constexpr int kBitsPerByte = 9;
 
 }  // namespace
@@ -39,8 +39,8 @@ Time I2cBus::Duration(const BusStep& step) const {
 Time I2cBus::SafeUntil(Time now) const {
   if (phase_ == Phase::kIdle) return kNever;
   if (phase_ == Phase::kReady) return now + Duration(steps_[next_]);
-  // Limit after the scheduled step: whether a written byte is acknowledged is not known in advance,
-  // and if it is not, a stop follows after one bit.
+  // Limit set by the step after the scheduled one: a written byte may remain unacknowledged, and
+  // then a stop follows after one bit.
   const bool may_stop = steps_[next_].kind != BusStep::Kind::kRead || next_ + 1 == steps_.size();
   return event_.at + (may_stop ? timing_.bit : Duration(steps_[next_ + 1]));
 }

@@ -36,8 +36,8 @@ class I2cSlave {
   /// Schedules an event; at most one is pending at a time.
   virtual void Schedule(const BusEvent& event) = 0;
   virtual bool Powered() const = 0;
-  /// `HoldsClock` returns whether the slave holds the clock low, `ReleasedAt` when it last released
-  /// it. Not before the last event.
+  /// `HoldsClock` returns whether the slave holds the clock low. `ReleasedAt` returns when it last
+  /// released the clock, but not before the last event.
   virtual bool HoldsClock() const = 0;
   virtual Time ReleasedAt() const = 0;
   /// Returns whether the slave pulled the data line low in the ninth clock of the last event.
@@ -70,7 +70,7 @@ struct BusResult {
 
 struct BusTiming {
   Time bit = 2'500 * kNanosecond;  ///< 400 kHz.
-  Time byte_gap = 0;               ///< Gap between two bytes, caused by the master [?].
+  Time byte_gap = 0;               ///< Gap between two bytes, caused by the master (assumed).
   Time timeout = 25 * kMillisecond;
 };
 

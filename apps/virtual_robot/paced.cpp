@@ -68,7 +68,7 @@ bool RunPaced(Robot& robot, const PacedOptions& options, const std::atomic<bool>
     if (!pty) {
       std::this_thread::sleep_for(std::chrono::duration<double>(kLongestWait_s));
     } else if (pty->Wait(kLongestWait_s)) {
-      // The time of a frame is the time of its reading; the robot catches up to it first.
+      // A frame takes effect at the time of its reading; the robot first advances to this time.
       const Bytes burst = pty->Read();
       catch_up();
       robot.HostWrites(burst);

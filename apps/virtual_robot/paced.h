@@ -16,8 +16,8 @@ struct PacedOptions {
   /// Called when the emulation is late by more than `late_s`, at most once per second.
   std::function<void(double late_s)> on_late;
   double late_s = 0.05;
-  /// Largest lag that is caught up; the robot's time skips the rest. For drivers on the same busy
-  /// machine, which would be too late for boards that catch up fast.
+  /// Largest lag that the emulation catches up; the robot's time skips the rest. A driver on the
+  /// same busy machine would be too late for boards that catch up fast.
   double slip_s = 1;
 };
 

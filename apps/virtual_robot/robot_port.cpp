@@ -31,7 +31,7 @@ link::Bytes RobotPort::Read() {
 }
 
 void RobotPort::Wait(double until_s) {
-  // A time that rounds to the present would wait for nothing, forever.
+  // A wait that rounds to zero would never advance the time.
   const Time until = std::max(FromSeconds(until_s), robot_.now() + kMicrosecond);
   while (robot_.now() < until) {
     Look();

@@ -61,7 +61,8 @@ inline avr_io_t* FindPeripheral(avr_t& avr, const char* kind) {
   return nullptr;
 }
 
-/// Sets a register's write handler in simavr's tables; its functions refuse to replace one.
+/// Sets a register's write handler in simavr's tables, because simavr's functions refuse to replace
+/// a handler.
 inline void OnWrite(avr_t& avr, std::uint16_t address, avr_io_write_t handler, void* self) {
   avr.io[AVR_DATA_TO_IO(address)].w.c = handler;
   avr.io[AVR_DATA_TO_IO(address)].w.param = self;

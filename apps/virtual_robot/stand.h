@@ -25,7 +25,7 @@ class Stand {
   MotorPlant& plant_;
   const Robot& robot_;
   LogSink log_;
-  Time driven_since_ = -1;  ///< Negative: not all of them are on.
+  Time driven_since_ = -1;  ///< Negative: not all drivers are on.
 };
 
 }  // namespace taut::virtual_robot

@@ -1,27 +1,27 @@
-// Made of web/protocol/messages.json by script/protocol. Do not edit.
+// Generated from web/protocol/messages.json by script/protocol. Do not edit.
 
-/** The present. Binary: Float64, little endian, in this order; the header, then each section as often as its count says. Latest wins: frames that a slow client missed are not sent again. */
+/** State at one time. Binary: Float64, little endian, in this order: the header, then each section as many times as its count in the header. A slow client receives only the newest frame. */
 export const FRAME = {
   header: [
     "time_s",
-    "now_s", // Live: where the run is; later than time_s while its past is looked at. Else the same.
-    "real_time_factor", // Simulated over wall-clock time, of late; 0 while paused.
-    "speed", // As asked for; 0: as fast as it can.
-    "paused", // 1 or 0
-    "driver", // Client, or 0
-    "kinetic_j", // Energies; NaN where they are not known.
+    "now_s", // Live: present time of the run; later than time_s while a past time is displayed. Otherwise equal to time_s.
+    "real_time_factor", // Recent ratio of simulated to wall-clock time; 0 while paused.
+    "speed", // Requested speed; 0: as fast as possible.
+    "paused", // 1: paused; 0: running.
+    "driver", // Number of the driving client; 0: none.
+    "kinetic_j", // Energies; NaN: unknown.
     "gravity_j",
     "elastic_j",
-    "run", // Rises at every restart: what was plotted before is of another run.
+    "run", // Increases at every restart: earlier data belong to another run.
     "body_count",
     "cable_count",
-    "contact_count", // NaN forces where only the count is known: then `contacts` is empty.
+    "contact_count", // Number of contacts; may be known although `contacts` is empty.
     "contact_rows", // Entries of the section `contacts`.
-    "push_count", // Pushes and drags that act.
-    "value_count", // Channels of a program's own: Scene.values.
-    "ghost_count", // Bodies of all ghosts: the same in every frame of a scene.
-    "bend_count", // Of cables that lie against what they come to: the middles of their arcs, along each cable. Of ghosts the cables are behind those of the scene, in their order; -1: of none.
-    "span_count", // Of cables with friction, along each: those between its places with friction, or between its bends. -1: of none.
+    "push_count", // Active pushes and drags.
+    "value_count", // Channels of a user's program: Scene.values.
+    "ghost_count", // Bodies of all ghosts; constant for a scene.
+    "bend_count", // Bends of wrapped cables, in order along each cable: midpoints of their arcs. Cables of ghosts are numbered after those of the scene; -1: no bend.
+    "span_count", // Spans of cables with friction, in order along each cable, between points with friction or bends. -1: no span.
   ],
   sections: [
     { name: "bodies", count: "body_count", fields: ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"] },

@@ -1,6 +1,6 @@
-// Made of web/protocol/messages.json by script/protocol. Do not edit.
+// Generated from web/protocol/messages.json by script/protocol. Do not edit.
 //
-// What the viewer's server and its pages say to each other. JSON texts, except frames, which are binary. script/protocol makes web/src/structs.ts, web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h of this file. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
+// Messages between the viewer's server and its pages: JSON texts, except frames, which are binary. From this file, script/protocol generates web/src/structs.ts, web/src/robot_structs.ts, web/src/protocol.ts, web/src/layout.ts and apps/viewer/protocol_messages.h. SI units; W is the world frame, z up; quaternions are unit, order w, x, y, z. A field whose name ends with ? may be absent.
 import type { RobotStatus, Scene, SeriesData, Vec3 } from "./structs";
 export type * from "./structs";
 
@@ -9,16 +9,16 @@ export const PROTOCOL_VERSION = 10;
 /** The first message. */
 export interface HelloMessage {
   type: "hello";
-  /** Of this definition. */
+  /** Version of this protocol. */
   version: number;
-  /** robot: motor boards are driven; its clock is the wall's. program: what somebody's own program shows (taut/page.h); nothing in it can be moved. */
+  /** robot: motor boards in real time. program: states from a user's program (taut/page.h), which users cannot drag. */
   mode: "live" | "replay" | "model" | "program" | "robot";
   title: string;
-  /** Who you are, 1 or more. */
+  /** Number of this client, from 1. */
   client: number;
-  /** Who drives; 0: nobody. */
+  /** Number of the driving client; 0: none. */
   driver: number;
-  /** true: your link may watch; what you ask for but series is refused. */
+  /** True: the link permits watching only; every message except want_series is refused. */
   watch_only?: boolean;
 }
 
@@ -30,46 +30,46 @@ export interface SceneMessage {
 /** Answer to want_series. */
 export interface SeriesMessage {
   type: "series";
-  /** Of the question. */
+  /** Number of the request. */
   id: number;
   series: SeriesData;
 }
 
-/** Something happened: a drag, a push, a restart, the end. */
+/** Event of the run: a drag, a push, a restart, the end. */
 export interface EventMessage {
   type: "event";
   time_s: number;
   text: string;
 }
 
-/** Something that you asked for was not done. */
+/** A request of this client was refused or failed. */
 export interface ErrorMessage {
   type: "error";
   text: string;
 }
 
-/** Who drives from now on. */
+/** The driving client has changed. */
 export interface DriverMessage {
   type: "driver";
-  /** 0: nobody. */
+  /** Number of the client; 0: none. */
   id: number;
 }
 
-/** How a robot is, some ten times a second. Latest wins, as with frames. */
+/** Status of a robot, about ten times per second. Only the newest is sent, as with frames. */
 export interface RobotMessage {
   type: "robot";
   status: RobotStatus;
 }
 
-/** What a board said to robot_gain, to everyone. */
+/** A board's reply to robot_gain, sent to all clients. */
 export interface GainAnswerMessage {
   type: "gain_answer";
   cable: string;
   gain: string;
   value: number;
-  /** It has taken it. */
+  /** The board has accepted the value. */
   good: boolean;
-  /** In words. */
+  /** Description of the result. */
   text: string;
 }
 
@@ -83,7 +83,7 @@ export type ServerMessage =
   | RobotMessage
   | GainAnswerMessage;
 
-/** Drive from now on. The first command of anybody does so, too, while nobody drives. */
+/** Makes this client the driver. If no client drives, the first command of a client does so, too. */
 export interface TakeControlMessage {
   type: "take_control";
 }
@@ -96,32 +96,32 @@ export interface ResumeMessage {
   type: "resume";
 }
 
-/** Pauses and goes on by `count`: rows of a trace, steps of a live run. Below zero: back, in a live run through the rows that it keeps of its past. */
+/** Pauses and advances by `count` rows of a trace or steps of a live run. Negative: back, in a live run by stored rows of its past. */
 export interface StepMessage {
   type: "step";
   /** 1 if absent; -1000 to 1000. */
   count?: number;
 }
 
-/** Back to the start. Of several that wait, one is made. */
+/** Returns to the start. Several pending resets cause a single one. */
 export interface ResetMessage {
   type: "reset";
 }
 
-/** Simulated seconds a second; 0: as fast as it can. */
+/** Simulated seconds per second; 0: as fast as possible. */
 export interface SpeedMessage {
   type: "speed";
   /** 0, or 0.001 to 1000. */
   factor: number;
 }
 
-/** Replay: goes there. Live: pauses and looks at that moment of the past; nothing is simulated anew, and resume, or a time that is not past, goes back to the present. */
+/** Replay: displays this time. Live: pauses and displays this past time without simulating it again; resume, or a later time than the present, returns to the present. */
 export interface SeekMessage {
   type: "seek";
   time_s: number;
 }
 
-/** A spring pulls the node to the target until drop. */
+/** Pulls the node to the target with a spring, until drop. */
 export interface DragMessage {
   type: "drag";
   node: string;
@@ -133,7 +133,7 @@ export interface DropMessage {
   type: "drop";
 }
 
-/** A force for a while, from now on. */
+/** Applies a force for a given duration. */
 export interface PushMessage {
   type: "push";
   node: string;
@@ -143,7 +143,7 @@ export interface PushMessage {
   duration_s: number;
 }
 
-/** One that starts the experiment anew waits for a picture: of several values that come until then, the last one counts. What is refused is answered, and leaves the value before. */
+/** Sets a parameter. A restart waits until a frame has been displayed; of several values until then, the last one counts. A refused value causes an error and leaves the previous value. */
 export interface SetParameterMessage {
   type: "set_parameter";
   name: string;
@@ -153,7 +153,7 @@ export interface SetParameterMessage {
 export interface SetSetpointMessage {
   type: "set_setpoint";
   cable: string;
-  /** Tension offset [N] or rest length [m], by the control's kind. */
+  /** Tension offset [N] or rest length [m], depending on the control's kind. */
   value: number;
 }
 
@@ -164,36 +164,36 @@ export interface SetGainMessage {
   value: number;
 }
 
-/** Model: simulate it without gravity and ground, dropped onto the ground from a height of half its size, or settled on the ground. */
+/** Model: simulates it without gravity and ground, dropped onto the ground from a height of half its size, or settled on the ground. */
 export interface StartMessage {
   type: "start";
   as: "described" | "dropped" | "settled";
 }
 
-/** Model: compute Scene.statics. */
+/** Model: computes Scene.statics. */
 export interface AnalyzeMessage {
   type: "analyze";
 }
 
-/** Replay of a shape: show another of the same kind. */
+/** Replay of a shape: displays another shape of the same kind. */
 export interface OpenShapeMessage {
   type: "open_shape";
   /** From 1. */
   number: number;
 }
 
-/** Robot: emergency stop. Obeyed from every link that may drive, whoever drives. */
+/** Robot: emergency stop. Accepted from every client whose link permits driving, even if another one drives. */
 export interface StopMessage {
   type: "stop";
 }
 
-/** Power in two steps: arm, then hold or impedance, which takes what is measured as its offsets. */
+/** Powers the motors in two steps: arm, then hold or impedance. The measured values become the offsets of impedance control. */
 export interface RobotModeMessage {
   type: "robot_mode";
   mode: "off" | "arm" | "hold" | "impedance" | "clear_faults";
 }
 
-/** Sent to the motor's board; gain_answer says what it said. */
+/** Sets a gain on the motor's board; gain_answer contains the board's reply. */
 export interface RobotGainMessage {
   type: "robot_gain";
   cable: string;
@@ -201,25 +201,25 @@ export interface RobotGainMessage {
   value: number;
 }
 
-/** Robot: every cycle into a folder, from now on or no longer. */
+/** Robot: starts or ends recording all cycles to a folder. */
 export interface RecordMessage {
   type: "record";
   on: boolean;
 }
 
-/** Anyone may ask, also who may only watch. */
+/** Requests a channel over a time span; permitted for clients that may only watch, too. */
 export interface WantSeriesMessage {
   type: "want_series";
-  /** Comes back with the answer. */
+  /** Number of the request, returned in the reply. */
   id: number;
   channel: string;
-  /** 0, the run, if absent; k: the k-th that it is compared with. */
+  /** 0 (default): the displayed run; k: the k-th compared run. */
   source?: number;
   /** [s] */
   t0: number;
   /** [s] */
   t1: number;
-  /** At most; 2 to 10000. */
+  /** Maximum number of points, 2 to 10000. */
   points: number;
 }
 

@@ -1,4 +1,4 @@
-// Made of web/protocol/messages.json by script/protocol. Do not edit.
+// Generated from web/protocol/messages.json by script/protocol. Do not edit.
 
 /** A gain of impedance control that may change while a motor runs. */
 export interface RobotGain {
@@ -8,87 +8,87 @@ export interface RobotGain {
   max: number;
 }
 
-/** A robot that motor boards move. */
+/** Robot driven by motor boards. */
 export interface Robot {
-  /** Of the adapter. */
+  /** Serial port of the adapter. */
   port: string;
-  /** The cable of each motor, in their order. Board b has 2 b and 2 b + 1. */
+  /** Cable of each motor, in order. Board b has the motors 2 b and 2 b + 1. */
   motors: string[];
-  /** Of each motor. */
+  /** Gains of each motor. */
   gains: RobotGain[];
-  /** Bodies are where the virtual robot says that they are; else as the model describes them, because nobody measures it. */
+  /** True: poses of bodies are the true poses of a virtual robot. False: they are as in the model, because a real robot does not measure them. */
   true_pose: boolean;
-  /** An experiment drives it: robot_mode takes `off` alone. */
+  /** An experiment drives the robot: robot_mode accepts only `off`. */
   experiment: boolean;
-  /** record is obeyed. */
+  /** The message record is accepted. */
   may_record: boolean;
 }
 
 export interface BoardStatus {
-  /** It answers. */
+  /** The board answers. */
   there: boolean;
-  /** It is there, without faults, time-out and stop. */
+  /** The board answers and has no fault, timeout or stop. */
   well: boolean;
   /** off, hold, impedance, stopped ... */
   mode: string;
-  /** Its encoders know where they are. */
+  /** The references of its encoders are set. */
   referenced: boolean;
-  /** It heard no broadcast in time. */
+  /** The board received no broadcast in time. */
   timeout: boolean;
-  /** It began anew since faults were cleared last. */
+  /** The board has restarted since faults were last cleared. */
   was_reset: boolean;
-  /** In words, of its motors, too; empty: none. */
+  /** Faults of the board and its motors as text; empty: none. */
   faults: string;
-  /** That came to it with a wrong checksum; modulo 256. */
+  /** Messages that the board received with a wrong checksum; modulo 256. */
   bad_messages: number;
-  /** That came from it with a wrong checksum, or not at all. */
+  /** Frames of the board that had a wrong checksum or were missing. */
   bad_frames: number;
-  /** Modulo 256. */
+  /** Broadcasts that the board missed; modulo 256. */
   missed_broadcasts: number;
-  /** That did not know the broadcast before them. */
+  /** Frames that do not reflect the preceding broadcast. */
   stale_frames: number;
-  /** Of its loop; modulo 256. */
+  /** Late ticks of the control loop; modulo 256. */
   late_ticks: number;
-  /** Modulo 256. */
+  /** Restarts of a hung bus; modulo 256. */
   bus_recoveries: number;
-  /** Its longest tick of late. */
+  /** Duration of the longest recent tick. */
   loop_time_s: number;
 }
 
 export interface MotorStatus {
   tension_n: number;
-  /** null: it has none */
+  /** null: no set point */
   setpoint_n: number;
-  /** By the encoder. */
+  /** Measured by the encoder. */
   rest_length_m: number;
-  /** From the reference. */
+  /** Counted from the reference. */
   encoder_counts: number;
-  /** -1 to 1; winding in positive. */
+  /** -1 to 1; positive winds in. */
   duty: number;
-  /** Of the winding, computed. */
+  /** Temperature of the winding, computed by a model. */
   temperature_c: number;
-  /** In words; empty: none. */
+  /** Faults as text; empty: none. */
   faults: string;
-  /** As the board has said; null: not yet. */
+  /** Values read from the board; null: not read yet. */
   gains: (number | null)[];
 }
 
-/** Between computer and boards. */
+/** Communication between computer and boards. */
 export interface LinkStatus {
-  /** To the adapter. */
+  /** Whether the adapter is connected. */
   connected: boolean;
   cycles: number;
-  /** That had not ended when the next was due. */
+  /** Cycles that had not ended when the next was due. */
   late_cycles: number;
-  /** Without a reply from the adapter. */
+  /** Transfers without a reply from the adapter. */
   silent_transfers: number;
-  /** That nobody acknowledged. */
+  /** Broadcasts that no board acknowledged. */
   unheard_broadcasts: number;
   reconnections: number;
   cycle_s: number;
   mean_cycle_s: number;
   longest_cycle_s: number;
-  /** Of the beginning. */
+  /** Delay of the cycle's start. */
   lateness_s: number;
   mean_lateness_s: number;
   longest_lateness_s: number;
@@ -99,23 +99,23 @@ export interface RobotEvent {
   text: string;
 }
 
-/** How it is. */
+/** Status of a robot. */
 export interface RobotStatus {
-  /** Of what is said here. */
+  /** Time of this status. */
   time_s: number;
-  /** ready: armed, the next command may give power. */
+  /** ready: armed, so that the next command may power the motors. */
   stage: "unconfigured" | "inactive" | "ready" | "active";
-  /** The mode that the boards are told. */
+  /** Commanded mode of the boards. */
   commanded: string;
-  /** An emergency stop, until faults are cleared. */
+  /** An emergency stop was requested and faults have not been cleared since. */
   stopping: boolean;
-  /** All that is wrong, in words. */
+  /** All present problems as text. */
   alarms: string[];
   boards: BoardStatus[];
   motors: MotorStatus[];
   link: LinkStatus;
-  /** The folder that every cycle goes to; empty: none. */
+  /** Folder to which all cycles are recorded; empty: none. */
   recording: string;
-  /** The last ones, oldest first. */
+  /** Recent events, oldest first. */
   events: RobotEvent[];
 }

@@ -1,4 +1,4 @@
-// Made of web/protocol/messages.json by script/protocol. Do not edit.
+// Generated from web/protocol/messages.json by script/protocol. Do not edit.
 import type { Robot } from "./robot_structs";
 export type * from "./robot_structs";
 
@@ -6,14 +6,14 @@ export type Vec3 = [number, number, number];
 /** w, x, y, z */
 export type Quat = [number, number, number, number];
 
-/** Part of a body, in the body's frame (origin: centre of mass). */
+/** Shape of a body, in the body's frame (origin: center of mass). */
 export interface Shape {
-  /** Which of the fields below are there. */
+  /** Determines which of the fields below exist. */
   kind: "rod" | "sphere" | "box" | "hull";
   name: string;
   /** rod: one end of the axis */
   from_m?: Vec3;
-  /** rod: the other */
+  /** rod: other end of the axis */
   to_m?: Vec3;
   /** sphere, box */
   center_m?: Vec3;
@@ -25,18 +25,18 @@ export interface Shape {
   half_extents_m?: Vec3;
   /** box: q_BodyBox */
   orientation?: Quat;
-  /** hull: what it spans */
+  /** hull: its corners */
   corners_m?: Vec3[];
 }
 
 export interface Body {
   name: string;
-  /** 0 where it is not known */
+  /** 0: unknown */
   mass_kg: number;
   fixed: boolean;
-  /** Centre of mass at the start, in W. */
+  /** Center of mass at the start, in W. */
   position_m: Vec3;
-  /** At the start; identity as described. */
+  /** At the start; identity in the described pose. */
   orientation: Quat;
   shapes: Shape[];
 }
@@ -44,70 +44,70 @@ export interface Body {
 /** A named point of a body, or of the world (body -1). */
 export interface Node {
   name: string;
-  /** Place in Scene.bodies, or -1. */
+  /** Index in Scene.bodies; -1: the world. */
   body: number;
   /** In the body's frame; in W if body is -1. */
   position_m: Vec3;
 }
 
 export interface Attachment {
-  /** Place in Scene.bodies, or -1: the world. */
+  /** Index in Scene.bodies; -1: the world. */
   body: number;
   /** In the body's frame; in W if body is -1. */
   position_m: Vec3;
-  /** The cable goes round it: the place is its middle. */
+  /** Wheel around which the cable runs; its center is the attachment. */
   wheel?: Wheel;
-  /** Friction parts the cable here: true or absent. */
+  /** True: friction makes the tension differ on both sides. Otherwise absent. */
   parts?: boolean;
 }
 
-/** A cylinder that a cable goes round, of an attachment's body. */
+/** Wheel around which a cable runs, fixed to the attachment's body. */
 export interface Wheel {
-  /** Unit, in the body's frame. */
+  /** Unit vector in the body's frame. */
   axis: Vec3;
-  /** To the cable's middle. */
+  /** From the axis to the cable's center line. */
   radius_m: number;
-  /** At the start: about the axis, from the point before to the point behind, with all turns. */
+  /** At the start, about the axis, from the previous to the next point of the cable, with all turns. */
   angle_rad: number;
 }
 
-/** Goes through its attachments in order. */
+/** Cable through its attachments, in order. */
 export interface Cable {
   name: string;
-  /** Empty where they are not known. */
+  /** Empty: unknown. */
   attachments: Attachment[];
-  /** 0 where it is not known */
+  /** 0: unknown */
   stiffness_n_per_m: number;
   actuated: boolean;
-  /** Of its pair in the model, without its name. */
+  /** Tags of its pair in the model, without its name. */
   tags?: string[];
-  /** It lies against what it comes to: frames hold its bends, so many at most. */
+  /** For a wrapped cable, whose bends are in frames: their maximum number. */
   most_bends?: number;
-  /** Friction parts it: frames hold its spans. True or absent. */
+  /** True: friction divides it into spans, whose tensions are in frames. Otherwise absent. */
   parted?: boolean;
 }
 
-/** Holds a part of one body's motion against another's; a support is a joint with the world. */
+/** Constraint on the motion of body b relative to body a; a support is a joint with the world. */
 export interface Joint {
   name: string;
-  /** What it leaves free. */
+  /** Type of the joint; determines the free motions. */
   kind: "ball" | "hinge" | "weld" | "prismatic" | "cylindrical" | "planar" | "line" | "plane" | "distance";
-  /** Place in Scene.bodies, or -1: the world. */
+  /** Index in Scene.bodies; -1: the world. */
   body_a: number;
-  /** Place in Scene.bodies. */
+  /** Index in Scene.bodies. */
   body_b: number;
-  /** Its point of body a, in that body's frame; in W if that is the world. */
+  /** Point of the joint on body a, in that body's frame; in W for the world. */
   from_m: Vec3;
-  /** Its point of body b, in that body's frame. */
+  /** Point of the joint on body b, in that body's frame. */
   to_m: Vec3;
-  /** Unit, in body a's frame. */
+  /** Unit vector in body a's frame. */
   axis: Vec3;
 }
 
 export interface Terrain {
   kind: "plane" | "box" | "surface";
   name: string;
-  /** plane: unit, out of the solid, in W */
+  /** plane: unit normal out of the solid, in W */
   normal?: Vec3;
   /** plane: a point of its surface, in W */
   point_m?: Vec3;
@@ -117,13 +117,13 @@ export interface Terrain {
   half_extents_m?: Vec3;
   /** box: q_WBox */
   orientation?: Quat;
-  /** surface: x, y and z of each corner, in W. Of a field of more than 250 000 only every second, third, ... */
+  /** surface: x, y and z of each corner, in W. Large height fields are thinned to at most 250 000 corners. */
   corners_m?: (number | null)[];
   /** surface: three corners each */
   triangles?: number[];
 }
 
-/** What set_parameter may change. */
+/** Parameter that set_parameter changes. */
 export interface Parameter {
   /** friction_scale, body/<name>/mass_kg, push_n ... */
   name: string;
@@ -131,14 +131,14 @@ export interface Parameter {
   unit: string;
   min: number;
   max: number;
-  /** A parameter of the files: a change starts the experiment anew. */
+  /** True for a parameter of the files: a change restarts the experiment. */
   restarts: boolean;
 }
 
-/** What set_setpoint and set_gain may change of a cable. */
+/** Set point and gains of a cable, for set_setpoint and set_gain. */
 export interface Control {
   cable: string;
-  /** What its set point is: tension_offset_n or rest_length_m. */
+  /** Determines the set point: tension_offset_n or rest_length_m. */
   kind: "impedance" | "rest_length";
   /** impedance: T0 */
   tension_offset_n?: number;
@@ -218,65 +218,65 @@ export interface Phase {
   to_s: number;
 }
 
-/** A run that the run is compared with. */
+/** Run with which the displayed run is compared. */
 export interface ComparedRun {
-  /** What to call it: what it says of itself, its folder and file, and as much more of its path as tells it from the others. */
+  /** Distinct name: the name in its metadata, its folder and file, and further components of its path if needed. */
   name: string;
-  /** It says of itself that it was measured: metadata "measured" (docs/formats/trace.md). */
+  /** Its metadata mark it as a measurement (key "measured", docs/formats/trace.md). */
   measured: boolean;
-  /** Its channels. */
+  /** Channels of the run. */
   channels: Channel[];
   /** Time of its first row. */
   first_s: number;
-  /** Time of its last. */
+  /** Time of its last row. */
   last_s: number;
-  /** Of its ghost, whose poses are in the section `ghosts` of frames. Empty: it has none. */
+  /** Bodies of its ghost, whose poses are in the section `ghosts` of frames. Empty: no ghost. */
   bodies: Body[];
-  /** Of its ghost; bodies are places in `bodies`. */
+  /** Cables of its ghost; their body numbers are indices in `bodies`. */
   cables: Cable[];
-  /** What is amiss with it, or why it has no ghost, in a sentence. */
+  /** Sentence about a defect of the trace, or the reason why it has no ghost. */
   notice?: string;
 }
 
-/** A channel over a span of time, at the resolution asked for. Points are blocks of `level` rows; at level 1, first, min and max are the value. A span with no more rows, one beyond each end included, than points were asked for comes at level 1; out of a report, at that of its Rows. */
+/** A channel over a time span, in blocks of `level` rows; at level 1, first, min and max are the value. The level is 1 if the span's rows, with one beyond each end, do not exceed the requested points. In a report it is the level of its Rows. */
 export interface SeriesData {
   channel: string;
-  /** 0: the run; k: the k-th that it is compared with. */
+  /** 0: the displayed run; k: the k-th compared run. */
   source: number;
-  /** Rows a point. */
+  /** Rows per block. */
   level: number;
-  /** Of each block's first row. */
+  /** Times of the blocks' first rows. */
   time_s: (number | null)[];
-  /** The value in that row; null: not a number */
+  /** Values in the blocks' first rows; null: not a number */
   first: (number | null)[];
-  /** Of the block; null: not a number */
+  /** Minima of the blocks; null: not a number */
   min: (number | null)[];
-  /** Of the block; null: not a number */
+  /** Maxima of the blocks; null: not a number */
   max: (number | null)[];
 }
 
 /** The plotted channels of a trace from its start to its end. */
 export interface Rows {
-  /** 0: the run; k: the k-th that it is compared with. */
+  /** 0: the displayed run; k: the k-th compared run. */
   source: number;
-  /** 1: every row is here. More: blocks of so many rows, as in SeriesData. */
+  /** 1: all rows. Larger: blocks of this number of rows, as in SeriesData. */
   level: number;
-  /** Rows or blocks. */
+  /** Number of rows or blocks. */
   count: number;
   channels: string[];
-  /** Float64, little endian: `count` times [s]; then for each channel `count` values, those of the rows or of the blocks' first rows, and, unless level is 1, as many least and as many greatest values. */
+  /** Float64, little endian: `count` times [s], then for each channel `count` values of the rows or of the blocks' first rows. Unless level is 1, `count` minima and `count` maxima follow. */
   base64: string;
 }
 
-/** What a report holds, in <script type="application/json" id="taut-report">. */
+/** Data of a report, in <script type="application/json" id="taut-report">. */
 export interface Report {
-  /** Of this definition. */
+  /** Version of this protocol. */
   version: number;
   title: string;
   scene: Scene;
-  /** The experiment's, or empty. */
+  /** Description of the experiment; may be empty. */
   description: string;
-  /** What was run, in words, by what they are about; empty if unknown. */
+  /** Texts about the experiment by topic; empty if unknown. */
   facts: Record<string, string>;
   /** Text by key: versions, seed, machine, hash of the inputs. */
   metadata: Record<string, string>;
@@ -284,18 +284,18 @@ export interface Report {
   inputs: string;
   /** The content of summary.json, or null. */
   summary: unknown;
-  /** For each run that it is compared with the content of `taut compare --json` of that one (a) and the run (b). */
+  /** For each compared run, the output of `taut compare --json` for it (a) and the displayed run (b). */
   comparisons: unknown[];
-  /** Of the run and of those that it is compared with. */
+  /** Rows of the displayed run and of the compared runs. */
   rows: Rows[];
   frame_count: number;
-  /** Numbers a frame. */
+  /** Numbers per frame. */
   frame_values: number;
-  /** Float64, little endian: frames as defined below, one after the other. Each has as many contacts, pushes, bends and spans as the one with the most; what does not act has no force, and what is no bend or span is of no cable. */
+  /** Float64, little endian: consecutive frames as defined below. All have as many contacts, pushes, bends and spans as the frame with the most; added contacts and pushes have no force, added bends and spans have cable -1. */
   frames_base64: string;
 }
 
-/** What there is to see. Sent after hello, and anew when it changes. */
+/** Displayed objects. Sent after hello, and again after each change. */
 export interface Scene {
   bodies: Body[];
   nodes: Node[];
@@ -306,7 +306,7 @@ export interface Scene {
   parameters: Parameter[];
   /** Empty unless live. */
   controls: Control[];
-  /** What want_series may ask for, places of nodes that nobody recorded among them; live, of the run so far. */
+  /** Channels that want_series can request, including node positions derived from poses; in a live run, up to the present. */
   channels: Channel[];
   phases: Phase[];
   /** Pushes and drags of the experiment. */
@@ -317,22 +317,22 @@ export interface Scene {
   summary?: unknown;
   /** Model: result of analyze. */
   statics?: Statics;
-  /** Channels that frames hold in `values`, in their order. */
+  /** Channels in the section `values` of frames, in order. */
   values: string[];
-  /** Time of the first row of a trace; 0 when live. */
+  /** Time of the first row of a trace; 0 in a live run. */
   first_s: number;
-  /** Time of the last. */
+  /** Time of the last row. */
   duration_s: number;
-  /** Of the spring that drag pulls with; 0 unless live. */
+  /** Stiffness of the spring of drag; 0 unless live. */
   drag_stiffness_n_per_m: number;
-  /** What to call the run beside those that it is compared with. */
+  /** Name of the displayed run among the compared runs. */
   run_name?: string;
-  /** Source k of series is the k-th of them, from 1. Empty unless a replay or report. */
+  /** Series with source k belong to the k-th of these runs, counted from 1. Empty except in replays and reports. */
   compared: ComparedRun[];
-  /** Where motor boards are driven. */
+  /** Present if motor boards are driven. */
   robot?: Robot;
-  /** Frames hold the forces of contacts, and not their number alone. */
+  /** Frames contain the forces of contacts, not only their number. */
   contact_forces: boolean;
-  /** What is amiss with the file, or with what is recorded, in a sentence. */
+  /** Sentence about a defect of the file or of the recording. */
   notice?: string;
 }
