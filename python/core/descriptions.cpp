@@ -74,7 +74,7 @@ void AddDescriptions(py::module_& module) {
       .def_readonly("description", &Experiment::description)
       .def_property_readonly(
           "robot", [](const Experiment& e) { return WithoutExperiment(e.robot); },
-          "The robot in its place, with the experiment's terrain: a copy.")
+          "Copy of the robot at its place in the experiment, with the terrain.")
       .def_readonly("step_s", &Experiment::step_s, "Time step [s].")
       .def_property(
           "duration_s", [](const Experiment& e) { return e.duration_s; },
@@ -115,7 +115,7 @@ void AddDescriptions(py::module_& module) {
             bare->robot.def.experiment_parts = ActingParts(*bare);
             return bare;
           },
-          "Returns the experiment without its controllers, for others in their place.")
+          "Returns a copy without controllers, for use with other controllers.")
       .def(
           "to_yaml", [](const Experiment& e) { return ResolvedYaml(e); },
           "Returns the experiment and its robot as one YAML text with all numbers resolved, which "

@@ -9,7 +9,7 @@
 
 #define HIDDEN __attribute__((visibility("hidden")))
 
-/* 2.33: until then inline functions that call these. 1 is the version of struct stat on x86-64. */
+/* 2.33: before, inline functions that called the following ones. 1: version of struct stat on x86-64. */
 struct stat;
 extern int __xstat(int version, const char* path, struct stat* out);
 extern int __lxstat(int version, const char* path, struct stat* out);
@@ -22,7 +22,7 @@ HIDDEN int fstatat(int folder, const char* path, struct stat* out, int flags) {
   return __fxstatat(1, folder, path, out, flags);
 }
 
-/* 2.32: an optimization of libstdc++; false is always right. */
+/* 2.32: an optimization of libstdc++; false is always correct. */
 HIDDEN char __libc_single_threaded = 0;
 
 /* 2.36 */

@@ -53,7 +53,7 @@ class Experiment:
 
 def data_folder() -> Optional[str]: ...
 def load(path: str, **set: Union[float, str]) -> Any:
-    """A `Robot` or an `Experiment`, as the file says."""
+    """Returns a `Robot` or an `Experiment`, depending on the kind of the file."""
 
 class Trace:
     @property

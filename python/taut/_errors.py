@@ -21,7 +21,7 @@ class Complaint(NamedTuple):
 
 
 class InputError(ValueError):
-    """An input has errors: `items` lists all of them as `Complaint` objects."""
+    """Raised for an input with errors: `items` lists all of them as `Complaint` objects."""
 
     def __init__(self, items):
         self.items = list(items)
@@ -32,7 +32,7 @@ class InputError(ValueError):
 
 
 class InputWarning(UserWarning):
-    """An input is valid, but probably a mistake."""
+    """Warning about an input that is valid, but probably a mistake."""
 
 
 def warn(complaint):

@@ -50,14 +50,14 @@ def rollout(experiment: Experiment, objective: Objective, worlds: Union[int, Seq
 
     `objective`: dict with the keys of a study's objective (docs/formats/study.md), or the name of a measure:
     "distance". `worlds`: one dict per world, with values of parameters by name (listed by `taut.tunables`) and
-    optionally its "seed"; all others are as in the experiment. A number n: n worlds with the seeds seed, seed + 1, ...
-    of the experiment. `threads`: number of threads; 0: one per core. `progress(done, worlds)` is called a few times
-    per second.
+    optionally its "seed"; other parameters keep the experiment's values. A number n creates n worlds with the
+    experiment's seed, seed + 1, ... `threads`: number of threads; 0: one per core. `progress(done, worlds)` is called
+    a few times per second.
 
     Returns a structured array (worlds,): `score` (more is better; NaN: the world failed), `failed` (reason, or empty),
     `distance_m`, `along_m`, `energy_j`, `max_tension_n`, `tracking_n`, `fell_s` (NaN: no fall), `state_hash`. Each
-    world is bit-identical to `taut.run` of it alone. Other Python threads run meanwhile; Ctrl-C ends the call. Raises
-    one `taut.InputError` for all errors in objective and worlds.
+    world is bit-identical to `taut.run` of the same variant. Other Python threads run meanwhile; Ctrl-C ends the call.
+    Raises one `taut.InputError` for all errors in objective and worlds.
     """
     if isinstance(objective, str):
         objective = {"measure": objective}

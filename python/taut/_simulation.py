@@ -34,10 +34,10 @@ class Simulation(_core.Simulation):
     `stiffness_n_per_m`. `commands` has `rest_length_m`, `set_point_n`, `velocity_input_m_per_s` and `signal`, of shape
     (n, cables); change these arrays in place.
 
-    As long as your program changes nothing, each world is bit-identical to `taut.run`, independent of the other worlds,
+    If your program changes nothing, each world is bit-identical to `taut.run`, independent of the other worlds,
     the number of threads and the instruction set.
 
-    Several Python threads may use one simulation; calls wait for each other, so `act` must not
+    Several Python threads may use one simulation: calls wait for each other, so `act` must not
     wait for a thread that uses this simulation. An exception in `act` ends the call (`step`, `run_until`) after the
     present step. If a controller needs a reference to its simulation, use `weakref`; otherwise neither is freed. Raises
     `taut.InputError` if a start cannot be found.

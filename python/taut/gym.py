@@ -5,7 +5,8 @@
     observations, rewards, terminated, truncated, infos = envs.step(actions)
 
 If gymnasium is installed (0.29 or newer), the classes derive from its VectorEnv and Env and use its spaces; else they
-have the same methods and attributes. `AutoresetMode` is Gymnasium's from 1.1 on; before, an enum with the same members.
+have the same methods and attributes. `AutoresetMode` is Gymnasium's class from version 1.1, otherwise an enum with the
+same members.
 The experiment's `environment` defines actions, observations and rewards (docs/environments.md). For the same seed and
 actions a world is bit-identical, independent of all other worlds.
 """
@@ -73,8 +74,8 @@ class VectorEnv(_VectorBase):
 
     `copy=False`: `step` and `reset` return the same arrays every time, which saves allocations.
     Callbacks receive all worlds at once: `observe(rows, observations)` fills the last `own_observations` columns;
-    `judge(rows, observations, actions, rewards, terminated)` changes the last two. Their arrays are copies that they
-    may keep; only changes made before they return count. Ignore rows of worlds whose `rows` is 0.
+    `judge(rows, observations, actions, rewards, terminated)` changes the last two. The arrays are copies that
+    callbacks may keep; changes after the return have no effect. Ignore rows of worlds whose `rows` is 0.
     Callbacks may call `time_s`, `hash` and `experiment`; calls that change the environment raise RuntimeError there.
     Thread-safe: calls from several threads wait for each other.
     """
@@ -140,7 +141,7 @@ class VectorEnv(_VectorBase):
 
     def reset(self, *, seed=None, options=None):
         """Starts new episodes in all worlds, or in the worlds of `options={"reset_mask": bool[num_envs]}`. World i gets
-        the seed seed + i, or seed[i]; None: each continues with the seed that follows from its last one. Returns
+        the seed seed + i, or seed[i]; None: each world derives a new seed from its last one. Returns
         observations and infos."""
         self._open()
         options = dict(options or {})

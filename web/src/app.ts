@@ -11,7 +11,7 @@ export type Theme = "dark" | "light";
 export class App {
   readonly hello = new Signal<HelloMessage | null>(null);
   readonly scene = new Signal<Scene | null>(null);
-  /** The latest scene, for values that may change within it: parameters and controls. */
+  /** The latest scene; its parameters and controls may change during a run. */
   readonly tuning = new Signal<Scene | null>(null);
   readonly frame = new Signal<Frame | null>(null);
   readonly link = new Signal<Connection>("connecting");
@@ -56,17 +56,17 @@ export class App {
     return sent;
   }
 
-  /** A session with a present: a live run of an experiment or a model, a user's program, a robot. */
+  /** Whether the session has a present: a live run of an experiment or a model, a user's program, a robot. */
   get live(): boolean {
     return this.movable || this.isRobot || this.hello.value?.mode === "program";
   }
 
-  /** Motor boards are driven: there is no pause, and space stops them. */
+  /** Whether motor boards are driven: there is no pause, and space stops the motors. */
   get isRobot(): boolean {
     return this.hello.value?.mode === "robot";
   }
 
-  /** Users can drag, tune and reset the robots. */
+  /** Whether users can drag, tune and reset the robots. */
   get movable(): boolean {
     return ["live", "model"].includes(this.hello.value?.mode ?? "");
   }
@@ -75,12 +75,12 @@ export class App {
     return this.hello.value?.mode === "replay";
   }
 
-  /** The time can be changed. */
+  /** Whether the displayed time can be changed. */
   get seekable(): boolean {
     return this.replay || (this.live && !this.isRobot);
   }
 
-  /** A past moment of a live run is displayed. */
+  /** Whether a past moment of a live run is displayed. */
   get looksBack(): boolean {
     const frame = this.frame.value;
     return this.live && frame !== null && frame.time_s < frame.now_s;
@@ -91,7 +91,7 @@ export class App {
     this.seek(Number.MAX_VALUE);
   }
 
-  /** The page's link permits watching only. */
+  /** Whether the page's link permits watching only. */
   get watches(): boolean {
     return this.hello.value?.watch_only === true;
   }

@@ -64,7 +64,7 @@ export function cableState(frame: Frame, cable: number): CableState {
   return { tension_n, length_m, rest_length_m, setpoint_n };
 }
 
-/** A slack cable carries no tension; an unknown tension is not slack. */
+/** Returns whether a cable is slack: its tension is 0. A cable of unknown tension is not slack. */
 export function isSlack(state: CableState): boolean {
   return state.tension_n <= 0;
 }

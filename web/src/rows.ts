@@ -44,8 +44,7 @@ export class RowReader {
     if (inside && (near.points.rows === 1 || alone)) return rowAt(near.points, time_s);
     if (this.asked.has(key)) return null;
     this.asked.add(key);
-    // if rows are denser than the plot's points suggest, their number exceeds the limit: then requests one
-    // alone
+    // if rows are denser than the plot's points suggest, their number exceeds the limit: then only one row is requested
     const around_s = inside ? 0 : AROUND * distanceOfRows(drawn, time_s);
     const [t0, t1] = [time_s - around_s, time_s + around_s];
     this.ask(channel, source, t0, t1, 4 * AROUND, (points) => {

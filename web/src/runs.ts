@@ -28,7 +28,7 @@ export function swatch(run: number): HTMLElement {
   return dot;
 }
 
-/** Returns the name of a compared run; it is called measured only if its metadata contain that. */
+/** Returns the name of a compared run; the word "measured" appears only if its metadata mark it as measured. */
 export function runName(run: ComparedRun): string {
   return run.measured ? `measured: ${run.name}` : run.name;
 }

@@ -14,7 +14,7 @@ export class Signal<T> {
     for (const watcher of [...this.watchers]) watcher(next);
   }
 
-  /** Calls `watcher` now and at every change; the returned function ends that. */
+  /** Calls `watcher` now and at every change, until the returned function is called. */
   watch(watcher: (value: T) => void): () => void {
     this.watchers.add(watcher);
     watcher(this.current);
@@ -55,7 +55,7 @@ export function button(label: string | Node, title: string, onclick: () => void,
   return el<HTMLButtonElement>(spec, { type: "button", title, "aria-label": name, onclick }, label);
 }
 
-/** Returns a button that unfolds an element (class open), which the caller has yet to make. */
+/** Returns a button that unfolds an element (class open); the caller may create the element later. */
 export function foldButton(title: string, spec: string, element: () => HTMLElement): HTMLButtonElement {
   const made = button("⋯", title, () => made.setAttribute("aria-expanded", String(element().classList.toggle("open"))), spec);
   made.setAttribute("aria-expanded", "false");

@@ -38,7 +38,7 @@ export function bitsPanel(source: WorkerSource, project: Project, hashes: Hashes
   return element;
 }
 
-/** The run began without changed files, and no parameter was set and no robot dragged. */
+/** Returns whether the run uses the shipped files unchanged, without changed parameters and without drags. */
 function isAsShipped(state: RunState, project: Project): boolean {
   return !state.touched && Object.keys(state.set).length === 0 && !project.ran;
 }

@@ -27,7 +27,7 @@ let timer = 0;
 let frame_is_out = false;
 let state_said_ms = -Infinity;
 let state_said = "";
-// A timer waits for at least 4 ms; a message to the same worker arrives at once, after waiting ones.
+// A timer waits for at least 4 ms; a message to the same worker arrives at once, after pending messages.
 const again = new MessageChannel();
 let comes = false;
 again.port1.onmessage = () => {

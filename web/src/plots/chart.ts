@@ -1,5 +1,5 @@
-// One plot on the screen (uPlot), with the values under the cursor; of tensions of several cables, with the line
-// under the mouse.
+// Plot on the screen (uPlot) with the values under the cursor. A plot of several tensions emphasizes the line under the
+// mouse.
 import uPlot from "uplot";
 import type { App } from "../app";
 import { palette } from "../colours";
@@ -20,7 +20,7 @@ export class Chart {
   readonly element: HTMLElement;
   filled: Filled;
   private plot: uPlot | null = null;
-  /** Until then its span is meaningless. */
+  /** Whether it has data; before, its span is meaningless. */
   private isFilled = false;
   private readonly place: HTMLElement;
   private readonly key = el("div.lines");
@@ -32,7 +32,7 @@ export class Chart {
   private near: NearLine | null = null;
   private shared: [number, number] | null = null;
   private span: readonly [number, number] = [0, 1];
-  /** Has axis labels. */
+  /** Whether it has axis labels. */
   private readonly isLarge: boolean;
 
   constructor(

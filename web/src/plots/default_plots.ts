@@ -1,5 +1,5 @@
-// Default plots: the tensions of all cables, one large plot per group or one small plot per cable; if there are
-// too many, of the cables with the largest; the values of a program; and quantities of the whole system.
+// Default plots: tensions of all cables or, if there are too many, of those with the largest tensions, in one large
+// plot per group or one small plot per cable; values of a program; quantities of the whole system.
 import type { App } from "../app";
 import { cableState } from "../frame";
 import type { Scene } from "../protocol";
@@ -7,10 +7,10 @@ import type { SeriesStore } from "../series";
 import { cableGroups } from "./groups";
 import type { PlotSpec } from "./layouts";
 
-/** Up to this number all cables are plotted; of more, those with the largest tensions. */
+/** Up to this number, all cables are plotted; otherwise those with the largest tensions. */
 const FEW_CABLES = 24;
 const LARGEST = 12;
-/** The same for plots of groups. */
+/** Same for plots of groups. */
 const FEW_LINES = 48;
 const LARGEST_LINES = 24;
 

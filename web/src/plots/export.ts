@@ -7,7 +7,7 @@ import { linesOf } from "./key";
 
 interface Cell { width: number; height: number; left: number; right: number; top: number; bottom: number }
 const SMALL: Cell = { width: 300, height: 170, left: 42, right: 10, top: 22, bottom: 36 };
-/** Of a single figure: a column of two in a paper. */
+/** Size of a single figure, for one of two columns of a paper. */
 const LARGE: Cell = { width: 600, height: 320, left: 50, right: 12, top: 24, bottom: 38 };
 const KEY_PX = 26;
 

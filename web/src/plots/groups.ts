@@ -14,7 +14,7 @@ const POSITION = /^(first|middle|last|\d+)$/;
 
 /**
  * Groups cables by the tags that they share with others; without tags, by the stems of their names. Cables
- * of groups of one form a common group at the end.
+ * without such a partner form a common group at the end.
  */
 export function cableGroups(cables: readonly Pick<Cable, "name" | "tags">[]): CableGroup[] {
   const uses = new Map<string, number>();

@@ -176,7 +176,7 @@ export class PlotPanel {
     this.editButton.setAttribute("aria-expanded", String(!this.editor.hidden));
     if (this.editor.hidden) return;
     this.editor.scrollIntoView({ block: "nearest" });
-    this.editor.focus(); // not the search, which would take the key that closes this
+    this.editor.focus(); // not the search field, which would receive the key that closes the editor
   }
 
   searchChannels(): void {

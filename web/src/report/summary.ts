@@ -7,7 +7,7 @@ interface Span { mean_n: number; min_n: number; max_n: number }
 interface Force { max_n: number; max_after_start_n?: number; phases?: Record<string, Span> }
 interface CableSummary { name: string; tension?: Force; actuator?: { max_power_w?: number; energy_j?: number; net_energy_j?: number; max_speed_m_per_s?: number } }
 interface Summary extends Record<string, unknown> { cables?: CableSummary[]; phases?: { name: string; from_s: number; to_s: number }[] }
-/** Keys shown in the sentences, the table or the trace's metadata, and keys for programs only. */
+/** Keys that are not remarks: the report shows them elsewhere, or only programs need them. */
 const SAID = new Set(["format_version", "status_bits", "status", "interrupted", "simulated_s", "system_max_tension_n",
   "system_max_tension_cable", "contacts_left_out", "taut_version", "experiment", "run"]);
 

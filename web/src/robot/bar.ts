@@ -63,7 +63,7 @@ export function robotBar(app: App): HTMLElement {
   };
   for (const signal of [app.robot, app.hello, app.driver, app.link, app.tuning]) signal.watch(draw);
 
-  // Handles space first: otherwise it would press the last used button again.
+  // Handles space first: otherwise space would press the last used button again.
   const typed = (event: KeyboardEvent) => {
     const target = event.target as HTMLElement;
     return app.isRobot && event.key === " " && !target.closest("input[type=search], input[type=text], textarea");

@@ -1,12 +1,12 @@
-// Counters of faults that rise: a count that has stopped rising, such as of the start, is no alarm.
+// Fault counters that increase: a counter that increased only in the past, as at the start, is no alarm.
 
-/** A counter matters this long after it has risen [s]. */
+/** Time for which a counter matters after an increase [s]. */
 const RECENT_S = 10;
 
 export class Rising {
   private readonly seen = new Map<string, { count: number; risen_s: number }>();
 
-  /** Returns whether the counter has risen of late. The first count says nothing. */
+  /** Returns whether the counter has increased recently. The first known count does not count as an increase. */
   matters(name: string, count: number, time_s: number): boolean {
     const before = this.seen.get(name);
     const risen_s = before === undefined || before.count === count ? (before?.risen_s ?? -Infinity) : time_s;

@@ -54,7 +54,7 @@ export function spanTensions({ spans }: Frame, cable: number): number[] {
   return tensions;
 }
 
-/** Returns, for each segment of a path with so many points, the index of its span. */
+/** Returns, for each segment of a path with this number of points, the index of its span. */
 export function spansOfParts(cable: Cable, points: number): number[] {
   if (cable.most_bends !== undefined) return Array.from({ length: points - 1 }, (_, k) => k);
   const parts: number[] = [];

@@ -14,7 +14,7 @@ import { type Part, release } from "./part";
 /** Widths of cables without tension and at the end of the scale, relative to the diameter of the thinnest strut. */
 const THINNEST = 0.14;
 const THICKEST = 0.5;
-/** Of the strut's diameter, where the floor in pixels would exceed it. */
+/** Limit of the width relative to a strut's diameter, if the minimum in pixels is larger. */
 const MOST = 0.85;
 const FLOOR_PX = 1.25;
 const MARKED_PX = 2;
@@ -26,7 +26,7 @@ export class Cables implements Part {
   /** Points of each cable in W, as last drawn. */
   readonly points: Vector3[][];
   scale_n = 1;
-  /** Lengths of the cables without strain; set: colors show strain, relative to the largest. */
+  /** Unstrained lengths of the cables. If set, colors show strain, relative to the largest. */
   strainFrom_m: readonly number[] | null = null;
   largestStrain = 0;
   private readonly lines: (Line2 | null)[];
@@ -149,7 +149,7 @@ export class Cables implements Part {
     const material = new LineMaterial({ dashSize: 0.02 * size_m, gapSize: 0.015 * size_m, vertexColors, transparent: true });
     const line = new Line2(geometry, material);
     line.renderOrder = 1; // above coinciding cables of ghosts, which are transparent, too
-    line.frustumCulled = false; // its bounds are those at the start
+    line.frustumCulled = false; // its bounds are computed only at the start
     this.object.add(line);
     return line;
   }

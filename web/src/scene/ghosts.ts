@@ -74,7 +74,7 @@ export class Ghost {
     const parts = run.cables.reduce((sum, cable) => sum + Math.max(pointCount(cable) - 1, 0), 0);
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * parts), 3));
     this.lines = new LineSegments(geometry, this.thread);
-    this.lines.frustumCulled = false; // its bounds are those at the start
+    this.lines.frustumCulled = false; // its bounds are computed only at the start
     this.object.add(this.lines);
   }
 

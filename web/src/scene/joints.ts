@@ -18,11 +18,11 @@ const AXIS_Y = new Vector3(0, 1, 0);
 
 /** Parts of a mark. Lengths are in radii of the mark, y is the joint's axis. */
 interface Look {
-  /** Moves with a, or lies from a's point to b's. */
+  /** Part that moves with body a, or spans from a's point to b's. */
   rail?: BufferGeometry;
   /** Length of the rail beyond the slide; absent: constant length. */
   over?: number;
-  /** Is at b's point and turns with b; for a hinge or a ball any orientation will do. */
+  /** Part at b's point that turns with b; for a hinge or a ball, any orientation suffices. */
   bead?: BufferGeometry;
 }
 
@@ -69,7 +69,7 @@ export class Joints implements Part {
     this.distances = scene.joints.flatMap(({ kind }, i) => (kind === "distance" ? [i] : []));
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6 * this.distances.length), 3));
     this.lines = new LineSegments(geometry, new LineBasicMaterial());
-    this.lines.frustumCulled = false; // its bounds are those at the start
+    this.lines.frustumCulled = false; // its bounds are computed only at the start
     this.lines.visible = this.distances.length > 0;
     this.object.add(this.lines);
   }

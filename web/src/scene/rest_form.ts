@@ -1,4 +1,4 @@
-// Translucent robot in its described pose, while a mode swings about it.
+// Translucent robot in its described pose, shown while a mode is animated.
 import { Group, MeshLambertMaterial } from "three";
 import type { Theme } from "../app";
 import { palette } from "../colours";

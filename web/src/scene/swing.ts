@@ -1,4 +1,4 @@
-// Poses of a robot that swings in a mode shape about its described pose.
+// Poses of a robot that vibrates in a mode shape about its described pose.
 import { Quaternion, Vector3 } from "three";
 import { type Frame, frameOfScene } from "../frame";
 import { VALUES } from "../layout";

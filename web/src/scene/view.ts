@@ -39,7 +39,7 @@ export class View {
   private readonly grip: Grip;
   private dirty = true;
   private filmSize: { width: number; height: number } | null = null;
-  /** Of the pictures, in pixels of the page. */
+  /** Height of the view in pixels of the page. */
   private height_px = 1;
   /** Center of mass now, and the position that the camera has followed. */
   private readonly followed = new Vector3();
@@ -189,7 +189,7 @@ export class View {
     new ResizeObserver(() => this.resize()).observe(this.element);
   }
 
-  /** Draws pictures of another size from now on, for a film; null: those on the screen again. */
+  /** Sets the size of pictures for a film; null: the size on the screen. */
   setFilmSize(size: { width: number; height: number } | null): void {
     this.filmSize = size;
     this.renderer?.setPixelRatio(size ? 1 : screenRatio());

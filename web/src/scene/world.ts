@@ -31,7 +31,7 @@ export class World {
   readonly compression: Compression;
   /** End of the scale of compression [N] for struts without a known Euler load. */
   compressionScale_n = 0;
-  /** Of the bodies at the start. */
+  /** Bounding box of the bodies at the start. */
   readonly bounds = new Box3();
   readonly size_m: number;
   private readonly parts: Part[];

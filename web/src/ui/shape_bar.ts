@@ -1,5 +1,5 @@
-// Modes: a mode of a model swings on the page, that of a trace is replayed in a loop; a bar with its number and
-// frequency leads to the next one. With reduced motion, nothing moves until the user plays it.
+// Animation of modes: computed on the page for a model, replayed in a loop for a trace. A bar shows number and
+// frequency and selects the next mode. With reduced motion, nothing moves until the user starts it.
 import type { App } from "../app";
 import type { MotionShape, Scene, ShapeInfo } from "../protocol";
 import { largestDisplacement, swung } from "../scene/swing";
@@ -21,7 +21,7 @@ export function shapeText({ kind, number: place, count, frequency_hz, slowdown, 
     ...(amplitude ? [`amplitude: ${number(100 * amplitude, 2)} % of the robot's size`] : [])].join(" · ");
 }
 
-/** The mode of the model that swings at present; null: none. */
+/** The mode of the model that is animated at present; null: none. */
 export class ModePlayer {
   readonly playing = new Signal<number | null>(null);
   private started_ms = 0;

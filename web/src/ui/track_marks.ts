@@ -32,7 +32,7 @@ function overlapping(actions: readonly Action[]): { from_s: number; to_s: number
   return groups;
 }
 
-/** Creates the marks inside the bar; `share`: place of a time, 0 to 1. */
+/** Creates the marks inside the bar; `share`: position of a time in the bar, 0 to 1. */
 export class TrackMarks {
   readonly phases = el("div.phases");
   readonly actions = el("div.actions");
@@ -41,7 +41,7 @@ export class TrackMarks {
 
   constructor(private readonly app: App, private readonly share: (time_s: number) => number) {}
 
-  /** Draws everything; `width_px`: of the bar. */
+  /** Draws everything; `width_px`: width of the bar. */
   draw(scene: Scene, width_px: number): void {
     const span = (from_s: number, to_s: number, label: string, spec: string, room: number) => {
       const [from, to] = [this.share(from_s), this.share(to_s)];
