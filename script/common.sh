@@ -66,9 +66,9 @@ build_showing() {
   [ "$(tail -n 1 "$log")" != "the build failed" ] || { compiler_messages "$1"; return 1; }
 }
 
-# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with only one archive, as if no package were installed: SUITE of
-# Debian, or ubuntu/SUITE with the signatures in $ubuntu_keyring. KIND: deb or deb-src. Its lists stay in FOLDER. Needed
-# because the machine's sources may lack SUITE.
+# apt_apart FOLDER KIND SUITE ARGUMENT...: runs apt-get with one archive only, as if no package were installed. SUITE: of
+# Debian, or ubuntu/SUITE, verified with $ubuntu_keyring. KIND: deb or deb-src. FOLDER keeps apt's lists. Needed because
+# the machine's sources may lack SUITE.
 apt_apart() {
   local folder=$1 kind=$2 suite=$3 archive=http://deb.debian.org/debian
   local keyring=/usr/share/keyrings/debian-archive-keyring.gpg

@@ -4,8 +4,8 @@
   script/including.py CHANGED <FILES     CHANGED: a file with changed paths, FILES: paths to choose from; both one
                                          per line, from the root of the tree
 
-An include is found by the end of its path, whatever the include folders are. It may therefore print too many files,
-never too few.
+Includes are matched by the end of their path, without regard to include folders. The script may therefore print too
+many files, never too few.
 """
 
 import pathlib

@@ -17,7 +17,7 @@ def measured(command):
 
 
 def main():
-    # With fetch, code by emscripten 3.1.6 would load its file as in a browser.
+    # If fetch existed, code by emscripten 3.1.6 would load its file as in a browser.
     here, wasm = [sys.argv[1]], ["node", "--no-experimental-fetch", sys.argv[2]]
     ratios = {}
     for _ in range(ROUNDS):

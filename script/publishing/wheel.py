@@ -6,8 +6,8 @@ MODULE: shared library such as _core.cpython-39-x86_64-linux-gnu.so; WEB: folder
 the wheel
 
 The wheel is byte-identical for the same inputs; the environment variable SOURCE_DATE_EPOCH contains the time stamp of
-its files [s since 1970]. The tag is manylinux_2_28. If the module needs a symbol of
-a later glibc than 2.28, or a library that this policy does not allow, the script writes nothing and returns status 1.
+its files [s since 1970]. The tag is manylinux_2_28. If the module needs a symbol of a later glibc than 2.28, or a
+library that this policy does not allow, the script writes nothing and returns status 1.
 """
 
 import base64

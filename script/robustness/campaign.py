@@ -48,8 +48,7 @@ def faults_of(scenario, calls, kinds, every, most=None):
 
 class Campaign:
     """Runs the faults. `show(text)` receives the progress. `jobs`: number of parallel runs. The tallies are valid at
-    any
-    moment, also after an interrupt."""
+    any moment, also after an interrupt."""
 
     def __init__(self, program, folder, show=lambda text: None, jobs=1):
         self.program, self.folder, self.show, self.jobs = program, folder, show, jobs

@@ -21,7 +21,7 @@ ATTEMPTS = 5  # of preparing commands: boards answer late on a busy machine
 
 
 class Boards:
-    """An adapter with boards, as a program of its own."""
+    """An adapter with boards, as a separate program."""
 
     def __init__(self, path, winds_m_per_s):
         self.process = subprocess.Popen([path, str(winds_m_per_s)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
