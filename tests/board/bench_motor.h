@@ -1,5 +1,6 @@
-/// A board on a bench: two motors that wind springs whose other ends are fixed, and a PC's
-/// broadcasts. The motors use closed forms, so that only the board's code is under test.
+/// Test bench with a board: two motors that wind springs fixed at their far ends, and a PC that
+/// sends broadcasts. The motors are computed in closed form, so that only the board's code is under
+/// test.
 #pragma once
 
 #include <algorithm>

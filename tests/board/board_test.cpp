@@ -51,7 +51,7 @@ TEST(Board, CapturesLengthAndTensionAndHoldsThemByImpedance) {
   EXPECT_EQ(bench.board.mode, Mode::kImpedance);
   const double T_n = bench.motors[0].Tension();
   EXPECT_NEAR(bench.Get(kTensionOffset, 0), T_n, 0.3);
-  // l = L + T / k: the reference of 0.2 m is the start of the encoder
+  // l = L + T / k: encoder counts start at the reference of 0.2 m
   EXPECT_NEAR(bench.Get(kLengthOffset, 0), 0.2 + T_n / 227, 2e-3);
   bench.Run(3000);
   EXPECT_NEAR(bench.motors[0].Tension(), T_n, 0.5);

@@ -57,7 +57,7 @@ TEST(Board, WithoutANumberItTakesNoBroadcastButAStop) {
   Boot boot;
   boot.board = 7;
   Bench bench(boot);
-  bench.ArmInto(Mode::kHold);  // its part would be behind the end of the message
+  bench.ArmInto(Mode::kHold);  // the message would end before the board's part
   EXPECT_FALSE(IsPowered(bench.board));
   EXPECT_FALSE(bench.board.heard);
   EXPECT_EQ(bench.board.counters.bad_messages, 4);

@@ -64,7 +64,7 @@ TEST(Board, RefusesAPositionWithoutAReference) {
   EXPECT_NE(bench.board.board_faults & kUnreferenced, 0);
   EXPECT_EQ(bench.board.loops[0].drive, 0.0f);
   Bench other;
-  other.ArmInto(Mode::kImpedance, false);  // whose L0 is undefined
+  other.ArmInto(Mode::kImpedance, false);  // its L0 is undefined
   EXPECT_NE(other.board.mode, Mode::kImpedance);
 }
 
@@ -198,7 +198,8 @@ TEST(Board, NoticesAMotorThatRunsAway) {
 TEST(Board, ComputesHowWarmItsWindingsAre) {
   Bench bench;
   bench.Reference();
-  ASSERT_EQ(bench.Set(kStallDuty, 0, 1.1f), Answer::kGood);  // so that only the heat stops it
+  ASSERT_EQ(bench.Set(kStallDuty, 0, 1.1f), Answer::kGood);  // high limit, so that only the
+                                                             // computed heat stops the motor
   bench.ArmInto(Mode::kDuty);
   bench.motors[0].blocked = true;
   bench.say.values[0] = 32767;
@@ -213,8 +214,8 @@ TEST(Board, ComputesHowWarmItsWindingsAre) {
   EXPECT_EQ(bench.board.loops[0].drive, 0.0f);
 }
 
-// The drive reverses at 10 Hz: the motor hardly moves, and is as warm as a stalled motor under full
-// voltage, less its back EMF. The reference is the heat of the current, summed over ticks.
+// The drive reverses at 10 Hz: the motor hardly moves, and becomes as warm as a stalled motor under
+// full voltage less the back EMF. The reference sums the heat of the current over ticks.
 TEST(Board, ComputesHeatOfADriveThatChangesItsSign) {
   Bench bench;
   bench.ArmInto(Mode::kDuty);
@@ -358,7 +359,7 @@ TEST(Board, RandomMessagesAndReadingsBreakNothing) {
   }
 }
 
-// Off, and unwound by its cable: no current flows, whatever the encoder's reading.
+// Motor off, unwound by its cable: no current flows, whatever the encoder shows.
 TEST(Heat, IsNotOfAMotorThatCoasts) {
   Bench bench;
   bench.Run(300);

@@ -1,6 +1,6 @@
-// Bitwise reproducibility of worlds with many contacts and stiff cables in SIMD groups: their
-// neighbors touch at other places, take other branches of the solver and need other numbers of its
-// steps, yet each world has the bits of a single world.
+// Bitwise reproducibility of worlds with many contacts and stiff cables in SIMD groups. Neighbors
+// in a group touch at other places, take other branches of the solver and need other numbers of
+// solver steps, yet each world is bit-identical to a single world.
 #include <gtest/gtest.h>
 
 #include "tests/physics/world.h"

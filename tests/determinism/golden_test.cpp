@@ -1,7 +1,6 @@
-/// Golden hashes of worlds after some seconds, as of the last intended change of results: the same
-/// with either compiler, any build type, any instruction set and any processor. TAUT_BLESS=1
-/// rewrites the file instead of comparing; a change of the file is a change of results
-/// (CHANGELOG.md).
+/// Golden hashes of worlds after some seconds, recorded at the last intended change of results.
+/// They are equal for all compilers, build types, instruction sets and processors. TAUT_BLESS=1
+/// rewrites the file instead of comparing; a changed file means changed results (CHANGELOG.md).
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-/// Cables that continually go slack and become taut, at different times in each SIMD lane: each
-/// world has the bits of a single world.
+/// Cables that continually become slack and taut, at different times in each SIMD lane: each world
+/// is bit-identical to a single world.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-/// Prints a number that depends on the last bits of the C library's elementary functions and so
-/// identifies the selected variants.
+/// Prints a number that depends on the last bits of the C library's elementary functions and thus
+/// identifies the selected implementations.
 
 #include <cinttypes>
 #include <cmath>

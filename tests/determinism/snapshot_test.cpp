@@ -29,7 +29,7 @@ TEST(Snapshot, ARestoredWorldGoesOnAsItWouldHave) {
       original.Step(1e-3, 70);
       const std::uint64_t later = original.Hash(0);
 
-      ASSERT_TRUE(original.Restore(0, snapshot));  // back in time
+      ASSERT_TRUE(original.Restore(0, snapshot));  // back to an earlier time
       EXPECT_EQ(original.Hash(0), hash) << def.name << seed;
       EXPECT_EQ(original.Save(0), snapshot) << def.name << seed;
       original.Step(1e-3, 70);
@@ -55,7 +55,8 @@ TEST(Snapshot, AWorldGoesOnAlikeInAnotherLaneAndItsNewNeighboursDoNotNotice) {
       }
       batch.Step(1e-3, 90);
       without.Step(1e-3, 90);
-      // World 1 lies on the ground by now. World 10 gets its state, world 3 the state of a guest.
+      // World 1 now lies on the ground. World 10 gets its state, world 3 the state of a world of
+      // another batch.
       WorldBatch guest = MakeBatch(def);
       Scatter(guest, 0, 40);
       guest.Step(1e-3, 150);

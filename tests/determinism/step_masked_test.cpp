@@ -1,5 +1,4 @@
-// Masked steps: worlds that pause while their neighbors step keep their bits, and so do the
-// neighbors.
+// Masked steps: pausing some worlds changes neither their bits nor those of the stepping neighbors.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -62,8 +62,8 @@ inline std::vector<ModelDef> VariedModels() {
   along_slip.name = "tetraspine3_along_slip";
   along_slip.friction_law = FrictionLaw::kAlongSlip;
   for (CableDef& cable : along_slip.cables) cable.damping_law = DampingLaw::kClamped;
-  // In a wedge a box touches both planes, with other corners in every world: directions and numbers
-  // of contacts differ between lanes.
+  // In a wedge, a box touches both planes, with different corners in each world: directions and
+  // numbers of contacts differ between lanes.
   ModelDef wedge = scenes::BlockOnSlope{{.angle_rad = 0.6}}.Def();
   wedge.name = "block_in_wedge";
   wedge.planes.push_back(wedge.planes[0]);

@@ -24,7 +24,7 @@ class EnvDescription : public ExperimentErrors {
   std::string Wrong(const std::string& old_text, const std::string& new_text) {
     return Complained(old_text, new_text, false);
   }
-  /// As `Wrong`, with the errors of `CheckEnvironment`.
+  /// Returns the errors of `CheckEnvironment` for the file with one text replaced.
   std::string Unfit(const std::string& old_text, const std::string& new_text) {
     return Complained(old_text, new_text, true);
   }
@@ -273,7 +273,8 @@ TEST_F(EnvDescription, AWrongChannelIsToldWithWhatElseIsWrong) {
   change("starts: -1", "starts: 12");
   Write("env.yaml", text);
   EXPECT_TRUE(
-      LoadExperimentAndChannels(Path("env.yaml"), {}, out = {}));  // left to CheckEnvironment
+      LoadExperimentAndChannels(Path("env.yaml"), {}, out = {}));  // `CheckEnvironment` reports
+                                                                   // this error, not the reader
   EXPECT_TRUE(out.ok());
 }
 

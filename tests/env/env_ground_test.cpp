@@ -114,8 +114,8 @@ TEST(EnvGround, OnHillsNoPointComesNearerToTheGroundAndOneStaysAsItIs) {
       const Vec3 along = rod.to_m - rod.from_m;
       for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         const Vec3 p = rod.from_m + part * along;
-        // The ground is sampled at distances of the rod's thickness. Between samples hills of slope
-        // 1/2 may rise by a quarter of that.
+        // The ground is sampled at distances of the rod's thickness. Between samples, hills of
+        // slope 1/2 may rise by a quarter of this distance.
         const double nearer = height(p + by) - height(p);
         EXPECT_GE(nearer, -0.5 * rod.radius_m);
         least = std::min(least, nearer);

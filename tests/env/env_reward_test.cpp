@@ -176,7 +176,7 @@ TEST(EnvReward, AWorldThatIsNotFiniteEndsWithFiniteNumbersAndTheOthersGoOn) {
   spec.reward.failure_penalty = 3;
   spec.reward.tension_limit = TensionLimit{1, 1};
   spec.reward.work_penalty_per_j = 1;
-  // A motor of unlimited speed that pays out for ever; files do not allow it.
+  // A motor of unlimited speed that pays out without end; files do not allow it.
   CableDef& cable = experiment.robot.def.cables[0];
   cable.actuator = {};
   cable.actuator.kind = ActuatorDef::Kind::kIdeal;

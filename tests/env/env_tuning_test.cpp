@@ -241,7 +241,7 @@ TEST(EnvTuning, WhatAGaitRemembersStays) {
       apart = std::max(apart, std::fabs(arrays.Row(0)[i] - arrays.Row(1)[i]));
       most = std::max(most, std::fabs(arrays.Row(0)[i]));
     }
-    EXPECT_LT(apart, 1e-5) << name;  // a contact amplifies the difference by 1e4
+    EXPECT_LT(apart, 1e-5) << name;  // contacts amplify the difference by 1e4
     EXPECT_GT(most, 0.01) << name;
   }
 }
@@ -249,7 +249,7 @@ TEST(EnvTuning, WhatAGaitRemembersStays) {
 TEST(EnvTuning, WhatNoActionCanMoveIsSaid) {
   for (const char* const number :
        {"motion.nothing", "model.friction",
-        "motion.feedback_cpg.frequency_hz"}) {  // this name refers to the start value
+        "motion.feedback_cpg.frequency_hz"}) {  // this name refers to the start value only
     Diagnostics out;
     EXPECT_FALSE(CheckEnvironment(With("goal_flat", 0.2, {TunedMoves({number}, 1)}), out));
     EXPECT_NE(out.Format().find("there is no parameter \"" + std::string(number)),

@@ -202,7 +202,7 @@ TEST(PinJointed, ACableOnAWheelPullsWhereItArrivesAndLeaves) {
   EXPECT_NEAR(cable.rest_length_m, 2 - arc, 1e-12);
   EXPECT_NEAR(cable.force_n, 100 * arc, 1e-9);
   EXPECT_NEAR(cable.stiffness_n_per_m * (cable.length_m - cable.rest_length_m), 100 * arc, 1e-9);
-  // The block is pulled down by twice the tension; no other force balances it.
+  // The cable pulls the block down with twice its tension; nothing balances this force.
   EXPECT_EQ(s.notes.size(), 2u);
   double down = 0;
   for (std::size_t n = 0; n < s.nodes.size(); ++n) {

@@ -1,5 +1,5 @@
-// An adapter with six boards for script/faults: prints its device. For each line of its input it
-// prints whether motors have power, 1 or 0; it ends with its input. Argument: speed at which the
+// Adapter with six boards for script/faults: prints its device. For each input line it prints
+// whether motors have power, 1 or 0; it ends at the end of the input. Argument: speed at which the
 // first motor is turned by hand [m/s].
 #include <cstdio>
 #include <cstdlib>

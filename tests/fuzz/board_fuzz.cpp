@@ -274,7 +274,7 @@ class Life {
                std::isfinite(motor.pid.integral) && std::isfinite(motor.pid.error_before) &&
                std::isfinite(motor.tension_counts) && std::isfinite(motor.counts_per_tick),
            "a motor's numbers are numbers");
-      // A law that takes over keeps the duties for this tick.
+      // A control law that takes over keeps the duties during this tick.
       const bool stays = taken && motor.width == before.width[m];
       Must(stays || motor.width == static_cast<std::int16_t>(motor.drive),
            "the duty is what was decided");

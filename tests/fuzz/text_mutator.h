@@ -59,7 +59,7 @@ class TextMutation {
   static bool InWord(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
   }
-  /// Returns the bounds of the first word at or behind `at`.
+  /// Returns the bounds of the first word at or after `at`.
   static std::pair<std::size_t, std::size_t> Word(const std::string& text, std::size_t at) {
     while (at > 0 && InWord(text[at - 1])) --at;
     while (at < text.size() && !InWord(text[at])) ++at;

@@ -20,9 +20,9 @@ constexpr int kSteps = 1000, kStepsPerStretch = 50;
 constexpr int kMaxLinearSolves = 50;
 /// Additional limit per body for solvers in lanes: at most 10 iterations, and 4 rounds of impacts.
 constexpr int kMaxInLanes = 10 * 5;
-/// Limit of a step per body. Each body is at most one island: solved in lanes without success, then
-/// separately, then by position projection. One direction sometimes takes two systems, and so one
-/// more than the limit.
+/// Limit of linear systems of a step per body. Each body is at most one island, which is solved in
+/// lanes without success, then separately, then by position projection. One direction sometimes
+/// takes two systems, hence one more than the limit.
 constexpr int kMaxOfABody = kMaxInLanes + 2 * (kMaxLinearSolves + 1);
 /// Linear systems after which an input ends.
 constexpr long kEnough = 10'000;

@@ -1,5 +1,5 @@
-// Linearization at rests where the solver has nothing to do: the laws hold at once with the
-// warm-start impulses, and their derivatives must still be available.
+// Linearization at rest states where the solver has nothing to do: the warm-start impulses already
+// satisfy all laws, but the derivatives must still be available.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,8 @@ TEST(ExactRest, AStiffRope) {
   // Groups that are implicit in tension and direction use differences (linear.md, section 3).
   const StateSpace system = FindExactRest(OnARope(4e6));
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
-  // Like a pendulum it swings to both sides, with the length of the rope under the weight.
+  // Like a pendulum, it swings in both directions, with the length of the rope stretched by the
+  // weight.
   const std::vector<double> swings_hz = Swings(system);
   const double pendulum_hz = std::sqrt(9.81 / (1 + 0.5 * 9.81 / 4e6)) / (2 * std::numbers::pi);
   ASSERT_GE(swings_hz.size(), 2u);

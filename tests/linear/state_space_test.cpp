@@ -186,7 +186,7 @@ TEST(StateSpace, OfImplicitGroupsHasDifferences) {
   EXPECT_EQ(system.derivatives, Derivatives::kDifferences);
 }
 
-/// Tetraspine3 that has slid to its rest and sticks from there on.
+/// Tetraspine3 after sliding to its rest state, where it sticks.
 TEST(StateSpace, IsExactForASpineThatSticks) {
   ExperimentSpec e = ExperimentOf(Standing("tetraspine3"));
   const StateSpace sliding = Find(e);
@@ -217,9 +217,9 @@ TEST(StateSpace, JointsAndLimitedActuators) {
   EXPECT_LT(system.disagreement, 1e-5);
 }
 
-/// Undamped and floating, the step is the leapfrog scheme: (I4) of docs/theory/integrator.md gives
-/// its frequencies from the structure's natural frequencies, which statics computes without any
-/// step.
+/// Undamped and floating, the step is the leapfrog scheme: eq. I4 of docs/theory/integrator.md
+/// computes its frequencies from the structure's natural frequencies, which statics computes
+/// without steps.
 TEST(StateSpace, FrequenciesAreThoseOfStaticsWithTheStepsDispersion) {
   Diagnostics out;
   const auto robot = LoadRobot(TAUT_SOURCE_DIR "/share/models/prism3.yaml", {}, out);
@@ -286,7 +286,7 @@ TEST(StateSpace, RespondsLikeAnOscillator) {
 
 TEST(StateSpace, RefusesWhatHasNoDerivative) {
   ExperimentSpec e = ExperimentOf(Standing("prism3"));
-  e.robot.def.planes.clear();  // it falls
+  e.robot.def.planes.clear();  // it falls, so there is no rest state
   LinearOptions options;
   options.most_s = 0.5;
   Diagnostics out;

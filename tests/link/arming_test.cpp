@@ -231,7 +231,7 @@ TEST(TheEndOfADriver, ComesWithoutAnAdapterToo) {
   pulled.robot.gone = true;
   pulled.driver->Cycle(2);
   pulled.driver.reset();
-  Rig mute;  // it is plugged in again, and sends nothing
+  Rig mute;  // the adapter is plugged in again, but sends nothing
   mute.Run(Mode::kHold);
   mute.robot.gone = true;
   mute.driver->RunUntil(mute.robot.now_s() + 0.1);

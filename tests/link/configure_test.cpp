@@ -145,7 +145,7 @@ TEST(Configure, AnAnswerToAnotherQuestionIsNone) {
 TEST(Configure, ARobotThatIsHeldGoesOnBeingHeld) {
   Rig rig;
   rig.Run(board::Mode::kImpedance, true);
-  rig.robot.Wait(rig.robot.now_s() + 0.2);  // its PC is gone
+  rig.robot.Wait(rig.robot.now_s() + 0.2);  // longer than the board's timeout
   Driver other(rig.robot, {});
   Diagnostics out;
   ASSERT_TRUE(other.Configure({}, out)) << out.Format();

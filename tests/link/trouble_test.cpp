@@ -104,7 +104,7 @@ TEST(ABoardThatBeginsAnew, HoldsTheOthersAndSaysWhy) {
   EXPECT_EQ(rig.state().boards[3].reset_cause, board::kWatchdog);
 }
 
-// Its reset flag was set before: the refused command reveals the reset.
+// The reset flag was already set before the reset; a refused command reveals the reset.
 TEST(ABoardThatBeginsAnew, IsNoticedIfNobodyClearedItsFirstBeginning) {
   Rig rig;
   ASSERT_TRUE(rig.Configure());

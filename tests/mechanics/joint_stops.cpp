@@ -1,4 +1,4 @@
-/// Joint limits: holding, rebound and release.
+/// Joint limits: resting contact, rebound and release.
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +176,7 @@ void CircleInCone(Report& report) {
     const std::string step = h > 5e-4 ? ", 1 ms" : ", 250 us";
     report.AtMost("widest angle above 0.6 rad" + step, "rad", widest - limit, 1e-9);
     report.AtMost("narrowest angle below 0.6 rad" + step, "rad", limit - narrowest, 1e-9);
-    // Of third order: the rod has 0.2 J.
+    // Error of third order in the step; the rod has 0.2 J.
     report.AtMost("change of the energy on the cone" + step, "J", swing, 20 * h * h * h);
   }
 }

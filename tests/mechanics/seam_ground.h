@@ -1,4 +1,4 @@
-/// Ground of adjacent pieces, and bodies that cross their seams.
+/// Ground that consists of adjacent pieces, and bodies that cross their seams.
 #pragma once
 
 #include <algorithm>

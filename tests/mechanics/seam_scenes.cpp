@@ -226,7 +226,8 @@ void TippingOverABorder(Report& report) {
   report.AtMost("sum of all rises of energy, body of 1 kg", "J", rise_j, kG * kG * kStepS * kStepS);
 }
 
-/// Pushed along a floor against a higher adjacent piece: the contacts at the floor must hold, too.
+/// A body pushed along a floor against a higher adjacent piece; the contacts at the floor must
+/// hold, too.
 void WallBesideAFloor(Report& report) {
   double off_m = 0;
   for (const Piece floor : kPieces) {
@@ -253,7 +254,7 @@ void WallBesideAFloor(Report& report) {
   report.AtMost("distance from the place in the corner", "m", off_m, 1e-9);
 }
 
-/// A rolling ball and a crate that slides straight on: as on a plane.
+/// Rolling ball and sliding crate: their motion must be as on a plane and straight on.
 void Friction(Report& report) {
   Worst worst;
   constexpr Material kRough{0.1, 0.1, 0};

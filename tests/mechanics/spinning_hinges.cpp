@@ -56,7 +56,7 @@ void BrakedRotor(Report& report) {
   def.joints[0].damping = 0.05;
   WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 8000);
-  // The first half step has the full rate; afterwards all means are of second order.
+  // The first half step uses the initial rate; later means are of second order.
   report.Near("angle until it stands, from 5000 rad/s, 1 ms", "rad", world.Joint(0, 0).coordinate,
               1000, 1e-3);
 }

@@ -18,7 +18,7 @@ using test::MakeBatch;
 using test::Norm;
 using test::StepsIn;
 
-/// Pseudorandom numbers in -1 .. 1 that are the same on every machine.
+/// Pseudorandom numbers from -1 to 1 that are the same on every machine.
 class Chance {
  public:
   explicit Chance(unsigned seed) : state_(seed) {}

@@ -111,7 +111,7 @@ TEST_F(MjcfImportTest, EveryShapeWeighsWhatItDoesInMujoco) {
         R"(<geom type="box" size="0.1" fromto="0 0.1 0.2 0.4 -0.1 0.3"/>)"}) {
     SCOPED_TRACE(geom);
     Same(Turned(geom));
-    // MuJoCo's principal axes of a sum are exact to about 1e-9 only; therefore it gets two bodies.
+    // MuJoCo computes principal axes of a sum to about 1e-9 only; therefore it gets two bodies.
     const std::string more = R"(<geom type="sphere" size="0.05" pos="-0.3 0.1 0"/>)";
     const auto both = Import(Turned(geom + more));
     ASSERT_TRUE(both);

@@ -44,9 +44,9 @@ class GroundOf : public EngineTest {
 };
 
 TEST_P(GroundOf, ABallFallsFreelyDownToItsTriangle) {
-  // NTRT's hills, shifted so that no half is like another, not square and off the center. Over the
-  // centroid of a triangle a small ball touches that triangle first, and the diagonal of the cell
-  // determines its height, by as much as 1 cm.
+  // NTRT's hills, shifted so that the halves of the field differ; the field is neither square nor
+  // centered. Above the centroid of a triangle, a small ball touches that triangle first. The
+  // diagonal of the cell changes this height by as much as 1 cm.
   constexpr double kStep_s = 1e-4, kRadius_m = 0.002, kDrop_m = 0.01;
   HeightFieldDef field =
       SplitTheSame(scenes::Field(40, 30, 0.04, {0, 0, 0}, [](double x, double y) {
@@ -84,7 +84,8 @@ TEST_P(GroundOf, ABallFallsFreelyDownToItsTriangle) {
 }
 
 TEST_P(GroundOf, OnlyOdesBallRollsOverTrianglesAsOnAPlane) {
-  // 1 m/s, 3 s. The balls of the other engines lose speed by bumps where triangles meet.
+  // Ball with 1 m/s for 3 s. The balls of the other engines lose speed by bumps where triangles
+  // meet.
   struct Kept {
     double level, slope;
   };
@@ -115,7 +116,7 @@ TEST_P(GroundOf, OnlyOdesBallRollsOverTrianglesAsOnAPlane) {
 }
 
 TEST_P(GroundOf, ARodLiesOnASlopeOrSlidesDown) {
-  // Along its axis, in 1 s. The friction coefficient combines ground and rod.
+  // The rod slides along its axis for 1 s. The friction coefficient combines ground and rod.
   const Slope slope{kSlope};
   for (const double mu : {0.5, 0.1}) {
     constexpr double kRadius_m = 0.01;

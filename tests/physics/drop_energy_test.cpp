@@ -1,10 +1,10 @@
 /// Random drops in which impacts must not add energy: the energy never exceeds its initial value
-/// (docs/theory/contact.md, section 3). The drops are the same on every machine. Newton's law of
-/// impact gains energy with friction at several contacts at once (Kane's and Levinson's pendulum),
-/// sequential impacts with stacked balls of different restitution.
+/// (docs/theory/contact.md, section 3). The drops are the same on every machine. Newton's impact
+/// law would add energy at several contacts with friction (Kane's and Levinson's pendulum),
+/// sequential impacts would add energy to stacked balls of different restitution.
 ///
-/// A sample of the drops always runs, all 3550 with `script/test --full` or `long_physics_test
-/// --gtest_filter='AllDrops.*'`; each failure reports its kind, number and gain.
+/// A sample of the drops always runs; all 3550 run with `script/test --full` or `long_physics_test
+/// --gtest_filter='AllDrops.*'`. Each failure reports its kind, number and gain.
 
 #include <gtest/gtest.h>
 

@@ -168,7 +168,7 @@ TEST(FrictionLaws, BetweenTwoAnglesABlockGoesForwardOnly) {
 }
 
 TEST(FrictionLaws, AskewABlockSlidesAsThePrincipleOfMostDissipationSays) {
-  // Of all forces in the ellipse with half axes m1, m2, the force of greatest dissipation: f = -N
+  // Friction is the force of greatest dissipation in the ellipse with half axes m1, m2: f = -N
   // (m1^2 v1, m2^2 v2) / |(m1 v1, m2 v2)|. The step is an implicit Euler step; the test solves v' =
   // v - g h f(v') by iteration.
   const double m1 = 0.1, m2 = 0.4, h = 1e-3;

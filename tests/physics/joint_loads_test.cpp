@@ -24,8 +24,8 @@ double MostLeft(const ModelDef& def, const std::vector<JointLoad>& loads) {
 }
 
 TEST(JointLoads, APinnedRodOnACableIsHeldAsByHand) {
-  // 3 kg and 2 m, level; a cable from the rod's end to the wall, 1.5 m above the pin: T 0.6 2 = m g
-  // 1.
+  // A level rod of 3 kg and 2 m; a cable from its end to the wall, 1.5 m above the pin: T 0.6 2 = m
+  // g 1.
   for (const JointKind kind : {JointKind::kBall, JointKind::kHinge}) {
     ModelDef def;
     scenes::AddRod(def, "rod", 3.0, 0.01, {}, {2, 0, 0}, {});

@@ -95,7 +95,8 @@ TEST(Joint, AChainThatSwingsWithAHeavyEndStaysTogether) {
 }
 
 TEST(Joint, AChainThatCarriesTooMuchForTheStepSaysSo) {
-  // For rods that carry F at both ends, across: w^2 = 12 F / (m l), so 2 / w is 1.2 ms at 14 kN.
+  // Transverse vibration of rods that carry F at both ends: w^2 = 12 F / (m l), so 2 / w is 1.2 ms
+  // at 14 kN.
   const auto status = [](double last_kg, const Vec3& along, double step_s) {
     const ModelDef def = Chain(16, along, last_kg);
     WorldBatch world = MakeBatch(def);

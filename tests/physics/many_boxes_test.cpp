@@ -17,7 +17,8 @@ namespace {
 const Material kMaterial{0.6, 0.6, 0.2};
 
 /// Returns boxes of many sizes in a square of 4 m, at random orientations, and one below all. With
-/// `apart` none touches another: touching boxes would be one surface, which bodies do not form.
+/// `apart`, none touches another: touching terrain boxes would form one surface, unlike touching
+/// bodies.
 std::vector<TerrainBoxDef> Field(int count, std::uint64_t seed, bool apart = false) {
   scenes::Chance chance(seed);
   std::vector<TerrainBoxDef> boxes;

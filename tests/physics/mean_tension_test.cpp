@@ -1,5 +1,5 @@
 /// Force readings of stiff cables: means over the last step, checked against the change of
-/// momentum; instantaneous values if no step came before.
+/// momentum; before the first step, instantaneous values.
 
 #include <gtest/gtest.h>
 

@@ -133,7 +133,8 @@ TEST(MotorStick, ACableThatStopsItDoesNotTurnItBack) {
   }
 }
 
-// Nor by a weight that falls into its slack cable, whose tension cannot be predicted.
+// A weight that falls into its slack cable does not drive the gear back either, although its
+// tension cannot be predicted.
 TEST(MotorStick, AWeightThatFallsIntoItsCableDoesNotTurnItBack) {
   DcMotorDef motor;
   motor.gear_efficiency = 0.4;

@@ -51,8 +51,8 @@ TEST(Prestress, AcrossAStiffCableAMassSwingsByTheMidpointRuleAtAnyTension) {
   }
 }
 
-/// Returns the same model with damped cables that end at a kinematic body at rest, and so keep the
-/// directions of the middle of the step. The dampers do not act on transverse motion.
+/// Returns the same model with damped cables that end at a kinematic body at rest, so that they use
+/// the fixed-direction scheme. The dampers do not act on transverse motion.
 ModelDef PluckedOfOtherCables(double tension_n, double off_m) {
   ModelDef def = Plucked(tension_n, off_m);
   BodyDef frame = def.bodies[0];
