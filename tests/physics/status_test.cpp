@@ -93,7 +93,7 @@ TEST(Status, AWorldThatIsMendedGoesOn) {
   world.Step(1e-3, 50);
   healthy.Step(1e-3, 50);
   EXPECT_EQ(world.Status(0).bits, kStatusOk);
-  // The impulses for the warm start are lost: not the same bits, but the same motion.
+  // Without the impulses for the warm start, the motion is the same, but not its bits.
   EXPECT_LE(Distance(world.Body(0, 0).position_m, healthy.Body(0, 0).position_m), 1e-5);
 }
 

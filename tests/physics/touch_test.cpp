@@ -107,7 +107,8 @@ TEST(Touch, ABarIsPassedOnTheSideToWhichItTakesLess) {
     world.Step(kStep);
     return world.CableBendPlaces(0, 0).at(0);
   };
-  // In 25 mm below the top and out 5 mm above the bottom, and mirrored.
+  // The straight path enters the wall 25 mm below the top and leaves it 5 mm above the bottom; also
+  // mirrored.
   EXPECT_LT(Distance(middle_of({-0.3, 0, 0.125}, {0.4, 0, -0.085}), {0, 0, 0}), 2e-3);
   EXPECT_LT(Distance(middle_of({-0.3, 0, -0.065}, {0.4, 0, 0.145}), {0, 0, 0.06}), 2e-3);
 }

@@ -264,8 +264,8 @@ TEST(Wheel, TheRateIsThatOfTheLength) {
 TEST(Wheel, AnInterruptedPendulumKeepsItsEnergy) {
   const auto worst = [](double step_s) {
     ModelDef def;
-    // As high as the peg: the pendulum comes to rest at that height on the other side, without
-    // winding up.
+    // Released at the height of the peg, the pendulum comes to rest at this height on the other
+    // side, without winding up.
     const Vec3 start{0.8, 0, -0.6};
     def.bodies = {WheelBall(0.2, start)};
     std::vector<AttachmentDef> path{

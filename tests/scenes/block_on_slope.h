@@ -51,8 +51,8 @@ struct SledOnSlope {
   Slope slope;
   double mass_kg = 0.6;
   double runner_radius_m = 0.01;
-  double reach_m = 0.1;      ///< From the center to the balls.
-  double heading_rad = 0.0;  ///< Of the first ball, about the normal.
+  double reach_m = 0.1;      ///< Distance from the center to the balls.
+  double heading_rad = 0.0;  ///< Direction of the first ball, about the normal.
   Material material{0.5, 0.5, 0.0};
 
   /// Returns a sled of three balls, each with a third of the mass.

@@ -9,7 +9,7 @@ namespace taut::scenes {
 /// A disc on a ring of feet, dragged by a cable: three feet would carry it.
 struct FootedDisc {
   int feet = 64;
-  double left_m = 0.2;  ///< Of the cable's far end, a meter ahead.
+  double left_m = 0.2;  ///< Lateral position of the cable's far end, a meter ahead.
   Material material{0.5, 0.5, 0.0};
 
   ModelDef Def() const {
@@ -39,10 +39,10 @@ struct FootedDisc {
 
 /// A square net of knots that hangs at its rim, with a heavy ball in it.
 struct BallInNet {
-  int knots = 5;  ///< Along a side, including the rim.
+  int knots = 5;  ///< Number of knots along a side, including the rim.
   double stiffness_n_per_m = 1e6, damping_n_s_per_m = 0;
   double ball_kg = 50;
-  std::uint64_t seed = 1;  ///< For the position of the ball.
+  std::uint64_t seed = 1;  ///< Seed for the position of the ball.
   Material material{0.5, 0.5, 0.0};
 
   ModelDef Def() const {

@@ -11,14 +11,14 @@
 namespace taut::scenes {
 
 struct Prism3 {
-  double radius_m = 0.1;  ///< Of the circles through the triangles' corners.
+  double radius_m = 0.1;  ///< Radius of the circles through the triangles' corners.
   double height_m = 0.2;
   double rod_mass_kg = 0.05;
   double rod_radius_m = 0.004;
   double stiffness_n_per_m = 1000;
   double damping_n_s_per_m = 0;
-  double force_density_n_per_m = 100;  ///< Of the side cables: tension / length.
-  double clearance_m = 0.0;            ///< Of the lowest points above the ground.
+  double force_density_n_per_m = 100;  ///< Tension / length of the side cables.
+  double clearance_m = 0.0;            ///< Height of the lowest points above the ground.
   Material material{0.5, 0.5, 0.0};
 
   /// Returns three rods; cables bottom_0..2, top_0..2, side_0..2.

@@ -10,7 +10,7 @@ namespace taut::scenes {
 
 struct PrismTower {
   int levels = 4;
-  std::uint64_t seed = 1;  ///< For the position of each plate.
+  std::uint64_t seed = 1;  ///< Seed for the position of each plate.
   double plate_kg = 0.1;
   Material material{0.6, 0.6, 0.0};
 

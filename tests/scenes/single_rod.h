@@ -10,9 +10,9 @@ namespace taut::scenes {
 /// friction rotates it into the ground faster than the normal force can rotate it out, so that no
 /// finite force is a solution; an impulse is.
 struct PainleveRod {
-  double angle_rad = 1.0;  ///< Above the ground; its upper end is towards -x.
+  double angle_rad = 1.0;  ///< Angle above the ground; the upper end is towards -x.
   double friction = 1.0;
-  double velocity_m_per_s = 3;  ///< Along x: against the rod's slant if positive.
+  double velocity_m_per_s = 3;  ///< Speed along x: against the rod's slant if positive.
   double length_m = 1, radius_m = 0.001, mass_kg = 1;
 
   ModelDef Def() const {
@@ -31,8 +31,8 @@ struct PainleveRod {
 /// A rod across a groove of two planes: held by friction alone at the angle at which it jams. Each
 /// end touches one plane, and the force along the rod is indeterminate.
 struct RodInWedge {
-  double opening_rad = 0.8;  ///< Between the planes.
-  double tilt_rad = 0.2;     ///< Of the rod against the horizontal.
+  double opening_rad = 0.8;  ///< Angle between the planes.
+  double tilt_rad = 0.2;     ///< Tilt of the rod against the horizontal.
   double friction = 0.8;
   double length_m = 0.4, radius_m = 0.01, mass_kg = 0.1;
 

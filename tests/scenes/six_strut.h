@@ -10,7 +10,7 @@
 namespace taut::scenes {
 
 struct SixStrut {
-  double length_m = 1.0;  ///< Of a strut.
+  double length_m = 1.0;  ///< Length of a strut.
   double rod_mass_kg = 0.5;
   double rod_radius_m = 0.01;
   double stiffness_n_per_m = 1000;

@@ -105,7 +105,7 @@ class Parts {
  private:
   double mass_kg_ = 0;
   Vec3 moment_;      ///< Sum of mass times position [kg m].
-  Inertia inertia_;  ///< About W's origin.
+  Inertia inertia_;  ///< Inertia about W's origin.
 };
 
 }  // namespace taut::scenes

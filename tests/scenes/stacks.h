@@ -37,7 +37,7 @@ struct LogPile {
   int layers = 10;
   std::uint64_t seed = 1;
   double half_length_m = 0.3, radius_m = 0.02, mass_kg = 0.5;
-  double aside_m = 0.2;     ///< Of a log, from the center.
+  double aside_m = 0.2;     ///< Distance of a log from the center.
   double crooked_m = 0.01;  ///< Largest lateral deviation of each end.
   Material material{0.5, 0.5, 0.0};
 
@@ -62,7 +62,7 @@ struct LogPile {
 /// A slab on three thin rods: light bodies between a heavy one and the ground.
 struct SlabOnRods {
   double mass_ratio = 1e4;  ///< Mass of the slab over the mass of a rod.
-  std::uint64_t seed = 1;   ///< For the directions of the rods.
+  std::uint64_t seed = 1;   ///< Seed for the directions of the rods.
   double rod_kg = 0.01, rod_radius_m = 0.01;
   Material material{0.5, 0.5, 0.0};
 

@@ -12,7 +12,7 @@ namespace taut::scenes {
 
 struct Tetraspine {
   int segments = 3;
-  double clearance_m = 0.001825;  ///< Of the lowest spheres above the ground.
+  double clearance_m = 0.001825;  ///< Height of the lowest spheres above the ground.
   double damping_n_s_per_m = 20;
   Material material{0.15, 0.15, 0.2};
   Material ground{0.5, 0.5, 0.0};

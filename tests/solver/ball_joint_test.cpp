@@ -43,7 +43,7 @@ TEST(BallJointLaw, IsALaw) {
 
 struct Rod {
   Vec3 p, v, w;
-  double angle;  ///< About y, from hanging down.
+  double angle;  ///< Rotation about y, from hanging down.
   Vec3 Axis() const { return {-std::sin(angle), 0, -std::cos(angle)}; }
   Vec3 End(double sign) const { return (sign * kLength / 2) * Axis(); }  ///< -1: the upper end,
   Vec3 Point(double sign) const { return p + End(sign); }                ///< as a position.

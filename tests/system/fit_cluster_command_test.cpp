@@ -5,7 +5,8 @@
 namespace taut::test {
 namespace {
 
-/// Rows, equilibria and references together; the clock delay makes the same run count differently.
+/// Rows, equilibria and references together; another clock delay gives other residuals for the same
+/// run.
 const std::string kFittedExperiment = R"(taut: 1
 kind: experiment
 name: pull

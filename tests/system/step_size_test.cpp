@@ -25,7 +25,7 @@ constexpr int kFrontCables = 6;
 
 struct PushOutcome {
   double max_n[kFrontCables] = {};  ///< Spring only, mean over the starts.
-  double slide_m = 0;               ///< Of the front segment, from 5 s to the end; mean.
+  double slide_m = 0;  ///< Displacement of the front segment from 5 s to the end; mean.
 };
 
 PushOutcome MeanOutcome(double step_s) {

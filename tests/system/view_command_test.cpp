@@ -27,7 +27,7 @@ TEST_F(ViewCommand, ServesALiveRunUntilCtrlC) {
   EXPECT_EQ(Read(Path("err.txt")), "");
 }
 
-/// The queue would take minutes.
+/// Executing the queued commands would take minutes.
 TEST_F(ViewCommand, SignalsEndItWhateverWaits) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const pid_t pid = StartView({kPush, "--paused"});

@@ -69,7 +69,7 @@ TEST(Modes, AreThoseOfStructuralFiles) {
 /// Two crossing rigid bars in the plane of x and y, as in tests/physics/clustered_test.cpp; one of
 /// the cables runs through an eyelet at the end of a bar.
 struct CrossFrame {
-  double half, mass[2], stiffness, rest, cable_mass;  ///< Of a cable of one side.
+  double half, mass[2], stiffness, rest, cable_mass;  ///< The last three: of a cable of one side.
 };
 constexpr CrossFrame kTBar{
     2, {2.4746351864, 13.9986379133}, 31107.8383, 2.2324739177, 0.0160550684};

@@ -308,8 +308,8 @@ TEST(Model, TwoPendulumsOnOneCeilingAreConnected) {
       "  - {match: cable, cable: {stiffness_n_per_m: 10, rest_length_m: 0.5}}\n");
 }
 
-// Equal on every machine, because libm is not used. The exact values, to 80 digits and rounded, end
-// in 466 and 095.
+// Bit-identical on every machine, because libm is not used. The exact values, computed to 80 digits
+// and rounded, end in 466 and 095.
 TEST(Model, TurnedPlacementsHaveTheseBits) {
   const RobotSpec robot =
       Good(std::string(kBars) +

@@ -59,9 +59,9 @@ TEST_F(GaitIntegrator, TheErrorIsOfFourthOrder) {
   }
 }
 
-// The phases drift: the error grows linearly with time, by a factor of three. Which tick falls on
-// the steepest place of a wave is random, hence a tolerance of a tenth. The finer one is exact
-// here: its error is 1/4096.
+// The phases drift: the error grows linearly with time, here by a factor of three. It is random
+// which tick falls on the steepest part of a wave, hence a tolerance of a tenth. The finer step
+// counts as exact: its error is 1/4096.
 TEST(GaitIntegratorInTime, TheErrorGrowsWithTimeAndNoFaster) {
   const auto played = Play(0.002, 30.0), exact = Play(0.00025, 30.0);
   EXPECT_NEAR(Worst(played, exact, 30.0) / Worst(played, exact, 10.0), 3.0, 0.3);
