@@ -1,4 +1,4 @@
-"""Checks that every promise and every attack of docs/robustness.md has a test, and that these tests exist."""
+"""Checks that docs/robustness.md names a test for each promise and each attack, and that these tests exist."""
 
 import ast
 import re

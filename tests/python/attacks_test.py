@@ -1,4 +1,4 @@
-"""Attacks on the Python module: it raises an exception or returns a result, and never hangs, aborts or crashes.
+"""Attacks on the Python module. It must raise an exception or return a result, and never hang, abort or crash.
 
 attacks_test.py TAUT [unittest's arguments]
 """

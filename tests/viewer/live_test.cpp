@@ -66,7 +66,7 @@ TEST(LiveRun, AHandHoldsANodeUpAgainstItsWeight) {
   const int mass = Node(experiment, "mass");
   const double weight_n = 0.5 * 9.81;
   const Vec3 start = run->world()->NodePosition(0, mass);
-  // Above the point where the cable goes slack: the hand carries the whole weight.
+  // Above the point where the cable goes slack, the user's hand carries the whole weight.
   run->SetHand(HandSpec{mass, {start.x, start.y, start.z + 0.2}});
   while (run->time_s() < 10) ASSERT_TRUE(run->Step());
   EXPECT_EQ(run->Observe().Cable(0).tension_n, 0);

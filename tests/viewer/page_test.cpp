@@ -224,7 +224,7 @@ TEST_F(PageTest, ATimeThatGoesBackIsAnotherRun) {
   EXPECT_EQ(browser.Await("series")["series"]["time_s"], Json({0.5}));
 }
 
-/// The next run waits for the page to resume: it has no past to seek, and no time to catch up.
+/// The next run waits until the page resumes it: it has no past for seeking and no lag to catch up.
 TEST_F(PageTest, ARunThatWaitsHasNoPast) {
   options_.speed = 1;
   const auto page = Open();

@@ -36,8 +36,8 @@ TEST(Board, TicksOnceAMillisecondToTheCycle) {
 }
 
 TEST(Board, NeverRunsFarBeyondWhereItWasSentWhateverItSleeps) {
-  // Limit for a core that sleeps at the end of a run, falls asleep with its last instruction, or is
-  // awake: the longest instruction takes 5 cycles, an interrupt 8 more.
+  // Limit for all cores: asleep at the end of a run, falling asleep with the last instruction, or
+  // awake. The longest instruction takes 5 cycles, an interrupt 8 more.
   for (const Time slice : {137 * kNanosecond, 1009 * kNanosecond, 20 * kMicrosecond}) {
     Board board(ProbeProgram(), {});
     std::uint64_t most = 0;

@@ -263,7 +263,7 @@ TEST(Twi, AnIllegalStartIsSeenAsABusErrorAndRecoveredFrom) {
 }
 
 TEST(Twi, WhatIsDueInTheCycleThatACoreHasEndedHappensAtOnce) {
-  // The core has reached that time and does not run again before the bus queries it.
+  // The core has already reached that time, and does not run again before the bus queries it.
   for (int extra = 0; extra < 40; ++extra) {
     Board board(ProbeProgram(), {});
     const Time time = 5 * kMillisecond + extra * 31 * kNanosecond;

@@ -69,7 +69,7 @@ TEST(Simulation, SnapshotsHoldAndClearForcesOnNodes) {
     simulation->RunUntil(0.1);
     plain->RunUntil(0.1);
     EXPECT_EQ(simulation->Hash(), plain->Hash()) << name;
-    // Into a simulation that never had a force on this node, but one on another
+    // Restores into a simulation that never had a force on this node, but has one on another node.
     const auto other = Create(experiment, {.worlds = 3});
     other->SetNodeForce(5, {1, 0, 0}, 1);
     other->RunUntil(0.02);
@@ -82,7 +82,7 @@ TEST(Simulation, SnapshotsHoldAndClearForcesOnNodes) {
   }
 }
 
-/// Many forces on few nodes take more room in memory than in the snapshot
+/// Many forces on few nodes need more space in memory than in the snapshot.
 TEST(Simulation, SnapshotsHoldMoreForcesThanNodes) {
   const auto simulation = Create(Load("stand_still", 1));
   const std::vector<ExternalForce> forces(20'000, {1, {1e-6, 0, 0}});

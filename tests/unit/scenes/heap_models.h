@@ -4,8 +4,8 @@
 namespace taut::test {
 
 /// A prism of three struts at the twist at which prestress alone holds it: 150 degrees. `turn_rad`
-/// is a deviation from it; then the prism rotates back, and its side cables, shortest at 150
-/// degrees, are too long.
+/// deviates from this twist; then the prism rotates back, and its side cables, which are shortest
+/// at 150 degrees, are too long.
 inline constexpr const char* kPrism = R"(taut: 1
 kind: model
 name: prism

@@ -1,6 +1,6 @@
 // SIMD numbers: each lane equals the scalar operation, to the bit, also for NaN, signed zeros and
-// infinities. Two lanes are the processor's registers; four, without flags for wider registers, are
-// the compiler's vectors, as used on processors without a separate source file.
+// infinities. Two lanes use the processor's registers. Four lanes, compiled without flags for wider
+// registers, use the compiler's vectors, as on processors without a separate source file.
 #include "simd/wide.h"
 
 #include <gtest/gtest.h>
