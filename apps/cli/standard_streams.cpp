@@ -41,7 +41,7 @@ ssize_t Put(void* cookie, const char* text, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
-/// Replaces a stream by a guarded one. `mode`: as of setvbuf. If memory is short, the old stream
+/// Replaces a stream by a guarded one. `mode`: as for setvbuf. If memory is short, the old stream
 /// stays.
 void Guard(std::FILE*& file, Stream& stream, int mode) {
   std::FILE* const guarded = fopencookie(&stream, "w", {nullptr, Put, nullptr, nullptr});

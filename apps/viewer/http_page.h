@@ -13,8 +13,8 @@ using HttpResponse = http::response<http::string_body>;
 
 enum class Access { kNone, kWatch, kDrive };
 
-/// Returns the rights of a request: from its token, if it addresses this machine and no other
-/// site's page sent it.
+/// Returns the rights that the token of a request grants; none if the request addresses another
+/// host or comes from another site's page.
 Access AccessOf(const HttpRequest& request, const ServerOptions& options);
 
 HttpResponse Refusal(const HttpRequest& request, http::status status, const std::string& text);

@@ -6,7 +6,7 @@
 namespace taut::viewer {
 namespace {
 
-/// Largest lag of a run behind the wall clock that is still caught up [s].
+/// Largest lag behind the wall clock that a run catches up [s].
 constexpr double kMaxBehindS = 0.1;
 constexpr std::chrono::milliseconds kMeasuredFor{500};
 /// Effectively infinite, yet within the range of the clock's type.

@@ -57,8 +57,8 @@ void AppendNumbers(const std::vector<double>& numbers, std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
 }
 
-/// Returns the Rows of web/protocol/messages.json: all rows of the plotted channels if they have at
-/// most `max_numbers` numbers, else the smallest blocks within this limit.
+/// Returns the Rows of web/protocol/messages.json: all rows of the plotted channels, or, above
+/// `max_numbers` numbers, the smallest blocks of rows within this limit.
 Json RowsOf(const Recorded& recorded, const Trace& trace, int source, std::size_t max_numbers) {
   const std::vector<ChannelInfo> channels = Plotted(trace.channels);
   const std::size_t rows = trace.time_s.size();

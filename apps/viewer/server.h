@@ -34,8 +34,8 @@ struct ServerOptions {
   std::size_t max_http = 256;
   /// Timeouts for receiving a request (also the next on its socket) and for sending an answer.
   std::chrono::milliseconds request_patience{10'000}, answer_patience{60'000};
-  /// Amount of unsent text at which a page's connection is closed, because the page is gone or too
-  /// slow. Frames do not count, since only the newest one waits.
+  /// Amount of unsent text at which a connection is closed, because its page does not read or is
+  /// too slow. Frames do not count, since only the newest one waits.
   std::size_t max_unread_bytes = 64 << 20;
 };
 
@@ -44,8 +44,8 @@ class Server {
   Server(Session& session, WebFiles files, const ServerOptions& options);
   ~Server();
 
-  /// Binds the port; from then on signals end `Run`, even if they arrive before it. Returns false
-  /// if the port is in use (`error` contains a free one) or on another error.
+  /// Binds the port. After this call, signals end `Run`, even if they arrive before it starts.
+  /// Returns false if the port is in use (`error` contains a free one) or on another error.
   bool Listen(std::string& error);
   std::uint16_t port() const;  ///< The bound port.
 

@@ -1,5 +1,5 @@
-/// ATmega328P on libsimavr 1.6, with corrections of its errors, which
-/// docs/hardware/virtual_robot.md explains.
+/// ATmega328P on libsimavr 1.6, with corrections of simavr's errors
+/// (docs/hardware/virtual_robot.md).
 #pragma once
 
 #include <array>
@@ -38,7 +38,7 @@ class AvrCore {
   std::uint64_t cycle() const;
   /// Runs until `cycle`, or a few cycles beyond, at the end of an instruction.
   void RunUntil(std::uint64_t cycle);
-  /// Resets the core. `power_on`: its memory is lost.
+  /// Resets the core. `power_on`: the memory is lost.
   void Reset(std::uint8_t cause, bool power_on);
   /// Puts the core into an endless loop with interrupts off.
   void Hang();

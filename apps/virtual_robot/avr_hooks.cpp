@@ -83,7 +83,7 @@ avr_cycle_count_t AvrCore::Hooks::Pins(avr_t* avr, avr_cycle_count_t /*when*/, v
   const PinLevel level = core.levels_.front();
   core.levels_.pop_front();
   core.SetPin(level.port, level.bit, level.high);
-  // The core's flags would merge two edges in the same cycle; simavr also requires a later time.
+  // One edge per cycle: the core's flags would merge two edges, and simavr requires a later time.
   if (core.levels_.empty()) return 0;
   return std::max<avr_cycle_count_t>(core.levels_.front().cycle, avr->cycle + 1);
 }

@@ -207,7 +207,7 @@ int RunInRealTime(const Arguments& arguments, MotorPlant& plant, Robot& robot, c
     if (truth) truth->Step(now);
   };
   robot.AdvanceTo(kBegun);  // a reader of the path may talk to the boards at once
-  // fputs does not throw: a reader that has gone is no reason to end without cleanup.
+  // fputs does not throw: if the reader of the output has ended, the program must still clean up.
   PacedOptions paced;
   paced.link = arguments.link;
   paced.slip_s = arguments.slip_s;

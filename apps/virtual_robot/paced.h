@@ -17,7 +17,7 @@ struct PacedOptions {
   std::function<void(double late_s)> on_late;
   double late_s = 0.05;
   /// Largest lag that the emulation catches up; the robot's time skips the rest. A driver on the
-  /// same busy machine would be too late for boards that catch up fast.
+  /// same busy machine would be too slow for boards that catch up more.
   double slip_s = 1;
 };
 

@@ -58,8 +58,8 @@ void TwiSlave::Schedule(const BusEvent& event) {
   if (at > avr_.cycle) {
     avr_cycle_timer_register(&avr_, at - avr_.cycle, Fire, this);
   } else {
-    // Within the cycle or instruction that the core has ended: it may not run again before the bus
-    // reads the state.
+    // The event falls into a cycle or instruction that the core has completed. It is handled at
+    // once, because the core may not run again before the bus reads the state.
     pending_ = false;
     Handle(event);
   }

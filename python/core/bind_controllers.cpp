@@ -40,7 +40,7 @@ double PeriodOf(double period_s) {
       fmt::format("period_s: {}; expected a number >= {} [s]", period_s, kLeastPeriodS));
 }
 
-/// Returns one number per cable: of an array, or the same one for all.
+/// Returns one number per cable, from an array or a single number for all.
 std::vector<double> PerCable(const py::object& given, std::size_t count, const char* what,
                              bool may_be_negative) {
   const auto size = static_cast<py::ssize_t>(count);

@@ -153,8 +153,9 @@ class Environments : public OwnedWorlds<Env> {
   }
 
  private:
-  /// Calls f(rows, observations), or `judge` with five arguments, with copies, which callers may
-  /// keep; copies writable arrays back. Exceptions of f are raised by the call that led to it.
+  /// Calls f(rows, observations), or `judge` with five arguments, with copies of the arrays, which
+  /// callbacks may keep. Copies writable arrays back. Exceptions of f are raised by the call that
+  /// led to it.
   void Call(const py::object& f, const EnvView& view, bool judges) {
     const Acquired mine;
     if (raised_) return;

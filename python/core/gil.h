@@ -9,7 +9,7 @@
 
 namespace taut::python {
 
-/// Shutdown of a program whose daemon threads still compute. They use static variables and the
+/// Shutdown of a program while its daemon threads compute. They use static variables and the
 /// interpreter, which are then destroyed. Therefore Python's atexit calls EndOfProgram::Begin(),
 /// which waits for these threads; each of them sleeps as soon as it next releases or takes the GIL.
 class EndOfProgram {
@@ -34,7 +34,7 @@ class EndOfProgram {
   static void Begin();
 };
 
-/// Returns f(), which calls C functions of Python and makes no objects with destructors. Up to 3.13
+/// Returns f(); f calls C functions of Python and makes no objects with destructors. Up to 3.13
 /// CPython ends a thread by pthread_exit() if it requests the lock while the interpreter ends. This
 /// unwinds the stack, through destructors that are noexcept or need the lock. Such a thread sleeps
 /// instead, as it does from 3.14 on.

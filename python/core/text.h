@@ -98,8 +98,7 @@ Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, con
 Array Finite(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what);
 
 /// Raises ValueError, with the actual and the expected properties, unless `given` is a contiguous
-/// array of exactly this kind and shape, and writeable if it is to be `written`. `what`: the
-/// argument's name.
+/// array of exactly this type and shape, and writeable if `written`. `what`: the argument's name.
 void CheckArray(const py::object& given, const py::dtype& kind,
                 const std::vector<py::ssize_t>& shape, const char* what, bool written);
 

@@ -104,7 +104,7 @@ TEST(Board, RefusesAReferenceThatAFloatDoesNotHave) {
   EXPECT_EQ(bench.board.loops[0].counts, -kMostReference);
 }
 
-// Occurs with `winding_counts_per_count` at the end of its range and an encoder that jumps.
+// Such a tension results from the maximum of `winding_counts_per_count` and a jump of the encoder.
 TEST(Board, ReportsATensionThatHasNoPlaceInAFrameAsTheMost) {
   Bench bench;
   for (const float counts : {1100.0f, 17000.0f, 3e5f}) {

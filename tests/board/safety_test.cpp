@@ -36,7 +36,7 @@ TEST(Board, HoldsAfter100MsOfSilenceUntilItIsCleared) {
   const double here_m = bench.motors[0].wound_m;
   bench.Silence(2000);
   EXPECT_NEAR(bench.motors[0].wound_m, here_m, 2e-3) << "it ran at 7 cm/s";
-  bench.Run(200);  // the PC is back, and still commands position control
+  bench.Run(200);  // the PC sends again, and commands position control as before
   EXPECT_EQ(bench.board.mode, Mode::kHold);
   bench.say.mode = Mode::kHold;
   bench.say.clear_faults = true;

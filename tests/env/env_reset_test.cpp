@@ -185,7 +185,7 @@ TEST(EnvReset, AStartThatIsNoneIsSaidAndTheWorldGoesOn) {
     EXPECT_NE(env->Hash(0), 0u);
   }
   EXPECT_EQ(refused, 1) << hash;
-  for (int step = 0; step < 40; ++step) arrays.Step(*env);  // episodes still continue
+  for (int step = 0; step < 40; ++step) arrays.Step(*env);  // no episode ends
   EXPECT_TRUE(arrays.AllFinite());
 }
 

@@ -177,7 +177,7 @@ TEST(ShapeMesh, EveryShippedModelIsClosedAndItsStlIsToo) {
     ASSERT_TRUE(read) << found.Format();
     EXPECT_EQ(read->triangles.size(), triangles);
     EXPECT_NEAR(math::SixVolumes(read->corners, read->triangles) / 6, 1e9 * volume, 1e4 * volume);
-    // With equal corners merged, every edge still has two triangles.
+    // After merging equal corners, every edge belongs to two triangles.
     const auto faults = math::FindFaults(read->corners, read->triangles, true, 10);
     EXPECT_TRUE(faults.empty()) << file.path() << ": " << faults.size();
   }

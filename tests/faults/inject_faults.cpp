@@ -122,7 +122,7 @@ bool Fails(Kind kind, const char* call, std::FILE* stream) {
   return stream != nullptr && Fails(kind, call, fileno(stream));
 }
 
-/// Fails a write. If the process is to be killed, the first half is written before.
+/// Fails a write. To kill the process, first writes half of the bytes.
 template <class Half>
 ssize_t FailedWrite(const Half& write_half) {
   if (by_kill) {

@@ -85,7 +85,7 @@ class FakeBoard {
 
   board::Board core;
   board::BenchMotor motors[board::kMotors];
-  bool there = true;            ///< On the bus, and with power.
+  bool there = true;            ///< Connected to the bus and powered.
   bool deaf = false;            ///< Ignores broadcasts.
   bool mute = false;            ///< Ignores requests.
   bool always_replies = false;  ///< Repeats the same reply forever.

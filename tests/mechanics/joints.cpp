@@ -209,9 +209,8 @@ void Nets(Report& report) {
             {1e-5, 1e-8, 1e-5, false});
 }
 
-/// Returns a cardan joint: two shafts whose axes differ by `angle_rad` and a cross, each of its
-/// arms on two hinges. 30 rows act on 3 bodies with one degree of freedom: 13 of them are
-/// redundant.
+/// Returns a cardan joint: two shafts whose axes differ by `angle_rad`, and a cross with two hinges
+/// on each arm. 30 rows act on 3 bodies with one degree of freedom: 13 of them are redundant.
 ModelDef CardanJoint(double angle_rad, double spin_rad_per_s) {
   ModelDef def;
   def.gravity_m_per_s2 = {};

@@ -277,8 +277,8 @@ TEST(MjcfExport, ShapesMeetWhatTheyMeetInTaut) {
   EXPECT_FALSE(Meet(on_ground, "segment_0.right", "segment_1.left"));
 }
 
-/// Returns MuJoCo's friction of two geoms: the value of a pair, else of the higher priority, else
-/// the larger.
+/// Returns MuJoCo's friction of two geoms: of their contact pair, else of the geom with the higher
+/// priority, else the larger value.
 double Theirs(MujocoModel& m, const std::string& one, const std::string& two) {
   const int a = m.Id(mjOBJ_GEOM, one), b = m.Id(mjOBJ_GEOM, two);
   for (int i = 0; i < m.model().npair; ++i) {

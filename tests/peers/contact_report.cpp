@@ -39,7 +39,7 @@ class Ours final : public World {
   WorldBatch batch_;
 };
 
-/// Runs the same for every engine and setting, by name.
+/// Runs a test on every engine and setting; returns the results by name.
 json Each(const ModelDef& def, const std::function<json(World&)>& run) {
   json out = json::object();
   Ours ours(def);

@@ -27,7 +27,7 @@ class ContactOf : public EngineTest {
 
 TEST_P(ContactOf, SlidingStopsAsCoulombSaysAlongAnAxis) {
   // Moving by the velocity before or after the step differs by half a step's travel; MuJoCo's soft
-  // contact yields by less than that.
+  // contact changes the distance by less than that.
   EXPECT_NEAR(WayOf(0), 1 / (2 * 0.5 * 9.81), kStepS);
 }
 

@@ -1,4 +1,5 @@
-/// Base of tests of one engine with one of its settings; skipped where the engine is not built in.
+/// Base class of tests of one engine with one of its settings; skipped if the build lacks the
+/// engine.
 #pragma once
 
 #include <gtest/gtest.h>

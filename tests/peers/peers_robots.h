@@ -53,8 +53,8 @@ inline ModelDef Swinging(ModelDef def, double speed_m_per_s, double spin_rad_per
   return def;
 }
 
-/// Returns the model held by two of its nodes between ceiling and floor, with the moon's gravity:
-/// with the earth's, some cables of these robots go slack.
+/// Returns the model held by two of its nodes between ceiling and floor, with lunar gravity: under
+/// terrestrial gravity, some cables of these robots go slack.
 inline ModelDef Moored(ModelDef def) {
   def.gravity_m_per_s2 = {0, 0, -1.62};
   double mass_kg = 0;

@@ -190,7 +190,7 @@ TEST(Actuator, NeverWindsPastItsForce) {
         ASSERT_LE(world.Cable(0, 0).tension_n, force + RoundOff(1, 1000)) << h;
       }
       EXPECT_NEAR(world.Cable(0, 0).tension_n, force, 1e-9 * force) << h;
-      // The target is kept: with a higher stiffness the force would be reached with less winding.
+      // The target stays the same although a stiffer cable would reach the force with less winding.
       EXPECT_EQ(world.RestLengthTarget(0, 0), 0.1);
     }
   }

@@ -1,5 +1,5 @@
 // Friction, springs and dampers of ball joints against closed forms (docs/theory/joints.md, section
-// 5). They act equally about every axis, whatever the direction of the joint's axis.
+// 5). They act equally about all axes, for any direction of the joint's axis.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -207,8 +207,8 @@ TEST(BallTurn, WhatFrictionTakesIsItsTorqueTimesTheTurn) {
     EXPECT_EQ(world.Status(0).bits, kStatusOk);
     EXPECT_GT(taken, 2);
     off[k] = std::fabs(EnergyOf(world) - start + taken);
-    // Closing the joint's gap moves the rod in all by h^2 / 8 times the change of its centripetal
-    // acceleration, which is below 3 g, its value at the bottom of a free fall from upright.
+    // Closing the joint's gap moves the rod by h^2 / 8 times the change of its centripetal
+    // acceleration. This change is below 3 g, the value at the bottom of a free fall from upright.
     EXPECT_LT(off[k], h * h / 8 * 3 * kG * kG);
   }
   EXPECT_NEAR(off[0] / off[1], 4, 0.5);

@@ -131,7 +131,7 @@ TEST(Capstan, AFreePulleyTurnsWithTheCable) {
 }
 
 TEST(Capstan, OverThreeQuartersOfATurn) {
-  // The ball on the right pulls down and the tension at the other end up to the slip limit.
+  // The cable slips over the wheel: the ratio of its two tensions is at the slip limit.
   ModelDef def;
   const Vec3 p{-0.5, 0, -0.1}, q{-0.1, 0, -0.4};
   def.bodies = {CapstanBall(1, q)};

@@ -165,8 +165,8 @@ TEST(Friction, ASliderStopsAfterVSquaredOverTwoMuG) {
 }
 
 TEST(Friction, ASledStopsAfterTheSameDistanceInEveryDirection) {
-  // With the exact cone and with friction along the contact-free slip: on a sled that does not
-  // rotate, all balls slip in the same direction, so the two laws agree.
+  // Exact cone, and friction along the contact-free slip: on a sled that does not rotate, all balls
+  // slip in the same direction, so that both laws agree.
   const double v = 1, mu = 0.4, h = 1e-3;
   for (const FrictionLaw law : {FrictionLaw::kCone, FrictionLaw::kAlongSlip}) {
     for (int direction = 0; direction < 8; ++direction) {
@@ -185,9 +185,9 @@ TEST(Friction, ASledStopsAfterTheSameDistanceInEveryDirection) {
 }
 
 TEST(Friction, ASlidingSledPushedAsideTurnsItsWayAsTheConeSays) {
-  // Friction opposes the velocity, whatever the applied force: for a point with a force f across,
-  // the scheme gives v' = v_free (1 - mu g h / |v_free|). Separate friction along each axis would
-  // not.
+  // Friction opposes the velocity for any applied force. For a point with a force f across its
+  // path, the scheme gives v' = v_free (1 - mu g h / |v_free|). Separate friction along each axis
+  // would give another result.
   const double mu = 0.4, h = 1e-3, push = 2.0;  // [m/s^2]
   WorldBatch world = MakeBatch(Sled(0, mu, mu));
   world.SetParameter(0, Parameter::kGravityY, 0, push);

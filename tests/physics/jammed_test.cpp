@@ -7,8 +7,8 @@ namespace taut::test {
 namespace {
 
 TEST(Jammed, ABallThatWedgesInASledTakesBoundedWorkAndComesFree) {
-  // This start shoots a ball between two runners of the sled to which a stiff cable ties it. Then
-  // any squeeze force satisfies the contact laws.
+  // With this start, a ball on a stiff cable is shot between two runners of the sled and jams
+  // there. Then any squeeze force satisfies the contact laws.
   WorldBatch world = MakeBatch(scenes::Jumble().Def());
   Scatter(world, 0, 8);
   double energy_j = EnergyOf(world);

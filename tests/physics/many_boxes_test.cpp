@@ -116,7 +116,7 @@ TEST(ManyBoxes, GiveTheBitsOfAsManyFixedBodies) {
     }
     for (int body = 0; body < moving; ++body) ExpectTheSameBits(looked_up, each, body);
     EXPECT_EQ(looked_up.Status(0).bits, each.Status(0).bits);
-    EXPECT_GT(touched.size(), 15u);  // so that the field was used
+    EXPECT_GT(touched.size(), 15u);  // the bodies touched many boxes
   }
 }
 

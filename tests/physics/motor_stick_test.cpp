@@ -11,8 +11,9 @@ namespace {
 double RotorSpeed(const WorldBatch& world) { return world.Motor(0, 0).rotor_speed_rad_per_s; }
 double Angle(const WorldBatch& world) { return world.Motor(0, 0).rotor_angle_rad; }
 
-// A motor that holds is a fixed end for any motion of the weight: the same bits as without a motor,
-// also with a rotor so light that the cable would be affected by its rotation.
+// A motor that holds is a fixed end for any motion of the weight: the result is bit-identical to a
+// cable without a motor. This also holds for a rotor so light that its rotation would affect the
+// cable.
 TEST(MotorStick, AMotorThatHoldsIsAFixedEnd) {
   DcMotorDef motor;
   motor.gear_ratio = 2;

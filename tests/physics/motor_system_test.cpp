@@ -119,8 +119,8 @@ TEST(MotorHeat, FollowsTheTwoBodiesOfTheDataSheet) {
   EXPECT_NEAR(copper.Motor(0, 0).winding_temperature_c - 22, rise, 1e-6 * rise);
 }
 
-// With a slack cable the rotor crosses the backlash while the spool stands, in both directions;
-// with a taut cable there is none.
+// With a slack cable, the rotor crosses the backlash in both directions before the spool moves;
+// with a taut cable there is no backlash.
 TEST(MotorBacklash, IsFeltWhereTheCableIsSlack) {
   DcMotorDef motor;
   motor.backlash_rad = 0.1;
@@ -289,8 +289,8 @@ std::vector<double> EndOfARun(double h, double stiffness, double damping, double
           m.energy_from_supply_j};
 }
 
-// The error of a step shrinks at least in proportion to the step: stops and starts within a step
-// and the servo's saturation are of first order, all else of second.
+// The error shrinks at least in proportion to the step. Stops and starts within a step and the
+// servo's saturation are of first order, all else of second.
 TEST(MotorStep, ConvergesWithTheStep) {
   for (const double stiffness : {227.0, 1e4, 1e5}) {
     const double damping = 0.4 * std::sqrt(stiffness * 0.8);

@@ -182,9 +182,9 @@ TEST(Reference, TheFreeCrossBarOfClass1MovesAsInMotes) {
 }
 
 TEST(Reference, BarsOfClassKMoveAsInMotes) {
-  // A bar pinned at its end, with 10 rad/s at the start and a force on its tip; four bars in a
-  // closed square, one corner pinned, with two strings across: some of its joints' rows are
-  // redundant.
+  // Two structures: a bar pinned at its end, with 10 rad/s at the start and a force on its tip; and
+  // a closed square of four bars, with a pinned corner, two strings across and redundant joint
+  // rows.
   for (const char* name : {"motes_dyn_pendulum_classK", "motes_dyn_Dbar_classK"}) {
     const auto run = Reference(name);
     if (!run) GTEST_SKIP() << "no structural reference: set TAUT_REFERENCE";

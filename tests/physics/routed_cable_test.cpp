@@ -64,7 +64,7 @@ TEST(RoutedCable, AMassOnACableHangsWhereTheAnglesAreEqualBetweenEyeletsOfDiffer
   HangsStill(0.6, -0.7);
 }
 
-/// 1.0 m of cable, supports 0.8 m apart: 3-4-5 triangles, whatever their heights.
+/// 1.0 m of cable between supports 0.8 m apart: 3-4-5 triangles at any heights.
 TEST(RoutedCable, AHeavyRingHangsOnOneMetreOfCable) {
   const double k = 1e6, tension = 9.81 / (2 * 0.6);
   EXPECT_NEAR(tension, 8.175, 1e-12);
@@ -162,7 +162,7 @@ TEST(RoutedCable, ABeadOnATautCableSlidesFreely) {
   WorldBatch world = MakeBatch(def);
   for (int n = 1; n <= 1000; ++n) {
     world.Step(1e-3);
-    // Unit vectors are rounded: by that share of T h / m = 1 m/s a step.
+    // Rounding of unit vectors changes T h / m = 1 m/s per step by the same share.
     ASSERT_NEAR(world.Body(0, 0).velocity_m_per_s.x, 0.5, RoundOff(n, 1));
     ASSERT_NEAR(world.Cable(0, 0).tension_n, 100, RoundOff(n, 1000));
   }

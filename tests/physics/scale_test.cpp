@@ -1,4 +1,4 @@
-/// Scale invariance: a robot and its scale model by Froude's rules behave alike, so no constant of
+/// Scale invariance: a robot and a scale model by Froude's rules behave alike. Hence no constant of
 /// the step has the dimension of a length or a speed.
 
 #include <gtest/gtest.h>

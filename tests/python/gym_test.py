@@ -1,4 +1,4 @@
-"""taut.gym: Gymnasium's contract in tests, bits equal to the command's, and Gymnasium's checker if it is installed"""
+"""taut.gym: tests of Gymnasium's contract, bitwise equality with the command, Gymnasium's checker if it is installed"""
 
 import math
 import os

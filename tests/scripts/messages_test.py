@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""script/messages.py writes every text of a message whole.
+"""Checks that script/messages.py writes the complete texts of messages.
 
 Usage: messages_test.py
 """

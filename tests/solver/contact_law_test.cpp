@@ -183,7 +183,7 @@ TEST(ContactLaw, DerivativesEqualDifferences) {
     for (double& x : s.u) x += random.Uniform(-0.05, 0.05);
     for (const double e : {1.0, 1e-2}) checked[which] += CheckDerivative(c, s.u, s.l, e);
     if (which != kOpen) return;
-    // open and not slipping: no friction to be expected
+    // open and not slipping: friction is 0
     s.u[1] = -c.bias[1][0], s.u[2] = -c.bias[2][0];
     EXPECT_TRUE(CheckDerivative(c, s.u, s.l, 1.0));
   });

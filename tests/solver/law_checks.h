@@ -1,5 +1,4 @@
-/// Checks that every constraint law must pass, whatever its kind (sim/constraint/links.h,
-/// ConstraintLaw). A kind provides
+/// Checks for constraint laws of all kinds (sim/constraint/links.h, ConstraintLaw). A kind provides
 ///   Violation(law, u, l): distance of u and l from the law as stated in theory
 ///   NewtonFunction(law, u, l, center, e): function whose root Newton's method finds; row by row a
 ///   velocity where the scale matters, that is, multiplied by the law's inverse mass
@@ -102,7 +101,7 @@ void ExpectSolution(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l) 
   EXPECT_LT(Largest(NewtonFunction(law, u, l, l, 0.0)), 2e-14);
 }
 
-/// Checks that values far from the law change, and by more the harder the law is.
+/// Checks that values that violate the law change, and change more under a harder law.
 template <class Law>
 void ExpectNoSolution(const Law& law, const RowsOf<Law>& u, const RowsOf<Law>& l) {
   ASSERT_GT(Violation(law, u, l), 1e-4) << "the test's own instance";

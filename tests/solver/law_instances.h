@@ -30,7 +30,7 @@ inline void AddVector(const Vec3& v, std::vector<double>& out) {
   out.insert(out.end(), {v.x, v.y, v.z});
 }
 
-/// Returns a contact in the numbers that ReadContact takes.
+/// Returns the numbers of a contact in the format of ReadContact.
 inline std::vector<double> RandomContactNumbers(math::Random& random, double max_mu) {
   std::vector<double> out = {1, random.Uniform(0.1, max_mu)};
   for (const double x : RandomRows<3>(random, 0.5)) out.push_back(x);
@@ -43,8 +43,8 @@ inline std::vector<double> RandomContactNumbers(math::Random& random, double max
   }
   return out;
 }
-/// Returns a cable in the numbers that ReadCable takes. Half of the cables have no damper, and half
-/// no limit.
+/// Returns the numbers of a cable in the format of ReadCable. Half of the cables have no damper,
+/// and half no limit.
 inline std::vector<double> RandomCableNumbers(math::Random& random) {
   const double start = random.Uniform(-1, 1), end = random.Uniform(-1, 1);
   const double spring = random.Uniform(0.1, 1), damper = random.Uniform(-1, 1);

@@ -1,4 +1,4 @@
-// Laws in SIMD lanes give the same bits as in a single lane, whatever the other lanes hold.
+// Laws in SIMD lanes give the same bits as in a single lane, for any contents of the other lanes.
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -11,7 +11,7 @@ namespace {
 
 using List = std::vector<Num>;
 
-/// A change of an island's inputs, or the resulting change of its solution, or a gradient.
+/// A change of an island's inputs, the resulting change of its solution, or a gradient.
 struct Change {
   List v, rows;  ///< 6 per unknown; 1 per row.
 };

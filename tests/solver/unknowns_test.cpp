@@ -53,7 +53,7 @@ ReferenceEquations Equations(const Machine& machine, bool slides, const double (
         for (int c = 0; c < island.bodies[link.body].size; ++c) {
           const int column = out.first[At(link.body)];
           if (column < 0) {
-            out.b[at] -= j[c][0] * free[c][0];  // prescribed velocity: goes to the right-hand side
+            out.b[at] -= j[c][0] * free[c][0];  // known: right-hand side
           } else {
             out.a[at][At(column + c)] += j[c][0];
             out.a[At(column + c)][at] -= j[c][0];

@@ -115,7 +115,8 @@ TEST(Push, NtrtExperimentHasItsLaws) {
                      0.075);
   }
   for (const CableDef& cable : def.cables) EXPECT_EQ(cable.damping_law, DampingLaw::kClamped);
-  // Segment 0 in NTRT: Ixx 106.32264 kg cm^2 about its x, taut's y; mass and size are float there.
+  // Segment 0 in NTRT: Ixx 106.32264 kg cm^2 about its x, taut's y. NTRT stores mass and size as
+  // float.
   EXPECT_NEAR(def.bodies[0].inertia_kg_m2.yy, 106.32264e-4, 1e-8);
   ASSERT_EQ(experiment.controllers.size(), 1u);
   const ImpedanceSpec& control = *experiment.controllers[0].impedance;

@@ -96,7 +96,7 @@ export interface ResumeMessage {
   type: "resume";
 }
 
-/** Pauses and advances by `count` rows of a trace or steps of a live run. Negative: back, in a live run by stored rows of its past. */
+/** Pauses and advances by `count` rows of a trace or steps of a live run. A negative count steps back; in a live run, through the stored past rows. */
 export interface StepMessage {
   type: "step";
   /** 1 if absent; -1000 to 1000. */

@@ -19,7 +19,7 @@ export interface Shape {
   center_m?: Vec3;
   /** rod, sphere */
   radius_m?: number;
-  /** rod: Euler's load, if its model has a cross section */
+  /** rod: Euler load, if the model defines the cross section */
   buckling_n?: number;
   /** box: along its axes */
   half_extents_m?: Vec3;

@@ -42,7 +42,7 @@ export function el<T extends HTMLElement = HTMLElement>(
   return element as T;
 }
 
-/** Attributes of a wide table's frame, which the keyboard can scroll. */
+/** Attributes that make the frame of a wide table scrollable by keyboard. */
 export const SCROLLS = { tabindex: 0, role: "region", "aria-label": "table, scrollable horizontally" } as const;
 
 /**

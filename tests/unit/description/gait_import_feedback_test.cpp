@@ -66,7 +66,7 @@ TEST_F(NtrtFeedback, NumbersAreScaledAndPlaced) {
   EXPECT_NEAR(cpg.frequency_gain_hz_per_s, 4.75 / (2 * std::numbers::pi), 1e-12);  // -0.5..10
   EXPECT_NEAR(cpg.amplitude_gain, 200.0 / 75.0, 1e-12);
   EXPECT_NEAR(cpg.phase_gain_rad_per_s, 2.89, 1e-12);  // -0.5..6.28
-  EXPECT_EQ(cpg.groups.front().name, "rp0.0.0");       // from the last edge
+  EXPECT_EQ(cpg.groups.front().name, "rp0.0.0");       // this group has the weight of the last edge
   EXPECT_NEAR(cpg.groups.front().weight, 99.0, 1e-12);
   EXPECT_NEAR(cpg.groups[99].phase_rad, std::numbers::pi / 2, 1e-12);
   // A bias is a neuron with the output -1.

@@ -93,7 +93,7 @@ TEST(YamlTree, NoTextHasControlCharacters) {
             "f.yaml:1:5: error: the control character 27" + hint);
   EXPECT_EQ(ParseErrors(std::string("a: 1\nb: x\0y\n", 12)),
             "f.yaml:2:5: error: the control character 0" + hint);
-  // yaml-cpp would treat it as the end of the file, and `b` as absent.
+  // yaml-cpp would treat the character as the end of the file and ignore `b`.
   EXPECT_EQ(ParseErrors("a: 1\n\x04\nb: 2\n"), "f.yaml:2:1: error: the control character 4" + hint);
   EXPECT_EQ(ParseErrors("a: \"b\\tc\\n\"\r\n"), "");
 }

@@ -46,8 +46,8 @@ TEST(FitDetails, StartsAreDrawnFromThePriorCutOffAtItsBounds) {
     mean += (x - 5) / 0.5 / draws;
     square += (x - 5) / 0.5 * ((x - 5) / 0.5) / draws;
   }
-  // Of a normal distribution truncated at -1/2: mean phi / Phi = 0.35207 / 0.69146, mean square 1 -
-  // 1/2 of that.
+  // Normal distribution truncated at -1/2: mean phi / Phi = 0.35207 / 0.69146, mean square 1 - mean
+  // / 2.
   EXPECT_NEAR(mean, 0.50916, 4 * 0.7 / std::sqrt(draws));
   EXPECT_NEAR(square, 1 - 0.5 * 0.50916, 4 * 1.1 / std::sqrt(draws));
 }

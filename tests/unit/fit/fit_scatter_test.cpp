@@ -34,7 +34,8 @@ FitProblem Mean(std::uint64_t seed, std::size_t groups, std::size_t each, double
 FitVerdict Judged(const FitProblem& problem) { return JudgeFit(problem, Fit(problem, {}), {}); }
 
 TEST(FitScatter, ANumberThatGroupsDisagreeAboutIsNotEstimated) {
-  // J^T J: 1 / sqrt(400) = 0.05. From groups about 0.5 / sqrt(8) = 0.18, with a scale of 0.2.
+  // Standard error from J^T J: 1 / sqrt(400) = 0.05. From groups: about 0.5 / sqrt(8) = 0.18, with
+  // a scale of 0.2.
   const FitVerdict verdict = Judged(Mean(1, 8, 50, 0.5, 0.2));
   const ParameterVerdict& m = verdict.identifiability.parameters[0];
   EXPECT_NEAR(m.se, 0.05, 1e-9);

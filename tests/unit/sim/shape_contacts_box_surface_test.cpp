@@ -146,8 +146,8 @@ void ExpectLeastGaps(const Def& def, unsigned seed, int boxes) {
     EXPECT_LE(clear, distance) << seed << " " << i;
     EXPECT_EQ(DistanceUpTo(box, SurfaceShape{&ground.table()}, 0.0), 0.0);
     ++near;
-    // Moved by the same distance again and slightly into each other: the direction out is the same,
-    // unless the nearest feature was a corner next to an edge.
+    // After a further move by the same distance, the box slightly penetrates. The direction out is
+    // the same, unless the nearest feature was a corner next to an edge.
     const TouchPoint& last = *std::min_element(
         points.begin(), points.end(),
         [](const TouchPoint& a, const TouchPoint& b) { return a.gap_m < b.gap_m; });
@@ -302,7 +302,8 @@ TEST(BoxOnSurface, ASheetHoldsABoxOnTheSideWhereItIs) {
 }
 
 TEST(BoxOnSurface, CornersPastTheBorderOfASheetAreFree) {
-  // The bottom is 0.1 mm above the border, and beyond it lower than the sheet.
+  // The box's bottom is 0.1 mm above the border of the sheet, and lower than the sheet beyond the
+  // border.
   const Surface sheet(Square(1));
   for (const double angle : {0.02, 0.1, 0.4}) {
     const Motion turned = Turn({0, 1, 0}, angle);

@@ -154,8 +154,8 @@ TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
       continue;
     }
     ++touching;
-    // Boxes have points at the planes of all their faces, hulls where a face begins: the carrying
-    // points are the same.
+    // Contact points of boxes are at the planes of all faces, those of hulls where a face begins.
+    // The points that carry load are the same.
     EXPECT_NEAR(Deepest(points).gap_m, Deepest(expected).gap_m, 1e-10) << i;
     for (const TouchPoint& p : points) {
       if (p.gap_m < 0.9e-2) {

@@ -79,7 +79,7 @@ TEST(NearestAlong, WhatIsFoundIsTheDistanceOfTheLineWhereItIsLeast) {
       const double bound = DistanceUpTo(rod, SurfaceShape{&field.table()}, 0.3);
       EXPECT_LE(bound, least);
       EXPECT_EQ(DistanceUpTo(rod, SurfaceShape{&field.table()}, 0.0), 0.0);
-      // Beyond a sixteenth of its size the distance is a bound only.
+      // Beyond a sixteenth of the rod's size, the distance is only a bound.
       const double near = (Length(b - a) + 1e-3) / 16;
       if (least - 1e-3 < near) {
         EXPECT_GE(bound, least - 1e-3 - 1e-5 - step_m);

@@ -1,4 +1,4 @@
-// Use of the struts' limits: largest compression over Euler's load.
+// Utilization of struts:
 import type { Body, Scene, Shape } from "../protocol";
 
 export interface StrutUse {

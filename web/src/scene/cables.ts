@@ -18,7 +18,7 @@ const THICKEST = 0.5;
 const MOST = 0.85;
 const FLOOR_PX = 1.25;
 const MARKED_PX = 2;
-/** Diameter in place of the struts', relative to the robot's size, if there are none. */
+/** Reference diameter of a robot without struts, relative to the robot's size. */
 const WITHOUT_STRUTS = 0.012;
 
 export class Cables implements Part {

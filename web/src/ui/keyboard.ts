@@ -9,7 +9,7 @@ export interface Key {
   keys: string[];
   shown: string;
   does: string;
-  /** Changes the time, which a robot does not allow. */
+  /** Whether the key changes the displayed time, which a robot does not allow. */
   time?: true;
   act(event: KeyboardEvent): void;
 }
