@@ -1,4 +1,5 @@
-// Masked steps: pausing some worlds changes neither their bits nor those of the stepping neighbors.
+// Masked steps: a pause of some worlds changes no bit, neither in these worlds nor in the stepping
+// neighbors.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -154,8 +154,8 @@ TEST(TouchHull, RodsTouchTheHullOfABoxAsTheBox) {
       continue;
     }
     ++touching;
-    // Contact points of boxes are at the planes of all faces, those of hulls where a face begins.
-    // The points that carry load are the same.
+    // Boxes have contact points at the planes of all faces, hulls only where a face begins. The
+    // points that carry load are the same.
     EXPECT_NEAR(Deepest(points).gap_m, Deepest(expected).gap_m, 1e-10) << i;
     for (const TouchPoint& p : points) {
       if (p.gap_m < 0.9e-2) {
