@@ -29,9 +29,9 @@ struct AnalyzeArguments {
   int modes = 10;
   bool tables = false, strict = false, backwards = false, form = false, linear = false;
   PoseArguments pose;
-  InverseArguments inverse;       ///< For `--inverse`; its `json` applies to all analyses.
-  FormArguments forms;            ///< For `--form`; its `out` also applies to shapes.
-  LinearArguments linear_system;  ///< For `--linear` and `--response`.
+  InverseArguments inverse;       ///< Arguments of `--inverse`; `json` applies to all analyses.
+  FormArguments forms;            ///< Arguments of `--form`; `out` also applies to shapes.
+  LinearArguments linear_system;  ///< Arguments of `--linear` and `--response`.
 };
 
 const std::map<std::string, HoldingCost> kCosts{{"force_density", HoldingCost::kForceDensity},

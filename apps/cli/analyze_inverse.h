@@ -18,7 +18,7 @@ struct InverseArguments {
   CableBounds bounds;  ///< Limits for every cable.
   bool json = false, tables = false;
   std::vector<std::string> again;  ///< Words of this command, for the suggested next command.
-  std::vector<double> calibration_rest_m;  ///< Per cable; empty: as in the file.
+  std::vector<double> calibration_rest_m;  ///< Rest length per cable [m]; empty: as in the file.
 };
 
 inline const char* HoldingCostName(HoldingCost cost) {

@@ -27,8 +27,8 @@ std::string RobotTables(const RobotSpec& robot);
 
 /// Integration of an experiment's cables at its longest step.
 struct CableIntegration {
-  std::vector<CableScheme> schemes;  ///< Of each cable.
-  int substeps = 1;                  ///< Of a step.
+  std::vector<CableScheme> schemes;  ///< Integration scheme of each cable.
+  int substeps = 1;                  ///< Number of substeps of a step.
 };
 CableIntegration IntegrationOf(const ExperimentSpec& experiment);
 

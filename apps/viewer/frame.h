@@ -26,7 +26,7 @@ struct Frame {
     Vec3 point_m, force_n;
   };
   struct Bend {
-    int cable = -1;  ///< Numbered after the cables of the scene.
+    int cable = -1;  ///< Index of the cable; cables of ghosts follow those in the scene.
     Vec3 point_m{kUnknown, kUnknown, kUnknown};
   };
 
@@ -43,7 +43,7 @@ struct Frame {
   int driver = 0;
   Energy energy{kUnknown, kUnknown, kUnknown};
   int run = 0;
-  double contact_count = 0;  ///< May be known without the contacts.
+  double contact_count = 0;  ///< Number of contacts; may be known although `contacts` is empty.
   std::vector<Body> bodies;
   std::vector<Cable> cables;
   std::vector<Contact> contacts;

@@ -89,14 +89,14 @@ class LiveSession final : public Session {
 
   LiveOptions options_;
   Restarts restarts_;
-  ExperimentSpec model_;       ///< Of a model: its experiment without weight and ground.
+  ExperimentSpec model_;       ///< For a model: experiment without weight and ground.
   Json statics_;               ///< Null until computed.
   ExperimentSpec experiment_;  ///< As read; `run_` may differ after manual changes.
   /// Initial values of the files' parameters, which determine the ranges of sliders.
   std::map<std::string, double> given_;
   std::unique_ptr<LiveRun> run_;
   std::unique_ptr<LiveRecorder> recording_;
-  std::vector<bool> has_set_point_;  ///< Per cable: under impedance control.
+  std::vector<bool> has_set_point_;  ///< Whether each cable is under impedance control.
   std::optional<History> history_;
   std::optional<std::size_t> past_row_;  ///< Displayed row; nothing: the present.
   Frame moment_;                         ///< Reused, to reduce allocations.

@@ -11,7 +11,7 @@ namespace taut::viewer {
 /// Blocks of `level` rows each; see SeriesData in web/protocol/messages.json.
 struct Series {
   std::size_t level = 1;
-  std::vector<double> time_s, first;  ///< For the first row of each block.
+  std::vector<double> time_s, first;  ///< Times and values of the blocks' first rows.
   std::vector<double> min, max;
 };
 
@@ -29,7 +29,8 @@ class Pyramid {
 
  private:
   struct Block {
-    double min = std::numeric_limits<double>::infinity(), max = -min;  ///< Of an empty block.
+    double min = std::numeric_limits<double>::infinity(), max = -min;  ///< Initial values for an
+                                                                       ///< empty block.
     void Take(const Block& other);
   };
   static Block Row(double value);

@@ -113,8 +113,10 @@ class Recorded {
   std::vector<ContactColumns> contacts_;
   const std::vector<double>* energy_[3] = {};
   const std::vector<double>* contact_count_ = nullptr;
-  mutable std::map<std::size_t, Pyramid> pyramids_;         ///< By channel; created on demand.
-  mutable std::map<std::string, NodeColumn> node_columns_;  ///< Created on demand.
+  mutable std::map<std::size_t, Pyramid> pyramids_;         ///< Pyramid of each channel, created on
+                                                            ///< demand.
+  mutable std::map<std::string, NodeColumn> node_columns_;  ///< Coordinates of nodes, created on
+                                                            ///< demand.
 };
 
 }  // namespace taut::viewer

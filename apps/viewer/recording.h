@@ -60,7 +60,7 @@ class Recording final : public LiveRecorder {
   int part_ = 1;
   std::unique_ptr<TraceWriter> writer_;
   std::unique_ptr<NewFile> events_;
-  FileIdentity identity_;  ///< Of the trace's file.
+  FileIdentity identity_;  ///< Identity of the trace's file.
   double rate_hz_ = 0, time_s_ = 0;
   std::int64_t rows_ = 0, event_count_ = 0;
   std::string failure_, resumed_;

@@ -35,7 +35,7 @@ class RobotRecorder {
 
 struct RobotSessionOptions {
   RobotSpec robot;
-  std::vector<std::string> cables;  ///< Per motor.
+  std::vector<std::string> cables;  ///< Cable of each motor.
   std::string port;
   std::string truth;        ///< Socket on which a virtual robot publishes its pose; empty: none.
   bool experiment = false;  ///< An experiment drives: browsers may only turn power off.
@@ -49,7 +49,7 @@ struct RobotCommand {
   enum class Kind { kStop, kOff, kArm, kHold, kImpedance, kClearFaults, kGain };
   Kind kind = Kind::kOff;
   int client = 0;
-  int motor = 0;  ///< For kGain, as are the following members.
+  int motor = 0;  ///< This member and the next ones are for kGain only.
   int gain = 0;   ///< A `board::MotorParameter` below `board::kGains`.
   double value = 0;
 };

@@ -13,7 +13,7 @@ namespace taut::viewer {
 
 class TruthReader {
  public:
-  /// `path`: of the socket. `bodies`: number of bodies of the model.
+  /// `path`: path of the socket. `bodies`: number of bodies of the model.
   TruthReader(std::string path, std::size_t bodies);
   ~TruthReader();
   TruthReader(const TruthReader&) = delete;

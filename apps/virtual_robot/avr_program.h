@@ -15,8 +15,9 @@ struct AvrProgram {
   static constexpr std::uint32_t kMemoryStart = 0x100, kMemoryEnd = 0x900;
   static constexpr std::uint32_t kEepromBytes = 1024;
 
-  std::vector<std::uint8_t> flash;   ///< From address 0; the rest of the flash is 0xFF.
-  std::vector<std::uint8_t> eeprom;  ///< From address 0; empty if the file has no EEPROM section.
+  std::vector<std::uint8_t> flash;   ///< Content from address 0; the rest of the flash is 0xFF.
+  std::vector<std::uint8_t> eeprom;  ///< Content from address 0; empty if the file has no EEPROM
+                                     ///< section.
   /// First address of memory above all variables: the stack may grow down to it.
   std::uint32_t free_memory = kMemoryStart;
 };

@@ -19,7 +19,7 @@ struct BoardsOptions {
   RobotOptions robot;
   std::optional<Calibration> calibration;  ///< The PC's assumptions about load cells, encoders and
                                            ///< springs; empty: the true values.
-  std::vector<link::ParameterValue> settings;  ///< For all boards and motors, applied last.
+  std::vector<link::ParameterValue> settings;  ///< Settings of all boards and motors, applied last.
   double recover_s =
       std::numeric_limits<double>::infinity();  ///< Experiment time at which `Recover` is called.
 };

@@ -29,8 +29,8 @@ enum class ResetCause : std::uint8_t { kPowerOn = 1, kExternal = 2, kBrownOut = 
 const char* Name(ResetCause cause);
 
 struct BoardOptions {
-  int id = 0;                          ///< 0 to 5; byte 0 of the EEPROM.
-  std::vector<std::uint8_t> eeprom{};  ///< The following bytes; the rest is 0xFF.
+  int id = 0;                          ///< Number of the board, 0 to 5: byte 0 of the EEPROM.
+  std::vector<std::uint8_t> eeprom{};  ///< Further bytes of the EEPROM; the rest is 0xFF.
   double drift_ppm = 0;                ///< Frequency error of the crystal; positive: fast.
 };
 
@@ -97,8 +97,8 @@ class Board {
   int DeepestStack() const;
   int StaticMemory() const;  ///< Returns the bytes of variables.
   std::vector<std::uint8_t> Eeprom() const;
-  std::uint64_t resets() const { return resets_; }    ///< Since time 0.
-  std::uint64_t crashes() const { return crashes_; }  ///< Hangs that simavr detects.
+  std::uint64_t resets() const { return resets_; }    ///< Number of resets since time 0.
+  std::uint64_t crashes() const { return crashes_; }  ///< Number of hangs that simavr has detected.
 
  private:
   void Reset(Time now, ResetCause cause);

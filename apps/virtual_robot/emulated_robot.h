@@ -22,10 +22,10 @@
 namespace taut::virtual_robot {
 
 struct RobotOptions {
-  std::shared_ptr<const AvrProgram> program;  ///< For all boards.
-  std::uint64_t seed = 1;                     ///< For all noise.
-  std::vector<double> drift_ppm{};            ///< One per board; 0 for boards beyond the end.
-  std::vector<std::uint8_t> eeprom{};         ///< For all boards, after their identity byte.
+  std::shared_ptr<const AvrProgram> program;  ///< Program of all boards.
+  std::uint64_t seed = 1;                     ///< Seed of all noise.
+  std::vector<double> drift_ppm{};     ///< Clock error of each board; 0 for boards beyond the end.
+  std::vector<std::uint8_t> eeprom{};  ///< EEPROM bytes of all boards after the identity byte.
   LoadCellOptions load_cell{};
   EncoderOptions encoder{};
   UsbIssOptions usb{};
@@ -86,10 +86,10 @@ class Robot {
   I2cBus bus_;
   UsbIss usb_;
   FaultSchedule faults_;
-  FaultState state_;  ///< As applied last.
+  FaultState state_;  ///< Most recently applied faults.
   std::vector<Encoder> encoders_;
   std::vector<MotorDrive> drives_;
-  std::vector<std::uint64_t> conversions_;  ///< One per motor.
+  std::vector<std::uint64_t> conversions_;  ///< Number of load cell conversions of each motor.
   std::vector<double> stuck_at_;            ///< Forces last shown by the load cells [N].
 };
 

@@ -24,7 +24,7 @@ struct BusEvent {
   };
   Kind kind = Kind::kStart;
   Time at = 0;
-  std::uint8_t byte = 0;      ///< As on the wires.
+  std::uint8_t byte = 0;      ///< Byte on the wires.
   bool master_reads = false;  ///< The master reads this byte ...
   bool master_acked = false;  ///< ... and requests another one.
 };

@@ -50,7 +50,7 @@ class TruthServer {
 
   int listener_;
   std::string path_;
-  unsigned long long device_ = 0, inode_ = 0;  ///< Of the file at `path_`.
+  unsigned long long device_ = 0, inode_ = 0;  ///< Identity of the file at `path_`.
   const MotorPlant& plant_;
   std::string header_;
   std::vector<Client> clients_;

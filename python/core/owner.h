@@ -90,7 +90,7 @@ class Owner {
 
   std::unique_ptr<T> owned_;
   std::timed_mutex mutex_;
-  std::atomic<std::thread::id> user_;  ///< Of the mutex; without one, the id of no thread.
+  std::atomic<std::thread::id> user_;  ///< Thread that holds the mutex, or the id of no thread.
   const char* what_;
   const pid_t pid_ = getpid();
 };

@@ -14,7 +14,7 @@
 #endif
 
 namespace {
-std::atomic<long> allocations{0};  ///< By all threads, of all kinds.
+std::atomic<long> allocations{0};  ///< Number of allocations of all kinds, by all threads.
 }
 
 #ifndef TAUT_SANITIZED

@@ -12,7 +12,7 @@ namespace {
 
 using fuzz::Must;
 
-constexpr int kMaxTicks = 300;       // of an input
+constexpr int kMaxTicks = 300;       // maximum number of ticks of an input
 constexpr std::uint8_t kNobody = 7;  // number of a board without one
 
 /// Draws from the first byte to the last; zeros follow.

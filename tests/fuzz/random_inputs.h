@@ -38,7 +38,7 @@ struct Campaign {
   unsigned timeout_s = 300;    ///< Of processor time [s]; longer inputs count as hangs.
   std::string found_prefix;    ///< A failing input is written to a file named by this prefix, seed
                                ///< and index.
-  bool shows_progress = true;  ///< To standard error.
+  bool shows_progress = true;  ///< Whether progress is written to standard error.
   Inputs bases;                ///< Inputs to mutate; empty: random bytes.
   Mutator mutator = MutateBytes;
 };

@@ -105,7 +105,7 @@ TEST_F(ShapeRun, SelfStressIsShownAsTensions) {
   WriteShapeRuns(folder_.string(), experiment_, {}, forces, 0, {}, out_);
   const auto trace = ReadTraceOfRun((folder_ / "self_stress_1/trace.h5").string(), out_);
   ASSERT_TRUE(trace) << out_.Format();
-  // By hand: the force density of a side cable is 2 sin(60 degrees) times the density of a base
+  // Closed form: the force density of a side cable is 2 sin(60 degrees) times the density of a base
   // cable (share/models/prism3.yaml).
   double density[2] = {};
   for (std::size_t c = 0; c < def.cables.size(); ++c) {

@@ -22,9 +22,9 @@ using test::StepsIn;
 /// the y axis of W.
 struct BodyOnBall {
   Vec3 moments_kg_m2;
-  double arm_m;  ///< Of the center of mass, along the body's z axis.
+  double arm_m;  ///< Position of the center of mass along the body's z axis.
   double tilt_rad;
-  Vec3 spin_rad_per_s;  ///< Along the body's axes.
+  Vec3 spin_rad_per_s;  ///< Components along the body's axes.
 };
 
 Quat Tilt(double angle_rad) { return {std::cos(angle_rad / 2), 0, std::sin(angle_rad / 2), 0}; }

@@ -35,7 +35,7 @@ int AddMass(ModelDef& def, double mass_kg, double inertia_kg_m2, const Vec3& at)
 /// of the world.
 struct Outcome {
   double strays_m = 0, growth = 0;
-  std::uint32_t bits = 0, early_bits = 0;  ///< At the end; after 20 ms.
+  std::uint32_t bits = 0, early_bits = 0;  ///< Status bits at the end, and after 20 ms.
 };
 Outcome Follow(const ModelDef& def, int b) {
   WorldBatch world = MakeBatch(def);

@@ -277,7 +277,8 @@ void BouncingSlider(Report& report) {
     slide.least = -height, slide.restitution = e;
     def.joints.push_back(slide);
     WorldBatch world = MakeBatch(def);
-    world.Step(h, StepsIn(falls_s * (1 + e), h));  // up again: the apex is halfway to that time
+    world.Step(h, StepsIn(falls_s * (1 + e), h));  // after the rebound; the apex is halfway to this
+                                                   // time
     const BodyState now = world.Body(0, 0);
     const double v = now.velocity_m_per_s.z, top = now.position_m.z + v * v / (2 * kG);
     return std::abs(top / (e * e * height) - 1);

@@ -167,7 +167,7 @@ const SceneEntry kDrops("stiff cables", "Six-strut that falls, straight and tumb
 void KeepsEnergy(Report& report, double k, double h, bool kicked, double time_s) {
   scenes::SixStrut robot = Robot(k, 0);
   robot.tension_n = 0.1 * robot.cable_m() * k;
-  // As a share of the energy above the minimal elastic energy.
+  // The energy error is relative to the energy above the minimal elastic energy.
   const double least = 24 * 0.5 * robot.tension_n * robot.tension_n / k;
   if (!kicked) robot.spacing = 0.54;
   ModelDef def = robot.Def();

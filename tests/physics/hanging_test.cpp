@@ -42,8 +42,8 @@ void AddHangingCable(ModelDef& def, const AttachmentDef& from, const AttachmentD
 struct HangingChain {
   int cables = 20;
   double mass_kg = 0.05, rest_length_m = 0.1, stiffness_n_per_m = 500, horizontal_n = 3;
-  std::vector<double> tension_n;  ///< Of each cable.
-  std::vector<Vec3> places_m;     ///< Ends and masses.
+  std::vector<double> tension_n;  ///< Tension of each cable.
+  std::vector<Vec3> places_m;     ///< Positions of the ends and the masses.
 
   ModelDef Solve() {
     Vec3 p;

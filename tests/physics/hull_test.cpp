@@ -309,7 +309,7 @@ TEST(Hull, AHeapComesToRestAndNothingIsInEachOther) {
         for (const Overlap& overlap : world.Overlaps(0))
           deepest = std::max(deepest, overlap.depth_m);
       }
-      EXPECT_LT(deepest, 5e-4) << seed;  // as for boxes that fall on each other at 4 m/s
+      EXPECT_LT(deepest, 5e-4) << seed;  // the bound for boxes that hit each other at 4 m/s
       if (on_hills) continue;            // some hulls roll on
       EXPECT_LT(last, 2e-5) << seed;
       EXPECT_EQ(world.Status(0).bits, kStatusOk);

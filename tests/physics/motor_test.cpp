@@ -177,7 +177,7 @@ TEST(Motor, SwitchedOffItHoldsWhatItsFrictionCan) {
   }
 }
 
-// Also while its cable vibrates, without any creep.
+// The motor holds without creep even while its cable vibrates.
 TEST(Motor, HoldsARingingCableWithoutCreep) {
   DcMotorDef motor;
   for (const double stiffness : {227.0, 1e4, 1e6}) {

@@ -89,7 +89,7 @@ ModelDef ModelOf(const json& run) {
         if (bars[bar][node] == -1.0) from = node;
         if (bars[bar][node] == 1.0) to = node;
       }
-      // So thin that its transverse moments equal a line's: m l^2 / 12.
+      // The bar is so thin that its transverse moments equal m l^2 / 12, the moments of a line.
       body_of[from] = body_of[to] =
           scenes::AddRod(def, "bar_" + std::to_string(bar), mass[bar], 1e-4, Column(nodes, from),
                          Column(nodes, to), {});

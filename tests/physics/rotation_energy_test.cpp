@@ -81,7 +81,7 @@ Ranges EnergyOfBox(double h) {
 
 TEST(RotationEnergy, OfABoxItSwingsByTheSquareOfTheStepAndDoesNotDrift) {
   const Ranges coarse = EnergyOfBox(4e-3), middle = EnergyOfBox(2e-3), fine = EnergyOfBox(1e-3);
-  // Of second order in h w = 0.056, times coefficients below one.
+  // The error is of second order in h w = 0.056, times coefficients below one.
   EXPECT_LT(coarse.first.size(), 0.056 * 0.056);
   EXPECT_GT(fine.first.size(), 0);
   EXPECT_NEAR(coarse.first.size() / middle.first.size(), 4, 0.1);

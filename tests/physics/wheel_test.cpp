@@ -233,7 +233,8 @@ TEST(Wheel, ForcesAreTheSlopesOfTheLength) {
   }
 }
 
-/// Also on a rotating body: the rate for sensors against a difference of lengths.
+/// Rate of the length for sensors, compared with a difference of lengths; also for a wheel on a
+/// rotating body.
 TEST(Wheel, TheRateIsThatOfTheLength) {
   const double d = 1e-6;
   const auto at = [&](double time_s) {

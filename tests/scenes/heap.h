@@ -39,7 +39,7 @@ struct RodHeap {
     AddFunnel(def, material);
     Chance chance(seed);
     for (int i = 0; i < rods; ++i) {
-      // So flat that neighboring rods start apart.
+      // The slopes are so small that neighboring rods do not touch at the start.
       const double heading = chance.Within(-3.2, 3.2), slope = chance.Within(-0.09, 0.09);
       const Vec3 along = Scaled(half_length_m / std::sqrt(1 + slope * slope),
                                 {std::cos(heading), std::sin(heading), slope});

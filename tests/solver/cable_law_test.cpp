@@ -65,7 +65,7 @@ TEST(CableLaw, SolutionsStayWhereTheyAre) {
 }
 
 TEST(CableLaw, NothingElseStays) {
-  constexpr double kSteepest = 15;  // of a curve 0.1 wide, with winding
+  constexpr double kSteepest = 15;  // steepest slope of a curve of width 0.1, with winding
   ForEachInstance([](const Cable& c, Case, math::Random&, const State& s) {
     for (const double off : {-0.04, 0.04}) {  // pushes; beyond its limit; off the spring's law
       const Rows<1> l = {s.l[0] + off};

@@ -33,7 +33,7 @@ using RowsOf = Rows<Law::kRows>;
 
 constexpr std::size_t At(int i) { return static_cast<std::size_t>(i); }
 
-/// Rows as the array that laws take.
+/// Returns rows as the array type of the laws.
 template <int R>
 struct Packed {
   Num x[R];

@@ -37,7 +37,7 @@ struct ProblemContact {
 
 struct ProblemLink {
   int body = 0;
-  Vec3 pull, lever;  ///< For the impulse 1; the lever is arm x pull.
+  Vec3 pull, lever;  ///< Force direction and its lever, arm x pull, for an impulse of 1.
 };
 
 /// An impulse max(0, min(base - gain u, upper)), u: the links' pull . v + lever . w, summed.

@@ -46,7 +46,7 @@ class FakeSlave : public I2cSlave {
   }
 
   bool general_call = false;
-  const Time* now = nullptr;     ///< Time that slaves have reached.
+  const Time* now = nullptr;     ///< Time up to which the slaves have run.
   bool late = false;             ///< True if an event came with a time before that.
   std::size_t takes = SIZE_MAX;  ///< Number of bytes to acknowledge.
   Time hold = 0;

@@ -185,7 +185,7 @@ class Master {
   std::map<int, std::uint8_t> more[board::kBoards];
   std::vector<std::vector<std::uint8_t>> sent;  ///< Broadcasts.
   int bad_frames = 0;
-  Time longest = 0;  ///< From a cycle's start to its last frame.
+  Time longest = 0;  ///< Longest time from a cycle's start to its last frame.
 
  private:
   void Write(std::uint8_t address, std::span<const std::uint8_t> bytes) {

@@ -120,7 +120,7 @@ TEST(LoadHost, KeepsBoardsInImpedanceControl) {
   LoadHost host(robot);
   ASSERT_TRUE(host.Start());
   for (int i = 0; i < 20; ++i) host.Cycle();
-  constexpr int kImpedance = 3;  // of the frame's second byte
+  constexpr int kImpedance = 3;  // mode in the frame's second byte
   for (int board = 0; board < 6; ++board) {
     const auto address = static_cast<std::uint8_t>((0x10 + board) << 1 | 1);
     const auto frame = robot.Transfer(Bytes{0x54, address, 16});

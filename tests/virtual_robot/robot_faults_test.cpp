@@ -102,7 +102,7 @@ struct Case {
   FaultKind kind;
   double for_s;
   const char* told;                   ///< Null: counted only.
-  int impedance, hold, off, stopped;  ///< Numbers of boards.
+  int impedance, hold, off, stopped;  ///< Expected numbers of boards in each mode.
   double force_n = std::numeric_limits<double>::quiet_NaN();
   BusLine line = BusLine::kData;
 };

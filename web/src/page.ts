@@ -32,9 +32,9 @@ import { button, el } from "./util";
 
 /** Additional parts of some pages. */
 export interface More {
-  /** To the left of the view. */
+  /** Element to the left of the view. */
   beside?: HTMLElement;
-  /** At the top, before the common buttons. */
+  /** Buttons at the top, before the common ones. */
   buttons?: HTMLElement[];
   /** Advice if there is nothing to display. */
   advice?: string;

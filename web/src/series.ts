@@ -38,7 +38,7 @@ interface Past {
 
 export class SeriesStore {
   private readonly history = new Map<string, Points>();
-  /** By channel, most recently used first. */
+  /** Cached ranges of each channel, most recently used first. */
   private readonly past = new Map<string, Past[]>();
   private readonly rows = new RowReader((...question) => this.ask(...question));
   private present: { frame: Frame; values: Map<string, number> } | null = null;

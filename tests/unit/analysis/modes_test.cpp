@@ -129,7 +129,7 @@ TEST(Modes, ClusteredCablesVibrateAsTheirExactEquationsSay) {
   struct {
     const CrossFrame* cross;
     bool mass;
-    double hz[3];  ///< After three rigid motions in the plane.
+    double hz[3];  ///< Frequencies after the three rigid motions in the plane.
     double relative;
   } const cases[] = {
       {&kTBar, true, {1.1440225986849, 34.52647094067688, 41.249720966315486}, 1e-6},

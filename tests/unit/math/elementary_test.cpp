@@ -129,7 +129,8 @@ TEST(Elementary, ExactResultsAreExact) {
   EXPECT_EQ(Exp(0.0), 1.0);
   EXPECT_EQ(Log(1.0), 0.0);
   EXPECT_EQ(Cos(0.0), 1.0);
-  EXPECT_EQ(Sin(std::numbers::pi / 6), 0.49999999999999994);  // of the double below pi / 6
+  EXPECT_EQ(Sin(std::numbers::pi / 6), 0.49999999999999994);  // its argument is the double below pi
+                                                              // / 6
   EXPECT_EQ(Acos(1.0), 0.0);
   EXPECT_EQ(Acos(-1.0), std::numbers::pi);
   EXPECT_EQ(Asin(1.0), std::numbers::pi / 2);

@@ -78,7 +78,7 @@ TEST(Sizing, BetweenRowsAllGoesStraight) {
   const auto run = DemandOf(trace, SineLoad{}.Experiment(), "trace.h5", out);
   ASSERT_TRUE(run) << out.Format();
   const CableDemand& d = run->cables.at(0);
-  EXPECT_NEAR(d.rms_force_n, std::sqrt(12.0), 1e-12);  // of (6 s)^2, s from 0 to 1
+  EXPECT_NEAR(d.rms_force_n, std::sqrt(12.0), 1e-12);  // mean of (6 s)^2 for s from 0 to 1
   EXPECT_NEAR(d.rms_power_w, 0.25 * std::sqrt(12.0), 1e-12);
   EXPECT_NEAR(d.net_energy_j, 0.5 * 3, 1e-12);
 }

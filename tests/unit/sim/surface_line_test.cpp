@@ -64,7 +64,7 @@ TEST(NearestAlong, WhatIsFoundIsTheDistanceOfTheLineWhereItIsLeast) {
       Vec3 a = random.Within(0.3, 0.06, 0.12), b = random.Within(0.3, 0.06, 0.12);
       const Vec3 origin{0.3, -0.2, 0.1};
       a = a + origin, b = b + origin;
-      // By sampling the line.
+      // The reference distance, by sampling the line.
       double least = kInf, at = 0;
       constexpr int kSamples = 400;
       for (int i = 0; i <= kSamples; ++i) {

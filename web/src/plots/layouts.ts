@@ -6,7 +6,7 @@ import { memory, Signal } from "../util";
 export const LAYOUT_VERSION = 1;
 export const DEFAULT_LAYOUT = "default";
 const FIRST_OWN = "my layout";
-const MOST_PLOTS = 500; // in a file; more are an error
+const MOST_PLOTS = 500; // limit of the plots in a file
 
 /** A plot, defined by its channels, even if a run does not have them. */
 export interface PlotSpec {

@@ -16,7 +16,7 @@ import { PlotDialog } from "./plot_dialog";
 
 const LIVE_SPAN_S = 20;
 const LIVE_EVERY_MS = 100;
-const POINTS = 600; // of a plot; about two per pixel of its width
+const POINTS = 600; // points per plot, about two per pixel of its width
 
 export class PlotPanel {
   readonly element = el("section.plots", { "aria-label": "plots" });

@@ -17,7 +17,7 @@ const CABLE_OPACITY = 0.7;
 
 export class Ghosts implements Part {
   readonly object = new Group();
-  /** By run, from 0; empty for a run without poses. */
+  /** Ghosts by run, from 0; empty for a run without poses. */
   readonly ghosts: readonly Ghost[];
 
   constructor(scene: Scene) {

@@ -49,7 +49,7 @@ function footGeometry(hangs: boolean): BufferGeometry {
 
 export class Joints implements Part {
   readonly object = new Group();
-  /** By joint; a distance joint has none. */
+  /** Marks by joint; a distance joint has none. */
   readonly marks: readonly Mark[];
   /** Meshes that the mouse can hit. */
   readonly meshes: Mesh[];
@@ -115,7 +115,7 @@ export class Mark {
   readonly meshes: Mesh[] = [];
   readonly rail: Mesh | null;
   readonly bead: Mesh | null;
-  /** For a support: its foot. */
+  /** Foot of a support. */
   readonly foot: Mesh | null;
   private readonly over: number | undefined;
   /** Rotation from y to the axis, in a's frame. */
