@@ -16,7 +16,7 @@ namespace taut::cli {
 struct CaseResult {
   LoadCaseSpec loads;
   Equilibrium at;
-  ModelDef def;  ///< In the equilibrium pose.
+  ModelDef def;  ///< Model in the equilibrium pose.
   std::vector<MemberLoad> members;
   std::vector<Reaction> anchors;
   /// Force of the world on the cables that end at a point of it.
@@ -33,7 +33,7 @@ struct CaseResult {
   std::optional<Open> open;
   std::optional<Modes> modes;
   std::optional<double> least_stiffness_n_per_m;
-  Move move;  ///< From the described pose.
+  Move move;  ///< Largest displacement from the described pose.
 
   /// Returns the member with the least safety factor (buckling, yield, strength), and the first
   /// cable that gets slack as the load grows; null without such a member.
@@ -49,7 +49,7 @@ struct AnalysisResult {
   std::string file;
   RobotSpec robot;
   std::vector<std::string> notes;  ///< Complete sentences for the reader.
-  ForceAnalysis forces;            ///< In the described pose.
+  ForceAnalysis forces;            ///< Self-stress and mechanisms in the described pose.
   std::vector<CaseResult> cases;
   bool Found() const;  ///< Returns whether every case has an equilibrium.
 };

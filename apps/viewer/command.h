@@ -23,9 +23,9 @@ struct Command {
   std::string mode;       ///< `mode` of robot_mode, `as` of start.
   Vec3 vector;            ///< target_m or force_n.
   double value = 0;       ///< value, factor, time_s, duration_s.
-  double t0 = 0, t1 = 0;  ///< For want_series [s].
+  double t0 = 0, t1 = 0;  ///< Time span of want_series [s].
   int id = 0, source = 0, points = 0, count = 1;
-  bool on = false;  ///< For record.
+  bool on = false;  ///< Value of record.
 };
 
 /// Parses a message. Returns nothing if it violates the protocol; then `error` has the reason.

@@ -90,8 +90,9 @@ class LiveSession final : public Session {
   LiveOptions options_;
   Restarts restarts_;
   ExperimentSpec model_;       ///< For a model: experiment without weight and ground.
-  Json statics_;               ///< Null until computed.
-  ExperimentSpec experiment_;  ///< As read; `run_` may differ after manual changes.
+  Json statics_;               ///< Scene.statics; null until computed.
+  ExperimentSpec experiment_;  ///< Experiment as read; `run_` may differ after changes by the user.
+                               ///< `run_` may differ after manual changes.
   /// Initial values of the files' parameters, which determine the ranges of sliders.
   std::map<std::string, double> given_;
   std::unique_ptr<LiveRun> run_;

@@ -24,7 +24,7 @@ class NodeChannels {
   struct Place {
     int body = 0;
     int axis = 0;
-    Vec3 p_BN;  ///< From the body's center of mass to the node, in the body's frame [m].
+    Vec3 p_BN;  ///< Vector from the body's center of mass to the node, in the body's frame [m].
   };
 
   const std::vector<ChannelInfo>& channels() const { return channels_; }

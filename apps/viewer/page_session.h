@@ -39,7 +39,7 @@ class PageSession final : public Session {
   Pace pace_;
   std::optional<Json> new_scene_;
   std::optional<History> history_;
-  std::optional<Frame> now_;  ///< Set by the last `Show`.
+  std::optional<Frame> now_;  ///< Frame of the last `Show`.
   double asked_s_ = 0;        ///< Time of the last call of `Show`, which may still wait.
   std::optional<std::size_t> past_row_;
   int steps_left_ = 0;  ///< Number of calls of `Show` that may pass while paused.

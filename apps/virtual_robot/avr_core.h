@@ -92,7 +92,7 @@ class AvrCore {
   std::uint16_t compare_[2] = {0, 0}, top_ = 0;  ///< Values in the timer.
   int converting_ = 0,
       converted_ = 0;           ///< ADC results: of the conversion in progress, and the last one.
-  bool result_locked_ = false;  ///< Between reads of ADCL and ADCH.
+  bool result_locked_ = false;  ///< Whether ADCL has been read, but not yet ADCH.
 };
 
 }  // namespace taut::virtual_robot

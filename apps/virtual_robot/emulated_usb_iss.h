@@ -23,7 +23,7 @@ struct UsbIssOptions {
   // From the host's write to the adapter's program, and back: assumed, no published values.
   Time request_latency = 250 * kMicrosecond;
   Time reply_latency = 250 * kMicrosecond;
-  Time byte_gap = 0;  ///< Between two bytes on the bus (assumed).
+  Time byte_gap = 0;  ///< Gap between two bytes on the bus (assumed).
 };
 
 /// The adapter. Not thread-safe.

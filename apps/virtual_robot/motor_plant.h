@@ -39,7 +39,7 @@ class MotorPlant : public Plant {
   MotorPlant(std::shared_ptr<const Model> model, std::vector<int> cables,
              std::vector<std::string> names);
 
-  WorldBatch batch_;  ///< With one world.
+  WorldBatch batch_;  ///< Batch of one world.
   std::vector<int> cables_;
   std::vector<std::string> names_;
   std::vector<bool> cut_;

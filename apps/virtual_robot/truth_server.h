@@ -21,7 +21,7 @@ std::string TruthFrame(const MotorPlant& plant, Time now);
 /// For use on the robot's thread only; never waits for a client.
 class TruthServer {
  public:
-  static constexpr Time kPeriod = 20 * kMillisecond;  ///< Between frames.
+  static constexpr Time kPeriod = 20 * kMillisecond;  ///< Interval between frames.
   /// Limit of unsent data for a client in addition to the system's buffer; beyond it the client is
   /// dropped.
   static constexpr std::size_t kMostPending_bytes = std::size_t{1} << 20;

@@ -15,10 +15,10 @@ namespace taut::python {
 namespace {
 
 struct Analysis {
-  RobotSpec robot;  ///< In the described pose.
+  RobotSpec robot;  ///< Robot in the described pose.
   LoadCaseSpec loads;
   Equilibrium at;
-  RobotSpec there;  ///< In the equilibrium pose.
+  RobotSpec there;  ///< Robot in the equilibrium pose.
   std::optional<Modes> modes;
   std::optional<double> least_stiffness_n_per_m;
   Move move;

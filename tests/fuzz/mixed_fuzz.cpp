@@ -19,7 +19,7 @@ constexpr long kEnough = 20'000;
 
 struct Mix {
   ModelDef def;
-  bool conserves = false;  ///< Only frictionless touching cables act.
+  bool conserves = false;  ///< Whether only frictionless touching cables act.
 };
 
 Material Surface(Draw& draw, bool rough) {

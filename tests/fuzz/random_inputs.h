@@ -35,7 +35,7 @@ struct Campaign {
   std::uint64_t seed = 1;
   long first = 0, count = 0;
   double seconds = 0;          ///< Time limit [s]; 0: ends after all inputs.
-  unsigned timeout_s = 300;    ///< Of processor time [s]; longer inputs count as hangs.
+  unsigned timeout_s = 300;    ///< Limit of the processor time [s]; longer inputs count as hangs.
   std::string found_prefix;    ///< A failing input is written to a file named by this prefix, seed
                                ///< and index.
   bool shows_progress = true;  ///< Whether progress is written to standard error.

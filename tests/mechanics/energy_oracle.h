@@ -38,7 +38,8 @@ class EnergyOracle {
 
  private:
   struct Body {
-    Vec3 origin, direction;  ///< Of a rod; `direction` is zero for points.
+    Vec3 origin, direction;  ///< Axis of a rod; `direction` is zero for points. `direction` is zero
+                             ///< for points.
     Vec3 across[2];
     std::vector<Vec3> slides;  ///< Unit vectors along which the origin moves.
     int first = 0;             ///< Index of the first coordinate.

@@ -43,7 +43,7 @@ scenes::SixStrut Robot(double stiffness_n_per_m, double damping_n_s_per_m) {
 }
 
 struct Drop {
-  double tension_n;  ///< 0: stretched by a tenth.
+  double tension_n;  ///< Tension of the cables; 0: cables stretched by a tenth.
   double stiffness_n_per_m, damping_n_s_per_m, step_s;
   unsigned tumble;  ///< Seed of attitude and angular velocity; 0: upright and without rotation.
   double time_s;
@@ -62,7 +62,8 @@ struct Fall {
   double gained = 0;  ///< Largest energy gain as a share of the initial energy.
   unsigned bits = 0;
   double height_m = 0;
-  double kinetic_j = 0;  ///< Without motions that nothing brakes: AxialSpinJ, RollingJ.
+  double kinetic_j = 0;  ///< Kinetic energy without undamped motions (AxialSpinJ, RollingJ).
+                         ///< AxialSpinJ, RollingJ.
 };
 
 /// Returns the energy of the rods' spin about their axes. Cables pull at the ends of the axes, so

@@ -11,8 +11,9 @@ namespace taut::test {
 namespace {
 
 constexpr double kInertia = 0.01;                ///< [kg m^2]
-const Vec3 kSkew{2.0 / 7, 3.0 / 7, 6.0 / 7};     ///< Not along a coordinate axis.
-const Vec3 kAcross{6.0 / 7, 2.0 / 7, -3.0 / 7};  ///< At right angles to `kSkew`.
+const Vec3 kSkew{2.0 / 7, 3.0 / 7, 6.0 / 7};     ///< Unit vector that is oblique to the coordinate
+                                                 ///< axes.
+const Vec3 kAcross{6.0 / 7, 2.0 / 7, -3.0 / 7};  ///< Unit vector at right angles to `kSkew`.
 
 /// Returns a ball of 1 kg that rotates about its center in zero gravity, on a joint with a skew
 /// axis.

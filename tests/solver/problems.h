@@ -21,8 +21,8 @@ namespace taut::test {
 
 struct ProblemBody {
   double inverse_mass = 0;                                 ///< [1/kg]
-  std::array<std::array<double, 3>, 3> inverse_inertia{};  ///< In W [1/(kg m^2)].
-  Vec3 free_v, free_w;  ///< At the step's end without contacts and stiff cables.
+  std::array<std::array<double, 3>, 3> inverse_inertia{};  ///< Inverse inertia in W [1/(kg m^2)].
+  Vec3 free_v, free_w;  ///< Velocities at the step's end without contacts and stiff cables.
 };
 
 /// The impulse n l[0] + t1 l[1] + t2 l[2] acts on body a, its opposite on body b.

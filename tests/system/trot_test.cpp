@@ -20,7 +20,8 @@ constexpr int kSlots = 8;
 /// Recorded columns of a run, and the feet in contact in each row
 struct Outcome {
   Columns columns;
-  std::map<std::string, std::vector<bool>> carries;  ///< By the leg's name.
+  std::map<std::string, std::vector<bool>> carries;  ///< Whether each leg's foot is in contact, by
+                                                     ///< the leg's name.
   bool only_feet = true;                             ///< No other contacts occurred.
 };
 
