@@ -17,7 +17,7 @@ namespace taut::mechanics {
 /// joint with the world.
 class EnergyOracle {
  public:
-  /// `step_m` must be too short for a taut cable to become slack.
+  /// `step_m` must be so short that no taut cable becomes slack.
   explicit EnergyOracle(const ModelDef& def, double step_m = 1e-3) : def_(def), step_(step_m) {
     for (int b = 0; b < static_cast<int>(def.bodies.size()); ++b) AddBody(b);
   }

@@ -146,7 +146,7 @@ TEST(JoinedBoxes, ARodThatHangsOverIsHeldByTheBorder) {
     WorldBatch world = MakeBatch(def);
     world.Step(1e-3, 300);
     EXPECT_NEAR(world.Body(0, 0).position_m.z, 0.01, 1e-6);
-    // Statics: the end at 0.1, the border at 0.2, the center at 0.19.
+    // Statics: the rod's end is at 0.1, the border at 0.2, the center of mass at 0.19.
     double at_border = 0, at_end = 0;
     for (const ContactState& c : world.Contacts(0)) {
       (c.point_m.x * side > 0.15 ? at_border : at_end) += c.force_n.z;

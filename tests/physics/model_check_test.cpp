@@ -193,7 +193,8 @@ TEST(ModelCheck, AllMistakesAreToldAtOnce) {
 }
 
 TEST(ModelCheck, SizesThatGrowWithTheSquareOfAModelHaveLimits) {
-  // 3163^2 > 10^7 > 3162^2, and a body of 5000 spheres with the wall and 2000 other spheres.
+  // The limit is 10^7 pairs, between 3162^2 and 3163^2 pairs of cables. The other model has a body
+  // of 5000 spheres, which may touch 2000 boxes.
   ModelDef cables = Good();
   cables.cables.resize(3162, cables.cables[0]);
   ModelDef one_more = cables;

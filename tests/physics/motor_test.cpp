@@ -77,7 +77,7 @@ TEST(Motor, SwitchedOffItRunsDownInALineAndStands) {
     EXPECT_EQ(world.Motor(0, 0).current_a, 0);
     world.Step(h, StepsIn(start / falls - 0.4 + h, h) + 1);
     EXPECT_EQ(Speed(world), 0);
-    // The motor stops within the last step, in half of it.
+    // The motor stops within the last step; the stop may be off by half a step.
     EXPECT_NEAR(world.Motor(0, 0).rotor_angle_rad - angle, start * start / (2 * falls),
                 0.5 * falls * h * h + RoundOff(4000, 1e6));
     const double rest = RestLength(world);

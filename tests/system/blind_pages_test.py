@@ -1,4 +1,4 @@
-"""Fits against hidden true values, of docs/validation: a sample of the fits of script/validate
+"""Sample of the fits of script/validate against hidden true values (docs/validation)
 
 Usage: blind_pages_test.py TEST TAUT. TEST is the name of a function of this file.
 """

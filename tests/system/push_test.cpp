@@ -102,7 +102,7 @@ TEST(Push, MeansStayNearNtrtWithTheExactCone) {
   EXPECT_LT(WorstMeanPercent(SimulatePush(experiment)), 1.5);
 }
 
-/// NTRT's code has 2.3 * 9.81 N, a B of 150 N s/m and a friction of 0.15 * 0.5.
+/// NTRT's code pushes with 2.3 * 9.81 N; its velocity gain B is 150 N s/m, its friction 0.15 * 0.5.
 TEST(Push, NtrtExperimentHasItsLaws) {
   const ExperimentSpec experiment = Load("push_20n_ntrt");
   const ModelDef& def = experiment.robot.def;

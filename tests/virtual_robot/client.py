@@ -112,7 +112,7 @@ class Robot:
         self.open()
 
     def open(self):
-        """Opens the terminal like a serial port; the speed has no meaning."""
+        """Opens the terminal like a serial port; the baud rate has no effect."""
         self.terminal = os.open(self.link, os.O_RDWR | os.O_NOCTTY)
         settings = termios.tcgetattr(self.terminal)
         settings[0] = settings[1] = settings[3] = 0  # raw bytes

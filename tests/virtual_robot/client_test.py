@@ -341,7 +341,7 @@ class Client(unittest.TestCase):
         for status in self.caught_up(3):
             self.assertEqual((status.mode, status.wrong), (HOLD, False))
         self.assertEqual(self.faults(0)[4] & 0b100, 0b100, "armed")
-        for sequence in range(4, 200, 2):  # until no silence of 100 ms occurs in between, after which boards only hold
+        for sequence in range(4, 200, 2):  # until no gap of 100 ms occurs, after which boards only hold
             self.assertTrue(self.robot.broadcast(sequence, HOLD, arm=2, clear=True))
             self.assertTrue(self.robot.broadcast(sequence + 1, POSITION, arm=2))
             self.caught_up(sequence + 1)

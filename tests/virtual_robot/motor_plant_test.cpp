@@ -60,7 +60,7 @@ TEST(MotorPlant, AMotorWithoutLoadRunsAsItsDataSheetSays) {
     Turn(*plant, 0.3, drives);
     const double before = plant->RotorAngle(3);
     Turn(*plant, 0.1, drives);
-    // U = k w + R i at the current needed for friction; the spool's spring is cut.
+    // U = k w + R i at the current needed for friction. A cut cable exerts no force.
     const DcMotorDef motor;
     const double k = motor.torque_constant_n_m_per_a;
     const double lost =

@@ -116,7 +116,7 @@ TEST(Twi, SixteenBytesAreReadAtOnce) {
   EXPECT_EQ(result.read, expected);
   EXPECT_EQ(wires.Codes(1), "a8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 b8 c0");
   EXPECT_EQ(wires.Codes(0), "");
-  // Immediately again: no state is left over.
+  // An immediate second transfer shows that no state is left over.
   EXPECT_EQ(wires.Transfer(TwiRead(From(1), 16)).read, expected);
 }
 

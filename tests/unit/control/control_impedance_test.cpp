@@ -147,7 +147,7 @@ TEST(ControlRate, SteadyLengtheningIsItsRate) {
 
 TEST(ControlRate, NtrtsFirstTickSeesTheStretchAsAJump) {
   DifferenceState<double> state =
-      StartDifferenceAtRestLength(0.193103657);  // outer left in NTRT's facts
+      StartDifferenceAtRestLength(0.193103657);  // outer left cable of NTRT
   EXPECT_NEAR(StepDifference(state, 0.22365, kPeriod), 30.546343, 1e-9);
   EXPECT_EQ(StepDifference(state, 0.22365, kPeriod), 0.0);
 }

@@ -85,7 +85,7 @@ TEST_F(FitFile, IsRead) {
   EXPECT_TRUE(fit->experiments[0].train);
   EXPECT_FALSE(fit->experiments[1].train);
   EXPECT_EQ(fit->experiments[1].experiment.parameters.at("up_m"), 0.2);
-  ASSERT_EQ(fit->estimates.size(), 4u);  // the offset twice
+  ASSERT_EQ(fit->estimates.size(), 4u);  // two of them are the offset
   const FitEstimate& k = fit->estimates[0];
   EXPECT_EQ(k.range.start, 100);
   EXPECT_EQ(k.range.mean, 100);

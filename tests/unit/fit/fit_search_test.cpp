@@ -132,7 +132,7 @@ TEST(FitSearch, AStartOnABoundIsNoTrap) {
 }
 
 TEST(FitSearch, AZeroGradientAtTheStartIsNoTrap) {
-  // The bow of a strut, whose amplitude acts by its square
+  // The bow of a strut: only the square of its amplitude has an effect
   std::vector<FitParameter> p = {Parameter("bow", 0), Parameter("offset", 0)};
   const FitResult fit = Fit(MakeProblem(p, 3,
                                         [](const std::vector<double>& v) -> Residuals {

@@ -109,7 +109,7 @@ TEST(FitVerdict, APriorMakesAnAliasFiniteAndItIsStillTraded) {
   p[1].prior_sd = 2;
   const auto problem = Curve(p, 4, 1e-3, [](double, const auto& v) { return v[0] + v[1]; });
   const Identifiability of = At(problem, {0, 0});
-  // Known sum: each keeps half of its variance.
+  // The sum is known, so that each parameter keeps half of its prior variance.
   EXPECT_NEAR(of.parameters[0].se, 2 / std::sqrt(2.0), 1e-6);
   EXPECT_EQ(of.parameters[0].kind, Determined::kTraded);
   EXPECT_EQ(of.fixed, 1);

@@ -71,7 +71,7 @@ TEST(RecordedMotor, SensorsOfCountsShowThem) {
   EXPECT_NE(run.At("cable/rope/tension_n", row), seen);
 }
 
-/// Commands a mode from given times on.
+/// Commands motor modes, each from a given time.
 class Switch final : public Controller {
  public:
   explicit Switch(std::vector<std::pair<double, CommandMode>> when) : when_(std::move(when)) {}
