@@ -39,7 +39,7 @@ def blank(match):
 
 
 def prose(path, text):
-    """Returns the prose of a file: other characters are blanks, so that places stay."""
+    """Returns the prose of a file: other characters become blanks, so that positions stay the same."""
     if path.suffix in (".md", ".in"):
         text = re.sub(r"^```.*?^```|^<!--.*?-->|^(?: {4}|\t)[^\n]*$|\]\([^)]*\)", blank, text,
                       flags=re.DOTALL | re.MULTILINE)

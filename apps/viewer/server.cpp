@@ -21,7 +21,7 @@
 namespace taut::viewer {
 namespace {
 
-/// Watchers are limited further, so that clients that may drive find a place.
+/// The separate limit of watchers leaves places for clients that may drive.
 constexpr std::size_t kMaxClients = 64, kMaxWatchers = 48;
 
 }  // namespace

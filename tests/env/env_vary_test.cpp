@@ -57,7 +57,8 @@ TEST(EnvVary, OnASlopeAFreeRobotFallsAslant) {
     ++quadrants[(g.x > 0 ? 1 : 0) + (g.y > 0 ? 2 : 0)];
     const double fall[] = {g.x, g.y, g.z};
     for (std::size_t k = 0; k < 3; ++k) {
-      // The integrator is exact for a parabola: rounding of 200 steps on numbers of size 1.
+      // The integrator is exact for a parabola: only the rounding of 200 steps on numbers of size 1
+      // remains.
       EXPECT_NEAR(arrays.Row(w)[k] - before[3 * w + k], 0.5 * 0.2 * 0.2 * fall[k], 1e-13);
     }
   }

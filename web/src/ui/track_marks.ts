@@ -4,7 +4,7 @@ import type { App } from "../app";
 import type { Action, EventMessage, Scene } from "../protocol";
 import { clock, el, number } from "../util";
 
-/** An event counts as under the mouse within this distance. */
+/** Largest distance from the mouse at which an event is labeled. */
 const REACH_PX = 6;
 const LABEL_PX = 7; // approximate width of a letter
 
