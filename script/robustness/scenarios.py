@@ -49,7 +49,7 @@ def digest(folder, without=()):
 
 
 def said(outcome):
-    """Describes an error of the end itself; returns None for a good end."""
+    """Describes an error in how the command ended; returns None for a correct end."""
     if outcome.status is None:
         return "hangs"
     if outcome.status < 0:

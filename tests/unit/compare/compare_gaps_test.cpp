@@ -36,7 +36,7 @@ std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) 
   return a;
 }
 
-/// Returns a rotation about z by `angle_rad` of time, with a sign of each row.
+/// Returns a rotation about z by `angle_rad` of time; `sign` selects the quaternion's sign per row.
 Trace Turning(const std::vector<double>& time_s, const OfTime& angle_rad, const OfTime& sign,
               const std::string& stem = "body/m/orientation_") {
   Trace trace;

@@ -164,8 +164,8 @@ inline double Uncovered(const TouchPoint& point, const Points& others, double le
   return best;
 }
 
-/// Returns the difference of the points of one step from the points of the next, without points
-/// that are about to pass the margin of 1e-4 m.
+/// Returns the largest difference between the contact points of two successive steps, ignoring
+/// points that are about to pass the margin of 1e-4 m.
 inline double WorstChange(const Points& before, const Points& now, double lever_m) {
   double worst = 0;
   for (const TouchPoint& p : now) {
