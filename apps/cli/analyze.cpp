@@ -159,6 +159,12 @@ int Statics(const AnalyzeArguments& args, const Loaded& loaded, AnalysisResult r
   int exit = kOk;
   Diagnostics found;
   for (const CaseResult& one : result.cases) {
+    if (!ExceedsDisplacement(one)) continue;
+    fmt::print(stderr, "error: load case {}: {} moves by {:.4g} m, above the limit of {:.4g} m\n",
+               one.loads.name, one.move.name, one.move.distance_m, *one.loads.max_displacement_m);
+    exit = kFailed;
+  }
+  for (const CaseResult& one : result.cases) {
     const std::string far = one.at.found ? one.move.Warning() : "";
     if (far.empty()) continue;
     found.Warning("analysis.large_displacement", {args.path, 0, 0},
@@ -376,9 +382,9 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
       "Equilibria, self-stress, --inverse and --form are static: independent of the step, with "
       "masses\n"
       "as weights only. Modes also use the inertia of the bodies.\n"
-      "Exit status: 0 success, 1 a load case has no equilibrium, 2 bad usage, 3 the file has "
-      "errors or\n"
-      "supports are missing.");
+      "Exit status: 0 success, 1 a load case has no equilibrium or exceeds its displacement "
+      "limit,\n"
+      "2 bad usage, 3 the file has errors or supports are missing.");
   analyze->callback([args, &exit_code] { exit_code = Analyze(*args); });
 }
 

@@ -14,6 +14,8 @@ bool IsFixed(const ModelDef& def, int body) {
   return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
 }
 
+Vec3 Scaled(const Vec3& a, double factor) { return {factor * a.x, factor * a.y, factor * a.z}; }
+
 MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equilibrium& at,
                     std::vector<Reaction>& anchors) {
   std::vector<BodyForce> forces = ForcesUnder(def, at.cable_tension_n, at.joint_loads);
@@ -25,7 +27,7 @@ MemberForces Forces(const ModelDef& def, const LoadCaseSpec& loads, const Equili
     if (node.body != kWorld) forces.push_back({node.body, node.position_m, load.force_n, {}});
   }
   ModelDef weighed = def;
-  if (!loads.weight) weighed.gravity_m_per_s2 = {};
+  weighed.gravity_m_per_s2 = Scaled(weighed.gravity_m_per_s2, loads.GravityFactor());
   anchors = AnchorReactions(weighed, forces);
   return {at.cable_tension_n, at.bar_force_n, StrutForces(weighed, forces)};
 }

@@ -184,11 +184,14 @@ Json ModesJson(const CaseResult& result, int most) {
 }
 
 Json CaseJson(const CaseResult& result, int most_modes) {
-  Json json{
-      {"name", result.loads.name},          {"weight", result.loads.weight},
-      {"found", result.at.found},           {"why", result.at.found ? Json() : Json(result.at.why)},
-      {"residual_n", result.at.residual_n}, {"iterations", result.at.iterations},
-      {"left_out", result.at.left_out}};
+  Json json{{"name", result.loads.name},
+            {"weight", result.loads.weight},
+            {"weight_factor", result.loads.weight_factor},
+            {"found", result.at.found},
+            {"why", result.at.found ? Json() : Json(result.at.why)},
+            {"residual_n", result.at.residual_n},
+            {"iterations", result.at.iterations},
+            {"left_out", result.at.left_out}};
   if (!result.at.found) return json;
   const MemberLoad *const least = result.LeastSafe(), *const first = result.FirstSlack();
   json["least_safety"] = Json();

@@ -54,6 +54,13 @@ struct AnalysisResult {
   bool Found() const;  ///< Returns whether every case has an equilibrium.
 };
 
+/// Returns whether a node moves farther than the load case allows.
+bool ExceedsDisplacement(const CaseResult& result);
+
+/// Formats the load cases as a table: largest displacement, least safety factor, first slack cable,
+/// sum of the vertical reactions.
+std::string CaseTable(const AnalysisResult& result);
+
 /// Formats the verdict on the structure and a summary of at most ten lines.
 std::string AnalysisSummary(const AnalysisResult& result);
 

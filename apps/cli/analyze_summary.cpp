@@ -80,28 +80,18 @@ std::string FormHint(const ForceAnalysis& forces) {
                                 : std::string();
 }
 
-/// Returns the load case in one line: slack cables, safety, the lowest frequency.
-std::string CaseLine(const CaseResult& result) {
-  std::string line =
-      "load case " + result.loads.name + (result.loads.weight ? "" : ", without weight");
-  if (!result.at.found) return line + ": no equilibrium";
-  const auto slack = std::count_if(result.members.begin(), result.members.end(),
-                                   [](const MemberLoad& load) { return load.slack; });
-  line += slack == 0 ? std::string(": slack: none") : fmt::format(": slack: {}", slack);
-  if (const MemberLoad* const least = result.LeastSafe()) {
-    line += fmt::format(", least safety factor {} ({} of {})", SafetyFactorText(*least->Least()),
-                        least->LeastOf(), least->name);
-  }
-  if (!result.move.name.empty()) {
-    line += fmt::format(", largest displacement {:.4g} m of {}", result.move.distance_m,
-                        result.move.name);
-  }
-  if (!result.modes) return line;
+/// Returns the natural frequencies in one line; empty without elastic modes.
+std::string FrequenciesLine(const CaseResult& result) {
+  constexpr std::size_t kMost = 6;
+  if (!result.modes) return {};
+  std::string list;
+  std::size_t count = 0;
   for (const Mode& mode : result.modes->modes) {
-    if (mode.kind != Mode::Kind::kElastic) continue;
-    return line + fmt::format(", lowest frequency {:.4g} Hz", mode.frequency_hz);
+    if (mode.kind != Mode::Kind::kElastic || count == kMost) continue;
+    list += fmt::format("{}{:.4g}", count++ == 0 ? "" : ", ", mode.frequency_hz);
   }
-  return line;
+  if (count == 0) return {};
+  return "natural frequencies: " + list + " Hz (load case " + result.loads.name + ")";
 }
 
 std::string CablesLine(const CableGroup& group, const CaseResult& result) {
@@ -134,7 +124,6 @@ std::string AnalysisSummary(const AnalysisResult& result) {
   lines.Add(SelfStressLine(result.forces));
   lines.Add(FormHint(result.forces));
   for (const CaseResult& one : result.cases) {
-    lines.Add(CaseLine(one));
     if (one.open) {
       lines.Add(
           fmt::format("load case {}: {} forces are indeterminate (--tables lists their bounds)",
@@ -143,13 +132,14 @@ std::string AnalysisSummary(const AnalysisResult& result) {
   }
   const CaseResult& shown = WorstOf(result.cases);
   if (shown.at.found) {
+    lines.Add(FrequenciesLine(shown));
     for (const CableGroup& group : GroupCables(result.robot, 4)) {
       lines.Add(CablesLine(group, shown));
     }
     lines.Add(BarsLine(MemberKind::kBar, shown));
     lines.Add(BarsLine(MemberKind::kRod, shown));
   }
-  return lines.Text(VerdictOn(result));
+  return lines.Text(VerdictOn(result) + "\n" + CaseTable(result));
 }
 
 }  // namespace taut::cli

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "new_mapping.h"
 #include "output.h"
 #include "overrides.h"
 #include "shipped_inputs.h"
@@ -17,10 +18,10 @@
 namespace taut::cli {
 namespace {
 
-const std::vector<std::string> kKinds{"model", "experiment", "study"};
+const std::vector<std::string> kKinds{"model", "experiment", "study", "mapping"};
 
 struct NewArguments {
-  std::string kind, name, model;
+  std::string kind, name, model, out;
 };
 
 /// Returns the path of a shipped file without checking it: a missing file is reported when the new
@@ -51,8 +52,17 @@ std::string Text(const NewArguments& args, std::string& next) {
 }
 
 int New(const NewArguments& args) {
+  if (args.kind == "mapping") return NewMapping({args.name, args.model, args.out});
+  if (const std::string wrong = CheckName(args.name); !wrong.empty()) {
+    fmt::print(stderr, "error: NAME: {}\n", wrong);
+    return kUsage;
+  }
   if (!args.model.empty() && args.kind != "experiment") {
-    fmt::print(stderr, "error: --model needs an experiment\n");
+    fmt::print(stderr, "error: --model needs an experiment or a mapping\n");
+    return kUsage;
+  }
+  if (!args.out.empty()) {
+    fmt::print(stderr, "error: --out needs a mapping\n");
     return kUsage;
   }
   OutputIsNews();
@@ -74,24 +84,30 @@ int New(const NewArguments& args) {
 
 void AddNew(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<NewArguments>();
-  CLI::App* create =
-      app.add_subcommand("new", "Write a template of a model, an experiment or a study.");
-  create->add_option("kind", args->kind, "model, experiment or study")
+  CLI::App* create = app.add_subcommand(
+      "new", "Write a template of a model, an experiment or a study, or a mapping for a log.");
+  create->add_option("kind", args->kind, "model, experiment, study or mapping")
       ->required()
       ->option_text(Alternatives(kKinds))
       ->check(OneOf(kKinds));
-  create->add_option("name", args->name, "Name; the file is NAME.yaml in the current folder")
+  create
+      ->add_option(
+          "name", args->name,
+          "Name; the file is NAME.yaml in the current folder. Of a mapping: the log to read")
       ->required()
-      ->option_text("NAME")
-      ->check(CheckName);
+      ->option_text("NAME");
   AddInput(*create, "--model", args->model,
-           "Model file of an experiment's robot (default: the shipped prism)")
+           "Model file of an experiment's robot (default: the shipped prism), or model or "
+           "experiment whose names occur in a log")
+      ->option_text("FILE");
+  create->add_option("--out", args->out, "Mapping file to write (default: LOG.map.json)")
       ->option_text("FILE");
   create->footer(
       "Examples:\n"
       "  taut new model my_robot\n"
       "  taut new experiment my_test --model my_robot.yaml\n"
       "  taut new study my_search\n"
+      "  taut new mapping lab.csv --model my_robot.yaml\n"
       "The templates have comments and run unchanged. `taut gait create` writes gaits.");
   create->callback([args, &exit_code] { exit_code = New(*args); });
 }

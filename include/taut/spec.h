@@ -294,11 +294,17 @@ struct LoadCaseSpec {
     double by_m = 0.0;
   };
   std::string name;
-  bool weight = true;  ///< Whether gravity acts.
+  bool weight = true;          ///< Whether gravity acts.
+  double weight_factor = 1.0;  ///< Partial factor on gravity, if it acts.
   std::vector<NodeForce> forces;
   std::vector<Settlement> settlements;
   /// Increase of rest lengths, including thermal expansion.
   std::vector<Lengthening> cables, bars;
+  /// Limit of the displacement of any node from its described place; absent: none.
+  std::optional<double> max_displacement_m;
+
+  /// Factor on gravity; 0 without weight.
+  double GravityFactor() const { return weight ? weight_factor : 0.0; }
 };
 
 struct RecordSpec {

@@ -87,23 +87,41 @@ struct Trace {
   std::optional<std::size_t> Find(const std::string& name) const;
 };
 
-/// Reads `.h5`, `.csv` or `.csv.gz`. On failure, returns nothing and adds an error. From a
-/// truncated `.h5` or `.csv`, it returns the rows that are complete in every channel. It rejects a
-/// truncated `.csv.gz`, links to other files, and files that unpack to far more than their size
+/// Reads `.h5`, `.csv`, `.csv.gz` or `.mcap`. On failure, returns nothing and adds an error. From a
+/// truncated `.h5`, `.csv` or `.mcap`, it returns the rows that are complete. It rejects a
+/// truncated
+/// `.csv.gz`, links to other files, and files that unpack to far more than their size
 /// (docs/formats/trace.md).
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
+
+/// Encoding of a text file. UTF-16 is recognized by its byte order mark in any case.
+enum class TextEncoding { kUtf8, kWindows1252 };
+
+/// Form of the clock in a table: a number, "14:03:20.5" (seconds since midnight), or a date and a
+/// time of day (seconds since 1970-01-01): "2026-05-02T14:03:20.5Z", "2.5.2026 14:03:20.5",
+/// "5/2/2026 14:03:20.5".
+enum class ClockFormat { kNumber, kTimeOfDay, kIso8601, kDayMonthYear, kMonthDayYear };
+
+/// Returns the name of a format in mappings: "number", "hh:mm:ss", "iso8601", "dd.mm.yyyy hh:mm:ss"
+/// or "mm/dd/yyyy hh:mm:ss".
+std::string_view ClockFormatName(ClockFormat format);
 
 /// Layout of a text table from another program (docs/formats/mapping.md).
 struct TableLayout {
   int skip_lines = 0;  ///< Number of lines before the header, or before the rows without a header.
-  bool header = true;  ///< Whether a line contains the column names.
+  int header_lines = 1;  ///< Number of lines with column names, whose cells are joined by blanks.
+  bool merged_header =
+      false;  ///< Empty cells of all header lines but the last repeat the previous.
   std::vector<std::string> columns;  ///< Column names that replace those in the header.
   char separator = ',';              ///< A blank stands for any number of blanks.
-  std::vector<std::string> ignore;   ///< Patterns with `*` of columns to ignore.
+  char decimal = '.';                ///< Decimal point or comma.
+  TextEncoding encoding = TextEncoding::kUtf8;
+  std::vector<std::string> ignore;  ///< Patterns with `*` of columns to ignore.
 
   // Clock: a column in units of `unit_s` [s]; its value `zero` (absent: its first value) becomes 0
   // s. Without such a column, rows are `row_s` apart.
   std::string time_column;
+  ClockFormat clock = ClockFormat::kNumber;
   double unit_s = 1.0;
   std::optional<double> zero = 0.0;
   double offset_s = 0.0;  ///< Added to all times.

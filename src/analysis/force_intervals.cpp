@@ -242,7 +242,7 @@ double LargestForce(const ModelDef& def, const LoadCaseSpec& loads) {
   double largest_n = 0;
   const auto note = [&](double force_n) { largest_n = std::max(largest_n, std::fabs(force_n)); };
   const double gravity =
-      loads.weight ? std::sqrt(Dot(def.gravity_m_per_s2, def.gravity_m_per_s2)) : 0;
+      loads.GravityFactor() * std::sqrt(Dot(def.gravity_m_per_s2, def.gravity_m_per_s2));
   for (const BodyDef& body : def.bodies) {
     if (!body.fixed) note(body.mass_kg * gravity);
   }

@@ -108,7 +108,7 @@ void Structure::AddJoints(const LoadCaseSpec& load_case) {
 void Structure::AddLoads(const LoadCaseSpec& load_case) {
   for (const int body : bodies) {
     const BodyDef& b = def_.bodies[static_cast<std::size_t>(body)];
-    weight_n.push_back((load_case.weight ? b.mass_kg : 0.0) * def_.gravity_m_per_s2);
+    weight_n.push_back(load_case.GravityFactor() * b.mass_kg * def_.gravity_m_per_s2);
   }
   for (const LoadCaseSpec::NodeForce& force : load_case.forces) {
     TAUT_ASSERT(force.node >= 0 && force.node < static_cast<int>(def_.nodes.size()));

@@ -40,8 +40,8 @@ double AppliedAlong(const ModelDef& def, const Cut& cut, const LoadCaseSpec& loa
   }
   for (const int body : cut.bodies) {
     if (!loads.weight) break;
-    applied_n +=
-        def.bodies[static_cast<std::size_t>(body)].mass_kg * Dot(def.gravity_m_per_s2, direction);
+    applied_n += loads.weight_factor * def.bodies[static_cast<std::size_t>(body)].mass_kg *
+                 Dot(def.gravity_m_per_s2, direction);
   }
   return applied_n;
 }

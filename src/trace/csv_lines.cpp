@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 
+#include "trace/text_encoding.h"
 #include "trace/unpack_limit.h"
 
 namespace taut::trace {
@@ -30,9 +31,10 @@ std::string WhyItEnds(gzFile file, const std::string& path) {
 
 bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
                const std::function<bool(std::string_view)>& use, const std::string& path,
-               Diagnostics& out) {
+               TextEncoding encoding, Diagnostics& out) {
   int lines = 0;
   std::string text;
+  ToUtf8 to_utf8(encoding);
   double unpacked_bytes = 0;
   char block[1 << 16];
   for (;;) {
@@ -40,6 +42,7 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
     if (count <= 0) {
       const std::string why = WhyItEnds(file, path);
       if (why.empty()) {
+        to_utf8.Append({}, text);
         if (tail == CsvTail::kLine && !text.empty()) use(text);
         return true;
       }
@@ -53,7 +56,7 @@ bool ReadLines(gzFile file, double file_bytes, CsvTail tail,
                 "if this size is intended, unpack it with `gunzip` first");
       return false;
     }
-    text.append(block, static_cast<std::size_t>(count));
+    to_utf8.Append(std::string_view(block, static_cast<std::size_t>(count)), text);
     std::size_t from = 0;
     for (std::size_t to; (to = text.find('\n', from)) != text.npos; from = to + 1) {
       ++lines;
@@ -76,7 +79,8 @@ std::string_view Trim(std::string_view text) {
 }
 
 bool ReadCsvLines(const std::string& path, CsvTail tail,
-                  const std::function<bool(std::string_view)>& use, Diagnostics& out) {
+                  const std::function<bool(std::string_view)>& use, Diagnostics& out,
+                  TextEncoding encoding) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (file == nullptr) {
     out.Error("file.not_readable", {path}, fmt::format("cannot open: {}", std::strerror(errno)));
@@ -84,7 +88,7 @@ bool ReadCsvLines(const std::string& path, CsvTail tail,
   }
   struct stat info {};
   const double bytes = stat(path.c_str(), &info) == 0 ? static_cast<double>(info.st_size) : 0.0;
-  return ReadLines(file.get(), bytes, tail, use, path, out);
+  return ReadLines(file.get(), bytes, tail, use, path, encoding, out);
 }
 
 }  // namespace taut::trace

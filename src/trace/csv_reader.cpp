@@ -43,14 +43,14 @@ class CsvParser {
 
  private:
   bool Header(std::string_view line) {
-    if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);  // byte order mark
     std::size_t column = 0;
     ForEachCell(line, [&](std::string_view cell, int) {
       if (column++ > 0) {
         trace_.channels.push_back({std::string(cell), UnitOfName(cell)});
       } else if (cell != "time_s") {
         Error("csv.no_time", 1, 1, fmt::format("the first column is \"{}\"", cell),
-              "expected time_s");
+              "expected time_s; `taut new mapping` writes a mapping for a log of another program, "
+              "for `--map`");
       }
     });
     trace_.values.resize(trace_.channels.size());

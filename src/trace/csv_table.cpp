@@ -9,20 +9,19 @@
 
 #include "base/number_text.h"
 #include "base/pattern.h"
+#include "trace/clock_text.h"
 #include "trace/csv_lines.h"
 #include "trace/readers.h"
+#include "trace/table_cells.h"
+#include "trace/text_encoding.h"
 
 namespace taut::trace {
 namespace {
 
 constexpr std::size_t kMaxTableErrors = 20;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDay_s = 86400.0;
 
-struct Cell {
-  std::string text;
-  int column;  ///< Byte position in the line, starting at 1.
-};
+using Cell = TableCell;
 
 class TableParser {
  public:
@@ -32,16 +31,14 @@ class TableParser {
   bool Line(std::string_view line) {
     ++line_;
     if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     if (line_ <= layout_.skip_lines) return true;
-    if (columns_.empty()) {
-      std::vector<Cell> header;
-      if (layout_.header) header = Cells(line);
-      if (!Columns(header)) return false;
-      if (layout_.header) return true;
+    if (line_ <= layout_.skip_lines + layout_.header_lines) {
+      if (!Header(line)) return false;
+      return line_ < layout_.skip_lines + layout_.header_lines || Columns();
     }
+    if (columns_.empty() && !Columns()) return false;
     if (Trim(line).empty()) return true;
-    Row(Cells(line));
+    Row(SplitCells(line, layout_.separator));
     return errors_ < kMaxTableErrors;
   }
 
@@ -60,35 +57,21 @@ class TableParser {
   enum class Use { kNothing, kTime, kChannel, kName, kValue };
   bool is_long() const { return !layout_.value_column.empty(); }
 
-  std::vector<Cell> Cells(std::string_view line) const {
-    std::vector<Cell> cells;
-    for (std::size_t at = 0; at <= line.size();) {
-      while (layout_.separator == ' ' && at < line.size() && line[at] == ' ') ++at;
-      if (layout_.separator == ' ' && at == line.size()) break;
-      const std::size_t from = at;
-      std::string text;
-      bool quoted = false;
-      for (; at < line.size() && (quoted || line[at] != layout_.separator); ++at) {
-        if (line[at] != '"') {
-          text += line[at];
-        } else if (quoted && at + 1 < line.size() && line[at + 1] == '"') {
-          text += line[at++];
-        } else {
-          quoted = !quoted;
-        }
-      }
-      cells.push_back({std::string(Trim(text)), static_cast<int>(from) + 1});
-      ++at;
+  /// Adds a line of the header to the names of the columns.
+  bool Header(std::string_view line) {
+    if (!IsUtf8(line)) {
+      Error("csv.not_utf8", line_, 0, "the header is not UTF-8",
+            "add \"encoding\": \"windows-1252\" to the table in the mapping");
+      return false;
     }
-    return cells;
+    const bool fill = layout_.merged_header && line_ < layout_.skip_lines + layout_.header_lines;
+    JoinHeader(SplitCells(line, layout_.separator), fill, names_);
+    return true;
   }
 
-  bool Columns(const std::vector<Cell>& header) {
-    std::vector<std::string> names = layout_.columns;
-    if (names.empty()) {
-      for (const Cell& cell : header) names.push_back(cell.text);
-    }
-    const int line = layout_.header ? line_ : 0;
+  bool Columns() {
+    const std::vector<std::string>& names = layout_.columns.empty() ? names_ : layout_.columns;
+    const int line = layout_.header_lines > 0 ? line_ : 0;
     const auto index = [&](const std::string& name) {
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end()) {
@@ -101,8 +84,7 @@ class TableParser {
       }
       return static_cast<std::size_t>(found - names.begin());
     };
-    columns_.assign(names.size() + 1, Use::kNothing);
-    columns_.back() = Use::kNothing;
+    columns_.assign(names.size() + 1, Use::kNothing);  // the last one: for unknown names
     if (!layout_.row_s) columns_[index(layout_.time_column)] = Use::kTime;
     if (is_long()) {
       for (const std::string& name : layout_.name_columns) columns_[index(name)] = Use::kName;
@@ -137,7 +119,7 @@ class TableParser {
   void RefuseDecimalCommas(const Cell& cell) {
     Error("csv.decimal_comma", line_, cell.column,
           fmt::format("numbers have a decimal comma, such as \"{}\"", cell.text),
-          "write the table with decimal points");
+          "add \"decimal\": \",\" to the table in the mapping");
     errors_ = kMaxTableErrors;
   }
 
@@ -147,9 +129,15 @@ class TableParser {
     if (text.empty() || text == "NA" || text == "NaN" || text == "nan") return kNan;
     if (text.front() == '+') text.remove_prefix(1);
     double number = kNan;
+    std::string with_point;
+    if (const auto comma = text.find(','); layout_.decimal == ',' && comma != text.npos) {
+      with_point = text;
+      with_point[comma] = '.';
+      text = with_point;
+    }
     const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
     if (failure != std::errc() || end != text.data() + text.size()) {
-      if (HasDecimalComma(text)) {
+      if (layout_.decimal == '.' && HasDecimalComma(text)) {
         RefuseDecimalCommas(cell);
         return kNan;
       }
@@ -162,9 +150,31 @@ class TableParser {
     return number;
   }
 
+  double Clock(const Cell& cell) {
+    if (layout_.clock == ClockFormat::kNumber) return Number(cell);
+    if (const auto time_s = ParseClock(cell.text, layout_.clock)) return *time_s;
+    Error("csv.not_a_time", line_, cell.column,
+          fmt::format("\"{}\" is not a time of the form {}", cell.text,
+                      ClockFormatName(layout_.clock)),
+          "correct `time.format` in the mapping");
+    return kNan;
+  }
+
+  /// Returns whether a row has a cell for each column that is used. Programs leave out empty cells
+  /// at the end of a row, or end all rows with a separator.
+  bool Covers(const std::vector<Cell>& cells) const {
+    const auto is_used = [](Use use) { return use != Use::kNothing; };
+    if (cells.size() < columns_.size()) {
+      return std::none_of(columns_.begin() + static_cast<std::ptrdiff_t>(cells.size()),
+                          columns_.end(), is_used);
+    }
+    return cells.size() == columns_.size() ||
+           (cells.size() == columns_.size() + 1 && cells.back().text.empty());
+  }
+
   void Row(const std::vector<Cell>& cells) {
     const std::size_t errors_before = errors_;
-    if (cells.size() != columns_.size()) {
+    if (!Covers(cells)) {
       Error("csv.ragged_row", line_, 0,
             fmt::format("the row has {} values, but the table has {} columns", cells.size(),
                         columns_.size()));
@@ -174,12 +184,12 @@ class TableParser {
     int time_at = 0;
     std::vector<double> values;
     std::string name;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t i = 0; i < std::min(cells.size(), columns_.size()); ++i) {
       switch (columns_[i]) {
         case Use::kNothing:
           break;
         case Use::kTime: {
-          const double read = Number(cells[i]);
+          const double read = Clock(cells[i]);
           if (rows_ == 0) zero_ = layout_.zero.value_or(read);
           time_s = (read - zero_) * layout_.unit_s;
           time_at = cells[i].column;
@@ -248,6 +258,7 @@ class TableParser {
   const std::string& path_;
   const TableLayout& layout_;
   Diagnostics& out_;
+  std::vector<std::string> names_;  ///< Of the columns, by the header.
   std::vector<Use> columns_;
   std::map<std::string, Before> last_;  ///< Per channel, for tables with one value per line.
   std::map<std::string, std::vector<std::pair<double, double>>> long_;
@@ -267,7 +278,9 @@ std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layou
                                Diagnostics& out) {
   trace::TableParser parser(path, layout, out);
   const auto line = [&](std::string_view text) { return parser.Line(text); };
-  if (!trace::ReadCsvLines(path, trace::CsvTail::kLine, line, out)) return std::nullopt;
+  if (!trace::ReadCsvLines(path, trace::CsvTail::kLine, line, out, layout.encoding)) {
+    return std::nullopt;
+  }
   return parser.Take();
 }
 

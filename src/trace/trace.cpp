@@ -29,8 +29,11 @@ std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out) {
   }
   if (path.ends_with(".h5")) return trace::ReadHdf5(path, out);
   if (path.ends_with(".csv") || path.ends_with(".csv.gz")) return trace::ReadCsv(path, out);
-  out.Error("trace.unknown_format", {path}, "unknown trace format",
-            "expected .h5, .csv or .csv.gz");
+  if (path.ends_with(".mcap")) return trace::ReadMcap(path, out);
+  out.Error(
+      "trace.unknown_format", {path}, "unknown trace format",
+      "expected .h5, .csv, .csv.gz or .mcap; `taut new mapping` writes a mapping for a log of "
+      "another program, for `--map`");
   return std::nullopt;
 }
 

@@ -124,6 +124,31 @@ TEST_F(ConvertTrace, CsvReadsBackToTheBit) {
   EXPECT_EQ(Files(), 1u);
 }
 
+TEST_F(ConvertTrace, McapReadsBackToTheBitButForTimesInNanoseconds) {
+  Trace trace = Rows(500, 0, 0.001);
+  trace.values[0][3] = std::nan("");
+  trace.values[2][5] = 0.1 + 0.2;
+  trace.metadata = {{"experiment", "drop"}};
+  ASSERT_EQ(WriteTraceMcap(trace, nullptr, Path("out.mcap"), {}, found_), Conversion::kDone);
+  const auto read = ReadTrace(Path("out.mcap"), found_);
+  ASSERT_TRUE(read) << found_.Format();
+  ASSERT_EQ(read->channels.size(), trace.channels.size());
+  for (std::size_t c = 0; c < trace.channels.size(); ++c) {
+    const auto at = read->Find(trace.channels[c].name);
+    ASSERT_TRUE(at) << trace.channels[c].name;
+    EXPECT_EQ(read->channels[*at].unit, UnitOfName(trace.channels[c].name));
+    for (std::size_t row = 0; row < trace.time_s.size(); ++row) {
+      const double value = read->values[*at][row], wanted = trace.values[c][row];
+      EXPECT_TRUE(value == wanted || (std::isnan(value) && std::isnan(wanted))) << row;
+    }
+  }
+  for (std::size_t row = 0; row < trace.time_s.size(); ++row) {
+    EXPECT_NEAR(read->time_s[row], trace.time_s[row], 0.5e-9);
+  }
+  EXPECT_EQ(read->metadata, trace.metadata);
+  EXPECT_FALSE(read->unfinished);
+}
+
 TEST_F(ConvertTrace, TimesThatNanosecondsCannotSayAreAnError) {
   Trace trace = Rows(2, 0, 1);
   trace.time_s[1] = 2e10;

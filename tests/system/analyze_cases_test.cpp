@@ -69,6 +69,55 @@ TEST_F(AnalyzeCases, WithoutWeightAForceGoesThroughTheRod) {
   ExpectMember(pulled, "rod", 25, 25);
 }
 
+/// The rod is linear, so tensions of a sum are sums of tensions.
+TEST_F(AnalyzeCases, CombinationsAddUpAndKeepTheirLimits) {
+  WriteRod();
+  Write("sums.yaml",
+        "taut: 1\nkind: experiment\nname: sums\nmodel: rod.yaml\nduration_s: 1\nload_cases:\n"
+        "  - {name: own}\n"
+        "  - {name: pulled, weight: false, forces: [{node: b, force_n: [0, 0, -10]}]}\n"
+        "load_combinations:\n"
+        "  - {name: uls, factors: {own: 1.35, pulled: 1.5}, max_displacement_m: 10.9 mm}\n");
+  // both ropes of 1000 N/m resist: (1.35 * 9.81 + 15) / 2000 m = 14.12 mm
+  const test::CommandResult shown = Taut({"analyze", "sums.yaml", "--json"});
+  EXPECT_EQ(shown.status, 1);
+  EXPECT_NE(shown.errors.find("error: load case uls: "), std::string::npos) << shown.errors;
+  EXPECT_NE(shown.errors.find(" moves by 0.01412 m, above the limit of 0.0109 m"),
+            std::string::npos)
+      << shown.errors;
+  const json uls = json::parse(shown.output)["load_cases"].at(2);
+  const double half_n = (1.35 * 9.81 + 15) / 2;
+  EXPECT_NEAR(Member(uls, "upper")["tension_n"].get<double>(), 20 + half_n, 1e-6);
+  EXPECT_NEAR(Member(uls, "lower")["tension_n"].get<double>(), 20 - half_n, 1e-6);
+  // the table: 9.81 N hang on the ropes, and 28.244 N in the sum
+  const test::CommandResult table = Taut({"analyze", "sums.yaml", "--modes", "0"});
+  EXPECT_NE(table.output.find("14.12 "), std::string::npos) << table.output;
+  EXPECT_NE(table.output.find(" > limit"), std::string::npos) << table.output;
+  for (const char* sum : {"9.810\n", "10.000\n", "28.244\n"}) {
+    EXPECT_NE(table.output.find(sum), std::string::npos) << table.output;
+  }
+}
+
+/// Steel: forces of 1e7 N/m times the rounding of places exceed 1e-9 of the weight.
+TEST_F(AnalyzeCases, AStiffTrussStandsUnderItsWeight) {
+  Write("truss.yaml",
+        "taut: 1\nkind: model\nname: truss\nparameters: {young_pa: 210 GPa}\n"
+        "nodes: {a: [0, 0, 0], b: [2000 mm, 0, 0], c: [1, 0, 1], d: [1, 1, 0]}\n"
+        "pairs:\n  - {tags: [bar], each: [[a, b], [b, c], [c, a], [a, d], [b, d], [c, d]]}\n"
+        "builders:\n"
+        "  - {match: bar, bar: {young_pa: young_pa, area_m2: 50 mm^2, mass_kg: 300 g}}\n"
+        "  - {match: [[a], [b], [d]], support: {kind: ball}}\n");
+  for (const char* factor : {"1e-3", "1", "10", "100"}) {
+    const test::CommandResult shown = Taut({"analyze", "truss.yaml", "--json", "--modes", "0",
+                                            "--set", std::string("young_pa=210e9 * ") + factor});
+    ASSERT_EQ(shown.status, 0) << factor << shown.errors;
+    const json own = json::parse(shown.output)["load_cases"].at(0);
+    double held_n = 0;
+    for (const json& one : own["reactions"]) held_n += one["force_n"][2].get<double>();
+    EXPECT_NEAR(held_n, 6 * 0.3 * 9.81, 1e-5) << factor;
+  }
+}
+
 /// The ropes' tensions restore lateral displacements: omega^2 = (T / l1 + T / l2) / m. The longer
 /// rest length counts once, because the modes are about the equilibrium with it.
 TEST_F(AnalyzeCases, AModeIsAboutTheEquilibriumOfItsLoadCase) {

@@ -76,7 +76,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   text.controllers = ToControllers(text.controller_texts, known, model.good, scope);
   const bool drivers_known = model.good && scope.out.items().size() == errors_before_controllers;
   AddTimeline(text.timeline, known, scope, text);
-  text.load_cases = ToLoadCases(text.load_case_texts, known, scope);
+  text.load_cases = ToLoadCases(text.load_case_texts, text.load_combinations, known, scope);
   text.references = ToReferences(text.reference_texts, known, text.phases, scope);
 
   if (model.robot) text.robot = std::move(*model.robot);

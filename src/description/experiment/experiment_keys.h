@@ -357,6 +357,8 @@ void Keys(Io& io, Experiment& e) {
        "Factors on model quantities, for sensitivity studies. Factors on the same quantity "
        "multiply.");
     io("load_cases", e.load_case_texts, "Static loads for `taut analyze`.");
+    io("load_combinations", e.load_combinations,
+       "Sums of load cases with partial factors, also for `taut analyze`.");
     io("environment", e.environment_text);
   }
   io("start_noise", e.start_noise, kLater);

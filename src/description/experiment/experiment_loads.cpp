@@ -5,6 +5,7 @@
 
 #include "base/fixed.h"
 #include "description/experiment/experiment_parts.h"
+#include "description/experiment/load_combinations.h"
 #include "description/experiment/load_keys.h"
 
 namespace taut::description {
@@ -41,11 +42,12 @@ class CaseReader {
     LoadCaseSpec out;
     out.name = text.name.text;
     out.weight = text.weight;
-    const std::vector<bool> all_nodes(robot_.def.nodes.size(), true);
+    out.weight_factor = text.weight_factor;
+    out.max_displacement_m = text.max_displacement_m;
     for (const NodeForceText& force : text.forces) {
-      const int node = Find(force.node_name, "node", robot_.def.nodes, all_nodes, scope_);
-      if (node >= 0) out.forces.push_back({node, force.force_n});
+      for (const int node : Nodes(force)) out.forces.push_back({node, force.force_n});
     }
+    for (const LineLoadText& line : text.lines) AddLineLoad(line, robot_, scope_, out);
     for (const SettlementText& settlement : text.settlements) {
       const int joint = Find(settlement.support, "support", robot_.def.joints, is_support_, scope_);
       if (joint >= 0) out.settlements.push_back({joint, settlement.by_m});
@@ -89,6 +91,28 @@ class CaseReader {
     double by_m = 0;
     SourceRef at;  ///< Position of the last contribution in the file.
   };
+
+  /// Returns the node, or the selected nodes, of a force.
+  std::vector<int> Nodes(const NodeForceText& force) const {
+    if (!force.nodes.value) {
+      const std::vector<bool> all(robot_.def.nodes.size(), true);
+      const int node = Find(force.node_name, "node", robot_.def.nodes, all, scope_);
+      return node >= 0 ? std::vector{node} : std::vector<int>();
+    }
+    const auto match = ReadMatch(*force.nodes.value, "forces.nodes", scope_);
+    std::vector<int> found;
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < robot_.node_tags.size() && !match.empty(); ++i) {
+      if (Matches(match, robot_.node_tags[i])) found.push_back(static_cast<int>(i));
+      words.insert(words.end(), robot_.node_tags[i].begin(), robot_.node_tags[i].end());
+    }
+    if (found.empty() && !match.empty()) {
+      scope_.out.Error("load_case.matches_no_node", force.nodes.value->at,
+                       "forces.nodes: no node matches " + Written(*force.nodes.value),
+                       UnknownWord(match, words, "node"));
+    }
+    return found;
+  }
 
   Member MemberAt(const Key& key) const {
     const auto i = static_cast<std::size_t>(key.index);
@@ -152,18 +176,15 @@ class CaseReader {
 }  // namespace
 
 std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
+                                      const std::vector<LoadCombinationText>& combinations,
                                       const RobotSpec* robot, const Scope& scope) {
   std::vector<LoadCaseSpec> cases;
   std::map<std::string, SourceRef> names;
   for (const LoadCaseText& text : texts) {
-    const auto [first, fresh] = names.emplace(text.name.text, text.name.at);
-    if (!fresh && !text.name.text.empty()) {
-      scope.out.Error("load_case.duplicate_name", text.name.at,
-                      "two load cases are called " + text.name.text,
-                      "the first is in line " + std::to_string(first->second.line));
-    }
+    IsNewCase(text.name, names, scope);
     if (robot) cases.push_back(CaseReader(*robot, scope).Run(text));
   }
+  if (robot) AddCombinations(combinations, names, scope, cases);
   return cases;
 }
 

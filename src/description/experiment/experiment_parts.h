@@ -28,6 +28,7 @@ std::string UnknownWord(const std::vector<std::vector<std::string>>& match,
 /// Converts load cases. Reports unknown names, and temperatures of members without an expansion
 /// coefficient.
 std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
+                                      const std::vector<LoadCombinationText>& combinations,
                                       const RobotSpec* robot, const Scope& scope);
 
 /// Converts controllers. `actuators_known`: false if the model has errors, so that actuators may be

@@ -174,6 +174,13 @@ struct ReferenceText : ReferenceSpec {
 
 struct NodeForceText : LoadCaseSpec::NodeForce {
   Placed node_name;
+  Raw<SelectorForm> nodes;
+  SourceRef at;
+};
+struct LineLoadText {
+  Raw<SelectorForm> members;
+  Vec3 force_n_per_m;
+  SourceRef at;
 };
 struct SettlementText : LoadCaseSpec::Settlement {
   Placed support;
@@ -191,10 +198,19 @@ struct TemperatureText {
 struct LoadCaseText {
   Placed name;
   bool weight = true;
+  double weight_factor = 1.0;
   std::vector<NodeForceText> forces;
   std::vector<SettlementText> settlements;
   std::vector<RestLengthText> rest_lengths;
   std::vector<TemperatureText> temperatures;
+  std::vector<LineLoadText> lines;
+  std::optional<double> max_displacement_m;
+};
+/// Sum of load cases with partial factors.
+struct LoadCombinationText {
+  Placed name;
+  Named<double> factors;
+  std::optional<double> max_displacement_m;
 };
 
 // reinforcement learning
@@ -230,6 +246,7 @@ struct ExperimentText : ExperimentSpec {
   Raw<FileForm> compare_file;
   std::vector<ReferenceText> reference_texts;
   std::vector<LoadCaseText> load_case_texts;
+  std::vector<LoadCombinationText> load_combinations;
   std::optional<EnvironmentText> environment_text;
 };
 

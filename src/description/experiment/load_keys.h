@@ -13,9 +13,24 @@ void Keys(Io& io, Force& f) {
   if constexpr (Io::kResolved) {
     io("node", f.node);
   } else {
-    io("node", f.node_name, kNeeded, "Node on which the force acts, such as segment_0.tip.");
+    io.OneOf({"node", "nodes"});
+    io("node", f.node_name, "Node on which the force acts, such as segment_0.tip.");
+    io("nodes", f.nodes, "Selector of nodes by names and tags; the force acts on each.");
   }
   io("force_n", f.force_n, kNeeded, "Force in the world frame.");
+}
+
+template <class Io>
+void Keys(Io& io, Like<LineLoadText> auto& l) {
+  io.Map(
+      "line_load", "load_case.line_load",
+      "Load per length of members, such as wind or snow. Half of each member's load acts on each "
+      "of its end nodes.",
+      R"({"members": "deck", "force_n_per_m": [0, 0, -200]})");
+  io("members", l.members, kNeeded,
+     "Selector of cables and bars, as for controllers, and of rods, by their names.");
+  io("force_n_per_m", l.force_n_per_m, kNeeded,
+     "Force per described length of the member, in the world frame.");
 }
 
 template <class Io, Either<LoadCaseSpec::Settlement, SettlementText> Settlement>
@@ -73,6 +88,7 @@ void Keys(Io& io, LoadCase& c) {
          R"({"name": "wind", "forces": [{"node": "top", "force_n": [50, 0, 0]}]})");
   io("name", c.name, kNeeded, kName, "Name of the load case.");
   io("weight", c.weight, "Whether gravity acts.");
+  io("weight_factor", c.weight_factor, LaterThan{1.0}, "Factor on gravity, if it acts.");
   io("forces", c.forces, "Forces on nodes.");
   io("settlements", c.settlements, "Settlements of the ground under supports.");
   if constexpr (Io::kResolved) {
@@ -81,7 +97,22 @@ void Keys(Io& io, LoadCase& c) {
   } else {
     io("rest_lengths", c.rest_lengths, "Changes of length of cables and bars.");
     io("temperatures", c.temperatures, "Changes of temperature of cables and bars.");
+    io("line_loads", c.lines, "Loads per length of members.");
   }
+  io("max_displacement_m", c.max_displacement_m, kLater, Bound::kPositive,
+     "Limit of the displacement of any node from its described place.");
+}
+
+template <class Io>
+void Keys(Io& io, Like<LoadCombinationText> auto& c) {
+  io.Map("load_combination", "load_combination",
+         "Sum of load cases, each multiplied by a factor: its forces, weight, settlements, and "
+         "changes of length and temperature.",
+         R"({"name": "uls", "factors": {"own_weight": 1.35, "wind": 1.5}})");
+  io("name", c.name, kNeeded, kName, "Name, different from those of all load cases.");
+  io("factors", c.factors, kNeeded, "Factor by name of a load case.");
+  io("max_displacement_m", c.max_displacement_m, Bound::kPositive,
+     "Limit of the displacement of any node from its described place.");
 }
 
 }  // namespace taut::description

@@ -117,7 +117,9 @@ void Check(const MapReader& map, NodeText& node) { CheckTags(map, node.tags); }
 bool ReadShort(const Value& value, const std::string& path, const Scope& scope, NodeText& out) {
   if (value.kind == Value::Kind::kMap) return false;
   if (value.kind == Value::Kind::kSequence) {
-    out.at_m = ReadVec3(value, path, scope);
+    Scope metres = scope;  // the path ends with the node's name
+    metres.unit = "m";
+    out.at_m = ReadVec3(value, path, metres);
   } else {
     WrongType(value, path, "[x, y, z] or a map with at_m", scope);
     out.at_m.x = NAN;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "description/yaml/quantity.h"
 #include "description/yaml/reader.h"
 
 namespace taut::description {
@@ -161,7 +162,7 @@ NameTable ResolveParameters(const std::vector<ParameterText>& parameters, Diagno
     const ParameterText& parameter = parameters[i];
     done[i] = true;
     if (parameter.at.file.empty()) return;  // the reader has reported this parameter
-    Evaluated result = Evaluate(parameter.expression, values);
+    Evaluated result = EvaluateQuantity(parameter.expression, values, parameter.name);
     if (!result.error.empty()) {
       out.Error("parameter.bad_expression", parameter.at,
                 "parameters." + parameter.name + ": " + result.error, std::move(result.hint));

@@ -83,7 +83,8 @@ MapReader::MapReader(const MapReader& other, Diagnostics& out)
       known_(other.known_),
       meant_(other.meant_),
       knows_all_(other.knows_all_),
-      scope_{other.scope_.names, out, other.scope_.used, other.scope_.spelling} {}
+      scope_{other.scope_.names, out, other.scope_.used, other.scope_.spelling, other.scope_.unit} {
+}
 
 void MapReader::Know(std::string_view key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);

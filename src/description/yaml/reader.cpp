@@ -7,6 +7,7 @@
 
 #include "base/brief.h"
 #include "description/yaml/kinds.h"
+#include "description/yaml/quantity.h"
 
 namespace taut::description {
 namespace {
@@ -78,7 +79,7 @@ double ReadNumber(const Value& value, std::string_view what, const Bound& bound,
   if (scope.used) {
     for (std::string& name : NamesIn(value.text)) scope.used->insert(std::move(name));
   }
-  Evaluated result = Evaluate(value.text, scope.names);
+  Evaluated result = EvaluateQuantity(value.text, scope.names, what, scope.unit);
   if (!result.error.empty()) {
     scope.out.Error("value.bad_expression", value.at, std::string(what) + ": " + result.error,
                     std::move(result.hint));

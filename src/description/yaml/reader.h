@@ -32,6 +32,7 @@ struct Scope {
   Diagnostics& out;
   NameSet* used = nullptr;
   Spelling spelling{};
+  std::string_view unit{};  ///< SI unit of numbers whose names have none, such as coordinates.
 };
 
 /// Range of a number, from `least` to `most`. Numbers must also be finite.

@@ -85,6 +85,81 @@ TEST_F(LoadCases, BecomeForcesSettlementsAndLengths) {
   }
 }
 
+TEST_F(LoadCases, LineLoadsActAtTheEndsOfMembers) {
+  After("    forces:\n      - {node: c, force_n: [0, 0, -100]}",
+        "    weight_factor: 1.35\n    max_displacement_m: 20 mm\n    line_loads:\n"
+        "      - {members: [bar], force_n_per_m: [0, 0, -50]}\n"
+        "      - {members: stay, force_n_per_m: [3, 0, 0]}");
+  const ExperimentSpec read = Load();
+  Write("resolved.yaml", ResolvedYaml(read));
+  for (const ExperimentSpec& e : {read, Load("resolved.yaml")}) {
+    const LoadCaseSpec& snow = e.load_cases.at(0);
+    EXPECT_EQ(snow.GravityFactor(), 1.35);
+    EXPECT_EQ(snow.max_displacement_m, 0.02);
+    // a and b: half of the deck of 2 m and of a leg of sqrt(2) m; c: half of two legs, and half of
+    // two ropes of 2 m, whose other halves the anchor carries
+    const double leg = 25 * std::sqrt(2.0);
+    ASSERT_EQ(snow.forces.size(), 3u);
+    for (const LoadCaseSpec::NodeForce& force : snow.forces) {
+      const std::string& name = e.robot.def.nodes[static_cast<std::size_t>(force.node)].name;
+      EXPECT_NEAR(force.force_n.z, name == "c" ? -2 * leg : -50 - leg, 1e-12) << name;
+      EXPECT_NEAR(force.force_n.x, name == "c" ? 6 : 0, 1e-12) << name;
+    }
+  }
+}
+
+TEST_F(LoadCases, ForcesOnSelectedNodesActOnEach) {
+  After("{node: c, force_n: [0, 0, -100]}", "{nodes: [[a], [b]], force_n: [0, 0, -100]}");
+  const LoadCaseSpec snow = Load().load_cases.at(0);
+  ASSERT_EQ(snow.forces.size(), 2u);
+  EXPECT_EQ(snow.forces[0].node, 0);
+  EXPECT_EQ(snow.forces[1].node, 1);
+  EXPECT_EQ(snow.forces[1].force_n.z, -100);
+}
+
+TEST_F(LoadCases, CombinationsAreSumsWithFactors) {
+  ChangeFile("trial.yaml", kCases, "load_cases:\n",
+             "load_combinations:\n"
+             "  - {name: uls, factors: {snow: 1.5, winter: 0.6}, max_displacement_m: 0.1}\n"
+             "  - {name: none, factors: {winter: 2}}\n"
+             "load_cases:\n");
+  const ExperimentSpec read = Load();
+  Write("resolved.yaml", ResolvedYaml(read));
+  for (const ExperimentSpec& e : {read, Load("resolved.yaml")}) {
+    ASSERT_EQ(e.load_cases.size(), 4u);
+    const LoadCaseSpec &winter = e.load_cases[1], &uls = e.load_cases[2];
+    EXPECT_EQ(uls.name, "uls");
+    EXPECT_EQ(uls.GravityFactor(), 1.5);
+    EXPECT_EQ(uls.max_displacement_m, 0.1);
+    ASSERT_EQ(uls.forces.size(), 1u);
+    EXPECT_EQ(uls.forces[0].force_n.z, -150);
+    EXPECT_EQ(uls.settlements.at(0).by_m.z, 0.6 * -0.01);
+    ASSERT_EQ(uls.cables.size(), winter.cables.size());
+    EXPECT_EQ(uls.cables[0].by_m, 0.6 * winter.cables[0].by_m);
+    EXPECT_EQ(uls.bars.at(0).by_m, 0.6 * -0.002);
+    EXPECT_EQ(e.load_cases[3].GravityFactor(), 0);
+    EXPECT_FALSE(e.load_cases[3].weight);
+  }
+}
+
+TEST_F(LoadCases, MistakesInSumsAndLineLoadsAreNamed) {
+  EXPECT_EQ(After("load_cases:\n",
+                  "load_combinations: [{name: snow, factors: {snow: 1, wintr: 1.5}}]\n"
+                  "load_cases:\n"),
+            "6:28: error: two load cases are called snow (the first is in line 8)\n"
+            "6:53: error: there is no load case \"wintr\" (did you mean \"winter\"?)\n");
+  EXPECT_EQ(After("{node: c, force_n", "{node: c, nodes: [c], force_n"),
+            "9:19: error: force has both node and nodes (give only one of them)\n");
+  EXPECT_EQ(After("{node: c, force_n", "{nodes: dd, force_n"),
+            "9:17: error: forces.nodes: no node matches dd (no node is called or tagged \"dd\"; "
+            "one of: a, b, c, hook)\n");
+  EXPECT_EQ(After("    forces:\n",
+                  "    line_loads: [{members: dek, force_n_per_m: [0, 0, 1]}]\n"
+                  "    forces:\n"),
+            "8:28: error: line_loads.members: no cable, bar or rod matches dek (no cable, bar or "
+            "rod is called or tagged \"dek\"; did you mean \"deck\"?)\n");
+}
+
 TEST_F(LoadCases, MistakesAreNamed) {
   EXPECT_EQ(After("node: c", "node: d"),
             "9:16: error: there is no node \"d\" (did you mean \"a\"?)\n");

@@ -142,8 +142,8 @@ TEST_F(MeasuredTable, DecimalCommasAreOneError) {
   for (int i = 0; i < 30; ++i) rows += std::to_string(i) + ",25;7,75\n";
   EXPECT_EQ(
       Wrong(rows, R"m("table": {"separator": ";", "time": {"column": "t"}})m"),
-      "t.csv:2:1: error: numbers have a decimal comma, such as \"0,25\" (write the table with "
-      "decimal points)\n");
+      "t.csv:2:1: error: numbers have a decimal comma, such as \"0,25\" (add \"decimal\": "
+      "\",\" to the table in the mapping)\n");
 }
 
 TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {
@@ -174,16 +174,17 @@ TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {
 }
 
 TEST_F(MeasuredTable, MistakesInItsLayoutAreNamed) {
-  EXPECT_EQ(Wrong("", R"m("table": {"skip_lines": -1, "header": 1, "separator": "ab", "ignore": "x",
+  EXPECT_EQ(
+      Wrong("", R"m("table": {"skip_lines": -1, "header": "a", "separator": "ab", "ignore": "x",
                            "names": ["a"]})m"),
-            "m.json: error: table must have both \"names\" and \"value\", or neither (they select "
-            "the columns of channel names and values, for tables with one value per row)\n"
-            "m.json: error: table.header must be true or false\n"
-            "m.json: error: table.ignore must be a list of strings\n"
-            "m.json: error: table.separator must be one of \",\", \";\", \"|\", \"\\t\" and \" \"\n"
-            "m.json: error: table.skip_lines must be a whole number of lines\n"
-            "m.json: error: table.time is missing (expected {\"column\": \"t\", \"unit\": \"ms\"} "
-            "or {\"row_s\": 1})\n");
+      "m.json: error: table must have both \"names\" and \"value\", or neither (they select "
+      "the columns of channel names and values, for tables with one value per row)\n"
+      "m.json: error: table.header must be true, false or a number of lines, at most 10\n"
+      "m.json: error: table.ignore must be a list of strings\n"
+      "m.json: error: table.separator must be one of \",\", \";\", \"|\", \"\\t\", \" \"\n"
+      "m.json: error: table.skip_lines must be a whole number of lines, at most 1000000\n"
+      "m.json: error: table.time is missing (expected {\"column\": \"t\", \"unit\": \"ms\"} "
+      "or {\"row_s\": 1})\n");
   EXPECT_EQ(Wrong("", R"m("table": {"header": false,
                            "time": {"column": "t", "unit": "cm", "zero": "last"}})m"),
             "m.json: error: table.columns is missing (list the names of the columns, because the "

@@ -218,7 +218,9 @@ TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
             "t.csv:3: error: there is an empty line between rows\n");
   EXPECT_EQ(CsvComplaint(""), "t.csv:1: error: the trace has no header line\n");
   EXPECT_EQ(CsvComplaint("t,a\n0,1\n"),
-            "t.csv:1:1: error: the first column is \"t\" (expected time_s)\n");
+            "t.csv:1:1: error: the first column is \"t\" (expected time_s; `taut new mapping` "
+            "writes a mapping for a "
+            "log of another program, for `--map`)\n");
   EXPECT_EQ(CsvComplaint("time_s,a,a\n0,1,2\n"), "t.csv: error: channel name \"a\" occurs twice\n");
   EXPECT_EQ(CsvComplaint(std::string(9 << 20, '1')),
             "t.csv: error: the file is not CSV: it has no line end within 8 MB\n");
@@ -231,7 +233,8 @@ TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
 TEST_F(TraceTest, AFileThatCannotBeOpenedSaysWhy) {
   EXPECT_EQ(Complaint(Path("none.h5")), "none.h5: error: cannot open: No such file or directory\n");
   EXPECT_EQ(Complaint(WriteFile("t.txt", "time_s\n")),
-            "t.txt: error: unknown trace format (expected .h5, .csv or .csv.gz)\n");
+            "t.txt: error: unknown trace format (expected .h5, .csv, .csv.gz or .mcap; `taut new "
+            "mapping` writes a mapping for a log of another program, for `--map`)\n");
   std::filesystem::create_directory(Path("folder.h5"));
   EXPECT_EQ(Complaint(Path("folder.h5")), "folder.h5: error: the trace is not a regular file\n");
   EXPECT_EQ(Complaint(WriteFile("t.h5", "time_s,a\n")),

@@ -1,4 +1,4 @@
-/// Conversion of units of measured data to SI.
+/// Units of measured data and of model files, and their conversion to SI.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace taut {
+namespace taut::base {
 
 /// One unit equals `factor` times the unit `si`.
 struct ForeignUnit {
@@ -17,4 +17,4 @@ struct ForeignUnit {
 std::optional<ForeignUnit> FindUnit(std::string_view name);
 std::vector<std::string> UnitNames();
 
-}  // namespace taut
+}  // namespace taut::base

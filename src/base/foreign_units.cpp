@@ -1,8 +1,8 @@
-#include "compare/foreign_units.h"
+#include "base/foreign_units.h"
 
 #include <numbers>
 
-namespace taut {
+namespace taut::base {
 namespace {
 
 constexpr double kPound_kg = 0.45359237, kGravity_m_per_s2 = 9.80665, kInch_m = 0.0254;
@@ -24,6 +24,12 @@ const std::vector<ForeignUnit>& Units() {
       {"um", "m", 1e-6},
       {"in", "m", kInch_m},
       {"ft", "m", 12 * kInch_m},
+      {"m^2", "m^2", 1},
+      {"cm^2", "m^2", 1e-4},
+      {"mm^2", "m^2", 1e-6},
+      {"m^4", "m^4", 1},
+      {"cm^4", "m^4", 1e-8},
+      {"mm^4", "m^4", 1e-12},
       {"m/s", "m/s", 1},
       {"cm/s", "m/s", 1e-2},
       {"mm/s", "m/s", 1e-3},
@@ -44,13 +50,29 @@ const std::vector<ForeignUnit>& Units() {
       {"N cm", "N m", 1e-2},
       {"N/m", "N/m", 1},
       {"N/mm", "N/m", 1e3},
+      {"N/cm", "N/m", 1e2},
+      {"kN/m", "N/m", 1e3},
+      {"N s/m", "N s/m", 1},
+      {"N s/mm", "N s/m", 1e3},
       {"lbf/in", "N/m", kPoundForce_n / kInch_m},
       {"kg", "kg", 1},
       {"g", "kg", 1e-3},
       {"lb", "kg", kPound_kg},
+      {"kg/m", "kg/m", 1},
+      {"g/m", "kg/m", 1e-3},
+      {"kg/m^3", "kg/m^3", 1},
+      {"g/cm^3", "kg/m^3", 1e3},
+      {"kg m^2", "kg m^2", 1},
+      {"kg mm^2", "kg m^2", 1e-6},
+      {"g cm^2", "kg m^2", 1e-7},
       {"Pa", "Pa", 1},
       {"kPa", "Pa", 1e3},
       {"MPa", "Pa", 1e6},
+      {"GPa", "Pa", 1e9},
+      {"Hz", "Hz", 1},
+      {"kHz", "Hz", 1e3},
+      {"J", "J", 1},
+      {"W", "W", 1},
       {"V", "V", 1},
       {"mV", "V", 1e-3},
       {"A", "A", 1},
@@ -74,4 +96,4 @@ std::vector<std::string> UnitNames() {
   return names;
 }
 
-}  // namespace taut
+}  // namespace taut::base

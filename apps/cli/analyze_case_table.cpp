@@ -1,0 +1,66 @@
+// Table of load cases: the first lines of `taut analyze`.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analyze_report.h"
+#include "table.h"
+
+namespace taut::cli {
+namespace {
+
+/// Sum of the vertical forces of all that holds the robot in the world.
+double ReactionZ_n(const CaseResult& result) {
+  double sum_n = 0;
+  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
+    if (IsSupport(result.def, result.def.joints[j])) sum_n += result.at.joint_loads[j].force_n.z;
+  }
+  for (const Reaction& anchor : result.anchors) sum_n += anchor.force_n.z;
+  for (const CaseResult::End& end : result.ends) sum_n += end.force_n.z;
+  for (const ContactState& contact : result.at.contacts) sum_n += contact.force_n.z;
+  return sum_n;
+}
+
+std::string DisplacementCell(const CaseResult& result) {
+  if (result.move.name.empty()) return "-";
+  return fmt::format("{:.4g} {}{}", 1000 * result.move.distance_m, result.move.name,
+                     ExceedsDisplacement(result) ? " > limit" : "");
+}
+
+std::string SafetyCell(const CaseResult& result) {
+  const MemberLoad* const least = result.LeastSafe();
+  if (least == nullptr) return "-";
+  return fmt::format("{} {} {}", SafetyFactorText(*least->Least()), least->LeastOf(), least->name);
+}
+
+std::string SlackCell(const CaseResult& result) {
+  const auto slack = std::count_if(result.members.begin(), result.members.end(),
+                                   [](const MemberLoad& load) { return load.slack; });
+  if (slack > 0) return fmt::format("now: {}", slack);
+  const MemberLoad* const first = result.FirstSlack();
+  if (first == nullptr) return "-";
+  return fmt::format("{} x {}", SafetyFactorText(*first->slackening), first->name);
+}
+
+}  // namespace
+
+bool ExceedsDisplacement(const CaseResult& result) {
+  const auto& limit_m = result.loads.max_displacement_m;
+  return result.at.found && limit_m && result.move.distance_m > *limit_m;
+}
+
+std::string CaseTable(const AnalysisResult& result) {
+  Table table({"load case", "max displacement [mm]", "least safety factor", "first slack at",
+               "reactions z [N]"});
+  for (const CaseResult& one : result.cases) {
+    if (!one.at.found) {
+      table.Add({one.loads.name, "no equilibrium", "-", "-", "-"});
+      continue;
+    }
+    table.Add({one.loads.name, DisplacementCell(one), SafetyCell(one), SlackCell(one),
+               Fixed(ReactionZ_n(one), 3)});
+  }
+  return table.Text();
+}
+
+}  // namespace taut::cli

@@ -1,0 +1,289 @@
+#include "compare/log_form.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "base/input_file.h"
+#include "base/number_text.h"
+#include "trace/clock_text.h"
+#include "trace/csv_lines.h"
+#include "trace/table_cells.h"
+#include "trace/text_encoding.h"
+
+namespace taut {
+namespace {
+
+constexpr std::size_t kSampleLines = 400;
+constexpr int kUsualHeaderLines = 3;
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+constexpr ClockFormat kClocks[] = {ClockFormat::kIso8601, ClockFormat::kTimeOfDay,
+                                   ClockFormat::kDayMonthYear, ClockFormat::kMonthDayYear};
+
+using Lines = std::vector<std::string>;
+using Cells = std::vector<trace::TableCell>;
+
+bool IsGap(const std::string& cell) {
+  return cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA";
+}
+
+bool IsClock(const std::string& cell) {
+  return std::any_of(std::begin(kClocks), std::end(kClocks), [&](ClockFormat format) {
+    return trace::ParseClock(cell, format).has_value();
+  });
+}
+
+bool IsValue(const std::string& cell, char decimal) {
+  return !IsGap(cell) && (IsNumberCell(cell, decimal) || IsClock(cell));
+}
+
+/// Returns the first lines and their encoding.
+std::optional<Lines> Sample(const std::string& path, TextEncoding& encoding, Diagnostics& out) {
+  Lines lines;
+  bool is_utf8 = true;
+  const auto add = [&](std::string_view line) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    is_utf8 = is_utf8 && trace::IsUtf8(line);
+    lines.emplace_back(line);
+    return lines.size() < kSampleLines;
+  };
+  if (!trace::ReadCsvLines(path, trace::CsvTail::kLine, add, out, encoding)) return std::nullopt;
+  if (is_utf8 || encoding == TextEncoding::kWindows1252) return lines;
+  encoding = TextEncoding::kWindows1252;
+  return Sample(path, encoding, out);
+}
+
+/// Number of cells that most of the last lines have.
+std::size_t UsualCount(const std::vector<Cells>& table) {
+  std::map<std::size_t, int> counts;
+  const std::size_t from = table.size() / 2;
+  for (std::size_t i = from; i < table.size(); ++i) ++counts[table[i].size()];
+  std::size_t best = 0;
+  for (const auto& [count, times] : counts) {
+    if (best == 0 || times > counts[best]) best = count;
+  }
+  return best;
+}
+
+/// A row has as many cells as the others, or leaves out empty ones at its end, and at least half of
+/// those with text are numbers or times.
+bool IsRow(const Cells& cells, std::size_t usual, char decimal) {
+  if (cells.empty() || cells.size() > usual + 1 || cells.size() + 1 < usual) return false;
+  std::size_t values = 0, texts = 0;
+  for (const auto& cell : cells) {
+    if (IsGap(cell.text)) continue;
+    ++(IsValue(cell.text, decimal) ? values : texts);
+  }
+  return values > 0 && values >= texts;
+}
+
+std::vector<Cells> Split(const Lines& lines, char separator) {
+  std::vector<Cells> table;
+  for (const std::string& line : lines) {
+    table.push_back(trace::Trim(line).empty() ? Cells() : trace::SplitCells(line, separator));
+  }
+  while (!table.empty() && table.back().empty()) table.pop_back();
+  return table;
+}
+
+struct Marks {
+  char separator = ',', decimal = '.';
+};
+
+/// Returns the separator and the decimal mark with the most values in rows.
+Marks GuessMarks(const Lines& lines) {
+  Marks best;
+  std::size_t most = 0;
+  for (const char separator : {'\t', ';', ',', '|', ' '}) {
+    const std::vector<Cells> table = Split(lines, separator);
+    const std::size_t usual = UsualCount(table);
+    for (const char decimal : {'.', ','}) {
+      if (separator == decimal) continue;
+      std::size_t values = 0;
+      for (const Cells& cells : table) {
+        if (!IsRow(cells, usual, decimal)) continue;
+        for (const auto& cell : cells) values += IsValue(cell.text, decimal) ? 1u : 0u;
+      }
+      if (values > most) {
+        most = values;
+        best = {separator, decimal};
+      }
+    }
+  }
+  return best;
+}
+
+/// A line with a single text above several columns is a title.
+bool IsHeader(const Cells& cells, std::size_t usual, char decimal) {
+  if (cells.size() + 1 < usual || cells.size() > usual + 1) return false;
+  const auto texts = std::count_if(cells.begin(), cells.end(),
+                                   [](const trace::TableCell& cell) { return !cell.text.empty(); });
+  if (texts < 2 && usual > 1) return false;
+  return std::none_of(cells.begin(), cells.end(),
+                      [&](const trace::TableCell& cell) { return IsValue(cell.text, decimal); });
+}
+
+/// Whether a header's upper lines name several columns by one cell.
+bool HasMergedCells(const Cells& upper, const Cells& lower) {
+  std::size_t gaps = 0;
+  bool named = false;
+  for (std::size_t i = 0; i < std::min(upper.size(), lower.size()); ++i) {
+    named = named || !upper[i].text.empty();
+    if (named && upper[i].text.empty() && !lower[i].text.empty()) ++gaps;
+  }
+  return gaps > 0;
+}
+
+/// Text after a key of lines such as "FREQUENCY<tab>100".
+std::string After(const Lines& lines, std::string_view key) {
+  for (const std::string& line : lines) {
+    if (!line.starts_with(key) || line.size() <= key.size()) continue;
+    const char next = line[key.size()];
+    if (next == '\t' || next == ',') return std::string(trace::Trim(line.substr(key.size() + 1)));
+  }
+  return {};
+}
+
+std::optional<double> NumberIn(const std::string& text) {
+  double value = 0;
+  const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || !(value > 0)) return std::nullopt;
+  return value;
+}
+
+/// Names for the columns of a table without a header.
+std::vector<std::string> Numbered(std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= count; ++i) names.push_back(fmt::format("column {}", i));
+  return names;
+}
+
+/// Facts that known programs write above the header.
+void ReadPreamble(const Lines& lines, std::size_t first_row, LogForm& form) {
+  const std::string& first = lines.front();
+  if (first.starts_with("LabVIEW Measurement")) {
+    form.program = "LabVIEW";
+    const std::string units = After(lines, "Y_Unit_Label");
+    form.units.push_back("s");
+    for (const auto& cell : trace::SplitCells(units, '\t')) form.units.push_back(cell.text);
+  } else if (first.starts_with("Format Version")) {
+    form.program = "OptiTrack";
+    form.y_up = true;
+    form.length_unit = first.find("Millimeters") != first.npos   ? "mm"
+                       : first.find("Centimeters") != first.npos ? "cm"
+                                                                 : "m";
+  } else if (first.starts_with("Trajectories") || first.starts_with("Segments") ||
+             first.starts_with("Model Outputs")) {
+    form.program = "Vicon";
+    if (lines.size() > 1) form.rate_hz = NumberIn(lines[1]);
+  } else if (first.starts_with("NO_OF_FRAMES")) {
+    form.program = "Qualisys";
+    form.rate_hz = NumberIn(After(lines, "FREQUENCY"));
+    form.length_unit = "mm";
+    if (form.layout.header_lines == 0 || first_row == 0) {
+      std::vector<std::string> names;
+      for (const auto& cell : trace::SplitCells(After(lines, "MARKER_NAMES"), '\t')) {
+        for (const char* axis : {" X", " Y", " Z"}) names.push_back(cell.text + axis);
+      }
+      if (names.size() == form.names.size()) form.names = form.layout.columns = names;
+    }
+  }
+}
+
+/// Renames columns so that each name is unique and without the characters that mappings refuse or
+/// use as patterns.
+void MakeUnique(LogForm& form) {
+  std::set<std::string> seen;
+  bool changed = false;
+  for (std::string& name : form.names) {
+    for (char& c : name) {
+      if (c != '*' && !base::IsControl(c)) continue;
+      c = '_';
+      changed = true;
+    }
+    std::string wanted = name;
+    for (int number = 2; !name.empty() && !seen.insert(wanted).second; ++number) {
+      wanted = fmt::format("{} ({})", name, number);
+      changed = true;
+    }
+    name = wanted;
+  }
+  if (changed) form.layout.columns = form.names;
+}
+
+}  // namespace
+
+bool IsNumberCell(const std::string& cell, char decimal) {
+  return IsGap(cell) || std::isfinite(CellValue(cell, decimal));
+}
+
+double CellValue(const std::string& cell, char decimal) {
+  std::string text = cell;
+  if (decimal == ',') {
+    if (text.find('.') != text.npos) return kNoValue;
+    std::replace(text.begin(), text.end(), ',', '.');
+  }
+  if (text.starts_with('+')) text.erase(0, 1);
+  double value = kNoValue;
+  const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), value);
+  return failure == std::errc() && end == text.data() + text.size() ? value : kNoValue;
+}
+
+std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
+  LogForm form;
+  if (path.ends_with(".mcap")) {
+    const auto trace = ReadTrace(path, out);
+    if (!trace) return std::nullopt;
+    form.program = "MCAP";
+    form.is_trace = true;
+    for (const ChannelInfo& channel : trace->channels) form.names.push_back(channel.name);
+    form.units.resize(form.names.size());
+    return form;
+  }
+  const auto lines = Sample(path, form.layout.encoding, out);
+  if (!lines) return std::nullopt;
+  const Marks marks = GuessMarks(*lines);
+  form.layout.separator = marks.separator;
+  form.layout.decimal = marks.decimal;
+  const std::vector<Cells> table = Split(*lines, marks.separator);
+  const std::size_t usual = UsualCount(table);
+  std::size_t first = table.size();
+  while (first > 0 && IsRow(table[first - 1], usual, marks.decimal)) --first;
+  if (first == table.size()) {
+    out.Error("log.no_rows", {path}, "the file has no rows of numbers",
+              "expected a text table, such as CSV");
+    return std::nullopt;
+  }
+  std::size_t header = first;
+  const std::size_t most = lines->front().starts_with("Format Version") ? 10u : kUsualHeaderLines;
+  while (header > 0 && first - header < most && IsHeader(table[header - 1], usual, marks.decimal)) {
+    --header;
+  }
+  form.layout.skip_lines = static_cast<int>(header);
+  form.layout.header_lines = static_cast<int>(first - header);
+  for (std::size_t i = header; i + 1 < first; ++i) {
+    if (HasMergedCells(table[i], table[first - 1])) form.layout.merged_header = true;
+  }
+  if (lines->front().starts_with("Format Version")) form.layout.merged_header = false;
+  for (std::size_t i = header; i < first; ++i) {
+    trace::JoinHeader(table[i], form.layout.merged_header && i + 1 < first, form.names);
+  }
+  const std::size_t width = std::max(usual, form.names.size());
+  if (header == first) form.names = form.layout.columns = Numbered(width);
+  for (std::size_t i = first; i < table.size(); ++i) {
+    std::vector<std::string>& row = form.rows.emplace_back();
+    for (const auto& cell : table[i]) row.push_back(cell.text);
+    row.resize(form.names.size());
+  }
+  ReadPreamble(*lines, first, form);
+  form.units.resize(form.names.size());
+  MakeUnique(form);
+  return form;
+}
+
+}  // namespace taut

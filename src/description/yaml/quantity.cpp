@@ -1,0 +1,82 @@
+#include "description/yaml/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/foreign_units.h"
+#include "base/name_unit.h"
+
+namespace taut::description {
+namespace {
+
+using base::ForeignUnit;
+
+constexpr double kNoQuantity = std::numeric_limits<double>::quiet_NaN();
+
+/// Divides where the unit is a whole fraction of the SI unit: 4 / 1000 is the double nearest to
+/// 0.004, 4 * 0.001 may not be.
+double Converted(double value, double factor) {
+  const double inverse = std::round(1.0 / factor);
+  const bool whole = factor < 1.0 && std::fabs(factor * inverse - 1.0) < 1e-15;
+  return whole ? value / inverse : value * factor;
+}
+
+/// Returns the text before a unit; empty if the text does not end with it.
+std::string_view Before(std::string_view text, std::string_view unit) {
+  if (text.size() <= unit.size() || !text.ends_with(unit)) return {};
+  text.remove_suffix(unit.size());
+  const char last = text.back();
+  if (last != ' ' && last != ')' && last != '.' && !(last >= '0' && last <= '9')) return {};
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+std::string UnitsOf(std::string_view si) {
+  std::string list;
+  for (const std::string& name : base::UnitNames()) {
+    if (base::FindUnit(name)->si == si) list += (list.empty() ? "" : ", ") + name;
+  }
+  return list;
+}
+
+std::string UnitOfKey(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  return base::UnitAtEnd(dot == path.npos ? path : path.substr(dot + 1)).Text();
+}
+
+}  // namespace
+
+Evaluated EvaluateQuantity(std::string_view text, const NameTable& names, std::string_view path,
+                           std::string_view unit) {
+  Evaluated plain = Evaluate(text, names);
+  if (plain.error.empty()) return plain;
+  const std::string of_key = unit.empty() ? UnitOfKey(path) : std::string(unit);
+  std::optional<ForeignUnit> found;
+  Evaluated number;
+  for (const std::string& name : base::UnitNames()) {
+    const std::string_view rest = Before(text, name);
+    if (rest.empty() || (found && found->name.size() > name.size())) continue;
+    Evaluated result = Evaluate(rest, names);
+    if (!result.error.empty()) continue;
+    number = result;
+    found = base::FindUnit(name);
+  }
+  if (!found) return plain;
+  if (found->si == of_key) {
+    number.value = Converted(number.value, found->factor);
+    return number;
+  }
+  const std::string shown = "\"" + std::string(text) + "\"";
+  if (of_key.empty()) {
+    return {kNoQuantity, shown + " has a unit, but this quantity has none", "leave out the unit"};
+  }
+  const std::string known = UnitsOf(of_key);
+  return {kNoQuantity, shown + " is in " + found->si + ", but this quantity is in " + of_key,
+          known.empty() ? "leave out the unit" : "its units: " + known};
+}
+
+}  // namespace taut::description

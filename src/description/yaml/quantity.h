@@ -1,0 +1,17 @@
+/// Expressions that may end with a unit: `4 mm`, `30 deg`, `0.4 N/mm`.
+#pragma once
+
+#include <string_view>
+
+#include "description/yaml/expression.h"
+
+namespace taut::description {
+
+/// Evaluates an expression, or an expression and a unit, converted to the SI unit of the quantity.
+/// That is `unit`, or, if this is empty, the unit at the end of `path`, the name of a key or
+/// parameter: N/m for cable.stiffness_n_per_m. The value has the bits of the same number in SI:
+/// `4 mm` those of 0.004.
+Evaluated EvaluateQuantity(std::string_view text, const NameTable& names, std::string_view path,
+                           std::string_view unit = {});
+
+}  // namespace taut::description

@@ -1,0 +1,59 @@
+/// Records of MCAP files (https://mcap.dev/spec, version 0).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "taut/diagnostics.h"
+#include "taut/trace.h"
+
+namespace taut::trace {
+
+/// Message of a channel. Views are valid during the call.
+struct McapMessage {
+  std::uint16_t channel = 0;
+  std::uint64_t log_time_ns = 0;
+  std::string_view data;
+};
+
+struct McapChannel {
+  std::string topic, encoding;  ///< Of messages: "json", "cdr".
+  std::string schema_name, schema_encoding, schema;
+};
+
+/// Reads a file record by record. Chunks must not be compressed, which is an error with its remedy.
+/// A file that was cut off gives the messages before its end.
+class McapReader {
+ public:
+  McapReader(std::string path, Diagnostics& out) : path_(std::move(path)), out_(out) {}
+
+  /// Calls `use` for each message, in the order of the file, until it returns false. Returns false
+  /// after a diagnostic.
+  bool Read(const std::function<bool(const McapMessage&)>& use);
+
+  /// Channels so far; a channel is known before its first message.
+  const std::map<std::uint16_t, McapChannel>& channels() const { return channels_; }
+  const TraceMetadata& metadata() const { return metadata_; }
+  /// Whether the file ends before its footer.
+  bool unfinished() const { return unfinished_; }
+
+ private:
+  bool Records(std::string_view bytes, const std::function<bool(const McapMessage&)>& use,
+               bool in_chunk);
+  bool Chunk(std::string_view content, const std::function<bool(const McapMessage&)>& use);
+  bool Damaged(const std::string& what);
+
+  std::string path_;
+  Diagnostics& out_;
+  std::map<std::uint16_t, std::array<std::string, 3>> schemas_;  ///< Name, encoding, text.
+  std::map<std::uint16_t, McapChannel> channels_;
+  TraceMetadata metadata_;
+  bool unfinished_ = false, stopped_ = false, ended_ = false;
+};
+
+}  // namespace taut::trace

@@ -1,0 +1,23 @@
+/// Cells of the lines of text tables.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taut::trace {
+
+struct TableCell {
+  std::string text;  ///< Without quotes and surrounding blanks.
+  int column;        ///< Byte of the line, from 1.
+};
+
+/// Splits a line. Separators within double quotes belong to the text; the separator ' ' is any
+/// number of blanks.
+std::vector<TableCell> SplitCells(std::string_view line, char separator);
+
+/// Adds a line of a header to the names of the columns, joined by a blank. `fill`: an empty cell
+/// repeats the one before it.
+void JoinHeader(const std::vector<TableCell>& cells, bool fill, std::vector<std::string>& names);
+
+}  // namespace taut::trace
