@@ -70,8 +70,9 @@ class History {
   std::size_t bodies_, cables_, max_bytes_;
   double first_period_s_, period_s_, due_s_ = 0;
   std::vector<double> time_s_;
-  /// All values of frames, including some that are not channels; then the recorded channels, whose
-  /// indices in a row are in `recorded_`.
+  /// One value per stored row in each column. First the values of a Frame (some are not channels),
+  /// then the recorded channels that a Frame lacks; `recorded_` contains their indices in the
+  /// argument `row` of Take.
   std::vector<std::vector<double>> columns_;
   std::vector<std::size_t> recorded_, columns_of_row_;
   NodeChannels nodes_;

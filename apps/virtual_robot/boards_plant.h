@@ -37,7 +37,8 @@ class BoardsPlant final : public taut::Plant {
 
   /// Recovers after a fault, as an operator would: configures everything again, sets references to
   /// the true lengths of the cables, clears faults, arms and continues. Returns false, with errors
-  /// in `out`, if a board does not follow. The experiment's time does not advance meanwhile.
+  /// in `out`, if a board does not answer, or
+  /// refuses a setting, a reference or a mode. The experiment's time does not advance meanwhile.
   bool Recover(Diagnostics& out);
 
   /// Returns the true state, not the boards' measurements.

@@ -48,7 +48,7 @@ class LiveRun {
 
   virtual double time_s() const = 0;
   virtual const ExperimentSpec& experiment() const = 0;
-  /// Returns the observation of lane 0, the only lane; valid until the next step.
+  /// Returns the observation of the run's only robot (lane 0); valid until the next step.
   virtual const Observation& Observe() const = 0;
   virtual const Commands& commands() const = 0;
   /// Returns the simulated world, or null if the plant is not a simulation.

@@ -83,7 +83,8 @@ struct Across {
 };
 Across AcrossOf(const Vec3& normal);
 
-/// Inequality constraints of force laws: rows * x >= at_least.
+/// Limits of the unknown forces x of a ForceBalance, rows * x >= at_least: bounds of cable tensions
+/// and friction cones.
 struct ForceLimits {
   Eigen::MatrixXd rows;
   Eigen::VectorXd at_least;

@@ -203,9 +203,9 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
     case Determined::kTraded:
       text = value + error + ": traded against " + Against(problem, v.trade) + "; " +
              Change(v.trade[0].second, p.unit) + " with " + With(problem, v.trade) +
-             " moves all residuals together by " + Brief(v.trade_residual) +
-             " standard deviations (alone it would be known to +- " + Brief(v.se_alone, p.unit) +
-             ")";
+             " changes the residuals by only " + Brief(v.trade_residual) +
+             " standard deviations in all (if the others were known: +- " +
+             Brief(v.se_alone, p.unit) + ")";
       break;
     case Determined::kScattered:  // set later, from the jackknife
       break;

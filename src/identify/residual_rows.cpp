@@ -295,10 +295,12 @@ void WarnOfWrap(const Measured& measured, std::size_t channel, const FitExperime
   const Trace& trace = measured.trace;
   const auto row = compare::FindWrap(trace.channels[channel], trace.values[channel]);
   if (!row) return;
-  out.Warning("residual.angle_jumps", residual.at,
-              fmt::format("residuals: {} in the data of {} jumps by a turn at {:g} s",
-                          trace.channels[channel].name, one.name, trace.time_s[*row]),
-              "if the angle wraps, set \"wrap\": \"turn\" in its rule of a mapping (`map`)");
+  out.Warning(
+      "residual.angle_jumps", residual.at,
+      fmt::format("residuals: {} in the data of {} jumps by a turn at {:g} s",
+                  trace.channels[channel].name, one.name, trace.time_s[*row]),
+      "if the angle wraps, add \"wrap\": \"turn\" to the rule of this channel in the mapping "
+      "file given by `map`");
 }
 
 }  // namespace

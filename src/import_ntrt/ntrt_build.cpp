@@ -203,7 +203,7 @@ class Maker {
       out_.Error(
           "ntrt.no_solid_at_end", NodeOf(node).at,
           "a cable ends at the node \"" + NodeOf(node).tags[0] + "\", where there is no solid",
-          "attach it to a solid; NTRT fails here, too");
+          "attach it to a solid; NTRT ends with an error at such a cable, too");
       return end;
     }
     end.body = solid->body;
@@ -248,10 +248,11 @@ class Maker {
         Length(cable.to.point - cable.from.point) - builder.is.pretension / builder.is.stiffness;
     if (!(cable.rest_length > 0.0)) {
       ++model_.counts.cables_without_rest_length;
-      out_.Warning("ntrt.pretension_too_high", pair.at,
-                   "the pretension of this cable is so high that its rest length would be below "
-                   "zero; NTRT fails here",
-                   "reduce it, here or in the model");
+      out_.Warning(
+          "ntrt.pretension_too_high", pair.at,
+          "the pretension of this cable requires a negative rest length; NTRT ends with an "
+          "error at such a cable",
+          "reduce the pretension, in this file or in the imported model");
     }
     built_.cables.push_back(cable);
   }

@@ -92,7 +92,7 @@ void SpinningTop(Report& report) {
     WorldBatch world = MakeBatch(ModelOf(Top(spin)));
     const EnergyRange seen = Run(world, 1e-3, time_s);
     report.AtMost("energy off, " + name, "J", seen.Off(), 4e-3);
-    report.AtMost("steps with a status bit, " + name, "1", seen.flagged, 0);
+    report.AtMost("steps with a warning (status bit), " + name, "1", seen.flagged, 0);
   }
   const BodyOnBall top = Top(200);
   const double at_1ms = PlaceError(top, 1e-3, 1), at_half = PlaceError(top, 5e-4, 1);

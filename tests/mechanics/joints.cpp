@@ -110,9 +110,10 @@ void ReportFrame(Report& report, const std::string& name, RodNet net, double bou
   report.AtMost(name + ": energy off", "of it", seen.Off() / energy, bound);
   report.AtMost(name + ": angular momentum off", "of it",
                 Distance(world.AngularMomentum(0), momentum) / test::Norm(momentum), 1e-12);
-  report.AtMost(name + ": steps with a status bit", "1", seen.flagged, 0);
+  report.AtMost(name + ": steps with a warning (status bit)", "1", seen.flagged, 0);
   report.AtMost(name + ": largest gap", "m", seen.gap_m, 1e-10);
-  report.AtMost(name + ": effect of the listing order", "m", WorstDistance(world, reversed), 1e-8);
+  report.AtMost(name + ": largest change of a position if bodies and joints are listed in reverse",
+                "m", WorstDistance(world, reversed), 1e-8);
 }
 
 void TumblingFrames(Report& report) {
@@ -151,12 +152,12 @@ void ReportNet(Report& report, const std::string& name, const ModelDef& def, dou
   reversed.Step(step_s, StepsIn(time_s, step_s));
   report.AtMost(name + ": steps without a solution", "1", seen.unsolved, 0);
   if (!bounds.may_be_flagged) {
-    report.AtMost(name + ": steps with a status bit", "1", seen.flagged, 0);
+    report.AtMost(name + ": steps with a warning (status bit)", "1", seen.flagged, 0);
   }
   report.AtMost(name + ": energy gained", "J", seen.gain_j, bounds.gain_j);
   report.AtMost(name + ": largest gap", "m", seen.gap_m, bounds.gap_m);
-  report.AtMost(name + ": effect of the listing order", "m", WorstDistance(world, reversed),
-                bounds.order_m);
+  report.AtMost(name + ": largest change of a position if bodies and joints are listed in reverse",
+                "m", WorstDistance(world, reversed), bounds.order_m);
 }
 
 void RedundantRows(Report& report) {
@@ -262,7 +263,7 @@ void CardanJoints(Report& report) {
   // The shafts exchange 0.05 J and rotate by 1 rad in 0.1 s: torques of some 0.1 N m on arms of
   // 0.02 m.
   report.AtMost("largest force of a joint", "N", force_n, 10);
-  report.AtMost("steps with a status bit", "1", flagged, 0);
+  report.AtMost("steps with a warning (status bit)", "1", flagged, 0);
 }
 
 /// Returns rods in a straight line between two pins: the rows are dependent, and with the small sag
@@ -324,7 +325,7 @@ void StiffCablesOnJoints(Report& report) {
                                  std::to_string(static_cast<int>(damping_n_s_per_m)) + " N s/m, " +
                                  std::to_string(static_cast<int>(1e3 * step_s)) + " ms: ";
         report.AtMost(what + "energy gained", "of it", seen.gain_j / start, 1e-6);
-        report.AtMost(what + "steps with a status bit", "1", seen.flagged, 0);
+        report.AtMost(what + "steps with a warning (status bit)", "1", seen.flagged, 0);
         report.AtMost(what + "largest gap", "m", seen.gap_m, 1e-6);
         if (!scene.is_free) continue;
         report.AtMost(what + "angular momentum off", "of it",

@@ -1,4 +1,5 @@
-/// Position control: rest lengths follow a program.
+/// Position control: rest lengths follow a program, a given function of time (points with linear
+/// interpolation).
 ///
 /// The paper uses position control "at startup to set the initial length of each cable and to
 /// maintain the balance of all three segments". The paper's boards receive motor angles. taut

@@ -7,8 +7,9 @@
 
 namespace taut::description {
 
-/// Sets the attachments of `cable`: one per node of the pair, with friction and wheels, plus one on
-/// the rim of each drum. Reports wheels around which the cable cannot run.
+/// Completes the attachments of a routed cable, which has one per node: sets their friction and
+/// wheels as in the `route`, and adds an end on the rim of each drum. Reports wheels around which
+/// the cable cannot run.
 void FollowRoute(const PlacedPair& pair, const Assembly& assembly, CableDef& cable,
                  OncePerPlace& complain);
 

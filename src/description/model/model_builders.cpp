@@ -135,10 +135,10 @@ void Check(const MapReader& map, CableText& cable) {
   }
   if (cable.actuator_text) cable.actuator = *cable.actuator_text;
   if (cable.touch_friction > 0 && cable.actuator.kind == ActuatorDef::Kind::kDcMotor) {
-    map.Error(
-        "cable.touch_friction_of_motor", "touch_friction",
-        map.Path("touch_friction") + ": a direct-current motor cannot wind a cable with friction",
-        "use an ideal or limited actuator");
+    map.Error("cable.touch_friction_of_motor", "touch_friction",
+              map.Path("touch_friction") +
+                  ": a cable with friction at what it touches cannot have a `dc_motor`",
+              "use `ideal: true` or an actuator with limits, or leave out `touch_friction`");
   }
 }
 

@@ -229,9 +229,9 @@ void Check(const MapReader& map, PointMassText& mass);
 template <class Io, Either<BoxDef, BoxText> Box>
 void Keys(Io& io, Box& b) {
   io.Map("box", "builder.box",
-         "Solid box. With `size_m` or `half_extents_m` at a node, along the part's axes. With "
-         "`width_m` and `height_m` along a pair: the length from node to node, the width "
-         "horizontal in the part's frame.");
+         "Solid box. At a node: give `size_m` or `half_extents_m`; its edges are parallel to the "
+         "part's axes. Along a pair of nodes: give `width_m` and `height_m`; its length is the "
+         "distance of the nodes, and its width is horizontal in the part's frame.");
   io("name", b.name, kResolvedOnly);
   io("body", b.body, kResolvedOnly);
   io("center_m", b.center_m, kResolvedOnly);

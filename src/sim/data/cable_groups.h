@@ -13,8 +13,8 @@ namespace taut::sim {
 inline constexpr double kSoftSpring = 0.1;
 /// Value of (w h)^2 above which a damped stiff cable gets the second stage.
 inline constexpr double kUnresolvedSpring = 4.0;
-/// Maximum number of bodies of a group, so that its matrix always fits in memory
-/// (LaneMemory::kFullBodies in scratch_memory.h).
+/// Largest number of bodies of a group with implicit cables; cables of larger groups stay explicit.
+/// Equal to LaneMemory::kFullBodies (scratch_memory.h), so the solver has memory for a full matrix.
 inline constexpr int kMostInGroup = 128;
 
 enum GroupKind : uint8_t {

@@ -29,8 +29,8 @@ struct CableTable {
   double inv_max_speed = 0;  ///< 1 / actuator.max_speed_m_per_s [s/m].
 };
 
-/// Cylinder around which a cable wraps. In the path of the cable, two successive attachments to its
-/// body represent the points where the cable reaches and leaves it.
+/// Cylinder around which a cable wraps. The path of the cable contains two successive attachments
+/// to the body of the cylinder: the points where the cable reaches and leaves the cylinder.
 struct WheelTable {
   int at = 0;                          ///< Path index of the first of these attachments.
   int center_spot = 0, axis_spot = 0;  ///< Two points on the axis, 1 m apart.

@@ -153,8 +153,8 @@ class RoundSearch {
     return chord - nearest_.distance_m <= kSameGap * radius_m_;
   }
 
-  /// Adds the contacts of a centerline deep inside. All points exit through the face with the
-  /// shortest exit.
+  /// Adds the contacts of a line that runs through the inside of the hull, one at each end of its
+  /// inner part. Both have the normal of the face with the smallest depth of the deeper end.
   void TouchInside(TouchList& list) const noexcept {
     int best = 0;
     double best_m = -1e300;

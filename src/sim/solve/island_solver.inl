@@ -11,7 +11,7 @@
 
 namespace taut::sim {
 
-/// Solves from any impulses m.l. Results: the best admissible impulses in m.l, with their
+/// Solves the island. m.l contains any initial guess. Results: the best admissible impulses in m.l, with their
 /// velocities in m.v and m.u. Returns their residual [m/s].
 template <class Num, class P>
 double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {

@@ -182,8 +182,8 @@ TEST(Route, WithFrictionADirectCurrentMotorDoesNotWindIt) {
        {Pulley("side: left, friction: 0.3"), std::string("{eyelet: w, friction: 0.3}")}) {
     EXPECT_EQ(Errors(Posts("[a, " + element + ", b]", motor)),
               "robot.yaml:7:29: error: the cable \"rope\" has friction at this element, but a "
-              "direct-current motor cannot wind a cable with friction (use an ideal or limited "
-              "actuator)\n");
+              "direct-current motor cannot wind a cable with friction (use `ideal: true` or an "
+              "actuator with limits)\n");
   }
   Good(Posts("[a, w, b]", motor));
 }
