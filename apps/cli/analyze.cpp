@@ -331,7 +331,8 @@ void AddAnalyze(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<AnalyzeArguments>();
   CLI::App* analyze = app.add_subcommand(
       "analyze", "Analyze the statics of a structure: equilibria, self-stress, modes.");
-  AddInput(*analyze, "file", args->path, "Model or experiment file (YAML)")->required();
+  AddInput(*analyze, "file", {"model", "experiment"}, args->path, "Model or experiment file (YAML)")
+      ->required();
   analyze->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

@@ -15,9 +15,11 @@
 #include "shipped_inputs.h"
 #include "standard_streams.h"
 #include "taut/env.h"
+#include "taut/fit_spec.h"
 #include "taut/run.h"
 #include "taut/spec.h"
 #include "taut/start.h"
+#include "taut/study.h"
 #include "taut/version.h"
 
 namespace taut::cli {
@@ -77,6 +79,41 @@ int CheckGait(const CheckArguments& args, Diagnostics& found) {
   return kOk;
 }
 
+/// Checks a study or a fit, with the experiments and models that it refers to.
+int CheckSearch(const CheckArguments& args, const std::string& kind, const Overrides& overrides) {
+  Diagnostics found;
+  std::string summary;
+  if (kind == "study") {
+    if (const auto study = LoadStudy(args.path, overrides, found)) {
+      int evaluations = 0;
+      for (const SearchSpec& search : study->searches) evaluations += search.evaluations;
+      summary = fmt::format("study {}, {}, {} in {}", study->name,
+                            Counted(std::ssize(study->parameters), "parameter"),
+                            Counted(evaluations, "evaluation"),
+                            Counted(study->perturbation.worlds, "world"));
+    }
+  } else if (const auto fit = LoadFit(args.path, overrides, found)) {
+    summary =
+        fmt::format("fit {}, {}, {}", fit->name, Counted(std::ssize(fit->estimates), "parameter"),
+                    Counted(std::ssize(fit->experiments), "experiment"));
+  }
+  if (!Pass(found, args.strict)) return Bad(args, found);
+  if (!args.quiet) {
+    fmt::print("{}: good: {}\n", args.path, summary);
+    SayNext(WithOverrides({kind == "study" ? "learn" : "fit", args.path}, args.set));
+  }
+  return kOk;
+}
+
+/// Returns the kind of the file: also "study" and "fit", which only this command accepts together
+/// with the others.
+std::optional<std::string> KindToCheck(const std::string& path, Diagnostics& out) {
+  Diagnostics head;
+  const auto read = ReadFileHead(path, head);
+  if (read && (read->kind == "study" || read->kind == "fit")) return read->kind;
+  return FileKind(path, out);
+}
+
 /// Returns the experiment in which to settle the robot: the given one, or for a model one without
 /// weight and terrain.
 ExperimentSpec ToSettle(const RobotSpec& robot, const ExperimentSpec* experiment) {
@@ -113,9 +150,17 @@ int Check(const CheckArguments& args) {
   const std::optional<Overrides> overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
   Diagnostics found;
-  const std::optional<std::string> kind = FileKind(args.path, found);
+  const std::optional<std::string> kind = KindToCheck(args.path, found);
   if (!kind) return Bad(args, found);
 
+  const bool search = *kind == "study" || *kind == "fit";
+  if (search && (args.settled || args.couplings || args.tables || args.json)) {
+    fmt::print(stderr,
+               "error: --settled, --couplings, --tables and --json cannot be combined with a {}\n",
+               *kind);
+    return kUsage;
+  }
+  if (search) return CheckSearch(args, *kind, *overrides);
   if (*kind == "gait" && args.settled) {
     fmt::print(stderr, "error: --settled needs an experiment or a model\n");
     return kUsage;
@@ -171,9 +216,11 @@ int Check(const CheckArguments& args) {
 
 void AddCheck(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<CheckArguments>();
-  CLI::App* check =
-      app.add_subcommand("check", "Check a model, experiment or gait file and summarize it.");
-  AddInput(*check, "file", args->path, "Model, experiment or gait file (YAML)")->required();
+  CLI::App* check = app.add_subcommand(
+      "check", "Check a model, experiment, gait, study or fit file and summarize it.");
+  AddInput(*check, "file", {"model", "experiment", "gait", "study", "fit"}, args->path,
+           "Model, experiment, gait, study or fit file (YAML)")
+      ->required();
   check->add_option("--set", args->set, "Parameter of the file")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

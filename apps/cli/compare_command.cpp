@@ -100,9 +100,11 @@ void AddCompare(CLI::App& app, int& exit_code) {
   command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz) or folder of a run")
       ->required();
   command->add_option("B", given->path_b, "Reference: trace or folder of a run")->required();
-  AddInput(*command, "--map", given->map_b, "Mapping file of B: channel names, units and axes")
+  AddInput(*command, "--map", {"mapping"}, given->map_b,
+           "Mapping file of B: channel names, units and axes")
       ->option_text("FILE");
-  AddInput(*command, "--map_a", given->map_a, "Mapping file of A")->option_text("FILE");
+  AddInput(*command, "--map_a", {"mapping"}, given->map_a, "Mapping file of A")
+      ->option_text("FILE");
   command
       ->add_option("--channels", given->options.channels,
                    "Channels to compare, by patterns such as 'cable/*/tension_n' (default: all)")

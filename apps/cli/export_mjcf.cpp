@@ -41,7 +41,8 @@ void AddExportMjcf(CLI::App& export_, int& exit_code) {
   auto args = std::make_shared<Arguments>();
   CLI::App* mjcf = export_.add_subcommand(
       "mjcf", "Write a robot, with the terrain of its experiment, for MuJoCo (2.2.2 and 3).");
-  AddInput(*mjcf, "robot", args->input, "Model or experiment file (YAML)")->required();
+  AddInput(*mjcf, "robot", {"model", "experiment"}, args->input, "Model or experiment file (YAML)")
+      ->required();
   AddChoice(*mjcf, "--cables", args->options.cables, kCables,
             "Form of the cables: actuators that can only pull, or tendon springs with a dead band, "
             "for MuJoCo 3 only (default: actuator)");

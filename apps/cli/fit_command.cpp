@@ -253,7 +253,7 @@ void AddFit(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<FitArguments>();
   CLI::App* fit =
       app.add_subcommand("fit", "Estimate parameters of models and experiments from measurements.");
-  AddInput(*fit, "fit", args->path, "Fit file (YAML)")->required();
+  AddInput(*fit, "fit", {"fit"}, args->path, "Fit file (YAML)")->required();
   fit->add_option("--set", args->set, "Parameter of the fit, its experiments or models")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

@@ -91,8 +91,10 @@ void AddGait(CLI::App& app, int& exit_code) {
 
   CLI::App* export_ =
       gait->add_subcommand("export", "Write the cable signals of a gait as a table (CSV).");
-  AddInput(*export_, "gait", args->input, "Gait file (YAML)")->required();
-  AddInput(*export_, "robot", args->robot, "Model or experiment file (YAML)")->required();
+  AddInput(*export_, "gait", {"gait"}, args->input, "Gait file (YAML)")->required();
+  AddInput(*export_, "robot", {"model", "experiment"}, args->robot,
+           "Model or experiment file (YAML)")
+      ->required();
   export_
       ->add_option("--rate_hz", args->rate_hz,
                    "Rate of the rows, also the update rate of the gait [Hz]")
@@ -134,7 +136,9 @@ void AddGait(CLI::App& app, int& exit_code) {
   CLI::App* create = gait->add_subcommand("create",
                                           "Write a CPG gait with all couplings of a robot, with "
                                           "zero weights and phases, for learning.");
-  AddInput(*create, "robot", args->robot, "Model or experiment file (YAML)")->required();
+  AddInput(*create, "robot", {"model", "experiment"}, args->robot,
+           "Model or experiment file (YAML)")
+      ->required();
   AddChoice(*create, "--symmetry", args->symmetry, kSymmetries,
             "Couplings that share their parameters (default: segments)");
   AddChoice(*create, "--drives", args->drives, kDrives, "Kind of signal (default: velocity)");
@@ -148,7 +152,7 @@ void AddGait(CLI::App& app, int& exit_code) {
   create->callback([args, &exit_code] { exit_code = Create(*args); });
 
   CLI::App* values = gait->add_subcommand("values", "List every parameter of a gait by name.");
-  AddInput(*values, "gait", args->input, "Gait file (YAML)")->required();
+  AddInput(*values, "gait", {"gait"}, args->input, "Gait file (YAML)")->required();
   values->add_flag("--json", args->json, "JSON instead of a table");
   values->footer("Examples:\n  taut gait values gaits/hand_tuned_sine.yaml");
   values->callback([args, &exit_code] { exit_code = Values(*args); });

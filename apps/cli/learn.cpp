@@ -129,7 +129,14 @@ int Search(const LearnArguments& args, const Overrides& overrides) {
   return SearchAlone(*study, args, *cluster->Spread(*local, &interrupt_asked));
 }
 
-int Run(const LearnArguments& args) {
+int Run(LearnArguments args) {
+  if (!args.best && args.top == 0) {
+    const std::string error = FindFile({args.parameters ? "experiment" : "study"}, args.path);
+    if (!error.empty()) {
+      fmt::print(stderr, "error: {}\n", error);
+      return kUsage;
+    }
+  }
   const auto overrides = ParseOverrides(args.set);
   if (!overrides) return kUsage;
   if (args.parameters) return ListParameters(args, *overrides);
@@ -144,9 +151,11 @@ void AddLearn(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<LearnArguments>();
   CLI::App* learn =
       app.add_subcommand("learn", "Search for the best parameters of a controller, gait or model.");
-  AddInput(*learn, "study", args->path,
-           "Study file (YAML); with --best and --top: folder of a study; with --parameters: "
-           "experiment file")
+  learn
+      ->add_option(
+          "study", args->path,
+          "Study file (YAML); with --best and --top: folder of a study; with --parameters: "
+          "experiment file")
       ->required();
   learn->add_option("--set", args->set, "Parameter of the study, experiment or model")
       ->option_text("NAME=VALUE")

@@ -96,7 +96,7 @@ void AddNew(CLI::App& app, int& exit_code) {
           "Name; the file is NAME.yaml in the current folder. Of a mapping: the log to read")
       ->required()
       ->option_text("NAME");
-  AddInput(*create, "--model", args->model,
+  AddInput(*create, "--model", {"model", "experiment"}, args->model,
            "Model file of an experiment's robot (default: the shipped prism), or model or "
            "experiment whose names occur in a log")
       ->option_text("FILE");

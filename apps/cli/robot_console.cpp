@@ -41,7 +41,7 @@ void AddPort(CLI::App& command, RobotArguments& args) {
 
 void AddModelFile(CLI::App& command, RobotArguments& args) {
   AddInput(
-      command, "--model", args.model,
+      command, "--model", {"model"}, args.model,
       "Model of the robot, for the names of its cables (default: tetraspine3_motors.yaml of taut)")
       ->option_text("FILE");
 }
@@ -54,7 +54,8 @@ void AddModel(CLI::App& command, RobotArguments& args) {
 }
 
 void AddCalibration(CLI::App& command, RobotArguments& args) {
-  AddInput(command, "--calibration", args.calibration, "Calibration file to set on the boards")
+  AddInput(command, "--calibration", {"calibration"}, args.calibration,
+           "Calibration file to set on the boards")
       ->option_text("FILE");
 }
 

@@ -182,7 +182,8 @@ int Run(RunArguments args) {
 void AddRobotRun(CLI::App& robot, int& exit_code) {
   auto args = std::make_shared<RunArguments>();
   CLI::App* run = robot.add_subcommand("run", "Run an experiment on the robot, in real time.");
-  AddInput(*run, "experiment", args->experiment, "Experiment file (YAML)")->required();
+  AddInput(*run, "experiment", {"experiment"}, args->experiment, "Experiment file (YAML)")
+      ->required();
   AddPort(*run, *args);
   run->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")

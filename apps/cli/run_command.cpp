@@ -209,7 +209,8 @@ int Run(const RunArguments& args) {
 void AddRun(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<RunArguments>();
   CLI::App* run = app.add_subcommand("run", "Simulate an experiment and record a trace.");
-  AddInput(*run, "experiment", args->experiment, "Experiment file (YAML)")->required();
+  AddInput(*run, "experiment", {"experiment"}, args->experiment, "Experiment file (YAML)")
+      ->required();
   run->add_option("--set", args->set, "Parameter of the experiment or model")
       ->option_text("NAME=VALUE")
       ->allow_extra_args(false);

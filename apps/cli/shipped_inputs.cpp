@@ -18,14 +18,18 @@ std::optional<std::string> ShippedFolderOf(const std::string& kind) {
   return failed ? std::nullopt : std::optional(folder.string());
 }
 
-CLI::Option* AddInput(CLI::App& command, const std::string& name, std::string& path,
-                      const std::string& meaning) {
-  const auto find = [](std::string& given) {
-    given = FindInput(given);
-    return std::string();
-  };
-  return command.add_option(name, path, meaning)
-      ->transform(CLI::Validator(find, "", "shipped file"));
+std::string FindFile(const Kinds& kinds, std::string& path) {
+  Diagnostics found;
+  path = ResolveInput(path, kinds, found);
+  if (found.ok()) return {};
+  const Diagnostic& error = found.items().front();
+  return error.at.file + ": " + error.what + " (" + error.hint + ")";
+}
+
+CLI::Option* AddInput(CLI::App& command, const std::string& name, const Kinds& kinds,
+                      std::string& path, const std::string& meaning) {
+  const auto find = [kinds](std::string& given) { return FindFile(kinds, given); };
+  return command.add_option(name, path, meaning)->transform(CLI::Validator(find, "", "input"));
 }
 
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/input_names.h"
 #include "taut/shipped.h"
 #include "taut/spec.h"
 
@@ -21,9 +22,16 @@ struct ShippedFile {
 /// Returns the folder of a kind: of the installed taut, or of the source tree of a build.
 std::optional<std::string> ShippedFolderOf(const std::string& kind);
 
-/// Adds an option for the path of an input file, which `FindInput` resolves.
-CLI::Option* AddInput(CLI::App& command, const std::string& name, std::string& path,
-                      const std::string& meaning);
+/// Kinds of files that a command accepts, preferred ones first (`ResolveInput`).
+using Kinds = std::vector<std::string>;
+
+/// Adds an option for an input file of one of `kinds`, given by path, folder or name.
+CLI::Option* AddInput(CLI::App& command, const std::string& name, const Kinds& kinds,
+                      std::string& path, const std::string& meaning);
+
+/// Replaces `path` by the path of the file that it refers to. Returns an error message; empty if
+/// there is none.
+std::string FindFile(const Kinds& kinds, std::string& path);
 
 /// Returns the files of a kind, sorted by name.
 std::vector<ShippedFile> ShippedFiles(const std::string& kind, Diagnostics& out);

@@ -165,17 +165,17 @@ void AddView(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<ViewArguments>();
   CLI::App* view =
       app.add_subcommand("view", "Show a model, experiment, recorded run or robot in the browser.");
-  AddInput(*view, "file", args->file,
-           "Experiment or model (YAML), trace (.h5, .csv, .csv.gz) or folder of a run");
+  AddInput(*view, "file", {"trace", "model", "experiment"}, args->file,
+           "Trace (.h5, .csv, .csv.gz), model or experiment (YAML), or folder of a run or a robot");
   args->robot.port.clear();
   view->add_option(
           "--robot", args->robot.port,
           "Robot to drive, instead of a file: serial port, or `virtual` for an emulated one")
       ->option_text("virtual|PORT");
-  AddInput(*view, "--model", args->robot.model,
+  AddInput(*view, "--model", {"model"}, args->robot.model,
            "With --robot: model (default: tetraspine3_motors.yaml of taut)")
       ->option_text("FILE");
-  AddInput(*view, "--calibration", args->robot.calibration,
+  AddInput(*view, "--calibration", {"calibration"}, args->robot.calibration,
            "With --robot: calibration file to set on the boards")
       ->option_text("FILE");
   view->add_option("--set", args->set, "Parameter of the experiment or model")

@@ -28,6 +28,7 @@
 #include "taut/gait.h"
 #include "taut/identify.h"
 #include "taut/import_ntrt.h"
+#include "taut/input_names.h"
 #include "taut/instruction_sets.h"
 #include "taut/inverse_statics.h"
 #include "taut/joint_def.h"

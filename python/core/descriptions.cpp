@@ -17,9 +17,10 @@ std::string Representation(const std::string& kind, const std::string& name, con
 }
 
 py::object Load(const std::string& given, const py::kwargs& set) {
-  const std::string path = InputPath(given);
   const Overrides overrides = OverridesOf(set);
   Diagnostics said;
+  const std::string path = InputPath(given, {"model", "experiment"}, said);
+  if (!said.ok()) Refuse(said);
   std::optional<std::string> kind;
   std::optional<ExperimentSpec> experiment;
   std::optional<RobotSpec> robot;

@@ -68,7 +68,9 @@ struct Asked {
 /// Runs the whole fit on a separate thread. Returns null if `said` has errors.
 std::shared_ptr<Fitted> Search(const Asked& asked, const Overrides& overrides,
                                const std::atomic<bool>& stop, Diagnostics& said) {
-  const auto spec = LoadFit(InputPath(asked.path), overrides, said);
+  const std::string file = InputPath(asked.path, {"fit"}, said);
+  if (!said.ok()) return nullptr;
+  const auto spec = LoadFit(file, overrides, said);
   if (!spec) return nullptr;
   std::unique_ptr<FolderLock> lock;
   IdentifyOptions options;

@@ -65,7 +65,8 @@ Found Learn(const std::string& path, const std::optional<std::string>& folder, i
   std::optional<StudySpec> study;
   {
     const Released others;
-    study = LoadStudy(InputPath(path), overrides, said);
+    const std::string file = InputPath(path, {"study"}, said);
+    if (said.ok()) study = LoadStudy(file, overrides, said);
     if (study) CheckStart(study->experiment.robot, study->experiment.start, said);
   }
   Tell(said);

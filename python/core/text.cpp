@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "taut/input_names.h"
 #include "taut/instruction_sets.h"
 #include "taut/shipped.h"
 
@@ -52,7 +53,10 @@ std::string ModulePath() {
 
 std::optional<std::string> DataFolder() { return ShippedFolder(ModulePath()); }
 
-std::string InputPath(const std::string& path) { return FindInput(path, ModulePath()); }
+std::string InputPath(const std::string& path, const std::vector<std::string>& kinds,
+                      Diagnostics& out) {
+  return ResolveInput(path, kinds, out, ModulePath());
+}
 
 void Tell(const Diagnostics& said) {
   if (!said.ok()) Refuse(said);

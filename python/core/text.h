@@ -42,9 +42,10 @@ void AddCommand(py::module_& module);  ///< Only in wheels.
 
 /// Returns the folder of the files that come with taut, if it exists.
 std::optional<std::string> DataFolder();
-/// Returns the path of an input file, searched in that folder if it is not in the current one
-/// (`FindInput`).
-std::string InputPath(const std::string& path);
+/// Returns the path of an input file of one of `kinds`, given by path, folder or name
+/// (`ResolveInput`).
+std::string InputPath(const std::string& path, const std::vector<std::string>& kinds,
+                      Diagnostics& out);
 
 /// Raises `taut.InputError` with all errors, if there are any; issues warnings by `warnings.warn`
 /// as `taut.InputWarning`. The GIL must be held.
