@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "new_mapping.h"
+#include "new_robot.h"
 #include "output.h"
 #include "overrides.h"
 #include "shipped_inputs.h"
@@ -18,10 +19,10 @@
 namespace taut::cli {
 namespace {
 
-const std::vector<std::string> kKinds{"model", "experiment", "study", "mapping"};
+const std::vector<std::string> kKinds{"robot", "model", "experiment", "study", "mapping"};
 
 struct NewArguments {
-  std::string kind, name, model, out;
+  std::string kind, name, model, out, like;
 };
 
 /// Returns the path of a shipped file without checking it: a missing file is reported when the new
@@ -65,12 +66,19 @@ int New(const NewArguments& args) {
     fmt::print(stderr, "error: --out needs a mapping\n");
     return kUsage;
   }
+  if (!args.like.empty() && args.kind != "robot") {
+    fmt::print(stderr, "error: --like needs a robot\n");
+    return kUsage;
+  }
+  if (args.kind == "robot") {
+    return NewRobot(args.name, args.like.empty() ? RobotTemplates().front() : args.like);
+  }
   OutputIsNews();
   const std::string path = args.name + ".yaml";
   std::error_code failed;
   if (std::filesystem::exists(std::filesystem::symlink_status(path, failed))) {
     fmt::print(stderr, "{}: error: the file exists already, and is not overwritten\n", path);
-    return kFailed;
+    return kBadInput;
   }
   std::string next;
   const int exit = WriteNamed(path, Text(args, next));
@@ -84,16 +92,17 @@ int New(const NewArguments& args) {
 
 void AddNew(CLI::App& app, int& exit_code) {
   auto args = std::make_shared<NewArguments>();
-  CLI::App* create = app.add_subcommand(
-      "new", "Write a template of a model, an experiment or a study, or a mapping for a log.");
-  create->add_option("kind", args->kind, "model, experiment, study or mapping")
+  CLI::App* create = app.add_subcommand("new",
+                                        "Write files to start from: a robot's folder, a model, an "
+                                        "experiment or a study, or a mapping for a log.");
+  create->add_option("kind", args->kind, "robot, model, experiment, study or mapping")
       ->required()
       ->option_text(Alternatives(kKinds))
       ->check(OneOf(kKinds));
   create
-      ->add_option(
-          "name", args->name,
-          "Name; the file is NAME.yaml in the current folder. Of a mapping: the log to read")
+      ->add_option("name", args->name,
+                   "Name; the folder of a robot is NAME, another file is NAME.yaml, in the current "
+                   "folder. Of a mapping: the log to read")
       ->required()
       ->option_text("NAME");
   AddInput(*create, "--model", {"model", "experiment"}, args->model,
@@ -102,13 +111,20 @@ void AddNew(CLI::App& app, int& exit_code) {
       ->option_text("FILE");
   create->add_option("--out", args->out, "Mapping file to write (default: LOG.map.json)")
       ->option_text("FILE");
+  create->add_option("--like", args->like, "Robot to start from (default: six_bar)")
+      ->option_text(Alternatives(RobotTemplates()))
+      ->check(OneOf(RobotTemplates()));
   create->footer(
       "Examples:\n"
+      "  taut new robot my_robot\n"
+      "  taut new robot my_tower --like tower\n"
       "  taut new model my_robot\n"
       "  taut new experiment my_test --model my_robot.yaml\n"
       "  taut new study my_search\n"
       "  taut new mapping lab.csv --model my_robot.yaml\n"
-      "The templates have comments and run unchanged. `taut gait create` writes gaits.");
+      "A robot's folder contains a model, experiments, a README and a notebook; most also a gait "
+      "and a\n"
+      "study that improves it. All files have comments and run unchanged.");
   create->callback([args, &exit_code] { exit_code = New(*args); });
 }
 

@@ -327,7 +327,7 @@ TEST_F(CliCommand, ANewStudyIsSearched) {
 TEST_F(CliCommand, NewOverwritesNothing) {
   Write("mine.yaml", "what I wrote");
   const test::CommandResult again = Taut({"new", "model", "mine"});
-  EXPECT_EQ(again.status, 1);
+  EXPECT_EQ(again.status, 3);
   EXPECT_EQ(again.errors, "mine.yaml: error: the file exists already, and is not overwritten\n");
   EXPECT_EQ(Read(Path("mine.yaml")), "what I wrote");
   EXPECT_EQ(Refusal({"new", "model", "a/b"}),
