@@ -77,7 +77,9 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   ExperimentSpec& experiment = inputs->experiment;
   viewer::LiveOptions options;
   options.inputs = {args.file, *overrides, args.step_s, std::nullopt};
-  if (args.settled && !model) options.inputs.start = StartKind::kSettled;
+  if (args.settled) {
+    options.inputs.start = model ? StartKind::kSettledFloating : StartKind::kSettled;
+  }
   if (args.step_s > 0) experiment.step_s = args.step_s;
   exit = kFailed;
   if (!args.out.empty()) {
@@ -90,6 +92,7 @@ std::unique_ptr<Session> MakeLive(const ViewArguments& args, int& exit) {
   }
   options.speed = args.max ? 0 : args.speed;
   options.paused = args.paused || model;
+  options.watch = true;
   options.record = viewer::RecordInto(args.out);
   options.tell = Tell;
   if (model) options.statics = ViewStatics;

@@ -57,6 +57,11 @@ bool HasGround(const ModelDef& def) {
 
 }  // namespace
 
+ModelStart StartOfName(const std::string& name) {
+  if (name == "dropped") return ModelStart::kDropped;
+  return name == "settled" ? ModelStart::kSettled : ModelStart::kDescribed;
+}
+
 ExperimentSpec StartModel(const ExperimentSpec& alone, ModelStart start) {
   if (start == ModelStart::kDescribed) return alone;
   ExperimentSpec experiment = alone;

@@ -17,6 +17,9 @@ struct LiveInputs {
 /// Starts of a model (message start of web/protocol/messages.json).
 enum class ModelStart { kDescribed, kDropped, kSettled };
 
+/// Returns the start of a name in that message; kDescribed for other names.
+ModelStart StartOfName(const std::string& name);
+
 /// Returns the experiment of a model with another start: with weight, above a plane if the model
 /// has no ground. `alone`: from LoadLiveInputs.
 ExperimentSpec StartModel(const ExperimentSpec& alone, ModelStart start);

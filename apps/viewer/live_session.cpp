@@ -42,6 +42,7 @@ std::unique_ptr<LiveSession> LiveSession::Create(const std::string& mode,
     session->recording_ = options.record(*session->run_, experiment, say, out);
     if (!session->recording_) return nullptr;
   }
+  if (options.watch) session->watch_.Watch(experiment.files);
   session->StartHistory();
   for (const Diagnostic& warning : Sorted(out.warnings())) {
     session->SayEvent(0, "warning: " + warning.what);
@@ -273,6 +274,7 @@ Session::Clock::time_point LiveSession::Work() {
   const Clock::time_point start = Clock::now();
   // At most one restart per displayed frame, for any number of requests.
   if (idle() && start - shown_wall_ >= kFramePeriod) Restart(start + kFramePeriod);
+  ReloadChangedFiles(start);
   if (std::exchange(scene_changed_, false)) SetScene(MakeScene(), true);
   if (!pace_.paused()) {
     StepUntil(pace_.WantedAt(start), std::min(start + kSlice, shown_wall_ + kFramePeriod));
@@ -349,7 +351,11 @@ Json LiveSession::MakeScene() const {
   scene["channels"] = ToJson(history_->channels());
   scene["drag_stiffness_n_per_m"] = run_->DragStiffness();
   scene["contact_forces"] = run_->world() != nullptr;
-  if (recording_ && !recording_->notice().empty()) scene["notice"] = recording_->notice();
+  std::string notice = files_notice_;
+  if (recording_ && !recording_->notice().empty()) {
+    notice += (notice.empty() ? "" : "\n") + recording_->notice();
+  }
+  if (!notice.empty()) scene["notice"] = notice;
   if (!statics_.is_null()) scene["statics"] = statics_;
   return scene;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "file_watch.h"
 #include "history.h"
 #include "live_recorder.h"
 #include "live_restarts.h"
@@ -22,6 +23,7 @@ struct LiveOptions {
   Restarts::Inputs inputs;  ///< Read again when a parameter of the files changes.
   double speed = 1;         ///< Simulated seconds per second; 0: as fast as possible.
   bool paused = false;
+  bool watch = false;   ///< Restart when an input file changes; show the errors of such files.
   MakeRecorder record;  ///< Null: no recording.
   /// Computes Scene.statics of a model; null: not available.
   std::function<Json(const ExperimentSpec&)> statics;
@@ -73,6 +75,9 @@ class LiveSession final : public Session {
   /// Replaces the run of a model by one with another start.
   bool StartModelAs(const std::string& start, std::string& error);
   bool Analyze(std::string& error);
+  /// Reads the input files again if they have changed.
+  void ReloadChangedFiles(Clock::time_point now);
+  bool Reload(Diagnostics& out);
   void Begin(std::unique_ptr<LiveRun> run, ExperimentSpec experiment);
   void StartHistory();
   void Log(const std::string& text);
@@ -89,10 +94,10 @@ class LiveSession final : public Session {
 
   LiveOptions options_;
   Restarts restarts_;
-  ExperimentSpec model_;       ///< For a model: experiment without weight and ground.
-  Json statics_;               ///< Scene.statics; null until computed.
+  ExperimentSpec model_;                   ///< For a model: experiment without weight and ground.
+  std::string model_start_ = "described";  ///< Present start of a model (message start).
+  Json statics_;                           ///< Scene.statics; null until computed.
   ExperimentSpec experiment_;  ///< Experiment as read; `run_` may differ after changes by the user.
-                               ///< `run_` may differ after manual changes.
   /// Initial values of the files' parameters, which determine the ranges of sliders.
   std::map<std::string, double> given_;
   std::unique_ptr<LiveRun> run_;
@@ -110,6 +115,9 @@ class LiveSession final : public Session {
   std::vector<double> mark_at_s_;
   std::vector<StateMark> marks_;
   bool touched_ = false;
+  FileWatch watch_;
+  Clock::time_point polled_;
+  std::string files_notice_;  ///< Errors of changed files, until they are mended.
 };
 
 }  // namespace taut::viewer

@@ -37,9 +37,7 @@ bool LiveSession::StartModelAs(const std::string& start, std::string& error) {
     error = "start is possible only in the view of a model";
     return false;
   }
-  const ModelStart kind = start == "dropped"   ? ModelStart::kDropped
-                          : start == "settled" ? ModelStart::kSettled
-                                               : ModelStart::kDescribed;
+  const ModelStart kind = StartOfName(start);
   ExperimentSpec experiment = StartModel(model_, kind);
   Diagnostics wrong;
   auto run = CheckStart(experiment.robot, experiment.start, wrong)
@@ -49,6 +47,7 @@ bool LiveSession::StartModelAs(const std::string& start, std::string& error) {
     error = wrong.Format();
     return false;
   }
+  model_start_ = start;
   Begin(std::move(run), std::move(experiment));
   for (const Diagnostic& warning : Sorted(wrong.warnings())) {
     SayEvent(0, "warning: " + warning.what);

@@ -1,0 +1,77 @@
+// Restarts of a live run whose input files have changed on disk.
+#include <algorithm>
+#include <utility>
+
+#include "live_inputs.h"
+#include "live_parameters.h"
+#include "live_session.h"
+#include "taut/start.h"
+
+namespace taut::viewer {
+namespace {
+
+constexpr std::chrono::milliseconds kPollPeriod{250};
+
+}  // namespace
+
+void LiveSession::ReloadChangedFiles(Clock::time_point now) {
+  if (!options_.watch || now - polled_ < kPollPeriod) return;
+  polled_ = now;
+  if (!watch_.Poll()) return;
+  Diagnostics found;
+  scene_changed_ = true;
+  std::vector<std::string> files = experiment_.files;
+  if (Reload(found)) {
+    files_notice_.clear();
+    files = experiment_.files;
+    const std::string text = "restarted with the changed files";
+    SayEvent(0, text);
+    options_.tell(text);
+    for (const Diagnostic& warning : Sorted(found.warnings())) {
+      SayEvent(0, "warning: " + warning.what);
+    }
+  } else if (!stopping()) {
+    files_notice_ = found.Format() + "The robot is shown as before the change.";
+    options_.tell(found.Format());
+    // A change that mends the error may be in a file that the present run does not use.
+    for (const Diagnostic& error : found.items()) files.push_back(error.at.file);
+  }
+  watch_.Watch(files);
+}
+
+bool LiveSession::Reload(Diagnostics& out) {
+  const Restarts::Inputs& inputs = restarts_.inputs();
+  auto read = LoadLiveInputs(inputs.path, inputs.overrides, inputs.start.has_value(), out);
+  if (!read) return false;
+  const bool model = mode() == "model";
+  if (read->model != model) {
+    out.Error("view.other_kind", {inputs.path, 0, 0}, "the kind of the file has changed",
+              "start taut view again");
+    return false;
+  }
+  ExperimentSpec experiment = std::move(read->experiment);
+  if (inputs.step_s > 0) experiment.step_s = inputs.step_s;
+  const ExperimentSpec alone = experiment;
+  if (model) {
+    experiment = StartModel(alone, StartOfName(model_start_));
+    if (!CheckStart(experiment.robot, experiment.start, out)) return false;
+  }
+  auto run = LiveRun::Start(experiment, out, [this] { return !stopping(); });
+  if (!run) return false;
+  const bool ended = end_told_;
+  const NamedValues before = std::exchange(given_, ParametersOfFiles(experiment));
+  // A slider keeps its range if the page, not the file, has changed its value.
+  for (const auto& [name, value] : inputs.overrides) {
+    const auto old = before.find(name);
+    if (old != before.end() && given_.contains(name)) given_[name] = old->second;
+  }
+  Begin(std::move(run), std::move(experiment));
+  if (model) {
+    model_ = alone;
+    if (!statics_.is_null()) statics_ = options_.statics(model_);
+  }
+  if (ended || model_start_ == "dropped") pace_.Resume(run_->time_s());
+  return true;
+}
+
+}  // namespace taut::viewer
