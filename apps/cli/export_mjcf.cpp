@@ -32,7 +32,11 @@ int Export(const Arguments& args) {
   if (!robot || !Pass(found, args.strict)) return Fail(found, kBadInput);
   const auto text = ExportMjcf(robot->def, args.options, found);
   if (!text || !Pass(found, args.strict)) return Fail(found, kBadInput);
-  return WriteOrPrint(args.out, *text);
+  const int written = WriteOrPrint(args.out, *text);
+  if (written == kOk && !args.out.empty()) {
+    SayNextProgram({"python3", "-m", "mujoco.viewer", "--mjcf=" + args.out});
+  }
+  return written;
 }
 
 }  // namespace

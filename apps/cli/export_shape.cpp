@@ -60,6 +60,7 @@ int ExportShape(const ShapeArguments& args) {
   }
   fmt::print("{}: shapes: {}, cables: {}, triangles: {}\n", args.out, shapes.size() - cables,
              cables, triangles);
+  SayNextProgram({"xdg-open", args.out});
   return kOk;
 }
 

@@ -49,12 +49,18 @@ int Export(const GaitArguments& args) {
   return WriteOrPrint(args.out, GaitTableText(*table, gait->drives));
 }
 
+int WriteGait(const GaitArguments& args, const GaitSpec& gait) {
+  const int written = WriteOrPrint(args.out, GaitYaml(gait));
+  if (written == kOk && !args.out.empty()) SayNext({"check", args.out});
+  return written;
+}
+
 int Import(const GaitArguments& args) {
   Diagnostics found;
   auto gait = ImportNtrtGait(args.input, args.order, found);
   if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
-  return WriteOrPrint(args.out, GaitYaml(*gait));
+  return WriteGait(args, *gait);
 }
 
 int Create(const GaitArguments& args) {
@@ -66,7 +72,7 @@ int Create(const GaitArguments& args) {
   auto gait = NewCpgGait(*robot, args.symmetry, found, args.drives);
   if (!gait) return Fail(found, kBadInput);
   if (!args.name.empty()) gait->name = args.name;
-  return WriteOrPrint(args.out, GaitYaml(*gait));
+  return WriteGait(args, *gait);
 }
 
 int Values(const GaitArguments& args) {

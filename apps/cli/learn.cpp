@@ -40,10 +40,30 @@ std::string Duration(double s) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-void Show(ProgressLine& line, const LearnProgress& p) {
+/// Returns a score with the name and the unit of its measure. Penalties are subtracted in this
+/// unit.
+std::string ScoreText(double score, Measure measure) {
+  switch (measure) {
+    case Measure::kDistance:
+      return fmt::format("distance {:.4g} m", score);
+    case Measure::kHeading:
+      return fmt::format("distance ahead {:.4g} m", score);
+    case Measure::kDistancePerEnergy:
+      return fmt::format("distance per energy {:.4g} m/J", score);
+    case Measure::kNearer:
+      return fmt::format("distance gained {:.4g} m", score);
+    case Measure::kTracking:
+      return fmt::format("tracking {:.4g} N", score);
+    case Measure::kNone:
+      break;
+  }
+  return fmt::format("score {:.4g}", score);
+}
+
+void Show(ProgressLine& line, const LearnProgress& p, Measure measure) {
   if (!line.Due()) return;
-  const std::string best = p.best_score ? fmt::format("{:.6g}", *p.best_score) : "none";
-  line.Show(fmt::format("{} of {}  best {}  {} failed  {:.0f} simulated s/s  {} left",
+  const std::string best = p.best_score ? ScoreText(*p.best_score, measure) : "none";
+  line.Show(fmt::format("{} of {} evaluations  best: {}  {} failed  {:.3g} simulated s/s  {} left",
                         p.evaluations, p.budget, best, p.failed, p.simulated_s_per_s,
                         Duration(p.left_s)));
 }
@@ -52,11 +72,12 @@ void PrintSummary(const LearnSummary& s, const StudySpec& study, const std::stri
   fmt::print("{}: {} evaluations, {} failed", study.name, s.evaluations, s.failed);
   if (s.resumed_from > 0) fmt::print(", {} of them from earlier", s.resumed_from);
   if (s.wall_s > 0) {
-    fmt::print("; {} ({:.0f} simulated s/s)", Duration(s.wall_s), s.simulated_s / s.wall_s);
+    fmt::print("; {} ({:.3g} simulated s/s)", Duration(s.wall_s), s.simulated_s / s.wall_s);
   }
   fmt::print("\n");
   if (s.best) {
-    fmt::print("best: {:.6g}, evaluation {}\n", s.best->score, s.best->id);
+    fmt::print("best: {}, evaluation {}\n", ScoreText(s.best->score, study.objective.measure),
+               s.best->id);
   } else {
     fmt::print("best: none, every evaluation failed\n");
   }
@@ -86,7 +107,7 @@ int SearchAlone(const StudySpec& study, const LearnArguments& args, Evaluator& e
   options.folder = args.out.empty() ? (fs::path("runs") / study.name).string() : args.out;
   options.stop = &interrupt_asked;
   ProgressLine line(args.quiet, true);
-  options.progress = [&](const LearnProgress& p) { Show(line, p); };
+  options.progress = [&](const LearnProgress& p) { Show(line, p, study.objective.measure); };
   options.skip_damaged = args.skip_damaged;
   const LearnSummary summary = RunStudy(study, evaluator, options, found);
   line.Clear();

@@ -153,6 +153,7 @@ int PrintTop(const std::string& folder, int count, bool skip_damaged, bool json)
         "\nmeans of {} worlds; max tension: largest of all worlds; falls: number of worlds\n",
         top[0]->worlds.size());
   }
+  SayNext({"learn", "--best", folder});
   return kOk;
 }
 

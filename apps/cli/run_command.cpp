@@ -51,7 +51,7 @@ class RunProgressLine {
     if (!quiet_ && (terminal_ || p.wall_s - last_s_ >= 10)) {
       const double factor = p.wall_s > 0 ? p.time_s / p.wall_s : 0;
       const double left_s = factor > 0 ? (p.duration_s - p.time_s) / factor : 0;
-      fmt::print(stderr, "{}t = {:.2f} of {:g} s  {:.0f} x real time  {:.0f} s left{}",
+      fmt::print(stderr, "{}t = {:.2f} of {:g} s  {:.3g} x real time  {:.0f} s left{}",
                  terminal_ ? "\r\033[K" : "", p.time_s, p.duration_s, factor, left_s,
                  terminal_ ? "" : "\n");
       std::fflush(stderr);

@@ -77,6 +77,7 @@ int Convert(const ConvertArguments& args) {
   if (!args.quiet) {
     fmt::print("{}: rows: {}, channels: {}\n", args.out, trace->time_s.size(),
                trace->channels.size());
+    if (!mcap) SayNext({"view", args.out});
   }
   return kOk;
 }

@@ -66,12 +66,13 @@ def commands_of(block):
 
 def steady(line):
     """Returns a line without parts that differ between runs and machines."""
+    line = re.sub(r"; [\d:]+ \(\S+ simulated s/s\)", "; ...", line)
     return re.sub(r"simulated in \S+ s \(\S+ times real time\)", "simulated in ...", line)
 
 
 def printed_lines(text):
     """Returns the lines without the progress lines that only slow machines print."""
-    return [line for line in text.splitlines() if not re.match(r"t = .* s left$", line)]
+    return [line for line in text.splitlines() if not re.match(r"(t = .* s|\d+ of \d+ evaluations .*) left$", line)]
 
 
 def same(expected, printed):
