@@ -1,7 +1,7 @@
-// Example of a batch: the force on a corner of the floating table (docs/tutorial.md) at which it
+// Example of a batch: the force on a corner of the floating table (docs/tutorial_structures.md) at which it
 // tips over.
 //
-//   tip_over docs/tutorial/table.yaml
+//   tip_over docs/tutorial_structures/table.yaml
 //
 // 32 worlds of one robot, each with a different force. By hand: the pressed corner is as far
 // outside of the line through the nearest two feet as the center of mass is inside of it, so a
@@ -73,7 +73,7 @@ double TippingForce(const taut::ModelDef& def, taut::Diagnostics& diagnostics) {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fputs("usage: tip_over docs/tutorial/table.yaml\n", stderr);
+    std::fputs("usage: tip_over docs/tutorial_structures/table.yaml\n", stderr);
     return 2;
   }
   taut::Diagnostics diagnostics;

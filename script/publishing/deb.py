@@ -87,7 +87,7 @@ def try_out(root, work, version):
     run(["cmake", "-S", root / "usr/share/doc/taut/examples", "-B", consumer, "-G", "Ninja",
          f"-DCMAKE_PREFIX_PATH={root}/usr", "-DCMAKE_BUILD_TYPE=Release"])
     run(["cmake", "--build", consumer, "--target", "tip_over"])
-    run([consumer / "tip_over", root / "usr/share/doc/taut/docs/tutorial/table.yaml"], cwd=work)
+    run([consumer / "tip_over", root / "usr/share/doc/taut/docs/tutorial_structures/table.yaml"], cwd=work)
 
 
 def make(source, work, out, seconds, built=None):

@@ -72,7 +72,7 @@ class CableMaker {
             "the cable \"" + pair.name +
                 "\" has friction at this element, but a direct-current motor cannot wind a cable "
                 "with friction",
-            "use an ideal or limited actuator");
+            "use `ideal: true` or an actuator with limits");
     }
   }
 

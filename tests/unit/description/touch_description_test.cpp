@@ -53,10 +53,12 @@ TEST(TouchingCable, WhatCannotBeIsSaidWithItsLine) {
             "`friction` in the route)\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: -1")),
             "robot.yaml:12:118: error: cable.touch_friction must not be negative, got -1\n");
-  EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: 0.1, "
-                        "actuator: {dc_motor: {}}")),
-            "robot.yaml:12:102: error: cable.touch_friction: a direct-current motor cannot wind a "
-            "cable with friction (use an ideal or limited actuator)\n");
+  EXPECT_EQ(
+      Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: 0.1, "
+                  "actuator: {dc_motor: {}}")),
+      "robot.yaml:12:102: error: cable.touch_friction: a cable with friction at what it "
+      "touches cannot have a `dc_motor` (use `ideal: true` or an actuator with limits, or leave "
+      "out `touch_friction`)\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: -1")),
             "robot.yaml:12:95: error: cable.radius_m must not be negative, got -1\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: 0.001", "a, c, b")),
