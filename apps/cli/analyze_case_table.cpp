@@ -18,6 +18,12 @@ double ReactionZ_n(const CaseResult& result) {
   for (const Reaction& anchor : result.anchors) sum_n += anchor.force_n.z;
   for (const CaseResult::End& end : result.ends) sum_n += end.force_n.z;
   for (const ContactState& contact : result.at.contacts) sum_n += contact.force_n.z;
+  // Loads on points of the world, such as half of the wind on a bar that ends there
+  for (const LoadCaseSpec::NodeForce& load : result.loads.forces) {
+    if (result.def.nodes[static_cast<std::size_t>(load.node)].body == kWorld) {
+      sum_n -= load.force_n.z;
+    }
+  }
   return sum_n;
 }
 

@@ -59,6 +59,7 @@ int RunCompare(CompareArguments given) {
   const auto a = Load(given.path_a, given.map_a, found);
   const auto b = Load(given.path_b, given.map_b, found);
   if (!a || !b) return Fail(found, kBadInput);
+  Pass(found, false);
   const Comparison comparison = Compare(*a, *b, given.options);
   const bool limited = given.limits.max_error_percent || given.limits.max_rmse;
   const bool comparable = comparison.rows > 0 && !comparison.channels.empty();

@@ -59,6 +59,7 @@ int NewMapping(const NewMappingArguments& args) {
   // A row after the sample may have another form.
   const auto mapping = LoadMapping(out, found);
   const auto trace = mapping ? ReadMapped(args.log, *mapping, out, found) : std::nullopt;
+  if (trace) Pass(found, false);
   if (!trace) {
     Fail(found, kBadInput);
     fmt::print("Written: {}, which does not read the whole file: correct it by hand\n", out);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "taut/guess_mapping.h"
@@ -9,16 +10,19 @@
 namespace taut {
 
 struct ColumnMeaning {
-  std::string unit;      ///< Of the file, as mappings name it; empty: none found.
-  std::string kind;      ///< "cable", "body", "node", "joint"; empty: no member has this name.
-  std::string member;    ///< Its name.
-  std::string channel;   ///< Name of taut's channel, with `{axis}` for vectors; empty: unknown.
-  char axis = 0;         ///< x, y, z or w of a vector or quaternion; 0: none.
-  bool several = false;  ///< Several members fit equally well.
+  std::string unit;          ///< Of the file, as mappings name it; empty: none found.
+  std::string unknown_unit;  ///< Text in brackets that is no unit of mappings.
+  std::string kind;          ///< "cable", "body", "node", "joint"; empty: no member has this name.
+  std::string member;        ///< Its name.
+  std::string channel;       ///< Name of taut's channel, with `{axis}` for vectors; empty: unknown.
+  char axis = 0;             ///< x, y, z or w of a vector or quaternion; 0: none.
+  bool several = false;      ///< Several members fit equally well.
+  std::string refused;  ///< Word because of which the column is not the member's measured quantity.
+  std::string left_over;  ///< Words of the name that are not explained.
 };
 
 /// `unit`: unit stated outside of the name; empty: none. `length_unit`: unit of positions whose
-/// name has none.
+/// names have none.
 ColumnMeaning MeaningOf(const std::string& name, const std::string& unit,
                         const std::string& length_unit, const RobotNames& robot);
 
@@ -26,10 +30,13 @@ ColumnMeaning MeaningOf(const std::string& name, const std::string& unit,
 std::string UnitInName(const std::string& name);
 
 /// Returns a unit's name in mappings, for spellings such as "sec", "Newton" or "°"; empty: unknown.
-std::string KnownUnit(std::string unit);
+std::string KnownUnit(const std::string& unit);
 
 /// Splits a name at blanks, punctuation, and changes from letters to digits; in lower case, numbers
 /// without leading zeros.
 std::vector<std::string> Tokens(const std::string& name);
+
+/// Returns whether a name contains one of these words, in lower case.
+bool HasWord(const std::vector<std::string>& tokens, const std::vector<std::string_view>& words);
 
 }  // namespace taut

@@ -5,27 +5,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/foreign_units.h"
 #include "compare/column_meaning.h"
+#include "compare/log_clock.h"
 #include "compare/log_form.h"
-#include "trace/clock_text.h"
 
 namespace taut {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Clocks that count from 1970 in s, ms, us and ns have values in these ranges, from 2001 to 2096.
-constexpr struct {
-  const char* unit;
-  double from;
-} kEpochs[] = {{"s", 1e9}, {"ms", 1e12}, {"us", 1e15}, {"ns", 1e18}};
-constexpr double kEpochSpan = 4;  // times `from`
+/// Kinds of taut's channels, whose names are kept.
+const std::set<std::string> kOwnKinds{"cable",  "body",  "node",    "joint", "sensor",
+                                      "system", "board", "contact", "goal"};
 
 std::string Quoted(const std::string& text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -42,9 +38,17 @@ class Guess {
   Guess(const LogForm& form, const RobotNames& robot) : form_(form), robot_(robot) {}
 
   GuessedMapping Make(const std::string& path) {
-    if (!form_.is_trace) Clock();
+    result_.doubts = form_.doubts;
+    if (!form_.is_trace) {
+      clock_ = GuessClock(form_);
+      result_.doubts.insert(result_.doubts.end(), clock_.doubts.begin(), clock_.doubts.end());
+    }
+    // Names that taut has given to columns without a header are no names of members.
+    const bool nameless = form_.layout.header_lines == 0 && form_.program.empty();
     for (std::size_t i = 0; i < form_.names.size(); ++i) {
-      meanings_.push_back(MeaningOf(form_.names[i], form_.units[i], form_.length_unit, robot_));
+      meanings_.push_back(MeaningOf(form_.names[i], form_.units[i], form_.length_unit,
+                                    nameless ? RobotNames() : robot_));
+      if (IsOwn(form_.names[i])) used_.insert(i);
     }
     Groups();
     SingleColumns();
@@ -55,111 +59,26 @@ class Guess {
   }
 
  private:
-  std::vector<double> Values(std::size_t column, std::optional<ClockFormat> format) const {
-    std::vector<double> values;
-    for (const auto& row : form_.rows) {
-      values.push_back(format ? trace::ParseClock(row[column], *format).value_or(NAN)
-                              : CellValue(row[column], form_.layout.decimal));
-    }
-    return values;
-  }
-
-  static bool Increases(const std::vector<double>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i]) || (i > 0 && values[i] <= values[i - 1])) return false;
-    }
-    return values.size() > 1;
-  }
-
-  /// Returns the format in which all cells of a column are increasing times; the one in which a
-  /// day of a month comes first wins over the other if both do.
-  std::optional<ClockFormat> FormatOf(std::size_t column) const {
-    for (const ClockFormat format : {ClockFormat::kIso8601, ClockFormat::kTimeOfDay,
-                                     ClockFormat::kDayMonthYear, ClockFormat::kMonthDayYear}) {
-      if (Increases(Values(column, format))) return format;
-    }
-    return std::nullopt;
-  }
-
-  static bool NamesTime(const std::string& name) {
-    static const std::set<std::string> words{"time",    "zeit",    "t",      "temps", "tiempo",
-                                             "stamp",   "date",    "datum",  "clock", "timestamp",
-                                             "x_value", "seconds", "elapsed"};
-    const auto tokens = Tokens(name);
-    return name == "X_Value" || std::any_of(tokens.begin(), tokens.end(), [&](const auto& token) {
-             return words.contains(token);
-           });
-  }
-
-  /// Finds the clock: the first increasing column with a name of a time, else a column of times,
-  /// else the first column, if it increases.
-  void Clock() {
-    const std::size_t count = form_.names.size();
-    std::optional<std::size_t> found;
-    for (const bool named : {true, false}) {
-      if (!named && form_.rate_hz) break;
-      for (std::size_t i = 0; i < count && !found; ++i) {
-        if (form_.names[i].empty() || (named && !NamesTime(form_.names[i]))) continue;
-        if (!named && i > 0 && !FormatOf(i)) continue;
-        if (FormatOf(i) || Increases(Values(i, {}))) found = i;
-      }
-    }
-    if (found && form_.rate_hz && Tokens(form_.names[*found]).front() == "frame") found.reset();
-    if (!found) {
-      time_["row_s"] = form_.rate_hz ? 1 / *form_.rate_hz : 1.0;
-      rate_hz_ = 1 / time_["row_s"].get<double>();
-      if (form_.rate_hz) return;
-      result_.doubts.push_back(
-          "no column of times was found: set row_s to the time between two rows");
-      return;
-    }
-    clock_ = *found;
-    time_["column"] = form_.names[*found];
-    const auto format = FormatOf(*found);
-    const std::vector<double> values = Values(*found, format);
-    const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
-    double unit_s = 1;
-    if (format) {
-      time_["format"] = ClockFormatName(*format);
-    } else {
-      const std::string unit = ClockUnit(*found, values.front(), step);
-      unit_s = base::FindUnit(unit)->factor;
-      if (unit != "s") time_["unit"] = unit;
-    }
-    const bool has_date = format && *format != ClockFormat::kTimeOfDay;
-    if (values.front() != 0 && !has_date) time_["zero"] = "first";
-    rate_hz_ = 1 / (step * unit_s);
-  }
-
-  std::string ClockUnit(std::size_t column, double first, double step) {
-    std::string unit = KnownUnit(form_.units[column]);
-    if (unit.empty()) unit = UnitInName(form_.names[column]);
-    if (const auto known = base::FindUnit(unit); known && known->si == "s") return unit;
-    for (const auto& epoch : kEpochs) {
-      if (first >= epoch.from && first < kEpochSpan * epoch.from) return epoch.unit;
-    }
-    unit = step >= 1 ? "ms" : "s";
-    if (form_.program.empty()) {
-      result_.doubts.push_back(
-          fmt::format("the clock {} has no unit: its step of {:.4g} suggests {}",
-                      Quoted(form_.names[column]), step, unit));
-    }
-    return unit;
+  static bool IsOwn(const std::string& name) {
+    const std::size_t slash = name.find('/');
+    return slash != name.npos && kOwnKinds.contains(name.substr(0, slash)) &&
+           UnitOfName(name) != "1";
   }
 
   /// Columns that no rule uses yet; a `*` in a name would make its rule a pattern.
   bool Free(std::size_t i) const {
     const std::string& name = form_.names[i];
-    return i != clock_ && !used_.contains(i) && !name.empty() && name.find('*') == name.npos;
+    return i != clock_.column && !used_.contains(i) && !name.empty() && name.find('*') == name.npos;
   }
 
   /// Vectors and quaternions: columns of one member whose names differ only in their axis.
   void Groups() {
     std::map<std::string, std::map<char, std::size_t>> groups;  // by channel
     for (std::size_t i = 0; i < meanings_.size(); ++i) {
-      const auto& [unit, kind, member, channel, axis, several] = meanings_[i];
-      if (Free(i) && axis != 0 && channel.find("{axis}") != channel.npos && !several) {
-        groups[channel].emplace(axis, i);
+      const ColumnMeaning& meaning = meanings_[i];
+      if (Free(i) && meaning.axis != 0 && !meaning.several &&
+          meaning.channel.find("{axis}") != meaning.channel.npos) {
+        groups[meaning.channel].emplace(meaning.axis, i);
       }
     }
     for (const auto& [channel, columns] : groups) {
@@ -171,6 +90,7 @@ class Guess {
       Json rule{{"from", *pattern}, {"to", channel}};
       if (!turns) AddUnit(columns.begin()->second, "m", rule);
       (turns ? quaternions_ : vectors_).push_back({rule, ""});
+      DoubtLeftOver(columns.at('x'));
       for (const auto& [axis, i] : columns) used_.insert(i);
     }
   }
@@ -208,7 +128,9 @@ class Guess {
     std::set<std::string> targets;
     for (std::size_t i = 0; i < meanings_.size(); ++i) {
       const ColumnMeaning& meaning = meanings_[i];
-      if (!Free(i) || meaning.channel.empty()) continue;
+      if (!Free(i)) continue;
+      if (!meaning.kind.empty() && meaning.channel.empty()) NotAssigned(i);
+      if (meaning.channel.empty()) continue;
       if (meaning.channel.find("{axis}") != meaning.channel.npos) continue;
       if (meaning.several) {
         result_.doubts.push_back(
@@ -220,8 +142,30 @@ class Guess {
                                              Quoted(form_.names[i]), meaning.channel));
         continue;
       }
+      DoubtLeftOver(i);
       AddChannel(i, meaning.channel, "");
     }
+  }
+
+  /// Says why a column with the name of a member has no channel.
+  void NotAssigned(std::size_t i) {
+    const ColumnMeaning& meaning = meanings_[i];
+    const std::string what = Quoted(form_.names[i]) + " of " + meaning.kind + " " + meaning.member;
+    if (!meaning.unknown_unit.empty()) {
+      result_.doubts.push_back(what + " has the unknown unit " + Quoted(meaning.unknown_unit));
+    } else if (!meaning.refused.empty()) {
+      result_.doubts.push_back(what + " is not assigned because of " + Quoted(meaning.refused));
+    }
+  }
+
+  /// Warns of names that contain more than the member's name and known words.
+  void DoubtLeftOver(std::size_t i) {
+    const ColumnMeaning& meaning = meanings_[i];
+    if (meaning.left_over.empty() || form_.program == "OptiTrack" || form_.program == "Vicon")
+      return;
+    result_.doubts.push_back(fmt::format("{} is assigned to {} {}, in spite of {}",
+                                         Quoted(form_.names[i]), meaning.kind, meaning.member,
+                                         Quoted(meaning.left_over)));
   }
 
   void AddChannel(std::size_t i, const std::string& channel, const std::string& remark) {
@@ -261,6 +205,7 @@ class Guess {
 
   void ReportLayout() {
     const TableLayout& layout = form_.layout;
+    const Json& time = clock_.time;
     const char* separator = layout.separator == '\t'  ? "tab"
                             : layout.separator == ' ' ? "blank"
                             : layout.separator == ';' ? "semicolon"
@@ -271,13 +216,14 @@ class Guess {
         separator, layout.decimal == ',' ? "comma" : "point",
         layout.encoding == TextEncoding::kWindows1252 ? ", encoding windows-1252" : ""));
     result_.results.push_back(
-        clock_ < form_.names.size()
-            ? fmt::format("clock: {}{}, {:.4g} rows per second", Quoted(form_.names[clock_]),
-                          time_.contains("unit")     ? " in " + time_["unit"].get<std::string>()
-                          : time_.contains("format") ? ", " + time_["format"].get<std::string>()
-                                                     : " in s",
-                          rate_hz_)
-            : fmt::format("clock: none, {:.4g} rows per second", rate_hz_));
+        clock_.column
+            ? fmt::format("clock: {}{}, {:.4g} rows per second",
+                          Quoted(form_.names[*clock_.column]),
+                          time.contains("unit")     ? " in " + time["unit"].get<std::string>()
+                          : time.contains("format") ? ", " + time["format"].get<std::string>()
+                                                    : " in s",
+                          clock_.rate_hz)
+            : fmt::format("clock: none, {:.4g} rows per second", clock_.rate_hz));
   }
 
   void Report() {
@@ -294,20 +240,19 @@ class Guess {
     }
     result_.results.push_back("channels: " + members);
     const auto ignored = Ignored();
-    if (!ignored.empty() && !form_.is_trace) {
+    if (!ignored.empty()) {
       std::string names;
       const std::size_t shown = std::min<std::size_t>(ignored.size(), 6);
       for (std::size_t i = 0; i < shown; ++i) names += (i ? ", " : "") + Quoted(ignored[i]);
       if (shown < ignored.size()) names += fmt::format(" and {} more", ignored.size() - shown);
-      result_.doubts.push_back("not recognized, therefore ignored: " + names);
+      result_.doubts.push_back(std::string(form_.is_trace
+                                               ? "not recognized, so the names are kept: "
+                                               : "not recognized, therefore ignored: ") +
+                               names);
     }
     if (form_.y_up && !vectors_.empty()) {
       result_.doubts.push_back("the vertical axis is y by default in " + form_.program +
                                "; in taut it is z");
-    }
-    if (time_.contains("format") && time_["format"] == "dd.mm.yyyy hh:mm:ss" &&
-        Increases(Values(clock_, ClockFormat::kMonthDayYear))) {
-      result_.doubts.push_back("the dates may also have the month first (mm/dd/yyyy)");
     }
   }
 
@@ -342,7 +287,7 @@ class Guess {
     if (const auto ignored = Ignored(); !ignored.empty()) {
       line("ignore", ignored, "not recognized");
     }
-    return text + "    \"time\": " + time_.dump() + "\n  }";
+    return text + "    \"time\": " + clock_.time.dump() + "\n  }";
   }
 
   std::string Text(const std::string& path) const {
@@ -366,10 +311,8 @@ class Guess {
   std::vector<ColumnMeaning> meanings_;
   std::set<std::size_t> used_;
   std::vector<Rule> channels_, vectors_, quaternions_;
-  std::size_t clock_ = static_cast<std::size_t>(-1);
+  LogClock clock_;
   std::size_t tensions_ = 0;
-  double rate_hz_ = 0;
-  Json time_;
 };
 
 }  // namespace

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <string_view>
+#include <unordered_map>
 
 #include "base/input_file.h"
 #include "base/number_text.h"
+#include "compare/column_meaning.h"
 #include "trace/clock_text.h"
 #include "trace/csv_lines.h"
 #include "trace/table_cells.h"
@@ -118,12 +119,12 @@ Marks GuessMarks(const Lines& lines) {
   return best;
 }
 
-/// A line with a single text above several columns is a title.
-bool IsHeader(const Cells& cells, std::size_t usual, char decimal) {
+/// A line with a single text above several columns is a title; `merged`: such lines name columns.
+bool IsHeader(const Cells& cells, std::size_t usual, char decimal, bool merged) {
   if (cells.size() + 1 < usual || cells.size() > usual + 1) return false;
   const auto texts = std::count_if(cells.begin(), cells.end(),
-                                   [](const trace::TableCell& cell) { return !cell.text.empty(); });
-  if (texts < 2 && usual > 1) return false;
+                                   [](const trace::TableCell& cell) { return !IsGap(cell.text); });
+  if (texts < (usual > 1 && !merged ? 2 : 1)) return false;
   return std::none_of(cells.begin(), cells.end(),
                       [&](const trace::TableCell& cell) { return IsValue(cell.text, decimal); });
 }
@@ -149,11 +150,12 @@ std::string After(const Lines& lines, std::string_view key) {
   return {};
 }
 
-std::optional<double> NumberIn(const std::string& text) {
-  double value = 0;
-  const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || !(value > 0)) return std::nullopt;
-  return value;
+/// Returns a rate above 0.
+std::optional<double> RateIn(const std::string& text) {
+  constexpr double kLeast_hz = 1e-3;
+  double value = CellValue(text, '.');
+  if (!std::isfinite(value)) value = CellValue(text, ',');
+  return value >= kLeast_hz ? std::optional(value) : std::nullopt;
 }
 
 /// Names for the columns of a table without a header.
@@ -174,16 +176,19 @@ void ReadPreamble(const Lines& lines, std::size_t first_row, LogForm& form) {
   } else if (first.starts_with("Format Version")) {
     form.program = "OptiTrack";
     form.y_up = true;
-    form.length_unit = first.find("Millimeters") != first.npos   ? "mm"
-                       : first.find("Centimeters") != first.npos ? "cm"
-                                                                 : "m";
+    const Cells facts = trace::SplitCells(first, ',');
+    for (std::size_t i = 1; i < facts.size(); ++i) {
+      if (facts[i - 1].text == "Length Units") form.length_unit = KnownUnit(facts[i].text);
+      if (facts[i - 1].text == "Export Frame Rate") form.rate_hz = RateIn(facts[i].text);
+    }
+    if (form.length_unit.empty()) form.doubts.push_back("the unit of lengths is unknown");
   } else if (first.starts_with("Trajectories") || first.starts_with("Segments") ||
              first.starts_with("Model Outputs")) {
     form.program = "Vicon";
-    if (lines.size() > 1) form.rate_hz = NumberIn(lines[1]);
+    if (lines.size() > 1) form.rate_hz = RateIn(lines[1]);
   } else if (first.starts_with("NO_OF_FRAMES")) {
     form.program = "Qualisys";
-    form.rate_hz = NumberIn(After(lines, "FREQUENCY"));
+    form.rate_hz = RateIn(After(lines, "FREQUENCY"));
     form.length_unit = "mm";
     if (form.layout.header_lines == 0 || first_row == 0) {
       std::vector<std::string> names;
@@ -198,22 +203,42 @@ void ReadPreamble(const Lines& lines, std::size_t first_row, LogForm& form) {
 /// Renames columns so that each name is unique and without the characters that mappings refuse or
 /// use as patterns.
 void MakeUnique(LogForm& form) {
-  std::set<std::string> seen;
+  std::unordered_map<std::string, int> seen;
   bool changed = false;
   for (std::string& name : form.names) {
     for (char& c : name) {
-      if (c != '*' && !base::IsControl(c)) continue;
+      if (c != '*' && c != '{' && !base::IsControl(c)) continue;
       c = '_';
       changed = true;
     }
-    std::string wanted = name;
-    for (int number = 2; !name.empty() && !seen.insert(wanted).second; ++number) {
-      wanted = fmt::format("{} ({})", name, number);
+    if (name.empty()) continue;
+    int& times = seen[name];
+    while (++times > 1) {
+      const std::string wanted = fmt::format("{} ({})", name, times);
+      if (!seen.emplace(wanted, 1).second) continue;
+      name = wanted;
       changed = true;
+      break;
     }
-    name = wanted;
   }
   if (changed) form.layout.columns = form.names;
+}
+
+/// Whether cells such as "995" and "1.000" of a column are whole numbers with separators of
+/// thousands.
+bool MayHaveThousands(const std::vector<std::string>& cells) {
+  bool whole = false, grouped = false;
+  for (const std::string& cell : cells) {
+    if (IsGap(cell)) continue;
+    const std::size_t mark = cell.find_first_of(".,");
+    if (mark == cell.npos) {
+      whole = true;
+      continue;
+    }
+    if (mark == 0 || mark > 3 || cell[0] == '0' || cell.size() != mark + 4) return false;
+    grouped = true;
+  }
+  return whole && grouped;
 }
 
 }  // namespace
@@ -252,33 +277,68 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
   form.layout.decimal = marks.decimal;
   const std::vector<Cells> table = Split(*lines, marks.separator);
   const std::size_t usual = UsualCount(table);
+  const bool is_motive = lines->front().starts_with("Format Version");
+  const bool merged = lines->front().starts_with("Trajectories") ||
+                      lines->front().starts_with("Segments") ||
+                      lines->front().starts_with("Model Outputs");
+  // Backwards to the last header: lines between rows, such as remarks, are reported below.
   std::size_t first = table.size();
-  while (first > 0 && IsRow(table[first - 1], usual, marks.decimal)) --first;
+  for (std::size_t i = table.size(); i-- > 0;) {
+    if (IsRow(table[i], usual, marks.decimal)) {
+      first = i;
+    } else if (first < table.size() && IsHeader(table[i], usual, marks.decimal, merged)) {
+      break;
+    }
+  }
   if (first == table.size()) {
     out.Error("log.no_rows", {path}, "the file has no rows of numbers",
               "expected a text table, such as CSV");
     return std::nullopt;
   }
   std::size_t header = first;
-  const std::size_t most = lines->front().starts_with("Format Version") ? 10u : kUsualHeaderLines;
-  while (header > 0 && first - header < most && IsHeader(table[header - 1], usual, marks.decimal)) {
+  const std::size_t most = is_motive ? 10u : kUsualHeaderLines;
+  while (header > 0 && first - header < most &&
+         IsHeader(table[header - 1], usual, marks.decimal, merged)) {
     --header;
+  }
+  std::size_t skipped = 0, others = 0;
+  for (std::size_t i = 0; i < header; ++i) {
+    const bool row = IsRow(table[i], usual, marks.decimal);
+    skipped += row && IsValue(table[i].front().text, marks.decimal) ? 1u : 0u;
+  }
+  if (skipped > 1) {
+    form.doubts.push_back(
+        fmt::format("{} rows of numbers before line {} are left out: the file has several headers",
+                    skipped, header + 1));
+  }
+  for (std::size_t i = first; i < table.size(); ++i) {
+    others += table[i].empty() || IsRow(table[i], usual, marks.decimal) ? 0u : 1u;
+  }
+  if (others > 0) {
+    form.doubts.push_back(fmt::format("{} lines between the rows are not rows of numbers", others));
   }
   form.layout.skip_lines = static_cast<int>(header);
   form.layout.header_lines = static_cast<int>(first - header);
   for (std::size_t i = header; i + 1 < first; ++i) {
     if (HasMergedCells(table[i], table[first - 1])) form.layout.merged_header = true;
   }
-  if (lines->front().starts_with("Format Version")) form.layout.merged_header = false;
+  if (is_motive) form.layout.merged_header = false;
   for (std::size_t i = header; i < first; ++i) {
     trace::JoinHeader(table[i], form.layout.merged_header && i + 1 < first, form.names);
   }
   const std::size_t width = std::max(usual, form.names.size());
   if (header == first) form.names = form.layout.columns = Numbered(width);
   for (std::size_t i = first; i < table.size(); ++i) {
+    if (!IsRow(table[i], usual, marks.decimal)) continue;
     std::vector<std::string>& row = form.rows.emplace_back();
     for (const auto& cell : table[i]) row.push_back(cell.text);
     row.resize(form.names.size());
+  }
+  for (std::size_t c = 0; c < form.names.size(); ++c) {
+    std::vector<std::string> cells;
+    for (const auto& row : form.rows) cells.push_back(row[c]);
+    if (!MayHaveThousands(cells)) continue;
+    form.doubts.push_back("numbers of \"" + form.names[c] + "\" may have separators of thousands");
   }
   ReadPreamble(*lines, first, form);
   form.units.resize(form.names.size());

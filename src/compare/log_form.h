@@ -18,6 +18,7 @@ struct LogForm {
   std::vector<std::string> units;              ///< By column; empty: not stated outside of names.
   std::optional<double> rate_hz;               ///< Stated outside of the rows.
   std::string length_unit;                     ///< Of positions, stated outside of the header.
+  std::vector<std::string> doubts;             ///< What may be misread.
   bool is_trace = false;                       ///< Times and columns need no layout (MCAP).
   bool y_up = false;                           ///< The program's default for the vertical axis.
 };

@@ -63,13 +63,17 @@ class Reader {
   bool good_ = true;
 };
 
-/// hh:mm:ss with a fraction; hh:mm if `seconds` are optional.
-double TimeOfDay(Reader& in) {
+/// hh:mm:ss with a fraction; also hh:mm after a date. Alone, hh:mm could be mm:ss.
+double TimeOfDay(Reader& in, bool after_date) {
   const int hours = in.Whole(1, 2);
   in.Expect(':');
   const int minutes = in.Whole(2, 2);
   double seconds = 0;
-  if (in.Take(':')) seconds = in.Whole(2, 2) + in.Fraction();
+  if (in.Take(':')) {
+    seconds = in.Whole(2, 2) + in.Fraction();
+  } else if (!after_date) {
+    in.Fail();
+  }
   if (hours > 24 || minutes > 59 || seconds >= 61) in.Fail();
   return kHour_s * hours + kMinute_s * minutes + seconds;
 }
@@ -105,7 +109,7 @@ std::optional<double> ParseClock(std::string_view text, ClockFormat format) {
     case ClockFormat::kNumber:
       return std::nullopt;
     case ClockFormat::kTimeOfDay:
-      time_s = TimeOfDay(in);
+      time_s = TimeOfDay(in, false);
       break;
     case ClockFormat::kIso8601: {
       const int year = in.Whole(4, 4);
@@ -115,7 +119,7 @@ std::optional<double> ParseClock(std::string_view text, ClockFormat format) {
       const int day = in.Whole(2, 2);
       time_s = Date(in, year, month, day);
       if (!in.TakeAny("T ")) in.Fail();
-      time_s += TimeOfDay(in);
+      time_s += TimeOfDay(in, true);
       time_s -= Zone(in);
       break;
     }
@@ -131,7 +135,7 @@ std::optional<double> ParseClock(std::string_view text, ClockFormat format) {
       in.Take(',');
       while (in.Take(' ')) {
       }
-      time_s += TimeOfDay(in);
+      time_s += TimeOfDay(in, true);
       break;
     }
   }

@@ -130,9 +130,9 @@ class TableParser {
     if (text.front() == '+') text.remove_prefix(1);
     double number = kNan;
     std::string with_point;
-    if (const auto comma = text.find(','); layout_.decimal == ',' && comma != text.npos) {
+    if (layout_.decimal == ',') {  // a point is then a thousands separator
       with_point = text;
-      with_point[comma] = '.';
+      for (char& c : with_point) c = c == ',' ? '.' : c == '.' ? ',' : c;
       text = with_point;
     }
     const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);

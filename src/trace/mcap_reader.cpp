@@ -107,7 +107,8 @@ bool McapReader::Records(std::string_view bytes, const std::function<bool(const 
       message.channel = static_cast<std::uint16_t>(of.Int(2));
       of.Int(4);  // sequence
       message.log_time_ns = of.Int(8);
-      of.Int(8);  // time of publication
+      const std::uint64_t published_ns = of.Int(8);
+      if (message.log_time_ns == 0) message.log_time_ns = published_ns;
       message.data = of.rest();
       if (!of.good || !channels_.contains(message.channel)) {
         return Damaged("a message belongs to no channel");

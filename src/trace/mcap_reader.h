@@ -17,7 +17,7 @@ namespace taut::trace {
 /// Message of a channel. Views are valid during the call.
 struct McapMessage {
   std::uint16_t channel = 0;
-  std::uint64_t log_time_ns = 0;
+  std::uint64_t log_time_ns = 0;  ///< If the file has none: time of publication.
   std::string_view data;
 };
 

@@ -33,7 +33,8 @@ class Columns {
     return ++values_ <= kMostMcapValues && columns_.size() <= kMostMcapChannels;
   }
 
-  /// Numbers of a time without a value are NaN; of two values the last one counts.
+  /// Of two values of a time the last one counts; values before the first and after the last
+  /// message of a topic, and in its gaps, are NaN.
   Trace Take() {
     std::map<std::uint64_t, std::size_t> rows;
     for (const Column& column : columns_) {
@@ -51,7 +52,7 @@ class Columns {
       trace.channels.push_back({column.name, UnitOfName(column.name)});
       auto& values =
           trace.values.emplace_back(rows.size(), std::numeric_limits<double>::quiet_NaN());
-      for (const auto& [time_ns, value] : column.points) values[rows.at(time_ns)] = value;
+      Spread(column, trace.time_s, rows, values);
       column.points = {};
     }
     return trace;
@@ -62,6 +63,38 @@ class Columns {
     std::string name;
     std::vector<std::pair<std::uint64_t, double>> points;
   };
+  /// Sets the values at the times of the column's messages, and interpolates between neighboring
+  /// messages, because each topic has its own times. Distances of more than `kGap` times the median
+  /// are gaps.
+  static void Spread(const Column& column, const std::vector<double>& time_s,
+                     const std::map<std::uint64_t, std::size_t>& rows,
+                     std::vector<double>& values) {
+    constexpr double kGap = 5;
+    std::vector<std::size_t> known;
+    for (const auto& [time_ns, value] : column.points) {
+      const std::size_t row = rows.at(time_ns);
+      values[row] = value;
+      known.push_back(row);
+    }
+    std::sort(known.begin(), known.end());
+    std::vector<double> steps_s;
+    for (std::size_t i = 1; i < known.size(); ++i) {
+      steps_s.push_back(time_s[known[i]] - time_s[known[i - 1]]);
+    }
+    if (steps_s.empty()) return;
+    std::vector<double> sorted = steps_s;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    for (std::size_t i = 1; i < known.size(); ++i) {
+      if (steps_s[i - 1] > kGap * *middle) continue;
+      const double from = values[known[i - 1]], to = values[known[i]];
+      for (std::size_t row = known[i - 1] + 1; row < known[i]; ++row) {
+        const double share = (time_s[row] - time_s[known[i - 1]]) / steps_s[i - 1];
+        values[row] = from + share * (to - from);
+      }
+    }
+  }
+
   std::vector<Column> columns_;
   std::unordered_map<std::string, std::size_t> places_;
   std::size_t values_ = 0;
@@ -75,6 +108,13 @@ void JsonNumbers(const nlohmann::json& json, const std::string& path, int depth,
     for (const auto& [key, value] : json.items()) {
       JsonNumbers(value, path + "/" + key, depth + 1, number);
     }
+  } else if (json.is_array()) {
+    constexpr std::size_t kMostJsonElements = 64;
+    for (std::size_t i = 0; i < std::min(json.size(), kMostJsonElements); ++i) {
+      JsonNumbers(json[i], path + "/" + std::to_string(i), depth + 1, number);
+    }
+  } else if (json.is_boolean()) {
+    number(path, json.get<bool>() ? 1 : 0);
   } else if (json.is_number()) {
     number(path, json.get<double>());
   } else if (json.is_null()) {  // taut writes NaN so
@@ -107,6 +147,7 @@ std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out) {
     if (channel.encoding == "json") {
       if (IsDrawing(channel)) return true;
       const auto json = nlohmann::json::parse(message.data, nullptr, false);
+      if (json.is_discarded()) unread.insert(channel.topic + " (a message is not JSON)");
       const std::string top = head == "values" ? "" : "/" + head;
       JsonNumbers(json, top, 0,
                   [&](const std::string& name, double value) { add(name.substr(1), value); });

@@ -17,7 +17,8 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out);
 std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out);
 
 /// Reads a trace from MCAP: a channel `topic/field` per number of a message, with rows at the times
-/// of all messages; NaN where a topic has no message. Clocks since 1970 begin at 0 s.
+/// of all messages. Between the messages of a topic, its values are interpolated linearly, except
+/// in gaps. Clocks since 1970 begin at 0 s.
 std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out);
 
 }  // namespace taut::trace

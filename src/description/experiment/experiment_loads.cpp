@@ -184,7 +184,7 @@ std::vector<LoadCaseSpec> ToLoadCases(const std::vector<LoadCaseText>& texts,
     IsNewCase(text.name, names, scope);
     if (robot) cases.push_back(CaseReader(*robot, scope).Run(text));
   }
-  if (robot) AddCombinations(combinations, names, scope, cases);
+  if (robot) AddCombinations(combinations, *robot, names, scope, cases);
   return cases;
 }
 

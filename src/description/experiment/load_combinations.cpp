@@ -76,8 +76,8 @@ class LineLoad {
   void Span(const Point& from, const Point& to, const std::string& member) {
     const double half_m = 0.5 * Length(from.at_m - to.at_m);
     for (const Point& end : {from, to}) {
-      if (end.body == kWorld) continue;
       const auto node = NodeAt(robot_.def, end);
+      if (!node && end.body == kWorld) continue;
       if (!node) {
         scope_.out.Error("load_case.end_without_node", load_.members.value->at,
                          "line_loads.members: \"" + member + "\" has no node at its end",
@@ -128,6 +128,25 @@ void AddCase(const LoadCaseSpec& one, double factor, LoadCaseSpec& sum) {
   AddLengthenings(one.bars, factor, sum.bars);
 }
 
+/// Reports members without a positive rest length under a combination.
+void CheckRestLengths(const LoadCaseSpec& sum, const RobotSpec& robot, const SourceRef& at,
+                      const Scope& scope) {
+  const auto check = [&](const std::string& member, double rest_m, double by_m) {
+    if (rest_m + by_m > 0) return;
+    scope.out.Error("load_case.no_rest_length", at,
+                    "the load case \"" + sum.name + "\" leaves no positive rest length of \"" +
+                        member + "\", which has " + Shown(rest_m) + " m without it");
+  };
+  for (const auto& longer : sum.cables) {
+    const CableDef& cable = robot.def.cables[static_cast<std::size_t>(longer.index)];
+    check(cable.name, cable.rest_length_m, longer.by_m);
+  }
+  for (const auto& longer : sum.bars) {
+    const JointDef& bar = robot.def.joints[static_cast<std::size_t>(longer.index)];
+    check(bar.name, bar.rest, longer.by_m);
+  }
+}
+
 }  // namespace
 
 void AddLineLoad(const LineLoadText& load, const RobotSpec& robot, const Scope& scope,
@@ -143,7 +162,7 @@ bool IsNewCase(const Placed& name, std::map<std::string, SourceRef>& names, cons
   return false;
 }
 
-void AddCombinations(const std::vector<LoadCombinationText>& combinations,
+void AddCombinations(const std::vector<LoadCombinationText>& combinations, const RobotSpec& robot,
                      std::map<std::string, SourceRef>& names, const Scope& scope,
                      std::vector<LoadCaseSpec>& cases) {
   std::vector<std::string> known;
@@ -166,6 +185,8 @@ void AddCombinations(const std::vector<LoadCombinationText>& combinations,
       AddCase(cases[static_cast<std::size_t>(found - known.begin())], factor.value, sum);
     }
     sum.weight = sum.weight_factor != 0.0;
+    if (!sum.weight) sum.weight_factor = 1.0;
+    CheckRestLengths(sum, robot, text.name.at, scope);
     cases.push_back(std::move(sum));
   }
 }

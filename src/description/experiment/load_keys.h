@@ -80,6 +80,14 @@ void Keys(Io& io, Like<TemperatureText> auto& t) {
   io("by_k", t.by_k, kNeeded, Bound::kAny, "Change of temperature [K]; negative cools.");
 }
 
+/// A factor on a weight that does not act is a mistake.
+inline void Check(const MapReader& map, LoadCaseText& c) {
+  if (c.weight || !map.Has("weight_factor")) return;
+  map.Error("load_case.factor_without_weight", "weight_factor",
+            "load_case.weight_factor has no effect with `weight: false`",
+            "remove one of the two keys");
+}
+
 template <class Io, Either<LoadCaseSpec, LoadCaseText> LoadCase>
 void Keys(Io& io, LoadCase& c) {
   io.Map("load_case", "load_case",

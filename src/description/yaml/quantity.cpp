@@ -35,6 +35,25 @@ std::string_view Before(std::string_view text, std::string_view unit) {
   return text;
 }
 
+/// Returns whether a text is a sum or difference outside of parentheses, to which a unit at its end
+/// would apply as a whole: "1 + 300 mm".
+bool IsSum(std::string_view text) {
+  int depth = 0;
+  char before = 0;  // last character that is not a blank
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '(') ++depth;
+    if (c == ')') --depth;
+    const bool binary = before != 0 && before != '*' && before != '/' && before != '^' &&
+                        before != '(' && before != ',' && before != '+' && before != '-';
+    const bool exponent = i > 1 && (text[i - 1] == 'e' || text[i - 1] == 'E') &&
+                          (text[i - 2] == '.' || (text[i - 2] >= '0' && text[i - 2] <= '9'));
+    if (depth == 0 && (c == '+' || c == '-') && binary && !exponent) return true;
+    if (c != ' ') before = c;
+  }
+  return false;
+}
+
 std::string UnitsOf(std::string_view si) {
   std::string list;
   for (const std::string& name : base::UnitNames()) {
@@ -66,11 +85,15 @@ Evaluated EvaluateQuantity(std::string_view text, const NameTable& names, std::s
     found = base::FindUnit(name);
   }
   if (!found) return plain;
+  const std::string shown = "\"" + std::string(text) + "\"";
+  if (IsSum(Before(text, found->name))) {
+    return {kNoQuantity, "the unit in " + shown + " follows a sum",
+            "put the sum in parentheses, or write all numbers in SI units"};
+  }
   if (found->si == of_key) {
     number.value = Converted(number.value, found->factor);
     return number;
   }
-  const std::string shown = "\"" + std::string(text) + "\"";
   if (of_key.empty()) {
     return {kNoQuantity, shown + " has a unit, but this quantity has none", "leave out the unit"};
   }

@@ -97,13 +97,14 @@ TEST_F(LoadCases, LineLoadsActAtTheEndsOfMembers) {
     EXPECT_EQ(snow.GravityFactor(), 1.35);
     EXPECT_EQ(snow.max_displacement_m, 0.02);
     // a and b: half of the deck of 2 m and of a leg of sqrt(2) m; c: half of two legs, and half of
-    // two ropes of 2 m, whose other halves the anchor carries
+    // two ropes of 2 m, whose other halves act on the hook, in the world
     const double leg = 25 * std::sqrt(2.0);
-    ASSERT_EQ(snow.forces.size(), 3u);
+    ASSERT_EQ(snow.forces.size(), 4u);
     for (const LoadCaseSpec::NodeForce& force : snow.forces) {
       const std::string& name = e.robot.def.nodes[static_cast<std::size_t>(force.node)].name;
-      EXPECT_NEAR(force.force_n.z, name == "c" ? -2 * leg : -50 - leg, 1e-12) << name;
-      EXPECT_NEAR(force.force_n.x, name == "c" ? 6 : 0, 1e-12) << name;
+      const double z_n = name == "hook" ? 0 : name == "c" ? -2 * leg : -50 - leg;
+      EXPECT_NEAR(force.force_n.z, z_n, 1e-12) << name;
+      EXPECT_NEAR(force.force_n.x, name == "c" || name == "hook" ? 6 : 0, 1e-12) << name;
     }
   }
 }
@@ -143,6 +144,16 @@ TEST_F(LoadCases, CombinationsAreSumsWithFactors) {
 }
 
 TEST_F(LoadCases, MistakesInSumsAndLineLoadsAreNamed) {
+  EXPECT_EQ(After("load_cases:\n",
+                  "load_combinations: [{name: much, factors: {winter: 1500}}]\nload_cases:\n"),
+            "6:28: error: the load case \"much\" leaves no positive rest length of \"b-c\", which "
+            "has 1.4142135623730951 m without it\n"
+            "6:28: error: the load case \"much\" leaves no positive rest length of \"c-a\", which "
+            "has 1.4142135623730951 m without it\n");
+  EXPECT_EQ(
+      After("weight: false", "weight: false\n    weight_factor: 2"),
+      "12:5: error: load_case.weight_factor has no effect with `weight: false` (remove one of "
+      "the two keys)\n");
   EXPECT_EQ(After("load_cases:\n",
                   "load_combinations: [{name: snow, factors: {snow: 1, wintr: 1.5}}]\n"
                   "load_cases:\n"),

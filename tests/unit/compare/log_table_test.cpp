@@ -139,7 +139,7 @@ TEST_F(LogTable, FormsOfClocks) {
   EXPECT_EQ(ParseClock("14:03:20.5", kTimeOfDay), 50600.5);
   EXPECT_EQ(ParseClock("9:03:20", kTimeOfDay), 32600.0);
   for (const char* wrong :
-       {"", "14:3:20", "25:00:00", "14:60:00", "14:03:61", "14:03:20.", "14:03:20x"}) {
+       {"", "14:03", "14:3:20", "25:00:00", "14:60:00", "14:03:61", "14:03:20.", "14:03:20x"}) {
     EXPECT_EQ(ParseClock(wrong, kTimeOfDay), std::nullopt) << wrong;
   }
 }

@@ -15,7 +15,7 @@ double Value(const char* text, const char* path) {
 }
 
 std::string Error(const char* text, const char* path) {
-  const Evaluated result = EvaluateQuantity(text, {}, path);
+  const Evaluated result = EvaluateQuantity(text, {{"edge", 1.0}}, path);
   return result.error + (result.hint.empty() ? "" : " (" + result.hint + ")");
 }
 
@@ -38,6 +38,8 @@ TEST(Quantity, FollowsAnExpression) {
   EXPECT_EQ(Value("2 * edge mm", "radius_m"), 0.006);
   EXPECT_EQ(Value("1e-1 m", "radius_m"), 0.1);
   EXPECT_EQ(Value("-75 mm", "x_m"), -0.075);
+  EXPECT_EQ(Value("1e-3 * 5 mm", "x_m"), 5e-6);
+  EXPECT_EQ(Value("2 * -3 mm", "x_m"), -0.006);
 }
 
 TEST(Quantity, LeavesExpressionsAsTheyWere) {
@@ -50,8 +52,14 @@ TEST(Quantity, RefusesUnitsOfOtherQuantities) {
             "\"4 N\" is in N, but this quantity is in m (its units: m, cm, mm, um, in, ft)");
   EXPECT_EQ(Error("4 mm", "rod.friction"),
             "\"4 mm\" has a unit, but this quantity has none (leave out the unit)");
+  for (const char* sum : {"1 + 300 mm", "1 - 20 mm", "-1 + 2 mm", "pi / 6 - 30 mm", "pi*edge-20mm"}) {
+    EXPECT_EQ(Error(sum, "rod.radius_m"),
+              "the unit in \"" + std::string(sum) +
+                  "\" follows a sum (put the sum in parentheses, or write all numbers in SI "
+                  "units)");
+  }
   EXPECT_EQ(Error("4 parsec", "rod.radius_m"), "unexpected \"p\" in \"4 parsec\"");
-  EXPECT_EQ(Error("mm", "rod.radius_m"), "unknown name \"mm\" (no parameters are defined)");
+  EXPECT_EQ(Error("mm", "rod.radius_m"), "unknown name \"mm\" (one of: edge)");
 }
 
 }  // namespace

@@ -34,7 +34,9 @@ TEST_F(McapTrace, MessagesOfRos2BecomeChannels) {
   EXPECT_EQ(value("rig/cell/data", 4), 1.0);    // float32
   EXPECT_EQ(value("rig/cell/count", 4), -2.0);  // int16
   EXPECT_EQ(value("rig/cell/ok", 4), 1.0);
-  EXPECT_TRUE(std::isnan(value("rig/cell/data", 2)));
+  EXPECT_EQ(value("rig/cell/data", 2), 0.5);  // between 0 and 1, whose messages are in rows 0 and 4
+  EXPECT_TRUE(std::isnan(value("tf/transforms/strut/transform/translation/z", 0)));
+  EXPECT_NEAR(value("cables/states/effort/a1-c1", 3), 9.3 + 0.05 / 20, 1e-12);
   EXPECT_EQ(trace->channels.size(), 2u + 7u + 3u);
 }
 
