@@ -200,17 +200,25 @@ void ReadPreamble(const Lines& lines, std::size_t first_row, LogForm& form) {
   }
 }
 
-/// Renames columns so that each name is unique and without the characters that mappings refuse or
-/// use as patterns.
+/// Replaces characters that mappings refuse or use as patterns, and ends of lines.
+void MakePlain(LogForm& form) {
+  bool changed = false;
+  for (std::string& name : form.names) {
+    for (char& c : name) {
+      if (c != '*' && c != '{' && c != '\r' && c != '\n' && c != '\t' && !base::IsControl(c))
+        continue;
+      c = '_';
+      changed = true;
+    }
+  }
+  if (changed) form.layout.columns = form.names;
+}
+
+/// Renames columns so that each name is unique.
 void MakeUnique(LogForm& form) {
   std::unordered_map<std::string, int> seen;
   bool changed = false;
   for (std::string& name : form.names) {
-    for (char& c : name) {
-      if (c != '*' && c != '{' && !base::IsControl(c)) continue;
-      c = '_';
-      changed = true;
-    }
     if (name.empty()) continue;
     int& times = seen[name];
     while (++times > 1) {
@@ -272,6 +280,12 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
   }
   const auto lines = Sample(path, form.layout.encoding, out);
   if (!lines) return std::nullopt;
+  const auto without_rows = [&]() -> std::optional<LogForm> {
+    out.Error("log.no_rows", {path}, "the file has no rows of numbers",
+              "expected a text table, such as CSV");
+    return std::nullopt;
+  };
+  if (lines->empty()) return without_rows();
   const Marks marks = GuessMarks(*lines);
   form.layout.separator = marks.separator;
   form.layout.decimal = marks.decimal;
@@ -290,11 +304,7 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
       break;
     }
   }
-  if (first == table.size()) {
-    out.Error("log.no_rows", {path}, "the file has no rows of numbers",
-              "expected a text table, such as CSV");
-    return std::nullopt;
-  }
+  if (first == table.size()) return without_rows();
   std::size_t header = first;
   const std::size_t most = is_motive ? 10u : kUsualHeaderLines;
   while (header > 0 && first - header < most &&
@@ -326,6 +336,7 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
   for (std::size_t i = header; i < first; ++i) {
     trace::JoinHeader(table[i], form.layout.merged_header && i + 1 < first, form.names);
   }
+  MakePlain(form);
   const std::size_t width = std::max(usual, form.names.size());
   if (header == first) form.names = form.layout.columns = Numbered(width);
   for (std::size_t i = first; i < table.size(); ++i) {
