@@ -50,7 +50,7 @@ def call(taut, words, folder):
     pages = folder / "pages"
     pages.mkdir(exist_ok=True)
     for page in ("index.html", "report.html"):
-        (pages / page).write_text("<p>the page</p>")
+        (pages / page).write_text("<script type=\"application/json\" id=\"taut-report\"></script>")
     done = subprocess.run([taut, *words], cwd=folder, capture_output=True, text=True, check=False, timeout=120,
                           env={**os.environ, "TAUT_WEB": str(pages)})
     return done.returncode, done.stdout + done.stderr
@@ -93,7 +93,7 @@ def AFolderWithSeveralFilesIsAnError(taut, folder):
     shutil.copytree(ROOT / "share/robots/six_bar", folder / "sam")
     status, said = call(taut, ["run", "sam"], folder)
     assert status == 2, said
-    assert ("sam: the folder contains several files of the kind experiment: drop.yaml, roll.yaml "
+    assert ("sam: the folder contains several files of the kind experiment: drop.yaml, push.yaml, roll.yaml "
             "(name one of them, such as sam/drop.yaml)") in said, said
     status, said = call(taut, ["learn", "--parameters", "sam"], folder)
     assert status == 2 and "several files of the kind experiment" in said, said

@@ -45,7 +45,7 @@ class Client:
 
     def await_message(self, wanted):
         """Returns the next text message that fulfills `wanted`."""
-        end_s = time.monotonic() + PATIENCE_S
+        end_s, opcode, parts = time.monotonic() + PATIENCE_S, 0, b""
         while time.monotonic() < end_s:
             kind, length = self.take(2)
             if length == 126:
@@ -53,8 +53,12 @@ class Client:
             elif length == 127:
                 length, = struct.unpack(">Q", self.take(8))
             data = self.take(length)
-            if kind & 15 == 1:
-                message = json.loads(data)
+            if kind & 15 == 0:  # a further part of a text or of a frame
+                parts += data
+            elif kind & 15 in (1, 2):
+                opcode, parts = kind & 15, data
+            if kind & 128 and opcode == 1:
+                message, opcode = json.loads(parts), 0
                 if wanted(message):
                     return message
         raise AssertionError("the message did not come")
@@ -98,7 +102,7 @@ def stiffness_n_per_m(scene):
 def a_changed_model_is_shown(robot, web):
     with Viewed(robot, web) as client:  # the folder stands for its model
         assert stiffness_n_per_m(client.await_scene(lambda s: True)) == 1000
-        replace(robot / "model.yaml", "stiffness_n_per_m: 1.0 *", "stiffness_n_per_m: 2.0 *")
+        replace(robot / "model.yaml", "stiffness_n_per_m: 1.0 N", "stiffness_n_per_m: 2.0 N")
         scene = client.await_scene(lambda s: stiffness_n_per_m(s) == 2000)
         assert "notice" not in scene
 
@@ -106,9 +110,9 @@ def a_changed_model_is_shown(robot, web):
 def a_dropped_model_is_dropped_again(robot, web):
     with Viewed(robot, web) as client:
         client.await_scene(lambda s: True)
-        client.send({"type": "start", "mode": "dropped"})
+        client.send({"type": "start", "as": "dropped"})
         client.await_scene(lambda s: s["terrain"])
-        replace(robot / "model.yaml", "stiffness_n_per_m: 1.0 *", "stiffness_n_per_m: 3.0 *")
+        replace(robot / "model.yaml", "stiffness_n_per_m: 1.0 N", "stiffness_n_per_m: 3.0 N")
         scene = client.await_scene(lambda s: stiffness_n_per_m(s) == 3000)
         assert scene["terrain"], "the changed model is without ground"
 
@@ -136,7 +140,7 @@ def another_kind_of_file_is_an_error(robot, web):
 def an_experiment_restarts_with_its_changed_model(robot, web):
     with Viewed(robot / "drop.yaml", web) as client:
         client.await_scene(lambda s: True)
-        replace(robot / "model.yaml", "stiffness_n_per_m: 1.0 *", "stiffness_n_per_m: 4.0 *")
+        replace(robot / "model.yaml", "stiffness_n_per_m: 1.0 N", "stiffness_n_per_m: 4.0 N")
         client.await_message(lambda m: m["type"] == "event" and m["text"] == "restarted with the changed files")
         client.await_scene(lambda s: stiffness_n_per_m(s) == 4000)
         (robot / "model.yaml").unlink()
