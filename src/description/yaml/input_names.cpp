@@ -28,6 +28,14 @@ constexpr KindOfInput kKinds[] = {
 };
 constexpr const char* kTrace = "trace";
 
+/// Returns the extension of files of a kind; nothing for "trace".
+std::optional<std::string> ExtensionOf(const std::string& kind) {
+  for (const KindOfInput& one : kKinds) {
+    if (kind == one.kind) return one.extension;
+  }
+  return std::nullopt;
+}
+
 bool IsFile(const fs::path& path) {
   std::error_code failed;
   return fs::is_regular_file(path, failed);
@@ -76,7 +84,8 @@ std::string FileOfFolder(const std::string& given, const std::vector<std::string
   std::optional<std::vector<std::pair<fs::path, std::string>>> files;
   for (const std::string& kind : kinds) {
     // A file that is named after its kind is taken even if it has errors, which are then reported.
-    if (const fs::path named = folder / (kind + ".yaml"); IsFile(named)) return named.string();
+    const fs::path named = folder / (kind + ExtensionOf(kind).value_or(""));
+    if (named.has_extension() && IsFile(named)) return named.string();
     if (!files) files = YamlFiles(folder);
     std::vector<fs::path> found;
     for (const auto& [path, of_file] : *files) {
