@@ -46,7 +46,7 @@ int NewMapping(const NewMappingArguments& args) {
   std::error_code failed;
   if (std::filesystem::exists(std::filesystem::symlink_status(out, failed))) {
     fmt::print(stderr, "{}: error: the file exists already, and is not overwritten\n", out);
-    return kFailed;
+    return kBadInput;
   }
   if (const int exit = WriteNamed(out, guess->text); exit != kOk) return exit;
   OutputIsNews();
