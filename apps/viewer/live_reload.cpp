@@ -31,8 +31,9 @@ void LiveSession::ReloadChangedFiles(Clock::time_point now) {
       SayEvent(0, "warning: " + warning.what);
     }
   } else if (!stopping()) {
-    files_notice_ = found.Format() + "The robot is shown as before the change.";
-    options_.tell(found.Format());
+    const std::string errors = found.Format();
+    files_notice_ = errors + "The robot is shown as before the change.";
+    options_.tell(errors.substr(0, errors.find_last_not_of('\n') + 1));
     // A change that mends the error may be in a file that the present run does not use.
     for (const Diagnostic& error : found.items()) files.push_back(error.at.file);
   }
