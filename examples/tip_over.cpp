@@ -1,5 +1,5 @@
-// Example of a batch: the force on a corner of the floating table (docs/tutorial_structures.md) at which it
-// tips over.
+// Example of a batch: the force on a corner of the floating table (docs/tutorial_structures.md) at
+// which it tips over.
 //
 //   tip_over docs/tutorial_structures/table.yaml
 //
