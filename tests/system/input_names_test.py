@@ -42,6 +42,7 @@ READING_TRACES = [
     ["report", "TRACE"],
     ["report", "TRACE", "--compare", "TRACE"],
     ["run", "sam/drop.yaml", "--replay", "TRACE", "--out", "replayed"],
+    ["size", "TRACE"],
     ["trace", "convert", "TRACE", "--out", "trace.csv"],
 ]
 
