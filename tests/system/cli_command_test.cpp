@@ -254,7 +254,8 @@ TEST_F(CliCommand, AMisspeltWordIsAnsweredByTheRightOne) {
 
 TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
   EXPECT_EQ(Refusal({"check"}),
-            "error: FILE is missing (Model, experiment or gait file (YAML)); usage: taut check "
+            "error: FILE is missing (Model, experiment, gait, study or fit file (YAML)); usage: "
+            "taut check "
             "[FLAGS] FILE");
   EXPECT_EQ(
       Refusal({"compare", "a.h5"}),
@@ -331,7 +332,7 @@ TEST_F(CliCommand, NewOverwritesNothing) {
   EXPECT_EQ(again.errors, "mine.yaml: error: the file exists already, and is not overwritten\n");
   EXPECT_EQ(Read(Path("mine.yaml")), "what I wrote");
   EXPECT_EQ(Refusal({"new", "model", "a/b"}),
-            "error: name: \"a/b\" is not a valid name (expected letters, digits, _ or -)");
+            "error: NAME: \"a/b\" is not a valid name (expected letters, digits, _ or -)");
   EXPECT_EQ(Refusal({"new", "modle", "a"}),
             "error: kind: \"modle\" is unknown (did you mean \"model\"?)");
 }
