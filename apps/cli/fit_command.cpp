@@ -1,6 +1,8 @@
 // Command `taut fit`: system identification.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -30,10 +32,24 @@ struct FitArguments {
   bool check = false, resume = false, design = false, tables = false, quiet = false, strict = false;
 };
 
-void Show(ProgressLine& line, const IdentifyProgress& p) {
+/// Shows the state of a fit: values with units, and a bound of the time left while it searches,
+/// since a search usually ends long before its largest number of iterations.
+void Show(ProgressLine& line, const IdentifyProgress& p, const FitProblem& problem,
+          double elapsed_s) {
   if (!line.Due()) return;
-  line.Show(fmt::format("{}: {} iterations  chi2 {:.6g}  {} experiments computed", p.what,
-                        p.iterations, p.chi2, p.computed));
+  std::string text = fmt::format("{}: {} iterations  chi2 {:.4g}", p.what, p.iterations, p.chi2);
+  constexpr std::size_t kMost = 4;
+  for (std::size_t i = 0; i < std::min({p.values.size(), problem.parameters.size(), kMost}); ++i) {
+    const FitParameter& parameter = problem.parameters[i];
+    text += fmt::format("  {} = {:.4g}{}{}", parameter.name, p.values[i],
+                        parameter.unit.empty() ? "" : " ", parameter.unit);
+  }
+  text += fmt::format("  {} experiments computed", p.computed);
+  if (p.most_iterations > p.iterations && p.iterations > 0) {
+    const double left_s = elapsed_s / p.iterations * (p.most_iterations - p.iterations);
+    text += fmt::format("  at most {:.0f} s left", left_s);
+  }
+  line.Show(text);
 }
 
 /// Prints the result of `--check` for a fit without errors.
@@ -139,12 +155,16 @@ int Search(const FitArguments& args, const Identification& fit, const std::strin
     fmt::print(stderr, "warning: {}: {} damaged records are computed again\n", MemoryIn(folder),
                fit.counts().damaged);
   }
-  ProgressLine line(args.quiet, false);
+  ProgressLine line(args.quiet, true);
   OutcomeOptions how;
   how.profiles = args.profiles;
   how.design = args.design;
   how.stop = &interrupt_asked;
-  how.progress = [&](const IdentifyProgress& p) { Show(line, p); };
+  const auto begin = std::chrono::steady_clock::now();
+  how.progress = [&](const IdentifyProgress& p) {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    Show(line, p, fit.train(), elapsed.count());
+  };
   const FitOutcome outcome = RunFit(fit, how);
   line.Clear();
   if (!fit.memory_error().empty()) {

@@ -121,6 +121,8 @@ struct IdentifyProgress {
   int iterations = 0;     ///< Sum over all searches in progress.
   double chi2 = 0;        ///< Lowest chi-square so far: twice the cost.
   std::int64_t computed = 0;
+  int most_iterations = 0;     ///< Limit of `iterations` for this part; 0: unknown.
+  std::vector<double> values;  ///< Best values so far, in the order of the parameters.
 };
 
 struct OutcomeOptions {

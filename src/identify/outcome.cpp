@@ -92,7 +92,8 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
   const FitSpec& spec = fit.spec();
   const FitProblem& problem = fit.train();
   FitOutcome out;
-  IdentifyProgress now{"searching", 0, 0, 0};
+  IdentifyProgress now;
+  now.what = "searching";
   FitOptions search;
   search.starts = spec.search.starts;
   search.seed = spec.search.seed;
@@ -104,13 +105,16 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
     double best = INFINITY;
     for (const FitTrack& track : state.tracks) {
       now.iterations += track.iterations;
-      best = std::min(best, track.cost);
+      if (!(track.cost < best)) continue;
+      best = track.cost;
+      now.values = track.values;
     }
     now.chi2 = 2 * best;
     now.computed = fit.counts().computed;
     if (options.progress) options.progress(now);
     return !options.stop || !*options.stop;
   };
+  now.most_iterations = search.starts * search.most_iterations;
   const auto stopped = [&] { return options.stop && *options.stop; };
   out.fit = Fit(problem, search);
   if (stopped() || out.fit.end == FitEnd::kInterrupted) {
@@ -122,6 +126,7 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
     return out;
   }
   now.what = "judging";
+  now.most_iterations = 0;
   VerdictOptions judge;
   judge.fit = search;
   judge.jackknife = AtRest(spec) ? Jackknife::kRefit : Jackknife::kStep;
