@@ -353,6 +353,7 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
   }
   ReadPreamble(*lines, first, form);
   form.units.resize(form.names.size());
+  MakePlain(form);  // names from the lines above the header
   MakeUnique(form);
   return form;
 }
