@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -23,8 +22,8 @@ bool AllFinite(const double* row, std::size_t count) {
   constexpr std::uint64_t kExponent = 0x7ff0'0000'0000'0000;
   std::uint64_t bad = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    bad |=
-        static_cast<std::uint64_t>((std::bit_cast<std::uint64_t>(row[i]) & kExponent) == kExponent);
+    const auto bits = __builtin_bit_cast(std::uint64_t, row[i]);
+    bad |= static_cast<std::uint64_t>((bits & kExponent) == kExponent);
   }
   return bad == 0;
 }

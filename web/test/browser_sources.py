@@ -7,6 +7,7 @@ integration does not compile them for WebAssembly, so a moved function would go 
 Sources that only the browser's build has are compiled for this machine; all other objects exist."""
 import json
 import os
+import pathlib
 import re
 import shlex
 import subprocess
@@ -14,6 +15,8 @@ import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ABSENT = {"std::bit_cast": "__builtin_bit_cast"}
+LIBRARY = re.compile(r"^#include <(fmt|nlohmann)/", re.MULTILINE)
 OURS = re.compile(r"_ZT?[A-Z]*(NK?|K)?4taut")
 
 
@@ -49,6 +52,21 @@ def browser_commands(of_all, folder):
             and not path.startswith(os.path.join(ROOT, "benchmarks"))}
 
 
+def check_text(wanted, folder):
+    """Exits with an error if emscripten cannot compile a source that the compiler of this machine accepts: a library's
+    header in a layer that does not link the library (emscripten does not search /usr/include), or a function that the
+    libc++ of emscripten 3.1.6 lacks."""
+    wrong = []
+    for path, entry in wanted.items():
+        text = pathlib.Path(path).read_text(encoding="utf-8")
+        linked = os.path.join(folder, "build", "headers") in entry["command"]
+        if not linked and (found := LIBRARY.search(text)):
+            wrong.append(f"{os.path.relpath(path, ROOT)}: includes {found[1]}, which the layer's CMakeLists.txt does not link")
+        wrong += [f"{os.path.relpath(path, ROOT)}: {name} (use {instead})" for name, instead in ABSENT.items() if name in text]
+    if wrong:
+        sys.exit("\n".join(wrong))
+
+
 def object_in(entry):
     """Returns the object file of an entry of compile_commands.json."""
     words = shlex.split(entry["command"])
@@ -72,6 +90,7 @@ def objects_made(here, wanted):
 def objects_of(build, folder):
     """Returns an object for each source path relative to the top folder."""
     wanted, objects = browser_commands(build, folder), {}
+    check_text(wanted, folder)
     made = objects_made(commands_of(build), set(wanted))
     for number, (path, entry) in enumerate(sorted(wanted.items())):
         if path not in made:
