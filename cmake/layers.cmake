@@ -21,7 +21,9 @@ target_compile_options(taut_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow
 # by one. Editors and clang-tidy need a build file by file: preset "tidy".
 option(TAUT_UNITY_BUILD "Compile several files at a time" ON)
 function(taut_outside_step target level)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
+  if(NOT TAUT_BROWSER)  # there the level is small size, -Oz, for all (cmake/browser.cmake)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
+  endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${TAUT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 

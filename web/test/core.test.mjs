@@ -149,7 +149,7 @@ test("WhatABrowserHasNotIsRefusedWithAWayOut", options, () => {
     const text = shipped[path].replace(/height_field:\n( {6}.*\n)+/, `height_field: {${from}, cell_m: 0.1}\n`);
     const { good, found } = core.check(path, { [path]: text, "experiments/hills.png": "x", "experiments/hills.h5": "x" });
     assert.equal(good, false);
-    assert.ok(found.some((each) => what.test(each.what) && /the command taut reads/.test(each.hint)), JSON.stringify(found));
+    assert.ok(found.some((each) => what.test(each.what) && /the command-line program taut/.test(each.hint)), JSON.stringify(found));
   }
 });
 
