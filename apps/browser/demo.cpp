@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/viewer/live_inputs.h"
+#include "findings.h"
 
 namespace taut::browser {
 namespace {
@@ -17,25 +18,13 @@ using viewer::Session;
 /// Client number of the only page, which is also the driver of the run.
 constexpr int kClient = 1;
 
-void Add(const std::vector<Diagnostic>& diagnostics, bool error, Json& found) {
-  for (const Diagnostic& each : Sorted(diagnostics)) {
-    found.push_back({{"file", each.at.file},
-                     {"line", each.at.line},
-                     {"column", each.at.column},
-                     {"error", error},
-                     {"what", each.what},
-                     {"hint", each.hint}});
-  }
-}
-
 std::string Answer(const std::optional<viewer::LiveInputs>& inputs, bool good,
                    const Diagnostics& out) {
-  Json found = Json::array(), files = Json::array();
-  Add(out.items(), true, found);
-  Add(out.warnings(), false, found);
+  Json files = Json::array();
   if (inputs) files = inputs->experiment.files;
   const char* kind = !inputs ? "" : inputs->model ? "model" : "experiment";
-  return viewer::Dump({{"good", good}, {"kind", kind}, {"files", files}, {"found", found}});
+  return viewer::Dump(
+      {{"good", good}, {"kind", kind}, {"files", files}, {"found", FindingsOf(out)}});
 }
 
 Json ToJson(const viewer::StateMark& mark) {

@@ -31,7 +31,7 @@ def WhatGitHubReadsCanBeRead():
     assert job["strategy"]["matrix"]["part"] == nightly, nightly
     jobs = {name: read[f".github/workflows/{name}.yml"]["jobs"]["debian12"] for name in ("release", "measurements")}
     made = {each["part"]: each for each in jobs["release"]["strategy"]["matrix"]["include"]}
-    assert made.keys() == {"portable", "packages", "website"}, made.keys()
+    assert made.keys() == {"portable", "browser", "packages", "website"}, made.keys()
     groups = set(re.search(r"case \$group in\n +([a-z| ]+)\)", (ROOT / "script/setup").read_text())[1].split(" | "))
     for each in made.values():
         assert set(each["setup"].split()) <= groups, each

@@ -17,10 +17,13 @@ export const shipped = Object.fromEntries(["models", "experiments", "gaits"].fla
     .map((name) => [`${folder}/${name}`, readFileSync(join(ROOT, "share", folder, name), "utf8")])));
 
 export async function loadCore() {
-  const source = fileURLToPath(new URL("../src/demo/core.ts", import.meta.url));
-  const compiled = join(mkdtempSync(join(tmpdir(), "taut-core-")), "core.mjs");
-  writeFileSync(compiled, (await transformWithEsbuild(readFileSync(source, "utf8"), source)).code);
-  const { Core } = await import(pathToFileURL(compiled));
+  const folder = mkdtempSync(join(tmpdir(), "taut-core-"));
+  writeFileSync(join(folder, "package.json"), '{"type": "module"}');
+  for (const name of ["module", "core"]) {
+    const source = join(ROOT, `web/src/demo/${name}.ts`);
+    writeFileSync(join(folder, `${name}.js`), (await transformWithEsbuild(readFileSync(source, "utf8"), source)).code);
+  }
+  const { Core } = await import(pathToFileURL(join(folder, "core.js")));
   const core = await Core.load(pathToFileURL(join(CORE, "taut_core.mjs")).href, { wasmBinary: readFileSync(join(CORE, "taut_core.wasm")) });
   core.give(shipped);
   return core;

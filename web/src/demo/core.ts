@@ -1,25 +1,7 @@
 // Simulation core in WebAssembly (apps/browser) with its files in an in-memory file system.
 
-/** Emscripten module of apps/browser/exports.cpp. */
-interface Module {
-  ccall(name: string, returns: "string" | "number" | null, types: readonly string[], values: readonly unknown[]): unknown;
-  HEAPU8: Uint8Array;
-  FS: {
-    writeFile(path: string, text: string): void;
-    mkdirTree(path: string): void;
-    chdir(path: string): void;
-  };
-}
-
-export interface Complaint {
-  file: string;
-  line: number;
-  column: number;
-  /** False: a warning. */
-  error: boolean;
-  what: string;
-  hint: string;
-}
+import { type Complaint, type CreateModule, type Files, type Module, writeFiles } from "./module.js";
+export type { Complaint, Files } from "./module.js";
 
 export interface Checked {
   good: boolean;
@@ -43,8 +25,6 @@ export interface RunState extends Mark {
   marks: Mark[];
 }
 
-export type Files = Record<string, string>;
-
 const SHOWN = "/shown";
 const DRAFT = "/draft";
 
@@ -59,14 +39,14 @@ export class Core {
    * emscripten, for environments without fetch.
    */
   static async load(url: string, more: { wasmBinary?: Uint8Array } = {}): Promise<Core> {
-    const { default: create } = (await import(/* @vite-ignore */ url)) as { default: (options: object) => Promise<Module> };
+    const { default: create } = (await import(/* @vite-ignore */ url)) as { default: CreateModule };
     return new Core(await create(more));
   }
 
   /** Sets the shipped files. */
   give(files: Files): void {
     this.shipped = files;
-    for (const root of [SHOWN, DRAFT]) this.write(root, files);
+    for (const root of [SHOWN, DRAFT]) writeFiles(this.module, root, files);
     this.module.FS.chdir(SHOWN);
   }
 
@@ -121,16 +101,8 @@ export class Core {
   /** Writes the shipped files with these edits. */
   private edit(root: string, edits: Files): void {
     const before = Object.keys(this.edited.get(root) ?? {});
-    this.write(root, Object.fromEntries(before.map((path) => [path, this.shipped[path] ?? ""])));
-    this.write(root, edits);
+    writeFiles(this.module, root, Object.fromEntries(before.map((path) => [path, this.shipped[path] ?? ""])));
+    writeFiles(this.module, root, edits);
     this.edited.set(root, edits);
-  }
-
-  private write(root: string, files: Files): void {
-    for (const [path, text] of Object.entries(files)) {
-      const place = `${root}/${path}`;
-      this.module.FS.mkdirTree(place.slice(0, place.lastIndexOf("/")));
-      this.module.FS.writeFile(place, text);
-    }
   }
 }
