@@ -73,6 +73,7 @@ CONSTANTS = {
     "numbers in a report": ("apps/viewer/report.h", "kMaxReportNumbers"),
     "frames of the animation": ("apps/viewer/report_page.cpp", "kMaxFrames"),
     "corners drawn": ("apps/viewer/scene.cpp", "kMostCorners"),
+    "address of a share link": ("web/src/demo/link.ts", "MOST_CHARACTERS"),
     "names in": ("src/base/diagnostics.cpp", "kMostNamed"),
     "linear systems": ("include/taut/world_batch.h", "max_linear_solves"),
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
@@ -92,7 +93,7 @@ def value_of(path, constant):
     found = re.search(rf"\b{constant} = ([^;,]+?)[;,]", (ROOT / path).read_text())
     if not found:
         return None
-    text = re.sub(r"std::\w+\{(\d+)\}", r"\1", found[1]).replace("'", "")
+    text = re.sub(r"std::\w+\{(\d+)\}", r"\1", found[1]).replace("'", "").replace("_", "")
     return float(eval(re.sub(r"\b(\d+)u\b", r"\1", text), {"__builtins__": {}}))  # sums and shifts of numbers
 
 

@@ -6,7 +6,8 @@ import { button, el } from "../util";
 import { bitsPanel, type Hashes } from "./bits";
 import type { Files } from "./core";
 import { Editor } from "./editor";
-import { fragmentOf, Project, sharedBy } from "./project";
+import { fragmentOf, sharedBy } from "./link";
+import { Project } from "./project";
 import { WorkerSource } from "./source";
 
 const START = "experiments/push_20n.yaml";
