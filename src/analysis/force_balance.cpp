@@ -1,10 +1,9 @@
 #include "analysis/force_balance.h"
 
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/svd.h"
 #include "base/brief.h"
 #include "math/vec.h"
 
@@ -197,21 +196,17 @@ ForceBalance::Solutions ForceBalance::Solve() const {
   all.particular = VectorXd::Zero(n);
   all.free = MatrixXd::Identity(n, n);
   if (n > 0 && columns.rows() > 0) {
-    const auto use = [&](const auto& svd) {
-      const VectorXd& values = svd.singularValues();
-      const Index rank = analysis::RankAbove(values, kRank * values[0]);
-      all.particular =
-          svd.matrixV().leftCols(rank) *
-          (svd.matrixU().leftCols(rank).transpose() * load).cwiseQuotient(values.head(rank));
-      all.free = svd.matrixV().rightCols(n - rank);
-    };
-    constexpr unsigned kParts = Eigen::ComputeThinU | Eigen::ComputeFullV;
-    constexpr Index kFewColumns = 16;  // below this number of columns, BDCSVD uses JacobiSVD
-    if (n < kFewColumns) {
-      use(analysis::Svd(columns, kParts));
-    } else {
-      use(Eigen::BDCSVD<MatrixXd>(columns, kParts));
-    }
+    // Not Eigen's divide-and-conquer SVD, which frees memory twice if an allocation fails, nor
+    // Jacobi's, which needs seconds for hundreds of unknowns.
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> factors;
+    factors.setThreshold(kRank);
+    factors.compute(columns);
+    const Index rank = factors.rank();
+    // New matrices: Eigen frees memory twice if it cannot resize one that has elements.
+    all.particular = VectorXd(factors.solve(load));
+    // The rows of Z below the rank span the null space of columns * P.
+    const MatrixXd rows = factors.matrixZ().transpose().rightCols(n - rank);
+    all.free = MatrixXd(factors.colsPermutation() * rows);
   }
   const VectorXd left = load - columns * all.particular;
   all.left_n = left.size() > 0 ? left.lpNorm<Eigen::Infinity>() : 0.0;

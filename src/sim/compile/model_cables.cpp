@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/assert.h"
+#include "math/cable_law.h"
 #include "math/described_path.h"
 #include "sim/data/tables.h"
 
@@ -42,6 +43,9 @@ class CableCompiler {
                         ends[1].body < t_.body_count;
       t_.max_attachments = std::max(t_.max_attachments, table.attachment_count);
       t_.cables.push_back(table);
+      const double stretch = math::DescribedPath(c).length_m() - c.rest_length_m;
+      t_.start_tension_n.push_back(
+          std::max(math::CableLaw{c.stiffness_n_per_m}.Force(stretch), 0.0));
     }
   }
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/cable_law.h"
-#include "math/described_path.h"
 #include "math/vec.h"
 #include "sim/data/group.h"
 #include "sim/data/tables.h"
@@ -101,9 +99,7 @@ inline double Stiffness(const Tables& t, int i) noexcept { return CableOf(t, i).
 inline double Damping(const Tables& t, int i) noexcept { return CableOf(t, i).damping_n_s_per_m; }
 /// Tension for the first solver start, and the reading before the first step.
 inline double Tension(const Tables& t, int i) noexcept {
-  const CableDef& cable = CableOf(t, i);
-  const double length = math::DescribedPath(cable).length_m();
-  return std::max(math::CableLaw{cable.stiffness_n_per_m}.Force(length - cable.rest_length_m), 0.0);
+  return t.start_tension_n[static_cast<std::size_t>(i)];
 }
 inline double SpanTension(const Tables& t, int i) noexcept {
   int cable = 0;

@@ -31,7 +31,8 @@ class Tables final : public Model {
   /// Per body and for the world: largest distance of a shape point from the origin.
   std::vector<double> bound_m;
   std::vector<CableTable> cables;
-  std::vector<MotorTable> motors;  ///< In the order of the cables.
+  std::vector<double> start_tension_n;  ///< Per cable: elastic tension of the described pose.
+  std::vector<MotorTable> motors;       ///< In the order of the cables.
   std::vector<SupplyTable> supplies;
   std::vector<AttachmentTable> attachments;
   std::vector<AttachmentTable> spots;   ///< Different points of bodies among the attachments.
