@@ -8,6 +8,7 @@ import pathlib
 import signal
 import struct
 import subprocess
+import sys
 import tempfile
 
 from validation.runs import Problem
@@ -79,10 +80,10 @@ class Shared:
 
 
 class Program:
-    """The taut command with the library preloaded, and the boards for `taut robot`."""
+    """The taut command with the library preloaded, the Python of the module, and the boards for `taut robot`."""
 
-    def __init__(self, command, library, variables=None, adapter=None):
-        self.variables, self.adapter = variables or {}, adapter
+    def __init__(self, command, library, variables=None, python=sys.executable, adapter=None):
+        self.variables, self.python, self.adapter = variables or {}, python, adapter
         for path in (command, library):
             if not pathlib.Path(path).exists():
                 raise Problem(f"there is no {path}; script/build makes it")
@@ -92,9 +93,9 @@ class Program:
         return {**os.environ, **self.variables, "LD_PRELOAD": self.library, "TAUT_FAULTS": shared.path,
                 **(fault.environment() if fault else {})}
 
-    def with_variables(self, variables):
-        """Returns the program with these environment variables."""
-        return Program(self.command, self.library, variables)
+    def instead(self, command, variables):
+        """Returns another program with this library and these environment variables."""
+        return Program(command, self.library, variables)
 
     def run(self, words, folder, fault=None, during=None, lines=""):
         """Runs once in `folder`, with output to files, as on a disk, and `lines` as input. `during(process, shared,

@@ -55,7 +55,7 @@ class Robot(Scenario):
         runtime.mkdir()
         with contextlib.closing(Boards(self.program.adapter, self.winds_m_per_s)) as boards:
             port = ("--port", boards.device)
-            program = self.program.with_variables({"XDG_RUNTIME_DIR": str(runtime)})
+            program = self.program.instead(self.program.command, {"XDG_RUNTIME_DIR": str(runtime)})
             for words in self.prepares:
                 for _ in range(ATTEMPTS):
                     before = program.plain((*words, *port), folder)

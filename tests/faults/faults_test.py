@@ -1,6 +1,7 @@
 """script/faults finds errors, and reports nothing else.
 
-Usage: faults_test.py TAUT LIBRARY TEST. TEST is the name of a function of this file.
+Usage: faults_test.py TAUT LIBRARY TEST [PYTHON]. TEST is the name of a function of this file, PYTHON the one of the
+module.
 """
 
 import pathlib
@@ -13,15 +14,18 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TAUT, LIBRARY = sys.argv[1:3]
 
 
-def faults(*words, taut=TAUT):
-    return subprocess.run([sys.executable, ROOT / "script/faults", *words, "--quiet", "--taut", taut, "--library", LIBRARY],
-                          capture_output=True, text=True)
+PYTHON = sys.argv[4] if len(sys.argv) > 4 else sys.executable
+
+
+def faults(*words, taut=TAUT, python=PYTHON):
+    return subprocess.run([sys.executable, ROOT / "script/faults", *words, "--quiet", "--taut", taut, "--library", LIBRARY,
+                           "--python", python], capture_output=True, text=True)
 
 
 def instead(folder, lines):
-    """Returns a command that replaces taut and handles the arguments "$@" with the shell code `lines`."""
+    """Returns a command that replaces taut or Python and handles the arguments "$@" with the shell code `lines`."""
     path = pathlib.Path(folder, "taut")
-    path.write_text(f"#!/bin/sh\ntaut={TAUT}\n{lines}\n")
+    path.write_text(f"#!/bin/sh\ntaut={TAUT} python={PYTHON}\n{lines}\n")
     path.chmod(0o755)
     return path
 
@@ -78,6 +82,20 @@ def MemoryThatIsMissingWhereNothingMayBeThrownIsSaid():
     count = int(re.search(r"calls: (\d+) memory", calls)[1])
     run = faults("top", *(word for back in range(100, 400, 23) for word in ("--at", f"memory {count - back} sticky")))
     assert run.returncode == 0 and run.stdout.count("good: said") == 14, run
+
+
+def MemoryThatTheModuleLacksIsAMemoryError():
+    calls = faults("python_run", "--at", "memory 1 once").stdout
+    count = int(re.search(r"calls: (\d+) memory", calls)[1])
+    run = faults("python_run", *(word for part in range(1, 9) for word in ("--at", f"memory {count * part // 9} sticky")))
+    assert run.returncode == 0 and run.stdout.count("\nerror: MemoryError: ") == 8, run
+
+
+def AModuleThatHidesItsFailureIsFound():
+    with tempfile.TemporaryDirectory() as folder:
+        hides = instead(folder, '"$python" "$@" 2>/dev/null || echo done')
+        run = faults("python_run", "--at", "memory 100 sticky", python=hides)
+    assert run.returncode == 1 and "WRONG: status 0, and it printed something else" in run.stdout, run
 
 
 def SaysWhatItCannotDo():

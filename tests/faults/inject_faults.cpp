@@ -7,13 +7,16 @@
 //   TAUT_FAULT_STICKY  if not empty, all later calls of that kind also fail, as on a full disk
 //   TAUT_FAULT_ERROR   value of errno, or "kill": SIGKILL at that call, after half of the bytes of
 //                      a write
+//   TAUT_FAULT_LIBRARIES  if set, parts of file names, separated by colons: only allocations by
+//                      these libraries count, and counting begins and ends by calls of
+//                      taut_faults_begin() and taut_faults_end(). For Python, whose interpreter
+//                      must not fail
 //
-// Counting begins at main(). Only files on a disk count, without standard error, which the program
-// needs for its error messages. Writes of C streams are intercepted at fwrite and similar
+// Else counting begins at main(). Only files on a disk count, without standard error, which the
+// program needs for its error messages. Writes of C streams are intercepted at fwrite and similar
 // functions, because the C library calls its internal write(), which cannot be replaced.
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <link.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -27,6 +30,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+
+#include "library_code.h"
 
 namespace {
 
@@ -48,20 +53,6 @@ std::int64_t at = 0;
 bool sticky = false, by_kill = false;
 int error_number = 0;
 std::atomic<bool> counting{false};
-std::uintptr_t hdf5_begin = 0, hdf5_end = 0;  ///< Address range of HDF5's code.
-
-/// Callback for each library: records the address range of HDF5.
-int FindHdf5(dl_phdr_info* library, std::size_t, void*) {
-  if (std::strstr(library->dlpi_name, "libhdf5") == nullptr) return 0;
-  for (int i = 0; i < library->dlpi_phnum; ++i) {
-    const auto& part = library->dlpi_phdr[i];
-    if (part.p_type != PT_LOAD || (part.p_flags & PF_X) == 0) continue;
-    hdf5_begin = library->dlpi_addr + part.p_vaddr;
-    hdf5_end = hdf5_begin + part.p_memsz;
-  }
-  return 1;
-}
-
 void ReadEnvironment() {
   const auto text = [](const char* name) {
     const char* const value = std::getenv(name);
@@ -80,6 +71,7 @@ void ReadEnvironment() {
   sticky = *text("TAUT_FAULT_STICKY") != '\0';
   by_kill = std::strcmp(text("TAUT_FAULT_ERROR"), "kill") == 0;
   error_number = std::atoi(text("TAUT_FAULT_ERROR"));
+  std::strncpy(faults::chosen_names, text("TAUT_FAULT_LIBRARIES"), sizeof faults::chosen_names - 1);
 }
 
 /// Counts a call. Returns true, with errno set, if the call must fail.
@@ -96,8 +88,16 @@ bool Fails(Kind kind, const char* call, const char* what = "") {
 
 /// Counts an allocation, by its caller.
 bool NoMemory(const char* call, const void* caller) {
+  if (!counting.load(std::memory_order_relaxed)) return false;
   const auto at_code = reinterpret_cast<std::uintptr_t>(caller);
-  return Fails(at_code >= hdf5_begin && at_code < hdf5_end ? kHdf5 : kMemory, call);
+  if (faults::chosen_names[0] == '\0')
+    return Fails(faults::hdf5.Has(at_code) ? kHdf5 : kMemory, call);
+  faults::FindNewCode();
+  if (faults::hdf5.Has(at_code)) return Fails(kHdf5, call);
+  for (int i = 0; i < faults::chosen_count; ++i) {
+    if (faults::chosen[i].Has(at_code)) return Fails(kMemory, call);
+  }
+  return false;
 }
 
 /// Counts a call on an open file if the file is on a disk; calls on other files do not fail.
@@ -135,7 +135,7 @@ ssize_t FailedWrite(const Half& write_half) {
 int (*program)(int, char**, char**) = nullptr;
 
 int CountedMain(int argc, char** argv, char** environment) {
-  counting = true;
+  counting = faults::chosen_names[0] == '\0';
   return program(argc, argv, environment);
 }
 
@@ -150,10 +150,23 @@ extern "C" {
 int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*init)(),
                       void (*fini)(), void (*rtld_fini)(), void* stack_end) {
   ReadEnvironment();
-  dl_iterate_phdr(FindHdf5, nullptr);
+  dl_iterate_phdr(faults::FindCode, nullptr);
   program = main;
   NEXT(__libc_start_main);
   return next(CountedMain, argc, argv, init, fini, rtld_fini, stack_end);
+}
+
+void taut_faults_begin() { counting = true; }
+void taut_faults_end() { counting = false; }
+
+// Constructors of static constants have no caller that could handle an exception: the calls of a
+// library that a program loads do not count.
+void* dlopen(const char* path, int mode) {
+  NEXT(dlopen);
+  const bool counted = counting.exchange(false);
+  void* const library = next(path, mode);
+  counting = counted;
+  return library;
 }
 
 // Memory. Uses the C library's functions under their second names, because dlsym itself may

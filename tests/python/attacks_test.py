@@ -225,6 +225,21 @@ class Resources(Attack):
                             print("no memory")
                 print("end")""", output="no memory\n[^$]*end\n$")
 
+    def test_bases_of_subclasses_learn_of_them(self):
+        made = []
+
+        class Named:
+            def __init_subclass__(cls, name="", **more):
+                super().__init_subclass__(**more)
+                made.append((cls.__name__, name))
+
+        class Mine(taut.Batch, Named, name="mine"):
+            pass
+
+        self.assertEqual(made, [("Mine", "mine")])
+        with self.assertRaises(TypeError):
+            type("Wrong", (taut.Batch,), {}, name="wrong")
+
     def test_objects_without_init_raise(self):
         self.expect("""
             classes = [c for c in vars(taut._core).values() if isinstance(c, type)]
