@@ -281,7 +281,7 @@ std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layou
   if (!trace::ReadCsvLines(path, trace::CsvTail::kLine, line, out, layout.encoding)) {
     return std::nullopt;
   }
-  return parser.Take();
+  return trace::WithFiniteSpans(path, parser.Take(), out);
 }
 
 }  // namespace taut

@@ -21,4 +21,8 @@ std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out);
 /// in gaps. Clocks since 1970 begin at 0 s.
 std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out);
 
+/// Returns the trace, or an error if a time is so large that spans of times are not finite.
+std::optional<Trace> WithFiniteSpans(const std::string& path, std::optional<Trace> trace,
+                                     Diagnostics& out);
+
 }  // namespace taut::trace

@@ -4,11 +4,25 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 
 #include "trace/readers.h"
 
 namespace taut {
+
+std::optional<Trace> trace::WithFiniteSpans(const std::string& path, std::optional<Trace> trace,
+                                            Diagnostics& out) {
+  constexpr double kMostTime_s = 1e100;
+  if (!trace || trace->time_s.empty()) return trace;
+  for (const double time_s : {trace->time_s.front(), trace->time_s.back()}) {  // times increase
+    if (std::abs(time_s) <= kMostTime_s) continue;
+    out.Error("trace.times_too_large", {path}, fmt::format("the time {} s is out of range", time_s),
+              "expected at most 1e100 s");
+    return std::nullopt;
+  }
+  return trace;
+}
 
 std::optional<std::size_t> Trace::Find(const std::string& name) const {
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -27,9 +41,11 @@ std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out) {
     out.Error("file.not_regular", {path}, "the trace is not a regular file");
     return std::nullopt;
   }
-  if (path.ends_with(".h5")) return trace::ReadHdf5(path, out);
-  if (path.ends_with(".csv") || path.ends_with(".csv.gz")) return trace::ReadCsv(path, out);
-  if (path.ends_with(".mcap")) return trace::ReadMcap(path, out);
+  if (path.ends_with(".h5")) return trace::WithFiniteSpans(path, trace::ReadHdf5(path, out), out);
+  if (path.ends_with(".csv") || path.ends_with(".csv.gz")) {
+    return trace::WithFiniteSpans(path, trace::ReadCsv(path, out), out);
+  }
+  if (path.ends_with(".mcap")) return trace::WithFiniteSpans(path, trace::ReadMcap(path, out), out);
   out.Error(
       "trace.unknown_format", {path}, "unknown trace format",
       "expected .h5, .csv, .csv.gz or .mcap; `taut new mapping` writes a mapping for a log of "

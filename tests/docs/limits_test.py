@@ -79,7 +79,7 @@ CONSTANTS = {
     "angles in": ("src/math/elementary.h", "kMaxAngle"),
 }
 # Rows without a constant: ranges of keys, and the limit of a library
-WITHOUT = ("columns, and rows", "nesting of MJCF elements of one file", "starts of", "step", "duration")
+WITHOUT = ("columns, and rows", "nesting of MJCF elements of one file", "starts of", "times of a trace", "step", "duration")
 UNITS = {"MB": 1e6, "KiB": 1 << 10, "MiB": 1 << 20, "GiB": 1 << 30}
 
 

@@ -230,6 +230,16 @@ TEST_F(TraceTest, CsvComplaintsNameTheLineAndComeAllAtOnce) {
   EXPECT_EQ(std::count(complaint.begin(), complaint.end(), '\n'), 20);
 }
 
+// A comparison divides the span of the times.
+TEST_F(TraceTest, TimesWhoseSpanIsInfiniteAreRefused) {
+  EXPECT_EQ(CsvComplaint("time_s,a\n-1e308,1\n1e308,2\n"),
+            "t.csv: error: the time -1e+308 s is out of range (expected at most 1e100 s)\n");
+  EXPECT_EQ(CsvComplaint("time_s,a\n0,1\n1e101,2\n"),
+            "t.csv: error: the time 1e+101 s is out of range (expected at most 1e100 s)\n");
+  Diagnostics out;
+  EXPECT_TRUE(ReadTrace(WriteFile("t.csv", "time_s,a\n-1e100,1\n1e100,2\n"), out));
+}
+
 TEST_F(TraceTest, AFileThatCannotBeOpenedSaysWhy) {
   EXPECT_EQ(Complaint(Path("none.h5")), "none.h5: error: cannot open: No such file or directory\n");
   EXPECT_EQ(Complaint(WriteFile("t.txt", "time_s\n")),
