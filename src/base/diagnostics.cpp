@@ -46,6 +46,17 @@ std::string Line(const Diagnostic& d, std::string_view kind) {
   return Printable(out) + '\n';
 }
 
+/// Leaves out the middle of a text that quotes megabytes of a file.
+std::string Shortened(std::string text) {
+  constexpr std::size_t kMostBytes = 4000, kLastBytes = 1000;
+  if (text.size() <= kMostBytes) return text;
+  const auto continues = [&](std::size_t i) { return (text[i] & 0xc0) == 0x80; };  // in UTF-8
+  std::size_t from = kMostBytes - kLastBytes, to = text.size() - kLastBytes;
+  while (from > 0 && continues(from)) --from;
+  while (to < text.size() && continues(to)) ++to;
+  return text.substr(0, from) + " ... " + text.substr(to);
+}
+
 }  // namespace
 
 std::string Printable(std::string_view text) {
@@ -68,7 +79,7 @@ std::string Printable(std::string_view text) {
 }
 
 void Diagnostics::Error(MessageId id, SourceRef at, std::string what, std::string hint) {
-  AddError({std::move(at), std::move(what), std::move(hint), id.text()});
+  AddError({std::move(at), Shortened(std::move(what)), Shortened(std::move(hint)), id.text()});
 }
 
 void Diagnostics::Unreadable(MessageId id, SourceRef at, std::string what, std::string hint) {
@@ -77,7 +88,7 @@ void Diagnostics::Unreadable(MessageId id, SourceRef at, std::string what, std::
 }
 
 void Diagnostics::Warning(MessageId id, SourceRef at, std::string what, std::string hint) {
-  AddWarning({std::move(at), std::move(what), std::move(hint), id.text()});
+  AddWarning({std::move(at), Shortened(std::move(what)), Shortened(std::move(hint)), id.text()});
 }
 
 void Diagnostics::WarningsToErrors() {

@@ -74,6 +74,7 @@ CONSTANTS = {
     "frames of the animation": ("apps/viewer/report_page.cpp", "kMaxFrames"),
     "corners drawn": ("apps/viewer/scene.cpp", "kMostCorners"),
     "address of a share link": ("web/src/demo/link.ts", "MOST_CHARACTERS"),
+    "text of a message": ("src/base/diagnostics.cpp", "kMostBytes"),
     "names in": ("src/base/diagnostics.cpp", "kMostNamed"),
     "linear systems": ("include/taut/world_batch.h", "max_linear_solves"),
     "angles in": ("src/math/elementary.h", "kMaxAngle"),

@@ -33,6 +33,25 @@ TEST(UntrustedText, NoMessageSteersATerminal) {
   EXPECT_EQ(out.Format(), "a\\x1b[2J.csv:1:2: error: holds \\x1b[31m (use \\x1b[0m)\n");
 }
 
+TEST(UntrustedText, LongTextsLackTheirMiddle) {
+  Diagnostics out;
+  out.Error("test.long", {}, "first " + std::string(5'000'000, 'x') + " last");
+  out.Error("test.short", {}, std::string(4000, 'x'));
+  std::string letters;
+  for (int i = 0; i < 3000; ++i) letters += "\xe2\x82\xac";
+  out.Warning("test.letters", {}, letters, letters + "?");
+  const std::string& what = out.items()[0].what;
+  EXPECT_LT(what.size(), 4010u);
+  EXPECT_TRUE(what.starts_with("first xxx") && what.ends_with("xxx last"));
+  EXPECT_NE(what.find("x ... x"), std::string::npos);
+  EXPECT_EQ(out.items()[1].what, std::string(4000, 'x'));
+  for (const std::string& text : {out.warnings()[0].what, out.warnings()[0].hint}) {
+    const std::size_t middle = text.find(" ... ");
+    EXPECT_EQ(middle % 3, 0u) << "no letter is cut";
+    EXPECT_EQ(text.substr(middle + 5, 3), "\xe2\x82\xac");
+  }
+}
+
 TEST(UntrustedText, HintsCompareNamesOfSimilarLengthOnly) {
   EXPECT_EQ(ClosestMatch("radius", {"radius_m"}), "radius_m");
   EXPECT_EQ(ClosestMatch("radius", {"radius_of_the_first_of_all_rods"}), "");
