@@ -14,6 +14,7 @@
 #include "overrides.h"
 #include "shipped_inputs.h"
 #include "standard_streams.h"
+#include "taut/diagnostics.h"
 #include "templates.h"
 
 namespace taut::cli {
@@ -55,7 +56,7 @@ std::string Text(const NewArguments& args, std::string& next) {
 int New(const NewArguments& args) {
   if (args.kind == "mapping") return NewMapping({args.name, args.model, args.out});
   if (const std::string wrong = CheckName(args.name); !wrong.empty()) {
-    fmt::print(stderr, "error: NAME: {}\n", wrong);
+    fmt::print(stderr, "error: NAME: {}\n", Printable(wrong));
     return kUsage;
   }
   if (!args.model.empty() && args.kind != "experiment") {
@@ -72,6 +73,14 @@ int New(const NewArguments& args) {
   }
   if (args.kind == "robot") {
     return NewRobot(args.name, args.like.empty() ? RobotTemplates().front() : args.like);
+  }
+  // Input files may not contain such characters; a line end would become a space.
+  if (Printable(args.model) != args.model || args.model.find('\n') != std::string::npos) {
+    fmt::print(stderr,
+               "error: --model {}: a path with control characters cannot be written into "
+               "a file (rename the model)\n",
+               Printable(args.model));
+    return kUsage;
   }
   OutputIsNews();
   const std::string path = args.name + ".yaml";

@@ -20,7 +20,8 @@ std::optional<Overrides> ParseOverrides(const std::vector<std::string>& set) {
   for (const std::string& text : set) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-      fmt::print(stderr, "error: --set {}: expected name=value, such as --set push_n=15\n", text);
+      fmt::print(stderr, "error: --set {}: expected name=value, such as --set push_n=15\n",
+                 Printable(text));
       return std::nullopt;
     }
     overrides.emplace_back(text.substr(0, equals), text.substr(equals + 1));

@@ -64,7 +64,7 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   if (flag != unknown.end() && of_command) {
     const std::string word = flag->substr(0, flag->find('='));
     const std::string meant = MeantFlags(command, word);
-    fmt::print(stderr, "error: {} has no flag \"{}\"{}\n", command.name, word,
+    fmt::print(stderr, "error: {} has no flag \"{}\"{}\n", command.name, Printable(word),
                meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant));
     return true;
   }
@@ -74,9 +74,9 @@ bool ExplainUnknown(const CLI::App& app, const CommandText& command) {
   } else {
     const bool compares = std::any_of(command.flags.begin(), command.flags.end(),
                                       [](const WordText& f) { return f.name == "--compare"; });
-    fmt::print(stderr, "error: unexpected argument \"{}\"; usage: {}{}\n", unknown.front(),
-               UsageLine(command),
-               compares ? fmt::format(" (to compare: --compare {})", unknown.front()) : "");
+    const std::string word = Printable(unknown.front());
+    fmt::print(stderr, "error: unexpected argument \"{}\"; usage: {}{}\n", word, UsageLine(command),
+               compares ? fmt::format(" (to compare: --compare {})", word) : "");
   }
   return true;
 }
@@ -129,7 +129,7 @@ int NoSuchCommand(const CLI::App& command, const std::string& word) {
   const bool top = command.get_parent() == nullptr;
   const std::string before = top ? "" : text.name.substr(5) + " ";
   const std::string meant = top ? CommandMeant(word) : "";
-  fmt::print(stderr, "error: there is no command \"{}{}\" ({})\n", before, word,
+  fmt::print(stderr, "error: there is no command \"{}{}\" ({})\n", before, Printable(word),
              meant.empty() ? DidYouMean(word, text.CommandWords())
                            : fmt::format("did you mean \"{}\"?", meant));
   return kUsage;
@@ -139,11 +139,11 @@ int ExplainUsage(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& named = NamedCommand(app);
   const CommandText command = Describe(named);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    fmt::print(stderr, "error: {}\n", Mismatch(command, error.what()));
+    fmt::print(stderr, "error: {}\n", Printable(Mismatch(command, error.what())));
   } else if (!ExplainUnknown(named, command) &&
              (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
               !ExplainMissing(named, command))) {
-    fmt::print(stderr, "error: {}\n", error.what());
+    fmt::print(stderr, "error: {}\n", Printable(error.what()));
   }
   fmt::print(stderr, "see `{} --help`\n", command.name);
   return kUsage;

@@ -252,6 +252,20 @@ TEST_F(CliCommand, AMisspeltWordIsAnsweredByTheRightOne) {
             "error: --symmetry: \"segment\" is unknown (did you mean \"segments\"?)");
 }
 
+// Names of files may contain commands to a terminal, and a shell turns patterns into arguments.
+TEST_F(CliCommand, ControlCharactersOfArgumentsArePrintedAsNumbers) {
+  EXPECT_EQ(Refusal({"a\x1b[2J.yaml"}).rfind("error: there is no command \"a\\x1b[2J.yaml\"", 0),
+            0u);
+  EXPECT_EQ(Refusal({"run", kHangOnTheLine, "--\x1b[2J"}),
+            "error: taut run has no flag \"--\\x1b[2J\"");
+  EXPECT_EQ(Refusal({"check", "a.yaml", "b\x1b.yaml"}),
+            "error: unexpected argument \"b\\x1b.yaml\"; usage: taut check [FLAGS] FILE");
+  EXPECT_EQ(Refusal({"new", "model", "a\x1b"}),
+            "error: NAME: \"a\\x1b\" is not a valid name (expected letters, digits, _ or -)");
+  EXPECT_EQ(Taut({"run", kHangOnTheLine, "--set", "\x1b"}).errors,
+            "error: --set \\x1b: expected name=value, such as --set push_n=15\n");
+}
+
 TEST_F(CliCommand, WhatIsMissingOrTooMuchIsNamed) {
   EXPECT_EQ(Refusal({"check"}),
             "error: FILE is missing (Model, experiment, gait, study or fit file (YAML)); usage: "
@@ -331,6 +345,13 @@ TEST_F(CliCommand, NewOverwritesNothing) {
   EXPECT_EQ(again.status, 3);
   EXPECT_EQ(again.errors, "mine.yaml: error: the file exists already, and is not overwritten\n");
   EXPECT_EQ(Read(Path("mine.yaml")), "what I wrote");
+  for (const std::string model : {"a\x1b.yaml", "a\nb.yaml"}) {  // which no input file may contain
+    Write(model, "");
+    const test::CommandResult refused = Taut({"new", "experiment", "e", "--model", model});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.errors.find("cannot be written into a file"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(Path("e.yaml")));
+  }
   EXPECT_EQ(Refusal({"new", "model", "a/b"}),
             "error: NAME: \"a/b\" is not a valid name (expected letters, digits, _ or -)");
   EXPECT_EQ(Refusal({"new", "modle", "a"}),
