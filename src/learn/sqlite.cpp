@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
+#include <new>
 #include <utility>
 
 namespace taut::learn {
@@ -143,7 +144,8 @@ std::string Row::Text(int column) {
   if (!Is(column, SQLITE_TEXT, "text")) return {};
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
-  return text == nullptr ? std::string() : std::string(text, size);
+  if (text == nullptr) throw std::bad_alloc();  // SQLite's only reason
+  return std::string(text, size);
 }
 
 std::uint64_t Row::Whole(int column) {

@@ -1,13 +1,17 @@
-// Matrix decompositions, and worlds, whose n-th allocation fails. This program replaces malloc,
-// which Eigen calls directly.
+// Matrix decompositions, worlds and logs of studies whose n-th allocation fails. This program
+// replaces malloc, which Eigen calls directly.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <new>
+#include <string>
 
 #include "analysis/force_balance.h"
 #include "analysis/svd.h"
+#include "learn/study_log.h"
 #include "taut/world_batch.h"
 #include "unit/analysis/analysis_scenes.h"
 
@@ -44,7 +48,7 @@ bool Succeeds(int n, const Work& work) {
 template <class Work>
 int Failures(const Work& work) {
   int failures = 0;
-  while (failures < 1000 && !Succeeds(failures + 1, work)) ++failures;
+  while (failures < 20'000 && !Succeeds(failures + 1, work)) ++failures;
   return failures;
 }
 
@@ -87,6 +91,28 @@ TEST(BatchMemory, EveryAllocationThatFailsIsAnException) {
   EXPECT_NEAR(tension_n, 10, 1e-9);
   EXPECT_GE(failures, 5);  // rows have other allocations than malloc
   EXPECT_LT(failures, 200);
+}
+
+// A log that lacks memory is not mistaken for another program's database.
+TEST(StudyLogMemory, EveryAllocationThatFailsIsAnExceptionOrSaid) {
+  const std::string path = testing::TempDir() + "missing_memory_" + std::to_string(getpid());
+  Diagnostics made;
+  const std::unique_ptr<learn::Log> opened = learn::Log::Open(path, made);
+  ASSERT_TRUE(opened && opened->Begin({}, made)) << made.Format();
+  std::string errors;
+  int failures = 0;
+  for (bool failed = true; failed && failures < 20'000; ++failures) {
+    Succeeds(failures + 1, [&] {
+      Diagnostics out;
+      const std::unique_ptr<learn::Log> log = learn::Log::OpenToRead(path, out);
+      if (log == nullptr || !log->Read(out)) errors += out.Format();
+      failed = allocations_until_failure == 0;  // SQLite does without some
+    });
+  }
+  std::filesystem::remove(path);
+  EXPECT_GE(failures, 500);
+  EXPECT_LT(failures, 20'000);
+  EXPECT_EQ(errors.find("other tables"), std::string::npos) << errors;
 }
 
 }  // namespace
