@@ -56,6 +56,14 @@ async function replays() {
   });
 }
 
+/** The robot of docs/tutorial.md, as `taut new robot my_robot` makes it. */
+async function model() {
+  await shown(["share/robots/six_bar"], { width: 1100, height: 700 }, async (page) => {
+    await page.locator("text=First modes").waitFor();
+    await take(page, "viewer_model.png");
+  });
+}
+
 async function live() {
   await shown(["experiments/push_20n.yaml", "--max"], { theme: "dark" }, async (page) => {
     await page.waitForFunction(() => window.taut.app.frame.value?.now_s >= 48);
@@ -105,6 +113,7 @@ async function dashboard() {
 }
 
 await replays();
+await model();
 await live();
 await drag();
 await dashboard();
