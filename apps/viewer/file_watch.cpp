@@ -13,7 +13,9 @@ FileWatch::State FileWatch::StateOf(const std::string& path) {
   if (failed) return {};
   const auto size = fs::file_size(path, failed);
   if (failed) return {};
-  return {time.time_since_epoch().count(), static_cast<std::int64_t>(size)};
+  // The count has 128 bits in the libc++ of emscripten.
+  const auto count = static_cast<std::int64_t>(time.time_since_epoch().count());
+  return {count, static_cast<std::int64_t>(size)};
 }
 
 void FileWatch::Watch(const std::vector<std::string>& files) {
