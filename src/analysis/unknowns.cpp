@@ -1,6 +1,6 @@
-// Effective motions of a structure: all motions of its bodies except rotations without any effect on
-// members or joints, such as the spin of a rod about its axis. Also the parts of a model that statics
-// ignores.
+// Effective motions of a structure: all motions of its bodies except rotations without any effect
+// on members or joints, such as the spin of a rod about its axis. Also the parts of a model that
+// statics ignores.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>

@@ -244,8 +244,9 @@ class ConvexSearch {
                    kFirstEdge + i + static_cast<int>(on_own > 0.5));
     }
   }
-  /// Returns whether the edge is convex and uncovered at a point, considering the neighboring pieces
-  /// of terrain (seams.h). It is not convex if another piece continues one of its faces straight.
+  /// Returns whether the edge is convex and uncovered at a point, considering the neighboring
+  /// pieces of terrain (seams.h). It is not convex if another piece continues one of its faces
+  /// straight.
   bool IsEdgeOpen(const SurfaceEdge& edge, const Vec3& at, const Vec3& normal) const noexcept {
     if (!IsOnSeam(s_.seams, at)) return true;
     if (IsEdgeCovered(s_.seams, edge.from, edge.to, {at, normal, &center_}, {limit_m_, kLevel}))

@@ -11,8 +11,8 @@
 
 namespace taut::sim {
 
-/// Solves the island. m.l contains any initial guess. Results: the best admissible impulses in m.l, with their
-/// velocities in m.v and m.u. Returns their residual [m/s].
+/// Solves the island. m.l contains any initial guess. Results: the best admissible impulses in m.l,
+/// with their velocities in m.v and m.u. Returns their residual [m/s].
 template <class Num, class P>
 double SolveInStages(Island<Num, P>& island, Target target, SolverWork& work) noexcept {
   constexpr int kSweeps = 30, kSweepsWithoutMatrix = 1000;

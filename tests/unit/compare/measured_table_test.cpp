@@ -140,10 +140,9 @@ constexpr const char* kPlain = R"m("table": {"time": {"column": "t"}})m";
 TEST_F(MeasuredTable, DecimalCommasAreOneError) {
   std::string rows = "t;x\n";
   for (int i = 0; i < 30; ++i) rows += std::to_string(i) + ",25;7,75\n";
-  EXPECT_EQ(
-      Wrong(rows, R"m("table": {"separator": ";", "time": {"column": "t"}})m"),
-      "t.csv:2:1: error: numbers have a decimal comma, such as \"0,25\" (add \"decimal\": "
-      "\",\" to the table in the mapping)\n");
+  EXPECT_EQ(Wrong(rows, R"m("table": {"separator": ";", "time": {"column": "t"}})m"),
+            "t.csv:2:1: error: numbers have a decimal comma, such as \"0,25\" (add \"decimal\": "
+            "\",\" to the table in the mapping)\n");
 }
 
 TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {

@@ -52,7 +52,8 @@ TEST(Quantity, RefusesUnitsOfOtherQuantities) {
             "\"4 N\" is in N, but this quantity is in m (its units: m, cm, mm, um, in, ft)");
   EXPECT_EQ(Error("4 mm", "rod.friction"),
             "\"4 mm\" has a unit, but this quantity has none (leave out the unit)");
-  for (const char* sum : {"1 + 300 mm", "1 - 20 mm", "-1 + 2 mm", "pi / 6 - 30 mm", "pi*edge-20mm"}) {
+  for (const char* sum :
+       {"1 + 300 mm", "1 - 20 mm", "-1 + 2 mm", "pi / 6 - 30 mm", "pi*edge-20mm"}) {
     EXPECT_EQ(Error(sum, "rod.radius_m"),
               "the unit in \"" + std::string(sum) +
                   "\" follows a sum (put the sum in parentheses, or write all numbers in SI "
