@@ -26,6 +26,7 @@
 #include "taut/form_finding.h"
 #include "taut/friction.h"
 #include "taut/gait.h"
+#include "taut/guess_mapping.h"
 #include "taut/identify.h"
 #include "taut/import_ntrt.h"
 #include "taut/input_names.h"

@@ -24,6 +24,11 @@ std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out) {
   return std::nullopt;
 }
 
+std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out) {
+  Refuse(path, "traces", out);
+  return std::nullopt;
+}
+
 std::optional<Hdf5Table> ReadHdf5Table(const std::string& path, const std::string& /*name*/,
                                        TableBudget& /*budget*/, Diagnostics& out) {
   Refuse(path, "tables in HDF5", out);
