@@ -26,9 +26,12 @@ constexpr std::size_t kMostMcapChannels = 100'000;
 /// Columns in the order of their first value; each value is a row of its time.
 class Columns {
  public:
-  bool Add(std::uint64_t time_ns, const std::string& name, double value) {
+  /// Begins a message of a topic.
+  void Begin(std::uint16_t topic, std::uint64_t time_ns) { times_ns_[topic].push_back(time_ns); }
+
+  bool Add(std::uint16_t topic, std::uint64_t time_ns, const std::string& name, double value) {
     const auto [at, fresh] = places_.emplace(name, columns_.size());
-    if (fresh) columns_.push_back({name, {}});
+    if (fresh) columns_.push_back({name, topic, {}});
     columns_[at->second].points.emplace_back(time_ns, value);
     return ++values_ <= kMostMcapValues && columns_.size() <= kMostMcapChannels;
   }
@@ -61,22 +64,24 @@ class Columns {
  private:
   struct Column {
     std::string name;
+    std::uint16_t topic;
     std::vector<std::pair<std::uint64_t, double>> points;
   };
   /// Sets the values at the times of the column's messages, and interpolates between neighboring
   /// messages, because each topic has its own times. Distances of more than `kGap` times the median
   /// are gaps.
-  static void Spread(const Column& column, const std::vector<double>& time_s,
-                     const std::map<std::uint64_t, std::size_t>& rows,
-                     std::vector<double>& values) {
+  void Spread(const Column& column, const std::vector<double>& time_s,
+              const std::map<std::uint64_t, std::size_t>& rows, std::vector<double>& values) const {
     constexpr double kGap = 5;
     std::vector<std::size_t> known;
-    for (const auto& [time_ns, value] : column.points) {
-      const std::size_t row = rows.at(time_ns);
-      values[row] = value;
-      known.push_back(row);
+    for (const auto& [time_ns, value] : column.points) values[rows.at(time_ns)] = value;
+    // A message of the topic without this number is a gap.
+    for (const std::uint64_t time_ns : times_ns_.at(column.topic)) {
+      const auto row = rows.find(time_ns);
+      if (row != rows.end()) known.push_back(row->second);
     }
     std::sort(known.begin(), known.end());
+    known.erase(std::unique(known.begin(), known.end()), known.end());
     std::vector<double> steps_s;
     for (std::size_t i = 1; i < known.size(); ++i) {
       steps_s.push_back(time_s[known[i]] - time_s[known[i - 1]]);
@@ -96,6 +101,7 @@ class Columns {
   }
 
   std::vector<Column> columns_;
+  std::map<std::uint16_t, std::vector<std::uint64_t>> times_ns_;  ///< Of messages, by topic.
   std::unordered_map<std::string, std::size_t> places_;
   std::size_t values_ = 0;
 };
@@ -142,10 +148,11 @@ std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out) {
     const std::string head =
         channel.topic.starts_with('/') ? channel.topic.substr(1) : channel.topic;
     const auto add = [&](const std::string& name, double value) {
-      fits = fits && columns.Add(message.log_time_ns, name, value);
+      fits = fits && columns.Add(message.channel, message.log_time_ns, name, value);
     };
+    if (IsDrawing(channel)) return true;
+    columns.Begin(message.channel, message.log_time_ns);
     if (channel.encoding == "json") {
-      if (IsDrawing(channel)) return true;
       const auto json = nlohmann::json::parse(message.data, nullptr, false);
       if (json.is_discarded()) unread.insert(channel.topic + " (a message is not JSON)");
       const std::string top = head == "values" ? "" : "/" + head;

@@ -365,10 +365,10 @@ TEST(MjcfExport, WhatIsLeftOutIsAWarning) {
   ASSERT_TRUE(ExportMjcf(def, {}, out));
   EXPECT_EQ(
       out.Format(),
-      "warning: left out: restitution of \"ba\"\n"
-      "warning: left out: static friction other than kinetic friction, of \"ba\"\n"
       "warning: left out: `friction_law: along_slip` (MuJoCo's friction acts in both tangential "
       "directions)\n"
+      "warning: left out: restitution of \"ba\"\n"
+      "warning: left out: static friction other than kinetic friction, of \"ba\"\n"
       "warning: left out: the initial velocity (export a keyframe to keep it) of \"a\"\n"
       "warning: left out: the limit of the damper force to the spring force (`damping_law: "
       "clamped`) of \"c\"\n"

@@ -195,8 +195,8 @@ TEST(Parameters, AnUnknownOverrideIsAnErrorWithAHint) {
 }
 
 TEST(Parameters, AFaultyOverrideNamesItself) {
-  EXPECT_EQ(ErrorsOf("edge_m: 1\n", {{"edge_m", "2 m"}}),
-            "--set edge_m=2 m: error: parameters.edge_m: unexpected \"m\" in \"2 m\"\n");
+  EXPECT_EQ(ErrorsOf("edge_m: 1\n", {{"edge_m", "2 q"}}),
+            "--set edge_m=2 q: error: parameters.edge_m: unexpected \"q\" in \"2 q\"\n");
 }
 
 TEST(Parameters, EachFaultIsReportedOnceAndItsUsersStaySilent) {

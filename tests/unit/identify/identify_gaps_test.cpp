@@ -169,8 +169,8 @@ TEST_F(GapsTest, AnAngleThatJumpsByATurnIsAWarningWithTheRemedy) {
             [](double t) { return std::to_string(std::remainder(0.9 * t, 2 * std::acos(-1.0))); });
   Residual("w", "body/m/rotation_z_rad", "rows");
   EXPECT_NE(out_.Format().find("warning: residuals: body/m/rotation_z_rad in the data of t jumps "
-                               "by a turn at 3.49 s (if the angle wraps, set \"wrap\": \"turn\" in "
-                               "its rule of a mapping (`map`))"),
+                               "by a turn at 3.49 s (if the angle wraps, add \"wrap\": \"turn\" to "
+                               "the rule of this channel in the mapping file given by `map`)"),
             std::string::npos)
       << out_.Format();
 }
