@@ -379,7 +379,7 @@ test("AModelIsAnalyzedDroppedSettledAndPutBack", options, async (t) => {
   assert.ok((await page.locator(".plots .grid:visible").count()) > 0, "plots of the fall");
   await page.getByRole("button", { name: "let the robot settle on the ground" }).click();
   await page.waitForFunction(() => window.taut.app.frame.value.now_s === 0 && window.taut.app.scene.value.terrain.length === 1);
-  await page.getByRole("button", { name: "back to the described pose, without weight" }).click();
+  await page.getByRole("button", { name: "return to the described pose, without gravity" }).click();
   await page.waitForFunction(() => window.taut.app.scene.value.terrain.length === 0 && window.taut.app.frame.value.now_s === 0);
   assert.ok(Math.abs((await height()) - before_m) < 1e-9);
 });
