@@ -235,8 +235,10 @@ void AddInverse(CLI::App& analyze, AnalyzeArguments& args) {
                                            "Inverse statics: tensions of least cost that hold the "
                                            "described pose, and their rest lengths");
   backwards->excludes(analyze.get_option("--modes"));
-  AddChoice(analyze, "--minimise", inverse.minimise, kCosts,
-            "With --inverse: objective, summed over all cables (default: force_density)")
+  AddChoice(
+      analyze, "--minimise", inverse.minimise, kCosts,
+      "With --inverse: objective, summed over all cables: energy, or square of force_density or "
+      "tension (default: force_density)")
       ->needs(backwards);
   const auto bound = [&](const char* flag, double& value, const char* help) {
     analyze.add_option(flag, value, help)

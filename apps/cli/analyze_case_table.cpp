@@ -9,15 +9,10 @@
 namespace taut::cli {
 namespace {
 
-/// Sum of the vertical forces of all that holds the robot in the world.
+/// Returns the sum of the vertical reactions.
 double ReactionZ_n(const CaseResult& result) {
   double sum_n = 0;
-  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
-    if (IsSupport(result.def, result.def.joints[j])) sum_n += result.at.joint_loads[j].force_n.z;
-  }
-  for (const Reaction& anchor : result.anchors) sum_n += anchor.force_n.z;
-  for (const CaseResult::End& end : result.ends) sum_n += end.force_n.z;
-  for (const ContactState& contact : result.at.contacts) sum_n += contact.force_n.z;
+  for (const ReactionForce& one : ReactionsOf(result)) sum_n += one.force_n.z;
   // Loads on points of the world, such as half of the wind on a bar that ends there
   for (const LoadCaseSpec::NodeForce& load : result.loads.forces) {
     if (result.def.nodes[static_cast<std::size_t>(load.node)].body == kWorld) {

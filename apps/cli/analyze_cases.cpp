@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analyze_names.h"
 #include "analyze_report.h"
 
 namespace taut::cli {
@@ -124,6 +125,28 @@ std::vector<CaseResult> SolveCases(const ModelDef& def, const std::vector<LoadCa
     if (with_modes) result.modes = FindModes(result.def, there);
   }
   return results;
+}
+
+std::vector<ReactionForce> ReactionsOf(const CaseResult& result) {
+  const ModelDef& def = result.def;
+  std::vector<ReactionForce> list;
+  for (std::size_t j = 0; j < def.joints.size(); ++j) {
+    const JointDef& joint = def.joints[j];
+    if (!IsFixed(def, joint.body_a)) continue;
+    const JointLoad& load = result.at.joint_loads[j];
+    list.push_back({"support", joint.name, joint.to_m, load.force_n, load.torque_n_m});
+  }
+  for (const Reaction& anchor : result.anchors) {
+    const BodyDef& body = def.bodies[static_cast<std::size_t>(anchor.body)];
+    list.push_back({"anchor", body.name, body.com_m, anchor.force_n, anchor.torque_n_m});
+  }
+  for (const CaseResult::End& end : result.ends) {
+    list.push_back({"node", end.name, end.point_m, end.force_n, {}});
+  }
+  for (const ContactState& contact : result.at.contacts) {
+    list.push_back({"ground", BodyName(def, contact.body_a), contact.point_m, contact.force_n, {}});
+  }
+  return list;
 }
 
 }  // namespace taut::cli

@@ -104,30 +104,12 @@ Json PoseJson(const CaseResult& result) {
 
 Json ReactionsJson(const CaseResult& result) {
   Json list = Json::array();
-  const auto add = [&](const char* kind, const std::string& name, const Vec3& force_n,
-                       const Vec3& torque_n_m, const Json& point_m) {
-    list.push_back({{"kind", kind},
-                    {"name", name},
-                    {"point_m", point_m},
-                    {"force_n", ToJson(force_n)},
-                    {"torque_n_m", ToJson(torque_n_m)}});
-  };
-  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
-    const JointDef& joint = result.def.joints[j];
-    if (!IsSupport(result.def, joint)) continue;
-    const JointLoad& load = result.at.joint_loads[j];
-    add("support", joint.name, load.force_n, load.torque_n_m, ToJson(joint.to_m));
-  }
-  for (const Reaction& anchor : result.anchors) {
-    const BodyDef& body = result.def.bodies[static_cast<std::size_t>(anchor.body)];
-    add("anchor", body.name, anchor.force_n, anchor.torque_n_m, ToJson(body.com_m));
-  }
-  for (const CaseResult::End& end : result.ends) {
-    add("node", end.name, end.force_n, {}, ToJson(end.point_m));
-  }
-  for (const ContactState& contact : result.at.contacts) {
-    add("ground", BodyName(result.def, contact.body_a), contact.force_n, {},
-        ToJson(contact.point_m));
+  for (const ReactionForce& one : ReactionsOf(result)) {
+    list.push_back({{"kind", one.kind},
+                    {"name", one.name},
+                    {"point_m", ToJson(one.point_m)},
+                    {"force_n", ToJson(one.force_n)},
+                    {"torque_n_m", ToJson(one.torque_n_m)}});
   }
   return list;
 }

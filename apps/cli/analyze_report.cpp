@@ -57,27 +57,14 @@ void AddCells(const Vec3& f, const Vec3& t, std::vector<std::string>& row) {
 std::string Reactions(const CaseResult& result) {
   Table table({"reaction", "force x", "y", "z", "torque x", "y", "z"});
   table.Add({"", "N", "N", "N", "N m", "N m", "N m"});
-  std::size_t count = 0;
-  const auto add = [&](const std::string& name, const Vec3& force, const Vec3& torque) {
-    std::vector<std::string> row{name};
-    AddCells(force, torque, row);
+  const std::vector<ReactionForce> reactions = ReactionsOf(result);
+  for (const ReactionForce& one : reactions) {
+    const std::string kind = one.kind;
+    std::vector<std::string> row{(kind == "ground" ? "ground at " : kind + " ") + one.name};
+    AddCells(one.force_n, one.torque_n_m, row);
     table.Add(row);
-    ++count;
-  };
-  for (std::size_t j = 0; j < result.def.joints.size(); ++j) {
-    const JointDef& joint = result.def.joints[j];
-    if (!IsSupport(result.def, joint)) continue;
-    const JointLoad& load = result.at.joint_loads[j];
-    add("support " + joint.name, load.force_n, load.torque_n_m);
   }
-  for (const Reaction& anchor : result.anchors) {
-    add("anchor " + BodyName(result.def, anchor.body), anchor.force_n, anchor.torque_n_m);
-  }
-  for (const CaseResult::End& end : result.ends) add("node " + end.name, end.force_n, {});
-  for (const ContactState& contact : result.at.contacts) {
-    add("ground at " + BodyName(result.def, contact.body_a), contact.force_n, {});
-  }
-  return count == 0 ? std::string() : table.Text();
+  return reactions.empty() ? std::string() : table.Text();
 }
 
 std::string Limit(double force_n) {
@@ -186,13 +173,6 @@ std::string SafetyFactorText(double factor) {
 
 bool AnalysisResult::Found() const {
   return std::all_of(cases.begin(), cases.end(), [](const CaseResult& c) { return c.at.found; });
-}
-
-bool IsSupport(const ModelDef& def, const JointDef& joint) {
-  const auto fixed = [&](int body) {
-    return body == kWorld || def.bodies[static_cast<std::size_t>(body)].fixed;
-  };
-  return fixed(joint.body_a);
 }
 
 std::string AnalysisTables(const AnalysisResult& result, int most_modes) {

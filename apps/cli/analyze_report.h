@@ -82,7 +82,12 @@ std::string AnalysisTables(const AnalysisResult& result, int most_modes);
 /// Returns all results as JSON, in full precision.
 std::string AnalysisJson(const AnalysisResult& result, int most_modes);
 
-/// Returns whether a joint holds the robot in the world; its loads are then reactions.
-bool IsSupport(const ModelDef& def, const JointDef& joint);
+/// Force of a support, an anchored body, a cable's end in the world, or the ground on the robot.
+struct ReactionForce {
+  const char* kind;  ///< "support", "anchor", "node", "ground".
+  std::string name;  ///< Name of the joint, body or node.
+  Vec3 point_m, force_n, torque_n_m;
+};
+std::vector<ReactionForce> ReactionsOf(const CaseResult& result);
 
 }  // namespace taut::cli

@@ -98,7 +98,7 @@ int RunCompare(CompareArguments given) {
 void AddCompare(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("compare", "Compute the differences of two traces.");
   const auto given = std::make_shared<CompareArguments>();
-  command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz) or folder of a run")
+  command->add_option("A", given->path_a, "Trace (.h5, .csv, .csv.gz, .mcap) or folder of a run")
       ->required();
   command->add_option("B", given->path_b, "Reference: trace or folder of a run")->required();
   AddInput(*command, "--map", {"mapping"}, given->map_b,

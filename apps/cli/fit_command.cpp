@@ -47,7 +47,7 @@ void Show(ProgressLine& line, const IdentifyProgress& p, const FitProblem& probl
   text += fmt::format("  {} experiments computed", p.computed);
   if (p.most_iterations > p.iterations && p.iterations > 0) {
     const double left_s = elapsed_s / p.iterations * (p.most_iterations - p.iterations);
-    text += fmt::format("  at most {:.0f} s left", left_s);
+    text += "  at most " + Duration(left_s) + " left";
   }
   line.Show(text);
 }

@@ -34,12 +34,6 @@ struct LearnArguments {
   bool skip_damaged = false;
 };
 
-std::string Duration(double s) {
-  const long long whole = std::llround(std::fmin(std::fmax(s, 0.0), 1e9));
-  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
-}
-
 /// Returns a score with the name and the unit of its measure. Penalties are subtracted in this
 /// unit.
 std::string ScoreText(double score, Measure measure) {

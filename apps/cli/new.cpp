@@ -84,11 +84,7 @@ int New(const NewArguments& args) {
   }
   OutputIsNews();
   const std::string path = args.name + ".yaml";
-  std::error_code failed;
-  if (std::filesystem::exists(std::filesystem::symlink_status(path, failed))) {
-    fmt::print(stderr, "{}: error: the file exists already, and is not overwritten\n", path);
-    return kBadInput;
-  }
+  if (IsTaken(path)) return kBadInput;
   std::string next;
   const int exit = WriteNamed(path, Text(args, next));
   if (exit != kOk) return exit;
@@ -109,14 +105,16 @@ void AddNew(CLI::App& app, int& exit_code) {
       ->option_text(Alternatives(kKinds))
       ->check(OneOf(kKinds));
   create
-      ->add_option("name", args->name,
-                   "Name; the folder of a robot is NAME, another file is NAME.yaml, in the current "
-                   "folder. Of a mapping: the log to read")
+      ->add_option(
+          "name", args->name,
+          "Name of the robot's folder, or of the file NAME.yaml, in the current folder; for a "
+          "mapping: the log to read")
       ->required()
       ->option_text("NAME");
-  AddInput(*create, "--model", {"model", "experiment"}, args->model,
-           "Model file of an experiment's robot (default: the shipped prism), or model or "
-           "experiment whose names occur in a log")
+  AddInput(
+      *create, "--model", {"model", "experiment"}, args->model,
+      "For an experiment: model file of its robot (default: the shipped prism); for a mapping: "
+      "model or experiment whose names occur in the log")
       ->option_text("FILE");
   create->add_option("--out", args->out, "Mapping file to write (default: LOG.map.json)")
       ->option_text("FILE");

@@ -43,11 +43,7 @@ int NewMapping(const NewMappingArguments& args) {
   if (!guess) return Fail(found, kBadInput);
 
   const std::string out = args.out.empty() ? DefaultOut(args.log) : args.out;
-  std::error_code failed;
-  if (std::filesystem::exists(std::filesystem::symlink_status(out, failed))) {
-    fmt::print(stderr, "{}: error: the file exists already, and is not overwritten\n", out);
-    return kBadInput;
-  }
+  if (IsTaken(out)) return kBadInput;
   if (const int exit = WriteNamed(out, guess->text); exit != kOk) return exit;
   OutputIsNews();
   fmt::print("{}\n", args.log);
@@ -59,12 +55,12 @@ int NewMapping(const NewMappingArguments& args) {
   // A row after the sample may have another form.
   const auto mapping = LoadMapping(out, found);
   const auto trace = mapping ? ReadMapped(args.log, *mapping, out, found) : std::nullopt;
-  if (trace) Pass(found, false);
   if (!trace) {
     Fail(found, kBadInput);
     fmt::print("Written: {}, which does not read the whole file: correct it by hand\n", out);
     return kBadInput;
   }
+  Pass(found, false);
   fmt::print("Written: {}, which reads {} rows from {:.6g} s to {:.6g} s\n", out,
              trace->time_s.size(), trace->time_s.front(), trace->time_s.back());
   SayNext({"compare", "runs/RUN", args.log, "--map", out});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -55,6 +56,13 @@ std::string TensionLine(const RunSummary& summary, const CableGroup& group) {
 int Fail(const Diagnostics& found, Exit exit) {
   fmt::print(stderr, "{}", found.Format());
   return exit;
+}
+
+bool IsTaken(const std::string& path) {
+  std::error_code failed;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(path, failed))) return false;
+  fmt::print(stderr, "{}: error: the file exists already, and is not overwritten\n", path);
+  return true;
 }
 
 bool Passes(Diagnostics& found, bool strict) {

@@ -28,6 +28,9 @@ inline constexpr const char* kStrictHelp = "Warnings are errors";
 /// Help text of `--tables`.
 inline constexpr const char* kTablesHelp = "Also print the tables of all members";
 
+/// Returns whether a path exists already, after an error that it is not overwritten.
+bool IsTaken(const std::string& path);
+
 /// Writes a file whose path the user gave. Reports errors on stderr, returns the exit status.
 int WriteNamed(const std::string& path, const std::string& text);
 

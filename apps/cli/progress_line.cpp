@@ -3,9 +3,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace taut::cli {
+
+std::string Duration(double s) {
+  const long long whole = std::llround(std::fmin(std::fmax(s, 0.0), 1e9));
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
 
 ProgressLine::ProgressLine(bool quiet, bool at_once)
     : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), at_once_(at_once) {}

@@ -6,6 +6,9 @@
 
 namespace taut::cli {
 
+/// Formats a duration as m:ss or h:mm:ss.
+std::string Duration(double s);
+
 /// Progress line: rewritten in place on a terminal, printed every ten seconds elsewhere.
 class ProgressLine {
  public:

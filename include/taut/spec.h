@@ -17,6 +17,7 @@
 #include "taut/diagnostics.h"
 #include "taut/environment.h"
 #include "taut/gait.h"
+#include "taut/load_case.h"
 #include "taut/model_def.h"
 #include "taut/variation.h"
 
@@ -142,7 +143,7 @@ struct GaitChange {
   int gait = 0;  ///< Gait number. 0: `gait`; i: `others[i - 1]`.
 };
 
-/// Gait as input of a controller, with its own clock; its output is constant between ticks.
+/// Gait as input of a controller, with a separate clock. Its output is constant between ticks.
 struct GaitInputSpec {
   ClockSpec clock{0.01, 0.0};
   GaitSpec gait;                    ///< Initial gait.
@@ -277,34 +278,6 @@ struct SensorSpec {
   /// True: the length of a cable is estimated as L + T / k and its rate from successive samples, as
   /// on a board. False: both are exact.
   bool length_from_tension = false;
-};
-
-/// Load case: static loads, for `taut/analysis.h`.
-struct LoadCaseSpec {
-  struct NodeForce {
-    int node = 0;
-    Vec3 force_n;  ///< In W.
-  };
-  struct Settlement {
-    int joint = 0;  ///< Support whose point in the world moves.
-    Vec3 by_m;      ///< In W.
-  };
-  struct Lengthening {
-    int index = 0;  ///< Index of a cable or, in `bars`, of a joint that is a bar.
-    double by_m = 0.0;
-  };
-  std::string name;
-  bool weight = true;          ///< Whether gravity acts.
-  double weight_factor = 1.0;  ///< Partial factor on gravity, if it acts.
-  std::vector<NodeForce> forces;
-  std::vector<Settlement> settlements;
-  /// Increase of rest lengths, including thermal expansion.
-  std::vector<Lengthening> cables, bars;
-  /// Limit of the displacement of any node from its described place; absent: none.
-  std::optional<double> max_displacement_m;
-
-  /// Factor on gravity; 0 without weight.
-  double GravityFactor() const { return weight ? weight_factor : 0.0; }
 };
 
 struct RecordSpec {

@@ -36,6 +36,7 @@
 #include "taut/lane_state.h"
 #include "taut/learn.h"
 #include "taut/live.h"
+#include "taut/load_case.h"
 #include "taut/loads.h"
 #include "taut/matrix.h"
 #include "taut/member_def.h"

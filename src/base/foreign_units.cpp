@@ -8,6 +8,8 @@ namespace {
 constexpr double kPound_kg = 0.45359237, kGravity_m_per_s2 = 9.80665, kInch_m = 0.0254;
 constexpr double kPoundForce_n = kPound_kg * kGravity_m_per_s2;
 
+}  // namespace
+
 /// Exact by definition (The International System of Units, 9th edition; international yard and
 /// pound of 1959).
 const std::vector<ForeignUnit>& Units() {
@@ -80,8 +82,6 @@ const std::vector<ForeignUnit>& Units() {
   };
   return units;
 }
-
-}  // namespace
 
 std::optional<ForeignUnit> FindUnit(std::string_view name) {
   for (const ForeignUnit& unit : Units()) {

@@ -15,6 +15,7 @@ struct ForeignUnit {
 };
 /// Returns the unit with this name; nothing if unknown.
 std::optional<ForeignUnit> FindUnit(std::string_view name);
+const std::vector<ForeignUnit>& Units();
 std::vector<std::string> UnitNames();
 
 }  // namespace taut::base

@@ -51,9 +51,9 @@ const Words kExplained{
     "tendon",   "wire",      "string",    "length",      "laenge",      "rest",     "l0",
     "position", "positions", "pos",       "translation", "orientation", "rotation", "quaternion",
     "quat",     "pose",      "transform", "transforms",  "tf",          "angle",    "joint",
-    "joints",   "rigid",     "body",      "node",        "marker",      "state",    "states",
-    "effort",   "data",      "field",     "value",       "measured",    "sensor",   "x",
-    "y",        "z",         "w",         "qx",          "qy",          "qz",       "qw"};
+    "joints",   "rigid",     "body",      "node",        "state",       "states",   "effort",
+    "data",     "field",     "value",     "measured",    "sensor",      "x",        "y",
+    "z",        "w",         "qx",        "qy",          "qz",          "qw"};
 
 /// Words before a number that make it the number of a cable.
 const Words kCableWords{"cable", "seil", "rope", "tendon", "wire", "string"};

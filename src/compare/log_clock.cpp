@@ -9,6 +9,7 @@
 #include "base/foreign_units.h"
 #include "compare/column_meaning.h"
 #include "trace/clock_text.h"
+#include "trace/table_cells.h"
 
 namespace taut {
 namespace {
@@ -30,7 +31,7 @@ class ClockGuess {
     std::vector<double> values;
     for (const auto& row : form_.rows) {
       values.push_back(format ? trace::ParseClock(row[column], *format).value_or(NAN)
-                              : CellValue(row[column], form_.layout.decimal));
+                              : trace::CellNumber(row[column], form_.layout.decimal).value_or(NAN));
     }
     return values;
   }

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string_view>
 #include <unordered_map>
 
 #include "base/input_file.h"
-#include "base/number_text.h"
 #include "compare/column_meaning.h"
 #include "trace/clock_text.h"
 #include "trace/csv_lines.h"
@@ -22,16 +20,11 @@ namespace {
 
 constexpr std::size_t kSampleLines = 400;
 constexpr int kUsualHeaderLines = 3;
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 constexpr ClockFormat kClocks[] = {ClockFormat::kIso8601, ClockFormat::kTimeOfDay,
                                    ClockFormat::kDayMonthYear, ClockFormat::kMonthDayYear};
 
 using Lines = std::vector<std::string>;
 using Cells = std::vector<trace::TableCell>;
-
-bool IsGap(const std::string& cell) {
-  return cell.empty() || cell == "NaN" || cell == "nan" || cell == "NA";
-}
 
 bool IsClock(const std::string& cell) {
   return std::any_of(std::begin(kClocks), std::end(kClocks), [&](ClockFormat format) {
@@ -40,7 +33,8 @@ bool IsClock(const std::string& cell) {
 }
 
 bool IsValue(const std::string& cell, char decimal) {
-  return !IsGap(cell) && (IsNumberCell(cell, decimal) || IsClock(cell));
+  const auto number = trace::CellNumber(cell, decimal);
+  return number ? std::isfinite(*number) : !trace::IsGapCell(cell) && IsClock(cell);
 }
 
 /// Returns the first lines and their encoding.
@@ -77,7 +71,7 @@ bool IsRow(const Cells& cells, std::size_t usual, char decimal) {
   if (cells.empty() || cells.size() > usual + 1 || cells.size() + 1 < usual) return false;
   std::size_t values = 0, texts = 0;
   for (const auto& cell : cells) {
-    if (IsGap(cell.text)) continue;
+    if (trace::IsGapCell(cell.text)) continue;
     ++(IsValue(cell.text, decimal) ? values : texts);
   }
   return values > 0 && values >= texts;
@@ -122,8 +116,9 @@ Marks GuessMarks(const Lines& lines) {
 /// A line with a single text above several columns is a title; `merged`: such lines name columns.
 bool IsHeader(const Cells& cells, std::size_t usual, char decimal, bool merged) {
   if (cells.size() + 1 < usual || cells.size() > usual + 1) return false;
-  const auto texts = std::count_if(cells.begin(), cells.end(),
-                                   [](const trace::TableCell& cell) { return !IsGap(cell.text); });
+  const auto texts = std::count_if(cells.begin(), cells.end(), [](const trace::TableCell& cell) {
+    return !trace::IsGapCell(cell.text);
+  });
   if (texts < (usual > 1 && !merged ? 2 : 1)) return false;
   return std::none_of(cells.begin(), cells.end(),
                       [&](const trace::TableCell& cell) { return IsValue(cell.text, decimal); });
@@ -153,9 +148,9 @@ std::string After(const Lines& lines, std::string_view key) {
 /// Returns a rate above 0.
 std::optional<double> RateIn(const std::string& text) {
   constexpr double kLeast_hz = 1e-3;
-  double value = CellValue(text, '.');
-  if (!std::isfinite(value)) value = CellValue(text, ',');
-  return value >= kLeast_hz ? std::optional(value) : std::nullopt;
+  auto value = trace::CellNumber(text, '.');
+  if (!value) value = trace::CellNumber(text, ',');
+  return value && *value >= kLeast_hz ? value : std::nullopt;
 }
 
 /// Names for the columns of a table without a header.
@@ -237,7 +232,7 @@ void MakeUnique(LogForm& form) {
 bool MayHaveThousands(const std::vector<std::string>& cells) {
   bool whole = false, grouped = false;
   for (const std::string& cell : cells) {
-    if (IsGap(cell)) continue;
+    if (trace::IsGapCell(cell)) continue;
     const std::size_t mark = cell.find_first_of(".,");
     if (mark == cell.npos) {
       whole = true;
@@ -250,22 +245,6 @@ bool MayHaveThousands(const std::vector<std::string>& cells) {
 }
 
 }  // namespace
-
-bool IsNumberCell(const std::string& cell, char decimal) {
-  return IsGap(cell) || std::isfinite(CellValue(cell, decimal));
-}
-
-double CellValue(const std::string& cell, char decimal) {
-  std::string text = cell;
-  if (decimal == ',') {
-    if (text.find('.') != text.npos) return kNoValue;
-    std::replace(text.begin(), text.end(), ',', '.');
-  }
-  if (text.starts_with('+')) text.erase(0, 1);
-  double value = kNoValue;
-  const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), value);
-  return failure == std::errc() && end == text.data() + text.size() ? value : kNoValue;
-}
 
 std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
   LogForm form;

@@ -49,8 +49,9 @@ class CsvParser {
         trace_.channels.push_back({std::string(cell), UnitOfName(cell)});
       } else if (cell != "time_s") {
         Error("csv.no_time", 1, 1, fmt::format("the first column is \"{}\"", cell),
-              "expected time_s; `taut new mapping` writes a mapping for a log of another program, "
-              "for `--map`");
+              "expected time_s; for a log of another program, write a mapping with `taut new "
+              "mapping` "
+              "and pass it to `--map`");
       }
     });
     trace_.values.resize(trace_.channels.size());

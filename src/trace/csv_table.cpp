@@ -7,7 +7,6 @@
 #include <map>
 #include <string_view>
 
-#include "base/number_text.h"
 #include "base/pattern.h"
 #include "trace/clock_text.h"
 #include "trace/csv_lines.h"
@@ -103,18 +102,6 @@ class TableParser {
     return errors_ == 0;
   }
 
-  /// Returns whether a text is a number with a decimal comma.
-  static bool HasDecimalComma(std::string_view text) {
-    const std::size_t comma = text.find(',');
-    if (comma == text.npos) return false;
-    std::string number(text);
-    number[comma] = '.';
-    double ignored = 0;
-    const auto [end, failure] =
-        base::FromChars(number.data(), number.data() + number.size(), ignored);
-    return failure == std::errc() && end == number.data() + number.size();
-  }
-
   /// Reports decimal commas and stops reading, since all other cells have the same error.
   void RefuseDecimalCommas(const Cell& cell) {
     Error("csv.decimal_comma", line_, cell.column,
@@ -125,29 +112,16 @@ class TableParser {
 
   /// Converts a cell to a number; empty cells and "NA" become NaN.
   double Number(const Cell& cell) {
-    std::string_view text = cell.text;
-    if (text.empty() || text == "NA" || text == "NaN" || text == "nan") return kNan;
-    if (text.front() == '+') text.remove_prefix(1);
-    double number = kNan;
-    std::string with_point;
-    if (layout_.decimal == ',') {  // a point is then a thousands separator
-      with_point = text;
-      for (char& c : with_point) c = c == ',' ? '.' : c == '.' ? ',' : c;
-      text = with_point;
-    }
-    const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
-    if (failure != std::errc() || end != text.data() + text.size()) {
-      if (layout_.decimal == '.' && HasDecimalComma(text)) {
-        RefuseDecimalCommas(cell);
-        return kNan;
-      }
-      Error("csv.not_a_number", line_, cell.column,
-            fmt::format("\"{}\" is not a number", cell.text),
-            "skip lines before the rows with `skip_lines` in the mapping, a column of text with "
-            "`ignore`");
+    if (IsGapCell(cell.text)) return kNan;
+    if (const auto number = CellNumber(cell.text, layout_.decimal)) return *number;
+    if (layout_.decimal == '.' && CellNumber(cell.text, ',')) {
+      RefuseDecimalCommas(cell);
       return kNan;
     }
-    return number;
+    Error("csv.not_a_number", line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),
+          "skip lines before the rows with `skip_lines` in the mapping, a column of text with "
+          "`ignore`");
+    return kNan;
   }
 
   double Clock(const Cell& cell) {

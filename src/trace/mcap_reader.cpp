@@ -68,7 +68,7 @@ bool McapReader::Read(const std::function<bool(const McapMessage&)>& use) {
   if (!bytes) return false;
   if (!bytes->starts_with(kMcapMagic)) {
     out_.Error("mcap.no_mcap", {path_}, "the file is not MCAP",
-               "its first bytes are not those of the format");
+               "it does not begin with the bytes of the MCAP format");
     return false;
   }
   return Records(std::string_view(*bytes).substr(kMcapMagic.size()), use, false);

@@ -1,5 +1,6 @@
 #include "trace/table_cells.h"
 
+#include "base/number_text.h"
 #include "trace/csv_lines.h"
 
 namespace taut::trace {
@@ -25,6 +26,25 @@ std::vector<TableCell> SplitCells(std::string_view line, char separator) {
     ++at;
   }
   return cells;
+}
+
+bool IsGapCell(std::string_view text) {
+  return text.empty() || text == "NaN" || text == "nan" || text == "NA";
+}
+
+std::optional<double> CellNumber(std::string_view text, char decimal) {
+  if (IsGapCell(text)) return std::nullopt;
+  if (text.front() == '+') text.remove_prefix(1);
+  std::string with_point;
+  if (decimal == ',') {
+    with_point = text;
+    for (char& c : with_point) c = c == ',' ? '.' : c == '.' ? ',' : c;
+    text = with_point;
+  }
+  double number = 0;
+  const auto [end, failure] = base::FromChars(text.data(), text.data() + text.size(), number);
+  if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
 }
 
 void JoinHeader(const std::vector<TableCell>& cells, bool fill, std::vector<std::string>& names) {

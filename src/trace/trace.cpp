@@ -48,8 +48,8 @@ std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out) {
   if (path.ends_with(".mcap")) return trace::WithFiniteSpans(path, trace::ReadMcap(path, out), out);
   out.Error(
       "trace.unknown_format", {path}, "unknown trace format",
-      "expected .h5, .csv, .csv.gz or .mcap; `taut new mapping` writes a mapping for a log of "
-      "another program, for `--map`");
+      "expected .h5, .csv, .csv.gz or .mcap; for a log of another program, write a mapping with "
+      "`taut new mapping` and pass it to `--map`");
   return std::nullopt;
 }
 

@@ -312,52 +312,6 @@ TEST_F(CliCommand, ListNamesWhatComesAlong) {
   EXPECT_EQ(nlohmann::json::parse(Taut({"list", "--json"}).output).size(), count);
 }
 
-TEST_F(CliCommand, ANewModelIsGood) {
-  EXPECT_EQ(Taut({"new", "model", "mine"}).output,
-            "Written: mine.yaml\nnext: taut view mine.yaml\n");
-  const test::CommandResult checked = Taut({"check", "mine.yaml", "--strict"});
-  EXPECT_EQ(checked.status, 0) << checked.errors;
-  EXPECT_NE(checked.output.find("model mine, 3 bodies, 9 cables"), std::string::npos);
-}
-
-TEST_F(CliCommand, ANewExperimentRuns) {
-  EXPECT_EQ(Taut({"new", "experiment", "alone"}).status, 0);
-  EXPECT_EQ(Taut({"new", "model", "it's", "--model", "x"}).status, 2);
-  EXPECT_EQ(Taut({"new", "model", "mine"}).status, 0);
-  EXPECT_EQ(Taut({"new", "experiment", "trial", "--model", "mine.yaml"}).status, 0);
-  for (const std::string name : {"alone", "trial"}) {
-    const test::CommandResult run = Taut({"run", name + ".yaml", "--strict"});
-    EXPECT_EQ(run.status, 0) << run.errors;
-    EXPECT_TRUE(std::filesystem::exists(Path("runs/" + name + "/trace.h5")));
-  }
-}
-
-TEST_F(CliCommand, ANewStudyIsSearched) {
-  EXPECT_EQ(Taut({"new", "study", "search"}).status, 0);
-  const test::CommandResult run = Taut({"learn", "search.yaml", "--strict"});
-  EXPECT_EQ(run.status, 0) << run.errors;
-  EXPECT_EQ(run.output.rfind("search: 64 evaluations, 0 failed", 0), 0u) << run.output;
-}
-
-TEST_F(CliCommand, NewOverwritesNothing) {
-  Write("mine.yaml", "what I wrote");
-  const test::CommandResult again = Taut({"new", "model", "mine"});
-  EXPECT_EQ(again.status, 3);
-  EXPECT_EQ(again.errors, "mine.yaml: error: the file exists already, and is not overwritten\n");
-  EXPECT_EQ(Read(Path("mine.yaml")), "what I wrote");
-  for (const std::string model : {"a\x1b.yaml", "a\nb.yaml"}) {  // which no input file may contain
-    Write(model, "");
-    const test::CommandResult refused = Taut({"new", "experiment", "e", "--model", model});
-    EXPECT_EQ(refused.status, 2);
-    EXPECT_NE(refused.errors.find("cannot be written into a file"), std::string::npos);
-    EXPECT_FALSE(std::filesystem::exists(Path("e.yaml")));
-  }
-  EXPECT_EQ(Refusal({"new", "model", "a/b"}),
-            "error: NAME: \"a/b\" is not a valid name (expected letters, digits, _ or -)");
-  EXPECT_EQ(Refusal({"new", "modle", "a"}),
-            "error: kind: \"modle\" is unknown (did you mean \"model\"?)");
-}
-
 TEST_F(CliCommand, RunPrintsItsSummaryAsJson) {
   const test::CommandResult run = Taut({"run", kHangOnTheLine, "--json", "--report_never"});
   EXPECT_EQ(run.status, 2);

@@ -119,9 +119,9 @@ class CableScheme {
 inline std::vector<CableScheme> CableSchemes() {
   return {
       {"symplectic Euler", 0, 1, 0},
-      {"symplectic Euler, 8 sub-steps", 0, 8, 0},
+      {"symplectic Euler, 8 substeps", 0, 8, 0},
       {"implicit Euler rows", 1, 1, 1000},
-      {"implicit Euler rows, 8 sub-steps of one sweep", 1, 8, 1},
+      {"implicit Euler rows, 8 substeps of one sweep", 1, 8, 1},
       {"theta = 0.6 rows", 0.6, 1, 1000},
       {"implicit midpoint rows", 0.5, 1, 1000},
   };

@@ -68,7 +68,8 @@ void Keys(Io& io, Like<EnvironmentReward> auto& r) {
   io.Map(
       "", "environment.reward",
       "Reward of a step: increase of the score that a study with this objective computes, plus the "
-      "terms below. Without early termination, the rewards of an episode sum to that score.");
+      "terms below. Without these terms and early termination, the rewards of an episode sum to "
+      "that score.");
   io("measure", r.measure, kRewardMeasures,
      "Objective as in a study: `distance`, `heading` or `nearer` [m]. `none`: only the terms "
      "below, or a reward that your program computes.");
@@ -118,8 +119,8 @@ void Keys(Io& io, Environment& e) {
          R"({"actions": [{"cables": "driven", "rest_length_m": 0.05}], )"
          R"("observations": ["cable/*/tension_n"]})");
   io("period_s", e.period_s, Bound::kPositive,
-     "Time between actions: a whole multiple of `step_s` and of the periods of all controllers and "
-     "sensors.");
+     "Time between actions: a whole multiple of `step_s` and of the periods of controllers, gaits, "
+     "sensors and the goal.");
   if constexpr (Io::kResolved) {
     io("actions", e.actions);
     io("observations", e.observations);

@@ -1,12 +1,12 @@
 // Load cases of an experiment: forces, settlements, changes of length and temperature.
 #include <cmath>
 #include <map>
-#include <tuple>
 
 #include "base/fixed.h"
 #include "description/experiment/experiment_parts.h"
 #include "description/experiment/load_combinations.h"
 #include "description/experiment/load_keys.h"
+#include "description/experiment/load_members.h"
 
 namespace taut::description {
 namespace {
@@ -34,7 +34,6 @@ class CaseReader {
   CaseReader(const RobotSpec& robot, const Scope& scope) : robot_(robot), scope_(scope) {
     for (const JointDef& joint : robot.def.joints) {
       is_support_.push_back(base::IsFixed(robot.def, joint.body_a) && !IsBar(joint));
-      is_bar_.push_back(IsBar(joint));
     }
   }
 
@@ -64,25 +63,14 @@ class CaseReader {
     }
     for (const auto& [member, gain] : gains_) {
       const Member m = MemberAt(member);
-      if (m.rest_m + gain.by_m <= 0) {
-        scope_.out.Error("load_case.no_rest_length", gain.at,
-                         "the load case \"" + out.name + "\" makes the rest length of \"" + m.name +
-                             "\" zero or negative",
-                         "it is " + Shown(m.rest_m) + " m without the load case");
-      }
-      (member.is_bar ? out.bars : out.cables).push_back({member.index, gain.by_m});
+      CheckRestLength(out.name, m.name, m.rest_m, gain.by_m, gain.at, scope_);
+      (member.kind == LoadMember::Kind::kBar ? out.bars : out.cables)
+          .push_back({member.index, gain.by_m});
     }
     return out;
   }
 
  private:
-  struct Key {
-    bool is_bar;
-    int index;
-    bool operator<(const Key& other) const {
-      return std::tie(is_bar, index) < std::tie(other.is_bar, other.index);
-    }
-  };
   struct Member {
     const std::string& name;
     double rest_m, expansion_per_k;
@@ -114,9 +102,9 @@ class CaseReader {
     return found;
   }
 
-  Member MemberAt(const Key& key) const {
+  Member MemberAt(const LoadMember& key) const {
     const auto i = static_cast<std::size_t>(key.index);
-    if (key.is_bar) {
+    if (key.kind == LoadMember::Kind::kBar) {
       const JointDef& bar = robot_.def.joints[i];
       return {bar.name, bar.rest, bar.member.expansion_per_k};
     }
@@ -127,7 +115,7 @@ class CaseReader {
   /// Adds `gain` [m] to the change of rest length of each selected member.
   template <class F>
   void ForEach(const Value& selector, const char* what, const F& gain) {
-    for (const Key& key : Select(selector, what)) {
+    for (const LoadMember& key : SelectMembers(selector, what, false, robot_, scope_)) {
       Gain& of_it = gains_[key];
       of_it.by_m += gain(MemberAt(key));
       of_it.at = selector.at;
@@ -146,31 +134,10 @@ class CaseReader {
                      "add `expansion_per_k` to the builder in the model: steel has 12e-6");
   }
 
-  std::vector<Key> Select(const Value& selector, const char* what) {
-    const auto match = ReadMatch(selector, what, scope_);
-    std::vector<Key> found;
-    if (match.empty()) return found;
-    std::vector<std::string> words;
-    const auto look = [&](bool is_bar, std::size_t i, const Tags& tags) {
-      if (Matches(match, tags)) found.push_back({is_bar, static_cast<int>(i)});
-      words.insert(words.end(), tags.begin(), tags.end());
-    };
-    for (std::size_t i = 0; i < robot_.cable_tags.size(); ++i) look(false, i, robot_.cable_tags[i]);
-    for (std::size_t i = 0; i < robot_.joint_tags.size(); ++i) {
-      if (is_bar_[i]) look(true, i, robot_.joint_tags[i]);
-    }
-    if (found.empty()) {
-      scope_.out.Error("load_case.matches_no_member", selector.at,
-                       std::string(what) + ": no cable or bar matches " + Written(selector),
-                       UnknownWord(match, words, "cable or bar"));
-    }
-    return found;
-  }
-
   const RobotSpec& robot_;
   const Scope& scope_;
-  std::vector<bool> is_support_, is_bar_;
-  std::map<Key, Gain> gains_;
+  std::vector<bool> is_support_;
+  std::map<LoadMember, Gain> gains_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "description/experiment/experiment_parts.h"
+#include "description/experiment/load_members.h"
 #include "math/vec.h"
 
 namespace taut::description {
@@ -35,34 +35,20 @@ class LineLoad {
 
   void Run() {
     if (!load_.members.value) return;
-    const auto match = ReadMatch(*load_.members.value, "line_loads.members", scope_);
-    if (match.empty()) return;
     const ModelDef& def = robot_.def;
-    std::vector<std::string> words;
-    bool found = false;
-    const auto fits = [&](const Tags& tags) {
-      words.insert(words.end(), tags.begin(), tags.end());
-      const bool fit = Matches(match, tags);
-      found = found || fit;
-      return fit;
-    };
-    for (std::size_t i = 0; i < def.cables.size(); ++i) {
-      if (fits(robot_.cable_tags[i])) Cable(def.cables[i]);
-    }
-    for (std::size_t i = 0; i < def.joints.size(); ++i) {
-      const JointDef& joint = def.joints[i];
-      if (IsBar(joint) && fits(robot_.joint_tags[i])) {
-        Span({joint.body_a, joint.from_m}, {joint.body_b, joint.to_m}, joint.name);
+    for (const LoadMember& member :
+         SelectMembers(*load_.members.value, "line_loads.members", true, robot_, scope_)) {
+      const auto i = static_cast<std::size_t>(member.index);
+      if (member.kind == LoadMember::Kind::kCable) {
+        Cable(def.cables[i]);
+      } else if (member.kind == LoadMember::Kind::kBar) {
+        const JointDef& bar = def.joints[i];
+        Span({bar.body_a, bar.from_m}, {bar.body_b, bar.to_m}, bar.name);
+      } else {
+        const CapsuleDef& rod = def.capsules[i];
+        Span({rod.body, rod.from_m}, {rod.body, rod.to_m}, rod.name);
       }
     }
-    for (const CapsuleDef& rod : def.capsules) {
-      if (fits({rod.name})) Span({rod.body, rod.from_m}, {rod.body, rod.to_m}, rod.name);
-    }
-    if (found) return;
-    scope_.out.Error(
-        "load_case.matches_no_member", load_.members.value->at,
-        "line_loads.members: no cable, bar or rod matches " + Written(*load_.members.value),
-        UnknownWord(match, words, "cable, bar or rod"));
   }
 
  private:
@@ -131,19 +117,13 @@ void AddCase(const LoadCaseSpec& one, double factor, LoadCaseSpec& sum) {
 /// Reports members without a positive rest length under a combination.
 void CheckRestLengths(const LoadCaseSpec& sum, const RobotSpec& robot, const SourceRef& at,
                       const Scope& scope) {
-  const auto check = [&](const std::string& member, double rest_m, double by_m) {
-    if (rest_m + by_m > 0) return;
-    scope.out.Error("load_case.no_rest_length", at,
-                    "the load case \"" + sum.name + "\" leaves no positive rest length of \"" +
-                        member + "\", which has " + Shown(rest_m) + " m without it");
-  };
   for (const auto& longer : sum.cables) {
     const CableDef& cable = robot.def.cables[static_cast<std::size_t>(longer.index)];
-    check(cable.name, cable.rest_length_m, longer.by_m);
+    CheckRestLength(sum.name, cable.name, cable.rest_length_m, longer.by_m, at, scope);
   }
   for (const auto& longer : sum.bars) {
     const JointDef& bar = robot.def.joints[static_cast<std::size_t>(longer.index)];
-    check(bar.name, bar.rest, longer.by_m);
+    CheckRestLength(sum.name, bar.name, bar.rest, longer.by_m, at, scope);
   }
 }
 
@@ -185,7 +165,6 @@ void AddCombinations(const std::vector<LoadCombinationText>& combinations, const
       AddCase(cases[static_cast<std::size_t>(found - known.begin())], factor.value, sum);
     }
     sum.weight = sum.weight_factor != 0.0;
-    if (!sum.weight) sum.weight_factor = 1.0;
     CheckRestLengths(sum, robot, text.name.at, scope);
     cases.push_back(std::move(sum));
   }

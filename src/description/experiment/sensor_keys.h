@@ -10,11 +10,12 @@ inline const Choices<bool> kLengthSources{{"exact", false}, {"from_tension", tru
 
 template <class Io>
 void Keys(Io& io, Like<LoadCellCounts> auto& c) {
-  io.Map("", "load_cell.counts",
-         "Amplifier and converter of the load cell, instead of a range and a quantum: whole counts "
-         "from 0, rounded down, which the board converts to the force gain * count + offset. The "
-         "defaults, `counts: {}`, are the values of "
-         "Tetraspine3 (eq. 7 of Mirletz et al. 2015).");
+  io.Map(
+      "", "load_cell.counts",
+      "Amplifier and converter of the load cell, instead of a range and a quantum. Readings are "
+      "whole counts from 0, rounded down; the board computes the force gain * count + offset. The "
+      "defaults, `counts: {}`, are the values of "
+      "Tetraspine3 (eq. 7 of Mirletz et al. 2015).");
   io("gain_n_per_count", c.gain_n_per_count, Bound::kPositive, "Force per count [N].");
   io("offset_n", c.offset_n, "Force at count 0.");
   io("bits", c.bits, Bound{.least = 1, .most = 32}, "Converter bits: counts end at 2^bits - 1.");

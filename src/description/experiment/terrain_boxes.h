@@ -44,8 +44,9 @@ void Keys(Io& io, Like<ScatterText> auto& s) {
   io("count", s.count, kNeeded, Bound{.least = 1, .most = kMostBoxes}, "Number of blocks.");
   io("seed", s.seed, Bound{.least = 0, .most = 2'147'483'647},
      "Seed of the positions. Block i has x, y, z and heading, uniformly distributed and drawn in "
-     "this order, from Philox4x32-10 (docs/theory/sensors.md, Noise) with this key, stream 100 and "
-     "index i. Positions are the same on all machines; with a larger `count`, the first blocks "
+     "this order, from Philox4x32-10 (docs/theory/sensors.md, Noise) with this seed as its key, "
+     "stream 100 "
+     "and index i. Positions are the same on all machines; with a larger `count`, the first blocks "
      "stay at the same positions.");
   io("within_m", s.within, kNeeded,
      "Two corners of the box that contains the blocks' centers, the corner with the smaller "

@@ -32,7 +32,7 @@ void Keys(Io& io, Like<SineGait> auto& s) {
          "Sine waves: signal = offset + amplitude cos(2 pi f t + phase). One of `sine`, `cpg`, "
          "`table`, `feedback_cpg` and `toward_goal` is required.");
   io("frequency_hz", s.frequency_hz, kNeeded, Bound::kNonNegative,
-     "Frequency f of all waves without their `frequency_hz`.");
+     "Frequency f of all waves that have no `frequency_hz`.");
   io("waves", s.waves, kNeeded,
      "Waves, at most one per cable. Cables without a wave have a signal of 0.");
 }

@@ -20,16 +20,17 @@ inline const char* WhoHas(JointKind kind) {
 
 template <class Io, Either<JointDef, JointText> Joint>
 void Keys(Io& io, Joint& j) {
-  io.Map("", "builder.joint",
-         "Joint that constrains the motion of body b relative to body a (a `support`: relative to "
-         "the world), with forces on the free "
-         "motion. `joint` is for a pair: between the bodies a and b of its two nodes. `support` is "
-         "for a node: a is the world. One coordinate measures the free motion. `hinge`: its angle. "
-         "`prismatic`, `cylindrical` and "
-         "`line`: the displacement of b's node along the axis. `distance`: its "
-         "length. `ball`: the angle between the axis in b and the axis in a. Friction, "
-         "spring and damper of a ball act about every axis alike.",
-         R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
+  io.Map(
+      "", "builder.joint",
+      "Joint that constrains the motion of body b relative to body a or, for a `support`, to the "
+      "world. Springs, dampers and friction act on the free "
+      "motion. `joint` is for a pair: between the bodies a and b of its two nodes. `support` is "
+      "for a node: a is the world. One coordinate measures the free motion. `hinge`: its angle. "
+      "`prismatic`, `cylindrical` and "
+      "`line`: the displacement of b's node along the axis. `distance`: its "
+      "length. `ball`: the angle between the axis in b and the axis in a. Friction, "
+      "spring and damper of a ball act about every axis alike.",
+      R"({"kind": "hinge", "axis": [0, 1, 0], "least_rad": -0.5, "most_rad": 1.2})");
   io("name", j.name, kResolvedOnly);
   io("body_a", j.body_a, kResolvedOnly);
   io("body_b", j.body_b, kResolvedOnly);
@@ -38,7 +39,7 @@ void Keys(Io& io, Joint& j) {
   io("turned", j.turned,
      "Rotation of b relative to a in the described pose, from the pose with joint angle 0, about "
      "axes in the frame of `axis`. Default: angles are 0 in the described pose. taut writes this "
-     "key for a robot in a later pose.");
+     "key into model files of another pose, as by `taut run --final_pose`.");
   io("kind", j.kind, kJointKinds, kNeeded,
      "Free motion. `ball`: all rotations. `hinge`: rotation about the axis. `weld`: none. "
      "`prismatic`: translation along the axis. `cylindrical`: rotation about the axis and "

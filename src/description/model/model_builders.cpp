@@ -137,7 +137,7 @@ void Check(const MapReader& map, CableText& cable) {
   if (cable.touch_friction > 0 && cable.actuator.kind == ActuatorDef::Kind::kDcMotor) {
     map.Error("cable.touch_friction_of_motor", "touch_friction",
               map.Path("touch_friction") +
-                  ": a cable with friction at what it touches cannot have a `dc_motor`",
+                  ": a cable with friction on obstacles cannot have a `dc_motor`",
               "use `ideal: true` or an actuator with limits, or leave out `touch_friction`");
   }
 }

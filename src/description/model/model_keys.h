@@ -53,8 +53,8 @@ void Keys(Io& io, Like<NodeText> auto& n) {
      "Position, in the part's frame or, outside of parts, in the world frame.");
   io("tags", n.tags, "Tags for builders and controllers, in addition to the node's name.");
   io("fixed_to", n.fixed_to, kName,
-     "Another node of the same part; this node belongs to its body. For points of a body away from "
-     "its rods and boxes.");
+     "Another node of the same part, to whose body this node belongs. For points of a body away "
+     "from its rods and boxes.");
 }
 void Check(const MapReader& map, NodeText& node);
 /// Reads the short form `[x, y, z]`. Returns false for a map; reports an error for other types.
@@ -99,7 +99,7 @@ void Keys(Io& io, Like<PairsText> auto& p) {
          "Pair of nodes that an element joins, or several such pairs with the same tags.",
          R"({"nodes": ["right", "left"], "tags": ["rod"]})");
   io("name", p.name, kName,
-     "Name of the element, such as the cable; also a tag of it. Default: the nodes' names, "
+     "Name of the element, such as a cable, and one of its tags. Default: the nodes' names, "
      "right-left.");
   io.OneOf({"nodes", "each", "route"});
   io.Rule(R"("not": {"required": ["name", "each"]})");
@@ -299,9 +299,8 @@ void Keys(Io& io, Like<BuilderText> auto& b) {
          "Solids that share nodes are welded into one rigid body.");
   io("match", b.match, kNeeded,
      "Selector of nodes or pairs. `a`: all with the tag a. `[a, b]`: all with both tags. `[[a, b], "
-     "[c]]`: all that have all tags of at least one set, here a and b, or c. A selector that no "
-     "number of copies could match is an "
-     "error.");
+     "[c]]`: all that have all tags of at least one set, here a and b, or c. A selector that "
+     "matches nothing, whatever the number of copies, is an error.");
   io.OneOf({"rod", "sphere", "point_mass", "box", "convex", "cable", "bar", "anchor", "joint",
             "support"});
   io("rod", b.rod);

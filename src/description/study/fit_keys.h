@@ -61,12 +61,10 @@ void Keys(Io& io, Like<FitExperimentText> auto& e) {
      "Mapping file with the taut names and units of the data (docs/formats/mapping.md).",
      Example{R"("map.json")"});
   io("setpoints", e.setpoints,
-     "Trace whose times are the times, on the data's clock, at which the experiment's set points "
-     "were commanded. "
-     "Default: the times of the set points in the experiment. Its column `experiment_s` contains "
-     "the corresponding "
-     "times on the experiment's clock. Default of this column: the times of the experiment's set "
-     "points.",
+     "Trace whose rows have the times, on the data's clock, at which the set points were "
+     "commanded. Its optional column `experiment_s` contains the corresponding times on the "
+     "experiment's clock. Default of trace and column: the times of the set points in the "
+     "experiment.",
      Example{R"("test0_setpoints.csv")"});
   io("use", e.train, kUses,
      "Use of the measurement. `train`: used to estimate the parameters. `test`: held out for "
@@ -101,8 +99,8 @@ struct FitNuisanceText {
 template <class Io>
 void Keys(Io& io, Like<FitNuisanceText> auto& n) {
   io.Map("", "nuisance",
-         "Nuisance parameter of the measurement, not of the robot: in the channel's unit, a "
-         "factor, or in seconds.",
+         "Nuisance parameter of the measurement, not of the robot. Unit: of the channel for an "
+         "`offset`, 1 for a `gain`, seconds for `delay_s`.",
          R"({"sd": 0.002})");
   io("low", n.low, "Lower bound.");
   io("high", n.high, "Upper bound.");
@@ -307,7 +305,7 @@ void Keys(Io& io, Like<FitFileText> auto& f) {
        "replaces the whole key of the base, except that `parameters` are merged by name.",
        R"("camera.yaml")",
        "Named numbers for expressions in this file. They may refer to each other, in any order; "
-       "`--set name=value` on the command line overrides them, or parameters of the experiments.",
+       "`--set name=value` on the command line overrides them and parameters of the experiments.",
        R"({"pose_sd_m": "0.0008"})"});
   io("experiments", f.experiments, kNeeded,
      "Measurements, all explained by one vector of estimated parameters.");

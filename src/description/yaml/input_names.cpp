@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "description/yaml/kinds.h"
-#include "description/yaml/yaml_tree.h"
+#include "taut/run_folder.h"
+#include "taut/spec.h"
 
 namespace taut {
 
@@ -28,12 +29,11 @@ constexpr KindOfInput kKinds[] = {
 };
 constexpr const char* kTrace = "trace";
 
-/// Returns the extension of files of a kind; nothing for "trace".
-std::optional<std::string> ExtensionOf(const std::string& kind) {
-  for (const KindOfInput& one : kKinds) {
-    if (kind == one.kind) return one.extension;
-  }
-  return std::nullopt;
+/// Returns null for "trace".
+const KindOfInput* FindKind(const std::string& kind) {
+  const auto found = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                  [&](const KindOfInput& one) { return kind == one.kind; });
+  return found == std::end(kKinds) ? nullptr : found;
 }
 
 bool IsFile(const fs::path& path) {
@@ -41,21 +41,8 @@ bool IsFile(const fs::path& path) {
   return fs::is_regular_file(path, failed);
 }
 
-bool HasTrace(const fs::path& folder) {
-  return IsFile(folder / "trace.h5") || IsFile(folder / "trace.csv") ||
-         IsFile(folder / "trace.csv.gz");
-}
-
 bool Accepts(const std::vector<std::string>& kinds, const char* kind) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
-}
-
-/// Returns the kind that a file declares; empty if it is not valid YAML.
-std::string KindOf(const fs::path& path) {
-  Diagnostics ignored;
-  const description::ValuePtr root = description::ReadYaml(path.string(), ignored);
-  const description::Value* kind = root ? root->Find("kind") : nullptr;
-  return kind ? kind->text : std::string();
 }
 
 /// Returns the YAML files of a folder with their kinds, sorted by name. The inputs of a run are an
@@ -68,7 +55,9 @@ std::vector<std::pair<fs::path, std::string>> YamlFiles(const fs::path& folder) 
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
     if (it->path().extension() != ".yaml" || !IsFile(it->path())) continue;
     if (++count > kMostFiles) break;
-    std::string kind = KindOf(it->path());
+    Diagnostics ignored;
+    const auto head = ReadFileHead(it->path().string(), ignored);
+    std::string kind = head ? head->kind : std::string();
     if (kind == description::kResolvedKind) kind = "experiment";
     files.emplace_back(it->path(), std::move(kind));
   }
@@ -80,12 +69,14 @@ std::vector<std::pair<fs::path, std::string>> YamlFiles(const fs::path& folder) 
 std::string FileOfFolder(const std::string& given, const std::vector<std::string>& kinds,
                          Diagnostics& out) {
   const fs::path folder = (fs::path(given) / "").parent_path();  // without a slash at its end
-  if (Accepts(kinds, kTrace) && HasTrace(folder)) return given;
+  if (Accepts(kinds, kTrace) && IsFile(TraceOfRun(given))) return given;
   std::optional<std::vector<std::pair<fs::path, std::string>>> files;
   for (const std::string& kind : kinds) {
     // A file that is named after its kind is taken even if it has errors, which are then reported.
-    const fs::path named = folder / (kind + ExtensionOf(kind).value_or(""));
-    if (named.has_extension() && IsFile(named)) return named.string();
+    const KindOfInput* const known = FindKind(kind);
+    if (known == nullptr) continue;
+    const fs::path named = folder / (kind + known->extension);
+    if (IsFile(named)) return named.string();
     if (!files) files = YamlFiles(folder);
     std::vector<fs::path> found;
     for (const auto& [path, of_file] : *files) {
@@ -115,22 +106,23 @@ std::string ResolveInput(const std::string& given, const std::vector<std::string
   if (given.empty()) return given;
   if (fs::is_directory(given, failed)) return FileOfFolder(given, kinds, out);
   if (fs::exists(given, failed)) return given;
+  for (const std::string& kind : kinds) {
+    const KindOfInput* const known = FindKind(kind);
+    if (known != nullptr && IsFile(given + known->extension)) return given + known->extension;
+  }
   const auto shipped = [&](const std::string& path) {
     std::string found = FindInput(path, program);
     return found == path ? std::string() : found;
   };
   if (std::string found = shipped(given); !found.empty()) return found;
-  for (const KindOfInput& one : kKinds) {
-    if (Accepts(kinds, one.kind) && IsFile(given + one.extension)) return given + one.extension;
-  }
   const bool bare = fs::path(given).parent_path().empty();
   for (const std::string& kind : kinds) {
-    for (const KindOfInput& one : kKinds) {
-      if (kind != one.kind) continue;
-      const std::string below = bare ? std::string(one.folder) + "/" + given : given;
-      const bool whole = fs::path(given).extension() == one.extension;
-      std::string found = shipped(whole ? below : below + one.extension);
-      if (!found.empty()) return found;
+    const KindOfInput* const known = FindKind(kind);
+    if (known == nullptr) continue;
+    const std::string below = bare ? std::string(known->folder) + "/" + given : given;
+    const bool whole = fs::path(given).extension() == known->extension;
+    if (std::string found = shipped(whole ? below : below + known->extension); !found.empty()) {
+      return found;
     }
   }
   return given;

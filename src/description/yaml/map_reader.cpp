@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/foreign_units.h"
 #include "description/yaml/reader.h"
 
 namespace taut::description {
@@ -39,27 +40,38 @@ KeyFix SimilarKeys(std::string_view key, const std::vector<std::string>& known) 
   return fix;
 }
 
-/// Returns the fix for an unknown key: the key with taut's unit (`_m` for `_mm`), a synonym, or the
-/// most similar key.
-KeyFix FixOf(const std::string& key, const std::vector<std::string>& known) {
-  struct Unit {
-    std::string_view theirs, ours, factor;
-  };
-  constexpr Unit kUnits[] = {{"_per_mm", "_per_m", "1000"}, {"_mm", "_m", "0.001"},
-                             {"_cm", "_m", "0.01"},         {"_g", "_kg", "0.001"},
-                             {"_kn", "_n", "1000"},         {"_ms", "_s", "0.001"},
-                             {"_deg", "_rad", "pi / 180"}};
+/// Returns the end of a key with this unit: "_n_per_mm" for "N/mm".
+std::string KeyEnd(const std::string& unit) {
+  std::string end = "_";
+  for (const char c : unit) {
+    if (c == '/') {
+      end += "_per_";
+    } else if (c != '^') {
+      end += c == ' ' ? '_' : static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
+    }
+  }
+  return end;
+}
+
+/// Returns the fix for an unknown key: the key with taut's unit and the value with its unit (for
+/// `radius_mm: 4`, `radius_m: 4 mm`), a synonym, or the key with the most similar name.
+KeyFix FixOf(const Entry& entry, const std::vector<std::string>& known) {
+  const std::string& key = entry.key;
   const auto is_known = [&](const std::string& one) {
     return std::find(known.begin(), known.end(), one) != known.end();
   };
-  for (const Unit& unit : kUnits) {
-    if (!key.ends_with(unit.theirs)) continue;
-    const std::string other =
-        key.substr(0, key.size() - unit.theirs.size()) + std::string(unit.ours);
-    if (is_known(other)) {
-      return {"write \"" + other + "\", and the value times " + std::string(unit.factor), {other}};
-    }
+  std::size_t longest = 0;
+  KeyFix converted;
+  for (const base::ForeignUnit& unit : base::Units()) {
+    const std::string end = KeyEnd(unit.name);
+    if (end.size() <= longest || !key.ends_with(end)) continue;
+    const std::string other = key.substr(0, key.size() - end.size()) + KeyEnd(unit.si);
+    if (!is_known(other)) continue;
+    longest = end.size();
+    const std::string value = entry.value->kind == Value::Kind::kScalar ? entry.value->text : "...";
+    converted = {"write \"" + other + ": " + value + " " + unit.name + "\"", {other}};
   }
+  if (longest > 0) return converted;
   for (const char* const theirs : {"pretension_n", "pretension"}) {
     if (key == theirs && is_known("prestress_n")) {
       return {"did you mean \"prestress_n\"?", {"prestress_n"}};
@@ -97,7 +109,7 @@ void MapReader::RefuseOthers() {
   }
   for (const Entry& entry : value_.entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
-    KeyFix fix = FixOf(entry.key, known_);
+    KeyFix fix = FixOf(entry, known_);
     scope_.out.Error("key.unknown", entry.key_at,
                      "unknown key \"" + entry.key + "\"" + (what_.empty() ? "" : " in " + what_),
                      std::move(fix.hint));

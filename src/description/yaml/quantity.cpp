@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,8 +55,8 @@ bool IsSum(std::string_view text) {
 
 std::string UnitsOf(std::string_view si) {
   std::string list;
-  for (const std::string& name : base::UnitNames()) {
-    if (base::FindUnit(name)->si == si) list += (list.empty() ? "" : ", ") + name;
+  for (const ForeignUnit& unit : base::Units()) {
+    if (unit.si == si) list += (list.empty() ? "" : ", ") + unit.name;
   }
   return list;
 }
@@ -74,17 +73,17 @@ Evaluated EvaluateQuantity(std::string_view text, const NameTable& names, std::s
   Evaluated plain = Evaluate(text, names);
   if (plain.error.empty()) return plain;
   const std::string of_key = unit.empty() ? UnitOfKey(path) : std::string(unit);
-  std::optional<ForeignUnit> found;
+  const ForeignUnit* found = nullptr;
   Evaluated number;
-  for (const std::string& name : base::UnitNames()) {
-    const std::string_view rest = Before(text, name);
-    if (rest.empty() || (found && found->name.size() > name.size())) continue;
+  for (const ForeignUnit& one : base::Units()) {
+    const std::string_view rest = Before(text, one.name);
+    if (rest.empty() || (found != nullptr && found->name.size() > one.name.size())) continue;
     Evaluated result = Evaluate(rest, names);
     if (!result.error.empty()) continue;
     number = result;
-    found = base::FindUnit(name);
+    found = &one;
   }
-  if (!found) return plain;
+  if (found == nullptr) return plain;
   const std::string shown = "\"" + std::string(text) + "\"";
   if (IsSum(Before(text, found->name))) {
     return {kNoQuantity, "the unit in " + shown + " follows a sum",

@@ -74,17 +74,14 @@ TEST(ModelErrors, ADecimalCommaIsOneError) {
       << block;
 }
 
-TEST(ModelErrors, KeysInOtherUnitsHaveTheFactor) {
+TEST(ModelErrors, KeysInOtherUnitsHaveTheUnitAfterTheValue) {
   const std::string rod = Errors(OneRod("{radius_mm: 4, mass_g: 20}"));
-  EXPECT_NE(
-      rod.find("unknown key \"radius_mm\" in rod (write \"radius_m\", and the value times 0.001)"),
-      std::string::npos)
-      << rod;
-  EXPECT_NE(rod.find("(write \"mass_kg\", and the value times 0.001)"), std::string::npos) << rod;
-  const std::string cable = Errors(TwoRods("stiffness_n_per_mm: 0.4, pretension_n: 1"));
-  EXPECT_NE(cable.find("(write \"stiffness_n_per_m\", and the value times 1000)"),
+  EXPECT_NE(rod.find("unknown key \"radius_mm\" in rod (write \"radius_m: 4 mm\")"),
             std::string::npos)
-      << cable;
+      << rod;
+  EXPECT_NE(rod.find("(write \"mass_kg: 20 g\")"), std::string::npos) << rod;
+  const std::string cable = Errors(TwoRods("stiffness_n_per_mm: 0.4, pretension_n: 1"));
+  EXPECT_NE(cable.find("(write \"stiffness_n_per_m: 0.4 N/mm\")"), std::string::npos) << cable;
   EXPECT_NE(cable.find("(did you mean \"prestress_n\"?)"), std::string::npos) << cable;
 }
 
@@ -264,7 +261,7 @@ TEST(ModelErrors, RotationsAreWellFormed) {
             "robot.yaml:7:33: error: structure.rotate needs the key \"angle_rad\"\n");
   EXPECT_EQ(rotate("{axis: z, angle_deg: 90}"),
             "robot.yaml:7:43: error: unknown key \"angle_deg\" in structure.rotate (write "
-            "\"angle_rad\", and the value times pi / 180)\n");
+            "\"angle_rad: 90 deg\")\n");
   EXPECT_EQ(rotate("{axis: [0, 0, 0], angle_rad: 1}"),
             "robot.yaml:7:40: error: structure.rotate.axis must not be zero (it is a direction)\n");
   EXPECT_EQ(rotate("{axis: z, angle_rad: 1e10}"),

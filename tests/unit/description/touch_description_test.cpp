@@ -56,8 +56,8 @@ TEST(TouchingCable, WhatCannotBeIsSaidWithItsLine) {
   EXPECT_EQ(
       Errors(Rope(", touches: terrain, radius_m: 0.001, touch_friction: 0.1, "
                   "actuator: {dc_motor: {}}")),
-      "robot.yaml:12:102: error: cable.touch_friction: a cable with friction at what it "
-      "touches cannot have a `dc_motor` (use `ideal: true` or an actuator with limits, or leave "
+      "robot.yaml:12:102: error: cable.touch_friction: a cable with friction on obstacles cannot "
+      "have a `dc_motor` (use `ideal: true` or an actuator with limits, or leave "
       "out `touch_friction`)\n");
   EXPECT_EQ(Errors(Rope(", touches: terrain, radius_m: -1")),
             "robot.yaml:12:95: error: cable.radius_m must not be negative, got -1\n");
