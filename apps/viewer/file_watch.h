@@ -9,12 +9,12 @@
 
 namespace taut::viewer {
 
-/// Compares times and sizes of files at each `Poll`, which needs no operating system's notification
-/// and works on every file system. A session polls a few files four times a second.
+/// Compares times and sizes of files at each `Poll`. This needs no notifications from the operating
+/// system and works on every file system. A session polls a few files four times a second.
 class FileWatch {
  public:
-  /// Watches these files, which may be missing. Files that were polled before count as read in the
-  /// state of the last `Poll`: a later change is not missed.
+  /// Watches these files, which may be missing. For files that were polled before, the reference is
+  /// their state at the last `Poll`, so later changes are not missed.
   void Watch(const std::vector<std::string>& files);
 
   /// Returns true if a file differs from its state at the last `Watch` and has not changed since

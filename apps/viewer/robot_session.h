@@ -60,7 +60,7 @@ class RobotSession final : public Session {
   ~RobotSession() override;
 
   // --- for the thread that drives ------------------------------------------------------------
-  /// To be called after each cycle, and regularly while there are none; `state.time_s` is then
+  /// Call it after each cycle, and regularly while there are no cycles; `state.time_s` is then
   /// constant.
   void Show(const link::State& state);
   void Event(double time_s, const std::string& text);

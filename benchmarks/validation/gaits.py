@@ -192,9 +192,9 @@ def frequency_text(rows):
             if off < 0.1:
                 worst = max(worst, off)
             else:
-                others.append(f"{plain(cable)} under {who}: {line[0]:.2f} instead of {lines[0][0]:.2f} Hz")
+                others.append(f"{plain(cable)} with {who} ({line[0]:.2f} instead of {lines[0][0]:.2f} Hz)")
     text = f"If taut and NTRT have the same strongest line, the frequencies agree within {100 * worst:.2f} %."
-    return text + (f" Another line is the strongest in: {'; '.join(others)}." if others else "")
+    return text + (f" Another line is strongest in: {'; '.join(others)}." if others else "")
 
 
 # --- each law separately --------------------------------------------------------------------------
@@ -292,7 +292,7 @@ def steps_table(gait, exact, paths):
                     "" if step_s == STEPS_S[0] else "never" if parted is None else f"{parted:.1f}"])
     largest = max(abs(means[step_s] / means[STEPS_S[0]] - 1) for step_s in STEPS_S)
     return table(["step rate [Hz]", "mean distance [cm]", f"range of {STARTS} starts [cm]", "difference from 4 kHz",
-                  "1 mm from the run at 4 kHz after [s]"], out), largest
+                  "time to a difference of 1 mm from 4 kHz [s]"], out), largest
 
 
 # --- commands -------------------------------------------------------------------------------------

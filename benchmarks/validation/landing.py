@@ -127,8 +127,8 @@ def landings_table(runs):
         rows.append([way, str(speed), g(run.most), f"{1000 * run.most_s:.0f}",
                      g(speed**2 / (2 * run.stroke_m)), g(speed**2 / run.stroke_m),
                      f"{100 * run.gap_m:.0f}", f"{100 * run.rebound_m:.0f}"])
-    return table(["lands on", "impact speed [m/s]", "largest deceleration [m/s^2]", "at [ms]",
-                  "least possible, v^2 / (2 s) [m/s^2]", "one spring, v^2 / s [m/s^2]",
+    return table(["lands on", "impact speed [m/s]", "largest deceleration [m/s^2]", "time of the peak [ms]",
+                  "smallest possible, v^2 / (2 s) [m/s^2]", "one spring, v^2 / s [m/s^2]",
                   "least height of the payload [cm]", "rebound height [cm]"], rows)
 
 

@@ -197,7 +197,7 @@ def gait(trace, summary, mass_kg):
     return {
         "feet": table(["foot", "share of time with load", "delay after front left [periods]", "lift [mm]",
                        "mean force [N]", "largest force [N]", "sliding per distance [m/m]"], rows),
-        "feet_down": ", ".join(f"{100 * c / len(walking):.0f} % {n}" for n, c in enumerate(count)),
+        "feet_down": "{}, {}, {}, {} and {} %".format(*(f"{100 * c / len(walking):.0f}" for c in count)),
         "hz": f"{hz:.2f}", "speed": f"{way / (trace.time_s[-1] - trace.time_s[walking[0]]):.2f}",
         "stride": f"{1000 * way / (trace.time_s[-1] - trace.time_s[walking[0]]) / hz:.0f}",
         "low": f"{1000 * low:.0f}", "high": f"{1000 * high:.0f}", "tilt": f"{math.degrees(trace.tilt_rad()):.0f}",
@@ -258,7 +258,7 @@ def page(taut):
     values |= standing(Trace(taut.folder / stand.name), mass_kg)
     values |= {
         "variants": table(["change", "forward [m]", "left [m]", "time to 1 m [s]", "least height of a girdle [mm]",
-                           "largest tilt [degrees]", "both feet of each diagonal alike [% of time]",
+                           "largest tilt [degrees]", "both feet of each diagonal with load, or both without [% of time]",
                            "largest tension [N]", "other contacts"], rows),
         "version": taut("--version").split()[-1], "runs": str(len(trots) + 1),
         "seconds": f"{time.monotonic() - started:.0f}", "machine": machine(),

@@ -257,7 +257,7 @@ def outer_left_text(robot, results):
     off = {text: errors(robot, results[variant.name], True)[LEFT] for text, variant in CHOICES}
     near = {text: value for text, value in off.items() if round(abs(value), 1) < 30}
     far = [abs(value) for text, value in off.items() if text not in near]
-    text = (f"From 5 s on, the error of outer left 1 is {min(far):.1f} to {max(far):.1f} % in "
+    text = (f"From 5 s on, the magnitude of the error of outer left 1 is {min(far):.1f} to {max(far):.1f} % in "
             f"{len(far)} of the {len(off)} runs. ")
     listed = "; ".join(f"{name} ({value:+.1f} %)" for name, value in near.items())
     return text + (f"It is below 30 % in: {listed}." if near else "")

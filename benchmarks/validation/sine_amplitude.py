@@ -209,7 +209,7 @@ def answer(outcomes):
     free = [f for f in FACTORS if all(run.touching == 0 for mu in FRICTIONS for run in outcomes[f, mu])]
     stuck = [f for f in FACTORS if all(run.touching > 0 for mu in FRICTIONS for run in outcomes[f, mu])]
     if stuck:
-        text += f". Segments do touch each other: at every friction from {min(stuck)} times the amplitude on"
+        text += f". From {min(stuck)} times the amplitude on, segments touch each other at every friction"
     if free:
         text += f"; up to {max(free)} times the amplitude, no segment touches another in any run"
     own = [run for mu in FRICTIONS for run in outcomes[FACTORS[-1], mu]]
@@ -252,8 +252,7 @@ def page(taut):
                                            for form in (lambda r: 100 * r.at_speed, lambda r: 100 * r.at_length,
                                                         lambda r: 100 * r.at_force, lambda r: r.most_n))]
                          for factor in FACTORS]),
-        "others": table(["run", "friction on the ground", "amplitude", "smallest distance cm", "touching %",
-                         "largest tilt degrees", "forward cm"],
+        "others": table(["run", "friction on the ground", "amplitude", "smallest distance [cm]", "touching [% of time]", "largest tilt [degrees]", "forward [cm]"],
                         [[text, f"{friction:g}", f"x {factor}", f"{100 * run.near_m:.1f}", f"{100 * run.touching:.0f}",
                           f"{run.tilt_deg:.0f}", f"{100 * run.forward_m:.0f}"]
                          for (text, friction, factor), run in other_runs.items()]),

@@ -105,8 +105,8 @@ def compared_tables(beside, motors, boards):
                     [""] * 5 if itself else (f"{off.rms_n:.2f}", f"{off.means_n:.2f}", f"{100 * off.swing:.0f}",
                                              late_ms(off), f"{off.aligned_n:.2f}"))])
     return (table(["experiment", "variant", "largest tension [N]", "against NTRT", "mean tension [N]", "swing [N]",
-                   "rms off the simulation [N]", "most [N]"], sizes),
-            table(["experiment", "variant", "period [s]", "rms off [N]", "means off [N]", "swing [%]", "late by [ms]",
+                   "rms difference from the simulation [N]", "largest difference [N]"], sizes),
+            table(["experiment", "variant", "period [s]", "rms difference [N]", "difference of means [N]", "swing [%]", "delay [ms]",
                    "rms without means and delay [N]"], shapes))
 
 

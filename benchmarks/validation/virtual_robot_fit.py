@@ -310,7 +310,7 @@ def page(taut):
                         f"within two standard errors, of {len(stand.motors)}", "largest error [standard errors]"], rows),
         "within": str(sum(abs(x) <= 2 for x in everything)), "numbers": str(len(everything)),
         "held": table(["motor", "tension: untuned [N]", "fitted [N]", "duty: untuned", "fitted", "verdict on the fit"], held),
-        "more": table(["parameter", "found", "standard error", "verdict", "traded against", "no longer estimated"], more),
+        "more": table(["parameter", "estimate", "standard error", "verdict", "traded against", "no longer estimated"], more),
         "all": table(["motor", "weight [kg]", *(what for what, _ in WHAT.values())],
                      [motor_row(stand, m, fit) for m, fit in found.items()]),
     })

@@ -1,5 +1,5 @@
 /// Vectorized reinforcement-learning environments: thousands of worlds of one experiment with
-/// actions, observations and rewards (docs/environments.md). Each world has its own episode and
+/// actions, observations and rewards (docs/environments.md). Each world has a separate episode and
 /// clock. Worlds are SIMD lanes; a thread pool steps groups of lanes. The bits of a world depend
 /// only on its seed and its actions. Other worlds, the number of threads, the instruction set, and
 /// `float` or `double` arrays do not change them. With zero actions, a world has the same bits as

@@ -17,14 +17,14 @@ struct RobotNames {
 
 struct GuessedMapping {
   std::string text;                  ///< Mapping file (JSON) with comments.
-  std::vector<std::string> results;  ///< What was recognized, a line each.
-  std::vector<std::string> doubts;   ///< What the user should check or add, a line each.
+  std::vector<std::string> results;  ///< Recognized items, one per line.
+  std::vector<std::string> doubts;   ///< Items for the user to check or add, one per line.
 };
 
 /// Reads the first lines of a text table and guesses its encoding, separator, decimal mark, header,
-/// clock and units, and which column belongs to which channel of the robot: by the names in it and
-/// by its unit. Knows the layouts of LabVIEW (.lvm), OptiTrack, Vicon and Qualisys (.tsv). Returns
-/// nothing, with a diagnostic, if the file cannot be read or has no rows of numbers.
+/// clock and units. Assigns columns to channels of the robot by the names and the unit in each
+/// column name. Knows the layouts of LabVIEW (.lvm), OptiTrack, Vicon and Qualisys (.tsv). Returns
+/// nothing and adds a diagnostic if the file cannot be read or has no rows of numbers.
 std::optional<GuessedMapping> GuessMapping(const std::string& path, const RobotNames& robot,
                                            Diagnostics& out);
 

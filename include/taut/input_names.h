@@ -22,7 +22,7 @@ namespace taut {
 /// 3. A name without its extension: `my_robot` is `my_robot.yaml`.
 /// 4. A shipped file, by path or name: `experiments/push_20n.yaml`, `push_20n` (`FindInput`).
 ///
-/// What matches no rule is returned unchanged.
+/// A text that matches no rule is returned unchanged.
 std::string ResolveInput(const std::string& given, const std::vector<std::string>& kinds,
                          Diagnostics& out, const std::string& program = RunningProgram());
 

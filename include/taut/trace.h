@@ -94,7 +94,7 @@ struct Trace {
 /// (docs/formats/trace.md).
 std::optional<Trace> ReadTrace(const std::string& path, Diagnostics& out);
 
-/// Encoding of a text file. UTF-16 is recognized by its byte order mark in any case.
+/// Encoding of a text file. With either value, UTF-16 is recognized by its byte order mark.
 enum class TextEncoding { kUtf8, kWindows1252 };
 
 /// Form of the clock in a table: a number, "14:03:20.5" (seconds since midnight), or a date and a
@@ -111,7 +111,7 @@ struct TableLayout {
   int skip_lines = 0;  ///< Number of lines before the header, or before the rows without a header.
   int header_lines = 1;  ///< Number of lines with column names, whose cells are joined by blanks.
   bool merged_header =
-      false;  ///< Empty cells of all header lines but the last repeat the previous.
+      false;  ///< Except in the last header line, an empty cell repeats the previous cell.
   std::vector<std::string> columns;  ///< Column names that replace those in the header.
   char separator = ',';              ///< A blank stands for any number of blanks.
   char decimal = '.';                ///< Decimal point or comma.
@@ -133,9 +133,10 @@ struct TableLayout {
   std::string value_column;
 };
 
-/// Reads such a table (.csv, .csv.gz or any other name). Channels have the column names and the
-/// unit 1. Empty cells, `nan` and `NA` are NaN. On errors, such as cells that are not numbers or
-/// times that do not increase, returns nothing and adds diagnostics with file, line and column.
+/// Reads a text table with this layout (.csv, .csv.gz or any other name). Channels have the column
+/// names and the unit 1. Empty cells, `nan` and `NA` are NaN. On errors, such as cells that are not
+/// numbers or times that do not increase, returns nothing and adds diagnostics with file, line and
+/// column.
 std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layout,
                                Diagnostics& out);
 

@@ -98,8 +98,8 @@ struct WorldStatus {
   /// Meshes are numbered after the height fields. Otherwise -1.
   int ground = -1;
   double residual_m_per_s = 0;  ///< Residual of the last solve.
-  /// Number of linear solves in the last step, counted in lanes over all islands, including
-  /// position projection.
+  /// Number of linear solves in the last step: those shared by all lanes, and those of each island,
+  /// including position projection.
   int linear_solves = 0;
   /// Largest relaxation of the contact equations in the last step, as a velocity; at most 1e-6 m/s,
   /// and usually 0. Contact equations that are inconsistent around a loop of bodies are relaxed

@@ -161,7 +161,7 @@ def ratios(items):
     rows = [["step of a disc on 64 feet, relative to a step of Tetraspine3", over("feet_64", scenes.of(REFERENCE))],
             *([f"step of {what}, relative to ODE's full step", over(scene, scenes.of(scene, *ODE))]
               for scene, what in {"pile_20": "a heap of 20 rods", "boxes_10": "a stack of 10 boxes"}.items()),
-            *([f"{what}: share of steps faster than 16 times ODE's mean", share(scene)]
+            *([f"{what}: share of steps shorter than 16 times ODE's mean step", share(scene)]
               for scene, what in {"pile_20": "a heap of 20 rods", "boxes_10": "a stack of 10 boxes"}.items()),
             ["Painleve's rod: steps solved", f"{rod['solved']} of {rod['steps']}" if rod else NOTHING]]
     return table(["quantity", "value"], rows)

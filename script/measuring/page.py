@@ -54,8 +54,8 @@ def which_mujoco(items):
                   "MJCF as Debian's MuJoCo, except for a bound on memory, with the same solver, number of iterations and "
                   "tolerance; other settings have the defaults of each version. ")
         apart = [item["apart_m"] for item in items if "apart_m" in item]
-        words += ("It is measured only if it has the same bodies and masses and, after 100 steps without contacts, positions "
-                  f"within 1e-9 m of Debian's MuJoCo; the largest distance was {max(apart):.1e} m."
+        words += ("A model is measured only if both versions have the same bodies and masses, and positions within 1e-9 m after "
+                  f"100 steps without contacts. The largest distance was {max(apart):.1e} m."
                   if apart else "There was no other one in this run to compare with.")
     return textwrap.fill(words, 110, break_on_hyphens=False)
 
@@ -142,7 +142,7 @@ def spread(items):
 def company(machine):
     if not shared(machine):
         return ""
-    return "\nOther programs ran on the machine at the same time: rows for several threads are unreliable; for one thread, ratios are more reliable than absolute figures."
+    return "\nOther programs ran on the machine at the same time: rows for several threads are unreliable."
 
 
 def text(items):

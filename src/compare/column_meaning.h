@@ -10,19 +10,19 @@
 namespace taut {
 
 struct ColumnMeaning {
-  std::string unit;          ///< Of the file, as mappings name it; empty: none found.
+  std::string unit;          ///< Unit in the file, by its name in mappings; empty: none.
   std::string unknown_unit;  ///< Text in brackets that is no unit of mappings.
   std::string kind;          ///< "cable", "body", "node", "joint"; empty: no member has this name.
-  std::string member;        ///< Its name.
+  std::string member;        ///< Name of the member.
   std::string channel;       ///< Name of taut's channel, with `{axis}` for vectors; empty: unknown.
   char axis = 0;             ///< x, y, z or w of a vector or quaternion; 0: none.
   bool several = false;      ///< Several members fit equally well.
-  std::string refused;  ///< Word because of which the column is not the member's measured quantity.
-  std::string left_over;  ///< Words of the name that are not explained.
+  std::string refused;       ///< Word that marks no measurement ("target", ...); empty: none.
+  std::string left_over;     ///< Words of the name without a known meaning.
 };
 
-/// `unit`: unit stated outside of the name; empty: none. `length_unit`: unit of positions whose
-/// names have none.
+/// Returns the meaning of a column. `unit`: unit stated outside of the name; empty: none.
+/// `length_unit`: unit of positions whose names have none.
 ColumnMeaning MeaningOf(const std::string& name, const std::string& unit,
                         const std::string& length_unit, const RobotNames& robot);
 

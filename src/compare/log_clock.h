@@ -14,7 +14,7 @@ struct LogClock {
   std::optional<std::size_t> column;  ///< Absent: rows at equal intervals.
   nlohmann::ordered_json time;        ///< The key `time` of a mapping's table.
   double rate_hz = 0;                 ///< Mean number of rows per second.
-  std::vector<std::string> doubts;    ///< What the user should check.
+  std::vector<std::string> doubts;    ///< Items for the user to check.
 };
 
 LogClock GuessClock(const LogForm& form);

@@ -1,4 +1,4 @@
-/// JSON values of a mapping file, with the errors of all that is wrong in them.
+/// Reader of the JSON values of a mapping file, with error messages.
 #pragma once
 
 #include <nlohmann/json.hpp>

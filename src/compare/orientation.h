@@ -27,7 +27,7 @@ double NearerSign(const std::array<double, 4>& q, const std::array<double, 4>& t
 
 using QuaternionRows = std::array<std::vector<double>, 4>;
 
-/// Chooses the sign of each quaternion so that it is nearest to the last complete row.
+/// Chooses the sign of each quaternion so that it is nearest to the previous complete row.
 void MakeContinuous(QuaternionRows& rows);
 /// Chooses the sign of each quaternion so that it is nearest to the same row of `to`.
 void AlignTo(const QuaternionRows& to, QuaternionRows& rows);

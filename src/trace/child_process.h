@@ -27,9 +27,9 @@ class ChildOutput {
 class ChildProcess {
  public:
   /// Forks and runs `work` in the child. `more_memory_bytes`: memory limit of the child in addition
-  /// to the parent's size. `patience`: limit of CPU time, and of sleep. When it is exceeded, `Read`
-  /// returns false. Waiting for a CPU does not count, so that a file does not seem damaged on a
-  /// busy machine.
+  /// to the parent's size. `patience`: limit of CPU time, and of time asleep. When it is exceeded,
+  /// `Read` returns false. Waiting for a CPU does not count, so that a file does not seem damaged
+  /// on a busy machine.
   ChildProcess(const std::function<void(const ChildOutput&)>& work, std::size_t more_memory_bytes,
                std::chrono::milliseconds patience);
   ~ChildProcess();

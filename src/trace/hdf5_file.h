@@ -36,7 +36,7 @@ struct Hdf5File {
 /// Opens a trace. Returns nothing and sets `error` if the file is not a trace.
 std::optional<Hdf5File> OpenHdf5Trace(const std::string& path, std::string& error);
 
-/// Reads rows from to from + count - 1. Returns false and sets `error` on failure.
+/// Reads `count` rows, starting at row `from`. Returns false and sets `error` on failure.
 bool ReadHdf5Rows(const Hdf5Column& column, hsize_t from, hsize_t count, double* to,
                   std::string& error);
 

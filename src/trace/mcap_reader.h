@@ -17,7 +17,7 @@ namespace taut::trace {
 /// Message of a channel. Views are valid during the call.
 struct McapMessage {
   std::uint16_t channel = 0;
-  std::uint64_t log_time_ns = 0;  ///< If the file has none: time of publication.
+  std::uint64_t log_time_ns = 0;  ///< Log time, or publication time if the file has none.
   std::string_view data;
 };
 
@@ -26,14 +26,15 @@ struct McapChannel {
   std::string schema_name, schema_encoding, schema;
 };
 
-/// Reads a file record by record. Chunks must not be compressed, which is an error with its remedy.
-/// A file that was cut off gives the messages before its end.
+/// Reads a file record by record. Compressed chunks are an error, whose message contains the
+/// remedy.
+/// From a truncated file, it reads the messages before the cut.
 class McapReader {
  public:
   McapReader(std::string path, Diagnostics& out) : path_(std::move(path)), out_(out) {}
 
-  /// Calls `use` for each message, in the order of the file, until it returns false. Returns false
-  /// after a diagnostic.
+  /// Calls `use` for each message, in the order of the file, until it returns false. On an error,
+  /// adds a diagnostic and returns false.
   bool Read(const std::function<bool(const McapMessage&)>& use);
 
   /// Channels so far; a channel is known before its first message.

@@ -16,9 +16,9 @@ std::optional<Trace> ReadHdf5(const std::string& path, Diagnostics& out);
 /// Reads a trace in CSV, with or without gzip compression.
 std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out);
 
-/// Reads a trace from MCAP: a channel `topic/field` per number of a message, with rows at the times
-/// of all messages. Between the messages of a topic, its values are interpolated linearly, except
-/// in gaps. Clocks since 1970 begin at 0 s.
+/// Reads a trace from MCAP, with one channel `topic/field` per number of a message, and rows at the
+/// times of all messages. Between the messages of a topic, its values are interpolated linearly,
+/// except in gaps. Times since 1970 are shifted to begin at 0 s.
 std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out);
 
 /// Returns the trace, or an error if a time is so large that spans of times are not finite.

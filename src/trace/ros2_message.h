@@ -20,9 +20,9 @@ class Ros2Message {
                                           std::string& why);
 
   /// Calls `number` with the path and the value of each number, such as "effort/knee". Elements of
-  /// a list are called by the texts in the list `name` beside it, by their field `child_frame_id`,
-  /// or by their index. Bytes and lists of more than 64 elements are left out. Returns false for
-  /// data that ends early or has another encoding.
+  /// a list are named by the texts in the neighboring list `name`, by their field `child_frame_id`,
+  /// or by their index. Bytes and lists of more than 64 elements are omitted. Returns false for
+  /// data that end early or have another encoding.
   bool Decode(std::string_view cdr,
               const std::function<void(const std::string& path, double value)>& number) const;
 

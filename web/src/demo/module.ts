@@ -1,6 +1,6 @@
 // Emscripten modules of apps/browser and their in-memory file systems.
 
-/** What the modules export. */
+/** Exports of the modules. */
 export interface Module {
   ccall(name: string, returns: "string" | "number" | null, types: readonly string[], values: readonly unknown[]): unknown;
   HEAPU8: Uint8Array;

@@ -1,4 +1,4 @@
-// Utilization of struts:
+// Utilization of struts: largest compression divided by the Euler load.
 import type { Body, Scene, Shape } from "../protocol";
 
 export interface StrutUse {
