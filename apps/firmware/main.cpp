@@ -65,7 +65,7 @@ void RunTick(uint8_t elapsed) {
   // 125 if the next tick is already due
   const uint8_t eighths =
       ticks_due == 0 ? static_cast<uint8_t>(TCNT2 / 2) : static_cast<uint8_t>(125 + TCNT2 / 2);
-  if (eighths > board.loop_8us) board.loop_8us = eighths;
+  if (eighths > board.longest_tick_8us) board.longest_tick_8us = eighths;
   GPIOR0 = kMarkTickDone | static_cast<uint8_t>(board.mode);
 }
 

@@ -17,7 +17,7 @@ class ReplaySession final : public Session {
   void Handle(int client, const Command& command) override;
   Clock::time_point Work() override;
   Json MakeScene() const;
-  /// Opens the trace of another shape of the same analysis.
+  /// Opens the trace of another mode, mechanism or state of self-stress of the same analysis.
   void OpenShape(int client, int number);
   void Anchor(double time_s);
   double PlayedTo(Clock::time_point now) const;

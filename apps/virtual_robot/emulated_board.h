@@ -92,8 +92,8 @@ class Board {
   void SetMemory(std::uint16_t address, std::uint8_t value);  ///< 0x100 to 0x8FF.
   std::uint8_t last_marker() const { return marker_; }
   std::uint8_t stack_probe() const;  ///< GPIOR1.
-  /// Returns the largest number of bytes on the stack since power-on, from a pattern painted into
-  /// memory before.
+  /// Returns the largest depth of the stack since power-on [bytes]. Power-on fills the memory with
+  /// a pattern; the depth reaches to the first byte that differs from it.
   int DeepestStack() const;
   int StaticMemory() const;  ///< Returns the bytes of variables.
   std::vector<std::uint8_t> Eeprom() const;

@@ -247,7 +247,7 @@ void CheckSchema(const Element& root, LeftOut& left_out, Diagnostics& out) {
   if (root.name != "mujoco") {
     out.Error("mjcf.root", root.at, "the root element is \"" + root.name + "\", not mujoco",
               root.name == "robot"
-                  ? "this is URDF: convert it to MJCF with the program compile of MuJoCo"
+                  ? "this is URDF: convert it to MJCF with MuJoCo's program `compile`"
                   : "");
     return;
   }

@@ -119,8 +119,8 @@ class TableParser {
       return kNan;
     }
     Error("csv.not_a_number", line_, cell.column, fmt::format("\"{}\" is not a number", cell.text),
-          "skip lines before the rows with `skip_lines` in the mapping, a column of text with "
-          "`ignore`");
+          "in the mapping, `skip_lines` skips lines before the rows, and `ignore` skips a column "
+          "of text");
     return kNan;
   }
 

@@ -56,7 +56,7 @@ def AFitShowsItsValues(taut, folder):
     (folder / "fit.yaml").write_text(FIT.format(experiment=ROOT / "share/experiments/hang.yaml"))
     said = progress_of(taut, "fit", "fit.yaml", cwd=folder)
     assert re.search(r"searching: \d+ iterations  chi2 \S+  stiffness_n_per_m = [34]\S* N/m  \d+ experiments computed  "
-                     r"at most \d+ s left", said), said
+                     r"at most \d+:\d\d left", said), said
 
 
 if __name__ == "__main__":

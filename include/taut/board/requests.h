@@ -232,8 +232,8 @@ inline void MakeFrame(Board& board, uint8_t (&frame)[kFrameSize]) noexcept {
       status.more = static_cast<uint8_t>(board.counters.overruns);
       break;
     case More::kLoopTime8us:
-      status.more = board.loop_8us;
-      board.loop_8us = 0;
+      status.more = board.longest_tick_8us;
+      board.longest_tick_8us = 0;
       break;
     case More::kResetCause:
       status.more = board.boot.reset_cause;

@@ -37,8 +37,8 @@ void CheckRestLength(const std::string& load_case, const std::string& member, do
                      double by_m, const SourceRef& at, const Scope& scope) {
   if (rest_m + by_m > 0) return;
   scope.out.Error("load_case.no_rest_length", at,
-                  "the load case \"" + load_case + "\" leaves no positive rest length of \"" +
-                      member + "\", which has " + Shown(rest_m) + " m without it");
+                  "the load case \"" + load_case + "\" makes the rest length of \"" + member +
+                      "\" zero or negative (it is " + Shown(rest_m) + " m without the load case)");
 }
 
 }  // namespace taut::description

@@ -23,7 +23,7 @@ struct LoadMember {
 std::vector<LoadMember> SelectMembers(const Value& selector, const std::string& what,
                                       bool with_rods, const RobotSpec& robot, const Scope& scope);
 
-/// Reports a change of length that leaves no positive rest length.
+/// Reports a change of length that makes a rest length zero or negative.
 void CheckRestLength(const std::string& load_case, const std::string& member, double rest_m,
                      double by_m, const SourceRef& at, const Scope& scope);
 

@@ -78,8 +78,8 @@ class JointTaker {
     return node;
   }
 
-  /// Returns the keys of a joint that differ from the defaults. Uses the names of keys for the
-  /// joint's kind, and directions in the part's frame.
+  /// Returns the YAML map of a joint, without keys that have default values. Keys are named as for
+  /// the joint's kind (`least_rad` or `least_m`); directions are in the part's frame.
   std::string Text(const JointDef& joint, const std::string& placement) const {
     const auto found = m_.turns.find(placement);
     const Quat turn = found == m_.turns.end() ? Quat{} : found->second;

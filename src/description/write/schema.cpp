@@ -289,8 +289,7 @@ class SchemaMaker : public KeyVisitor<SchemaMaker, false> {
   std::string Meaning(const KeyText& key) const {
     if (!spellings_) return key.meaning;
     const std::string in = spellings_->when[spelt_] + std::string(".");
-    if (spelt_ == 0) return key.meaning + ((key.needed ? " Required in " : " In ") + in);
-    return (key.needed ? "The same, required in " : "The same in ") + in;
+    return key.meaning + ((key.needed ? " Required in " : " In ") + in);
   }
 
   Definitions& definitions_;

@@ -120,8 +120,8 @@ class LaneSpans {
   bool grips_;
 };
 
-/// Returns the fraction of a span before a new bend. The span consists of the straight part `span`
-/// and half arcs of lengths `before_m` and `behind_m` at its ends.
+/// Returns the fraction of a span's length that lies before a new bend on it. The span consists of
+/// the straight part `span` and half arcs of lengths `before_m` and `behind_m` at its ends.
 template <class W>
 double ShareBefore(const View& m, const Rows<W>& s, const Scratch<W>& work, const BendPlace& place,
                    const FreeSpan& span, double before_m, double behind_m, int lane) noexcept {

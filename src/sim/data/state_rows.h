@@ -1,6 +1,6 @@
 /// State rows of a group of worlds: the list of all data of a group, for serialization and hashes.
 /// It determines the memory layout, the access in a step, start values, contents of snapshots, and
-/// the treatment of halted worlds. No standard library, because the step includes it.
+/// the treatment of halted worlds. Part of a step, so without the standard library (kernel.inl).
 #pragma once
 
 namespace taut::sim {

@@ -41,8 +41,8 @@ TEST_F(LogTable, DecimalCommas) {
   EXPECT_EQ(trace.values[0], (std::vector{-12.5, 3.0}));
   EXPECT_EQ(Wrong("t;x\n0,5;1,2,3\n",
                   R"m("table": {"separator": ";", "decimal": ",", "time": {"column": "t"}})m"),
-            "t.csv:2:5: error: \"1,2,3\" is not a number (skip lines before the rows with "
-            "`skip_lines` in the mapping, a column of text with `ignore`)\n");
+            "t.csv:2:5: error: \"1,2,3\" is not a number (in the mapping, `skip_lines` skips "
+            "lines before the rows, and `ignore` skips a column of text)\n");
   EXPECT_EQ(Wrong("t,x\n", R"m("table": {"decimal": ",", "time": {"column": "t"}})m"),
             "m.json: error: table.decimal is a comma, as is the separator (add \"separator\": "
             "\";\" or \"\\t\")\n");

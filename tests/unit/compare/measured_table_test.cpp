@@ -155,8 +155,8 @@ TEST_F(MeasuredTable, MistakesInATableAreNamedWithTheirLine) {
             "increase; the clock may have passed midnight)\n");
   EXPECT_EQ(Wrong("t,x\n0,1\nnan,2\n1,a\n2\n", kPlain),
             "t.csv:3:1: error: the time is not a number (leave out rows without a time)\n"
-            "t.csv:4:3: error: \"a\" is not a number (skip lines before the rows with `skip_lines` "
-            "in the mapping, a column of text with `ignore`)\n"
+            "t.csv:4:3: error: \"a\" is not a number (in the mapping, `skip_lines` skips lines "
+            "before the rows, and `ignore` skips a column of text)\n"
             "t.csv:5: error: the row has 1 values, but the table has 2 columns\n");
   EXPECT_EQ(Wrong("time,x\n0,1\n", kPlain),
             "t.csv:1: error: the table has no column \"t\" (did you mean \"x\"?)\n");
