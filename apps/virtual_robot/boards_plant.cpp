@@ -38,12 +38,12 @@ std::vector<link::Setting> BoardsPlant::Settings() const {
     all.insert(all.end(), more.begin(), more.end());
   };
   add(link::GainsFor(experiment_));
-  const LoadCellOptions& cell = options_.robot.load_cell;
+  const BoardLoadCell& cell = options_.robot.load_cell;
   const auto add_for_all = [&](const link::ParameterValue& value) {
     add(ForAll(value, motors_.motor_count()));
   };
   add_for_all({true, board::kNewtonsPerCount, static_cast<float>(cell.n_per_count)});
-  add_for_all({true, board::kCountsAtZero, static_cast<float>(cell.zero_counts)});
+  add_for_all({true, board::kCountsAtZero, static_cast<float>(cell.counts_at_zero)});
   if (options_.calibration) add(link::SettingsFor(*options_.calibration, experiment_.robot));
   for (const link::ParameterValue& value : options_.settings) add_for_all(value);
   return all;

@@ -26,7 +26,7 @@ struct RobotOptions {
   std::uint64_t seed = 1;                     ///< Seed of all noise.
   std::vector<double> drift_ppm{};     ///< Clock error of each board; 0 for boards beyond the end.
   std::vector<std::uint8_t> eeprom{};  ///< EEPROM bytes of all boards after the identity byte.
-  LoadCellOptions load_cell{};
+  BoardLoadCell load_cell{};
   EncoderOptions encoder{};
   UsbIssOptions usb{};
   /// Step of the plant and of its exchange with the boards: 20 to 100 us. Encoders show the

@@ -10,14 +10,6 @@ constexpr double kTurn = 6.283185307179586476925286766559;
 
 }  // namespace
 
-int LoadCellCode(const LoadCellOptions& options, double force_n, double noise) {
-  const double counts =
-      options.zero_counts + force_n / options.n_per_count + noise * options.noise_counts;
-  // The first code begins half a count above zero (data sheet, "ADC Accuracy Definitions").
-  const double code = std::floor(std::min(counts, options.saturation_counts) + 0.5);
-  return static_cast<int>(std::clamp(code, 0.0, 1023.0));
-}
-
 Encoder::Encoder(const EncoderOptions& options, double angle_rad)
     : states_per_rad_(4.0 * options.lines / kTurn),
       position_(angle_rad * states_per_rad_),

@@ -1,25 +1,13 @@
-/// Sensor models: load cell with amplifier at a converter input, and encoder on the motor's shaft.
+/// Encoder on a motor's shaft. The load cells are those of `taut/boards.h`.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "apps/virtual_robot/emulated_board.h"
+#include "taut/boards.h"
 
 namespace taut::virtual_robot {
-
-/// Values of the paper's robot (Mirletz, Park, Quinn, SunSpiral 2015, eq. 7): force = n_per_count
-/// (code - zero_counts).
-struct LoadCellOptions {
-  double n_per_count = 0.1567;
-  double zero_counts = 4.9363 / 0.1567;  ///< 31.5
-  /// Limit of the amplifier with its 5 V supply, below the converter's range: 111.2 N.
-  double saturation_counts = 741;
-  double noise_counts = 0.7;  ///< Standard deviation of the noise of a conversion (assumed).
-};
-
-/// Returns the converter's code for a force, with a noise of `noise` standard deviations.
-int LoadCellCode(const LoadCellOptions& options, double force_n, double noise);
 
 struct EncoderOptions {
   int lines = 16;  ///< Four states each: 64 per turn of the shaft.

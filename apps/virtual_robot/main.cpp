@@ -40,7 +40,7 @@ struct Arguments {
   double measure_s = 0, duration_s = -1, recover_s = -1;
   std::vector<std::string> board;
   std::string out;
-  double noise_counts = LoadCellOptions().noise_counts;
+  double noise_counts = BoardLoadCell().noise_counts;
   double usb_latency_s = ToSeconds(UsbIssOptions().request_latency);
   double slip_s = PacedOptions().slip_s;
   bool frames = false, run = false, quiet = false, csv = false, stand = false, with_parent = false;

@@ -94,6 +94,7 @@ enum class CommandMode : unsigned char {
   /// No power. A `dc_motor` slows down or is driven back by its cable; other actuators keep their
   /// rest length.
   kOff,
+  kDuty,  ///< Apply `Commands::duty` to a `dc_motor`; otherwise like kRestLength.
 };
 
 /// Commands of controllers to the plant and to later controllers, as rows. Values remain until they
@@ -109,6 +110,9 @@ struct Commands {
   CommandMode* mode = nullptr;  ///< Initially `kRestLength`.
   /// Per lane: number of the active gait (`GaitInputSpec`); -1: as in the experiment.
   int* gait = nullptr;
+  /// Row: duties of DC motors in mode kDuty, -1 .. 1; positive winds in. Null: the plant accepts no
+  /// duties.
+  double* duty = nullptr;
 };
 
 // --- plants --------------------------------------------------------------------------------------
@@ -225,6 +229,8 @@ class Controller {
   /// Saves or restores the memory of a lane, for `Simulation::Save` and `Env::Save`. All
   /// controllers of taut implement it.
   virtual void Serialize(plant::LaneState& state) { (void)state; }
+  /// Returns a text about faults in a lane since its restart; empty without.
+  virtual std::string Faults(int lane) const { return (void)lane, std::string(); }
 
   // --- interactive changes of a lane; override these functions if the controller supports them
   // ---

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "taut/boards.h"
 #include "taut/diagnostics.h"
 #include "taut/environment.h"
 #include "taut/gait.h"
@@ -159,7 +160,8 @@ inline const GaitSpec& GaitOf(const GaitInputSpec& input, std::size_t number) {
   return number == 0 ? input.gait : input.others[number - 1];
 }
 
-/// Controller: impedance control or position control of cables, optionally with a gait.
+/// Controller: impedance control or position control of cables, optionally with a gait. Or the
+/// motor boards, which run the control law of the other controllers.
 struct ControllerSpec {
   std::string name;
   ClockSpec clock;
@@ -170,7 +172,11 @@ struct ControllerSpec {
   /// Added to the programs of the cables, or to the initial rest lengths of cables without a
   /// program.
   std::optional<GaitInputSpec> rest_length_input;
+  std::optional<BoardsSpec> boards;  ///< Without any other member but the name; last in the list.
 };
+
+/// Returns the motor boards among the controllers; null without.
+const BoardsSpec* BoardsOf(const std::vector<ControllerSpec>& controllers) noexcept;
 
 /// Returns the gait input of a controller, or null; there is at most one.
 inline GaitInputSpec* GaitInputOf(ControllerSpec& controller) noexcept {

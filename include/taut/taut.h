@@ -4,6 +4,7 @@
 #pragma once
 
 #include "taut/analysis.h"
+#include "taut/boards.h"
 #include "taut/body_rows.h"
 #include "taut/cable_readings.h"
 #include "taut/cable_scheme.h"

@@ -43,8 +43,7 @@ std::int16_t Driver::OnWire(int motor) const {
     default:
       break;
   }
-  if (!std::isfinite(units)) return 0;
-  return static_cast<std::int16_t>(std::clamp(std::round(units), -32767.0, 32767.0));
+  return std::isfinite(units) ? board::ToWire(units) : std::int16_t{0};
 }
 
 void Driver::BeginCycle() {
@@ -262,7 +261,7 @@ void Driver::TakeStatus(int board, const board::Status& status) {
     const board::MotorStatus& from = status.motors[m];
     const MotorFigures& figures = figures_[motor];
     const auto newtons = [&](std::uint16_t quarters) {
-      return figures.n_per_count * (quarters / 4.0 - figures.counts_at_zero);
+      return board::ForceOf(quarters, figures.n_per_count, figures.counts_at_zero);
     };
     to.tension_n = newtons(from.tension_quarters);
     to.set_point_n = status.mode == Mode::kImpedance ? newtons(from.set_point_quarters)

@@ -22,10 +22,6 @@ constexpr struct {
               {board::Mode::kStopped, "stopped"}};
 
 /// In the order of the bits, least significant bit first.
-constexpr const char* kMotorFaults[] = {"over_tension", "sensor",  "slack", "stall",
-                                        "polarity",     "runaway", "hot"};
-constexpr const char* kBoardFaults[] = {"driver",       "overruns",  "parameters_lost",
-                                        "unreferenced", "not_armed", "bus_stuck"};
 constexpr const char* kResetCauses[] = {"power_on", "external", "brown_out", "watchdog"};
 
 std::string NamesOf(unsigned bits, std::span<const char* const> names) {
@@ -101,8 +97,8 @@ std::optional<board::Mode> ModeOf(const std::string& name) {
   return std::nullopt;
 }
 
-std::string MotorFaultNames(unsigned bits) { return NamesOf(bits, kMotorFaults); }
-std::string BoardFaultNames(unsigned bits) { return NamesOf(bits, kBoardFaults); }
+std::string MotorFaultNames(unsigned bits) { return NamesOf(bits, board::kMotorFaultNames); }
+std::string BoardFaultNames(unsigned bits) { return NamesOf(bits, board::kBoardFaultNames); }
 std::string ResetCauseNames(unsigned bits) { return NamesOf(bits, kResetCauses); }
 
 std::string FaultsOf(const State& state, int board, const std::vector<std::string>& cables) {

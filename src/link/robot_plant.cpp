@@ -20,6 +20,7 @@ RobotPlant::RobotPlant(const ExperimentSpec& experiment, Driver& driver)
   Diagnostics none;
   cables_ = MotorCables(experiment.robot, none);
   TAUT_ASSERT(cables_.size() == driver.state().motors.size());
+  if (const BoardsSpec* const boards = BoardsOf(experiment.controllers)) boards_ = *boards;
   const std::vector<CableDef>& cables = experiment.robot.def.cables;
   const std::size_t count = cables.size();
   rows_.resize(kRows * count);
@@ -60,7 +61,8 @@ void RobotPlant::Begin() {
     const double here_m = driver_.state().motors[m].rest_length_m;
     driver_.SetValue(static_cast<int>(m), mode_ == Mode::kPosition ? here_m : 0.0);
   }
-  driver_.Go(mode_);
+  holding_ = boards_.hold_s > 0;
+  if (!holding_) driver_.Go(mode_, boards_.capture);
   driver_.ForgetStatistics();
   cycle_ = -1;
   time_s_ = 0;
@@ -128,8 +130,14 @@ void RobotPlant::Advance(const double* /*step_s*/, const double* to_s) {
   const std::size_t count = faults_.size();
   for (std::size_t m = 0; m < cables_.size(); ++m) {
     const auto c = static_cast<std::size_t>(cables_[m]);
-    driver_.SetValue(static_cast<int>(m), mode_ == Mode::kPosition ? rows_[kCommanded * count + c]
-                                                                   : velocity_input_m_per_s_[c]);
+    driver_.SetValue(static_cast<int>(m),
+                     mode_ == Mode::kPosition
+                         ? rows_[kCommanded * count + c]
+                         : boards_.velocity_input_scale * velocity_input_m_per_s_[c]);
+  }
+  if (holding_ && to_s[0] > boards_.hold_s) {
+    holding_ = false;
+    driver_.Go(mode_, boards_.capture);
   }
   driver_.RunUntil(started_s_ + to_s[0]);
   time_s_ = to_s[0];

@@ -1,6 +1,5 @@
 // Settings of the boards from an experiment and its model.
-#include <numbers>
-
+#include "description/robot/board_settings.h"
 #include "taut/link/robot_plant.h"
 
 namespace taut::link {
@@ -8,29 +7,15 @@ namespace {
 
 using board::Mode;
 
-const ImpedanceGains* GainsOf(const ExperimentSpec& experiment, int cable) {
-  for (const ControllerSpec& controller : experiment.controllers) {
-    if (!controller.impedance) continue;
-    for (const ImpedanceGains& gains : controller.impedance->cables) {
-      if (gains.cable == cable) return &gains;
-    }
-  }
-  return nullptr;
-}
-
 Setting Of(std::size_t motor, board::MotorParameter parameter, double value) {
   return {PlaceOf(static_cast<int>(motor), parameter), static_cast<float>(value)};
 }
 
-std::vector<int> CablesOf(const RobotSpec& robot) {
-  std::vector<int> cables;
-  for (std::size_t c = 0; c < robot.def.cables.size(); ++c) {
-    if (robot.def.cables[c].actuator.kind != ActuatorDef::Kind::kNone) {
-      cables.push_back(static_cast<int>(c));
-    }
-  }
-  return cables;
+void Add(std::size_t motor, const description::MotorSettings& from, std::vector<Setting>& to) {
+  for (const auto& [parameter, value] : from) to.push_back(Of(motor, parameter, value));
 }
+
+std::vector<int> CablesOf(const RobotSpec& robot) { return description::ActuatedCables(robot.def); }
 
 const CableDef& CableAt(const RobotSpec& robot, int cable) {
   return robot.def.cables[static_cast<std::size_t>(cable)];
@@ -64,7 +49,7 @@ std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) 
   const std::vector<int> cables = CablesOf(experiment.robot);
   std::vector<std::string> with, without;
   for (const int cable : cables) {
-    (GainsOf(experiment, cable) != nullptr ? with : without)
+    (description::GainsOf(experiment.controllers, cable) != nullptr ? with : without)
         .push_back(CableAt(experiment.robot, cable).name);
   }
   if (with.empty()) return Mode::kPosition;
@@ -80,18 +65,8 @@ std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) 
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines) {
   std::vector<Setting> settings;
   const std::vector<int> cables = CablesOf(robot);
-  const double counts_per_rad = 2 * encoder_lines / (2 * std::numbers::pi);
   for (std::size_t motor = 0; motor < cables.size(); ++motor) {
-    const CableDef& cable = CableAt(robot, cables[motor]);
-    settings.push_back(Of(motor, board::kReferenceLength, cable.rest_length_m));
-    settings.push_back(Of(motor, board::kStiffness, cable.stiffness_n_per_m));
-    if (!cable.actuator.dc_motor) continue;
-    const DcMotorDef& figures = *cable.actuator.dc_motor;
-    const double per_rotor_m = figures.spool_radius_m / figures.gear_ratio;
-    const double free_m_per_s =
-        per_rotor_m * figures.supply_voltage_v / figures.torque_constant_n_m_per_a;
-    settings.push_back(Of(motor, board::kLengthPerCount, per_rotor_m / counts_per_rad));
-    settings.push_back(Of(motor, board::kSpeedLimit, 1.3 * free_m_per_s));
+    Add(motor, description::SettingsOf(CableAt(robot, cables[motor]), encoder_lines), settings);
   }
   return settings;
 }
@@ -100,12 +75,16 @@ std::vector<Setting> GainsFor(const ExperimentSpec& experiment) {
   std::vector<Setting> settings;
   const std::vector<int> cables = CablesOf(experiment.robot);
   for (std::size_t motor = 0; motor < cables.size(); ++motor) {
-    const ImpedanceGains* const gains = GainsOf(experiment, cables[motor]);
-    if (gains == nullptr) continue;
-    settings.push_back(Of(motor, board::kTensionOffset, gains->tension_offset_n));
-    settings.push_back(Of(motor, board::kLengthOffset, gains->length_offset_m));
-    settings.push_back(Of(motor, board::kPositionGain, gains->position_gain_n_per_m));
-    settings.push_back(Of(motor, board::kVelocityGain, gains->velocity_gain_n_s_per_m));
+    const ImpedanceGains* const gains = description::GainsOf(experiment.controllers, cables[motor]);
+    if (gains != nullptr) Add(motor, description::SettingsOf(*gains), settings);
+    const BoardsSpec* const boards = BoardsOf(experiment.controllers);
+    if (boards == nullptr) continue;
+    for (const auto& [parameter, value] : description::CommonMotorSettings(*boards)) {
+      // A robot's load cells are calibrated.
+      const bool of_cell =
+          parameter == board::kNewtonsPerCount || parameter == board::kCountsAtZero;
+      if (!of_cell) settings.push_back(Of(motor, parameter, value));
+    }
   }
   return settings;
 }

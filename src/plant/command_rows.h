@@ -11,11 +11,13 @@ namespace taut::plant {
 
 class CommandRows {
  public:
-  CommandRows(std::size_t cables, std::size_t lanes)
+  /// `has_duty`: whether the plant accepts duties.
+  CommandRows(std::size_t cables, std::size_t lanes, bool has_duty = false)
       : lanes_(lanes),
         set_point_n_(cables * lanes),
         velocity_input_m_per_s_(cables * lanes),
         signal_(cables * lanes),
+        duty_(has_duty ? cables * lanes : 0),
         mode_(cables * lanes, CommandMode::kRestLength),
         gait_(lanes, -1) {}
 
@@ -28,7 +30,8 @@ class CommandRows {
             velocity_input_m_per_s_.data(),
             signal_.data(),
             mode_.data(),
-            gait_.data()};
+            gait_.data(),
+            duty_.empty() ? nullptr : duty_.data()};
   }
 
   /// Resets the commands of a lane to their initial values, except the rest lengths.
@@ -37,13 +40,14 @@ class CommandRows {
     gait_[j] = -1;
     for (std::size_t i = j; i < mode_.size(); i += lanes_) {
       set_point_n_[i] = velocity_input_m_per_s_[i] = signal_[i] = 0;
+      if (!duty_.empty()) duty_[i] = 0;
       mode_[i] = CommandMode::kRestLength;
     }
   }
 
   /// Serializes the commands of a lane, except the rest lengths.
   void Serialize(LaneState& state) {
-    for (std::vector<double>* row : {&set_point_n_, &velocity_input_m_per_s_, &signal_}) {
+    for (std::vector<double>* row : {&set_point_n_, &velocity_input_m_per_s_, &signal_, &duty_}) {
       state.Row(*row);
     }
     state.Row(mode_);
@@ -51,10 +55,11 @@ class CommandRows {
   }
 
   const std::vector<CommandMode>& mode() const noexcept { return mode_; }
+  const std::vector<double>& duty() const noexcept { return duty_; }  ///< Empty: no duties.
 
  private:
   std::size_t lanes_;
-  std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
+  std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_, duty_;
   std::vector<CommandMode> mode_;
   std::vector<int> gait_;
 };

@@ -9,11 +9,12 @@ namespace taut::plant {
 namespace {
 
 /// Returns the numeric rows of commands, with names.
-std::array<std::pair<const char*, double*>, 4> RowsOf(const Commands& commands) {
+std::array<std::pair<const char*, double*>, 5> RowsOf(const Commands& commands) {
   return {{{"rest_length_m", commands.rest_length_m},
            {"set_point_n", commands.set_point_n},
            {"velocity_input_m_per_s", commands.velocity_input_m_per_s},
-           {"signal", commands.signal}}};
+           {"signal", commands.signal},
+           {"duty", commands.duty}}};
 }
 
 /// Uses integers, so that the compiler can vectorize the loop.

@@ -5,6 +5,7 @@
 #include "base/assert.h"
 #include "plant/controller_kinds.h"
 #include "plant/goal.h"
+#include "plant/motor_boards.h"
 #include "plant/sensors.h"
 
 namespace taut::plant {
@@ -38,6 +39,11 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
     add(std::make_unique<Sensors>(*experiment.sensors, experiment.robot.def.cables.size(),
                                   std::move(seeds)));
   }
+  MotorBoards boards;
+  if (BoardsOf(experiment.controllers) != nullptr && plant.commands().duty != nullptr) {
+    boards = MakeBoards(setup);
+    add(std::move(boards.sensors));
+  }
   if (extensions.sensors) add(extensions.sensors(setup));
   for (auto& controller : MakeControllers(setup, extensions)) {
     const LaneClock clock(controller->clock(), plant_lanes_);
@@ -48,6 +54,10 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
     laws_[i].custom = "custom controller " + std::to_string(i - own) + " sets";
   }
   if (own < laws_.size()) check_.Keep(plant_.commands());  // allocates memory in advance
+  if (boards.controller) {
+    const LaneClock clock(boards.controller->clock(), plant_lanes_);
+    laws_.push_back({std::move(boards.controller), clock, {}});
+  }
 }
 
 Lanes Loop::AtBoundary() const {
@@ -224,6 +234,15 @@ std::optional<ImpedanceGains> Loop::Gains(int lane, int cable) const {
     if (auto gains = law.controller->Gains(lane, cable)) return gains;
   }
   return std::nullopt;
+}
+
+std::string Loop::Faults(int lane) const {
+  std::string faults;
+  for (const Law& law : laws_) {
+    const std::string text = law.controller->Faults(lane);
+    if (!text.empty()) faults += (faults.empty() ? "" : "; ") + text;
+  }
+  return faults;
 }
 
 bool Loop::SetGains(int lane, const ImpedanceGains& gains) {

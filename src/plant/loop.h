@@ -78,6 +78,9 @@ class Loop {
     return timelines_[static_cast<std::size_t>(lane)];
   }
 
+  /// Returns a text about faults that controllers of a lane have detected; empty without.
+  std::string Faults(int lane = 0) const;
+
   // --- interactive changes -----------------------------------------------------------------------
   std::optional<ImpedanceGains> Gains(int lane, int cable) const;
   bool SetGains(int lane, const ImpedanceGains& gains);

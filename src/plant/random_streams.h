@@ -19,11 +19,12 @@ enum Stream : std::uint32_t {
   kGoal = 10,          ///< Index: 0.
   kStartPose = 11,     ///< Index: 0.
   // Used by environments (src/env/):
-  kEpisodeScales = 12,  ///< Index: 0.
-  kEpisodeSlope = 13,   ///< Index: 0.
-  kEpisodeDelays = 14,  ///< Index: 0.
-  kFollowingSeed = 15,  ///< Index: 0; the seed of the next episode.
-  kStartPlace = 16,     ///< Index: 0.
+  kEpisodeScales = 12,       ///< Index: 0.
+  kEpisodeSlope = 13,        ///< Index: 0.
+  kEpisodeDelays = 14,       ///< Index: 0.
+  kFollowingSeed = 15,       ///< Index: 0; the seed of the next episode.
+  kStartPlace = 16,          ///< Index: 0.
+  kBoardLoadCellNoise = 17,  ///< Index: tick * cables + cable.
   // Stream 100 is used by scattered blocks of terrain, which have a separate seed
   // (description/experiment/terrain_boxes.cpp).
 };

@@ -51,8 +51,11 @@ Recorder::Recorder(const ExperimentSpec& experiment, Plant* plant)
     if (def.cables[c].actuator.kind != ActuatorDef::Kind::kDcMotor) continue;
     AddMotor("cable/" + def.cables[c].name + "/", static_cast<int>(c));
   }
-  for (std::size_t c = 0; experiment.sensors && c < def.cables.size(); ++c) {
-    AddSensor(*experiment.sensors, "sensor/" + def.cables[c].name + "/", static_cast<int>(c));
+  const bool has_boards = BoardsOf(experiment.controllers) != nullptr &&
+                          (plant == nullptr || plant->commands().duty != nullptr);
+  const SensorSpec sensors = experiment.sensors.value_or(SensorSpec{});
+  for (std::size_t c = 0; (experiment.sensors || has_boards) && c < def.cables.size(); ++c) {
+    AddSensor(sensors, "sensor/" + def.cables[c].name + "/", static_cast<int>(c));
   }
   for (std::size_t b = 0; has_bodies && b < def.bodies.size(); ++b) {
     Add("body/" + def.bodies[b].name + "/", BodyChannels(),

@@ -74,6 +74,8 @@ class Runner {
       summary.state_hash = world->Hash(0);
     }
     AddOverloads(summary);
+    const std::string faults = loop_.Faults();
+    if (!faults.empty()) summary.status_text += (summary.status_text.empty() ? "" : "; ") + faults;
     if (!loop_.refused().empty()) {
       out.Error("run.not_finite", {}, "the run ended early: " + loop_.refused());
       summary.status_text += (summary.status_text.empty() ? "" : "; ") + loop_.refused();

@@ -16,7 +16,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
         lanes_(static_cast<std::size_t>(batch.lanes())),
         time_s_(lanes_),
         goes_(static_cast<std::size_t>(batch.worlds())),
-        rows_(batch.model().def().cables.size(), lanes_),
+        rows_(batch.model().def().cables.size(), lanes_, HasMotors(batch.model().def())),
         commands_(rows_.With(batch.Cables(0).rest_length_target_m)) {
     TAUT_ASSERT(batch.groups() == 1);
     const std::vector<CableDef>& cables = batch.model().def().cables;
@@ -28,7 +28,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
       }
     }
     if (has_backlash) shaft_m_.resize(cables.size() * lanes_);
-    off_.resize(cables.size() * lanes_);
+    powers_.resize(cables.size() * lanes_);
     seen_.lanes = batch.lanes();
     seen_.time_s = time_s_.data();
     seen_.bodies = this;
@@ -70,7 +70,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   void Serialize(plant::LaneState& state) override {
     state.Row(time_s_);
     rows_.Serialize(state);
-    state.Row(off_);
+    state.Row(powers_);
   }
 
   bool IsRunning(int lane) const override {
@@ -124,15 +124,35 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     seen_.shaft_m = shaft_m_.data();
   }
 
-  /// Switches motors if commands have changed. Keeps switching by other callers.
+  /// Drives of a motor by commands.
+  enum Power : std::uint8_t { kByServo, kWithoutPower, kByDuty };
+
+  static bool HasMotors(const ModelDef& def) {
+    return std::any_of(def.cables.begin(), def.cables.end(), [](const CableDef& cable) {
+      return cable.actuator.kind == ActuatorDef::Kind::kDcMotor;
+    });
+  }
+
+  /// Switches motors if commands have changed, and applies duties. Keeps switching by other
+  /// callers.
   void Switch() {
     for (const int c : motors_) {
       for (std::size_t j = 0; j < goes_.size(); ++j) {
         const std::size_t i = static_cast<std::size_t>(c) * lanes_ + j;
-        const bool off = rows_.mode()[i] == CommandMode::kOff;
-        if (off == (off_[i] != 0)) continue;
-        off_[i] = off ? 1 : 0;
-        batch_.SetMotorEnabled(static_cast<int>(j), c, !off);
+        const int lane = static_cast<int>(j);
+        const CommandMode mode = rows_.mode()[i];
+        const Power power = mode == CommandMode::kOff    ? kWithoutPower
+                            : mode == CommandMode::kDuty ? kByDuty
+                                                         : kByServo;
+        if (power == kByDuty) batch_.SetDuty(lane, c, rows_.duty()[i]);
+        if (power == powers_[i]) continue;
+        if (powers_[i] == kByDuty && power == kByServo) {
+          batch_.SetRestLengthTarget(lane, c, commands_.rest_length_m[i]);
+        }
+        if ((power == kWithoutPower) != (powers_[i] == kWithoutPower)) {
+          batch_.SetMotorEnabled(lane, c, power != kWithoutPower);
+        }
+        powers_[i] = power;
       }
     }
   }
@@ -144,7 +164,7 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
     for (const CommandMode mode : modes) most = mode > most ? mode : most;
     if (most < CommandMode::kHold) return;
     for (std::size_t i = 0; i < modes.size(); ++i) {
-      if (modes[i] < CommandMode::kHold) continue;
+      if (modes[i] != CommandMode::kHold && modes[i] != CommandMode::kOff) continue;
       commands_.rest_length_m[i] = seen_.cables.rest_length_m[i];
     }
   }
@@ -168,9 +188,9 @@ class SimulatedPlant final : public Plant, public World, public plant::ManySteps
   plant::CommandRows rows_;
   Commands commands_;
   Observation seen_;
-  std::vector<int> motors_;        ///< Cables with DC motors.
-  std::vector<std::uint8_t> off_;  ///< Row: whether a command has switched the motor off.
-  std::vector<double> shaft_m_;    ///< Row; empty if no gear has backlash.
+  std::vector<int> motors_;      ///< Cables with DC motors.
+  std::vector<Power> powers_;    ///< Row.
+  std::vector<double> shaft_m_;  ///< Row; empty if no gear has backlash.
 };
 
 }  // namespace

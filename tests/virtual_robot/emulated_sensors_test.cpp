@@ -25,7 +25,7 @@ TEST(LoadCell, EndsWhereItsAmplifierEnds) {
 }
 
 TEST(LoadCell, NoiseIsInCounts) {
-  const LoadCellOptions noisy{.noise_counts = 2.0};
+  const BoardLoadCell noisy{.noise_counts = 2.0};
   EXPECT_EQ(LoadCellCode(noisy, 50.0, 1.5), LoadCellCode(noisy, 50.0, 0.0) + 3);
   EXPECT_EQ(LoadCellCode({.noise_counts = 0.0}, 50.0, 3.0), LoadCellCode({}, 50.0, 0.0));
 }

@@ -65,6 +65,26 @@ TEST(RunOnBoards, HoldsTheSpineAsTheSimulationDoes) {
   EXPECT_NEAR(boards.tensions_n[5], 32.3, 1.0) << "inner_top_1";
 }
 
+/// The key `boards` runs the same firmware natively. Tolerance: noise of the load cells, and ticks
+/// of the emulated boards that are not synchronous with the physics.
+TEST(RunOnBoards, TheBoardsOfAnExperimentDoTheSame) {
+  const RunDone boards = RunPush(1.5, Options());
+  ExperimentSpec experiment = Push(1.5);
+  ControllerSpec& native = experiment.controllers.emplace_back();
+  native.name = "boards";
+  native.clock = {0.001, 0.0};
+  native.boards.emplace();
+  Diagnostics found;
+  const auto simulated = RunExperiment(experiment, {}, found);
+  ASSERT_TRUE(simulated.has_value()) << found.Format();
+  ASSERT_EQ(simulated->cables.size(), boards.summary.cables.size());
+  for (std::size_t c = 0; c < simulated->cables.size(); ++c) {
+    const CableSummary &a = boards.summary.cables[c], &b = simulated->cables[c];
+    EXPECT_NEAR(a.tension.max_n, b.tension.max_n, 0.1) << a.name;
+  }
+  EXPECT_EQ(simulated->status_text, "");
+}
+
 TEST(RunOnBoards, TwoRunsAreTheSameAndNoiseIsAnother) {
   BoardsOptions options = Options();
   const RunDone first = RunPush(0.3, options), second = RunPush(0.3, options);

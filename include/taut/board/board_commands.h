@@ -55,6 +55,17 @@ struct Cyclic {
   int16_t values[kCables] = {};
 };
 
+#ifndef __AVR__  // only the PC encodes values
+/// Converts a value in units of a broadcast to its number, rounded half away from zero and clamped
+/// to its range. NaN becomes 0.
+constexpr int16_t ToWire(double units) noexcept {
+  if (units != units) return 0;
+  if (units >= 32767.0) return 32767;
+  if (units <= -32767.0) return -32767;
+  return static_cast<int16_t>(units + (units < 0 ? -0.5 : 0.5));
+}
+#endif
+
 /// Data of a broadcast for one board.
 struct Command {
   uint8_t sequence = 0;

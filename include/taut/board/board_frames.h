@@ -39,6 +39,13 @@ struct MotorStatus {
   int8_t duty = 0;                  ///< In 1/127; positive winds in.
 };
 
+#ifndef __AVR__  // only the PC converts readings
+/// Returns the force [N] of a reading in quarters of a count.
+constexpr double ForceOf(uint16_t quarters, double n_per_count, double counts_at_zero) noexcept {
+  return n_per_count * (quarters / 4.0 - counts_at_zero);
+}
+#endif
+
 /// Status of a board.
 struct Status {
   uint8_t sequence = 0;  ///< Sequence number of the last applied broadcast.

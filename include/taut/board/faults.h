@@ -35,6 +35,14 @@ enum BoardFault : uint8_t {
   kBusStuck = 32,        ///< The I2C bus was restarted.
 };
 
+#ifndef __AVR__  // on an AVR, strings take RAM
+/// Names of the faults in messages, in the order of the bits, least significant bit first.
+constexpr const char* kMotorFaultNames[] = {"over_tension", "sensor",  "slack", "stall",
+                                            "polarity",     "runaway", "hot"};
+constexpr const char* kBoardFaultNames[] = {"driver",       "overruns",  "parameters_lost",
+                                            "unreferenced", "not_armed", "bus_stuck"};
+#endif
+
 /// Causes of a board's last reset: bits of MCUSR of an ATmega328P.
 enum ResetCause : uint8_t { kPowerOn = 1, kExternal = 2, kBrownOut = 4, kWatchdog = 8 };
 

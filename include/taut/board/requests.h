@@ -188,6 +188,22 @@ inline void Receive(const uint8_t* bytes, size_t size, bool to_all, Board& board
   board.silence = 0;
 }
 
+/// Returns the part of a status frame about one motor.
+inline MotorStatus StatusOf(const Board& board, uint8_t m) noexcept {
+  const MotorLoop& motor = board.loops[m];
+  const float* const p = board.parameters.motor[m];
+  MotorStatus out;
+  out.tension_quarters =
+      static_cast<uint16_t>(control::Clamp(motor.tension_counts, 0.0f, 1023.0f) * 4.0f);
+  if (board.mode == Mode::kImpedance) {
+    const float counts = motor.set_point_n * board.numbers[m].counts_per_n + p[kCountsAtZero];
+    out.set_point_quarters = counts < 1023.0f ? static_cast<uint16_t>(counts * 4.0f) : 4095;
+  }
+  out.encoder_counts = static_cast<uint16_t>(motor.counts);
+  out.duty = static_cast<int8_t>(motor.width * int32_t{127} / kFullWidth);
+  return out;
+}
+
 /// Fills the frame for the next read. Call it if `reply_due`, or after a tick if `status_due`.
 inline void MakeFrame(Board& board, uint8_t (&frame)[kFrameSize]) noexcept {
   if (board.reply_due) {
@@ -202,19 +218,7 @@ inline void MakeFrame(Board& board, uint8_t (&frame)[kFrameSize]) noexcept {
   status.timeout = board.timeout;
   status.overrun = board.overrun_seen;
   status.was_reset = board.was_reset;
-  for (uint8_t m = 0; m < kMotors; ++m) {
-    const MotorLoop& motor = board.loops[m];
-    const float* const p = board.parameters.motor[m];
-    MotorStatus& out = status.motors[m];
-    out.tension_quarters =
-        static_cast<uint16_t>(control::Clamp(motor.tension_counts, 0.0f, 1023.0f) * 4.0f);
-    if (board.mode == Mode::kImpedance) {
-      const float counts = motor.set_point_n * board.numbers[m].counts_per_n + p[kCountsAtZero];
-      out.set_point_quarters = counts < 1023.0f ? static_cast<uint16_t>(counts * 4.0f) : 4095;
-    }
-    out.encoder_counts = static_cast<uint16_t>(motor.counts);
-    out.duty = static_cast<int8_t>(motor.width * int32_t{127} / kFullWidth);
-  }
+  for (uint8_t m = 0; m < kMotors; ++m) status.motors[m] = StatusOf(board, m);
   switch (static_cast<More>(status.sequence % kMores)) {
     case More::kFaults0:
       status.more = board.faults[0];

@@ -63,7 +63,7 @@ struct Board {
   bool reply_due = false;    ///< The next read returns `reply`.
   bool status_due = false;   ///< A new status is due after the next tick.
   bool overrun_seen = false;
-  uint8_t silence = 0;   ///< Ticks since the last valid broadcast.
+  uint8_t silence = 0;           ///< Ticks since the last valid broadcast.
   uint8_t longest_tick_8us = 0;  ///< Longest tick since the last status, in units of 8 us.
   Command command;
   Reply reply;

@@ -31,7 +31,8 @@ std::optional<board::Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics
 /// Returns the board parameters that depend on gear, spool and spring. `encoder_lines`: marks per
 /// revolution of the motor shaft; boards count two edges per mark.
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines);
-/// Returns the board parameters for the impedance gains of the experiment.
+/// Returns the board parameters for the impedance gains of the experiment, and those of its
+/// `boards` except the load cells.
 std::vector<Setting> GainsFor(const ExperimentSpec& experiment);
 /// Returns the calibrated board parameters. The cables of the calibration must belong to this
 /// robot.
@@ -48,7 +49,7 @@ class RobotPlant final : public Plant {
   /// not follow or the boards cannot run the experiment.
   bool Hold(Diagnostics& out);
   /// Starts the experiment after `Hold`: its time is 0 now, and the boards enter its mode
-  /// (`ModeFor`) with the next broadcast.
+  /// (`ModeFor`) with the next broadcast, or after `BoardsSpec::hold_s`.
   void Begin();
 
   const Observation& Observe() override;
@@ -72,6 +73,8 @@ class RobotPlant final : public Plant {
   Driver& driver_;
   std::vector<int> cables_;  ///< Cable indices of the motors.
   board::Mode mode_ = board::Mode::kHold;
+  BoardsSpec boards_;         ///< Of the experiment; otherwise the defaults.
+  bool holding_ = false;      ///< Until `BoardsSpec::hold_s`.
   std::vector<double> rows_;  ///< Rows of six readings and of the commanded rest lengths.
   std::vector<double> set_point_n_, velocity_input_m_per_s_, signal_;
   std::vector<CommandMode> command_mode_;

@@ -1,6 +1,7 @@
 /// Keys of controllers in experiment files, with the subset that resolved experiments contain.
 #pragma once
 
+#include "description/experiment/board_keys.h"
 #include "description/experiment/experiment_text.h"
 #include "description/gait/gait_keys.h"
 
@@ -187,13 +188,15 @@ void Keys(Io& io, Controller& c) {
   io("period_s", c.clock.period_s, Bound::kPositive,
      "Time between two ticks, independent of the physics step.");
   io("phase_s", c.clock.phase_s, Bound::kNonNegative, "Time of the first tick.");
-  io.EitherSide({"impedance"}, {"position", "rest_length_input"});
   if constexpr (Io::kResolved) {
+    io.EitherSide({"impedance"}, {"position", "rest_length_input", "boards"});
     io("impedance", c.impedance);
     io("position", c.position);
     io("velocity_input", c.velocity_input);
     io("rest_length_input", c.rest_length_input);
+    io("boards", c.boards, kLater);
   } else {
+    io.EitherSide({"impedance"}, {"position", "rest_length_input"});
     io("impedance", c.impedance_text);
     io("position", c.position_text);
     io("velocity_input", c.velocity_input_text);

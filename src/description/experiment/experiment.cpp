@@ -74,6 +74,7 @@ ExperimentSpec ReadExperiment(const Value& root, const OverrideSet& overrides, c
   text.scales = ToScales(text.scale_texts, known, scope);
   const std::size_t errors_before_controllers = scope.out.items().size();
   text.controllers = ToControllers(text.controller_texts, known, model.good, scope);
+  if (text.boards_text) AddBoards(*text.boards_text, known, scope, text);
   const bool drivers_known = model.good && scope.out.items().size() == errors_before_controllers;
   AddTimeline(text.timeline, known, scope, text);
   text.load_cases = ToLoadCases(text.load_case_texts, text.load_combinations, known, scope);
@@ -174,6 +175,11 @@ std::string ActingParts(const ExperimentSpec& experiment) {
   add(!experiment.drags.empty(), "drags");
   add(experiment.start != StartKind::kAsDescribed, "a settled start");
   return parts;
+}
+
+const BoardsSpec* BoardsOf(const std::vector<ControllerSpec>& controllers) noexcept {
+  const bool has = !controllers.empty() && controllers.back().boards;
+  return has ? &*controllers.back().boards : nullptr;
 }
 
 RolloutWorld WorldOf(const ExperimentSpec& experiment) {

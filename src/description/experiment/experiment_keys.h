@@ -376,6 +376,7 @@ void Keys(Io& io, Experiment& e) {
     io("controllers", e.controller_texts,
        "Controllers of the cables' actuators. Each cable has at most one controller; cables "
        "without a controller keep their rest length.");
+    io("boards", e.boards_text);
   }
 }
 

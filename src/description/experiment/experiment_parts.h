@@ -37,6 +37,11 @@ std::vector<ControllerSpec> ToControllers(std::vector<ControllerText>& texts,
                                           const RobotSpec* robot, bool actuators_known,
                                           const Scope& scope);
 
+/// Adds the motor boards to the controllers, as the last one. Reports cables that boards cannot
+/// drive.
+void AddBoards(const BoardsText& boards, const RobotSpec* robot, const Scope& scope,
+               ExperimentSpec& experiment);
+
 ImpedanceSpec ToImpedance(const ImpedanceText& text, const RobotSpec* robot, const Scope& scope);
 std::vector<PositionProgram> ToPrograms(const PositionText& text, const RobotSpec* robot,
                                         const Scope& scope);

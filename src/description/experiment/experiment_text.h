@@ -117,6 +117,10 @@ struct ControllerText : ControllerSpec {
   SourceRef name_at;  ///< Position of the key.
 };
 
+struct BoardsText : BoardsSpec {
+  SourceRef at, capture_at;  ///< Positions in the file.
+};
+
 // timeline
 
 struct PushText : PushSpec {
@@ -241,6 +245,7 @@ struct ExperimentText : ExperimentSpec {
   std::optional<GoalText> goal_text;
   std::optional<SensorText> sensor_text;
   std::vector<ControllerText> controller_texts;
+  std::optional<BoardsText> boards_text;
   TimelineText timeline;
   RecordText record_text;
   Raw<FileForm> compare_file;

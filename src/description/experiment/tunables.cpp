@@ -21,6 +21,13 @@ void AddGains(ControllerSpec& controller, const RobotSpec& robot, std::vector<Tu
   }
 }
 
+void AddBoards(ControllerSpec& controller, std::vector<Tunable>& out) {
+  if (!controller.boards) return;
+  description::NumberList<Tunable> list(controller.name + ".");
+  Keys(list, *controller.boards);
+  out.insert(out.end(), list.numbers.begin(), list.numbers.end());
+}
+
 void AddGait(const std::string& prefix, GaitSpec& gait, std::vector<Tunable>& out) {
   for (const GaitValue& value : GaitValues(gait)) {
     out.push_back(
@@ -69,6 +76,7 @@ std::vector<Tunable> FindTunables(std::vector<ControllerSpec>& controllers,
   std::vector<Tunable> out;
   for (ControllerSpec& controller : controllers) {
     AddGains(controller, robot, out);
+    AddBoards(controller, out);
     GaitInputSpec* input = GaitInputOf(controller);
     if (!input) continue;
     AddGait(controller.name + ".", input->gait, out);

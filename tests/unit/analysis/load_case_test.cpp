@@ -144,10 +144,11 @@ TEST_F(LoadCases, CombinationsAreSumsWithFactors) {
 }
 
 TEST_F(LoadCases, MistakesInSumsAndLineLoadsAreNamed) {
-  EXPECT_EQ(After("load_cases:\n",
-                  "load_combinations: [{name: much, factors: {winter: 1500}}]\nload_cases:\n"),
-            "6:28: error: the load case \"much\" makes the rest length of \"deck\" zero or negative "
-            "(it is 2 m without the load case)\n");
+  EXPECT_EQ(
+      After("load_cases:\n",
+            "load_combinations: [{name: much, factors: {winter: 1500}}]\nload_cases:\n"),
+      "6:28: error: the load case \"much\" makes the rest length of \"deck\" zero or negative "
+      "(it is 2 m without the load case)\n");
   EXPECT_EQ(
       After("weight: false", "weight: false\n    weight_factor: 2"),
       "12:5: error: load_case.weight_factor has no effect with `weight: false` (remove one of "

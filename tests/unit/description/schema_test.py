@@ -49,6 +49,8 @@ def probe(path, *options):
 
 
 UNIT_OF_SUFFIX = {
+    "force_i_per_n_s": "1/(N s)", "force_d_s_per_n": "s/N", "length_p_per_m": "1/m", "length_i_per_m_s": "1/(m s)",
+    "length_d_s_per_m": "s/m", "_v_s_per_m": "V s/m",
     "_n_m_s_per_rad": "N m s/rad", "_n_m_per_rad": "N m/rad", "_n_m_per_a": "N m/A", "_n_m": "N m", "_n_per_s": "N/s",
     "alive_per_s": "1/s", "_per_j": "1/J", "gain_per_m": "1/m", "damping_s_per_m": "s/m", "friction_s_per_m": "s/m", "_rad_per_n_s": "rad/(N s)", "convergence_per_s": "1/s", "weight_per_m": "1/m",
     "weight_per_m_s": "1/(m s)", "_n_s_per_m": "N s/m", "_n_per_m": "N/m",
