@@ -133,10 +133,10 @@ struct TableLayout {
   std::string value_column;
 };
 
-/// Reads a text table with this layout (.csv, .csv.gz or any other name). Channels have the column
-/// names and the unit 1. Empty cells, `nan` and `NA` are NaN. On errors, such as cells that are not
-/// numbers or times that do not increase, returns nothing and adds diagnostics with file, line and
-/// column.
+/// Reads a text table (.csv, .csv.gz or any other name). Channels have the column names and
+/// the unit 1, taut's own channels the unit in their name. Empty cells, `nan` and `NA` are NaN. On
+/// errors, such as cells that are not numbers or times that do not increase, returns nothing and
+/// adds diagnostics with file, line and column.
 std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layout,
                                Diagnostics& out);
 

@@ -13,15 +13,12 @@
 #include "compare/column_meaning.h"
 #include "compare/log_clock.h"
 #include "compare/log_form.h"
+#include "trace/channel_names.h"
 
 namespace taut {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Kinds of taut's channels, whose names are kept.
-const std::set<std::string> kOwnKinds{"cable",  "body",  "node",    "joint", "sensor",
-                                      "system", "board", "contact", "goal"};
 
 std::string Quoted(const std::string& text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -48,7 +45,7 @@ class Guess {
     for (std::size_t i = 0; i < form_.names.size(); ++i) {
       meanings_.push_back(MeaningOf(form_.names[i], form_.units[i], form_.length_unit,
                                     nameless ? RobotNames() : robot_));
-      if (IsOwn(form_.names[i])) used_.insert(i);
+      if (trace::IsTautChannel(form_.names[i])) used_.insert(i);
     }
     Groups();
     SingleColumns();
@@ -59,12 +56,6 @@ class Guess {
   }
 
  private:
-  static bool IsOwn(const std::string& name) {
-    const std::size_t slash = name.find('/');
-    return slash != name.npos && kOwnKinds.contains(name.substr(0, slash)) &&
-           UnitOfName(name) != "1";
-  }
-
   /// Columns that no rule uses yet; a `*` in a name would make its rule a pattern.
   bool Free(std::size_t i) const {
     const std::string& name = form_.names[i];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "base/name_unit.h"
@@ -48,6 +49,17 @@ bool CheckChannelNames(const std::string& path, const std::vector<ChannelInfo>& 
     good = false;
   }
   return good;
+}
+
+bool IsTautChannel(const std::string& name) {
+  static const std::set<std::string, std::less<>> kinds{
+      "cable", "body", "node", "joint", "sensor", "system", "board", "contact", "goal"};
+  const std::size_t slash = name.find('/');
+  return slash != name.npos && kinds.contains(name.substr(0, slash)) && UnitOfName(name) != "1";
+}
+
+std::string TableUnit(const std::string& name) {
+  return IsTautChannel(name) ? UnitOfName(name) : "1";
 }
 
 }  // namespace taut::trace

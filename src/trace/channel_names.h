@@ -15,4 +15,11 @@ namespace taut::trace {
 bool CheckChannelNames(const std::string& path, const std::vector<ChannelInfo>& channels,
                        Diagnostics& out);
 
+/// Returns whether a name is one of taut's own channels, whose unit is part of the name, such as
+/// `cable/c1/tension_n`.
+bool IsTautChannel(const std::string& name);
+
+/// Returns the unit of a table's column: of taut's own channels the unit in the name, otherwise 1.
+std::string TableUnit(const std::string& name);
+
 }  // namespace taut::trace

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/pattern.h"
+#include "trace/channel_names.h"
 #include "trace/clock_text.h"
 #include "trace/csv_lines.h"
 #include "trace/readers.h"
@@ -96,7 +97,7 @@ class TableParser {
                       [&](const std::string& pattern) { return base::Fits(pattern, names[i]); });
       if (columns_[i] == Use::kTime || ignored || names[i].empty()) continue;
       columns_[i] = Use::kChannel;
-      trace_.channels.push_back({names[i], "1"});
+      trace_.channels.push_back({names[i], TableUnit(names[i])});
     }
     trace_.values.resize(trace_.channels.size());
     return errors_ == 0;
@@ -213,7 +214,7 @@ class TableParser {
       trace_.time_s.push_back(time_s);
     }
     for (const auto& [name, points] : long_) {
-      trace_.channels.push_back({name, "1"});
+      trace_.channels.push_back({name, TableUnit(name)});
       std::vector<double>& values = trace_.values.emplace_back(rows.size(), kNan);
       for (const auto& [time_s, value] : points) values[rows.at(time_s)] = value;
     }

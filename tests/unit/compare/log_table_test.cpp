@@ -48,6 +48,19 @@ TEST_F(LogTable, DecimalCommas) {
             "\";\" or \"\\t\")\n");
 }
 
+TEST_F(LogTable, ColumnsWithTautsNamesKeepTheirUnits) {
+  const Trace wide = Good("t,cable/a/tension_n,body/b/position_x_m,x_m,cable/a/other\n0,1,2,3,4\n",
+                          R"m("table": {"time": {"column": "t"}})m");
+  std::vector<std::string> units;
+  for (const ChannelInfo& channel : wide.channels) units.push_back(channel.unit);
+  EXPECT_EQ(units, (std::vector<std::string>{"N", "m", "1", "1"}));
+  const Trace narrow =
+      Good("t,what,x\n0,cable/a/tension_n,1\n1,other,2\n",
+           R"m("table": {"names": ["what"], "value": "x", "time": {"column": "t"}})m");
+  EXPECT_EQ(narrow.channels[0].unit, "N");
+  EXPECT_EQ(narrow.channels[1].unit, "1");
+}
+
 TEST_F(LogTable, EncodingsOfWindows) {
   constexpr const char* kMap =
       R"m("table": {"encoding": "windows-1252", "time": {"column": "t"}},
