@@ -133,7 +133,7 @@ struct TableLayout {
   std::string value_column;
 };
 
-/// Reads a text table (.csv, .csv.gz or any other name). Channels have the column names and
+/// Reads a text table, or the variables of a MATLAB file (v7.3). Channels have the column names and
 /// the unit 1, taut's own channels the unit in their name. Empty cells, `nan` and `NA` are NaN. On
 /// errors, such as cells that are not numbers or times that do not increase, returns nothing and
 /// adds diagnostics with file, line and column.

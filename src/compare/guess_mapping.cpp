@@ -196,16 +196,24 @@ class Guess {
 
   void ReportLayout() {
     const TableLayout& layout = form_.layout;
-    const Json& time = clock_.time;
     const char* separator = layout.separator == '\t'  ? "tab"
                             : layout.separator == ' ' ? "blank"
                             : layout.separator == ';' ? "semicolon"
                             : layout.separator == '|' ? "bar"
                                                       : "comma";
+    if (form_.program == "MATLAB") {
+      result_.results.push_back("layout: MATLAB 7.3");
+      return ReportClock();
+    }
     result_.results.push_back(fmt::format(
         "layout: {}separator {}, decimal {}{}", form_.program.empty() ? "" : form_.program + ", ",
         separator, layout.decimal == ',' ? "comma" : "point",
         layout.encoding == TextEncoding::kWindows1252 ? ", encoding windows-1252" : ""));
+    ReportClock();
+  }
+
+  void ReportClock() {
+    const Json& time = clock_.time;
     result_.results.push_back(
         clock_.column
             ? fmt::format("clock: {}{}, {:.4g} rows per second",

@@ -12,6 +12,7 @@
 #include "compare/column_meaning.h"
 #include "trace/clock_text.h"
 #include "trace/csv_lines.h"
+#include "trace/mat_variables.h"
 #include "trace/table_cells.h"
 #include "trace/text_encoding.h"
 
@@ -244,6 +245,28 @@ bool MayHaveThousands(const std::vector<std::string>& cells) {
   return whole && grouped;
 }
 
+/// Recognizes the variables of a MATLAB file.
+std::optional<LogForm> FormOfMat(const std::string& path, Diagnostics& out) {
+  const auto variables = trace::ReadMatVariables(path, out);
+  if (!variables) return std::nullopt;
+  const trace::MatColumns columns = trace::ColumnsOf(*variables, 0);
+  if (columns.values.empty()) {
+    out.Error("log.no_vectors", {path}, "the file has no numeric vectors",
+              "save the log as vectors: objects such as timetable cannot be read");
+    return std::nullopt;
+  }
+  LogForm form;
+  form.program = "MATLAB";
+  form.names = columns.names;
+  form.units.resize(form.names.size());
+  const std::size_t rows = std::min(columns.values.front().size(), kSampleLines);
+  for (std::size_t i = 0; i < rows; ++i) {
+    std::vector<std::string>& row = form.rows.emplace_back();
+    for (const auto& column : columns.values) row.push_back(fmt::format("{}", column[i]));
+  }
+  return form;
+}
+
 }  // namespace
 
 std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
@@ -257,6 +280,7 @@ std::optional<LogForm> RecognizeLog(const std::string& path, Diagnostics& out) {
     form.units.resize(form.names.size());
     return form;
   }
+  if (trace::IsMatFile(path)) return FormOfMat(path, out);
   const auto lines = Sample(path, form.layout.encoding, out);
   if (!lines) return std::nullopt;
   const auto without_rows = [&]() -> std::optional<LogForm> {

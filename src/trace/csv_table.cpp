@@ -11,6 +11,7 @@
 #include "trace/channel_names.h"
 #include "trace/clock_text.h"
 #include "trace/csv_lines.h"
+#include "trace/mat_variables.h"
 #include "trace/readers.h"
 #include "trace/table_cells.h"
 #include "trace/text_encoding.h"
@@ -251,6 +252,9 @@ namespace taut {
 
 std::optional<Trace> ReadTable(const std::string& path, const TableLayout& layout,
                                Diagnostics& out) {
+  if (trace::IsMatFile(path)) {
+    return trace::WithFiniteSpans(path, trace::ReadMatTable(path, layout, out), out);
+  }
   trace::TableParser parser(path, layout, out);
   const auto line = [&](std::string_view text) { return parser.Line(text); };
   if (!trace::ReadCsvLines(path, trace::CsvTail::kLine, line, out, layout.encoding)) {

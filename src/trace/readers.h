@@ -21,6 +21,11 @@ std::optional<Trace> ReadCsv(const std::string& path, Diagnostics& out);
 /// except in gaps. Times since 1970 are shifted to begin at 0 s.
 std::optional<Trace> ReadMcap(const std::string& path, Diagnostics& out);
 
+/// Reads the variables of a MATLAB file (`IsMatFile`) as columns. Of the layout, it uses only the
+/// clock and `ignore`.
+std::optional<Trace> ReadMatTable(const std::string& path, const TableLayout& layout,
+                                  Diagnostics& out);
+
 /// Returns the trace, or an error if a time is so large that spans of times are not finite.
 std::optional<Trace> WithFiniteSpans(const std::string& path, std::optional<Trace> trace,
                                      Diagnostics& out);

@@ -74,6 +74,7 @@ TEST_F(GuessedLogs, TensionsOfAllFormsAreTheSame) {
   ExpectTensions("excel_unicode.txt", 0);
   ExpectTensions("rosbag.csv", 2);    // no units
   ExpectTensions("rostopic.csv", 3);  // no units, a number of messages
+  ExpectTensions("matlab.mat", 1);    // other variables
 }
 
 TEST_F(GuessedLogs, CablesWithoutNamesAreTakenInOrderWithAWarning) {
