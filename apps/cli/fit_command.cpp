@@ -299,12 +299,11 @@ void AddFit(CLI::App& app, int& exit_code) {
   design->excludes(check);
   fit->footer(
       "Examples:\n"
-      "  taut fit fits/tetraspine3_push.yaml\n"
       "  taut fit fits/tetraspine3_push.yaml --profile push_n\n"
       "  mpirun -np 8 taut fit fits/tetraspine3_push.yaml\n"
       "After an interruption (Ctrl-C, kill) the same command resumes, with the same result.\n"
-      "Exit status: 0 success; 1 rejected, not identifiable, or worse than untuned on held-out "
-      "data;\n"
+      "Exit status: 0 success; 1 rejected, contradiction between experiments, not identifiable,\n"
+      "unreliable, or worse than untuned on held-out data;\n"
       "2 bad usage, 3 bad input.");
   fit->callback([args, &exit_code] { exit_code = Run(*args); });
 }

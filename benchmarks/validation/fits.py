@@ -35,9 +35,11 @@ class Fit:
 
     def judgements(self):
         """Returns all verdicts that apply, in words."""
-        words = {"rejected": "rejected", "unidentifiable": "not identifiable",
-                 "worse_on_hold_out": "worse than untuned on held-out data"}
-        return [word for key, word in words.items() if self.summary[key]]
+        words = {"rejected": "rejected", "contradiction": "contradiction", "unidentifiable": "not identifiable",
+                 "unreliable": "unreliable", "worse_on_hold_out": "worse than untuned on held-out data"}
+        # All standard errors of a rejected fit are unreliable.
+        return [word for key, word in words.items() if self.summary[key] and
+                not (key == "unreliable" and self.summary["rejected"])]
 
 
 def run(taut, name, text, *flags):

@@ -118,7 +118,7 @@ def alias_is_named(fit):
     which they compensate, and names no other parameter."""
     rods, ground = fit.parameters["friction"], fit.parameters["ground_friction"]
     others = [p for name, p in fit.parameters.items() if name not in ("friction", "ground_friction")]
-    return (all(p["verdict"] == "traded" and set(p["trade"]) == {"friction", "ground_friction"} for p in (rods, ground))
+    return (all(p["verdict"] == "confounded" and set(p["confounded_with"]) == {"friction", "ground_friction"} for p in (rods, ground))
             and all(p["verdict"] == "estimated" for p in others) and fit.summary["unidentifiable"])
 
 
@@ -137,7 +137,7 @@ def page(taut):
     aliased = [twin.fit("alias", [ALIAS]) for twin in twins]
     light = [twin.without_weight() for twin in twins]
     offs = [x for twin, fit in zip(twins, found) for x in twin.off(fit).values()]
-    lost = [fit for fit in light if fit.summary["unidentifiable"]]
+    lost = [fit for fit in light if fit.summary["unidentifiable"] or fit.summary["unreliable"]]
     shown, truth = found[0], twins[0].truth
     of_one = []
     for name in truth:

@@ -297,7 +297,7 @@ def page(taut):
         name = estimate.split(":")[1].split(",")[0].strip()
         fit = stand.fit(0, name, [estimate])
         p = fit.parameters[name]
-        blamed = ", ".join(sorted(WHAT[kind(n)][0].split(" [")[0] for n in p["trade"] if n != name))
+        blamed = ", ".join(sorted(WHAT[kind(n)][0].split(" [")[0] for n in p["confounded_with"] if n != name))
         lost = ", ".join(WHAT[kind(n)][0].split(" [")[0] for n, q in fit.parameters.items()
                          if n != name and q["verdict"] != "estimated")
         more.append([what, *blind.digits(p["value"], blind.error_of(p)), p["verdict"], blamed, lost or "none"])
@@ -310,7 +310,7 @@ def page(taut):
                         f"within two standard errors, of {len(stand.motors)}", "largest error [standard errors]"], rows),
         "within": str(sum(abs(x) <= 2 for x in everything)), "numbers": str(len(everything)),
         "held": table(["motor", "tension: untuned [N]", "fitted [N]", "duty: untuned", "fitted", "verdict on the fit"], held),
-        "more": table(["parameter", "estimate", "standard error", "verdict", "traded against", "no longer estimated"], more),
+        "more": table(["parameter", "estimate", "standard error", "verdict", "confounded with", "no longer estimated"], more),
         "all": table(["motor", "weight [kg]", *(what for what, _ in WHAT.values())],
                      [motor_row(stand, m, fit) for m, fit in found.items()]),
     })

@@ -58,6 +58,8 @@ struct FitRow {
   int group = 0;
   FitLoss loss = FitLoss::kSquare;
   double loss_width = 1.345;  ///< In standard deviations, > 0.
+  /// Number of the experiment of the datum, to compare experiments (`FitExperimentsAlone`).
+  int experiment = 0;
 };
 
 /// Residuals at one point.
@@ -75,7 +77,8 @@ using Forward = std::function<std::vector<Residuals>(std::span<const std::vector
 struct FitProblem {
   std::vector<FitParameter> parameters;
   std::vector<FitRow> rows;
-  std::vector<std::string> group_names;  ///< For messages; numbers replace missing names.
+  /// For messages; numbers replace missing names.
+  std::vector<std::string> group_names, experiment_names;
   Forward forward;
 };
 

@@ -3,6 +3,8 @@
 /// `taut/fit.h`.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,14 +25,17 @@ double ChiSquareQuantile(double tail, double freedom);
 
 /// Identifiability of a parameter.
 enum class Determined {
-  kEstimated,  ///< Standard error at most half the prior sd; without a prior, half the scale.
-  kPrior,      ///< Determined mainly by its prior; the data add little information.
-  kAtBound,    ///< At a bound; the optimum is outside.
-  kDead,       ///< No residual depends on it to first order.
-  kWeak,       ///< No prior, and a standard error above half the scale.
-  kTraded,     ///< Identifiable alone, but other parameters can compensate for it.
-  kScattered,  ///< Estimated according to J^T J, but not according to the jackknife.
+  kEstimated,   ///< Standard error at most half the prior sd; without a prior, half the scale.
+  kPrior,       ///< Determined mainly by its prior; the data add little information.
+  kAtBound,     ///< At a bound; the optimum is outside.
+  kDead,        ///< No residual depends on it to first order.
+  kWeak,        ///< Weakly identified: no prior, and a standard error above half the scale.
+  kConfounded,  ///< Identifiable alone, but other parameters can compensate for it.
+  kUnreliable,  ///< Estimated according to J^T J, but other results contradict its standard error.
 };
+
+/// Returns the verdict as text, such as "weakly identified".
+const char* VerdictName(Determined kind);
 
 struct ParameterVerdict {
   Determined kind = Determined::kEstimated;
@@ -42,17 +47,26 @@ struct ParameterVerdict {
   /// Residuals within groups are correlated: `se_jackknife` exceeds 2 `se`, with a significance of
   /// 0.1 % for this number of groups.
   bool groups_apart = false;
+  /// `se` times sqrt(chi-square / degrees of freedom), at most the prior sd: the standard error if
+  /// all sds of the data are too small by the same factor. Absent unless chi-square of the data
+  /// rejects the fit.
+  std::optional<double> se_residuals;
+  /// Results that contradict `se`, one clause each; empty: none. A parameter that would be
+  /// estimated is then kUnreliable.
+  std::vector<std::string> contradictions;
   double se_alone = 0;  ///< Standard error from J^T J if all other parameters were known.
   double sd_ratio = 0;  ///< se / prior sd; without a prior, se / scale.
   double pull = 0;      ///< (value - prior mean) / prior sd; 0 without a prior.
   bool kink = false;    ///< The derivative is unreliable; see `FitColumn::kink`.
-  /// For kTraded: a compensating change, as pairs of parameter and change in its unit, this
-  /// parameter first. It changes all residuals together only by `trade_residual` (eq. F.13).
-  std::vector<std::pair<std::size_t, double>> trade;
-  double trade_residual = 0;
+  /// For kConfounded: a compensating change, as pairs of parameter and change in its unit, this
+  /// parameter first. It changes all residuals together only by `confounded_residual` (eq. F.13).
+  std::vector<std::pair<std::size_t, double>> confounded_with;
+  double confounded_residual = 0;
   std::string sentence;
-  /// Returns the larger of the two standard errors.
-  double error() const { return se_jackknife && *se_jackknife > se ? *se_jackknife : se; }
+  /// Returns the largest of the standard errors.
+  double error() const {
+    return std::max({se, se_jackknife.value_or(se), se_residuals.value_or(se)});
+  }
 };
 
 /// Right singular vector of the Jacobian of the data, scaled by the scales of the parameters.
@@ -84,6 +98,61 @@ struct Identifiability {
 Identifiability Identify(const FitProblem& problem, const std::vector<double>& values,
                          const FitDerivatives& derivatives);
 
+// Agreement of experiments.
+
+/// Fit to the data of one experiment alone.
+struct AloneFit {
+  int experiment = 0;
+  /// Per parameter: value and standard error, at least the error by the residuals of this
+  /// experiment. Absent if this experiment alone does not estimate the parameter.
+  std::vector<std::optional<double>> value, se;
+};
+
+/// Homogeneity test of one parameter over the experiments that estimate it alone.
+struct Homogeneity {
+  std::size_t parameter = 0;
+  double chi2 = 0;  ///< Sum of squared differences from their mean, weighted by errors (eq. F.14a).
+  double freedom = 0;
+  double p = 1;
+  bool apart = false;  ///< The experiments disagree: p < 0.001.
+  std::string sentence;
+};
+
+struct ExperimentsAlone {
+  std::vector<AloneFit> fits;       ///< One per experiment.
+  std::vector<Homogeneity> tested;  ///< One per parameter that several experiments estimate.
+  std::string why;                  ///< Reason, if there is no result.
+};
+
+// Effects that are not estimated.
+
+/// Effect that the fit does not estimate, such as a gain error of the load cells, with the
+/// derivatives of the residuals with respect to it.
+struct FitAlias {
+  std::string name, unit;
+  double neutral = 0;         ///< Value in the fit: 1 for a gain, 0 for an offset.
+  std::vector<double> slope;  ///< d residual / d effect, one per row of the problem.
+};
+
+/// Score test of an effect: estimates it together with all parameters, to first order (eq. F.15b).
+struct AliasTest {
+  std::string name, unit;
+  double value = 0;  ///< Estimate of the effect.
+  double se = 0;     ///< At least the error by the residuals.
+  double fall = 0;   ///< Decrease of chi-square.
+  double p = 1;      ///< Probability of this decrease by chance.
+  /// Parameters can compensate for the effect, so the data do not contain it as a separate effect.
+  bool confounded = false;
+  std::vector<double> change;    ///< Changes of the parameters, in their units.
+  std::vector<double> se_ratio;  ///< Standard errors with the effect / without it.
+  std::string sentence;
+};
+
+/// Tests effects at `values`, from the derivatives at this point, without new points.
+std::vector<AliasTest> TestAliases(const FitProblem& problem, const std::vector<double>& values,
+                                   const FitDerivatives& derivatives,
+                                   std::span<const FitAlias> aliases);
+
 // Jackknife and cross-validation over groups.
 
 enum class Jackknife {
@@ -109,6 +178,12 @@ struct JackknifeResult {
 JackknifeResult JackknifeGroups(const FitProblem& problem, const std::vector<double>& values,
                                 const FitDerivatives& derivatives, Jackknife how,
                                 const FitOptions& options = {});
+
+/// Fits each experiment alone and compares the results. `how`: as for the jackknife, single
+/// Gauss-Newton steps from the fit or full searches.
+ExperimentsAlone FitExperimentsAlone(const FitProblem& problem, const std::vector<double>& values,
+                                     const FitDerivatives& derivatives, Jackknife how,
+                                     const FitOptions& options = {});
 
 /// Root mean square of residuals in standard deviations, before and after the fit.
 struct FitErrors {
@@ -209,7 +284,9 @@ ProportionCheck CheckProportion(std::span<const ProportionPoint> points, const s
 enum class FitJudgement {
   kGood,
   kRejected,        ///< Rejected by chi-square: the model, the priors or the sds are wrong.
-  kUnidentifiable,  ///< A parameter is not estimated, although it is no nuisance parameter.
+  kContradiction,   ///< Experiments fitted alone disagree by more than their errors.
+  kUnidentifiable,  ///< The data do not determine a parameter that is no nuisance parameter.
+  kUnreliable,      ///< The standard error of such a parameter is contradicted.
   kWorse,           ///< Worse than the start values on held-out data.
   kNone,            ///< There is no fit.
 };
@@ -225,15 +302,21 @@ struct VerdictOptions {
   Jackknife jackknife = Jackknife::kStep;
   std::optional<int> folds;  ///< Number of folds for `CrossValidate`; absent: no cross-validation.
   FitOptions fit;            ///< For refits and for the fits of folds.
+  /// Returns effects to test from the residuals of the fit; empty: none.
+  std::function<std::vector<FitAlias>(const std::vector<double>& residual)> aliases;
 };
 
 struct FitVerdict {
-  FitJudgement judgement = FitJudgement::kNone;                  ///< The worst applicable verdict.
-  bool rejected = false, unidentifiable = false, worse = false;  ///< All applicable verdicts.
+  FitJudgement judgement = FitJudgement::kNone;  ///< The worst applicable verdict.
+  /// All applicable verdicts.
+  bool rejected = false, contradiction = false, unidentifiable = false, unreliable = false,
+       worse = false;
   std::vector<double> values;
   FitDerivatives derivatives;
   Identifiability identifiability;
   JackknifeResult jackknife;
+  ExperimentsAlone alone;
+  std::vector<AliasTest> aliases;  ///< In descending order of `fall`.
   CrossValidation cross_validation;
   std::optional<FitErrors> hold_out;
   FitErrors train;                     ///< On the fitted data.
@@ -241,6 +324,9 @@ struct FitVerdict {
   ChiSquare total;                     ///< Exact for a linear model with normal errors.
   std::vector<std::string> sentences;  ///< Report: first the verdict, then its reasons.
 };
+
+/// Returns how many starts reached the minimum, and chi-square of each start, as a sentence.
+std::string StartsSentence(const FitResult& fit);
 
 /// Evaluates a fit: identifiability, errors, goodness of fit and validation. `test`: held-out data
 /// with the same parameters, or null.

@@ -177,6 +177,17 @@ struct ChannelErrors {
 std::vector<ChannelErrors> ErrorsByChannel(const std::vector<FitPoint>& points,
                                            const BeforeAfter& residuals);
 
+/// Root mean square of the residuals of one experiment, in standard deviations.
+struct ExperimentErrors {
+  std::string experiment;
+  std::size_t count = 0;
+  double untuned = 0, fitted = 0;
+};
+/// Computes the errors of each experiment, in order of the points.
+std::vector<ExperimentErrors> ErrorsByExperiment(const FitSpec& spec,
+                                                 const std::vector<FitPoint>& points,
+                                                 const BeforeAfter& residuals);
+
 /// Returns the text of an experiment file with these values of the problem's parameters. It extends
 /// experiment `experiment` of the fit by `base:`, `parameters:` and `set:`. `folder`: folder of the
 /// new file.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/contradictions.h"
 #include "fit/format.h"
 #include "fit/problem.h"
 #include "taut/fit_verdict.h"
@@ -14,11 +15,9 @@ using fit::Brief;
 
 /// If a fit is rejected, parameters at least this far from their prior mean are named [prior sd].
 constexpr double kStrongPull = 3;
-/// Largest relative difference of costs of starts that converged to the same minimum.
-constexpr double kSameCost = 1e-3;
-/// The report recommends jackknife errors over errors by J^T J if they are larger by the factor
-/// kSeveral, and if the probability of this by chance is below kByChance.
-constexpr double kSeveral = 2, kByChance = 1e-3;
+/// Largest difference of chi-square of starts that converged to the same minimum. It is far below
+/// the change of 1 at one standard error.
+constexpr double kSameMinimum = 0.1;
 
 /// Approximates the distribution of a sum of squares of normal numbers by a multiple of a
 /// chi-square with the same mean and variance (Satterthwaite). `trace`, `trace_of_square`: traces
@@ -96,11 +95,18 @@ std::string RejectedSentence(const FitProblem& problem, const FitVerdict& verdic
   return text;
 }
 
+/// Returns whether the data determine a parameter, whether or not its error is reliable.
+bool IsDetermined(const ParameterVerdict& v) {
+  return v.kind == Determined::kEstimated || v.kind == Determined::kUnreliable;
+}
+
 std::string UnidentifiableSentence(const FitProblem& problem, const FitVerdict& verdict) {
   std::vector<std::string> names;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const bool estimated = verdict.identifiability.parameters[j].kind == Determined::kEstimated;
-    if (!estimated && !problem.parameters[j].nuisance) names.push_back(problem.parameters[j].name);
+    const ParameterVerdict& v = verdict.identifiability.parameters[j];
+    if (!IsDetermined(v) && !problem.parameters[j].nuisance) {
+      names.push_back(problem.parameters[j].name + " (" + VerdictName(v.kind) + ")");
+    }
   }
   return "Not identifiable: the data do not determine " + fit::List(names) + "; they fix " +
          std::to_string(verdict.identifiability.fixed) + " of " +
@@ -108,48 +114,38 @@ std::string UnidentifiableSentence(const FitProblem& problem, const FitVerdict& 
          Brief(verdict.identifiability.condition) + ").";
 }
 
-/// Compares jackknife errors (eq. F.14) with errors by J^T J. For G independent groups, (G - 1)
-/// times the square of their ratio has a chi-square distribution with G - 1 degrees of freedom.
-void CompareErrors(const FitProblem& problem, FitVerdict& verdict) {
-  const double freedom = static_cast<double>(verdict.jackknife.groups.size()) - 1;
+std::string UnreliableSentence(const FitProblem& problem, const FitVerdict& verdict) {
+  std::vector<std::string> names;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    ParameterVerdict& v = verdict.identifiability.parameters[j];
-    if (!std::isfinite(v.se)) continue;
-    v.se_jackknife = verdict.jackknife.se[j];
-    if (!v.se_jackknife) continue;
-    const FitParameter& p = problem.parameters[j];
-    const double ratio = v.se > 0 ? *v.se_jackknife / v.se : 0;
-    v.groups_apart =
-        ratio > kSeveral && ChiSquareTail(freedom * ratio * ratio, freedom) < kByChance;
-    const bool small = v.sd_ratio * ratio <= fit::kEstimatedShare;
-    if (!v.groups_apart || v.kind != Determined::kEstimated || small) {
-      v.sentence += "; leaving out groups: +- " + Brief(*v.se_jackknife, p.unit);
-      if (v.groups_apart) {
-        v.sentence +=
-            ", " + Brief(ratio) +
-            " times the error by J^T J: residuals within a group are correlated, use this error";
-      }
-      continue;
-    }
-    v.kind = Determined::kScattered;
-    v.sentence = p.name + " = " + Brief(v.value, p.unit) +
-                 " is not determined: its estimates without one group or another differ, +- " +
-                 Brief(*v.se_jackknife, p.unit) + " (by J^T J, which ignores groups: +- " +
-                 Brief(v.se, p.unit) + ")";
+    const bool unreliable = verdict.identifiability.parameters[j].kind == Determined::kUnreliable;
+    if (unreliable && !problem.parameters[j].nuisance) names.push_back(problem.parameters[j].name);
   }
+  return "Unreliable: other results contradict the standard error of " + fit::List(names) + ".";
+}
+
+std::string ContradictionSentence(const FitVerdict& verdict) {
+  std::string text = "Contradiction: experiments fitted alone disagree by more than their errors";
+  for (const Homogeneity& test : verdict.alone.tested) {
+    if (test.apart) text += "; " + test.sentence;
+  }
+  return text + ".";
 }
 
 void Decide(const FitProblem& problem, const VerdictOptions& options, FitVerdict& verdict) {
   verdict.rejected = verdict.total.p < options.least_p || verdict.data.p < options.least_p ||
                      verdict.prior.p < options.least_p;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
-    const bool estimated = verdict.identifiability.parameters[j].kind == Determined::kEstimated;
-    verdict.unidentifiable |= !estimated && !problem.parameters[j].nuisance;
+    const ParameterVerdict& v = verdict.identifiability.parameters[j];
+    if (problem.parameters[j].nuisance) continue;
+    verdict.unidentifiable |= !IsDetermined(v);
+    verdict.unreliable |= v.kind == Determined::kUnreliable;
   }
   const FitErrors& unseen = verdict.hold_out ? *verdict.hold_out : verdict.cross_validation.all;
   verdict.worse = unseen.worse() || !unseen.failed.empty();
   verdict.judgement = verdict.rejected         ? FitJudgement::kRejected
+                      : verdict.contradiction  ? FitJudgement::kContradiction
                       : verdict.unidentifiable ? FitJudgement::kUnidentifiable
+                      : verdict.unreliable     ? FitJudgement::kUnreliable
                       : verdict.worse          ? FitJudgement::kWorse
                                                : FitJudgement::kGood;
 }
@@ -157,7 +153,10 @@ void Decide(const FitProblem& problem, const VerdictOptions& options, FitVerdict
 void SayJudgement(const FitProblem& problem, FitVerdict& verdict) {
   auto& say = verdict.sentences;
   if (verdict.rejected) say.push_back(RejectedSentence(problem, verdict));
+  if (verdict.contradiction) say.push_back(ContradictionSentence(verdict));
   if (verdict.unidentifiable) say.push_back(UnidentifiableSentence(problem, verdict));
+  // All errors of a rejected fit are unreliable.
+  if (verdict.unreliable && !verdict.rejected) say.push_back(UnreliableSentence(problem, verdict));
   if (verdict.worse) say.emplace_back("Worse than untuned on held-out data.");
   if (verdict.judgement == FitJudgement::kGood) {
     say.push_back("Good: all parameters are estimated, " + Of(verdict.total) +
@@ -172,12 +171,16 @@ void SayJudgement(const FitProblem& problem, FitVerdict& verdict) {
   }
 }
 
-void SayWhy(const FitProblem& problem, const FitResult& fit, FitVerdict& verdict) {
+void SayWhy(const FitProblem& problem, const FitResult& fit, const VerdictOptions& options,
+            FitVerdict& verdict) {
   auto& say = verdict.sentences;
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     say.push_back(verdict.identifiability.parameters[j].sentence);
   }
   say.push_back(Errors("on fitted data", verdict.train));
+  for (const AliasTest& test : verdict.aliases) {
+    if (!test.confounded && test.p < options.least_p) say.push_back(test.sentence);
+  }
   if (verdict.hold_out) {
     say.push_back(verdict.hold_out->failed.empty()
                       ? Errors("on held-out data", *verdict.hold_out)
@@ -186,19 +189,46 @@ void SayWhy(const FitProblem& problem, const FitResult& fit, FitVerdict& verdict
   if (verdict.cross_validation.all.count > 0) {
     say.push_back(Errors("on groups left out in turn", verdict.cross_validation.all));
   }
-  const auto& tracks = fit.state.tracks;
-  if (tracks.size() < 2) return;
-  std::size_t same = 0, failed = 0;
-  for (const FitTrack& track : tracks) {
-    failed += track.end == FitEnd::kFailed ? 1 : 0;
-    same += track.end != FitEnd::kFailed && track.cost <= fit.cost + kSameCost ? 1 : 0;
-  }
-  say.push_back(std::to_string(same) + " of " + std::to_string(tracks.size()) +
-                " starts converged to this minimum" +
-                (failed > 0 ? ", " + std::to_string(failed) + " could not be computed" : ""));
+  if (fit.state.tracks.size() > 1) say.push_back(StartsSentence(fit));
 }
 
 }  // namespace
+
+std::string StartsSentence(const FitResult& fit) {
+  const auto& tracks = fit.state.tracks;
+  std::size_t same = 0, failed = 0;
+  std::vector<std::string> values;
+  for (const FitTrack& track : tracks) {
+    const bool there = track.end != FitEnd::kFailed;
+    failed += there ? 0 : 1;
+    same += there && 2 * (track.cost - fit.cost) <= kSameMinimum ? 1 : 0;
+    if (there) values.push_back(Brief(2 * track.cost));
+  }
+  return std::to_string(same) + " of " + std::to_string(tracks.size()) +
+         " starts converged to this minimum" +
+         (failed > 0 ? ", " + std::to_string(failed) + " could not be computed" : "") +
+         "; chi-square by start: " + fit::List(values);
+}
+
+const char* VerdictName(Determined kind) {
+  switch (kind) {
+    case Determined::kEstimated:
+      return "estimated";
+    case Determined::kPrior:
+      return "held by its prior";
+    case Determined::kAtBound:
+      return "at its bound";
+    case Determined::kDead:
+      return "without influence";
+    case Determined::kWeak:
+      return "weakly identified";
+    case Determined::kConfounded:
+      return "confounded";
+    case Determined::kUnreliable:
+      return "unreliable";
+  }
+  return "";
+}
 
 FitVerdict JudgeFit(const FitProblem& problem, const FitResult& fit, const VerdictOptions& options,
                     const FitProblem* test) {
@@ -217,8 +247,20 @@ FitVerdict JudgeFit(const FitProblem& problem, const FitResult& fit, const Verdi
   found = Identify(problem, fit.values, verdict.derivatives);
   verdict.jackknife =
       JackknifeGroups(problem, fit.values, verdict.derivatives, options.jackknife, options.fit);
-  CompareErrors(problem, verdict);
+  fit::ContradictByGroups(problem, verdict);
   ChiSquares(problem, verdict);
+  fit::ContradictByResiduals(problem, options.least_p, verdict);
+  fit::ContradictByStarts(problem, fit, verdict);
+  fit::ContradictByCost(problem, verdict);
+  verdict.alone =
+      FitExperimentsAlone(problem, fit.values, verdict.derivatives, options.jackknife, options.fit);
+  fit::ContradictByExperiments(verdict);
+  if (options.aliases) {
+    verdict.aliases = TestAliases(problem, fit.values, verdict.derivatives,
+                                  options.aliases(verdict.derivatives.residual));
+  }
+  fit::ContradictByAliases(options.least_p, verdict);
+  fit::ApplyContradictions(problem, verdict);
   verdict.train = HoldOut(problem, fit.values);
   if (options.folds) {
     verdict.cross_validation = CrossValidate(problem, fit.values, *options.folds, options.fit);
@@ -226,7 +268,7 @@ FitVerdict JudgeFit(const FitProblem& problem, const FitResult& fit, const Verdi
   if (test != nullptr) verdict.hold_out = HoldOut(*test, fit.values);
   Decide(problem, options, verdict);
   SayJudgement(problem, verdict);
-  SayWhy(problem, fit, verdict);
+  SayWhy(problem, fit, options, verdict);
   return verdict;
 }
 

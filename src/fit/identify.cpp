@@ -21,7 +21,7 @@ using fit::Vector;
 constexpr double kDead = 1e-6;
 /// Correlation above which a report names both estimates.
 constexpr double kTogether = 0.95;
-/// Parameters with less than this share of the largest change in a trade are not named.
+/// Parameters with less than this share of the largest change in a confounded_with are not named.
 constexpr double kNamed = 0.2;
 
 /// Free parameters (not at a bound), with the Jacobian and its decompositions in scales.
@@ -114,40 +114,51 @@ void Classify(const Local& local, std::size_t k, ParameterVerdict& verdict) {
   } else if (verdict.sd_ratio <= fit::kEstimatedShare) {
     verdict.kind = Determined::kEstimated;
   } else if (verdict.se_alone <= fit::kEstimatedShare * ScaleIn(p)) {
-    verdict.kind = Determined::kTraded;
+    verdict.kind = Determined::kConfounded;
   } else {
     verdict.kind = fit::HasPrior(p) ? Determined::kPrior : Determined::kWeak;
   }
-  if (verdict.kind != Determined::kTraded) return;
+  if (verdict.kind != Determined::kConfounded) return;
   const Vector d = Trade(local, k);
-  verdict.trade_residual = (local.data * d).norm();
+  verdict.confounded_residual = (local.data * d).norm();
   double largest = 0;
   for (Eigen::Index j = 0; j < d.size(); ++j) {
     if (j != i) largest = std::max(largest, std::fabs(d[j]));
   }
-  verdict.trade.emplace_back(local.free[k], scale);
+  if (verdict.confounded_residual > scale / (fit::kEstimatedShare * ScaleIn(p))) {
+    // A compensating change leaves the residuals nearly unchanged. This one does not: it is null
+    // only by the errors of the derivatives (eq. F.12).
+    verdict.kind = Determined::kUnreliable;
+    verdict.contradictions.push_back(
+        "its derivatives are too inaccurate: a change that they do not resolve moves the residuals "
+        "by " +
+        Brief(verdict.confounded_residual) + " standard deviations in all");
+    return;
+  }
+  verdict.confounded_with.emplace_back(local.free[k], scale);
   for (Eigen::Index j = 0; j < d.size(); ++j) {
     if (j == i || std::fabs(d[j]) < kNamed * largest) continue;
     const auto other = static_cast<std::size_t>(j);
-    verdict.trade.emplace_back(local.free[other], d[j] * FitScale(local.parameter(other)));
+    verdict.confounded_with.emplace_back(local.free[other],
+                                         d[j] * FitScale(local.parameter(other)));
   }
 }
 
 std::string With(const FitProblem& problem,
-                 const std::vector<std::pair<std::size_t, double>>& trade) {
+                 const std::vector<std::pair<std::size_t, double>>& confounded_with) {
   std::vector<std::string> parts;
-  for (std::size_t k = 1; k < trade.size(); ++k) {
-    const FitParameter& p = problem.parameters[trade[k].first];
-    parts.push_back(p.name + " " + Change(trade[k].second, p.unit));
+  for (std::size_t k = 1; k < confounded_with.size(); ++k) {
+    const FitParameter& p = problem.parameters[confounded_with[k].first];
+    parts.push_back(p.name + " " + Change(confounded_with[k].second, p.unit));
   }
   return fit::List(parts);
 }
 
 std::string Against(const FitProblem& problem,
-                    const std::vector<std::pair<std::size_t, double>>& trade) {
+                    const std::vector<std::pair<std::size_t, double>>& confounded_with) {
   std::vector<std::string> names;
-  for (std::size_t k = 1; k < trade.size(); ++k) {
-    names.push_back(problem.parameters[trade[k].first].name);
+  for (std::size_t k = 1; k < confounded_with.size(); ++k) {
+    names.push_back(problem.parameters[confounded_with[k].first].name);
   }
   return fit::List(names);
 }
@@ -190,32 +201,34 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
              " bound; the optimum lies beyond it";
       break;
     case Determined::kDead:
-      text = p.name + ": dead; no residual depends on it";
+      text = p.name + ": without influence; no residual depends on it";
       if (column.curved > kDead)
-        text = p.name + ": dead here; residuals depend on it only to second order";
+        text = p.name + ": without influence here; residuals depend on it only to second order";
       break;
     case Determined::kWeak:
-      text = value + error +
-             ": the data determine it too weakly, even if all others were known (+- " +
+      text = value + error + ": weakly identified, even if all others were known (+- " +
              Brief(v.se_alone, p.unit) + ")";
       if (v.sd_ratio < kInfinite && v.se_alone < 0.9 * v.se) text += Together(problem, all, j);
       break;
-    case Determined::kTraded:
-      text = value + error + ": traded against " + Against(problem, v.trade) + "; " +
-             Change(v.trade[0].second, p.unit) + " with " + With(problem, v.trade) +
-             " changes the residuals by only " + Brief(v.trade_residual) +
+    case Determined::kConfounded:
+      text = value + error + ": confounded with " + Against(problem, v.confounded_with) + "; " +
+             Change(v.confounded_with[0].second, p.unit) + " with " +
+             With(problem, v.confounded_with) + " changes the residuals by only " +
+             Brief(v.confounded_residual) +
              " standard deviations in all (if the others were known: +- " +
              Brief(v.se_alone, p.unit) + ")";
       break;
-    case Determined::kScattered:  // set later, from the jackknife
+    case Determined::kUnreliable:
+      text = value + error + ": unreliable";
+      for (const std::string& clause : v.contradictions) text += "; " + clause;
       break;
   }
   if (column.kink) {
     text += "; its derivative depends on the step by " + Brief(100 * column.kink_share) +
-            " %, and no shorter step resolves it: a kink or noise, so its error is unreliable";
+            " %, and no shorter step resolves it: a kink or noise";
   } else if (Bends(column, v.se)) {
     text += "; its derivative was computed with steps of " + Brief(column.step, p.unit) +
-            ", shorter than its error, and longer steps disagree, so its error is unreliable";
+            ", shorter than its error, and longer steps disagree";
   }
   if (!column.failed.empty())
     text += "; neighboring points could not be computed: " + column.failed;

@@ -192,10 +192,9 @@ void Made::ChooseEstimates() {
 }
 
 int Made::GroupOf(const Row& row, std::map<std::string, int>& known, FitProblem& problem) const {
-  const std::string& one = spec_.experiments[row.experiment].name;
-  std::string name = one;
+  std::string name = spec_.experiments[row.experiment].name;
   if (spec_.groups == FitGroups::kChannel) name = row.channel;
-  if (spec_.groups == FitGroups::kWindow) name = one + " " + row.point.where;
+  if (spec_.groups == FitGroups::kWindow) name += " " + row.point.where;
   const auto [at, fresh] = known.emplace(name, static_cast<int>(known.size()));
   if (fresh) problem.group_names.push_back(name);
   return at->second;
@@ -210,13 +209,14 @@ void Made::MakeProblem(Set& set) {
     p.start = e.range.start, p.low = e.range.low, p.high = e.range.high;
     if (e.range.sd) p.prior_sd = *e.range.sd;
     p.prior_mean = e.range.mean;
-    p.scale = e.range.scale;
-    p.step = spec_.search.step;
+    p.scale = e.range.scale, p.step = spec_.search.step;
     p.nuisance = e.kind != FitEstimate::Kind::kParameter;
   }
+  for (const FitExperiment& one : spec_.experiments) problem.experiment_names.push_back(one.name);
   std::map<std::string, int> groups;
   for (std::size_t i = 0; i < set.rows.size(); ++i) {
     problem.rows[i].group = GroupOf(set.rows[i].row, groups, problem);
+    problem.rows[i].experiment = static_cast<int>(set.rows[i].row.experiment);
   }
   problem.forward = [this, &set](std::span<const std::vector<double>> points) {
     return Answer(set, points);

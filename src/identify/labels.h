@@ -7,7 +7,6 @@
 
 namespace taut::identify {
 
-const char* WordOf(Determined kind);
 const char* WordOf(FitJudgement judgement);
 /// Returns name and unit as text, such as "push_n [N]".
 std::string WithUnit(const std::string& name, const std::string& unit);

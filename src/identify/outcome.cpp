@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/pattern.h"
+#include "identify/sensor_errors.h"
 #include "taut/identify.h"
 
 namespace taut {
@@ -131,6 +132,9 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
   judge.fit = search;
   judge.jackknife = AtRest(spec) ? Jackknife::kRefit : Jackknife::kStep;
   if (spec.search.folds > 0) judge.folds = spec.search.folds;
+  judge.aliases = [&](const std::vector<double>& residual) {
+    return identify::SensorErrors(spec, fit.train_points(), residual);
+  };
   out.carried = fit.Carried();
   out.verdict = JudgeFit(problem, out.fit, judge, fit.test());
   out.train = Both(problem, out.fit.values);
@@ -147,6 +151,27 @@ FitOutcome RunFit(const Identification& fit, const OutcomeOptions& options) {
   }
   if (options.design && !stopped()) out.design = Rank(fit, out.fit.values);
   out.interrupted = stopped();
+  return out;
+}
+
+std::vector<ExperimentErrors> ErrorsByExperiment(const FitSpec& spec,
+                                                 const std::vector<FitPoint>& points,
+                                                 const BeforeAfter& residuals) {
+  std::vector<ExperimentErrors> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i >= residuals.fitted.size() || i >= residuals.untuned.size()) continue;
+    const std::string& name = spec.experiments[points[i].experiment].name;
+    auto at = std::find_if(out.begin(), out.end(),
+                           [&](const ExperimentErrors& e) { return e.experiment == name; });
+    if (at == out.end()) at = out.insert(at, {name, 0, 0, 0});
+    ++at->count;
+    at->untuned += residuals.untuned[i] * residuals.untuned[i];
+    at->fitted += residuals.fitted[i] * residuals.fitted[i];
+  }
+  for (ExperimentErrors& e : out) {
+    e.untuned = std::sqrt(e.untuned / static_cast<double>(e.count));
+    e.fitted = std::sqrt(e.fitted / static_cast<double>(e.count));
+  }
   return out;
 }
 

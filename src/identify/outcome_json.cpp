@@ -24,9 +24,9 @@ Json Parameters(const Identification& fit, const FitOutcome& outcome) {
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const FitParameter& p = problem.parameters[i];
     const ParameterVerdict& v = outcome.verdict.identifiability.parameters[i];
-    Json trade = Json::object();
-    for (const auto& [which, change] : v.trade) {
-      trade[problem.parameters[which].name] = Number(change);
+    Json confounded_with = Json::object();
+    for (const auto& [which, change] : v.confounded_with) {
+      confounded_with[problem.parameters[which].name] = Number(change);
     }
     out.push_back({{"name", p.name},
                    {"unit", p.unit},
@@ -37,11 +37,13 @@ Json Parameters(const Identification& fit, const FitOutcome& outcome) {
                    {"value", v.value},
                    {"se", Number(v.se)},
                    {"se_jackknife", v.se_jackknife ? Number(*v.se_jackknife) : Json(nullptr)},
+                   {"se_residuals", v.se_residuals ? Number(*v.se_residuals) : Json(nullptr)},
                    {"groups_apart", v.groups_apart},
-                   {"verdict", WordOf(v.kind)},
+                   {"contradictions", v.contradictions},
+                   {"verdict", VerdictName(v.kind)},
                    {"pull", Number(v.pull)},
                    {"kink", v.kink},
-                   {"trade", trade},
+                   {"confounded_with", confounded_with},
                    {"sentence", v.sentence}});
   }
   return out;
@@ -56,6 +58,18 @@ Json Errors(const std::vector<FitPoint>& points, const BeforeAfter& residuals) {
                    {"untuned_rms", Number(e.untuned)},
                    {"fitted_rms", Number(e.fitted)},
                    {"fitted_bias", Number(e.fitted_bias)}});
+  }
+  return out;
+}
+
+Json ByExperiment(const Identification& fit, const std::vector<FitPoint>& points,
+                  const BeforeAfter& residuals) {
+  Json out = Json::array();
+  for (const ExperimentErrors& e : ErrorsByExperiment(fit.spec(), points, residuals)) {
+    out.push_back({{"experiment", e.experiment},
+                   {"data", e.count},
+                   {"untuned_rms_sd", Number(e.untuned)},
+                   {"fitted_rms_sd", Number(e.fitted)}});
   }
   return out;
 }
@@ -80,6 +94,19 @@ Json Points(const Identification& fit, const std::vector<FitPoint>& points,
   return out;
 }
 
+/// Returns the ends of all starts of the search.
+Json Starts(const FitOutcome& outcome) {
+  Json out = Json::array();
+  for (const FitTrack& track : outcome.fit.state.tracks) {
+    const bool failed = track.end == FitEnd::kFailed;
+    out.push_back({{"chi2", failed ? Json(nullptr) : Number(2 * track.cost)},
+                   {"values", Numbers(track.values)},
+                   {"iterations", track.iterations},
+                   {"end", track.why}});
+  }
+  return out;
+}
+
 Json Of(const FitErrors& e) {
   return {{"data", e.count},
           {"untuned_rms_sd", Number(e.untuned)},
@@ -96,6 +123,51 @@ Json Of(const DesignWorth& worth) {
           {"fixed", worth.fixed},
           {"information_nats", Number(worth.information)},
           {"sd_ratio", Numbers(worth.sd_ratio)}};
+}
+
+Json Alone(const Identification& fit, const FitVerdict& v) {
+  const std::vector<FitParameter>& parameters = fit.train().parameters;
+  Json fits = Json::array(), tests = Json::array();
+  for (const AloneFit& one : v.alone.fits) {
+    Json values = Json::object();
+    for (std::size_t j = 0; j < parameters.size(); ++j) {
+      if (!one.value[j]) continue;
+      values[parameters[j].name] = {{"value", Number(*one.value[j])}, {"se", Number(*one.se[j])}};
+    }
+    fits.push_back(
+        {{"experiment", fit.spec().experiments[static_cast<std::size_t>(one.experiment)].name},
+         {"parameters", values}});
+  }
+  for (const Homogeneity& test : v.alone.tested) {
+    tests.push_back({{"parameter", parameters[test.parameter].name},
+                     {"chi2", Number(test.chi2)},
+                     {"freedom", test.freedom},
+                     {"p", Number(test.p)},
+                     {"apart", test.apart},
+                     {"sentence", test.sentence}});
+  }
+  return {{"fits", fits}, {"tests", tests}, {"why", v.alone.why}};
+}
+
+Json Aliases(const Identification& fit, const FitVerdict& v) {
+  Json out = Json::array();
+  for (const AliasTest& test : v.aliases) {
+    Json changes = Json::object();
+    for (std::size_t j = 0; j < test.change.size(); ++j) {
+      changes[fit.train().parameters[j].name] = {{"change", Number(test.change[j])},
+                                                 {"se_ratio", Number(test.se_ratio[j])}};
+    }
+    out.push_back({{"name", test.name},
+                   {"unit", test.unit},
+                   {"value", Number(test.value)},
+                   {"se", Number(test.se)},
+                   {"chi2_fall", Number(test.fall)},
+                   {"p", Number(test.p)},
+                   {"confounded", test.confounded},
+                   {"parameters", changes},
+                   {"sentence", test.sentence}});
+  }
+  return out;
 }
 
 Json Profiles(const Identification& fit, const FitOutcome& outcome) {
@@ -156,18 +228,25 @@ std::string OutcomeJson(const Identification& fit, const FitOutcome& outcome) {
            {"judgement", WordOf(v.judgement)},
            {"rejected", v.rejected},
            {"unidentifiable", v.unidentifiable},
+           {"contradiction", v.contradiction},
+           {"unreliable", v.unreliable},
            {"worse_on_hold_out", v.worse},
            {"sentences", v.sentences},
            {"chi2", {{"data", Of(v.data)}, {"prior", Of(v.prior)}, {"total", Of(v.total)}}},
+           {"starts", Starts(outcome)},
            {"parameters", Parameters(fit, outcome)},
            {"condition", Number(v.identifiability.condition)},
            {"combinations_fixed", v.identifiability.fixed},
            {"directions", directions},
            {"correlation", Numbers(v.identifiability.correlation)},
-           {"train", Errors(fit.train_points(), outcome.train)}};
+           {"train", Errors(fit.train_points(), outcome.train)},
+           {"train_experiments", ByExperiment(fit, fit.train_points(), outcome.train)}};
+  out["experiments_alone"] = Alone(fit, v);
+  out["aliases"] = Aliases(fit, v);
   if (v.hold_out) {
     out["held_out"] = Errors(fit.test_points(), outcome.test);
     out["hold_out"] = Of(*v.hold_out);
+    out["held_out_experiments"] = ByExperiment(fit, fit.test_points(), outcome.test);
   }
   if (v.cross_validation.why.empty() && !v.cross_validation.folds.empty()) {
     out["cross_validation"] = Of(v.cross_validation.all);

@@ -53,7 +53,7 @@ std::string ParameterSection(const Identification& fit, const FitOutcome& outcom
     rows.push_back({WithUnit(p.name, p.unit), G(p.start), G(v.value), ErrorText(v.se),
                     v.se_jackknife ? ErrorText(*v.se_jackknife) : "-", G(p.prior_sd),
                     std::isfinite(p.prior_sd) ? G(v.pull) : "-",
-                    std::string(WordOf(v.kind)) + (v.kink ? ", kink" : "")});
+                    std::string(VerdictName(v.kind)) + (v.kink ? ", kink" : "")});
     sentences += "<li>" + Escaped(v.sentence) + "</li>\n";
   }
   return "<h2>Parameters</h2>\n" + Table(rows) + "<ul>\n" + sentences + "</ul>\n";
@@ -69,6 +69,32 @@ std::string Errors(const char* title, const std::vector<FitPoint>& points,
                     G(e.fitted_bias)});
   }
   return Table(rows);
+}
+
+std::string ErrorsOfExperiments(const char* title, const FitSpec& spec,
+                                const std::vector<FitPoint>& points, const BeforeAfter& residuals) {
+  if (points.empty()) return {};
+  std::vector<std::vector<std::string>> rows{
+      {title, "data", "untuned rms [sd]", "fitted rms [sd]"}};
+  for (const ExperimentErrors& e : ErrorsByExperiment(spec, points, residuals)) {
+    rows.push_back({e.experiment, std::to_string(e.count), G(e.untuned), G(e.fitted)});
+  }
+  return Table(rows);
+}
+
+/// Returns the table of sensor errors that the fit does not estimate.
+std::string Aliases(const FitVerdict& verdict) {
+  if (verdict.aliases.empty()) return {};
+  std::vector<std::vector<std::string>> rows{{"sensor error", "value", "se", "chi2 decrease", "p"}};
+  for (const AliasTest& test : verdict.aliases) {
+    const bool there = !test.confounded;
+    rows.push_back({WithUnit(test.name, test.unit), there ? G(test.value) : "confounded",
+                    there ? G(test.se) : "-", there ? G(test.fall) : "-", there ? G(test.p) : "-"});
+  }
+  return "<h2>Sensor errors that are not estimated</h2>\n<p class=\"note\">Score tests: estimate "
+         "of "
+         "each error alone with all parameters, to first order.</p>\n" +
+         Table(rows);
 }
 
 /// Returns a list of links to the viewer, which show the experiments before and after the fit.
@@ -267,7 +293,10 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
   out += "</div>\n";
   out += ParameterSection(fit, outcome);
   out += "<h2>Errors</h2>\n" + Errors("fitted data", fit.train_points(), outcome.train) +
-         Errors("held-out data", fit.test_points(), outcome.test);
+         Errors("held-out data", fit.test_points(), outcome.test) +
+         ErrorsOfExperiments("experiment", fit.spec(), fit.train_points(), outcome.train) +
+         ErrorsOfExperiments("held-out experiment", fit.spec(), fit.test_points(), outcome.test) +
+         Aliases(v);
   out += Looks(fit, looks) + Carried(fit, outcome);
   out += ResidualPlots(fit, outcome) + ProfileSection(fit, outcome) + Correlations(fit, outcome) +
          Jackknifed(fit, outcome) + Design(outcome, problem.parameters.size());

@@ -9,26 +9,6 @@
 namespace taut {
 namespace identify {
 
-const char* WordOf(Determined kind) {
-  switch (kind) {
-    case Determined::kEstimated:
-      return "estimated";
-    case Determined::kPrior:
-      return "held by its prior";
-    case Determined::kAtBound:
-      return "at its bound";
-    case Determined::kDead:
-      return "dead";
-    case Determined::kWeak:
-      return "weakly determined";
-    case Determined::kScattered:
-      return "scattered";
-    case Determined::kTraded:
-      break;
-  }
-  return "traded";
-}
-
 const char* WordOf(FitJudgement judgement) {
   switch (judgement) {
     case FitJudgement::kGood:
@@ -37,6 +17,10 @@ const char* WordOf(FitJudgement judgement) {
       return "rejected";
     case FitJudgement::kUnidentifiable:
       return "not identifiable";
+    case FitJudgement::kContradiction:
+      return "contradiction";
+    case FitJudgement::kUnreliable:
+      return "unreliable";
     case FitJudgement::kWorse:
       return "worse than untuned on held-out data";
     case FitJudgement::kNone:
@@ -78,7 +62,7 @@ std::string ParameterTable(const Identification& fit, const FitOutcome& outcome)
                        WithUnit(p.name, p.unit), width, p.start, v.value, ErrorText(v.se),
                        v.se_jackknife ? ErrorText(*v.se_jackknife) : "-",
                        std::isfinite(p.prior_sd) ? fmt::format("{:.3g}", p.prior_sd) : "-",
-                       WordOf(v.kind), v.kink ? ", kink" : "");
+                       VerdictName(v.kind), v.kink ? ", kink" : "");
   }
   return out;
 }
@@ -98,6 +82,63 @@ std::string ErrorTable(const char* title, const std::vector<FitPoint>& points,
                        width, e.count, e.untuned, e.fitted, e.fitted_bias);
   }
   if (errors.size() > kMost) out += fmt::format("... and {} more\n", errors.size() - kMost);
+  return out;
+}
+
+std::string ExperimentTable(const char* title, const FitSpec& spec,
+                            const std::vector<FitPoint>& points, const BeforeAfter& residuals) {
+  const auto errors = ErrorsByExperiment(spec, points, residuals);
+  if (errors.size() < 2) return {};  // the total is in the summary
+  std::string out = fmt::format("\n{:<28} {:>7} {:>16} {:>16}\n", title, "data", "untuned rms [sd]",
+                                "fitted rms [sd]");
+  for (const ExperimentErrors& e : errors) {
+    out += fmt::format("{:<28} {:>7} {:>16.4g} {:>16.4g}\n", e.experiment, e.count, e.untuned,
+                       e.fitted);
+  }
+  return out;
+}
+
+/// Returns the held-out channels and experiments that the fit predicts less accurately than the
+/// untuned model; empty if there are none.
+std::string WorseParts(const Identification& fit, const FitOutcome& outcome) {
+  std::vector<std::string> parts;
+  for (const ChannelErrors& e : ErrorsByChannel(fit.test_points(), outcome.test)) {
+    if (e.fitted > e.untuned) {
+      parts.push_back(
+          fmt::format("{} ({:.3g} -> {:.3g})", WithUnit(e.channel, e.unit), e.untuned, e.fitted));
+    }
+  }
+  const auto experiments = ErrorsByExperiment(fit.spec(), fit.test_points(), outcome.test);
+  for (const ExperimentErrors& e : experiments) {
+    if (experiments.size() > 1 && e.fitted > e.untuned) {
+      parts.push_back(
+          fmt::format("experiment {} ({:.3g} -> {:.3g} sd)", e.experiment, e.untuned, e.fitted));
+    }
+  }
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(parts.size(), kMost); ++i) {
+    text += (i == 0 ? "" : ", ") + parts[i];
+  }
+  if (parts.size() > kMost) text += fmt::format(" and {} more", parts.size() - kMost);
+  return text;
+}
+
+std::string AliasTable(const FitVerdict& verdict) {
+  if (verdict.aliases.empty()) return {};
+  std::size_t width = 26;
+  for (const AliasTest& test : verdict.aliases) {
+    width = std::max(width, WithUnit(test.name, test.unit).size());
+  }
+  std::string out =
+      fmt::format("\n{:<{}} {:>12} {:>10} {:>14} {:>10}\n", "sensor error, not estimated", width,
+                  "value", "se", "chi2 decrease", "p");
+  for (const AliasTest& test : verdict.aliases) {
+    const std::string name = WithUnit(test.name, test.unit);
+    out += test.confounded ? fmt::format("{:<{}} confounded with parameters\n", name, width)
+                           : fmt::format("{:<{}} {:>12.6g} {:>10.3g} {:>14.4g} {:>10.3g}\n", name,
+                                         width, test.value, test.se, test.fall, test.p);
+  }
   return out;
 }
 
@@ -137,6 +178,17 @@ std::vector<std::string> OutcomeLines(const Identification& fit, const FitOutcom
   };
   errors("fitted data", verdict.train);
   if (verdict.hold_out) errors("held-out data", *verdict.hold_out);
+  const std::string worse = WorseParts(fit, outcome);
+  if (!worse.empty()) lines.push_back("worse than untuned on held-out data: " + worse);
+  for (const Homogeneity& test : verdict.alone.tested) {
+    if (test.apart && verdict.judgement != FitJudgement::kContradiction) {
+      lines.push_back("experiments disagree: " + test.sentence);
+    }
+  }
+  for (const AliasTest& test : verdict.aliases) {
+    if (!test.confounded && test.p < VerdictOptions{}.least_p) lines.push_back(test.sentence);
+  }
+  if (outcome.fit.state.tracks.size() > 1) lines.push_back(StartsSentence(outcome.fit));
   for (const FitProfile& profile : outcome.profiles) {
     lines.push_back("profile of " + problem.parameters[profile.parameter].name + ": " +
                     (profile.why.empty() ? profile.sentence : profile.why));
@@ -146,7 +198,7 @@ std::vector<std::string> OutcomeLines(const Identification& fit, const FitOutcom
     const FitParameter& p = problem.parameters[i];
     const ParameterVerdict& v = parameters[i];
     lines.push_back(fmt::format("{}: {:.6g} -> {:.6g} +- {}, {}", WithUnit(p.name, p.unit), p.start,
-                                v.value, ErrorText(v.error()), WordOf(v.kind)));
+                                v.value, ErrorText(v.error()), VerdictName(v.kind)));
   }
   return lines;
 }
@@ -166,6 +218,9 @@ std::string OutcomeText(const Identification& fit, const FitOutcome& outcome) {
   }
   out += ErrorTable("fitted data", fit.train_points(), outcome.train);
   out += ErrorTable("held-out data", fit.test_points(), outcome.test);
+  out += ExperimentTable("experiment", fit.spec(), fit.train_points(), outcome.train);
+  out += ExperimentTable("held-out experiment", fit.spec(), fit.test_points(), outcome.test);
+  out += AliasTable(verdict);
   if (!outcome.carried.empty()) out += "\n";
   for (const CarriedLoad& carried : outcome.carried) out += CarriedText(fit, carried) + "\n";
   for (const FitProfile& profile : outcome.profiles) {

@@ -195,8 +195,9 @@ TEST_F(FitCommand, AnAliasIsNamedAndNoGoodFit) {
   EXPECT_EQ(done.status, 1) << done.output << done.errors;
   const auto summary = Summary();
   EXPECT_TRUE(summary["unidentifiable"]);
-  EXPECT_EQ(summary["parameters"][0]["verdict"], "traded");
-  EXPECT_TRUE(summary["parameters"][0]["trade"].contains("mass_kg")) << summary["parameters"][0];
+  EXPECT_EQ(summary["parameters"][0]["verdict"], "confounded");
+  EXPECT_TRUE(summary["parameters"][0]["confounded_with"].contains("mass_kg"))
+      << summary["parameters"][0];
 }
 
 TEST_F(FitCommand, AModelThatTheDataContradictIsRejected) {

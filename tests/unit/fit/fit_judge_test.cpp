@@ -86,12 +86,13 @@ TEST(FitTwin, AnAddedAliasIsNamed) {
   EXPECT_EQ(verdict.judgement, FitJudgement::kUnidentifiable);
   EXPECT_FALSE(verdict.rejected);
   EXPECT_EQ(verdict.sentences[0],
-            "Not identifiable: the data do not determine amplitude and gain; they fix 4 of 5 "
+            "Not identifiable: the data do not determine amplitude (confounded) and gain "
+            "(confounded); they fix 4 of 5 "
             "combinations of parameters (condition infinite).");
   const ParameterVerdict& of = verdict.identifiability.parameters[0];
-  EXPECT_EQ(of.kind, Determined::kTraded);
-  ASSERT_EQ(of.trade.size(), 2u);
-  EXPECT_EQ(of.trade[1].first, 4u);
+  EXPECT_EQ(of.kind, Determined::kConfounded);
+  ASSERT_EQ(of.confounded_with.size(), 2u);
+  EXPECT_EQ(of.confounded_with[1].first, 4u);
   EXPECT_FALSE(of.se_jackknife);
   // Nuisance parameters may be undetermined.
   twin.problem.parameters[0].nuisance = twin.problem.parameters[4].nuisance = true;

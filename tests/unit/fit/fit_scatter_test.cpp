@@ -42,14 +42,14 @@ TEST(FitScatter, ANumberThatGroupsDisagreeAboutIsNotEstimated) {
   ASSERT_TRUE(m.se_jackknife);
   EXPECT_GT(*m.se_jackknife, 0.1);
   EXPECT_TRUE(m.groups_apart);
-  EXPECT_EQ(m.kind, Determined::kScattered);
-  EXPECT_TRUE(verdict.unidentifiable);
+  EXPECT_EQ(m.kind, Determined::kUnreliable);
+  EXPECT_TRUE(verdict.unreliable);
   EXPECT_NE(m.sentence.find("its estimates without one group or another differ"),
             std::string::npos);
   // A nuisance parameter, such as a sensor's offset, need not be determined.
   FitProblem nuisance = Mean(1, 8, 50, 0.5, 0.2);
   nuisance.parameters[0].nuisance = true;
-  EXPECT_FALSE(Judged(nuisance).unidentifiable);
+  EXPECT_FALSE(Judged(nuisance).unreliable);
 }
 
 TEST(FitScatter, WhereTheErrorByGroupsIsSmallEnoughItIsOnlySaid) {

@@ -73,8 +73,8 @@ TEST(FitVerdict, AnAliasIsNamedAndHasNoFiniteError) {
   const auto problem =
       Curve(p, 9, 0.1, [](double x, const auto& v) { return (v[0] + v[1]) * x + v[2]; });
   const Identifiability of = At(problem, {1, 2, 0});
-  EXPECT_EQ(of.parameters[0].kind, Determined::kTraded);
-  EXPECT_EQ(of.parameters[1].kind, Determined::kTraded);
+  EXPECT_EQ(of.parameters[0].kind, Determined::kConfounded);
+  EXPECT_EQ(of.parameters[1].kind, Determined::kConfounded);
   EXPECT_EQ(of.parameters[2].kind, Determined::kEstimated);
   EXPECT_TRUE(std::isinf(of.parameters[0].se));
   EXPECT_TRUE(std::isinf(of.parameters[1].se));
@@ -82,12 +82,14 @@ TEST(FitVerdict, AnAliasIsNamedAndHasNoFiniteError) {
   EXPECT_TRUE(std::isinf(of.condition));
   EXPECT_TRUE(of.directions[2].null);
   EXPECT_EQ(of.endless, 1);
-  ASSERT_EQ(of.parameters[0].trade.size(), 2u);
-  EXPECT_EQ(of.parameters[0].trade[1].first, 1u);
-  EXPECT_NEAR(of.parameters[0].trade[1].second / of.parameters[0].trade[0].second, -1, 1e-9);
-  EXPECT_NEAR(of.parameters[0].trade_residual, 0, 1e-6);
+  ASSERT_EQ(of.parameters[0].confounded_with.size(), 2u);
+  EXPECT_EQ(of.parameters[0].confounded_with[1].first, 1u);
+  EXPECT_NEAR(
+      of.parameters[0].confounded_with[1].second / of.parameters[0].confounded_with[0].second, -1,
+      1e-9);
+  EXPECT_NEAR(of.parameters[0].confounded_residual, 0, 1e-6);
   EXPECT_NE(
-      of.parameters[0].sentence.find("a = 1 N +- infinite: traded against b; +1 N with b -1 N"),
+      of.parameters[0].sentence.find("a = 1 N +- infinite: confounded with b; +1 N with b -1 N"),
       std::string::npos)
       << of.parameters[0].sentence;
 }
@@ -98,12 +100,14 @@ TEST(FitVerdict, AnAliasOfAProductIsSeenThroughTheErrorsOfDifferences) {
             [](double x, const auto& v) { return std::sin(0.3 * v[0] * v[1] * x); });
   const Identifiability of = At(problem, {1, 2});
   EXPECT_TRUE(std::isinf(of.parameters[0].se));
-  EXPECT_EQ(of.parameters[0].kind, Determined::kTraded);
+  EXPECT_EQ(of.parameters[0].kind, Determined::kConfounded);
   // Along a b = const: da = -a / b db
-  EXPECT_NEAR(of.parameters[0].trade[1].second / of.parameters[0].trade[0].second, -2, 1e-3);
+  EXPECT_NEAR(
+      of.parameters[0].confounded_with[1].second / of.parameters[0].confounded_with[0].second, -2,
+      1e-3);
 }
 
-TEST(FitVerdict, APriorMakesAnAliasFiniteAndItIsStillTraded) {
+TEST(FitVerdict, APriorMakesAnAliasFiniteAndItIsStillConfounded) {
   std::vector<FitParameter> p = {Parameter("a", 0, 0), Parameter("b", 0, 0)};
   p[0].prior_sd = 2;
   p[1].prior_sd = 2;
@@ -111,7 +115,7 @@ TEST(FitVerdict, APriorMakesAnAliasFiniteAndItIsStillTraded) {
   const Identifiability of = At(problem, {0, 0});
   // The sum is known, so that each parameter keeps half of its prior variance.
   EXPECT_NEAR(of.parameters[0].se, 2 / std::sqrt(2.0), 1e-6);
-  EXPECT_EQ(of.parameters[0].kind, Determined::kTraded);
+  EXPECT_EQ(of.parameters[0].kind, Determined::kConfounded);
   EXPECT_EQ(of.fixed, 1);
   EXPECT_EQ(of.endless, 0);
   EXPECT_NEAR(of.effective, 1, 1e-5);
@@ -138,11 +142,11 @@ TEST(FitVerdict, WhatNothingReadsIsDead) {
   EXPECT_EQ(of.parameters[0].kind, Determined::kEstimated);
   EXPECT_EQ(of.parameters[1].kind, Determined::kDead);
   EXPECT_TRUE(std::isinf(of.parameters[1].se));
-  EXPECT_EQ(of.parameters[1].sentence, "unused: dead; no residual depends on it");
+  EXPECT_EQ(of.parameters[1].sentence, "unused: without influence; no residual depends on it");
   const auto bow =
       Curve({Parameter("bow", 0)}, 4, 0.1, [](double x, const auto& v) { return v[0] * v[0] * x; });
   EXPECT_EQ(At(bow, {0}).parameters[0].sentence,
-            "bow: dead here; residuals depend on it only to second order");
+            "bow: without influence here; residuals depend on it only to second order");
 }
 
 TEST(FitVerdict, WhatIsTooWeakWithoutAPriorIsSaid) {

@@ -1,6 +1,7 @@
 // Load cases compared with measurements: a mass on a cable under forces, in closed form
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "tests/unit/identify/identify_fixture.h"
 
@@ -90,6 +91,67 @@ TEST_F(LoadCases, AStiffnessIsFoundFromDeflections) {
   double squares = 0;
   for (const Case& c : kCases) squares += std::pow(Pull(c) / (110 * 110) / 0.001, 2);
   EXPECT_NEAR(k.se, 1 / std::sqrt(squares), 1e-3 / std::sqrt(squares));
+}
+
+TEST_F(LoadCases, SensorErrorsThatAreNotEstimatedAreFound) {
+  // Load cells read 5 % too little, and the camera 4 mm too high.
+  std::ofstream file(folder_ / "a.csv");
+  file.precision(17);
+  file << "time_s,node/ball/position_z_m,cable/c/tension_n\n";
+  for (std::size_t i = 0; i < kCases.size(); ++i) {
+    file << i << "," << Place(kCases[i], 110, true) + 0.004 << "," << 0.95 * Pull(kCases[i])
+         << "\n";
+  }
+  file.close();
+  std::string text = Replaced(kLoadCasesFit, "scale: 20", "start: 110, scale: 20");
+  text = Replaced(text, "residuals: [", "residuals: [{channel: cable/*/tension_n, sd: 0.05}, ");
+  const auto fit = Make(Replaced(text, "position_*_m", "position_z_m"));
+  ASSERT_TRUE(fit) << out_.Format();
+  const FitOutcome outcome = RunFit(*fit, {});
+  std::map<std::string, AliasTest> aliases;
+  for (const AliasTest& test : outcome.verdict.aliases) aliases[test.name] = test;
+  ASSERT_EQ(aliases.size(), 3u);
+  // At rest the tension does not depend on k, so the gain is exact.
+  const AliasTest& gain = aliases.at("gain *_n");
+  EXPECT_NEAR(gain.value, 0.95, 1e-6);
+  EXPECT_LT(gain.p, 1e-3);
+  EXPECT_EQ(gain.change[0], 0);
+  // z depends on k nearly linearly.
+  const AliasTest& offset = aliases.at("offset node/*/position_z_m");
+  EXPECT_NEAR(offset.value, 0.004, 4e-4);
+  EXPECT_EQ(offset.unit, "m");
+  EXPECT_NEAR(outcome.verdict.values[0] + offset.change[0], 110, 1);
+  EXPECT_GT(std::fabs(outcome.verdict.values[0] - 110), 2);
+  // An estimated gain is not tested again.
+  text = Replaced(text, "estimate: [", "estimate: [{channel: \"*_n\", gain: {sd: 0.1}}, ");
+  const auto with_gain = Make(text);
+  ASSERT_TRUE(with_gain) << out_.Format();
+  for (const AliasTest& test : RunFit(*with_gain, {}).verdict.aliases) {
+    EXPECT_NE(test.name, "gain *_n");
+  }
+}
+
+TEST_F(LoadCases, ExperimentsThatDisagreeAreAContradiction) {
+  fs::copy_file(folder_ / "a.csv", folder_ / "b.csv");
+  WriteCases(122);
+  const std::string two =
+      Replaced(kLoadCasesFit, "load_cases}]",
+               "load_cases}, {name: b, experiment: experiment.yaml, data: b.csv, forward: "
+               "load_cases}]");
+  const auto fit = Make(two);
+  ASSERT_TRUE(fit) << out_.Format();
+  const FitOutcome outcome = RunFit(*fit, {});
+  const FitVerdict& verdict = outcome.verdict;
+  EXPECT_TRUE(verdict.contradiction);
+  ASSERT_EQ(verdict.alone.fits.size(), 2u);
+  EXPECT_NEAR(*verdict.alone.fits[0].value[0], 122, 1e-3);
+  EXPECT_NEAR(*verdict.alone.fits[1].value[0], 110, 1e-3);
+  EXPECT_EQ(verdict.identifiability.parameters[0].kind, Determined::kUnreliable);
+  EXPECT_NE(OutcomeJson(*fit, outcome).find("\"contradiction\": true"), std::string::npos);
+  const auto errors = ErrorsByExperiment(fit->spec(), fit->train_points(), outcome.train);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[1].experiment, "b");
+  EXPECT_GT(errors[0].untuned, errors[0].fitted);
 }
 
 TEST_F(LoadCases, AGapInTheDataIsThatCasesOnly) {
