@@ -299,6 +299,7 @@ void AddFit(CLI::App& app, int& exit_code) {
   design->excludes(check);
   fit->footer(
       "Examples:\n"
+      "  taut fit fits/hanging_mass.yaml\n"
       "  taut fit fits/tetraspine3_push.yaml --profile push_n\n"
       "  mpirun -np 8 taut fit fits/tetraspine3_push.yaml\n"
       "After an interruption (Ctrl-C, kill) the same command resumes, with the same result.\n"
