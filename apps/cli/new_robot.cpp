@@ -1,6 +1,7 @@
 #include "new_robot.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +9,8 @@
 #include <map>
 #include <sstream>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "commands.h"
 #include "output.h"
@@ -42,6 +45,39 @@ std::map<std::string, std::string> ReadTemplate(const fs::path& folder) {
   return files;
 }
 
+/// Folder that appears under its name only when all of its files are written, so that an
+/// interrupted command can be repeated. Removed by the destructor if it was not published.
+class NewFolder {
+ public:
+  explicit NewFolder(fs::path path) : path_(std::move(path)) {
+    made_at_ = path_.string() + "." + std::to_string(getpid()) + ".part";
+  }
+  NewFolder(const NewFolder&) = delete;
+  NewFolder& operator=(const NewFolder&) = delete;
+  ~NewFolder() {
+    std::error_code ignored;
+    if (created_) fs::remove_all(made_at_, ignored);
+  }
+
+  bool Create(std::error_code& failed) {
+    created_ = fs::create_directory(made_at_, failed);
+    if (!created_ && !failed) failed = std::make_error_code(std::errc::file_exists);
+    return created_;
+  }
+  const fs::path& made_at() const { return made_at_; }
+
+  /// Replaces at most an empty folder; fails if the name was taken meanwhile.
+  bool Publish(std::error_code& failed) {
+    fs::rename(made_at_, path_, failed);
+    created_ = created_ && failed;
+    return !failed;
+  }
+
+ private:
+  fs::path path_, made_at_;
+  bool created_ = false;
+};
+
 }  // namespace
 
 const std::vector<std::string>& RobotTemplates() {
@@ -73,15 +109,19 @@ int NewRobot(const std::string& name, const std::string& like) {
     }
     return kBadInput;
   }
-  if (!fs::create_directory(folder, failed)) {
+  OutputIsNews();
+  NewFolder made(folder);
+  bool created = made.Create(failed);
+  for (auto it = files.begin(); created && it != files.end(); ++it) {
+    const auto& [file, text] = *it;
+    const std::string filled = Replaced(Replaced(text, kName, name), kSchemas, *schemas + "/");
+    const int written = WriteNamed((made.made_at() / file).string(), filled);
+    if (written != kOk) return written;
+  }
+  created = created && made.Publish(failed);
+  if (!created) {
     fmt::print(stderr, "{}: error: cannot create the folder: {}\n", name, failed.message());
     return kFailed;
-  }
-  OutputIsNews();
-  for (const auto& [file, text] : files) {
-    const std::string filled = Replaced(Replaced(text, kName, name), kSchemas, *schemas + "/");
-    const int written = WriteNamed((folder / file).string(), filled);
-    if (written != kOk) return written;
   }
   fmt::print("{}: a robot like {}\n", name, like);
   for (const auto& [file, text] : files) fmt::print("  {}\n", (folder / file).string());

@@ -64,8 +64,16 @@ std::string Alternatives(const std::vector<std::string>& words) {
 }
 
 std::string CheckName(const std::string& text) {
-  if (IsName(text)) return {};
-  return fmt::format("\"{}\" is not a valid name (expected letters, digits, _ or -)", text);
+  if (!IsName(text)) {
+    return fmt::format("\"{}\" is not a valid name (expected letters, digits, _ or -)", text);
+  }
+  if (text.front() == '-') {
+    return fmt::format("\"{}\" is not a valid name here (a command would read it as a flag)", text);
+  }
+  if (text == "null" || text == "Null" || text == "NULL") {
+    return fmt::format("\"{}\" is not a valid name here (YAML reads it as no value)", text);
+  }
+  return {};
 }
 
 }  // namespace taut::cli

@@ -3,13 +3,15 @@
 The outputs of these commands replace older files, so each output has an old and a new content."""
 
 import re
+import shutil
 
-from robustness.scenarios import Reader, digest
+from robustness.scenarios import Reader, Scenario, digest
 from validation.runs import ROOT
 
 OLD = b"old content\n"
 LOST_OUTPUT = "warning: cannot write to standard output"
-PART = re.compile(r".*\.\d+\.part")  # an unfinished file, left by a command that is killed or cannot delete it
+# An unfinished file, or a file of an unfinished folder, left by a command that is killed or cannot delete it.
+PART = re.compile(r".*\.\d+\.part(/.*)?")
 WINCHES = """\
 taut: 1
 kind: catalogue
@@ -84,6 +86,48 @@ class ExportStructure(Converter):
 
     def words(self):
         return ("export", "structure", ROOT / "share/models/prism3.yaml", "--out", "prism")
+
+
+class New(Scenario):
+    """A command that writes new files. Afterwards, either all of them are there or none, and the command can be
+    repeated."""
+    kinds = ("memory", "write", "sync", "name", "open", "close", "read")
+    kills = True
+
+    def __init__(self, program, folder):
+        super().__init__(program, folder)
+        self.prepare()
+        shutil.copytree(self.before, folder / "right")
+        self.made(*self.words(), folder=folder / "right")
+        self.old, self.right = digest(self.before), digest(folder / "right")
+
+    def prepare(self):
+        pass
+
+    def check(self, outcome, folder):
+        left = {name: content for name, content in digest(folder).items() if not PART.fullmatch(name)}
+        if left not in (self.old, self.right):
+            return f"some files only: {sorted(left)}"
+        if outcome.status == 0 and left != self.right:
+            return "status 0, and nothing was written"
+        again = self.program.plain(self.words(), folder)
+        if again.returncode != (3 if left == self.right else 0):
+            return f"again, with status {again.returncode}: {again.stderr}"
+        return None if digest(folder).items() >= self.right.items() else "again, it is something else"
+
+
+class NewRobot(New):
+    def words(self):
+        return ("new", "robot", "sam", "--like", "prism")
+
+
+class NewMapping(New):
+    def prepare(self):
+        rows = "".join(f"{row / 10:.1f};{row % 7}\n" for row in range(300))
+        (self.before / "log.csv").write_text("time [s];force [N]\n" + rows)
+
+    def words(self):
+        return ("new", "mapping", "log.csv")
 
 
 class Analyze(Reader):

@@ -76,6 +76,11 @@ def AnImportThatCannotCheckItsModelSaysSo():
     assert "refuses the model" not in run.stdout, run
 
 
+def ANewRobotIsWholeOrAbsent():
+    run = faults("new_robot", "--at", "write 2 kill", "--at", "open 3 kill", "--at", "name 1 kill", "--at", "write 3 once")
+    assert run.returncode == 0 and run.stdout.count("good: killed") == 3 and run.stdout.count("good: said") == 1, run
+
+
 def MemoryThatIsMissingWhereNothingMayBeThrownIsSaid():
     # Some of these fail during the destruction of JSON texts, which also allocates memory.
     calls = faults("top", "--at", "memory 1 once").stdout

@@ -61,6 +61,10 @@ TEST_F(NewCommand, NewOverwritesNothing) {
   }
   EXPECT_EQ(Refusal({"new", "model", "a/b"}),
             "error: NAME: \"a/b\" is not a valid name (expected letters, digits, _ or -)");
+  EXPECT_EQ(Refusal({"new", "robot", "--", "-x"}),
+            "error: NAME: \"-x\" is not a valid name here (a command would read it as a flag)");
+  EXPECT_EQ(Refusal({"new", "model", "null"}),
+            "error: NAME: \"null\" is not a valid name here (YAML reads it as no value)");
   EXPECT_EQ(Refusal({"new", "modle", "a"}),
             "error: kind: \"modle\" is unknown (did you mean \"model\"?)");
 }
