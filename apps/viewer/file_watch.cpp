@@ -35,4 +35,10 @@ bool FileWatch::Poll() {
   return stable && polled_ != watched_;
 }
 
+std::vector<std::string> FileWatch::files() const {
+  std::vector<std::string> files;
+  for (const auto& [path, state] : watched_) files.push_back(path);
+  return files;
+}
+
 }  // namespace taut::viewer

@@ -20,6 +20,7 @@ class FileWatch {
   /// Returns true if a file differs from its state at the last `Watch` and has not changed since
   /// the previous `Poll`: an editor may still be writing it.
   bool Poll();
+  std::vector<std::string> files() const;  ///< Those of the last `Watch`.
 
  private:
   struct State {

@@ -1,5 +1,6 @@
 // Restarts of a live run whose input files have changed on disk.
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "live_inputs.h"
@@ -10,7 +11,21 @@
 namespace taut::viewer {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr std::chrono::milliseconds kPollPeriod{250};
+
+/// Reports watched files that were replaced by a pipe or a device: reading one could block the
+/// session forever, and with it Ctrl-C. Readers accept such a file if a user names it.
+void CheckRegular(const std::vector<std::string>& files, Diagnostics& out) {
+  for (const std::string& path : files) {
+    std::error_code failed;
+    const fs::file_status status = fs::status(path, failed);
+    if (!fs::exists(status) || fs::is_regular_file(status) || fs::is_directory(status)) continue;
+    out.Error("view.not_a_file", {path, 0, 0}, "the file was replaced by a pipe, socket or device",
+              "replace it by a regular file");
+  }
+}
 
 }  // namespace
 
@@ -21,7 +36,8 @@ void LiveSession::ReloadChangedFiles(Clock::time_point now) {
   Diagnostics found;
   scene_changed_ = true;
   std::vector<std::string> files = experiment_.files;
-  if (Reload(found)) {
+  CheckRegular(watch_.files(), found);
+  if (found.ok() && Reload(found)) {
     files_notice_.clear();
     files = experiment_.files;
     const std::string text = "restarted with the changed files";

@@ -148,9 +148,29 @@ def an_experiment_restarts_with_its_changed_model(robot, web):
         assert "model.yaml" in scene["notice"], scene["notice"]
 
 
+def a_pipe_in_place_of_a_file_is_an_error(robot, web):
+    viewed = Viewed(robot, web)
+    with viewed as client:
+        client.await_scene(lambda s: True)
+        model = robot / "model.yaml"
+        text = model.read_text()
+        model.unlink()
+        os.mkfifo(model)
+        notice = client.await_scene(lambda s: "notice" in s)["notice"]
+        assert "the file was replaced by a pipe, socket or device" in notice, notice
+        model.unlink()
+        model.write_text(text)
+        assert "notice" not in client.await_scene(lambda s: True)
+        model.unlink()
+        os.mkfifo(model)
+        client.await_scene(lambda s: "notice" in s)
+        viewed.server.terminate()
+        assert viewed.server.wait(PATIENCE_S) == 0
+
+
 if __name__ == "__main__":
     for test in (a_changed_model_is_shown, a_dropped_model_is_dropped_again, errors_are_shown_until_they_are_mended,
-                 another_kind_of_file_is_an_error,
+                 another_kind_of_file_is_an_error, a_pipe_in_place_of_a_file_is_an_error,
                  an_experiment_restarts_with_its_changed_model):
         with tempfile.TemporaryDirectory() as folder:
             pages = pathlib.Path(folder, "web")
