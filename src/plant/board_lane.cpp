@@ -185,7 +185,7 @@ std::string BoardLane::Faults(const std::vector<std::string>& names) const {
   char time[32];
   std::snprintf(time, sizeof time, " at %.3f s", faulty_s_);
   return "the board of " + names[static_cast<std::size_t>(faulty_motor_)] +
-         " reported a fault: " + faults + time;
+         " reported a fault: " + faults + time + "; then all motors held";
 }
 
 void BoardLane::Serialize(LaneState& state) {

@@ -47,6 +47,7 @@ class BoardLane {
   /// Reads the status frames. `since_s`: time since the previous status; 0: none.
   void ReadStatus(double since_s);
 
+  bool HasFault() const { return faulty_motor_ >= 0; }
   bool IsPowered(int motor) const { return board::IsPowered(BoardOf(motor)); }
   /// Returns the duty of a motor, -1 .. 1; positive winds in.
   double Duty(int motor) const;

@@ -83,7 +83,8 @@ class Boards {
     // The first broadcast, at the start, changes the mode.
     const bool broadcast = tick % every == delay || tick == 0;
     if (broadcast) {
-      const bool holds = time_s < spec.hold_s - 1e-9;
+      // Like the driver of a robot, which holds all motors after a fault.
+      const bool holds = time_s < spec.hold_s - 1e-9 || boards.HasFault();
       boards.Broadcast(holds ? board::Mode::kHold : mode_, spec.capture, values);
     }
     boards.Tick(inputs_[lane], time_s);

@@ -1,6 +1,7 @@
 // Load cases compared with measurements: a mass on a cable under forces, in closed form
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include "tests/unit/identify/identify_fixture.h"
@@ -132,7 +133,7 @@ TEST_F(LoadCases, SensorErrorsThatAreNotEstimatedAreFound) {
 }
 
 TEST_F(LoadCases, ExperimentsThatDisagreeAreAContradiction) {
-  fs::copy_file(folder_ / "a.csv", folder_ / "b.csv");
+  std::filesystem::copy_file(folder_ / "a.csv", folder_ / "b.csv");
   WriteCases(122);
   const std::string two =
       Replaced(kLoadCasesFit, "load_cases}]",

@@ -148,7 +148,8 @@ TEST(MotorBoards, ReportTheFirstFault) {
   boards.tension_limit_n = 5;
   boards.tension_band_n = 1;
   const Recording run(Crane(0.5, boards));
-  EXPECT_EQ(run.summary.status_text, "the board of rope reported a fault: over_tension at 0.004 s");
+  EXPECT_EQ(run.summary.status_text,
+            "the board of rope reported a fault: over_tension at 0.004 s; then all motors held");
   EXPECT_GT(run.Last("cable/rope/rest_length_m"), 1.0) << "unwinds";
 }
 

@@ -1,0 +1,19 @@
+"""Unpublished numbers of the paper's robot on its motor boards: drives, and ranges of the others."""
+
+# Gear and spool, and keys of the motor. Of the second and third drive, winding and gear are those of data sheets and
+# measurements; the spool is assumed.
+DRIVES = {
+    "1524T012SR, 76:1": ("", ""),
+    "1524T006SR, 141:1": ("gear_ratio: 141, spool_radius_m: 0.005",
+                          "resistance_ohm: 5.1\n    torque_constant_n_m_per_a: 0.006"),
+    "1524E006S123, 141:1": ("gear_ratio: 141, spool_radius_m: 0.005",
+                            "resistance_ohm: 11\n    torque_constant_n_m_per_a: 0.00419"),
+}
+# Ranges of the unpublished numbers, uniform in their logarithm. integral_s: proportional gain over integral gain.
+RANGES = {
+    "boards.force_p_per_n": (0.002, 0.2),
+    "integral_s": (0.01, 0.3),
+    "boards.velocity_input_scale": (0.05, 1.0),
+    "boards.tension_filter_share": (0.05, 0.5),
+    "model.friction": (0.8, 1.25),
+}
