@@ -1,4 +1,4 @@
-"""Unpublished numbers of the paper's robot on its motor boards: drives, and ranges of the others."""
+"""Published facts about the paper's robot, and ranges of the unpublished numbers of its motor boards."""
 
 # Gear and spool, and keys of the motor. Of the second and third drive, winding and gear are those of data sheets and
 # measurements; the spool is assumed.
@@ -17,3 +17,8 @@ RANGES = {
     "boards.tension_filter_share": (0.05, 0.5),
     "model.friction": (0.8, 1.25),
 }
+
+# Largest tensions of NTRT [N] (docs/validation/virtual_robot.md), and the published errors of NTRT relative to the
+# robot. The paper does not say which of the two was larger.
+NTRT = {"push": (32.29, 0.061), "sine": (26.93, 0.079), "gait": (30.24, 0.016)}
+LIMITS = {run: (simulated / (1 + error), simulated / (1 - error)) for run, (simulated, error) in NTRT.items()}

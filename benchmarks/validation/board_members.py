@@ -1,6 +1,6 @@
 """Simulates the paper's robot on motor boards with random values of unpublished numbers.
 
-Usage: board_members.py COUNT FOLDER; writes FOLDER/members.json. virtual_robot_band.py starts it with the Python
+Usage: board_members.py COUNT FOLDER; writes FOLDER/members.json: COUNT members, and half as many near the best. virtual_robot_band.py starts it with the Python
 module of the same build.
 """
 
@@ -15,7 +15,7 @@ import sys
 import numpy as np
 import taut
 
-from board_facts import DRIVES, RANGES
+from board_facts import DRIVES, LIMITS, RANGES
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHARE = ROOT / "share"
@@ -36,6 +36,30 @@ def draw(count, seed=1):
     return [{"drive": drives[i // LANES % len(drives)], "capture": i // LANES // len(drives) % 6 == 5,
              "values": {name: math.exp(numbers.uniform(math.log(low), math.log(high)))
                         for name, (low, high) in RANGES.items()}} for i in range(count)]
+
+
+def misfit(member, limits):
+    """Returns by how far the largest tensions are outside their limits, as a sum of relative differences."""
+    outside = 0
+    for run, (low, high) in limits.items():
+        largest = member[run]["max_n"]
+        outside += max(0, low / largest - 1, largest / high - 1)
+    return outside
+
+
+def refine(members, count, limits, seed=2):
+    """Returns members with values near those of the least misfit, the same number for each drive."""
+    numbers = random.Random(seed)
+    refined = []
+    for first in range(0, count, LANES):
+        drive = list(DRIVES)[first // LANES % len(DRIVES)]
+        of_drive = [member for member in members if member["drive"] == drive and not member["capture"]]
+        parents = sorted(of_drive, key=lambda member: misfit(member, limits))[:LANES]
+        for parent in parents:
+            values = {name: min(high, max(low, parent["values"][name] * math.exp(numbers.gauss(0, 0.2))))
+                      for name, (low, high) in RANGES.items()}
+            refined.append({"drive": drive, "capture": False, "values": values})
+    return refined
 
 
 def write_experiment(folder, run, drive, capture):
@@ -106,12 +130,10 @@ def simulate_pure(experiment):
             "outer_n": float(tensions[:, outer].mean()), "way_m": [float(x) for x in way_m[:2]]}
 
 
-def main():
-    count, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2])
-    folder.mkdir(parents=True, exist_ok=True)
-    members = draw(count)
+def complete(members, folder):
+    """Simulates members and adds their figures."""
     jobs, places = [], []
-    for first in range(0, count, LANES):
+    for first in range(0, len(members), LANES):
         group = members[first:first + LANES]
         for run in RUNS:
             jobs.append((write_experiment(folder, run, group[0]["drive"], group[0]["capture"]), run, group))
@@ -122,8 +144,22 @@ def main():
                 member[run] = of_member
             print(f"\r{done} of {len(jobs)} groups", end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
+
+
+def main():
+    count, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    members = draw(count)
+    complete(members, folder)
+    known = list(members)
+    refined = []
+    for stage in range(2, 4):
+        more = refine(known, count // 4 // LANES * LANES, LIMITS, seed=stage)
+        complete(more, folder)
+        refined += more
+        known += more
     pure = {run: reference(run) for run in RUNS}
-    (folder / "members.json").write_text(json.dumps({"pure": pure, "members": members}, indent=1))
+    (folder / "members.json").write_text(json.dumps({"pure": pure, "members": members, "refined": refined}, indent=1))
 
 
 if __name__ == "__main__":

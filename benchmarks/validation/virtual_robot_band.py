@@ -8,26 +8,18 @@ import statistics
 import subprocess
 import sys
 
-from validation.board_facts import DRIVES, RANGES
+from validation.board_facts import DRIVES, LIMITS, NTRT, RANGES
 from validation.push import machine
 from validation.runs import Problem, fill, table
 
 TEMPLATE = pathlib.Path(__file__).with_suffix(".md.in")
 PROGRAM = pathlib.Path(__file__).with_name("board_members.py")
-COUNT = 1440
-# Largest tensions of NTRT [N] (docs/validation/virtual_robot.md), and the published errors of NTRT relative to the
-# robot. The paper does not say which of the two was larger.
-NTRT = {"push": (32.29, 0.061), "sine": (26.93, 0.079), "gait": (30.24, 0.016)}
+COUNT = 960
 LEAST_WAY_M = 0.1
 
 
-def limits(run):
-    simulated, error = NTRT[run]
-    return simulated / (1 + error), simulated / (1 - error)
-
-
 def within(run):
-    low, high = limits(run)
+    low, high = LIMITS[run]
     return lambda member, pure: low <= member[run]["max_n"] <= high
 
 
@@ -86,6 +78,12 @@ def cuts_of(name):
     return [f"{a:.3g} to {b:.3g}" for a, b in zip(edges, edges[1:])]
 
 
+def least_misfit(drive, members):
+    """Returns the least sum of the relative distances of the three largest tensions from their limits."""
+    return min(sum(max(0, low / member[run]["max_n"] - 1, member[run]["max_n"] / high - 1)
+                   for run, (low, high) in LIMITS.items()) for member in members if member["drive"] == drive)
+
+
 def simulate(taut):
     found = taut.folder / "members.json"
     where = {**os.environ, "PYTHONPATH": str(taut.command.parent / "python")}
@@ -97,7 +95,7 @@ def simulate(taut):
 
 def page(taut):
     data = simulate(taut)
-    pure, members = data["pure"], data["members"]
+    pure, members, refined = data["pure"], data["members"], data["refined"]
     described = [member for member in members if not member["capture"]]
     captured = [member for member in members if member["capture"]]
 
@@ -106,8 +104,10 @@ def page(taut):
 
     facts = [[title, *(f"{100 * len(agreeing(group, [fact])) / len(group):.0f}" for group in (described, captured))]
              for title, fact in [*FACTS.items(), (OUTSIDE, outside)]]
-    good = agreeing(members, FACTS.values())
+    good = agreeing([*members, *refined], FACTS.values())
     best = agreeing(good, [outside])
+    scales = [member["values"]["boards.velocity_input_scale"] for member in good]
+    misfits = {drive: least_misfit(drive, [*described, *refined]) for drive in DRIVES}
     facts.append(["all but the last", *(str(len(agreeing(group, FACTS.values()))) + f" of {len(group)}"
                                         for group in (described, captured))])
     facts.append(["all", *(str(len(agreeing(group, [*FACTS.values(), outside]))) + f" of {len(group)}"
@@ -128,9 +128,13 @@ def page(taut):
               *(f"{member[run]['max_n']:.1f}" for run in NTRT), f"{way(member):.2f}",
               f"{member['gait']['outer_n']:.1f}"] for i, member in enumerate((best or good)[:8], 1)]
     values = {
-        "count": str(len(members)), "seconds": "60",
+        "count": str(len(members)), "refined": str(len(refined)), "seconds": "60",
+        "misfits": table(["drive", "deviation [%]"],
+                         [[drive, f"{100 * misfit:.1f}"] for drive, misfit in misfits.items()]),
+        "worst_misfit": f"{math.ceil(1000 * max(misfits.values())) / 10:g}",
+        "scales": "{:.2f} to {:.2f}".format(*(extreme(scales) for extreme in (min, max))) if scales else "none",
         "limits": table(["run", "NTRT [N]", "published error [%]", "possible largest tension of the robot [N]"],
-                        [[run, f"{simulated:.2f}", f"{100 * error:.1f}", "{:.2f} to {:.2f}".format(*limits(run))]
+                        [[run, f"{simulated:.2f}", f"{100 * error:.1f}", "{:.2f} to {:.2f}".format(*LIMITS[run])]
                          for run, (simulated, error) in NTRT.items()]),
         "ranges": table(["number", "range"], [[name, f"{low:g} to {high:g}"] for name, (low, high) in RANGES.items()]),
         "facts": table(["fact", "set points of the paper: agreeing [%]", "captured: agreeing [%]"], facts),
@@ -141,7 +145,6 @@ def page(taut):
         "band": span(largest(described)), "least": f"{min(largest(described)):.1f}",
         "most": f"{max(largest(described)):.1f}", "good": str(len(good)), "best": str(len(best)),
         "pure_way": f"{math.hypot(*pure['gait']['way_m']):.2f}", "pure_outer": f"{pure['gait']['outer_n']:.2f}",
-        "good_drives": str(len({member["drive"] for member in good})),
         "captured_push": span(largest(captured, "push")),
         "version": taut("--version").split()[-1], "machine": machine(),
     }
