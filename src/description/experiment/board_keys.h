@@ -25,7 +25,8 @@ void Keys(Io& io, Like<BoardLoadCell> auto& c) {
 template <class Io, Either<BoardsSpec, BoardsText> Boards>
 void Keys(Io& io, Boards& b) {
   io.Map("boards", "boards",
-         "Motor boards between the controllers and the DC motors (docs/theory/boards.md). A broadcast sends V0 of "
+         "Motor boards between the controllers and the DC motors (docs/theory/boards.md). A "
+         "broadcast sends V0 of "
          "`impedance`, or the rest lengths of `position`; the firmware's control loop computes the "
          "duties of the motors at 1 kHz. Controllers receive the boards' readings. All cables with "
          "an actuator need a `dc_motor`, and impedance control must drive all of them or none.",
