@@ -9,6 +9,7 @@
 #include "math/vec.h"
 #include "plant/find_start.h"
 #include "plant/loop.h"
+#include "sim/contacts/moving_pairs.h"
 
 namespace taut::linear {
 namespace {
@@ -182,8 +183,7 @@ double FrictionOf(const sim::View& m, double key, bool slides) {
     const int plane = static_cast<int>(id) % m.plane_count;
     return (slides ? point.kinetic_friction : point.static_friction)[plane];
   }
-  const sim::ShapePairTable& pair =
-      m.shape_pairs[(id - m.first_pair_id) / static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
+  const sim::ShapePairTable pair = sim::PairOfKey(m, id);
   return slides ? pair.kinetic_friction : pair.static_friction;
 }
 

@@ -9,6 +9,7 @@
 
 #include "taut/world_batch.h"
 #include "tests/constants.h"
+#include "tests/scenes/ball.h"
 #include "tests/scenes/block_on_slope.h"
 #include "tests/scenes/rod.h"
 
@@ -207,9 +208,19 @@ TEST(ModelCheck, SizesThatGrowWithTheSquareOfAModelHaveLimits) {
     return Model::Compile(def, complaints) == nullptr ? complaints.Format() : std::string();
   };
   EXPECT_EQ(complaint(one_more), "error: more than 10000000 pairs of cables share a body\n");
-  EXPECT_EQ(
-      complaint(shapes),
-      "error: more than 10000000 pairs of shapes may collide: exclude shapes that cannot meet\n");
+  EXPECT_EQ(complaint(shapes),
+            "error: more than 10000000 pairs of shapes may collide with static shapes or between "
+            "two bodies: exclude shapes that cannot meet\n");
+  // 20 000 balls have 199 990 000 pairs, 20 001 have 200 010 000.
+  ModelDef balls;
+  for (int i = 0; i <= 20'000; ++i) {
+    scenes::AddBall(balls, "ball_" + std::to_string(i), 1.0, 0.1, {1.0 * i, 0, 0}, {});
+  }
+  EXPECT_EQ(complaint(balls),
+            "error: more than 200000000 pairs of shapes of moving bodies may collide: exclude "
+            "shapes that cannot meet\n");
+  balls.spheres.back().collides = false;
+  EXPECT_EQ(complaint(balls), "");
   for (BoxDef& box : shapes.boxes) box.collides = false;
   for (SphereDef& sphere : shapes.spheres) sphere.collides = false;
   EXPECT_EQ(complaint(shapes), "");

@@ -176,8 +176,9 @@ TEST_F(Limits, AModelOfAMillionNodesIsRefusedAtOnce) {
 
 TEST_F(Limits, MorePairsThanThereIsRoomForAreRefusedAtOnce) {
   ExpectRefused(
-      {"check", TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", "--set", "segments=1000"}, 3,
-      "error: more than 10000000 pairs of shapes may collide: exclude shapes that cannot meet\n");
+      {"check", TAUT_SOURCE_DIR "/share/models/tetraspine3.yaml", "--set", "segments=2000"}, 3,
+      "error: more than 200000000 pairs of shapes of moving bodies may collide: exclude shapes that "
+      "cannot meet\n");
 }
 
 TEST_F(Limits, ARecordedChannelThatIsNotThereIsBadInput) {

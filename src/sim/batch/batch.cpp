@@ -112,6 +112,8 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
   kept = AllocateAligned<sim::NearParts>(group_count * group_kept);
   slots_used.resize(group_count * bodies);
   forced.resize(group_count * nodes);
+  const auto group_near = static_cast<std::size_t>(view.near_capacity);
+  near.resize(group_count * group_near);
   status.resize(group_count * static_cast<std::size_t>(n));
   groups.resize(group_count);
   for (std::size_t g = 0; g < group_count; ++g) {
@@ -120,6 +122,7 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
     groups[g].rows = rows.get() + g * stride;
     groups[g].kept = kept.get() + g * group_kept;
     groups[g].slots_used = slots_used.data() + g * bodies;
+    groups[g].near = near.data() + g * group_near;
     groups[g].forced_nodes = forced.data() + g * nodes;
     groups[g].status = status.data() + g * static_cast<std::size_t>(n);
   }
@@ -170,7 +173,9 @@ void WorldBatch::Impl::JudgeStiffness(int world) noexcept {
 }
 
 void WorldBatch::Impl::Moved(int world) noexcept {
-  for (int i = 0; i < view.body_pair_count; ++i) at(world, layout.clearance + i) = 0.0;
+  const int pairs = view.world_pair_count + view.moving_pair_count;
+  for (int i = 0; i < pairs; ++i) at(world, layout.clearance + i) = 0.0;
+  at(world, layout.near_m) = 0.0;
   for (int i = 0; i < view.touch_count; ++i) at(world, layout.touch_free + i) = 0.0;
   ForgetMeans(world);
 }
@@ -300,7 +305,9 @@ void WorldBatch::SetTime(int world, double time_s) noexcept {
 std::size_t WorldBatch::BytesPerWorld() const noexcept {
   const Impl& d = *impl_;
   return static_cast<std::size_t>(d.layout.rows) * sizeof(double) + sizeof(sim::LaneStatus) +
-         static_cast<std::size_t>(d.model->kept_count) * sizeof(sim::NearParts);
+         static_cast<std::size_t>(d.model->kept_count) * sizeof(sim::NearParts) +
+         d.near.size() * sizeof(sim::MovingPair) /
+             (d.groups.size() * static_cast<std::size_t>(d.lanes()));
 }
 
 }  // namespace taut

@@ -1,6 +1,7 @@
 /// Implementation data of a WorldBatch, shared by several files.
 #pragma once
 
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -19,20 +20,25 @@
 
 namespace taut {
 
+/// Frees memory of AllocateAligned.
 struct Free {
-  void operator()(void* p) const noexcept { std::free(p); }
+  void* first = nullptr;  ///< Of the allocation, which starts before the aligned address.
+  void operator()(void*) const noexcept { std::free(first); }
 };
 template <class T>
 using Aligned = std::unique_ptr<T[], Free>;
 
-/// Allocates zeroed memory aligned to a cache line.
+/// Allocates zeroed memory aligned to a cache line. The operating system provides pages of large
+/// blocks on their first use. So the scratch memory of large models occupies only the part that
+/// their steps use; all of it is needed only if all bodies form one island.
 template <class T>
 Aligned<T> AllocateAligned(std::size_t count) {
-  const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64 + 64;
-  void* const memory = std::aligned_alloc(64, bytes);
-  if (memory == nullptr) base::OutOfMemory();
-  std::fill_n(static_cast<unsigned char*>(memory), bytes, static_cast<unsigned char>(0));
-  return Aligned<T>(static_cast<T*>(memory));
+  constexpr std::size_t kLine = 64;
+  void* const first = std::calloc(count * sizeof(T) + 2 * kLine, 1);
+  if (first == nullptr) base::OutOfMemory();
+  const std::size_t past = reinterpret_cast<std::uintptr_t>(first) % kLine;
+  char* const aligned = static_cast<char*>(first) + (kLine - past) % kLine;
+  return Aligned<T>(reinterpret_cast<T*>(aligned), Free{first});
 }
 
 struct WorldBatch::Impl {
@@ -50,6 +56,7 @@ struct WorldBatch::Impl {
   Aligned<sim::NearParts> kept;
   std::vector<int> slots_used;
   std::vector<int> forced;
+  std::vector<sim::MovingPair> near;
   std::vector<sim::LaneStatus> status;
   std::vector<Aligned<char>> scratch;  ///< One per thread.
   base::ThreadPool pool;

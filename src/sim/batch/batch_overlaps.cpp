@@ -6,6 +6,8 @@
 
 #include "math/rotation.h"
 #include "sim/batch/batch_impl.h"
+#include "sim/contacts/moving_pairs.h"
+#include "sim/geometry/bvh.h"
 #include "sim/geometry/convex.h"
 #include "sim/geometry/shape_contacts.h"
 
@@ -48,28 +50,30 @@ double Lowest(const sim::SurfaceShape&, const double*) { return 1e300; }
 class Finder {
  public:
   /// `poses`: of the principal frames of all bodies, then of the world.
-  Finder(const sim::Tables& tables, std::vector<ShapePose> poses)
-      : t_(tables), poses_(std::move(poses)) {}
+  Finder(const sim::Tables& tables, const sim::View& view, std::vector<ShapePose> poses)
+      : t_(tables), view_(view), poses_(std::move(poses)) {}
 
   std::vector<Overlap> Run() {
-    const auto other = [&](const sim::BodyPairTable& pair) {
+    const auto other = [&](const sim::WorldPairTable& pair) {
       return t_.shape_pairs[static_cast<std::size_t>(pair.first_pair)].b;
     };
-    for (std::size_t k = 0; k < t_.body_pairs.size(); ++k) {
-      const sim::BodyPairTable& pair = t_.body_pairs[k];
+    for (std::size_t k = 0; k < t_.world_pairs.size(); ++k) {
+      const sim::WorldPairTable& pair = t_.world_pairs[k];
       // All shapes of a body on the same ground are consecutive.
-      const bool goes_on = k > 0 && pair.on_ground && t_.body_pairs[k - 1].on_ground &&
-                           t_.body_pairs[k - 1].a == pair.a &&
-                           other(t_.body_pairs[k - 1]) == other(pair);
+      const bool goes_on = k > 0 && pair.on_ground && t_.world_pairs[k - 1].on_ground &&
+                           t_.world_pairs[k - 1].a == pair.a &&
+                           other(t_.world_pairs[k - 1]) == other(pair);
       if (!goes_on) {
         End();
         Begin(pair.a, pair.b == t_.body_count ? kWorld : pair.b);
       }
       for (int i = pair.first_pair; i < pair.first_pair + pair.pair_count; ++i) {
-        Look(t_.shape_pairs[static_cast<std::size_t>(i)]);
+        const sim::ShapePairTable& shapes = t_.shape_pairs[static_cast<std::size_t>(i)];
+        Look(static_cast<std::size_t>(shapes.a), static_cast<std::size_t>(shapes.b));
       }
     }
     End();
+    LookAtMoving();
     std::vector<std::vector<std::size_t>> shapes_of(poses_.size());
     for (std::size_t i = 0; i < t_.shapes.size(); ++i) {
       shapes_of[static_cast<std::size_t>(t_.shapes[i].body)].push_back(i);
@@ -79,7 +83,7 @@ class Finder {
       for (int plane = 0; plane < t_.plane_count; ++plane) {
         Begin(body, kWorld);
         for (const std::size_t shape : shapes_of[static_cast<std::size_t>(body)]) {
-          Look(shape, plane);
+          LookAtPlane(shape, plane);
         }
         End();
       }
@@ -92,9 +96,50 @@ class Finder {
     return poses_[static_cast<std::size_t>(shape.body)];
   }
 
-  void Look(const sim::ShapePairTable& pair) {
-    const ShapeTable& a = t_.shapes[static_cast<std::size_t>(pair.a)];
-    const ShapeTable& b = t_.shapes[static_cast<std::size_t>(pair.b)];
+  /// Tests all pairs of moving bodies with overlapping bounding spheres, in ascending order.
+  void LookAtMoving() {
+    std::vector<int> bodies;
+    std::vector<sim::TreeNode> leaves;
+    for (const int body : t_.colliders) {
+      const double* const x = poses_[static_cast<std::size_t>(body)].origin;
+      const double r = t_.bound_m[static_cast<std::size_t>(body)];
+      if (!std::isfinite(x[0] + x[1] + x[2])) continue;
+      bodies.push_back(body);
+      leaves.push_back({{{x[0] - r, x[1] - r, x[2] - r}, {x[0] + r, x[1] + r, x[2] + r}},
+                        0,
+                        static_cast<int>(leaves.size())});
+    }
+    if (bodies.empty()) return;
+    const std::vector<sim::TreeNode> bounds = leaves;
+    const int count = static_cast<int>(leaves.size());
+    std::vector<sim::TreeNode> tree(2 * leaves.size() - 1);
+    BuildTree(leaves.data(), count, tree.data());
+    std::vector<int> near;
+    for (int i = 0; i < count; ++i) {
+      near.clear();
+      sim::EachNear(tree.data(), tree[0].next, bounds[static_cast<std::size_t>(i)].bounds, 0.0,
+                    [&](int k) {
+                      if (k > i) near.push_back(bodies[static_cast<std::size_t>(k)]);
+                    });
+      std::sort(near.begin(), near.end());
+      for (const int other : near) {
+        const int body = bodies[static_cast<std::size_t>(i)];
+        if (AreApart(view_, body, other)) continue;
+        const auto [a, b] = Ordered(view_, body, other);
+        Begin(a, b);
+        for (int k = view_.first_shape[a]; k < view_.first_shape[a + 1]; ++k) {
+          for (int j = view_.first_shape[b]; j < view_.first_shape[b + 1]; ++j) {
+            Look(static_cast<std::size_t>(view_.body_shapes[k]),
+                 static_cast<std::size_t>(view_.body_shapes[j]));
+          }
+        }
+        End();
+      }
+    }
+  }
+
+  void Look(std::size_t shape_a, std::size_t shape_b) {
+    const ShapeTable &a = t_.shapes[shape_a], &b = t_.shapes[shape_b];
     double at_a[3], at_b[3], distance2 = 0;
     Move(PoseOf(a), a.center_P, at_a);
     Move(PoseOf(b), b.center_P, at_b);
@@ -106,11 +151,10 @@ class Finder {
     double gap_m = 0;
     for (int i = 0; i < count; ++i) gap_m = std::min(gap_m, points[i].gap_m);
     Take(-gap_m, std::min(HalfThicknessOf(a.shape_P), HalfThicknessOf(b.shape_P)),
-         t_.shape_refs[static_cast<std::size_t>(pair.a)],
-         t_.shape_refs[static_cast<std::size_t>(pair.b)]);
+         t_.shape_refs[shape_a], t_.shape_refs[shape_b]);
   }
 
-  void Look(std::size_t shape, int plane) {
+  void LookAtPlane(std::size_t shape, int plane) {
     const ShapeTable& a = t_.shapes[shape];
     const sim::PlaneTable& ground = t_.planes[static_cast<std::size_t>(plane)];
     const double lowest_m = WithShape(a.shape_P, [&](const auto& s) noexcept {
@@ -140,6 +184,7 @@ class Finder {
   }
 
   const sim::Tables& t_;
+  const sim::View& view_;
   std::vector<ShapePose> poses_;
   Overlap worst_;  ///< Worst overlap of the current pair of bodies.
   std::vector<Overlap> found_;
@@ -158,7 +203,7 @@ std::vector<Overlap> WorldBatch::Overlaps(int world) const {
     poses.push_back(pose);
   }
   poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}});
-  return Finder(*d.model, std::move(poses)).Run();
+  return Finder(*d.model, d.view, std::move(poses)).Run();
 }
 
 }  // namespace taut

@@ -6,6 +6,7 @@
 #include "math/cable_law.h"
 #include "sim/batch/batch_impl.h"
 #include "sim/batch/motion.h"
+#include "sim/contacts/moving_pairs.h"
 
 namespace taut {
 
@@ -117,24 +118,17 @@ struct Touching {
   int a, b;
 };
 
-/// Returns the upper limit of contact keys, which are integers.
-double KeyEnd(const sim::Tables& m) {
-  return static_cast<double>(m.first_pair_id) +
-         static_cast<double>(sim::kMaxPointsPerPair) * static_cast<double>(m.shape_pairs.size());
-}
-
 /// Returns the bodies of a contact from its key.
-Touching BodiesOf(const sim::Tables& m, double key) {
+Touching BodiesOf(const sim::View& m, double key) {
   const auto id = static_cast<std::uint32_t>(key);
   if (id < m.first_pair_id) {
     const int point = static_cast<int>(id) / m.plane_count;
-    const auto next = std::upper_bound(m.first_point.begin(), m.first_point.end(), point);
-    return {static_cast<int>(next - m.first_point.begin()) - 1, m.body_count};
+    const int* const end = m.first_point + m.body_count + 1;
+    return {static_cast<int>(std::upper_bound(m.first_point, end, point) - m.first_point) - 1,
+            m.body_count};
   }
-  const auto& pair =
-      m.shape_pairs[(id - m.first_pair_id) / static_cast<std::uint32_t>(sim::kMaxPointsPerPair)];
-  return {m.shapes[static_cast<std::size_t>(pair.a)].body,
-          m.shapes[static_cast<std::size_t>(pair.b)].body};
+  const sim::ShapePairTable pair = sim::PairOfKey(m, id);
+  return {m.shapes[pair.a].body, m.shapes[pair.b].body};
 }
 
 }  // namespace
@@ -142,7 +136,7 @@ Touching BodiesOf(const sim::Tables& m, double key) {
 std::vector<ContactState> WorldBatch::Contacts(int world) const {
   const Impl& d = *impl_;
   d.CheckWorld(__func__, world);
-  const sim::Tables& m = *d.model;
+  const sim::View& m = d.view;
   std::vector<ContactState> out;
   d.ForEachContact(world, [&](int i) {
     ContactState c;
@@ -234,7 +228,7 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
     const double key = Read<double>(key_at);
     key_at += sizeof(double) * (MemoryWidth() - 1);
-    if (!(key >= 0 && key < KeyEnd(*d.model))) return false;
+    if (!(key >= 0 && key < KeyEnd(d.view))) return false;
   }
   d.Moved(world);
   for (int row = 0; row < d.layout.snapshot_rows; ++row) d.at(world, row) = Read<double>(at);
@@ -250,7 +244,7 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
 
   // The contacts of the snapshot replace those of this lane; other lanes keep their contacts.
   d.ForEachContact(world, [&](int i) { d.at(world, d.layout.contact_key + i) = sim::kNoKey; });
-  const sim::Tables& m = *d.model;
+  const sim::View& m = d.view;
   int list = -1, next = 0;
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
     const Touching bodies = BodiesOf(m, Read<double>(at));
@@ -258,11 +252,10 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
     // Slots of a body, or contacts between moving bodies after all slots.
     const bool moves = bodies.b < m.body_count &&
                        (d.at(world, d.layout.mass + bodies.b) > 0 || d.view.HasMotion(bodies.b));
-    const int first = moves ? m.slot_count : m.first_slot[static_cast<std::size_t>(bodies.a)];
+    const int first = moves ? m.slot_count : m.first_slot[bodies.a];
     if (list != first) next = first;
     list = first;
-    const int room =
-        moves ? m.pair_capacity : m.first_slot[static_cast<std::size_t>(bodies.a) + 1] - first;
+    const int room = moves ? m.pair_capacity : m.first_slot[bodies.a + 1] - first;
     int& used = moves ? g.touches_used : g.slots_used[bodies.a];
     const int i = next++;
     if (i - first >= room) {  // impossible for a snapshot from Save

@@ -65,6 +65,10 @@ void WorldBatch::Impl::StepMasked(double step_s, const std::uint8_t* mask) {
     const int touches = g.touches_used;
     step();
     held.PutBack();
+    // The step may have made the list of near bodies for other poses of these lanes.
+    for (int lane = 0; lane < n; ++lane) {
+      if (held.Has(lane)) at(first + lane, layout.near_m) = 0.0;
+    }
     // All lanes have lists of the same length, the longest one. Entries after the end of a lane's
     // own list are outdated.
     const auto keep = [&](int& used, int before, int first_slot) {

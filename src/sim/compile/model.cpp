@@ -73,7 +73,7 @@ class Compiler {
       attachments += static_cast<std::size_t>(cable.attachment_count);
     }
     TAUT_ASSERT(attachments == t_.attachments.size());
-    for ([[maybe_unused]] const sim::BodyPairTable& pair : t_.body_pairs) {
+    for ([[maybe_unused]] const sim::WorldPairTable& pair : t_.world_pairs) {
       TAUT_ASSERT(t_.Moves(pair.a) && pair.a != pair.b && pair.b <= t_.body_count);
     }
   }

@@ -6,8 +6,10 @@
 
 namespace taut::sim {
 
-/// Limits of model size; larger models would take hundreds of megabytes and minutes.
+/// Limits of model size; larger models would take hundreds of megabytes and minutes, or need larger
+/// keys of contacts.
 inline constexpr long kMaxShapePairs = 10'000'000;
+inline constexpr long kMaxMovingShapePairs = 200'000'000;
 inline constexpr long kMaxCouplings = 10'000'000;
 
 /// Adds a diagnostic without file position for every invalid number or index. Returns false if

@@ -165,7 +165,9 @@ void JoinPieces(Tables& t) {
     }
   }
   if (!joins_boxes) return;
-  for (BodyPairTable& pair : t.body_pairs) pair.joined = pair.b == t.body_count && !pair.on_ground;
+  for (WorldPairTable& pair : t.world_pairs) {
+    pair.joined = pair.b == t.body_count && !pair.on_ground;
+  }
 }
 
 }  // namespace taut::sim

@@ -1,4 +1,4 @@
-// Construction of the bounding volume hierarchy (BVH) of static shapes (bvh.h).
+// Bounding volume hierarchy (BVH) of static shapes (bvh.h), and boxes that touch each other.
 #include <algorithm>
 #include <utility>
 
@@ -7,53 +7,6 @@
 #include "sim/geometry/shape_contacts.h"
 
 namespace taut::sim {
-namespace {
-
-Bounds Around(const Bounds& a, const Bounds& b) {
-  Bounds both;
-  for (int i = 0; i < 3; ++i) {
-    both.low[i] = std::min(a.low[i], b.low[i]);
-    both.high[i] = std::max(a.high[i], b.high[i]);
-  }
-  return both;
-}
-
-/// Appends the tree of the given leaves, split at the median along the axis of their largest
-/// spread.
-void Append(TreeNode* first, TreeNode* last, std::vector<TreeNode>& tree) {
-  const std::size_t at = tree.size();
-  tree.push_back(*first);
-  if (last - first > 1) {
-    TreeNode& node = tree.back();
-    node.shape = -1;
-    const auto twice_center = [](const TreeNode& n, int axis) {
-      return n.bounds.low[axis] + n.bounds.high[axis];
-    };
-    int widest = 0;
-    double width = -1;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [least, most] =
-          std::minmax_element(first, last, [&](const auto& a, const auto& b) {
-            return twice_center(a, axis) < twice_center(b, axis);
-          });
-      const double spread = twice_center(*most, axis) - twice_center(*least, axis);
-      if (spread > width) widest = axis, width = spread;
-    }
-    for (const TreeNode* leaf = first; leaf != last; ++leaf) {
-      node.bounds = Around(node.bounds, leaf->bounds);
-    }
-    TreeNode* const middle = first + (last - first) / 2;
-    std::nth_element(first, middle, last, [&](const auto& a, const auto& b) {
-      return twice_center(a, widest) < twice_center(b, widest);
-    });
-    Append(first, middle, tree);
-    Append(middle, last, tree);
-  }
-  tree[at].next = static_cast<int>(tree.size());
-}
-
-}  // namespace
-
 void LayOutTree(Tables& t) {
   std::vector<TreeNode> leaves;
   for (std::size_t i = 0; i < t.shapes.size(); ++i) {
@@ -64,8 +17,9 @@ void LayOutTree(Tables& t) {
   }
   if (leaves.size() <= static_cast<std::size_t>(kFewShapes)) return;
   t.tree_shapes = static_cast<int>(leaves.size());
-  Append(leaves.data(), leaves.data() + leaves.size(), t.tree);
-  for (BodyPairTable& pair : t.body_pairs) {
+  t.tree.resize(2 * leaves.size() - 1);
+  BuildTree(leaves.data(), t.tree_shapes, t.tree.data());
+  for (WorldPairTable& pair : t.world_pairs) {
     pair.by_tree = pair.b == t.body_count && !pair.on_ground;
     TAUT_ASSERT(!pair.by_tree || pair.pair_count % t.tree_shapes == 0);
   }
@@ -107,7 +61,9 @@ void JoinBoxes(Tables& t) {
     of(boxes[i]).beside_count = static_cast<int>(beside[i].size());
     t.beside.insert(t.beside.end(), beside[i].begin(), beside[i].end());
   }
-  for (BodyPairTable& pair : t.body_pairs) pair.joined = pair.b == t.body_count && !pair.on_ground;
+  for (WorldPairTable& pair : t.world_pairs) {
+    pair.joined = pair.b == t.body_count && !pair.on_ground;
+  }
 }
 
 }  // namespace taut::sim

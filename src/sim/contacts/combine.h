@@ -25,10 +25,14 @@ struct Coefficients {
   double static_friction, kinetic_friction, restitution;
 };
 
+inline Coefficients Combined(CombineRule friction, CombineRule restitution, const Material& a,
+                             const Material& b) {
+  return {Combine(friction, a.static_friction, b.static_friction),
+          Combine(friction, a.kinetic_friction, b.kinetic_friction),
+          Combine(restitution, a.restitution, b.restitution)};
+}
 inline Coefficients Combined(const ModelDef& def, const Material& a, const Material& b) {
-  return {Combine(def.friction_combine, a.static_friction, b.static_friction),
-          Combine(def.friction_combine, a.kinetic_friction, b.kinetic_friction),
-          Combine(def.restitution_combine, a.restitution, b.restitution)};
+  return Combined(def.friction_combine, def.restitution_combine, a, b);
 }
 
 }  // namespace taut::sim

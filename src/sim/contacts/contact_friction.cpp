@@ -6,6 +6,7 @@
 #include "math/rotation.h"
 #include "math/vec.h"
 #include "sim/contacts/combine.h"
+#include "sim/contacts/moving_pairs.h"
 #include "sim/data/tables.h"
 #include "taut/friction.h"
 
@@ -38,7 +39,7 @@ Sides SidesOf(const View& m, double key) {
     const int plane = static_cast<int>(number % planes);
     return {&t.sides[t.shape_of_point[number / planes]], &t.sides[t.shape_count + plane]};
   }
-  const ShapePairTable& pair = m.shape_pairs[(number - m.first_pair_id) / kMaxPointsPerPair];
+  const ShapePairTable pair = PairOfKey(m, number);
   return {&t.sides[pair.a], &t.sides[pair.b]};
 }
 

@@ -38,10 +38,10 @@ template <class W, class M>
 void LookAtGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                   double step_s, M near, W margin, SlotFiller<W>* slots,
                   uint32_t* overflow) noexcept {
-  const ShapePairTable& shapes = m.shape_pairs[m.body_pairs[pair].first_pair];
+  const ShapePairTable& shapes = m.shape_pairs[m.world_pairs[pair].first_pair];
   const ShapeTable& shape = m.shapes[shapes.a];
   const bool round = shape.shape_P.kind == ShapeKind::kRound;
-  const int number = m.body_pairs[pair].kept;
+  const int number = m.world_pairs[pair].kept;
   const bool keeps = number >= 0;
   const bool may_be_quiet = keeps && shape.elsewhere[0] && shape.elsewhere[1];
   if (may_be_quiet) {
@@ -77,12 +77,12 @@ template <class W>
 void CollideGround(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int first,
                    int end, double step_s, W since_last, SlotFiller<W>* slots,
                    uint32_t* overflow) noexcept {
-  const int body = m.body_pairs[first].a;
+  const int body = m.world_pairs[first].a;
   const BodyWork<W>&a = work.bodies[body], &b = work.bodies[m.body_count];
   const W margin = Reach(a, b, W::Splat(step_s)), used = Used(a, b, since_last);
   int surface = -1;
   for (int pair = first; pair < end; ++pair) {
-    const int other = m.shape_pairs[m.body_pairs[pair].first_pair].b;
+    const int other = m.shape_pairs[m.world_pairs[pair].first_pair].b;
     if (other != surface) {
       for (int i = m.first_point[body]; i < m.first_point[body + 1]; ++i) work.touched[i] = 0;
       surface = other;

@@ -91,7 +91,7 @@ class NearPairs {
 /// Finds the contacts of a body in a world of few shapes with adjacent boxes.
 template <class W>
 void CollideJoined(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
-                   const BodyPairTable& bodies, W margin, double step_s, SlotFiller<W>* slots,
+                   const WorldPairTable& bodies, W margin, double step_s, SlotFiller<W>* slots,
                    uint32_t* overflow) noexcept {
   for (int lane = 0; lane < W::kLanes; ++lane) {
     NearPairs<W> near(m, s, g, work, margin[lane], step_s, lane, slots, overflow);

@@ -15,7 +15,7 @@ namespace taut::sim {
 /// adjacent.
 template <bool kJoined, class W>
 double CollideNear(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
-                   const BodyPairTable& bodies, double margin, double step_s, int lane,
+                   const WorldPairTable& bodies, double margin, double step_s, int lane,
                    SlotFiller<W>* slots, uint32_t* overflow) noexcept {
   const ShapePose at = LanePose(m, s, work, bodies.a, lane);
   const ShapePose world = LanePose(m, s, work, bodies.b, lane);
@@ -59,12 +59,13 @@ template <class W>
 void CollideManyShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
                        double step_s, W since_last, SlotFiller<W>* slots,
                        uint32_t* overflow) noexcept {
+  const WorldPairTable& bodies = m.world_pairs[pair];
   W margin;
-  const auto near = ClearanceUsedUp(m, s, work, pair, W::Splat(step_s), since_last, margin);
+  const auto near = ClearanceUsedUp(work, bodies.a, bodies.b, s.clearance[pair], W::Splat(step_s),
+                                    since_last, margin);
   if (!Any(near)) return;
   for (int lane = 0; lane < W::kLanes; ++lane) {
     if (!near[lane]) continue;
-    const BodyPairTable& bodies = m.body_pairs[pair];
     const double clearance = bodies.joined ? CollideNear<true>(m, s, g, work, bodies, margin[lane],
                                                                step_s, lane, slots, overflow)
                                            : CollideNear<false>(m, s, g, work, bodies, margin[lane],

@@ -34,11 +34,11 @@ int TouchLane(const View& m, const Rows<W>& s, const Scratch<W>& work, const Sha
                      LanePose(m, s, work, b.body, lane), margin, out);
 }
 
-/// Returns a lower bound of the distance of a pair.
+/// Returns a lower bound of the distance of two shapes.
 template <class W>
-double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work,
-                    const ShapePairTable& pair, int lane, double enough_m = 1e300) noexcept {
-  const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
+double DistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& work, int shape_a,
+                    int shape_b, int lane, double enough_m = 1e300) noexcept {
+  const ShapeTable &a = m.shapes[shape_a], &b = m.shapes[shape_b];
   return DistanceOfShapes(a.shape_P, LanePose(m, s, work, a.body, lane), b.shape_P,
                           LanePose(m, s, work, b.body, lane), enough_m);
 }
@@ -59,7 +59,9 @@ double GroundDistanceLane(const View& m, const Rows<W>& s, const Scratch<W>& wor
                           const ShapePairTable& pair, int lane, double enough_m,
                           NearParts* kept) noexcept {
   const ShapeTable& a = m.shapes[pair.a];
-  if (a.shape_P.kind != ShapeKind::kRound) return DistanceLane(m, s, work, pair, lane, enough_m);
+  if (a.shape_P.kind != ShapeKind::kRound) {
+    return DistanceLane(m, s, work, pair.a, pair.b, lane, enough_m);
+  }
   const RoundShape round = Moved(a.shape_P.round, LanePose(m, s, work, a.body, lane));
   return DistanceToGround(round, m.shapes[pair.b].shape_P.surface, enough_m, kept);
 }

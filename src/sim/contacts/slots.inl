@@ -135,10 +135,9 @@ TAUT_INLINE void PutPoints(const View& m, const Rows<W>& s, const Group& g, Scra
     for (int i = 0; i < count; ++i) {
       if (points[i].feature != feature) continue;
       --left;
-      const bool room =
-          slots != nullptr
-              ? slots->Add(FoundTouch(m, s, work, pair, points[i], body, lane), lane)
-              : work.AddTouch(m, lane, static_cast<int>(&pair - m.shape_pairs), points[i]);
+      const bool room = slots != nullptr
+                            ? slots->Add(FoundTouch(m, s, work, pair, points[i], body, lane), lane)
+                            : work.AddTouch(m, lane, pair, points[i]);
       if (!room) *overflow |= 1u << lane;
     }
   }
@@ -169,20 +168,20 @@ TAUT_INLINE W Used(const BodyWork<W>& a, const BodyWork<W>& b, W since_last) noe
 /// Returns the lanes in which two bodies may touch according to the last distance query. Sets
 /// `margin` to `Reach` of the bodies.
 template <class W>
-MaskOf<W> ClearanceUsedUp(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h,
+MaskOf<W> ClearanceUsedUp(const Scratch<W>& work, int body_a, int body_b, W& clearance, W h,
                           W since_last, W& margin) noexcept {
-  const BodyPairTable& bodies = m.body_pairs[pair];
-  const BodyWork<W>&a = work.bodies[bodies.a], &b = work.bodies[bodies.b];
+  const BodyWork<W>&a = work.bodies[body_a], &b = work.bodies[body_b];
   margin = Reach(a, b, h);
-  s.clearance[pair] -= Used(a, b, since_last);
-  return s.clearance[pair] < margin;
+  clearance -= Used(a, b, since_last);
+  return clearance < margin;
 }
 
 /// Resets the clearances of a lane after its bodies moved other than with their velocities, so that
 /// the next step computes the distances again.
 template <class W>
-void LookAgain(const View& m, const Rows<W>& s, int lane) noexcept {
-  for (int pair = 0; pair < m.body_pair_count; ++pair) s.clearance[pair].Set(lane, 0.0);
+void LookAgain(const View& m, const Rows<W>& s, const Scratch<W>& work, int lane) noexcept {
+  const int pairs = m.world_pair_count + work.moving_count;
+  for (int pair = 0; pair < pairs; ++pair) s.clearance[pair].Set(lane, 0.0);
 }
 
 }  // namespace taut::sim

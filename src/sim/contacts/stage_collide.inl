@@ -1,17 +1,20 @@
 /// Stage: collision detection between bodies and with the world, at the middle of the step
 /// (docs/theory/contact.md, section 7).
 ///
-/// Points on planes are tested in all lanes at once. Other pairs first pass a broad phase. A pair
-/// of bodies is tested only if the motion since the last distance query may have used up its
-/// clearance, a pair of shapes only if their bounding spheres overlap. The narrow phase then runs
-/// in scalar code for each lane (shape_pairs.inl).
+/// Points on planes are tested in all lanes at once. Other pairs first pass a broad phase. In large
+/// models, only near bodies form pairs (near_bodies.inl). A pair of bodies is tested only if the
+/// motion since the last distance query may have used up its clearance, a pair of shapes only if
+/// their bounding spheres overlap. The narrow phase then runs in scalar code for each lane
+/// (shape_pairs.inl).
 #pragma once
 
 #include "sim/bodies/motion.inl"
+#include "sim/contacts/body_distance.inl"
 #include "sim/contacts/ground.inl"
 #include "sim/contacts/joined_boxes.inl"
 #include "sim/contacts/many_shapes.inl"
-#include "sim/contacts/rod_distance.inl"
+#include "sim/contacts/moving_pairs.h"
+#include "sim/contacts/near_bodies.inl"
 #include "sim/contacts/shape_pairs.inl"
 #include "sim/contacts/slots.inl"
 #include "sim/data/rows.h"
@@ -76,35 +79,6 @@ void CollidePlanes(const View& m, const Rows<W>& s, Scratch<W>& work, W h, int b
   }
 }
 
-/// Returns a lower bound of the distance between all shapes of two bodies, in `lanes`.
-template <class W, class M>
-W DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
-                   const BodyPairTable& bodies, M lanes) noexcept {
-  W least = W::Splat(1e300);
-  for (int i = 0; i < bodies.pair_count; ++i) {
-    const ShapePairTable& pair = m.shape_pairs[bodies.first_pair + i];
-    const ShapeTable &a = m.shapes[pair.a], &b = m.shapes[pair.b];
-    if (a.shape_P.kind == ShapeKind::kRound && b.shape_P.kind == ShapeKind::kRound) {
-      const W radii = W::Splat(a.shape_P.round.radius_m + b.shape_P.round.radius_m);
-      const W lines =
-          LineDistance(CenterLineOf(m, s, work, pair.a), CenterLineOf(m, s, work, pair.b));
-      least = Min(lines - radii, least);
-      continue;
-    }
-    const V3<W> d = ShapeCenter(m, s, work, pair.a) - ShapeCenter(m, s, work, pair.b);
-    W bound = Sqrt(Dot(d, d)) - W::Splat(m.shapes[pair.a].bound_m + m.shapes[pair.b].bound_m);
-    const auto closer = lanes & (bound < least);
-    if (!Any(closer)) continue;
-    for (int lane = 0; lane < W::kLanes; ++lane) {
-      if (!closer[lane]) continue;
-      const double exact = DistanceLane(m, s, work, pair, lane);
-      if (exact > bound[lane]) bound.Set(lane, exact);
-    }
-    least = Min(bound, least);
-  }
-  return least;
-}
-
 /// Finds the contacts of a pair in all lanes with overlapping bounding spheres.
 template <class W>
 void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
@@ -120,35 +94,39 @@ void CollideShapes(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   }
 }
 
-/// Returns whether two bodies may touch in some lane, and computes how far they may approach.
-template <class W>
-bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, int pair, W h, W since_last,
-              W& margin) noexcept {
-  const BodyPairTable& bodies = m.body_pairs[pair];
-  auto near = ClearanceUsedUp(m, s, work, pair, h, since_last, margin);
-  if (!Any(near)) return false;
+/// Returns whether two bodies may touch in some lane. `near`: lanes in which their clearance is
+/// used up; `margin`: how far they may approach.
+template <class W, class M, class Pair>
+bool MayTouch(const View& m, const Rows<W>& s, const Scratch<W>& work, const Pair& bodies,
+              W& clearance, M near, W margin) noexcept {
   if (bodies.b < m.body_count) {
     const V3<W> d = s.pos[bodies.a] - s.pos[bodies.b];
     const W reach = W::Splat(m.bound_m[bodies.a] + m.bound_m[bodies.b]);
-    s.clearance[pair] = Max(s.clearance[pair], Sqrt(Dot(d, d)) - reach);
-    near = s.clearance[pair] < margin;
+    clearance = Max(clearance, Sqrt(Dot(d, d)) - reach);
+    near = clearance < margin;
     if (!Any(near)) return false;
   }
-  const W exact = DistanceOfBodies(m, s, work, bodies, near);
-  s.clearance[pair] = Select(near, exact, s.clearance[pair]);
-  return Any(s.clearance[pair] < margin);
+  // A distance that holds in all lanes delays the next query of all of them.
+  const BodyDistance<W> exact = DistanceOfBodies(m, s, work, bodies, near);
+  clearance = exact.everywhere ? exact.least : Select(near, exact.least, clearance);
+  return Any(clearance < margin);
 }
 
+/// Finds the contacts of a body with static geometry.
 template <class W>
-void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
-                   double step_s, W since_last, SlotFiller<W>* slots, uint32_t* overflow) noexcept {
-  const BodyPairTable& bodies = m.body_pairs[pair];
+void CollideWithWorld(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work, int pair,
+                      double step_s, W since_last, SlotFiller<W>* slots,
+                      uint32_t* overflow) noexcept {
+  const WorldPairTable& bodies = m.world_pairs[pair];
   if (bodies.by_tree) {
     CollideManyShapes(m, s, g, work, pair, step_s, since_last, slots, overflow);
     return;
   }
   W margin;
-  if (!MayTouch(m, s, work, pair, W::Splat(step_s), since_last, margin)) return;
+  const auto near = ClearanceUsedUp(work, bodies.a, bodies.b, s.clearance[pair], W::Splat(step_s),
+                                    since_last, margin);
+  if (!Any(near)) return;
+  if (!MayTouch(m, s, work, bodies, s.clearance[pair], near, margin)) return;
   if (bodies.joined) {
     CollideJoined(m, s, g, work, bodies, margin, step_s, slots, overflow);
     return;
@@ -160,13 +138,49 @@ void CollideBodies(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& 
   }
 }
 
+/// Finds the contacts of two moving bodies whose clearance is used up in the lanes `near`.
+template <class W, class M>
+[[gnu::noinline]] void CollideCloseBodies(const View& m, const Rows<W>& s, const Group& g,
+                                          Scratch<W>& work, const MovingPair& bodies, W& clearance,
+                                          M near, W margin, double step_s,
+                                          uint32_t* overflow) noexcept {
+  if (!MayTouch(m, s, work, bodies, clearance, near, margin)) return;
+  uint32_t key = FirstKeyOf(m, bodies);
+  for (int i = m.first_shape[bodies.a]; i < m.first_shape[bodies.a + 1]; ++i) {
+    for (int k = m.first_shape[bodies.b]; k < m.first_shape[bodies.b + 1]; ++k) {
+      const int a = m.body_shapes[i], b = m.body_shapes[k];
+      const V3<W> d = ShapeCenter(m, s, work, a) - ShapeCenter(m, s, work, b);
+      const W reach = W::Splat(m.shapes[a].bound_m + m.shapes[b].bound_m) + margin;
+      if (Any(Dot(d, d) < reach * reach)) {
+        CollideShapes<W>(m, s, g, work, PairOf(m, a, b, key), margin, Dot(d, d), step_s, nullptr,
+                         overflow);
+      }
+      key += kMaxPointsPerPair;
+    }
+  }
+}
+
+/// Finds the contacts of two moving bodies. The test of the clearance is inline, because most pairs
+/// of most steps need no more.
+template <class W>
+TAUT_INLINE void CollideMoving(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
+                               const MovingPair& bodies, W& clearance, double step_s, W since_last,
+                               uint32_t* overflow) noexcept {
+  W margin;
+  const auto near =
+      ClearanceUsedUp(work, bodies.a, bodies.b, clearance, W::Splat(step_s), since_last, margin);
+  if (Any(near)) {
+    CollideCloseBodies(m, s, g, work, bodies, clearance, near, margin, step_s, overflow);
+  }
+}
+
 /// Stage: collide.
 ///   reads   pos, bodies[]     writes  contacts[], touches[] (geometry and materials), clearance
 ///   order   keys rising, in each body's slots and in each lane's list
 /// Returns a bit for each lane with more contacts than room.
 template <class W>
-uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W>& work,
-                      double step_s, W since_last) noexcept {
+uint32_t StageCollide(const View& m, const Rows<W>& s, Group& g, Scratch<W>& work, double step_s,
+                      W since_last) noexcept {
   const W h = W::Splat(step_s);
   BoundTurns(m, work, h, since_last);
   if (m.motion_count > 0) BoundMotions(m, s, work, h, since_last);
@@ -175,9 +189,9 @@ uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W
   for (int body = 0; body < m.body_count; ++body) {
     SlotFiller<W> slots(m, work, body);
     CollidePlanes(m, s, work, h, body, slots);
-    const auto is_mine = [&] { return pair < m.world_pair_count && m.body_pairs[pair].a == body; };
-    for (; is_mine() && !m.body_pairs[pair].on_ground; ++pair) {
-      CollideBodies(m, s, g, work, pair, step_s, since_last, &slots, &overflow);
+    const auto is_mine = [&] { return pair < m.world_pair_count && m.world_pairs[pair].a == body; };
+    for (; is_mine() && !m.world_pairs[pair].on_ground; ++pair) {
+      CollideWithWorld(m, s, g, work, pair, step_s, since_last, &slots, &overflow);
     }
     if (const int first = pair; is_mine()) {  // surfaces are last
       while (is_mine()) ++pair;
@@ -186,8 +200,22 @@ uint32_t StageCollide(const View& m, const Rows<W>& s, const Group& g, Scratch<W
     work.contact_count[body] = slots.count();
   }
   for (int lane = 0; lane < W::kLanes; ++lane) work.touch_count[lane] = 0;
-  for (; pair < m.body_pair_count; ++pair) {
-    CollideBodies<W>(m, s, g, work, pair, step_s, since_last, nullptr, &overflow);
+  if (m.near_capacity == 0) {
+    work.moving_pairs = m.moving_pairs, work.moving_count = m.moving_pair_count;
+  } else {
+    FindNear(m, s, g, work, h);
+    work.moving_pairs = g.near, work.moving_count = g.near_count > 0 ? g.near_count : 0;
+  }
+  for (int i = 0; i < work.moving_count; ++i) {
+    CollideMoving(m, s, g, work, work.moving_pairs[i], s.clearance[m.world_pair_count + i], step_s,
+                  since_last, &overflow);
+  }
+  if (g.near_count < 0) {
+    EachNearPair(m, s, work, s.near_m[0], [&](const MovingPair& bodies) {
+      W unknown = W::Splat(0.0);
+      CollideMoving(m, s, g, work, bodies, unknown, step_s, since_last, &overflow);
+      return true;
+    });
   }
   return overflow;
 }

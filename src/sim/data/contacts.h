@@ -42,7 +42,8 @@ struct ContactMemory {
 
 /// Contact of two moving shapes in one lane.
 struct TouchingPair {
-  int pair;  ///< Index in View::shape_pairs.
+  int a, b;           ///< Shapes.
+  std::uint32_t key;  ///< Of the first possible contact of the two.
   TouchPoint point;
 };
 

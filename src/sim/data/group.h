@@ -33,8 +33,10 @@ struct Group {
   int* forced_nodes = nullptr;  ///< Nodes that ever had an external force, ascending.
   int forced_count = 0;
   NearParts* kept =
-      /// Cache of near parts for pair `BodyPairTable::kept` in lane j: [kept * lanes + j].
+      /// Cache of near parts for pair `WorldPairTable::kept` in lane j: [kept * lanes + j].
       nullptr;
+  MovingPair* near = nullptr;    ///< Bodies near each other in some lane, ascending.
+  int near_count = 0;            ///< Their number; -1: more than View::near_capacity.
   bool sensed = false;           ///< The kSensed rows are up to date. Shared by const readers.
   LaneStatus* status = nullptr;  ///< Per lane.
 };

@@ -178,13 +178,17 @@ struct Scratch {
   JointMemory<W> joint_memory;
   MotionWork<W>* motions;
   MotorWork<W>* motors;
-  W* supplies;        ///< Loaded voltage per supply [V].
-  uint64_t* near;     ///< One bit per static shape, if they are in a BVH.
+  W* supplies;                        ///< Loaded voltage per supply [V].
+  uint64_t* near;                     ///< One bit per static shape, if they are in a BVH.
+  TreeNode *near_leaves, *near_tree;  ///< BVH of the bodies in each lane (near_bodies.inl).
+  uint64_t* near_marks;               ///< One bit per body.
   uint32_t* touched;  ///< Per point: bit mask of lanes where its shape is near a surface.
   W* unsolved;        ///< Per body: 1 in lanes that the lane-by-lane solver must solve.
   LaneMemory<simd::Lane<W>> lane;
   DualMemory<W> dual;
   ImplicitMemory<W> implicit;
+  const MovingPair* moving_pairs = nullptr;  ///< Pairs with a clearance, in its order.
+  int moving_count = 0;
   int stiff_count = 0, link_count = 0;
   bool start_known = false;
 
@@ -228,16 +232,21 @@ struct Scratch {
     touched = room_.Take<uint32_t>(m.has_ground ? m.first_point[m.body_count] : 0);
     unsolved = room_.Take<W>(bodies_count);
     near = room_.Take<uint64_t>((m.tree_shapes + 63) / 64);
+    const int bodies_near = m.near_capacity > 0 ? m.collider_count : 0;
+    near_leaves = room_.Take<TreeNode>(bodies_near);
+    near_tree = room_.Take<TreeNode>(2 * W::kLanes * bodies_near);
+    near_marks = room_.Take<uint64_t>((bodies_near + 63) / 64);
     lane.Take(m, room_);
     dual.Take(m, room_);
     implicit.Take(m, room_);
   }
 
   /// Returns false if the list of the lane is full.
-  bool AddTouch(const View& m, int lane_number, int pair, const TouchPoint& point) noexcept {
+  bool AddTouch(const View& m, int lane_number, const ShapePairTable& pair,
+                const TouchPoint& point) noexcept {
     int& count = touch_count[lane_number];
     if (count == m.pair_capacity) return false;
-    touches[lane_number * m.pair_capacity + count++] = {pair, point};
+    touches[lane_number * m.pair_capacity + count++] = {pair.a, pair.b, pair.id, point};
     return true;
   }
 

@@ -21,8 +21,9 @@ enum class Per {
   kJoint,
   kJointRow,
   kMotion,
-  kBodyPair,
-  kKept,  ///< Pairs of shapes with a cache of near parts (contact_cache.h).
+  kBodyPair,  ///< Pairs with static bodies, then pairs of moving bodies or near bodies.
+  kNear,      ///< Bodies, in models with lists of near bodies.
+  kKept,      ///< Pairs of shapes with a cache of near parts (contact_cache.h).
   kContact
 };
 
@@ -136,6 +137,9 @@ inline constexpr int kWidthOrders = sizeof(MotorOrders<double>) / sizeof(double)
   ROW(motion_force,   V3,     kMotion,   kDerived,   kZero,     Zero)             /* on its body, in W [N] */ \
   ROW(motion_torque,  V3,     kMotion,   kDerived,   kZero,     Zero)             /* on its body, about its origin [N m] */ \
   ROW(clearance,      Number, kBodyPair, kDerived,   kStays,    Zero)             /* lower bound of the distance [m] */ \
+  ROW(near_m,         Number, kWorld,    kDerived,   kStays,    Zero)             /* distance within which the list of near bodies was complete [m]; 0: unknown */ \
+  ROW(near_pos,       V3,     kNear,     kDerived,   kStays,    Zero)             /* pos when that list was made [m] */ \
+  ROW(near_quat,      Q4,     kNear,     kDerived,   kStays,    PrincipalFrame)           /* quat, likewise */ \
   ROW(cache_from,     V3,     kKept,     kDerived,   kStays,    Zero)             /* end of a rod at its last query [m] */ \
   ROW(quiet_to,       V3,     kKept,     kDerived,   kStays,    Zero)             /* other end [m] */ \
   ROW(quiet_limit,    Number, kKept,     kDerived,   kStays,    Zero)             /* distance from its axis without contacts at that query [m]; 0: unknown */ \

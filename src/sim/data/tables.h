@@ -54,12 +54,18 @@ class Tables final : public Model {
   std::vector<Hull> hulls;
   std::vector<Surface> surfaces;
   std::vector<ShapePairTable> shape_pairs;
-  std::vector<BodyPairTable> body_pairs;
-  int world_pair_count = 0;  ///< Number of pairs with a static `b`; they are first, sorted by `a`.
+  std::vector<WorldPairTable> world_pairs;               ///< Sorted by `a`.
+  std::vector<int> colliders, first_shape, body_shapes;  ///< See View.
+  std::vector<std::uint32_t> shape_pairs_before;         ///< Likewise.
+  std::vector<ApartTable> apart;
+  std::vector<int> first_apart;
+  std::vector<MovingPair> moving_pairs;
+  int near_capacity = 0;
+  double near_m = 0;
   /// Per body: first slot for contacts with static geometry; one more entry for the end.
   std::vector<int> first_slot;
   int slot_count = 0;
-  int kept_count = 0;  ///< Number of pairs with a cache of near parts (BodyPairTable::kept).
+  int kept_count = 0;  ///< Number of pairs with a cache of near parts (WorldPairTable::kept).
   std::uint32_t first_pair_id = 0;  ///< Smaller keys are point * planes + plane.
   /// Maximum number of simultaneous contacts between moving bodies in a world.
   int pair_capacity = 0;

@@ -62,7 +62,8 @@ struct ShapeTable {
   bool elsewhere[2] = {};       ///< Whether another shape of the body has the same end.
   const int* beside = nullptr;  ///< For terrain boxes: other terrain boxes that touch this one.
   int beside_count = 0;
-  SeamList seams;  ///< For terrain boxes: adjacent pieces.
+  SeamList seams;    ///< For terrain boxes: adjacent pieces.
+  bool led = false;  ///< Its body is kinematic or has a joint.
 
   /// Returns whether adjacent pieces must be checked. Always inline: see View.
   [[gnu::always_inline]] bool IsJoined() const noexcept {
@@ -115,13 +116,11 @@ struct ShapePairTable {
   std::uint32_t id = 0;  ///< Key of its first possible contact point.
   double static_friction = 0, kinetic_friction = 0, restitution = 0;
   std::uint32_t elsewhere = 0;  ///< One bit per feature that another pair also has.
-  /// One shape is round, so the contact point is fixed to neither body, and one body is kinematic
-  /// or has a joint (solve/rolling.inl).
-  bool rolls = false;
 };
 
-/// Two bodies that may touch, with all pairs of their shapes; or a shape of a body and a surface.
-struct BodyPairTable {
+/// Body and static body or world that may touch, with all pairs of their shapes; or a shape of a
+/// body and a surface.
+struct WorldPairTable {
   int a = 0, b = 0;  ///< b may be the world.
   int first_pair = 0, pair_count = 0;
   bool by_tree = false;    ///< `b` is the world; the BVH finds its shapes.
@@ -129,6 +128,25 @@ struct BodyPairTable {
   int kept = -1;           ///< Index of its cache of near parts (contact_cache.h); -1: none.
   bool joined = false;     ///< `b` is the world, and some of its boxes touch each other.
 };
+
+/// Two bodies that may touch: impulses move `a`; they move `b`, too, or it is kinematic. The pairs
+/// of their shapes are not stored, because their number grows with the square of the model
+/// (contacts/moving_pairs.h).
+struct MovingPair {
+  int a = 0, b = 0;
+};
+
+/// Body that is kept apart from the body whose list contains it, and has a larger number.
+struct ApartTable {
+  int body = 0;
+  int shapes_before = 0;  ///< Shapes of all previous bodies of the list.
+};
+
+/// Largest number of pairs of moving bodies that are tested one by one. In larger models, lists of
+/// near bodies replace the list of all pairs (near_bodies.inl).
+inline constexpr int kFewMovingPairs = 1024;
+/// Capacity of a list of near bodies, per body that may touch others.
+inline constexpr int kNearPerBody = 8;
 
 /// Largest number of static shapes that are tested one by one; more are in a BVH.
 inline constexpr int kFewShapes = 8;
@@ -176,7 +194,7 @@ static_assert(RolesRise());
 
 /// Pointers to the data of `Tables`, without the standard library.
 struct View {
-  int body_count, cable_count, node_count, plane_count, body_pair_count;
+  int body_count, cable_count, node_count, plane_count;
   const double* bound_m;
   const CableTable* cables;
   const AttachmentTable* attachments;
@@ -186,9 +204,25 @@ struct View {
   const int* first_point;
   const PointTable* points;
   const ShapeTable* shapes;
-  const ShapePairTable* shape_pairs;
-  const BodyPairTable* body_pairs;
+  int shape_count;
+  const ShapePairTable* shape_pairs;  ///< With static shapes.
+  int shape_pair_count;
+  const WorldPairTable* world_pairs;
   int world_pair_count;
+  /// Bodies with shapes that move or are kinematic; shapes of each, by number of the body. A row of
+  /// a body are its pairs with later bodies: number of shape pairs before it, bodies kept apart.
+  const int* colliders;
+  int collider_count;
+  const int *first_shape, *body_shapes;
+  const std::uint32_t* shape_pairs_before;
+  const ApartTable* apart;
+  const int* first_apart;
+  /// All pairs of moving bodies; none if they are many. Then `near_capacity` is the capacity of a
+  /// list of near bodies, otherwise 0.
+  const MovingPair* moving_pairs;
+  int moving_pair_count, near_capacity;
+  double near_m;  ///< Motion per body after which that list is made again [m].
+  CombineRule friction_combine, restitution_combine;
   const int* first_slot;
   int slot_count;
   std::uint32_t first_pair_id;
@@ -199,7 +233,7 @@ struct View {
   const SlipTable* slips;
   bool along_slip;
   bool has_ground;  ///< Height fields or meshes.
-  int kept_count;   ///< Number of caches of near parts (BodyPairTable::kept).
+  int kept_count;   ///< Number of caches of near parts (WorldPairTable::kept).
   int motor_count, supply_count;
   const MotorTable* motors;
   const SupplyTable* supplies;
@@ -228,6 +262,17 @@ struct View {
   const int* motion_of_body;  ///< Per body: index of its motion, or -1; null without motions.
 
   // Always inline: if several instruction sets emit a function, the linker keeps any one of them.
+  /// Returns the number of clearances of moving bodies.
+  [[gnu::always_inline]] int MovingClearances() const noexcept {
+    return near_capacity > 0 ? near_capacity : moving_pair_count;
+  }
+  /// Returns whether one shape of a pair is round, so that the contact point is fixed to neither
+  /// body, and one body is kinematic or has a joint (solve/rolling.inl).
+  [[gnu::always_inline]] bool Rolls(int shape_a, int shape_b) const noexcept {
+    const ShapeTable &a = shapes[shape_a], &b = shapes[shape_b];
+    const bool round = a.shape_P.kind == ShapeKind::kRound || b.shape_P.kind == ShapeKind::kRound;
+    return round && (a.led || b.led);
+  }
   /// Returns the maximum number of simultaneous contacts in one world.
   [[gnu::always_inline]] int ContactCapacity() const noexcept { return slot_count + pair_capacity; }
   /// Returns the capacity for links of all cables to bodies in `lanes` lanes: one per attachment,
@@ -283,7 +328,9 @@ struct View {
       case Per::kMotion:
         return motion_count;
       case Per::kBodyPair:
-        return body_pair_count;
+        return world_pair_count + MovingClearances();
+      case Per::kNear:
+        return near_capacity > 0 ? body_count : 0;
       case Per::kKept:
         return kept_count;
       case Per::kContact:

@@ -1,5 +1,7 @@
-// Bounds for the bounding volume hierarchy (BVH) of the broad phase.
+// Bounds and construction of the bounding volume hierarchy (BVH) of the broad phase.
 #include "sim/geometry/bvh.h"
+
+#include <algorithm>
 
 #include "sim/geometry/convex.h"
 
@@ -7,6 +9,34 @@ namespace taut::sim {
 namespace {
 
 double Magnitude(double x) noexcept { return x < 0 ? -x : x; }
+
+Bounds Around(const Bounds& a, const Bounds& b) noexcept {
+  Bounds both;
+  for (int i = 0; i < 3; ++i) {
+    both.low[i] = std::min(a.low[i], b.low[i]);
+    both.high[i] = std::max(a.high[i], b.high[i]);
+  }
+  return both;
+}
+
+double TwiceCenter(const TreeNode& node, int axis) noexcept {
+  return node.bounds.low[axis] + node.bounds.high[axis];
+}
+
+/// Returns the axis along which the centers of the leaves are spread most.
+int WidestAxis(const TreeNode* leaves, int count) noexcept {
+  int widest = 0;
+  double width = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    double least = TwiceCenter(leaves[0], axis), most = least;
+    for (int i = 1; i < count; ++i) {
+      least = std::min(least, TwiceCenter(leaves[i], axis));
+      most = std::max(most, TwiceCenter(leaves[i], axis));
+    }
+    if (most - least > width) widest = axis, width = most - least;
+  }
+  return widest;
+}
 
 Bounds BoundsOf(const RoundShape& shape) noexcept {
   Bounds bounds;
@@ -113,6 +143,29 @@ bool MayReach(const Shape& shape, const double* center, double radius_m, double 
   const double distance2 =
       WithShape(shape, [&](const auto& kind) noexcept { return SkeletonDistance2(kind, center); });
   return distance2 <= far_m * far_m;
+}
+
+void BuildTree(TreeNode* leaves, int count, TreeNode* tree) noexcept {
+  // Nodes refer to each other by number; a subtree of n leaves has 2 n - 1 nodes.
+  struct Builder {
+    TreeNode* const first;
+    void Build(TreeNode* leaves, int count, TreeNode* node) const noexcept {
+      *node = *leaves;
+      node->next = static_cast<int>(node - first) + 2 * count - 1;
+      if (count == 1) return;
+      node->shape = -1;
+      const int axis = WidestAxis(leaves, count);
+      for (int i = 1; i < count; ++i) node->bounds = Around(node->bounds, leaves[i].bounds);
+      const int half = count / 2;
+      std::nth_element(leaves, leaves + half, leaves + count,
+                       [axis](const TreeNode& a, const TreeNode& b) {
+                         return TwiceCenter(a, axis) < TwiceCenter(b, axis);
+                       });
+      Build(leaves, half, node + 1);
+      Build(leaves + half, count - half, node + 2 * half);
+    }
+  };
+  Builder{tree}.Build(leaves, count, tree);
 }
 
 void MarkNear(const TreeNode* tree, int count, const Bounds& bounds, double reach_m,

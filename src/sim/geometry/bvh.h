@@ -1,4 +1,4 @@
-/// Bounding volume hierarchy (BVH) of the static shapes, for the broad phase.
+/// Bounding volume hierarchy (BVH) of static shapes or of moving bodies, for the broad phase.
 ///
 /// A tree instead of a uniform grid, because no cell size suits terrain with stones next to walls
 /// of many meters.
@@ -19,8 +19,12 @@ struct Bounds {
 struct TreeNode {
   Bounds bounds;
   int next = 0;    ///< First node after the subtree.
-  int shape = -1;  ///< Leaf: index of a static shape; otherwise -1.
+  int shape = -1;  ///< Leaf: index of the shape or body; otherwise -1.
 };
+
+/// Builds the tree of `count` leaves, at least one, in 2 * count - 1 nodes. Reorders the leaves.
+/// Their bounds must be finite.
+void BuildTree(TreeNode* leaves, int count, TreeNode* tree) noexcept;
 
 Shape MovedShape(const Shape& shape, const ShapePose& pose) noexcept;
 Bounds BoundsOf(const Shape& shape) noexcept;

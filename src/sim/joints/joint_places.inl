@@ -169,8 +169,12 @@ void CloseGaps(const View& m, const Rows<W>& s, Scratch<W>& work, JointSystem<W>
     const int k = m.joint_number[b];
     return k < 0 || k >= m.joint_body_count ? zero : work.joint_memory.moved[k];
   };
-  for (int pair = 0; pair < m.body_pair_count; ++pair) {
-    s.clearance[pair] -= moved(m.body_pairs[pair].a) + moved(m.body_pairs[pair].b);
+  for (int pair = 0; pair < m.world_pair_count; ++pair) {
+    s.clearance[pair] -= moved(m.world_pairs[pair].a) + moved(m.world_pairs[pair].b);
+  }
+  for (int pair = 0; pair < work.moving_count; ++pair) {
+    const MovingPair& bodies = work.moving_pairs[pair];
+    s.clearance[m.world_pair_count + pair] -= moved(bodies.a) + moved(bodies.b);
   }
 }
 

@@ -40,9 +40,8 @@ void LaneSolve<W>::EachRolling(const F& f) noexcept {
   for (int i = 0; i < pool.count; ++i) {
     const int touch = mem_.source[i] - m_.slot_count;
     if (touch < 0) continue;
-    const ShapePairTable& pair =
-        m_.shape_pairs[work_.touches[lane_ * m_.pair_capacity + touch].pair];
-    if (pair.rolls) f(pool.items[i], mem_.pairs[touch], pair);
+    const TouchingPair& pair = work_.touches[lane_ * m_.pair_capacity + touch];
+    if (m_.Rolls(pair.a, pair.b)) f(pool.items[i], mem_.pairs[touch], pair);
   }
 }
 
@@ -70,7 +69,7 @@ template <class W>
 double LaneSolve<W>::FollowRolling() noexcept {
   const L half_h = L::Splat(0.5) * h_;
   double change = 0;
-  EachRolling([&](ContactPoint<L, 2>& point, const Contact<L, 2>& c, const ShapePairTable& pair) {
+  EachRolling([&](ContactPoint<L, 2>& point, const Contact<L, 2>& c, const TouchingPair& pair) {
     const RollingSide<L> a = SideOf(c, 0, m_.shapes[pair.a].shape_P);
     const RollingSide<L> b = SideOf(c, 1, m_.shapes[pair.b].shape_P);
     // Both points are relative to a's origin at the middle of the step. The arms differ by the
@@ -93,7 +92,7 @@ double LaneSolve<W>::FollowRolling() noexcept {
 /// Stores the biases for the residual of the contacts.
 template <class W>
 void LaneSolve<W>::KeepRolling() noexcept {
-  EachRolling([&](const ContactPoint<L, 2>& point, Contact<L, 2>& c, const ShapePairTable&) {
+  EachRolling([&](const ContactPoint<L, 2>& point, Contact<L, 2>& c, const TouchingPair&) {
     for (int r = 1; r < 3; ++r) c.bias[r] = point.bias[r];
   });
 }

@@ -30,7 +30,7 @@ int LaneSolve<W>::PushOut() noexcept {
     for (int b = 0; b < count_; ++b) gained += Displace(b);
     if (IsAlone()) KeepMomentum(gained);
   }
-  LookAgain(m_, s_, lane_);
+  LookAgain(m_, s_, work_, lane_);
   return linear_solves;
 }
 

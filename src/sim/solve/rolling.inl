@@ -1,4 +1,4 @@
-/// Rolling on a kinematic body or a body with joints (ShapePairTable::rolls; docs/theory/motion.md,
+/// Rolling on a kinematic body or a body with joints (View::Rolls; docs/theory/motion.md,
 /// eq. 4a): the tangential velocity is zero at the contact point at the end of the step.
 ///
 /// This contact point depends on the unknown velocities. Therefore fixed-point rounds solve the

@@ -111,7 +111,7 @@ void MarkUnsolved(const View& m, Scratch<W>& work, M alone) noexcept {
   for (int k = 0; k < m.joint_body_count; ++k) work.unsolved[m.joint_bodies[k]] = W::Splat(1.0);
   for (int lane = 0; lane < W::kLanes; ++lane) {
     for (int i = 0; i < work.touch_count[lane]; ++i) {
-      const ShapePairTable& pair = m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair];
+      const TouchingPair& pair = work.touches[lane * m.pair_capacity + i];
       work.unsolved[m.shapes[pair.a].body].Set(lane, 1.0);
       const int b = m.shapes[pair.b].body;
       if (!m.HasMotion(b)) work.unsolved[b].Set(lane, 1.0);

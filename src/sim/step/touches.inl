@@ -50,7 +50,7 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
   const int memory_end = m.slot_count + g.touches_used;
   for (int i = 0; i < work.touch_count[lane]; ++i) {
     const TouchingPair& touch = work.touches[lane * m.pair_capacity + i];
-    const ShapePairTable& pair = m.shape_pairs[touch.pair];
+    const ShapePairTable pair = PairOf(m, touch.a, touch.b, touch.key);
     const TouchPoint& point = touch.point;
     const int bodies[2] = {m.shapes[pair.a].body, m.shapes[pair.b].body};
     Contact<L, 2>& c = work.lane.pairs[i];
@@ -101,7 +101,8 @@ void PrepareTouches(const View& m, const Rows<W>& s, const Group& g, Scratch<W>&
     }
     if (next - first > 1) FitBiases(work.lane.pairs + first, next - first, MaskOf<L>::Splat(true));
     for (int i = first; m.HasMotion(c[first].links[1].body) && i < next; ++i) {
-      if (m.shape_pairs[work.touches[lane * m.pair_capacity + i].pair].rolls) continue;
+      const TouchingPair& pair = work.touches[lane * m.pair_capacity + i];
+      if (m.Rolls(pair.a, pair.b)) continue;
       FollowMotion(work, lane, work.lane.pairs[i], L::Splat(step_s));
     }
   }
