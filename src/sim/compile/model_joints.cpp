@@ -193,7 +193,7 @@ class JointCompiler {
       graph.Join(local[static_cast<std::size_t>(j.a)], local[static_cast<std::size_t>(j.b)]);
     }
     std::vector<int> order(count), place(count);
-    t_.joint_slot.resize(count * count);
+    if (n <= BlockPattern::kMostInTable) t_.joint_slot.resize(count * count);
     t_.joint_below.resize(count * count);
     t_.joint_first_below.resize(count + 1);
     t_.joint_pattern = {

@@ -64,23 +64,42 @@ bool Eliminate(BodyGraph& graph, int block_capacity, int* order, int* place,
   pattern.lower_count = lower;
   pattern.block_count = 2 * lower - n;
   if (pattern.block_count > block_capacity) return false;
-  for (int64_t i = 0; i < static_cast<int64_t>(n) * n; ++i) pattern.slot[i] = -1;
-  int used = 0, low = 0, high = lower;
+  // Blocks of the lower triangle are numbered column by column, then those of the upper triangle
+  // row by row.
+  int used = 0;
   for (int k = 0; k < n; ++k) {
-    const int64_t row = static_cast<int64_t>(k) * n;
     pattern.first_below[k] = used;
-    pattern.slot[row + k] = low++;
     const uint64_t* const bits = graph.Row(order[k]);
     for (int i = k + 1; i < n; ++i) {
-      if (!Has(bits, order[i])) continue;
-      pattern.below[used++] = i;
-      pattern.slot[static_cast<int64_t>(i) * n + k] = low++;
-      pattern.slot[row + i] = high++;
+      if (Has(bits, order[i])) pattern.below[used++] = i;
     }
   }
   pattern.first_below[n] = used;
-  TAUT_ASSERT(low == lower && high == pattern.block_count && used == lower - n);
+  TAUT_ASSERT(used == lower - n);
+  if (n > BlockPattern::kMostInTable) return true;
+  for (int i = 0; i < n * n; ++i) pattern.slot[i] = -1;
+  for (int k = 0; k < n; ++k) {
+    const int first = pattern.first_below[k];
+    pattern.slot[k * n + k] = k + first;
+    for (int q = first; q < pattern.first_below[k + 1]; ++q) {
+      const int i = pattern.below[q];
+      pattern.slot[i * n + k] = k + q + 1;
+      pattern.slot[k * n + i] = lower + q;
+    }
+  }
   return true;
+}
+
+int BlockPattern::Find(int i, int j) const noexcept {
+  const int column = i < j ? i : j, row = i < j ? j : i;
+  int first = first_below[column], end = first_below[column + 1];
+  if (i == j) return column + first;
+  while (end - first > 1) {
+    const int middle = first + (end - first) / 2;
+    (below[middle] <= row ? first : end) = middle;
+  }
+  TAUT_ASSERT(first < end && below[first] == row);
+  return i < j ? lower_count + first : column + first + 1;
 }
 
 }  // namespace taut::sim

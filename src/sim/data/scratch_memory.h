@@ -17,6 +17,12 @@ template <class Num>
 using StepPools =
     Pools<ContactPoint<Num, 2>, CableRow<Num>, JointRow<Num>, TurnFriction<Num>, CableChain<Num>>;
 
+/// Numbers of a pattern that is used again if the next island has the same graph.
+struct KeptPattern {
+  int count;  ///< Bodies; 0: none is kept.
+  int lower_count, block_count;
+};
+
 /// Memory to solve the islands of one lane. Systems with too many blocks (over 128 bodies that all
 /// interact) are left to Gauss-Seidel sweeps.
 template <class Num>
@@ -29,6 +35,8 @@ struct LaneMemory {
   Row<int> order, place;  ///< Elimination order and its inverse.
   Row<int> source;        ///< Per constraint of an island: its index in the lane.
   BodyGraph graph;
+  Row<uint64_t> kept_bits;  ///< Graph of the last island, whose order and pattern are still there.
+  Row<KeptPattern> kept;
   int block_capacity;
   Island<Num, StepPools<Num>> island;
   Row<Link<Num, 1>> links;
@@ -48,11 +56,15 @@ struct LaneMemory {
     for (Row<int>* list : per_body) *list = room.Take<int>(n + 1);
     source = room.Take<int>(contacts + single + m.chain_count);
     graph.bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
+    kept_bits = room.Take<uint64_t>(n * BodyGraph::WordsFor(m.body_count));
+    kept = room.Take<KeptPattern>(1);
     links = room.Take<Link<Num, 1>>(m.CableLinkCapacity(1));
     chain_links = room.Take<RowLink<Num>>(m.chain_link_count);
     spans = room.Take<ChainSpan<Num>>(m.span_count);
     island.bodies = room.Take<Unknown<Num>>(n);
-    island.pattern.slot = room.Take<int>(n * n);
+    constexpr int64_t kMostInTable = BlockPattern::kMostInTable;
+    const int64_t in_table = n < kMostInTable ? n : kMostInTable;
+    island.pattern.slot = room.Take<int>(in_table * in_table);
     island.pattern.below = room.Take<int>(blocks);
     island.pattern.first_below = room.Take<int>(n + 1);
     Pool<ContactPoint<Num, 2>>& points = island.pools;

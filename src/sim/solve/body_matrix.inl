@@ -166,7 +166,8 @@ class BodyMatrix {
 
   Num* At(int i, int j) const noexcept {
     TAUT_ASSERT(0 <= i && i < p_.count && 0 <= j && j < p_.count);
-    const int slot = p_.slot[static_cast<int64_t>(i) * p_.count + j];
+    const int slot =
+        p_.count <= BlockPattern::kMostInTable ? p_.slot[i * p_.count + j] : p_.Find(i, j);
     TAUT_ASSERT(0 <= slot && slot < (symmetric_ ? p_.lower_count : p_.block_count));
     return a_ + kBlock * slot;
   }

@@ -215,8 +215,28 @@ class LaneSolve {
       if (!j.a_moves || !j.b_moves || mem_.root[j.a] != island_root_) continue;
       graph.Join(mem_.local[j.a], mem_.local[j.b]);
     }
-    mem_.island.has_matrix =
+    if (IsKept(graph)) return;
+    const bool fits =
         Eliminate(graph, mem_.block_capacity, mem_.order, mem_.place, mem_.island.pattern);
+    mem_.island.has_matrix = fits;
+    const BlockPattern& pattern = mem_.island.pattern;
+    mem_.kept[0] = {fits ? count_ : 0, pattern.lower_count, pattern.block_count};
+  }
+  /// Returns whether the memory still contains the order and pattern of this graph; otherwise keeps
+  /// a copy of the graph. The order depends on the graph only, so the bits are the same.
+  bool IsKept(const BodyGraph& graph) noexcept {
+    const KeptPattern& kept = mem_.kept[0];
+    bool same = kept.count == count_;
+    for (int64_t i = 0; i < static_cast<int64_t>(graph.count) * graph.words; ++i) {
+      same = same && mem_.kept_bits[i] == graph.bits[i];
+      mem_.kept_bits[i] = graph.bits[i];
+    }
+    if (!same) return false;
+    mem_.island.pattern.count = count_;
+    mem_.island.pattern.lower_count = kept.lower_count;
+    mem_.island.pattern.block_count = kept.block_count;
+    mem_.island.has_matrix = true;
+    return true;
   }
   int Number(int body) const noexcept { return mem_.place[mem_.local[body]]; }
 
