@@ -14,7 +14,8 @@ namespace {
 
 class CableCompiler {
  public:
-  CableCompiler(Tables& t, const std::vector<Frame>& frames) : t_(t), frames_(frames) {}
+  CableCompiler(Tables& t, const std::vector<Frame>& frames)
+      : t_(t), frames_(frames), spots_of_(frames.size()) {}
 
   void Run() {
     for (const CableDef& c : t_.def().cables) {
@@ -59,12 +60,13 @@ class CableCompiler {
 
   /// Returns the number of the point of a body that all attachments at this place share.
   int Spot(const AttachmentTable& a) {
-    for (std::size_t i = 0; i < t_.spots.size(); ++i) {
-      const AttachmentTable& spot = t_.spots[i];
-      if (spot.body == a.body && std::equal(a.p_P, a.p_P + 3, spot.p_P)) return static_cast<int>(i);
+    std::vector<int>& here = spots_of_[static_cast<std::size_t>(a.body)];
+    for (const int i : here) {
+      if (std::equal(a.p_P, a.p_P + 3, t_.spots[static_cast<std::size_t>(i)].p_P)) return i;
     }
+    here.push_back(static_cast<int>(t_.spots.size()));
     t_.spots.push_back(a);
-    return static_cast<int>(t_.spots.size()) - 1;
+    return here.back();
   }
 
   /// Adds the wheel of attachment `i`, which already exists, and its second path point.
@@ -153,6 +155,7 @@ class CableCompiler {
 
   Tables& t_;
   const std::vector<Frame>& frames_;
+  std::vector<std::vector<int>> spots_of_;  ///< Per body and for the world.
 };
 
 }  // namespace
