@@ -13,8 +13,8 @@
 namespace taut::description {
 
 inline constexpr std::size_t kMaxFileBytes = 10'000'000;
-inline constexpr std::size_t kMaxYamlNodes = 200'000;  ///< An alias counts as many nodes as its
-                                                       ///< target.
+inline constexpr std::size_t kMaxYamlNodes = 1'000'000;  ///< An alias counts as many nodes as its
+                                                         ///< target.
 inline constexpr int kMaxYamlDepth = 64;
 
 struct Value;

@@ -12,6 +12,7 @@
 #include "math/vec.h"
 #include "taut/spec.h"
 #include "taut/statics.h"
+#include "taut/world_batch.h"
 
 namespace taut {
 namespace {
@@ -50,6 +51,39 @@ double WorstLoad(const ModelDef& def) {
     worst = std::max({worst, Size(load.cable_force_n), Size(load.cable_torque_n_m)});
   }
   return worst;
+}
+
+TEST(Models, OfTenThousandRodsAreReadAndCompiled) {
+  // A field of upright rods, each tied to two neighbors at both ends, in a file of 2 MB.
+  constexpr int kRods = 10'000, kSide = 100;
+  std::string text = "taut: 1\nkind: model\nname: field\nnodes:\n";
+  std::string pairs, cables;
+  for (int i = 0; i < kRods; ++i) {
+    const std::string number = std::to_string(i);
+    const std::string at = std::to_string(i % kSide) + ", " + std::to_string(i / kSide) + ", ";
+    text += "  a" + number + ": [" + at + "0.1]\n  b" + number + ": [" + at + "0.6]\n";
+    pairs +=
+        "  - {name: r" + number + ", nodes: [a" + number + ", b" + number + "], tags: [rod]}\n";
+    for (const int k : {i + 1, i + kSide}) {
+      if (k >= kRods || (k == i + 1 && k % kSide == 0)) continue;
+      for (const std::string end : {"a", "b"}) {
+        cables += (cables.empty() ? "[" : ", [") + end;
+        cables += number + ", " + end + std::to_string(k) + "]";
+      }
+    }
+  }
+  text += "pairs:\n" + pairs + "  - {tags: [cable], each: [" + cables + "]}\n" +
+          "builders:\n  - match: rod\n    rod: {radius_m: 0.01, density_kg_per_m3: 700}\n"
+          "  - match: cable\n    cable: {stiffness_n_per_m: 1000, prestress_n: 10}\n";
+  const std::string path = testing::TempDir() + "field_of_rods.yaml";
+  std::ofstream(path) << text;
+  Diagnostics out;
+  const auto robot = LoadRobot(path, {}, out);
+  std::filesystem::remove(path);
+  ASSERT_TRUE(robot) << out.Format();
+  EXPECT_EQ(robot->def.bodies.size(), 10'000u);
+  EXPECT_EQ(robot->def.cables.size(), 4u * kSide * (kSide - 1));
+  EXPECT_NE(Model::Compile(robot->def, out), nullptr) << out.Format();
 }
 
 TEST(Models, AreAllGood) {
