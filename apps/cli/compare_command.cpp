@@ -17,11 +17,12 @@ namespace taut::cli {
 namespace {
 
 struct CompareArguments {
-  std::string path_a, path_b, map_a, map_b;
+  std::string path_a, path_b, map_a, map_b, page;
   std::vector<std::string> phases;
   CompareOptions options;
   CompareLimits limits;
   bool json = false, tables = false;
+  bool measured = false;  ///< B is the log of a measurement.
 };
 
 /// Parses "before=25:30"; nothing if the text has another form.
@@ -38,26 +39,47 @@ std::optional<TimeWindow> ParsePhase(const std::string& text) {
   return phase;
 }
 
-std::optional<Trace> Load(const std::string& path, const std::string& map, Diagnostics& out) {
+/// Reads a trace. `log`: set to true for a log that is not a trace of a simulator.
+std::optional<Trace> Load(const std::string& path, const std::string& map, bool& log,
+                          Diagnostics& out) {
   if (map.empty()) return ReadTraceOfRun(path, out);
   const auto mapping = LoadMapping(map, out);
   if (!mapping) return std::nullopt;
+  log = mapping->table.has_value() || path.ends_with(".mcap");
   return ReadMapped(path, *mapping, map, out);
 }
 
 /// Prints the verdict and the summary of a comparison, and its tables on request.
 void PrintComparison(const Comparison& comparison, const CompareArguments& given) {
+  if (given.measured) {
+    const auto verdict = MeasuredVerdict(comparison, given.path_a, given.path_b);
+    for (const std::string& line : verdict) fmt::print("{}\n", line);
+    if (!verdict.empty()) fmt::print("\n");
+  }
   const std::vector<std::string> lines = ComparisonLines(comparison, given.path_a, given.path_b);
   fmt::print("{}", CappedLines(lines).Text(lines.front()));
   if (!given.tables) return;
   fmt::print("\n{}\n", ComparisonTable(comparison, given.path_a, given.path_b));
 }
 
+void SayNextStep(const CompareArguments& given) {
+  if (!given.page.empty()) return SayNextProgram({"xdg-open", given.page});
+  if (given.map_a.empty() && given.map_b.empty()) {
+    return SayNext({"report", given.path_a, "--compare", given.path_b});
+  }
+  std::vector<std::string> words{"compare", given.path_a, given.path_b};
+  if (!given.map_b.empty()) words.insert(words.end(), {"--map", given.map_b});
+  if (!given.map_a.empty()) words.insert(words.end(), {"--map_a", given.map_a});
+  words.insert(words.end(), {"--page", "compare.html"});
+  SayNext(words);
+}
+
 int RunCompare(CompareArguments given) {
   for (std::string* path : {&given.path_a, &given.path_b}) *path = TraceOfRun(*path);
   Diagnostics found;
-  const auto a = Load(given.path_a, given.map_a, found);
-  const auto b = Load(given.path_b, given.map_b, found);
+  bool ignored = false;
+  const auto a = Load(given.path_a, given.map_a, ignored, found);
+  const auto b = Load(given.path_b, given.map_b, given.measured, found);
   if (!a || !b) return Fail(found, kBadInput);
   Pass(found, false);
   const Comparison comparison = Compare(*a, *b, given.options);
@@ -87,9 +109,12 @@ int RunCompare(CompareArguments given) {
     fmt::print(stderr, "error: the traces have no channel in common (--map translates names)\n");
     return kBadInput;
   }
-  if (!given.json && given.map_a.empty() && given.map_b.empty()) {
-    SayNext({"report", given.path_a, "--compare", given.path_b});
+  if (!given.page.empty()) {
+    const std::string page = ComparisonPage(comparison, *a, *b, given.path_a, given.path_b);
+    if (const int failed = WriteNamed(given.page, page); failed != kOk) return failed;
+    if (!given.json) fmt::print("Page: {}\n", given.page);
   }
+  if (!given.json) SayNextStep(given);
   return exceeded.empty() ? kOk : kFailed;
 }
 
@@ -149,6 +174,8 @@ void AddCompare(CLI::App& app, int& exit_code) {
                    "Limit of the RMSE of every compared channel, in its unit")
       ->option_text("X")
       ->check(NumberWithin(0, 1e300));
+  command->add_option("--page", given->page, "Also write the comparison as an HTML page")
+      ->option_text("FILE");
   command->add_flag("--json", given->json, "JSON instead of text");
   command->add_flag("--tables", given->tables, "Also print the tables of all channels");
   command->footer(
@@ -156,6 +183,7 @@ void AddCompare(CLI::App& app, int& exit_code) {
       "  taut compare runs/push/trace.h5 measured.csv --max_error_percent 6.1\n"
       "  taut compare runs/push/trace.h5 push_1000hz.csv.gz --map mappings/ntrt.json \\\n"
       "    --channels 'cable/*/elastic_n' --from_s 5 --phase before=25:30 --phase during=35:40\n"
+      "  taut compare runs/drop lab.csv --map lab.map.json --page compare.html\n"
       "Exit status: 0 within the limits (or no limits), 1 limits exceeded, 2 bad usage, 3 bad "
       "input.");
   command->callback([given, &exit_code] {

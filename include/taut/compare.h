@@ -147,6 +147,17 @@ Comparison Compare(const Trace& a, const Trace& b, const CompareOptions& options
 std::vector<std::string> ComparisonLines(const Comparison& comparison, const std::string& name_a,
                                          const std::string& name_b);
 
+/// Returns a verdict on a simulation (a) compared with a measurement (b), at most five lines: the
+/// compared channels, the errors of the worst group of channels, and, if there are such patterns, a
+/// common bias and a common lag with their likely causes. Empty without compared channels.
+std::vector<std::string> MeasuredVerdict(const Comparison& comparison, const std::string& name_a,
+                                         const std::string& name_b);
+
+/// Returns a self-contained HTML page: the verdict, and for each group of channels its errors, bars
+/// of bias and RMSE, measured over simulated values, and curves.
+std::string ComparisonPage(const Comparison& comparison, const Trace& a, const Trace& b,
+                           const std::string& name_a, const std::string& name_b);
+
 /// Formats the comparison as text tables for a terminal. `name_a`, `name_b`: names of the traces.
 std::string ComparisonTable(const Comparison& comparison, const std::string& name_a,
                             const std::string& name_b);

@@ -5,40 +5,17 @@
 #include <cmath>
 #include <map>
 
+#include "compare/plot.h"
 #include "identify/labels.h"
-#include "identify/plot.h"
 #include "taut/version.h"
 
 namespace taut {
 namespace {
 
 using namespace identify;  // NOLINT(google-build-using-namespace): its parts, of this file
-
-constexpr const char* kStyle = R"(
-body{font:15px/1.45 system-ui,sans-serif;color:#1c2430;background:#fff;max-width:1000px;margin:24px auto;padding:0 16px}
-h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}
-table{border-collapse:collapse;margin:8px 0}td,th{padding:3px 10px;border-bottom:1px solid #dde2e8;text-align:right;white-space:nowrap}
-td:first-child,th:first-child,td.word{text-align:left}th{font-weight:600;color:#46525f}
-.verdict{padding:10px 14px;border-left:5px solid;margin:12px 0}.good{border-color:#2a8a4a;background:#eef7f0}.bad{border-color:#c0392b;background:#fbeeec}
-.note{color:#5b6774}svg{margin:4px 8px 4px 0}svg text{font:11px system-ui,sans-serif;fill:#46525f}svg text.title{font-size:12px;font-weight:600;fill:#1c2430}
-.grid{stroke:#e6eaee}.level{stroke:#8a96a3;stroke-dasharray:4 3}circle.untuned{fill:#b4bcc6}circle.fitted{fill:#1f6fb2}circle.held{fill:#d9822b}
-polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:#1f6fb2}.key span{display:inline-block;margin-right:18px}.dot{width:9px;height:9px;border-radius:50%;display:inline-block;margin-right:5px}
-.wide{overflow-x:auto}
-)";
-
-std::string TableRow(const std::vector<std::string>& cells, const char* tag = "td") {
-  std::string out = "<tr>";
-  for (const std::string& cell : cells) {
-    out += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
-  }
-  return out + "</tr>\n";
-}
-
-std::string Table(const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"wide\"><table>\n";
-  for (std::size_t i = 0; i < rows.size(); ++i) out += TableRow(rows[i], i == 0 ? "th" : "td");
-  return out + "</table></div>\n";
-}
+using compare::Escaped;
+using compare::Plot;
+using compare::Svg;
 
 std::string G(double x) { return std::isfinite(x) ? fmt::format("{:.5g}", x) : "-"; }
 
@@ -56,7 +33,7 @@ std::string ParameterSection(const Identification& fit, const FitOutcome& outcom
                     std::string(VerdictName(v.kind)) + (v.kink ? ", kink" : "")});
     sentences += "<li>" + Escaped(v.sentence) + "</li>\n";
   }
-  return "<h2>Parameters</h2>\n" + Table(rows) + "<ul>\n" + sentences + "</ul>\n";
+  return "<h2>Parameters</h2>\n" + compare::HtmlTable(rows) + "<ul>\n" + sentences + "</ul>\n";
 }
 
 std::string Errors(const char* title, const std::vector<FitPoint>& points,
@@ -68,7 +45,7 @@ std::string Errors(const char* title, const std::vector<FitPoint>& points,
     rows.push_back({WithUnit(e.channel, e.unit), std::to_string(e.count), G(e.untuned), G(e.fitted),
                     G(e.fitted_bias)});
   }
-  return Table(rows);
+  return compare::HtmlTable(rows);
 }
 
 std::string ErrorsOfExperiments(const char* title, const FitSpec& spec,
@@ -79,7 +56,7 @@ std::string ErrorsOfExperiments(const char* title, const FitSpec& spec,
   for (const ExperimentErrors& e : ErrorsByExperiment(spec, points, residuals)) {
     rows.push_back({e.experiment, std::to_string(e.count), G(e.untuned), G(e.fitted)});
   }
-  return Table(rows);
+  return compare::HtmlTable(rows);
 }
 
 /// Returns the table of sensor errors that the fit does not estimate.
@@ -94,7 +71,7 @@ std::string Aliases(const FitVerdict& verdict) {
   return "<h2>Sensor errors that are not estimated</h2>\n<p class=\"note\">Score tests: estimate "
          "of "
          "each error alone with all parameters, to first order.</p>\n" +
-         Table(rows);
+         compare::HtmlTable(rows);
 }
 
 /// Returns a list of links to the viewer, which show the experiments before and after the fit.
@@ -241,7 +218,7 @@ std::string Correlations(const Identification& fit, const FitOutcome& outcome) {
     }
     rows.push_back({d.null ? "none" : G(d.singular), d.fixed ? "yes" : "no", text});
   }
-  return out + Table(rows);
+  return out + compare::HtmlTable(rows);
 }
 
 std::string Jackknifed(const Identification& fit, const FitOutcome& outcome) {
@@ -255,7 +232,7 @@ std::string Jackknifed(const Identification& fit, const FitOutcome& outcome) {
     row.push_back(fit.train().group_names[static_cast<std::size_t>(j.groups[i].group)]);
     for (const double x : j.groups[i].values) row.push_back(G(x));
   }
-  return "<h2>Estimates without one group</h2>\n" + Table(rows);
+  return "<h2>Estimates without one group</h2>\n" + compare::HtmlTable(rows);
 }
 
 std::string Design(const FitOutcome& outcome, std::size_t parameters) {
@@ -269,7 +246,7 @@ std::string Design(const FitOutcome& outcome, std::size_t parameters) {
   add("present data", design.now);
   for (const DesignWorth& worth : design.alone) add("with " + worth.name, worth);
   for (const DesignWorth& worth : design.greedy) add("and " + worth.name, worth);
-  return "<h2>Value of further measurements</h2>\n" + Table(rows);
+  return "<h2>Value of further measurements</h2>\n" + compare::HtmlTable(rows);
 }
 
 }  // namespace
@@ -279,7 +256,7 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
   const FitVerdict& v = outcome.verdict;
   const FitProblem& problem = fit.train();
   std::string out = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
-                    Escaped(fit.spec().name) + ", fitted</title>\n<style>" + kStyle +
+                    Escaped(fit.spec().name) + ", fitted</title>\n<style>" + compare::kPageStyle +
                     "</style></head><body>\n<h1>" + Escaped(fit.spec().name) + "</h1>\n<p>" +
                     Escaped(fit.spec().description) + "</p>\n";
   out += fmt::format(

@@ -1,11 +1,12 @@
-#include "identify/plot.h"
+#include "compare/plot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-namespace taut::identify {
+namespace taut::compare {
 namespace {
 
 constexpr double kWidth = 460, kHeight = 260;
@@ -24,7 +25,36 @@ struct Axis {
   double At(double x) const { return from + (x - low) / (high - low) * (to - from); }
 };
 
+/// Lines of more points have no dots.
+constexpr std::size_t kMostDots = 60;
+
+std::string HtmlRow(const std::vector<std::string>& cells, const char* tag) {
+  std::string out = "<tr>";
+  for (const std::string& cell : cells) {
+    out += std::string("<") + tag + ">" + Escaped(cell) + "</" + tag + ">";
+  }
+  return out + "</tr>\n";
+}
+
 }  // namespace
+
+const char* const kPageStyle = R"(
+body{font:15px/1.45 system-ui,sans-serif;color:#1c2430;background:#fff;max-width:1000px;margin:24px auto;padding:0 16px}
+h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}
+table{border-collapse:collapse;margin:8px 0}td,th{padding:3px 10px;border-bottom:1px solid #dde2e8;text-align:right;white-space:nowrap}
+td:first-child,th:first-child,td.word{text-align:left}th{font-weight:600;color:#46525f}
+.verdict{padding:10px 14px;border-left:5px solid;margin:12px 0}.good{border-color:#2a8a4a;background:#eef7f0}.bad{border-color:#c0392b;background:#fbeeec}
+.note{color:#5b6774}svg{margin:4px 8px 4px 0}svg text{font:11px system-ui,sans-serif;fill:#46525f}svg text.title{font-size:12px;font-weight:600;fill:#1c2430}
+.grid{stroke:#e6eaee}.level{stroke:#8a96a3;stroke-dasharray:4 3}circle.untuned{fill:#b4bcc6}circle.fitted{fill:#1f6fb2}circle.held{fill:#d9822b}
+polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:#1f6fb2}.key span{display:inline-block;margin-right:18px}.dot{width:9px;height:9px;border-radius:50%;display:inline-block;margin-right:5px}
+.wide{overflow-x:auto}
+)";
+
+std::string HtmlTable(const std::vector<std::vector<std::string>>& rows) {
+  std::string out = "<div class=\"wide\"><table>\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) out += HtmlRow(rows[i], i == 0 ? "th" : "td");
+  return out + "</table></div>\n";
+}
 
 std::string Escaped(const std::string& text) {
   std::string out;
@@ -108,6 +138,7 @@ std::string Svg(const Plot& plot) {
     for (const auto& p : s.points) {
       if (!good(p)) continue;
       if (s.line) path += fmt::format("{:.1f},{:.1f} ", x.At(p.first), y.At(p.second));
+      if (s.line && s.points.size() > kMostDots) continue;
       out += fmt::format(R"(<circle class="{}" cx="{:.1f}" cy="{:.1f}" r="2.2"/>)", s.style,
                          x.At(p.first), y.At(p.second));
     }
@@ -121,4 +152,4 @@ std::string Svg(const Plot& plot) {
   return out + "</svg>\n";
 }
 
-}  // namespace taut::identify
+}  // namespace taut::compare

@@ -1,11 +1,17 @@
-/// Plots for HTML pages as self-contained SVG.
+/// Plots and tables for self-contained HTML pages about measurements: of fits and of comparisons.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace taut::identify {
+namespace taut::compare {
+
+/// Style sheet of the pages.
+extern const char* const kPageStyle;
+
+/// Returns a table; the first row is the header. Escapes all texts.
+std::string HtmlTable(const std::vector<std::vector<std::string>>& rows);
 
 /// Escapes < > & " as HTML entities.
 std::string Escaped(const std::string& text);
@@ -13,7 +19,8 @@ std::string Escaped(const std::string& text);
 struct Series {
   std::string style;  ///< CSS class of the marks: "untuned", "fitted" or "held".
   std::vector<std::pair<double, double>> points;
-  bool line = false;  ///< Connect the points by lines (true) or draw dots.
+  /// Connect the points by lines; otherwise draw dots. Lines of few points have dots, too.
+  bool line = false;
 };
 
 struct Plot {
@@ -30,4 +37,4 @@ std::string Svg(const Plot& plot);
 /// Returns about five round numbers between low and high.
 std::vector<double> Ticks(double low, double high);
 
-}  // namespace taut::identify
+}  // namespace taut::compare

@@ -1,0 +1,165 @@
+// Comparison of a simulation with a measurement as a self-contained HTML page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/channel_groups.h"
+#include "compare/plot.h"
+#include "taut/compare.h"
+#include "taut/version.h"
+
+namespace taut {
+namespace {
+
+constexpr std::size_t kMostPlots = 24, kMostPoints = 400;
+
+std::string Digits(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "-"; }
+
+/// Returns at most kMostPoints rows of a channel in the common time.
+std::vector<std::pair<double, double>> Thinned(const Trace& trace, std::size_t channel,
+                                               const Comparison& comparison) {
+  std::vector<std::pair<double, double>> all, some;
+  for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
+    const double t = trace.time_s[i];
+    if (t < comparison.from_s || t > comparison.to_s) continue;
+    all.emplace_back(t, trace.values[channel][i]);
+  }
+  const std::size_t every = std::max<std::size_t>(1, (all.size() + kMostPoints - 1) / kMostPoints);
+  for (std::size_t i = 0; i < all.size(); i += every) some.push_back(all[i]);
+  return some;
+}
+
+/// Returns the value of a channel at a time, interpolated; NaN outside of the trace.
+double Interpolated(const Trace& trace, std::size_t channel, double time_s) {
+  const auto after = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s);
+  if (after == trace.time_s.end()) return NAN;
+  const auto i = static_cast<std::size_t>(after - trace.time_s.begin());
+  const std::vector<double>& y = trace.values[channel];
+  if (*after == time_s) return y[i];
+  if (i == 0) return NAN;
+  const double t0 = trace.time_s[i - 1], share = (time_s - t0) / (*after - t0);
+  return y[i - 1] + share * (y[i] - y[i - 1]);
+}
+
+/// Returns one bar per channel for its bias (filled) and its RMSE (outline).
+std::string Bars(const compare::Group& group) {
+  double most = 0;
+  for (const auto& [name, c] : group.rows) {
+    if (std::isfinite(c->rmse)) most = std::max({most, c->rmse, std::fabs(c->bias)});
+  }
+  if (!(most > 0)) return {};
+  constexpr double kRow = 18, kNames = 160, kHalf = 150;
+  const double height = kRow * static_cast<double>(group.rows.size()) + 30, zero = kNames + kHalf;
+  std::string out = fmt::format(
+      R"(<svg viewBox="0 0 480 {0}" width="480" height="{0}" role="img" aria-label="bias and RMSE">)"
+      R"(<text class="title" x="8" y="16">bias (filled) and RMSE (outline)</text>)",
+      height);
+  double y = 26;
+  for (const auto& [name, c] : group.rows) {
+    if (!std::isfinite(c->rmse)) continue;
+    const double bias = kHalf * c->bias / most, rmse = kHalf * c->rmse / most;
+    out += fmt::format(
+        R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)"
+        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="12" fill="none" stroke="#8a96a3"/>)"
+        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="12" fill="#1f6fb2"/>)",
+        kNames - 6, y + 10, compare::Escaped(name), zero - rmse, y, 2 * rmse,
+        std::min(zero, zero + bias), y, std::fabs(bias));
+    y += kRow;
+  }
+  return out +
+         fmt::format(R"(<line class="level" x1="{0}" y1="22" x2="{0}" y2="{1:.1f}"/></svg>)", zero,
+                     y) +
+         "\n";
+}
+
+std::string GroupTable(const compare::Group& group) {
+  std::vector<std::vector<std::string>> rows{{"channel", "RMSE", "bias", "max error", "at [s]",
+                                              "lag [s]", "correlation", "max a", "max b"}};
+  for (const auto& [name, c] : group.rows) {
+    rows.push_back({name, Digits(c->rmse), Digits(c->bias), Digits(c->error.value),
+                    Digits(c->error.time_s), (c->lag_at_limit ? ">" : "") + Digits(c->lag_s),
+                    Digits(c->correlation), Digits(c->max_a.value), Digits(c->max_b.value)});
+  }
+  return compare::HtmlTable(rows);
+}
+
+/// Returns the measured over the simulated values of a group, with the line of equality.
+std::string Scatter(const compare::Group& group, const Trace& a, const Trace& b,
+                    const Comparison& comparison) {
+  compare::Plot plot{compare::GroupTitle(group),
+                     "a (simulated)",
+                     "b (measured)",
+                     {{"fitted", {}, true}, {"held", {}}},
+                     {},
+                     {}};
+  double low = INFINITY, high = -INFINITY;
+  for (const auto& [name, c] : group.rows) {
+    const auto in_a = a.Find(c->name), in_b = b.Find(c->name);
+    if (!in_a || !in_b) continue;
+    for (const auto& [t, measured] : Thinned(b, *in_b, comparison)) {
+      const double simulated = Interpolated(a, *in_a, t);
+      if (!std::isfinite(simulated) || !std::isfinite(measured)) continue;
+      plot.series[1].points.emplace_back(simulated, measured);
+      low = std::min(low, simulated), high = std::max(high, simulated);
+    }
+  }
+  std::vector<std::pair<double, double>>& points = plot.series[1].points;
+  const std::size_t every = std::max<std::size_t>(1, points.size() / (4 * kMostPoints));
+  for (std::size_t i = 1; i * every < points.size(); ++i) points[i] = points[i * every];
+  points.resize(std::min(points.size(), (points.size() + every - 1) / every));
+  if (points.empty()) return {};
+  plot.series[0].points = {{low, low}, {high, high}};
+  return compare::Svg(plot);
+}
+
+std::string Curves(const compare::Group& group, const Trace& a, const Trace& b,
+                   const Comparison& comparison, std::size_t& plots) {
+  std::string out;
+  for (const auto& [name, c] : group.rows) {
+    const auto in_a = a.Find(c->name), in_b = b.Find(c->name);
+    if (!in_a || !in_b || ++plots > kMostPlots) continue;
+    const std::string unit = c->unit.empty() || c->unit == "1" ? "" : " [" + c->unit + "]";
+    out += compare::Svg(
+        {c->name + unit,
+         "time [s]",
+         "",
+         {{"fitted", Thinned(a, *in_a, comparison), true}, {"held", Thinned(b, *in_b, comparison)}},
+         {},
+         {}});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string ComparisonPage(const Comparison& comparison, const Trace& a, const Trace& b,
+                           const std::string& name_a, const std::string& name_b) {
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
+      compare::Escaped(name_a) + " and " + compare::Escaped(name_b) + "</title>\n<style>" +
+      compare::kPageStyle +
+      "</style></head><body>\n<h1>Simulation and measurement</h1>\n<p class=\"note\">a: " +
+      compare::Escaped(name_a) + ", b: " + compare::Escaped(name_b) +
+      "; differences are a - b; taut " + kVersion + "</p>\n<div class=\"verdict\">";
+  for (const std::string& line : MeasuredVerdict(comparison, name_a, name_b)) {
+    out += compare::Escaped(line) + "<br>\n";
+  }
+  out +=
+      "</div>\n<p class=\"key\"><span><i class=\"dot\" style=\"background:#1f6fb2\"></i>a, "
+      "simulated</span><span><i class=\"dot\" style=\"background:#d9822b\"></i>b, "
+      "measured</span></p>\n";
+  std::size_t plots = 0;
+  for (const compare::Group& group : compare::GroupsOf(comparison.channels)) {
+    out += "<h2>" + compare::Escaped(compare::GroupTitle(group)) + "</h2>\n";
+    out += GroupTable(group) + Bars(group) + Scatter(group, a, b, comparison) + "<br>\n" +
+           Curves(group, a, b, comparison, plots);
+  }
+  if (plots > kMostPlots) {
+    out +=
+        fmt::format("<p class=\"note\">{} more channels without curves</p>\n", plots - kMostPlots);
+  }
+  return out + "</body></html>\n";
+}
+
+}  // namespace taut
