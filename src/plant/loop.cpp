@@ -26,7 +26,8 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   std::vector<const RolloutWorld*> all(lanes.begin(), lanes.end());
   all.resize(step_s_.size(), lanes[0]);
   const ControlSetup setup{experiment, all, first_world, count_};
-  for (int j = 0; j < count_; ++j) timelines_.emplace_back(experiment);
+  // Also of lanes without results: they restart with the first lane (Simulation::Reset).
+  for (int j = 0; j < plant_lanes_; ++j) timelines_.emplace_back(experiment);
   has_forces_ = !timelines_[0].idle();
   const auto add = [&](std::unique_ptr<SensorModel> model) {
     const LaneClock clock(model->clock(), plant_lanes_);
@@ -184,6 +185,7 @@ void Loop::Push(Lanes active) {
 }
 
 void Loop::Restart(int lane, const RolloutWorld& world) {
+  TAUT_ASSERT(0 <= lane && lane < plant_lanes_);
   const auto j = static_cast<std::size_t>(lane);
   SplitSchedules();
   schedules_[j] = Schedule(experiment_.step_s, experiment_.duration_s);

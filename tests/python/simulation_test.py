@@ -111,6 +111,16 @@ class Bits(unittest.TestCase):
         self.assertEqual(caught.exception.items[0].id, "snapshot.other_environment")
 
 
+    def test_all_worlds_are_reset_in_groups_of_any_size(self):
+        for worlds in (1, 2, 3, 5, 8, 9):
+            sim = taut.Simulation(PUSH, worlds)
+            sim.run_until(0.02)
+            ends = [sim.hash(world) for world in range(worlds)]
+            sim.reset()
+            sim.run_until(0.02)
+            self.assertEqual([sim.hash(world) for world in range(worlds)], ends)
+
+
 class Access(unittest.TestCase):
     def test_shapes_names_and_errors(self):
         sim = taut.Simulation(PUSH, worlds=2)

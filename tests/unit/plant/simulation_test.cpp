@@ -78,6 +78,23 @@ TEST(Simulation, AWorldThatIsResetCatchesUpWhileTheOthersWait) {
   for (int w = 0; w < 5; ++w) EXPECT_EQ(simulation->Hash(w), plain->Hash(w)) << w;
 }
 
+TEST(Simulation, AllWorldsAreResetInGroupsOfAnySize) {
+  const ExperimentSpec experiment = Load("push_20n", 0.4);
+  for (const int count : {1, 2, 3, 5, 8, 9}) {
+    const auto variants = Variants(experiment, count);
+    const auto simulation = Create(experiment, {.variants = variants});
+    simulation->RunUntil(0.02);
+    std::vector<std::uint64_t> ends;
+    for (int w = 0; w < count; ++w) ends.push_back(simulation->Hash(w));
+    for (int w = 0; w < count; ++w) simulation->Reset(w);
+    simulation->RunUntil(0.02);
+    for (int w = 0; w < count; ++w) {
+      EXPECT_EQ(simulation->Hash(w), ends[static_cast<std::size_t>(w)])
+          << count << " worlds, " << w;
+    }
+  }
+}
+
 TEST(Simulation, AWorldBecomesAnotherVariant) {
   const ExperimentSpec experiment = Load("push_20n", 0.3);
   const auto variants = Variants(experiment, 4);
