@@ -60,12 +60,13 @@ int NumberOf(const std::vector<LinearSignal>& signals, const std::string& name, 
 py::tuple Respond(const StateSpace& s, const std::string& input, const std::string& output,
                   const py::object& frequencies_hz) {
   const int from = NumberOf(s.inputs, input, "input"), to = NumberOf(s.outputs, output, "output");
-  const Array given = Array::ensure(frequencies_hz);
+  const py::array given = py::array::ensure(frequencies_hz);
   if (!given || given.ndim() != 1) {
     PyErr_Clear();
     throw py::value_error("frequencies_hz: expected an array (n,) of numbers");
   }
-  const std::vector<double> all(given.data(), given.data() + given.size());
+  const Array real = Shaped(frequencies_hz, {given.size()}, "frequencies_hz");
+  const std::vector<double> all(real.data(), real.data() + real.size());
   for (const double f : all) {
     if (!(f >= 0 && f <= 0.5 / s.period_s * (1 + 1e-9))) {
       throw py::value_error(fmt::format(

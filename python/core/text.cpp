@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "taut/input_names.h"
 #include "taut/instruction_sets.h"
@@ -28,6 +29,19 @@ std::string TextOf(const std::vector<py::ssize_t>& shape, const char* format) {
 
 std::string TextOf(const py::array& a) {
   return TextOf({a.shape(), a.shape() + a.ndim()}, py::str(a.dtype()).cast<std::string>().c_str());
+}
+
+/// Returns why `given` is not an array of real numbers, or an empty string. NumPy would convert the
+/// refused ones silently: complex numbers lose a part, times and texts become numbers, and masked
+/// entries get the values under their mask.
+std::string NotReal(const py::object& given, const py::array& a) {
+  const char kind = a.dtype().kind();
+  if (std::string_view("biufO").find(kind) == std::string_view::npos) return TextOf(a);
+  if (py::hasattr(given, "mask") &&
+      py::module_::import("numpy").attr("ma").attr("is_masked")(given).cast<bool>()) {
+    return "masked entries";
+  }
+  return {};
 }
 
 }  // namespace
@@ -148,11 +162,14 @@ std::string ShapeText(const std::vector<py::ssize_t>& shape) {
 }
 
 Array Shaped(const py::object& given, const std::vector<py::ssize_t>& shape, const char* what) {
-  Array a = Array::ensure(given);
-  if (!a) {
+  const py::array raw = py::array::ensure(given);
+  const std::string wrong = raw ? NotReal(given, raw) : "not numbers";
+  Array a = wrong.empty() ? Array::ensure(raw) : Array();
+  if (!wrong.empty() || !a) {
     PyErr_Clear();
-    throw py::value_error(
-        fmt::format("{}: not numbers; expected {}", what, TextOf(shape, "float64")));
+    throw py::value_error(fmt::format("{}: {}; expected {}", what,
+                                      wrong.empty() ? "not numbers" : wrong,
+                                      TextOf(shape, "float64")));
   }
   const std::vector<py::ssize_t> has(a.shape(), a.shape() + a.ndim());
   if (has != shape) {

@@ -69,6 +69,14 @@ def _seed(seed, worlds=1):
     return int(seed)
 
 
+def _real(actions):
+    """Returns `actions` as an array of real numbers without masked entries; else raises ValueError."""
+    array = _np.asanyarray(actions)
+    if array.dtype.kind not in "biufO" or _np.ma.is_masked(array):
+        raise ValueError(f"actions: {'masked entries' if _np.ma.is_masked(array) else array.dtype}; expected real numbers")
+    return array
+
+
 class VectorEnv(_VectorBase):
     """Many worlds with one episode each. Arrays have the shape (num_envs, n); actions are from -1 to 1.
 
@@ -164,7 +172,7 @@ class VectorEnv(_VectorBase):
     def step(self, actions):
         """Advances all worlds by one period: returns observations, rewards, terminated, truncated, infos."""
         self._open()
-        actions = _np.ascontiguousarray(actions, dtype=self._dtype)
+        actions = _np.ascontiguousarray(_real(actions), dtype=self._dtype)
         observations, rewards = self._new(self._observations), self._new(self._rewards)
         final = self._fresh(self._final) if self._final is not None else None
         self._step(actions, observations, rewards, self._terminated, self._truncated, final)
@@ -250,7 +258,7 @@ class Env(_EnvBase):
 
     def step(self, action):
         """Advances by one period: returns observation, reward, terminated, truncated, infos."""
-        observations, rewards, over, cut, infos = self._one.step(_np.asarray(action)[None])
+        observations, rewards, over, cut, infos = self._one.step(_np.asanyarray(action)[None])
         infos = {key: value[0] for key, value in infos.items() if not key.startswith("_")}
         return observations[0], float(rewards[0]), bool(over[0]), bool(cut[0]), infos
 

@@ -39,6 +39,27 @@ class Values(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, r"force_n: inf at \(2,\)"):
             batch.set_node_force(0, 0, [0, 0, float("inf")])
 
+    def test_arrays_have_real_numbers(self):
+        batch = taut.Batch(taut.load(PUSH).robot, worlds=3)
+        envs = taut.gym.make_vec(SPINE, 3)
+        envs.reset(seed=1)
+        linear = taut.linear_system(taut.load(str(ROOT / "share/experiments/hang.yaml")))
+        masked = np.ma.masked_all(3)
+        for wrong, named in ((np.ones(3) + 1j, "complex128"), (np.ones(3, "M8[s]"), r"datetime64\[s\]"), (["1"] * 3, "<U1"),
+                             (np.zeros(3, [("a", "f8")]), "'a'"), (masked, "masked entries"), ([[1], 2, 3], "numbers")):
+            for call in (lambda: batch.set_node_force(0, 0, wrong), lambda: batch.set_parameter("body_mass_kg", wrong),
+                         lambda: linear.response(linear.inputs[0], linear.outputs[0], wrong)):
+                with self.assertRaisesRegex(ValueError, named, msg=repr(wrong)):
+                    call()
+            if named != "numbers":
+                actions = np.ma.masked_all(envs.action_space.shape) if wrong is masked else np.resize(
+                    wrong, envs.action_space.shape)
+                with self.assertRaisesRegex(ValueError, f"actions: .*{named}"):
+                    envs.step(actions)
+        for good in ([1, 2, 3], np.ones(3, "f4"), np.ones(6, ">i8")[::2], np.array([1.5] * 3, object), np.ma.ones(3)):
+            batch.set_node_force(0, 0, good)
+            envs.step(np.resize(good, envs.action_space.shape) * 0)
+
     def test_seeds_are_whole_numbers_from_0_on(self):
         env = taut.gym.make_vec(SPINE, 4)
         before = [env.hash(w) for w in range(4)]
