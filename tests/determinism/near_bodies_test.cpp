@@ -16,7 +16,7 @@
 namespace taut::test {
 namespace {
 
-constexpr double kStepS = 1e-3;
+constexpr double kNearStep_s = 1e-3;
 
 /// Ways to find pairs of bodies that may touch.
 enum class Pairs {
@@ -130,7 +130,7 @@ std::size_t ExpectEqualBits(const ModelDef& def, int steps) {
   for (int i = 0; i < steps; ++i) {
     for (WorldBatch* const batch : {&all, &near, &every}) {
       if (i == steps / 2) Stir(*batch, 0, 7);
-      batch->Step(kStepS, 1);
+      batch->Step(kNearStep_s, 1);
     }
     std::size_t contacts = 0;
     for (const ContactState& c : all.Contacts(0)) contacts += c.body_b != kWorld;
@@ -161,11 +161,11 @@ TEST(NearBodies, AreFoundInEveryLane) {
   for (const Pairs way : {Pairs::kNear, Pairs::kShort}) {
     WorldBatch together(Compiled(def, way), options);
     for (int i = 0; i < kWorlds; ++i) Stir(together, i, i);
-    together.Step(kStepS, kSteps);
+    together.Step(kNearStep_s, kSteps);
     for (int i = 0; i < kWorlds; i += 4) {
       WorldBatch alone(Compiled(def, Pairs::kAll), {});
       Stir(alone, 0, i);
-      alone.Step(kStepS, kSteps);
+      alone.Step(kNearStep_s, kSteps);
       EXPECT_EQ(together.Hash(i), alone.Hash(0)) << i;
     }
   }
@@ -183,19 +183,19 @@ TEST(NearBodies, AreFoundAgainAfterOtherChanges) {
     std::vector<std::uint64_t>& list = hashes.emplace_back();
     const auto keep = [&] { list.push_back(batch.Hash(0)), list.push_back(batch.Hash(1)); };
     Stir(batch, 1, 4);
-    batch.Step(kStepS, 150);
+    batch.Step(kNearStep_s, 150);
     const std::vector<std::uint8_t> snapshot = batch.Save(1);
     BodyState at = batch.Body(0, 49);
     at.position_m = batch.Body(0, 0).position_m + Vec3{0, 0, 0.03};
     batch.SetBodyState(0, 49, at);
-    batch.Step(kStepS, 20);
+    batch.Step(kNearStep_s, 20);
     keep();
     ASSERT_TRUE(batch.Restore(0, snapshot));
-    batch.Step(kStepS, 50);
+    batch.Step(kNearStep_s, 50);
     keep();
     for (int i = 0; i < 60; ++i) {
       const std::uint8_t mask[] = {i % 3 == 0, i % 3 != 1};
-      batch.StepMasked(kStepS, mask);
+      batch.StepMasked(kNearStep_s, mask);
     }
     keep();
   }
