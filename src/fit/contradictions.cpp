@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fit/format.h"
 #include "fit/problem.h"
@@ -24,20 +25,32 @@ constexpr double kLeastRise = 0.25, kMostRise = 4;
 
 bool Estimated(const ParameterVerdict& v) { return v.kind == Determined::kEstimated; }
 
+/// Point one standard error of a parameter away.
+struct PointAway {
+  std::vector<double> values;
+  /// Whether all other parameters follow as in a refit. Confounded parameters do not, because their
+  /// covariances are infinite; chi-square then rises by more than after a refit.
+  bool refitted = true;
+};
+
 /// Returns the point one standard error of parameter `j` away, in the direction of `sign`. The
 /// other parameters follow as in a refit (eq. F.13). Returns nothing beyond the bounds.
-std::optional<std::vector<double>> OneErrorAway(const FitProblem& problem,
-                                                const FitVerdict& verdict, std::size_t j,
-                                                double sign) {
+std::optional<PointAway> OneErrorAway(const FitProblem& problem, const FitVerdict& verdict,
+                                      std::size_t j, double sign) {
   const std::vector<double>& covariance = verdict.identifiability.covariance;
   const std::size_t n = problem.parameters.size();
   const double se = std::sqrt(covariance[j * n + j]);
   if (!(se > 0)) return std::nullopt;
-  std::vector<double> point = verdict.values;
+  PointAway point{verdict.values};
   for (std::size_t i = 0; i < n; ++i) {
     const double shared = covariance[j * n + i];
-    if (std::isfinite(shared)) point[i] += sign * shared / se;
-    if (point[i] < problem.parameters[i].low || point[i] > problem.parameters[i].high) {
+    if (std::isfinite(shared)) {
+      point.values[i] += sign * shared / se;
+    } else {
+      point.refitted = false;
+    }
+    if (point.values[i] < problem.parameters[i].low ||
+        point.values[i] > problem.parameters[i].high) {
       return std::nullopt;
     }
   }
@@ -115,12 +128,14 @@ void ContradictByStarts(const FitProblem& problem, const FitResult& fit, FitVerd
 void ContradictByCost(const FitProblem& problem, FitVerdict& verdict) {
   std::vector<std::vector<double>> points;
   std::vector<std::size_t> of;
+  std::vector<bool> refitted(problem.parameters.size(), true);
   for (std::size_t j = 0; j < problem.parameters.size(); ++j) {
     if (!Estimated(verdict.identifiability.parameters[j])) continue;
     for (const double sign : {1.0, -1.0}) {
       auto point = OneErrorAway(problem, verdict, j, sign);
       if (!point) continue;
-      points.push_back(std::move(*point));
+      refitted[j] = point->refitted;
+      points.push_back(std::move(point->values));
       of.push_back(j);
     }
   }
@@ -136,7 +151,8 @@ void ContradictByCost(const FitProblem& problem, FitVerdict& verdict) {
     rises[of[i]].push_back(2 * (Cost(problem, rows, points[i], (*answers)[i].value) - best));
   }
   for (std::size_t j = 0; j < rises.size(); ++j) {
-    const auto wrong = [](double rise) { return rise < kLeastRise || rise > kMostRise; };
+    const double most = refitted[j] ? kMostRise : std::numeric_limits<double>::infinity();
+    const auto wrong = [most](double rise) { return rise < kLeastRise || rise > most; };
     if (std::none_of(rises[j].begin(), rises[j].end(), wrong)) continue;
     std::vector<std::string> texts;
     for (const double rise : rises[j]) texts.push_back(Change(rise, {}));

@@ -17,6 +17,8 @@ def names():
         found |= set(re.findall(r"add_test\(NAME ([\w.]+)", path.read_text()))
         found |= {f"Fuzz.{name}" for name in re.findall(r"^taut_fuzz\((\w+) ", path.read_text(), re.M)}
     found |= {f"Faults.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / "faults/faults_test.py").read_text(), re.M)}
+    found |= {f"Faults.{name}" for name in re.findall(r"\b([a-z_]+):\d+", (TESTS / "faults/CMakeLists.txt").read_text())}
+    found |= {f"NewRobot.{name}" for name in re.findall(r"^def ([A-Z]\w+)", (TESTS / "system/new_robot_test.py").read_text(), re.M)}
     for path in (TESTS / "python").glob("*_test.py"):
         for suite in ast.parse(path.read_text()).body:
             if isinstance(suite, ast.ClassDef):

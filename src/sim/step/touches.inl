@@ -4,6 +4,7 @@
 #include "sim/cables/implicit_groups.inl"
 #include "sim/contacts/consistent_biases.inl"
 #include "sim/contacts/friction.inl"
+#include "sim/contacts/moving_pairs.h"
 #include "sim/contacts/prepare_contact.inl"
 #include "sim/data/rows.h"
 
