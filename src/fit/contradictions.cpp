@@ -29,7 +29,7 @@ bool Estimated(const ParameterVerdict& v) { return v.kind == Determined::kEstima
 struct PointAway {
   std::vector<double> values;
   /// Whether all other parameters follow as in a refit. Confounded parameters do not, because their
-  /// covariances are infinite; chi-square then rises by more than after a refit.
+  /// errors are infinite; chi-square then rises by more than after a refit.
   bool refitted = true;
 };
 
@@ -44,11 +44,8 @@ std::optional<PointAway> OneErrorAway(const FitProblem& problem, const FitVerdic
   PointAway point{verdict.values};
   for (std::size_t i = 0; i < n; ++i) {
     const double shared = covariance[j * n + i];
-    if (std::isfinite(shared)) {
-      point.values[i] += sign * shared / se;
-    } else {
-      point.refitted = false;
-    }
+    point.refitted = point.refitted && std::isfinite(covariance[i * n + i]);
+    if (std::isfinite(shared)) point.values[i] += sign * shared / se;
     if (point.values[i] < problem.parameters[i].low ||
         point.values[i] > problem.parameters[i].high) {
       return std::nullopt;

@@ -128,7 +128,7 @@ class Sequences(unittest.TestCase):
         good = self.targets(batch, 3)
         for call, why in ((lambda: batch.rollout(good[0], 1e-3), r"\(3, 12\).*\(2, 1, 12\)"),
                           (lambda: batch.rollout(good[:1], 1e-3), r"\(1, 3, 12\).*\(2, 3, 12\)"),
-                          (lambda: batch.rollout("no", 1e-3), "not numbers"),
+                          (lambda: batch.rollout("no", 1e-3), "expected float64"),
                           (lambda: batch.rollout(good, 0), "positive"),
                           (lambda: batch.rollout(good, 1e-3, 0), "at least 1"),
                           (lambda: batch.rollout(good, 1e-3, 1, b"no"), "start"),

@@ -109,7 +109,7 @@ TEST(YamlTree, NodesAreLimitedAndAliasesCountFully) {
   std::string large = "a: [";
   for (int i = 0; i < 1'000'000; ++i) large += "1, ";
   EXPECT_EQ(ParseErrors(large + "1]").substr(0, 60),
-            "f.yaml:1:3000002: error: the file has more than 1000000 YAML ");
+            "f.yaml:1:3000002: error: the file has more than 1000000 YAML");
   // Each line multiplies by ten: a billion nodes in ten lines.
   std::string laughs = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 10; ++i) {
