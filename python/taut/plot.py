@@ -111,7 +111,7 @@ def plot(runs, out, channels, measured=None, *, width_mm=88, height_mm=None, lay
     `runs`: a path, a folder of a run, a `taut.Run` or a `taut.Trace`, or a list of at most four. `out`: file with the
     extension .pdf, .svg or .png. `channels`: patterns such as "cable/*/tension_n". `measured`: trace or path, drawn as
     dots over the lines. `layout`: "one" axis for all channels, which must have one unit, or "many": one small plot per
-    channel. `phases`: list of (name, from_s, to_s) to shade; default: those of the first run's folder. Returns the
+    channel. `phases`: list of (name, from_s, to_s) to shade; default: the phases in the first run's folder. Returns the
     matplotlib figure. Raises ValueError for channels that do not exist and ImportError without matplotlib."""
     try:
         import matplotlib

@@ -257,7 +257,7 @@ TEST(MovingPairs, HaveAscendingKeysWithoutGaps) {
   EXPECT_EQ(m.moving_pair_count, bodies);
 }
 
-/// Neither the memory of a world nor that of the model contains all pairs.
+/// Neither a world nor a model stores all pairs.
 TEST(NearBodies, NeedMemoryInProportionToTheirNumber) {
   const auto size = [](int balls) {
     ModelDef def;
