@@ -116,7 +116,7 @@ class Boards {
 
  private:
   static std::int64_t Ticks(double time_s) {
-    return static_cast<std::int64_t>(time_s / kTick_s + 0.5);
+    return static_cast<std::int64_t>(std::floor(time_s / kTick_s + 0.5));
   }
 
   double Noise(std::size_t lane, std::int64_t tick, std::size_t motor) const {
