@@ -114,12 +114,9 @@ void SendVariables(const std::string& path, double file_bytes, const ChildOutput
   {
     const QuietHdf5 quiet;
     const Hdf5Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!file) {
-      walk.error = "the file is damaged: " + quiet.why();
-    } else if (H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, VisitVariable, &walk) < 0 &&
-               walk.error.empty()) {
-      walk.error = "the file is damaged: " + quiet.why();
-    }
+    const bool readable =
+        file && H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, VisitVariable, &walk) >= 0;
+    if (!readable && walk.error.empty()) walk.error = "the file is damaged: " + quiet.why();
   }
   const auto number = [&](std::uint64_t n) { to.Write(&n, sizeof n); };
   walk.error.resize(std::min<std::size_t>(walk.error.size(), kMostTextBytes));

@@ -1,7 +1,6 @@
 /// Members to which load cases apply.
 #pragma once
 
-#include <compare>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,9 @@ struct LoadMember {
   enum class Kind { kCable, kBar, kRod };
   Kind kind;
   int index;
-  auto operator<=>(const LoadMember&) const = default;
+  bool operator<(const LoadMember& other) const {
+    return kind != other.kind ? kind < other.kind : index < other.index;
+  }
 };
 
 /// Returns the members that a selector matches: cables and bars by their tags, rods by their names.
