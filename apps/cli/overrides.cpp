@@ -71,7 +71,7 @@ std::string CheckName(const std::string& text) {
     return fmt::format("\"{}\" is not a valid name here (a command would read it as a flag)", text);
   }
   if (text == "null" || text == "Null" || text == "NULL") {
-    return fmt::format("\"{}\" is not a valid name here (YAML reads it as no value)", text);
+    return fmt::format("\"{}\" is not a valid name here (YAML reads it as a missing value)", text);
   }
   return {};
 }

@@ -22,3 +22,8 @@ RANGES = {
 # robot. The paper does not say which of the two was larger.
 NTRT = {"push": (32.29, 0.061), "sine": (26.93, 0.079), "gait": (30.24, 0.016)}
 LIMITS = {run: (simulated / (1 + error), simulated / (1 - error)) for run, (simulated, error) in NTRT.items()}
+
+
+def misfit(member):
+    """Returns by how far the largest tensions are outside their limits, as a sum of relative differences."""
+    return sum(max(0, low / member[run]["max_n"] - 1, member[run]["max_n"] / high - 1) for run, (low, high) in LIMITS.items())

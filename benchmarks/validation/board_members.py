@@ -15,7 +15,7 @@ import sys
 import numpy as np
 import taut
 
-from board_facts import DRIVES, LIMITS, RANGES
+from board_facts import DRIVES, RANGES, misfit
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHARE = ROOT / "share"
@@ -38,23 +38,14 @@ def draw(count, seed=1):
                         for name, (low, high) in RANGES.items()}} for i in range(count)]
 
 
-def misfit(member, limits):
-    """Returns by how far the largest tensions are outside their limits, as a sum of relative differences."""
-    outside = 0
-    for run, (low, high) in limits.items():
-        largest = member[run]["max_n"]
-        outside += max(0, low / largest - 1, largest / high - 1)
-    return outside
-
-
-def refine(members, count, limits, seed=2):
+def refine(members, count, seed):
     """Returns members with values near those of the least misfit, the same number for each drive."""
     numbers = random.Random(seed)
     refined = []
     for first in range(0, count, LANES):
         drive = list(DRIVES)[first // LANES % len(DRIVES)]
         of_drive = [member for member in members if member["drive"] == drive and not member["capture"]]
-        parents = sorted(of_drive, key=lambda member: misfit(member, limits))[:LANES]
+        parents = sorted(of_drive, key=misfit)[:LANES]
         for parent in parents:
             values = {name: min(high, max(low, parent["values"][name] * math.exp(numbers.gauss(0, 0.2))))
                       for name, (low, high) in RANGES.items()}
@@ -88,16 +79,12 @@ def variant_of(member, run):
     return values
 
 
-def simulate(job):
-    """Runs one group of members; returns their figures."""
-    path, run, members = job
-    experiment = taut.load(str(path))
-    sim = taut.Simulation(experiment, variants=[variant_of(member, run) for member in members], threads=1)
-    names = list(sim.cables)
-    outer = [i for i, name in enumerate(names) if name.startswith("outer")]
-    largest, total, total_outer, rows = np.zeros(len(members)), 0.0, 0.0, 0
+def figures_of(sim, duration_s):
+    """Runs a simulation to its end; returns the figures of each world."""
+    outer = [i for i, name in enumerate(sim.cables) if name.startswith("outer")]
     start_m = sim.body_position_m().mean(axis=1)
-    for tick in range(1, round(experiment.duration_s / READ_S) + 1):
+    largest, total, total_outer, rows = np.zeros(sim.worlds), 0.0, 0.0, 0
+    for tick in range(1, round(duration_s / READ_S) + 1):
         sim.run_until(tick * READ_S)
         if tick * READ_S <= FROM_S:
             continue
@@ -108,26 +95,21 @@ def simulate(job):
         rows += 1
     way_m = sim.body_position_m().mean(axis=1) - start_m
     return [{"max_n": float(largest[i]), "mean_n": float(total[i] / rows), "outer_n": float(total_outer[i] / rows),
-             "way_m": [float(x) for x in way_m[i, :2]], "status": sim.status(i)} for i in range(len(members))]
+             "way_m": [float(x) for x in way_m[i, :2]]} for i in range(sim.worlds)]
+
+
+def simulate(job):
+    """Runs one group of members; returns their figures."""
+    path, run, members = job
+    experiment = taut.load(str(path))
+    sim = taut.Simulation(experiment, variants=[variant_of(member, run) for member in members], threads=1)
+    return figures_of(sim, experiment.duration_s)
 
 
 def reference(run):
     """Returns the figures of the pure simulation."""
-    return simulate_pure(taut.load(str(SHARE / f"experiments/{RUNS[run][0]}.yaml")))
-
-
-def simulate_pure(experiment):
-    sim = taut.Simulation(experiment, threads=1)
-    outer = [i for i, name in enumerate(sim.cables) if name.startswith("outer")]
-    tensions, start_m = [], sim.body_position_m().mean(axis=1)
-    for tick in range(1, round(experiment.duration_s / READ_S) + 1):
-        sim.run_until(tick * READ_S)
-        if tick * READ_S > FROM_S:
-            tensions.append(sim.tension_n()[0])
-    tensions = np.array(tensions)
-    way_m = (sim.body_position_m().mean(axis=1) - start_m)[0]
-    return {"max_n": float(tensions.max()), "mean_n": float(tensions.mean()),
-            "outer_n": float(tensions[:, outer].mean()), "way_m": [float(x) for x in way_m[:2]]}
+    experiment = taut.load(str(SHARE / f"experiments/{RUNS[run][0]}.yaml"))
+    return figures_of(taut.Simulation(experiment, threads=1), experiment.duration_s)[0]
 
 
 def complete(members, folder):
@@ -154,7 +136,7 @@ def main():
     known = list(members)
     refined = []
     for stage in range(2, 4):
-        more = refine(known, count // 4 // LANES * LANES, LIMITS, seed=stage)
+        more = refine(known, count // 4 // LANES * LANES, seed=stage)
         complete(more, folder)
         refined += more
         known += more

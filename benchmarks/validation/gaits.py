@@ -187,7 +187,7 @@ def frequency_text(rows):
     """Formats the largest difference of the dominant frequencies from NTRT's, for cables with the same line."""
     worst, others = 0.0, []
     for cable, _, lines, _ in rows:
-        for who, line in zip(("its laws", "own laws"), lines[1:]):
+        for who, line in zip(("NTRT's laws", "taut's laws"), lines[1:]):
             off = abs(line[0] / lines[0][0] - 1)
             if off < 0.1:
                 worst = max(worst, off)

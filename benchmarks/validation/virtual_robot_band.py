@@ -8,7 +8,7 @@ import statistics
 import subprocess
 import sys
 
-from validation.board_facts import DRIVES, LIMITS, NTRT, RANGES
+from validation.board_facts import DRIVES, LIMITS, NTRT, RANGES, misfit
 from validation.push import machine
 from validation.runs import Problem, fill, table
 
@@ -78,12 +78,6 @@ def cuts_of(name):
     return [f"{a:.3g} to {b:.3g}" for a, b in zip(edges, edges[1:])]
 
 
-def least_misfit(drive, members):
-    """Returns the least sum of the relative distances of the three largest tensions from their limits."""
-    return min(sum(max(0, low / member[run]["max_n"] - 1, member[run]["max_n"] / high - 1)
-                   for run, (low, high) in LIMITS.items()) for member in members if member["drive"] == drive)
-
-
 def simulate(taut):
     found = taut.folder / "members.json"
     where = {**os.environ, "PYTHONPATH": str(taut.command.parent / "python")}
@@ -107,7 +101,8 @@ def page(taut):
     good = agreeing([*members, *refined], FACTS.values())
     best = agreeing(good, [outside])
     scales = [member["values"]["boards.velocity_input_scale"] for member in good]
-    misfits = {drive: least_misfit(drive, [*described, *refined]) for drive in DRIVES}
+    misfits = {drive: min(misfit(member) for member in [*described, *refined] if member["drive"] == drive)
+               for drive in DRIVES}
     facts.append(["all but the last", *(str(len(agreeing(group, FACTS.values()))) + f" of {len(group)}"
                                         for group in (described, captured))])
     facts.append(["all", *(str(len(agreeing(group, [*FACTS.values(), outside]))) + f" of {len(group)}"
@@ -121,8 +116,8 @@ def page(taut):
         influences.append(["drive", drive, span(largest(part)), span([way(member) for member in part], "{:.2f}")])
     left = [[name, f"{low:g} to {high:g}", span([member["values"][name] for member in good], "{:.3g}")]
             for name, (low, high) in RANGES.items()]
-    left.append(["drive", ", ".join(DRIVES),
-                 ", ".join(f"{drive}: {sum(member['drive'] == drive for member in good)}" for drive in DRIVES)])
+    left.append(["drive", "; ".join(DRIVES),
+                 "; ".join(f"{drive}: {sum(member['drive'] == drive for member in good)} robots" for drive in DRIVES)])
     shown = [[str(i), member["drive"], f"{member['values']['boards.force_p_per_n']:.4f}",
               f"{member['values']['integral_s']:.2f}", f"{member['values']['boards.velocity_input_scale']:.2f}",
               *(f"{member[run]['max_n']:.1f}" for run in NTRT), f"{way(member):.2f}",
@@ -130,7 +125,7 @@ def page(taut):
     values = {
         "count": str(len(members)), "refined": str(len(refined)), "seconds": "60",
         "misfits": table(["drive", "deviation [%]"],
-                         [[drive, f"{100 * misfit:.1f}"] for drive, misfit in misfits.items()]),
+                         [[drive, f"{100 * least:.1f}"] for drive, least in misfits.items()]),
         "worst_misfit": f"{math.ceil(1000 * max(misfits.values())) / 10:g}",
         "scales": "{:.2f} to {:.2f}".format(*(extreme(scales) for extreme in (min, max))) if scales else "none",
         "limits": table(["run", "NTRT [N]", "published error [%]", "possible largest tension of the robot [N]"],
@@ -140,7 +135,7 @@ def page(taut):
         "facts": table(["fact", "set points of the paper: agreeing [%]", "captured: agreeing [%]"], facts),
         "influences": table(["number", "values", "largest tension of the learned gait [N]", "distance in 60 s [m]"], influences),
         "left": table(["number", "range before", "with the facts"], left),
-        "shown": table(["member", "drive", "P [1/N]", "P / I [s]", "factor on V0", "push [N]", "sine [N]",
+        "shown": table(["example", "drive", "P [1/N]", "P / I [s]", "factor on V0", "push [N]", "sine [N]",
                         "learned gait [N]", "distance [m]", "outer cables [N]"], shown),
         "band": span(largest(described)), "least": f"{min(largest(described)):.1f}",
         "most": f"{max(largest(described)):.1f}", "good": str(len(good)), "best": str(len(best)),

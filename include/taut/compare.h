@@ -154,7 +154,7 @@ std::vector<std::string> MeasuredVerdict(const Comparison& comparison, const std
                                          const std::string& name_b);
 
 /// Returns a self-contained HTML page: the verdict, and for each group of channels its errors, bars
-/// of bias and RMSE, measured over simulated values, and curves.
+/// of bias and RMSE, a scatter plot of measured against simulated values, and curves.
 std::string ComparisonPage(const Comparison& comparison, const Trace& a, const Trace& b,
                            const std::string& name_a, const std::string& name_b);
 

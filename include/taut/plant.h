@@ -229,7 +229,7 @@ class Controller {
   /// Saves or restores the memory of a lane, for `Simulation::Save` and `Env::Save`. All
   /// controllers of taut implement it.
   virtual void Serialize(plant::LaneState& state) { (void)state; }
-  /// Returns a text about faults in a lane since its restart; empty without.
+  /// Returns a text about the faults in a lane since its restart; empty if there are none.
   virtual std::string Faults(int lane) const { return (void)lane, std::string(); }
 
   // --- interactive changes of a lane; override these functions if the controller supports them

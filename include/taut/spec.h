@@ -172,7 +172,8 @@ struct ControllerSpec {
   /// Added to the programs of the cables, or to the initial rest lengths of cables without a
   /// program.
   std::optional<GaitInputSpec> rest_length_input;
-  std::optional<BoardsSpec> boards;  ///< Without any other member but the name; last in the list.
+  /// If present, only `name` is also set, and this controller is the last in the list.
+  std::optional<BoardsSpec> boards;
 };
 
 /// Returns the motor boards among the controllers; null without.

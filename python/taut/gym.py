@@ -72,8 +72,9 @@ def _seed(seed, worlds=1):
 def _real(actions):
     """Returns `actions` as an array of real numbers without masked entries; else raises ValueError."""
     array = _np.asanyarray(actions)
-    if array.dtype.kind not in "biufO" or _np.ma.is_masked(array):
-        raise ValueError(f"actions: {'masked entries' if _np.ma.is_masked(array) else array.dtype}; expected real numbers")
+    masked = _np.ma.is_masked(array)
+    if masked or array.dtype.kind not in "biufO":
+        raise ValueError(f"actions: {'masked entries' if masked else array.dtype}; expected real numbers")
     return array
 
 

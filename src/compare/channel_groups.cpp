@@ -80,6 +80,10 @@ std::vector<WrapWarning> WrapWarnings(const std::vector<WrappedAngle>& angles) {
   return warnings;
 }
 
+std::string FourDigits(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
+}
+
 double Shown(double value, int decimals) {
   return std::abs(value) < 0.5 * std::pow(10.0, -decimals) ? 0.0 : value;
 }

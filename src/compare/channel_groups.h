@@ -36,6 +36,9 @@ struct WrapWarning {
 };
 std::vector<WrapWarning> WrapWarnings(const std::vector<WrappedAngle>& angles);
 
+/// Returns a value with four significant digits; "-" if it is not finite.
+std::string FourDigits(double value);
+
 /// Rounds a value to zero if it prints as zero with this many decimals, to avoid "-0.000".
 double Shown(double value, int decimals);
 

@@ -11,7 +11,6 @@ namespace taut {
 namespace {
 
 /// Returns a size with four digits; "-" if it is undefined.
-std::string Size(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
 
 bool IsEqual(const ChannelComparison& channel) {
   return channel.rmse == 0 && channel.error.value == 0 && channel.missing_s == 0;
@@ -49,12 +48,14 @@ std::string GroupLine(const compare::Group& group) {
       Largest(group, [](const ChannelComparison& c) { return std::abs(c.error.value); });
   if (group.rows.size() == 1) {
     return fmt::format("{}, {}: RMSE {}, bias {}, largest difference {} at {:.2f} s",
-                       compare::GroupTitle(group), rmse_name, Size(rmse->rmse), Size(rmse->bias),
-                       Size(error->error.value), error->error.time_s);
+                       compare::GroupTitle(group), rmse_name, compare::FourDigits(rmse->rmse),
+                       compare::FourDigits(rmse->bias), compare::FourDigits(error->error.value),
+                       error->error.time_s);
   }
   return fmt::format("{}: {} channels, RMSE at most {} ({}), largest difference {} ({}, {:.2f} s)",
-                     compare::GroupTitle(group), group.rows.size(), Size(rmse->rmse), rmse_name,
-                     Size(error->error.value), error_name, error->error.time_s);
+                     compare::GroupTitle(group), group.rows.size(), compare::FourDigits(rmse->rmse),
+                     rmse_name, compare::FourDigits(error->error.value), error_name,
+                     error->error.time_s);
 }
 
 /// Returns a line with the largest difference of the means in a phase.
@@ -65,8 +66,9 @@ std::string PhaseLine(const compare::Group& group, const TimeWindow& phase, std:
   const auto& [name, channel] =
       Largest(group, [&](const ChannelComparison& c) { return std::abs(difference(c)); });
   return fmt::format("{}, {}: mean a {}, b {}, difference {} ({})", compare::GroupTitle(group),
-                     phase.name, Size(channel->phases[index].a.mean),
-                     Size(channel->phases[index].b.mean), Size(difference(*channel)), name);
+                     phase.name, compare::FourDigits(channel->phases[index].a.mean),
+                     compare::FourDigits(channel->phases[index].b.mean),
+                     compare::FourDigits(difference(*channel)), name);
 }
 
 std::string ListLine(const std::string& title, const std::vector<std::string>& names) {

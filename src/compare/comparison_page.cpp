@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "compare/channel_groups.h"
+#include "compare/common_clock.h"
+#include "compare/gaps.h"
 #include "compare/plot.h"
 #include "taut/compare.h"
 #include "taut/version.h"
@@ -13,8 +15,6 @@ namespace taut {
 namespace {
 
 constexpr std::size_t kMostPlots = 24, kMostPoints = 400;
-
-std::string Digits(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "-"; }
 
 /// Returns at most kMostPoints rows of a channel in the common time.
 std::vector<std::pair<double, double>> Thinned(const Trace& trace, std::size_t channel,
@@ -28,18 +28,6 @@ std::vector<std::pair<double, double>> Thinned(const Trace& trace, std::size_t c
   const std::size_t every = std::max<std::size_t>(1, (all.size() + kMostPoints - 1) / kMostPoints);
   for (std::size_t i = 0; i < all.size(); i += every) some.push_back(all[i]);
   return some;
-}
-
-/// Returns the value of a channel at a time, interpolated; NaN outside of the trace.
-double Interpolated(const Trace& trace, std::size_t channel, double time_s) {
-  const auto after = std::lower_bound(trace.time_s.begin(), trace.time_s.end(), time_s);
-  if (after == trace.time_s.end()) return NAN;
-  const auto i = static_cast<std::size_t>(after - trace.time_s.begin());
-  const std::vector<double>& y = trace.values[channel];
-  if (*after == time_s) return y[i];
-  if (i == 0) return NAN;
-  const double t0 = trace.time_s[i - 1], share = (time_s - t0) / (*after - t0);
-  return y[i - 1] + share * (y[i] - y[i - 1]);
 }
 
 /// Returns one bar per channel for its bias (filled) and its RMSE (outline).
@@ -77,9 +65,11 @@ std::string GroupTable(const compare::Group& group) {
   std::vector<std::vector<std::string>> rows{{"channel", "RMSE", "bias", "max error", "at [s]",
                                               "lag [s]", "correlation", "max a", "max b"}};
   for (const auto& [name, c] : group.rows) {
-    rows.push_back({name, Digits(c->rmse), Digits(c->bias), Digits(c->error.value),
-                    Digits(c->error.time_s), (c->lag_at_limit ? ">" : "") + Digits(c->lag_s),
-                    Digits(c->correlation), Digits(c->max_a.value), Digits(c->max_b.value)});
+    rows.push_back({name, compare::FourDigits(c->rmse), compare::FourDigits(c->bias),
+                    compare::FourDigits(c->error.value), compare::FourDigits(c->error.time_s),
+                    (c->lag_at_limit ? ">" : "") + compare::FourDigits(c->lag_s),
+                    compare::FourDigits(c->correlation), compare::FourDigits(c->max_a.value),
+                    compare::FourDigits(c->max_b.value)});
   }
   return compare::HtmlTable(rows);
 }
@@ -93,12 +83,17 @@ std::string Scatter(const compare::Group& group, const Trace& a, const Trace& b,
                      {{"fitted", {}, true}, {"held", {}}},
                      {},
                      {}};
+  const std::vector<bool> gaps = compare::FindGaps(a.time_s);
   double low = INFINITY, high = -INFINITY;
   for (const auto& [name, c] : group.rows) {
     const auto in_a = a.Find(c->name), in_b = b.Find(c->name);
     if (!in_a || !in_b) continue;
-    for (const auto& [t, measured] : Thinned(b, *in_b, comparison)) {
-      const double simulated = Interpolated(a, *in_a, t);
+    std::vector<double> times_s;
+    const auto of_b = Thinned(b, *in_b, comparison);
+    for (const auto& point : of_b) times_s.push_back(point.first);
+    const auto of_a = compare::Interpolate(a.time_s, a.values[*in_a], gaps, times_s);
+    for (std::size_t i = 0; i < of_b.size(); ++i) {
+      const double simulated = of_a[i], measured = of_b[i].second;
       if (!std::isfinite(simulated) || !std::isfinite(measured)) continue;
       plot.series[1].points.emplace_back(simulated, measured);
       low = std::min(low, simulated), high = std::max(high, simulated);

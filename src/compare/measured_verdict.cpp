@@ -16,8 +16,6 @@ constexpr double kMostlyBias = 0.7;
 /// Correlation from which a lag is one.
 constexpr double kCorrelated = 0.5;
 
-std::string Four(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
-
 double MedianOf(std::vector<double> values) {
   if (values.empty()) return NAN;
   std::sort(values.begin(), values.end());
@@ -60,10 +58,11 @@ std::string ErrorLine(const compare::Group& group) {
       std::isfinite(share) ? fmt::format(" ({:+.1f} % of the largest value)", share) : "";
   if (rmse.size() == 1) {
     return fmt::format("{}, {}: bias {}{}, RMSE {}", compare::GroupTitle(group), worst->first,
-                       Four(bias[0]), size, Four(rmse[0]));
+                       compare::FourDigits(bias[0]), size, compare::FourDigits(rmse[0]));
   }
   return fmt::format("{}: median bias {}{}, RMSE {} to {}, worst {}", compare::GroupTitle(group),
-                     Four(MedianOf(bias)), size, Four(*least), Four(*most), worst->first);
+                     compare::FourDigits(MedianOf(bias)), size, compare::FourDigits(*least),
+                     compare::FourDigits(*most), worst->first);
 }
 
 /// Returns the sign pattern of the biases and a cause that it suggests; empty without a pattern.

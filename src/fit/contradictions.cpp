@@ -12,7 +12,7 @@ namespace {
 
 /// Jackknife errors contradict errors by J^T J if they are larger by the factor kSeveral, and if
 /// the probability of this by chance is below kByChance.
-constexpr double kSeveral = 2, kByChance = 1e-3;
+constexpr double kSeveral = 2;
 /// Rise of chi-square below which the data do not distinguish two minima: the quantile of
 /// chi-square with one degree of freedom for kByChance.
 constexpr double kSameFit = 10.83;
@@ -55,6 +55,13 @@ std::optional<PointAway> OneErrorAway(const FitProblem& problem, const FitVerdic
 }
 
 }  // namespace
+
+std::string UnreliableText(const FitParameter& p, const ParameterVerdict& v) {
+  std::string text =
+      p.name + " = " + Brief(v.value, p.unit) + " +- " + Brief(v.error(), p.unit) + ": unreliable";
+  for (const std::string& clause : v.contradictions) text += "; " + clause;
+  return text;
+}
 
 void ContradictByResiduals(const FitProblem& problem, double least_p, FitVerdict& verdict) {
   const ChiSquare& data = verdict.data;
@@ -184,11 +191,7 @@ void ApplyContradictions(const FitProblem& problem, FitVerdict& verdict) {
     ParameterVerdict& v = verdict.identifiability.parameters[j];
     if (!Estimated(v) || v.contradictions.empty()) continue;
     v.kind = Determined::kUnreliable;
-    const FitParameter& p = problem.parameters[j];
-    std::string text = p.name + " = " + Brief(v.value, p.unit) + " +- " + Brief(v.error(), p.unit) +
-                       ": unreliable";
-    for (const std::string& clause : v.contradictions) text += "; " + clause;
-    v.sentence = text;
+    v.sentence = UnreliableText(problem.parameters[j], v);
   }
 }
 

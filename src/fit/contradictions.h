@@ -6,6 +6,9 @@
 
 namespace taut::fit {
 
+/// Returns the sentence on an unreliable parameter, with its contradictions.
+std::string UnreliableText(const FitParameter& p, const ParameterVerdict& v);
+
 /// Adds contradictions by chi-square of the data, if it is significant at `least_p`.
 void ContradictByResiduals(const FitProblem& problem, double least_p, FitVerdict& verdict);
 

@@ -15,8 +15,6 @@ using fit::Vector;
 
 /// Names at most this many experiments in a sentence.
 constexpr std::size_t kMostNamed = 4;
-/// Probability below which experiments disagree.
-constexpr double kByChance = 1e-3;
 
 std::vector<int> ExperimentsOf(const FitProblem& problem) {
   std::vector<int> all;
@@ -119,7 +117,7 @@ std::optional<Homogeneity> Compare(const FitProblem& problem, const ExperimentsA
     test.chi2 += distance * distance;
   }
   test.p = ChiSquareTail(test.chi2, test.freedom);
-  test.apart = test.p < kByChance;
+  test.apart = test.p < fit::kByChance;
   std::stable_sort(by_distance.begin(), by_distance.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   const FitParameter& p = problem.parameters[j];

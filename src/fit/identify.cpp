@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/contradictions.h"
 #include "fit/format.h"
 #include "fit/linear_solve.h"
 #include "fit/problem.h"
@@ -21,7 +22,7 @@ using fit::Vector;
 constexpr double kDead = 1e-6;
 /// Correlation above which a report names both estimates.
 constexpr double kTogether = 0.95;
-/// Parameters with less than this share of the largest change in a confounded_with are not named.
+/// Parameters with less than this share of the largest compensating change are not named.
 constexpr double kNamed = 0.2;
 
 /// Free parameters (not at a bound), with the Jacobian and its decompositions in scales.
@@ -219,8 +220,7 @@ std::string Sentence(const FitProblem& problem, const Identifiability& all, std:
              Brief(v.se_alone, p.unit) + ")";
       break;
     case Determined::kUnreliable:
-      text = value + error + ": unreliable";
-      for (const std::string& clause : v.contradictions) text += "; " + clause;
+      text = fit::UnreliableText(p, v);
       break;
   }
   if (column.kink) {

@@ -18,6 +18,8 @@ using Matrix = Eigen::MatrixXd;
 /// A parameter counts as estimated if its sd is at most this share of its prior sd (or scale). A
 /// direction counts as fixed if its singular value is at least sqrt(1 / share^2 - 1).
 inline constexpr double kEstimatedShare = 0.5;
+/// Probability below which a contradiction is not by chance.
+inline constexpr double kByChance = 1e-3;
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 inline bool HasPrior(const FitParameter& parameter) {

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/pattern.h"
+#include "compare/channel_groups.h"
 
 namespace taut::identify {
 namespace {
@@ -11,9 +12,8 @@ namespace {
 /// Returns the pattern of all channels with the kind and the quantity of a channel, such as
 /// "cable/*/tension_n".
 std::string KindOf(const std::string& channel) {
-  const std::size_t first = channel.find('/'), last = channel.rfind('/');
-  if (first == channel.npos || first == last) return channel;
-  return channel.substr(0, first + 1) + "*" + channel.substr(last);
+  const bool has_member = channel.find('/') != channel.rfind('/');
+  return has_member ? compare::HeadingAndRow(channel).first : channel;
 }
 
 bool IsEstimated(const FitSpec& spec, FitEstimate::Kind kind, const std::string& channel) {

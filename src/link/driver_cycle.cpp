@@ -272,7 +272,8 @@ void Driver::TakeStatus(int board, const board::Status& status) {
                                                    static_cast<std::uint16_t>(to.encoder_counts));
     to.rest_length_m = figures.rest_length_at_reference_m -
                        static_cast<double>(to.encoder_counts) * figures.m_per_count;
-    to.length_m = to.rest_length_m + std::max(0.0, to.tension_n) / figures.stiffness_n_per_m;
+    to.length_m = control::LengthFromTension(to.rest_length_m, std::max(0.0, to.tension_n),
+                                             figures.stiffness_n_per_m);
     to.duty = from.duty / 127.0;
     if (more == (m == 0 ? board::More::kFaults0 : board::More::kFaults1)) {
       TakeFaults(board, static_cast<int>(m), status.more);

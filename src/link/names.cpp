@@ -4,6 +4,8 @@
 
 #include <charconv>
 
+#include "base/bit_names.h"
+
 namespace taut::link {
 namespace {
 
@@ -23,14 +25,6 @@ constexpr struct {
 
 /// In the order of the bits, least significant bit first.
 constexpr const char* kResetCauses[] = {"power_on", "external", "brown_out", "watchdog"};
-
-std::string NamesOf(unsigned bits, std::span<const char* const> names) {
-  std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if ((bits >> i & 1u) != 0) out += (out.empty() ? "" : ", ") + std::string(names[i]);
-  }
-  return out;
-}
 
 }  // namespace
 
@@ -97,9 +91,9 @@ std::optional<board::Mode> ModeOf(const std::string& name) {
   return std::nullopt;
 }
 
-std::string MotorFaultNames(unsigned bits) { return NamesOf(bits, board::kMotorFaultNames); }
-std::string BoardFaultNames(unsigned bits) { return NamesOf(bits, board::kBoardFaultNames); }
-std::string ResetCauseNames(unsigned bits) { return NamesOf(bits, kResetCauses); }
+std::string MotorFaultNames(unsigned bits) { return base::BitNames(bits, board::kMotorFaultNames); }
+std::string BoardFaultNames(unsigned bits) { return base::BitNames(bits, board::kBoardFaultNames); }
+std::string ResetCauseNames(unsigned bits) { return base::BitNames(bits, kResetCauses); }
 
 std::string FaultsOf(const State& state, int board, const std::vector<std::string>& cables) {
   std::string out;

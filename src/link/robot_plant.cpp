@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/assert.h"
+#include "plant/fault_bits.h"
 
 namespace taut::link {
 namespace {
@@ -112,8 +113,8 @@ void RobotPlant::Read() {
     }
     std::uint32_t& faults = faults_[static_cast<std::size_t>(c)];
     faults = board.there ? kFaultNone : kFaultNoReading;
-    if ((motor.faults & board::kSensor) != 0) faults |= kFaultSensor;
-    if ((motor.faults & ~board::kSensor) != 0 || board.faults != 0) faults |= kFaultActuator;
+    faults |= plant::FaultBitsOf(motor.faults);
+    if (board.faults != 0) faults |= kFaultActuator;
   }
 }
 

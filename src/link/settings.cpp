@@ -15,8 +15,6 @@ void Add(std::size_t motor, const description::MotorSettings& from, std::vector<
   for (const auto& [parameter, value] : from) to.push_back(Of(motor, parameter, value));
 }
 
-std::vector<int> CablesOf(const RobotSpec& robot) { return description::ActuatedCables(robot.def); }
-
 const CableDef& CableAt(const RobotSpec& robot, int cable) {
   return robot.def.cables[static_cast<std::size_t>(cable)];
 }
@@ -25,12 +23,13 @@ const CableDef& CableAt(const RobotSpec& robot, int cable) {
 
 std::vector<std::string> MotorNames(const RobotSpec& robot) {
   std::vector<std::string> names;
-  for (const int cable : CablesOf(robot)) names.push_back(CableAt(robot, cable).name);
+  for (const int cable : description::ActuatedCables(robot.def))
+    names.push_back(CableAt(robot, cable).name);
   return names;
 }
 
 std::vector<int> MotorCables(const RobotSpec& robot, Diagnostics& out) {
-  std::vector<int> cables = CablesOf(robot);
+  std::vector<int> cables = description::ActuatedCables(robot.def);
   const SourceRef file{robot.files.empty() ? "model" : robot.files.front()};
   if (cables.empty()) {
     out.Error("robot.no_actuators", file, "no cable has an actuator",
@@ -46,7 +45,7 @@ std::vector<int> MotorCables(const RobotSpec& robot, Diagnostics& out) {
 }
 
 std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) {
-  const std::vector<int> cables = CablesOf(experiment.robot);
+  const std::vector<int> cables = description::ActuatedCables(experiment.robot.def);
   std::vector<std::string> with, without;
   for (const int cable : cables) {
     (description::GainsOf(experiment.controllers, cable) != nullptr ? with : without)
@@ -64,7 +63,7 @@ std::optional<Mode> ModeFor(const ExperimentSpec& experiment, Diagnostics& out) 
 
 std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines) {
   std::vector<Setting> settings;
-  const std::vector<int> cables = CablesOf(robot);
+  const std::vector<int> cables = description::ActuatedCables(robot.def);
   for (std::size_t motor = 0; motor < cables.size(); ++motor) {
     Add(motor, description::SettingsOf(CableAt(robot, cables[motor]), encoder_lines), settings);
   }
@@ -73,18 +72,20 @@ std::vector<Setting> SettingsFor(const RobotSpec& robot, int encoder_lines) {
 
 std::vector<Setting> GainsFor(const ExperimentSpec& experiment) {
   std::vector<Setting> settings;
-  const std::vector<int> cables = CablesOf(experiment.robot);
+  description::MotorSettings common;
+  if (const BoardsSpec* const boards = BoardsOf(experiment.controllers)) {
+    common = description::CommonMotorSettings(*boards);
+    // A robot's load cells are calibrated.
+    std::erase_if(common, [](const auto& setting) {
+      return setting.parameter == board::kNewtonsPerCount ||
+             setting.parameter == board::kCountsAtZero;
+    });
+  }
+  const std::vector<int> cables = description::ActuatedCables(experiment.robot.def);
   for (std::size_t motor = 0; motor < cables.size(); ++motor) {
     const ImpedanceGains* const gains = description::GainsOf(experiment.controllers, cables[motor]);
     if (gains != nullptr) Add(motor, description::SettingsOf(*gains), settings);
-    const BoardsSpec* const boards = BoardsOf(experiment.controllers);
-    if (boards == nullptr) continue;
-    for (const auto& [parameter, value] : description::CommonMotorSettings(*boards)) {
-      // A robot's load cells are calibrated.
-      const bool of_cell =
-          parameter == board::kNewtonsPerCount || parameter == board::kCountsAtZero;
-      if (!of_cell) settings.push_back(Of(motor, parameter, value));
-    }
+    Add(motor, common, settings);
   }
   return settings;
 }

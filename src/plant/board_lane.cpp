@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "base/bit_names.h"
+
 namespace taut::plant {
 namespace {
 
@@ -165,7 +167,8 @@ void BoardLane::ReadStatus(double since_s) {
     to.tension_n = force_n(status.tension_quarters);
     to.set_point_n =
         board.mode == board::Mode::kImpedance ? force_n(status.set_point_quarters) : 0.0;
-    to.length_m = to.rest_length_m + std::max(0.0, to.tension_n) / double{p[board::kStiffness]};
+    to.length_m = control::LengthFromTension(to.rest_length_m, std::max(0.0, to.tension_n),
+                                             double{p[board::kStiffness]});
     to.faults = board.faults[m];
   }
 }
@@ -177,15 +180,11 @@ double BoardLane::Duty(int motor) const {
 
 std::string BoardLane::Faults(const std::vector<std::string>& names) const {
   if (faulty_motor_ < 0) return {};
-  std::string faults;
-  for (std::size_t i = 0; i < std::size(board::kMotorFaultNames); ++i) {
-    if ((first_faults_ >> i & 1u) == 0) continue;
-    faults += (faults.empty() ? "" : ", ") + std::string(board::kMotorFaultNames[i]);
-  }
   char time[32];
   std::snprintf(time, sizeof time, " at %.3f s", faulty_s_);
   return "the board of " + names[static_cast<std::size_t>(faulty_motor_)] +
-         " reported a fault: " + faults + time + "; then all motors held";
+         " reported a fault: " + base::BitNames(first_faults_, board::kMotorFaultNames) + time +
+         "; then all motors held";
 }
 
 void BoardLane::Serialize(LaneState& state) {

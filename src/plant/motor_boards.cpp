@@ -8,6 +8,7 @@
 #include "base/assert.h"
 #include "math/random.h"
 #include "plant/board_lane.h"
+#include "plant/fault_bits.h"
 #include "plant/random_streams.h"
 
 namespace taut::plant {
@@ -15,127 +16,136 @@ namespace {
 
 constexpr double kTick_s = 0.001;
 
-/// State that sensors and controller share. Motor m of lane j is at [m * lanes + j].
+/// State that sensors and controller share.
 class Boards {
  public:
   explicit Boards(const ControlSetup& setup)
-      : def_(setup.experiment.robot.def),
-        cables_(description::ActuatedCables(def_)),
-        lanes_(setup.lanes.size()),
-        specs_(lanes_, *BoardsOf(setup.experiment.controllers)),
-        seeds_(lanes_),
-        boards_(lanes_, BoardLane(static_cast<int>(cables_.size()))),
-        start_m_(lanes_ * cables_.size()),
-        inputs_(lanes_, std::vector<MotorInputs>(cables_.size())),
-        values_(lanes_, std::vector<double>(cables_.size())) {
-    mode_ = board::Mode::kPosition;
+      : def_(setup.experiment.robot.def), cables_(description::ActuatedCables(def_)) {
     for (const int cable : cables_) {
       names_.push_back(def_.cables[static_cast<std::size_t>(cable)].name);
       if (description::GainsOf(setup.experiment.controllers, cable) != nullptr) {
         mode_ = board::Mode::kImpedance;
       }
     }
-    for (std::size_t j = 0; j < lanes_; ++j) Restart(j, *setup.lanes[j]);
+    lanes_.resize(setup.lanes.size(), Lane(cables_.size()));
+    for (std::size_t j = 0; j < lanes_.size(); ++j) Restart(j, *setup.lanes[j]);
   }
 
   void Restart(std::size_t lane, const RolloutWorld& world) {
     const BoardsSpec* const spec = BoardsOf(world.controllers);
     TAUT_ASSERT(spec != nullptr);
-    specs_[lane] = *spec;
-    seeds_[lane] = world.seed;
-    boards_[lane].Configure(*spec, def_, cables_, world.controllers);
+    Lane& of = lanes_[lane];
+    of.spec = *spec;
+    of.seed = world.seed;
+    of.every = Ticks(spec->broadcast_s);
+    of.delay = Ticks(spec->broadcast_delay_s);
+    for (std::size_t m = 0; m < cables_.size(); ++m) {
+      const CableDef& cable = def_.cables[static_cast<std::size_t>(cables_[m])];
+      of.m_per_count[m] =
+          description::LengthPerCount(*cable.actuator.dc_motor, spec->encoder_lines);
+    }
+    of.boards.Configure(*spec, def_, cables_, world.controllers);
   }
 
   /// Reads load cells and encoders of a lane. The first tick starts its boards.
   void Read(std::size_t lane, std::int64_t tick, const Observation& exact) {
-    const BoardsSpec& spec = specs_[lane];
+    Lane& of = lanes_[lane];
+    const double* const rest_m = exact.shaft_m ? exact.shaft_m : exact.cables.rest_length_m;
     for (std::size_t m = 0; m < cables_.size(); ++m) {
-      const std::size_t at = static_cast<std::size_t>(cables_[m]) * lanes_ + lane;
-      const double* const rest_m = exact.shaft_m ? exact.shaft_m : exact.cables.rest_length_m;
-      double& start_m = start_m_[m * lanes_ + lane];
-      if (tick == 0) start_m = rest_m[at];
-      const double noise = spec.load_cell.noise_counts > 0 ? Noise(lane, tick, m) : 0.0;
-      const DcMotorDef& motor =
-          *def_.cables[static_cast<std::size_t>(cables_[m])].actuator.dc_motor;
-      inputs_[lane][m] = {
-          LoadCellCode(spec.load_cell, exact.cables.tension_n[at], noise),
-          static_cast<std::int64_t>(std::floor(
-              (start_m - rest_m[at]) / description::LengthPerCount(motor, spec.encoder_lines)))};
+      const std::size_t at = At(m, lane);
+      if (tick == 0) of.start_m[m] = rest_m[at];
+      const double noise = of.spec.load_cell.noise_counts > 0 ? Noise(of.seed, tick, m) : 0.0;
+      const double counts = std::floor((of.start_m[m] - rest_m[at]) / of.m_per_count[m]);
+      of.inputs[m] = {LoadCellCode(of.spec.load_cell, exact.cables.tension_n[at], noise),
+                      static_cast<std::int64_t>(counts)};
     }
-    if (tick == 0) boards_[lane].Start(inputs_[lane]);
+    if (tick == 0) of.boards.Start(of.inputs);
   }
 
   /// Runs a tick of a lane and sets its commands.
   void Tick(std::size_t lane, std::int64_t tick, Commands& commands) {
-    const BoardsSpec& spec = specs_[lane];
-    BoardLane& boards = boards_[lane];
-    const std::int64_t every = Ticks(spec.broadcast_s), delay = Ticks(spec.broadcast_delay_s);
+    Lane& of = lanes_[lane];
     const double time_s = static_cast<double>(tick) * kTick_s;
-    std::vector<double>& values = values_[lane];
-    if (tick % every == 0) {
+    if (tick % of.every == 0) {
       for (std::size_t m = 0; m < cables_.size(); ++m) {
-        const std::size_t at = static_cast<std::size_t>(cables_[m]) * lanes_ + lane;
-        values[m] = mode_ == board::Mode::kPosition
-                        ? commands.rest_length_m[at]
-                        : spec.velocity_input_scale * commands.velocity_input_m_per_s[at];
+        const std::size_t at = At(m, lane);
+        of.values[m] = mode_ == board::Mode::kPosition
+                           ? commands.rest_length_m[at]
+                           : of.spec.velocity_input_scale * commands.velocity_input_m_per_s[at];
       }
     }
     // The first broadcast, at the start, changes the mode.
-    const bool broadcast = tick % every == delay || tick == 0;
+    const bool broadcast = tick % of.every == of.delay || tick == 0;
     if (broadcast) {
       // Like the driver of a robot, which holds all motors after a fault.
-      const bool holds = time_s < spec.hold_s - 1e-9 || boards.HasFault();
-      boards.Broadcast(holds ? board::Mode::kHold : mode_, spec.capture, values);
+      const bool holds = time_s < of.spec.hold_s - 1e-9 || of.boards.HasFault();
+      of.boards.Broadcast(holds ? board::Mode::kHold : mode_, of.spec.capture, of.values);
     }
-    boards.Tick(inputs_[lane], time_s);
-    if (broadcast) boards.ReadStatus(tick <= delay ? 0.0 : spec.broadcast_s);
+    of.boards.Tick(of.inputs, time_s);
+    if (broadcast) of.boards.ReadStatus(tick <= of.delay ? 0.0 : of.spec.broadcast_s);
     for (std::size_t m = 0; m < cables_.size(); ++m) {
-      const std::size_t at = static_cast<std::size_t>(cables_[m]) * lanes_ + lane;
+      const std::size_t at = At(m, lane);
       const int motor = static_cast<int>(m);
-      commands.mode[at] = boards.IsPowered(motor) ? CommandMode::kDuty : CommandMode::kOff;
-      commands.duty[at] = boards.Duty(motor);
-      commands.set_point_n[at] = boards.readings(motor).set_point_n;
+      commands.mode[at] = of.boards.IsPowered(motor) ? CommandMode::kDuty : CommandMode::kOff;
+      commands.duty[at] = of.boards.Duty(motor);
+      commands.set_point_n[at] = of.boards.readings(motor).set_point_n;
     }
   }
 
   const std::vector<int>& cables() const { return cables_; }
   const MotorReadings& readings(std::size_t lane, std::size_t motor) const {
-    return boards_[lane].readings(static_cast<int>(motor));
+    return lanes_[lane].boards.readings(static_cast<int>(motor));
   }
-  std::size_t lanes() const { return lanes_; }
+  std::size_t lanes() const { return lanes_.size(); }
   const ModelDef& def() const { return def_; }
-  std::string Faults(std::size_t lane) const { return boards_[lane].Faults(names_); }
+  std::string Faults(std::size_t lane) const { return lanes_[lane].boards.Faults(names_); }
+  /// Returns the index of a motor's cable in the rows of a plant.
+  std::size_t At(std::size_t motor, std::size_t lane) const {
+    return static_cast<std::size_t>(cables_[motor]) * lanes_.size() + lane;
+  }
 
   void Serialize(LaneState& state) {
-    const auto lane = static_cast<std::size_t>(state.lane());
-    boards_[lane].Serialize(state);
-    state.Row(start_m_);
-    for (MotorInputs& of : inputs_[lane]) state.Values(of.code, of.counts);
-    for (double& value : values_[lane]) state.Value(value);
+    Lane& of = lanes_[static_cast<std::size_t>(state.lane())];
+    of.boards.Serialize(state);
+    for (std::size_t m = 0; m < cables_.size(); ++m) {
+      state.Values(of.start_m[m], of.inputs[m].code, of.inputs[m].counts, of.values[m]);
+    }
   }
 
  private:
+  /// Boards of one robot. Vectors have one entry per motor.
+  struct Lane {
+    explicit Lane(std::size_t motors)
+        : boards(static_cast<int>(motors)),
+          m_per_count(motors),
+          start_m(motors),
+          inputs(motors),
+          values(motors) {}
+    BoardsSpec spec;
+    std::uint64_t seed = 0;
+    std::int64_t every = 1, delay = 0;  ///< Period and delay of broadcasts [ticks].
+    BoardLane boards;
+    std::vector<double> m_per_count;  ///< Cable length per encoder count [m].
+    std::vector<double> start_m;      ///< Rest lengths at the first tick.
+    std::vector<MotorInputs> inputs;
+    std::vector<double> values;  ///< V0 [m/s] or rest lengths [m] of the next broadcast.
+  };
+
   static std::int64_t Ticks(double time_s) {
     return static_cast<std::int64_t>(std::floor(time_s / kTick_s + 0.5));
   }
 
-  double Noise(std::size_t lane, std::int64_t tick, std::size_t motor) const {
+  double Noise(std::uint64_t seed, std::int64_t tick, std::size_t motor) const {
     const std::uint64_t sample = static_cast<std::uint64_t>(tick) * def_.cables.size() +
                                  static_cast<std::uint64_t>(cables_[motor]);
-    return math::Random(seeds_[lane], kBoardLoadCellNoise, sample).Normal();
+    return math::Random(seed, kBoardLoadCellNoise, sample).Normal();
   }
 
   const ModelDef& def_;
   std::vector<int> cables_;  ///< Per motor.
-  std::size_t lanes_;
-  std::vector<BoardsSpec> specs_;
-  std::vector<std::uint64_t> seeds_;
-  std::vector<BoardLane> boards_;
-  board::Mode mode_;
-  std::vector<double> start_m_;  ///< Row of the motors: rest length at the first tick.
-  std::vector<std::vector<MotorInputs>> inputs_;  ///< Per lane.
-  std::vector<std::vector<double>> values_;       ///< Per lane: V0 or rest lengths of a broadcast.
   std::vector<std::string> names_;
+  board::Mode mode_ = board::Mode::kPosition;
+  std::vector<Lane> lanes_;
 };
 
 class BoardSensors final : public SensorModel {
@@ -188,18 +198,14 @@ class BoardSensors final : public SensorModel {
     }
   }
   void Show(std::size_t lane, std::size_t motor) {
-    const auto cable = static_cast<std::size_t>(boards_->cables()[motor]);
-    const std::size_t i = cable * boards_->lanes() + lane;
+    const std::size_t i = boards_->At(motor, lane);
     const MotorReadings& from = boards_->readings(lane, motor);
     seen_.rest_length_m[i] = from.rest_length_m;
     seen_.length_m[i] = from.length_m;
     seen_.rate_m_per_s[i] = from.rate_m_per_s;
     seen_.tension_n[i] = from.tension_n;
     seen_.elastic_n[i] = from.tension_n > 0 ? from.tension_n : 0.0;
-    std::uint32_t faults = kFaultNone;
-    if ((from.faults & board::kSensor) != 0) faults |= kFaultSensor;
-    if ((from.faults & ~board::kSensor) != 0) faults |= kFaultActuator;
-    faults_[i] = faults;
+    faults_[i] = FaultBitsOf(from.faults);
   }
 
   std::shared_ptr<Boards> boards_;

@@ -33,7 +33,7 @@ std::optional<std::vector<double>> ClockTimes(const std::string& path, const Tab
       out.Error(
           "mat.bad_clock", {path},
           fmt::format("value {} of the clock \"{}\" is {}", times.size() + 1, layout.time_column,
-                      std::isfinite(time_s) ? "not larger than the one before" : "not a number"),
+                      std::isfinite(time_s) ? "not larger than the previous one" : "not a number"),
           "times must increase");
       return std::nullopt;
     }

@@ -15,13 +15,6 @@ const char* const kHangOnTheLine = TAUT_SOURCE_DIR "/share/experiments/hang.yaml
 
 class CliCommand : public test::CommandTest {
  protected:
-  /// Returns the first line of the error for a wrong command line.
-  std::string Refusal(const std::vector<std::string>& arguments) {
-    const test::CommandResult result = Taut(arguments);
-    EXPECT_EQ(result.status, 2) << result.errors;
-    EXPECT_EQ(result.output, "");
-    return result.errors.substr(0, result.errors.find('\n'));
-  }
   std::vector<std::vector<std::string>> Commands() const {
     return {{"new"},
             {"check"},

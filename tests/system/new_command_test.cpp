@@ -8,16 +8,7 @@
 namespace taut {
 namespace {
 
-class NewCommand : public test::CommandTest {
- protected:
-  /// Returns the first line of the error for a wrong command line.
-  std::string Refusal(const std::vector<std::string>& arguments) {
-    const test::CommandResult result = Taut(arguments);
-    EXPECT_EQ(result.status, 2) << result.errors;
-    EXPECT_EQ(result.output, "");
-    return result.errors.substr(0, result.errors.find('\n'));
-  }
-};
+class NewCommand : public test::CommandTest {};
 
 TEST_F(NewCommand, ANewModelIsGood) {
   EXPECT_EQ(Taut({"new", "model", "mine"}).output,
@@ -64,7 +55,7 @@ TEST_F(NewCommand, NewOverwritesNothing) {
   EXPECT_EQ(Refusal({"new", "robot", "--", "-x"}),
             "error: NAME: \"-x\" is not a valid name here (a command would read it as a flag)");
   EXPECT_EQ(Refusal({"new", "model", "null"}),
-            "error: NAME: \"null\" is not a valid name here (YAML reads it as no value)");
+            "error: NAME: \"null\" is not a valid name here (YAML reads it as a missing value)");
   EXPECT_EQ(Refusal({"new", "modle", "a"}),
             "error: kind: \"modle\" is unknown (did you mean \"model\"?)");
 }

@@ -86,6 +86,14 @@ class CommandTest : public testing::Test {
     return End(Start(arguments, before));
   }
 
+  /// Returns the first line of the error for a wrong command line.
+  std::string Refusal(const std::vector<std::string>& arguments) const {
+    const CommandResult result = Taut(arguments);
+    EXPECT_EQ(result.status, 2) << result.errors;
+    EXPECT_EQ(result.output, "");
+    return result.errors.substr(0, result.errors.find('\n'));
+  }
+
   std::filesystem::path folder_;
 };
 

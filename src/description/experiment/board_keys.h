@@ -10,8 +10,9 @@ template <class Io>
 void Keys(Io& io, Like<BoardLoadCell> auto& c) {
   io.Map(
       "", "boards.load_cell",
-      "Load cell of each board: force = n_per_count * (code - counts_at_zero), a whole code from "
-      "0 to 1023. The defaults are the values of Tetraspine3 (eq. 7 of Mirletz et al. 2015).");
+      "Load cell of each board: force = n_per_count * (code - counts_at_zero). Codes are whole "
+      "numbers from 0 to 1023. The defaults are the values of Tetraspine3 (eq. 7 of Mirletz et al. "
+      "2015).");
   io("n_per_count", c.n_per_count, Bound{.least = 0.001, .most = 10}, kFixed,
      "Force per count [N].");
   io("counts_at_zero", c.counts_at_zero, Bound{.least = 0, .most = 1023}, kFixed,
@@ -66,23 +67,25 @@ void Keys(Io& io, Boards& b) {
      "Load cell counts per encoder count wound in, for the complementary filter of the tension; 0: "
      "low-pass filter.");
   io("tension_limit_n", b.tension_limit_n, Bound{.least = 1, .most = 110},
-     "Tension that is a fault after five readings.");
+     "Tension limit: five consecutive readings above it are a fault.");
   io("tension_band_n", b.tension_band_n, Bound{.least = 0.1, .most = 50},
-     "Band below the limit in which the duty for winding in decreases to 0.");
-  io("duty_limit", b.duty_limit, Bound::kFraction, "Largest duty.");
+     "Width of the band below `tension_limit_n` in which the duty for winding in decreases to 0.");
+  io("duty_limit", b.duty_limit, Bound::kFraction, "Largest magnitude of the duty.");
   io("slack_way_m", b.slack_way_m, Bound{.least = 0.001, .most = 1}, kFixed,
-     "Length wound in without a tension, or with the same reading, that is a fault.");
+     "Length limit: winding in a longer length without tension, or with a constant load cell "
+     "reading, is a fault.");
   io("stall_duty", b.stall_duty, Bound{.least = 0.05, .most = 1.1}, kFixed,
-     "Duty that is a fault after 100 ms without a count of the encoder.");
+     "Duty limit: a duty of at least this value for 100 ms without an encoder count is a fault "
+     "(stall).");
   io("supply_v", b.supply_v, Bound{.least = 5, .most = 28}, kFixed,
-     "Supply voltage from which a board estimates the winding temperature. The motor itself has "
-     "the voltage of the model.");
+     "Supply voltage [V] for the board's estimate of the winding temperature. The supply of the "
+     "simulated motor is a key of the model.");
   io("winding_ohm", b.winding_ohm, Bound{.least = 0.1, .most = 1000}, kFixed,
      "Resistance for this estimate.");
   io("back_emf_v_s_per_m", b.back_emf_v_s_per_m, gain(10'000), kFixed,
      "Voltage per cable speed for this estimate.");
   io("winding_limit_c", b.winding_limit_c, Bound{.least = 40, .most = 155}, kFixed,
-     "Estimated winding temperature that is a fault.");
+     "Limit of the estimated winding temperature [degrees C]; above it, the motor has a fault.");
 }
 void Check(const MapReader& map, BoardsText& boards);
 

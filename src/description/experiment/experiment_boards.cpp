@@ -9,14 +9,6 @@
 namespace taut::description {
 namespace {
 
-std::string NamesOf(const RobotSpec& robot, const std::vector<int>& cables) {
-  std::string names;
-  for (const int cable : cables) {
-    names += (names.empty() ? "" : ", ") + robot.def.cables[static_cast<std::size_t>(cable)].name;
-  }
-  return names;
-}
-
 /// Checks that boards can drive the actuated cables of the robot.
 void CheckCables(const RobotSpec& robot, const std::vector<ControllerSpec>& controllers,
                  const SourceRef& at, const Scope& scope) {
@@ -34,12 +26,12 @@ void CheckCables(const RobotSpec& robot, const std::vector<ControllerSpec>& cont
   if (!without_motor.empty()) {
     scope.out.Error(
         "boards.not_a_motor", at,
-        "boards: the actuators of " + NamesOf(robot, without_motor) + " are not DC motors",
+        "boards: the actuators of " + CableNames(robot, without_motor) + " are not DC motors",
         "write `actuator: {dc_motor: {...}}` in the model");
   }
   if (!with_gains.empty() && !without_gains.empty()) {
     scope.out.Error("boards.mixed_modes", at,
-                    "boards: impedance control is missing for " + NamesOf(robot, without_gains),
+                    "boards: impedance control is missing for " + CableNames(robot, without_gains),
                     "boards run it for all cables with actuators, or for none");
   }
 }

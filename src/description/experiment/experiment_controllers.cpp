@@ -15,12 +15,6 @@ const std::string& CableName(const RobotSpec& robot, int cable) {
   return robot.def.cables[static_cast<std::size_t>(cable)].name;
 }
 
-std::string CableNames(const RobotSpec& robot, const std::vector<int>& cables) {
-  std::string out;
-  for (const int cable : cables) out += (out.empty() ? "" : ", ") + CableName(robot, cable);
-  return out;
-}
-
 /// Settings (gains, set points, programs) per cable, with file positions. Reports cables with two
 /// settings.
 template <class T>
@@ -177,6 +171,12 @@ void CheckDriven(const std::vector<ControllerSpec>& controllers,
 }
 
 }  // namespace
+
+std::string CableNames(const RobotSpec& robot, const std::vector<int>& cables) {
+  std::string out;
+  for (const int cable : cables) out += (out.empty() ? "" : ", ") + CableName(robot, cable);
+  return out;
+}
 
 std::string Written(const Value& selector) {
   if (selector.kind != Value::Kind::kSequence) return selector.text;

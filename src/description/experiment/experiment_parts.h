@@ -18,6 +18,9 @@ namespace taut::description {
 std::vector<int> SelectCables(const Value& value, std::string_view what, const RobotSpec* robot,
                               const Scope& scope);
 
+/// Returns the names of cables for a message, separated by commas.
+std::string CableNames(const RobotSpec& robot, const std::vector<int>& cables);
+
 /// Returns a selector in the notation of the file format: [inner, top].
 std::string Written(const Value& selector);
 /// Returns the hint for a selector that matches no `kind` ("cable"). The hint names the tag of the

@@ -1,26 +1,16 @@
 // The key `boards` of experiment files: values, errors, resolved files
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
-
-#include "taut/spec.h"
+#include "unit/description/experiment_fixture.h"
 
 namespace taut::test {
 namespace {
 
 const std::string kShipped = std::string(TAUT_SOURCE_DIR) + "/share/experiments/";
 
-struct BoardsFile : ::testing::Test {
-  BoardsFile() { std::filesystem::create_directories(folder); }
-  ~BoardsFile() override { std::filesystem::remove_all(folder); }
-
+struct BoardsFile : ExperimentFolder {
   std::optional<ExperimentSpec> Read(const std::string& text) {
-    const std::string path = folder + "/boards.yaml";
-    std::ofstream(path) << text;
+    Write("boards.yaml", text);
     out = Diagnostics();
-    return LoadExperiment(path, {}, out);
+    return LoadExperiment(Path("boards.yaml"), {}, out);
   }
   /// Reads an experiment with this base and line of boards.
   std::optional<ExperimentSpec> Read(const std::string& base, const std::string& lines) {
@@ -33,8 +23,6 @@ struct BoardsFile : ::testing::Test {
     return ids;
   }
 
-  const std::string folder = ::testing::TempDir() + "taut_" +
-                             ::testing::UnitTest::GetInstance()->current_test_info()->name();
   Diagnostics out;
 };
 

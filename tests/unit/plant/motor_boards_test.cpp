@@ -27,19 +27,8 @@ ExperimentSpec PushOnBoards(double duration_s, const BoardsSpec& boards = {}) {
 
 /// A weight of 1 kg on a rope of 1 m with a motor.
 ExperimentSpec Crane(double duration_s, const BoardsSpec& boards) {
-  ModelDef def;
-  BodyDef body;
-  body.name = "load";
-  body.mass_kg = 1;
-  body.com_m = {0, 0, -1};
-  body.inertia_kg_m2 = {1e-3, 1e-3, 1e-3, 0, 0, 0};
-  def.bodies.push_back(body);
-  CableDef cable = SoftCable("rope", {{kWorld, {0, 0, 0}}, {0, {0, 0, -1}}}, 2000, 1 - 9.81 / 2000);
-  cable.damping_n_s_per_m = 10;
-  cable.actuator.kind = ActuatorDef::Kind::kDcMotor;
-  cable.actuator.dc_motor.emplace();
-  def.cables.push_back(cable);
-  ExperimentSpec experiment = RecordedExperiment(def, duration_s, {"cable/*", "sensor/*"});
+  ExperimentSpec experiment =
+      RecordedExperiment(CraneOf(1, 2000, 10), duration_s, {"cable/*", "sensor/*"});
   experiment.controllers.push_back(Boards(boards));
   return experiment;
 }

@@ -88,4 +88,22 @@ inline CableDef SoftCable(const std::string& name, std::vector<AttachmentDef> at
   return cable;
 }
 
+/// A weight at rest on a cable with a motor, 1 m below the world's origin
+inline ModelDef CraneOf(double mass_kg, double stiffness_n_per_m, double damping_n_s_per_m) {
+  ModelDef def;
+  BodyDef body;
+  body.name = "load";
+  body.mass_kg = mass_kg;
+  body.com_m = {0, 0, -1};
+  body.inertia_kg_m2 = {1e-3, 1e-3, 1e-3, 0, 0, 0};
+  def.bodies.push_back(body);
+  CableDef cable = SoftCable("rope", {{kWorld, {0, 0, 0}}, {0, {0, 0, -1}}}, stiffness_n_per_m,
+                             1 - mass_kg * 9.81 / stiffness_n_per_m);
+  cable.damping_n_s_per_m = damping_n_s_per_m;
+  cable.actuator.kind = ActuatorDef::Kind::kDcMotor;
+  cable.actuator.dc_motor.emplace();
+  def.cables.push_back(cable);
+  return def;
+}
+
 }  // namespace taut::test

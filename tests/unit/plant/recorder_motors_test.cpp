@@ -6,23 +6,7 @@
 namespace taut::test {
 namespace {
 
-/// A weight of 2 kg on a motor, 1 m below the world's origin
-ModelDef Crane() {
-  ModelDef def;
-  BodyDef body;
-  body.name = "load";
-  body.mass_kg = 2;
-  body.com_m = {0, 0, -1};
-  body.inertia_kg_m2 = {1e-3, 1e-3, 1e-3, 0, 0, 0};
-  def.bodies.push_back(body);
-  CableDef cable =
-      SoftCable("rope", {{kWorld, {0, 0, 0}}, {0, {0, 0, -1}}}, 5000, 1 - 2 * 9.81 / 5000);
-  cable.damping_n_s_per_m = 20;
-  cable.actuator.kind = ActuatorDef::Kind::kDcMotor;
-  cable.actuator.dc_motor.emplace();
-  def.cables.push_back(cable);
-  return def;
-}
+ModelDef Crane() { return CraneOf(2, 5000, 20); }
 
 TEST(RecordedMotor, ShowsWhatItDraws) {
   const Recording run(RecordedExperiment(Crane(), 0.5, {}));

@@ -56,7 +56,7 @@ export class View {
     else this.element.append(el("p.instead", { role: "note" }, NO_PICTURE));
     this.camera.up.set(0, 0, 1);
     this.sun.castShadow = true;
-    const corner = SOFTWARE ? 1024 : 2048;
+    const corner = this.renderer && drawsBySoftware(this.renderer) ? 1024 : 2048;
     this.sun.shadow.mapSize.set(corner, corner);
     this.stage.add(this.sun, this.sun.target, new AmbientLight(0xffffff, 0.35), new HemisphereLight(0xffffff, 0x8899aa, 1.1));
     this.controls = new OrbitControls(this.camera, canvas);
@@ -339,22 +339,26 @@ export class View {
 
 const screenRatio = () => Math.min(devicePixelRatio, 2);
 
-/**
- * Whether the processor draws instead of a graphics card, as on many remote desktops. Without smoothed edges
- * and with a coarser shadow, pictures then take half the time.
- */
-const SOFTWARE = (() => {
-  const gl = document.createElement("canvas").getContext("webgl2");
-  const names = gl?.getExtension("WEBGL_debug_renderer_info");
-  const name: unknown = names && gl?.getParameter(names.UNMASKED_RENDERER_WEBGL);
-  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+/** Whether the processor draws instead of a graphics card, as on many remote desktops. */
+function drawsBySoftware(renderer: WebGLRenderer): boolean {
+  const gl = renderer.getContext();
+  const names = gl.getExtension("WEBGL_debug_renderer_info");
+  const name: unknown = names && gl.getParameter(names.UNMASKED_RENDERER_WEBGL);
   return typeof name === "string" && /swiftshader|llvmpipe|softpipe|basic render/i.test(name);
-})();
+}
 
-/** Returns null without WebGL; three.js also logs this to the console. */
+/**
+ * Returns null without WebGL; three.js also logs this to the console. Without smoothed edges, and with a coarser
+ * shadow, pictures by software take half the time.
+ */
 function makeRenderer(): WebGLRenderer | null {
   try {
-    const renderer = new WebGLRenderer({ antialias: !SOFTWARE, preserveDrawingBuffer: false });
+    let renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: false });
+    if (drawsBySoftware(renderer)) {
+      renderer.dispose();
+      renderer.forceContextLoss();
+      renderer = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: false });
+    }
     renderer.shadowMap.enabled = true;
     renderer.shadowMap.type = PCFSoftShadowMap;
     renderer.setPixelRatio(screenRatio());
