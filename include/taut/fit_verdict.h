@@ -302,7 +302,7 @@ struct VerdictOptions {
   Jackknife jackknife = Jackknife::kStep;
   std::optional<int> folds;  ///< Number of folds for `CrossValidate`; absent: no cross-validation.
   FitOptions fit;            ///< For refits and for the fits of folds.
-  /// Returns effects to test from the residuals of the fit; empty: none.
+  /// Derives the effects to test from the residuals of the fit. If empty, no effects are tested.
   std::function<std::vector<FitAlias>(const std::vector<double>& residual)> aliases;
 };
 

@@ -105,7 +105,7 @@ void WarnOfLeftBehind(const Reading& in, int second, const SourceRef& at) {
                    "this bond moves \"" + in.structure(second).tags[0] +
                        "\", to which earlier bonds are attached: NTRT leaves the ends of these "
                        "bonds behind, taut moves them, too",
-                   "move this bond before the others");
+                   "list this bond before the others");
     return;
   }
 }

@@ -33,7 +33,7 @@ std::optional<int> VersionOf(const std::string& schema) {
   for (int version = 0; version <= kLogVersion; ++version) {
     Database empty;
     std::string known;
-    // A database in memory fails only without memory.
+    // A database in memory fails only if memory is exhausted.
     if (!empty.Execute(Schema(version)) || !ReadSchema(empty, known)) throw std::bad_alloc();
     if (known == schema) return version;
   }

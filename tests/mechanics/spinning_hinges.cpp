@@ -57,8 +57,8 @@ void BrakedRotor(Report& report) {
   WorldBatch world = MakeBatch(def);
   world.Step(1e-3, 8000);
   // The first half step uses the initial rate; later means are of second order.
-  report.Near("angle until it stands, from 5000 rad/s, 1 ms", "rad", world.Joint(0, 0).coordinate,
-              1000, 1e-3);
+  report.Near("angle until the rotor stops, from 5000 rad/s, 1 ms", "rad",
+              world.Joint(0, 0).coordinate, 1000, 1e-3);
 }
 
 const SceneEntry kSpinningHinge("joint stops", "Hinge that spins by many radians a step",

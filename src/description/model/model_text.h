@@ -158,7 +158,7 @@ struct PointMassText {
 struct BoxText : BoxDef {
   Vec3 size_m;
   double width_m = NAN, height_m = NAN;  ///< Cross section of a box along a pair.
-  Quat rotate;                           ///< q_PartBox of a box at a node.
+  Quat rotate;                           ///< Rotation of a box at a node, from box to part.
   MassText mass;
   SurfaceText surface;
   bool along_pair = false;

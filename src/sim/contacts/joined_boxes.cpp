@@ -123,8 +123,8 @@ bool FaceAlong(const BoxShape& box, const Vec3& direction, Vec3* normal) noexcep
 }
 
 /// Marks the contacts of a rod with the union of boxes. Contacts are local minima of the distance
-/// along the rod. A point between the ends of a rod that lies on a plane formed by several boxes is
-/// not a contact, since both ends support it.
+/// along the rod. If several boxes form a plane, a point on it between the ends of the rod is not a
+/// contact, since the contacts at both ends support the rod.
 void MarkRound(const RoundShape& round, const ShapeTable* shapes, JoinedPoint* points,
                int count) noexcept {
   const double r = round.radius_m;

@@ -15,7 +15,8 @@ constexpr int kFirstFace = kFirstEdge + kMaxHullEdges;
 constexpr int kPlacesOfCorner = 3, kPlanesOfCorner = 4;
 /// Rounding tolerance of sines and cosines.
 constexpr double kLevel = 1e-6;
-/// Angle below which edges count as parallel, since other pairs support them [rad].
+/// Two edges at a smaller angle count as parallel and have no contact with each other: other
+/// pairs of features support the body [rad].
 constexpr double kParallel = 1e-6;
 /// Normals with a larger cosine belong to one plane. Contacts at a smaller distance are merged,
 /// relative to the size of the body.
