@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "apps/viewer/web_files.h"
+#include "qr_code.h"
 #include "taut/instruction_sets.h"
 
 namespace taut::cli {
@@ -40,6 +41,7 @@ std::string FeaturesText() {
   text += Line("viewer's pages", viewer::FindWebFolder(missing).has_value(),
                "install nodejs and npm, then build from source; or set TAUT_WEB to the "
                "pages' folder");
+  text += Line("QR codes", HasQrCodes(), "install libqrcodegencpp-dev, then build from source");
   for (const InstructionSet& set : InstructionSets()) {
     if (set.name == "simd128") continue;  // only for browsers
     const std::string line = fmt::format("instruction set {}", set.name);

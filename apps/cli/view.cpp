@@ -223,13 +223,16 @@ void AddView(CLI::App& app, int& exit_code) {
       "  taut view runs/push_20n/trace.h5 --compare runs/a/trace.h5 runs/b/trace.h5\n"
       "  taut view models/tetraspine3.yaml --settled\n"
       "  taut view --robot virtual\n"
+      "  taut view models/puppy.yaml --listen 0.0.0.0\n"
       "The command prints two addresses with secret tokens, to open in a browser: the first to "
       "watch\n"
       "and drive, the second to watch only. The tokens are random, unless the environment "
       "variables\n"
-      "TAUT_TOKEN and TAUT_WATCH_TOKEN set them. With --robot only this machine can connect, and "
-      "Ctrl-C\n"
-      "turns the motors off.");
+      "TAUT_TOKEN and TAUT_WATCH_TOKEN set them. With --listen 0.0.0.0 it also prints a QR code, "
+      "which\n"
+      "opens the page on a phone in the same network. With --robot only this machine can connect, "
+      "and\n"
+      "Ctrl-C turns the motors off.");
   view->callback([args, &exit_code] { exit_code = View(*args); });
 }
 

@@ -1,10 +1,13 @@
 #include "view_server.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+
+#include "qr_code.h"
 
 namespace taut::cli {
 namespace {
@@ -42,6 +45,12 @@ void SayAddresses(const std::string& title, const viewer::ServerOptions& options
              viewer::Url(options, port, options.watch_token), ends);
   std::fflush(stdout);
   if (viewer::IsLoopback(options.address)) return;
+  if (isatty(STDOUT_FILENO) == 1) {
+    const std::string url = viewer::NumericUrl(options, port, options.drive_token);
+    const std::string code = QrCode(url);
+    if (!code.empty()) fmt::print("{}On a phone: {}\n", code, url);
+    std::fflush(stdout);
+  }
   Tell(
       fmt::format("warning: other machines can connect, and the connection is not encrypted: "
                   "others on the network can read these addresses, and then drive (to prevent "

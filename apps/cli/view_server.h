@@ -11,7 +11,8 @@ namespace taut::cli {
 /// stderr, if they are invalid.
 bool TokensOf(viewer::ServerOptions& options);
 
-/// Prints the two addresses and a warning about their risks. `ends`: effect of Ctrl-C.
+/// Prints the two addresses. If other machines can connect, also prints a warning about the risk
+/// and, to a terminal, the first address as a QR code. `ends`: effect of Ctrl-C.
 void SayAddresses(const std::string& title, const viewer::ServerOptions& options,
                   std::uint16_t port, const std::string& ends);
 

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -263,6 +264,21 @@ std::string Url(const ServerOptions& options, std::uint16_t port, const std::str
     }
   }
   return fmt::format("http://{}:{}/?token={}", host, port, token);
+}
+
+std::string NumericUrl(const ServerOptions& options, std::uint16_t port, const std::string& token) {
+  ServerOptions numeric = options;
+  if (options.address == "0.0.0.0" || options.address == "::") {
+    // The kernel chooses the address of the interface that leads to other machines. A UDP socket
+    // sends nothing when it connects; 192.0.2.1 is reserved for documents (RFC 5737).
+    asio::io_context io;
+    asio::ip::udp::socket socket(io);
+    beast::error_code failed;
+    socket.connect({asio::ip::make_address("192.0.2.1"), 9}, failed);
+    const auto local = socket.local_endpoint(failed);
+    if (!failed && !local.address().is_unspecified()) numeric.address = local.address().to_string();
+  }
+  return Url(numeric, port, token);
 }
 
 bool IsAddress(const std::string& address) {

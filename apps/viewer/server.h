@@ -62,6 +62,10 @@ class Server {
 /// Returns the URL with a token.
 std::string Url(const ServerOptions& options, std::uint16_t port, const std::string& token);
 
+/// Returns the URL with a numeric address instead of the name of this machine, for devices that
+/// cannot resolve the name, such as phones.
+std::string NumericUrl(const ServerOptions& options, std::uint16_t port, const std::string& token);
+
 /// Returns whether the text is a numeric address, such as 127.0.0.1 or ::1.
 bool IsAddress(const std::string& address);
 

@@ -22,6 +22,7 @@ LIBRARIES = {
     "zlib": ("zlib1g-dev", "Zlib", PORTABLE),
     "libpng1.6": ("libpng-dev", "libpng-2.0", PORTABLE),
     "sqlite3": ("libsqlite3-dev", "blessing", PORTABLE),
+    "qr-code-generator": ("libqrcodegencpp-dev", "MIT", PORTABLE),
     "glibc": ("libc6-dev", "LGPL-2.1-or-later", "static library in the archive's command"),
     "gcc-12": ("libstdc++-12-dev", "GPL-3.0-or-later WITH GCC-exception-3.1", PORTABLE),
     "cli11": ("libcli11-dev", "BSD-3-Clause", HEADERS),

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Builds static versions of the libraries that a self-contained taut contains, from the source packages
 # of Debian 12: HDF5 without compression by szip and without tools, NLopt without its LGPL part, SQLite
-# without loadable extensions, yaml-cpp, fmt, tinyxml2, libpng and zlib. Takes about three minutes on two
-# cores, and does nothing if they are already built.
+# without loadable extensions, yaml-cpp, fmt, tinyxml2, libpng, zlib and qrcodegencpp. Takes about three
+# minutes on two cores, and does nothing if they are already built.
 #
 #   script/publishing/static_libraries.sh FOLDER     fills FOLDER/include and FOLDER/lib
 set -euo pipefail
 [ $# = 1 ] || { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0" >&2; exit 2; }
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
-names=(hdf5 nlopt yaml-cpp fmtlib tinyxml2 zlib libpng1.6 sqlite3)
+names=(hdf5 nlopt yaml-cpp fmtlib tinyxml2 zlib libpng1.6 sqlite3 qr-code-generator)
 recipe=$(md5sum <"$0")
 [ "$(cat "$folder/made" 2>/dev/null)" != "$recipe" ] || exit 0
 # shellcheck source=script/common.sh
@@ -80,6 +80,11 @@ mkdir -p build-sqlite3
 gcc -O2 -fPIC -DSQLITE_OMIT_LOAD_EXTENSION -DSQLITE_THREADSAFE=1 -c build-sqlite3/sqlite3.c -o sqlite3.o
 ar rcs "$folder/lib/libsqlite3.a" sqlite3.o
 cp build-sqlite3/sqlite3.h "$folder/include/"
+
+echo "building qr-code-generator" >&3
+g++ -O2 -fPIC -c qr-code-generator/cpp/qrcodegen.cpp -o qrcodegen.o
+ar rcs "$folder/lib/libqrcodegencpp.a" qrcodegen.o
+cp qr-code-generator/cpp/qrcodegen.hpp "$folder/include/"
 
 cd "$folder"
 rm -rf src bin

@@ -67,12 +67,13 @@ def ThePaperCitesItsBibliography():
 
 
 # Names in conda and vcpkg of the packages of script/packages.txt (group build). None: the recipe provides the package
-# by other means, such as its compiler.
+# by other means, such as its compiler, or does without.
 CONDA_NAMES = {"g++": None, "cmake": "cmake", "ninja-build": "ninja", "libcli11-dev": "cli11", "libfmt-dev": "fmt",
                "libyaml-cpp-dev": "yaml-cpp", "libtinyxml2-dev": "tinyxml2", "libhdf5-dev": "hdf5",
                "pkgconf": "pkg-config", "zlib1g-dev": "zlib", "libpng-dev": "libpng",
                "nlohmann-json3-dev": "nlohmann_json", "libsqlite3-dev": "sqlite", "libnlopt-dev": "nlopt",
-               "libeigen3-dev": "eigen", "libboost-dev": "libboost-headers"}
+               "libeigen3-dev": "eigen", "libboost-dev": "libboost-headers",
+               "libqrcodegencpp-dev": None}  # optional: taut view then draws no QR codes
 VCPKG_NAMES = CONDA_NAMES | {"cmake": "vcpkg-cmake", "ninja-build": None, "pkgconf": None,
                              "nlohmann-json3-dev": "nlohmann-json", "libsqlite3-dev": "sqlite3",
                              "libeigen3-dev": "eigen3", "libboost-dev": "boost-beast"}
