@@ -188,7 +188,7 @@ TEST_F(CliCommand, TheFeaturesOfTheBuildFollowTheVersion) {
     EXPECT_TRUE(value.starts_with("yes") || value.starts_with("no (")) << line;
     found[line.substr(0, colon)] = value;
   }
-  EXPECT_EQ(found.size(), 9u) << text;
+  EXPECT_EQ(found.size(), 10u) << text;
   // From CMake, independent of the compile definitions of the command
   EXPECT_EQ(found["MPI"] == "yes", TAUT_MPI_FOUND != 0) << text;
   const std::string sets = TAUT_SETS;
