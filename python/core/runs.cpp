@@ -2,7 +2,9 @@
 #include "taut/run.h"
 
 #include <pybind11/functional.h>
+#include <pybind11/stl/filesystem.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +12,7 @@
 
 #include "python_control.h"
 #include "taut/run_folder.h"
+#include "taut/summary.h"
 #include "taut/trace.h"
 #include "text.h"
 
@@ -39,6 +42,7 @@ using SharedTrace = std::shared_ptr<Trace>;
 struct Ran {
   SharedTrace trace;
   RunSummary summary;
+  ExperimentSpec experiment;  ///< As it was run; the caller's may change later.
 };
 
 /// Recording as a plant.
@@ -73,7 +77,7 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
     callbacks->Rethrow();
   }
   Diagnostics said;
-  Ran ran{std::make_shared<Trace>(), {}};
+  Ran ran{std::make_shared<Trace>(), {}, experiment};
   std::optional<RunSummary> summary;
   bool stopped = false;  // by a Python exception, such as Ctrl-C
   WarnOfStep(experiment, said);
@@ -108,6 +112,42 @@ Ran Run(const ExperimentSpec& experiment, int threads, const py::object& progres
   Tell(said);
   ran.summary = std::move(*summary);
   return ran;
+}
+
+/// Writes all rows of a trace.
+bool WriteRows(const Trace& trace, TraceWriter& writer) {
+  std::vector<double> row(trace.channels.size());
+  for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
+    for (std::size_t c = 0; c < row.size(); ++c) row[c] = trace.values[c][i];
+    if (!writer.Append(trace.time_s[i], row.data())) return false;
+  }
+  return writer.Finish();
+}
+
+/// Writes the folder of a run, as `taut run` does.
+void SaveRun(const Ran& ran, const std::filesystem::path& path) {
+  Diagnostics said;
+  {
+    const Released others;
+    const auto folder = RunFolder::Open(path.string(), {}, said);
+    if (folder && folder->Prepare(ResolvedYaml(ran.experiment), said)) {
+      TraceMetadata metadata = ran.trace->metadata;
+      metadata.emplace_back(kRunIdKey, folder->id());
+      auto file = CreateHdf5Trace(folder->Path("trace.h5"), ran.trace->channels, metadata, said);
+      if (file) {
+        const auto writer = folder->BeginWith(std::move(file), {"trace.h5"});
+        RunSummary summary = ran.summary;
+        summary.run = folder->id();
+        if (!WriteRows(*ran.trace, *writer)) {
+          said.Error("trace.not_written", {}, writer->error());
+        } else {
+          folder->Finish(SummaryJson(summary), said);
+        }
+      }
+    }
+  }
+  if (!said.ok()) Refuse(said);
+  Tell(said);
 }
 
 SharedTrace ReadRun(const std::string& path) {
@@ -215,7 +255,11 @@ void AddRuns(py::module_& module) {
             for (const CableSummary& c : r.summary.cables) all[py::str(c.name)] = c.tension.max_n;
             return all;
           },
-          "Dict of the largest tension by cable, over all steps, not only recorded rows [N].");
+          "Dict of the largest tension by cable, over all steps, not only recorded rows [N].")
+      .def("save", &SaveRun, py::arg("folder"),
+           "Writes the folder of the run, as `taut run --out` does: trace.h5, inputs.yaml, "
+           "summary.json. `taut view`, `report` and `compare` accept it. Replaces an earlier run "
+           "in the folder. Raises `taut.InputError` if a file cannot be written.");
 
   module.def(
       "run", &Run, py::arg("experiment"), py::arg("threads") = 1, py::arg("progress") = py::none(),

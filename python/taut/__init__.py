@@ -33,15 +33,16 @@ from taut._data import data_path
 from taut._errors import Complaint, InputError, InputWarning
 from taut._results import rollout, tunables
 from taut._simulation import Simulation
+from taut._view import View, view
 
 Status = _enum.IntFlag("Status", _core.status_bits)  # type: ignore[misc]
 Status.__doc__ = "Condition bits of a world; 0: no error."
 
 __version__ = _core.version
 __all__ = ["Analysis", "Batch", "Complaint", "Experiment", "Fitted", "InputError", "InputWarning", "LinearSystem",
-           "ControllerSpec", "Replay", "Robot", "Rows", "Run", "Simulation", "Status", "Study", "Trace", "analyze",
+           "ControllerSpec", "Replay", "Robot", "Rows", "Run", "Simulation", "Status", "Study", "Trace", "View", "analyze",
            "control", "data_path", "fit", "learn", "linear_system", "load", "read_study", "read_trace", "rollout", "run",
-           "tunables"]
+           "tunables", "view"]
 
 Trace.to_pandas = _tables.to_pandas
 Trace.to_xarray = _tables.to_xarray
@@ -49,6 +50,6 @@ Study.to_pandas = _results.study_to_pandas
 Fitted.data = property(_results.fit_data)  # type: ignore[assignment]
 Fitted.to_pandas = _results.fit_to_pandas
 for _public in (Analysis, Batch, ControllerSpec, Experiment, Fitted, LinearSystem, Replay, Robot, Rows, Run, Simulation,
-                Study, Trace):
+                Study, Trace, View):
     _public.__module__ = "taut"
 del _public

@@ -1,5 +1,6 @@
 """Types of the module in C++. Arrays are contiguous; shapes and units are in the docstrings."""
 
+import os
 from typing import Any, Callable, Optional, Sequence, Union, overload
 
 import numpy as np
@@ -85,6 +86,7 @@ class Run:
     def overloads(self) -> list[dict[str, str | float]]: ...
     @property
     def max_tension_n(self) -> dict[str, float]: ...
+    def save(self, folder: Union[str, os.PathLike[str]]) -> None: ...
 
 class Replay:
     def __init__(self, trace: Trace) -> None: ...
