@@ -11,9 +11,9 @@
 namespace taut::browser {
 
 struct SimulateInputs {
-  std::string path;  ///< Of the experiment.
+  std::string path;  ///< Path of the experiment file.
   Overrides overrides;
-  std::optional<double> duration_s;  ///< Nothing: the experiment's.
+  std::optional<double> duration_s;  ///< Empty: duration of the experiment.
 };
 
 struct SimulateResult {

@@ -20,11 +20,11 @@ class FileWatch {
   /// Returns true if a file differs from its state at the last `Watch` and has not changed since
   /// the previous `Poll`: an editor may still be writing it.
   bool Poll();
-  std::vector<std::string> files() const;  ///< Those of the last `Watch`.
+  std::vector<std::string> files() const;  ///< Files of the last `Watch`.
 
  private:
   struct State {
-    std::int64_t time = 0;  ///< Of the last change; 0 with size -1: the file is missing.
+    std::int64_t time = 0;  ///< Time of the last change. A missing file has 0, and size -1.
     std::int64_t size = -1;
     bool operator==(const State&) const = default;
   };

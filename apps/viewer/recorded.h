@@ -20,8 +20,8 @@ namespace taut::viewer {
 class Recorded {
  public:
   /// Reads the trace at `path` and, from its folder, inputs.yaml and summary.json if they exist and
-  /// match. `compare`: traces of other runs; if empty, the experiment's reference. Returns null,
-  /// with errors in `out` for all of them, if one cannot be read.
+  /// match. `compare`: traces of other runs; if empty, the experiment's reference. If a trace
+  /// cannot be read, returns null, with an error in `out` for each unreadable trace.
   static std::unique_ptr<Recorded> Load(const std::string& path,
                                         const std::vector<std::string>& compare, Diagnostics& out);
 

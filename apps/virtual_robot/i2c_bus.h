@@ -1,7 +1,7 @@
 /// Emulated I2C bus with one master and clock stretching by slaves, bit-exact in time.
 ///
-/// The bus runs ahead of its slaves: it knows the time of the next event on the wires in advance,
-/// schedules it in the slaves (`I2cSlave::Schedule`), lets them run up to this time and a little
+/// The bus runs ahead of its slaves: it computes the time of the next event on the wires, schedules
+/// the event in the slaves (`I2cSlave::Schedule`), lets them run up to this time and a little
 /// beyond, and then reads their answers and the times at which they released the clock.
 #pragma once
 

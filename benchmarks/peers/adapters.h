@@ -28,7 +28,7 @@ struct Shape {
   Kind kind = Kind::kSphere;
   int body = 0;
   Vec3 center_m;
-  Rotation turn{};  ///< From the axes of the shape; a capsule lies along z.
+  Rotation turn{};  ///< Rotation from the shape's axes to the body's; a capsule lies along z.
   double half_length_m = 0, radius_m = 0;
   Vec3 half_extents_m{};
   bool meets_planes = true, meets_bodies = true;

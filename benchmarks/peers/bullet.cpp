@@ -46,7 +46,8 @@ struct Factors {
 Factors Split(double bodies, double with_ground) {
   const double body = std::sqrt(bodies);
   if (body == 0 && with_ground != 0) {
-    throw std::invalid_argument("Bullet cannot have bodies that are smoother than with the ground");
+    throw std::invalid_argument(
+        "Bullet cannot combine a coefficient of 0 between bodies with another one on the ground");
   }
   return {body, body == 0 ? 0 : with_ground / body};
 }
@@ -197,8 +198,8 @@ class Bullet final : public World {
   btDiscreteDynamicsWorld world_;
   std::vector<std::unique_ptr<btCollisionShape>> shapes_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_, grounds_;
-  std::vector<double> heights_;  ///< Of the height field.
-  std::vector<Rotation> start_;  ///< From the axes of the start to principal axes.
+  std::vector<double> heights_;  ///< Heights of the height field.
+  std::vector<Rotation> start_;  ///< Rotation from the axes at the start to principal axes.
   Springs springs_;
   std::vector<Pose> poses_;
   std::vector<Load> loads_;

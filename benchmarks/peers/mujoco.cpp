@@ -29,7 +29,7 @@ struct Files {
 mjModel* Compile(const std::string& xml) {
   const Files files;
   if (mj_makeEmptyFileVFS(files.vfs, "model.xml", static_cast<int>(xml.size())) != 0) {
-    throw std::runtime_error("MuJoCo has no room for the model");
+    throw std::runtime_error("MuJoCo's virtual file system cannot hold the model");
   }
   std::memcpy(files.vfs->filedata[0], xml.data(), xml.size());
   char error[1000] = "";

@@ -84,16 +84,16 @@ std::string Unsupported(const ModelDef& def) {
   if (!def.terrain_meshes.empty()) return "terrain meshes";
   if (def.height_fields.size() > 1) return "more than one height field";
   for (const HeightFieldDef& f : def.height_fields) {  // MuJoCo and ODE divide all cells alike
-    if (f.split != HeightFieldDef::Split::kSame) return "height fields split other than the same";
+    if (f.split != HeightFieldDef::Split::kSame) return "height fields whose `split` is not `same`";
   }
   if (!def.hulls.empty()) return "hulls";
   for (const CableDef& cable : def.cables) {
-    if (cable.touches != CableTouches::kNone) return "cables that touch what they come to";
+    if (cable.touches != CableTouches::kNone) return "cables with `touches`";
     for (const AttachmentDef& at : cable.attachments) {
       if (at.wheel || at.friction > 0) return "cables with friction or over wheels";
     }
   }
-  if (!def.motions.empty()) return "bodies that a program moves";
+  if (!def.motions.empty()) return "kinematic bodies";
   if (!def.joints.empty() || !def.apart.empty()) return "joints, and bodies that are kept apart";
   for (const BodyDef& body : def.bodies) {
     if (body.fixed) return "the fixed body " + body.name;
@@ -144,7 +144,7 @@ std::unique_ptr<World> MakeWorld(Engine engine, const ModelDef& def, const Optio
     throw std::invalid_argument(std::string(Name(engine)) + " is not built in");
   }
   const std::string why = Unsupported(def);
-  if (!why.empty()) throw std::invalid_argument("the peers do not know " + why);
+  if (!why.empty()) throw std::invalid_argument("the other engines do not support " + why);
   return Of(engine).make(def, options);
 }
 

@@ -143,7 +143,7 @@ def page(taut):
             if UP[0] <= number(p) <= UP[1]:
                 untuned_up[(p["experiment"], p["channel"], p["where"])] = p
     models = {"camera and command scale": CAMERA + [WOUND],
-              "the same and the mass": CAMERA + [WOUND, MASS_PRIOR], "the mass alone": [MASS],
+              "camera, command scale and mass": CAMERA + [WOUND, MASS_PRIOR], "the mass alone": [MASS],
               "calibrated pose and stiffness": POSE + STIFFNESS}
     rows, halves = [], {}
     for name, estimate in models.items():

@@ -129,14 +129,15 @@ def cable_rows(gait, ntrt, its, own):
 
 
 def means_table(rows):
-    head = ["cable", "mean: NTRT [N]", "its laws [N]", "own laws [N]", "p-p: NTRT [N]", "its laws [N]", "own laws [N]"]
+    head = ["cable", "mean: NTRT [N]", "NTRT's laws [N]", "taut's own laws [N]", "p-p: NTRT [N]", "NTRT's laws [N]",
+            "taut's own laws [N]"]
     return table(head, [[plain(cable), *(f"{mean(wave):.3f}" for wave in waves),
                          *(f"{swing(wave):.3f}" for wave in waves)] for cable, waves, _, _ in rows])
 
 
 def lines_table(rows):
-    head = ["cable", "frequency [Hz]: NTRT", "its laws", "own laws", "amplitude [N]: NTRT", "its laws", "own laws",
-            "phase relative to NTRT [degrees]: its laws", "own laws"]
+    head = ["cable", "frequency [Hz]: NTRT", "NTRT's laws", "taut's own laws", "amplitude [N]: NTRT", "NTRT's laws",
+            "taut's own laws", "phase relative to NTRT [degrees]: NTRT's laws", "taut's own laws"]
     return table(head, [[plain(cable), *(f"{line[0]:.3f}" for line in lines),
                          *(f"{line[1]:.3f}" for line in lines), *(f"{phase:+.1f}" for phase in phases)]
                         for cable, _, lines, phases in rows])
@@ -145,8 +146,8 @@ def lines_table(rows):
 def shapes_table(rows, fundamental_hz):
     """Formats harmonics of the tension in % of the first, and the remainder after subtraction of a sine or a
     triangle."""
-    head = ["cable", *(f"harmonic {n} [%]: {who}" for n in (2, 3, 5) for who in ("NTRT", "own laws")),
-            "deviation from a sine [%]: NTRT", "own laws", "from a triangle [%]: NTRT", "own laws"]
+    head = ["cable", *(f"harmonic {n} [%]: {who}" for n in (2, 3, 5) for who in ("NTRT", "taut's own laws")),
+            "deviation from a sine [%]: NTRT", "taut's own laws", "from a triangle [%]: NTRT", "taut's own laws"]
     out = []
     for cable, waves, _, _ in rows:
         spectra = [harmonics(waves[pick], ROW_S, fundamental_hz, 7) for pick in (0, 2)]
@@ -158,7 +159,7 @@ def shapes_table(rows, fundamental_hz):
 
 def paths_table(sources):
     head = ["time [s]"] + [f"{what}: {who}" for what in ("forward [cm]", "left [cm]", "turned [degrees]")
-                      for who in ("NTRT", "its laws", "own laws")]
+                      for who in ("NTRT", "NTRT's laws", "taut's own laws")]
     out = []
     for time_s in TIMES_S:
         moved = [[100 * (end - start) for start, end in zip(source.com(0), source.com(time_s))]
@@ -176,7 +177,7 @@ def worst_mean(rows, pick, full_n):
 
 def system_table(gait, rows, runs):
     out = [["NTRT", f"{gait.system_max_n:.3f}", "", "", ""]]
-    for pick, (who, run) in enumerate(zip(("its laws", "taut's own laws"), runs), start=1):
+    for pick, (who, run) in enumerate(zip(("NTRT's laws", "taut's own laws"), runs), start=1):
         worst, cable = worst_mean(rows, pick, gait.system_max_n)
         out.append([who, f"{run.largest_n:.3f}", percent(100 * (run.largest_n / gait.system_max_n - 1), 2),
                     f"{worst:.2f} %", cable])

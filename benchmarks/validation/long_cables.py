@@ -18,7 +18,8 @@ KINDS = {"short": ("short cables", "spine6", {}),
          "long_friction": ("long, eyelets with mu 0.1", "spine6_long", {"eyelet_friction": 0.1}),
          "long_friction_3": ("long, eyelets with mu 0.3", "spine6_long", {"eyelet_friction": 0.3}),
          "long_fast": ("long, outer motors twice as fast, gait learned for them", "spine6_long_fast", {}),
-         "long_slow": ("the same gait, all motors 0.07 m/s", "spine6_long_fast", {"outer_speed_m_per_s": 0.07})}
+         "long_slow": ("long, gait learned for faster motors, all motors 0.07 m/s", "spine6_long_fast",
+                       {"outer_speed_m_per_s": 0.07})}
 
 
 def variant(kind, number):

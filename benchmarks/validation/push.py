@@ -168,7 +168,8 @@ def worst_mean(result, reference, full_n):
 
 
 def means_table(ntrt, results):
-    head = ["cable"] + [f"{phase}: {who}" for phase in PHASES for who in ("NTRT", "its laws", "cone", "own laws")]
+    head = ["cable"] + [f"{phase}: {who}" for phase in PHASES
+                        for who in ("NTRT", "NTRT's laws", "cone", "taut's own laws")]
     rows = []
     for cable in results["ntrt"].cables:
         row = [plain(cable)]
@@ -181,7 +182,7 @@ def means_table(ntrt, results):
 
 def system_table(ntrt, results):
     rows = [["NTRT", f"{ntrt.system_max_n:.3f}", "", ""]]
-    for text, name in (("its laws", "ntrt"), ("its laws, exact cone", "ntrt_cone"), ("taut's own laws", "own")):
+    for text, name in (("NTRT's laws", "ntrt"), ("NTRT's laws, exact cone", "ntrt_cone"), ("taut's own laws", "own")):
         largest = results[name].summary["system_max_elastic_n"]
         rows.append([text, f"{largest:.3f}", percent(100 * (largest / ntrt.system_max_n - 1), 2),
                      f"{worst_mean(results[name], ntrt, ntrt.system_max_n)[0]:.2f} %"])

@@ -196,7 +196,7 @@ def page(taut):
     level = runs["level"][0]
     values = {
         "level": table(MOVING, [moving_row("level ground", runs["level"], way)]),
-        "slope": table(MOVING, [moving_row("its own gait", runs["slope"], forward),
+        "slope": table(MOVING, [moving_row("gait learned on the slope", runs["slope"], forward),
                                 moving_row("the gait for level ground", runs["slope_level_gait"], forward)]),
         "still": f"{1000 * runs['slope_still'][0].length_m:.1f}",
         "craters": table(["rim height [m]", "motors", "out", "time [s]", "off the far side", "largest height of the center of mass [m]"],

@@ -18,7 +18,7 @@ def prepare(folder, test):
     """Writes the measured rows with taut's names, and the experiment with their load cases."""
     path = DATA / f"fig{test}_measured.csv"
     if not path.exists():
-        raise Problem(f"there is no {path}: the data are not ours to pass on (docs/validation/t3_prism.md says where from)")
+        raise Problem(f"{path} is missing: the data may not be redistributed (source: docs/validation/t3_prism.md)")
     rows = fits.rows_of(path, 1)
     members = path.read_text().splitlines()[0].split(",")[1:13]
     names = [m[:-len("_kN")] for m in members]

@@ -103,9 +103,9 @@ def page(taut):
     scales = [member["values"]["boards.velocity_input_scale"] for member in good]
     misfits = {drive: min(misfit(member) for member in [*described, *refined] if member["drive"] == drive)
                for drive in DRIVES}
-    facts.append(["all but the last", *(str(len(agreeing(group, FACTS.values()))) + f" of {len(group)}"
+    facts.append(["all facts but the last", *(str(len(agreeing(group, FACTS.values()))) + f" of {len(group)}"
                                         for group in (described, captured))])
-    facts.append(["all", *(str(len(agreeing(group, [*FACTS.values(), outside]))) + f" of {len(group)}"
+    facts.append(["all facts", *(str(len(agreeing(group, [*FACTS.values(), outside]))) + f" of {len(group)}"
                            for group in (described, captured))])
     influences = []
     for name in RANGES:

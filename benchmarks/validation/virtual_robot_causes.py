@@ -60,7 +60,7 @@ NO_GEAR_LOSS = {"gear_efficiency: 0.66": "gear_efficiency: 1"}
 LIGHT = {"supply: battery": "supply: battery\n    rotor_inertia_kg_m2: 5.6e-10"}
 TWICE = {"supply_voltage_v: 12": "supply_voltage_v: 24"}
 # Titles that other code looks up.
-LOSS_ALONE = "the same, but unchanged resistances, rotors / 100: loss of speed under load alone"
+LOSS_ALONE = "unchanged resistances, no friction, no gear loss, rotors / 100: loss of speed under load alone"
 STIFF = "resistances / 100"
 STIFF_PID = "resistances / 100, PID three times"
 STRONG_P = "P ten times as strong"
@@ -77,7 +77,8 @@ SENSITIVITY = (
 )
 ADDED = (
     Cause("load cells in counts", keys="sensors: {load_cell: {counts: {}}}\n"),
-    Cause("the same with noise of 0.7 counts", keys="sensors: {load_cell: {counts: {noise_counts: 0.7}}}\n"),
+    Cause("load cells in counts, with noise of 0.7 counts",
+          keys="sensors: {load_cell: {counts: {noise_counts: 0.7}}}\n"),
     Cause("encoders in counts", keys="sensors: {encoder: {quantum_m: 1.34e-5}}\n"),
     Cause("load cells that measure the damper forces, too", keys="sensors: {load_cell: {}}\n"),
     Cause("length and rate from rest length and tension", keys="sensors: {length: from_tension}\n"),

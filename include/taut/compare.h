@@ -89,7 +89,7 @@ struct ChannelComparison {
   bool lag_at_limit = false;
   double correlation = 0.0;      ///< Correlation at `lag_s`, -1..1.
   Extreme max_a, max_b;          ///< Over the rows of each trace, within the time range of both.
-  double max_error_percent = 0;  ///< (max_a - max_b) / |max_b|.
+  double max_error_percent = 0;  ///< Relative error of the maximum: (max_a - max_b) / |max_b|.
   struct Phase {
     WindowStatistics a, b;
   };
@@ -101,7 +101,7 @@ struct SystemMaximum {
   std::string pattern, unit;
   std::string channel_a, channel_b;  ///< Channels that contain the maximum.
   Extreme a, b;
-  double error_percent = 0.0;  ///< (a - b) / |b|.
+  double error_percent = 0.0;  ///< Relative error of the maximum: (a - b) / |b|.
 };
 
 /// Time axis of a trace.

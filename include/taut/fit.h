@@ -46,9 +46,9 @@ struct FitParameter {
 double FitScale(const FitParameter& parameter);
 
 enum class FitLoss {
-  kSquare,  ///< r^2
-  kHuber,   ///< 2 w |r| - w^2 beyond the width w, otherwise r^2.
-  kCauchy,  ///< w^2 log(1 + r^2 / w^2)
+  kSquare,  ///< Least squares: r^2.
+  kHuber,   ///< Huber's loss: 2 w |r| - w^2 beyond the width w, otherwise r^2.
+  kCauchy,  ///< Cauchy's loss: w^2 log(1 + r^2 / w^2), with the width w.
 };
 
 /// Group and loss of one residual (eq. F.2).
@@ -179,9 +179,9 @@ struct FitColumn {
   bool kink = false;
   double kink_share = 0;  ///< The disagreement relative to the slope.
   double step = 0;        ///< The larger step h, in the unit of the parameter.
-  /// Fraction of the problem's step that was used. Below 1 if that step was too long: its two sizes
-  /// disagreed, but smaller ones agree. Standard errors above `step` are unreliable, because the
-  /// function is nonlinear over them.
+  /// Fraction of the problem's step that was used. Below 1 if the slopes for that step and for half
+  /// of it disagreed, but the slopes for the shorter step agree. Standard errors above `step` are
+  /// unreliable, because the function is nonlinear over them.
   double step_share = 1;
   /// Second-order change over a step, in residuals per scale. Reveals a purely quadratic effect,
   /// which has slope 0.

@@ -41,9 +41,9 @@ struct CableBounds {
 
 /// Quantity to minimize, summed over the cables (eq. 3).
 enum class HoldingCost {
-  kTension,       ///< T^2
-  kEnergy,        ///< T^2 / (2 k)
-  kForceDensity,  ///< q^2, q = T / l
+  kTension,       ///< Squared tension T^2.
+  kEnergy,        ///< Elastic energy T^2 / (2 k).
+  kForceDensity,  ///< Squared force density q^2, q = T / l.
 };
 
 struct HoldingOptions {
@@ -64,7 +64,7 @@ struct HoldingForces {
   bool found = false;
   std::string why;  ///< Reason, if not found.
   std::vector<double> cable_tension_n, cable_force_density_n_per_m;
-  std::vector<double> rest_length_m;  ///< l - T / k.
+  std::vector<double> rest_length_m;  ///< Per cable: l - T / k, with the length l in the pose.
   /// Motor command: rest length minus `calibration_rest_m`; lengthening is positive.
   std::vector<double> command_m;
   std::vector<double> bar_force_n;  ///< One per joint; tension > 0; 0 for joints that are not bars.

@@ -222,7 +222,7 @@ struct TerrainBoxDef {
 struct HeightFieldDef {
   /// Diagonal that divides a cell into triangles. Corner (i, j) is corner i along x and j along y.
   enum class Split {
-    kSame,         ///< From (i, j) to (i + 1, j + 1).
+    kSame,         ///< The diagonal from corner (i, j) to corner (i + 1, j + 1).
     kAlternating,  ///< As kSame where i + j is even, otherwise the other diagonal.
     kShortest,     ///< The diagonal with the smaller height difference.
   };

@@ -25,7 +25,7 @@ struct ShapeMesh {
 };
 
 struct ShapeOptions {
-  /// Radius of all cables, since a model need not define it; 0: no cables.
+  /// Radius of all drawn cables, because models need not define cable radii; 0: no cables.
   double cable_radius_m = 0.002;
 };
 

@@ -7,8 +7,8 @@ or in a terminal:
 
     python3 -m taut.plot runs/drop --with lab.csv --channels 'cable/*/tension_n' --out drop.pdf
 
-Matplotlib draws and writes PDF, SVG and PNG, since it embeds fonts and is already in use where Python is; an own writer
-of PDF would have to subset fonts. It is optional: `pip install matplotlib`.
+Matplotlib draws and writes PDF, SVG and PNG. It embeds fonts, and most users of Python already have it; a separate PDF
+writer would have to subset fonts. Matplotlib is optional: `pip install matplotlib`.
 """
 
 import argparse

@@ -24,8 +24,8 @@ std::vector<std::pair<double, double>> GapSpans(const std::vector<double>& time_
 
 /// Returns the duration that each row represents: half of the steps to both neighbors. At an end or
 /// a gap, the missing half equals the other one; a row without neighbors represents the usual step.
-/// If rows are evenly spaced, all weights are 1, so that sums equal unweighted ones to the last
-/// bit. `gaps`: result of `FindGaps`.
+/// If rows are evenly spaced, all weights are 1, so that weighted sums are bit-identical to
+/// unweighted sums. `gaps`: result of `FindGaps`.
 std::vector<double> TimeWeights(const std::vector<double>& time_s, const std::vector<bool>& gaps);
 
 /// Returns the weighted mean; NaN without values.

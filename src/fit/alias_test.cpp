@@ -11,8 +11,8 @@ namespace {
 
 using fit::Vector;
 
-/// Share of the squared slope that the parameters do not compensate. Below it, the effect is
-/// confounded with them.
+/// If the parameters leave less than this share of an effect's squared slope uncompensated, the
+/// effect is confounded with them.
 constexpr double kSeparate = 1e-6;
 /// Changes of parameters below this multiple of their standard errors are not named.
 constexpr double kNamedChange = 1;

@@ -16,11 +16,11 @@ constexpr double kSeveral = 2;
 /// Rise of chi-square below which the data do not distinguish two minima: the quantile of
 /// chi-square with one degree of freedom for kByChance.
 constexpr double kSameFit = 10.83;
-/// Other starts contradict an estimate beyond this multiple of the distance that their rise of
-/// chi-square permits.
+/// The result of another start contradicts an estimate if both values are farther apart than this
+/// multiple of the distance that the rise of chi-square permits.
 constexpr double kFarther = 3;
-/// One standard error away, chi-square rises by 1. A factor of 2 in the error is a factor of 4
-/// here.
+/// One standard error away from the fit, chi-square should rise by 1. If the standard error is
+/// wrong by a factor of 2, this rise changes by a factor of 4.
 constexpr double kLeastRise = 0.25, kMostRise = 4;
 
 bool Estimated(const ParameterVerdict& v) { return v.kind == Determined::kEstimated; }

@@ -6,8 +6,8 @@
 namespace taut::fit {
 namespace {
 
-/// Thresholds of a kink: disagreement divided by the slope, and disagreement in residuals per
-/// scale.
+/// Thresholds of a kink: disagreement between the two step sizes (eq. F.9), relative to the slope
+/// and in residuals per scale.
 constexpr double kKinkShare = 0.05, kKinkLeast = 0.05;
 
 bool Usable(const Residuals& answer) { return answer.failed.empty(); }

@@ -52,10 +52,11 @@ using ComputePoints =
     std::function<bool(const std::vector<std::vector<double>>& points,
                        const std::vector<std::size_t>& owners, std::vector<Residuals>& answers)>;
 
-/// Computes and checks the columns of all tasks, with few calls of `compute`. If the two step sizes
-/// disagree, the column is repeated with a quarter of the step, up to five times. A shorter step is
-/// kept if its sizes agree and if it is at least the standard error implied by the slope. Otherwise
-/// the column is reported as a kink. Returns nothing if it was stopped.
+/// Computes and checks the columns of all tasks, with few calls of `compute`. If the slopes for the
+/// step and for half of it disagree, the column is repeated with a quarter of the step, up to five
+/// times. A shorter step is kept if its two slopes agree and if the step is at least the standard
+/// error implied by the slope. Otherwise the column is reported as a kink. Returns nothing if it
+/// was stopped.
 std::optional<std::vector<FitColumn>> FindColumns(const FitProblem& problem,
                                                   std::span<const ColumnTask> tasks,
                                                   const ComputePoints& compute);

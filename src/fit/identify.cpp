@@ -90,8 +90,8 @@ std::vector<FitDirection> Directions(const Local& local) {
 }
 
 /// Returns the changes of all free parameters if parameter k moves by one scale and the others are
-/// refitted. They are in the null space if k belongs to it, otherwise from the covariance (eq.
-/// F.13).
+/// refitted. The changes are in the null space if parameter k belongs to it; otherwise they follow
+/// from the covariance (eq. F.13).
 Vector Trade(const Local& local, std::size_t k) {
   const auto i = static_cast<Eigen::Index>(k);
   Vector d = local.spread.covariance.col(i);

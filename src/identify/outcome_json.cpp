@@ -8,7 +8,7 @@
 namespace taut {
 namespace {
 
-using namespace identify;  // NOLINT(google-build-using-namespace): its parts, of this file
+using namespace identify;  // NOLINT(google-build-using-namespace): only in this file
 using Json = nlohmann::ordered_json;
 
 Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }

@@ -12,7 +12,7 @@
 namespace taut {
 namespace {
 
-using namespace identify;  // NOLINT(google-build-using-namespace): its parts, of this file
+using namespace identify;  // NOLINT(google-build-using-namespace): only in this file
 using compare::Escaped;
 using compare::Plot;
 using compare::Svg;

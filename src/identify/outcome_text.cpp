@@ -45,7 +45,7 @@ std::string CarriedText(const Identification& fit, const CarriedLoad& carried) {
 
 namespace {
 
-using namespace identify;  // NOLINT(google-build-using-namespace): its parts, of this file
+using namespace identify;  // NOLINT(google-build-using-namespace): only in this file
 
 std::string ParameterTable(const Identification& fit, const FitOutcome& outcome) {
   const FitProblem& problem = fit.train();

@@ -169,7 +169,7 @@ void BondNodesAndEdges(const Reading& in, int parent, int first, int second,
 
 void BondNodes(const Reading& in, int parent, int first, int second, const std::string& first_name,
                const std::string& second_name, const std::string& tags, const Value& lines) {
-  // The names of both structures are tags, because controllers find cables by them.
+  // The names of both structures are tags, because controllers find cables by these names.
   const std::string all =
       tags + " " + first_name + " " + second_name + " " + first_name + "/" + second_name;
   for (const ValuePtr& line : ListOf(&lines, "a node_node bond", in.out)) {

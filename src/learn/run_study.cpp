@@ -100,7 +100,7 @@ class StudyRun {
     for (const auto& known : known_) {
       const auto id = known.first;
       const auto& logged = known.second;
-      if (!logged.failed.empty()) continue;  // has no final state to compare
+      if (!logged.failed.empty()) continue;  // a failed evaluation has no final state
       const Evaluator::Candidate again{id, logged.values};
       bool same = true;
       evaluator_.Evaluate({&again, 1}, [&](std::size_t, const Evaluator::Trial& trial) {

@@ -187,7 +187,7 @@ double FrictionOf(const sim::View& m, double key, bool slides) {
   return slides ? pair.kinetic_friction : pair.static_friction;
 }
 
-/// Rejects contacts that slip or are about to slip, because they have no derivative.
+/// Rejects contacts that slip or are about to slip, because the step has no derivative there.
 bool CheckContacts(Rest& rest) {
   constexpr double kShare = 1e-3;
   const BatchInside::Impl& inside = BatchInside::Of(*rest.batch);

@@ -17,7 +17,7 @@ namespace {
 
 /// Distances by which bodies are lifted off their contacts, for finite differences and for exact
 /// derivatives. A step treats positive gaps by its velocity law, but penetrations by another rule.
-/// A zero gap is the limit between both, so it has no derivative.
+/// At a zero gap, the limit between both rules, the step has no derivative.
 constexpr double kLiftM = 2e-8, kHairM = 1e-10;
 
 constexpr int kKinds = static_cast<int>(SignalKind::kOther) + 1;

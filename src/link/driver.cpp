@@ -131,8 +131,8 @@ void Driver::Watch() {
     armed = armed ||
             (board.there && board.status.mode != Mode::kOff && board.status.mode != Mode::kStopped);
   }
-  // A board that holds because it lost the connection must continue to hold. This mode makes it
-  // send its readings.
+  // Boards that hold because the connection was lost must continue to hold. The broadcast of this
+  // mode makes all boards send their readings.
   say_.mode = armed ? Mode::kHold : Mode::kOff;
   say_.arm = armed ? board::Arm::kGo : board::Arm::kNot;
 }

@@ -14,8 +14,8 @@ constexpr int kResetAfter = 3;  // consecutive broadcasts without acknowledgment
 
 constexpr double kSlack_n = 0.5, kTaut_n = 2;
 constexpr int kSlackCycles = 20;
-// A change of rest length by this distance must change the load cell reading despite its noise: 0.7
-// N of a spring.
+// If the rest length changes by this distance, the load cell reading must change despite its noise:
+// the tension of a spring of 230 N/m changes by 0.7 N.
 constexpr double kShowing_m = 0.003;
 // Fewer equal readings may occur by chance, since one in three pairs of consecutive readings is
 // equal.

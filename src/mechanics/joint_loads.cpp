@@ -171,7 +171,7 @@ class Reactions {
   }
 
   /// Solves for the loads. Redundant rows share their load: each has a small compliance, a fraction
-  /// of its inverse mass. Further passes remove the error from it.
+  /// of its inverse mass. Further passes remove the error caused by the compliance.
   std::vector<double> Solved(const std::vector<double>& b) const {
     constexpr double kCompliance = 1e-9;
     constexpr int kPasses = 4;

@@ -27,8 +27,8 @@ struct Shape {
   double mass = 0;
   double friction = 1;
   int contype = 1, conaffinity = 1, condim = 3, priority = 0;
-  bool collides = true;  ///< Whether it collides with any shape; known after the whole file has
-                         ///< been read.
+  bool collides = true;  ///< Whether this geom collides with any other one; known after the
+                         ///< whole file has been read.
 };
 
 struct Site {
@@ -70,7 +70,8 @@ struct Actuator {
   SourceRef at;
   int tendon = 0;
   double gain = 0, bias[3] = {0, 0, 0};  ///< Include the gear: they apply to the tendon's length.
-  std::optional<std::pair<double, double>> control_range = {}, force_range = {};  ///< Of ctrl, p.
+  /// Limits of the control (`ctrl`) and of the force.
+  std::optional<std::pair<double, double>> control_range = {}, force_range = {};
   double lag_s = 0;                       ///< Time constant of the response to the control, plus
                                           ///< the delay.
   std::optional<std::size_t> state = {};  ///< If there is a lag: index into `act` of keyframes.

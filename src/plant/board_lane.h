@@ -15,8 +15,8 @@ namespace taut::plant {
 
 /// Load cell and encoder of a motor, read at the start of a tick.
 struct MotorInputs {
-  int code = 0;             ///< Of the converter, 0 .. 1023.
-  std::int64_t counts = 0;  ///< Of the encoder since the start; winding in is positive.
+  int code = 0;             ///< Reading of the converter, 0 .. 1023.
+  std::int64_t counts = 0;  ///< Encoder counts since the start; winding in is positive.
 };
 
 /// Readings of a motor in the last status frame.

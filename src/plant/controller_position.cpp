@@ -73,7 +73,7 @@ class PositionController final : public Controller {
   struct Lane {
     std::vector<std::vector<control::ProgramPoint<double>>> programs;  ///< Programs of the first
                                                                        ///< cables in `cables_`.
-    std::vector<double> start_m;  ///< Of all other cables: rest length at their first tick.
+    std::vector<double> start_m;  ///< Rest lengths of all other cables at their first tick.
     std::vector<double> held_m;   ///< Set by `Hold`; overrides the program.
     std::vector<std::uint8_t> is_held;
   };

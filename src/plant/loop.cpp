@@ -26,7 +26,8 @@ Loop::Loop(const ExperimentSpec& experiment, std::span<const RolloutWorld* const
   std::vector<const RolloutWorld*> all(lanes.begin(), lanes.end());
   all.resize(step_s_.size(), lanes[0]);
   const ControlSetup setup{experiment, all, first_world, count_};
-  // Also of lanes without results: they restart with the first lane (Simulation::Reset).
+  // Lanes without results have timelines, too: they restart with the first lane
+  // (Simulation::Reset).
   for (int j = 0; j < plant_lanes_; ++j) timelines_.emplace_back(experiment);
   has_forces_ = !timelines_[0].idle();
   const auto add = [&](std::unique_ptr<SensorModel> model) {

@@ -234,7 +234,7 @@ class TableParser {
   const std::string& path_;
   const TableLayout& layout_;
   Diagnostics& out_;
-  std::vector<std::string> names_;  ///< Of the columns, by the header.
+  std::vector<std::string> names_;  ///< Column names from the header.
   std::vector<Use> columns_;
   std::map<std::string, Before> last_;  ///< Per channel, for tables with one value per line.
   std::map<std::string, std::vector<std::pair<double, double>>> long_;

@@ -22,7 +22,7 @@ struct McapMessage {
 };
 
 struct McapChannel {
-  std::string topic, encoding;  ///< Of messages: "json", "cdr".
+  std::string topic, encoding;  ///< Encoding of the messages: "json", "cdr".
   std::string schema_name, schema_encoding, schema;
 };
 

@@ -101,7 +101,7 @@ class Columns {
   }
 
   std::vector<Column> columns_;
-  std::map<std::uint16_t, std::vector<std::uint64_t>> times_ns_;  ///< Of messages, by topic.
+  std::map<std::uint16_t, std::vector<std::uint64_t>> times_ns_;  ///< Message times by channel.
   std::unordered_map<std::string, std::size_t> places_;
   std::size_t values_ = 0;
 };

@@ -191,7 +191,7 @@ const SceneEntry kHeavyEnd("joint steps", "Two light rods that carry a heavy bal
                            "h w = 2, w^2 = 3 F / (m l)", HeavyEnd);
 const SceneEntry kStringOfBeads("joint steps", "Beads on a string of distance joints",
                                 "h w = 2, w^2 = 3 F / (m l)", StringOfBeads);
-const SceneEntry kOffTheAxis("joint steps", "Body on a hinge just beside its axis",
+const SceneEntry kOffTheAxis("joint steps", "Body with its center of mass close to the hinge axis",
                              "h w = 2, w^2 = m g r / (I + m r^2)", OffTheAxis);
 const SceneEntry kNoFalseAlarm("joint steps", "Light bodies on levers",
                                "slow motions need no report", NoFalseAlarm);

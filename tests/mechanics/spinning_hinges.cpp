@@ -41,7 +41,8 @@ void RotorBesideItsHinge(Report& report) {
   for (const double rate : {500.0, 3000.0}) {
     WorldBatch world = MakeBatch(Rotor(rate, 1e-3));
     world.Step(1e-3, 1000);
-    const std::string name = std::to_string(static_cast<int>(rate)) + " rad/s, 1 mm beside, 1 ms";
+    const std::string name =
+        std::to_string(static_cast<int>(rate)) + " rad/s, 1 mm off the hinge, 1 ms";
     const double wanted = rate < 1000 ? kStatusOk : kStatusStepTooLong;
     report.Near("status bits at " + name, "1", world.Status(0).bits, wanted, 0);
     if (rate > 1000) continue;
@@ -63,8 +64,7 @@ void BrakedRotor(Report& report) {
 
 const SceneEntry kSpinningHinge("joint stops", "Hinge that spins by many radians a step",
                                 "angle = rate times time", SpinningHinge);
-const SceneEntry kRotorBesideItsHinge("joint stops",
-                                      "Rotor whose hinge is beside its centre of mass",
+const SceneEntry kRotorBesideItsHinge("joint stops", "Rotor with its center of mass off the hinge",
                                       "angle = rate times time, or a status bit",
                                       RotorBesideItsHinge);
 const SceneEntry kBrakedRotor("joint stops", "Rotor braked by a damper", "angle I w / d",

@@ -14,7 +14,7 @@ namespace {
 
 struct Gain {
   double most = 0;    ///< Largest energy gain, as a share of the initial energy.
-  double silent = 0;  ///< Same, of flights that end without a status.
+  double silent = 0;  ///< Same for the flights that end without a status bit.
   int told = 0;       ///< Flights that gain more than kMostGain and have a status.
   double drift = 0;   ///< Change of momentum as a share of the initial momentum.
 };

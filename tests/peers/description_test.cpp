@@ -87,7 +87,7 @@ TEST(Peers, SayWhatTheyDoNotKnow) {
   EXPECT_EQ(Unsupported(other), "terrain meshes");
   other = def;
   other.height_fields.emplace_back();
-  EXPECT_EQ(Unsupported(other), "height fields split other than the same");
+  EXPECT_EQ(Unsupported(other), "height fields whose `split` is not `same`");
   other.height_fields[0].split = HeightFieldDef::Split::kSame;
   EXPECT_EQ(Unsupported(other), "");
   other.height_fields[0].material.static_friction = 0.6;

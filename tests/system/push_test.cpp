@@ -183,7 +183,7 @@ TEST(PushPage, ShowsTheMeansOfThisVersion) {
   const PageTable table("### Mean elastic tension [N]");
   EXPECT_EQ(table.rows.size(), 12u);
   for (const auto& [name, who] :
-       {std::pair("push_20n_ntrt", "its laws"), {"push_20n", "own laws"}}) {
+       {std::pair("push_20n_ntrt", "NTRT's laws"), {"push_20n", "taut's own laws"}}) {
     const RunSummary run = SimulatePush(Load(name));
     for (const CableSummary& cable : run.cables) {
       for (std::size_t p = 0; p < run.phases.size(); ++p) {
@@ -199,7 +199,7 @@ TEST(PushPage, ShowsHowNearThisVersionIsToNtrt) {
   const double ntrt_n = NtrtLargestTension();
   table.Expect("NTRT", "largest `elastic` [N]", ntrt_n);
   for (const auto& [name, who] :
-       {std::pair("push_20n_ntrt", "its laws"), {"push_20n", "taut's own laws"}}) {
+       {std::pair("push_20n_ntrt", "NTRT's laws"), {"push_20n", "taut's own laws"}}) {
     const RunSummary run = SimulatePush(Load(name));
     table.Expect(who, "largest `elastic` [N]", run.system_max_elastic_n);
     table.Expect(who, "difference from NTRT", 100 * (run.system_max_elastic_n / ntrt_n - 1));

@@ -84,8 +84,8 @@ class Driver {
                std::function<void(const std::optional<board::Reply>&)> done = {});
 
   // --- cycles ----------------------------------------------------------------------------------
-  /// Continues the cycle as far as possible without waiting. Returns true if a cycle has just
-  /// ended.
+  /// Performs the work of the cycle that is possible without waiting. Returns true if a cycle has
+  /// just ended.
   bool Poll();
   double due_s() const;  ///< Time of the next work for `Poll` if no bytes arrive until then.
   void RunUntil(double time_s);  ///< Polls and waits until `time_s` on the clock of the port.

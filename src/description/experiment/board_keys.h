@@ -52,13 +52,14 @@ void Keys(Io& io, Boards& b) {
   const auto gain = [](double most) { return Bound{.least = 0, .most = most}; };
   io("force_p_per_n", b.force_p_per_n, gain(10),
      "Proportional gain of the PID from the error of the tension to the duty.");
-  io("force_i_per_n_s", b.force_i_per_n_s, gain(100), "Integral gain of this PID.");
-  io("force_d_s_per_n", b.force_d_s_per_n, gain(1), "Derivative gain of this PID.");
+  io("force_i_per_n_s", b.force_i_per_n_s, gain(100), "Integral gain of the tension PID.");
+  io("force_d_s_per_n", b.force_d_s_per_n, gain(1), "Derivative gain of the tension PID.");
   io("length_p_per_m", b.length_p_per_m, gain(10'000),
      "Proportional gain of the PID from the error of the rest length to the duty, for position "
      "control and holding.");
-  io("length_i_per_m_s", b.length_i_per_m_s, gain(100'000), "Integral gain of this PID.");
-  io("length_d_s_per_m", b.length_d_s_per_m, gain(100), "Derivative gain of this PID.");
+  io("length_i_per_m_s", b.length_i_per_m_s, gain(100'000),
+     "Integral gain of the rest length PID.");
+  io("length_d_s_per_m", b.length_d_s_per_m, gain(100), "Derivative gain of the rest length PID.");
   io("tension_filter_share", b.tension_filter_share, Bound{.least = 0.001, .most = 1},
      "Share of a new reading in the filtered tension (a of eq. K.13).");
   io("rate_filter_share", b.rate_filter_share, Bound{.least = 0.001, .most = 1},
@@ -81,9 +82,9 @@ void Keys(Io& io, Boards& b) {
      "Supply voltage [V] for the board's estimate of the winding temperature. The supply of the "
      "simulated motor is a key of the model.");
   io("winding_ohm", b.winding_ohm, Bound{.least = 0.1, .most = 1000}, kFixed,
-     "Resistance for this estimate.");
+     "Winding resistance for the board's estimate of the winding temperature.");
   io("back_emf_v_s_per_m", b.back_emf_v_s_per_m, gain(10'000), kFixed,
-     "Voltage per cable speed for this estimate.");
+     "Back EMF per cable speed for the board's estimate of the winding temperature.");
   io("winding_limit_c", b.winding_limit_c, Bound{.least = 40, .most = 155}, kFixed,
      "Limit of the estimated winding temperature [degrees C]; above it, the motor has a fault.");
 }

@@ -84,8 +84,8 @@ void Keys(Io& io, Impedance& i) {
     io("rate", i.rate, kRateSources,
        "Source of V. `exact`: the cable's rate. `differenced`: change of length since the last "
        "tick, divided by the period, as the boards compute it; 0 at the first tick. "
-       "`differenced_from_rest_length`: the same, but the first difference starts from the rest "
-       "length, as in NTRT.");
+       "`differenced_from_rest_length`: as `differenced`, but the first difference starts from the "
+       "rest length, as in NTRT.");
     io("gains", i.gains, kNeeded, "Gains K and B.");
     io("set_points", i.set_points, kNeeded, "Set points T0, L0 and V0.");
   }

@@ -191,7 +191,7 @@ void Place(const PlaceText& place, StartKind start, const Scope& scope, RobotSpe
   };
   check(moving, place.velocity_at, "velocity_m_per_s");
   check(turning, place.angular_velocity_at, "angular_velocity_rad_per_s");
-  // Without a new place, keep the robot's numbers unchanged to the last bit.
+  // Without a new place, the robot's numbers stay bit-identical.
   if (place.moved) Move({place.at_m, place.rotate}, robot);
   if (moving || turning) {
     AddVelocity(place.velocity_m_per_s, place.angular_velocity_rad_per_s, robot.def);

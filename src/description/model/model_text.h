@@ -101,7 +101,7 @@ struct PlacementText {
   bool numbered = false;            ///< True if `copies` is given: copies are named name_0, name_1,
                                     ///< ...
   Vec3 at_m;                        ///< Origin of copy 0 in W.
-  Quat rotate;                      ///< q_WPart of copy 0.
+  Quat rotate;                      ///< Rotation q_WPart of copy 0, from the part's frame to W.
   Vec3 step_m;                      ///< Translation from each copy's origin to the next, in W.
   Quat step_rotate;                 ///< Rotation from each copy to the next, about axes of W.
   Vec3 velocity_m_per_s;            ///< Velocity of a copy's center of mass, in W.

@@ -22,8 +22,8 @@ void Keys(Io& io, Like<StribeckDef> auto& s) {
 template <class Io>
 void Keys(Io& io, Like<FrictionDirections> auto& d) {
   io.Map("friction_directions", "surface.friction_directions",
-         "Anisotropic friction, as of scales or skates: factors on the coefficients by the "
-         "direction in which the surface slides (docs/theory/friction.md).",
+         "Anisotropic friction (scales, skates): factors on the coefficients by the direction in "
+         "which the surface slides (docs/theory/friction.md).",
          R"({"forward": 0.5, "backward": 1.5})");
   io("forward", d.forward, Bound::kNonNegative, "Factor for sliding along `axis`.");
   io("backward", d.backward, Bound::kNonNegative, "Factor for sliding against `axis`.");

@@ -150,7 +150,8 @@ void Keys(Io& io, Like<FitEstimateText> auto& e) {
   io("each", e.each, kSharing,
      "Sharing of the value. `experiment`: each measurement has a separate value. `all`: all "
      "measurements share one value.");
-  io("experiments", e.experiments, "Names of the measurements it applies to. Default: all.");
+  io("experiments", e.experiments,
+     "Names of the measurements to which the estimate applies. Default: all.");
 }
 void Check(const MapReader& map, FitEstimateText& estimate);
 
@@ -209,7 +210,8 @@ void Keys(Io& io, Like<FitResidualText> auto& r) {
      "a smaller weight.");
   io("loss_sd", r.loss_sd, Bound::kPositive,
      "Threshold of `huber` (default 1.345) and `cauchy` (default 2.385), in standard deviations.");
-  io("experiments", r.experiments, "Names of the measurements it applies to. Default: all.");
+  io("experiments", r.experiments,
+     "Names of the measurements to which the residual applies. Default: all.");
 }
 void Check(const MapReader& map, FitResidualText& residual);
 

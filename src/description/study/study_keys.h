@@ -75,7 +75,8 @@ void Keys(Io& io, Like<PerturbationSpec> auto& w) {
       "experiment; the others have uniformly distributed factors and starts.");
   io("count", w.worlds, kNeeded, Bound{.least = 1, .most = 1000}, "Number of worlds.");
   VariationKeys(io, w);
-  io("redraw", w.redraw, "Whether each candidate has new worlds. Otherwise all have the same.");
+  io("redraw", w.redraw,
+     "Whether each candidate has new worlds. Otherwise all candidates have the same worlds.");
   io("score", w.worst, kJudges, "Combination of the worlds' scores.");
 }
 

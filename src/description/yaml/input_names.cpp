@@ -17,8 +17,8 @@ namespace {
 
 struct KindOfInput {
   const char* kind;
-  const char* folder;     ///< Of shipped files.
-  const char* extension;  ///< Without it, names are accepted, too.
+  const char* folder;     ///< Folder of shipped files.
+  const char* extension;  ///< Extension of these files; names may omit it.
 };
 
 constexpr KindOfInput kKinds[] = {

@@ -129,8 +129,8 @@ WorldBatch::Impl::Impl(std::shared_ptr<const Model> m, const WorldBatchOptions& 
   for (int i = 0; i < pool.threads(); ++i) {
     scratch.push_back(AllocateAligned<char>(kernel->scratch_bytes(view)));
   }
-  // Unused lanes after the last world also contain worlds, so they need no special cases and have
-  // no NaN.
+  // Unused lanes after the last world contain a world, too. Steps then need no special cases for
+  // these lanes and find no NaN in them.
   for (int world = 0; world < static_cast<int>(group_count) * n; ++world) StartWorld(world);
 }
 
@@ -188,8 +188,8 @@ void WorldBatch::Impl::ForgetMeans(int world) noexcept {
 void WorldBatch::Impl::Sense(int world) const noexcept {
   sim::Group& g = group(world);
   // Several threads may read concurrently: one updates the readings, the others wait. Later calls
-  // in the same step take no lock. Builtins, because std::atomic_ref is missing in the libc++ of
-  // emscripten 3.1.6.
+  // in the same step take no lock. Compiler builtins replace std::atomic_ref, which the libc++ of
+  // emscripten 3.1.6 lacks.
   if (__atomic_load_n(&g.sensed, __ATOMIC_ACQUIRE)) return;
   const std::lock_guard lock(sensing);
   if (__atomic_load_n(&g.sensed, __ATOMIC_RELAXED)) return;

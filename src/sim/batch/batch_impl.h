@@ -22,7 +22,7 @@ namespace taut {
 
 /// Frees memory of AllocateAligned.
 struct Free {
-  void* first = nullptr;  ///< Of the allocation, which starts before the aligned address.
+  void* first = nullptr;  ///< Start of the allocation, before the aligned address.
   void operator()(void*) const noexcept { std::free(first); }
 };
 template <class T>
@@ -46,7 +46,7 @@ struct WorldBatch::Impl {
 
   std::shared_ptr<const sim::Tables> model;
   sim::View view;
-  sim::FrictionTable friction;  ///< `view` refers to it if the model needs it.
+  sim::FrictionTable friction;  ///< Not used (null in `view`) if two coefficients per pair suffice.
   WorldBatchOptions options;
   const sim::Kernel* kernel;
   sim::Layout layout;

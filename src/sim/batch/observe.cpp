@@ -249,7 +249,8 @@ bool WorldBatch::Restore(int world, const std::vector<std::uint8_t>& snapshot) n
   for (std::uint32_t k = 0; k < header.contacts; ++k) {
     const Touching bodies = BodiesOf(m, Read<double>(at));
     at -= sizeof(double);
-    // Slots of a body, or contacts between moving bodies after all slots.
+    // Contacts with the world are in the slots of their body; contacts between moving bodies follow
+    // after all slots.
     const bool moves = bodies.b < m.body_count &&
                        (d.at(world, d.layout.mass + bodies.b) > 0 || d.view.HasMotion(bodies.b));
     const int first = moves ? m.slot_count : m.first_slot[bodies.a];

@@ -35,7 +35,7 @@ struct TerrainEdge {
 /// Straight part of a cable.
 struct FreeSpan {
   Vec3 from, to;
-  bool starts, ends;  ///< Whether they are the ends of the cable.
+  bool starts, ends;  ///< Whether `from` and `to` are ends of the cable.
 };
 
 TAUT_INLINE bool IsTaken(double key, const double* taken, int count) noexcept {
@@ -56,8 +56,9 @@ struct BendFound {
 bool CanLieOn(const BendPlace& place, const FreeSpan& span, double side) noexcept;
 
 /// Finds the edge with the deepest penetration by the span, among edges not in `taken` that can
-/// lift the span out. Returns false if no edge is deeper than the previous result (`any`: there is
-/// one). The span passes through a box that contains an end of the cable.
+/// lift the span out. `any`: `found` contains an earlier result, and only a deeper edge replaces
+/// it. Returns false if `found` is unchanged. Boxes that contain an end of the cable are ignored:
+/// the span passes through them.
 bool FindEdge(const View& m, const FreeSpan& span, double radius_m, const double* taken,
               int taken_count, bool any, BendFound* found) noexcept;
 

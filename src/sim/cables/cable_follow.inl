@@ -107,7 +107,8 @@ bool ChangeBends(const View& m, const Rows<W>& s, Scratch<W>& work, const TouchT
   const double share = ShareBefore(m, s, work, deepest.place, parts.span[part], 0.5 * arc_before,
                                    0.5 * arc_behind, lane);
   if (bends.Insert(part, deepest, share)) return true;
-  // No room for this bend: the cable passes through the obstacle, and its length stays continuous.
+  // The cable already has kMostBends bends: it passes through this obstacle, and its length stays
+  // continuous.
   ForgetSide(m, s, touch, deepest.place.key, lane);
   Crowd(work, touch, lane);
   return false;

@@ -156,7 +156,8 @@ class LaneBends {
     for (; k + 1 < count_; ++k) Copy(s_.bend[first_ + k + 1], s_.bend[first_ + k]);
     Put(s_.bend[first_ + --count_], kNoWrapPoint);
   }
-  /// Adds a bend. Returns false if there is no room. `share`: fraction of the span before the bend.
+  /// Adds a bend. Returns false if the cable already has kMostBends bends. `share`: fraction of the
+  /// span before the bend.
   bool Insert(int k, const BendFound& found, double share) noexcept {
     if (count_ == kMostBends) return false;
     spans_.Split(k, count_, share);

@@ -18,7 +18,7 @@ namespace taut::sim {
 template <class W>
 struct Decay {
   W z, inv_p;
-  W half;       ///< 1 + z / 2.
+  W half;       ///< 1 + z / 2: final speed per kick, times p.
   W mean_kick;  ///< (1 + z) / (2 p): mean speed per kick.
 
   TAUT_INLINE explicit Decay(W rate_h) noexcept : z(rate_h) {

@@ -227,7 +227,7 @@ class Compiler {
     each(List::kTerrainBoxes, def_.terrain_boxes, [&](const ShapeRef& ref, const TerrainBoxDef& b) {
       Box(ref, kWorld, b.center_m, b.orientation, b.half_extents_m, b.material);
     });
-    // Same here.
+    // Shapes contain pointers to the surfaces, too, so this table must not be reallocated.
     t_.surfaces.reserve(def_.height_fields.size() + def_.terrain_meshes.size());
     each(List::kHeightFields, def_.height_fields, [&](const ShapeRef& ref, const auto& field) {
       Ground(ref, sim::Surface(field), field.material);

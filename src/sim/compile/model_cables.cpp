@@ -199,7 +199,8 @@ void LayOutChainLinks(Tables& t) {
     cable.first_link = t.chain_link_count;
     cable.link_room = 2 * cable.attachment_count;
     if (cable.touch >= 0) {
-      // Per lane: at most two for a span, and no more than the number of bodies it can pull.
+      // Links of a span: at most two in each of the eight lanes, and at most one per body that the
+      // cable can pull.
       const TouchTable& touch = t.touches[static_cast<std::size_t>(cable.touch)];
       std::set<int> bodies;
       for (int i = 0; i < touch.rod_count; ++i) {

@@ -205,8 +205,9 @@ void CheckCables(const ModelDef& def, Checker& check) {
 }
 
 /// Checks numbers that grow with the square of a model's size: pairs of shapes of different bodies,
-/// and pairs of cables on a common body. Pairs of moving bodies need only numbers; all others need
-/// memory or time, also those of two bodies, because they are tested whenever both are near.
+/// and pairs of cables on a common body. Pairs of shapes of moving bodies need only numbers as
+/// keys. All other pairs need memory. The pairs of any two bodies also need time, because all of
+/// them are tested whenever the two bodies are near.
 void CheckSizes(const ModelDef& def, Checker& check) {
   std::vector<double> shapes(def.bodies.size()), ends(def.bodies.size());
   double fixed = static_cast<double>(def.terrain_boxes.size() + def.height_fields.size() +

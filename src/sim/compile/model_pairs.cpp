@@ -10,7 +10,8 @@
 namespace taut::sim {
 namespace {
 
-/// Motion per body after which a list of near bodies is made again, per mean radius of the bodies.
+/// Motion of a body after which the list of near bodies is made again, as a fraction of the mean
+/// radius of the bodies.
 constexpr double kNearShare = 0.1;
 
 std::set<int> JointedBodies(const Tables& t) {

@@ -27,8 +27,8 @@ inline Nothing Zero(const Tables&, int) noexcept { return {}; }
 inline double One(const Tables&, int) noexcept { return 1.0; }
 inline double NoKey(const Tables&, int) noexcept { return kNoKey; }
 inline double SlipUnknown(const Tables&, int) noexcept { return kSlipUnknown; }
-/// Placeholder: WorldBatch::Impl::JudgeStiffness sets this row after masses, stiffnesses and
-/// dampings.
+/// Placeholder: WorldBatch::Impl::JudgeStiffness sets this row once masses, stiffnesses and
+/// dampings are set.
 inline Nothing ByJudgeStiffness(const Tables&, int) noexcept { return {}; }
 
 inline const BodyDef& BodyOf(const Tables& t, int i) noexcept {

@@ -30,7 +30,8 @@ TAUT_INLINE void Push(const RowLink<Num>& link, const Num* l, V3<Num>& v, V3<Num
 template <class Num>
 struct ChainSpan {
   Num stretch, rate;  ///< [m], [m/s]
-  /// Per stretch, and per rest length that slips into the span [N/m].
+  /// Increase of the tension per stretch, and its decrease per rest length that slips into the span
+  /// [N/m].
   Num stiffness, slip_stiffness;
   Num damping;  ///< [N s/m]
   Num ratio;    ///< Tension ratio at the slip point after the span: exp(mu theta).

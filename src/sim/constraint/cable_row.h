@@ -194,7 +194,8 @@ struct CableRow {
     const Num root = Sqrt(Max(half_b * half_b + soft * c, zero));
     return Select(half_b > zero, c / Max(half_b + root, tiny), (root - half_b) / Max(soft, tiny));
   }
-  /// Solves it for a cable that was slack and becomes taut; the smaller root, since z > 0:
+  /// Solves l = curve(free - soft l) for a slack cable that becomes taut; the smaller root, because
+  /// z > 0:
   ///   l (z - z0) = z (gain z + damper (winding - z0))
   TAUT_INLINE Num Entering(Num free, Num soft) const noexcept {
     const Num zero = Num::Splat(0.0), half = Num::Splat(0.5);

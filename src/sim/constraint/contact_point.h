@@ -220,9 +220,10 @@ struct ContactPoint {
     Clamp(l_now);
   }
 
-  /// Computes `rebound` (eq. 9-10). It reaches the height that restitution prescribes, from the gap
-  /// at which the step finds the contact, under constant acceleration. `warm`: normal velocity from
-  /// forces and the impulses of the previous step. Returns false without a rebound.
+  /// Computes `rebound` (eq. 9-10): the speed that reaches the height prescribed by restitution,
+  /// from the gap at which the step detects the contact, under constant acceleration. `warm`:
+  /// normal velocity from forces and the impulses of the previous step. Returns false without a
+  /// rebound.
   TAUT_INLINE bool ExpectRebound(Num warm) noexcept {
     const Num zero = Num::Splat(0.0), one = Num::Splat(1.0), least = Num::Splat(kLeastRebound);
     const Num fastest = zero - restitution * before;

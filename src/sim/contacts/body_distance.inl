@@ -58,7 +58,7 @@ BodyDistance<W> DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<
 template <class W, class M>
 BodyDistance<W> DistanceOfBodies(const View& m, const Rows<W>& s, const Scratch<W>& work,
                                  const MovingPair& bodies, M lanes) noexcept {
-  constexpr int kMostKept = 16;  // the lines of b serve all shapes of a
+  constexpr int kMostKept = 16;  // lines of b, computed once for all shapes of a
   CenterLine<W> kept[kMostKept];
   BodyDistance<W> out;
   const int* const of_b = m.body_shapes + m.first_shape[bodies.b];

@@ -21,10 +21,10 @@ struct SlidingContact {
   double time_s;
   double point[3], normal[3];
   double slip[3];    ///< Expected mean tangential velocity of A relative to B over the step [m/s].
-  double before[3];  ///< The same at the start of the step.
-  double free[3];    ///< The same at the end of the step, without contacts.
-  double force[3];   ///< On A, in the previous step [N].
-  double turn_a[9], turn_b[9];  ///< R_WP of the bodies, by rows; for B only if it moves.
+  double before[3];  ///< Tangential velocity at the start of the step.
+  double free[3];    ///< Tangential velocity at the end of the step without contacts.
+  double force[3];   ///< Contact force on A in the previous step [N].
+  double turn_a[9], turn_b[9];  ///< Rotations R_WP of the bodies, row by row; of B only if B moves.
   bool b_moves;
 
   // Outputs, in the direction of largest friction:

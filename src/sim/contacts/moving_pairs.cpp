@@ -73,8 +73,9 @@ ShapePairTable PairOfKey(const View& m, std::uint32_t key) noexcept {
   std::uint32_t number = (key - m.first_pair_id) / kPoints;
   if (number < static_cast<std::uint32_t>(m.shape_pair_count)) return m.shape_pairs[number];
   number -= static_cast<std::uint32_t>(m.shape_pair_count);
-  // The last body of which the pairs do not start after `number`, first among all bodies, then in
-  // the row of that body. Bodies without pairs have the same start as the next one.
+  // Finds the last body whose pairs start at or before `number`: first among all bodies, then among
+  // the partners in its row. The pairs of a body without partners start where those of the next
+  // body start.
   const auto last = [](int first, int end, const auto& starts_before) {
     while (end - first > 1) {
       const int middle = first + (end - first) / 2;

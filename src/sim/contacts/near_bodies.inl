@@ -38,7 +38,7 @@ TAUT_INLINE W MotionSinceSearch(const View& m, const Rows<W>& s, const Scratch<W
 /// Returns the bounds of the bounding sphere of a body in a lane.
 template <class W>
 Bounds SphereBounds(const View& m, const Rows<W>& s, int body, int lane) noexcept {
-  constexpr double kFar_m = 1e30;  // instead of numbers that are not finite
+  constexpr double kFar_m = 1e30;  // replaces coordinates that are not finite
   const V3<W>& x = s.pos[body];
   const double center[3] = {x.x[lane], x.y[lane], x.z[lane]};
   Bounds bounds;
@@ -63,7 +63,8 @@ void BuildNearTrees(const View& m, const Rows<W>& s, Scratch<W>& work) noexcept 
 }
 
 /// Calls use(bodies) for each pair of bodies within the distance `reach_m` in some lane, ascending,
-/// until it returns false. Returns whether it did not. Needs the trees of BuildNearTrees.
+/// until `use` returns false; then returns false, otherwise true. Needs the trees of
+/// BuildNearTrees.
 template <class W, class Use>
 bool EachNearPair(const View& m, const Rows<W>& s, Scratch<W>& work, W reach_m,
                   const Use& use) noexcept {

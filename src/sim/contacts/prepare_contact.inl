@@ -110,9 +110,9 @@ TAUT_INLINE void PrepareContact(Contact<Num, kLinks>& c, const ContactMemory<Num
   }
   c.FinishMasses();
 
-  // An approaching contact may at most close. A penetrating contact is pushed out no faster than
-  // the forces of this step push it back, so that nothing flies off. Position projection
-  // (solve/position_projection.inl) removes the remaining penetration.
+  // An approaching contact may at most close. A penetrating contact separates no faster than the
+  // forces of this step can stop again, plus a thousandth of its speed, so that no body flies off.
+  // Position projection (solve/position_projection.inl) removes the remaining penetration.
   const Num before = c.before = RowVelocity(c, 0, a.v0, a.w0, b.v0, b.w0);
   const Num change = before - RowVelocity(c, 0, a.v, a.w, b.v, b.w), kick = Max(change, zero);
   const Num slowly = Num::Splat(kPushOutShare) * Abs(before);

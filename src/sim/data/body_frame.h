@@ -8,7 +8,7 @@
 namespace taut::sim {
 
 struct Frame {
-  double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R_WP, row major.
+  double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< Rotation R_WP from frame P to W, row by row.
   double origin[3] = {};
 };
 

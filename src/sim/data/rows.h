@@ -47,7 +47,7 @@ struct Rows {
 /// Data of a body during a step. The world has one, too: identity, zero.
 template <class W>
 struct BodyWork {
-  M3<W> R;              ///< R_WP at the middle of the step.
+  M3<W> R;              ///< Rotation R_WP from frame P to W at the middle of the step.
   S3<W> inv_inertia;    ///< In W [1/(kg m^2)].
   V3<W> v, w;           ///< Current velocities [m/s], [rad/s].
   V3<W> v0, w0;         ///< Velocities before the forces of this step.

@@ -26,7 +26,7 @@ class Tables final : public Model {
   }
 
   int body_count = 0, cable_count = 0, node_count = 0, plane_count = 0;
-  std::vector<double> q_WP0;    ///< 4 per body: principal frame at t = 0.
+  std::vector<double> q_WP0;    ///< 4 per body: quaternion from the principal frame to W at t = 0.
   std::vector<double> inertia;  ///< 3 per body: principal moments [kg m^2].
   /// Per body and for the world: largest distance of a shape point from the origin.
   std::vector<double> bound_m;
@@ -35,10 +35,10 @@ class Tables final : public Model {
   std::vector<MotorTable> motors;       ///< In the order of the cables.
   std::vector<SupplyTable> supplies;
   std::vector<AttachmentTable> attachments;
-  std::vector<AttachmentTable> spots;   ///< Different points of bodies among the attachments.
-  int max_attachments = 0;              ///< Largest number for a cable.
+  std::vector<AttachmentTable> spots;   ///< Points of bodies with attachments, each once.
+  int max_attachments = 0;              ///< Largest number of attachments of a cable.
   std::vector<WheelTable> wheels;       ///< Sorted by cable.
-  int max_wheels = 0;                   ///< Largest number for a cable.
+  int max_wheels = 0;                   ///< Largest number of wheels of a cable.
   int chain_count = 0, span_count = 0;  ///< Numbers of cables with friction, and of their spans.
   int chain_link_count = 0;             ///< Capacity for links of their spans to bodies.
   std::vector<double> span_rest_m;      ///< Rest lengths of the spans at the start.

@@ -209,8 +209,9 @@ struct View {
   int shape_pair_count;
   const WorldPairTable* world_pairs;
   int world_pair_count;
-  /// Bodies with shapes that move or are kinematic; shapes of each, by number of the body. A row of
-  /// a body are its pairs with later bodies: number of shape pairs before it, bodies kept apart.
+  /// Bodies that have shapes and move or are kinematic; shapes of each body, by its number. The row
+  /// of a body contains its pairs with later bodies. For each row: number of shape pairs before the
+  /// row, and the bodies that are kept apart from this body.
   const int* colliders;
   int collider_count;
   const int *first_shape, *body_shapes;
@@ -221,7 +222,7 @@ struct View {
   /// list of near bodies, otherwise 0.
   const MovingPair* moving_pairs;
   int moving_pair_count, near_capacity;
-  double near_m;  ///< Motion per body after which that list is made again [m].
+  double near_m;  ///< Motion of a body after which the list of near bodies is made again [m].
   CombineRule friction_combine, restitution_combine;
   const int* first_slot;
   int slot_count;

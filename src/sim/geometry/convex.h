@@ -53,8 +53,8 @@ struct Convex {
   }
 };
 
-/// Point on the surface of a convex body nearest to a given point. If the given point is inside, it
-/// is on the nearest face.
+/// Point on the surface of a convex body that is nearest to a given point; for a given point inside
+/// the body, on the nearest face.
 struct NearestOfConvex {
   Vec3 at, normal;    ///< Outward unit normal; toward the given point if that is outside.
   double distance_m;  ///< Negative: inside.

@@ -119,7 +119,8 @@ bool BoxGoesOn(const BoxShape& box, const Vec3& place, const Vec3& way, double s
   return false;
 }
 
-/// Returns whether an open sheet at the point separates the direction from the center of the body.
+/// Returns whether `way` leads to one side of an open sheet at the point while the center of the
+/// body is on the other side.
 bool IsBehindSheet(const SeamList& seams, const Vec3& place, const Vec3& way, const Vec3& middle,
                    double more_m) noexcept {
   bool behind = false;

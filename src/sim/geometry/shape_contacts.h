@@ -85,11 +85,11 @@ template <class A, class B>
 double DistanceUpTo(const A& a, const B& b, double) noexcept {
   return Distance(a, b);
 }
-/// Not exact if two corners are nearest to each other.
+/// Lower bound, not exact if two corners are nearest to each other.
 double DistanceUpTo(const BoxShape& a, const HullShape& b, double enough_m) noexcept;
 double DistanceUpTo(const HullShape& a, const HullShape& b, double enough_m) noexcept;
-/// Computed from the points of `Touch`: at most their smallest gap, and less by at most 0.01 radius
-/// (boxes and hulls: 1e-5 of the gap). Above `enough_m`, it follows from bounds.
+/// The result is at most the smallest gap of the points of `Touch`, and smaller than this gap by at
+/// most 0.01 radius (boxes and hulls: 1e-5 of the gap). Results above `enough_m` are lower bounds.
 double DistanceUpTo(const RoundShape& a, const SurfaceShape& b, double enough_m) noexcept;
 double DistanceUpTo(const BoxShape& a, const SurfaceShape& b, double enough_m) noexcept;
 double DistanceUpTo(const HullShape& a, const SurfaceShape& b, double enough_m) noexcept;

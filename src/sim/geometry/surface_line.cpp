@@ -96,8 +96,9 @@ class LineSearch {
 
  private:
   /// Returns whether an edge point or a corner belongs to the joint surface of all adjacent pieces.
-  /// Conditions: no piece is nearer to the line, and the pieces do not continue straight on both
-  /// sides along it, since then the ends of the line support it.
+  /// Conditions: no piece is nearer to the line, and the pieces do not continue straight along the
+  /// line on both sides. Where they continue straight, the contacts at the ends of the line
+  /// suffice.
   bool IsOpen(const Vec3& start, const Vec3& end, double share, const Vec3& at,
               bool inside) const noexcept {
     const Vec3 away = from_ + share * along_ - at;
@@ -112,7 +113,8 @@ class LineSearch {
     return !GoesStraightOn(&s_, s_.seams, at, way, true) ||
            !GoesStraightOn(&s_, s_.seams, at, -1.0 * way, true);
   }
-  /// Tests a field; for a mesh, both triangles have already shown it.
+  /// Returns whether a point is below a field. For a mesh returns true: the test of both triangles
+  /// has already shown this.
   bool IsUnder(const Vec3& p) const noexcept { return !s_.is_field || DepthBelow(s_, p) > 0.0; }
 
   void Take(const LineStretch& piece, double share, const Vec3& at, bool inside) noexcept {

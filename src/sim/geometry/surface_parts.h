@@ -8,16 +8,17 @@
 
 namespace taut::sim {
 
-/// Returns the factor on the limit for searches in a field. It is above 1, so that bounds exclude
-/// nothing that the contact conditions accept, since cached parts come from other bounds.
+/// Returns the factor on the limit for searches in a field. Cached parts are found with other
+/// bounds. With a factor above 1, neither kind of bound excludes a part that the contact conditions
+/// accept.
 inline double WiderLook(const SurfaceTable& s) noexcept { return s.is_field ? 1.001 : 1.0; }
 
 /// Returns whether the cache of a rod or a ball is valid for its current position.
 bool Serves(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
             const NearParts& kept) noexcept;
 
-/// Fills the cache if this is worthwhile, which is not so while the rod keeps leaving it. Returns
-/// whether the cache was filled.
+/// Fills the cache, except while the shape leaves each cache after few uses. Returns whether the
+/// cache was filled.
 bool KeepParts(const SurfaceTable& s, const Vec3& from, const Vec3& to, double limit_m,
                NearParts& kept) noexcept;
 

@@ -96,7 +96,7 @@ class BodyDual {
       const W before = now_;
       now_ = Select(busy, Residual(), now_);
       const auto done = (now_ < goal) | ((now_ < tolerance) & (now_ > pays * before));
-      busy = busy & !done;  // a NaN stays busy
+      busy = busy & !done;  // lanes with a NaN residual remain
     }
   }
 

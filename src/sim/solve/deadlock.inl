@@ -2,11 +2,12 @@
 /// (docs/theory/contact.md, section 5).
 ///
 /// Contacts that stick along a kinematic loop (a rod jammed across a groove, a slab on rollers)
-/// have more rows than the bodies have degrees of freedom. Their biases differ in the last digits
-/// of gaps and arcs. No velocities satisfy all rows, and each Newton step adds the same impulses
-/// along the loop. If these impulses eventually open a contact or make it slide, the solver jumps
-/// directly to this point. Otherwise the equations are inconsistent: proximal rounds (proximal.inl)
-/// find the velocities with the smallest error, and the laws of the loop are relaxed by this error.
+/// have more rows than the bodies have degrees of freedom. Small differences between gaps or arcs
+/// make the biases of these rows contradict each other. No velocities satisfy all rows, and each
+/// Newton step adds the same impulses along the loop. If these impulses eventually open a contact
+/// or make it slide, the solver jumps directly to this point. Otherwise the equations are
+/// inconsistent: proximal rounds (proximal.inl) find the velocities with the smallest error, and
+/// the laws of the loop are relaxed by this error.
 #pragma once
 
 #include "sim/data/island.h"

@@ -23,8 +23,10 @@ class Proximal {
   static constexpr int kMaxRounds = 40, kMaxIterations = 40, kSweepsAfterFailure = 10;
   static constexpr double kLeastSoftness = 1e-8, kStays = 1e-3;
   static constexpr int kMaxStays = 4;
-  /// Criteria for inconsistent contacts: the residual is not reduced by the factor kFalls in
-  /// several rounds, although rounds have a compliance of at most kStiff or fail.
+  /// Criteria for inconsistent contacts. A round counts if its compliance is at most the compliance
+  /// of the last round that reduced the best residual by the factor kFalls. After kRounds such
+  /// rounds (kRoundsIfSmall below kSmallMPerS), the laws are relaxed if the round failed, the
+  /// residual stays the same, or the compliance is at most kStiff.
   static constexpr double kFalls = 0.5, kSmallMPerS = 1e-8, kStiff = 1e-8;
   static constexpr int kRoundsIfSmall = 4, kRounds = 6;
 
@@ -102,9 +104,9 @@ class Proximal {
     Keep(m_.best, m_.l, island_.rows);
   }
 
-  /// Relaxes the laws that m.l violates. With m.l, the next step starts from the impulses
-  /// accumulated along the loop, until a contact slides. If this fails, tries the best impulses,
-  /// and otherwise restores m.l.
+  /// Relaxes the laws that the impulses m.l violate: the next step then starts from the impulses
+  /// accumulated along the loop, until a contact slides. If this fails, tries the best impulses. If
+  /// that fails, too, restores m.l and returns false.
   bool RelaxBest(double best) noexcept {
     if (!(best > tolerance_ && best <= kDisagreementMPerS)) return false;
     if (Relax(island_, tolerance_, work_)) return true;

@@ -27,8 +27,9 @@ class IslandTangent {
   explicit IslandTangent(Island<Num, P>& island) noexcept
       : island_(island), m_(island.m), matrix_(island.pattern, island.m.blocks) {}
 
-  /// Factors the matrix. Returns false if it is singular or does not fit into memory. The error is
-  /// of the order of the compliance, which distributes indeterminate loads.
+  /// Factors the matrix. Returns false if it is singular or does not fit into memory. The error of
+  /// the derivatives is of the order of `compliance`, which determines how indeterminate loads are
+  /// distributed.
   bool Factor(double compliance = 1e-7) noexcept {
     if (!island_.has_matrix) return false;
     bool symmetric = true;

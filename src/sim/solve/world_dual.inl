@@ -19,8 +19,8 @@ namespace taut::sim {
 template <class W, class Contacts>
 class WorldDual {
   static constexpr int kMaxIterations = 10, kMaxContactIterations = 8;
-  /// Contacts in many directions may cycle, and all lanes would wait for them. Worlds with this
-  /// number of cycles are left to the lane-by-lane solver.
+  /// Newton's method for contacts in many directions may cycle, and all lanes would wait. Worlds
+  /// with this number of cycles are left to the lane-by-lane solver.
   static constexpr int kMaxCircles = Contacts::kPacked ? 3 : kMaxIterations;
   static constexpr double kCompliance = 1e-9;
   using M = MaskOf<W>;
@@ -76,7 +76,8 @@ class WorldDual {
     const W tolerance = W::Splat(target_.tolerance), goal = W::Splat(target_.goal()),
             pays = W::Splat(Target::kPays);
     now_ = Select(lanes, Residual(), now_);
-    // At least one step, because residuals of cables would persist as oscillations and accumulate.
+    // Takes at least one Newton step: residuals of cables would otherwise persist as oscillations
+    // and accumulate.
     M busy = lanes;
     [[maybe_unused]] W circles = W::Splat(0.0);
     for (int iteration = 0; iteration < kMaxIterations && Any(busy); ++iteration) {
@@ -91,7 +92,7 @@ class WorldDual {
       const W before = now_;
       now_ = Select(busy, Residual(), now_);
       const auto done = (now_ < goal) | ((now_ < tolerance) & (now_ > pays * before));
-      busy = busy & !done;  // a NaN stays busy
+      busy = busy & !done;  // lanes with a NaN residual remain
       if constexpr (Contacts::kPacked) {
         circles += Select(circling, one, W::Splat(0.0));
         busy = busy & (circles < W::Splat(kMaxCircles));

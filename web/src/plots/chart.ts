@@ -20,7 +20,7 @@ export class Chart {
   readonly element: HTMLElement;
   filled: Filled;
   private plot: uPlot | null = null;
-  /** Whether it has data; before, its span is meaningless. */
+  /** Whether the chart has data. Until then, its span has no meaning. */
   private isFilled = false;
   private readonly place: HTMLElement;
   private readonly key = el("div.lines");

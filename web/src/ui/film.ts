@@ -19,7 +19,7 @@ export interface Film {
   tell(share: number): void;
 }
 
-/** `kind`: label and file extension. `make` returns the file; null: it has failed and shown why. */
+/** `kind`: label and file extension. `make` returns the file, or null after it has failed and shown the reason. */
 export function filmMaker(app: App, store: SeriesStore, kind: string, title: string, available: () => boolean, make: (film: Film) => Promise<Blob | null>): HTMLElement {
   let running = false;
   const made = button(kind, title, () => {
