@@ -74,7 +74,8 @@ class RobotConsole {
   const link::VirtualRobot* virtual_robot() const { return line_->virtual_robot.get(); }
   /// Returns whether an interrupt or a stop request has arrived; the motors stop.
   bool stop_asked() const { return stop_asked_; }
-  /// Polls for an interrupt or a stop request: for loops that may run without cycles.
+  /// Polls for an interrupt or a stop request. Call it where cycles may be absent, as without
+  /// an adapter.
   bool LookForStop();
   /// Exit status after a stop: kInterrupted, or kFailed if another program requested it.
   Exit stop_exit() const;

@@ -53,7 +53,8 @@ struct StateSpace {
   std::vector<std::string> remarks;  ///< Omissions, and the reason for finite differences.
   Derivatives derivatives = Derivatives::kExact;
   /// Largest difference between both methods in a matrix entry, relative to the largest entry of
-  /// its kind (velocities by rotations, tensions by positions, ...).
+  /// its kind (derivatives of velocities with respect to rotations, of tensions with respect to
+  /// positions, ...).
   double disagreement = 0;
   /// Length of a tick: the period of the controllers, or a step without controllers.
   double period_s = 0;

@@ -23,7 +23,8 @@ struct StartNoise {
   double heading_rad = 0.0;
   /// Largest rotation of the goal about the vertical through the origin of W, in both directions.
   double goal_rad = 0.0;
-  bool any_pose = false;  ///< Uniform random rotation of the whole robot about its center of mass.
+  /// Random orientation of the whole robot about its center of mass, uniform over all orientations.
+  bool any_pose = false;
 };
 
 /// Uniform ranges of random worlds.

@@ -245,7 +245,7 @@ bool MayHaveThousands(const std::vector<std::string>& cells) {
   return whole && grouped;
 }
 
-/// Recognizes the variables of a MATLAB file.
+/// Returns the layout of a log in a MATLAB file, whose columns are its numeric vectors.
 std::optional<LogForm> FormOfMat(const std::string& path, Diagnostics& out) {
   const auto variables = trace::ReadMatVariables(path, out);
   if (!variables) return std::nullopt;

@@ -34,7 +34,7 @@ void SolveFree(const Quadratic& quadratic, const Vector& weight, double damping,
   for (Eigen::Index k = 0; k < count; ++k) d[free[static_cast<std::size_t>(k)]] = solved[k];
 }
 
-/// Returns the distance of d_j from its bounds.
+/// Returns by how much d_j exceeds its bounds; 0 within them.
 double Outside(const StepBox& box, const Vector& d, Eigen::Index j) {
   return std::max({box.low[j] - d[j], d[j] - box.high[j], 0.0});
 }

@@ -123,7 +123,7 @@ bool Remove(const Reading& in, int structure, int a, int b, bool& found) {
   return true;
 }
 
-/// Replaces the edge's cable by two cables through the node.
+/// Replaces the cable along the bond's edge by two cables that meet at the bond's node.
 void RunThrough(const Reading& in, int parent, int first, int second, const NodeOnEdge& bond,
                 const std::vector<NodeOnEdge>& all, const Words& tags) {
   bool found = false;

@@ -24,7 +24,7 @@ struct LoopNumbers {
   float limit_counts;      ///< ADC count of the load cell at which winding in stops.
   float band_from_counts;  ///< ADC count above which winding in is reduced.
   /// Largest drive [PWM steps], and its slope within the band [PWM steps per ADC count].
-  float most, most_per_count;
+  float most_drive, drive_per_count;
   float counts_per_n;             ///< ADC counts of the load cell per newton.
   float speed_per_count_m_per_s;  ///< Rate of lengthening at one encoder count per tick.
 };
@@ -51,8 +51,8 @@ inline LoopNumbers NumbersOf(const float* p) noexcept {
   numbers.limit_counts = p[kCountsAtZero] + p[kTensionLimit] * counts_per_n;
   const float band_counts = p[kTensionBand] * counts_per_n;
   numbers.band_from_counts = numbers.limit_counts - band_counts;
-  numbers.most = p[kDutyLimit] * static_cast<float>(kFullWidth);
-  numbers.most_per_count = numbers.most / band_counts;
+  numbers.most_drive = p[kDutyLimit] * static_cast<float>(kFullWidth);
+  numbers.drive_per_count = numbers.most_drive / band_counts;
   numbers.speed_per_count_m_per_s = -p[kLengthPerCount] / kTick_s;
   return numbers;
 }
@@ -114,12 +114,12 @@ inline void SenseCable(const float* p, const LoopNumbers& numbers, MotorLoop& mo
 /// decreases linearly to 0.
 inline control::OutputLimits<float> DriveLimits(const LoopNumbers& numbers,
                                                 const MotorLoop& motor) noexcept {
-  float winding = numbers.most;
+  float winding = numbers.most_drive;
   if (motor.tension_counts > numbers.band_from_counts) {
     const float room = numbers.limit_counts - motor.tension_counts;
-    winding = room > 0.0f ? numbers.most_per_count * room : 0.0f;
+    winding = room > 0.0f ? numbers.drive_per_count * room : 0.0f;
   }
-  return control::OutputLimits<float>{-numbers.most, winding};
+  return control::OutputLimits<float>{-numbers.most_drive, winding};
 }
 
 /// Returns the rest length minus its target [encoder counts]; positive: wind in.

@@ -142,7 +142,7 @@ inline void Restrain(Board& board, uint8_t m) noexcept {
   const bool too_much = board.mode != Mode::kOff && (board.faults[m] & kOverTension) != 0 &&
                         (board.faults[m] & (kSensor | kPolarity | kRunaway)) == 0 &&
                         Tension(p, motor) > p[kTensionLimit] - p[kTensionBand];
-  motor.drive = too_much ? control::Max(kPayOut, -board.numbers[m].most) : 0.0f;
+  motor.drive = too_much ? control::Max(kPayOut, -board.numbers[m].most_drive) : 0.0f;
 }
 
 /// Counts late ticks and ticks without a broadcast.

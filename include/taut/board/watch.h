@@ -126,8 +126,7 @@ inline uint8_t Look(const WatchLimits& limits, uint16_t adc, int16_t step, int16
 struct HeatNumbers {
   /// Mean heat [W] per unit of the sums in `Watch`.
   float width_width_w, width_step_w, step_step_w;
-  /// Fraction of the difference from the steady-state temperature by which an update changes a
-  /// temperature.
+  /// An update moves each temperature toward its steady state by this fraction of the difference.
   float winding_share, housing_share;
 };
 

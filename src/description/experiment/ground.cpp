@@ -44,7 +44,7 @@ bool FillByFormula(const HeightFieldText& text, const Scope& scope, trace::Table
   if (corners * static_cast<double>(parsed.size()) > kMostSteps) {
     scope.out.Error("heights.formula_too_costly", formula.at,
                     "height_field.height_m has " + std::to_string(parsed.size()) +
-                        " operations and values for each of " + base::Brief(corners) +
+                        " operations and operands for each of " + base::Brief(corners) +
                         " corners, more than 400 000 000 in all",
                     "use a shorter formula, fewer, larger cells, or a file");
     return false;

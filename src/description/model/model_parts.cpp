@@ -210,7 +210,7 @@ void FinishNodesAndPairs(const MapReader& map, bool loose, PartText& part) {
   }
   for (const PairText& pair : part.pairs) {
     for (const Placed& node : pair.nodes) {
-      // Nodes of loose pairs may belong to placements, which are known later.
+      // Pairs at the top level of the file (`loose`) may use nodes of placements, known only later.
       if (loose || known.count(node.text) > 0 || !part.nodes_complete) continue;
       scope.out.Error("node.unknown", node.at,
                       "there is no node \"" + node.text + "\" in part \"" + part.name + "\"",

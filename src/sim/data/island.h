@@ -124,7 +124,7 @@ template <class Num>
 struct IslandMemory {
   Row<Num> v, rhs, direction, trial_v;             ///< 6 per unknown.
   Row<Num> l, u, best, center, projected, du, u2;  ///< 1 per row.
-  Row<Num> g, f;                                   ///< rows^2 and rows per constraint.
+  Row<Num> g, f;                                   ///< Per constraint: rows^2 (g), rows (f).
   Row<Num> blocks;                                 ///< 36 per block.
   ImpactRows<Num> impacts;
 };

@@ -67,7 +67,8 @@ void LaneSolve<W>::DisplaceEnd(int body, const V3<L>& dx, const V3<L>& half) noe
   SetLane(work_.implicit.end_quat[body], q, lane_);
 }
 
-/// Returns the angular momentum that contacts between moving bodies will add.
+/// Returns the angular momentum that contacts with other moving bodies will still add to a body in
+/// this step.
 template <class W>
 V3<simd::Lane<W>> LaneSolve<W>::PendingOfTouches(int body) const noexcept {
   V3<L> sum{L::Splat(0.0), L::Splat(0.0), L::Splat(0.0)};
