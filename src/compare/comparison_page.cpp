@@ -47,12 +47,12 @@ std::string Bars(const compare::Group& group) {
   for (const auto& [name, c] : group.rows) {
     if (!std::isfinite(c->rmse)) continue;
     const double bias = kHalf * c->bias / most, rmse = kHalf * c->rmse / most;
-    out += fmt::format(
-        R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)"
-        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="12" fill="none" stroke="#8a96a3"/>)"
-        R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="12" fill="#1f6fb2"/>)",
-        kNames - 6, y + 10, compare::Escaped(name), zero - rmse, y, 2 * rmse,
-        std::min(zero, zero + bias), y, std::fabs(bias));
+    out +=
+        fmt::format(R"(<text class="tick" x="{:.1f}" y="{:.1f}" text-anchor="end">{}</text>)"
+                    R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="12" class="outline"/>)"
+                    R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="12" class="interval"/>)",
+                    kNames - 6, y + 10, compare::Escaped(name), zero - rmse, y, 2 * rmse,
+                    std::min(zero, zero + bias), y, std::fabs(bias));
     y += kRow;
   }
   return out +
@@ -130,19 +130,16 @@ std::string Curves(const compare::Group& group, const Trace& a, const Trace& b,
 
 std::string ComparisonPage(const Comparison& comparison, const Trace& a, const Trace& b,
                            const std::string& name_a, const std::string& name_b) {
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
-      compare::Escaped(name_a) + " and " + compare::Escaped(name_b) + "</title>\n<style>" +
-      compare::kPageStyle +
-      "</style></head><body>\n<h1>Simulation and measurement</h1>\n<p class=\"note\">a: " +
-      compare::Escaped(name_a) + ", b: " + compare::Escaped(name_b) +
-      "; differences are a - b; taut " + kVersion + "</p>\n<div class=\"verdict\">";
+  std::string out = compare::PageHead("Simulation and measurement", "comparison") +
+                    "<p class=\"note\">a: " + compare::Escaped(name_a) +
+                    ", b: " + compare::Escaped(name_b) + "; differences are a - b; taut " +
+                    kVersion + "</p>\n<div class=\"verdict\">";
   for (const std::string& line : MeasuredVerdict(comparison, name_a, name_b)) {
     out += compare::Escaped(line) + "<br>\n";
   }
   out +=
-      "</div>\n<p class=\"key\"><span><i class=\"dot\" style=\"background:#1f6fb2\"></i>a, "
-      "simulated</span><span><i class=\"dot\" style=\"background:#d9822b\"></i>b, "
+      "</div>\n<p class=\"key\"><span><i class=\"dot fitted\"></i>a, "
+      "simulated</span><span><i class=\"dot held\"></i>b, "
       "measured</span></p>\n";
   std::size_t plots = 0;
   for (const compare::Group& group : compare::GroupsOf(comparison.channels)) {
@@ -154,7 +151,7 @@ std::string ComparisonPage(const Comparison& comparison, const Trace& a, const T
     out +=
         fmt::format("<p class=\"note\">{} more channels without curves</p>\n", plots - kMostPlots);
   }
-  return out + "</body></html>\n";
+  return out + "</main></body></html>\n";
 }
 
 }  // namespace taut

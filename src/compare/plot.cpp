@@ -38,17 +38,52 @@ std::string HtmlRow(const std::vector<std::string>& cells, const char* tag) {
 
 }  // namespace
 
+namespace {
+
+// Colors of the viewer's pages (web/src/style.css); blue and orange are distinct with color vision
+// deficiencies.
 const char* const kPageStyle = R"(
-body{font:15px/1.45 system-ui,sans-serif;color:#1c2430;background:#fff;max-width:1000px;margin:24px auto;padding:0 16px}
-h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:28px 0 8px}
-table{border-collapse:collapse;margin:8px 0}td,th{padding:3px 10px;border-bottom:1px solid #dde2e8;text-align:right;white-space:nowrap}
-td:first-child,th:first-child,td.word{text-align:left}th{font-weight:600;color:#46525f}
-.verdict{padding:10px 14px;border-left:5px solid;margin:12px 0}.good{border-color:#2a8a4a;background:#eef7f0}.bad{border-color:#c0392b;background:#fbeeec}
-.note{color:#5b6774}svg{margin:4px 8px 4px 0}svg text{font:11px system-ui,sans-serif;fill:#46525f}svg text.title{font-size:12px;font-weight:600;fill:#1c2430}
-.grid{stroke:#e6eaee}.level{stroke:#8a96a3;stroke-dasharray:4 3}circle.untuned{fill:#b4bcc6}circle.fitted{fill:#1f6fb2}circle.held{fill:#d9822b}
-polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:#1f6fb2}.key span{display:inline-block;margin-right:18px}.dot{width:9px;height:9px;border-radius:50%;display:inline-block;margin-right:5px}
+:root{--page:#f5f7f9;--panel:#fff;--text:#1c232b;--faint:#5b6671;--line:#d3dae0;--accent:#0072b2;--good:#00734f;--warn:#b34700;--held:#d55e00;--pale:#aab4be}
+@media (prefers-color-scheme:dark){:root{--page:#10151b;--panel:#161d25;--text:#e3e8ed;--faint:#98a4b0;--line:#2c3742;--accent:#56b4e9;--good:#2bd4a4;--warn:#ff8c42;--held:#ff8c42;--pale:#5f6b77}}
+@media print{:root{--page:#fff}}
+body{font:15px/1.45 system-ui,sans-serif;color:var(--text);background:var(--page);margin:0}
+header{background:var(--panel);border-bottom:1px solid var(--line);padding:12px max(16px,calc(50vw - 550px));display:flex;gap:10px;align-items:baseline}
+header b{color:var(--accent);font-size:18px}h1{font-size:18px;margin:0}.kind{font-size:12px;color:var(--faint);border:1px solid var(--line);border-radius:9px;padding:1px 9px}
+main{max-width:1100px;margin:0 auto;padding:8px 16px 40px}h2{font-size:18px;margin:28px 0 8px}a{color:var(--accent)}
+.cards{display:flex;flex-wrap:wrap;gap:10px;margin:12px 0}.card{background:var(--panel);border:1px solid var(--line);border-radius:6px;padding:8px 14px;min-width:130px;flex:1}
+.card small{display:block;color:var(--faint);font-size:12px}.card strong{display:block;font-size:23px;line-height:1.3}.card .good{color:var(--good)}.card .bad{color:var(--warn)}
+table{border-collapse:collapse;margin:8px 0;background:var(--panel);border:1px solid var(--line);font-size:14px}td,th{padding:3px 10px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
+td:first-child,th:first-child,td.word{text-align:left}th{font-weight:600;color:var(--faint)}
+.verdict{padding:10px 14px;border-left:5px solid var(--line);margin:12px 0;background:var(--panel)}.verdict.good{border-color:var(--good)}.verdict.bad{border-color:var(--warn)}
+.note{color:var(--faint)}svg{margin:4px 8px 4px 0;background:var(--panel);border:1px solid var(--line);border-radius:6px;max-width:100%}svg text{font:11px system-ui,sans-serif;fill:var(--faint)}svg text.title{font-size:12px;font-weight:600;fill:var(--text)}
+.grid{stroke:var(--line);stroke-width:.7}.level{stroke:var(--faint);stroke-dasharray:4 3}circle.untuned{fill:var(--pale)}circle.fitted{fill:var(--accent)}circle.held{fill:var(--held)}circle.measured{fill:var(--text)}
+polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:var(--accent)}polyline.held{stroke:var(--held)}polyline.untuned{stroke:var(--pale)}
+.outline{fill:none;stroke:var(--faint)}.prior{fill:var(--line)}.interval{fill:var(--accent)}.start{stroke:var(--text);stroke-width:2}.axis{stroke:var(--line)}
+.key span{display:inline-block;margin-right:18px}.dot{width:9px;height:9px;border-radius:50%;display:inline-block;margin-right:5px}
+.dot.untuned{background:var(--pale)}.dot.fitted{background:var(--accent)}.dot.held{background:var(--held)}.dot.measured{background:var(--text)}
 .wide{overflow-x:auto}
 )";
+
+}  // namespace
+
+std::string PageHead(const std::string& title, const std::string& kind) {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta "
+         "name=\"viewport\" "
+         "content=\"width=device-width\">\n<title>" +
+         Escaped(title) + ": " + Escaped(kind) + "</title>\n<style>" + kPageStyle +
+         "</style></head><body>\n<header><b>taut</b><h1>" + Escaped(title) +
+         "</h1><span class=\"kind\">" + Escaped(kind) + "</span></header>\n<main>\n";
+}
+
+std::string Cards(const std::vector<Card>& cards) {
+  std::string out = "<div class=\"cards\">\n";
+  for (const Card& card : cards) {
+    out += "<div class=\"card\"><small>" + Escaped(card.label) + "</small><strong class=\"" +
+           card.style + "\">" + Escaped(card.value) + "</strong><small>" + Escaped(card.note) +
+           "</small></div>\n";
+  }
+  return out + "</div>\n";
+}
 
 std::string HtmlTable(const std::vector<std::vector<std::string>>& rows) {
   std::string out = "<div class=\"wide\"><table>\n";

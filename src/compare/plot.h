@@ -7,8 +7,16 @@
 
 namespace taut::compare {
 
-/// Style sheet of the pages.
-extern const char* const kPageStyle;
+/// Returns the beginning of a page, up to its first section, in the look of the viewer's pages.
+/// `kind`: word beside the title, such as "fit".
+std::string PageHead(const std::string& title, const std::string& kind);
+
+/// Headline result at the top of a page.
+struct Card {
+  std::string label, value, note;  ///< Texts without markup.
+  std::string style;               ///< CSS class of the value: "good", "bad" or empty.
+};
+std::string Cards(const std::vector<Card>& cards);
 
 /// Returns a table; the first row is the header. Escapes all texts.
 std::string HtmlTable(const std::vector<std::vector<std::string>>& rows);
@@ -17,7 +25,8 @@ std::string HtmlTable(const std::vector<std::vector<std::string>>& rows);
 std::string Escaped(const std::string& text);
 
 struct Series {
-  std::string style;  ///< CSS class of the marks: "untuned", "fitted" or "held".
+  /// CSS class of the marks: "untuned", "fitted", "held" or "measured".
+  std::string style;
   std::vector<std::pair<double, double>> points;
   /// Connect the points by lines; otherwise draw dots. Lines of few points have dots, too.
   bool line = false;

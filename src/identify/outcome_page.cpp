@@ -7,6 +7,7 @@
 
 #include "compare/plot.h"
 #include "identify/labels.h"
+#include "identify/outcome_figures.h"
 #include "taut/version.h"
 
 namespace taut {
@@ -17,8 +18,6 @@ using compare::Escaped;
 using compare::Plot;
 using compare::Svg;
 
-std::string G(double x) { return std::isfinite(x) ? fmt::format("{:.5g}", x) : "-"; }
-
 std::string ParameterSection(const Identification& fit, const FitOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{
       {"parameter", "start", "fitted", "se", "jackknife", "prior sd", "pull", "verdict"}};
@@ -27,13 +26,14 @@ std::string ParameterSection(const Identification& fit, const FitOutcome& outcom
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FitParameter& p = parameters[i];
     const ParameterVerdict& v = outcome.verdict.identifiability.parameters[i];
-    rows.push_back({WithUnit(p.name, p.unit), G(p.start), G(v.value), ErrorText(v.se),
-                    v.se_jackknife ? ErrorText(*v.se_jackknife) : "-", G(p.prior_sd),
-                    std::isfinite(p.prior_sd) ? G(v.pull) : "-",
+    rows.push_back({WithUnit(p.name, p.unit), FiveDigits(p.start), FiveDigits(v.value),
+                    ErrorText(v.se), v.se_jackknife ? ErrorText(*v.se_jackknife) : "-",
+                    FiveDigits(p.prior_sd), std::isfinite(p.prior_sd) ? FiveDigits(v.pull) : "-",
                     std::string(VerdictName(v.kind)) + (v.kink ? ", kink" : "")});
     sentences += "<li>" + Escaped(v.sentence) + "</li>\n";
   }
-  return "<h2>Parameters</h2>\n" + compare::HtmlTable(rows) + "<ul>\n" + sentences + "</ul>\n";
+  return "<h2>Parameters</h2>\n" + ParameterBars(fit, outcome) + compare::HtmlTable(rows) +
+         "<ul>\n" + sentences + "</ul>\n";
 }
 
 std::string Errors(const char* title, const std::vector<FitPoint>& points,
@@ -42,8 +42,8 @@ std::string Errors(const char* title, const std::vector<FitPoint>& points,
   std::vector<std::vector<std::string>> rows{
       {title, "data", "untuned rms", "fitted rms", "fitted bias"}};
   for (const ChannelErrors& e : ErrorsByChannel(points, residuals)) {
-    rows.push_back({WithUnit(e.channel, e.unit), std::to_string(e.count), G(e.untuned), G(e.fitted),
-                    G(e.fitted_bias)});
+    rows.push_back({WithUnit(e.channel, e.unit), std::to_string(e.count), FiveDigits(e.untuned),
+                    FiveDigits(e.fitted), FiveDigits(e.fitted_bias)});
   }
   return compare::HtmlTable(rows);
 }
@@ -54,7 +54,8 @@ std::string ErrorsOfExperiments(const char* title, const FitSpec& spec,
   std::vector<std::vector<std::string>> rows{
       {title, "data", "untuned rms [sd]", "fitted rms [sd]"}};
   for (const ExperimentErrors& e : ErrorsByExperiment(spec, points, residuals)) {
-    rows.push_back({e.experiment, std::to_string(e.count), G(e.untuned), G(e.fitted)});
+    rows.push_back(
+        {e.experiment, std::to_string(e.count), FiveDigits(e.untuned), FiveDigits(e.fitted)});
   }
   return compare::HtmlTable(rows);
 }
@@ -65,8 +66,9 @@ std::string Aliases(const FitVerdict& verdict) {
   std::vector<std::vector<std::string>> rows{{"sensor error", "value", "se", "chi2 decrease", "p"}};
   for (const AliasTest& test : verdict.aliases) {
     const bool there = !test.confounded;
-    rows.push_back({WithUnit(test.name, test.unit), there ? G(test.value) : "confounded",
-                    there ? G(test.se) : "-", there ? G(test.fall) : "-", there ? G(test.p) : "-"});
+    rows.push_back({WithUnit(test.name, test.unit), there ? FiveDigits(test.value) : "confounded",
+                    there ? FiveDigits(test.se) : "-", there ? FiveDigits(test.fall) : "-",
+                    there ? FiveDigits(test.p) : "-"});
   }
   return "<h2>Sensor errors that are not estimated</h2>\n<p class=\"note\">Score tests: estimate "
          "of "
@@ -141,11 +143,16 @@ std::string ResidualPlots(const Identification& fit, const FitOutcome& outcome) 
   add(fit.train_points(), outcome.train, false);
   add(fit.test_points(), outcome.test, true);
   std::string out =
-      "<h2>Residuals</h2>\n<p class=\"key\"><span><i class=\"dot\" "
-      "style=\"background:#b4bcc6\"></i>"
-      "untuned</span><span><i class=\"dot\" style=\"background:#1f6fb2\"></i>fitted data"
-      "</span><span><i class=\"dot\" style=\"background:#d9822b\"></i>held-out "
+      "<h2>Residuals</h2>\n<p class=\"key\"><span><i class=\"dot untuned\"></i>"
+      "untuned</span><span><i class=\"dot fitted\"></i>fitted data"
+      "</span><span><i class=\"dot held\"></i>held-out "
       "data</span></p>\n";
+  // Few data of a channel stand in the figure of measured and computed values.
+  std::erase_if(order, [&](const std::string& channel) {
+    const std::vector<compare::Series>& series = plots[channel].series;
+    return series[1].points.size() + series[2].points.size() < 3;
+  });
+  if (order.empty()) return {};
   constexpr std::size_t kMost = 24;
   for (std::size_t i = 0; i < std::min(order.size(), kMost); ++i) out += Svg(plots[order[i]]);
   if (order.size() > kMost) {
@@ -189,7 +196,7 @@ std::string Correlations(const Identification& fit, const FitOutcome& outcome) {
     out += fmt::format("<tr><td>{} {}</td>", i + 1, Escaped(parameters[i].name));
     for (std::size_t j = 0; j < n; ++j) {
       const double c = id.correlation[i * n + j];
-      const char* colour = c < 0 ? "192,57,43" : "31,111,178";
+      const char* colour = c < 0 ? "213,94,0" : "0,114,178";
       out += fmt::format("<td style=\"background:rgba({},{:.2f})\">{:.2f}</td>", colour,
                          i == j ? 0.0 : 0.6 * std::min(1.0, std::fabs(c)), c);
     }
@@ -216,7 +223,7 @@ std::string Correlations(const Identification& fit, const FitOutcome& outcome) {
                                   : " + ",
                           x, parameters[by_size[k]].name);
     }
-    rows.push_back({d.null ? "none" : G(d.singular), d.fixed ? "yes" : "no", text});
+    rows.push_back({d.null ? "none" : FiveDigits(d.singular), d.fixed ? "yes" : "no", text});
   }
   return out + compare::HtmlTable(rows);
 }
@@ -230,7 +237,7 @@ std::string Jackknifed(const Identification& fit, const FitOutcome& outcome) {
   for (std::size_t i = 0; i < std::min(j.groups.size(), kMost); ++i) {
     auto& row = rows.emplace_back();
     row.push_back(fit.train().group_names[static_cast<std::size_t>(j.groups[i].group)]);
-    for (const double x : j.groups[i].values) row.push_back(G(x));
+    for (const double x : j.groups[i].values) row.push_back(FiveDigits(x));
   }
   return "<h2>Estimates without one group</h2>\n" + compare::HtmlTable(rows);
 }
@@ -240,7 +247,7 @@ std::string Design(const FitOutcome& outcome, std::size_t parameters) {
   const DesignRanking& design = *outcome.design;
   std::vector<std::vector<std::string>> rows{{"measurements", "bits more", "combinations fixed"}};
   const auto add = [&](const std::string& name, const DesignWorth& worth) {
-    rows.push_back({name, G((worth.information - design.now.information) / std::log(2.0)),
+    rows.push_back({name, FiveDigits((worth.information - design.now.information) / std::log(2.0)),
                     fmt::format("{} of {}", worth.fixed, parameters)});
   };
   add("present data", design.now);
@@ -255,10 +262,8 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
                         const std::vector<std::string>& looks) {
   const FitVerdict& v = outcome.verdict;
   const FitProblem& problem = fit.train();
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
-                    Escaped(fit.spec().name) + ", fitted</title>\n<style>" + compare::kPageStyle +
-                    "</style></head><body>\n<h1>" + Escaped(fit.spec().name) + "</h1>\n<p>" +
-                    Escaped(fit.spec().description) + "</p>\n";
+  std::string out = compare::PageHead(fit.spec().name, "fit") + "<p>" +
+                    Escaped(fit.spec().description) + "</p>\n" + Headline(fit, outcome);
   out += fmt::format(
       "<p class=\"note\">{} parameters from {} data points in {} groups, {} data points held out; "
       "taut {}</p>\n",
@@ -266,9 +271,14 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
       fit.test_points().size(), kVersion);
   out += std::string("<div class=\"verdict ") +
          (v.judgement == FitJudgement::kGood ? "good" : "bad") + "\">";
-  for (const std::string& sentence : v.sentences) out += Escaped(sentence) + "<br>\n";
+  for (const std::string& sentence : v.sentences) {
+    const auto& parameters = v.identifiability.parameters;  // whose sentences follow below
+    const bool below = std::any_of(parameters.begin(), parameters.end(),
+                                   [&](const auto& p) { return p.sentence == sentence; });
+    if (!below) out += Escaped(sentence) + "<br>\n";
+  }
   out += "</div>\n";
-  out += ParameterSection(fit, outcome);
+  out += ParameterSection(fit, outcome) + MeasuredPlots(fit, outcome);
   out += "<h2>Errors</h2>\n" + Errors("fitted data", fit.train_points(), outcome.train) +
          Errors("held-out data", fit.test_points(), outcome.test) +
          ErrorsOfExperiments("experiment", fit.spec(), fit.train_points(), outcome.train) +
@@ -277,7 +287,7 @@ std::string OutcomePage(const Identification& fit, const FitOutcome& outcome,
   out += Looks(fit, looks) + Carried(fit, outcome);
   out += ResidualPlots(fit, outcome) + ProfileSection(fit, outcome) + Correlations(fit, outcome) +
          Jackknifed(fit, outcome) + Design(outcome, problem.parameters.size());
-  return out + "</body></html>\n";
+  return out + "</main></body></html>\n";
 }
 
 }  // namespace taut

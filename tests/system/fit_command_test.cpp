@@ -114,7 +114,31 @@ TEST_F(FitCommand, FindsWhatATwinWasMadeWith) {
   // The fitted model, as an experiment.
   EXPECT_EQ(End(Start({"check", "out/fitted_a.yaml", "--quiet"})).status, 0);
   EXPECT_NE(Read(Path("out/fitted_a.yaml")).find("k_n_per_m: 1"), std::string::npos);
-  EXPECT_NE(Read(Path("out/report.html")).find("<svg"), std::string::npos);
+  const std::string page = Read(Path("out/report.html"));
+  EXPECT_NE(page.find("<strong class=\"good\">Good</strong><small>agrees with held-out data"),
+            page.npos);
+  EXPECT_NE(page.find("<strong class=\"good\">1 of 1</strong>"), page.npos);
+  EXPECT_NE(page.find("aria-label=\"start, prior and estimate of each parameter\""), page.npos);
+  EXPECT_NE(page.find("class=\"title\" x=\"62\" y=\"16\">a: "), page.npos);
+  EXPECT_NE(page.find(", held out: "), page.npos);
+}
+
+TEST_F(FitCommand, ThePageShowsSingleDataInOneFigure) {
+  const std::string hang = TAUT_SOURCE_DIR "/share/experiments/hang.yaml";
+  ASSERT_EQ(End(Start({"run", hang, "--set", "stiffness_n_per_m=410", "--out", "truth", "--quiet",
+                       "--csv"}))
+                .status,
+            0);
+  const CommandResult done =
+      Fit("taut: 1\nkind: fit\nname: f\nexperiments: [{name: one, experiment: " + hang +
+          ", data: truth/trace.csv}]\nestimate:\n  - {parameter: stiffness_n_per_m}\n"
+          "residuals:\n  - {channel: \"cable/*/length_m\", sd: 1e-5, statistic: max}\n"
+          "  - {channel: \"cable/*/length_m\", sd: 1e-5, statistic: mean}\n");
+  EXPECT_EQ(done.status, 0) << done.output << done.errors;
+  const std::string page = Read(Path("out/report.html"));
+  EXPECT_NE(page.find("aria-label=\"measured and computed values\""), page.npos);
+  EXPECT_EQ(page.find("class=\"title\""), page.npos) << "a plot with two dots";
+  EXPECT_EQ(page.find("<h2>Residuals"), page.npos);
 }
 
 TEST_F(FitCommand, LeavesEachExperimentBeforeAndAfter) {
