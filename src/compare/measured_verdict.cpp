@@ -55,7 +55,7 @@ std::string ErrorLine(const compare::Group& group) {
   const auto [least, most] = std::minmax_element(rmse.begin(), rmse.end());
   const double share = MedianOf(relative);
   const std::string size =
-      std::isfinite(share) ? fmt::format(" ({:+.1f} % of the largest value)", share) : "";
+      std::isfinite(share) ? fmt::format(" ({:+.2g} % of the largest value)", share) : "";
   if (rmse.size() == 1) {
     return fmt::format("{}, {}: bias {}{}, RMSE {}", compare::GroupTitle(group), worst->first,
                        compare::FourDigits(bias[0]), size, compare::FourDigits(rmse[0]));

@@ -55,7 +55,7 @@ main{max-width:1100px;margin:0 auto;padding:8px 16px 40px}h2{font-size:18px;marg
 table{border-collapse:collapse;margin:8px 0;background:var(--panel);border:1px solid var(--line);font-size:14px}td,th{padding:3px 10px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 td:first-child,th:first-child,td.word{text-align:left}th{font-weight:600;color:var(--faint)}
 .verdict{padding:10px 14px;border-left:5px solid var(--line);margin:12px 0;background:var(--panel)}.verdict.good{border-color:var(--good)}.verdict.bad{border-color:var(--warn)}
-.note{color:var(--faint)}svg{margin:4px 8px 4px 0;background:var(--panel);border:1px solid var(--line);border-radius:6px;max-width:100%}svg text{font:11px system-ui,sans-serif;fill:var(--faint)}svg text.title{font-size:12px;font-weight:600;fill:var(--text)}
+.note{color:var(--faint)}svg{vertical-align:top;margin:4px 8px 4px 0;background:var(--panel);border:1px solid var(--line);border-radius:6px;max-width:100%}svg text{font:11px system-ui,sans-serif;fill:var(--faint)}svg text.title{font-size:12px;font-weight:600;fill:var(--text)}
 .grid{stroke:var(--line);stroke-width:.7}.level{stroke:var(--faint);stroke-dasharray:4 3}circle.untuned{fill:var(--pale)}circle.fitted{fill:var(--accent)}circle.held{fill:var(--held)}circle.measured{fill:var(--text)}
 polyline{fill:none;stroke-width:1.5}polyline.fitted{stroke:var(--accent)}polyline.held{stroke:var(--held)}polyline.untuned{stroke:var(--pale)}
 .outline{fill:none;stroke:var(--faint)}.prior{fill:var(--line)}.interval{fill:var(--accent)}.start{stroke:var(--text);stroke-width:2}.axis{stroke:var(--line)}
