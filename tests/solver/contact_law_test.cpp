@@ -270,6 +270,25 @@ TEST(ContactLaw, AloneItIsSolvedHoweverSteepItsCone) {
   EXPECT_GT(steep, kInstances / 10);
 }
 
+TEST(ContactLaw, AloneItIsSolvedForAnyRatioOfClosingSpeedAndSlip) {
+  for (int i = 0; i < kInstances; ++i) {
+    math::Random random(9, 0, static_cast<std::uint64_t>(i));
+    const bool one_direction = i % 2 == 1;
+    const Contact2 c = RandomContact(random, one_direction, 4.0);
+    const Rows<3> slip = RandomRows<3>(random, 2);
+    for (const double closing : {1e-3, 1e-15, 1e-50, 1e-60, 1e-100, 1e-200, 1e-300, 5e-324}) {
+      Rows<3> u0{-closing - c.bias[0][0], slip[1] - c.bias[1][0], slip[2] - c.bias[2][0]};
+      if (closing < 1e-14) u0[0] = -closing;
+      Contact2 exact = c;
+      if (closing < 1e-14) exact.bias[0] = Num::Splat(0.0);
+      const auto [u, l] = SolvedAlone(exact, u0, {});
+      for (const double x : l) ASSERT_TRUE(std::isfinite(x)) << "instance " << i << ' ' << closing;
+      EXPECT_LT(Violation(exact, u, l), 1e-12 * (1 + Largest(l))) << "instance " << i;
+      EXPECT_LE(std::hypot(l[1], l[2]), c.mu[0] * l[0] * (1 + 1e-14)) << "outside its cone";
+    }
+  }
+}
+
 TEST(ContactLaw, ClampedImpulsesAreAdmissibleAndAdmissibleOnesStay) {
   ForEachInstance([](const Contact2& c, Case which, math::Random& random) {
     const Rows<3> any = RandomRows<3>(random), l = Clamped(c, any);

@@ -212,7 +212,10 @@ struct ContactPoint {
         high = Num::Splat(8.0) * high;
         at_high = Excess(slip, high);
       }
-      CloseIn(slip, low, at_low, high, at_high);
+      // Without a change of sign, the closing speed is below 1e-50 of the slip (positions that have
+      // converged to rounding). The impulses at `high` are the solution then, and CloseIn would
+      // divide 0 by 0.
+      if (!Any(at_high > zero)) CloseIn(slip, low, at_low, high, at_high);
     }
     l_now[0] = Max(slip.ln, zero);
     l_now[1] = slip.l1;
