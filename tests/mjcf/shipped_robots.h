@@ -8,7 +8,7 @@
 
 namespace taut::test {
 
-/// All shipped models that MJCF can represent
+/// Shipped models that MJCF can represent, with all kinds of elements that it has
 inline constexpr const char* kExportable[] = {"hanging_mass",
                                               "prism3",
                                               "rod",
