@@ -142,14 +142,14 @@ class Gallery(unittest.TestCase):
         crash.duration_s = 0.05
         trace = taut.run(crash).trace
         speed = np.gradient(trace["system/com_x_m"], trace.time_s)
-        self.assertAlmostEqual(speed[2], 6.5, delta=1e-6)
-        self.assertLess(speed[-2], -3)
+        self.assertAlmostEqual(speed[2], -6.5, delta=1e-6)
+        self.assertGreater(speed[-2], 3)
         impulse_n_s = contact_force_n(trace, "x").sum() * (trace.time_s[1] - trace.time_s[0])
         self.assertAlmostEqual(impulse_n_s / (0.3 * (speed[-2] - speed[2])), 1, delta=0.01)
         energy_j = trace["system/kinetic_j"] + trace["system/gravity_j"] + trace["system/elastic_j"]
         self.assertLess(np.diff(energy_j).max(), 1e-9)
         for motor in ("a_left", "a_right", "b_left", "b_right"):
-            self.assertLess(trace[f"node/{motor}/position_x_m"].max() + 1.25 * 0.0254, 0, motor)
+            self.assertGreater(trace[f"node/{motor}/position_x_m"].min() - 1.25 * 0.0254, 0, motor)
 
     def test_laika_bends_to_both_sides_alike(self):
         heads = []
@@ -161,12 +161,13 @@ class Gallery(unittest.TestCase):
         # Friction under four feet is statically indeterminate, so mirrored runs are not mirrored bit by bit.
         self.assertAlmostEqual(heads[0] / -heads[1], 1, delta=0.02)
 
-    def test_laika_stands_with_the_lengths_measured_on_the_robot(self):
-        # Distances of the vertebrae at top, side and bottom in the standing robot: 101, 99 and 93 mm
+    def test_laika_stands_with_the_length_of_its_side_cables_as_measured(self):
+        # Only tensions of the model are measured values: lengths at rest and in the standing robot, and stiffness. Top
+        # and bottom were 101 and 93 mm long; the model has 99 mm, because its cables end at the same radius.
         trace = taut.run(experiment("laika_bend", bend_m=0)).trace
-        for row, measured_m in (("top", 0.101), ("left", 0.099), ("right", 0.099), ("bottom", 0.093)):
+        for row in ("left", "right"):
             mean_m = np.mean([trace[f"cable/{row}_{gap}/length_m"][0] for gap in (1, 2, 3, 4)])
-            self.assertAlmostEqual(mean_m, measured_m, delta=0.007, msg=row)
+            self.assertAlmostEqual(mean_m, 0.099, delta=0.0002, msg=row)
 
     def test_ductt_climbs_by_two_strides_and_its_feet_bear_its_weight(self):
         trace = taut.run(experiment("ductt_climb")).trace
